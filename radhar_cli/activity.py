@@ -1,0 +1,84 @@
+"""The twelve activities S1 to S12: label, slug, class number and the parameters each one uses."""
+
+import difflib
+from dataclasses import dataclass
+
+_GAIT = ("motion.gait_hz", "motion.thigh_deg", "motion.calf_deg", "motion.arm_deg")
+_WALK = ("motion.speed_mps", *_GAIT)
+_SEAT = ("timing.seat_start_s", "timing.seat_duration_s")
+_RISE = ("timing.rise_start_s", "timing.rise_duration_s", "timing.walk_start_s", "timing.blend_s")
+
+
+@dataclass(frozen=True)
+class Activity:
+    """One class of the data set.
+
+    Attributes:
+        number: 1 to 12, the paper's S number.
+        slug: name used in folders and on the command line.
+        uses: dotted config keys of the motion and timing numbers this activity depends on,
+            besides the position and the heading, which all of them use.
+    """
+
+    number: int
+    slug: str
+    uses: tuple[str, ...]
+
+    @property
+    def label(self) -> str:
+        """The paper's name, ``S1`` to ``S12``."""
+        return f"S{self.number}"
+
+    @property
+    def index(self) -> int:
+        """Class number in a data set, 0 to 11."""
+        return self.number - 1
+
+    @property
+    def walks(self) -> bool:
+        """Whether the torso moves along the motion angle."""
+        return "motion.speed_mps" in self.uses
+
+
+ACTIVITIES: tuple[Activity, ...] = (
+    Activity(1, "stationary", ()),
+    Activity(2, "punching", ("motion.gait_hz", "motion.calf_deg", "motion.arm_deg")),
+    Activity(3, "kicking", ("motion.gait_hz", "motion.thigh_deg", "motion.calf_deg")),
+    Activity(4, "grabbing", ("motion.gait_hz",)),
+    Activity(5, "sitting_down", _SEAT),
+    Activity(6, "standing_up", _SEAT),
+    Activity(7, "body_rotating", ("motion.gait_hz", "motion.turn_deg")),
+    Activity(8, "walking", _WALK),
+    Activity(9, "sitting_to_walking", (*_WALK, *_RISE)),
+    Activity(
+        10,
+        "walking_to_sitting",
+        (*_WALK, "timing.walk_stop_s", "timing.sit_duration_s", "timing.blend_s"),
+    ),
+    Activity(11, "falling_to_walking", (*_WALK, *_RISE)),
+    Activity(
+        12,
+        "walking_to_falling",
+        (*_WALK, "timing.walk_stop_s", "timing.fall_duration_s", "timing.blend_s"),
+    ),
+)
+
+_BY_NAME = {name: a for a in ACTIVITIES for name in (a.slug, a.label.lower())}
+
+
+def activity_named(name: str) -> Activity:
+    """Find an activity by slug or label, whatever the case.
+
+    Raises:
+        ValueError: no such activity; the message suggests the nearest name.
+    """
+    found = _BY_NAME.get(name.strip().lower())
+    if found is not None:
+        return found
+    near = difflib.get_close_matches(name.lower(), list(_BY_NAME), n=1)
+    hint = (
+        f"did you mean {near[0]!r}?"
+        if near
+        else "the slugs are " + ", ".join(a.slug for a in ACTIVITIES)
+    )
+    raise ValueError(f"{name!r} is no activity; {hint}")

@@ -1,0 +1,1 @@
+"""Thirteen scatterers that move: skeleton, angles over time, positions."""

@@ -1,0 +1,35 @@
+"""Raised-cosine progress P, and the distance walked under a raised-cosine speed ramp."""
+
+import numpy as np
+
+from radhar_cli.arrays import Float
+
+
+def progress(t: Float, start: float, duration: float) -> Float:
+    """P(t; start, duration) = (1 - cos(pi clip((t - start)/duration, 0, 1)))/2.
+
+    Args:
+        t: times [...], s.
+        start: s.
+        duration: s; 0 is a step, on at t >= start.
+
+    Returns:
+        Values [...] from 0 to 1 (../docs/model.md, Activities).
+    """
+    if duration == 0:
+        return (t >= start).astype(float)
+    p: Float = 0.5 - 0.5 * np.cos(np.pi * np.clip((t - start) / duration, 0, 1))
+    return p
+
+
+def progress_integral(t: Float, start: float, duration: float) -> Float:
+    """Exact integral of P from minus infinity to t, in s.
+
+    Within the ramp: duration (s/2 - sin(pi s)/(2 pi)) with s = (t - start)/duration.
+    """
+    if duration == 0:
+        return np.asarray(np.maximum(t - start, 0))
+    s = np.clip((t - start) / duration, 0, 1)
+    after = np.maximum(t - (start + duration), 0)
+    walked: Float = duration * (0.5 * s - np.sin(np.pi * s) / (2 * np.pi)) + after
+    return walked

@@ -1,0 +1,69 @@
+"""The body: joints, parents, links and RCS (paper, table "Structure and Properties ...")."""
+
+from math import sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from radhar_cli.arrays import Float
+
+REFERENCE_HEIGHT = 1.8
+REFERENCE_WEIGHT = 84.24
+BODY_MASS_INDEX = 26.0
+
+
+class Joint(NamedTuple):
+    """One scatterer; `link` is the vector from the parent to it, for the reference person."""
+
+    name: str
+    parent: str | None
+    link: tuple[float, float, float]
+    rcs: float
+
+
+SKELETON: tuple[Joint, ...] = (
+    Joint("torso", None, (0, 0, 0), 1.0),
+    Joint("head", "torso", (0, 0, 0.3), 0.5),
+    Joint("right_shoulder", "torso", (0, -0.2, 0.2), 0.1),
+    Joint("right_elbow", "right_shoulder", (0, 0, -0.3), 0.3),
+    Joint("right_hand", "right_elbow", (0, 0, -0.3), 0.2),
+    Joint("left_shoulder", "torso", (0, 0.2, 0.2), 0.1),
+    Joint("left_elbow", "left_shoulder", (0, 0, -0.3), 0.3),
+    Joint("left_hand", "left_elbow", (0, 0, -0.3), 0.2),
+    Joint("hip", "torso", (0, 0, -0.3), 0.1),
+    Joint("right_knee", "hip", (0, 0, -0.45), 0.4),
+    Joint("right_ankle", "right_knee", (0, 0, -0.45), 0.3),
+    Joint("left_knee", "hip", (0, 0, -0.45), 0.4),
+    Joint("left_ankle", "left_knee", (0, 0, -0.45), 0.3),
+)
+JOINTS: tuple[str, ...] = tuple(joint.name for joint in SKELETON)
+TORSO = JOINTS.index("torso")
+PARENTS: tuple[int | None, ...] = tuple(
+    None if joint.parent is None else JOINTS.index(joint.parent) for joint in SKELETON
+)
+
+
+def default_weight(height: float) -> float:
+    """Weight (kg) of a person of this height (m) when none is given: 26 kg/m^2."""
+    return BODY_MASS_INDEX * height**2
+
+
+def links(height: float) -> Float:
+    """Link vectors [13, 3] in m, scaled with the stature (m)."""
+    return np.array([joint.link for joint in SKELETON], dtype=float) * (height / REFERENCE_HEIGHT)
+
+
+def cross_sections(height: float, weight: float) -> Float:
+    """RCS [13] in m^2, scaled with sqrt(height * weight) (paper, note under the table)."""
+    scale = sqrt(height * weight / (REFERENCE_HEIGHT * REFERENCE_WEIGHT))
+    return np.array([joint.rcs for joint in SKELETON]) * scale
+
+
+def standing_height(height: float) -> float:
+    """Height (m) of the torso above the ground when the ankles are at z = 0."""
+    return (0.30 + 0.45 + 0.45) * (height / REFERENCE_HEIGHT)
+
+
+def thigh_length(height: float) -> float:
+    """Length (m) of the link from hip to knee."""
+    return 0.45 * (height / REFERENCE_HEIGHT)

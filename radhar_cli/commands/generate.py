@@ -1,0 +1,64 @@
+"""`radhar generate`: a YAML file becomes a labelled data set."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+EXAMPLE = """
+Example:
+
+  radhar generate configs/paper/through_wall.yaml -o datasets/ttw_10dB --set snr_db=10 --jobs 2
+
+The same command, run again, goes on where it stopped and says so when the folder is complete.
+"""
+
+
+def generate(
+    config: Annotated[Path, typer.Argument(help="YAML file that describes the data set.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder to build it in.")],
+    set_: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE", help="Change one dotted key; may repeat."),
+    ] = None,
+    jobs: Annotated[
+        int | None, typer.Option("--jobs", "-j", min=1, help="Processes; all cores if not given.")
+    ] = None,
+    batch: Annotated[
+        int | None, typer.Option(min=1, help="Samples a batch; changes no byte of the result.")
+    ] = None,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Print the plan and an estimate; write nothing.")
+    ] = False,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Start again in a folder that holds a data set.")
+    ] = False,
+) -> None:
+    from radhar_cli.config import load_config
+    from radhar_cli.dataset.workers import cores
+
+    loaded = load_config(config, set_ or [])
+    jobs = jobs or cores()
+    if dry_run:
+        from radhar_cli.commands.dry_run import print_plan
+
+        print_plan(loaded, jobs)
+        return
+    from radhar_cli.commands.terminal import BarProgress, print_outcome
+    from radhar_cli.dataset.build import build
+
+    progress = BarProgress()
+    try:
+        outcome = build(loaded, out, jobs, progress, overwrite, batch)
+    except KeyboardInterrupt:
+        progress.close()
+        typer.echo(
+            f"interrupted: what is finished in {out} is kept; the same command goes on", err=True
+        )
+        raise typer.Exit(130) from None
+    finally:
+        progress.close()
+    print_outcome(loaded, outcome)
+
+
+generate.__doc__ = "Build a labelled data set from a config file.\n" + EXAMPLE

@@ -1,0 +1,59 @@
+"""What `generate` prints while it works and when it is done."""
+
+import sys
+from collections import Counter
+from typing import Any
+
+from tqdm import tqdm
+
+from radhar_cli.config.experiment import Config
+from radhar_cli.dataset.build import Outcome
+from radhar_cli.dataset.layout import DATASET, PNG, SPLITS, Rows
+from radhar_cli.dataset.split import split_rows
+
+
+class BarProgress:
+    """A tqdm bar per stage on a terminal; messages alone elsewhere."""
+
+    def __init__(self) -> None:
+        self._bar: tqdm[Any] | None = None
+
+    def stage(self, name: str, total: int, done: int) -> None:
+        self.close()
+        if done and done < total:
+            self.say(f"going on: {done} of {total} samples are finished")
+        self._bar = tqdm(
+            total=total, initial=done, desc=name, unit="sample", disable=None, file=sys.stderr
+        )
+
+    def advance(self, samples: int) -> None:
+        if self._bar is not None:
+            self._bar.update(samples)
+
+    def say(self, message: str) -> None:
+        tqdm.write(message, file=sys.stderr)
+
+    def close(self) -> None:
+        """Take the bar away."""
+        if self._bar is not None:
+            self._bar.close()
+            self._bar = None
+
+
+def print_outcome(config: Config, outcome: Outcome) -> None:
+    """Say what lies where."""
+    folder = outcome.folder
+    if outcome.already_complete:
+        print(f"{folder} is complete: {outcome.samples} samples; nothing to do")
+        return
+    rows, split = Rows.of(config), Counter(int(part) for part in split_rows(config))
+    size = (folder / DATASET).stat().st_size / 2**20
+    print(f"{folder / DATASET}: {outcome.samples} samples, {size:.1f} MiB")
+    print(f"  classes     {len(rows.activities)} with {rows.per_class} samples each")
+    print("  split       " + ", ".join(f"{n} {SPLITS[part]}" for part, n in sorted(split.items())))
+    print(f"  maps        {', '.join(config.maps)}")
+    if config.output.png:
+        print(f"  images      {folder / PNG}/<map>/<train|val|test>/<class>/<index>.png")
+    if outcome.made < outcome.samples:
+        print(f"  this run    made {outcome.made} samples, wrote {outcome.pngs} PNGs later on")
+    print(f"  check it    radhar verify {folder}")

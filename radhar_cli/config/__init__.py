@@ -1,0 +1,15 @@
+"""Frozen, strict models of the YAML file, one per section, and how they are read."""
+
+from radhar_cli.config.experiment import MAP_NAMES, Config, timing_warnings
+from radhar_cli.config.identity import config_hash, resolved
+from radhar_cli.config.reading import config_from_json, load_config
+
+__all__ = [
+    "MAP_NAMES",
+    "Config",
+    "config_from_json",
+    "config_hash",
+    "load_config",
+    "resolved",
+    "timing_warnings",
+]

@@ -1,0 +1,224 @@
+"""The whole config: all sections, and the checks that span several of them."""
+
+from collections.abc import Iterator
+from typing import Annotated, Literal, NamedTuple
+
+from pydantic import Field, field_validator, model_validator
+from pydantic_core import PydanticCustomError
+
+from radhar_cli.activity import ACTIVITIES, Activity, activity_named
+from radhar_cli.config.engine import EngineConfig
+from radhar_cli.config.image import ImageConfig
+from radhar_cli.config.motion import MotionConfig, SubjectConfig, TimingConfig
+from radhar_cli.config.number import Decibel, Positive, nominal, support
+from radhar_cli.config.output import OutputConfig
+from radhar_cli.config.processing import ProcessingConfig
+from radhar_cli.config.radar import RadarConfig
+from radhar_cli.config.rounding import half_up
+from radhar_cli.config.section import Section
+from radhar_cli.config.split import SplitConfig
+from radhar_cli.config.wall import WallConfig
+
+MapName = Literal[
+    "rtm",
+    "stft",
+    "stft_denoised",
+    "stft_compensated",
+    "stft_compensated_denoised",
+    "fsst",
+    "fsst_denoised",
+    "fsst_compensated",
+    "fsst_compensated_denoised",
+]
+MAP_NAMES: tuple[MapName, ...] = MapName.__args__  # type: ignore[attr-defined]
+MIN_WINDOW = 8
+
+
+class Problem(NamedTuple):
+    """One cross-field mistake: dotted key, the value found, what would be right."""
+
+    key: str
+    value: object
+    right: str
+
+
+class Config(Section):
+    """A data set: what to draw, what to compute, how to store it."""
+
+    seed: Annotated[int, Field(ge=0, lt=2**63, strict=True)] = 1
+    samples_per_class: Annotated[int, Field(ge=1, le=10_000_000, strict=True)] = 300
+    activities: Literal["all"] | tuple[str, ...] = "all"
+    duration_s: Positive = 4.0
+    radar: RadarConfig = RadarConfig()
+    subject: SubjectConfig = SubjectConfig()
+    motion: MotionConfig = MotionConfig()
+    timing: TimingConfig = TimingConfig()
+    wall: WallConfig | None = None
+    snr_db: Decibel | None = 30.0
+    snr_reference: Literal["free_space", "received"] = "free_space"
+    on_invalid: Literal["keep", "redraw", "error"] = "keep"
+    processing: ProcessingConfig = ProcessingConfig()
+    image: ImageConfig = ImageConfig()
+    maps: Annotated[tuple[MapName, ...], Field(min_length=1)] = ("stft",)
+    split: SplitConfig = SplitConfig()
+    engine: EngineConfig = EngineConfig()
+    output: OutputConfig = OutputConfig()
+
+    @field_validator("activities", mode="before")
+    @classmethod
+    def _slugs(cls, value: object) -> object:
+        if not isinstance(value, (list, tuple)):
+            return value
+        try:
+            chosen = [activity_named(str(name)) for name in value]
+        except ValueError as error:
+            raise PydanticCustomError("activity", "{what}", {"what": str(error)}) from None
+        if not chosen or len({a.slug for a in chosen}) != len(chosen):
+            raise PydanticCustomError("activity", "should name at least one activity, each once")
+        return tuple(a.slug for a in sorted(chosen, key=lambda a: a.number))
+
+    @field_validator("maps")
+    @classmethod
+    def _each_once(cls, value: tuple[MapName, ...]) -> tuple[MapName, ...]:
+        if len(set(value)) != len(value):
+            raise PydanticCustomError("maps", "should name each map once")
+        return tuple(sorted(value, key=MAP_NAMES.index))
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Config":
+        problems = list(_problems(self))
+        if problems:
+            raise PydanticCustomError("across", "{problems}", {"problems": problems})
+        return self
+
+    @property
+    def chosen_activities(self) -> tuple[Activity, ...]:
+        """The activities to build, in the order S1 to S12."""
+        if self.activities == "all":
+            return ACTIVITIES
+        return tuple(activity_named(slug) for slug in self.activities)
+
+
+def _problems(c: Config) -> Iterator[Problem]:
+    yield from _waveform_problems(c)
+    yield from _signal_problems(c)
+    yield from _wall_problems(c)
+    split = c.split
+    if split.subjects is not None and split.subjects > c.samples_per_class:
+        yield Problem(
+            "split.subjects",
+            split.subjects,
+            f"should be at most samples_per_class = {c.samples_per_class}: "
+            "every person performs every activity",
+        )
+
+
+def _waveform_problems(c: Config) -> Iterator[Problem]:
+    radar = c.radar
+    shortest_interval = 1 / support(radar.prf_hz)[1]
+    if not support(radar.chirp_s)[1] < shortest_interval:
+        yield Problem(
+            "radar.chirp_s",
+            radar.chirp_s,
+            f"should be shorter than the pulse interval 1/prf_hz = {shortest_interval:g} s",
+        )
+    fewest = half_up(support(radar.adc_rate_hz)[0], support(radar.chirp_s)[0])
+    most = half_up(support(radar.adc_rate_hz)[1], support(radar.chirp_s)[1])
+    if fewest < 2:
+        yield Problem(
+            "radar.adc_rate_hz",
+            radar.adc_rate_hz,
+            f"should give at least 2 ADC samples per chirp (adc_rate_hz * chirp_s is {fewest})",
+        )
+    if most > 2**20:
+        yield Problem(
+            "radar.adc_rate_hz",
+            radar.adc_rate_hz,
+            f"should give at most {2**20} ADC samples per chirp (adc_rate_hz * chirp_s is {most})",
+        )
+    fft_length = c.processing.range_fft_length
+    if fft_length is not None and fft_length < most:
+        yield Problem(
+            "processing.range_fft_length",
+            fft_length,
+            f"should be null or an even number of at least the {most} ADC samples",
+        )
+
+
+def _signal_problems(c: Config) -> Iterator[Problem]:
+    processing = c.processing
+    duration, prf = support(c.duration_s), support(c.radar.prf_hz)
+    pulses = half_up(duration[0], prf[0])
+    window = half_up(processing.window_fraction, duration[0], prf[0])
+    if half_up(duration[1], prf[1]) > 2**31:
+        yield Problem("duration_s", c.duration_s, "should give at most 2^31 pulses")
+    doppler = [name for name in c.maps if name != "rtm"]
+    if pulses < 2:
+        yield Problem(
+            "duration_s", c.duration_s, f"should hold at least 2 pulses (it holds {pulses})"
+        )
+    if doppler and window < MIN_WINDOW:
+        yield Problem(
+            "duration_s",
+            c.duration_s,
+            f"should make the window of {processing.window_fraction:g} * duration_s * prf_hz at "
+            f"least {MIN_WINDOW} pulses (it has {window})",
+        )
+    kept = pulses - 1 if processing.mti else pulses
+    if doppler and window > kept:
+        yield Problem(
+            "processing.window_fraction",
+            processing.window_fraction,
+            f"should make the window at most the {kept} pulses there are (it has {window})",
+        )
+    if any("denoised" in name for name in doppler) and processing.savgol.frame > kept:
+        yield Problem(
+            "processing.savgol.frame",
+            processing.savgol.frame,
+            f"should be at most the {kept} pulses there are",
+        )
+    longest = half_up(processing.window_fraction, duration[1], prf[1])
+    if processing.stft_fft_length is not None and processing.stft_fft_length < longest:
+        yield Problem(
+            "processing.stft_fft_length",
+            processing.stft_fft_length,
+            f"should be null or at least the window of {longest} pulses",
+        )
+
+
+def _wall_problems(c: Config) -> Iterator[Problem]:
+    if c.wall is None:
+        return
+    for name in ("tx_m", "rx_m"):
+        antenna = getattr(c.radar, name)
+        inside = True
+        for at, centre, size in zip(antenna, c.wall.center_m, c.wall.size_m, strict=True):
+            half = support(size)[1] / 2
+            low, high = support(centre)[0] - half, support(centre)[1] + half
+            inside &= support(at)[0] <= high and support(at)[1] >= low
+        if inside:
+            yield Problem(
+                f"radar.{name}",
+                list(antenna),
+                "should be outside the wall, whose faces count as inside "
+                f"(wall.center_m = {list(c.wall.center_m)}, wall.size_m = {list(c.wall.size_m)})",
+            )
+
+
+def timing_warnings(c: Config) -> list[str]:
+    """Say which activities never reach their second phase within the recording."""
+    from radhar_cli.config.motion import for_activity
+
+    length = nominal(c.duration_s)
+    found = []
+    for activity in c.chosen_activities:
+        for key in ("seat_start_s", "walk_start_s", "walk_stop_s"):
+            if f"timing.{key}" not in activity.uses:
+                continue
+            start = nominal(for_activity(getattr(c.timing, key), activity))
+            if start >= length:
+                found.append(
+                    f"{activity.label} {activity.slug}: timing.{key} = {start:g} s is not before "
+                    f"the end of the recording, {length:g} s: its second phase is never seen"
+                )
+    return found

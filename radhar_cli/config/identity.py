@@ -1,0 +1,34 @@
+"""Which keys decide the bytes of a data set, and their fingerprint."""
+
+import hashlib
+import json
+from typing import Any
+
+from radhar_cli.config.experiment import Config
+
+NOT_IDENTITY = ("output.png",)
+
+
+def resolved(config: Config) -> dict[str, Any]:
+    """Return the config with every default, as plain JSON values."""
+    return config.model_dump(mode="json", exclude_none=False)
+
+
+def flat(config: Config) -> dict[str, Any]:
+    """Return {dotted key: value} of every key that decides bytes.
+
+    Whether PNGs are written at all is not among them, so that they can be added later.
+    """
+
+    def walk(value: Any, key: str) -> list[tuple[str, Any]]:
+        if isinstance(value, dict):
+            return [pair for k, v in value.items() for pair in walk(v, f"{key}.{k}" if key else k)]
+        return [(key, value)]
+
+    return {k: v for k, v in walk(resolved(config), "") if k not in NOT_IDENTITY}
+
+
+def config_hash(config: Config) -> str:
+    """Return the SHA-256 of the keys that decide bytes, in hex."""
+    text = json.dumps(flat(config), sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()

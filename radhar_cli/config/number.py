@@ -1,0 +1,226 @@
+"""A number of a scene: fixed, or drawn from a distribution.
+
+Every form is read through its quantile function, so one uniform variate per field decides the
+draw and two distributions of the same field stay comparable sample by sample.
+"""
+
+import math
+from typing import Annotated, Any, TypeAlias
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    Tag,
+    model_validator,
+)
+from pydantic_core import PydanticCustomError
+
+LARGEST = 1e30
+NORMAL_CUT = 6.0
+
+
+def _checked(value: float) -> float:
+    if not abs(value) <= LARGEST:
+        raise PydanticCustomError("range", "should be a finite number of at most 1e30 in size")
+    return value
+
+
+Real = Annotated[float, Field(strict=True, allow_inf_nan=False), AfterValidator(_checked)]
+
+
+class _Form(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Uniform(_Form):
+    """``{uniform: [low, high]}``: any value between the two, equally likely."""
+
+    uniform: tuple[Real, Real]
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "Uniform":
+        if self.uniform[0] > self.uniform[1]:
+            raise PydanticCustomError("order", "should be {uniform: [low, high]} with low <= high")
+        return self
+
+    @property
+    def support(self) -> tuple[float, float]:
+        return self.uniform
+
+    @property
+    def nominal(self) -> float:
+        return 0.5 * (self.uniform[0] + self.uniform[1])
+
+    def quantile(self, u: float) -> float:
+        low, high = self.uniform
+        return min(low + (high - low) * u, high)
+
+
+class Normal(_Form):
+    """``{normal: [mean, sd], min: a, max: b}``: Gaussian, cut at the bounds.
+
+    Without a bound it is cut at 6 standard deviations.
+    """
+
+    normal: tuple[Real, Real]
+    min: Real | None = None
+    max: Real | None = None
+
+    @model_validator(mode="after")
+    def _sane(self) -> "Normal":
+        if self.normal[1] < 0:
+            raise PydanticCustomError("sd", "should be {normal: [mean, sd]} with sd >= 0")
+        low, high = self.support
+        mean, sd = self.normal
+        if not low <= high or low > mean + NORMAL_CUT * sd or high < mean - NORMAL_CUT * sd:
+            raise PydanticCustomError(
+                "bounds", "should have min <= max, both within 6 standard deviations of the mean"
+            )
+        return self
+
+    @property
+    def support(self) -> tuple[float, float]:
+        mean, sd = self.normal
+        low = mean - NORMAL_CUT * sd if self.min is None else self.min
+        high = mean + NORMAL_CUT * sd if self.max is None else self.max
+        return low, high
+
+    @property
+    def nominal(self) -> float:
+        low, high = self.support
+        return min(max(self.normal[0], low), high)
+
+    def quantile(self, u: float) -> float:
+        from scipy.special import ndtr, ndtri
+
+        mean, sd = self.normal
+        low, high = self.support
+        if sd == 0:
+            return self.nominal
+        a, b = (low - mean) / sd, (high - mean) / sd
+        if a > 0:  # keep the precision of the far upper tail
+            z = -float(ndtri(ndtr(-a) + (ndtr(-b) - ndtr(-a)) * u))
+        else:
+            z = float(ndtri(ndtr(a) + (ndtr(b) - ndtr(a)) * u))
+        return min(max(mean + sd * z, low), high)
+
+
+class Choice(_Form):
+    """``{choice: [a, b, c]}``: one of the values, equally likely."""
+
+    choice: Annotated[tuple[Real, ...], Field(min_length=1)]
+
+    @property
+    def support(self) -> tuple[float, float]:
+        return min(self.choice), max(self.choice)
+
+    @property
+    def nominal(self) -> float:
+        return self.choice[(len(self.choice) - 1) // 2]
+
+    def quantile(self, u: float) -> float:
+        return self.choice[min(int(u * len(self.choice)), len(self.choice) - 1)]
+
+
+class Vary(_Form):
+    """``{vary: [nominal, fraction]}``: uniform within plus or minus a fraction of the nominal."""
+
+    vary: tuple[Real, Real]
+
+    @model_validator(mode="after")
+    def _sane(self) -> "Vary":
+        if not 0 <= self.vary[1] <= 1:
+            raise PydanticCustomError(
+                "fraction", "should be {vary: [nominal, fraction]} with a fraction from 0 to 1"
+            )
+        return self
+
+    @property
+    def support(self) -> tuple[float, float]:
+        half = abs(self.vary[0]) * self.vary[1]
+        return self.vary[0] - half, self.vary[0] + half
+
+    @property
+    def nominal(self) -> float:
+        return self.vary[0]
+
+    def quantile(self, u: float) -> float:
+        low, high = self.support
+        return min(low + (high - low) * u, high)
+
+
+FORMS = ("uniform", "normal", "choice", "vary")
+
+
+def _form(value: Any) -> str | None:
+    if isinstance(value, (Uniform, Normal, Choice, Vary)):
+        return type(value).__name__.lower()
+    if isinstance(value, dict):
+        named = [form for form in FORMS if form in value]
+        return named[0] if len(named) == 1 else None
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return "number"
+    return None
+
+
+Number: TypeAlias = Annotated[
+    Annotated[Real, Tag("number")]
+    | Annotated[Uniform, Tag("uniform")]
+    | Annotated[Normal, Tag("normal")]
+    | Annotated[Choice, Tag("choice")]
+    | Annotated[Vary, Tag("vary")],
+    Discriminator(
+        _form,
+        custom_error_type="number",
+        custom_error_message=(
+            "should be a number or one of {uniform: [low, high]}, {normal: [mean, sd]}, "
+            "{choice: [a, b, ...]}, {vary: [nominal, fraction]}"
+        ),
+    ),
+]
+
+
+def support(number: Number) -> tuple[float, float]:
+    """Return the smallest and the largest value that a number can take."""
+    return (number, number) if isinstance(number, (int, float)) else number.support
+
+
+def nominal(number: Number) -> float:
+    """Return the middle of a number: itself, a mid-point, a mean, the middle choice."""
+    return float(number) if isinstance(number, (int, float)) else number.nominal
+
+
+def is_fixed(number: Number) -> bool:
+    """Tell whether every draw of this number is the same."""
+    low, high = support(number)
+    return low == high
+
+
+def quantile(number: Number, u: float) -> float:
+    """Return the value below which a fraction u (0 to 1) of the draws lie."""
+    return float(number) if isinstance(number, (int, float)) else number.quantile(u)
+
+
+def _bound(low: float, high: float, wording: str, open_low: bool) -> AfterValidator:
+    def check(number: Number) -> Number:
+        least, most = support(number)
+        if least < low or most > high or (open_low and least <= low) or math.isnan(least):
+            reach = "" if least == most else f" (this one reaches from {least:g} to {most:g})"
+            raise PydanticCustomError("bounds", "{what}", {"what": f"should be {wording}{reach}"})
+        return number
+
+    return AfterValidator(check)
+
+
+Positive: TypeAlias = Annotated[Number, _bound(0, LARGEST, "above 0", open_low=True)]
+NotNegative: TypeAlias = Annotated[Number, _bound(0, LARGEST, "0 or more", open_low=False)]
+AtLeastOne: TypeAlias = Annotated[Number, _bound(1, LARGEST, "1 or more", open_low=False)]
+Angle: TypeAlias = Annotated[Number, _bound(-360, 360, "from -360 to 360 degrees", open_low=False)]
+Decibel: TypeAlias = Annotated[Number, _bound(-300, 300, "from -300 to 300 dB", open_low=False)]
+Coordinate: TypeAlias = Annotated[
+    Number, _bound(-1e6, 1e6, "within 1e6 m of the origin", open_low=False)
+]
+Vector = tuple[Coordinate, Coordinate, Coordinate]

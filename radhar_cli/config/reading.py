@@ -1,0 +1,210 @@
+"""Read a YAML config, apply ``--set`` overrides, and say clearly what is wrong with it."""
+
+import difflib
+import json
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any
+
+import yaml
+from pydantic import BaseModel, ValidationError
+
+from radhar_cli.config.experiment import Config, Problem
+from radhar_cli.errors import ConfigError
+
+_UNION_TAGS = {"number", "uniform", "normal", "choice", "vary", "same", "per_activity"}
+_FLOAT = re.compile(
+    r"""^[-+]?(?:
+        [0-9][0-9_]*\.[0-9_]*(?:[eE][-+]?[0-9]+)?
+        |\.[0-9][0-9_]*(?:[eE][-+]?[0-9]+)?
+        |[0-9][0-9_]*[eE][-+]?[0-9]+
+        |\.(?:inf|Inf|INF))$|^\.(?:nan|NaN|NAN)$""",
+    re.VERBOSE,
+)
+
+
+class _Loader(yaml.SafeLoader):
+    """YAML whose ``77e9`` is a number (YAML 1.2) and whose keys may not repeat."""
+
+
+_Loader.add_implicit_resolver("tag:yaml.org,2002:float", _FLOAT, list("-+0123456789."))
+
+
+def _mapping(loader: _Loader, node: yaml.MappingNode) -> dict[Any, Any]:
+    loader.flatten_mapping(node)
+    seen: dict[Any, Any] = {}
+    for key_node, value_node in node.value:
+        key = loader.construct_object(key_node, deep=True)
+        if not isinstance(key, (str, int, float, bool)) or key in seen:
+            raise yaml.MarkedYAMLError(
+                problem=f"{key!r} appears twice", problem_mark=key_node.start_mark
+            )
+        seen[key] = loader.construct_object(value_node, deep=True)
+    return seen
+
+
+_Loader.add_constructor("tag:yaml.org,2002:map", _mapping)
+
+
+def load_config(path: str | Path, overrides: Iterable[str] = ()) -> Config:
+    """Read a config file and apply overrides such as ``radar.prf_hz=128``.
+
+    Raises:
+        ConfigError: unreadable file, bad YAML, or a value out of place; the message names the
+            file, the line, the key, the value and what would be right.
+    """
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise ConfigError(f"{path}: no such file") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise ConfigError(f"{path}: cannot be read as text ({error})") from None
+    document = _parse(text, str(path))
+    lines = _key_lines(text)
+    if document is None:
+        document = {}
+    if not isinstance(document, dict):
+        raise ConfigError(f"{path}: should be a mapping of keys such as 'seed: 1'")
+    for override in overrides:
+        _override(document, override)
+        lines = {k: v for k, v in lines.items() if not _within(k, override.split("=")[0].strip())}
+    return validated(document, str(path), lines)
+
+
+def config_from_json(text: str, where: str) -> Config:
+    """Rebuild a resolved config from the JSON stored with a data set."""
+    try:
+        document = json.loads(text)
+    except ValueError as error:
+        raise ConfigError(f"{where}: the stored config is not JSON ({error})") from None
+    return validated(document, where, {})
+
+
+def validated(document: Any, where: str, lines: dict[str, int]) -> Config:
+    """Turn a parsed document into a Config, or raise a ConfigError with one line per mistake."""
+    try:
+        return Config.model_validate(document)
+    except ValidationError as error:
+        messages = [
+            _place(where, problem.key, lines) + _what(problem)
+            for problem in _found(error, document)
+        ]
+        raise ConfigError("\n".join(dict.fromkeys(messages))) from None
+
+
+def _parse(text: str, where: str) -> Any:
+    try:
+        return yaml.load(text, Loader=_Loader)
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark
+        line = f":{mark.line + 1}" if mark else ""
+        raise ConfigError(f"{where}{line}: not valid YAML: {error.problem}") from None
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        raise ConfigError(f"{where}: not valid YAML: {error}") from None
+
+
+def _override(document: dict[str, Any], override: str) -> None:
+    key, equals, text = override.partition("=")
+    names = key.strip().split(".")
+    if not equals or not all(names):
+        raise ConfigError(
+            f"--set {override}: should be key=value with a dotted key, such as radar.prf_hz=128"
+        )
+    place = document
+    for name in names[:-1]:
+        inner = place.get(name)
+        if not isinstance(inner, dict):
+            inner = {}
+        place[name] = inner
+        place = inner
+    place[names[-1]] = _parse(text, f"--set {key.strip()}")
+
+
+def _key_lines(text: str) -> dict[str, int]:
+    def walk(node: yaml.Node | None, key: str) -> Iterator[tuple[str, int]]:
+        if isinstance(node, yaml.MappingNode):
+            for key_node, value in node.value:
+                inner = f"{key}.{key_node.value}" if key else str(key_node.value)
+                yield inner, key_node.start_mark.line + 1
+                yield from walk(value, inner)
+
+    return dict(walk(yaml.compose(text, Loader=_Loader), ""))
+
+
+def _within(key: str, parent: str) -> bool:
+    return key == parent or key.startswith(parent + ".")
+
+
+def _found(error: ValidationError, document: Any) -> Iterator[Problem]:
+    for item in error.errors(include_url=False):
+        if item["type"] == "across":
+            yield from item["ctx"]["problems"]
+            continue
+        names = _document_path(item["loc"], document)
+        key = ".".join(str(name) for name in names)
+        if item["type"] == "extra_forbidden":
+            yield Problem(key, item["input"], _unknown(names))
+        else:
+            message = item["msg"]
+            if not message.startswith(("should", "'")):
+                message = message[0].lower() + message[1:]
+                message = message.removeprefix("input ")
+            yield Problem(key, item["input"], message)
+
+
+def _document_path(location: tuple[int | str, ...], document: Any) -> list[int | str]:
+    """Drop from a pydantic location the tags of unions, which are no keys of the document."""
+    names: list[int | str] = []
+    place = document
+    for name in location:
+        if isinstance(place, dict) and name in place:
+            place = place[name]
+        elif isinstance(place, (list, tuple)) and isinstance(name, int):
+            place = place[name] if name < len(place) else None
+        elif name in _UNION_TAGS or re.match(r"literal|tuple|function|.*\[", str(name)):
+            continue
+        else:
+            place = None
+        names.append(name)
+    return names
+
+
+def _unknown(names: list[int | str]) -> str:
+    section: type[BaseModel] | None = Config
+    for name in names[:-1]:
+        field = section.model_fields.get(str(name)) if section else None
+        section = next(
+            (
+                kind
+                for kind in (
+                    [field.annotation, *getattr(field.annotation, "__args__", ())] if field else []
+                )
+                if isinstance(kind, type) and issubclass(kind, BaseModel)
+            ),
+            None,
+        )
+    known = list(section.model_fields) if section else []
+    near = difflib.get_close_matches(str(names[-1]), known, n=1)
+    if near:
+        return f"is an unknown key; did you mean {near[0]!r}?"
+    return "is an unknown key" + (f"; known here: {', '.join(known)}" if known else "")
+
+
+def _place(where: str, key: str, lines: dict[str, int]) -> str:
+    line = lines.get(key)
+    parent = key
+    while line is None and "." in parent:
+        parent = parent.rpartition(".")[0]
+        line = lines.get(parent)
+    return f"{where}:{line}: {key}" if line else f"{where}: {key}"
+
+
+def _what(problem: Problem) -> str:
+    value = problem.value
+    if isinstance(value, BaseModel):
+        value = value.model_dump(mode="json", exclude_none=True)
+    shown = json.dumps(value, default=str)
+    shown = shown if len(shown) <= 120 else shown[:117] + "..."
+    return f" = {shown}: {problem.right}"

@@ -1,0 +1,20 @@
+"""Rounding of products of decimal numbers, free of binary surprises."""
+
+from fractions import Fraction
+from math import floor
+
+
+def exact(value: float) -> Fraction:
+    """Return the decimal number that a float was written as (0.1 is 1/10)."""
+    return Fraction(repr(float(value)))
+
+
+def half_up(*factors: float) -> int:
+    """Return floor(product + 1/2), the product taken of the decimals as written.
+
+    ``0.1 * 15`` is 1.5 and rounds to 2, although its nearest double lies below.
+    """
+    product = Fraction(1)
+    for factor in factors:
+        product *= exact(factor)
+    return floor(product + Fraction(1, 2))

@@ -1,0 +1,11 @@
+"""What every section of a config shares: frozen, strict, unknown keys refused."""
+
+from pydantic import BaseModel, ConfigDict
+
+
+class Section(BaseModel):
+    """Base of all config models."""
+
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, validate_default=True, allow_inf_nan=False
+    )

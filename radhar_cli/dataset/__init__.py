@@ -1,0 +1,1 @@
+"""Many scenes -> shards -> dataset.h5 and PNG files; resume, verify, estimate."""

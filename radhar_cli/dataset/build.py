@@ -1,0 +1,224 @@
+"""Build a data set: survey, batches in parallel, missing PNGs, assembly. Safe to kill anywhere.
+
+Whatever is finished has its final name; whatever has a final name is finished. A run that finds
+shards goes on from them; dataset.h5 comes last and stands for a complete folder.
+"""
+
+import errno
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Protocol
+
+from radhar_cli.arrays import Levels
+from radhar_cli.config.experiment import Config
+from radhar_cli.dataset.assembly import assemble
+from radhar_cli.dataset.batch import Batch, png_rows, run_batch, survey_rows
+from radhar_cli.dataset.folder import claim, locked, tidy
+from radhar_cli.dataset.layout import DATASET, Rows, png_path
+from radhar_cli.dataset.shards import finished_shards, missing_runs, pieces
+from radhar_cli.dataset.split import split_rows
+from radhar_cli.dataset.survey import Drawn, warnings
+from radhar_cli.dataset.workers import run_tasks
+from radhar_cli.errors import FolderError
+from radhar_cli.figures.colour import colour_table
+
+LARGEST_BATCH = 32
+SURVEY_BATCH = 64
+
+
+class Progress(Protocol):
+    """Who is told how far a build is."""
+
+    def stage(self, name: str, total: int, done: int) -> None:
+        """A part of the work begins."""
+
+    def advance(self, samples: int) -> None:
+        """Some samples of it are finished."""
+
+    def say(self, message: str) -> None:
+        """Something the user should read."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a build did.
+
+    Attributes:
+        folder: the output folder.
+        samples: in the data set.
+        made: samples synthesised by this run.
+        pngs: PNG files written by this run outside of batches.
+        warnings: physical warnings.
+        already_complete: nothing was missing.
+    """
+
+    folder: Path
+    samples: int
+    made: int
+    pngs: int
+    warnings: list[dict[str, Any]] = field(default_factory=list)
+
+    @property
+    def already_complete(self) -> bool:
+        return self.made == 0 and self.pngs == 0
+
+
+def build(
+    config: Config,
+    folder: Path,
+    jobs: int,
+    progress: Progress,
+    overwrite: bool = False,
+    batch_size: int | None = None,
+) -> Outcome:
+    """Build `config` into `folder`, or go on with it, or find it complete.
+
+    Args:
+        config: the data set.
+        folder: created if need be.
+        jobs: processes.
+        progress: who is told.
+        overwrite: start again.
+        batch_size: samples a shard; it changes no byte of the result.
+
+    Raises:
+        FolderError: the folder is in use, holds something else, or cannot be written.
+        SceneError: a scene outside the model; nothing was computed.
+    """
+    table = colour_table(config.image.colour_map) if config.output.png else None
+    try:
+        with locked(folder):
+            claim(folder, config, overwrite)
+            return _Build(config, folder, jobs, progress, table).run(batch_size)
+    except OSError as error:
+        raise _folder_error(folder, error) from error
+
+
+@dataclass
+class _Build:
+    config: Config
+    folder: Path
+    jobs: int
+    progress: Progress
+    table: Levels | None
+
+    def run(self, batch_size: int | None) -> Outcome:
+        config, count = self.config, len(Rows.of(self.config))
+        split = tuple(int(part) for part in split_rows(config))
+        if (self.folder / DATASET).exists():
+            pngs = self._missing_pngs(split, complete=True)
+            tidy(self.folder)
+            return Outcome(self.folder, count, 0, pngs)
+        drawn = self._survey(count)
+        said = warnings(config, (outcome.findings for outcome in drawn))
+        for warning in said:
+            self.progress.say(f"warning: {warning['message']}")
+        made = self._batches(drawn, split, batch_size)
+        pngs = self._missing_pngs(split, complete=False)
+        self.progress.stage("assembling", count, 0)
+        assemble(config, self.folder, finished_shards(self.folder), said)
+        self.progress.advance(count)
+        tidy(self.folder)
+        return Outcome(self.folder, count, made, pngs, said)
+
+    def _survey(self, count: int) -> list[Drawn]:
+        self.progress.stage("checking scenes", count, 0)
+        outcomes: list[Drawn | None] = [None] * count
+        tasks = [
+            (self.config, start, min(start + SURVEY_BATCH, count), os.getpid())
+            for start in range(0, count, SURVEY_BATCH)
+        ]
+        jobs = self.jobs if len(tasks) > 2 * self.jobs else 1
+        for start, found in run_tasks(survey_rows, tasks, jobs):
+            outcomes[start : start + len(found)] = found
+            self.progress.advance(len(found))
+        return [outcome for outcome in outcomes if outcome is not None]
+
+    def _batches(self, drawn: list[Drawn], split: tuple[int, ...], batch_size: int | None) -> int:
+        gaps = missing_runs(finished_shards(self.folder), len(drawn))
+        left = sum(stop - start for start, stop in gaps)
+        self.progress.stage("samples", len(drawn), len(drawn) - left)
+        size = batch_size or max(1, min(LARGEST_BATCH, -(-left // (4 * self.jobs))))
+
+        def batches() -> Iterator[tuple[Batch]]:
+            for gap_start, gap_stop in gaps:
+                for start in range(gap_start, gap_stop, size):
+                    stop = min(start + size, gap_stop)
+                    attempts = tuple(outcome.attempt for outcome in drawn[start:stop])
+                    yield (
+                        Batch(
+                            self.config,
+                            self.folder,
+                            start,
+                            stop,
+                            attempts,
+                            split[start:stop],
+                            self.table,
+                            os.getpid(),
+                        ),
+                    )
+
+        for samples in run_tasks(run_batch, batches(), self.jobs if left > size else 1):
+            self.progress.advance(samples)
+        return left
+
+    def _missing_pngs(self, split: tuple[int, ...], complete: bool) -> int:
+        """Write PNGs that are not there: asked for later, deleted, or lost with a killed run."""
+        if self.table is None:
+            return 0
+        missing = self._rows_without_png(split)
+        if not missing:
+            return 0
+        self.progress.stage("png", len(missing), 0)
+        if complete:
+            sources = [(self.folder / DATASET, 0, 0, len(split))]
+        else:
+            sources = [
+                (shard.path, shard.start, first, stop)
+                for shard, first, stop in pieces(finished_shards(self.folder), len(split))
+            ]
+
+        def tasks() -> Iterator[tuple[Any, ...]]:
+            for path, offset, first, stop in sources:
+                here = [(row, split[row]) for row in missing if first <= row < stop]
+                for part in range(0, len(here), LARGEST_BATCH):
+                    chosen = here[part : part + LARGEST_BATCH]
+                    yield (self.config, self.folder, path, offset, chosen, self.table, os.getpid())
+
+        jobs = self.jobs if len(missing) > LARGEST_BATCH else 1
+        for written in run_tasks(png_rows, tasks(), jobs):
+            self.progress.advance(written)
+        return len(missing) * len(self.config.maps)
+
+    def _rows_without_png(self, split: tuple[int, ...]) -> list[int]:
+        rows = Rows.of(self.config)
+        listed: dict[Path, set[str]] = {}
+
+        def there(path: Path) -> bool:
+            if path.parent not in listed:
+                parent = self.folder / path.parent
+                listed[path.parent] = (
+                    {found.name for found in parent.iterdir()} if parent.is_dir() else set()
+                )
+            return path.name in listed[path.parent]
+
+        return [
+            row
+            for row in range(len(rows))
+            if not all(there(png_path(name, split[row], *rows[row])) for name in self.config.maps)
+        ]
+
+
+def _folder_error(folder: Path, error: OSError) -> FolderError:
+    where = error.filename or folder
+    if error.errno == errno.ENOSPC or "No space left" in str(error):
+        why = "no space left on the disk"
+    elif error.errno in (errno.EACCES, errno.EROFS, errno.EPERM):
+        why = "no permission to write"
+    else:
+        why = error.strerror or str(error)
+    return FolderError(
+        f"{where}: {why}; what was finished in {folder} is kept, and the same command goes on"
+    )

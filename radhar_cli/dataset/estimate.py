@@ -1,0 +1,91 @@
+"""What a build will take: bytes and time, from a few samples made in memory there and then."""
+
+from dataclasses import dataclass
+from time import perf_counter
+
+from radhar_cli.arrays import Levels
+from radhar_cli.config.experiment import Config
+from radhar_cli.dataset import scene_fields
+from radhar_cli.dataset.layout import Rows
+from radhar_cli.dataset.png import encode_png
+from radhar_cli.dataset.sample import synthesise
+from radhar_cli.dataset.shards import encode_shard
+from radhar_cli.dataset.survey import settle
+from radhar_cli.figures.colour import colour_table
+from radhar_cli.pipeline.plan import plan_images
+from radhar_cli.process import prepare_process
+from radhar_cli.scenario import draw_scene
+
+PROBES = 24
+PROBE_SECONDS = 8.0
+PARALLEL_EFFICIENCY = 0.9
+WORKER_START_S = 1.0
+FIXED_S = 0.5
+FILE_WRITE_S = 0.0002
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """An estimate of a whole build.
+
+    Attributes:
+        samples: in the data set.
+        probes: samples timed.
+        seconds_per_sample: of one process.
+        hdf5_bytes, png_bytes: on disk.
+        seconds: wall time with the jobs asked for.
+    """
+
+    samples: int
+    probes: int
+    seconds_per_sample: float
+    hdf5_bytes: int
+    png_bytes: int
+    seconds: float
+
+
+def estimate(config: Config, jobs: int) -> Estimate:
+    """Time samples spread over the classes and scale up; nothing is written."""
+    prepare_process()
+    rows = Rows.of(config)
+    probes = min(PROBES, len(rows))
+    table = colour_table(config.image.colour_map) if config.output.png else None
+    hdf5_bytes = png_bytes = done = 0
+    _time_sample(config, 0, table)  # imports, tables and caches are not part of a sample
+    start = perf_counter()
+    for probe in range(probes):
+        row = (2 * probe + 1) * len(rows) // (2 * probes)
+        shard, pngs = _time_sample(config, row, table)
+        hdf5_bytes += shard
+        png_bytes += pngs
+        done += 1
+        if perf_counter() - start > PROBE_SECONDS:
+            break
+    per_sample = (perf_counter() - start) / done
+    if config.output.png:
+        per_sample += FILE_WRITE_S * len(config.maps)
+    workers = 1 if jobs == 1 else 1 + (jobs - 1) * PARALLEL_EFFICIENCY
+    seconds = FIXED_S + per_sample * len(rows) / workers + (WORKER_START_S if jobs > 1 else 0)
+    return Estimate(
+        samples=len(rows),
+        probes=done,
+        seconds_per_sample=per_sample,
+        hdf5_bytes=hdf5_bytes * len(rows) // done,
+        png_bytes=png_bytes * len(rows) // done,
+        seconds=seconds,
+    )
+
+
+def _time_sample(config: Config, row: int, table: Levels | None) -> tuple[int, int]:
+    """Make one sample and encode it as a worker would; return bytes of (shard, PNGs)."""
+    activity, index = Rows.of(config)[row]
+    attempt, _ = settle(config, activity, index)
+    scene = draw_scene(config, activity, index, attempt)
+    sample = synthesise(scene, config, plan_images(config))
+    values = scene_fields.values([scene], scene_fields.fields(config))
+    shard = encode_shard(config, [sample], values)
+    pngs = 0
+    if table is not None:
+        level = config.output.png_level
+        pngs = sum(len(encode_png(sample[name].levels, table, level)) for name in config.maps)
+    return len(shard), pngs

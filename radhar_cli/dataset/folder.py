@@ -1,0 +1,104 @@
+"""The output folder: one run at a time, only its own data set, and what is already finished."""
+
+import json
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from filelock import FileLock, Timeout
+
+from radhar_cli.config.experiment import Config
+from radhar_cli.dataset.files import write_whole
+from radhar_cli.dataset.identity import differences, identity
+from radhar_cli.dataset.layout import CONFIG, DATASET, PNG, SCENES, WORK
+from radhar_cli.errors import FolderError
+
+_IDENTITY = "identity.json"
+
+
+@contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Hold an output folder; a second run on it is refused. A dead run's lock is free at once.
+
+    Raises:
+        FolderError: another run holds it, or it cannot be written to.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise FolderError(f"{folder}: is a file; -o should name a folder")
+    (folder / WORK).mkdir(parents=True, exist_ok=True)
+    lock = FileLock(folder / WORK / "lock")
+    try:
+        with lock.acquire(timeout=0):
+            yield
+    except Timeout:
+        raise FolderError(
+            f"{folder}: another run is writing here; wait for it or stop it"
+        ) from None
+
+
+def claim(folder: Path, config: Config, overwrite: bool) -> None:
+    """Make a locked folder this config's, or refuse.
+
+    Raises:
+        FolderError: it holds something else; the message names the keys that differ.
+    """
+    if overwrite:
+        _clear(folder)
+    new = identity(config)
+    old = stored_identity(folder)
+    if old is None:
+        strangers = sorted(p.name for p in folder.iterdir() if p.name != WORK)
+        if strangers:
+            raise FolderError(
+                f"{folder}: holds {', '.join(strangers[:5])} but no radhar data set; "
+                "choose an empty folder"
+            )
+    else:
+        found = differences(old, new)
+        if found:
+            raise FolderError(
+                f"{folder}: holds another data set; it differs in\n  "
+                + "\n  ".join(found)
+                + "\nchoose another folder, or --overwrite to start this one again"
+            )
+    shutil.rmtree(folder / WORK / "unfinished", ignore_errors=True)
+    if old is None:
+        write_whole(folder, folder / WORK / _IDENTITY, json.dumps(new, sort_keys=True).encode())
+
+
+def stored_identity(folder: Path) -> dict[str, Any] | None:
+    """The identity of what a folder holds, finished or not; None if it is no data set of ours."""
+    if (folder / DATASET).exists():
+        import h5py
+
+        try:
+            with h5py.File(folder / DATASET, "r") as file:
+                stored: dict[str, Any] = json.loads(file.attrs["identity"])
+                return stored
+        except (OSError, KeyError, ValueError) as error:
+            raise FolderError(
+                f"{folder / DATASET}: is not a data set of ours or is damaged ({error}); "
+                "--overwrite starts again"
+            ) from None
+    path = folder / WORK / _IDENTITY
+    if not path.exists():
+        return None
+    identity_there: dict[str, Any] = json.loads(path.read_text())
+    return identity_there
+
+
+def tidy(folder: Path) -> None:
+    """Remove what only an unfinished build needs."""
+    for name in ("shards", "unfinished"):
+        shutil.rmtree(folder / WORK / name, ignore_errors=True)
+    (folder / WORK / _IDENTITY).unlink(missing_ok=True)
+
+
+def _clear(folder: Path) -> None:
+    """Remove our own files and nothing else; dataset.h5, which stands for the whole, first."""
+    for name in (DATASET, SCENES, CONFIG):
+        (folder / name).unlink(missing_ok=True)
+    tidy(folder)
+    shutil.rmtree(folder / PNG, ignore_errors=True)

@@ -1,0 +1,42 @@
+"""What a data set's bytes depend on: the config's keys and the versions of the libraries."""
+
+import json
+from typing import Any
+
+from radhar_cli import __version__
+from radhar_cli.config.experiment import Config
+from radhar_cli.config.identity import config_hash, flat
+
+
+def versions() -> dict[str, str]:
+    """Versions of everything that decides bytes."""
+    import h5py
+    import numpy as np
+    import PIL
+    import scipy
+
+    return {
+        "radhar": __version__,
+        "numpy": np.__version__,
+        "scipy": scipy.__version__,
+        "h5py": h5py.__version__,
+        "pillow": PIL.__version__,
+    }
+
+
+def identity(config: Config) -> dict[str, Any]:
+    """Plain values to store with a data set and to compare before continuing it."""
+    return {"keys": flat(config), "versions": versions(), "hash": config_hash(config)}
+
+
+def differences(old: dict[str, Any], new: dict[str, Any]) -> list[str]:
+    """Lines naming the keys and versions in which two identities differ."""
+    found = []
+    for part, prefix in (("keys", ""), ("versions", "versions.")):
+        before, after = old.get(part, {}), new.get(part, {})
+        found += [
+            f"{prefix}{key}: {json.dumps(before.get(key))} there, {json.dumps(after.get(key))} here"
+            for key in sorted(before.keys() | after.keys())
+            if before.get(key) != after.get(key)
+        ]
+    return found

@@ -1,0 +1,64 @@
+"""The drawn numbers of a scene as columns: SI for dataset.h5, config units for scenes.csv."""
+
+from collections.abc import Iterable
+from math import nan, pi
+from typing import NamedTuple
+
+import numpy as np
+
+from radhar_cli.arrays import Float
+from radhar_cli.config.experiment import Config
+from radhar_cli.scenario import Scene, scene_numbers
+
+_UNITS = {
+    "m": ("m", 1.0),
+    "s": ("s", 1.0),
+    "hz": ("Hz", 1.0),
+    "kg": ("kg", 1.0),
+    "mps": ("m/s", 1.0),
+    "deg": ("rad", pi / 180),
+    "db": ("dB", 1.0),
+    "dbi": ("dBi", 1.0),
+}
+
+
+class Field(NamedTuple):
+    """A column: config key, name in dataset.h5, SI unit, factor from the key's unit to it."""
+
+    key: str
+    name: str
+    unit: str
+    factor: float
+
+    @property
+    def column(self) -> str:
+        """Name in scenes.csv: the config key, which carries its unit."""
+        return self.key
+
+
+def fields(config: Config) -> tuple[Field, ...]:
+    """Every number that any scene of this config depends on, in the order of the config."""
+    keys: dict[str, None] = {}
+    for activity in config.chosen_activities:
+        keys.update((key, None) for key, _ in scene_numbers(config, activity))
+    keys.setdefault("subject.weight_kg")
+    return tuple(_field(key) for key in keys)
+
+
+def values(scenes: Iterable[Scene], columns: tuple[Field, ...]) -> Float:
+    """Table [scenes, fields] in the units of the config keys, NaN where a number does not apply."""
+    return np.array([[scene.values.get(f.key, nan) for f in columns] for scene in scenes])
+
+
+def _field(key: str) -> Field:
+    path, _, axis = key.rpartition(".") if key[-1].isdigit() else (key, "", "")
+    section, _, name = path.rpartition(".")
+    stem, _, suffix = name.rpartition("_")
+    if suffix not in _UNITS:
+        stem, unit, factor = name, "1", 1.0
+    else:
+        unit, factor = _UNITS[suffix]
+    if name == "snr_db":
+        stem = "snr"
+    parts = [*(["wall"] if section == "wall" else []), stem, *(["xyz"[int(axis)]] if axis else [])]
+    return Field(key, "_".join(parts), unit, factor)

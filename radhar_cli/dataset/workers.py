@@ -1,0 +1,67 @@
+"""Run tasks in joblib worker processes, quietly and within bounds."""
+
+import os
+import signal
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from typing import Any, TypeVar
+
+from radhar_cli.process import prepare_process
+
+T = TypeVar("T")
+
+
+def run_tasks(
+    function: Callable[..., T], tasks: Iterable[tuple[Any, ...]], jobs: int
+) -> Iterator[T]:
+    """Yield function(*task) for every task, in any order, with `jobs` processes.
+
+    Tasks are taken from the iterable only as fast as they are finished. With one job everything
+    runs here.
+    """
+    if jobs == 1:
+        prepare_process()
+        for task in tasks:
+            yield function(*task)
+        return
+    from joblib import Parallel, delayed
+
+    pool = Parallel(
+        n_jobs=jobs, return_as="generator_unordered", pre_dispatch=2 * jobs, batch_size=1
+    )
+    with _interrupts_blocked():
+        results = pool(delayed(function)(*task) for task in tasks)
+    yield from results
+
+
+def warm_up(jobs: int) -> None:
+    """Start the workers and have them import what they need."""
+    for _ in run_tasks(_import_physics, [()] * jobs, jobs):
+        pass
+
+
+def _import_physics() -> int:
+    import radhar_cli.dataset.batch  # noqa: F401 - the import is the work
+
+    prepare_process()
+    return os.getpid()
+
+
+@contextmanager
+def _interrupts_blocked() -> Iterator[None]:
+    """Workers started meanwhile inherit the blocked signal: Ctrl-C is the master's alone."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    old = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, old)
+
+
+def cores() -> int:
+    """Cores that this process may use."""
+    from joblib import cpu_count
+
+    return int(cpu_count())

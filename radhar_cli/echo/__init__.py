@@ -1,0 +1,1 @@
+"""Paths -> echo. An engine sums paths, a delay and an amplitude each; it knows no people."""

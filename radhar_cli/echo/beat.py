@@ -1,0 +1,51 @@
+"""The beat matrix s_b[n, m] (paper, last but one equation of "Radar Echo Model")."""
+
+from math import isqrt
+
+import numpy as np
+
+from radhar_cli.arrays import Complex, Float
+from radhar_cli.radar.waveform import Waveform
+
+
+def unit_phasor(cycles: Float) -> Complex:
+    """exp(-j 2 pi cycles), the whole turns removed first."""
+    angle = (cycles - np.rint(cycles)) * (-2 * np.pi)
+    out = np.empty(cycles.shape, dtype=complex)
+    np.cos(angle, out=out.real)
+    np.sin(angle, out=out.imag)
+    return out
+
+
+def start_phase(delay: Float, waveform: Waveform, frequency: float) -> Float:
+    """Phase (cycles) of a path at `frequency`: f tau, less K tau^2/2 if that term is kept."""
+    cycles = frequency * delay
+    if waveform.residual_video_phase:
+        cycles -= 0.5 * waveform.slope * delay * delay
+    return cycles
+
+
+def beat_matrix(delay: Float, amplitude: Float, waveform: Waveform) -> Complex:
+    """s_b[n, m] = sum_i A_i exp(-j 2 pi (fc tau_i + K tau_i n/fs)).
+
+    With n = a b_len + b the exponential is a product of one in a and one in b, so the sum over the
+    paths is, pulse by pulse, a product of two small matrices: the same numbers to rounding, with
+    2 sqrt(N_ADC) instead of N_ADC exponentials a path.
+
+    Args:
+        delay, amplitude: [I, M], s and 1.
+        waveform: the radar.
+
+    Returns:
+        [N_ADC, M], fast time first.
+    """
+    coarse = isqrt(waveform.n_adc - 1) + 1
+    fine = -(-waveform.n_adc // coarse)
+    tau = delay.T  # [M, I]
+    turn = waveform.slope / waveform.adc_rate * tau
+    first = unit_phasor(start_phase(tau, waveform, waveform.fc)) * amplitude.T
+    slow = unit_phasor(turn[:, None, :] * (fine * np.arange(coarse))[:, None])
+    slow *= first[:, None, :]  # [M, coarse, I]
+    fast = unit_phasor(turn[:, :, None] * np.arange(fine))  # [M, I, fine]
+    beat = slow @ fast  # [M, coarse, fine]
+    return beat.reshape(len(tau), coarse * fine)[:, : waveform.n_adc].T

@@ -1,0 +1,54 @@
+"""The exact reference: the whole beat matrix, noise on every sample, in float64."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from radhar_cli.arrays import Complex
+from radhar_cli.echo.beat import beat_matrix
+from radhar_cli.echo.paths import PathSource
+from radhar_cli.radar.noise import circular_gaussian
+from radhar_cli.radar.waveform import Waveform
+
+BLOCK_SAMPLES = 2**18
+
+
+def signal_power(source: PathSource, waveform: Waveform) -> float:
+    """P_s = mean over the pulses of sum_i A_i^2."""
+    total = 0.0
+    for start in range(0, waveform.n_pulses, BLOCK_SAMPLES):
+        pulses = np.arange(start, min(start + BLOCK_SAMPLES, waveform.n_pulses), dtype=float)
+        total += float(source(waveform.times(pulses)).power.sum())
+    return total / waveform.n_pulses
+
+
+def beat_blocks(
+    source: PathSource,
+    waveform: Waveform,
+    sigma: float = 0.0,
+    rng: np.random.Generator | None = None,
+) -> Iterator[tuple[int, Complex]]:
+    """Yield (first pulse, s_noisy[n, m] [N_ADC, block]) for consecutive blocks of pulses.
+
+    Consecutive blocks share one pulse, so that differences over pulses miss none. Noise is drawn
+    pulse by pulse: the numbers do not depend on the block length.
+
+    Args:
+        source: the paths.
+        waveform: the radar.
+        sigma: standard deviation of the noise per complex sample.
+        rng: its stream, unless sigma is 0.
+    """
+    length = max(2, BLOCK_SAMPLES // waveform.n_adc)
+    carried: Complex | None = None
+    for start in range(0, waveform.n_pulses, length):
+        pulses = np.arange(start, min(start + length, waveform.n_pulses), dtype=float)
+        paths = source(waveform.times(pulses))
+        beat = beat_matrix(paths.delay, paths.amplitude, waveform)
+        if rng is not None:
+            beat = beat + sigma * circular_gaussian(rng, (len(pulses), waveform.n_adc)).T
+        if carried is not None:
+            beat = np.concatenate([carried, beat], axis=1)
+        carried = beat[:, -1:].copy()
+        first = start if start == 0 else start - 1
+        yield first, beat

@@ -1,0 +1,102 @@
+"""The sum over the kept range bins, as a function of the beat frequency.
+
+G(u) = sum_n D[n] exp(-j 2 pi (n - n0) u),  D[n] = sum_k exp(+j 2 pi k (n - n0)/N_FFT), k over the
+kept bins, u = K tau/fs (docs/model.md, "Two ways to the same slow-time signal"). It depends on the
+radar alone. |G| has period 1; G itself changes sign over a period where n0 is half-integer.
+"""
+
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import numpy as np
+import scipy.fft
+
+from radhar_cli.arrays import Complex, Float
+from radhar_cli.radar.waveform import Waveform
+
+
+def weights(waveform: Waveform) -> Complex:
+    """D[n] [N_ADC]: what range compression and the sum over bins do to fast-time sample n."""
+    n = np.arange(waveform.n_adc) - waveform.n0
+    kept = np.zeros(waveform.n_fft)
+    kept[: waveform.n_bins] = 1
+    # sum_k exp(+j 2 pi k n'/N_FFT) is a geometric series; its ratio is 1 where n' = 0 mod N_FFT.
+    angle = np.pi * n / waveform.n_fft
+    whole = np.isclose(np.sin(angle), 0, atol=1e-12)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        series = np.exp(1j * (waveform.n_bins - 1) * angle) * (
+            np.sin(waveform.n_bins * angle) / np.sin(angle)
+        )
+    d: Complex = np.where(whole, kept.sum(), series)
+    return d
+
+
+def noise_gain(waveform: Waveform) -> float:
+    """Variance gain sum_n |D[n]|^2 of white noise through compression and the sum over bins."""
+    return float(np.sum(np.abs(weights(waveform)) ** 2))
+
+
+def half_band_sum(u: Float, waveform: Waveform) -> Complex:
+    """G(u) [...] by its definition: N_ADC terms a value."""
+    n = np.arange(waveform.n_adc) - waveform.n0
+    out = np.zeros(u.shape, dtype=complex)
+    for sample, weight in zip(n, weights(waveform), strict=True):
+        out += weight * np.exp(-2j * np.pi * np.mod(sample * u, 1))
+    return out
+
+
+@dataclass(frozen=True, eq=False)
+class HalfBandTable:
+    """G tabulated over one period, read by cubic Hermite interpolation.
+
+    Attributes:
+        waveform: the radar.
+        oversampling: table points per fast-time sample; the root-mean-square relative error is
+            about -48, -71, -95, -118 dB for 4, 8, 16, 32.
+    """
+
+    waveform: Waveform
+    oversampling: int
+    _cells: Complex = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_cells", self._tabulate())
+
+    def _tabulate(self) -> Complex:
+        waveform, size = self.waveform, self.oversampling * self.waveform.n_adc
+        n = np.arange(waveform.n_adc) - waveform.n0
+        d = weights(waveform)
+        # exp(-j 2 pi (n - n0) u) = exp(+j 2 pi n0 u) exp(-j 2 pi n u)
+        reference = np.exp(2j * np.pi * waveform.n0 * np.arange(size) / size)
+        value = scipy.fft.fft(d, size) * reference
+        slope = scipy.fft.fft(-2j * np.pi * n * d, size) * reference / size
+        sign = np.exp(2j * np.pi * waveform.n0)
+        value_next, slope_next = np.roll(value, -1), np.roll(slope, -1)
+        value_next[-1] *= sign
+        slope_next[-1] *= sign
+        rise = value_next - value
+        square = 3 * rise - 2 * slope - slope_next
+        cube = slope + slope_next - 2 * rise
+        return np.stack([value, slope, square, cube], axis=-1)
+
+    def __call__(self, u: Float) -> Complex:
+        """G(u) for u [...]."""
+        turns = np.floor(u)
+        place = (u - turns) * len(self._cells)
+        cell = np.minimum(place.astype(np.intp), len(self._cells) - 1)
+        part = place - cell
+        c = self._cells[cell]
+        value = c[..., 3] * part
+        for power in (2, 1):
+            value += c[..., power]
+            value *= part
+        value += c[..., 0]
+        if self.waveform.n0 % 1:
+            value *= 1 - 2 * np.mod(turns, 2)
+        return value
+
+
+@lru_cache(maxsize=4)
+def half_band_table(waveform: Waveform, oversampling: int) -> HalfBandTable:
+    """Return the table of a radar, computed once."""
+    return HalfBandTable(waveform, oversampling)

@@ -1,0 +1,17 @@
+"""Errors that a user can mend; the program prints their text alone and exits with status 2."""
+
+
+class RadharError(Exception):
+    """Something is wrong with what the user gave: one clear message, no traceback."""
+
+
+class ConfigError(RadharError):
+    """A config that cannot be used; names file, key, value and what would be right."""
+
+
+class SceneError(RadharError):
+    """A drawn scene outside the model; names sample, joint, time and distance."""
+
+
+class FolderError(RadharError):
+    """An output folder that cannot be used or continued."""

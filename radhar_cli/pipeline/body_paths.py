@@ -1,0 +1,74 @@
+"""Body, antennas and wall -> paths, one a scatterer."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from radhar_cli.arrays import Float
+from radhar_cli.body.pose import Body
+from radhar_cli.echo.paths import Paths
+from radhar_cli.radar.propagation import Antennas, amplitude, bistatic_delay, leg
+from radhar_cli.radar.wall import Wall, crossing, extra_delay, field_factor
+from radhar_cli.radar.waveform import SPEED_OF_LIGHT
+
+
+@dataclass(frozen=True)
+class BodyPaths:
+    """A source of paths: `PathSource` for a person seen through air or a wall.
+
+    Attributes:
+        body: scatterer positions over time.
+        antennas: where the legs start and end.
+        fc: carrier, Hz.
+        wall: the slab between, or None.
+        power_in_free_space: whether `Paths.power` leaves the wall's loss out (snr_reference).
+    """
+
+    body: Body
+    antennas: Antennas
+    fc: float
+    wall: Wall | None
+    power_in_free_space: bool
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Instants (s) at which positions are not smooth."""
+        return self.body.kinks
+
+    @property
+    def highest_frequency(self) -> float:
+        """Fundamental of the fastest motion, Hz."""
+        return self.body.highest_frequency
+
+    @property
+    def smooth(self) -> bool:
+        """Paths kink where a leg passes an edge of the wall."""
+        return self.wall is None
+
+    def __call__(self, t: Float) -> Paths:
+        """Paths of the 13 scatterers at times t [M] (s)."""
+        return self._paths(self.body.positions(t), self.body.cross_sections)
+
+    def torso_delay(self, t: Float) -> Float:
+        """Delay (s) [M] of the torso, the wall's included."""
+        p = self.body.torso(t)
+        tau = bistatic_delay(leg(p, self.antennas.tx), leg(p, self.antennas.rx))
+        if self.wall is not None:
+            for antenna in (self.antennas.tx, self.antennas.rx):
+                tau += extra_delay(crossing(p, antenna, self.wall).chord, self.wall)
+        track: Float = tau[0]
+        return track
+
+    def _paths(self, p: Float, sigma: Float) -> Paths:
+        r_tx, r_rx = leg(p, self.antennas.tx), leg(p, self.antennas.rx)
+        tau = bistatic_delay(r_tx, r_rx)
+        a = amplitude(r_tx, r_rx, sigma, self.antennas.gain, SPEED_OF_LIGHT / self.fc)
+        power = np.einsum("im,im->m", a, a)
+        if self.wall is not None:
+            for antenna in (self.antennas.tx, self.antennas.rx):
+                crossed = crossing(p, antenna, self.wall)
+                tau += extra_delay(crossed.chord, self.wall)
+                a *= field_factor(crossed, self.wall, self.fc)
+            if not self.power_in_free_space:
+                power = np.einsum("im,im->m", a, a)
+        return Paths(tau, a, power)

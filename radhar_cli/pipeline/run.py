@@ -1,0 +1,256 @@
+"""Run a plan on one scene. The only file that knows what each stage calls.
+
+Order (paper, figure "Signal processing overflow"): MTI -> range compression -> [range-time map] ->
+sum over the kept bins -> [compensation] -> [denoising] -> STFT or FSST.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from time import perf_counter
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from radhar_cli.arrays import Complex, Float, Levels
+from radhar_cli.config.experiment import Config
+from radhar_cli.echo import cube
+from radhar_cli.echo.direct import DirectEcho, DirectSettings, slow_time_noise
+from radhar_cli.echo.range_profiles import beat_at, shown_pulses
+from radhar_cli.pipeline.body_paths import BodyPaths
+from radhar_cli.pipeline.models import antennas_of, body_of, wall_of, waveform_of
+from radhar_cli.pipeline.plan import Plan, Stage
+from radhar_cli.processing import fsst, stft
+from radhar_cli.processing.denoising import savgol
+from radhar_cli.processing.doppler_compensation import compensate
+from radhar_cli.processing.entropy import entropy_bits
+from radhar_cli.processing.frames import Frames
+from radhar_cli.processing.image import levels
+from radhar_cli.processing.mti import mti
+from radhar_cli.processing.range_compression import (
+    half_band_signal,
+    range_compression,
+    range_power,
+)
+from radhar_cli.radar.noise import noise_variance
+from radhar_cli.radar.wall import Wall
+from radhar_cli.radar.waveform import Waveform
+from radhar_cli.randomness import NOISE, stream
+from radhar_cli.scenario import Scene
+
+
+@dataclass
+class Recording:
+    """One scene on its way through a plan.
+
+    Attributes:
+        scene, config, plan: what is simulated, and how.
+        products: {stage name: what it made}.
+        seconds: {stage name: time it took}.
+    """
+
+    scene: Scene
+    config: Config
+    plan: Plan
+    products: dict[str, Any] = field(default_factory=dict)
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    @cached_property
+    def waveform(self) -> Waveform:
+        return waveform_of(self.scene, self.config)
+
+    @cached_property
+    def frames(self) -> Frames:
+        processing = self.config.processing
+        return Frames.of(
+            processing.window_fraction,
+            processing.overlap_fraction,
+            self.waveform.duration,
+            self.waveform.prf,
+        )
+
+    @cached_property
+    def shown(self) -> np.ndarray[Any, np.dtype[np.intp]]:
+        """Pulses (or first pulses of MTI pairs) that the range-time map shows."""
+        kept = self.waveform.n_pulses - self.config.processing.mti
+        return shown_pulses(kept, self.config.image.size_px[1])
+
+    def noise(self, name: str) -> np.random.Generator:
+        """The stream of unit-variance noise of this sample with that name."""
+        key = (self.scene.activity.index, self.scene.index)
+        return stream(self.scene.seed, NOISE, *key, name=name)
+
+    @property
+    def sigma(self) -> float:
+        """Standard deviation of the raw noise; 0 without noise."""
+        if "signal_power" not in self.products:
+            return 0.0
+        power = self.products["signal_power"]
+        return float(np.sqrt(noise_variance(power, self.scene.values["snr_db"])))
+
+
+class CubeProducts(NamedTuple):
+    """What one pass over the beat matrix leaves: x[m] and |S[k, m_j]|^2, where asked for."""
+
+    signal: Complex | None
+    range_power: Float | None
+
+
+def run(plan: Plan, scene: Scene, config: Config) -> Recording:
+    """Run every stage of the plan, once, in its order."""
+    recording = Recording(scene, config, plan)
+    for stage in plan.stages:
+        start = perf_counter()
+        recording.products[stage.name] = STAGES[stage.kind](recording, stage)
+        recording.seconds[stage.name] = perf_counter() - start
+    return recording
+
+
+def _wall(r: Recording, stage: Stage) -> Wall | None:
+    return wall_of(r.scene)
+
+
+def _paths(r: Recording, stage: Stage) -> BodyPaths:
+    return BodyPaths(
+        body=body_of(r.scene),
+        antennas=antennas_of(r.scene),
+        fc=r.waveform.fc,
+        wall=r.products.get("wall"),
+        power_in_free_space=r.config.snr_reference == "free_space",
+    )
+
+
+def _torso_track(r: Recording, stage: Stage) -> Float:
+    pulses = np.arange(r.waveform.n_pulses, dtype=float)
+    paths: BodyPaths = r.products["paths"]
+    return paths.torso_delay(r.waveform.times(pulses))
+
+
+def _echo(r: Recording, stage: Stage) -> DirectEcho:
+    engine = r.config.engine
+    settings = DirectSettings(
+        engine.kinematics_hz, engine.table_oversampling, engine.precision == "single"
+    )
+    return DirectEcho(r.products["paths"], r.waveform, settings)
+
+
+def _signal_power(r: Recording, stage: Stage) -> float:
+    if "echo" in r.products:
+        return float(r.products["echo"].signal_power())
+    return cube.signal_power(r.products["paths"], r.waveform)
+
+
+def _slow_time(r: Recording, stage: Stage) -> Complex:
+    echo: DirectEcho = r.products["echo"]
+    return echo.slow_time(r.config.processing.mti)
+
+
+def _slow_time_noise(r: Recording, stage: Stage) -> Complex:
+    return r.sigma * slow_time_noise(r.noise("slow_time"), r.waveform)
+
+
+def _beat_cube(r: Recording, stage: Stage) -> CubeProducts:
+    with_mti = r.config.processing.mti
+    wants_signal, wants_range = "signal:plain" in r.plan, "rtm" in r.plan
+    rng = r.noise("beat") if "signal_power" in r.products else None
+    signal, profiles = [], []
+    for first, block in cube.beat_blocks(r.products["paths"], r.waveform, r.sigma, rng):
+        own = mti(block) if with_mti else block[:, (1 if first else 0) :]
+        start = first if with_mti or not first else first + 1
+        if own.shape[1] == 0:
+            continue
+        if wants_range:
+            here = r.shown[(r.shown >= start) & (r.shown < start + own.shape[1])]
+            profiles.append(range_power(own[:, here - start], r.waveform))
+        if wants_signal:
+            signal.append(half_band_signal(range_compression(own, r.waveform)))
+    return CubeProducts(
+        np.concatenate(signal) if signal else None,
+        np.concatenate(profiles, axis=1) if profiles else None,
+    )
+
+
+def _range_profiles(r: Recording, stage: Stage) -> Complex:
+    pulses = r.shown
+    if r.config.processing.mti:
+        pulses = np.union1d(pulses, pulses + 1)
+    rng = r.noise("range_profiles") if "signal_power" in r.products else None
+    beat = beat_at(r.products["paths"], r.waveform, pulses, r.sigma, rng)
+    if not r.config.processing.mti:
+        return beat
+    return beat[:, np.searchsorted(pulses, r.shown + 1)] - beat[:, np.searchsorted(pulses, r.shown)]
+
+
+def _rtm(r: Recording, stage: Stage) -> Float:
+    if "beat_cube" in r.products:
+        power = r.products["beat_cube"].range_power
+        assert power is not None
+        return np.asarray(power)
+    return range_power(r.products["range_profiles"], r.waveform)
+
+
+def _signal(r: Recording, stage: Stage) -> Complex:
+    if stage.variant == "plain":
+        return _plain_signal(r)
+    if stage.variant == "compensated":
+        return compensate(r.products["signal:plain"], r.products["torso_track"], r.waveform.f0)
+    savgol_config = r.config.processing.savgol
+    before = r.products[stage.needs[0]]
+    return savgol(before, savgol_config.order, savgol_config.frame)
+
+
+def _plain_signal(r: Recording) -> Complex:
+    if "beat_cube" in r.products:
+        return np.asarray(r.products["beat_cube"].signal)
+    y = r.products["slow_time"]
+    if "slow_time_noise" in r.products:
+        y = y + r.products["slow_time_noise"]
+    return mti(y) if r.config.processing.mti else np.asarray(y)
+
+
+def _spectrum(r: Recording, stage: Stage) -> Complex:
+    padded = stage.kind == "padded_spectrum"
+    length = r.config.processing.stft_fft_length if padded else None
+    return stft.spectrum(r.products[stage.needs[0]], r.frames, length)
+
+
+def _stft(r: Recording, stage: Stage) -> Float:
+    return stft.power_map(r.products[stage.needs[0]])
+
+
+def _fsst(r: Recording, stage: Stage) -> Float:
+    x, v = (r.products[need] for need in stage.needs)
+    return fsst.power_map(fsst.synchrosqueeze(x, v, r.frames, r.config.processing.fsst_threshold))
+
+
+def _entropy(r: Recording, stage: Stage) -> float:
+    return entropy_bits(r.products[stage.variant])
+
+
+def _levels(r: Recording, stage: Stage) -> Levels:
+    image = r.config.image
+    return levels(r.products[stage.variant], image.size_px, image.dynamic_range_db)
+
+
+STAGES: Mapping[str, Callable[[Recording, Stage], Any]] = {
+    "wall": _wall,
+    "paths": _paths,
+    "torso_track": _torso_track,
+    "echo": _echo,
+    "signal_power": _signal_power,
+    "slow_time": _slow_time,
+    "slow_time_noise": _slow_time_noise,
+    "beat_cube": _beat_cube,
+    "range_profiles": _range_profiles,
+    "rtm": _rtm,
+    "signal": _signal,
+    "spectrum": _spectrum,
+    "padded_spectrum": _spectrum,
+    **{
+        f"{kind}{suffix}": run_map
+        for kind, run_map in (("stft", _stft), ("fsst", _fsst))
+        for suffix in ("", "_compensated", "_denoised", "_compensated_denoised")
+    },
+    "entropy": _entropy,
+    "levels": _levels,
+}

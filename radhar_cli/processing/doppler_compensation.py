@@ -1,0 +1,18 @@
+"""Bulk Doppler compensation by a torso-delay track (paper, section "DTMs Generation")."""
+
+import numpy as np
+
+from radhar_cli.arrays import Complex, Float
+from radhar_cli.echo.beat import unit_phasor
+
+
+def compensate(x: Complex, torso_delay: Float, f0: float) -> Complex:
+    """Multiply x[m] by exp(+j 2 pi f0 (tau[m'] - tau[0])), m' the later pulse of an MTI pair.
+
+    Args:
+        x: slow-time signal [M - 1] after MTI, or [M] without it.
+        torso_delay: delay track tau [M], s, whoever measured it.
+        f0: frequency at which the Doppler is read, Hz.
+    """
+    track = torso_delay[torso_delay.size - x.size :] - torso_delay[0]
+    return x * np.conj(unit_phasor(f0 * track))

@@ -1,0 +1,49 @@
+"""The window and the frames that STFT and FSST share."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from radhar_cli.arrays import Complex, Float
+from radhar_cli.config.rounding import exact, half_up
+
+
+@dataclass(frozen=True)
+class Frames:
+    """Frames of L samples every `hop`, no padding: frame l covers x[l hop : l hop + L]."""
+
+    length: int
+    hop: int
+
+    @classmethod
+    def of(
+        cls, window_fraction: float, overlap_fraction: float, duration: float, prf: float
+    ) -> "Frames":
+        """L = round(window_fraction T PRF), hop = round((1 - overlap_fraction) L), at least 1."""
+        length = half_up(window_fraction, duration, prf)
+        hop = int((1 - exact(overlap_fraction)) * length + exact(0.5))
+        return cls(length, max(hop, 1))
+
+    def count(self, samples: int) -> int:
+        """Number of whole frames in a signal."""
+        return (samples - self.length) // self.hop + 1
+
+    def starts(self, samples: int) -> Float:
+        """First sample of every frame."""
+        return np.arange(self.count(samples)) * float(self.hop)
+
+    @cached_property
+    def window(self) -> Float:
+        """g[n] = (1 - cos(2 pi (n + 1/2)/L))/2."""
+        return 0.5 - 0.5 * np.cos(2 * np.pi * (np.arange(self.length) + 0.5) / self.length)
+
+    @cached_property
+    def window_slope(self) -> Float:
+        """g'[n] per sample."""
+        n = np.arange(self.length) + 0.5
+        return np.pi / self.length * np.sin(2 * np.pi * n / self.length)
+
+    def cut(self, x: Complex) -> Complex:
+        """Frames [count, L] of a signal [M], a view."""
+        return np.lib.stride_tricks.sliding_window_view(x, self.length)[:: self.hop]

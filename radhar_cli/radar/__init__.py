@@ -1,0 +1,1 @@
+"""The radar and the space between it and the scatterers."""

@@ -1,0 +1,56 @@
+"""Bistatic delay and amplitude of a path (paper, section "Radar Echo Model"; docs/model.md)."""
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+from radhar_cli.arrays import Float
+from radhar_cli.radar.waveform import SPEED_OF_LIGHT
+
+
+@dataclass(frozen=True)
+class Antennas:
+    """Transmitter and receiver.
+
+    Attributes:
+        tx, rx: positions (x, y, z), m.
+        gain: linear gain of each antenna.
+        isolation_db: between the two; used by the static leakage alone.
+    """
+
+    tx: tuple[float, float, float]
+    rx: tuple[float, float, float]
+    gain: float
+    isolation_db: float
+
+
+def leg(p: Float, antenna: tuple[float, float, float]) -> Float:
+    """Distance (m) [I, M] between positions p [3, I, M] and an antenna."""
+    x, y, z = p[0] - antenna[0], p[1] - antenna[1], p[2] - antenna[2]
+    x *= x
+    y *= y
+    z *= z
+    x += y
+    x += z
+    distance: Float = np.sqrt(x, out=x)
+    return distance
+
+
+def bistatic_delay(r_tx: Float, r_rx: Float) -> Float:
+    """tau = (R_tx + R_rx)/c in s."""
+    return (r_tx + r_rx) / SPEED_OF_LIGHT
+
+
+def amplitude(r_tx: Float, r_rx: Float, sigma: Float, gain: float, wavelength: float) -> Float:
+    """A = sqrt(G_tx G_rx lambda^2 sigma/(4 pi)^3)/(R_tx R_rx) for unit transmit power.
+
+    Args:
+        r_tx, r_rx: legs [I, M], m.
+        sigma: RCS [I], m^2.
+        gain: linear gain of each antenna.
+        wavelength: m.
+    """
+    scale = gain * wavelength / (4 * pi) ** 1.5 * np.sqrt(sigma)
+    a: Float = scale[:, None] / (r_tx * r_rx)
+    return a

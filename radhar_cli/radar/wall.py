@@ -1,0 +1,99 @@
+"""A homogeneous axis-aligned slab crossed by straight rays (docs/model.md, Propagation)."""
+
+from dataclasses import dataclass
+from math import pi, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from radhar_cli.arrays import Bool, Float, Index
+from radhar_cli.radar.waveform import SPEED_OF_LIGHT
+
+
+@dataclass(frozen=True)
+class Wall:
+    """The slab.
+
+    Attributes:
+        center, size: (x, y, z), m.
+        eps_r: relative permittivity, real part.
+        loss_tangent: tan delta; eps = eps_r (1 - j tan delta).
+    """
+
+    center: tuple[float, float, float]
+    size: tuple[float, float, float]
+    eps_r: float
+    loss_tangent: float
+
+    @property
+    def refractive_index(self) -> complex:
+        """sqrt(eps)."""
+        return complex(np.sqrt(self.eps_r * (1 - 1j * self.loss_tangent)))
+
+    @property
+    def bounds(self) -> tuple[tuple[float, float], ...]:
+        """(low, high) along x, y, z, m."""
+        return tuple((c - s / 2, c + s / 2) for c, s in zip(self.center, self.size, strict=True))
+
+    @property
+    def reflection(self) -> complex:
+        """Gamma = (1 - sqrt(eps))/(1 + sqrt(eps)), normal incidence."""
+        n = self.refractive_index
+        return (1 - n) / (1 + n)
+
+    def contains(self, p: Float) -> Bool:
+        """Whether positions p [3, ...] lie in the slab, bounds included."""
+        inside = np.ones(p.shape[1:], dtype=bool)
+        for axis, (low, high) in enumerate(self.bounds):
+            inside &= (p[axis] >= low) & (p[axis] <= high)
+        return inside
+
+
+class Crossing(NamedTuple):
+    """One leg through the slab: chord (m) and number of faces crossed, [I, M] each."""
+
+    chord: Float
+    faces: Index
+
+
+def crossing(p: Float, antenna: tuple[float, float, float], wall: Wall) -> Crossing:
+    """Intersect the straight rays from an antenna, which is outside, to positions p [3, I, M].
+
+    A ray is a + s (p - a), 0 <= s <= 1. Bounds count as inside, so a ray that ends on a face has
+    entered but not left; a ray along a face, or one that touches an edge, is untouched.
+    """
+    enter = np.full(p.shape[1:], -np.inf)
+    leave = np.full(p.shape[1:], np.inf)
+    length2 = np.zeros(p.shape[1:])
+    misses = np.zeros(p.shape[1:], dtype=bool)
+    for axis, (low, high) in enumerate(wall.bounds):
+        at = antenna[axis]
+        step = p[axis] - at
+        length2 += step * step
+        parallel = step == 0
+        misses |= parallel & (not low < at < high)
+        # A nearly parallel ray overflows to the infinity that the comparison below wants.
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+            first, second = (low - at) / step, (high - at) / step
+        near, far = np.minimum(first, second), np.maximum(first, second)
+        np.maximum(enter, np.where(parallel, -np.inf, near), out=enter)
+        np.minimum(leave, np.where(parallel, np.inf, far), out=leave)
+    hit = ~misses & (enter < leave) & (enter <= 1) & (leave > 0)
+    chord = np.where(hit, (np.minimum(leave, 1) - enter), 0.0) * np.sqrt(length2)
+    faces = hit.astype(np.intp) + (hit & (leave < 1))
+    return Crossing(chord, faces)
+
+
+def extra_delay(chord: Float, wall: Wall) -> Float:
+    """Delay (s) beyond free space of a chord (m): d (Re sqrt(eps) - 1)/c."""
+    return chord * ((wall.refractive_index.real - 1) / SPEED_OF_LIGHT)
+
+
+def field_factor(crossed: Crossing, wall: Wall, fc: float) -> Float:
+    """Field left after one leg: exp(-k0 |Im sqrt(eps)| d) (1 - |Gamma|^2)^(n/2)."""
+    k0 = 2 * pi * fc / SPEED_OF_LIGHT
+    n = wall.refractive_index
+    face = sqrt(4 * n.real) / abs(1 + n)  # sqrt(1 - |Gamma|^2), without its cancellation
+    through = np.array([1.0, face, face * face])[crossed.faces]
+    factor: Float = np.exp(-k0 * abs(n.imag) * crossed.chord) * through
+    return factor

@@ -1,0 +1,101 @@
+"""The FMCW waveform and everything that follows from it (paper, section "Radar Echo Model")."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from radhar_cli.arrays import Float
+from radhar_cli.config.rounding import half_up
+
+SPEED_OF_LIGHT = 299_792_458.0
+
+
+@dataclass(frozen=True)
+class Waveform:
+    """A train of linear chirps.
+
+    Attributes:
+        fc: carrier at the start of a chirp, Hz.
+        bandwidth: B, Hz.
+        chirp: Tp, s.
+        adc_rate: fs, Hz.
+        prf: pulses per second, Hz.
+        duration: T, s.
+        fft_length: N_FFT, or None for N_ADC (rounded up to even).
+        centred: whether range bins are referred to mid-chirp (n0 = N_ADC/2) or to its start.
+        residual_video_phase: whether the term + pi K tau^2 is kept.
+    """
+
+    fc: float
+    bandwidth: float
+    chirp: float
+    adc_rate: float
+    prf: float
+    duration: float
+    fft_length: int | None = None
+    centred: bool = True
+    residual_video_phase: bool = False
+
+    @property
+    def slope(self) -> float:
+        """K = B/Tp, Hz/s."""
+        return self.bandwidth / self.chirp
+
+    @property
+    def wavelength(self) -> float:
+        """lambda = c/fc, m."""
+        return SPEED_OF_LIGHT / self.fc
+
+    @cached_property
+    def n_adc(self) -> int:
+        """N_ADC = round(fs Tp), samples per chirp."""
+        return half_up(self.adc_rate, self.chirp)
+
+    @cached_property
+    def n_pulses(self) -> int:
+        """M = round(T PRF)."""
+        return half_up(self.duration, self.prf)
+
+    @property
+    def n_fft(self) -> int:
+        """N_FFT, even and at least N_ADC."""
+        return self.fft_length if self.fft_length is not None else self.n_adc + self.n_adc % 2
+
+    @property
+    def n_bins(self) -> int:
+        """Range bins kept: the first half."""
+        return self.n_fft // 2
+
+    @property
+    def n0(self) -> float:
+        """Phase reference in the chirp, in fast-time samples."""
+        return self.n_adc / 2 if self.centred else 0.0
+
+    @property
+    def f0(self) -> float:
+        """Frequency at which Doppler is read: fc + K n0/fs, Hz."""
+        return self.fc + self.slope * self.n0 / self.adc_rate
+
+    @property
+    def range_step(self) -> float:
+        """Spacing of the range bins, c fs/(2 K N_FFT), m."""
+        return SPEED_OF_LIGHT * self.adc_rate / (2 * self.slope * self.n_fft)
+
+    @property
+    def half_band_range(self) -> float:
+        """Range c fs/(4 K), m, beyond which a beat leaves the kept bins."""
+        return SPEED_OF_LIGHT * self.adc_rate / (4 * self.slope)
+
+    @property
+    def highest_speed(self) -> float:
+        """Radial speed (m/s) at which the Doppler reaches PRF/2."""
+        return SPEED_OF_LIGHT * self.prf / (4 * self.f0)
+
+    def times(self, pulses: Float) -> Float:
+        """Slow times (s) of pulse numbers [...]."""
+        return pulses / self.prf
+
+    def range_axis(self) -> Float:
+        """Ranges R_k [N_FFT/2] of the kept bins, m."""
+        return np.arange(self.n_bins) * self.range_step

@@ -1,0 +1,28 @@
+"""Named random streams: what a stream yields depends on its name and on nothing else.
+
+``numpy.random.SeedSequence(seed, spawn_key=...)`` with a key made of the purpose, the class, the
+index and the name, so that neither the order of work, nor the number of workers, nor the other
+maps asked for can change a draw.
+"""
+
+import zlib
+
+import numpy as np
+
+PERSON = 1
+SCENE = 2
+NOISE = 3
+SPLIT = 4
+
+
+def stream(seed: int, purpose: int, *key: int, name: str) -> np.random.Generator:
+    """Return the generator named by (seed, purpose, key, name).
+
+    Args:
+        seed: the data set's seed, at least 0.
+        purpose: PERSON, SCENE, NOISE or SPLIT.
+        key: what the stream belongs to, for example (class, index).
+        name: the field or the noise, for example ``motion.range_m``.
+    """
+    spawn_key = (purpose, len(key), *key, zlib.crc32(name.encode()))
+    return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=spawn_key)))

@@ -1,36 +1,42 @@
 """The `radhar` program: registers the commands, turns our errors into one message and a status."""
 
 import sys
+from typing import TYPE_CHECKING
 
-import typer
-
-from radhar_cli.commands import config, generate, verify
 from radhar_cli.errors import RadharError
 
-app = typer.Typer(
-    help="Labelled FMCW radar data sets for human activity recognition, from a YAML file.",
-    no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
-)
-app.command()(generate.generate)
-app.command()(verify.verify)
-app.add_typer(config.app, name="config", no_args_is_help=True)
+if TYPE_CHECKING:
+    import typer
 
 
-@app.callback()
-def _program() -> None:
-    """Labelled FMCW radar data sets for human activity recognition, from a YAML file."""
+def program() -> "typer.Typer":
+    """The program and its commands."""
+    import typer
+
+    from radhar_cli.commands import config, generate, verify
+
+    app = typer.Typer(
+        help="Labelled FMCW radar data sets for human activity recognition, from a YAML file.",
+        no_args_is_help=True,
+        add_completion=False,
+        pretty_exceptions_enable=False,
+        rich_markup_mode=None,
+    )
+    app.command()(generate.generate)
+    app.command()(verify.verify)
+    app.add_typer(config.app, name="config", no_args_is_help=True)
+    return app
 
 
 def main() -> None:
-    """Run the program; bad input ends with its message and status 2."""
+    """Run the program; our errors end with their message and status."""
     try:
-        app()
+        program()()
     except RadharError as error:
         print(f"radhar: {error}", file=sys.stderr)
-        sys.exit(2)
+        sys.exit(error.status)
+    except KeyboardInterrupt:
+        sys.exit(130)
     except BrokenPipeError:
         sys.stderr.close()
         sys.exit(1)

@@ -1,8 +1,10 @@
-"""Errors that a user can mend; the program prints their text alone and exits with status 2."""
+"""Errors that a user can mend; the program prints their text alone and exits with their status."""
 
 
 class RadharError(Exception):
     """Something is wrong with what the user gave: one clear message, no traceback."""
+
+    status = 2
 
 
 class ConfigError(RadharError):
@@ -15,3 +17,9 @@ class SceneError(RadharError):
 
 class FolderError(RadharError):
     """An output folder that cannot be used or continued."""
+
+
+class UnfinishedError(RadharError):
+    """The machine failed the run (full disk, killed worker); what was finished is kept."""
+
+    status = 1

@@ -34,31 +34,43 @@ def generate(
         bool, typer.Option("--overwrite", help="Start again in a folder that holds a data set.")
     ] = False,
 ) -> None:
+    try:
+        _generate(config, out, set_ or [], jobs, batch, dry_run, overwrite)
+    except KeyboardInterrupt:
+        typer.echo(
+            f"\ninterrupted: what is finished in {out} is kept; the same command goes on", err=True
+        )
+        raise typer.Exit(130) from None
+
+
+def _generate(
+    path: Path,
+    out: Path,
+    overrides: list[str],
+    jobs: int | None,
+    batch: int | None,
+    dry_run: bool,
+    overwrite: bool,
+) -> None:
     from radhar_cli.config import load_config
     from radhar_cli.dataset.workers import cores
 
-    loaded = load_config(config, set_ or [])
+    config = load_config(path, overrides)
     jobs = jobs or cores()
     if dry_run:
         from radhar_cli.commands.dry_run import print_plan
 
-        print_plan(loaded, jobs)
+        print_plan(config, jobs)
         return
     from radhar_cli.commands.terminal import BarProgress, print_outcome
     from radhar_cli.dataset.build import build
 
     progress = BarProgress()
     try:
-        outcome = build(loaded, out, jobs, progress, overwrite, batch)
-    except KeyboardInterrupt:
-        progress.close()
-        typer.echo(
-            f"interrupted: what is finished in {out} is kept; the same command goes on", err=True
-        )
-        raise typer.Exit(130) from None
+        outcome = build(config, out, jobs, progress, overwrite, batch)
     finally:
         progress.close()
-    print_outcome(loaded, outcome)
+    print_outcome(config, outcome)
 
 
 generate.__doc__ = "Build a labelled data set from a config file.\n" + EXAMPLE

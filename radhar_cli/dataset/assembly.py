@@ -65,21 +65,33 @@ def _copy_shards(file: h5py.File, config: Config, shards: Sequence[Shard]) -> Fl
     scene_values = np.empty((count, width))
     for name in config.maps:
         image_dataset(file.require_group("maps"), name, count, config)
-        file.create_dataset(f"entropy/{name}", (count,), np.float32)
-        file.create_dataset(f"sha256/{name}", (count,), "S64")
-        file.create_dataset(f"extent/{name}", (count, 4), float)
-    for shard, first, stop in pieces(shards, count):
-        inside = slice(first - shard.start, stop - shard.start)
-        with h5py.File(shard.path, "r") as part:
-            scene_values[first:stop] = part["scene"][inside]
-            for name in config.maps:
-                for kind in ("entropy", "sha256", "extent"):
-                    file[f"{kind}/{name}"][first:stop] = part[f"{kind}/{name}"][inside]
-                source, target = part[f"maps/{name}"].id, file[f"maps/{name}"].id
+    _copy(shards, count, "scene", scene_values)
+    # Map by map, row by row: the file's layout does not depend on how shards cut the rows.
+    for name in config.maps:
+        for kind, shape, dtype in (
+            ("entropy", (), "f4"),
+            ("sha256", (), "S64"),
+            ("extent", (4,), "f8"),
+        ):
+            column = np.empty((count, *shape), dtype)
+            _copy(shards, count, f"{kind}/{name}", column)
+            file[f"{kind}/{name}"] = column
+        target = file[f"maps/{name}"].id
+        for shard, first, stop in pieces(shards, count):
+            with h5py.File(shard.path, "r") as part:
+                source = part[f"maps/{name}"].id
                 for row in range(first, stop):
                     mask, chunk = source.read_direct_chunk((row - shard.start, 0, 0))
                     target.write_direct_chunk((row, 0, 0), chunk, mask)
     return scene_values
+
+
+def _copy(
+    shards: Sequence[Shard], count: int, name: str, column: np.ndarray[Any, np.dtype[Any]]
+) -> None:
+    for shard, first, stop in pieces(shards, count):
+        with h5py.File(shard.path, "r") as part:
+            column[first:stop] = part[name][first - shard.start : stop - shard.start]
 
 
 def _describe_samples(file: h5py.File, config: Config, scene_values: Float) -> None:

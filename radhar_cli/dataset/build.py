@@ -21,7 +21,7 @@ from radhar_cli.dataset.shards import finished_shards, missing_runs, pieces
 from radhar_cli.dataset.split import split_rows
 from radhar_cli.dataset.survey import Drawn, warnings
 from radhar_cli.dataset.workers import run_tasks
-from radhar_cli.errors import FolderError
+from radhar_cli.errors import UnfinishedError
 from radhar_cli.figures.colour import colour_table
 
 LARGEST_BATCH = 32
@@ -84,7 +84,8 @@ def build(
         batch_size: samples a shard; it changes no byte of the result.
 
     Raises:
-        FolderError: the folder is in use, holds something else, or cannot be written.
+        FolderError: the folder is in use or holds something else.
+        UnfinishedError: it cannot be written, or a worker was killed; finished samples are kept.
         SceneError: a scene outside the model; nothing was computed.
     """
     table = colour_table(config.image.colour_map) if config.output.png else None
@@ -93,7 +94,7 @@ def build(
             claim(folder, config, overwrite)
             return _Build(config, folder, jobs, progress, table).run(batch_size)
     except OSError as error:
-        raise _folder_error(folder, error) from error
+        raise _disk_error(folder, error) from error
 
 
 @dataclass
@@ -211,7 +212,7 @@ class _Build:
         ]
 
 
-def _folder_error(folder: Path, error: OSError) -> FolderError:
+def _disk_error(folder: Path, error: OSError) -> UnfinishedError:
     where = error.filename or folder
     if error.errno == errno.ENOSPC or "No space left" in str(error):
         why = "no space left on the disk"
@@ -219,6 +220,6 @@ def _folder_error(folder: Path, error: OSError) -> FolderError:
         why = "no permission to write"
     else:
         why = error.strerror or str(error)
-    return FolderError(
+    return UnfinishedError(
         f"{where}: {why}; what was finished in {folder} is kept, and the same command goes on"
     )

@@ -10,7 +10,7 @@ from typing import Any
 from filelock import FileLock, Timeout
 
 from radhar_cli.config.experiment import Config
-from radhar_cli.dataset.files import write_whole
+from radhar_cli.dataset.files import unfinished_path, write_whole
 from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.dataset.layout import CONFIG, DATASET, PNG, SCENES, WORK
 from radhar_cli.errors import FolderError
@@ -44,11 +44,11 @@ def claim(folder: Path, config: Config, overwrite: bool) -> None:
     Raises:
         FolderError: it holds something else; the message names the keys that differ.
     """
-    if overwrite:
-        _clear(folder)
     new = identity(config)
-    old = stored_identity(folder)
-    if old is None:
+    old = None if overwrite else stored_identity(folder)
+    if overwrite and _ours(folder):
+        _clear(folder)
+    elif old is None:
         strangers = sorted(p.name for p in folder.iterdir() if p.name != WORK)
         if strangers:
             raise FolderError(
@@ -96,9 +96,22 @@ def tidy(folder: Path) -> None:
     (folder / WORK / _IDENTITY).unlink(missing_ok=True)
 
 
+def _ours(folder: Path) -> bool:
+    return (folder / DATASET).exists() or (folder / WORK / _IDENTITY).exists()
+
+
 def _clear(folder: Path) -> None:
-    """Remove our own files and nothing else; dataset.h5, which stands for the whole, first."""
-    for name in (DATASET, SCENES, CONFIG):
+    """Remove our own files and nothing else.
+
+    What names the old data set goes last: killed in between, the folder still holds the old one,
+    with some files missing, and never files of it without its name.
+    """
+    if (folder / PNG).exists():
+        put_aside = unfinished_path(folder)
+        put_aside.parent.mkdir(parents=True, exist_ok=True)
+        (folder / PNG).rename(put_aside)
+    for name in (SCENES, CONFIG):
         (folder / name).unlink(missing_ok=True)
+    shutil.rmtree(folder / WORK / "shards", ignore_errors=True)
+    (folder / DATASET).unlink(missing_ok=True)
     tidy(folder)
-    shutil.rmtree(folder / PNG, ignore_errors=True)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any, TypeVar
 
+from radhar_cli.errors import UnfinishedError
 from radhar_cli.process import prepare_process
 
 T = TypeVar("T")
@@ -25,13 +26,20 @@ def run_tasks(
             yield function(*task)
         return
     from joblib import Parallel, delayed
+    from joblib.externals.loky.process_executor import TerminatedWorkerError
 
     pool = Parallel(
         n_jobs=jobs, return_as="generator_unordered", pre_dispatch=2 * jobs, batch_size=1
     )
-    with _interrupts_blocked():
-        results = pool(delayed(function)(*task) for task in tasks)
-    yield from results
+    try:
+        with _interrupts_blocked():
+            results = pool(delayed(function)(*task) for task in tasks)
+        yield from results
+    except TerminatedWorkerError:
+        raise UnfinishedError(
+            "a worker process was killed (by hand, or for want of memory); what was finished is "
+            "kept, and the same command goes on"
+        ) from None
 
 
 def warm_up(jobs: int) -> None:
@@ -53,11 +61,33 @@ def _interrupts_blocked() -> Iterator[None]:
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
+    _start_trackers()
     old = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, old)
+
+
+def _start_trackers() -> None:
+    """Start the processes that tidy up after a killed pool: first, and quiet about doing so.
+
+    Started later, they would unblock the signal again before the workers are there.
+    """
+    from multiprocessing import resource_tracker
+
+    from joblib.externals.loky.backend import resource_tracker as loky_tracker
+
+    old = os.environ.get("PYTHONWARNINGS")
+    os.environ["PYTHONWARNINGS"] = "ignore::UserWarning"
+    try:
+        resource_tracker.ensure_running()
+        loky_tracker.ensure_running()
+    finally:
+        if old is None:
+            del os.environ["PYTHONWARNINGS"]
+        else:
+            os.environ["PYTHONWARNINGS"] = old
 
 
 def cores() -> int:

@@ -25,12 +25,25 @@ def start_phase(delay: Float, waveform: Waveform, frequency: float) -> Float:
     return cycles
 
 
+def powers(w: Complex, count: int) -> Complex:
+    """w^0 .. w^(count - 1) [..., count] of unit phasors w [...], by doubling."""
+    out = np.empty((*w.shape, count), dtype=complex)
+    out[..., 0] = 1
+    done, factor = 1, w
+    while done < count:
+        more = min(done, count - done)
+        np.multiply(out[..., :more], factor[..., None], out=out[..., done : done + more])
+        done += more
+        factor = factor * factor
+    return out
+
+
 def beat_matrix(delay: Float, amplitude: Float, waveform: Waveform) -> Complex:
     """s_b[n, m] = sum_i A_i exp(-j 2 pi (fc tau_i + K tau_i n/fs)).
 
-    With n = a b_len + b the exponential is a product of one in a and one in b, so the sum over the
+    With n = a fine + b the exponential is a product of one in a and one in b, so the sum over the
     paths is, pulse by pulse, a product of two small matrices: the same numbers to rounding, with
-    2 sqrt(N_ADC) instead of N_ADC exponentials a path.
+    three exponentials a path instead of N_ADC.
 
     Args:
         delay, amplitude: [I, M], s and 1.
@@ -44,8 +57,8 @@ def beat_matrix(delay: Float, amplitude: Float, waveform: Waveform) -> Complex:
     tau = delay.T  # [M, I]
     turn = waveform.slope / waveform.adc_rate * tau
     first = unit_phasor(start_phase(tau, waveform, waveform.fc)) * amplitude.T
-    slow = unit_phasor(turn[:, None, :] * (fine * np.arange(coarse))[:, None])
-    slow *= first[:, None, :]  # [M, coarse, I]
-    fast = unit_phasor(turn[:, :, None] * np.arange(fine))  # [M, I, fine]
-    beat = slow @ fast  # [M, coarse, fine]
+    slow = powers(unit_phasor(fine * turn), coarse)  # [M, I, coarse]
+    slow *= first[..., None]
+    fast = powers(unit_phasor(turn), fine)  # [M, I, fine]
+    beat: Complex = slow.transpose(0, 2, 1) @ fast  # [M, coarse, fine]
     return beat.reshape(len(tau), coarse * fine)[:, : waveform.n_adc].T

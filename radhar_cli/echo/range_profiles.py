@@ -16,24 +16,30 @@ def shown_pulses(count: int, width: int) -> Index:
     return (2 * np.arange(width) + 1) * count // (2 * width)
 
 
-def beat_at(
-    source: PathSource,
-    waveform: Waveform,
-    pulses: Index,
-    sigma: float = 0.0,
-    rng: np.random.Generator | None = None,
-) -> Complex:
-    """s_noisy[n, m] at `pulses` [N_ADC, len(pulses)], exact in float64.
+def beat_at(source: PathSource, waveform: Waveform, pulses: Index, mti: bool) -> Complex:
+    """s_b[n, m], or with mti s_b[n, m + 1] - s_b[n, m], at `pulses`: [N_ADC, len(pulses)].
 
-    Args:
-        source: the paths.
-        waveform: the radar.
-        pulses: pulse numbers.
-        sigma: standard deviation of the noise per complex sample.
-        rng: its stream, or None without noise.
+    Exact in float64, without noise.
     """
-    paths = source(waveform.times(pulses.astype(float)))
+    needed = np.union1d(pulses, pulses + 1) if mti else pulses
+    paths = source(waveform.times(needed.astype(float)))
     beat = beat_matrix(paths.delay, paths.amplitude, waveform)
-    if rng is not None:
-        beat = beat + sigma * circular_gaussian(rng, (pulses.size, waveform.n_adc)).T
-    return beat
+    if not mti:
+        return beat
+    return beat[:, np.searchsorted(needed, pulses + 1)] - beat[:, np.searchsorted(needed, pulses)]
+
+
+def noise_at(rng: np.random.Generator, waveform: Waveform, pulses: Index, mti: bool) -> Complex:
+    """Noise of `beat_at` for unit raw noise, [N_ADC, len(pulses)], with its right joint law.
+
+    Differences over pairs without a common pulse are white of variance 2 and drawn as such; pairs
+    that share a pulse share its noise, which gives them the correlation -1/2.
+    """
+    if not mti:
+        return circular_gaussian(rng, (pulses.size, waveform.n_adc)).T
+    if np.all(np.diff(pulses) > 1):
+        pairs: Complex = np.sqrt(2) * circular_gaussian(rng, (pulses.size, waveform.n_adc)).T
+        return pairs
+    needed = np.union1d(pulses, pulses + 1)
+    w = circular_gaussian(rng, (needed.size, waveform.n_adc)).T
+    return w[:, np.searchsorted(needed, pulses + 1)] - w[:, np.searchsorted(needed, pulses)]

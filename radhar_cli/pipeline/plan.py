@@ -122,10 +122,11 @@ def _echo_stages(config: Config) -> list[Stage]:
             ("slow_time", *(("slow_time_noise",) if noisy else ())),
             "MTI" if config.processing.mti else "slow-time signal, no MTI",
         ),
+        Stage("range_noise", powered, "receiver noise at the pulses that the range-time map shows"),
         Stage(
             "range_profiles",
-            ("paths", *powered),
-            "beat at the pulses that the range-time map shows" + (", with noise" if noisy else ""),
+            ("paths", *(("range_noise",) if noisy else ())),
+            "beat at the pulses that the range-time map shows",
         ),
         Stage("rtm", ("range_profiles",), "range compression of those pulses"),
     ]

@@ -16,7 +16,7 @@ from radhar_cli.arrays import Complex, Float, Levels
 from radhar_cli.config.experiment import Config
 from radhar_cli.echo import cube
 from radhar_cli.echo.direct import DirectEcho, DirectSettings, slow_time_noise
-from radhar_cli.echo.range_profiles import beat_at, shown_pulses
+from radhar_cli.echo.range_profiles import beat_at, noise_at, shown_pulses
 from radhar_cli.pipeline.body_paths import BodyPaths
 from radhar_cli.pipeline.models import antennas_of, body_of, wall_of, waveform_of
 from radhar_cli.pipeline.plan import Plan, Stage
@@ -171,14 +171,16 @@ def _beat_cube(r: Recording, stage: Stage) -> CubeProducts:
 
 
 def _range_profiles(r: Recording, stage: Stage) -> Complex:
-    pulses = r.shown
-    if r.config.processing.mti:
-        pulses = np.union1d(pulses, pulses + 1)
-    rng = r.noise("range_profiles") if "signal_power" in r.products else None
-    beat = beat_at(r.products["paths"], r.waveform, pulses, r.sigma, rng)
-    if not r.config.processing.mti:
-        return beat
-    return beat[:, np.searchsorted(pulses, r.shown + 1)] - beat[:, np.searchsorted(pulses, r.shown)]
+    with_mti = r.config.processing.mti
+    beat = beat_at(r.products["paths"], r.waveform, r.shown, with_mti)
+    if "range_noise" in r.products:
+        beat = beat + r.products["range_noise"]
+    return beat
+
+
+def _range_noise(r: Recording, stage: Stage) -> Complex:
+    with_mti = r.config.processing.mti
+    return r.sigma * noise_at(r.noise("range_profiles"), r.waveform, r.shown, with_mti)
 
 
 def _rtm(r: Recording, stage: Stage) -> Float:
@@ -241,6 +243,7 @@ STAGES: Mapping[str, Callable[[Recording, Stage], Any]] = {
     "slow_time": _slow_time,
     "slow_time_noise": _slow_time_noise,
     "beat_cube": _beat_cube,
+    "range_noise": _range_noise,
     "range_profiles": _range_profiles,
     "rtm": _rtm,
     "signal": _signal,

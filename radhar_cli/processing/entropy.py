@@ -16,5 +16,5 @@ def entropy_bits(power: Float) -> float:
         return 0.0
     q = power / largest
     total = float(q.sum())
-    q = q[q > 0]
+    q = q.ravel() if q.min() > 0 else q[q > 0]
     return max(0.0, float(np.log2(total) - np.dot(q, np.log2(q)) / total))

@@ -1,0 +1,414 @@
+"""What a sample costs, and against what: naive cube, cube engine, direct engine, the floor.
+
+    python scripts/bench_generate.py [--rounds 5] [--json build/bench.json] [--only rows,maps,...]
+
+Every ratio comes from one run whose rows are interleaved; times are medians over the rounds.
+Scene: configs/paper/free_space.yaml, 4 s at 77 GHz, 256 x 256, noise on, PNG and HDF5 level 1,
+one process.
+"""
+
+import argparse
+import json
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import numpy as np
+
+from radhar_cli.activity import ACTIVITIES
+from radhar_cli.config import MAP_NAMES, Config, load_config
+from radhar_cli.dataset import scene_fields
+from radhar_cli.dataset.files import write_whole
+from radhar_cli.dataset.png import encode_png
+from radhar_cli.dataset.sample import MapImage, synthesise
+from radhar_cli.dataset.shards import encode_shard, write_shard
+from radhar_cli.echo.beat import beat_matrix
+from radhar_cli.figures.colour import colour_table
+from radhar_cli.pipeline.axes import axes_of
+from radhar_cli.pipeline.plan import plan, plan_images, signal_of
+from radhar_cli.pipeline.run import Recording, run
+from radhar_cli.process import prepare_process
+from radhar_cli.processing import fsst, stft
+from radhar_cli.processing.denoising import savgol
+from radhar_cli.processing.doppler_compensation import compensate
+from radhar_cli.processing.entropy import entropy_bits
+from radhar_cli.processing.image import levels
+from radhar_cli.processing.range_compression import range_power
+from radhar_cli.scenario import Scene, draw_scene
+
+ROOT = Path(__file__).resolve().parents[1]
+PAPER = ROOT / "configs/paper/free_space.yaml"
+SHARD = 16
+
+
+def timed(function: Callable[[], Any]) -> float:
+    start = time.perf_counter()
+    function()
+    return time.perf_counter() - start
+
+
+def interleaved(rows: dict[str, Callable[[int], Any]], rounds: int) -> dict[str, list[float]]:
+    """Time every row once a round, round after round, after one round of warming up."""
+    for function in rows.values():
+        function(0)
+    found: dict[str, list[float]] = {name: [] for name in rows}
+    for turn in range(rounds):
+        for name, function in rows.items():
+            found[name].append(timed(lambda function=function, turn=turn: function(turn)))
+    return found
+
+
+def scene(config: Config, number: int) -> Scene:
+    """A drawn scene; consecutive numbers go through the classes."""
+    return draw_scene(config, ACTIVITIES[number % 12], number // 12)
+
+
+def naive_beat(recording: Recording) -> np.ndarray:
+    """s_b[n, m], complex128, one vectorised exponential a scatterer: the formula as it stands."""
+    w = recording.waveform
+    n = np.arange(w.n_adc)[:, None]
+    paths = recording.products["paths"](w.times(np.arange(w.n_pulses, dtype=float)))
+    beat = np.zeros((w.n_adc, w.n_pulses), dtype=complex)
+    for tau, a in zip(paths.delay, paths.amplitude, strict=True):
+        beat += a * np.exp(-2j * np.pi * (w.fc * tau + w.slope * tau * n / w.adc_rate))
+    return beat
+
+
+def naive_signal(config: Config, number: int) -> np.ndarray:
+    """x[m] the naive way: whole cube, noise on every sample, MTI, FFT of everything, sum."""
+    recording = run(plan(config, ["signal_power"]), scene(config, number), config)
+    w, beat = recording.waveform, naive_beat(recording)
+    noise = recording.noise("beat").standard_normal((2, *beat.shape)) * np.sqrt(0.5)
+    beat += recording.sigma * (noise[0] + 1j * noise[1])
+    moving = np.diff(beat, axis=1)
+    k = np.arange(w.n_fft)[:, None]
+    bins = np.fft.ifft(moving, w.n_fft, axis=0) * w.n_fft
+    bins *= np.exp(-2j * np.pi * k * w.n0 / w.n_fft)
+    return bins[: w.n_bins].sum(axis=0)
+
+
+class Sink:
+    """Writes samples as a build does: a PNG each, and a shard for every 16."""
+
+    def __init__(self, config: Config, folder: Path) -> None:
+        self.config, self.folder = config, folder
+        self.table = colour_table(config.image.colour_map)
+        self.values = scene_fields.values([scene(config, 0)], scene_fields.fields(config))
+
+    def write(self, samples: list[dict[str, MapImage]]) -> None:
+        for sample in samples:
+            for name, image in sample.items():
+                data = encode_png(image.levels, self.table, self.config.output.png_level)
+                write_whole(self.folder, self.folder / "png" / f"{name}.png", data)
+        values = np.repeat(self.values, len(samples), axis=0)
+        write_shard(self.folder, 0, len(samples), encode_shard(self.config, samples, values))
+
+
+def image_of(config: Config, recording: Recording, name: str, power: np.ndarray) -> MapImage:
+    image = config.image
+    return MapImage(
+        levels(power, image.size_px, image.dynamic_range_db),
+        entropy_bits(power),
+        axes_of(name, recording).extent,
+    )
+
+
+def map_of_signal(config: Config, recording: Recording, name: str) -> np.ndarray:
+    """A map from ready inputs: slow-time signal, torso track, beat at the pulses shown."""
+    p, frames = config.processing, recording.frames
+    if name == "rtm":
+        return range_power(recording.products["range_profiles"], recording.waveform)
+    x = recording.products["signal:plain"]
+    which = signal_of(name)
+    if "compensated" in which:
+        x = compensate(x, recording.products["torso_track"], recording.waveform.f0)
+    if "denoised" in which:
+        x = savgol(x, p.savgol.order, p.savgol.frame)
+    spectra = stft.spectrum(x, frames)
+    if name.startswith("stft"):
+        return stft.power_map(spectra)
+    return fsst.power_map(fsst.synchrosqueeze(x, spectra, frames, p.fsst_threshold))
+
+
+def rows(rounds: int) -> dict[str, Any]:
+    """Milliseconds a sample: naive, cube, direct, floor; synthesis alone; errors."""
+    config = load_config(PAPER)
+    cube_config = load_config(PAPER, ["engine.kind=cube"])
+    exact = load_config(PAPER, ["engine.kind=cube", "snr_db=null"])
+    closed = load_config(PAPER, ["snr_db=null"])
+    with tempfile.TemporaryDirectory() as place:
+        sink = Sink(config, Path(place))
+        ready = {}
+        for number in range(12):
+            parts = ["signal:plain"]
+            ready[number] = run(plan(config, parts), scene(config, number), config)
+
+        def floor(turn: int) -> None:
+            samples = []
+            for step in range(SHARD):
+                r = ready[(turn * SHARD + step) % 12]
+                samples.append(
+                    {"stft": image_of(config, r, "stft", map_of_signal(config, r, "stft"))}
+                )
+            sink.write(samples)
+
+        def direct(turn: int) -> None:
+            p = plan_images(config)
+            sink.write(
+                [synthesise(scene(config, turn * SHARD + i), config, p) for i in range(SHARD)]
+            )
+
+        def synthesis(turn: int) -> None:
+            p = plan(config, ["signal:plain"])
+            for i in range(SHARD):
+                run(p, scene(config, turn * SHARD + i), config)
+
+        def cube(turn: int) -> None:
+            p = plan_images(cube_config)
+            for number in (turn, turn + 6):
+                sink.write([synthesise(scene(cube_config, number), cube_config, p)])
+
+        def naive(turn: int) -> None:
+            x = naive_signal(config, turn)
+            r = ready[turn % 12]
+            power = stft.power_map(stft.spectrum(x, r.frames))
+            sink.write([{"stft": image_of(config, r, "stft", power)}])
+
+        found = interleaved(
+            {
+                "naive": naive,
+                "cube": cube,
+                "direct": direct,
+                "synthesis": synthesis,
+                "floor": floor,
+            },
+            rounds,
+        )
+    ms = {
+        name: 1e3 * median(seconds) / {"naive": 1, "cube": 2}.get(name, SHARD)
+        for name, seconds in found.items()
+    }
+    errors = {"cube_against_naive": 0.0, "direct_after_mti_db": -np.inf}
+    for number in range(12):
+        only_x = plan(exact, ["signal:plain"]), plan(closed, ["signal:plain"])
+        reference = run(only_x[0], scene(exact, number), exact)
+        x = reference.products["signal:plain"]
+        y = run(only_x[1], scene(closed, number), closed).products["signal:plain"]
+        if number in (1, 7):
+            beat = naive_beat(reference)
+            at = np.arange(0, reference.waveform.n_pulses, 97)
+            paths = reference.products["paths"](reference.waveform.times(at.astype(float)))
+            fast = beat_matrix(paths.delay, paths.amplitude, reference.waveform)
+            gap = np.linalg.norm(fast - beat[:, at]) / np.linalg.norm(beat[:, at])
+            errors["cube_against_naive"] = max(errors["cube_against_naive"], float(gap))
+        if np.any(x):
+            gap = 20 * np.log10(np.linalg.norm(y - x) / np.linalg.norm(x))
+            errors["direct_after_mti_db"] = max(errors["direct_after_mti_db"], float(gap))
+    ratios = {
+        "direct_times_faster_than_naive": ms["naive"] / ms["direct"],
+        "cube_times_faster_than_naive": ms["naive"] / ms["cube"],
+        "synthesis_over_floor": ms["synthesis"] / ms["floor"],
+    }
+    print("\nmilliseconds a sample, end to end (one process)")
+    for name, value in ms.items():
+        label = (
+            f"{name} (scene to slow-time signal, noise included)" if name == "synthesis" else name
+        )
+        print(f"  {label:<60}{value:10.2f}")
+    print(f"  direct is {ratios['direct_times_faster_than_naive']:.0f} times faster than naive")
+    print(f"  cube is {ratios['cube_times_faster_than_naive']:.1f} times faster than naive")
+    print(f"  synthesis is {ratios['synthesis_over_floor']:.2f} of the floor")
+    print(f"  cube against naive, worst relative L2 error {errors['cube_against_naive']:.1e}")
+    print(f"  direct after MTI, worst of 12 classes {errors['direct_after_mti_db']:.1f} dB")
+    return {"ms": ms, "ratios": ratios, "errors": errors}
+
+
+def maps(rounds: int) -> dict[str, Any]:
+    """What each further map adds, over its own transform, image and write."""
+    base = load_config(PAPER)
+    found = {}
+    print(
+        "\na further map: what it adds to a build with `stft`, over its own transform, image, write"
+    )
+    with tempfile.TemporaryDirectory() as place:
+        for name in (name for name in MAP_NAMES if name != "stft"):
+            both = load_config(PAPER, [f"maps=[stft, {name}]"])
+            alone = load_config(PAPER, [f"maps=[{name}]"])
+            inputs = ["signal:plain", *(["torso_track"] if "compensated" in name else [])]
+            inputs = ["range_profiles"] if name == "rtm" else inputs
+            ready = [run(plan(both, inputs), scene(both, i), both) for i in range(12)]
+            sinks = {c: Sink(c, Path(place)) for c in (base, both, alone)}
+
+            def whole(config: Config, turn: int, sinks: dict = sinks) -> None:
+                p = plan_images(config)
+                sinks[config].write([synthesise(scene(config, i), config, p) for i in range(12)])
+
+            def own(turn: int, ready=ready, name=name, alone=alone, sinks=sinks) -> None:
+                samples = [
+                    {name: image_of(alone, r, name, map_of_signal(alone, r, name))} for r in ready
+                ]
+                sinks[alone].write(samples)
+
+            times = interleaved(
+                {
+                    "both": lambda t, c=both: whole(c, t),
+                    "base": lambda t: whole(base, t),
+                    "own": own,
+                },
+                rounds,
+            )
+            added = median(b - a for a, b in zip(times["base"], times["both"], strict=True)) / 12
+            floor = median(times["own"]) / 12
+            found[name] = {"added_ms": added * 1e3, "own_ms": floor * 1e3, "ratio": added / floor}
+            print(
+                f"  {name:<28}{added * 1e3:8.2f} ms over {floor * 1e3:6.2f} ms = {added / floor:.2f}"
+            )
+    return found
+
+
+def radhar(*arguments: str | Path) -> float:
+    command = [sys.executable, "-m", "radhar_cli", *map(str, arguments)]
+    return timed(lambda: subprocess.run(command, check=True, capture_output=True, cwd=ROOT))
+
+
+def jobs(rounds: int) -> dict[str, Any]:
+    """Two jobs against one, with warm workers and as a cold command."""
+    from radhar_cli.commands.terminal import BarProgress
+    from radhar_cli.dataset.build import build
+    from radhar_cli.dataset.workers import warm_up
+
+    config = load_config(PAPER, ["samples_per_class=40"])
+    warm_up(2)
+    with tempfile.TemporaryDirectory() as place:
+
+        def warm(count: int, turn: int) -> None:
+            build(config, Path(place) / f"warm{count}", count, BarProgress(), overwrite=True)
+
+        def cold(count: int, turn: int) -> None:
+            radhar(
+                "generate",
+                PAPER,
+                "-o",
+                Path(place) / f"cold{count}",
+                "--jobs",
+                str(count),
+                "--overwrite",
+                "--set",
+                "samples_per_class=40",
+            )
+
+        times = interleaved(
+            {
+                "warm 1": lambda t: warm(1, t),
+                "warm 2": lambda t: warm(2, t),
+                "cold 1": lambda t: cold(1, t),
+                "cold 2": lambda t: cold(2, t),
+            },
+            min(rounds, 3),
+        )
+    seconds = {name: median(found) for name, found in times.items()}
+    print("\n480 samples, seconds")
+    for name, value in seconds.items():
+        print(f"  {name:<10}{value:8.2f}")
+    result = {
+        "warm": seconds["warm 1"] / seconds["warm 2"],
+        "cold": seconds["cold 1"] / seconds["cold 2"],
+    }
+    print(f"  two jobs are {result['warm']:.2f} times one, workers warm; {result['cold']:.2f} cold")
+    return {"seconds": seconds, "speedup": result}
+
+
+_PEAK = """
+import resource, sys
+from pathlib import Path
+from radhar_cli.commands.terminal import BarProgress
+from radhar_cli.config import load_config
+from radhar_cli.dataset.build import build
+import radhar_cli.dataset.files as files, time
+slow = float(sys.argv[4])
+if slow:
+    whole = files.write_whole
+    import radhar_cli.dataset.batch as batch, radhar_cli.dataset.shards as shards
+    def write_slowly(*a):
+        time.sleep(slow); whole(*a)
+    batch.write_whole = shards.write_whole = write_slowly
+config = load_config(sys.argv[1], ["samples_per_class=" + sys.argv[3]])
+build(config, Path(sys.argv[2]), 1, BarProgress())
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024)
+"""
+
+
+def memory(rounds: int) -> dict[str, Any]:
+    """Peak resident memory of one worker's work, for few and many samples, with a slow disk too."""
+    found = {}
+    print("\npeak memory of one process that does everything, MiB")
+    for label, per_class, slow in (
+        ("12 samples", 1, 0.0),
+        ("120 samples", 10, 0.0),
+        ("960 samples", 80, 0.0),
+        ("120 samples, a disk that takes 50 ms a file", 10, 0.05),
+    ):
+        with tempfile.TemporaryDirectory() as place:
+            command = [sys.executable, "-c", _PEAK, PAPER, f"{place}/o", str(per_class), str(slow)]
+            done = subprocess.run(
+                list(map(str, command)), capture_output=True, text=True, check=True, cwd=ROOT
+            )
+        found[label] = int(done.stdout.split()[-1])
+        print(f"  {label:<50}{found[label]:6d}")
+    return found
+
+
+def dry_run(rounds: int) -> dict[str, Any]:
+    """The estimate of `--dry-run` over the time of the whole command."""
+    found = {}
+    print("\nestimate of --dry-run over the whole run")
+    for label, path, per_class, count in (
+        ("free space, 1200 samples, 2 jobs", PAPER, 100, 2),
+        ("free space, 600 samples, 1 job", PAPER, 50, 1),
+        ("through the wall, 2400 samples, 2 jobs", PAPER.with_name("through_wall.yaml"), 200, 2),
+        ("quickstart, 240 samples, 2 jobs", ROOT / "configs/quickstart.yaml", 20, 2),
+    ):
+        options = ["--jobs", str(count), "--set", f"samples_per_class={per_class}"]
+        with tempfile.TemporaryDirectory() as place:
+            command = [sys.executable, "-m", "radhar_cli", "generate", path, "-o", f"{place}/o"]
+            said = subprocess.run(
+                [*map(str, command), *options, "--dry-run"],
+                capture_output=True,
+                text=True,
+                check=True,
+                cwd=ROOT,
+            ).stdout
+            line = next(line for line in said.splitlines() if line.startswith("time"))
+            value, unit = line.split("about ")[1].split()[:2]
+            estimate = float(value) * {"s": 1, "min": 60, "h": 3600}[unit]
+            took = radhar("generate", path, "-o", f"{place}/o", *options)
+        found[label] = {"estimate_s": estimate, "took_s": took, "ratio": estimate / took}
+        print(f"  {label:<42}{estimate:8.1f} s over {took:6.1f} s = {estimate / took:.2f}")
+    return found
+
+
+SECTIONS = {"rows": rows, "maps": maps, "jobs": jobs, "memory": memory, "dry_run": dry_run}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--json", type=Path, default=Path("build/bench_generate.json"))
+    parser.add_argument("--only", default=",".join(SECTIONS), help="sections, comma separated")
+    arguments = parser.parse_args()
+    prepare_process()
+    found = {name: SECTIONS[name](arguments.rounds) for name in arguments.only.split(",")}
+    arguments.json.parent.mkdir(parents=True, exist_ok=True)
+    arguments.json.write_text(json.dumps(found, indent=2))
+    print(f"\n{arguments.json}")
+
+
+if __name__ == "__main__":
+    main()

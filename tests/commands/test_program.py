@@ -1,0 +1,148 @@
+"""The program as a user meets it: end to end in a temporary folder."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import h5py
+import pytest
+import yaml
+from small import small_config
+
+ROOT = Path(__file__).resolve().parents[2]
+CONFIGS = sorted((ROOT / "configs").rglob("*.yaml"))
+
+
+def radhar(*arguments: object, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "radhar_cli", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, cwd=cwd)
+
+
+def test_generate_verify_and_again(tmp_path: Path) -> None:
+    config, out = small_config(tmp_path), tmp_path / "set"
+    first = radhar("generate", config, "-o", out, "--jobs", 2)
+    assert first.returncode == 0, first.stderr
+    assert "9 samples" in first.stdout
+    assert "it/s" not in first.stderr, "quiet when not a terminal"
+    again = radhar("generate", config, "-o", out)
+    assert again.returncode == 0
+    assert "is complete" in again.stdout
+    checked = radhar("verify", out, "--samples", 3)
+    assert checked.returncode == 0
+    assert "byte for byte" in checked.stdout
+    with h5py.File(out / "dataset.h5", "r+") as file:
+        file["label"][0] = 3
+    wrong = radhar("verify", out)
+    assert wrong.returncode == 1
+    assert "WRONG /label" in wrong.stdout
+
+
+def test_set_repeats_and_changes_the_config(tmp_path: Path) -> None:
+    out = tmp_path / "set"
+    done = radhar(
+        *("generate", small_config(tmp_path), "-o", out, "--jobs", 1),
+        *("--set", "samples_per_class=1", "--set", "snr_db=null", "--set", "output.png=false"),
+    )
+    assert done.returncode == 0, done.stderr
+    with h5py.File(out / "dataset.h5") as file:
+        stored = json.loads(file.attrs["config"])
+    assert stored["samples_per_class"] == 1
+    assert stored["snr_db"] is None
+    assert not (out / "png").exists()
+
+
+def test_dry_run_prints_the_plan_and_writes_nothing(tmp_path: Path) -> None:
+    config = small_config(tmp_path)
+    done = radhar("generate", config, "-o", tmp_path / "set", "--dry-run")
+    assert done.returncode == 0, done.stderr
+    for word in ("torso_track", "fsst_compensated", "samples     9", "MiB", "time        about"):
+        assert word in done.stdout
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["small.yaml"]
+
+
+@pytest.mark.parametrize("path", CONFIGS, ids=lambda p: p.stem)
+def test_shipped_configs_resolve_and_show_round_trips(path: Path, tmp_path: Path) -> None:
+    shown = radhar("config", "show", path)
+    assert shown.returncode == 0, shown.stderr
+    (tmp_path / "again.yaml").write_text(shown.stdout)
+    assert radhar("config", "show", tmp_path / "again.yaml").stdout == shown.stdout
+
+
+def test_schema_is_json_schema() -> None:
+    schema = json.loads(radhar("config", "schema").stdout)
+    assert schema["properties"]["radar"]
+    assert schema["additionalProperties"] is False
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("radar: {prf_hz: -5}", ["radar.prf_hz", "-5", "above 0"]),
+        ("motion: {sped_mps: 1}", ["motion.sped_mps", "speed_mps"]),
+        ("activities: [wlaking]", ["activities", "walking"]),
+        ("radar: {chirp_s: 1e-3}", ["radar.chirp_s", "0.001", "shorter than the pulse interval"]),
+        ("seed: [1", ["not valid YAML"]),
+        ("image: {colour_map: viridus}", ["image.colour_map", "viridus", "viridis"]),
+    ],
+)
+def test_broken_configs_end_in_one_message_and_status_2(
+    tmp_path: Path, text: str, said: list[str]
+) -> None:
+    path = small_config(tmp_path, text)
+    done = radhar("generate", path, "-o", tmp_path / "set")
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+    for word in said:
+        assert word in done.stderr
+    assert not (tmp_path / "set").exists()
+
+
+def test_wrong_use_is_status_2(tmp_path: Path) -> None:
+    for arguments in (["generate", "none.yaml", "-o", tmp_path / "x"], ["verify", tmp_path / "no"]):
+        done = radhar(*arguments)
+        assert done.returncode == 2
+        assert "Traceback" not in done.stderr
+        assert "no such file" in done.stderr
+    assert radhar("generat").returncode == 2
+
+
+def test_every_help_has_an_example() -> None:
+    for command in (["generate"], ["verify"], ["config", "show"], ["config", "schema"]):
+        done = radhar(*command, "--help")
+        assert done.returncode == 0
+        assert "Example" in done.stdout
+
+
+def test_second_run_on_a_live_folder_is_refused(tmp_path: Path) -> None:
+    from radhar_cli.dataset.folder import locked
+
+    config = small_config(tmp_path)
+    with locked(tmp_path / "set"):
+        done = radhar("generate", config, "-o", tmp_path / "set")
+    assert done.returncode == 2
+    assert "another run is writing here" in done.stderr
+
+
+def test_disk_that_refuses_is_one_line_and_keeps_what_is_finished(tmp_path: Path) -> None:
+    """A limit on the size of a file stands for a full disk: writing fails midway, as there."""
+    config = small_config(tmp_path)
+    limited = (
+        "import resource, sys; resource.setrlimit(resource.RLIMIT_FSIZE, (6000, 6000));"
+        "from radhar_cli.cli import main; sys.argv[0] = 'radhar'; main()"
+    )
+    command = [sys.executable, "-c", limited, "generate", str(config), "-o", str(tmp_path / "set")]
+    done = subprocess.run(
+        [*command, "--jobs", "1", "--batch", "1"], capture_output=True, text=True, cwd=ROOT
+    )
+    assert done.returncode == 1, done.stdout + done.stderr
+    assert "Traceback" not in done.stderr
+    assert "is kept, and the same command goes on" in done.stderr
+    assert not (tmp_path / "set/dataset.h5").exists()
+    assert radhar("generate", config, "-o", tmp_path / "set").returncode == 0
+
+
+def test_resolved_config_beside_the_data_is_yaml(tmp_path: Path) -> None:
+    out = tmp_path / "set"
+    radhar("generate", small_config(tmp_path), "-o", out, "--jobs", 1)
+    assert yaml.safe_load((out / "config.yaml").read_text())["seed"] == 7

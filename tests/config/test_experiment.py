@@ -1,0 +1,265 @@
+"""The whole config: what is just possible, what counts as the same data set, what is frozen."""
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from pydantic import ValidationError
+
+from radhar_cli.activity import ACTIVITIES, activity_named
+from radhar_cli.config import (
+    MAP_NAMES,
+    Config,
+    config_from_json,
+    config_hash,
+    resolved,
+    timing_warnings,
+)
+from radhar_cli.config.number import Uniform
+from radhar_cli.config.section import Section
+
+
+def test_the_defaults_are_the_papers_free_space_data_set() -> None:
+    config = Config()
+    assert (config.samples_per_class, config.duration_s, config.snr_db) == (300, 4.0, 30.0)
+    assert config.chosen_activities == ACTIVITIES
+    radar = config.radar
+    assert (radar.carrier_hz, radar.bandwidth_hz, radar.prf_hz) == (77e9, 4e9, 5000)
+    assert (radar.adc_rate_hz, radar.chirp_s) == (10e6, 40e-6)
+    assert (radar.tx_m, radar.rx_m) == ((0.4, -0.1, 1.5), (0.4, 0.1, 1.5))
+    assert (config.split.train, config.split.validation) == (0.8, 0.2)
+    assert config.wall is None
+    assert config.snr_reference == "free_space"
+    assert config.on_invalid == "keep"
+
+
+def test_activities_and_maps_stand_in_one_order_however_written() -> None:
+    config = Config(activities=("S12", "walking", "s2"), maps=("fsst", "rtm", "stft"))
+    assert [a.label for a in config.chosen_activities] == ["S2", "S8", "S12"]
+    assert config.maps == ("rtm", "stft", "fsst")
+    assert len(MAP_NAMES) == 9
+
+
+# The possible side of every limit whose impossible side test_reading.py tries.
+POSSIBLE: list[dict[str, Any]] = [
+    {"samples_per_class": 3, "split": {"by": "subject", "subjects": 3}},
+    {"radar": {"prf_hz": 24999}},
+    {"radar": {"adc_rate_hz": 3.75e4}},
+    {"radar": {"adc_rate_hz": 26.2144e9}},
+    {"processing": {"range_fft_length": 400}},
+    {"duration_s": 4e-4, "maps": ("rtm",)},
+    {"duration_s": 0.0002, "maps": ("rtm",), "radar": {"prf_hz": 1e4}},
+    {"duration_s": 0.015},
+    {"duration_s": 0.0102, "processing": {"window_fraction": 0.98}},
+    {"duration_s": 0.01, "processing": {"window_fraction": 0.99, "mti": False}},
+    {
+        "duration_s": 0.0204,
+        "maps": ("stft_denoised",),
+        "processing": {"savgol": {"order": 3, "frame": 101}},
+    },
+    {"duration_s": 0.02, "processing": {"savgol": {"order": 3, "frame": 101}}},
+    {"processing": {"stft_fft_length": 2000}},
+    {"wall": {}, "radar": {"tx_m": (0.8799, 0.0, 1.0)}},
+    {"wall": {"eps_r": 1, "loss_tangent": 0}, "radar": {"tx_m": (0.4, 0.0, 2.6)}},
+    {"motion": {"speed_mps": 0, "gait_hz": 0, "range_m": -1}},
+    {"timing": {"blend_s": 0, "rise_duration_s": 0}},
+]
+
+
+@pytest.mark.parametrize("values", POSSIBLE, ids=str)
+def test_what_is_just_possible(values: dict[str, Any]) -> None:
+    Config(**values)
+
+
+def test_sections_are_frozen() -> None:
+    config = Config(wall={}, subject={"height_m": {"uniform": [1.5, 1.9]}})
+    frozen = [config, *_sections(config), config.subject.height_m]
+    assert len(frozen) == 13
+    for section in frozen:
+        key = next(iter(type(section).model_fields))
+        with pytest.raises(ValidationError, match="frozen"):
+            setattr(section, key, getattr(section, key))
+
+
+def _sections(section: Section) -> Iterator[Section]:
+    for key in type(section).model_fields:
+        inner = getattr(section, key)
+        if isinstance(inner, Section):
+            yield inner
+            yield from _sections(inner)
+
+
+def _keys(section: Section, prefix: str = "") -> Iterator[str]:
+    for key in type(section).model_fields:
+        inner = getattr(section, key)
+        if isinstance(inner, Section):
+            yield from _keys(inner, f"{prefix}{key}.")
+        else:
+            yield prefix + key
+
+
+def changed(section: Section, key: str, value: object) -> Any:
+    """A copy with one dotted key changed, whether or not the whole is still consistent."""
+    first, _, rest = key.partition(".")
+    inner = changed(getattr(section, first), rest, value) if rest else value
+    return section.model_copy(update={first: inner})
+
+
+WITH_WALL = Config(wall={})
+CHANGES: dict[str, object] = {
+    "seed": 2,
+    "samples_per_class": 299,
+    "activities": ("walking",),
+    "duration_s": 3.0,
+    "radar.carrier_hz": 2e9,
+    "radar.bandwidth_hz": 1e9,
+    "radar.prf_hz": 128.0,
+    "radar.adc_rate_hz": 5e6,
+    "radar.chirp_s": 20e-6,
+    "radar.tx_m": (0.4, -0.1, 1.4),
+    "radar.rx_m": (0.4, 0.1, 1.4),
+    "radar.antenna_gain_dbi": 7.0,
+    "radar.antenna_isolation_db": 20.0,
+    "radar.residual_video_phase": True,
+    "subject.height_m": Uniform(uniform=(1.5, 1.8)),
+    "subject.weight_kg": 80.0,
+    "motion.range_m": 2.0,
+    "motion.cross_range_m": 0.1,
+    "motion.angle_deg": 0.0,
+    "motion.speed_mps": 1.4,
+    "motion.gait_hz": 1.1,
+    "motion.thigh_deg": 30.0,
+    "motion.calf_deg": 45.0,
+    "motion.arm_deg": 35.0,
+    "motion.turn_deg": 45.0,
+    "timing.seat_start_s": 0.6,
+    "timing.seat_duration_s": 1.0,
+    "timing.rise_start_s": 0.6,
+    "timing.rise_duration_s": 1.0,
+    "timing.walk_start_s": 2.1,
+    "timing.walk_stop_s": 2.1,
+    "timing.sit_duration_s": 1.0,
+    "timing.fall_duration_s": 0.9,
+    "timing.blend_s": 0.0,
+    "wall.center_m": (1.0, 0.0, 1.2),
+    "wall.size_m": (0.2, 5.0, 2.5),
+    "wall.eps_r": 4.0,
+    "wall.loss_tangent": 0.02,
+    "snr_db": None,
+    "snr_reference": "received",
+    "on_invalid": "redraw",
+    "processing.mti": False,
+    "processing.range_fft_length": 512,
+    "processing.range_reference": "start",
+    "processing.window_fraction": 0.2,
+    "processing.overlap_fraction": 0.5,
+    "processing.stft_fft_length": 4096,
+    "processing.savgol.order": 3,
+    "processing.savgol.frame": 13,
+    "processing.fsst_threshold": 0.0,
+    "image.size_px": (128, 256),
+    "image.dynamic_range_db": 40.0,
+    "image.colour_map": "gray",
+    "maps": ("rtm",),
+    "split.by": "subject",
+    "split.train": 0.7,
+    "split.validation": 0.1,
+    "split.test": 0.1,
+    "split.subjects": 10,
+    "engine.kind": "cube",
+    "engine.kinematics_hz": 500.0,
+    "engine.table_oversampling": 32,
+    "engine.precision": "double",
+    "output.png": False,
+    "output.png_level": 9,
+    "output.hdf5_level": 9,
+}
+
+
+def test_the_table_of_changes_knows_every_key() -> None:
+    assert set(CHANGES) == set(_keys(WITH_WALL))
+
+
+@pytest.mark.parametrize("key", list(CHANGES))
+def test_the_identity_is_every_key_that_decides_bytes(key: str) -> None:
+    same = config_hash(changed(WITH_WALL, key, CHANGES[key])) == config_hash(WITH_WALL)
+    assert same == (key == "output.png")
+
+
+def test_the_identity_tells_a_wall_from_none() -> None:
+    assert config_hash(Config()) != config_hash(WITH_WALL)
+
+
+def test_the_identity_ignores_how_a_config_is_written() -> None:
+    terse = Config(activities=("S8",), motion={"range_m": 2})
+    wordy = Config(
+        motion={"speed_mps": 1.5, "range_m": 2.0}, activities=("walking",), seed=1, wall=None
+    )
+    assert config_hash(terse) == config_hash(wordy)
+
+
+NUMBERS = st.one_of(
+    st.floats(0.5, 2.5),
+    st.tuples(st.floats(0.5, 1), st.floats(1, 2.5)).map(lambda pair: {"uniform": pair}),
+    st.floats(1, 2).map(lambda mean: {"normal": [mean, 0.1], "min": 0.5}),
+    st.lists(st.floats(0.5, 2.5), min_size=1, max_size=4).map(lambda drawn: {"choice": drawn}),
+    st.tuples(st.floats(0.5, 2.5), st.floats(0, 0.5)).map(lambda pair: {"vary": pair}),
+)
+BY_ACTIVITY = st.dictionaries(st.sampled_from([a.slug for a in ACTIVITIES]), NUMBERS)
+
+
+@given(NUMBERS, NUMBERS, BY_ACTIVITY, st.sampled_from([None, {}, {"eps_r": 4}]))
+@settings(deadline=None, max_examples=40)
+def test_a_resolved_config_is_the_config(
+    height: Any, default: Any, by_activity: dict[str, Any], wall: Any
+) -> None:
+    config = Config(
+        subject={"height_m": height},
+        motion={"range_m": {"per_activity": {"default": default, **by_activity}}},
+        wall=wall,
+    )
+    again = config_from_json(json.dumps(resolved(config)), "dataset.h5")
+    assert again == config
+    assert config_hash(again) == config_hash(config)
+
+
+def test_a_resolved_config_names_every_key() -> None:
+    found = resolved(WITH_WALL)
+    for key in _keys(WITH_WALL):
+        value: Any = found
+        for name in key.split("."):
+            value = value[name]
+
+
+@pytest.mark.parametrize(
+    ("label", "key"),
+    [
+        ("S5", "seat_start_s"),
+        ("S6", "seat_start_s"),
+        ("S9", "walk_start_s"),
+        ("S10", "walk_stop_s"),
+        ("S11", "walk_start_s"),
+        ("S12", "walk_stop_s"),
+    ],
+)
+def test_a_recording_too_short_for_the_second_phase_is_said(label: str, key: str) -> None:
+    long_enough = Config(activities=(label,), duration_s=2.01)
+    assert timing_warnings(long_enough) == []
+    (said,) = timing_warnings(Config(activities=(label,), duration_s=2.0, timing={key: 2.0}))
+    assert label in said
+    assert activity_named(label).slug in said
+    assert f"timing.{key} = 2 s" in said
+
+
+def test_activities_without_a_second_phase_are_never_too_short() -> None:
+    config = Config(activities=("S1", "S2", "S3", "S4", "S7", "S8"), duration_s=0.1)
+    assert timing_warnings(config) == []
+
+
+def test_timing_warnings_follow_the_activity() -> None:
+    late = {"per_activity": {"default": 2.0, "S12": 5.0}}
+    said = timing_warnings(Config(timing={"walk_stop_s": late}))
+    assert [line.split()[0] for line in said] == ["S12"]

@@ -1,0 +1,541 @@
+"""YAML in, Config out; and for every mistake the file, line, key, value and what would be right."""
+
+import json
+from pathlib import Path
+from textwrap import dedent
+from typing import NamedTuple
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from radhar_cli.activity import ACTIVITIES
+from radhar_cli.config import Config, config_from_json, load_config, resolved
+from radhar_cli.config.motion import for_activity
+from radhar_cli.config.number import Choice, Normal, Uniform, Vary
+from radhar_cli.errors import ConfigError
+
+
+def written(folder: Path, text: str) -> Path:
+    path = folder / "scene.yaml"
+    path.write_text(dedent(text), encoding="utf-8")
+    return path
+
+
+def read(folder: Path, text: str, *overrides: str) -> Config:
+    return load_config(written(folder, text), overrides)
+
+
+def mistakes(folder: Path, text: str, *overrides: str) -> list[str]:
+    with pytest.raises(ConfigError) as caught:
+        read(folder, text, *overrides)
+    return str(caught.value).splitlines()
+
+
+def test_an_empty_file_is_all_defaults(tmp_path: Path) -> None:
+    assert read(tmp_path, "") == Config()
+    assert read(tmp_path, "# nothing but a comment\n") == Config()
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("77e9", 77e9),
+        ("77E9", 77e9),
+        ("7.7e10", 7.7e10),
+        ("+77e+9", 77e9),
+        ("1e-3", 1e-3),
+        (".5e1", 5.0),
+        ("5.", 5.0),
+        ("1_000.5", 1000.5),
+        ("24", 24.0),
+    ],
+)
+def test_numbers_as_engineers_write_them(tmp_path: Path, text: str, value: float) -> None:
+    config = read(tmp_path, f"radar: {{carrier_hz: {text}}}")
+    assert config.radar.carrier_hz == value
+
+
+def test_a_number_in_quotes_stays_text(tmp_path: Path) -> None:
+    (line,) = mistakes(tmp_path, 'radar: {carrier_hz: "77e9"}')
+    assert 'radar.carrier_hz = "77e9"' in line
+
+
+def test_every_form_of_a_number(tmp_path: Path) -> None:
+    config = read(
+        tmp_path,
+        """
+        subject:
+          height_m: {uniform: [1.5, 1.9]}
+          weight_kg: {normal: [80, 10], min: 50, max: 120}
+        motion:
+          speed_mps: {choice: [1, 1.5]}
+          thigh_deg: {vary: [30, 0.2]}
+          gait_hz: 1
+        """,
+    )
+    assert config.subject.height_m == Uniform(uniform=(1.5, 1.9))
+    assert config.subject.weight_kg == Normal(normal=(80, 10), min=50, max=120)
+    assert config.motion.speed_mps == Choice(choice=(1, 1.5))
+    assert config.motion.thigh_deg == Vary(vary=(30, 0.2))
+    assert config.motion.gait_hz == 1.0
+
+
+def test_a_number_by_activity_with_slugs_and_labels(tmp_path: Path) -> None:
+    config = read(
+        tmp_path,
+        """
+        motion:
+          range_m:
+            per_activity: {default: {uniform: [2, 3]}, walking: 1, S9: 1.5, s10: {vary: [1, 0.1]}}
+        """,
+    )
+    by_label = {a.label: for_activity(config.motion.range_m, a) for a in ACTIVITIES}
+    assert by_label.pop("S8") == 1.0
+    assert by_label.pop("S9") == 1.5
+    assert by_label.pop("S10") == Vary(vary=(1, 0.1))
+    assert set(by_label.values()) == {Uniform(uniform=(2, 3))}
+    assert len(by_label) == 9
+
+
+def test_slug_and_label_are_the_same_config(tmp_path: Path) -> None:
+    text = "motion: {{speed_mps: {{per_activity: {{default: 1, {}: 2}}}}}}"
+    assert read(tmp_path, text.format("walking")) == read(tmp_path, text.format("S8"))
+
+
+def test_a_merge_key_gives_way_to_the_keys_beside_it(tmp_path: Path) -> None:
+    config = read(
+        tmp_path,
+        """
+        motion:
+          thigh_deg: &swing {normal: [30, 5], min: 20}
+          calf_deg: {<<: *swing, min: 25}
+        """,
+    )
+    assert config.motion.calf_deg == Normal(normal=(30, 5), min=25)
+
+
+def test_overrides(tmp_path: Path) -> None:
+    config = read(
+        tmp_path,
+        "radar: {prf_hz: 500}\nwall: null\nmotion: {range_m: 3}\n",
+        "radar.prf_hz=128",
+        "radar.carrier_hz=2e9",
+        "subject.height_m={uniform: [1.6, 1.7]}",
+        "wall.eps_r=4",
+        "motion.range_m.per_activity.default=2",
+        "motion.range_m.per_activity.S8=1",
+        "maps=[rtm, fsst]",
+        " snr_db = null",
+    )
+    assert config == read(
+        tmp_path,
+        """
+        radar: {prf_hz: 128, carrier_hz: 2e9}
+        subject: {height_m: {uniform: [1.6, 1.7]}}
+        wall: {eps_r: 4}
+        motion: {range_m: {per_activity: {default: 2, walking: 1}}}
+        maps: [rtm, fsst]
+        snr_db: null
+        """,
+    )
+
+
+def test_the_last_of_repeated_overrides_holds(tmp_path: Path) -> None:
+    assert read(tmp_path, "seed: 1", "seed=2", "seed=3").seed == 3
+    config = read(tmp_path, "", "radar={prf_hz: 128}", "radar.prf_hz=256", "radar.chirp_s=2e-5")
+    assert (config.radar.prf_hz, config.radar.chirp_s) == (256, 2e-5)
+
+
+def test_an_override_changes_one_key_only_where_values_share_an_anchor(tmp_path: Path) -> None:
+    text = "motion: {thigh_deg: &swing {vary: [30, 0.2]}, calf_deg: *swing}"
+    config = read(tmp_path, text, "motion.calf_deg.vary=[45, 0.1]")
+    assert config.motion.calf_deg == Vary(vary=(45, 0.1))
+    assert config.motion.thigh_deg == Vary(vary=(30, 0.2))
+
+
+@pytest.mark.parametrize("override", ["seed", "=3", "radar..prf_hz=3", ".seed=3", "radar.=3"])
+def test_an_override_without_key_or_value(tmp_path: Path, override: str) -> None:
+    (line,) = mistakes(tmp_path, "", override)
+    assert f"--set {override}" in line
+    assert "key=value" in line
+
+
+def test_an_override_that_is_no_yaml(tmp_path: Path) -> None:
+    (line,) = mistakes(tmp_path, "", "radar.tx_m=[0, 1")
+    assert "--set radar.tx_m" in line
+    assert "not valid YAML" in line
+
+
+def test_a_bad_override_names_key_and_value(tmp_path: Path) -> None:
+    (line,) = mistakes(tmp_path, "radar:\n  prf_hz: 128\n", "radar.prf_hz=-5")
+    assert "radar.prf_hz = -5: should be above 0" in line
+    assert ":2:" not in line  # the file's line 2 is right, the override is not
+
+
+class Broken(NamedTuple):
+    """A config with one mistake, and what its message must tell."""
+
+    text: str
+    line: int
+    key: str
+    value: str
+    right: str
+
+
+WALL = "wall: {}\n"
+BROKEN = [
+    # Keys nobody knows, at every depth.
+    Broken("sead: 1", 1, "sead", "1", "unknown key; did you mean 'seed'"),
+    Broken("seed: 1\nzzz: 1", 2, "zzz", "1", "unknown key"),
+    Broken(
+        "radar:\n  carrier: 77e9", 2, "radar.carrier", "77000000000.0", "did you mean 'carrier_hz'"
+    ),
+    Broken("image:\n  color_map: gray", 2, "image.color_map", '"gray"', "'colour_map'"),
+    Broken(
+        "processing:\n  savgol:\n    odrer: 3", 3, "processing.savgol.odrer", "3", "mean 'order'"
+    ),
+    Broken(
+        "subject:\n  height_m:\n    uniform: [1, 2]\n    mx: 3",
+        4,
+        "subject.height_m.mx",
+        "3",
+        "unknown key",
+    ),
+    Broken(
+        "motion:\n  range_m:\n    per_activity: {default: 1}\n    walking: 2",
+        4,
+        "motion.range_m.walking",
+        "2",
+        "unknown key",
+    ),
+    # Values of the wrong kind.
+    Broken("seed: 1.5", 1, "seed", "1.5", "integer"),
+    Broken("seed: true", 1, "seed", "true", "integer"),
+    Broken("seed: -1", 1, "seed", "-1", "greater than or equal to 0"),
+    Broken("seed: 9223372036854775808", 1, "seed", "9223372036854775808", "less than"),
+    Broken("samples_per_class: 0", 1, "samples_per_class", "0", "greater than or equal to 1"),
+    Broken("duration_s: four", 1, "duration_s", '"four"', "should be a number or one of {uniform"),
+    Broken("duration_s: yes", 1, "duration_s", "true", "should be a number"),
+    Broken("duration_s: null", 1, "duration_s", "null", "should be a number"),
+    Broken("duration_s: .nan", 1, "duration_s", "NaN", "finite number"),
+    Broken("duration_s: .inf", 1, "duration_s", "Infinity", "finite number"),
+    Broken("snr_db: [30, 20]", 1, "snr_db", "[30, 20]", "{choice: [a, b, ...]}"),
+    Broken("radar: 77e9", 1, "radar", "77000000000.0", "should be"),
+    Broken("radar:\n  tx_m: [0, 1, a]", 2, "radar.tx_m.2", '"a"', "should be a number"),
+    Broken("radar:\n  tx_m: [0, 1]", 2, "radar.tx_m.2", "[0, 1]", "required"),
+    Broken("processing:\n  mti: maybe", 2, "processing.mti", '"maybe"', "boolean"),
+    Broken("snr_reference: wall", 1, "snr_reference", '"wall"', "'free_space' or 'received'"),
+    Broken("on_invalid: drop", 1, "on_invalid", '"drop"', "'keep', 'redraw' or 'error'"),
+    Broken("engine:\n  kind: fast", 2, "engine.kind", '"fast"', "'direct' or 'cube'"),
+    # Values out of bounds.
+    Broken("duration_s: 0", 1, "duration_s", "0", "above 0"),
+    Broken(
+        "subject:\n  height_m: {normal: [1.7, 0.5]}",
+        2,
+        "subject.height_m",
+        '{"normal": [1.7, 0.5]}',
+        "above 0 (this one reaches from -1.3 to 4.7)",
+    ),
+    Broken("motion: {angle_deg: 400}", 1, "motion.angle_deg", "400", "-360 to 360 degrees"),
+    Broken("motion: {range_m: 1e7}", 1, "motion.range_m", "10000000.0", "within 1e6 m"),
+    Broken("timing: {blend_s: -0.1}", 1, "timing.blend_s", "-0.1", "0 or more"),
+    Broken("wall: {eps_r: 0.5}", 1, "wall.eps_r", "0.5", "1 or more"),
+    Broken("wall:\n  size_m: [0, 5, 2]", 2, "wall.size_m.0", "0", "above 0"),
+    Broken("snr_db: 301", 1, "snr_db", "301", "from -300 to 300 dB"),
+    Broken("image: {dynamic_range_db: 0}", 1, "image.dynamic_range_db", "0", "greater than 0"),
+    Broken("output: {png_level: 10}", 1, "output.png_level", "10", "less than or equal to 9"),
+    Broken(
+        "processing: {range_fft_length: 401}", 1, "processing.range_fft_length", "401", "multiple"
+    ),
+    Broken("processing: {window_fraction: 1}", 1, "processing.window_fraction", "1", "less than 1"),
+    # Distributions that are none.
+    Broken(
+        "subject:\n  height_m: {uniform: [1.9, 1.5]}",
+        2,
+        "subject.height_m",
+        '{"uniform": [1.9, 1.5]}',
+        "low <= high",
+    ),
+    Broken("snr_db: {normal: [10, -1]}", 1, "snr_db", '{"normal": [10, -1]}', "sd >= 0"),
+    Broken(
+        "snr_db: {normal: [10, 1], min: 99}",
+        1,
+        "snr_db",
+        '{"normal": [10, 1], "min": 99}',
+        "within 6 standard deviations",
+    ),
+    Broken(
+        "snr_db:\n  normal: [10, 1]\n  min: low",
+        3,
+        "snr_db.min",
+        '"low"',
+        "should be a valid number",
+    ),
+    Broken("snr_db: {vary: [10, 2]}", 1, "snr_db", '{"vary": [10, 2]}', "fraction from 0 to 1"),
+    Broken("snr_db: {choice: []}", 1, "snr_db.choice", "[]", "at least 1"),
+    Broken(
+        "snr_db: {uniform: [1, 2], choice: [1]}",
+        1,
+        "snr_db",
+        '{"uniform": [1, 2], "choice": [1]}',
+        "should be a number or one of",
+    ),
+    # Activities and maps.
+    Broken("activities: [wlking]", 1, "activities", '["wlking"]', "did you mean 'walking'"),
+    Broken("activities: [S8, walking]", 1, "activities", '["S8", "walking"]', "each once"),
+    Broken("activities: []", 1, "activities", "[]", "at least one"),
+    Broken("maps: [stft, stft]", 1, "maps", '["stft", "stft"]', "each map once"),
+    Broken("maps: [sfft]", 1, "maps.0", '"sfft"', "should be 'rtm', 'stft'"),
+    Broken("maps: []", 1, "maps", "[]", "at least 1"),
+    Broken(
+        "motion:\n  gait_hz:\n    per_activity: {walking: 1}",
+        3,
+        "motion.gait_hz.per_activity",
+        '{"walking": 1}',
+        "'default'",
+    ),
+    Broken(
+        "motion:\n  gait_hz: {per_activity: {default: 1, jogging: 2}}",
+        2,
+        "motion.gait_hz.per_activity",
+        '{"default": 1, "jogging": 2}',
+        "is no activity",
+    ),
+    Broken(
+        "motion:\n  gait_hz: {per_activity: {default: 1, S8: 1, walking: 2}}",
+        2,
+        "motion.gait_hz.per_activity",
+        '{"default": 1, "S8": 1, "walking": 2}',
+        "walking once",
+    ),
+    Broken(
+        "motion:\n  gait_hz:\n    per_activity:\n      default: 1\n      S8: -1",
+        5,
+        "motion.gait_hz.per_activity.S8",
+        "-1",
+        "0 or more",
+    ),
+    # Sections that contradict themselves.
+    Broken(
+        "processing:\n  savgol: {order: 5, frame: 10}",
+        2,
+        "processing.savgol",
+        '{"order": 5, "frame": 10}',
+        "odd and above the order",
+    ),
+    Broken(
+        "split: {train: 0.8, validation: 0.3}",
+        1,
+        "split",
+        '{"train": 0.8, "validation": 0.3}',
+        "add up to 1.1",
+    ),
+    Broken(
+        "split: {by: subject}", 1, "split", '{"by": "subject"}', "'subjects: n' with 'by: subject'"
+    ),
+    Broken(
+        "split: {subjects: 3}", 1, "split", '{"subjects": 3}', "'subjects: n' with 'by: subject'"
+    ),
+    # Sections that contradict each other.
+    Broken(
+        "split: {by: subject, subjects: 301}",
+        1,
+        "split.subjects",
+        "301",
+        "at most samples_per_class = 300",
+    ),
+    Broken(
+        "radar:\n  chirp_s: 2e-4",
+        2,
+        "radar.chirp_s",
+        "0.0002",
+        "shorter than the pulse interval 1/prf_hz = 0.0002 s",
+    ),
+    Broken(
+        "radar:\n  prf_hz: {uniform: [100, 1e5]}\n  chirp_s: 40e-6",
+        3,
+        "radar.chirp_s",
+        "4e-05",
+        "1/prf_hz = 1e-05 s",
+    ),
+    Broken(
+        "radar:\n  adc_rate_hz: 3.7e4",
+        2,
+        "radar.adc_rate_hz",
+        "37000.0",
+        "at least 2 ADC samples per chirp (adc_rate_hz * chirp_s is 1)",
+    ),
+    Broken(
+        "radar:\n  adc_rate_hz: 27e9",
+        2,
+        "radar.adc_rate_hz",
+        "27000000000.0",
+        "at most 1048576 ADC samples",
+    ),
+    Broken(
+        "processing:\n  range_fft_length: 398",
+        2,
+        "processing.range_fft_length",
+        "398",
+        "at least the 400 ADC samples",
+    ),
+    Broken("duration_s: 2e-4\nmaps: [rtm]", 1, "duration_s", "0.0002", "at least 2 pulses"),
+    Broken("duration_s: 1e6", 1, "duration_s", "1000000.0", "2^31 pulses"),
+    Broken("duration_s: 0.0148", 1, "duration_s", "0.0148", "at least 8 pulses (it has 7)"),
+    Broken(
+        "duration_s: 0.01\nprocessing:\n  window_fraction: 0.99",
+        3,
+        "processing.window_fraction",
+        "0.99",
+        "at most the 49 pulses there are (it has 50)",
+    ),
+    Broken(
+        "duration_s: 0.02\nmaps: [stft_denoised]\nprocessing:\n  savgol: {order: 3, frame: 101}",
+        4,
+        "processing.savgol.frame",
+        "101",
+        "at most the 99 pulses",
+    ),
+    Broken(
+        "processing:\n  stft_fft_length: 1999",
+        2,
+        "processing.stft_fft_length",
+        "1999",
+        "at least the window of 2000 pulses",
+    ),
+    Broken(
+        WALL + "radar:\n  tx_m: [0.9, 0, 1]", 3, "radar.tx_m", "[0.9, 0.0, 1.0]", "outside the wall"
+    ),
+    Broken(
+        WALL + "radar:\n  rx_m: [0.88, 0, 1]",
+        3,
+        "radar.rx_m",
+        "[0.88, 0.0, 1.0]",
+        "outside the wall, whose faces count as inside",
+    ),
+    Broken(
+        WALL + "radar:\n  rx_m: [{uniform: [0, 0.9]}, 0, 1]",
+        3,
+        "radar.rx_m",
+        '[{"uniform": [0.0, 0.9]}, 0.0, 1.0]',
+        "outside the wall",
+    ),
+]
+
+
+@pytest.mark.parametrize("broken", BROKEN, ids=lambda b: f"{b.key} {b.value} {b.right}"[:60])
+def test_one_mistake_is_told_in_one_line(tmp_path: Path, broken: Broken) -> None:
+    (line,) = mistakes(tmp_path, broken.text)
+    place, _, what = line.partition(" = ")
+    assert place == f"{tmp_path / 'scene.yaml'}:{broken.line}: {broken.key}"
+    assert what.startswith(f"{broken.value}: ")
+    assert broken.right in what.removeprefix(broken.value)
+
+
+def test_mistakes_are_told_together(tmp_path: Path) -> None:
+    lines = mistakes(tmp_path, "sead: 1\nradar:\n  prf_hz: -1\nsnr_db: loud\n")
+    assert {line.split(": ")[1].split(" =")[0] for line in lines} == {
+        "sead",
+        "radar.prf_hz",
+        "snr_db",
+    }
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "says"),
+    [
+        ("seed: 1\nseed: 2\n", 2, "'seed' appears twice"),
+        ("radar:\n  prf_hz: 1\n  chirp_s: 1\n  prf_hz: 2\n", 4, "'prf_hz' appears twice"),
+        ("seed: 1\nmaps: [stft\n", 3, "not valid YAML"),
+        ("seed: 1\nradar: prf: 2\n", 2, "not valid YAML"),
+        ("seed: 1\n\tmaps: [stft]\n", 2, "not valid YAML"),
+        ("seed: 1\n---\nseed: 2\n", 2, "another document"),
+        ("seed: !!python/object:os.system x\n", 1, "not valid YAML"),
+        ("radar: &a {tx_m: *a}\n", 1, "not valid YAML"),
+    ],
+)
+def test_what_is_not_yaml(tmp_path: Path, text: str, line: int, says: str) -> None:
+    (message,) = mistakes(tmp_path, text)
+    assert message.startswith(f"{tmp_path / 'scene.yaml'}:{line}: ")
+    assert says in message
+
+
+@pytest.mark.parametrize(("text", "key"), [("null: 2\n", "None"), ("? [seed]\n: 1\n", "seed")])
+def test_a_key_that_is_no_text_did_not_appear_twice(tmp_path: Path, text: str, key: str) -> None:
+    (message,) = mistakes(tmp_path, text)
+    assert message.startswith(f"{tmp_path / 'scene.yaml'}:1: ")
+    assert key in message
+    assert "twice" not in message
+
+
+@pytest.mark.parametrize("text", ["- seed\n- 1\n", "seed\n", "3\n", "[]\n"])
+def test_what_is_no_mapping(tmp_path: Path, text: str) -> None:
+    (message,) = mistakes(tmp_path, text)
+    assert message.startswith(f"{tmp_path / 'scene.yaml'}: ")
+    assert "mapping" in message
+
+
+def test_files_that_cannot_be_read(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=r"nowhere\.yaml: no such file"):
+        load_config(tmp_path / "nowhere.yaml")
+    with pytest.raises(ConfigError, match="cannot be read"):
+        load_config(tmp_path)
+    binary = tmp_path / "image.yaml"
+    binary.write_bytes(b"\x89PNG\r\n\x1a\n\x00\xff\xfe")
+    with pytest.raises(ConfigError, match=r"image\.yaml: cannot be read as text"):
+        load_config(binary)
+    binary.write_bytes(b"seed: \x00")
+    with pytest.raises(ConfigError, match=r"image\.yaml: not valid YAML"):
+        load_config(binary)
+
+
+def answer(path: Path) -> str:
+    try:
+        load_config(path)
+    except ConfigError as error:
+        return str(error)
+    return ""
+
+
+@given(text=st.text(alphabet="ab: -[]{}&*!,'\"\n?|>#%@1.~", max_size=40))
+@settings(
+    deadline=None,
+    max_examples=150,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
+)
+def test_whatever_is_typed_the_answer_is_a_config_or_a_config_error(
+    tmp_path: Path, text: str
+) -> None:
+    path = tmp_path / "typed.yaml"
+    path.write_text(text, encoding="utf-8")
+    told = answer(path)
+    assert not told or told.startswith(str(path))
+
+
+FULL = """
+seed: 7
+activities: [S12, walking]
+duration_s: {choice: [3.5, 4]}
+radar: {tx_m: [0.1, {uniform: [-0.2, -0.1]}, 1.5], prf_hz: 1000}
+subject: {height_m: {normal: [1.7, 0.1], min: 1.5}, weight_kg: {vary: [80, 0.1]}}
+motion: {range_m: {per_activity: {default: {uniform: [2, 3]}, S8: 1}}}
+timing: {blend_s: {per_activity: {default: 0.3, S12: 0}}}
+wall: {loss_tangent: {uniform: [0.01, 0.05]}}
+snr_db: null
+maps: [fsst, rtm]
+image: {size_px: [64, 128]}
+split: {by: subject, subjects: 10, train: 0.7, validation: 0.2, test: 0.1}
+"""
+
+
+@pytest.mark.parametrize("text", ["", "seed: 3", "wall: {}", FULL])
+def test_the_stored_config_is_the_same_config(tmp_path: Path, text: str) -> None:
+    config = read(tmp_path, text)
+    assert config_from_json(json.dumps(resolved(config)), "dataset.h5") == config
+
+
+@pytest.mark.parametrize("stored", ["not json", "[1]", '{"seed": -1}', "null"])
+def test_a_stored_config_that_is_broken_names_its_file(stored: str) -> None:
+    with pytest.raises(ConfigError, match=r"^dataset\.h5: "):
+        config_from_json(stored, "dataset.h5")

@@ -1,0 +1,266 @@
+"""A build gives the same bytes however it is cut up, and says what it cannot do."""
+
+import errno
+import json
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from PIL import Image
+from small import SMALL, fingerprint, small_config
+
+from radhar_cli.config import Config, load_config
+from radhar_cli.dataset import batch as batch_module
+from radhar_cli.dataset import folder as folder_module
+from radhar_cli.dataset.build import Outcome, build
+from radhar_cli.dataset.folder import locked
+from radhar_cli.dataset.layout import Rows, png_path
+from radhar_cli.dataset.shards import Shard, finished_shards, missing_runs, pieces
+from radhar_cli.errors import FolderError, SceneError, UnfinishedError
+
+
+class Notes:
+    """A progress that remembers what was said."""
+
+    def __init__(self) -> None:
+        self.said: list[str] = []
+        self.stages: list[str] = []
+
+    def stage(self, name: str, total: int, done: int) -> None:
+        self.stages.append(name)
+
+    def advance(self, samples: int) -> None:
+        pass
+
+    def say(self, message: str) -> None:
+        self.said.append(message)
+
+
+def make(config: Config, folder: Path, **options: object) -> Outcome:
+    return build(config, folder, options.pop("jobs", 1), Notes(), **options)
+
+
+@pytest.fixture(scope="module")
+def config(tmp_path_factory: pytest.TempPathFactory) -> Config:
+    return load_config(small_config(tmp_path_factory.mktemp("config")))
+
+
+@pytest.fixture(scope="module")
+def whole(config: Config, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The data set in one uninterrupted go, one job."""
+    folder = tmp_path_factory.mktemp("whole") / "set"
+    make(config, folder)
+    return folder
+
+
+@pytest.mark.parametrize(("jobs", "batch_size"), [(1, 1), (1, 9), (2, 2), (4, 1)])
+def test_jobs_and_batch_size_change_no_byte(
+    config: Config, whole: Path, tmp_path: Path, jobs: int, batch_size: int
+) -> None:
+    make(config, tmp_path / "set", jobs=jobs, batch_size=batch_size)
+    assert fingerprint(tmp_path / "set") == fingerprint(whole)
+
+
+def test_unfinished_build_goes_on_with_another_batch_size(
+    config: Config, whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder, made = tmp_path / "set", []
+    original = batch_module.synthesise
+
+    def stops_after_five(*arguments: object) -> object:
+        made.append(arguments)
+        if len(made) > 5:
+            raise OSError(errno.ENOSPC, "No space left on device", "shard")
+        return original(*arguments)
+
+    monkeypatch.setattr(batch_module, "synthesise", stops_after_five)
+    with pytest.raises(UnfinishedError, match="no space left on the disk"):
+        make(config, folder, batch_size=2)
+    assert [(s.start, s.stop) for s in finished_shards(folder)] == [(0, 2), (2, 4)]
+    monkeypatch.setattr(batch_module, "synthesise", original)
+    outcome = make(config, folder, batch_size=3)
+    assert outcome.made == 5, "the four finished samples are not made again"
+    assert fingerprint(folder) == fingerprint(whole)
+
+
+def test_complete_folder_is_left_alone(config: Config, whole: Path) -> None:
+    before = (whole / "dataset.h5").stat().st_mtime_ns
+    assert make(config, whole).already_complete
+    assert (whole / "dataset.h5").stat().st_mtime_ns == before
+
+
+def test_other_config_is_refused_and_the_keys_named(config: Config, whole: Path) -> None:
+    other = config.model_copy(update={"seed": 8, "snr_db": 5.0})
+    with pytest.raises(FolderError, match=r"(?s)seed: 7 there, 8 here.*snr_db"):
+        make(other, whole)
+
+
+def test_other_versions_are_refused(
+    config: Config, whole: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    real = folder_module.identity(config)
+    other = {**real, "versions": {**real["versions"], "numpy": "1.0"}}
+    monkeypatch.setattr(folder_module, "identity", lambda _: other)
+    with pytest.raises(FolderError, match=r"versions\.numpy"):
+        make(config, whole)
+
+
+def test_pngs_can_be_added_later_and_lost_ones_come_back(
+    config: Config, whole: Path, tmp_path: Path
+) -> None:
+    folder = tmp_path / "set"
+    without = config.model_copy(update={"output": config.output.model_copy(update={"png": False})})
+    make(without, folder)
+    assert not (folder / "png").exists()
+    outcome = make(config, folder)
+    assert outcome.made == 0
+    assert outcome.pngs == 27
+    with_pngs, right = fingerprint(folder), fingerprint(whole)
+    assert {k: v for k, v in with_pngs.items() if k.startswith("png")} == {
+        k: v for k, v in right.items() if k.startswith("png")
+    }
+    lost = folder / next(k for k in right if k.endswith("walking/00001.png"))
+    lost.unlink()
+    make(config, folder)
+    assert lost.exists()
+
+
+def test_overwrite_starts_again_and_keeps_strangers(
+    config: Config, whole: Path, tmp_path: Path
+) -> None:
+    folder = tmp_path / "set"
+    make(config.model_copy(update={"seed": 99}), folder)
+    (folder / "notes.txt").write_text("mine")
+    make(config, folder, overwrite=True)
+    assert (folder / "notes.txt").read_text() == "mine"
+    (folder / "notes.txt").unlink()
+    assert fingerprint(folder) == fingerprint(whole)
+
+
+def test_foreign_folder_file_and_live_folder_are_refused(config: Config, tmp_path: Path) -> None:
+    (tmp_path / "thesis.tex").write_text("x")
+    with pytest.raises(FolderError, match=r"thesis\.tex"):
+        make(config, tmp_path)
+    with pytest.raises(FolderError, match="is a file"):
+        make(config, tmp_path / "thesis.tex")
+    with (
+        locked(tmp_path / "live"),
+        pytest.raises(FolderError, match="another run is writing here"),
+    ):
+        make(config, tmp_path / "live")
+
+
+def test_a_path_that_cannot_be_made_is_one_clear_line(config: Config, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("x")
+    with pytest.raises(UnfinishedError, match="file") as caught:
+        make(config, tmp_path / "file" / "set")
+    assert "\n" not in str(caught.value)
+
+
+def test_scene_too_close_to_an_antenna_stops_before_any_echo(
+    config: Config, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def never(*_: object) -> None:
+        raise AssertionError("an echo was computed")
+
+    monkeypatch.setattr(batch_module, "synthesise", never)
+    near = load_config(
+        small_config(tmp_path), ["radar.tx_m=[1.5, 0, 1.5]", "motion={range_m: 1.5, angle_deg: 0}"]
+    )
+    with pytest.raises(SceneError, match=r"sample .*/\d+: .* comes to .* cm from the transmitter"):
+        make(near, tmp_path / "set")
+
+
+def test_physical_warnings_are_said_once_with_their_number_and_stored(
+    config: Config, tmp_path: Path
+) -> None:
+    notes = Notes()
+    far = load_config(small_config(tmp_path), ["motion.range_m=28", "activities=[walking, S1]"])
+    build(far, tmp_path / "set", 1, notes)
+    assert [m for m in notes.said if "half-band" in m] == [
+        "warning: 3 of 6 recordings: a scatterer leaves the range half-band and its echo the kept "
+        "bins"
+    ]
+    with h5py.File(tmp_path / "set/dataset.h5") as file:
+        stored = json.loads(file.attrs["warnings"])
+    assert {
+        w["kind"]: w["recordings"] for w in stored if w["kind"] == "half_band"
+    } == {"half_band": 3}
+
+
+def test_dataset_contract(config: Config, whole: Path) -> None:
+    with h5py.File(whole / "dataset.h5") as file:
+        assert set(file["maps"]) == set(config.maps)
+        for name in config.maps:
+            maps = file[f"maps/{name}"]
+            assert maps.shape == (9, 48, 48)
+            assert maps.dtype == np.uint8
+            assert maps.chunks == (1, 48, 48)
+            assert maps.compression == "gzip"
+            assert maps.attrs["dynamic_range_db"] == 50
+            assert maps.attrs["column_unit"] == "s"
+            assert file[f"entropy/{name}"].dtype == np.float32
+        assert file["maps/stft"].attrs["row_unit"] == "Hz"
+        assert file["maps/stft"].attrs["row_top"] == pytest.approx(250, abs=2)
+        assert file["maps/rtm"].attrs["row_unit"] == "m"
+        assert file["label"][:].tolist() == [1, 1, 1, 7, 7, 7, 11, 11, 11]
+        assert file["sample_key"][:].tolist()[3:5] == [[7, 0], [7, 1]]
+        assert np.bincount(file["split"][:], minlength=3).tolist() == [6, 3, 0]
+        assert file["scene/angle"].attrs["unit"] == "rad"
+        assert np.abs(file["scene/angle"][:]).max() <= np.pi / 6
+        assert np.isnan(file["scene/thigh"][:3]).all(), "punching does not swing the thighs"
+        assert np.isfinite(file["scene/thigh"][3:]).all()
+        assert file.attrs["class_slugs"][7] == "walking"
+        assert file.attrs["seed"] == 7
+        assert json.loads(file.attrs["config"])["samples_per_class"] == 3
+        for key in ("config_hash", "schema_version", "radhar_version", "numpy_version"):
+            assert key in file.attrs
+
+
+def test_pngs_show_the_levels(config: Config, whole: Path) -> None:
+    from radhar_cli.figures.colour import colour_table
+
+    table, rows = colour_table("viridis"), Rows.of(config)
+    with h5py.File(whole / "dataset.h5") as file:
+        for row in range(len(rows)):
+            path = whole / png_path("stft", file["split"][row], *rows[row])
+            with Image.open(path) as picture:
+                assert picture.mode == "RGB"
+                assert np.array_equal(np.asarray(picture), table[file["maps/stft"][row]])
+
+
+def test_scenes_csv_has_the_numbers_of_the_file(whole: Path) -> None:
+    lines = (whole / "scenes.csv").read_text().splitlines()
+    header, rows = lines[0].split(","), [line.split(",") for line in lines[1:]]
+    with h5py.File(whole / "dataset.h5") as file:
+        column = header.index("motion.angle_deg")
+        degrees = np.degrees(file["scene/angle"][:])
+    assert np.allclose([float(row[column]) for row in rows], degrees, rtol=1e-12)
+    assert rows[0][header.index("motion.thigh_deg")] == ""
+
+
+def test_resolved_config_builds_the_same_identity(config: Config, whole: Path) -> None:
+    assert load_config(whole / "config.yaml") == config
+
+
+def test_rows_of_overlapping_shards_count_once() -> None:
+    shards = [Shard(0, 4, Path("a")), Shard(2, 6, Path("b")), Shard(8, 10, Path("c"))]
+    assert [(s.path.name, i, j) for s, i, j in pieces(shards, 10)] == [
+        ("a", 0, 4),
+        ("b", 4, 6),
+        ("c", 8, 10),
+    ]
+    assert missing_runs(shards, 12) == [(6, 8), (10, 12)]
+
+
+def test_redrawn_scenes_are_valid_and_deterministic(tmp_path: Path) -> None:
+    text = SMALL.replace("seed: 7", "seed: 7\nwall: {}\non_invalid: redraw")
+    config = load_config(
+        small_config(tmp_path, text), ["motion.range_m={uniform: [1, 3]}", "activities=[S1, S2]"]
+    )
+    notes = Notes()
+    build(config, tmp_path / "one", 1, notes)
+    make(config, tmp_path / "two", jobs=2, batch_size=1)
+    assert not [m for m in notes.said if "wall" in m]
+    assert fingerprint(tmp_path / "one") == fingerprint(tmp_path / "two")

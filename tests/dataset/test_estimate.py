@@ -1,0 +1,29 @@
+"""The estimate of a build: nothing written, sizes close to the truth."""
+
+from pathlib import Path
+
+from small import small_config
+
+from radhar_cli.commands.terminal import BarProgress
+from radhar_cli.config import load_config
+from radhar_cli.dataset.build import build
+from radhar_cli.dataset.estimate import estimate
+
+
+def test_bytes_are_close_to_those_of_the_build(tmp_path: Path) -> None:
+    config = load_config(small_config(tmp_path), ["samples_per_class=6", "image.size_px=128"])
+    found = estimate(config, jobs=1)
+    build(config, tmp_path / "set", 1, BarProgress())
+    hdf5 = (tmp_path / "set/dataset.h5").stat().st_size
+    pngs = sum(path.stat().st_size for path in (tmp_path / "set").rglob("*.png"))
+    assert found.samples == 18
+    assert 0.8 < found.hdf5_bytes / hdf5 < 1.25
+    assert 0.9 < found.png_bytes / pngs < 1.1
+
+
+def test_time_grows_with_samples_and_shrinks_with_jobs(tmp_path: Path) -> None:
+    few = load_config(small_config(tmp_path))
+    many = load_config(small_config(tmp_path), ["samples_per_class=300"])
+    one, two, more = estimate(few, 1), estimate(many, 2), estimate(many, 1)
+    assert more.seconds > 5 * one.seconds
+    assert two.seconds < 0.8 * more.seconds

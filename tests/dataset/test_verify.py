@@ -1,0 +1,111 @@
+"""`verify` finds whatever was changed behind a data set's back."""
+
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from PIL import Image
+from small import small_config
+
+from radhar_cli.commands.terminal import BarProgress
+from radhar_cli.config import load_config
+from radhar_cli.dataset.build import build
+from radhar_cli.dataset.verify import verify
+from radhar_cli.errors import FolderError
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("verify")
+    build(load_config(small_config(place)), place / "set", 1, BarProgress())
+    return place / "set"
+
+
+def test_untouched_data_set_is_right(whole: Path) -> None:
+    report = verify(whole, 100)
+    assert report.problems == []
+    assert report.resynthesised == 9
+    assert report.worst_level == 0
+    assert report.pngs == 27
+
+
+def _flip_level(file: h5py.File) -> None:
+    file["maps/stft"][4, 20, 20] ^= 1
+
+
+def _flip_level_and_checksum(file: h5py.File) -> None:
+    import hashlib
+
+    levels = file["maps/stft"][4]
+    levels[20, 20] ^= 1
+    file["maps/stft"][4] = levels
+    file["sha256/stft"][4] = hashlib.sha256(levels.tobytes()).hexdigest()
+
+
+def _relabel(file: h5py.File) -> None:
+    file["label"][0] = 5
+
+
+def _resplit(file: h5py.File) -> None:
+    file["split"][:] = file["split"][:][::-1]
+
+
+def _reseed(file: h5py.File) -> None:
+    file.attrs["seed"] = 8
+
+
+def _move(file: h5py.File) -> None:
+    file["scene/range"][4] += 0.1
+
+
+@pytest.mark.parametrize(
+    ("damage", "said"),
+    [
+        (_flip_level, "checksum"),
+        (_flip_level_and_checksum, "differs by up to 1 grey level"),
+        (_relabel, "/label: 1 wrong"),
+        (_resplit, "/split"),
+        (_reseed, "seed"),
+        (_move, "/scene/range[4]"),
+    ],
+)
+def test_damage_is_found(
+    whole: Path, tmp_path: Path, damage: Callable[[h5py.File], None], said: str
+) -> None:
+    shutil.copytree(whole, tmp_path / "set")
+    with h5py.File(tmp_path / "set/dataset.h5", "r+") as file:
+        damage(file)
+    assert any(said in problem for problem in verify(tmp_path / "set", 9).problems)
+
+
+def test_other_versions_compare_within_one_level(whole: Path, tmp_path: Path) -> None:
+    shutil.copytree(whole, tmp_path / "set")
+    with h5py.File(tmp_path / "set/dataset.h5", "r+") as file:
+        file.attrs["numpy_version"] = "1.0"
+        _flip_level_and_checksum(file)
+    shutil.rmtree(tmp_path / "set/png")
+    report = verify(tmp_path / "set", 9)
+    assert report.other_versions[0].startswith("numpy 1.0 there")
+    assert report.problems == []
+    assert report.worst_level == 1
+
+
+def test_changed_and_missing_pngs_are_found(whole: Path, tmp_path: Path) -> None:
+    shutil.copytree(whole, tmp_path / "set")
+    first, second = sorted((tmp_path / "set/png/rtm").rglob("*.png"))[:2]
+    Image.fromarray(np.zeros((48, 48, 3), np.uint8)).save(first)
+    second.unlink()
+    problems = verify(tmp_path / "set", 0).problems
+    assert len(problems) == 2
+    assert any("cannot be read" in problem for problem in problems)
+
+
+def test_what_is_no_data_set_is_refused(whole: Path, tmp_path: Path) -> None:
+    with pytest.raises(FolderError, match="no such file"):
+        verify(tmp_path, 1)
+    (tmp_path / "dataset.h5").write_bytes((whole / "dataset.h5").read_bytes()[:5000])
+    with pytest.raises(FolderError, match="not a whole data set"):
+        verify(tmp_path, 1)

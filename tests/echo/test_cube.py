@@ -1,0 +1,157 @@
+"""The beat matrix and the blocks in which the cube engine computes it."""
+
+from dataclasses import asdict
+
+import numpy as np
+import pytest
+import reference as ref
+
+from radhar_cli.activity import ACTIVITIES
+from radhar_cli.config.experiment import Config
+from radhar_cli.echo import cube
+from radhar_cli.echo.beat import beat_matrix, unit_phasor
+from radhar_cli.pipeline.plan import plan
+from radhar_cli.pipeline.run import run
+from radhar_cli.radar.waveform import Waveform
+from radhar_cli.scenario import draw_scene
+
+# fc tau is about 1e4 cycles at most: float64 places the phase to some 1e-11 of a turn.
+ROUNDING = 1e-11
+
+RADARS = {
+    "default": ref.Radar(duration=0.02),
+    "odd": ref.Radar(5.8e9, 4e8, 50.5e-6, 2e6, 400, 0.1),
+    "prime": ref.Radar(24e9, 1e9, 97e-6, 1e6, 1000, 0.05),
+    "two samples": ref.Radar(24e9, 1e9, 2e-6, 1e6, 1000, 0.05),
+    "zero-padded": ref.Radar(10e9, 1e9, prf=1000, duration=0.05, fft_length=1024),
+    "start": ref.Radar(duration=0.02, centred=False),
+    "video phase": ref.Radar(duration=0.02, residual_video_phase=True),
+}
+radars = pytest.mark.parametrize("radar", RADARS.values(), ids=RADARS)
+
+
+def crowd(t: np.ndarray) -> np.ndarray:
+    """Five points between 0.3 m and 30 m, some of them moving."""
+    still = np.array([0.3, 2.0, 7.1, 12.0, 30.0])[:, None]
+    return still + np.array([0.0, 1.0, -4.0, 0.0, 6.0])[:, None] * t + 0.02 * np.sin(40 * t)
+
+
+@radars
+def test_beat_matrix_is_a_sum_of_exponentials(radar):
+    paths = ref.Points(crowd)(radar.times)
+    right = ref.beat_matrix(paths.delay, paths.amplitude, radar)
+    found = beat_matrix(paths.delay, paths.amplitude, Waveform(**asdict(radar)))
+    assert found.shape == (radar.n_adc, radar.times.size)
+    assert np.abs(found - right).max() < ROUNDING * np.abs(right).max()
+
+
+def test_one_path_of_one_pulse_has_negative_frequency_and_its_own_amplitude():
+    """exp(-j 2 pi (fc tau + K tau n/fs)) with 10 whole beats in the chirp."""
+    waveform = Waveform(**asdict(RADARS["default"]))
+    tau = 10 / waveform.bandwidth
+    beat = beat_matrix(np.array([[tau]]), np.array([[0.25]]), waveform)[:, 0]
+    spectrum = np.fft.fft(beat) / beat.size
+    assert np.argmax(np.abs(spectrum)) == beat.size - 10
+    assert spectrum[-10] == pytest.approx(0.25 * np.exp(-2j * np.pi * waveform.fc * tau), rel=1e-9)
+
+
+def test_unit_phasor_turns_backwards():
+    cycles = np.array([0.0, 0.25, 0.5, -0.25, 1e6 + 0.125])
+    right = [1, -1j, -1, 1j, np.exp(-0.25j * np.pi)]
+    assert unit_phasor(cycles) == pytest.approx(np.array(right), abs=1e-9)
+
+
+@pytest.mark.parametrize("activity", [2, 8, 12])
+@pytest.mark.parametrize(
+    ("carrier", "wall"), [(77e9, None), (2e9, {})], ids=["free space", "wall"]
+)
+def test_slow_time_signal_of_a_person_is_the_reference(activity, carrier, wall):
+    """The whole cube path of a plan, from paths to the sum over bins."""
+    radar = ref.Radar(carrier, 1e9, adc_rate=1e6, prf=300, duration=0.5)
+    config = Config.model_validate(
+        {
+            "duration_s": radar.duration,
+            "radar": {"carrier_hz": carrier, "bandwidth_hz": 1e9, "adc_rate_hz": 1e6, "prf_hz": 300}
+            | {"chirp_s": radar.chirp},
+            "timing": {"walk_stop_s": 0.2},
+            "wall": wall,
+            "snr_db": None,
+            "engine": {"kind": "cube"},
+        }
+    )
+    scene = draw_scene(config, ACTIVITIES[activity - 1], 0)
+    recording = run(plan(config, ["signal:plain"]), scene, config)
+    paths = recording.products["paths"](radar.times)
+    right = ref.mti(ref.slow_time(paths.delay, paths.amplitude, radar))
+    # MTI leaves a hundredth of the amplitude or more, and rounding stays what it was.
+    assert ref.error_db(recording.products["signal:plain"], right) < -170
+
+
+class TestBlocks:
+    """The matrix is made block by block; nobody may notice."""
+
+    @pytest.fixture
+    def waveform(self):
+        return Waveform(**asdict(RADARS["odd"]))
+
+    def blocks(self, waveform, noisy=False):
+        rng = np.random.default_rng(5) if noisy else None
+        return list(cube.beat_blocks(ref.Points(crowd), waveform, 0.3 if noisy else 0.0, rng))
+
+    def joined(self, waveform, noisy=False):
+        """All pulses, without those that a block repeats."""
+        blocks = self.blocks(waveform, noisy)
+        return np.concatenate([b[:, (1 if first else 0) :] for first, b in blocks], axis=1)
+
+    @pytest.mark.parametrize("pulses", [1, 2, 3, 7, 39, 40, 1000])
+    @pytest.mark.parametrize("noisy", [False, True])
+    def test_length_does_not_matter(self, monkeypatch, waveform, pulses, noisy):
+        whole = self.joined(waveform, noisy)
+        assert whole.shape == (waveform.n_adc, waveform.n_pulses)
+        monkeypatch.setattr(cube, "BLOCK_SAMPLES", pulses * waveform.n_adc)
+        assert np.array_equal(self.joined(waveform, noisy), whole)
+
+    def test_neighbours_share_one_pulse(self, monkeypatch, waveform):
+        monkeypatch.setattr(cube, "BLOCK_SAMPLES", 7 * waveform.n_adc)
+        blocks = self.blocks(waveform, noisy=True)
+        assert [first for first, _ in blocks] == [0, 6, 13, 20, 27, 34]
+        for (_, before), (_, after) in zip(blocks, blocks[1:], strict=False):
+            assert np.array_equal(before[:, -1], after[:, 0])
+
+    def test_a_block_holds_no_more_than_its_length(self, monkeypatch, waveform):
+        """What bounds the memory of a long recording."""
+        monkeypatch.setattr(cube, "BLOCK_SAMPLES", 7 * waveform.n_adc)
+        source = ref.Points(crowd)
+        list(cube.beat_blocks(source, waveform))
+        assert [t.size for t in source.asked] == [7, 7, 7, 7, 7, 5]
+
+    @pytest.mark.parametrize("mti", [True, False])
+    def test_products_of_a_plan_do_not_depend_on_it(self, monkeypatch, mti):
+        config = Config.model_validate(
+            {
+                "duration_s": 0.5,
+                "radar": {"carrier_hz": 24e9, "bandwidth_hz": 1e9, "prf_hz": 300},
+                "processing": {"mti": mti},
+                "image": {"size_px": 37},
+                "maps": ["rtm", "stft"],
+                "engine": {"kind": "cube"},
+            }
+        )
+        scene = draw_scene(config, ACTIVITIES[1], 0)
+        asked = plan(config, ["rtm", "signal:plain"])
+        whole = run(asked, scene, config).products
+        assert whole["signal:plain"].shape == (150 - mti,)
+        assert whole["rtm"].shape == (200, 37)
+        for pulses in (2, 10, 149):
+            monkeypatch.setattr(cube, "BLOCK_SAMPLES", pulses * 400)
+            parts = run(asked, scene, config).products
+            for name in ("signal:plain", "rtm"):
+                largest = np.abs(whole[name]).max()
+                assert np.abs(parts[name] - whole[name]).max() < 1e-14 * largest
+
+    def test_signal_power_is_the_mean_over_the_pulses(self, monkeypatch, waveform):
+        source = ref.Points(crowd)
+        right = source(RADARS["odd"].times).power.mean()
+        assert cube.signal_power(source, waveform) == pytest.approx(right, rel=1e-13)
+        monkeypatch.setattr(cube, "BLOCK_SAMPLES", 7)
+        assert cube.signal_power(source, waveform) == pytest.approx(right, rel=1e-13)

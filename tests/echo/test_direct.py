@@ -1,0 +1,290 @@
+"""The closed-form engine on paths that no person makes: against the naive reference."""
+
+from dataclasses import asdict
+
+import numpy as np
+import pytest
+import reference as ref
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from radhar_cli.echo import direct
+from radhar_cli.echo.direct import DirectEcho, DirectSettings
+from radhar_cli.radar.waveform import Waveform
+
+DEFAULT, TIGHT = DirectSettings(), DirectSettings(1000, 64, single=False)
+DEFAULT_DB, TIGHT_DB = -60, -110
+
+few = settings(max_examples=40, deadline=None, derandomize=True, database=None)
+references = pytest.mark.parametrize("centred", [True, False], ids=["centre", "start"])
+
+
+@st.composite
+def radars(draw) -> ref.Radar:
+    """0.2 s of any carrier, bandwidth, PRF and number of samples, even or odd."""
+    return ref.Radar(
+        fc=draw(st.sampled_from([2e9, 24e9, 77e9])),
+        bandwidth=draw(st.sampled_from([1e8, 1e9, 4e9])),
+        adc_rate=1e6,
+        chirp=draw(st.sampled_from([20, 31, 40, 64])) * 1e-6,
+        prf=draw(st.sampled_from([300, 1000, 5000])),
+        duration=0.2,
+        residual_video_phase=draw(st.booleans()),
+        fft_length=draw(st.sampled_from([None, 64, 100])),
+    )
+
+
+# Where G turns most between two knots: a wide band, many samples, a fast radar.
+WIDE = ref.Radar(2e9, 4e9, 64e-6, 1e6, 5000, 0.2)
+
+
+def with_reference(radar: ref.Radar, centred: bool) -> ref.Radar:
+    return ref.Radar(**asdict(radar) | {"centred": centred})
+
+
+def half_band(radar: ref.Radar) -> float:
+    return ref.C * radar.n_adc / (4 * radar.bandwidth)
+
+
+def after_mti(source: ref.Points, radar: ref.Radar, how: DirectSettings = DEFAULT) -> np.ndarray:
+    return np.diff(DirectEcho(source, Waveform(**asdict(radar)), how).slow_time())
+
+
+def right_answer(source: ref.Points, radar: ref.Radar) -> np.ndarray:
+    paths = source(radar.times)
+    return ref.mti(ref.slow_time(paths.delay, paths.amplitude, radar))
+
+
+def check(source: ref.Points, radar: ref.Radar, tight_db: float = TIGHT_DB) -> None:
+    right = right_answer(source, radar)
+    assert ref.error_db(after_mti(source, radar), right) < DEFAULT_DB
+    assert ref.error_db(after_mti(source, radar, TIGHT), right) < tight_db
+
+
+@references
+@given(radar=radars(), place=st.floats(0.3, 0.7), speed=st.floats(-5, 5))
+@example(radar=WIDE, place=0.45, speed=1.28)
+@few
+def test_constant_velocity(centred, radar, place, speed):
+    speed = np.copysign(max(abs(speed), 0.1), speed)
+    travel = np.clip(speed * 0.2, -0.25 * half_band(radar), 0.25 * half_band(radar)) / 0.2
+    source = ref.Points(lambda t: (place * half_band(radar) + travel * t)[None])
+    check(source, with_reference(radar, centred))
+
+
+@references
+@given(
+    radar=radars(), place=st.floats(0.4, 0.6), gait=st.floats(0.3, 3), phase=st.floats(0, 2 * np.pi)
+)
+@few
+def test_pendulum(centred, radar, place, gait, phase):
+    """An ankle: never faster than 5 m/s, half a metre at most."""
+    swing = min(0.3 * half_band(radar), 5 / (2 * np.pi * gait), 0.5)
+
+    def ranges(t):
+        return (place * half_band(radar) + swing * np.sin(2 * np.pi * gait * t + phase))[None]
+
+    check(ref.Points(ranges, highest_frequency=gait), with_reference(radar, centred))
+
+
+@references
+@given(radar=radars(), speed=st.floats(0.5, 5), nearest=st.floats(-0.05, 0.25))
+@example(radar=WIDE, speed=1.92, nearest=0.2)
+@few
+def test_passage_at_five_centimetres(centred, radar, speed, nearest):
+    """The nearest that the model allows: 40 dB of amplitude within a few pulses.
+
+    The knots close up as the amplitude folds, by no more than it takes for -90 dB.
+    """
+    source = ref.Points(lambda t: np.hypot(0.05, speed * (t - nearest))[None])
+    check(source, with_reference(radar, centred), tight_db=-90)
+
+
+@given(radar=radars(), seed=st.integers(0, 1000))
+@few
+def test_several_points_some_beyond_the_half_band(radar, seed):
+    """What lies beyond folds back as leakage; it is part of the sum in both."""
+    rng = np.random.default_rng(seed)
+    place = np.array([0.5, 1.3, *rng.uniform(0.2, 2.5, 3)])[:, None] * half_band(radar)
+    speed = np.array([0.8, *rng.uniform(-4, 4, 4)])[:, None]
+    check(ref.Points(lambda t: np.hypot(0.05, place + speed * t)), radar)
+
+
+RADAR = ref.Radar(adc_rate=1e6, duration=0.5)
+WALK = 2.0, 1.5  # m, m/s
+
+
+def walk(t: np.ndarray) -> np.ndarray:
+    return (WALK[0] + WALK[1] * t)[None]
+
+
+class TestStaticPaths:
+    """MTI removes what does not move; the engine does not even compute it."""
+
+    def with_static(self, strength: float) -> ref.Points:
+        def ranges(t):
+            return np.concatenate([np.full((1, t.size), 3.0), walk(t)])
+
+        return ref.Points(ranges, strength=np.array([strength, 1.0]))
+
+    def test_they_change_no_bit(self):
+        alone = after_mti(ref.Points(walk), RADAR)
+        assert np.array_equal(after_mti(self.with_static(1e6), RADAR), alone)
+
+    def test_without_mti_they_count(self):
+        source = self.with_static(5.0)
+        paths = source(RADAR.times)
+        y = DirectEcho(source, Waveform(**asdict(RADAR)), TIGHT).slow_time(mti=False)
+        assert ref.error_db(y, ref.slow_time(paths.delay, paths.amplitude, RADAR)) < TIGHT_DB
+
+    @pytest.mark.parametrize("how", [DEFAULT, TIGHT], ids=["default", "tight"])
+    def test_a_motionless_scene_is_exactly_nothing(self, how):
+        still = ref.Points(lambda t: np.full((4, t.size), [[1.0], [2.0], [3.0], [4.5]]))
+        assert not DirectEcho(still, Waveform(**asdict(RADAR)), how).slow_time().any()
+
+    def test_a_path_that_only_changes_its_amplitude_moves(self):
+        """A scatterer whose ray enters the wall at constant delay, say."""
+
+        class Fading(ref.Points):
+            def __call__(self, t):
+                paths = super().__call__(t)
+                return paths._replace(amplitude=paths.amplitude * (1 + 0.5 * np.sin(20 * t)))
+
+        source = Fading(lambda t: np.full((1, t.size), 2.0), highest_frequency=3.2)
+        check(source, RADAR)
+
+    def test_a_path_that_moves_only_between_knots_moves(self):
+        """A jerk around one kink, seen by the exact pulses alone."""
+
+        def ranges(t):
+            return (2 + 1e-3 * np.maximum(0, 1 - np.abs(t - 0.3021) / 1e-3))[None]
+
+        check(ref.Points(ranges, kinks=(0.3011, 0.3021, 0.3031)), RADAR)
+
+
+class TestPrecision:
+    def test_single_is_used_where_it_suffices(self):
+        source = ref.Points(walk)
+        single = after_mti(source, RADAR)
+        double = after_mti(source, RADAR, DirectSettings(single=False))
+        assert not np.array_equal(single, double)
+        assert ref.error_db(single, double) < direct.SINGLE_LIMIT_DB
+
+    @pytest.mark.parametrize("speed", [1e-6, 1e-5, 1e-4])
+    def test_a_very_slow_motion_falls_back_to_double(self, speed):
+        """MTI leaves 1e-6 to 1e-4 of the signal: less than, or little above, float32's rounding."""
+        source = ref.Points(lambda t: (2 + speed * t)[None])
+        found = after_mti(source, RADAR)
+        assert np.array_equal(found, after_mti(source, RADAR, DirectSettings(single=False)))
+        # fc tau is 1000 cycles, to 1e-13 of one; a step is 1e-7 cycles.
+        assert ref.error_db(found, right_answer(source, RADAR)) < -100
+
+    @pytest.mark.parametrize("speed", np.geomspace(1e-6, 1, 13))
+    def test_no_speed_falls_between_the_two(self, speed):
+        source = ref.Points(lambda t: (2 + speed * t)[None])
+        assert ref.error_db(after_mti(source, RADAR), right_answer(source, RADAR)) < DEFAULT_DB
+
+
+class TestKinks:
+    """S12 stops a walk at an instant: acceleration jumps there, or everything does (blend 0)."""
+
+    at = 0.31071
+
+    def braked(self, kinks):
+        def ranges(t):
+            return walk(t) - 6 * np.maximum(t - self.at, 0) ** 2
+
+        return ref.Points(ranges, kinks=kinks)
+
+    def jumping(self, at, kinks):
+        return ref.Points(lambda t: walk(t) + np.where(t >= at, 0.05, 0), kinks=kinks)
+
+    def test_acceleration_jump(self):
+        source = self.braked((self.at,))
+        error = after_mti(source, RADAR, TIGHT) - right_answer(source, RADAR)
+        near = np.abs(np.arange(error.size) / RADAR.prf - self.at) < 0.002
+        assert np.abs(error[near]).max() <= 2 * np.abs(error[~near]).max()
+        check(source, RADAR)
+
+    def test_it_would_be_seen(self):
+        """The test above must not pass on interpolation alone."""
+        right = right_answer(self.braked(()), RADAR)
+        unknown, known = (
+            np.abs(after_mti(self.braked(kinks), RADAR, TIGHT) - right).max()
+            for kinks in ((), (self.at,))
+        )
+        assert unknown > 300 * known
+
+    @pytest.mark.parametrize("at", [0.0, 0.0002, 0.1, 0.30001, 0.3999, 0.4, 0.4996, 0.4999])
+    def test_jump(self, at):
+        """At pulses, at knots, between them, and at both ends of the recording."""
+        check(self.jumping(at, (at,)), RADAR)
+
+    @pytest.mark.parametrize("kinks", [(-1.0,), (-1e-3,), (0.5,), (0.501,), (7.0,), (-0.1, 0.6)])
+    def test_kinks_beyond_the_recording_are_harmless(self, kinks):
+        """Those just beyond still reach the first and last segments."""
+        for kink in kinks:
+            check(self.jumping(kink, kinks), RADAR)
+
+
+class TestKnots:
+    """How often the kinematics are evaluated: no more than they ask for."""
+
+    def asked(self, source: ref.Points, radar: ref.Radar, how: DirectSettings = DEFAULT) -> int:
+        DirectEcho(source, Waveform(**asdict(radar)), how).slow_time()
+        return sum(t.size for t in source.asked)
+
+    def test_a_fast_radar_needs_few(self):
+        assert self.asked(ref.Points(walk), RADAR) <= 0.5 * DEFAULT.kinematics_hz + 10
+
+    def test_a_slow_radar_takes_its_pulses_once(self):
+        source, radar = ref.Points(walk), ref.Radar(2e9, 1e9, adc_rate=1e6, prf=128, duration=0.5)
+        assert self.asked(source, radar) == 64
+        moments = np.concatenate(source.asked)
+        assert moments == pytest.approx(radar.times, abs=0)
+
+    def test_rough_paths_are_taken_at_every_pulse(self):
+        source = ref.Points(walk, smooth=False)
+        assert self.asked(source, RADAR) == RADAR.times.size
+
+    @pytest.mark.parametrize("frequency", [1.0, 8.0])
+    def test_fast_motions_get_more(self, frequency):
+        asked = self.asked(ref.Points(walk, highest_frequency=frequency), RADAR)
+        rate = max(DEFAULT.kinematics_hz, direct.KNOTS_PER_CYCLE * frequency)
+        assert 0.5 * rate <= asked <= 0.5 * rate * 1.3 + 10
+
+    def test_a_product_evaluates_once_for_signal_and_power(self):
+        source = ref.Points(walk)
+        echo = DirectEcho(source, Waveform(**asdict(RADAR)), DEFAULT)
+        echo.slow_time()
+        once = len(source.asked)
+        echo.signal_power()
+        echo.slow_time(mti=False)
+        assert len(source.asked) == once
+
+    @pytest.mark.parametrize("pulses", [2, 3, 7, 8, 21])
+    def test_recordings_of_few_pulses(self, pulses):
+        radar = ref.Radar(adc_rate=1e6, prf=1000, duration=pulses / 1000)
+        check(ref.Points(lambda t: walk(t) - 3 * t), radar)
+
+
+@pytest.mark.parametrize("source", ["walk", "passage"])
+def test_signal_power_is_the_mean_over_the_pulses(source):
+    nearest = 0.2
+    ranges = walk if source == "walk" else lambda t: np.hypot(0.05, 4 * (t - nearest))[None]
+    source = ref.Points(ranges, kinks=(0.11,))
+    echo = DirectEcho(source, Waveform(**asdict(RADAR)), DEFAULT)
+    assert echo.signal_power() == pytest.approx(source(RADAR.times).power.mean(), rel=1e-4)
+
+
+@pytest.mark.parametrize("constant", ["BLOCK_PULSES", "EXACT_CHUNK"])
+@pytest.mark.parametrize("size", [1, 37, 1000])
+def test_block_lengths_do_not_matter(monkeypatch, constant, size):
+    """They bound the memory. Single precision may round differently, a double at 1e-15."""
+    source = ref.Points(lambda t: walk(t) - 6 * np.maximum(t - 0.2, 0) ** 2, kinks=(0.2,))
+    rough = ref.Points(walk, smooth=False)
+    whole = [after_mti(s, RADAR, TIGHT) for s in (source, rough)]
+    monkeypatch.setattr(direct, constant, size)
+    parts = [after_mti(s, RADAR, TIGHT) for s in (source, rough)]
+    for part, right in zip(parts, whole, strict=True):
+        assert ref.error_db(part, right) < -200

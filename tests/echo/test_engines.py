@@ -1,0 +1,118 @@
+"""Two engines, one contract: the same slow-time signal, for every activity and many radars."""
+
+from functools import lru_cache
+
+import numpy as np
+import pytest
+import reference as ref
+
+from radhar_cli.activity import ACTIVITIES, Activity
+from radhar_cli.config.experiment import Config
+from radhar_cli.pipeline.plan import plan
+from radhar_cli.pipeline.run import run
+from radhar_cli.scenario import draw_scene
+
+# What the maps show is 50 dB deep; the engines shall not differ within that, nor near it.
+DEFAULT_DB = -60
+# With every setting tightened only the table and the last ulps of the knots are left.
+TIGHT_DB = -110
+TIGHT = {"precision": "double", "kinematics_hz": 1000, "table_oversampling": 64}
+
+# Both phases of every activity within 1.5 s, at ends that fall between pulses and on them. The
+# shortest ramps, blend and fall, keep their default length: no motion is faster than it would be.
+SOON = {
+    "seat_start_s": 0.21,
+    "seat_duration_s": 1.0,
+    "rise_start_s": 0.1,
+    "rise_duration_s": 0.77,
+    "walk_start_s": 0.9,
+    "walk_stop_s": 0.5137,
+    "sit_duration_s": 0.8,
+}
+FAST = {"duration_s": 1.5, "timing": SOON}
+
+
+def radar(carrier_ghz: float, bandwidth_ghz: float, prf: float, **more: object) -> dict:
+    return {"carrier_hz": carrier_ghz * 1e9, "bandwidth_hz": bandwidth_ghz * 1e9, "prf_hz": prf} | (
+        more
+    )
+
+
+CASES = {
+    "free space 77 GHz": {},
+    "through the wall 2 GHz": {"radar": radar(2, 1, 128), "wall": {}},
+    "through the wall, high PRF": FAST | {"radar": radar(2, 1, 2000), "wall": {}},
+    "24 GHz 1 kHz": FAST | {"radar": radar(24, 1, 1000)},
+    "60 GHz, 7 GHz wide": FAST | {"radar": radar(60, 7, 5000)},
+    "narrow band": FAST | {"radar": radar(77, 0.04, 3000)},
+    "5.8 GHz 400 Hz, odd N_ADC": FAST
+    | {"radar": radar(5.8, 0.4, 400, adc_rate_hz=2e6, chirp_s=50.5e-6)},
+    "odd N_ADC, interpolated": FAST | {"radar": radar(24, 1, 2000, chirp_s=10.1e-6)},
+    "eight samples a chirp": FAST | {"radar": radar(77, 4, 3000, adc_rate_hz=2e5)},
+    "zero-padded range FFT": FAST
+    | {"radar": radar(10, 1, 1000), "processing": {"range_fft_length": 1024}},
+    "range reference start": FAST
+    | {"radar": radar(77, 4, 5000), "processing": {"range_reference": "start"}},
+    "residual video phase": FAST | {"radar": radar(77, 4, 2000, residual_video_phase=True)},
+    "hard switch": FAST | {"radar": radar(77, 4, 2000), "timing": SOON | {"blend_s": 0}},
+    "fast gait": FAST | {"radar": radar(77, 4, 3000), "motion": {"gait_hz": 2.5}},
+    "past the antennas": FAST
+    | {"radar": radar(77, 4, 3000), "motion": {"range_m": 1.2, "angle_deg": 180}},
+}
+cases = pytest.mark.parametrize("case", CASES)
+activities = pytest.mark.parametrize("activity", ACTIVITIES, ids=[a.slug for a in ACTIVITIES])
+
+
+def config_of(case: str, engine: dict, **more: object) -> Config:
+    return Config.model_validate({"snr_db": None} | CASES[case] | {"engine": engine} | more)
+
+
+def signal(activity: Activity, config: Config) -> np.ndarray:
+    recording = run(plan(config, ["signal:plain"]), draw_scene(config, activity, 0), config)
+    return recording.products["signal:plain"]
+
+
+@lru_cache(maxsize=1)
+def cube_signal(case: str, activity: Activity) -> np.ndarray:
+    return signal(activity, config_of(case, {"kind": "cube"}))
+
+
+@cases
+@activities
+def test_engines_agree(activity, case):
+    right = cube_signal(case, activity)
+    default = signal(activity, config_of(case, {"kind": "direct"}))
+    tight = signal(activity, config_of(case, {"kind": "direct"} | TIGHT))
+    assert default.shape == tight.shape == right.shape
+    if activity.slug == "stationary":
+        assert not right.any()
+        assert not default.any()
+        assert not tight.any()
+    else:
+        assert ref.error_db(default, right) < DEFAULT_DB
+        assert ref.error_db(tight, right) < TIGHT_DB
+
+
+@pytest.mark.parametrize("case", ["free space 77 GHz", "through the wall 2 GHz"])
+@pytest.mark.parametrize("slug", ["stationary", "walking_to_falling"])
+def test_engines_agree_without_mti(case, slug):
+    """Then what stands still counts too."""
+    activity = next(a for a in ACTIVITIES if a.slug == slug)
+    both = [
+        signal(activity, config_of(case, {"kind": kind}, processing={"mti": False}, duration_s=2.5))
+        for kind in ("cube", "direct")
+    ]
+    assert np.abs(both[0]).min() > 0
+    assert ref.error_db(both[1], both[0]) < DEFAULT_DB
+
+
+@pytest.mark.parametrize("case", ["free space 77 GHz", "through the wall, high PRF"])
+@pytest.mark.parametrize("reference", ["free_space", "received"])
+def test_engines_agree_on_the_signal_power(case, reference):
+    """1e-6 is 4e-6 dB of SNR."""
+    powers = []
+    for kind in ("cube", "direct"):
+        config = config_of(case, {"kind": kind}, snr_db=20, snr_reference=reference)
+        scene = draw_scene(config, ACTIVITIES[11], 0)
+        powers.append(run(plan(config, ["signal_power"]), scene, config).products["signal_power"])
+    assert powers[1] == pytest.approx(powers[0], rel=1e-6)

@@ -1,0 +1,255 @@
+"""Receiver noise: its power, its colour, and that both engines have the same."""
+
+import numpy as np
+import pytest
+import reference as ref
+from scipy.stats import expon, ks_2samp, kstest
+
+from radhar_cli.activity import activity_named
+from radhar_cli.config.experiment import MAP_NAMES, Config
+from radhar_cli.echo import cube
+from radhar_cli.pipeline.models import body_of
+from radhar_cli.pipeline.plan import plan, plan_images
+from radhar_cli.pipeline.run import Recording, run
+from radhar_cli.radar.noise import circular_gaussian
+from radhar_cli.radar.waveform import Waveform
+from radhar_cli.scenario import Scene, draw_scene
+
+# 20 samples a chirp and 20 000 pulses: enough for statistics, little to compute.
+RADAR = {"carrier_hz": 24e9, "bandwidth_hz": 1e9, "prf_hz": 5000, "adc_rate_hz": 5e5}
+PULSES, SAMPLES = 20000, 20
+SIGMAS = 5  # a mean of N numbers of variance v lies within 5 sqrt(v/N), but once in a million
+
+engines = pytest.mark.parametrize("engine", ["cube", "direct"])
+
+
+def scene_of(engine: str = "direct", **more: object) -> tuple[Scene, Config]:
+    document = {"radar": RADAR, "engine": {"kind": engine}} | more
+    config = Config.model_validate(document)
+    return draw_scene(config, activity_named("walking"), 0), config
+
+
+def record(product: str, engine: str, **more: object) -> Recording:
+    scene, config = scene_of(engine, **more)
+    return run(plan(config, [product]), scene, config)
+
+
+def noise_of(product: str, engine: str, **more: object) -> tuple[np.ndarray, float]:
+    """What noise adds to a product, and the standard deviation sigma of the raw noise."""
+    noisy = record(product, engine, **more)
+    clean = record(product, engine, **more | {"snr_db": None})
+    return noisy.products[product] - clean.products[product], noisy.sigma
+
+
+def correlation(x: np.ndarray, lag: int) -> complex:
+    """Mean of x[m + lag] conj x[m] over that of |x|^2, along the last axis."""
+    later, earlier = x[..., lag:], x[..., : x.shape[-1] - lag]
+    return complex(np.mean(later * earlier.conj()) / np.mean(np.abs(x) ** 2))
+
+
+def gain() -> float:
+    return float(np.sum(np.abs(ref.sample_weights(ref.Radar(adc_rate=5e5))) ** 2))
+
+
+def free_space_power(scene: Scene) -> float:
+    """Mean over the pulses of sum_i G^2 lambda^2 sigma_i/((4 pi)^3 R_tx^2 R_rx^2)."""
+    body, v = body_of(scene), scene.values
+    t = np.arange(round(v["duration_s"] * v["radar.prf_hz"])) / v["radar.prf_hz"]
+    p = body.positions(t)
+    legs2 = [
+        sum((p[axis] - v[f"radar.{antenna}_m.{axis}"]) ** 2 for axis in range(3))
+        for antenna in ("tx", "rx")
+    ]
+    gain = 10 ** (v["radar.antenna_gain_dbi"] / 10)
+    wavelength = ref.C / v["radar.carrier_hz"]
+    strength = gain**2 * wavelength**2 * body.cross_sections[:, None] / (4 * np.pi) ** 3
+    return float(np.mean(np.sum(strength / (legs2[0] * legs2[1]), axis=0)))
+
+
+class TestPower:
+    """sigma_n^2 = P_s/10^(SNR/10) per raw sample."""
+
+    @engines
+    @pytest.mark.parametrize("snr_db", [30, -10])
+    @pytest.mark.parametrize("wall", [None, {}], ids=["free space", "wall"])
+    def test_free_space_reference(self, engine, snr_db, wall):
+        """P_s leaves the wall out, so that a wall costs SNR."""
+        more = {"snr_db": snr_db, "wall": wall, "duration_s": 1.0}
+        scene, _ = scene_of(engine, **more)
+        right = free_space_power(scene) / 10 ** (snr_db / 10)
+        sigma = record("signal:plain", engine, **more).sigma
+        assert sigma**2 == pytest.approx(right, rel=1e-6)
+
+    @engines
+    def test_received_reference(self, engine):
+        more = {"snr_db": 10, "wall": {}, "duration_s": 1.0, "snr_reference": "received"}
+        recording = record("signal:plain", engine, **more)
+        t = np.arange(recording.waveform.n_pulses) / RADAR["prf_hz"]
+        paths = recording.products["paths"](t)
+        right = np.mean(np.sum(paths.amplitude**2, axis=0)) / 10
+        assert recording.sigma**2 == pytest.approx(right, rel=1e-6)
+        # The paper's wall takes 9.8 dB at 2 GHz and more at 24 GHz, from whoever is behind it.
+        scene, _ = scene_of(engine, **more)
+        assert recording.sigma**2 < 0.5 * free_space_power(scene) / 10
+
+    @engines
+    def test_received_is_free_space_without_a_wall(self, engine):
+        sigmas = [
+            record("signal:plain", engine, snr_reference=reference, duration_s=0.5).sigma
+            for reference in ("received", "free_space")
+        ]
+        assert sigmas[0] == sigmas[1] > 0
+
+    def test_unit_noise_is_circular_gaussian(self):
+        v = circular_gaussian(np.random.default_rng(6), (50, 2000))
+        assert v.shape == (50, 2000)
+        for part in (v.real, v.imag):
+            assert kstest(part.ravel() * np.sqrt(2), "norm").pvalue > 1e-3
+        assert abs(np.mean(v.real * v.imag)) < SIGMAS * 0.5 / np.sqrt(v.size)
+
+    def test_raw_samples_of_the_cube(self):
+        """Per sample sigma^2; white in fast time and slow time."""
+        waveform = Waveform(24e9, 1e9, 40e-6, 5e5, 5000, 1.0)
+        source = ref.Points(lambda t: (2 + 0.3 * t)[None])
+        blocks = [
+            np.concatenate([b for _, b in cube.beat_blocks(source, waveform, *noise)], axis=1)
+            for noise in ((0.0, None), (0.7, np.random.default_rng(7)))
+        ]
+        noise = blocks[1] - blocks[0]
+        assert noise.shape == (SAMPLES, 5000)
+        error = SIGMAS / np.sqrt(noise.size)
+        assert np.mean(np.abs(noise) ** 2) == pytest.approx(0.7**2, rel=error)
+        assert np.mean(np.abs(noise) ** 2, axis=1) == pytest.approx(0.49, rel=SIGMAS / np.sqrt(5e3))
+        assert abs(correlation(noise, 1)) < error
+        assert abs(correlation(noise.T, 1)) < error
+
+
+class TestSlowTime:
+    """After the sum over bins: a linear map of white noise."""
+
+    error = SIGMAS / np.sqrt(PULSES)
+
+    @engines
+    def test_before_mti(self, engine):
+        v, sigma = noise_of("signal:plain", engine, processing={"mti": False})
+        assert v.size == PULSES
+        # |v|^2 is exponential: its standard deviation is its mean.
+        assert np.mean(np.abs(v) ** 2) == pytest.approx(sigma**2 * gain(), rel=self.error)
+        assert [abs(correlation(v, lag)) for lag in (1, 2, 3, 50)] == pytest.approx(
+            [0] * 4, abs=self.error
+        )
+        assert abs(np.mean(v**2)) / np.mean(np.abs(v) ** 2) < self.error * np.sqrt(2)
+        scaled = v / (sigma * np.sqrt(gain() / 2))
+        assert kstest(scaled.real, "norm").pvalue > 1e-3
+        assert kstest(scaled.imag, "norm").pvalue > 1e-3
+
+    @engines
+    def test_after_mti(self, engine):
+        x, sigma = noise_of("signal:plain", engine)
+        assert x.size == PULSES - 1
+        error = self.error * np.sqrt(2)  # neighbours are correlated
+        assert np.mean(np.abs(x) ** 2) == pytest.approx(2 * sigma**2 * gain(), rel=error)
+        found = [correlation(x, lag) for lag in (1, 2, 3, 50)]
+        assert np.abs(np.array(found) - [-0.5, 0, 0, 0]).max() < error
+        assert abs(np.mean(x**2)) / np.mean(np.abs(x) ** 2) < error * np.sqrt(2)
+
+    @pytest.mark.parametrize("mti", [True, False])
+    def test_engines_have_the_same_law(self, mti):
+        """Every other sample: after MTI those are independent."""
+        both = [
+            noise_of("signal:plain", engine, processing={"mti": mti})[0][::2]
+            for engine in ("cube", "direct")
+        ]
+        for view in (np.real, np.imag, np.abs):
+            assert ks_2samp(view(both[0]), view(both[1])).pvalue > 1e-3
+        assert ks_2samp(abs(both[0]), 1.1 * abs(both[1])).pvalue < 1e-6  # it would see 1 dB
+
+
+class TestRangeProfiles:
+    """sigma^2 N_ADC in every range bin, twice that after MTI."""
+
+    def noise(self, width: int, **more: object) -> tuple[np.ndarray, float]:
+        return noise_of("range_profiles", "direct", image={"size_px": [16, width]}, **more)
+
+    @pytest.mark.parametrize("mti", [True, False])
+    def test_variance_and_whiteness_in_fast_time(self, mti):
+        noise, sigma = self.noise(2000, processing={"mti": mti})
+        assert noise.shape == (SAMPLES, 2000)
+        error = SIGMAS * np.sqrt(1.5 / noise.size)
+        assert np.mean(np.abs(noise) ** 2) == pytest.approx((1 + mti) * sigma**2, rel=error)
+        assert abs(correlation(noise.T, 1)) < error
+
+    def test_pairs_that_share_a_pulse_are_correlated(self):
+        """M - 1 <= W: every pair is shown, and the middle pulse is common to two of them."""
+        noise, _ = self.noise(8192, duration_s=1.0)
+        assert noise.shape == (SAMPLES, 4999)
+        error = SIGMAS * np.sqrt(2 / noise.size)
+        found = [correlation(noise, lag) for lag in (1, 2, 3)]
+        assert np.abs(np.array(found) - [-0.5, 0, 0]).max() < error
+
+    def test_only_those_pairs(self):
+        """M - 1 = 3/2 W: the pairs shown are 1 and 2 pulses apart in turn."""
+        noise, _ = self.noise(3000, duration_s=0.9002)
+        assert noise.shape == (SAMPLES, 3000)
+        shown = (np.arange(3000) + 0.5) * 4500 / 3000 // 1
+        products = noise[:, 1:] * noise[:, :-1].conj() / np.mean(np.abs(noise) ** 2)
+        for apart, right in ((1, -0.5), (2, 0.0)):
+            mean = np.mean(products[:, np.diff(shown) == apart])
+            assert abs(mean - right) < SIGMAS * np.sqrt(2 / (noise.size / 2))
+
+    def test_pairs_apart_are_independent(self):
+        noise, _ = self.noise(4000)
+        assert abs(correlation(noise, 1)) < SIGMAS / np.sqrt(noise.size)
+
+    @engines
+    def test_bins_of_the_range_time_map_are_exponential(self, engine):
+        """At -100 dB the map is noise alone, of mean 2 sigma^2 N_ADC."""
+        recording = record("rtm", engine, snr_db=-100, image={"size_px": [16, 1000]})
+        rtm = recording.products["rtm"]
+        assert rtm.shape == (SAMPLES // 2, 1000)
+        scale = 2 * recording.sigma**2 * SAMPLES
+        assert kstest(rtm.ravel(), expon(scale=scale).cdf).pvalue > 1e-3
+
+
+class TestStreams:
+    """One unit-variance stream a purpose, whatever else is asked for."""
+
+    @pytest.mark.parametrize(
+        ("engine", "product"),
+        [("cube", "signal:plain"), ("direct", "signal:plain"), ("direct", "range_profiles")],
+    )
+    def test_snr_scales_the_same_noise(self, engine, product):
+        loud, loud_sigma = noise_of(product, engine, snr_db=-20, duration_s=0.5)
+        faint, faint_sigma = noise_of(product, engine, snr_db=0, duration_s=0.5)
+        assert loud_sigma == pytest.approx(10 * faint_sigma, rel=1e-12)
+        assert np.abs(loud - 10 * faint).max() < 1e-9 * np.abs(loud).max()
+
+    def test_samples_and_classes_have_their_own(self):
+        config = Config.model_validate({"radar": RADAR, "duration_s": 0.5, "maps": ["rtm", "stft"]})
+        walking, punching = activity_named("walking"), activity_named("punching")
+        asked = plan(config, ["slow_time_noise", "range_profiles"])
+        unit = []
+        for activity, index in ((walking, 0), (walking, 1), (punching, 0)):
+            recording = run(asked, draw_scene(config, activity, index), config)
+            unit.append(recording.products["slow_time_noise"] / recording.sigma)
+        for a, b in ((0, 1), (0, 2), (1, 2)):
+            bound = SIGMAS * gain() / np.sqrt(unit[a].size)
+            assert abs(np.mean(unit[a] * unit[b].conj())) < bound
+
+    @engines
+    def test_adding_a_map_changes_no_byte_of_the_others(self, engine):
+        document = {
+            "radar": RADAR | {"prf_hz": 500},
+            "duration_s": 1.0,
+            "image": {"size_px": 32},
+            "engine": {"kind": engine},
+        }
+        everything = Config.model_validate(document | {"maps": MAP_NAMES})
+        scene = draw_scene(everything, activity_named("walking"), 3)
+        together = run(plan_images(everything), scene, everything).products
+        for name in MAP_NAMES:
+            config = Config.model_validate(document | {"maps": [name]})
+            alone = run(plan_images(config), scene, config).products
+            assert np.array_equal(alone[name], together[name])
+            assert np.array_equal(alone[f"levels:{name}"], together[f"levels:{name}"])
+            assert alone[f"entropy:{name}"] == together[f"entropy:{name}"]

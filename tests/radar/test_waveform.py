@@ -1,0 +1,91 @@
+"""What follows from the numbers of an FMCW waveform."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
+
+# The paper's table "Experimental Parameter Settings".
+FREE_SPACE = Waveform(fc=77e9, bandwidth=4e9, chirp=40e-6, adc_rate=10e6, prf=5000.0, duration=4.0)
+THROUGH_WALL = replace(FREE_SPACE, fc=2e9, bandwidth=1e9, prf=128.0)
+
+
+def test_sample_and_pulse_counts_of_the_paper() -> None:
+    assert (FREE_SPACE.n_adc, FREE_SPACE.n_pulses) == (400, 20_000)
+    assert (THROUGH_WALL.n_adc, THROUGH_WALL.n_pulses) == (400, 512)
+    assert (FREE_SPACE.n_fft, FREE_SPACE.n_bins) == (400, 200)
+
+
+@pytest.mark.parametrize(
+    ("waveform", "step", "half_band"), [(FREE_SPACE, 0.037, 7.49), (THROUGH_WALL, 0.15, 29.98)]
+)
+def test_ranges_of_the_paper(waveform: Waveform, step: float, half_band: float) -> None:
+    assert waveform.slope == pytest.approx(waveform.bandwidth / 40e-6, rel=1e-15)
+    assert waveform.half_band_range == pytest.approx(half_band, abs=0.005)
+    assert waveform.range_step == pytest.approx(step, abs=0.0005)
+    # With N_FFT = N_ADC = fs Tp the step is the range resolution c/(2 B).
+    resolution = SPEED_OF_LIGHT / (2 * waveform.bandwidth)
+    assert waveform.range_step == pytest.approx(resolution, rel=1e-14)
+
+
+@pytest.mark.parametrize(("waveform", "speed"), [(FREE_SPACE, 4.9), (THROUGH_WALL, 4.8)])
+def test_the_doppler_of_the_start_of_the_chirp_aliases_as_in_the_paper(
+    waveform: Waveform, speed: float
+) -> None:
+    at_start = replace(waveform, centred=False)
+    assert (at_start.n0, at_start.f0) == (0, waveform.fc)
+    assert at_start.highest_speed == pytest.approx(speed, abs=0.05)
+
+
+@pytest.mark.parametrize("waveform", [FREE_SPACE, THROUGH_WALL])
+def test_at_mid_chirp_the_doppler_is_that_of_the_mid_frequency(waveform: Waveform) -> None:
+    assert waveform.n0 == 200
+    assert waveform.f0 == pytest.approx(waveform.fc + waveform.bandwidth / 2, rel=1e-15)
+    # A target at the highest speed shifts by PRF/2: 2 v f0/c.
+    doppler = 2 * waveform.highest_speed * waveform.f0 / SPEED_OF_LIGHT
+    assert doppler == pytest.approx(waveform.prf / 2, rel=1e-14)
+
+
+def test_wavelength_is_that_of_the_carrier() -> None:
+    assert THROUGH_WALL.wavelength == pytest.approx(0.149896229, rel=1e-15)
+
+
+@pytest.mark.parametrize(("rate", "n_adc", "n_fft"), [(10e6, 400, 400), (10.02e6, 401, 402)])
+def test_the_fft_is_even_and_holds_the_chirp(rate: float, n_adc: int, n_fft: int) -> None:
+    waveform = replace(FREE_SPACE, adc_rate=rate)
+    assert (waveform.n_adc, waveform.n_fft) == (n_adc, n_fft)
+    assert waveform.n0 == n_adc / 2
+
+
+@given(st.integers(200, 2000).map(lambda half: 2 * half))
+@settings(deadline=None, max_examples=30)
+def test_range_bins_fill_the_half_band_whatever_the_fft_length(length: int) -> None:
+    waveform = replace(FREE_SPACE, fft_length=length)
+    axis = waveform.range_axis()
+    assert (waveform.n_fft, axis.size) == (length, length // 2)
+    assert axis[0] == 0
+    np.testing.assert_allclose(np.diff(axis), waveform.range_step, rtol=1e-9)
+    assert axis[-1] + waveform.range_step == pytest.approx(waveform.half_band_range, rel=1e-14)
+
+
+def test_a_bin_is_the_range_whose_beat_it_is() -> None:
+    """R_k = c f_b/(2 K) at the beat frequency f_b = k fs/N_FFT."""
+    beat = np.arange(200) * 10e6 / 400
+    expected = SPEED_OF_LIGHT * beat / (2 * 1e14)
+    np.testing.assert_allclose(FREE_SPACE.range_axis(), expected, rtol=1e-14)
+
+
+def test_pulses_are_a_pulse_interval_apart() -> None:
+    np.testing.assert_allclose(THROUGH_WALL.times(np.array([0.0, 1.0, 64.0])), [0, 1 / 128, 0.5])
+
+
+@pytest.mark.parametrize(
+    ("duration", "prf", "pulses"),
+    [(0.1, 15.0, 2), (1.45, 10.0, 15), (1.005, 100.0, 101), (0.4999, 1.0, 0)],
+)
+def test_counts_are_rounded_half_up_as_written(duration: float, prf: float, pulses: int) -> None:
+    assert replace(FREE_SPACE, duration=duration, prf=prf).n_pulses == pulses

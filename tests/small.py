@@ -1,0 +1,32 @@
+"""A data set that takes a second, and how to compare two of them."""
+
+import hashlib
+from pathlib import Path
+
+SMALL = """
+seed: 7
+samples_per_class: 3
+activities: [punching, walking, S12]
+duration_s: 4.0
+radar: {carrier_hz: 10e9, bandwidth_hz: 1e9, prf_hz: 500}
+snr_db: {choice: [30, 10]}
+maps: [rtm, stft, fsst_compensated]
+image: {size_px: 48}
+split: {train: 0.67, validation: 0.33}
+"""
+
+
+def small_config(folder: Path, text: str = SMALL) -> Path:
+    """Write the config into a folder; return its path."""
+    path = folder / "small.yaml"
+    path.write_text(text)
+    return path
+
+
+def fingerprint(folder: Path) -> dict[str, str]:
+    """SHA-256 of every file of a data set, the work folder aside."""
+    return {
+        str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and ".radhar" not in path.parts
+    }

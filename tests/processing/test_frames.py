@@ -1,0 +1,70 @@
+"""Window, hop and frames that STFT and FSST share."""
+
+import numpy as np
+import pytest
+import reference as ref
+
+from radhar_cli.processing.frames import Frames
+
+
+@pytest.mark.parametrize(
+    ("duration", "prf", "length", "hop", "kept", "count"),
+    [(4.0, 5000.0, 2000, 200, 19999, 90), (4.0, 128.0, 51, 5, 511, 93)],
+    ids=["free space", "through the wall"],
+)
+def test_settings_of_the_paper(duration, prf, length, hop, kept, count):
+    """L = round(0.1 T PRF), hop = round(0.1 L), floor((M - 1 - L)/hop) + 1 frames."""
+    frames = Frames.of(0.1, 0.9, duration, prf)
+    assert frames == Frames(length, hop)
+    assert frames.count(kept) == count
+
+
+@pytest.mark.parametrize(
+    ("pulses", "length", "hop"), [(450, 45, 5), (250, 25, 3), (150, 15, 2), (145, 15, 2), (94, 9, 1)]
+)
+def test_halves_are_rounded_up(pulses, length, hop):
+    """45 -> 4.5 -> 5 and 25 -> 2.5 -> 3: neither to even, nor down as 0.1 * 45 would in binary."""
+    assert Frames.of(0.1, 0.9, 1.0, float(pulses)) == Frames(length, hop)
+    assert Frames.of(0.1, 0.9, pulses / 100, 100.0) == Frames(length, hop)
+
+
+@pytest.mark.parametrize(
+    ("overlap", "hop"), [(0.0, 80), (0.5, 40), (0.75, 20), (0.99, 1), (0.9999, 1)]
+)
+def test_hop_follows_the_overlap_and_is_never_zero(overlap, hop):
+    assert Frames.of(0.1, overlap, 4.0, 200.0) == Frames(80, hop)
+
+
+@pytest.mark.parametrize(("length", "hop"), [(8, 1), (9, 4), (10, 13), (50, 50)])
+@pytest.mark.parametrize("samples", [50, 51, 63, 64])
+def test_frames_lie_whole_within_the_signal(length, hop, samples):
+    frames, x = Frames(length, hop), np.arange(samples) + 0j
+    cut = frames.cut(x)
+    starts = list(ref.frame_starts(samples, length, hop))
+    assert cut.shape == (frames.count(samples), length) == (len(starts), length)
+    assert frames.starts(samples).tolist() == starts
+    for frame, start in zip(cut, starts, strict=True):
+        assert np.array_equal(frame, x[start : start + length])
+    assert samples - hop < starts[-1] + length <= samples
+
+
+@pytest.mark.parametrize("length", [8, 9, 51, 2000])
+def test_window_is_a_raised_cosine_between_samples(length):
+    g = Frames(length, 1).window
+    n = np.arange(length)
+    assert g == pytest.approx((1 - np.cos(2 * np.pi * (n + 0.5) / length)) / 2, abs=1e-15)
+    assert g == pytest.approx(g[::-1], abs=1e-15)
+    assert g.min() > 0
+    # Sums of a sampled cosine over whole periods: no sidelobe structure is left to chance.
+    assert g.sum() == pytest.approx(length / 2)
+    assert np.sum(g**2) == pytest.approx(3 * length / 8)
+
+
+@pytest.mark.parametrize("length", [8, 9, 51])
+def test_window_slope_is_the_derivative_per_sample(length):
+    def g(n):
+        return (1 - np.cos(2 * np.pi * (n + 0.5) / length)) / 2
+
+    n, h = np.arange(length), 1e-5
+    difference = (g(n + h) - g(n - h)) / (2 * h)
+    assert Frames(length, 1).window_slope == pytest.approx(difference, abs=1e-9)

@@ -1,0 +1,109 @@
+"""Power map to grey levels."""
+
+import numpy as np
+import pytest
+
+from radhar_cli.processing.image import levels
+
+RANGE_DB = 50.0
+
+
+def random_map(shape: tuple[int, int]) -> np.ndarray:
+    return 10 ** np.random.default_rng(0).uniform(-7, 0, shape)
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (51, 93), (2000, 90)])
+def test_a_map_of_nothing_is_black(shape):
+    found = levels(np.zeros(shape), (64, 32), RANGE_DB)
+    assert found.dtype == np.uint8
+    assert found.shape == (64, 32)
+    assert not found.any()
+
+
+@pytest.mark.parametrize(("row", "column"), [(0, 0), (0, 9), (3, 2), (7, 0), (7, 9)])
+def test_a_single_bright_pixel_and_which_way_is_up(row, column):
+    """Row 0 of a map is the lowest frequency, and the bottom of its image."""
+    power = np.zeros((8, 10))
+    power[row, column] = 1e-7
+    right = np.zeros((8, 10))
+    right[7 - row, column] = 255
+    assert np.array_equal(levels(power, (8, 10), RANGE_DB), right)
+
+
+@pytest.mark.parametrize("dynamic_range_db", [10.0, 50.0, 120.0])
+def test_decibels_become_levels(dynamic_range_db):
+    """0 dB is 255, the end of the range 0, all below clipped; between them to the nearest."""
+    decibels = np.array([0, -1.3, -9.99, -10.01, -37, -49.99, -50.01, -119, -121, -200.0])
+    found = levels(10 ** (decibels[None] / 10), (1, 10), dynamic_range_db)[0]
+    exact = 255 * np.clip(1 + decibels / dynamic_range_db, 0, 1)
+    assert np.abs(found - exact).max() <= 0.5 + 1e-3
+
+
+def test_one_decibel_a_level():
+    """A range of 255 dB shows where the rounding is: to the nearest, for every level."""
+    level = np.arange(1, 256)
+    for offset in (-0.45, 0.0, 0.45):
+        decibels = np.minimum(level + offset, 255) - 255
+        power = 10 ** (decibels[None] / 10)
+        assert np.array_equal(levels(power, (1, 255), 255.0)[0], level)
+
+
+@pytest.mark.parametrize("scale", [2.0**-1000, 2.0**-3, 2.0**900])
+def test_a_power_of_two_changes_nothing(scale):
+    power = random_map((70, 40))
+    found = levels(power * scale, (32, 32), RANGE_DB)
+    assert np.array_equal(found, levels(power, (32, 32), RANGE_DB))
+
+
+@pytest.mark.parametrize("scale", [1e-300, 1e-30, 1e30, 1e300])
+def test_scale_does_not_matter(scale):
+    """To float32's rounding, which may turn one level into the next."""
+    power = random_map((70, 40))
+    one, other = (levels(p, (32, 32), RANGE_DB).astype(int) for p in (power, power * scale))
+    assert np.abs(one - other).max() <= 1
+    assert np.mean(one != other) < 0.01
+
+
+def test_denormal_maps_are_images_too():
+    power = np.zeros((8, 8))
+    power[2, 3], power[4, 4] = 5e-320, 5e-324
+    found = levels(power, (8, 8), RANGE_DB)
+    assert found[5, 3] == 255
+    assert found[3, 4] == round(255 * (1 - 4 / 5))
+
+
+def test_power_is_resized_and_not_its_logarithm():
+    """A ridge of one bin, halved in height, loses 4 dB of 50: it would lose 31 as levels.
+
+    The triangle of Pillow's antialiasing gives a row 3/8 of itself.
+    """
+    power = np.zeros((64, 16))
+    power[10:20] = 1.0
+    power[40] = 1.0
+    found = levels(power, (32, 16), RANGE_DB)[::-1]
+    assert (found[6:9] == 255).all()
+    assert (found[20] == round(255 * (1 + 10 * np.log10(3 / 8) / RANGE_DB))).all()
+
+
+def test_the_new_maximum_is_white():
+    """Normalised after resizing: a lone pixel is white however much the resizing dims it."""
+    power = np.zeros((500, 300))
+    power[123, 200] = 1
+    found = levels(power, (50, 30), RANGE_DB)
+    assert found.max() == 255
+    assert np.unravel_index(found.argmax(), found.shape) == (49 - 12, 20)
+
+
+@pytest.mark.parametrize("size", [(16, 48), (7, 5), (300, 2)])
+def test_height_comes_first(size):
+    found = levels(random_map((30, 20)), size, RANGE_DB)
+    assert found.shape == size
+    assert found.max() == 255
+
+
+def test_the_map_is_left_alone_whatever_its_layout():
+    power = random_map((30, 20))
+    kept = power.copy()
+    plain = levels(power, (16, 16), RANGE_DB)
+    assert np.array_equal(levels(np.asfortranarray(power), (16, 16), RANGE_DB), plain)
+    assert np.array_equal(power, kept)

@@ -37,3 +37,18 @@ Recognition Simulator", 2025; docs/model.md lists where and why we differ from i
 """
 
 __version__ = "0.1.0"
+
+_INTERFACE = {
+    "load_config": "radhar_cli.config",
+    "simulate": "radhar_cli.simulation.simulate",
+    "open_dataset": "radhar_cli.dataset.reading",
+}
+
+
+def __getattr__(name: str) -> object:
+    """Import the Python interface on first use, so that `import radhar_cli` stays light."""
+    if name not in _INTERFACE:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
+
+    return getattr(import_module(_INTERFACE[name]), name)

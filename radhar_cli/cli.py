@@ -13,7 +13,7 @@ def program() -> "typer.Typer":
     """The program and its commands."""
     import typer
 
-    from radhar_cli.commands import config, generate, verify
+    from radhar_cli.commands import config, generate, inspect, preview, simulate, verify
 
     app = typer.Typer(
         help="Labelled FMCW radar data sets for human activity recognition, from a YAML file.",
@@ -23,7 +23,10 @@ def program() -> "typer.Typer":
         rich_markup_mode=None,
     )
     app.command()(generate.generate)
+    app.command()(simulate.simulate)
     app.command()(verify.verify)
+    app.command()(preview.preview)
+    app.command()(inspect.inspect)
     app.add_typer(config.app, name="config", no_args_is_help=True)
     return app
 

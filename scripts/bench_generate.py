@@ -266,7 +266,8 @@ def maps(rounds: int) -> dict[str, Any]:
             floor = median(times["own"]) / 12
             found[name] = {"added_ms": added * 1e3, "own_ms": floor * 1e3, "ratio": added / floor}
             print(
-                f"  {name:<28}{added * 1e3:8.2f} ms over {floor * 1e3:6.2f} ms = {added / floor:.2f}"
+                f"  {name:<28}{added * 1e3:8.2f} ms over {floor * 1e3:6.2f} ms"
+                f" = {added / floor:.2f}"
             )
     return found
 

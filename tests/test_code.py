@@ -24,6 +24,7 @@ ROOMS = (
     "echo",
     "processing",
     "pipeline",
+    "simulation",
     "figures",
     "dataset",
     "commands",
@@ -59,7 +60,7 @@ def room(path: Path) -> str:
 @pytest.mark.parametrize("path", files(), ids=lambda p: str(p.relative_to(PACKAGE)))
 def test_imports_never_turn_back(path: Path) -> None:
     if path == PACKAGE / "__init__.py":
-        assert not imports(path), "importing the package should stay as light as it is"
+        assert imports(path) <= {"importlib"}, "importing the package should stay light"
         return
     here = ROOMS.index(room(path))
     for module in imports(path):
@@ -72,7 +73,7 @@ def test_imports_never_turn_back(path: Path) -> None:
     ("library", "allowed"),
     [
         ("typer", {"commands", "cli"}),
-        ("h5py", {"dataset"}),
+        ("h5py", {"dataset", "simulation"}),
         ("tqdm", {"commands"}),
         ("joblib", {"dataset"}),
         ("yaml", {"config", "dataset", "commands"}),

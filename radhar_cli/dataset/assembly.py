@@ -145,7 +145,10 @@ def _root_attributes(file: h5py.File, config: Config, said: list[dict[str, Any]]
     file.attrs["schema_version"] = SCHEMA_VERSION
     file.attrs["config"] = json.dumps(resolved(config))
     file.attrs["config_hash"] = config_hash(config)
-    file.attrs["identity"] = json.dumps(identity(config), sort_keys=True)
+    named = identity(config)
+    file.attrs["identity"] = json.dumps(
+        {part: named[part] for part in ("keys", "versions", "hash")}, sort_keys=True
+    )
     file.attrs["seed"] = config.seed
     file.attrs["class_names"] = [activity.label for activity in ACTIVITIES]
     file.attrs["class_slugs"] = [activity.slug for activity in ACTIVITIES]

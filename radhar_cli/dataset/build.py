@@ -19,10 +19,10 @@ from radhar_cli.dataset.folder import claim, locked, tidy
 from radhar_cli.dataset.layout import DATASET, Rows, png_path
 from radhar_cli.dataset.shards import finished_shards, missing_runs, pieces
 from radhar_cli.dataset.split import split_rows
-from radhar_cli.dataset.survey import Drawn, warnings
 from radhar_cli.dataset.workers import run_tasks
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.figures.colour import colour_table
+from radhar_cli.pipeline.survey import Drawn, warnings
 
 LARGEST_BATCH = 32
 SURVEY_BATCH = 64

@@ -10,9 +10,9 @@ from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import encode_png
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.shards import encode_shard
-from radhar_cli.dataset.survey import settle
 from radhar_cli.figures.colour import colour_table
 from radhar_cli.pipeline.plan import plan_images
+from radhar_cli.pipeline.survey import settle
 from radhar_cli.process import prepare_process
 from radhar_cli.scenario import draw_scene
 

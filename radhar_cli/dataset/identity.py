@@ -5,7 +5,7 @@ from typing import Any
 
 from radhar_cli import __version__
 from radhar_cli.config.experiment import Config
-from radhar_cli.config.identity import config_hash, flat
+from radhar_cli.config.identity import config_hash, flat, resolved
 
 
 def versions() -> dict[str, str]:
@@ -26,7 +26,12 @@ def versions() -> dict[str, str]:
 
 def identity(config: Config) -> dict[str, Any]:
     """Plain values to store with a data set and to compare before continuing it."""
-    return {"keys": flat(config), "versions": versions(), "hash": config_hash(config)}
+    return {
+        "keys": flat(config),
+        "versions": versions(),
+        "hash": config_hash(config),
+        "config": resolved(config),
+    }
 
 
 def differences(old: dict[str, Any], new: dict[str, Any]) -> list[str]:

@@ -17,10 +17,10 @@ from radhar_cli.dataset.identity import versions
 from radhar_cli.dataset.layout import DATASET, PNG, Rows, png_path
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.split import split_rows
-from radhar_cli.dataset.survey import settle
 from radhar_cli.errors import FolderError
 from radhar_cli.figures.colour import colour_table
 from radhar_cli.pipeline.plan import plan_images
+from radhar_cli.pipeline.survey import settle
 from radhar_cli.process import prepare_process
 from radhar_cli.scenario import draw_scene
 

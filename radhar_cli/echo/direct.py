@@ -16,14 +16,16 @@ from numpy.typing import NDArray
 from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.echo.beat import start_phase
 from radhar_cli.echo.half_band_sum import HalfBandTable, half_band_table, noise_gain
-from radhar_cli.echo.interpolation import AFTER, BEFORE, upsample
+from radhar_cli.echo.interpolation import AFTER, BEFORE, TAPS, upsample
 from radhar_cli.echo.paths import Paths, PathSource
 from radhar_cli.radar.noise import circular_gaussian
 from radhar_cli.radar.waveform import Waveform
 
 KNOTS_PER_CYCLE = 100
 FOLD_PER_KNOT = 0.2
-G_CYCLES_PER_KNOT = 0.2
+# G turns by up to half the bandwidth about f0, where its weight D[n] is; referred to the start of
+# the chirp its weight is at both ends, so that interpolation meets the whole of the turning.
+G_CYCLES_PER_KNOT = {True: 0.2, False: 0.02}
 LEAST_STEP = 3
 BLOCK_PULSES = 4096
 EXACT_CHUNK = 32768
@@ -55,6 +57,14 @@ class _Knots(NamedTuple):
     exact: Paths
 
 
+class _Delayed(NamedTuple):
+    """Knots and A G [I, knots] and [I, exact pulses] there."""
+
+    knots: _Knots
+    envelope: Complex
+    exact_envelope: Complex
+
+
 class _Block(NamedTuple):
     """Some consecutive pulses: delays [I, block] and A G as (real, imaginary) [2, I, block]."""
 
@@ -73,7 +83,7 @@ class DirectEcho:
 
     def slow_time(self, mti: bool = True) -> Complex:
         """y[m] [M]; with mti, less the paths that do not move (a constant)."""
-        chosen = self._moving if mti else np.arange(len(self._knots.paths.delay))
+        chosen = self._moving if mti else np.arange(len(self._delayed.envelope))
         if not self.settings.single:
             return self._sum(chosen, np.float64)
         y = self._sum(chosen, np.float32)
@@ -90,31 +100,68 @@ class DirectEcho:
 
     @cached_property
     def _knots(self) -> _Knots:
-        """Knots as dense as the settings, the motion, the geometry and G ask for."""
-        nothing = np.empty(0, dtype=np.intp)
-        step = self._first_step() if self.source.smooth else 1
-        while step >= LEAST_STEP:
-            count = -(-self.waveform.n_pulses // step) + BEFORE + AFTER
-            paths = self._paths((np.arange(count) - BEFORE) * step)
-            excess = self._excess(paths)
-            if excess <= 1:
-                pulses = self._pulses_near_kinks(step)
-                return _Knots(step, paths, pulses, self._paths(pulses))
-            step = min(step - 1, int(step / excess))
-        everywhere = self._paths(np.arange(self.waveform.n_pulses))
-        return _Knots(1, everywhere, nothing, everywhere)
-
-    def _first_step(self) -> int:
+        """Knots as dense as the settings, the motion and the nearest passage ask for."""
         rate = max(self.settings.kinematics_hz, KNOTS_PER_CYCLE * self.source.highest_frequency)
-        return int(self.waveform.prf // rate)
+        step = int(self.waveform.prf // rate) if self.source.smooth else 1
+        while step >= LEAST_STEP:
+            paths = self._paths_every(step)
+            excess = _fold(paths.amplitude) / FOLD_PER_KNOT
+            if excess <= 1:
+                return self._with_kinks(step, paths)
+            step = min(step - 1, int(step / excess))
+        return self._everywhere()
 
-    def _excess(self, paths: Paths) -> float:
-        """How many times too long the knot interval is for G and for the nearest passage."""
-        a = paths.amplitude
-        least = np.minimum(a[:, 1:], a[:, :-1])
-        fold = np.abs(np.diff(a, axis=1)) / np.where(least > 0, least, np.inf)
-        g_cycles = 0.5 * self.waveform.bandwidth * np.abs(np.diff(paths.delay, axis=1))
-        return float(max(fold.max() / FOLD_PER_KNOT, g_cycles.max() / G_CYCLES_PER_KNOT))
+    @cached_property
+    def _delayed(self) -> _Delayed:
+        """Knots dense enough for G too, and the envelopes A G there."""
+        knots = self._knots
+        while True:
+            envelope = self._envelope(knots.paths)
+            excess = self._turning(knots.paths, envelope) if knots.step > 1 else 0.0
+            if excess <= 1:
+                return _Delayed(knots, envelope, self._envelope(knots.exact))
+            step = min(knots.step - 1, int(knots.step / excess))
+            if step < LEAST_STEP:
+                knots = self._everywhere()
+            else:
+                knots = self._with_kinks(step, self._paths_every(step))
+
+    def _paths_every(self, step: int) -> Paths:
+        count = -(-self.waveform.n_pulses // step) + BEFORE + AFTER
+        return self._paths((np.arange(count) - BEFORE) * step)
+
+    def _with_kinks(self, step: int, paths: Paths) -> _Knots:
+        pulses = self._pulses_near_kinks(step)
+        return _Knots(step, paths, pulses, self._paths(pulses))
+
+    def _everywhere(self) -> _Knots:
+        nothing = np.empty(0, dtype=np.intp)
+        return _Knots(
+            1, self._paths(np.arange(self.waveform.n_pulses)), nothing, self._paths(nothing)
+        )
+
+    def _turning(self, paths: Paths, envelope: Complex) -> float:
+        """How many times too long the knot interval is for the turning of G.
+
+        Beyond the half-band G is small and all ripple: its error counts against a smaller signal,
+        and falls with the power TAPS of the interval.
+        """
+        a, waveform = paths.amplitude, self.waveform
+        cycles = 0.5 * waveform.bandwidth * np.abs(np.diff(paths.delay, axis=1)).max()
+        whole = float(np.sum(a * a)) * waveform.n_bins**2
+        kept = float(np.sum(envelope.real**2 + envelope.imag**2))
+        share = min(kept / whole, 1.0) if whole > 0 and kept > 0 else 1.0
+        return float(cycles / (G_CYCLES_PER_KNOT[waveform.centred] * share ** (0.5 / TAPS)))
+
+    @cached_property
+    def _table(self) -> HalfBandTable:
+        return half_band_table(self.waveform, self.settings.table_oversampling)
+
+    def _envelope(self, paths: Paths) -> Complex:
+        """A G [I, M]."""
+        g = self._table(self.waveform.slope / self.waveform.adc_rate * paths.delay)
+        g *= paths.amplitude
+        return g
 
     def _paths(self, pulses: Index) -> Paths:
         """Exact paths at some pulses, in chunks that bound the memory."""
@@ -137,17 +184,19 @@ class DirectEcho:
     @cached_property
     def _moving(self) -> Index:
         """Numbers of the paths that change at all during the recording."""
-        _, paths, _, exact = self._knots
-        delay = np.concatenate([paths.delay, exact.delay], axis=1)
-        amplitude = np.concatenate([paths.amplitude, exact.amplitude], axis=1)
-        return np.flatnonzero((np.ptp(delay, axis=1) > 0) | (np.ptp(amplitude, axis=1) > 0))
+        first, knots = self._knots.paths, self._delayed.knots
+        changes = np.zeros(len(first.delay), dtype=bool)
+        for paths in (knots.paths, knots.exact):
+            changes |= (paths.delay != first.delay[:, :1]).any(axis=1)
+            changes |= (paths.amplitude != first.amplitude[:, :1]).any(axis=1)
+        return np.flatnonzero(changes)
 
     def _cancels(self, y: Complex, chosen: Index) -> bool:
         """Whether the MTI leaves too little of y for single precision to be enough."""
         left = float(np.sum(np.abs(np.diff(y)) ** 2))
-        amplitude = self._knots.paths.amplitude[chosen]
-        whole = float(np.mean(np.sum(amplitude**2, axis=0))) * y.size * self.waveform.n_bins**2
-        return whole * SINGLE_ROUNDING**2 > left * 10 ** (SINGLE_LIMIT_DB / 10)
+        envelope = self._delayed.envelope[chosen]
+        whole = float(np.sum(envelope.real**2 + envelope.imag**2)) / envelope.shape[1] * y.size
+        return bool(whole * SINGLE_ROUNDING**2 > left * 10 ** (SINGLE_LIMIT_DB / 10))
 
     def _sum(self, chosen: Index, real: type[np.floating]) -> Complex:
         y = np.zeros(self.waveform.n_pulses, dtype=complex)
@@ -164,10 +213,8 @@ class DirectEcho:
         return y
 
     def _blocks(self, chosen: Index, real: type[np.floating]) -> Iterator[_Block]:
-        step, paths, exact_pulses, exact = self._knots
-        table = half_band_table(self.waveform, self.settings.table_oversampling)
-        knots = self._envelope(paths, chosen, table)
-        corrections = self._envelope(exact, chosen, table) if exact_pulses.size else None
+        (step, paths, exact_pulses, exact), whole, corrections = self._delayed
+        knots = np.stack([whole.real[chosen], whole.imag[chosen]])
         delay, count = paths.delay[chosen], self.waveform.n_pulses
         segments = max(1, BLOCK_PULSES // step)
         for first in range(0, -(-count // step), segments):
@@ -179,17 +226,20 @@ class DirectEcho:
             length = pulses.stop - pulses.start
             tau = upsample(delay[:, reach], step)[:, :length]
             envelope = upsample(knots[..., reach], step, real)[..., :length]
-            if corrections is not None:
-                here = (exact_pulses >= pulses.start) & (exact_pulses < pulses.stop)
-                at = exact_pulses[here] - pulses.start
-                tau[:, at] = exact.delay[np.ix_(chosen, here)]
-                envelope[..., at] = corrections[..., here]
+            here = np.flatnonzero((exact_pulses >= pulses.start) & (exact_pulses < pulses.stop))
+            if here.size:
+                at, place = exact_pulses[here] - pulses.start, np.ix_(chosen, here)
+                tau[:, at] = exact.delay[place]
+                envelope[0][:, at] = corrections.real[place]
+                envelope[1][:, at] = corrections.imag[place]
             yield _Block(pulses, tau, envelope)
 
-    def _envelope(self, paths: Paths, chosen: Index, table: HalfBandTable) -> Float:
-        """A G as (real, imaginary) [2, I, M]."""
-        g = table(self.waveform.slope / self.waveform.adc_rate * paths.delay[chosen])
-        return np.stack([g.real, g.imag]) * paths.amplitude[chosen]
+
+def _fold(amplitude: Float) -> float:
+    """Largest relative change of an amplitude [I, M] from one knot to the next."""
+    least = np.minimum(amplitude[:, 1:], amplitude[:, :-1])
+    change = np.abs(np.diff(amplitude, axis=1)) / np.where(least > 0, least, np.inf)
+    return float(change.max(initial=0.0))
 
 
 def slow_time_noise(rng: np.random.Generator, waveform: Waveform) -> Complex:

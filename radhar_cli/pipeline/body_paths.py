@@ -22,6 +22,7 @@ class BodyPaths:
         fc: carrier, Hz.
         wall: the slab between, or None.
         power_in_free_space: whether `Paths.power` leaves the wall's loss out (snr_reference).
+        joints: numbers of the scatterers that are kept; all of them for None.
     """
 
     body: Body
@@ -29,6 +30,7 @@ class BodyPaths:
     fc: float
     wall: Wall | None
     power_in_free_space: bool
+    joints: tuple[int, ...] | None = None
 
     @property
     def kinks(self) -> tuple[float, ...]:
@@ -46,8 +48,11 @@ class BodyPaths:
         return self.wall is None
 
     def __call__(self, t: Float) -> Paths:
-        """Paths of the 13 scatterers at times t [M] (s)."""
-        return self._paths(self.body.positions(t), self.body.cross_sections)
+        """Paths of the scatterers at times t [M] (s)."""
+        p, sigma = self.body.positions(t), self.body.cross_sections
+        if self.joints is not None:
+            p, sigma = p[:, list(self.joints)], sigma[list(self.joints)]
+        return self._paths(p, sigma)
 
     def torso_delay(self, t: Float) -> Float:
         """Delay (s) [M] of the torso, the wall's included."""

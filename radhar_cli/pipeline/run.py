@@ -45,6 +45,7 @@ class Recording:
 
     Attributes:
         scene, config, plan: what is simulated, and how.
+        joints: numbers of the scatterers that are kept; all of them for None.
         products: {stage name: what it made}.
         seconds: {stage name: time it took}.
     """
@@ -52,6 +53,7 @@ class Recording:
     scene: Scene
     config: Config
     plan: Plan
+    joints: tuple[int, ...] | None = None
     products: dict[str, Any] = field(default_factory=dict)
     seconds: dict[str, float] = field(default_factory=dict)
 
@@ -96,9 +98,11 @@ class CubeProducts(NamedTuple):
     range_power: Float | None
 
 
-def run(plan: Plan, scene: Scene, config: Config) -> Recording:
+def run(
+    plan: Plan, scene: Scene, config: Config, joints: tuple[int, ...] | None = None
+) -> Recording:
     """Run every stage of the plan, once, in its order."""
-    recording = Recording(scene, config, plan)
+    recording = Recording(scene, config, plan, joints)
     for stage in plan.stages:
         start = perf_counter()
         recording.products[stage.name] = STAGES[stage.kind](recording, stage)
@@ -117,6 +121,7 @@ def _paths(r: Recording, stage: Stage) -> BodyPaths:
         fc=r.waveform.fc,
         wall=r.products.get("wall"),
         power_in_free_space=r.config.snr_reference == "free_space",
+        joints=r.joints,
     )
 
 

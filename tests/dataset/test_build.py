@@ -184,9 +184,9 @@ def test_physical_warnings_are_said_once_with_their_number_and_stored(
     ]
     with h5py.File(tmp_path / "set/dataset.h5") as file:
         stored = json.loads(file.attrs["warnings"])
-    assert {
-        w["kind"]: w["recordings"] for w in stored if w["kind"] == "half_band"
-    } == {"half_band": 3}
+    assert {w["kind"]: w["recordings"] for w in stored if w["kind"] == "half_band"} == {
+        "half_band": 3
+    }
 
 
 def test_dataset_contract(config: Config, whole: Path) -> None:

@@ -1,6 +1,7 @@
 """The beat matrix and the blocks in which the cube engine computes it."""
 
 from dataclasses import asdict
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -62,9 +63,7 @@ def test_unit_phasor_turns_backwards():
 
 
 @pytest.mark.parametrize("activity", [2, 8, 12])
-@pytest.mark.parametrize(
-    ("carrier", "wall"), [(77e9, None), (2e9, {})], ids=["free space", "wall"]
-)
+@pytest.mark.parametrize(("carrier", "wall"), [(77e9, None), (2e9, {})], ids=["free space", "wall"])
 def test_slow_time_signal_of_a_person_is_the_reference(activity, carrier, wall):
     """The whole cube path of a plan, from paths to the sum over bins."""
     radar = ref.Radar(carrier, 1e9, adc_rate=1e6, prf=300, duration=0.5)
@@ -115,7 +114,7 @@ class TestBlocks:
         monkeypatch.setattr(cube, "BLOCK_SAMPLES", 7 * waveform.n_adc)
         blocks = self.blocks(waveform, noisy=True)
         assert [first for first, _ in blocks] == [0, 6, 13, 20, 27, 34]
-        for (_, before), (_, after) in zip(blocks, blocks[1:], strict=False):
+        for (_, before), (_, after) in pairwise(blocks):
             assert np.array_equal(before[:, -1], after[:, 0])
 
     def test_a_block_holds_no_more_than_its_length(self, monkeypatch, waveform):

@@ -58,9 +58,7 @@ def test_table_error_with_the_phase_reference_at_the_start(oversampling, expecte
 @radars
 def test_table_error_falls_with_the_fourth_power_of_the_oversampling(radar):
     right = ref.half_band_sum(U, radar)
-    errors = [
-        ref.error_db(hbs.HalfBandTable(waveform(radar), q)(U), right) for q in (4, 8, 16, 32)
-    ]
+    errors = [ref.error_db(hbs.HalfBandTable(waveform(radar), q)(U), right) for q in (4, 8, 16, 32)]
     assert errors[0] < -40
     assert np.diff(errors) == pytest.approx(-24.1, abs=3)
 

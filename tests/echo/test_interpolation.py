@@ -60,7 +60,7 @@ def test_a_kink_spoils_only_the_segments_that_reach_across_it(kink):
     segment = pulses // step
     reach = (segment - BEFORE < kink) & (kink < segment + AFTER)
     assert error[~reach].max() < 1e-12
-    if 0 < kink % 1:
+    if kink % 1 > 0:
         assert error[reach].max() > 1e-3
 
 

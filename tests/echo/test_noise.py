@@ -1,5 +1,7 @@
 """Receiver noise: its power, its colour, and that both engines have the same."""
 
+from dataclasses import asdict
+
 import numpy as np
 import pytest
 import reference as ref
@@ -8,6 +10,7 @@ from scipy.stats import expon, ks_2samp, kstest
 from radhar_cli.activity import activity_named
 from radhar_cli.config.experiment import MAP_NAMES, Config
 from radhar_cli.echo import cube
+from radhar_cli.echo.direct import slow_time_noise
 from radhar_cli.pipeline.models import body_of
 from radhar_cli.pipeline.plan import plan, plan_images
 from radhar_cli.pipeline.run import Recording, run
@@ -143,6 +146,22 @@ class TestSlowTime:
         assert kstest(scaled.real, "norm").pvalue > 1e-3
         assert kstest(scaled.imag, "norm").pvalue > 1e-3
 
+    @pytest.mark.parametrize(
+        "radar",
+        [
+            ref.Radar(adc_rate=5e5, duration=4.0, fft_length=256),
+            ref.Radar(adc_rate=2.75e5, duration=4.0),
+            ref.Radar(adc_rate=2.75e5, duration=4.0, fft_length=32, centred=False),
+        ],
+        ids=["zero-padded", "odd", "odd, zero-padded, start"],
+    )
+    def test_gain_of_compression_and_sum(self, radar):
+        """sum |D[n]|^2, which is N_ADC N_FFT/2 only where N_FFT is N_ADC."""
+        v = slow_time_noise(np.random.default_rng(8), Waveform(**asdict(radar)))
+        right = np.sum(np.abs(ref.sample_weights(radar)) ** 2)
+        assert abs(right / (radar.n_adc * radar.n_fft / 2) - 1) > 2 * self.error
+        assert np.mean(np.abs(v) ** 2) == pytest.approx(right, rel=self.error)
+
     @engines
     def test_after_mti(self, engine):
         x, sigma = noise_of("signal:plain", engine)
@@ -225,9 +244,9 @@ class TestStreams:
         assert np.abs(loud - 10 * faint).max() < 1e-9 * np.abs(loud).max()
 
     def test_samples_and_classes_have_their_own(self):
-        config = Config.model_validate({"radar": RADAR, "duration_s": 0.5, "maps": ["rtm", "stft"]})
+        config = Config.model_validate({"radar": RADAR, "duration_s": 0.5})
         walking, punching = activity_named("walking"), activity_named("punching")
-        asked = plan(config, ["slow_time_noise", "range_profiles"])
+        asked = plan(config, ["slow_time_noise"])
         unit = []
         for activity, index in ((walking, 0), (walking, 1), (punching, 0)):
             recording = run(asked, draw_scene(config, activity, index), config)
@@ -235,6 +254,15 @@ class TestStreams:
         for a, b in ((0, 1), (0, 2), (1, 2)):
             bound = SIGMAS * gain() / np.sqrt(unit[a].size)
             assert abs(np.mean(unit[a] * unit[b].conj())) < bound
+
+    def test_purposes_have_their_own(self):
+        """The Doppler maps and the range-time map do not share their random numbers."""
+        scene, config = scene_of()
+        products = run(plan(config, ["slow_time_noise", "range_noise"]), scene, config).products
+        drawn = [products["slow_time_noise"], products["range_noise"].T.ravel()]
+        count = min(numbers.size for numbers in drawn)
+        one, other = (numbers[:count] / np.std(numbers) for numbers in drawn)
+        assert abs(np.mean(one * other.conj())) < SIGMAS / np.sqrt(count)
 
     @engines
     def test_adding_a_map_changes_no_byte_of_the_others(self, engine):

@@ -20,7 +20,8 @@ def test_settings_of_the_paper(duration, prf, length, hop, kept, count):
 
 
 @pytest.mark.parametrize(
-    ("pulses", "length", "hop"), [(450, 45, 5), (250, 25, 3), (150, 15, 2), (145, 15, 2), (94, 9, 1)]
+    ("pulses", "length", "hop"),
+    [(450, 45, 5), (250, 25, 3), (150, 15, 2), (145, 15, 2), (94, 9, 1)],
 )
 def test_halves_are_rounded_up(pulses, length, hop):
     """45 -> 4.5 -> 5 and 25 -> 2.5 -> 3: neither to even, nor down as 0.1 * 45 would in binary."""

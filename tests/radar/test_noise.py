@@ -6,7 +6,7 @@ import pytest
 from radhar_cli.radar.noise import circular_gaussian, noise_variance
 
 COUNT = 400_000
-# Five standard errors of a mean of COUNT numbers of variance 1 (3 where the variance is below 9).
+# Five standard errors of a mean of COUNT numbers of variance 1.
 FIVE_SIGMA = 5 / np.sqrt(COUNT)
 
 

@@ -55,6 +55,15 @@ class Findings:
         return self.closest.distance < CLOSEST_M
 
     @property
+    def kinds(self) -> dict[str, bool]:
+        """What there is to warn of."""
+        return {
+            "wall": self.meets_wall,
+            "half_band": self.leaves_half_band,
+            "aliasing": self.aliases,
+        }
+
+    @property
     def invalid(self) -> str | None:
         """Why the scene lies outside the model, or None."""
         if self.too_close:
@@ -145,27 +154,39 @@ def settle(config: Config, activity: Activity, index: int) -> Drawn:
     raise SceneError(f"sample {activity.slug}/{index}: {findings.invalid}")
 
 
+_WORDING = {
+    "wall": "the body passes through the wall",
+    "half_band": "a scatterer leaves the range half-band and its echo the kept bins",
+    "aliasing": "a joint moves faster than the Doppler PRF/2 and aliases",
+}
+
+
+def check(scene: Scene, config: Config) -> list[str]:
+    """Survey one scene and say what to warn of.
+
+    Raises:
+        SceneError: a scatterer comes within 5 cm of an antenna.
+    """
+    findings = survey(scene, config)
+    if findings.too_close:
+        raise SceneError(f"{scene.name}: {findings.invalid}")
+    return [_WORDING[kind] for kind, found in findings.kinds.items() if found]
+
+
 def warnings(config: Config, drawn: Iterable[Findings]) -> list[dict[str, Any]]:
     """What to say once per run: [{kind, recordings, message}]."""
-    counts = {"wall": 0, "half_band": 0, "aliasing": 0}
-    total = 0
-    for findings in drawn:
-        total += 1
-        counts["wall"] += findings.meets_wall
-        counts["half_band"] += findings.leaves_half_band
-        counts["aliasing"] += findings.aliases
-    wording = {
-        "wall": "the body passes through the wall",
-        "half_band": "a scatterer leaves the range half-band and its echo the kept bins",
-        "aliasing": "a joint moves faster than the Doppler PRF/2 and aliases",
-    }
-    said = [
-        {"kind": kind, "recordings": n, "message": f"{n} of {total} recordings: {wording[kind]}"}
+    all_findings = list(drawn)
+    counts = {kind: sum(f.kinds[kind] for f in all_findings) for kind in _WORDING}
+    said: list[dict[str, Any]] = [
+        {
+            "kind": kind,
+            "recordings": n,
+            "message": f"{n} of {len(all_findings)} recordings: {_WORDING[kind]}",
+        }
         for kind, n in counts.items()
         if n
     ]
-    said += [
+    return said + [
         {"kind": "timing", "recordings": config.samples_per_class, "message": message}
         for message in timing_warnings(config)
     ]
-    return said

@@ -1,0 +1,89 @@
+"""A summary as tables on the terminal."""
+
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+BARS = " ▁▂▃▄▅▆▇█"
+
+
+def print_summary(summary: dict[str, Any]) -> None:
+    """Print what `dataset.summary.summarise` found."""
+    console = Console(highlight=False)
+    {
+        "data set": _data_set,
+        "unfinished data set": _unfinished,
+        "scene": _scene,
+    }[summary["kind"]](console, summary)
+
+
+def _data_set(console: Console, s: dict[str, Any]) -> None:
+    console.print(f"[bold]{s['path']}[/bold]  {s['samples']} samples, {s['bytes'] / 2**20:.1f} MiB")
+    console.print(f"seed {s['seed']}   config {s['config_hash'][:12]}   " + _versions(s))
+    table = Table(title="samples, and mean entropy of the power maps (bit)")
+    table.add_column("class")
+    for part in ("train", "validation", "test"):
+        table.add_column(part, justify="right")
+    for name, shape in s["maps"].items():
+        table.add_column(f"{name}\n{shape[0]} x {shape[1]}", justify="right")
+    for slug, parts in s["classes"].items():
+        entropies = [f"{values[slug]['mean']:.2f}" for values in s["entropy_bits"].values()]
+        table.add_row(slug, *map(str, parts.values()), *entropies)
+    console.print(table)
+    if s["drawn"]:
+        drawn = Table(title="drawn parameters")
+        for column in ("parameter", "unit", "min", "mean", "max", "samples", "histogram"):
+            drawn.add_column(column, justify="left" if column in ("parameter", "unit") else "right")
+        for name, h in s["drawn"].items():
+            numbers = [f"{h[key]:.4g}" for key in ("min", "mean", "max")]
+            drawn.add_row(name, h["unit"], *numbers, str(h["samples"]), _bars(h["counts"]))
+        console.print(drawn)
+    for warning in s["warnings"]:
+        console.print(f"[yellow]warning[/yellow] {warning['message']}")
+
+
+def _versions(s: dict[str, Any]) -> str:
+    return ", ".join(f"{library} {version}" for library, version in s["versions"].items())
+
+
+def _bars(counts: list[int]) -> str:
+    largest = max(counts)
+    return "".join(BARS[-(-count * (len(BARS) - 1) // largest)] for count in counts)
+
+
+def _unfinished(console: Console, s: dict[str, Any]) -> None:
+    share = s["finished"] / s["samples"]
+    console.print(
+        f"[bold]{s['path']}[/bold]  unfinished: {s['finished']} of {s['samples']} samples"
+    )
+    console.print(
+        f"{_progress(share)} {share:.0%}   seed {s['seed']}   config {s['config_hash'][:12]}"
+    )
+    console.print("the same `radhar generate` command goes on")
+
+
+def _progress(share: float, width: int = 40) -> str:
+    return "█" * int(share * width) + "░" * (width - int(share * width))
+
+
+def _scene(console: Console, s: dict[str, Any]) -> None:
+    joint = f", {s['joint']} alone" if s["joint"] else ""
+    console.print(
+        f"[bold]{s['path']}[/bold]  {s['activity']['label']} {s['activity']['slug']}{joint}, "
+        f"{s['engine']} engine, seed {s['seed']}"
+    )
+    table = Table(title="maps")
+    for column in ("map", "size", "entropy (bit)"):
+        table.add_column(column, justify="left" if column == "map" else "right")
+    for name, shape in s["maps"].items():
+        table.add_row(name, f"{shape[0]} x {shape[1]}", f"{s['entropy_bits'][name]:.2f}")
+    console.print(table)
+    parameters = Table(title="parameters")
+    parameters.add_column("key")
+    parameters.add_column("value", justify="right")
+    for key, value in {**s["parameters"], **s["derived"]}.items():
+        parameters.add_row(key, f"{value:.6g}")
+    console.print(parameters)
+    for warning in s["warnings"]:
+        console.print(f"[yellow]warning[/yellow] {warning}")

@@ -1,0 +1,34 @@
+"""Antenna leakage and the wall's echo: MTI removes both, so only a raw echo has them."""
+
+from math import dist, pi
+from typing import NamedTuple
+
+from radhar_cli.radar.propagation import Antennas
+from radhar_cli.radar.wall import Wall
+from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
+
+
+class StaticReturn(NamedTuple):
+    """A path that does not move: delay (s) and amplitude for unit transmit power."""
+
+    delay: float
+    amplitude: float
+
+
+def leakage(antennas: Antennas) -> StaticReturn:
+    """From transmitter to receiver: amplitude 10^(-isolation/20), delay |p_tx - p_rx|/c."""
+    return StaticReturn(
+        dist(antennas.tx, antennas.rx) / SPEED_OF_LIGHT, 10 ** (-antennas.isolation_db / 20)
+    )
+
+
+def wall_echo(antennas: Antennas, wall: Wall, waveform: Waveform) -> StaticReturn:
+    """Specular echo of the near face: |Gamma| G lambda/(4 pi 2 d), delay 2 d/c.
+
+    d is the distance from the antennas' midpoint to the near face.
+    """
+    near = wall.bounds[0]
+    middle = (antennas.tx[0] + antennas.rx[0]) / 2
+    d = min(abs(face - middle) for face in near)
+    amplitude = abs(wall.reflection) * antennas.gain * waveform.wavelength / (8 * pi * d)
+    return StaticReturn(2 * d / SPEED_OF_LIGHT, amplitude)

@@ -1,0 +1,62 @@
+"""A contact sheet: some samples of every class of a data set."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+
+class Images(Protocol):
+    """What a contact sheet needs of a data set."""
+
+    @property
+    def maps(self) -> Mapping[str, Any]: ...
+    @property
+    def label(self) -> Any: ...
+    @property
+    def class_slugs(self) -> list[str]: ...
+    @property
+    def config(self) -> dict[str, Any]: ...
+
+
+def draw_contact_sheet(data: Images, name: str, per_class: int, path: Path) -> None:
+    """Write a PNG with a row of `per_class` maps `name` for every class that is present."""
+    labels = np.asarray(data.label[:])
+    present = sorted(set(labels.tolist()))
+    columns = min(per_class, int(np.bincount(labels).max()))
+    figure = Figure(figsize=(1.5 * columns + 1.6, 1.4 * len(present) + 0.7), layout="constrained")
+    FigureCanvasAgg(figure)
+    panels = figure.subplots(len(present), columns, squeeze=False)
+    array = data.maps[name]
+    attributes = array.attrs
+    extent = [
+        float(attributes[key]) for key in ("column_left", "column_right", "row_bottom", "row_top")
+    ]
+    known = bool(np.isfinite(extent).all())
+    for row, label in zip(panels, present, strict=True):
+        chosen = np.flatnonzero(labels == label)[:columns]
+        for panel in row:
+            panel.set_axis_off()
+        for panel, sample in zip(row, chosen, strict=False):
+            panel.set_axis_on()
+            panel.imshow(
+                array[int(sample)],
+                extent=extent if known else None,
+                aspect="auto",
+                cmap=data.config["image"]["colour_map"],
+                vmin=0,
+                vmax=255,
+            )
+            panel.tick_params(labelsize=5, length=2)
+            panel.label_outer()
+        row[0].set_ylabel(data.class_slugs[label].replace("_", "\n"), fontsize=7)
+    unit = f"{attributes['row_quantity']} ({attributes['row_unit']})"
+    figure.supxlabel("time (s)", fontsize=8)
+    figure.supylabel(unit, fontsize=8)
+    figure.suptitle(
+        f"{name}: grey level, {attributes['dynamic_range_db']:g} dB from dark to bright", fontsize=9
+    )
+    figure.savefig(path, dpi=110)

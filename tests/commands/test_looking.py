@@ -1,0 +1,100 @@
+"""simulate, preview and inspect as a user meets them."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from small import small_config
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def radhar(*arguments: object) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "radhar_cli", *map(str, arguments)]
+    return subprocess.run(command, capture_output=True, text=True, cwd=ROOT)
+
+
+def test_simulate_writes_everything(tmp_path: Path) -> None:
+    config, out = small_config(tmp_path), tmp_path / "out"
+    done = radhar("simulate", config, "--activity", "S12", "--seed", 3, "-o", out, "--overlay")
+    assert done.returncode == 0, done.stderr
+    names = sorted(p.name for p in out.iterdir())
+    assert names == ["maps.png", "scene.h5", "scene.json", "stickman.gif"]
+    described = json.loads((out / "scene.json").read_text())
+    assert described["seed"] == 3
+    looked = radhar("inspect", out)
+    assert looked.returncode == 0
+    assert "walking_to_falling" in looked.stdout
+
+
+def test_simulate_for_scripts(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    done = radhar(
+        *("simulate", small_config(tmp_path), "-a", "walking", "-o", out, "--no-figures"),
+        *("--engine", "cube", "--maps", "stft,rtm", "--raw", "--joint", "head", "--nominal"),
+    )
+    assert done.returncode == 0, done.stderr
+    assert sorted(p.name for p in out.iterdir()) == ["scene.h5", "scene.json"]
+    described = json.loads((out / "scene.json").read_text())
+    assert described["engine"] == "cube"
+    assert described["joint"] == "head"
+    assert set(described["entropy_bits"]) == {"stft", "rtm"}
+
+
+def test_preview_and_inspect(tmp_path: Path) -> None:
+    out = tmp_path / "set"
+    radhar("generate", small_config(tmp_path), "-o", out, "--jobs", 1)
+    sheet = radhar("preview", out, "--map", "stft", "--per-class", 2)
+    assert sheet.returncode == 0, sheet.stderr
+    assert (out / "preview_stft.png").exists()
+    assert "half-band" not in sheet.stdout
+    table = radhar("inspect", out)
+    assert "punching" in table.stdout
+    found = json.loads(radhar("inspect", out, "--json").stdout)
+    assert found["samples"] == 9
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["simulate", "CONFIG", "-a", "walkin", "-o", "OUT"], "did you mean 'walking'"),
+        (["simulate", "CONFIG", "-a", "S8", "-o", "OUT", "--joint", "rite_hand"], "'right_hand'"),
+        (["simulate", "CONFIG", "-a", "S8", "-o", "OUT", "--maps", "sftf"], "did you mean"),
+        (["simulate", "CONFIG", "-a", "S8", "-o", "OUT", "--engine", "cubic"], "engine.kind"),
+        (["preview", "OUT"], "no such file"),
+        (["inspect", "OUT"], "no such file"),
+        (["inspect", "CONFIG"], "no HDF5 file"),
+    ],
+)
+def test_bad_input_is_one_line_and_status_2(
+    arguments: list[str], said: str, tmp_path: Path
+) -> None:
+    config = small_config(tmp_path)
+    done = radhar(*[{"CONFIG": config, "OUT": tmp_path / "out"}.get(a, a) for a in arguments])
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert "Traceback" not in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
+
+
+def test_help_has_examples() -> None:
+    for command in ("simulate", "preview", "inspect"):
+        assert "Example" in radhar(command, "--help").stdout
+
+
+def test_readme_lines_run(tmp_path: Path) -> None:
+    """The Python lines of the README make a map and plot it."""
+    text = (ROOT / "README.md").read_text()
+    code = (
+        text.split("```python\n")[1].split("```")[0].replace("walking.png", str(tmp_path / "w.png"))
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", "import matplotlib; matplotlib.use('Agg')\n" + code],
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+    )
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "w.png").exists()

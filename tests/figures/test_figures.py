@@ -1,0 +1,70 @@
+"""Figures are drawn whole, for scenes that are ordinary and for scenes that are not."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from small import small_config
+
+from radhar_cli.commands.terminal import BarProgress
+from radhar_cli.config import load_config
+from radhar_cli.dataset.build import build
+from radhar_cli.dataset.reading import open_dataset
+from radhar_cli.figures.colour import colour_table
+from radhar_cli.figures.contact_sheet import draw_contact_sheet
+from radhar_cli.figures.maps_panel import decibels, draw_maps
+from radhar_cli.figures.stickman import draw_stickman, frame_count
+from radhar_cli.simulation.simulate import simulate
+
+ROOT = Path(__file__).resolve().parents[2]
+WALL = ROOT / "configs/paper/figures_through_wall.yaml"
+
+
+def colours(path: Path) -> int:
+    with Image.open(path) as picture:
+        return len(np.unique(np.asarray(picture.convert("RGB")).reshape(-1, 3), axis=0))
+
+
+@pytest.mark.parametrize(
+    ("activity", "overrides", "joint"),
+    [("S12", [], None), ("S1", ["snr_db=null"], None), ("S8", ["wall=null"], "right_ankle")],
+)
+def test_maps_are_drawn(
+    activity: str, overrides: list[str], joint: str | None, tmp_path: Path
+) -> None:
+    simulation = simulate(load_config(WALL, overrides), activity, joint=joint)
+    draw_maps(simulation, tmp_path / "maps.png", overlay=True)
+    assert colours(tmp_path / "maps.png") > 200
+
+
+def test_stickman_plays_at_true_speed_and_moves(tmp_path: Path) -> None:
+    simulation = simulate(load_config(WALL, ["duration_s=2.5"]), "S12", maps=("stft",))
+    done: list[int] = []
+    draw_stickman(simulation, tmp_path / "stickman.gif", done.append)
+    assert sum(done) == frame_count(simulation) == 50
+    with Image.open(tmp_path / "stickman.gif") as film:
+        assert film.n_frames * film.info["duration"] == 2500
+        first = np.asarray(film.convert("RGB")).astype(int)
+        film.seek(40)
+        later = np.asarray(film.convert("RGB")).astype(int)
+    assert (np.abs(first - later).sum(axis=2) > 60).sum() > 500
+
+
+def test_contact_sheet_shows_every_class(tmp_path: Path) -> None:
+    build(load_config(small_config(tmp_path)), tmp_path / "set", 1, BarProgress())
+    with open_dataset(tmp_path / "set") as data:
+        draw_contact_sheet(data, "stft", 2, tmp_path / "sheet.png")
+        assert len(data) == 9
+    assert colours(tmp_path / "sheet.png") > 100
+
+
+def test_decibels_of_an_all_zero_map_are_the_floor() -> None:
+    assert (decibels(np.zeros((3, 4)), 50.0) == -50).all()
+    assert decibels(np.array([[1.0, 0.1, 0.0]]), 50.0).tolist() == [[0, -10, -50]]
+
+
+def test_colour_table_is_256_colours() -> None:
+    table = colour_table("viridis")
+    assert table.shape == (256, 3)
+    assert table[0].tolist() != table[255].tolist()

@@ -1,0 +1,203 @@
+"""One scene: its maps, its signals, and the truth behind them, held against each other."""
+
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+import radhar_cli as radhar
+from radhar_cli.body.skeleton import JOINTS
+from radhar_cli.config import MAP_NAMES, Config, load_config
+from radhar_cli.errors import ConfigError, SceneError
+from radhar_cli.pipeline.plan import plan
+from radhar_cli.pipeline.run import run
+from radhar_cli.radar.waveform import SPEED_OF_LIGHT
+from radhar_cli.scenario import draw_scene
+from radhar_cli.simulation.scene_file import describe, write_all
+from radhar_cli.simulation.simulate import Simulation, map_names, simulate
+from radhar_cli.simulation.truth import MOVEMENTS
+
+ROOT = Path(__file__).resolve().parents[2]
+FREE = ROOT / "configs/paper/figures_free_space.yaml"
+WALL = ROOT / "configs/paper/figures_through_wall.yaml"
+
+
+@pytest.fixture(scope="module")
+def walking() -> Simulation:
+    return simulate(load_config(FREE, ["snr_db=null"]), "walking")
+
+
+def test_every_product_is_there_with_its_axes(walking: Simulation) -> None:
+    pulses = walking.waveform.n_pulses
+    assert tuple(walking.maps) == MAP_NAMES
+    for one in walking.maps.values():
+        assert one.power.shape == (one.vertical.size, one.time.size)
+        assert np.all(np.diff(one.vertical) > 0)
+        assert np.all(np.diff(one.time) > 0)
+        assert one.entropy > 0
+    assert {x.shape for x in walking.slow_time.values()} == {(pulses - 1,)}
+    assert walking.truth.positions.shape == (pulses, 13, 3)
+    assert walking.truth.radial_velocity.shape == (pulses, 13)
+
+
+def test_torso_line_lies_where_its_speed_puts_it(walking: Simulation) -> None:
+    """The FSST's strongest bin follows the torso's true Doppler within two bins, late in S8."""
+    one = walking.maps["fsst"]
+    late = one.time > 1.5
+    bin_width = one.vertical[1] - one.vertical[0]
+    ridge = one.vertical[np.argmax(one.power[:, late], axis=0)]
+    at = np.searchsorted(walking.truth.time, one.time[late])
+    truth = walking.truth.doppler[at, JOINTS.index("torso")]
+    assert truth.mean() == pytest.approx(-2 * 1.5 * walking.waveform.f0 / SPEED_OF_LIGHT, rel=0.02)
+    close = np.abs(ridge - truth) <= 2 * bin_width
+    assert close.mean() > 0.9
+
+
+def test_compensation_centres_the_torso(walking: Simulation) -> None:
+    one = walking.maps["fsst_compensated"]
+    late = one.time > 1.5
+    ridge = one.vertical[np.argmax(one.power[:, late], axis=0)]
+    assert np.mean(np.abs(ridge) <= 2 * (one.vertical[1] - one.vertical[0])) > 0.9
+
+
+@pytest.mark.parametrize("joint", ["right_ankle", "left_elbow", "head"])
+@pytest.mark.parametrize("path", [FREE, WALL], ids=["free", "wall"])
+def test_ridge_of_a_single_joint_follows_its_true_doppler(path: Path, joint: str) -> None:
+    config = load_config(path, ["snr_db=null", "motion.range_m=2"])
+    single = simulate(config, "S8", joint=joint, maps=("fsst",))
+    one, prf = single.maps["fsst"], single.waveform.prf
+    inside = one.time < (2.5 if joint == "right_ankle" else 3.5)  # within the half-band
+    ridge = one.vertical[np.argmax(one.power[:, inside], axis=0)]
+    window = round(0.1 * single.waveform.n_pulses)
+    doppler = single.truth.doppler[:, JOINTS.index(joint)]
+    at = np.searchsorted(single.truth.time, one.time[inside])
+    spread = np.array([np.ptp(doppler[max(a - window // 2, 0) : a + window // 2]) for a in at])
+    miss = np.abs((ridge - doppler[at] + prf / 2) % prf - prf / 2)
+    # Within a window the joint sweeps over `spread`; its ridge lies somewhere on that sweep.
+    assert np.all(miss <= spread + 3 * (one.vertical[1] - one.vertical[0]))
+
+
+def test_radial_velocity_is_the_derivative_of_the_path(walking: Simulation) -> None:
+    truth, antennas = walking.truth, walking.paths.antennas
+    legs = sum(
+        np.linalg.norm(truth.positions - np.array(a), axis=2) for a in (antennas.tx, antennas.rx)
+    )
+    numeric = np.gradient(legs / 2, truth.time, axis=0)
+    assert np.abs(numeric - truth.radial_velocity)[1:-1].max() < 1e-3
+    assert truth.radial_velocity[:, 0].mean() > 1.3, "walking away is positive"
+
+
+def test_wall_dims_and_fsst_is_thinner() -> None:
+    config = load_config(WALL, ["snr_db=null", "motion.range_m=3", "radar.tx_m=[0.4, -0.1, 1.2]"])
+    behind = simulate(config, "S7", maps=("stft", "fsst"))
+    through_air = simulate(config.model_copy(update={"wall": None}), "S7", maps=("stft",))
+    loss = 10 * np.log10(behind.maps["stft"].power.sum() / through_air.maps["stft"].power.sum())
+    assert loss == pytest.approx(-9.8, abs=0.7), "9.80 dB at normal incidence"
+    assert behind.maps["fsst"].entropy < behind.maps["stft"].entropy - 0.5
+
+
+@pytest.mark.parametrize(
+    ("activity", "order"),
+    [
+        ("S9", ["seated", "standing up", "walking"]),
+        ("S10", ["walking", "sitting down", "seated"]),
+        ("S11", ["lying", "getting up", "walking"]),
+        ("S12", ["walking", "falling", "lying"]),
+        ("S2", ["the whole activity"]),
+    ],
+)
+def test_phase_labels_come_in_order(activity: str, order: list[str]) -> None:
+    labels = simulate(load_config(WALL), activity, maps=("stft",)).truth.phase_label
+    changes = [labels[0], *labels[1:][np.diff(labels) != 0]]
+    assert [MOVEMENTS[label] for label in changes if MOVEMENTS[label] != "standing"] == order
+
+
+def test_same_seed_same_scene_as_generate(tmp_path: Path) -> None:
+    """Sample 0 of a data set and `simulate` with its seed are one scene, noise included."""
+    config = load_config(ROOT / "configs/smoke.yaml", ["seed=5"])
+    one = simulate(config.model_copy(update={"seed": 1}), "S4", seed=5, maps=("stft",))
+    scene = draw_scene(config, one.activity, 0)
+    power = run(plan(config, ["stft"]), scene, config).products["stft"]
+    assert np.array_equal(power, one.maps["stft"].power)
+
+
+def test_engines_agree_without_noise() -> None:
+    direct = load_config(WALL, ["snr_db=null"])
+    exact = load_config(WALL, ["snr_db=null", "engine.kind=cube"])
+    x, y = (simulate(c, "S3", maps=("stft",)).slow_time["raw"] for c in (exact, direct))
+    assert np.linalg.norm(x - y) < 1e-3 * np.linalg.norm(x)
+
+
+def test_raw_echo_has_the_static_returns_and_only_it() -> None:
+    config = load_config(WALL, ["snr_db=null", "radar.antenna_isolation_db=10"])
+    one = simulate(config, "S1", raw=True, maps=("stft",))
+    assert one.beat is not None
+    assert one.beat.shape == (400, 512)
+    assert np.abs(one.beat).mean() == pytest.approx(10 ** (-10 / 20), rel=0.05)
+    assert np.abs(np.diff(one.beat, axis=1)).max() < 1e-14
+    assert not one.maps["stft"].power.any(), "motionless and noiseless: MTI leaves nothing"
+
+
+def test_scene_file_holds_it_all(tmp_path: Path) -> None:
+    one = simulate(load_config(WALL), "S12", raw=True)
+    write_all(one, tmp_path / "out")
+    with h5py.File(tmp_path / "out/scene.h5") as file:
+        for name, power_map in one.maps.items():
+            stored = file[f"maps/{name}"]
+            assert stored.dtype == np.float32
+            assert np.allclose(stored[:], power_map.power, rtol=1e-6)
+            assert stored.attrs["entropy_bits"] == power_map.entropy
+            assert np.array_equal(stored.dims[0][0][:], power_map.vertical)
+            assert np.array_equal(stored.dims[1][0][:], power_map.time)
+        assert file["slow_time/compensated"].dtype == np.complex128
+        assert file["truth/positions"].shape == (512, 13, 3)
+        assert file["echo/beat"].shape == (400, 512)
+    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == ["scene.h5", "scene.json"]
+    described = describe(one)
+    assert described["parameters"]["wall.eps_r"] == 6
+    assert described["entropy_bits"].keys() == set(MAP_NAMES)
+
+
+def test_nominal_takes_the_middle(tmp_path: Path) -> None:
+    config = load_config(ROOT / "configs/paper/through_wall.yaml")
+    one = simulate(config, "S2", nominal=True, maps=("stft",))
+    assert one.scene.values["motion.range_m"] == 2
+    assert one.scene.values["subject.height_m"] == pytest.approx(1.7)
+
+
+def test_what_is_not_asked_for_is_not_computed(monkeypatch: pytest.MonkeyPatch) -> None:
+    one = simulate(load_config(WALL), "S2", maps=("stft",))
+    assert set(one.maps) == {"stft"}
+    assert not [name for name in one.seconds if name.startswith(("fsst", "levels", "range"))]
+    assert one.beat is None
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"activity": "walkin"}, "'walking'"),
+        ({"joint": "right_anckle"}, "'right_ankle'"),
+        ({"joint": "x"}, "the joints are torso"),
+    ],
+)
+def test_unknown_names_suggest_the_nearest(change: dict[str, str], said: str) -> None:
+    with pytest.raises(ConfigError, match=said):
+        simulate(load_config(WALL), **{"activity": "S1", **change})
+    with pytest.raises(ConfigError, match="'fsst'"):
+        map_names(["fsts"])
+
+
+def test_too_close_is_refused() -> None:
+    config = load_config(WALL, ["wall=null", "motion.range_m=0.4", "radar.tx_m=[0.4, 0, 1.2]"])
+    with pytest.raises(SceneError, match="torso comes to"):
+        simulate(config, "S1")
+
+
+def test_python_interface(tmp_path: Path) -> None:
+    config: Config = radhar.load_config(WALL)
+    result = radhar.simulate(config, "walking", 7)
+    assert result.maps["stft"].power.ndim == 2
+    assert "load_config" in radhar._INTERFACE
+    with pytest.raises(AttributeError):
+        radhar.nothing  # noqa: B018

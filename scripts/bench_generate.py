@@ -28,6 +28,7 @@ from radhar_cli.dataset.png import encode_png
 from radhar_cli.dataset.sample import MapImage, synthesise
 from radhar_cli.dataset.shards import encode_shard, write_shard
 from radhar_cli.echo.beat import beat_matrix
+from radhar_cli.echo.range_profiles import beat_at
 from radhar_cli.figures.colour import colour_table
 from radhar_cli.pipeline.axes import axes_of
 from radhar_cli.pipeline.plan import plan, plan_images, signal_of
@@ -38,7 +39,7 @@ from radhar_cli.processing.denoising import savgol
 from radhar_cli.processing.doppler_compensation import compensate
 from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.image import levels
-from radhar_cli.processing.range_compression import range_power
+from radhar_cli.processing.range_compression import range_bins, range_power
 from radhar_cli.scenario import Scene, draw_scene
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -122,7 +123,7 @@ def map_of_signal(config: Config, recording: Recording, name: str) -> np.ndarray
     """A map from ready inputs: slow-time signal, torso track, beat at the pulses shown."""
     p, frames = config.processing, recording.frames
     if name == "rtm":
-        return range_power(recording.products["range_profiles"], recording.waveform)
+        return range_power(range_bins(recording.products["beat"], recording.waveform))
     x = recording.products["signal:plain"]
     which = signal_of(name)
     if "compensated" in which:
@@ -240,8 +241,9 @@ def maps(rounds: int) -> dict[str, Any]:
             both = load_config(PAPER, [f"maps=[stft, {name}]"])
             alone = load_config(PAPER, [f"maps=[{name}]"])
             inputs = ["signal:plain", *(["torso_track"] if "compensated" in name else [])]
-            inputs = ["range_profiles"] if name == "rtm" else inputs
             ready = [run(plan(both, inputs), scene(both, i), both) for i in range(12)]
+            for r in ready:
+                r.products["beat"] = beat_at(r.products["paths"], r.waveform, r.shown, mti=True)
             sinks = {c: Sink(c, Path(place)) for c in (base, both, alone)}
 
             def whole(config: Config, turn: int, sinks: dict = sinks) -> None:

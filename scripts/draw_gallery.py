@@ -53,8 +53,8 @@ WORDS = {
     ),
     6: "The same hump backwards: away from the radar first as the person rises, then at rest.",
     7: (
-        "Shoulders and arms circle the torso's axis in antiphase: two interleaved chains, symmetric "
-        "about zero; the torso itself is static."
+        "Shoulders and arms circle the torso's axis in antiphase: two interleaved chains, "
+        "symmetric about zero; the torso itself is static."
     ),
     8: (
         "A steady torso line at -2 v f0/c: -790 Hz at 77 GHz + 2 GHz, -25 Hz at 2.5 GHz, with the "

@@ -23,23 +23,27 @@ def beat_at(source: PathSource, waveform: Waveform, pulses: Index, mti: bool) ->
     """
     needed = np.union1d(pulses, pulses + 1) if mti else pulses
     paths = source(waveform.times(needed.astype(float)))
-    beat = beat_matrix(paths.delay, paths.amplitude, waveform)
     if not mti:
-        return beat
-    return beat[:, np.searchsorted(needed, pulses + 1)] - beat[:, np.searchsorted(needed, pulses)]
+        return beat_matrix(paths.delay, paths.amplitude, waveform)
+    late, early = np.searchsorted(needed, pulses + 1), np.searchsorted(needed, pulses)
+    delay = np.concatenate([paths.delay[:, late], paths.delay[:, early]])
+    amplitude = np.concatenate([paths.amplitude[:, late], -paths.amplitude[:, early]])
+    moves = (paths.delay != paths.delay[:, :1]) | (paths.amplitude != paths.amplitude[:, :1])
+    kept = np.tile(moves.any(axis=1), 2)  # a path that stands still cancels itself exactly
+    return beat_matrix(delay[kept], amplitude[kept], waveform)
 
 
-def noise_at(rng: np.random.Generator, waveform: Waveform, pulses: Index, mti: bool) -> Complex:
-    """Noise of `beat_at` for unit raw noise, [N_ADC, len(pulses)], with its right joint law.
+def noise_at(rng: np.random.Generator, length: int, pulses: Index, mti: bool) -> Complex:
+    """White unit noise [length, M] at `pulses` [length, len(pulses)], with its right joint law.
 
     Differences over pairs without a common pulse are white of variance 2 and drawn as such; pairs
     that share a pulse share its noise, which gives them the correlation -1/2.
     """
     if not mti:
-        return circular_gaussian(rng, (pulses.size, waveform.n_adc)).T
+        return circular_gaussian(rng, (pulses.size, length)).T
     if np.all(np.diff(pulses) > 1):
-        pairs: Complex = np.sqrt(2) * circular_gaussian(rng, (pulses.size, waveform.n_adc)).T
+        pairs: Complex = np.sqrt(2) * circular_gaussian(rng, (pulses.size, length)).T
         return pairs
     needed = np.union1d(pulses, pulses + 1)
-    w = circular_gaussian(rng, (needed.size, waveform.n_adc)).T
+    w = circular_gaussian(rng, (needed.size, length)).T
     return w[:, np.searchsorted(needed, pulses + 1)] - w[:, np.searchsorted(needed, pulses)]

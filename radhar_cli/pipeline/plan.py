@@ -122,13 +122,13 @@ def _echo_stages(config: Config) -> list[Stage]:
             ("slow_time", *(("slow_time_noise",) if noisy else ())),
             "MTI" if config.processing.mti else "slow-time signal, no MTI",
         ),
-        Stage("range_noise", powered, "receiver noise at the pulses that the range-time map shows"),
+        Stage("range_noise", powered, "receiver noise of those range profiles"),
         Stage(
             "range_profiles",
             ("paths", *(("range_noise",) if noisy else ())),
-            "beat at the pulses that the range-time map shows",
+            "range profiles at the pulses that the range-time map shows",
         ),
-        Stage("rtm", ("range_profiles",), "range compression of those pulses"),
+        Stage("rtm", ("range_profiles",), "power of the range profiles"),
     ]
 
 

@@ -29,6 +29,7 @@ from radhar_cli.processing.image import levels
 from radhar_cli.processing.mti import mti
 from radhar_cli.processing.range_compression import (
     half_band_signal,
+    range_bins,
     range_compression,
     range_power,
 )
@@ -166,7 +167,7 @@ def _beat_cube(r: Recording, stage: Stage) -> CubeProducts:
             continue
         if wants_range:
             here = r.shown[(r.shown >= start) & (r.shown < start + own.shape[1])]
-            profiles.append(range_power(own[:, here - start], r.waveform))
+            profiles.append(range_power(range_bins(own[:, here - start], r.waveform)))
         if wants_signal:
             signal.append(half_band_signal(range_compression(own, r.waveform)))
     return CubeProducts(
@@ -176,16 +177,20 @@ def _beat_cube(r: Recording, stage: Stage) -> CubeProducts:
 
 
 def _range_profiles(r: Recording, stage: Stage) -> Complex:
-    with_mti = r.config.processing.mti
-    beat = beat_at(r.products["paths"], r.waveform, r.shown, with_mti)
+    beat = beat_at(r.products["paths"], r.waveform, r.shown, r.config.processing.mti)
+    bins = range_bins(beat, r.waveform)
     if "range_noise" in r.products:
-        beat = beat + r.products["range_noise"]
-    return beat
+        bins = bins + r.products["range_noise"]
+    return bins
 
 
 def _range_noise(r: Recording, stage: Stage) -> Complex:
-    with_mti = r.config.processing.mti
-    return r.sigma * noise_at(r.noise("range_profiles"), r.waveform, r.shown, with_mti)
+    """Noise of the kept bins. Unpadded, a transform of white noise is white: the bins are drawn."""
+    rng, with_mti, w = r.noise("range_profiles"), r.config.processing.mti, r.waveform
+    if w.n_fft == w.n_adc:
+        scale = r.sigma * np.sqrt(w.n_adc)
+        return np.asarray(scale * noise_at(rng, w.n_bins, r.shown, with_mti))
+    return range_bins(r.sigma * noise_at(rng, w.n_adc, r.shown, with_mti), w)
 
 
 def _rtm(r: Recording, stage: Stage) -> Float:
@@ -193,7 +198,7 @@ def _rtm(r: Recording, stage: Stage) -> Float:
         power = r.products["beat_cube"].range_power
         assert power is not None
         return np.asarray(power)
-    return range_power(r.products["range_profiles"], r.waveform)
+    return range_power(r.products["range_profiles"])
 
 
 def _signal(r: Recording, stage: Stage) -> Complex:

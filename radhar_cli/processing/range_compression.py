@@ -20,19 +20,24 @@ def range_compression(s: Complex, waveform: Waveform) -> Complex:
     Returns:
         [N_FFT/2, M].
     """
-    # The transform runs along contiguous memory where s is the transpose of [M, N_ADC].
-    bins = scipy.fft.ifft(s.T, waveform.n_fft, axis=1, norm="forward")[:, : waveform.n_bins]
+    bins = range_bins(s, waveform)
     if waveform.n0:
-        k = np.arange(waveform.n_bins)
+        k = np.arange(waveform.n_bins)[:, None]
         bins = bins * np.exp(-2j * np.pi * np.mod(k * waveform.n0 / waveform.n_fft, 1))
-    kept: Complex = bins.T
+    return bins
+
+
+def range_bins(s: Complex, waveform: Waveform) -> Complex:
+    """`range_compression` without its phase reference, which no power depends on: n0 = 0."""
+    # The transform runs along contiguous memory where s is the transpose of [M, N_ADC].
+    bins = scipy.fft.ifft(s.T, waveform.n_fft, axis=1, norm="forward")
+    kept: Complex = bins[:, : waveform.n_bins].T
     return kept
 
 
-def range_power(s: Complex, waveform: Waveform) -> Float:
-    """|S[k, m]|^2 [N_FFT/2, M]: the range-time map, which no phase reference changes."""
-    bins = scipy.fft.ifft(s.T, waveform.n_fft, axis=1, norm="forward")[:, : waveform.n_bins]
-    power: Float = (bins.real**2 + bins.imag**2).T
+def range_power(bins: Complex) -> Float:
+    """|S[k, m]|^2 [N_FFT/2, M]: the range-time map."""
+    power: Float = bins.real**2 + bins.imag**2
     return power
 
 

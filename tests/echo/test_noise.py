@@ -191,17 +191,27 @@ class TestRangeProfiles:
         return noise_of("range_profiles", "direct", image={"size_px": [16, width]}, **more)
 
     @pytest.mark.parametrize("mti", [True, False])
-    def test_variance_and_whiteness_in_fast_time(self, mti):
+    def test_variance_and_whiteness_over_the_bins(self, mti):
         noise, sigma = self.noise(2000, processing={"mti": mti})
-        assert noise.shape == (SAMPLES, 2000)
+        assert noise.shape == (SAMPLES // 2, 2000)
         error = SIGMAS * np.sqrt(1.5 / noise.size)
-        assert np.mean(np.abs(noise) ** 2) == pytest.approx((1 + mti) * sigma**2, rel=error)
+        right = (1 + mti) * sigma**2 * SAMPLES
+        assert np.mean(np.abs(noise) ** 2) == pytest.approx(right, rel=error)
         assert abs(correlation(noise.T, 1)) < error
+
+    def test_zero_padded_bins_are_correlated_as_the_transform_makes_them(self):
+        """Twice as many bins as samples: neighbours share |sum exp(j pi n/N)|/N = 2/pi."""
+        more = {"processing": {"range_fft_length": 2 * SAMPLES}}
+        noise, sigma = self.noise(2000, **more)
+        assert noise.shape == (SAMPLES, 2000)
+        error = 2 * SIGMAS * np.sqrt(2 / noise.size)
+        assert np.mean(np.abs(noise) ** 2) == pytest.approx(2 * sigma**2 * SAMPLES, rel=error)
+        assert abs(abs(correlation(noise.T, 1)) - 2 / np.pi) < 0.01 + error
 
     def test_pairs_that_share_a_pulse_are_correlated(self):
         """M - 1 <= W: every pair is shown, and the middle pulse is common to two of them."""
         noise, _ = self.noise(8192, duration_s=1.0)
-        assert noise.shape == (SAMPLES, 4999)
+        assert noise.shape == (SAMPLES // 2, 4999)
         error = SIGMAS * np.sqrt(2 / noise.size)
         found = [correlation(noise, lag) for lag in (1, 2, 3)]
         assert np.abs(np.array(found) - [-0.5, 0, 0]).max() < error
@@ -209,7 +219,7 @@ class TestRangeProfiles:
     def test_only_those_pairs(self):
         """M - 1 = 3/2 W: the pairs shown are 1 and 2 pulses apart in turn."""
         noise, _ = self.noise(3000, duration_s=0.9002)
-        assert noise.shape == (SAMPLES, 3000)
+        assert noise.shape == (SAMPLES // 2, 3000)
         shown = (np.arange(3000) + 0.5) * 4500 / 3000 // 1
         products = noise[:, 1:] * noise[:, :-1].conj() / np.mean(np.abs(noise) ** 2)
         for apart, right in ((1, -0.5), (2, 0.0)):

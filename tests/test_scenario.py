@@ -102,7 +102,7 @@ def test_a_scene_is_the_same_in_whatever_order_it_is_drawn() -> None:
             {"timing.blend_s"},
         ),
     ],
-    ids=str,
+    ids=lambda part: "+".join(sorted(part)),
 )
 def test_a_change_touches_its_own_draws_alone(change: dict[str, Any], touched: set[str]) -> None:
     before, after = drawn(Config(**DRAWN)), drawn(Config(**{**DRAWN, **change}))

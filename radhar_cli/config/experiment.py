@@ -59,7 +59,7 @@ class Config(Section):
     on_invalid: Literal["keep", "redraw", "error"] = "keep"
     processing: ProcessingConfig = ProcessingConfig()
     image: ImageConfig = ImageConfig()
-    maps: Annotated[tuple[MapName, ...], Field(min_length=1)] = ("stft",)
+    maps: tuple[MapName, ...] = ("stft",)
     split: SplitConfig = SplitConfig()
     engine: EngineConfig = EngineConfig()
     output: OutputConfig = OutputConfig()
@@ -80,8 +80,8 @@ class Config(Section):
     @field_validator("maps")
     @classmethod
     def _each_once(cls, value: tuple[MapName, ...]) -> tuple[MapName, ...]:
-        if len(set(value)) != len(value):
-            raise PydanticCustomError("maps", "should name each map once")
+        if not value or len(set(value)) != len(value):
+            raise PydanticCustomError("maps", "should name at least one map, each once")
         return tuple(sorted(value, key=MAP_NAMES.index))
 
     @model_validator(mode="after")

@@ -119,10 +119,10 @@ class Choice(_Form):
 
     @property
     def nominal(self) -> float:
-        return self.choice[(len(self.choice) - 1) // 2]
+        return sorted(self.choice)[(len(self.choice) - 1) // 2]
 
     def quantile(self, u: float) -> float:
-        return self.choice[min(int(u * len(self.choice)), len(self.choice) - 1)]
+        return sorted(self.choice)[min(int(u * len(self.choice)), len(self.choice) - 1)]
 
 
 class Vary(_Form):

@@ -32,16 +32,22 @@ _Loader.add_implicit_resolver("tag:yaml.org,2002:float", _FLOAT, list("-+0123456
 
 
 def _mapping(loader: _Loader, node: yaml.MappingNode) -> dict[Any, Any]:
-    loader.flatten_mapping(node)
-    seen: dict[Any, Any] = {}
-    for key_node, value_node in node.value:
-        key = loader.construct_object(key_node, deep=True)
-        if not isinstance(key, (str, int, float, bool)) or key in seen:
-            raise yaml.MarkedYAMLError(
-                problem=f"{key!r} appears twice", problem_mark=key_node.start_mark
-            )
-        seen[key] = loader.construct_object(value_node, deep=True)
-    return seen
+    own: set[str] = set()
+    for key_node, _ in node.value:
+        merges = key_node.tag == "tag:yaml.org,2002:merge"
+        key = "<<" if merges else loader.construct_object(key_node, deep=True)
+        if isinstance(key, str) and key not in own:
+            own.add(key)
+            continue
+        wrong = "appears twice" if isinstance(key, str) else "should be text"
+        raise yaml.MarkedYAMLError(
+            problem=f"the key {key!r} {wrong}", problem_mark=key_node.start_mark
+        )
+    loader.flatten_mapping(node)  # merged keys (<<) come first and give way
+    return {
+        loader.construct_object(key, deep=True): loader.construct_object(value, deep=True)
+        for key, value in node.value
+    }
 
 
 _Loader.add_constructor("tag:yaml.org,2002:map", _mapping)
@@ -115,8 +121,8 @@ def _override(document: dict[str, Any], override: str) -> None:
     place = document
     for name in names[:-1]:
         inner = place.get(name)
-        if not isinstance(inner, dict):
-            inner = {}
+        # A copy: a YAML anchor may share this mapping with another key.
+        inner = dict(inner) if isinstance(inner, dict) else {}
         place[name] = inner
         place = inner
     place[names[-1]] = _parse(text, f"--set {key.strip()}")
@@ -155,15 +161,21 @@ def _found(error: ValidationError, document: Any) -> Iterator[Problem]:
 
 
 def _document_path(location: tuple[int | str, ...], document: Any) -> list[int | str]:
-    """Drop from a pydantic location the tags of unions, which are no keys of the document."""
+    """Drop from a pydantic location the tags of unions, which are no keys of the document.
+
+    A tag comes once more as the key of the same name where the error lies inside of it.
+    """
     names: list[int | str] = []
-    place = document
+    place, tag = document, None
     for name in location:
+        if name in _UNION_TAGS and name != tag:
+            tag = name
+            continue
         if isinstance(place, dict) and name in place:
-            place = place[name]
+            place, tag = place[name], None
         elif isinstance(place, (list, tuple)) and isinstance(name, int):
             place = place[name] if name < len(place) else None
-        elif name in _UNION_TAGS or re.match(r"literal|tuple|function|.*\[", str(name)):
+        elif re.match(r"literal|tuple|function|.*\[", str(name)):
             continue
         else:
             place = None
@@ -203,8 +215,12 @@ def _place(where: str, key: str, lines: dict[str, int]) -> str:
 
 def _what(problem: Problem) -> str:
     value = problem.value
-    if isinstance(value, BaseModel):
-        value = value.model_dump(mode="json", exclude_none=True)
-    shown = json.dumps(value, default=str)
+    shown = json.dumps(value, default=_plain)
     shown = shown if len(shown) <= 120 else shown[:117] + "..."
     return f" = {shown}: {problem.right}"
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, BaseModel):
+        return value.model_dump(mode="json", exclude_none=True)
+    return str(value)

@@ -41,7 +41,11 @@ def test_the_papers_split_is_240_to_60() -> None:
     assert (found == VALIDATION).sum() == 720
 
 
-@given(st.integers(1, 200), st.sampled_from([("0.7", "0.15"), ("0.5", "0.25"), ("0.35", "0.05")]))
+# Train and test; the rest validates. Halves round up on both sides, and train comes first.
+SHARES = [("0.7", "0.15"), ("0.5", "0.25"), ("0.35", "0.05"), ("0.5", "0.5"), ("0.25", "0.75")]
+
+
+@given(st.integers(1, 200), st.sampled_from(SHARES))
 @settings(deadline=None, max_examples=40)
 def test_three_parts(count: int, shares: tuple[str, str]) -> None:
     train, test = shares
@@ -65,6 +69,11 @@ def test_a_part_of_no_share_gets_no_sample(count: int, percent: int) -> None:
     if percent == 100:
         assert np.all(without == TRAIN)
     assert not np.any(split_of(count, train=share, validation=round(1 - share, 2)) == TEST)
+
+
+def test_shares_that_miss_1_by_a_rounding_leave_no_sample_to_a_part_of_no_share() -> None:
+    found = split_of(1, train=0.4999999996, validation=0.0, test=0.4999999996)
+    assert not np.any(found == VALIDATION)
 
 
 def test_every_sample_may_go_anywhere() -> None:

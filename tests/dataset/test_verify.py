@@ -50,7 +50,7 @@ def _relabel(file: h5py.File) -> None:
 
 
 def _resplit(file: h5py.File) -> None:
-    file["split"][:] = file["split"][:][::-1]
+    file["split"][:] = 1 - file["split"][:]
 
 
 def _reseed(file: h5py.File) -> None:

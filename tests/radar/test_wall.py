@@ -231,7 +231,7 @@ def test_the_torso_is_late_by_the_wall() -> None:
     assert np.all(source.torso_delay(t) > free.torso_delay(t))
 
 
-@pytest.mark.parametrize(("eps_r", "loss_tangent"), [(1.0, 1e9), (1e30, 1e30), (1e12, 0.0)])
+@pytest.mark.parametrize(("eps_r", "loss_tangent"), [(1.0, 1e9), (1e30, 1e30), (1e30, 0.0)])
 def test_a_wall_like_metal_lets_nothing_through(eps_r: float, loss_tangent: float) -> None:
     """Every warning is an error here, so the underflow must be silent."""
     metal = Wall(WALL.center, WALL.size, eps_r, loss_tangent)
@@ -239,5 +239,5 @@ def test_a_wall_like_metal_lets_nothing_through(eps_r: float, loss_tangent: floa
     if loss_tangent:
         assert factor == 0
     else:  # 1 - |Gamma|^2 = 4 n/(1 + n)^2, lost to cancellation if it were taken literally
-        assert factor == pytest.approx(4 / 1e6, rel=1e-5)
+        assert factor == pytest.approx(4e-15, rel=1e-12)
     assert np.isfinite(float(extra_delay(np.array(0.24), metal)))

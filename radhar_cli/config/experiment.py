@@ -80,8 +80,10 @@ class Config(Section):
     @field_validator("maps")
     @classmethod
     def _each_once(cls, value: tuple[MapName, ...]) -> tuple[MapName, ...]:
-        if not value or len(set(value)) != len(value):
-            raise PydanticCustomError("maps", "should name at least one map, each once")
+        if not value:
+            raise PydanticCustomError("maps", "should name at least 1 map")
+        if len(set(value)) != len(value):
+            raise PydanticCustomError("maps", "should name each map once")
         return tuple(sorted(value, key=MAP_NAMES.index))
 
     @model_validator(mode="after")

@@ -15,6 +15,6 @@ class EngineConfig(Section):
     """
 
     kind: Literal["direct", "cube"] = "direct"
-    kinematics_hz: Annotated[float, Field(gt=0, le=1e9)] = 250.0
+    kinematics_hz: Annotated[float, Field(gt=0, le=1e9, strict=True)] = 250.0
     table_oversampling: Annotated[int, Field(ge=2, le=1024, strict=True)] = 16
     precision: Literal["single", "double"] = "single"

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from radhar_cli.config.section import Section
+from radhar_cli.config.section import Flag, Section
 
 
 class SavgolConfig(Section):
@@ -26,11 +26,11 @@ class SavgolConfig(Section):
 class ProcessingConfig(Section):
     """MTI, range compression, windows and thresholds."""
 
-    mti: bool = True
+    mti: Flag = True
     range_fft_length: Annotated[int, Field(ge=2, multiple_of=2, strict=True)] | None = None
     range_reference: Literal["centre", "start"] = "centre"
-    window_fraction: Annotated[float, Field(gt=0, lt=1)] = 0.1
-    overlap_fraction: Annotated[float, Field(ge=0, lt=1)] = 0.9
+    window_fraction: Annotated[float, Field(gt=0, lt=1, strict=True)] = 0.1
+    overlap_fraction: Annotated[float, Field(ge=0, lt=1, strict=True)] = 0.9
     stft_fft_length: Annotated[int, Field(ge=8, strict=True)] | None = None
     savgol: SavgolConfig = SavgolConfig()
-    fsst_threshold: Annotated[float, Field(ge=0, lt=1)] = 1e-3
+    fsst_threshold: Annotated[float, Field(ge=0, lt=1, strict=True)] = 1e-3

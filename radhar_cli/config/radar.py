@@ -1,7 +1,7 @@
 """`radar:` waveform and antennas (paper, table "Experimental Parameter Settings")."""
 
 from radhar_cli.config.number import Decibel, Positive, Vector
-from radhar_cli.config.section import Section
+from radhar_cli.config.section import Flag, Section
 
 
 class RadarConfig(Section):
@@ -16,4 +16,4 @@ class RadarConfig(Section):
     rx_m: Vector = (0.4, 0.1, 1.5)
     antenna_gain_dbi: Decibel = 6.0
     antenna_isolation_db: Decibel = 10.0
-    residual_video_phase: bool = False
+    residual_video_phase: Flag = False

@@ -14,21 +14,29 @@ from radhar_cli.config.experiment import Config, Problem
 from radhar_cli.errors import ConfigError
 
 _UNION_TAGS = {"number", "uniform", "normal", "choice", "vary", "same", "per_activity"}
+_INT = re.compile(r"^[-+]?(?:0|[1-9][0-9_]*)$")
 _FLOAT = re.compile(
-    r"""^[-+]?(?:
-        [0-9][0-9_]*\.[0-9_]*(?:[eE][-+]?[0-9]+)?
-        |\.[0-9][0-9_]*(?:[eE][-+]?[0-9]+)?
-        |[0-9][0-9_]*[eE][-+]?[0-9]+
-        |\.(?:inf|Inf|INF))$|^\.(?:nan|NaN|NAN)$""",
-    re.VERBOSE,
+    r"^[-+]?(?:[0-9][0-9_]*\.[0-9_]*(?:[eE][-+]?[0-9]+)?|\.[0-9][0-9_]*(?:[eE][-+]?[0-9]+)?|[0-9][0-9_]*[eE][-+]?[0-9]+"
+    r"|\.(?:inf|Inf|INF))$|^\.(?:nan|NaN|NAN)$"
 )
+_BOOL = re.compile(r"^(?:true|True|TRUE|false|False|FALSE)$")
+_NULL = re.compile(r"^(?:~|null|Null|NULL|)$")
 
 
 class _Loader(yaml.SafeLoader):
-    """YAML whose ``77e9`` is a number (YAML 1.2) and whose keys may not repeat."""
+    """YAML 1.2 scalars: ``77e9`` is a number, ``1:30`` and ``yes`` are not; keys may not repeat."""
 
 
-_Loader.add_implicit_resolver("tag:yaml.org,2002:float", _FLOAT, list("-+0123456789."))
+_Loader.yaml_implicit_resolvers = {}
+
+for _tag, _pattern, _first in (
+    ("bool", _BOOL, "tTfF"),
+    ("int", _INT, "-+0123456789"),
+    ("float", _FLOAT, "-+0123456789."),
+    ("null", _NULL, ["~", "n", "N", ""]),
+    ("merge", re.compile(r"^<<$"), "<"),
+):
+    _Loader.add_implicit_resolver(f"tag:yaml.org,2002:{_tag}", _pattern, list(_first))
 
 
 def _mapping(loader: _Loader, node: yaml.MappingNode) -> dict[Any, Any]:

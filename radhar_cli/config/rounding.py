@@ -12,7 +12,7 @@ def exact(value: float) -> Fraction:
 def half_up(*factors: float) -> int:
     """Return floor(product + 1/2), the product taken of the decimals as written.
 
-    ``0.1 * 15`` is 1.5 and rounds to 2, although its nearest double lies below.
+    0.145 * 100 is 14.5 and rounds to 15, although the product of the doubles lies below.
     """
     product = Fraction(1)
     for factor in factors:

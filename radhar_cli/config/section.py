@@ -1,6 +1,10 @@
 """What every section of a config shares: frozen, strict, unknown keys refused."""
 
-from pydantic import BaseModel, ConfigDict
+from typing import Annotated, TypeAlias
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Flag: TypeAlias = Annotated[bool, Field(strict=True)]
 
 
 class Section(BaseModel):

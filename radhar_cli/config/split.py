@@ -7,7 +7,7 @@ from pydantic_core import PydanticCustomError
 
 from radhar_cli.config.section import Section
 
-Share = Annotated[float, Field(ge=0, le=1)]
+Share = Annotated[float, Field(ge=0, le=1, strict=True)]
 
 
 class SplitConfig(Section):

@@ -69,7 +69,7 @@ class Findings:
         if self.too_close:
             c = self.closest
             return (
-                f"{c.joint} comes to {c.distance * 100:.2g} cm from the {c.antenna} at "
+                f"{c.joint} comes to {c.distance * 100:.2f} cm from the {c.antenna} at "
                 f"t = {c.time:.3f} s; the model holds from {CLOSEST_M * 100:g} cm on"
             )
         if self.meets_wall:

@@ -216,7 +216,7 @@ BROKEN = [
     Broken("seed: 9223372036854775808", 1, "seed", "9223372036854775808", "less than"),
     Broken("samples_per_class: 0", 1, "samples_per_class", "0", "greater than or equal to 1"),
     Broken("duration_s: four", 1, "duration_s", '"four"', "should be a number or one of {uniform"),
-    Broken("duration_s: yes", 1, "duration_s", "true", "should be a number"),
+    Broken("duration_s: yes", 1, "duration_s", '"yes"', "should be a number"),
     Broken("duration_s: null", 1, "duration_s", "null", "should be a number"),
     Broken("duration_s: .nan", 1, "duration_s", "NaN", "finite number"),
     Broken("duration_s: .inf", 1, "duration_s", "Infinity", "finite number"),

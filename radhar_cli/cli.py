@@ -1,5 +1,6 @@
 """The `radhar` program: registers the commands, turns our errors into one message and a status."""
 
+import signal
 import sys
 from typing import TYPE_CHECKING
 
@@ -43,3 +44,5 @@ def main() -> None:
     except BrokenPipeError:
         sys.stderr.close()
         sys.exit(1)
+    finally:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # the work is done; leave quietly

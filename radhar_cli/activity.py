@@ -77,7 +77,7 @@ def activity_named(name: str) -> Activity:
         return found
     near = difflib.get_close_matches(name.lower(), list(_BY_NAME), n=1)
     hint = (
-        f"did you mean {near[0]!r}?"
+        f"did you mean {near[0].upper() if near[0][1:].isdigit() else near[0]!r}?"
         if near
         else "the slugs are " + ", ".join(a.slug for a in ACTIVITIES)
     )

@@ -5,7 +5,14 @@ from typing import Annotated
 
 import typer
 
-app = typer.Typer(help="Show a resolved config, or the JSON Schema of the file.")
+app = typer.Typer(
+    help="""Show a resolved config, or the JSON Schema of the file.
+
+    Example:
+
+      radhar config show configs/quickstart.yaml
+    """
+)
 
 
 @app.command()

@@ -13,7 +13,9 @@ def simulate(
     config: Annotated[Path, typer.Argument(help="YAML file whose ranges are drawn from.")],
     activity: Annotated[str, typer.Option("--activity", "-a", help="Slug or label, S1 to S12.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the results.")],
-    seed: Annotated[int | None, typer.Option(min=0, help="Instead of the config's.")] = None,
+    seed: Annotated[
+        int | None, typer.Option(min=0, max=2**63 - 1, help="Instead of the config's.")
+    ] = None,
     nominal: Annotated[
         bool, typer.Option("--nominal", help="Take mid-points instead of drawing.")
     ] = False,
@@ -47,12 +49,15 @@ def simulate(
       radhar simulate configs/paper/free_space.yaml --activity walking --seed 7 -o out/walk
     """
     from radhar_cli.config import load_config
+    from radhar_cli.errors import FolderError
     from radhar_cli.simulation.simulate import map_names
     from radhar_cli.simulation.simulate import simulate as simulate_scene
 
     overrides = [*(set_ or []), *([f"engine.kind={engine}"] if engine else [])]
     loaded = load_config(config, overrides)
-    chosen = map_names(maps.split(",")) if maps else map_names(None)
+    chosen = map_names(None if maps is None else maps.split(","))
+    if out.exists() and not out.is_dir():
+        raise FolderError(f"{out}: is a file; -o should name a folder")
     simulation = simulate_scene(
         loaded, activity, seed, nominal=nominal, joint=joint, maps=chosen, raw=raw
     )

@@ -1,6 +1,6 @@
 """The whole config: all sections, and the checks that span several of them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Annotated, Literal, NamedTuple
 
 from pydantic import Field, field_validator, model_validator
@@ -164,7 +164,7 @@ def _signal_problems(c: Config) -> Iterator[Problem]:
             "duration_s",
             c.duration_s,
             f"should make the window of {processing.window_fraction:g} * duration_s * prf_hz at "
-            f"least {MIN_WINDOW} pulses (it has {window})",
+            f"least {MIN_WINDOW} pulses (it has {window}): radar.prf_hz may be {prf[0]:g}",
         )
     kept = pulses - 1 if processing.mti else pulses
     if doppler and window > kept:
@@ -207,13 +207,13 @@ def _wall_problems(c: Config) -> Iterator[Problem]:
             )
 
 
-def timing_warnings(c: Config) -> list[str]:
+def timing_warnings(c: Config, activities: Iterable[Activity] | None = None) -> list[str]:
     """Say which activities never reach their second phase within the recording."""
     from radhar_cli.config.motion import for_activity
 
     length = nominal(c.duration_s)
     found = []
-    for activity in c.chosen_activities:
+    for activity in c.chosen_activities if activities is None else activities:
         for key in ("seat_start_s", "walk_start_s", "walk_stop_s"):
             if f"timing.{key}" not in activity.uses:
                 continue

@@ -151,6 +151,15 @@ def _within(key: str, parent: str) -> bool:
     return key == parent or key.startswith(parent + ".")
 
 
+# What pydantic says in terms of Python, said in terms of YAML.
+_WORDING = {
+    "model_type": "should be a mapping of keys",
+    "dict_type": "should be a mapping of keys",
+    "tuple_type": "should be a list, such as [a, b]",
+    "missing": "is required",
+}
+
+
 def _found(error: ValidationError, document: Any) -> Iterator[Problem]:
     for item in error.errors(include_url=False):
         if item["type"] == "across":
@@ -161,7 +170,7 @@ def _found(error: ValidationError, document: Any) -> Iterator[Problem]:
         if item["type"] == "extra_forbidden":
             yield Problem(key, item["input"], _unknown(names))
         else:
-            message = item["msg"]
+            message = _WORDING.get(item["type"], item["msg"])
             if not message.startswith(("should", "'")):
                 message = message[0].lower() + message[1:]
                 message = message.removeprefix("input ")

@@ -15,8 +15,9 @@ from radhar_cli.arrays import Levels
 from radhar_cli.config.experiment import Config
 from radhar_cli.dataset.assembly import assemble
 from radhar_cli.dataset.batch import Batch, png_rows, run_batch, survey_rows
-from radhar_cli.dataset.folder import claim, locked, tidy
+from radhar_cli.dataset.folder import claim, locked, mark_built, tidy
 from radhar_cli.dataset.layout import DATASET, Rows, png_path
+from radhar_cli.dataset.settled import settled_rows, store_settled
 from radhar_cli.dataset.shards import finished_shards, missing_runs, pieces
 from radhar_cli.dataset.split import split_rows
 from radhar_cli.dataset.workers import run_tasks
@@ -113,7 +114,7 @@ class _Build:
             tidy(self.folder)
             return Outcome(self.folder, count, 0, pngs)
         drawn = self._survey(count)
-        said = warnings(config, (outcome.findings for outcome in drawn))
+        said = warnings(config, drawn)
         for warning in said:
             self.progress.say(f"warning: {warning['message']}")
         made = self._batches(drawn, split, batch_size)
@@ -121,21 +122,22 @@ class _Build:
         self.progress.stage("assembling", count, 0)
         assemble(config, self.folder, finished_shards(self.folder), said)
         self.progress.advance(count)
+        mark_built(self.folder)
         tidy(self.folder)
         return Outcome(self.folder, count, made, pngs, said)
 
     def _survey(self, count: int) -> list[Drawn]:
-        self.progress.stage("checking scenes", count, 0)
-        outcomes: list[Drawn | None] = [None] * count
-        tasks = [
-            (self.config, start, min(start + SURVEY_BATCH, count), os.getpid())
-            for start in range(0, count, SURVEY_BATCH)
-        ]
+        """Settle every scene; what a run that was stopped had settled is not done again."""
+        outcomes = settled_rows(self.folder)
+        starts = [s for s in range(0, count, SURVEY_BATCH) if s not in outcomes]
+        self.progress.stage("checking scenes", count, count - len(starts) * SURVEY_BATCH)
+        tasks = [(self.config, s, min(s + SURVEY_BATCH, count), os.getpid()) for s in starts]
         jobs = self.jobs if len(tasks) > 2 * self.jobs else 1
         for start, found in run_tasks(survey_rows, tasks, jobs):
-            outcomes[start : start + len(found)] = found
+            store_settled(self.folder, start, found)
+            outcomes[start] = found
             self.progress.advance(len(found))
-        return [outcome for outcome in outcomes if outcome is not None]
+        return [outcome for start in sorted(outcomes) for outcome in outcomes[start]]
 
     def _batches(self, drawn: list[Drawn], split: tuple[int, ...], batch_size: int | None) -> int:
         gaps = missing_runs(finished_shards(self.folder), len(drawn))

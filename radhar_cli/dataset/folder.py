@@ -45,16 +45,17 @@ def claim(folder: Path, config: Config, overwrite: bool) -> None:
         FolderError: it holds something else; the message names the keys that differ.
     """
     new = identity(config)
-    old = None if overwrite else stored_identity(folder)
-    if overwrite and _ours(folder):
-        _clear(folder)
-    elif old is None:
+    if overwrite:
+        _clear(folder, new)
+    old = stored_identity(folder)
+    if old is None:
         strangers = sorted(p.name for p in folder.iterdir() if p.name != WORK)
         if strangers:
             raise FolderError(
                 f"{folder}: holds {', '.join(strangers[:5])} but no radhar data set; "
                 "choose an empty folder"
             )
+        _name(folder, new)
     else:
         found = differences(old, new)
         if found:
@@ -64,8 +65,10 @@ def claim(folder: Path, config: Config, overwrite: bool) -> None:
                 + "\nchoose another folder, or --overwrite to start this one again"
             )
     shutil.rmtree(folder / WORK / "unfinished", ignore_errors=True)
-    if old is None:
-        write_whole(folder, folder / WORK / _IDENTITY, json.dumps(new, sort_keys=True).encode())
+
+
+def _name(folder: Path, named: dict[str, Any]) -> None:
+    write_whole(folder, folder / WORK / _IDENTITY, json.dumps(named, sort_keys=True).encode())
 
 
 def stored_identity(folder: Path) -> dict[str, Any] | None:
@@ -79,8 +82,8 @@ def stored_identity(folder: Path) -> dict[str, Any] | None:
                 return stored
         except (OSError, KeyError, ValueError) as error:
             raise FolderError(
-                f"{folder / DATASET}: is not a data set of ours or is damaged ({error}); "
-                "--overwrite starts again"
+                f"{folder / DATASET}: is not a data set of radhar's, or is damaged ({error}); "
+                "choose another folder, or --overwrite if radhar built it"
             ) from None
     path = folder / WORK / _IDENTITY
     if not path.exists():
@@ -91,27 +94,43 @@ def stored_identity(folder: Path) -> dict[str, Any] | None:
 
 def tidy(folder: Path) -> None:
     """Remove what only an unfinished build needs."""
-    for name in ("shards", "unfinished"):
+    for name in ("shards", "settled", "unfinished"):
         shutil.rmtree(folder / WORK / name, ignore_errors=True)
     (folder / WORK / _IDENTITY).unlink(missing_ok=True)
 
 
 def _ours(folder: Path) -> bool:
-    return (folder / DATASET).exists() or (folder / WORK / _IDENTITY).exists()
+    """Whether radhar built, or began to build, what a folder holds; a damaged file may be ours."""
+    work = folder / WORK
+    begun = any((work / name).exists() for name in (_IDENTITY, "shards", "settled", "built"))
+    if begun or not (folder / DATASET).exists():
+        return begun
+    try:
+        return stored_identity(folder) is not None
+    except FolderError:
+        return False
 
 
-def _clear(folder: Path) -> None:
-    """Remove our own files and nothing else.
+def _clear(folder: Path, new: dict[str, Any]) -> None:
+    """Start again where radhar was before: remove its files and nothing else.
 
-    What names the old data set goes last: killed in between, the folder still holds the old one,
-    with some files missing, and never files of it without its name.
+    The new name comes first and the old data set's file last but for the PNGs that were put aside,
+    so that a kill in between leaves a folder that either run can go on with.
     """
+    if not _ours(folder):
+        return
     if (folder / PNG).exists():
         put_aside = unfinished_path(folder)
         put_aside.parent.mkdir(parents=True, exist_ok=True)
         (folder / PNG).rename(put_aside)
     for name in (SCENES, CONFIG):
         (folder / name).unlink(missing_ok=True)
-    shutil.rmtree(folder / WORK / "shards", ignore_errors=True)
+    for name in ("shards", "settled"):
+        shutil.rmtree(folder / WORK / name, ignore_errors=True)
+    _name(folder, new)
     (folder / DATASET).unlink(missing_ok=True)
-    tidy(folder)
+
+
+def mark_built(folder: Path) -> None:
+    """Leave a mark that the finished data set here is radhar's, whatever becomes of its file."""
+    (folder / WORK / "built").touch()

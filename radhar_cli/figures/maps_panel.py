@@ -99,6 +99,7 @@ def _draw_truth(axes: Axes, power_map: PowerMap, simulation: Simulation, unit: f
             truth.time[::every],
             folded / unit,
             scalex=False,
+            scaley=False,
             color="white",
             linewidth=0.5,
             alpha=0.6,

@@ -47,7 +47,8 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Callable[[int], o
         artist.set_animated(True)
     canvas.draw()
     background = canvas.copy_from_bbox(figure.bbox)
-    frames = []
+    frames: list[Image.Image] = []
+    palette: Image.Image | None = None
     for frame in range(frame_count(simulation)):
         t = frame / FRAMES_PER_SECOND
         canvas.restore_region(background)
@@ -57,7 +58,8 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Callable[[int], o
         for artist in moving:
             figure.draw_artist(artist)
         picture = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
-        frames.append(picture.quantize(128, dither=Image.Dither.NONE))
+        palette = palette or picture.quantize(256)
+        frames.append(picture.quantize(palette=palette, dither=Image.Dither.NONE))
         advance(1)
     frames[0].save(
         path, save_all=True, append_images=frames[1:], duration=1000 // FRAMES_PER_SECOND, loop=0
@@ -69,7 +71,7 @@ def _cursor(figure: Figure, simulation: Simulation) -> list[Line2D]:
     shown = [name for name in SHOWN_BESIDE if name in simulation.maps] or list(simulation.maps)
     if not shown:
         return []
-    axes = figure.add_axes((0.645, 0.12, 0.295, 0.76))
+    axes = figure.add_axes((0.66, 0.12, 0.28, 0.76))
     draw_map(axes, simulation.maps[shown[0]], simulation, overlay=False)
     return [axes.axvline(0, color="white", linewidth=1)]
 
@@ -82,9 +84,10 @@ class _Stage:
         new_axes: Any = figure.add_axes
         self.axes = new_axes((-0.02, 0.0, 0.53, 0.94), projection="3d")
         antennas, wall = simulation.paths.antennas, simulation.paths.wall
-        for position, name in ((antennas.tx, "TX"), (antennas.rx, "RX")):
+        for position in (antennas.tx, antennas.rx):
             self.axes.scatter(*position, marker="^", color="black", s=30)
-            self.axes.text(*position, f" {name}", fontsize=7, zdir="x")
+        middle = np.mean([antennas.tx, antennas.rx], axis=0)
+        self.axes.text(*middle, "TX, RX  ", fontsize=7, ha="right")
         if wall is not None:
             self._draw_wall(wall.bounds)
         points = [self.truth.positions.reshape(-1, 3), np.array([antennas.tx, antennas.rx])]
@@ -103,7 +106,7 @@ class _Stage:
             edgecolors="black",
             linewidths=0.4,
         )
-        bar = figure.colorbar(self.joints, cax=figure.add_axes((0.535, 0.25, 0.01, 0.5)))
+        bar = figure.colorbar(self.joints, cax=figure.add_axes((0.55, 0.25, 0.01, 0.5)))
         bar.set_label("RCS (m$^2$)", fontsize=8)
         bar.ax.tick_params(labelsize=7)
         self.clock = self.axes.text2D(0.5, 0.97, "", transform=self.axes.transAxes, ha="center")

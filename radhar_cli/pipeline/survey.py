@@ -1,6 +1,6 @@
 """Check scenes before any echo is computed: what lies outside the model, and what to warn of."""
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -19,7 +19,7 @@ from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.scenario import Scene, draw_scene
 
 CLOSEST_M = 0.05
-GRID_HZ = 100.0
+GRID_HZ = 50.0
 GRID_PER_CYCLE = 40
 MOST_ATTEMPTS = 1000
 CHUNK = 65536
@@ -69,7 +69,7 @@ class Findings:
         if self.too_close:
             c = self.closest
             return (
-                f"{c.joint} comes to {c.distance * 100:.2f} cm from the {c.antenna} at "
+                f"{c.joint} comes to {c.distance * 100:.3g} cm from the {c.antenna} at "
                 f"t = {c.time:.3f} s; the model holds from {CLOSEST_M * 100:g} cm on"
             )
         if self.meets_wall:
@@ -126,10 +126,10 @@ def _nearest(p: Float, t: Float, antennas: Antennas) -> Approach:
 
 
 class Drawn(NamedTuple):
-    """Outcome for one row: the attempt that is kept, and what was found in it."""
+    """Outcome for one row: the attempt that is kept, and what there is to warn of in it."""
 
     attempt: int
-    findings: Findings
+    kinds: dict[str, bool]
 
 
 def settle(config: Config, activity: Activity, index: int) -> Drawn:
@@ -144,7 +144,7 @@ def settle(config: Config, activity: Activity, index: int) -> Drawn:
         scene = draw_scene(config, activity, index, attempt)
         findings = survey(scene, config)
         if findings.invalid is None or (config.on_invalid == "keep" and not findings.too_close):
-            return Drawn(attempt, findings)
+            return Drawn(attempt, findings.kinds)
     assert findings is not None
     if config.on_invalid == "redraw":
         raise SceneError(
@@ -170,18 +170,18 @@ def check(scene: Scene, config: Config) -> list[str]:
     findings = survey(scene, config)
     if findings.too_close:
         raise SceneError(f"{scene.name}: {findings.invalid}")
-    return [_WORDING[kind] for kind, found in findings.kinds.items() if found]
+    said = [_WORDING[kind] for kind, found in findings.kinds.items() if found]
+    return said + timing_warnings(config, (scene.activity,))
 
 
-def warnings(config: Config, drawn: Iterable[Findings]) -> list[dict[str, Any]]:
+def warnings(config: Config, drawn: Sequence[Drawn]) -> list[dict[str, Any]]:
     """What to say once per run: [{kind, recordings, message}]."""
-    all_findings = list(drawn)
-    counts = {kind: sum(f.kinds[kind] for f in all_findings) for kind in _WORDING}
+    counts = {kind: sum(outcome.kinds[kind] for outcome in drawn) for kind in _WORDING}
     said: list[dict[str, Any]] = [
         {
             "kind": kind,
             "recordings": n,
-            "message": f"{n} of {len(all_findings)} recordings: {_WORDING[kind]}",
+            "message": f"{n} of {len(drawn)} recordings: {_WORDING[kind]}",
         }
         for kind, n in counts.items()
         if n

@@ -1,7 +1,6 @@
 """Savitzky-Golay smoothing of a complex slow-time signal (paper, section "DTMs Generation")."""
 
 import numpy as np
-from scipy.signal import savgol_filter
 
 from radhar_cli.arrays import Complex
 
@@ -16,6 +15,8 @@ def savgol(x: Complex, order: int, frame: int) -> Complex:
         order: of the polynomial, below `frame`.
         frame: odd, at most M.
     """
+    from scipy.signal import savgol_filter  # slow to import, and few maps are denoised
+
     parts = savgol_filter(np.stack([x.real, x.imag]), frame, order, axis=1, mode="interp")
     smooth: Complex = parts[0] + 1j * parts[1]
     return smooth

@@ -138,6 +138,59 @@ def test_overwrite_starts_again_and_keeps_strangers(
     assert fingerprint(folder) == fingerprint(whole)
 
 
+def test_overwrite_leaves_what_radhar_did_not_build(config: Config, tmp_path: Path) -> None:
+    with h5py.File(tmp_path / "dataset.h5", "w") as file:
+        file["mine"] = 1
+    (tmp_path / "png").mkdir()
+    (tmp_path / "png/mine.txt").write_text("mine")
+    with pytest.raises(FolderError, match="not a data set of radhar's"):
+        make(config, tmp_path, overwrite=True)
+    assert (tmp_path / "png/mine.txt").exists()
+    assert (tmp_path / "dataset.h5").exists()
+
+
+def test_overwrite_killed_midway_goes_on(
+    config: Config, whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever step of clearing is the last, the same command finishes the job."""
+    for count in range(1, 7):
+        folder = tmp_path / f"set{count}"
+        make(config.model_copy(update={"seed": 99}), folder)
+        (folder / "preview_stft.png").write_text("mine")
+        left = [count]
+
+        def dying(original: object, left: list[int] = left) -> object:
+            def step(*arguments: object, **options: object) -> object:
+                left[0] -= 1
+                if left[0] <= 0:
+                    raise KeyboardInterrupt
+                return original(*arguments, **options)  # type: ignore[operator]
+
+            return step
+
+        with monkeypatch.context() as patch:
+            patch.setattr(Path, "rename", dying(Path.rename))
+            patch.setattr(Path, "unlink", dying(Path.unlink))
+            patch.setattr(folder_module.shutil, "rmtree", dying(folder_module.shutil.rmtree))
+            with pytest.raises(KeyboardInterrupt):
+                make(config, folder, overwrite=True)
+        make(config, folder, overwrite=True)
+        (folder / "preview_stft.png").unlink()
+        assert fingerprint(folder) == fingerprint(whole)
+
+
+def test_a_settled_survey_is_not_repeated(
+    config: Config, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "set"
+    with monkeypatch.context() as patch:
+        patch.setattr(batch_module, "synthesise", lambda *_: 1 / 0)
+        with pytest.raises(ZeroDivisionError):
+            make(config, folder)
+    monkeypatch.setattr(batch_module, "settle", lambda *_: 1 / 0)
+    assert make(config, folder).made == 9
+
+
 def test_foreign_folder_file_and_live_folder_are_refused(config: Config, tmp_path: Path) -> None:
     (tmp_path / "thesis.tex").write_text("x")
     with pytest.raises(FolderError, match=r"thesis\.tex"):

@@ -192,7 +192,7 @@ def test_aliasing_is_that_of_the_frequency_the_doppler_is_read_at() -> None:
 
 def said(config: Config) -> dict[str, tuple[int, str]]:
     found = [
-        settle(config, activity, index).findings
+        settle(config, activity, index)
         for activity in config.chosen_activities
         for index in range(config.samples_per_class)
     ]
@@ -262,8 +262,8 @@ def test_keep_keeps_the_first_draw_with_its_findings() -> None:
     drawn = [settle(config, STANDING, index) for index in range(20)]
     assert all(row.attempt == 0 for row in drawn)
     for index, row in enumerate(drawn):
-        assert row.findings.meets_wall == (first_valid(config, index) > 0)
-    assert 0 < sum(row.findings.meets_wall for row in drawn) < 20
+        assert row.kinds["wall"] == (first_valid(config, index) > 0)
+    assert 0 < sum(row.kinds["wall"] for row in drawn) < 20
 
 
 def test_redraw_takes_the_first_draw_inside_the_model() -> None:
@@ -272,7 +272,7 @@ def test_redraw_takes_the_first_draw_inside_the_model() -> None:
     attempts = [first_valid(config, index) for index in range(20)]
     assert [row.attempt for row in drawn] == attempts
     assert max(attempts) > 1
-    assert all(row.findings.invalid is None for row in drawn)
+    assert all(not (row.kinds["wall"] or row.kinds["half_band"]) for row in drawn)
 
 
 def test_error_stops_and_names_the_sample_and_why() -> None:
@@ -287,7 +287,7 @@ def test_error_stops_and_names_the_sample_and_why() -> None:
 @pytest.mark.parametrize("on_invalid", ["redraw", "error"])
 def test_leaving_the_half_band_is_invalid_but_aliasing_is_not(on_invalid: str) -> None:
     config = Config(**FREE_SPACE, on_invalid=on_invalid)
-    assert settle(config, WALKING, 0).findings.aliases
+    assert settle(config, WALKING, 0).kinds["aliasing"]
     far = {**PERSON["motion"], "range_m": {"uniform": [1.2, 1.8]}}
     config = Config(**{**PERSON, "motion": far}, on_invalid=on_invalid)
     leaves = [
@@ -297,7 +297,7 @@ def test_leaving_the_half_band_is_invalid_but_aliasing_is_not(on_invalid: str) -
     ]
     if on_invalid == "redraw":
         assert settle(config, WALKING, leaves[0]).attempt > 0
-        assert not settle(config, WALKING, leaves[0]).findings.leaves_half_band
+        assert not settle(config, WALKING, leaves[0]).kinds["half_band"]
     else:
         with pytest.raises(SceneError, match=rf"walking/{leaves[0]}: .*half-band"):
             settle(config, WALKING, leaves[0])

@@ -58,7 +58,7 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Callable[[int], o
         for artist in moving:
             figure.draw_artist(artist)
         picture = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
-        palette = palette or picture.quantize(256)
+        palette = palette or picture.quantize(256, Image.Quantize.MAXCOVERAGE)
         frames.append(picture.quantize(palette=palette, dither=Image.Dither.NONE))
         advance(1)
     frames[0].save(
@@ -71,7 +71,7 @@ def _cursor(figure: Figure, simulation: Simulation) -> list[Line2D]:
     shown = [name for name in SHOWN_BESIDE if name in simulation.maps] or list(simulation.maps)
     if not shown:
         return []
-    axes = figure.add_axes((0.66, 0.12, 0.28, 0.76))
+    axes = figure.add_axes((0.69, 0.12, 0.255, 0.76))
     draw_map(axes, simulation.maps[shown[0]], simulation, overlay=False)
     return [axes.axvline(0, color="white", linewidth=1)]
 
@@ -106,7 +106,7 @@ class _Stage:
             edgecolors="black",
             linewidths=0.4,
         )
-        bar = figure.colorbar(self.joints, cax=figure.add_axes((0.55, 0.25, 0.01, 0.5)))
+        bar = figure.colorbar(self.joints, cax=figure.add_axes((0.575, 0.25, 0.01, 0.5)))
         bar.set_label("RCS (m$^2$)", fontsize=8)
         bar.ax.tick_params(labelsize=7)
         self.clock = self.axes.text2D(0.5, 0.97, "", transform=self.axes.transAxes, ha="center")

@@ -1,11 +1,14 @@
 """The estimate of a build: nothing written, sizes close to the truth."""
 
+from itertools import count
 from pathlib import Path
 
+import pytest
 from small import small_config
 
 from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import load_config
+from radhar_cli.dataset import estimate as estimate_module
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.estimate import estimate
 
@@ -21,9 +24,14 @@ def test_bytes_are_close_to_those_of_the_build(tmp_path: Path) -> None:
     assert 0.9 < found.png_bytes / pngs < 1.1
 
 
-def test_time_grows_with_samples_and_shrinks_with_jobs(tmp_path: Path) -> None:
+def test_time_grows_with_samples_and_shrinks_with_jobs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By a clock that gives every sample 20 ms, so that the machine's mood plays no part."""
+    monkeypatch.setattr(estimate_module, "perf_counter", map((0.02).__mul__, count()).__next__)
     few = load_config(small_config(tmp_path))
     many = load_config(small_config(tmp_path), ["samples_per_class=300"])
     one, two, more = estimate(few, 1), estimate(many, 2), estimate(many, 1)
     assert more.seconds > 5 * one.seconds
-    assert two.seconds < 0.8 * more.seconds
+    assert two.seconds < 0.75 * more.seconds
+    assert 900 * 0.02 < more.seconds < 900 * 0.025

@@ -15,7 +15,7 @@ from radhar_cli.echo import cube
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.static_returns import leakage, wall_echo
 from radhar_cli.errors import ConfigError
-from radhar_cli.pipeline.axes import axes_of
+from radhar_cli.pipeline.axes import Axes, axes_of
 from radhar_cli.pipeline.body_paths import BodyPaths
 from radhar_cli.pipeline.plan import SIGNALS, plan
 from radhar_cli.pipeline.run import Recording, run
@@ -58,7 +58,7 @@ class PowerMap:
     @property
     def extent(self) -> tuple[float, float, float, float]:
         """Outer edges (time start, time stop, vertical low, vertical high)."""
-        return (*_edges(self.time), *_edges(self.vertical))
+        return Axes(self.vertical, self.time).extent
 
 
 @dataclass(frozen=True)
@@ -183,11 +183,6 @@ def _power_map(name: str, recording: Recording) -> PowerMap:
     axes = axes_of(name, recording)
     products: dict[str, Any] = recording.products
     return PowerMap(name, products[name], axes.vertical, axes.time, products[f"entropy:{name}"])
-
-
-def _edges(axis: Float) -> tuple[float, float]:
-    half = 0.5 * (axis[1] - axis[0]) if axis.size > 1 else 0.0
-    return float(axis[0] - half), float(axis[-1] + half)
 
 
 def _activity(name: str) -> Activity:

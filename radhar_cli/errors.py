@@ -1,5 +1,14 @@
 """Errors that a user can mend; the program prints their text alone and exits with their status."""
 
+import difflib
+from collections.abc import Iterable
+
+
+def did_you_mean(name: str, known: Iterable[str], otherwise: str) -> str:
+    """Suggest the nearest known name, or say `otherwise` where none is near."""
+    near = difflib.get_close_matches(name, list(known), n=1)
+    return f"did you mean {near[0]!r}?" if near else otherwise
+
 
 class RadharError(Exception):
     """Something is wrong with what the user gave: one clear message, no traceback."""

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from radhar_cli.commands.options import Overrides
+
 app = typer.Typer(
     help="""Show a resolved config, or the JSON Schema of the file.
 
@@ -18,10 +20,7 @@ app = typer.Typer(
 @app.command()
 def show(
     config: Annotated[Path, typer.Argument(help="YAML file.")],
-    set_: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Change one dotted key; may repeat."),
-    ] = None,
+    set_: Overrides = None,
 ) -> None:
     """Print the config with every default filled in, as YAML.
 

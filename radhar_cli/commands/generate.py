@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from radhar_cli.commands.options import Overrides
+
 EXAMPLE = """
 Example:
 
@@ -17,10 +19,7 @@ The same command, run again, goes on where it stopped and says so when the folde
 def generate(
     config: Annotated[Path, typer.Argument(help="YAML file that describes the data set.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder to build it in.")],
-    set_: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Change one dotted key; may repeat."),
-    ] = None,
+    set_: Overrides = None,
     jobs: Annotated[
         int | None, typer.Option("--jobs", "-j", min=1, help="Processes; all cores if not given.")
     ] = None,

@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from radhar_cli.commands.options import Overrides
+
 if TYPE_CHECKING:
     from radhar_cli.simulation.simulate import Simulation
 
@@ -19,10 +21,7 @@ def simulate(
     nominal: Annotated[
         bool, typer.Option("--nominal", help="Take mid-points instead of drawing.")
     ] = False,
-    set_: Annotated[
-        list[str] | None,
-        typer.Option("--set", metavar="KEY=VALUE", help="Change one dotted key; may repeat."),
-    ] = None,
+    set_: Overrides = None,
     engine: Annotated[
         str | None, typer.Option(help="cube or direct, instead of the config's.")
     ] = None,

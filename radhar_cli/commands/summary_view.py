@@ -3,6 +3,7 @@
 from typing import Any
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 BARS = " ▁▂▃▄▅▆▇█"
@@ -19,7 +20,9 @@ def print_summary(summary: dict[str, Any]) -> None:
 
 
 def _data_set(console: Console, s: dict[str, Any]) -> None:
-    console.print(f"[bold]{s['path']}[/bold]  {s['samples']} samples, {s['bytes'] / 2**20:.1f} MiB")
+    console.print(
+        f"[bold]{escape(s['path'])}[/bold]  {s['samples']} samples, {s['bytes'] / 2**20:.1f} MiB"
+    )
     console.print(f"seed {s['seed']}   config {s['config_hash'][:12]}   " + _versions(s))
     table = Table(title="samples, and mean entropy of the power maps (bit)")
     table.add_column("class")
@@ -55,7 +58,7 @@ def _bars(counts: list[int]) -> str:
 def _unfinished(console: Console, s: dict[str, Any]) -> None:
     share = s["finished"] / s["samples"]
     console.print(
-        f"[bold]{s['path']}[/bold]  unfinished: {s['finished']} of {s['samples']} samples"
+        f"[bold]{escape(s['path'])}[/bold]  unfinished: {s['finished']} of {s['samples']} samples"
     )
     console.print(
         f"{_progress(share)} {share:.0%}   seed {s['seed']}   config {s['config_hash'][:12]}"
@@ -70,8 +73,8 @@ def _progress(share: float, width: int = 40) -> str:
 def _scene(console: Console, s: dict[str, Any]) -> None:
     joint = f", {s['joint']} alone" if s["joint"] else ""
     console.print(
-        f"[bold]{s['path']}[/bold]  {s['activity']['label']} {s['activity']['slug']}{joint}, "
-        f"{s['engine']} engine, seed {s['seed']}"
+        f"[bold]{escape(s['path'])}[/bold]  {s['activity']['label']} {s['activity']['slug']}"
+        f"{joint}, {s['engine']} engine, seed {s['seed']}"
     )
     table = Table(title="maps")
     for column in ("map", "size", "entropy (bit)"):

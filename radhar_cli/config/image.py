@@ -1,12 +1,12 @@
 """`image:` how a power map becomes levels and colours."""
 
-import difflib
 from typing import Annotated, Any
 
 from pydantic import Field, field_validator
 from pydantic_core import PydanticCustomError
 
 from radhar_cli.config.section import Section
+from radhar_cli.errors import did_you_mean
 
 DEFAULT_COLOUR_MAP = "viridis"
 Pixels = Annotated[int, Field(ge=2, le=8192, strict=True)]
@@ -31,10 +31,8 @@ class ImageConfig(Section):
             from matplotlib import colormaps
 
             if value not in colormaps:
-                near = difflib.get_close_matches(value, list(colormaps), n=1)
-                hint = (
-                    f"did you mean {near[0]!r}?" if near else "viridis, gray, turbo, jet are some"
-                )
+                some = "viridis, gray, turbo, jet are some"
+                hint = did_you_mean(value, colormaps, some)
                 raise PydanticCustomError(
                     "colour", "should be a Matplotlib colour map; {hint}", {"hint": hint}
                 )

@@ -1,6 +1,5 @@
 """Open a finished data set: lazy arrays and what is known of them."""
 
-import difflib
 import json
 from pathlib import Path
 from types import TracebackType
@@ -10,7 +9,7 @@ import h5py
 
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.dataset.layout import DATASET, SPLITS, WORK
-from radhar_cli.errors import FolderError
+from radhar_cli.errors import FolderError, did_you_mean
 
 
 class Dataset:
@@ -60,8 +59,7 @@ class Dataset:
             stored: str = self.config["maps"][0]
             return stored
         if name not in self.maps:
-            near = difflib.get_close_matches(name, list(self.maps), n=1)
-            hint = f"did you mean {near[0]!r}?" if near else f"it has {', '.join(self.maps)}"
+            hint = did_you_mean(name, self.maps, f"it has {', '.join(self.maps)}")
             raise FolderError(f"{self.path}: has no map {name!r}; {hint}")
         return name
 

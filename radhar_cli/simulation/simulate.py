@@ -1,6 +1,5 @@
 """Simulate one scene: every map, every signal, the truth behind them."""
 
-import difflib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -14,7 +13,7 @@ from radhar_cli.config.experiment import MAP_NAMES, Config, MapName
 from radhar_cli.echo import cube
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.static_returns import leakage, wall_echo
-from radhar_cli.errors import ConfigError
+from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.pipeline.axes import Axes, axes_of
 from radhar_cli.pipeline.body_paths import BodyPaths
 from radhar_cli.pipeline.plan import SIGNALS, plan
@@ -155,8 +154,7 @@ def map_names(chosen: list[str] | None) -> tuple[MapName, ...]:
     names = [name.strip() for name in chosen] if chosen is not None else list(MAP_NAMES)
     for name in names:
         if name not in MAP_NAMES:
-            near = difflib.get_close_matches(name, MAP_NAMES, n=1)
-            hint = f"did you mean {near[0]!r}?" if near else "there are " + ", ".join(MAP_NAMES)
+            hint = did_you_mean(name, MAP_NAMES, "there are " + ", ".join(MAP_NAMES))
             raise ConfigError(f"{name!r} is no map; {hint}")
     return tuple(name for name in MAP_NAMES if name in names)
 
@@ -196,6 +194,5 @@ def _joint(name: str) -> int:
     key = name.strip().lower().replace("-", "_").replace(" ", "_")
     if key in JOINTS:
         return JOINTS.index(key)
-    near = difflib.get_close_matches(key, JOINTS, n=1)
-    hint = f"did you mean {near[0]!r}?" if near else "the joints are " + ", ".join(JOINTS)
+    hint = did_you_mean(key, JOINTS, "the joints are " + ", ".join(JOINTS))
     raise ConfigError(f"{name!r} is no joint; {hint}")

@@ -14,7 +14,19 @@ def program() -> "typer.Typer":
     """The program and its commands."""
     import typer
 
-    from radhar_cli.commands import config, generate, inspect, preview, simulate, verify
+    from radhar_cli.commands import (
+        config,
+        evaluate,
+        export,
+        generate,
+        inspect,
+        models,
+        predict,
+        preview,
+        simulate,
+        train,
+        verify,
+    )
 
     app = typer.Typer(
         help="Labelled FMCW radar data sets for human activity recognition, from a YAML file.",
@@ -26,6 +38,11 @@ def program() -> "typer.Typer":
     app.command()(generate.generate)
     app.command()(simulate.simulate)
     app.command()(verify.verify)
+    app.command()(train.train)
+    app.command("eval")(evaluate.evaluate)
+    app.command()(predict.predict)
+    app.command()(models.models)
+    app.command()(export.export)
     app.command()(preview.preview)
     app.command()(inspect.inspect)
     app.add_typer(config.app, name="config", no_args_is_help=True)

@@ -13,6 +13,7 @@ PERSON = 1
 SCENE = 2
 NOISE = 3
 SPLIT = 4
+TRAINING = 5
 
 
 def stream(seed: int, purpose: int, *key: int, name: str) -> np.random.Generator:
@@ -20,7 +21,7 @@ def stream(seed: int, purpose: int, *key: int, name: str) -> np.random.Generator
 
     Args:
         seed: the data set's seed, at least 0.
-        purpose: PERSON, SCENE, NOISE or SPLIT.
+        purpose: PERSON, SCENE, NOISE, SPLIT or TRAINING.
         key: what the stream belongs to, for example (class, index).
         name: the field or the noise, for example ``motion.range_m``.
     """

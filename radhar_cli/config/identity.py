@@ -5,11 +5,12 @@ import json
 from typing import Any
 
 from radhar_cli.config.experiment import Config
+from radhar_cli.config.section import Section
 
 NOT_IDENTITY = ("output.png",)
 
 
-def resolved(config: Config) -> dict[str, Any]:
+def resolved(config: Section) -> dict[str, Any]:
     """Return the config with every default, as plain JSON values."""
     return config.model_dump(mode="json", exclude_none=False)
 

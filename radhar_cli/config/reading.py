@@ -5,13 +5,16 @@ import json
 import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import yaml
 from pydantic import BaseModel, ValidationError
 
 from radhar_cli.config.experiment import Config, Problem
+from radhar_cli.config.section import Section
 from radhar_cli.errors import ConfigError
+
+S = TypeVar("S", bound=Section)
 
 _UNION_TAGS = {"number", "uniform", "normal", "choice", "vary", "same", "per_activity"}
 _INT = re.compile(r"^[-+]?(?:0|[1-9][0-9_]*)$")
@@ -62,13 +65,29 @@ _Loader.add_constructor("tag:yaml.org,2002:map", _mapping)
 
 
 def load_config(path: str | Path, overrides: Iterable[str] = ()) -> Config:
-    """Read a config file and apply overrides such as ``radar.prf_hz=128``.
+    """Read a data set's config file and apply overrides such as ``radar.prf_hz=128``.
 
     Raises:
         ConfigError: unreadable file, bad YAML, or a value out of place; the message names the
             file, the line, the key, the value and what would be right.
     """
-    path = Path(path)
+    return load_section(Config, Path(path), overrides)
+
+
+def load_section(kind: type[S], path: Path | None, overrides: Iterable[str] = ()) -> S:
+    """Read a file that holds one `kind` of config, or its defaults, and apply overrides.
+
+    Raises:
+        ConfigError: as `load_config`.
+    """
+    document, lines = _document(path) if path else ({}, {})
+    for override in overrides:
+        _override(document, override)
+        lines = {k: v for k, v in lines.items() if not _within(k, override.split("=")[0].strip())}
+    return validated(kind, document, str(path) if path else "--set", lines)
+
+
+def _document(path: Path) -> tuple[dict[str, Any], dict[str, int]]:
     try:
         text = path.read_text(encoding="utf-8")
     except FileNotFoundError:
@@ -81,10 +100,7 @@ def load_config(path: str | Path, overrides: Iterable[str] = ()) -> Config:
         document = {}
     if not isinstance(document, dict):
         raise ConfigError(f"{path}: should be a mapping of keys such as 'seed: 1'")
-    for override in overrides:
-        _override(document, override)
-        lines = {k: v for k, v in lines.items() if not _within(k, override.split("=")[0].strip())}
-    return validated(document, str(path), lines)
+    return document, lines
 
 
 def config_from_json(text: str, where: str) -> Config:
@@ -93,17 +109,17 @@ def config_from_json(text: str, where: str) -> Config:
         document = json.loads(text)
     except ValueError as error:
         raise ConfigError(f"{where}: the stored config is not JSON ({error})") from None
-    return validated(document, where, {})
+    return validated(Config, document, where, {})
 
 
-def validated(document: Any, where: str, lines: dict[str, int]) -> Config:
-    """Turn a parsed document into a Config, or raise a ConfigError with one line per mistake."""
+def validated(kind: type[S], document: Any, where: str, lines: dict[str, int]) -> S:
+    """Turn a parsed document into a config, or raise a ConfigError with one line per mistake."""
     try:
-        return Config.model_validate(document)
+        return kind.model_validate(document)
     except ValidationError as error:
         messages = [
             _place(where, problem.key, lines) + _what(problem)
-            for problem in _found(error, document)
+            for problem in _found(kind, error, document)
         ]
         raise ConfigError("\n".join(dict.fromkeys(messages))) from None
 
@@ -160,7 +176,7 @@ _WORDING = {
 }
 
 
-def _found(error: ValidationError, document: Any) -> Iterator[Problem]:
+def _found(kind: type[BaseModel], error: ValidationError, document: Any) -> Iterator[Problem]:
     for item in error.errors(include_url=False):
         if item["type"] == "across":
             yield from item["ctx"]["problems"]
@@ -168,7 +184,7 @@ def _found(error: ValidationError, document: Any) -> Iterator[Problem]:
         names = _document_path(item["loc"], document)
         key = ".".join(str(name) for name in names)
         if item["type"] == "extra_forbidden":
-            yield Problem(key, item["input"], _unknown(names))
+            yield Problem(key, item["input"], _unknown(kind, names))
         else:
             message = _WORDING.get(item["type"], item["msg"])
             if not message.startswith(("should", "'")):
@@ -200,8 +216,8 @@ def _document_path(location: tuple[int | str, ...], document: Any) -> list[int |
     return names
 
 
-def _unknown(names: list[int | str]) -> str:
-    section: type[BaseModel] | None = Config
+def _unknown(kind: type[BaseModel], names: list[int | str]) -> str:
+    section: type[BaseModel] | None = kind
     for name in names[:-1]:
         field = section.model_fields.get(str(name)) if section else None
         section = next(

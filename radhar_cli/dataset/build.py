@@ -130,7 +130,8 @@ class _Build:
         """Settle every scene; what a run that was stopped had settled is not done again."""
         outcomes = settled_rows(self.folder)
         starts = [s for s in range(0, count, SURVEY_BATCH) if s not in outcomes]
-        self.progress.stage("checking scenes", count, count - len(starts) * SURVEY_BATCH)
+        left = sum(min(SURVEY_BATCH, count - start) for start in starts)
+        self.progress.stage("checking scenes", count, count - left)
         tasks = [(self.config, s, min(s + SURVEY_BATCH, count), os.getpid()) for s in starts]
         jobs = self.jobs if len(tasks) > 2 * self.jobs else 1
         for start, found in run_tasks(survey_rows, tasks, jobs):

@@ -1,0 +1,64 @@
+"""`radhar eval`: how good trained networks are, in numbers and figures."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def evaluate(
+    paths: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="RUN... DATA...",
+            help="Folders that train wrote, and the data to evaluate them on; one or more of each.",
+        ),
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option("-o", "--out", help="Folder of the report; RUN/eval if none."),
+    ] = None,
+    split: Annotated[str, typer.Option(help="train, val, test or all.")] = "val",
+    map_: Annotated[
+        str | None, typer.Option("--map", help="Another map than the one it was trained on.")
+    ] = None,
+    tsne: Annotated[
+        bool, typer.Option("--tsne", help="Draw t-SNE of the maps and of the last features.")
+    ] = False,
+    filters: Annotated[
+        bool, typer.Option("--filters", help="Draw the weights of the global filters.")
+    ] = False,
+    in_place_vs_moving: Annotated[
+        bool,
+        typer.Option("--in-place-vs-moving", help="Also the two groups S1 to S7 and S8 to S12."),
+    ] = False,
+    batch: Annotated[int, typer.Option(min=1, help="Images at once.")] = 32,
+    device: Annotated[str, typer.Option(help="auto, cpu, cuda or mps.")] = "auto",
+) -> None:
+    """Evaluate trained networks on data sets.
+
+    Example:
+
+      radhar eval runs/quickstart datasets/quickstart --tsne --filters
+
+    Several runs or data sets give the comparison: train at one SNR, test at all.
+    """
+    from radhar_cli.commands.learning_options import (
+        Speaker,
+        known_device,
+        needs_torch,
+        runs_and_data,
+    )
+
+    needs_torch()
+    from radhar_cli.learning.folder_images import split_named
+    from radhar_cli.learning.machine import choose_device, keep_memory
+    from radhar_cli.learning.report import Asked, evaluate
+
+    runs, data = runs_and_data(paths)
+    asked = Asked(split_named(split), map_, tsne, filters, in_place_vs_moving, batch)
+    keep_memory()
+    report = evaluate(runs, data, asked, choose_device(known_device(device)), Speaker())
+    folder = out or (runs[0] if runs[0].is_dir() else runs[0].parent) / "eval"
+    report.write(folder)
+    typer.echo(f"{folder / 'report.html'}: {len(report.figures)} figures; numbers in report.json")

@@ -1,0 +1,33 @@
+"""`radhar export`: a trained network as ONNX."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def export(
+    run: Annotated[Path, typer.Argument(help="Folder that train wrote.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="File to write, such as model.onnx.")],
+) -> None:
+    """Export the best epoch's network to ONNX, and check it with ONNX Runtime.
+
+    Example:
+
+      radhar export runs/quickstart -o quickstart.onnx
+    """
+    from radhar_cli.commands.learning_options import needs, needs_torch
+
+    needs_torch()
+    needs("onnx", ("onnx", "onnxscript", "onnxruntime"))
+    from radhar_cli.errors import FolderError
+    from radhar_cli.learning.onnx_export import TOLERANCE, export
+
+    if out.is_dir():
+        raise FolderError(f"{out}: is a folder; -o should name a file, such as model.onnx")
+    worst = export(run, out)
+    size = out.stat().st_size / 2**20
+    typer.echo(
+        f"{out}: {size:.1f} MiB; ONNX Runtime agrees with PyTorch to {worst:.1e} (allowed "
+        f"{TOLERANCE:g})"
+    )

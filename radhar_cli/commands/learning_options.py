@@ -1,0 +1,82 @@
+"""What the commands that learn share."""
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from radhar_cli.errors import FolderError, RadharError, did_you_mean
+
+DEVICES = ("auto", "cpu", "cuda", "mps")
+
+
+class MissingExtraError(RadharError):
+    """A command that needs packages which are not installed."""
+
+
+def needs_torch() -> None:
+    """Say clearly what to install where PyTorch or its companions are missing.
+
+    Raises:
+        MissingExtraError: names the extra.
+    """
+    needs("train", ("torch", "safetensors", "sklearn", "jinja2"))
+
+
+def needs(extra: str, modules: Sequence[str]) -> None:
+    """Say clearly which extra to install where one of its modules is missing.
+
+    Raises:
+        MissingExtraError: names the extra.
+    """
+    from importlib.util import find_spec
+
+    for module in modules:
+        if find_spec(module) is None:
+            raise MissingExtraError(
+                f"this command needs {module}, which is not installed: "
+                f"pip install 'radhar[{extra}]'"
+            )
+
+
+def known_device(name: str) -> str:
+    """A device's name as the user gave it.
+
+    Raises:
+        RadharError: no such device.
+    """
+    if name not in DEVICES:
+        hint = did_you_mean(name, DEVICES, f"the devices are {', '.join(DEVICES)}")
+        raise RadharError(f"--device {name}: is no device; {hint}")
+    return name
+
+
+def runs_and_data(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:
+    """Tell trained networks from data: a run holds best.safetensors or run.json.
+
+    Raises:
+        FolderError: one of the two is missing.
+    """
+    from radhar_cli.learning.run_folder import ABOUT, BEST
+
+    def is_run(path: Path) -> bool:
+        if path.is_dir():
+            return (path / BEST).exists() or (path / ABOUT).exists()
+        return path.suffix == ".safetensors"
+
+    for path in paths:
+        if not path.exists():
+            raise FolderError(f"{path}: no such file or folder")
+    runs = [path for path in paths if is_run(path)]
+    data = [path for path in paths if not is_run(path)]
+    if not runs:
+        raise FolderError(f"{paths[0]}: is no training run; give one that `radhar train` wrote")
+    if not data:
+        raise FolderError(f"{paths[-1]}: is a training run; give a data set after it")
+    return runs, data
+
+
+class Speaker:
+    """Tells the user on the error stream."""
+
+    def say(self, message: str) -> None:
+        print(message, file=sys.stderr)

@@ -1,0 +1,38 @@
+"""`radhar models`: the networks one can train."""
+
+from typing import Annotated
+
+import typer
+
+
+def models(
+    names: Annotated[
+        list[str] | None, typer.Argument(help="Names of timm's; the paper's rivals if not given.")
+    ] = None,
+    size: Annotated[int, typer.Option(min=32, help="Side of the images in pixels.")] = 256,
+    classes: Annotated[int, typer.Option(min=2, help="Number of classes.")] = 12,
+) -> None:
+    """List networks with their parameters and multiply-adds.
+
+    Example:
+
+      radhar models --size 128
+
+    fftnet is the paper's network; every other name is one of timm's (pip install 'radhar[zoo]').
+    """
+    from radhar_cli.commands.learning_options import needs_torch
+
+    needs_torch()
+    from radhar_cli.learning.models.build import OURS, RIVALS, ModelError, cost
+
+    typer.echo(f"{'model':<24} {'parameters':>12} {'multiply-adds':>14}   at {size} x {size} px")
+    for name in names or [OURS, *RIVALS]:
+        try:
+            price = cost(name, classes, (size, size))
+        except ModelError as error:
+            if names or name == OURS:
+                raise
+            typer.echo(f"{name:<24} {error}")
+            continue
+        work = f"{price.multiply_adds / 1e9:.3f} G"
+        typer.echo(f"{name:<24} {price.parameters:>12,} {work:>14}")

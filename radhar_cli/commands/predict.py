@@ -1,0 +1,44 @@
+"""`radhar predict`: the class of single maps."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+def predict(
+    run: Annotated[Path, typer.Argument(help="Folder that train wrote.")],
+    paths: Annotated[
+        list[Path], typer.Argument(metavar="IMAGE_OR_DATA...", help="Images, or data sets.")
+    ],
+    top: Annotated[int, typer.Option(min=1, help="Classes to print, the most likely first.")] = 3,
+    map_: Annotated[
+        str | None, typer.Option("--map", help="Another map than the one it was trained on.")
+    ] = None,
+    split: Annotated[str, typer.Option(help="Of a data set: train, val, test or all.")] = "all",
+    json_: Annotated[bool, typer.Option("--json", help="Print JSON lines, all classes.")] = False,
+    device: Annotated[str, typer.Option(help="auto, cpu, cuda or mps.")] = "auto",
+) -> None:
+    """Print the class of every image and its probabilities.
+
+    Example:
+
+      radhar predict runs/quickstart datasets/quickstart/png/stft/val/walking/00003.png
+    """
+    from radhar_cli.commands.learning_options import known_device, needs_torch
+
+    needs_torch()
+    import json
+
+    from radhar_cli.learning.folder_images import split_named
+    from radhar_cli.learning.machine import choose_device
+    from radhar_cli.learning.prediction import predict
+
+    answers = predict(run, paths, choose_device(known_device(device)), map_, split_named(split))
+    for name, chances in answers:
+        ranked = sorted(chances.items(), key=lambda item: -item[1])
+        if json_:
+            typer.echo(json.dumps({"image": name, "class": ranked[0][0], "probabilities": chances}))
+            continue
+        likely = ", ".join(f"{label} {100 * chance:.1f} %" for label, chance in ranked[:top])
+        typer.echo(f"{name}: {likely}")

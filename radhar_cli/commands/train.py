@@ -1,0 +1,68 @@
+"""`radhar train`: a data set becomes a trained network."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from radhar_cli.commands.options import Overrides
+
+EXAMPLE = """
+Example:
+
+  radhar train datasets/quickstart -o runs/quickstart --set epochs=5
+
+Several processes, or several GPUs: torchrun --nproc-per-node 2 -m radhar_cli train ...
+The same command, run again, goes on after the last finished epoch.
+"""
+
+
+def train(
+    data: Annotated[
+        Path,
+        typer.Argument(
+            help="dataset.h5, a folder that generate wrote, or a tree of class folders."
+        ),
+    ],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder of the run.")],
+    config: Annotated[
+        Path | None, typer.Option(help="YAML file; the paper's settings if not given.")
+    ] = None,
+    set_: Overrides = None,
+    map_: Annotated[
+        str | None, typer.Option("--map", help="Which map to learn; the first one if not given.")
+    ] = None,
+    model: Annotated[
+        str | None, typer.Option(help="fftnet, or a name of timm's; see radhar models.")
+    ] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Start again in a folder that holds a run.")
+    ] = False,
+) -> None:
+    from radhar_cli.commands.learning_options import needs_torch
+
+    needs_torch()
+    from radhar_cli.commands.training_view import TrainingView
+    from radhar_cli.config.reading import load_section
+    from radhar_cli.learning import training
+    from radhar_cli.learning.settings import TrainConfig
+
+    named = {"map": map_, "model": model}
+    overrides = [*(set_ or []), *(f"{key}={value}" for key, value in named.items() if value)]
+    settings = load_section(TrainConfig, config, overrides)
+    view = TrainingView()
+    try:
+        outcome = training.train(settings, data, out, view, overwrite)
+    except KeyboardInterrupt:
+        view.close()
+        typer.echo(
+            f"\ninterrupted: the last finished epoch in {out} is kept; the same command goes on",
+            err=True,
+        )
+        raise typer.Exit(130) from None
+    finally:
+        view.close()
+    view.print_outcome(outcome)
+
+
+train.__doc__ = "Train a network on a data set.\n" + EXAMPLE

@@ -1,0 +1,67 @@
+"""What `train` prints while it works and when it is done."""
+
+import os
+import sys
+from typing import Any
+
+from tqdm import tqdm
+
+from radhar_cli.learning import run_folder as run
+from radhar_cli.learning.run_folder import Epoch
+from radhar_cli.learning.training import Outcome
+
+
+class TrainingView:
+    """A bar per epoch on a terminal; a line per epoch everywhere."""
+
+    def __init__(self) -> None:
+        self._bar: tqdm[Any] | None = None
+        self._epochs = 0
+
+    def say(self, message: str) -> None:
+        tqdm.write(message, file=sys.stderr)
+
+    def epoch(self, number: int, epochs: int, steps: int) -> None:
+        self.close()
+        self._epochs = epochs
+        self._bar = tqdm(
+            total=steps,
+            desc=f"epoch {number}/{epochs}",
+            unit="step",
+            disable=None,
+            leave=False,
+            file=sys.stderr,
+        )
+
+    def step(self, loss: float, accuracy: float) -> None:
+        if self._bar is not None:
+            self._bar.set_postfix_str(f"loss {loss:.3f}, right {100 * accuracy:.1f} %", False)
+            self._bar.update()
+
+    def epoch_done(self, row: Epoch, best: bool) -> None:
+        self.close()
+        self.say(
+            f"epoch {row.epoch}/{self._epochs}  training {100 * row.train_accuracy:6.2f} % loss "
+            f"{row.train_loss:.4f}  validation {100 * row.val_accuracy:6.2f} % loss "
+            f"{row.val_loss:.4f}  rate {row.learning_rate:.2e}  {row.seconds:.0f} s"
+            + ("  best so far" if best else "")
+        )
+
+    def close(self) -> None:
+        """Take the bar away."""
+        if self._bar is not None:
+            self._bar.close()
+            self._bar = None
+
+    def print_outcome(self, outcome: Outcome) -> None:
+        """Say what came out and where it lies; the first process alone speaks."""
+        if os.environ.get("RANK", "0") != "0":
+            return
+        folder, best = outcome.folder, outcome.best
+        if outcome.went_on == len(outcome.history):
+            print(f"{folder} is complete: {outcome.went_on} epochs; nothing to do")
+        print(f"best epoch {best.epoch}: validation accuracy {100 * best.val_accuracy:.2f} %")
+        print(f"  weights   {folder / run.BEST}")
+        print(f"  curves    {folder / run.CURVES}")
+        print(f"  summary   {folder / run.SUMMARY}")
+        print(f"  evaluate  radhar eval {folder} DATA")

@@ -1,0 +1,87 @@
+"""Which images make a step: the same global batches for any number of processes."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from torch import Tensor
+from torch.utils.data import DataLoader, Dataset, Sampler
+
+from radhar_cli.arrays import Index
+from radhar_cli.learning.images import ImageSet
+from radhar_cli.randomness import TRAINING, stream
+
+LEAST_PER_PROCESS = 2
+
+
+@dataclass(frozen=True)
+class Normalisation:
+    """Levels to network input: (level/255 - mean)/sd, channel by channel."""
+
+    mean: tuple[float, ...]
+    sd: tuple[float, ...]
+
+    def __call__(self, levels: Tensor) -> Tensor:
+        """uint8 [B, 3, H, W] to float32 of the same shape."""
+        shape = (1, 3, 1, 1)
+        mean = torch.tensor(self.mean, device=levels.device).view(shape)
+        sd = torch.tensor(self.sd, device=levels.device).view(shape)
+        return (levels.float() / 255 - mean) / sd
+
+
+def epoch_batches(count: int, size: int, seed: int, epoch: int, processes: int) -> list[Index]:
+    """Shuffled batches of one epoch; every image once.
+
+    What is left over at the end is a smaller batch, or joins the last one where a process would
+    get fewer than two images of it (batch norm needs two).
+    """
+    order = stream(seed, TRAINING, epoch, name="order").permutation(count)
+    starts = list(range(0, count, size))
+    if len(starts) > 1 and count - starts[-1] < LEAST_PER_PROCESS * processes:
+        starts.pop()
+    return [order[start:stop] for start, stop in zip(starts, [*starts[1:], count], strict=True)]
+
+
+class _Rows(Dataset[tuple[Tensor, int]]):
+    """Rows of an image set, read as they are asked for; `labels` in the model's numbering."""
+
+    def __init__(self, images: ImageSet, labels: Index) -> None:
+        self.images, self.labels = images, labels
+
+    def __getitem__(self, row: int) -> tuple[Tensor, int]:
+        rgb = self.images.pixels.read(row)
+        return torch.from_numpy(np.ascontiguousarray(rgb.transpose(2, 0, 1))), int(self.labels[row])
+
+
+class _Batches(Sampler[list[int]]):
+    def __init__(self) -> None:
+        self.batches: list[list[int]] = []
+
+    def __iter__(self) -> Iterator[list[int]]:
+        return iter(self.batches)
+
+    def __len__(self) -> int:
+        return len(self.batches)
+
+
+class Reader:
+    """Reads batches of an image set, in worker processes if there are any.
+
+    Every worker opens the file for itself and is kept until the end.
+    """
+
+    def __init__(self, images: ImageSet, labels: Index, workers: int, pin: bool) -> None:
+        self._sampler = _Batches()
+        self._loader = DataLoader(
+            _Rows(images, labels),
+            batch_sampler=self._sampler,
+            num_workers=workers,
+            persistent_workers=workers > 0,
+            pin_memory=pin,
+        )
+
+    def __call__(self, batches: Sequence[Index]) -> Iterator[tuple[Tensor, Tensor]]:
+        """Yield (uint8 [B, 3, H, W], labels [B]) for every batch of row numbers."""
+        self._sampler.batches = [[int(row) for row in batch] for batch in batches]
+        yield from self._loader

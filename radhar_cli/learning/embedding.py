@@ -1,0 +1,49 @@
+"""t-SNE of images and of features, and how well either separates the classes."""
+
+import numpy as np
+from sklearn.decomposition import PCA
+from sklearn.manifold import TSNE
+from sklearn.metrics import silhouette_score
+
+from radhar_cli.arrays import Float, Index, Levels
+
+MOST_POINTS = 2000
+FIRST_COMPONENTS = 50
+PERPLEXITY = 30.0
+SIDE = 64
+
+
+def chosen(count: int) -> Index:
+    """At most 2,000 of `count` rows, evenly spread."""
+    return np.unique(np.linspace(0, count - 1, min(count, MOST_POINTS)).astype(int))
+
+
+def shrunk(rgb: Levels) -> Float:
+    """An image [H, W, 3] as a vector: one channel, averaged down to at most 64 x 64."""
+    gray = rgb.mean(2)
+    down, across = -(-gray.shape[0] // SIDE), -(-gray.shape[1] // SIDE)
+    height, width = gray.shape[0] // down * down, gray.shape[1] // across * across
+    blocks = gray[:height, :width].reshape(height // down, down, width // across, across)
+    vector: Float = blocks.mean((1, 3)).ravel() / 255
+    return vector
+
+
+def embed(vectors: Float) -> Float:
+    """t-SNE [N, 2] of [N, F], after the first 50 principal components."""
+    vectors = np.asarray(vectors, dtype=np.float64)
+    most = min(FIRST_COMPONENTS, vectors.shape[0], vectors.shape[1])
+    if vectors.shape[1] > most:
+        vectors = PCA(most, svd_solver="full").fit_transform(vectors)
+    perplexity = min(PERPLEXITY, max(1.0, (vectors.shape[0] - 1) / 3))
+    points: Float = TSNE(2, perplexity=perplexity, init="pca", random_state=0).fit_transform(
+        vectors
+    )
+    return points
+
+
+def separation(vectors: Float, label: Index) -> float | None:
+    """Mean silhouette of the classes, -1 to 1; None where a class stands alone."""
+    kinds = np.unique(label)
+    if not 2 <= kinds.size < len(label):
+        return None
+    return float(silhouette_score(np.asarray(vectors, dtype=np.float64), label))

@@ -1,0 +1,90 @@
+"""Images of a dataset.h5: levels through the colour table that coloured the PNGs."""
+
+import hashlib
+import os
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from radhar_cli.activity import ACTIVITIES
+from radhar_cli.arrays import Levels
+from radhar_cli.dataset.reading import Dataset, open_dataset
+from radhar_cli.errors import FolderError
+from radhar_cli.figures.colour import colour_table
+from radhar_cli.learning.images import ImageSet, class_order, repeated
+
+_WHO_AND_HOW = ("subject.", "motion.", "timing.")
+
+
+@dataclass
+class H5Pixels:
+    """Rows of one map; every process opens the file for itself."""
+
+    path: Path
+    map: str
+    table: Levels | None
+    _open: dict[int, Dataset] = field(default_factory=dict, repr=False)
+
+    def read(self, row: int) -> Levels:
+        """RGB [H, W, 3] of a row.
+
+        Raises:
+            FolderError: the file is damaged there.
+        """
+        mine = self._open.get(os.getpid())
+        if mine is None:
+            self._open.clear()
+            mine = self._open[os.getpid()] = open_dataset(self.path)
+        try:
+            levels = mine.maps[self.map][row]
+        except OSError as error:
+            raise FolderError(
+                f"{self.path}: sample {row} of {self.map} cannot be read: {error}"
+            ) from None
+        return repeated(levels) if self.table is None else self.table[levels]
+
+    def __getstate__(self) -> dict[str, object]:
+        return {**self.__dict__, "_open": {}}
+
+
+def h5_images(path: Path, map_name: str | None, kind: str) -> ImageSet:
+    """Open one map of a dataset.h5, or of the folder it lies in, as images."""
+    with open_dataset(path) as data:
+        name = data.map_name(map_name)
+        numbers = data.label[:]
+        slug = np.array([activity.slug for activity in ACTIVITIES])[numbers]
+        classes = class_order(set(slug.tolist()))
+        table = colour_table(data.config["image"]["colour_map"]) if kind == "rgb" else None
+        return ImageSet(
+            where=path,
+            map=name,
+            classes=classes,
+            label=np.array([classes.index(s) for s in slug], dtype=np.intp),
+            split=data.split[:],
+            names=tuple(
+                f"{s}/{index:05d}" for s, (_, index) in zip(slug, data.sample_key[:], strict=True)
+            ),
+            scenes=_scenes(data, slug.tolist()),
+            size=(int(data.maps[name].shape[1]), int(data.maps[name].shape[2])),
+            pixels=H5Pixels(data.path, name, table),
+            snr_db=_one_number(data.config.get("snr_db")),
+        )
+
+
+def _one_number(value: object) -> float | None:
+    return float(value) if isinstance(value, (int, float)) else None
+
+
+def _scenes(data: Dataset, slugs: list[str]) -> tuple[str, ...]:
+    """A fingerprint of who moved and how; radar, wall and noise do not enter."""
+    columns = [
+        column[:]
+        for _, column in sorted(data.scene.items())
+        if str(column.attrs.get("config_key", "")).startswith(_WHO_AND_HOW)
+    ]
+    table = np.stack(columns, axis=1) if columns else np.zeros((len(slugs), 0))
+    return tuple(
+        hashlib.blake2b(slug.encode() + row.tobytes(), digest_size=8).hexdigest()
+        for slug, row in zip(slugs, table, strict=True)
+    )

@@ -1,0 +1,104 @@
+"""A network by its name."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import torch
+from torch import Tensor, nn
+
+from radhar_cli.errors import FolderError, RadharError
+from radhar_cli.learning.models.fftnet import STRIDE, FFTNet
+
+OURS = "fftnet"
+# The paper's rivals (Table III) under their timm names.
+RIVALS = ("mobilenetv2_100", "resnet50", "vgg19", "vit_base_patch16_224", "convnext_tiny")
+
+
+class ModelError(RadharError):
+    """A network that cannot be built."""
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Size and work of a network.
+
+    Attributes:
+        parameters: trainable ones.
+        multiply_adds: of one image: convolutions, matrix products, and FFTs at 5/4 N log2 N a real
+            transform of N numbers (half of a complex one's 5 N log2 N operations, two a
+            multiply-add).
+    """
+
+    parameters: int
+    multiply_adds: int
+
+
+def build_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
+    """Build a network with fresh weights.
+
+    Args:
+        name: fftnet, or any name that timm knows (needs the extra `zoo`).
+        classes: outputs.
+        size: (H, W) of the images.
+
+    Raises:
+        ModelError: unknown name, or images it cannot take.
+    """
+    height, width = size
+    if name == OURS:
+        if height % STRIDE or width % STRIDE:
+            raise ModelError(
+                f"model fftnet: images are {height} x {width} px; both sides should be multiples "
+                f"of {STRIDE}"
+            )
+        return FFTNet(classes, height, width)
+    from radhar_cli.learning.models.zoo import zoo_model
+
+    return zoo_model(name, classes, size)
+
+
+def features_and_logits(model: nn.Module, x: Tensor) -> tuple[Tensor, Tensor]:
+    """What the last layer sees, [B, F], and what it makes of it, [B, classes]."""
+    network: Any = model
+    maps = network.forward_features(x)
+    features: Tensor = network.forward_head(maps, pre_logits=True)
+    logits: Tensor = network.forward_head(maps)
+    return features.flatten(1), logits
+
+
+def cost(name: str, classes: int, size: tuple[int, int]) -> Cost:
+    """Parameters and multiply-adds of a network, without computing or allocating anything."""
+    from torch.utils.flop_counter import FlopCounterMode
+
+    def fft_operations(shape: Any, *_: Any, out_shape: Any = None, **__: Any) -> int:
+        rows, columns = max(shape[-2], out_shape[-2]), max(shape[-1], out_shape[-1])
+        others = torch.Size(shape[:-2]).numel()
+        return int(2.5 * others * rows * columns * torch.tensor(rows * columns).log2().item())
+
+    aten = torch.ops.aten
+    real_ffts: dict[Any, Any] = {aten._fft_r2c: fft_operations, aten._fft_c2r: fft_operations}
+    with torch.device("meta"):
+        model = build_model(name, classes, size).eval()
+        image = torch.zeros(1, 3, *size)
+    counter = FlopCounterMode(display=False, custom_mapping=real_ffts)
+    with counter, torch.no_grad():
+        model(image)
+    return Cost(parameter_count(model), counter.get_total_flops() // 2)
+
+
+def parameter_count(model: nn.Module) -> int:
+    """Trainable parameters."""
+    return sum(p.numel() for p in model.parameters() if p.requires_grad)
+
+
+def check_size(name: str, size: tuple[int, int], where: object) -> None:
+    """Refuse images whose sides are no multiples of 32.
+
+    Raises:
+        FolderError: names the data.
+    """
+    if size[0] % STRIDE or size[1] % STRIDE:
+        raise FolderError(
+            f"{where}: images are {size[0]} x {size[1]} px; {name} needs sides that are multiples "
+            f"of {STRIDE}"
+        )

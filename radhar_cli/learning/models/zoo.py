@@ -1,0 +1,43 @@
+"""Networks of timm, the paper's rivals among them; needs the extra `zoo`."""
+
+import difflib
+from typing import Any
+
+from torch import nn
+
+from radhar_cli.learning.models import build
+
+
+def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
+    """Build a network of timm with fresh weights for images of that size.
+
+    Raises:
+        ModelError: timm is not installed, does not know the name, or cannot take the size.
+    """
+    try:
+        import timm
+    except ImportError as error:
+        raise build.ModelError(
+            f"model {name!r}: is not fftnet, and timm, which has others, is not installed "
+            f"({error}): pip install 'radhar[zoo]'"
+        ) from None
+    except RuntimeError as error:
+        raise build.ModelError(
+            f"model {name!r}: timm does not load ({error}); its torchvision should be built for "
+            "the installed PyTorch"
+        ) from None
+    if not timm.is_model(name):
+        near = difflib.get_close_matches(name, [build.OURS, *timm.list_models()], n=1)
+        hint = f"did you mean {near[0]!r}?" if near else "`radhar models` lists some"
+        raise build.ModelError(f"model {name!r}: is neither fftnet nor a name of timm's; {hint}")
+    create: Any = timm.create_model
+    try:
+        try:
+            model: nn.Module = create(name, num_classes=classes, img_size=size)
+        except TypeError:
+            model = create(name, num_classes=classes)
+    except (AssertionError, RuntimeError, ValueError) as error:
+        raise build.ModelError(
+            f"model {name!r}: cannot take images of {size[0]} x {size[1]} px ({error})"
+        ) from None
+    return model

@@ -1,0 +1,64 @@
+"""report.html: the whole report in one file that needs nothing else."""
+
+import base64
+from collections.abc import Sequence
+from typing import Any
+
+from jinja2 import Environment
+
+_PAGE = """<!doctype html>
+<html lang="en"><head><meta charset="utf-8"><title>radhar eval</title>
+<style>
+body { font: 15px/1.45 system-ui, sans-serif; max-width: 70rem; margin: 2rem auto; }
+table { border-collapse: collapse; margin: .6rem 0 1.4rem; }
+th, td { padding: .18rem .6rem; border-bottom: 1px solid #ccc; text-align: right; }
+th:first-child, td:first-child { text-align: left; }
+.warning { background: #fff3cd; padding: .4rem .8rem; }
+figure { margin: 1.2rem 0; } img { max-width: 100%; } figcaption { color: #555; }
+</style></head><body>
+<h1>radhar eval: {{ n.runs | join(", ") }}</h1>
+<p>Split: {{ n.split }}. Device: {{ n.device }}, {{ n.threads }} threads. Intervals are Wilson's,
+95 %.</p>
+<h2>Accuracy</h2>
+<table><tr><th>run</th><th>data</th><th>SNR (dB)</th><th>images</th><th>accuracy (%)</th>
+<th>interval (%)</th><th>macro F1</th><th>calibration error</th></tr>
+{% for name, run in n.runs.items() %}{% for data, r in run.data.items() %}
+<tr><td>{{ name }}</td><td>{{ data }}</td><td>{{ "" if r.snr_db is none else r.snr_db }}</td>
+<td>{{ r.images }}</td><td>{{ "%.2f" | format(100 * r.accuracy) }}</td>
+<td>{{ "%.2f" | format(100 * r.accuracy_95[0]) }} to {{ "%.2f" | format(100 * r.accuracy_95[1]) }}
+</td><td>{{ "%.4f" | format(r.macro_f1) }}</td><td>{{ "%.4f" | format(r.calibration_error) }}</td>
+</tr>{% endfor %}{% endfor %}</table>
+{% for name, run in n.runs.items() %}{% for data, r in run.data.items() %}
+{% if r.seen_in_training.images or r.seen_in_training.scenes %}
+<p class="warning">{{ name }} on {{ data }}: {{ r.seen_in_training.images }} of {{ r.images }}
+images, and the person and motion of {{ r.seen_in_training.scenes }}, were trained on.</p>
+{% endif %}{% endfor %}{% endfor %}
+<h2>Networks</h2>
+<table><tr><th>run</th><th>model</th><th>parameters</th><th>multiply-adds (G)</th>
+<th>best epoch</th>
+<th>one image (ms)</th><th>with loading (ms)</th><th>images/s</th></tr>
+{% for name, run in n.runs.items() %}<tr><td>{{ name }}</td><td>{{ run.model }}</td>
+<td>{{ "{:,}".format(run.parameters) }}</td><td>{{ "%.3f" | format(run.multiply_adds / 1e9) }}</td>
+<td>{{ run.best_epoch or "" }}</td><td>{{ "%.1f" | format(1e3 * run.speed.image_s) }}</td>
+<td>{{ "%.0f" | format(1e3 * run.speed.load_and_image_s) }}</td>
+<td>{{ "%.1f" | format(run.speed.images_per_s) }}</td></tr>{% endfor %}</table>
+{% for name, run in n.runs.items() %}{% for data, r in run.data.items() %}
+<h2>{{ name }} on {{ data }}</h2>
+<table><tr><th>class</th><th>images</th><th>precision</th><th>recall</th><th>F1</th></tr>
+{% for class, c in r.classes.items() %}<tr><td>{{ class }}</td><td>{{ c.images }}</td>
+<td>{{ "%.4f" | format(c.precision) }}</td><td>{{ "%.4f" | format(c.recall) }}</td>
+<td>{{ "%.4f" | format(c.f1) }}</td></tr>{% endfor %}</table>
+{% endfor %}{% endfor %}
+<h2>Figures</h2>
+{% for name, caption, data in figures %}<figure><img alt="{{ name }}"
+src="data:image/png;base64,{{ data }}"><figcaption>{{ caption }}</figcaption></figure>
+{% endfor %}
+</body></html>
+"""
+
+
+def report_html(numbers: dict[str, Any], figures: Sequence[tuple[str, str, bytes]]) -> str:
+    """One self-contained page; `figures` are (name, caption, PNG)."""
+    encoded = [(name, caption, base64.b64encode(png).decode()) for name, caption, png in figures]
+    page = Environment(autoescape=True).from_string(_PAGE)
+    return page.render(n=numbers, figures=encoded)

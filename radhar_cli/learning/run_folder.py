@@ -1,0 +1,283 @@
+"""What a training run leaves on disk, and how it is read: never by running what a file says."""
+
+import csv
+import io
+import json
+import pickle
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import torch
+from pydantic import ValidationError
+from safetensors import SafetensorError, safe_open
+from safetensors.torch import save as safetensors_bytes
+from torch import Tensor, nn
+
+from radhar_cli.config.section import Section
+from radhar_cli.dataset.files import write_whole
+from radhar_cli.dataset.layout import WORK
+from radhar_cli.errors import RadharError
+from radhar_cli.learning.batches import Normalisation
+from radhar_cli.learning.models.build import ModelError, build_model
+
+ABOUT = "run.json"
+BEST = "best.safetensors"
+LAST = "last.ckpt"
+HISTORY = "history.csv"
+CURVES = "curves.png"
+METRICS = "metrics.json"
+SUMMARY = "summary.txt"
+TRAINED_ON = "trained_on.csv"
+OURS = (ABOUT, BEST, LAST, HISTORY, CURVES, METRICS, SUMMARY, TRAINED_ON)
+
+
+class RunError(RadharError):
+    """A run folder, or a file of it, that cannot be used."""
+
+
+class About(Section):
+    """What a model was trained for and on; stored with its weights.
+
+    Attributes:
+        model, classes, size: enough to build the network; size is (height, width).
+        map, input: which map of a data set, and as rgb or gray.
+        mean, sd: normalisation of the three channels.
+        config: the resolved training config.
+        data: path, content hash, images of the training and validation sets.
+        versions: of radhar, torch, numpy.
+    """
+
+    model: str
+    classes: tuple[str, ...]
+    size: tuple[int, int]
+    map: str | None
+    input: str
+    mean: tuple[float, float, float]
+    sd: tuple[float, float, float]
+    config: dict[str, Any]
+    data: dict[str, Any]
+    versions: dict[str, str]
+
+    @property
+    def normalisation(self) -> Normalisation:
+        """Levels to network input."""
+        return Normalisation(self.mean, self.sd)
+
+
+@dataclass(frozen=True)
+class Epoch:
+    """A row of history.csv."""
+
+    epoch: int
+    learning_rate: float
+    train_loss: float
+    train_accuracy: float
+    val_loss: float
+    val_accuracy: float
+    seconds: float
+
+    def better_than(self, other: "Epoch | None") -> bool:
+        """Higher validation accuracy, then lower loss, then earlier."""
+        if other is None:
+            return True
+        return (-self.val_accuracy, self.val_loss, self.epoch) < (
+            -other.val_accuracy,
+            other.val_loss,
+            other.epoch,
+        )
+
+
+def best_epoch(history: Sequence[Epoch]) -> Epoch:
+    """The epoch whose weights are kept."""
+    best = history[0]
+    for epoch in history[1:]:
+        if epoch.better_than(best):
+            best = epoch
+    return best
+
+
+def claim_run(folder: Path, about: About, overwrite: bool) -> None:
+    """Make a locked folder this run's, or refuse.
+
+    Raises:
+        RunError: it holds something else; the message names what differs.
+    """
+    if overwrite and (folder / ABOUT).exists():
+        for name in (*reversed(OURS),):
+            (folder / name).unlink(missing_ok=True)
+    if not (folder / ABOUT).exists():
+        strangers = sorted(p.name for p in folder.iterdir() if p.name != WORK)
+        if strangers:
+            raise RunError(
+                f"{folder}: holds {', '.join(strangers[:5])} but no training run; choose an empty "
+                "folder"
+            )
+        write_whole(folder, folder / ABOUT, (about.model_dump_json(indent=2) + "\n").encode())
+        return
+    found = _differences(read_about(folder), about)
+    if found:
+        raise RunError(
+            f"{folder}: holds another run; it differs in\n  "
+            + "\n  ".join(found)
+            + "\nchoose another folder, or --overwrite to start this one again"
+        )
+
+
+def _differences(old: About, new: About) -> list[str]:
+    pairs = {key: (old.config.get(key), value) for key, value in new.config.items()}
+    pairs |= {"data": (old.data["hash"][:12], new.data["hash"][:12])}
+    pairs |= {"classes": (list(old.classes), list(new.classes)), "map": (old.map, new.map)}
+    pairs |= {f"versions.{k}": (old.versions.get(k), v) for k, v in new.versions.items()}
+    return [
+        f"{key}: {json.dumps(there)} there, {json.dumps(here)} here"
+        for key, (there, here) in pairs.items()
+        if there != here
+    ]
+
+
+def read_about(folder: Path) -> About:
+    """What the run in a folder is about.
+
+    Raises:
+        RunError: there is none, or it is damaged.
+    """
+    path = folder / ABOUT
+    try:
+        return About.model_validate_json(path.read_bytes())
+    except FileNotFoundError:
+        raise RunError(f"{folder}: holds no training run ({ABOUT} is missing)") from None
+    except ValidationError as error:
+        raise RunError(f"{path}: is damaged, or not radhar's ({_first(error)})") from None
+
+
+def _first(error: ValidationError) -> str:
+    item = error.errors(include_url=False)[0]
+    return f"{'.'.join(map(str, item['loc']))}: {item['msg']}"
+
+
+def write_trained_on(
+    folder: Path, names: Sequence[str], prints: Sequence[str], scenes: Sequence[str]
+) -> None:
+    """Write which images and which scenes a run learns from."""
+    text = io.StringIO(newline="")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["image", "pixels", "scene"])
+    writer.writerows(zip(names, prints, scenes, strict=True))
+    write_whole(folder, folder / TRAINED_ON, text.getvalue().encode())
+
+
+def read_trained_on(folder: Path) -> tuple[set[str], set[str]]:
+    """Fingerprints of the (images, scenes) that a run learned from; empty if it does not say."""
+    if not (folder / TRAINED_ON).exists():
+        return set(), set()
+    with (folder / TRAINED_ON).open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    return {r["pixels"] for r in rows}, {r["scene"] for r in rows if r["scene"]}
+
+
+def write_history(folder: Path, history: Sequence[Epoch]) -> None:
+    """Write history.csv, a row an epoch."""
+    text = io.StringIO(newline="")
+    writer = csv.DictWriter(text, list(Epoch.__dataclass_fields__), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(vars(epoch) for epoch in history)
+    write_whole(folder, folder / HISTORY, text.getvalue().encode())
+
+
+def read_history(folder: Path) -> list[Epoch]:
+    """The epochs of a run.
+
+    Raises:
+        RunError: history.csv is missing or damaged.
+    """
+    path = folder / HISTORY
+    try:
+        with path.open(newline="") as file:
+            rows = list(csv.DictReader(file))
+        return [Epoch(int(r.pop("epoch")), **{k: float(v) for k, v in r.items()}) for r in rows]
+    except FileNotFoundError:
+        raise RunError(f"{folder}: holds no finished epoch ({HISTORY} is missing)") from None
+    except (ValueError, TypeError, KeyError) as error:
+        raise RunError(f"{path}: is damaged ({error})") from None
+
+
+def write_best(folder: Path, about: About, epoch: Epoch, weights: Mapping[str, Tensor]) -> None:
+    """Write best.safetensors: weights, and beside them all that is needed to use them."""
+    metadata = {"radhar": about.model_dump_json(), "epoch": json.dumps(vars(epoch))}
+    tensors = {name: tensor.detach().cpu().contiguous() for name, tensor in weights.items()}
+    write_whole(folder, folder / BEST, safetensors_bytes(tensors, metadata))
+
+
+def load_best(folder: Path) -> tuple[About, nn.Module]:
+    """The best epoch's model, in evaluation mode on the CPU.
+
+    Args:
+        folder: the run's, or a .safetensors file that radhar wrote.
+
+    Raises:
+        RunError: no such file, or a damaged or foreign one.
+    """
+    path = folder / BEST if folder.is_dir() else folder
+    if not path.exists():
+        hint = (
+            "no epoch is finished yet; run `radhar train` again"
+            if (folder / ABOUT).exists()
+            else "should be a folder that `radhar train` wrote"
+        )
+        raise RunError(f"{folder}: holds no {BEST}; {hint}")
+    try:
+        with safe_open(path, framework="pt") as file:
+            metadata = file.metadata() or {}
+            weights = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
+    except (SafetensorError, OSError, ValueError) as error:
+        raise RunError(f"{path}: is no safetensors file, or a truncated one ({error})") from None
+    if "radhar" not in metadata:
+        raise RunError(f"{path}: was not written by `radhar train`")
+    try:
+        about = About.model_validate_json(metadata["radhar"])
+        model = build_model(about.model, len(about.classes), about.size)
+        model.load_state_dict(weights)
+    except ValidationError as error:
+        raise RunError(f"{path}: its description is damaged ({_first(error)})") from None
+    except ModelError as error:
+        raise RunError(f"{path}: {error}") from None
+    except RuntimeError as error:
+        line = str(error).strip().splitlines()[-1].strip()
+        raise RunError(f"{path}: its weights do not fit its description ({line})") from None
+    return about, model.eval()
+
+
+def write_last(folder: Path, checkpoint: dict[str, Any]) -> None:
+    """Write last.ckpt, from which a stopped run goes on."""
+    buffer = io.BytesIO()
+    torch.save(checkpoint, buffer)
+    write_whole(folder, folder / LAST, buffer.getvalue())
+
+
+def read_last(folder: Path) -> dict[str, Any] | None:
+    """The last epoch's checkpoint, None before the first one; tensors and plain values only.
+
+    Raises:
+        RunError: it is damaged, or asks for code to be run.
+    """
+    path = folder / LAST
+    if not path.exists():
+        return None
+    try:
+        found: dict[str, Any] = torch.load(path, map_location="cpu", weights_only=True)
+        return {key: found[key] for key in ("model", "optimiser", "history", "random", "about")}
+    except (
+        pickle.UnpicklingError,
+        RuntimeError,
+        EOFError,
+        KeyError,
+        TypeError,
+        ValueError,
+    ) as error:
+        line = str(error).strip().splitlines()[0]
+        raise RunError(
+            f"{path}: is damaged, or no checkpoint of radhar's ({line}); {BEST} is untouched; "
+            "--overwrite starts the run again"
+        ) from None

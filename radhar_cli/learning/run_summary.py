@@ -1,0 +1,92 @@
+"""metrics.json, summary.txt and curves.png: a finished run for programs and for readers."""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import torch
+from torch import nn
+
+from radhar_cli.dataset.files import write_whole
+from radhar_cli.figures.curves import curves_png
+from radhar_cli.learning import run_folder as run
+from radhar_cli.learning.machine import Group
+from radhar_cli.learning.metrics import wilson
+from radhar_cli.learning.models.build import cost
+from radhar_cli.learning.run_folder import About, Epoch, best_epoch
+
+if TYPE_CHECKING:
+    from radhar_cli.learning.training import Work
+
+
+def write_run_summary(
+    folder: Path,
+    about: About,
+    history: Sequence[Epoch],
+    model: nn.Module,
+    work: "Work",
+    group: Group,
+) -> None:
+    """Write metrics.json, summary.txt and curves.png of a finished run."""
+    best, count = best_epoch(history), int(about.data["val"])
+    low, high = wilson(round(best.val_accuracy * count), count)
+    price = cost(about.model, len(about.classes), about.size)
+    share = -(-int(about.config["batch_size"]) // group.size)
+    metrics = {
+        "model": about.model,
+        "best_epoch": best.epoch,
+        "val_accuracy": best.val_accuracy,
+        "val_accuracy_95": [low, high],
+        "val_loss": best.val_loss,
+        "epochs": len(history),
+        "parameters": price.parameters,
+        "multiply_adds": price.multiply_adds,
+        "seconds": round(sum(epoch.seconds for epoch in history), 1),
+        "classes": list(about.classes),
+        "size_px": list(about.size),
+        "map": about.map,
+        "data": about.data,
+        "config": about.config,
+        "versions": about.versions,
+        "device": work.device.type,
+        "precision": str(work.precision).removeprefix("torch."),
+        "threads": torch.get_num_threads(),
+        "processes": group.size,
+        "micro_batch": work.micro_batch,
+        "gradient_accumulation": work.parts(share),
+    }
+    write_whole(folder, folder / run.METRICS, (json.dumps(metrics, indent=2) + "\n").encode())
+    series = {folder.name or str(folder): history}
+    write_whole(folder, folder / run.CURVES, curves_png(series, {folder.name: best.epoch}))
+    lines = [
+        f"{about.model} on {about.data['path']}"
+        + (f", map {about.map}" if about.map else "")
+        + f", {about.size[0]} x {about.size[1]} px, {len(about.classes)} classes",
+        f"{about.data['train']} training and {count} validation images",
+        f"best epoch {best.epoch} of {len(history)}: validation accuracy "
+        f"{100 * best.val_accuracy:.2f} % (95 % interval {100 * low:.2f} to {100 * high:.2f} %), "
+        f"loss {best.val_loss:.4f}",
+        f"{price.parameters:,} parameters, {price.multiply_adds / 1e9:.3f} G multiply-adds",
+        f"{metrics['seconds']} s on {metrics['device']}, {metrics['precision']}, "
+        f"{metrics['threads']} threads, {group.size} process(es), batch "
+        f"{about.config['batch_size']} in {metrics['gradient_accumulation']} part(s)",
+        "",
+        *_layer_table(model),
+    ]
+    write_whole(folder, folder / run.SUMMARY, ("\n".join(lines) + "\n").encode())
+
+
+def _layer_table(model: nn.Module) -> list[str]:
+    """Every layer with parameters of its own: name, kind, shapes, number."""
+    rows = [("layer", "kind", "parameters", "shapes")]
+    for name, layer in model.named_modules():
+        own = list(layer.parameters(recurse=False))
+        if own:
+            shapes = " ".join("x".join(map(str, p.shape)) for p in own)
+            rows.append((name, type(layer).__name__, f"{sum(p.numel() for p in own):,}", shapes))
+    widths = [max(len(row[column]) for row in rows) for column in range(3)]
+    return [
+        f"{a:<{widths[0]}}  {b:<{widths[1]}}  {c:>{widths[2]}}  {shapes}"
+        for a, b, c, shapes in rows
+    ]

@@ -1,0 +1,54 @@
+"""The YAML file of `radhar train`: what is learned, how, and on what machine."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from radhar_cli.config.section import Section
+
+Count = Annotated[int, Field(ge=1, le=1_000_000, strict=True)]
+Rate = Annotated[float, Field(gt=0, le=1e3, strict=True)]
+Share = Annotated[float, Field(gt=0, lt=1, strict=True)]
+
+
+class ScheduleConfig(Section):
+    """How the learning rate falls from its initial value after the warm-up.
+
+    `step` multiplies it by `factor` every `every_epochs` epochs, `cosine` brings it smoothly to
+    zero at the last step, `constant` leaves it.
+    """
+
+    kind: Literal["step", "cosine", "constant"] = "step"
+    every_epochs: Count = 10
+    factor: Annotated[float, Field(gt=0, le=1, strict=True)] = 0.1
+
+
+class TrainConfig(Section):
+    """One training run; the defaults are the paper's Table II."""
+
+    model: Annotated[str, Field(min_length=1)] = "fftnet"
+    map: str | None = None
+    input: Literal["rgb", "gray"] = "rgb"
+    seed: Annotated[int, Field(ge=0, lt=2**63, strict=True)] = 1
+    epochs: Count = 20
+    batch_size: Count = 128
+    micro_batch: Literal["auto"] | Count = "auto"
+    optimiser: Literal["adam", "adamw", "sgd"] = "adam"
+    learning_rate: Rate = 0.00147
+    weight_decay: Annotated[float, Field(ge=0, le=1e3, strict=True)] = 1e-4
+    label_smoothing: Annotated[float, Field(ge=0, lt=1, strict=True)] = 0.1
+    schedule: ScheduleConfig = ScheduleConfig()
+    warmup_epochs: Annotated[float, Field(ge=0, le=1e6, strict=True)] = 0.0
+    gradient_clip_norm: Rate | None = None
+    validation_share: Share = 0.2
+    device: Literal["auto", "cpu", "cuda", "mps"] = "auto"
+    precision: Literal["auto", "float32", "bfloat16"] = "auto"
+    workers: Literal["auto"] | Annotated[int, Field(ge=0, le=256, strict=True)] = "auto"
+    threads: Literal["auto"] | Annotated[int, Field(ge=1, le=4096, strict=True)] = "auto"
+
+    @model_validator(mode="after")
+    def _fits(self) -> "TrainConfig":
+        if self.warmup_epochs > self.epochs:
+            raise PydanticCustomError("warmup", "should have warmup_epochs of at most epochs")
+        return self

@@ -3,8 +3,11 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-# A file that stands for "installed as pyproject.toml and constraints.txt ask for".
-INSTALLED := $(VENV)/.installed
+# Files that stand for "installed as pyproject.toml and constraints.txt ask for".
+PLAIN := $(VENV)/.installed
+LEARN := $(VENV)/.installed-train
+DEV := $(VENV)/.installed-dev
+SMOKE := build/smoke
 
 .DEFAULT_GOAL := help
 
@@ -12,25 +15,44 @@ INSTALLED := $(VENV)/.installed
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
-$(INSTALLED): pyproject.toml constraints.txt
+define install
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[dev]"
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e "$(1)"
 	@touch $@
+endef
+
+$(PLAIN): pyproject.toml constraints.txt
+	$(call install,.)
+
+$(LEARN): pyproject.toml constraints.txt
+	$(call install,.[train])
+
+$(DEV): pyproject.toml constraints.txt
+	$(call install,.[dev])
 
 .PHONY: install
-install: $(INSTALLED) ## Create .venv and install radhar and its tools into it
+install: $(DEV) ## Create .venv and install radhar, its extras and its tools into it
 
 .PHONY: demo
-demo: $(INSTALLED) ## Build configs/quickstart.yaml into datasets/quickstart and check it
+demo: $(PLAIN) ## Build configs/quickstart.yaml into datasets/quickstart and check it
 	$(BIN)/radhar generate configs/quickstart.yaml -o datasets/quickstart
 	$(BIN)/radhar verify datasets/quickstart
 
+.PHONY: smoke
+smoke: $(LEARN) ## Generate, train, evaluate: the smallest whole run, in under a minute
+	rm -rf $(SMOKE)
+	$(BIN)/radhar generate configs/smoke.yaml -o $(SMOKE)/data
+	$(BIN)/radhar train $(SMOKE)/data -o $(SMOKE)/run --map stft --config configs/train/smoke.yaml
+	$(BIN)/radhar eval $(SMOKE)/run $(SMOKE)/data --tsne --filters --in-place-vs-moving
+	$(BIN)/radhar predict $(SMOKE)/run $(SMOKE)/data/png/stft/val/walking/*.png
+
 .PHONY: test
-test: $(INSTALLED) ## Run the whole test suite, lint and types included
+test: $(DEV) ## Run the whole test suite, lint and types included, then the smoke run
 	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest
+	$(MAKE) smoke
 
 .PHONY: bench
-bench: $(INSTALLED) ## Measure speed and memory (about ten minutes, on a quiet machine)
+bench: $(DEV) ## Measure speed and memory (about ten minutes, on a quiet machine)
 	$(BIN)/python scripts/bench_generate.py
 
 .PHONY: clean

@@ -7,6 +7,8 @@ import pytest
 from pydantic import BaseModel
 
 from radhar_cli.config import Config
+from radhar_cli.config.reading import load_section
+from radhar_cli.learning.settings import TrainConfig
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -29,7 +31,14 @@ def sections(model: type[BaseModel], prefix: str = "") -> list[str]:
     return found
 
 
-def test_every_config_key_is_documented() -> None:
-    text = (ROOT / "docs/config.md").read_text()
-    missing = [key for key in sections(Config) if key not in text]
+@pytest.mark.parametrize(
+    ("kind", "page"), [(Config, "config.md"), (TrainConfig, "training.md")], ids=["data", "train"]
+)
+def test_every_config_key_is_documented(kind: type[BaseModel], page: str) -> None:
+    text = (ROOT / "docs" / page).read_text()
+    missing = [key for key in sections(kind) if key not in text]
     assert not missing
+
+
+def test_the_papers_training_config_is_the_default() -> None:
+    assert load_section(TrainConfig, ROOT / "configs/train/paper.yaml") == TrainConfig()

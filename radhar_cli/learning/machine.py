@@ -33,6 +33,15 @@ def keep_memory() -> None:
         libc.mallopt(_M_TRIM_THRESHOLD, 2**31 - 1)
 
 
+def repeatable(device: torch.device) -> None:
+    """Ask for algorithms that give the same bits each time; elsewhere than on the CPU, if it can.
+
+    cuBLAS needs its workspace fixed before its first use.
+    """
+    os.environ.setdefault("CUBLAS_WORKSPACE_CONFIG", ":4096:8")
+    torch.use_deterministic_algorithms(True, warn_only=device.type != "cpu")
+
+
 def choose_device(wanted: str) -> torch.device:
     """The device asked for, or the best there is.
 

@@ -30,6 +30,7 @@ from radhar_cli.learning.machine import (
     joined,
     keep_memory,
     largest_batch,
+    repeatable,
 )
 from radhar_cli.learning.models.build import build_model, check_size
 from radhar_cli.learning.run_folder import About, Epoch, best_epoch
@@ -119,7 +120,7 @@ def train(
     if config.threads != "auto":
         torch.set_num_threads(config.threads)
     device = choose_device(config.device)
-    torch.use_deterministic_algorithms(True, warn_only=device.type != "cpu")
+    repeatable(device)
     with joined(device) as group, locked(folder) if group.leads else nullcontext():
         return _Training.prepared(config, data, folder, device, group, progress, overwrite).run()
 
@@ -216,7 +217,8 @@ class _Training:
                 self._keep(epoch, learned, seen, time.perf_counter() - began)
             else:
                 self.history.append(_row(epoch, 0.0, learned, seen, 0.0))
-        if self.group.leads:
+        already_told = went_on == self.config.epochs and (self.folder / run.METRICS).exists()
+        if self.group.leads and not already_told:
             self._finish()
         _together(self.group)
         return Outcome(self.folder, self.history, went_on)

@@ -1,0 +1,137 @@
+"""Trees of images that a network learns in seconds, and training runs of a second."""
+
+import dataclasses
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from PIL import Image
+from safetensors.torch import load_file
+
+from radhar_cli.errors import RadharError
+from radhar_cli.learning import run_folder as run
+from radhar_cli.learning.run_folder import Epoch
+from radhar_cli.learning.settings import TrainConfig
+from radhar_cli.learning.training import Outcome, train
+
+SIZE = 32
+CLASSES = ("kicking", "punching", "walking")  # in the papers order: punching, kicking, walking
+BASE = {
+    "epochs": 3,
+    "batch_size": 6,
+    "learning_rate": 1e-3,
+    "device": "cpu",
+    "precision": "float32",
+    "threads": 1,
+    "workers": 0,
+}
+
+
+def stripes(
+    kind: int, rng: np.random.Generator, size: int | tuple[int, int] = SIZE
+) -> np.ndarray[Any, Any]:
+    """An image [H, W, 3] whose stripes lie in a direction of their class."""
+    height, width = (size, size) if isinstance(size, int) else size
+    y, x = np.mgrid[:height, :width]
+    turn = math.pi * kind / 4
+    wave = np.sin(2 * math.pi * (x * math.cos(turn) + y * math.sin(turn)) / 8 + rng.uniform(0, 6))
+    levels = 128 + 80 * wave[..., None] * [1.0, 0.7, 0.4] + rng.normal(0, 20, (height, width, 3))
+    return np.clip(levels, 0, 255).astype(np.uint8)
+
+
+def tree(
+    root: Path,
+    classes: Sequence[str] = CLASSES,
+    parts: Mapping[str, int] | None = None,
+    size: int | tuple[int, int] = SIZE,
+    seed: int = 0,
+) -> Path:
+    """Write <part>/<class>/<number>.png; without parts <class>/<number>.png, eight a class.
+
+    The pattern belongs to the name, wherever it stands in the list.
+    """
+    rng = np.random.default_rng(seed)
+    for part, count in (parts if parts is not None else {"": 8}).items():
+        for name in classes:
+            folder = root / part / name
+            folder.mkdir(parents=True)
+            for number in range(count):
+                kind = sum(name.encode()) % 4
+                Image.fromarray(stripes(kind, rng, size)).save(folder / f"{number:03d}.png")
+    return root
+
+
+def split_tree(root: Path, train: int = 4, val: int = 2, **more: Any) -> Path:
+    """The tree that most tests learn from."""
+    return tree(root, parts={"train": train, "val": val}, **more)
+
+
+def settings(**changes: Any) -> TrainConfig:
+    return TrainConfig.model_validate({**BASE, **changes})
+
+
+class Watched:
+    """A progress that remembers, and raises after an epoch if asked to."""
+
+    def __init__(self, stop_after: int = 0, error: type[BaseException] = KeyboardInterrupt) -> None:
+        self.said: list[str] = []
+        self.losses: list[float] = []
+        self.best: list[bool] = []
+        self.steps: list[int] = []
+        self.stop_after, self.error = stop_after, error
+
+    def say(self, message: str) -> None:
+        self.said.append(message)
+
+    def epoch(self, number: int, epochs: int, steps: int) -> None:
+        self.steps.append(steps)
+
+    def step(self, loss: float, accuracy: float) -> None:
+        self.losses.append(loss)
+
+    def epoch_done(self, row: Epoch, best: bool) -> None:
+        self.best.append(best)
+        if row.epoch == self.stop_after:
+            raise self.error
+
+
+def trained(data: Path, out: Path, progress: Watched | None = None, **changes: Any) -> Outcome:
+    """Train with the tiny settings."""
+    return train(settings(**changes), data, out, progress or Watched())
+
+
+def best_weights(out: Path) -> dict[str, torch.Tensor]:
+    return load_file(out / run.BEST)
+
+
+def last_weights(out: Path) -> dict[str, torch.Tensor]:
+    found: dict[str, torch.Tensor] = torch.load(out / run.LAST, weights_only=True)["model"]
+    return found
+
+
+def same(one: Mapping[str, torch.Tensor], other: Mapping[str, torch.Tensor]) -> bool:
+    return list(one) == list(other) and all(torch.equal(one[k], other[k]) for k in one)
+
+
+def without_seconds(history: Sequence[Epoch]) -> list[Epoch]:
+    return [dataclasses.replace(row, seconds=0.0) for row in history]
+
+
+def same_run(one: Path, other: Path) -> bool:
+    """Whether two folders hold the same weights and history, but for the time they took."""
+    histories = [without_seconds(run.read_history(folder)) for folder in (one, other)]
+    return (
+        same(best_weights(one), best_weights(other))
+        and same(last_weights(one), last_weights(other))
+        and histories[0] == histories[1]
+    )
+
+
+def one_clear_line(error: RadharError, *words: object) -> None:
+    """An error that the program ends with status 2 on, which names what matters."""
+    assert error.status == 2
+    for word in words:
+        assert str(word) in str(error), str(error)

@@ -1,0 +1,78 @@
+"""Batches: every image once, the same for any number of processes."""
+
+from pathlib import Path
+
+import numpy as np
+import torch
+from hypothesis import given
+from hypothesis import settings as examples
+from hypothesis import strategies as st
+
+from radhar_cli.learning.batches import LEAST_PER_PROCESS, Normalisation, Reader, epoch_batches
+from radhar_cli.learning.images import open_images
+
+
+@examples(max_examples=200)
+@given(
+    count=st.integers(1, 200),
+    size=st.integers(1, 64),
+    processes=st.integers(1, 5),
+    epoch=st.integers(0, 5),
+)
+def test_every_image_exactly_once(count: int, size: int, processes: int, epoch: int) -> None:
+    batches = epoch_batches(count, size, 3, epoch, processes)
+    assert sorted(np.concatenate(batches).tolist()) == list(range(count))
+    assert all(batch.size == size for batch in batches[:-1])
+    assert 0 < batches[-1].size < size + LEAST_PER_PROCESS * processes
+
+
+@examples(max_examples=300)
+@given(count=st.integers(2, 200), size=st.integers(1, 64), processes=st.integers(1, 5))
+def test_no_process_gets_less_than_two_images_of_a_batch(
+    count: int, size: int, processes: int
+) -> None:
+    """Where there are enough images and the batch is large enough for it."""
+    if min(count, size) < LEAST_PER_PROCESS * processes:
+        return
+    for batch in epoch_batches(count, size, 3, 0, processes):
+        shares = [batch[rank::processes].size for rank in range(processes)]
+        assert min(shares) >= 2
+        assert sum(shares) == batch.size
+
+
+def test_order_depends_on_seed_and_epoch_alone() -> None:
+    def order(seed: int, epoch: int, processes: int = 1) -> list[int]:
+        found: list[int] = np.concatenate(epoch_batches(40, 8, seed, epoch, processes)).tolist()
+        return found
+
+    assert order(1, 0) == order(1, 0) == order(1, 0, 4)
+    assert order(1, 0) != order(1, 1)
+    assert order(1, 0) != order(2, 0)
+    assert order(1, 0) != list(range(40))
+
+
+def test_full_batches_are_the_same_for_any_number_of_processes() -> None:
+    one, two = epoch_batches(18, 6, 1, 0, 1), epoch_batches(18, 6, 1, 0, 2)
+    assert [b.tolist() for b in one] == [b.tolist() for b in two]
+
+
+def test_levels_become_zero_mean_and_unit_spread_channel_by_channel() -> None:
+    levels = torch.randint(0, 256, (2, 3, 4, 5), dtype=torch.uint8)
+    found = Normalisation((0.1, 0.5, 0.9), (0.2, 1.0, 0.25))(levels)
+    assert found.dtype == torch.float32
+    for channel, (mean, sd) in enumerate(((0.1, 0.2), (0.5, 1.0), (0.9, 0.25))):
+        expected = (levels[:, channel].double() / 255 - mean) / sd
+        torch.testing.assert_close(found[:, channel].double(), expected, rtol=1e-5, atol=1e-5)
+
+
+def test_reader_yields_rows_as_asked_channels_first(data: Path) -> None:
+    images = open_images(data, None, "rgb")
+    labels = np.arange(len(images)) + 100
+    reader = Reader(images, labels, workers=0, pin=False)
+    for _ in range(2):
+        (one, first), (two, second) = reader([np.array([5, 0, 7]), np.array([2])])
+        assert first.tolist() == [105, 100, 107]
+        assert second.tolist() == [102]
+        assert (one.shape, one.dtype) == ((3, 3, 32, 32), torch.uint8)
+        assert np.array_equal(one[0].numpy().transpose(1, 2, 0), images.pixels.read(5))
+        assert np.array_equal(two[0].numpy().transpose(1, 2, 0), images.pixels.read(2))

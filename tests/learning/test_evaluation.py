@@ -1,0 +1,340 @@
+"""Evaluation and its report: numbers, figures, warnings."""
+
+import csv
+import json
+import re
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+from learning.patterns import CLASSES, one_clear_line, split_tree, trained, tree
+from PIL import Image
+from small import small_config
+
+from radhar_cli.config import load_config
+from radhar_cli.dataset.build import build
+from radhar_cli.errors import FolderError, RadharError
+from radhar_cli.learning.evaluation import open_for, predict, speed
+from radhar_cli.learning.onnx_export import export
+from radhar_cli.learning.prediction import predict as predict_paths
+from radhar_cli.learning.report import Asked, Report, evaluate
+from radhar_cli.learning.run_folder import BEST, TRAINED_ON, load_best
+
+CPU = torch.device("cpu")
+
+
+class Ears:
+    def __init__(self) -> None:
+        self.said: list[str] = []
+
+    def say(self, message: str) -> None:
+        self.said.append(message)
+
+
+@pytest.fixture(scope="session")
+def learned(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """(run, data) of a run that gets everything right: S2, S3 and S8."""
+    place = tmp_path_factory.mktemp("learned")
+    root = split_tree(place / "tree", train=8, val=3)
+    trained(root, place / "good", epochs=6)
+    return place / "good", root
+
+
+def asked(
+    learned: tuple[Path, Path], data: Path | list[Path] | None = None, **more: Any
+) -> tuple[Report, Ears]:
+    ears = Ears()
+    places = learned[1] if data is None else data
+    places = places if isinstance(places, list) else [places]
+    return evaluate([learned[0]], places, Asked(**more), CPU, ears), ears
+
+
+def only(report: Report) -> dict[str, Any]:
+    (run,) = report.numbers["runs"].values()
+    (numbers,) = run["data"].values()
+    found: dict[str, Any] = numbers
+    return found
+
+
+def test_report_of_a_good_run(learned: tuple[Path, Path], tmp_path: Path) -> None:
+    report, ears = asked(learned, tsne=True, filters=True, in_place_vs_moving=True, batch=4)
+    numbers = only(report)
+    assert numbers["accuracy"] == 1.0
+    assert numbers["confusion"] == np.diag([3, 3, 3]).tolist()
+    assert numbers["in_place_vs_moving"] == [[6, 0], [0, 3]]
+    assert numbers["seen_in_training"] == {"images": 0, "scenes": 0}
+    assert not any("trained on" in line for line in ears.said)
+    assert len(report.numbers["filters"]["good"]) == 6
+    report.write(tmp_path)
+    stored = json.loads((tmp_path / "report.json").read_text())
+    assert stored["split"] == "val"
+    page = (tmp_path / "report.html").read_text()
+    assert "http" not in page
+    sources = re.findall(r'src="([^"]{0,30})', page)
+    assert len(sources) == len(report.figures) == 7
+    assert all(source.startswith("data:image/png;base64,") for source in sources)
+    for name in ("confusion", "reliability", "hardest", "tsne", "filters", "curves"):
+        assert (tmp_path / f"{name}.png").read_bytes().startswith(b"\x89PNG"), name
+    with (tmp_path / "predictions.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [row["true"] for row in rows] == [row["predicted"] for row in rows]
+    assert rows[0]["image"] == "punching/000"
+    assert (tmp_path / "confusion.csv").exists()
+    timing = stored["runs"]["good"]["speed"]
+    assert timing["batch"] == 4
+    assert 0 < timing["image_s"] < timing["load_and_image_s"]
+
+
+def test_a_planted_confusion_is_found_where_it_was_planted(
+    learned: tuple[Path, Path], tmp_path: Path
+) -> None:
+    """The folders of punching and walking change their names; kicking loses an image."""
+    root = tmp_path / "swapped"
+    shutil.copytree(learned[1], root)
+    val = root / "val"
+    (val / "punching").rename(val / "x")
+    (val / "walking").rename(val / "punching")
+    (val / "x").rename(val / "walking")
+    (val / "walking/000.png").unlink()
+    numbers = only(asked(learned, root, in_place_vs_moving=True)[0])
+    assert numbers["confusion"] == [[0, 0, 3], [0, 3, 0], [2, 0, 0]]
+    assert numbers["in_place_vs_moving"] == [[3, 3], [2, 0]]
+    assert numbers["accuracy"] == 3 / 8
+    assert numbers["classes"]["walking"] == {"precision": 0, "recall": 0, "f1": 0, "images": 2}
+
+
+def test_some_of_the_classes_are_matched_by_name(
+    learned: tuple[Path, Path], tmp_path: Path
+) -> None:
+    root = tree(tmp_path / "t", ("walking", "kicking"), {"val": 2}, seed=9)
+    numbers = only(asked(learned, root)[0])
+    assert numbers["confusion"] == [[0, 0, 0], [0, 2, 0], [0, 0, 2]]
+
+
+def test_it_is_said_when_images_were_trained_on(learned: tuple[Path, Path]) -> None:
+    report, ears = asked(learned, split="train")
+    assert only(report)["seen_in_training"]["images"] == 24
+    assert any("24 of these 24 images" in line for line in ears.said)
+    report, _ = asked(learned, split="all")
+    assert only(report)["seen_in_training"]["images"] == 24
+
+
+def test_several_data_sets_give_robustness(learned: tuple[Path, Path], tmp_path: Path) -> None:
+    noisy = split_tree(tmp_path / "noisy", 1, 2, seed=4)
+    report, _ = asked(learned, [learned[1], noisy], in_place_vs_moving=True)
+    report.write(tmp_path / "out")
+    with (tmp_path / "out/robustness.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert [row["data"] for row in rows] == ["tree", "noisy"]
+    assert float(rows[0]["accuracy"]) == 1.0
+    assert float(rows[0]["low_95"]) < 1.0 <= float(rows[0]["high_95"]) + 1e-9
+    assert (tmp_path / "out/robustness.png").exists()
+    assert (tmp_path / "out/confusion_good_noisy.png").exists()
+
+
+def test_several_runs_overlay_their_curves(
+    learned: tuple[Path, Path], run_dir: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from radhar_cli.learning import report as module
+
+    drawn: list[list[str]] = []
+    draw = module.curves_png
+    monkeypatch.setattr(
+        module, "curves_png", lambda series, best: drawn.append(list(series)) or draw(series, best)
+    )
+    report = evaluate([learned[0], run_dir], [learned[1]], Asked(), CPU, Ears())
+    assert drawn == [["good", "plain"]]
+    assert list(report.numbers["runs"]) == ["good", "plain"]
+    assert not any(name == "robustness.png" for name, _, _ in report.figures)
+
+
+def test_weights_alone_are_evaluated_without_curves(
+    learned: tuple[Path, Path], tmp_path: Path
+) -> None:
+    shutil.copy(learned[0] / BEST, tmp_path / "model.safetensors")
+    report = evaluate([tmp_path / "model.safetensors"], [learned[1]], Asked(), CPU, Ears())
+    assert only(report)["accuracy"] == 1.0
+    assert not any(name == "curves.png" for name, _, _ in report.figures)
+
+
+def test_batches_do_not_change_the_answers(learned: tuple[Path, Path]) -> None:
+    about, model = load_best(learned[0])
+    images = open_for(about, learned[1], None)
+    rows = images.rows("val")[::-1].copy()
+    one, many = (predict(model, about, images, rows, CPU, batch) for batch in (1, 5))
+    np.testing.assert_allclose(one.probabilities, many.probabilities, atol=1e-5)
+    np.testing.assert_allclose(many.probabilities.sum(1), 1, atol=1e-6)
+    assert np.array_equal(one.truth, images.label[rows])
+    assert many.features.shape == (9, 512)
+
+
+def test_features_and_last_layer_make_the_probabilities(learned: tuple[Path, Path]) -> None:
+    about, model = load_best(learned[0])
+    images = open_for(about, learned[1], None)
+    found = predict(model, about, images, images.rows("val"), CPU, 4)
+    head = model.head
+    logits = found.features @ head.weight.detach().numpy().T + head.bias.detach().numpy()
+    odds = np.exp(logits - logits.max(1, keepdims=True))
+    np.testing.assert_allclose(found.probabilities, odds / odds.sum(1, keepdims=True), atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("classes", "parts", "size", "said"),
+    [
+        (("walkin",), {"val": 1}, 32, ["'walkin' is unknown to the model", "'walking'"]),
+        (CLASSES, {"val": 1}, 64, ["64 x 64 px", "32 x 32 px"]),
+        (CLASSES, {"train": 1}, 32, ["has no val images"]),
+    ],
+)
+def test_data_that_does_not_fit_the_model_is_refused(
+    learned: tuple[Path, Path],
+    tmp_path: Path,
+    classes: tuple[str, ...],
+    parts: dict[str, int],
+    size: int,
+    said: list[str],
+) -> None:
+    root = tree(tmp_path / "t", classes, parts, size)
+    with pytest.raises(FolderError) as caught:
+        asked(learned, root)
+    one_clear_line(caught.value, *said, root)
+
+
+def test_two_groups_need_classes_of_ours(tmp_path: Path) -> None:
+    root = split_tree(tmp_path / "t", 2, 1, classes=("a", "b"))
+    trained(root, tmp_path / "run", epochs=1)
+    with pytest.raises(RadharError, match="'a' is none of the twelve activities"):
+        asked((tmp_path / "run", root), in_place_vs_moving=True)
+
+
+def test_the_same_data_twice_is_refused(learned: tuple[Path, Path]) -> None:
+    with pytest.raises(FolderError, match="is given twice"):
+        asked(learned, [learned[1], learned[1]])
+
+
+@pytest.mark.parametrize("content", ["", "a,b\n1,2\n"])
+def test_damaged_list_of_training_images_is_no_traceback(
+    learned: tuple[Path, Path], tmp_path: Path, content: str
+) -> None:
+    shutil.copytree(learned[0], tmp_path / "run")
+    (tmp_path / "run" / TRAINED_ON).write_text(content)
+    try:
+        asked((tmp_path / "run", learned[1]))
+    except RadharError as error:
+        one_clear_line(error, TRAINED_ON)
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_tsne_of_few_images_is_no_traceback(
+    learned: tuple[Path, Path], tmp_path: Path, count: int
+) -> None:
+    root = tree(tmp_path / "t", ("walking", "kicking")[:count], {"val": 1})
+    try:
+        asked(learned, root, tsne=True)
+    except RadharError as error:
+        one_clear_line(error, "tsne")
+
+
+def test_speed_times_what_the_paper_times(learned: tuple[Path, Path]) -> None:
+    about, _ = load_best(learned[0])
+    found = speed(learned[0], open_for(about, learned[1], None), 0, CPU, 3)
+    assert set(found) == {"load_s", "image_s", "load_and_image_s", "batch", "images_per_s"}
+    assert found["load_and_image_s"] > found["load_s"] > 0
+
+
+def test_predict_of_files_and_folders(learned: tuple[Path, Path]) -> None:
+    run, root = learned
+    file = root / "val/walking/001.png"
+    answers = list(predict_paths(run, [file, root], CPU, None, "val"))
+    assert [name for name, _ in answers[:2]] == [str(file), "punching/000"]
+    assert len(answers) == 10
+    for name, chances in answers:
+        assert list(chances) == ["punching", "kicking", "walking"]
+        assert sum(chances.values()) == pytest.approx(1, abs=1e-6)
+        assert max(chances, key=chances.__getitem__) in name
+    assert dict(answers)["walking/001"] == pytest.approx(answers[0][1], abs=1e-5)
+
+
+def test_predict_asks_for_no_labels(learned: tuple[Path, Path], tmp_path: Path) -> None:
+    root = tree(tmp_path / "t", ("who", "knows"), {"": 1})
+    assert len(list(predict_paths(learned[0], [root], CPU, None, "all"))) == 2
+
+
+def test_predict_refuses_other_sizes_and_damage(learned: tuple[Path, Path], tmp_path: Path) -> None:
+    Image.new("RGB", (64, 32)).save(tmp_path / "a.png")
+    (tmp_path / "b.png").write_bytes((tmp_path / "a.png").read_bytes()[:50])
+    for name, said in (("a", "32 x 64 px"), ("b", "truncated"), ("c", "no such file")):
+        with pytest.raises(FolderError) as caught:
+            list(predict_paths(learned[0], [tmp_path / f"{name}.png"], CPU, None, "all"))
+        one_clear_line(caught.value, tmp_path / f"{name}.png", said)
+
+
+def test_onnx_runtime_agrees(learned: tuple[Path, Path], tmp_path: Path) -> None:
+    import onnx
+    import onnxruntime
+
+    path = tmp_path / "new/model.onnx"
+    assert export(learned[0], path) <= 1e-4
+    stored = {p.key: p.value for p in onnx.load(path).metadata_props}
+    assert json.loads(stored["classes"]) == ["punching", "kicking", "walking"]
+    session = onnxruntime.InferenceSession(path, providers=["CPUExecutionProvider"])
+    about, model = load_best(learned[0])
+    images = open_for(about, learned[1], None)
+    rows = images.rows("val")
+    levels = np.stack([images.pixels.read(int(r)).transpose(2, 0, 1) for r in rows])
+    (logits,) = session.run(["logits"], {"pixels": levels})
+    with torch.no_grad():
+        expected = model(about.normalisation(torch.from_numpy(levels))).numpy()
+    np.testing.assert_allclose(logits, expected, atol=1e-4, rtol=1e-4)
+    assert np.array_equal(logits.argmax(1), images.label[rows])
+
+
+SET = """
+seed: 3
+samples_per_class: 4
+activities: [punching, walking]
+duration_s: 2.0
+radar: {carrier_hz: 10e9, bandwidth_hz: 1e9, prf_hz: 500}
+snr_db: 20
+maps: [rtm, stft]
+image: {size_px: 32}
+split: {train: 0.5, validation: 0.5}
+"""
+
+
+class Quiet:
+    def stage(self, name: str, total: int, done: int) -> None: ...
+    def advance(self, samples: int) -> None: ...
+    def say(self, message: str) -> None: ...
+
+
+def test_hdf5_and_png_train_and_evaluate_the_same(tmp_path: Path) -> None:
+    build(load_config(small_config(tmp_path, SET)), tmp_path / "set", progress=Quiet(), jobs=1)
+    stored, files = tmp_path / "set", tmp_path / "set/png/stft"
+    trained(stored, tmp_path / "run", epochs=1, batch_size=4, map="stft")
+    on_both = []
+    for data in (stored, files):
+        ears = Ears()
+        report = evaluate([tmp_path / "run"], [data], Asked(), CPU, ears)
+        on_both.append(only(report))
+    for key in ("accuracy", "confusion", "calibration_error"):
+        assert on_both[0][key] == on_both[1][key]
+    assert on_both[0]["snr_db"] == 20.0
+    seen = [
+        only(evaluate([tmp_path / "run"], [data], Asked(split="train"), CPU, Ears()))
+        for data in (stored, files)
+    ]
+    assert seen[0]["seen_in_training"] == {"images": 4, "scenes": 4}
+    assert seen[1]["seen_in_training"] == {"images": 4, "scenes": 0}
+    with pytest.raises(FolderError, match="has no map 'stfft'"):
+        evaluate([tmp_path / "run"], [stored], Asked(map="stfft"), CPU, Ears())
+
+
+def test_a_map_that_is_not_in_the_folder_is_not_passed_over(tmp_path: Path) -> None:
+    """A tree of one map of ours asked for another one."""
+    build(load_config(small_config(tmp_path, SET)), tmp_path / "set", progress=Quiet(), jobs=1)
+    with pytest.raises(RadharError):
+        trained(tmp_path / "set/png/rtm", tmp_path / "run", epochs=1, map="stft")

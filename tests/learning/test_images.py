@@ -1,0 +1,379 @@
+"""Labelled images: dataset.h5 and trees of class folders say the same."""
+
+import pickle
+import random
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import settings as examples
+from hypothesis import strategies as st
+from learning.patterns import one_clear_line, settings, split_tree, stripes, tree
+from PIL import Image
+from small import small_config
+
+from radhar_cli.config import load_config
+from radhar_cli.dataset.build import build
+from radhar_cli.errors import FolderError
+from radhar_cli.learning.folder_images import split_named
+from radhar_cli.learning.images import (
+    ImageSet,
+    class_order,
+    content_hash,
+    labels_for,
+    luminance,
+    open_images,
+    scan,
+)
+from radhar_cli.learning.training import checked_images
+
+SET = """
+seed: 3
+samples_per_class: 4
+activities: [walking, S12, punching]
+duration_s: 2.0
+radar: {carrier_hz: 10e9, bandwidth_hz: 1e9, prf_hz: 500}
+snr_db: 20
+maps: [rtm, stft]
+image: {size_px: 32}
+split: {train: 0.5, validation: 0.25, test: 0.25}
+"""
+
+
+class Quiet:
+    def stage(self, name: str, total: int, done: int) -> None: ...
+    def advance(self, samples: int) -> None: ...
+    def say(self, message: str) -> None: ...
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A data set of ours, classes named out of their order."""
+    place = tmp_path_factory.mktemp("made")
+    build(load_config(small_config(place, SET)), place / "set", progress=Quiet(), jobs=1)
+    return place / "set"
+
+
+def pixels(images: ImageSet, rows: np.ndarray) -> np.ndarray:
+    return np.stack([images.pixels.read(int(row)) for row in rows])
+
+
+@pytest.mark.parametrize("kind", ["rgb", "gray"])
+@pytest.mark.parametrize("map_name", ["rtm", "stft"])
+def test_hdf5_and_png_are_the_same_images_in_the_same_order(
+    made: Path, kind: str, map_name: str
+) -> None:
+    stored = open_images(made, map_name, kind)
+    hashes = set()
+    for place, name in ((made / "png", map_name), (made / "png" / map_name, None)):
+        files = open_images(place, name, kind)
+        assert files.classes == stored.classes == ("punching", "walking", "walking_to_falling")
+        assert files.size == stored.size == (32, 32)
+        for split, count in (("train", 6), ("val", 3), ("test", 3)):
+            ours, theirs = stored.rows(split), files.rows(split)
+            assert len(ours) == len(theirs) == count
+            assert np.array_equal(stored.label[ours], files.label[theirs])
+            assert [stored.names[r] for r in ours] == [files.names[r] for r in theirs]
+            assert np.array_equal(pixels(stored, ours), pixels(files, theirs))
+        for images in (stored, files):
+            rows = np.concatenate([images.rows("train"), images.rows("val")])
+            hashes.add(content_hash(images, rows, scan(images, rows).prints))
+    assert len(hashes) == 1
+    channels = pixels(stored, stored.rows("train"))
+    assert (channels[..., 0] == channels[..., 1]).all() == (kind == "gray")
+
+
+def test_gray_is_the_stored_level(made: Path) -> None:
+    import h5py
+
+    with h5py.File(made / "dataset.h5") as file:
+        levels = file["maps/stft"][3]
+    assert np.array_equal(open_images(made, "stft", "gray").pixels.read(3)[..., 1], levels)
+
+
+def test_gray_of_a_strange_image_is_its_brightness(tmp_path: Path) -> None:
+    split_tree(tmp_path / "t")
+    rgb = open_images(tmp_path / "t", None, "rgb").pixels.read(0)
+    gray = open_images(tmp_path / "t", None, "gray").pixels.read(0)
+    expected = rgb @ np.array([0.299, 0.587, 0.114])
+    assert np.abs(gray[..., 0] - expected).max() <= 0.5 + 1e-9
+    assert luminance(np.full((1, 1, 3), 255, np.uint8))[0, 0] == 255
+
+
+def test_hash_sees_pixels_labels_classes_and_splits(made: Path) -> None:
+    images = open_images(made, "stft", "rgb")
+    rows = images.rows("train")
+    prints = scan(images, rows).prints
+    right = content_hash(images, rows, prints)
+    from dataclasses import replace
+
+    assert content_hash(images, rows, prints) == right
+    assert content_hash(images, rows, prints[::-1]) != right
+    assert content_hash(replace(images, label=images.label[::-1].copy()), rows, prints) != right
+    assert content_hash(replace(images, classes=("a", "b", "c")), rows, prints) != right
+    assert content_hash(replace(images, split=1 - images.split), rows, prints) != right
+
+
+def test_first_map_is_read_if_none_is_named_and_a_wrong_one_is_suggested(made: Path) -> None:
+    assert open_images(made, None, "rgb").map == "rtm"
+    with pytest.raises(FolderError, match="did you mean 'stft'") as caught:
+        open_images(made, "stftt", "rgb")
+    one_clear_line(caught.value)
+
+
+def test_scenes_tell_people_apart_and_snr_is_known(made: Path) -> None:
+    images = open_images(made, None, "rgb")
+    assert images.scenes is not None
+    assert len(set(images.scenes)) == len(images)
+    assert images.snr_db == 20.0
+
+
+def test_classes_of_ours_stand_in_the_papers_order_others_by_alphabet() -> None:
+    assert class_order({"walking", "kicking", "standing_up"}) == (
+        "kicking",
+        "standing_up",
+        "walking",
+    )
+    assert class_order({"walking", "kicking", "zebra"}) == ("kicking", "walking", "zebra")
+    assert class_order({"walking", "stationary", "apple"}) == ("apple", "stationary", "walking")
+
+
+def test_classes_are_matched_by_name_not_by_number(tmp_path: Path) -> None:
+    images = open_images(tree(tmp_path / "t", ("b", "d"), {"test": 2}), None, "rgb")
+    assert images.label.tolist() == [0, 0, 1, 1]
+    assert labels_for(images, ("d", "c", "b")).tolist() == [2, 2, 0, 0]
+    with pytest.raises(FolderError) as caught:
+        labels_for(images, ("a", "b", "c"))
+    one_clear_line(caught.value, "'d'", "unknown to the model", tmp_path)
+
+
+@pytest.mark.parametrize("name", ["val", "validation", "valid", "Val"])
+def test_folders_named_like_splits_are_splits(tmp_path: Path, name: str) -> None:
+    root = tree(tmp_path / "t", parts={"train": 3, name: 2, "test": 1})
+    images = open_images(root, None, "rgb")
+    assert images.split is not None
+    counts = [images.rows(split).size for split in ("train", "val", "test", "all")]
+    assert counts == [9, 6, 3, 18]
+    assert images.names[0] == "punching/000"
+
+
+def test_tree_without_splits_is_cut_class_by_class_and_always_alike(tmp_path: Path) -> None:
+    root = tree(tmp_path / "t", ("a", "b"), {"": 10})
+    images = open_images(root, None, "rgb")
+    assert images.split is None
+    cut = images.cut(0.2, 1)
+    assert np.bincount(cut.label[cut.rows("val")]).tolist() == [2, 2]
+    assert np.bincount(cut.label[cut.rows("train")]).tolist() == [8, 8]
+    assert cut.rows("val").tolist() == images.cut(0.2, 1).rows("val").tolist()
+    others = {tuple(images.cut(0.2, seed).rows("val").tolist()) for seed in range(2, 6)}
+    assert others - {tuple(cut.rows("val").tolist())}
+    assert images.rows("val").size == images.rows("all").size == 20
+    with pytest.raises(FolderError, match="has no train folder"):
+        images.rows("train")
+
+
+@examples(max_examples=50)
+@given(counts=st.lists(st.integers(2, 30), min_size=2, max_size=4), share=st.floats(0.01, 0.5))
+def test_every_class_keeps_something_on_both_sides(counts: list[int], share: float) -> None:
+    label = np.repeat(np.arange(len(counts)), counts)
+    names = tuple(str(n) for n in range(len(label)))
+    kinds = tuple("abcd"[: len(counts)])
+    images = ImageSet(Path("x"), None, kinds, label, None, names, None, (32, 32), None)  # type: ignore[arg-type]
+    cut = images.cut(share, 0)
+    for index, count in enumerate(counts):
+        held = int((cut.label[cut.rows("val")] == index).sum())
+        assert held == max(1, round(share * count))
+        assert held < count
+
+
+def test_a_tree_that_is_cut_already_is_left_alone(tmp_path: Path) -> None:
+    images = open_images(split_tree(tmp_path / "t"), None, "rgb")
+    assert images.cut(0.5, 1) is images
+
+
+def test_scan_gives_mean_and_spread_of_every_channel(tmp_path: Path) -> None:
+    images = open_images(split_tree(tmp_path / "t"), None, "rgb")
+    rows = images.rows("train")
+    found, levels = scan(images, rows), pixels(images, rows) / 255
+    np.testing.assert_allclose(found.mean, levels.mean((0, 1, 2)), rtol=1e-12)
+    np.testing.assert_allclose(found.sd, levels.std((0, 1, 2)), rtol=1e-9)
+    assert len(set(found.mean)) == 3
+    assert len(set(found.prints)) == rows.size
+
+
+def test_constant_channel_has_unit_spread(tmp_path: Path) -> None:
+    folder = tmp_path / "a"
+    folder.mkdir()
+    Image.new("RGB", (32, 32), (9, 0, 255)).save(folder / "x.png")
+    images = open_images(tmp_path, None, "rgb")
+    assert scan(images, [0]).sd == (1.0, 1.0, 1.0)
+
+
+def test_images_travel_to_other_processes_unopened(made: Path) -> None:
+    images = open_images(made, "rtm", "rgb")
+    first = images.pixels.read(1)
+    again = pickle.loads(pickle.dumps(images.pixels))
+    assert again._open == {}
+    assert np.array_equal(again.read(1), first)
+
+
+def look_at_all(root: Path) -> None:
+    images = open_images(root, None, "rgb")
+    scan(images, images.rows("all"))
+
+
+def broken(tmp_path: Path, what: str) -> tuple[Path, list[str]]:
+    """Trees and files that cannot be used, and what the message should name."""
+    root = tmp_path / "t"
+    if what == "nothing there":
+        return root, ["no such file or folder"]
+    if what == "empty folder":
+        root.mkdir()
+        return root, ["no folders", "dataset.h5"]
+    if what == "folders without images":
+        (root / "old").mkdir(parents=True)
+        return root, ["old", "no class folders with images"]
+    split_tree(root)
+    first = root / "train/kicking/000.png"
+    if what == "empty class":
+        (root / "train/zebra").mkdir()
+        return root, ["'zebra' has no image"]
+    if what == "text as image":
+        first.write_text("no image")
+        return root, [str(first), "is no image, or a truncated one"]
+    if what == "another size":
+        Image.new("RGB", (64, 32)).save(first.with_name("999.png"))
+        return root, ["999.png", "is 32 x 64 px; should be 32 x 32"]
+    raise AssertionError(what)
+
+
+@pytest.mark.parametrize(
+    "what",
+    [
+        *("nothing there", "empty folder", "folders without images", "empty class"),
+        *("text as image", "another size"),
+    ],
+)
+def test_unusable_data_is_named(tmp_path: Path, what: str) -> None:
+    root, said = broken(tmp_path, what)
+    with pytest.raises(FolderError) as caught:
+        look_at_all(root)
+    one_clear_line(caught.value, *said)
+
+
+def test_a_truncated_image_is_named_wherever_it_ends(tmp_path: Path) -> None:
+    root = split_tree(tmp_path / "t")
+    images = open_images(root, None, "rgb")
+    path = root / "train/kicking/002.png"
+    whole = path.read_bytes()
+    for length in [0, 5, 8, 20, 33, 40, *random.Random(0).choices(range(len(whole) - 30), k=20)]:
+        path.write_bytes(whole[:length])
+        with pytest.raises(FolderError) as caught:
+            scan(images, images.rows("all"))
+        one_clear_line(caught.value, path, "truncated")
+
+
+def test_a_damaged_image_is_read_or_named(tmp_path: Path) -> None:
+    """Bytes turned over at random: never anything but our own message."""
+    root = split_tree(tmp_path / "t")
+    images = open_images(root, None, "rgb")
+    path = root / "train/kicking/002.png"
+    whole, chance = path.read_bytes(), random.Random(1)
+    row = images.names.index("kicking/002")
+    refused = 0
+    for _ in range(60):
+        data = bytearray(whole)
+        data[chance.randrange(8, 80)] ^= 1 << chance.randrange(8)
+        path.write_bytes(data)
+        try:
+            images.pixels.read(row)
+        except FolderError as error:
+            refused += 1
+            one_clear_line(error, path)
+    assert refused
+
+
+def test_a_truncated_data_set_is_named(made: Path, tmp_path: Path) -> None:
+    whole = (made / "dataset.h5").read_bytes()
+    path = tmp_path / "dataset.h5"
+    for length in (0, 100, 3000, len(whole) // 2, len(whole) - 1):
+        path.write_bytes(whole[:length])
+        with pytest.raises(FolderError) as caught:
+            open_images(path, None, "rgb")
+        one_clear_line(caught.value, path, "truncated")
+
+
+def test_a_damaged_chunk_of_a_data_set_is_named(made: Path, tmp_path: Path) -> None:
+    import h5py
+
+    path = tmp_path / "dataset.h5"
+    path.write_bytes((made / "dataset.h5").read_bytes())
+    with h5py.File(path) as file:
+        maps = file["maps/rtm"]
+        if maps.chunks is None:
+            pytest.skip("stored in one piece")
+        places = [maps.id.get_chunk_info(i) for i in range(maps.id.get_num_chunks())]
+    data = bytearray(path.read_bytes())
+    for place in places:
+        data[place.byte_offset : place.byte_offset + place.size] = b"\xff" * place.size
+    path.write_bytes(data)
+    images = open_images(path, "rtm", "rgb")
+    with pytest.raises(FolderError) as caught:
+        scan(images, images.rows("all"))
+    one_clear_line(caught.value, path, "rtm", "cannot be read")
+
+
+def test_gray_and_other_formats_are_read_as_rgb(tmp_path: Path) -> None:
+    rng = np.random.default_rng(0)
+    picture = Image.fromarray(stripes(0, rng))
+    (tmp_path / "a").mkdir()
+    picture.convert("L").save(tmp_path / "a/0.png")
+    picture.convert("RGBA").save(tmp_path / "a/1.png")
+    picture.save(tmp_path / "a/2.bmp")
+    picture.save(tmp_path / "a/3.JPG", format="jpeg")
+    (tmp_path / "a/notes.txt").write_text("not an image")
+    images = open_images(tmp_path, None, "rgb")
+    assert len(images) == 4
+    read = pixels(images, images.rows("all"))
+    assert read.shape == (4, 32, 32, 3)
+    assert np.array_equal(read[1], read[2])
+    assert (read[0][..., 0] == read[0][..., 2]).all()
+
+
+@pytest.mark.parametrize(
+    ("parts", "classes", "size", "said"),
+    [
+        ({"train": 2, "val": 1}, ("a",), 32, "the class 'a' alone"),
+        ({"train": 2, "test": 1}, ("a", "b"), 32, "no val images (it has 4 train, 2 test)"),
+        ({"val": 2, "test": 1}, ("a", "b"), 32, "no train images"),
+        ({"train": 2, "val": 1}, ("a", "b"), 40, "40 x 40 px; fftnet needs sides that are mult"),
+        ({"train": 2, "val": 1}, ("a", "b"), (32, 48), "32 x 48 px"),
+        ({"": 1}, ("a", "b"), 32, "no train images"),
+    ],
+)
+def test_what_cannot_be_learned_from_is_refused(
+    tmp_path: Path,
+    parts: dict[str, int],
+    classes: tuple[str, ...],
+    size: int | tuple[int, int],
+    said: str,
+) -> None:
+    root = tree(tmp_path / "t", classes, parts, size)
+    with pytest.raises(FolderError) as caught:
+        checked_images(settings(), root)
+    one_clear_line(caught.value, said, root)
+
+
+def test_a_class_without_training_images_is_named(tmp_path: Path) -> None:
+    root = split_tree(tmp_path / "t", classes=("a", "b"))
+    (root / "val/c").mkdir()
+    Image.new("RGB", (32, 32)).save(root / "val/c/0.png")
+    with pytest.raises(FolderError, match="'c' has no training image"):
+        checked_images(settings(), root)
+
+
+def test_split_named_suggests() -> None:
+    assert split_named("all") == "all"
+    with pytest.raises(FolderError, match="did you mean 'train'"):
+        split_named("trian")

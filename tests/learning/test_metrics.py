@@ -1,0 +1,115 @@
+"""Metrics against scikit-learn and against numbers worked out by hand."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from sklearn import metrics as reference
+
+from radhar_cli.learning import metrics
+
+
+def test_confusion_counts_truth_down_and_predictions_across() -> None:
+    counts = metrics.confusion(np.array([0, 0, 0, 1, 2]), np.array([0, 1, 1, 1, 0]), 3)
+    assert counts.tolist() == [[1, 2, 0], [0, 1, 0], [1, 0, 0]]
+
+
+def test_known_precision_recall_and_f1() -> None:
+    found = metrics.per_class(np.array([[4, 1, 0], [2, 2, 0], [0, 1, 0]]))
+    assert found.precision.tolist() == [4 / 6, 2 / 4, 0.0]
+    assert found.recall.tolist() == [4 / 5, 2 / 4, 0.0]
+    np.testing.assert_allclose(found.f1, [8 / 11, 0.5, 0.0], rtol=1e-15)
+    assert found.support.tolist() == [5, 4, 1]
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    classes=st.integers(2, 6), count=st.integers(1, 40), seed=st.integers(0, 2**31), data=st.data()
+)
+def test_scikit_learn_agrees(classes: int, count: int, seed: int, data: st.DataObject) -> None:
+    """Classes that never occur, or are never called, among them."""
+    rng = np.random.default_rng(seed)
+    seen = data.draw(st.integers(1, classes))
+    truth, predicted = rng.integers(0, seen, count), rng.integers(0, classes, count)
+    counts = metrics.confusion(truth, predicted, classes)
+    labels = list(range(classes))
+    assert np.array_equal(counts, reference.confusion_matrix(truth, predicted, labels=labels))
+    found = metrics.per_class(counts)
+    expected = reference.precision_recall_fscore_support(
+        truth, predicted, labels=labels, zero_division=0
+    )
+    mine = (found.precision, found.recall, found.f1, found.support)
+    for ours, theirs in zip(mine, expected, strict=True):
+        np.testing.assert_allclose(ours, theirs, atol=1e-12)
+    macro = reference.f1_score(truth, predicted, average="macro", zero_division=0)
+    assert metrics.macro_f1(counts) == pytest.approx(macro, abs=1e-12)
+
+
+def test_macro_f1_of_nothing_is_zero() -> None:
+    assert metrics.macro_f1(np.zeros((3, 3), dtype=np.int64)) == 0.0
+
+
+def by_hand(right: int, count: int) -> tuple[float, float]:
+    """Wilson (1927): where the normal test of a proportion stops rejecting it."""
+    z, p = 1.959963984540054, right / count
+    middle = (p + z * z / (2 * count)) / (1 + z * z / count)
+    half = z / (1 + z * z / count) * math.sqrt(p * (1 - p) / count + z * z / (4 * count**2))
+    return middle - half, middle + half
+
+
+def test_wilson_of_eight_in_ten() -> None:
+    assert metrics.wilson(8, 10) == pytest.approx((0.490162, 0.943318), abs=1e-6)
+
+
+@given(count=st.integers(1, 5000), share=st.floats(0, 1))
+@settings(max_examples=50, deadline=None)
+def test_wilson_is_its_formula(count: int, share: float) -> None:
+    right = round(share * count)
+    low, high = metrics.wilson(right, count)
+    assert (low, high) == pytest.approx(by_hand(right, count), abs=1e-9)
+    assert 0 <= low <= right / count <= high <= 1
+
+
+def test_wilson_of_nothing_says_nothing() -> None:
+    assert metrics.wilson(0, 0) == (0.0, 1.0)
+
+
+def test_calibration_error_by_hand() -> None:
+    """Three at 0.9, two of them right; one at 0.55, wrong: gaps 0.7/3 and 0.55."""
+    sure = np.array([0.9, 0.9, 0.9, 0.55])
+    probabilities = np.stack([sure, 1 - sure], axis=1)
+    found = metrics.calibration(np.array([0, 0, 1, 1]), probabilities)
+    assert found.error == pytest.approx(3 / 4 * abs(2 / 3 - 0.9) + 1 / 4 * 0.55)
+    assert found.count.tolist() == [0] * 8 + [1] + [0] * 4 + [3, 0]
+    assert found.accuracy[13] == pytest.approx(2 / 3)
+    assert found.confidence[13] == pytest.approx(0.9)
+
+
+def test_calibration_bins_hold_their_upper_edge_and_certainty() -> None:
+    probabilities = np.array([[1.0, 0.0], [0.6, 0.4]])
+    found = metrics.calibration(np.array([0, 0]), probabilities)
+    assert len(found.count) == 15
+    assert found.count[14] == 1
+    assert found.count[8] == 1, "0.6 = 9/15 belongs to the bin that ends there"
+
+
+def test_confident_and_right_is_calibrated() -> None:
+    assert metrics.calibration(np.array([1, 0]), np.eye(2)[[1, 0]]).error == 0.0
+
+
+def test_summary_of_a_planted_confusion() -> None:
+    """Everything of class 1 is taken for class 2; class 3 does not occur."""
+    truth = np.array([0, 0, 1, 1, 1, 2, 2])
+    said = np.array([0, 0, 2, 2, 2, 2, 2])
+    numbers = metrics.summary(truth, np.eye(4)[said], ["a", "b", "c", "d"])
+    assert numbers["confusion"] == [[2, 0, 0, 0], [0, 0, 3, 0], [0, 0, 2, 0], [0, 0, 0, 0]]
+    assert (numbers["images"], numbers["right"]) == (7, 4)
+    assert numbers["accuracy"] == pytest.approx(4 / 7)
+    assert numbers["accuracy_95"] == pytest.approx(by_hand(4, 7))
+    assert numbers["macro_f1"] == pytest.approx((1 + 0 + 4 / 7) / 3)
+    assert list(numbers["classes"]) == ["a", "b", "c"]
+    assert numbers["classes"]["b"] == {"precision": 0.0, "recall": 0.0, "f1": 0.0, "images": 3}
+    assert numbers["classes"]["c"]["precision"] == pytest.approx(2 / 5)
+    assert numbers["classes"]["c"]["recall"] == 1.0

@@ -1,0 +1,90 @@
+"""Networks by name: the zoo, and what a network costs."""
+
+from pathlib import Path
+
+import pytest
+import torch
+from learning.patterns import SIZE, trained
+
+from radhar_cli.learning import run_folder as run
+from radhar_cli.learning.models.build import (
+    RIVALS,
+    ModelError,
+    build_model,
+    check_size,
+    cost,
+    features_and_logits,
+    parameter_count,
+)
+
+
+@pytest.mark.parametrize("name", RIVALS)
+def test_rivals_build_and_take_a_step(zoo: None, name: str) -> None:
+    torch.manual_seed(0)
+    size = (64, 64) if name.startswith(("vit", "convnext")) else (SIZE, SIZE)
+    if name == "vgg19":  # its 139 M parameters are built without memory
+        with torch.device("meta"):
+            model, x = build_model(name, 4, size).eval(), torch.zeros(2, 3, *size)
+        assert model(x).shape == (2, 4)
+        return
+    model = build_model(name, 4, size).train()
+    x = torch.randn(2, 3, *size)
+    before = [p.detach().clone() for p in model.parameters()]
+    optimiser = torch.optim.SGD(model.parameters(), 0.1)
+    logits = model(x)
+    assert logits.shape == (2, 4)
+    torch.nn.functional.cross_entropy(logits, torch.tensor([0, 3])).backward()
+    optimiser.step()
+    moved = [not torch.equal(p, b) for p, b in zip(model.parameters(), before, strict=True)]
+    assert sum(moved) > 0.8 * len(moved)
+    with torch.no_grad():
+        features, again = features_and_logits(model.eval(), x)
+        torch.testing.assert_close(again, model(x))
+    assert features.ndim == 2
+    assert features.shape[0] == 2
+
+
+def test_a_rival_trains_and_is_read_back(zoo: None, data: Path, tmp_path: Path) -> None:
+    done = trained(data, tmp_path / "run", epochs=1, model="mobilenetv2_100")
+    about, _ = run.load_best(tmp_path / "run")
+    assert about.model == "mobilenetv2_100"
+    assert len(done.history) == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "near"), [("fftnett", "fftnet"), ("resnet5O", "resnet50"), ("vit_base", "vit_base")]
+)
+def test_unknown_names_are_met_with_a_suggestion(zoo: None, name: str, near: str) -> None:
+    with pytest.raises(ModelError, match=f"did you mean '{near}") as caught:
+        build_model(name, 4, (32, 32))
+    assert caught.value.status == 2
+
+
+def test_nothing_like_it_points_to_the_list(zoo: None) -> None:
+    with pytest.raises(ModelError, match="`radhar models` lists some"):
+        build_model("qqqqqqqqqqqqqqqq", 4, (32, 32))
+
+
+def test_papers_network_costs_what_it_has() -> None:
+    price = cost("fftnet", 12, (256, 256))
+    assert price.parameters == 6_496_012
+    small = cost("fftnet", 12, (32, 32))
+    assert small.parameters == parameter_count(build_model("fftnet", 12, (32, 32)))
+    assert 50 < price.multiply_adds / small.multiply_adds < 70, "pixels, and a little for the FFTs"
+
+
+def test_multiply_adds_of_the_convolutions_by_hand() -> None:
+    """All but the FFTs: 9 inputs outputs pixels each, and the last layer."""
+    convolutions = 9 * 3 * 64 * 16 * 16
+    for width, wider, side in ((64, 128, 8), (128, 256, 4), (256, 512, 2)):
+        convolutions += 4 * 9 * width * width * side**2 + 9 * width * wider * (side // 2) ** 2
+    ffts = sum(
+        2 * 2 * 1.25 * c * s * s * (2 * torch.tensor(s).log2().item())
+        for c, s in ((64, 8), (128, 4), (256, 2))
+    )
+    found = cost("fftnet", 5, (32, 32)).multiply_adds
+    assert found == pytest.approx(convolutions + 512 * 5 + ffts, rel=1e-3)
+
+
+def test_check_size() -> None:
+    check_size("fftnet", (64, 32), "x")

@@ -1,0 +1,351 @@
+"""What a run leaves on disk: the best epoch, and files that lie."""
+
+import json
+import os
+import pickle
+import random
+import shutil
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+import torch
+from hypothesis import given
+from hypothesis import settings as examples
+from hypothesis import strategies as st
+from learning.patterns import (
+    Watched,
+    best_weights,
+    last_weights,
+    one_clear_line,
+    same,
+    trained,
+)
+from safetensors.torch import load_file, save_file
+
+from radhar_cli.learning import run_folder as run
+from radhar_cli.learning.run_folder import Epoch, RunError, best_epoch
+
+EPOCH = Epoch(1, 1e-3, 0.5, 0.5, 0.5, 0.5, 1.0)
+
+
+def epochs(*pairs: tuple[float, float]) -> list[Epoch]:
+    return [
+        Epoch(number, 1e-3, 0.0, 1.0, loss, accuracy, 0.0)
+        for number, (accuracy, loss) in enumerate(pairs, start=1)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("pairs", "best"),
+    [
+        ([(0.5, 1.0), (0.7, 2.0), (0.6, 0.1)], 2),
+        ([(0.7, 2.0), (0.7, 1.0), (0.7, 1.5)], 2),
+        ([(0.2, 3.0), (0.7, 1.0), (0.7, 1.0), (0.1, 0.0)], 2),
+        ([(0.0, 9.0)], 1),
+    ],
+)
+def test_best_is_highest_accuracy_then_lowest_loss_then_earliest(
+    pairs: list[tuple[float, float]], best: int
+) -> None:
+    assert best_epoch(epochs(*pairs)).epoch == best
+
+
+@examples(max_examples=100)
+@given(st.lists(st.tuples(st.integers(0, 3), st.integers(0, 3)), min_size=1, max_size=12))
+def test_best_as_a_sort_would_have_it(pairs: list[tuple[int, int]]) -> None:
+    history = epochs(*pairs)
+    ranked = sorted(history, key=lambda e: (-e.val_accuracy, e.val_loss, e.epoch))
+    assert best_epoch(history) is ranked[0]
+
+
+def test_history_survives_being_written(tmp_path: Path) -> None:
+    history = [Epoch(1, 0.1 + 0.2, 1 / 3, 0.5, 2 / 3, 1.0, 0.125), EPOCH]
+    run.write_history(tmp_path, history)
+    assert run.read_history(tmp_path) == history
+
+
+@pytest.fixture
+def copy(run_dir: Path, tmp_path: Path) -> Path:
+    """A run one may damage."""
+    shutil.copytree(run_dir, tmp_path / "run")
+    return tmp_path / "run"
+
+
+def test_best_weights_are_those_of_the_best_epoch(run_dir: Path) -> None:
+    from safetensors import safe_open
+
+    with safe_open(run_dir / run.BEST, "pt") as file:
+        epoch = Epoch(**json.loads(file.metadata()["epoch"]))
+    assert epoch == best_epoch(run.read_history(run_dir))
+    about, model = run.load_best(run_dir)
+    assert not model.training
+    assert about == run.read_about(run_dir)
+
+
+def test_weights_alone_are_enough(run_dir: Path, tmp_path: Path) -> None:
+    shutil.copy(run_dir / run.BEST, tmp_path / "model.safetensors")
+    about, model = run.load_best(tmp_path / "model.safetensors")
+    assert about.classes == ("punching", "kicking", "walking")
+    assert same(
+        dict(sorted(model.state_dict().items())),
+        dict(sorted(best_weights(run_dir).items())),
+    )
+
+
+def test_truncated_weights_are_refused_wherever_they_end(copy: Path) -> None:
+    path = copy / run.BEST
+    whole = path.read_bytes()
+    for length in [0, 4, 8, 100, 5000, len(whole) // 2, len(whole) - 1]:
+        path.write_bytes(whole[:length])
+        with pytest.raises(RunError) as caught:
+            run.load_best(copy)
+        one_clear_line(caught.value, path, "truncated")
+
+
+def foreign(path: Path) -> None:
+    save_file({"a": torch.zeros(3)}, path)
+
+
+def _rewrite(path: Path, change: Callable[[dict[str, Any], dict[str, Any]], None]) -> None:
+    from safetensors import safe_open
+
+    with safe_open(path, "pt") as file:
+        metadata = dict(file.metadata())
+    weights, about = load_file(path), json.loads(metadata["radhar"])
+    change(weights, about)
+    save_file(weights, path, {**metadata, "radhar": json.dumps(about)})
+
+
+def wrong_shape(path: Path) -> None:
+    _rewrite(path, lambda w, a: w.update({"head.bias": torch.zeros(7)}))
+
+
+def missing_weight(path: Path) -> None:
+    _rewrite(path, lambda w, a: w.pop("head.bias") is None)
+
+
+def extra_weight(path: Path) -> None:
+    _rewrite(path, lambda w, a: w.update({"evil": torch.zeros(7)}))
+
+
+def fewer_classes(path: Path) -> None:
+    _rewrite(path, lambda w, a: a.update({"classes": ["a", "b"]}))
+
+
+def wrong_size(path: Path) -> None:
+    _rewrite(path, lambda w, a: a.update({"size": [33, 32]}))
+
+
+def text_size(path: Path) -> None:
+    _rewrite(path, lambda w, a: a.update({"size": "big"}))
+
+
+@pytest.mark.parametrize(
+    ("damage", "said"),
+    [
+        (foreign, "not written by `radhar train`"),
+        (wrong_shape, "do not fit its description"),
+        (missing_weight, "do not fit its description"),
+        (extra_weight, "do not fit its description"),
+        (fewer_classes, "do not fit its description"),
+        (wrong_size, "multiples of 32"),
+        (text_size, "description is damaged (size"),
+    ],
+    ids=lambda x: getattr(x, "__name__", ""),
+)
+def test_weights_that_do_not_fit_are_one_clear_line(
+    copy: Path, damage: Callable[[Path], None], said: str
+) -> None:
+    damage(copy / run.BEST)
+    with pytest.raises(RunError) as caught:
+        run.load_best(copy)
+    one_clear_line(caught.value, copy / run.BEST, said)
+    assert "\n" not in str(caught.value)
+
+
+class Evil:
+    """Makes a file when it is unpickled by a reader who trusts it."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (os.system, (f"touch {self.path}",))
+
+
+def evil_zip(path: Path, mark: Path) -> None:
+    torch.save(
+        {"model": Evil(mark), "optimiser": {}, "history": [], "random": 0, "about": ""}, path
+    )
+
+
+def evil_pickle(path: Path, mark: Path) -> None:
+    path.write_bytes(pickle.dumps(Evil(mark), protocol=2))
+
+
+def evil_module(path: Path, mark: Path) -> None:
+    torch.save(torch.nn.Linear(1, 1), path)
+
+
+@pytest.mark.parametrize("write", [evil_zip, evil_pickle, evil_module], ids=lambda f: f.__name__)
+def test_a_checkpoint_that_would_run_code_does_not(
+    data: Path, copy: Path, tmp_path: Path, write: Callable[[Path, Path], None]
+) -> None:
+    mark, best = tmp_path / "mark", (copy / run.BEST).read_bytes()
+    write(copy / run.LAST, mark)
+    with pytest.raises(RunError) as caught:
+        trained(data, copy)
+    one_clear_line(caught.value, copy / run.LAST, "best.safetensors is untouched", "--overwrite")
+    assert not mark.exists()
+    assert (copy / run.BEST).read_bytes() == best
+    if write is not evil_module:  # the file is as bad as it should be
+        torch.load(copy / run.LAST, weights_only=False)
+        assert mark.exists()
+
+
+def test_truncated_checkpoints_are_refused_wherever_they_end(copy: Path) -> None:
+    path = copy / run.LAST
+    whole = path.read_bytes()
+    chance = random.Random(2)
+    for length in [0, 1, 4, 100, *(chance.randrange(len(whole)) for _ in range(4)), len(whole) - 1]:
+        path.write_bytes(whole[:length])
+        with pytest.raises(RunError) as caught:
+            run.read_last(copy)
+        one_clear_line(caught.value, path, "is damaged", "--overwrite")
+        assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "content", [b"hello\n", b"\x80\x02.", b"\x80\x04N.", b"PK\x03\x04", b"\0" * 99]
+)
+def test_checkpoints_that_are_none_are_refused(copy: Path, content: bytes) -> None:
+    (copy / run.LAST).write_bytes(content)
+    with pytest.raises(RunError) as caught:
+        run.read_last(copy)
+    one_clear_line(caught.value, run.LAST, "is damaged, or no checkpoint")
+
+
+@pytest.mark.parametrize("value", [[1, 2], {"model": {}}, torch.zeros(2)])
+def test_checkpoints_of_something_else_are_refused(copy: Path, value: Any) -> None:
+    torch.save(value, copy / run.LAST)
+    with pytest.raises(RunError) as caught:
+        run.read_last(copy)
+    one_clear_line(caught.value, run.LAST, "is damaged, or no checkpoint")
+
+
+def test_a_checkpoint_of_another_network_does_not_fit(data: Path, copy: Path) -> None:
+    found = torch.load(copy / run.LAST, weights_only=True)
+    found["model"]["head.bias"] = torch.zeros(9)
+    torch.save(found, copy / run.LAST)
+    with pytest.raises(RunError) as caught:
+        trained(data, copy)
+    one_clear_line(caught.value, copy / run.LAST, "does not fit this run")
+
+
+def test_checkpoint_holds_tensors_and_plain_values_alone(run_dir: Path) -> None:
+    with zipfile.ZipFile(run_dir / run.LAST) as archive:
+        name = next(n for n in archive.namelist() if n.endswith("data.pkl"))
+        import pickletools
+
+        calls = {
+            str(arg) for op, arg, _ in pickletools.genops(archive.read(name)) if op.name == "GLOBAL"
+        }
+    assert all(c.startswith(("torch", "collections OrderedDict")) for c in calls), calls
+
+
+@pytest.mark.parametrize(
+    ("changes", "named"),
+    [
+        ({"seed": 2}, ["seed: 1 there, 2 here"]),
+        ({"learning_rate": 0.01, "epochs": 4}, ["learning_rate: 0.001 there, 0.01", "epochs: 3"]),
+        ({"schedule": {"kind": "cosine"}}, ["schedule", "cosine"]),
+        ({"precision": "bfloat16"}, ["precision"]),
+        ({"input": "gray"}, ["input", "gray"]),
+    ],
+)
+def test_a_folder_with_another_run_is_refused_naming_the_key(
+    data: Path, run_dir: Path, changes: dict[str, Any], named: list[str]
+) -> None:
+    before = {p.name: p.stat().st_mtime_ns for p in run_dir.iterdir() if p.is_file()}
+    with pytest.raises(RunError) as caught:
+        trained(data, run_dir, **changes)
+    one_clear_line(caught.value, run_dir, "holds another run", "--overwrite", *named)
+    assert before == {p.name: p.stat().st_mtime_ns for p in run_dir.iterdir() if p.is_file()}
+
+
+def test_a_folder_with_a_run_on_other_data_is_refused(run_dir: Path, tmp_path: Path) -> None:
+    from learning.patterns import split_tree
+
+    with pytest.raises(RunError) as caught:
+        trained(split_tree(tmp_path / "t", seed=5), run_dir)
+    one_clear_line(caught.value, "data:")
+    with pytest.raises(RunError) as caught:
+        trained(split_tree(tmp_path / "u", classes=("a", "b")), run_dir)
+    one_clear_line(caught.value, 'classes: ["punching", "kicking", "walking"] there, ["a", "b"]')
+
+
+def test_where_the_work_is_done_is_no_difference(data: Path, run_dir: Path) -> None:
+    done = trained(data, run_dir, threads=2, workers=1)
+    torch.set_num_threads(1)
+    assert done.went_on == 3
+
+
+def test_a_folder_with_foreign_files_is_refused(data: Path, tmp_path: Path) -> None:
+    (tmp_path / "thesis.tex").write_text("years of work")
+    with pytest.raises(RunError) as caught:
+        trained(data, tmp_path)
+    one_clear_line(caught.value, tmp_path, "thesis.tex", "no training run")
+    from learning.patterns import settings
+
+    from radhar_cli.learning.training import train
+
+    with pytest.raises(RunError):
+        train(settings(), data, tmp_path, Watched(), overwrite=True)
+    assert (tmp_path / "thesis.tex").read_text() == "years of work"
+
+
+def test_overwrite_removes_our_files_alone(data: Path, copy: Path) -> None:
+    from learning.patterns import settings
+
+    from radhar_cli.learning.training import train
+
+    (copy / "notes.txt").write_text("mine")
+    (copy / "eval").mkdir()
+    (copy / "eval/report.json").write_text("{}")
+    with pytest.raises(KeyboardInterrupt):
+        train(settings(seed=2), data, copy, Watched(stop_after=1), overwrite=True)
+    kept = {p.name for p in copy.iterdir()} - {".radhar"}
+    assert kept == {
+        *("notes.txt", "eval", run.ABOUT, run.BEST, run.LAST, run.HISTORY, run.TRAINED_ON)
+    }, "the curves, metrics and summary of the old run are gone"
+    assert (copy / "notes.txt").read_text() == "mine"
+    assert len(run.read_history(copy)) == 1
+    assert run.read_about(copy).config["seed"] == 2
+    assert len(last_weights(copy)) == len(best_weights(copy))
+
+
+def test_missing_run_is_said(tmp_path: Path) -> None:
+    for read in (run.load_best, run.read_about, run.read_history):
+        with pytest.raises(RunError) as caught:
+            read(tmp_path)
+        one_clear_line(caught.value, tmp_path)
+
+
+@pytest.mark.parametrize("content", ["", "nonsense", "{}", '{"model": 3}'])
+def test_damaged_run_json_is_named(data: Path, copy: Path, content: str) -> None:
+    (copy / run.ABOUT).write_text(content)
+    with pytest.raises(RunError) as caught:
+        trained(data, copy)
+    one_clear_line(caught.value, copy / run.ABOUT, "is damaged")
+
+
+@pytest.mark.parametrize("content", ["epoch\nx\n", "epoch,val_loss\n1,2\n", "a,b\n1,2\n", "\0\xff"])
+def test_damaged_history_is_named(tmp_path: Path, content: str) -> None:
+    (tmp_path / run.HISTORY).write_text(content)
+    try:
+        assert run.read_history(tmp_path) == []
+    except RunError as error:
+        one_clear_line(error, tmp_path / run.HISTORY, "is damaged")

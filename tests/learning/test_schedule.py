@@ -1,0 +1,65 @@
+"""The learning rate at every step."""
+
+import math
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import settings as examples
+from hypothesis import strategies as st
+from learning.patterns import settings
+
+from radhar_cli.learning.schedule import rate
+from radhar_cli.learning.settings import TrainConfig
+
+
+def test_the_papers_rate_falls_tenfold_every_ten_epochs() -> None:
+    paper = TrainConfig()
+    rates = [rate(paper, epoch, 0.5) for epoch in range(20)]
+    assert rates[:10] == [0.00147] * 10
+    assert rates[10:] == pytest.approx([0.000147] * 10)
+    assert rate(settings(epochs=50), 20, 0.0) == pytest.approx(1e-5)
+    assert rate(settings(epochs=50), 19, 0.99) == pytest.approx(1e-4)
+
+
+def test_cosine_starts_at_the_rate_and_ends_at_zero() -> None:
+    config = settings(epochs=10, schedule={"kind": "cosine"})
+    assert rate(config, 0, 0.0) == pytest.approx(1e-3)
+    assert rate(config, 5, 0.0) == pytest.approx(5e-4)
+    assert rate(config, 2, 0.5) == pytest.approx(1e-3 * (1 + math.cos(math.pi / 4)) / 2)
+    assert rate(config, 9, 1.0) == pytest.approx(0.0, abs=1e-18)
+
+
+def test_constant_stays() -> None:
+    config = settings(epochs=40, schedule={"kind": "constant"})
+    assert {rate(config, epoch, 0.3) for epoch in range(40)} == {1e-3}
+
+
+def test_warm_up_is_linear_and_then_hands_over() -> None:
+    config = settings(epochs=10, warmup_epochs=2.0, schedule={"kind": "cosine"})
+    assert 0 < rate(config, 0, 0.0) <= 1e-6
+    assert rate(config, 0, 0.5) == pytest.approx(0.25e-3)
+    assert rate(config, 1, 0.0) == pytest.approx(0.5e-3)
+    assert rate(config, 1, 0.5) == pytest.approx(0.75e-3)
+    assert rate(config, 2, 0.0) == pytest.approx(1e-3)
+    assert rate(config, 6, 0.0) == pytest.approx(5e-4), "half of what the warm-up leaves"
+
+
+@examples(max_examples=200)
+@given(
+    epochs=st.integers(1, 60),
+    warm=st.floats(0, 1),
+    kind=st.sampled_from(["step", "cosine", "constant"]),
+    where=st.floats(0, 1, exclude_max=True),
+    done=st.floats(0, 1, exclude_max=True),
+)
+def test_rate_lies_between_zero_and_the_initial_one(
+    epochs: int, warm: float, kind: Any, where: float, done: float
+) -> None:
+    config = settings(epochs=epochs, warmup_epochs=warm * epochs, schedule={"kind": kind})
+    assert 0 < rate(config, int(where * epochs), done) <= 1e-3 * (1 + 1e-12)
+
+
+def test_warm_up_longer_than_the_run_is_refused() -> None:
+    with pytest.raises(ValueError, match="warmup_epochs of at most epochs"):
+        settings(epochs=3, warmup_epochs=3.5)

@@ -1,0 +1,409 @@
+"""Training: what a step does, and that nothing but config and data decides what is learned."""
+
+import copy
+import json
+import math
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+from learning.patterns import (
+    BASE,
+    Watched,
+    best_weights,
+    last_weights,
+    one_clear_line,
+    same,
+    same_run,
+    settings,
+    trained,
+    tree,
+    without_seconds,
+)
+from torch import nn
+
+from radhar_cli.learning import run_folder as run
+from radhar_cli.learning import training
+from radhar_cli.learning.images import open_images, scan
+from radhar_cli.learning.machine import Group
+from radhar_cli.learning.training import TrainingError, _optimiser, _Training
+
+CPU = torch.device("cpu")
+
+
+def prepared(data: Path, out: Path, **changes: Any) -> _Training:
+    out.mkdir()
+    return _Training.prepared(settings(**changes), data, out, CPU, Group(), Watched(), False)
+
+
+def first_batch(work: _Training, count: int = 6) -> tuple[torch.Tensor, torch.Tensor]:
+    rows = work.images.rows("train")[::2][:count]
+    levels = np.stack([work.images.pixels.read(int(row)).transpose(2, 0, 1) for row in rows])
+    return torch.from_numpy(levels), torch.from_numpy(work.images.label[rows])
+
+
+def gradients(model: nn.Module) -> list[torch.Tensor]:
+    return [p.grad.clone() for p in model.parameters() if p.grad is not None]
+
+
+def test_files_of_a_run(run_dir: Path, data: Path) -> None:
+    assert {p.name for p in run_dir.iterdir()} - {".radhar", "eval"} == set(run.OURS)
+    metrics = json.loads((run_dir / run.METRICS).read_text())
+    history = run.read_history(run_dir)
+    best = run.best_epoch(history)
+    assert [row.epoch for row in history] == [1, 2, 3]
+    assert metrics["best_epoch"] == best.epoch
+    assert metrics["val_accuracy"] == best.val_accuracy
+    assert (metrics["micro_batch"], metrics["gradient_accumulation"]) == (6, 1)
+    assert (metrics["processes"], metrics["device"], metrics["precision"]) == (1, "cpu", "float32")
+    assert metrics["classes"] == ["punching", "kicking", "walking"]
+    assert (metrics["data"]["train"], metrics["data"]["val"]) == (12, 6)
+    assert metrics["data"]["path"] == str(data)
+    assert f"best epoch {best.epoch} of 3" in (run_dir / run.SUMMARY).read_text()
+    assert (run_dir / run.CURVES).read_bytes().startswith(b"\x89PNG")
+    lines = (run_dir / run.TRAINED_ON).read_text().splitlines()
+    assert len(lines) == 13
+    assert lines[1].startswith("punching/000,")
+
+
+def test_normalisation_is_of_the_training_images_alone(run_dir: Path, data: Path) -> None:
+    images, about = open_images(data, None, "rgb"), run.read_about(run_dir)
+    found = scan(images, images.rows("train"))
+    assert about.mean == found.mean
+    assert about.sd == found.sd
+    assert about.mean != scan(images, images.rows("all")).mean
+
+
+def test_same_seed_same_weights_another_seed_others(
+    data: Path, run_dir: Path, tmp_path: Path
+) -> None:
+    trained(data, tmp_path / "again")
+    assert same_run(run_dir, tmp_path / "again")
+    trained(data, tmp_path / "other", seed=2, epochs=1)
+    assert not same(best_weights(run_dir), best_weights(tmp_path / "other"))
+
+
+def test_reading_by_workers_gives_the_same(data: Path, run_dir: Path, tmp_path: Path) -> None:
+    trained(data, tmp_path / "run", workers=2)
+    assert same_run(run_dir, tmp_path / "run")
+
+
+@pytest.mark.parametrize("epoch", [1, 2])
+def test_stopped_after_an_epoch_and_gone_on_is_the_same(
+    data: Path, run_dir: Path, tmp_path: Path, epoch: int
+) -> None:
+    out = tmp_path / "run"
+    with pytest.raises(KeyboardInterrupt):
+        trained(data, out, Watched(stop_after=epoch))
+    assert len(run.read_history(out)) == epoch
+    progress = Watched()
+    done = trained(data, out, progress)
+    assert done.went_on == epoch
+    assert len(progress.best) == 3 - epoch
+    assert any("going on" in line for line in progress.said)
+    assert same_run(run_dir, out)
+
+
+def test_stopped_between_the_files_of_the_last_epoch_loses_nothing(
+    data: Path, run_dir: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """last.ckpt has the last epoch, history.csv not yet."""
+    out, write = tmp_path / "run", run.write_history
+
+    def stops(folder: Path, history: list[run.Epoch]) -> None:
+        if len(history) == 3:
+            raise KeyboardInterrupt
+        write(folder, history)
+
+    monkeypatch.setattr(run, "write_history", stops)
+    with pytest.raises(KeyboardInterrupt):
+        trained(data, out)
+    monkeypatch.undo()
+    trained(data, out)
+    assert same_run(run_dir, out)
+
+
+def test_a_finished_run_is_found_done(data: Path, run_dir: Path) -> None:
+    before = (run_dir / run.BEST).stat().st_mtime_ns
+    progress = Watched()
+    done = trained(data, run_dir, progress)
+    assert (done.went_on, progress.losses) == (3, [])
+    assert (run_dir / run.BEST).stat().st_mtime_ns == before
+    assert done.history == run.read_history(run_dir)
+
+
+def test_only_a_better_epoch_replaces_the_best(
+    data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen = iter([(1.0, 0.5), (2.0, 0.75), (1.5, 0.75), (9.0, 0.5)])
+    monkeypatch.setattr(_Training, "_validate", lambda *_: next(seen))
+    kept = {}
+
+    class Keeps(Watched):
+        def epoch_done(self, row: run.Epoch, best: bool) -> None:
+            super().epoch_done(row, best)
+            kept[row.epoch] = last_weights(tmp_path / "run")
+
+    progress = Keeps()
+    done = trained(data, tmp_path / "run", progress, epochs=4)
+    assert progress.best == [True, True, True, False]
+    assert done.best.epoch == 3
+    assert same(dict(sorted(best_weights(tmp_path / "run").items())), dict(sorted(kept[3].items())))
+
+
+def test_validation_is_that_of_the_stored_weights(data: Path, run_dir: Path) -> None:
+    """Loss with label smoothing and accuracy of the last epoch, worked out anew."""
+    about, model = run.load_best(run_dir)
+    model.load_state_dict(last_weights(run_dir))
+    images = open_images(data, None, "rgb")
+    rows = images.rows("val")
+    levels = np.stack([images.pixels.read(int(row)) for row in rows]) / 255
+    x = ((levels - about.mean) / about.sd).transpose(0, 3, 1, 2)
+    with torch.no_grad():
+        logits = model(torch.tensor(x, dtype=torch.float32)).double()
+    truth = torch.from_numpy(images.label[rows])
+    wanted = nn.functional.one_hot(truth, 3) * (1 - 0.1) + 0.1 / 3
+    loss = -(wanted * logits.log_softmax(1)).sum(1).mean()
+    last = run.read_history(run_dir)[-1]
+    assert last.val_loss == pytest.approx(float(loss), rel=1e-5)
+    assert last.val_accuracy == float((logits.argmax(1) == truth).double().mean())
+
+
+def test_step_reports_the_smoothed_loss_and_what_is_right(data: Path, tmp_path: Path) -> None:
+    work = prepared(data, tmp_path / "run", label_smoothing=0.2)
+    levels, labels = first_batch(work)
+    network = copy.deepcopy(work.model).train()
+    logits = network(work.about.normalisation(levels))
+    wanted = nn.functional.one_hot(labels, 3) * 0.8 + 0.2 / 3
+    expected = -(wanted * logits.log_softmax(1)).sum(1).mean()
+    loss, right = work._step(work.model.train(), levels, labels, 6)
+    assert loss == pytest.approx(float(expected), rel=1e-5)
+    assert right == int((logits.argmax(1) == labels).sum())
+
+
+@pytest.mark.parametrize("micro_batch", [1, 2, 4, 5])
+def test_parts_of_a_batch_sum_to_its_gradient(data: Path, tmp_path: Path, micro_batch: int) -> None:
+    """With batch norm in evaluation mode, where images do not see each other."""
+    whole = prepared(data, tmp_path / "whole", micro_batch=6)
+    parts = prepared(data, tmp_path / "parts", micro_batch=micro_batch)
+    levels, labels = first_batch(whole)
+    losses = [work._step(work.model.eval(), levels, labels, 6) for work in (whole, parts)]
+    assert losses[0] == pytest.approx(losses[1], rel=1e-5)
+    for one, other in zip(gradients(whole.model), gradients(parts.model), strict=True):
+        torch.testing.assert_close(one, other, rtol=1e-4, atol=1e-6)
+
+
+def test_a_step_starts_from_no_gradient(data: Path, tmp_path: Path) -> None:
+    work = prepared(data, tmp_path / "run", learning_rate=1e-12, optimiser="sgd")
+    levels, labels = first_batch(work)
+    work._step(work.model.eval(), levels, labels, 6)
+    once = gradients(work.model)
+    work._step(work.model.eval(), levels, labels, 6)
+    for one, other in zip(once, gradients(work.model), strict=True):
+        torch.testing.assert_close(one, other, rtol=1e-4, atol=1e-7)
+
+
+def test_accumulation_is_said_and_recorded(data: Path, tmp_path: Path) -> None:
+    progress = Watched()
+    trained(data, tmp_path / "run", progress, epochs=1, micro_batch=2)
+    metrics = json.loads((tmp_path / "run" / run.METRICS).read_text())
+    assert (metrics["micro_batch"], metrics["gradient_accumulation"]) == (2, 3)
+    assert any("3 parts of 2" in line and "batch norm" in line for line in progress.said)
+    assert "in 3 part(s)" in (tmp_path / "run" / run.SUMMARY).read_text()
+
+
+def test_clipping_limits_the_gradient(data: Path, tmp_path: Path) -> None:
+    free = prepared(data, tmp_path / "free", optimiser="sgd", weight_decay=0.0)
+    held = prepared(
+        data, tmp_path / "held", optimiser="sgd", weight_decay=0.0, gradient_clip_norm=0.01
+    )
+    levels, labels = first_batch(free)
+    moved = []
+    for work in (free, held):
+        before = [p.detach().clone() for p in work.model.parameters()]
+        work._step(work.model.train(), levels, labels, 6)
+        steps = [p - b for p, b in zip(work.model.parameters(), before, strict=True)]
+        moved.append(float(torch.linalg.vector_norm(torch.cat([s.flatten() for s in steps]))))
+    assert moved[0] > 2e-5
+    assert moved[1] == pytest.approx(1e-3 * 0.01, rel=0.05)
+
+
+def test_weight_decay_spares_biases_and_batch_norms(data: Path, tmp_path: Path) -> None:
+    work = prepared(data, tmp_path / "run", weight_decay=0.5)
+    for name in ("adam", "adamw", "sgd"):
+        optimiser = _optimiser(settings(weight_decay=0.5, optimiser=name), work.model)
+        decayed = {
+            id(p) for g in optimiser.param_groups if g["weight_decay"] == 0.5 for p in g["params"]
+        }
+        spared = {
+            id(p) for g in optimiser.param_groups if g["weight_decay"] == 0.0 for p in g["params"]
+        }
+        for layer in work.model.modules():
+            for key, parameter in layer.named_parameters(recurse=False):
+                free = key == "bias" or isinstance(layer, nn.BatchNorm2d)
+                assert id(parameter) in (spared if free else decayed), (layer, key)
+        assert len(decayed | spared) == len(list(work.model.parameters()))
+    assert isinstance(_optimiser(settings(), work.model), torch.optim.Adam)
+
+
+def test_rates_of_the_schedule_reach_the_optimiser(
+    data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    used, step = [], torch.optim.Adam.step
+
+    def watched(self: torch.optim.Adam, *rest: Any) -> Any:
+        used.append([g["lr"] for g in self.param_groups])
+        return step(self, *rest)
+
+    monkeypatch.setattr(torch.optim.Adam, "step", watched)
+    schedule = {"kind": "step", "every_epochs": 2, "factor": 0.5}
+    trained(data, tmp_path / "run", schedule=schedule, warmup_epochs=1.0)
+    assert used[0][0] < 1e-5
+    np.testing.assert_allclose(used[1:], [[5e-4] * 2] + [[1e-3] * 2] * 2 + [[5e-4] * 2] * 2)
+    assert run.read_history(tmp_path / "run")[2].learning_rate == 5e-4
+
+
+@pytest.mark.parametrize("model_step", [1, 4])
+def test_a_loss_that_is_not_finite_is_one_clear_line(
+    data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, model_step: int
+) -> None:
+    """Two steps an epoch: the first is of the first epoch, the fourth the last of the second."""
+    out, calls = tmp_path / "run", []
+    loss = training.cross_entropy
+
+    def sometimes(logits: torch.Tensor, *rest: Any, **more: Any) -> torch.Tensor:
+        calls.append(torch.is_grad_enabled())
+        found = loss(logits, *rest, **more)
+        return found * math.nan if sum(calls) == model_step else found
+
+    monkeypatch.setattr(training, "cross_entropy", sometimes)
+    with pytest.raises(TrainingError) as caught:
+        trained(data, out)
+    monkeypatch.undo()
+    if model_step == 1:
+        one_clear_line(caught.value, "epoch 1, step 1", "nan", "no epoch was finished")
+        assert not (out / run.BEST).exists()
+    else:
+        one_clear_line(caught.value, "epoch 2, step 2", "hold the epochs up to 1", "0.001")
+        assert len(run.read_history(out)) == 1
+        run.load_best(out)
+        assert trained(data, out).went_on == 1
+
+
+def test_a_validation_loss_that_is_not_finite_is_one_clear_line(
+    data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    loss = training.cross_entropy
+
+    def only_training(logits: torch.Tensor, *rest: Any, **more: Any) -> torch.Tensor:
+        found = loss(logits, *rest, **more)
+        return found if torch.is_grad_enabled() else found * math.inf
+
+    monkeypatch.setattr(training, "cross_entropy", only_training)
+    with pytest.raises(TrainingError) as caught:
+        trained(data, tmp_path / "run")
+    one_clear_line(caught.value, "validation of epoch 1", "inf")
+
+
+def test_a_huge_rate_ends_in_one_clear_line(data: Path, tmp_path: Path) -> None:
+    with pytest.raises(TrainingError) as caught:
+        trained(data, tmp_path / "run", optimiser="sgd", learning_rate=1e3, epochs=20)
+    one_clear_line(caught.value, "epoch", "lower learning_rate (now 1000)")
+
+
+@pytest.mark.parametrize("changes", [{"batch_size": 1}, {"micro_batch": 1}, {"micro_batch": 5}])
+def test_batch_norm_of_one_image_is_no_traceback(
+    data: Path, tmp_path: Path, changes: dict[str, int]
+) -> None:
+    """At 32 px the last maps are 1 x 1: a part of one image has no spread to normalise by."""
+    from radhar_cli.errors import RadharError
+
+    try:
+        trained(data, tmp_path / "run", epochs=1, **changes)
+    except RadharError as error:
+        one_clear_line(error, "batch")
+
+
+def test_a_tree_without_splits_trains_and_is_cut_alike(tmp_path: Path) -> None:
+    root = tree(tmp_path / "t", parts={"": 4})
+    done = trained(root, tmp_path / "run", epochs=1, validation_share=0.25)
+    about = run.read_about(tmp_path / "run")
+    assert (about.data["train"], about.data["val"]) == (9, 3)
+    assert trained(root, tmp_path / "run", epochs=1, validation_share=0.25).went_on == 1
+    assert len(done.history) == 1
+
+
+def test_gray_and_bfloat16_train(data: Path, tmp_path: Path) -> None:
+    trained(data, tmp_path / "run", epochs=1, input="gray", precision="bfloat16")
+    about = run.read_about(tmp_path / "run")
+    assert about.input == "gray"
+    assert about.mean[0] == about.mean[1] == about.mean[2]
+    assert all(w.dtype != torch.bfloat16 for w in best_weights(tmp_path / "run").values())
+
+
+def test_loss_falls(data: Path, tmp_path: Path) -> None:
+    history = trained(data, tmp_path / "run", epochs=4).history
+    assert history[-1].train_loss < 0.7 * history[0].train_loss
+    assert history[-1].train_accuracy > history[0].train_accuracy
+
+
+def command(data: Path, out: Path) -> list[str]:
+    config = out.parent / "train.json"
+    config.write_text(json.dumps(BASE))
+    return [
+        *(sys.executable, "-m", "radhar_cli", "train", str(data), "-o", str(out)),
+        *("--config", str(config)),
+    ]
+
+
+def started(data: Path, out: Path, until: str) -> subprocess.Popen[str]:
+    """Start a run, and wait until a file of it is there."""
+    process = subprocess.Popen(
+        command(data, out),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        start_new_session=True,
+    )
+    while process.poll() is None and not (out / until).exists():
+        time.sleep(0.01)
+    return process
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+@pytest.mark.parametrize("trial", range(2))
+def test_killed_at_random_moments_and_gone_on_is_the_same(
+    data: Path, run_dir: Path, tmp_path: Path, trial: int
+) -> None:
+    out, moments = tmp_path / "run", random.Random(trial)
+    process = started(data, out, run.ABOUT)
+    time.sleep(moments.uniform(0.0, 3.0))
+    process.kill()
+    process.communicate()
+    done = trained(data, out)
+    assert len(done.history) == 3
+    assert same_run(run_dir, out)
+    assert without_seconds(done.history) == without_seconds(run.read_history(run_dir))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+def test_ctrl_c_keeps_the_last_epoch_and_is_quiet(
+    data: Path, run_dir: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "run"
+    process = started(data, out, run.HISTORY)
+    process.send_signal(signal.SIGINT)
+    said = process.communicate()[0]
+    assert process.returncode == 130, said
+    assert "Traceback" not in said
+    assert "the same command goes on" in said
+    assert 1 <= len(run.read_history(out)) < 3
+    trained(data, out)
+    assert same_run(run_dir, out)

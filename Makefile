@@ -39,7 +39,7 @@ demo: $(PLAIN) ## Build configs/quickstart.yaml into datasets/quickstart and che
 	$(BIN)/radhar verify datasets/quickstart
 
 .PHONY: smoke
-smoke: $(LEARN) ## Generate, train, evaluate: the smallest whole run, in under a minute
+smoke: $(LEARN) ## Generate, train, evaluate: the smallest whole run
 	rm -rf $(SMOKE)
 	$(BIN)/radhar generate configs/smoke.yaml -o $(SMOKE)/data
 	$(BIN)/radhar train $(SMOKE)/data -o $(SMOKE)/run --map stft --config configs/train/smoke.yaml
@@ -52,8 +52,9 @@ test: $(DEV) ## Run the whole test suite, lint and types included, then the smok
 	$(MAKE) smoke
 
 .PHONY: bench
-bench: $(DEV) ## Measure speed and memory (about ten minutes, on a quiet machine)
+bench: $(DEV) ## Measure speed and memory (about fifteen minutes, on a quiet machine)
 	$(BIN)/python scripts/bench_generate.py
+	$(BIN)/python scripts/bench_train.py
 
 .PHONY: clean
 clean: ## Remove the environment, caches and the demo data set

@@ -12,7 +12,8 @@ The rooms, in the order in which data flows through them; imports never turn bac
     processing    MTI, range compression, compensation, Savitzky-Golay, STFT, FSST, entropy, image
     pipeline      scene -> maps: which stages a request needs, and their only order
     dataset       many scenes -> shards -> dataset.h5 and PNG; resume, verify, estimate
-    figures       colour maps
+    figures       colour maps, panels, confusion matrices, curves
+    learning      images -> trained networks and reports; the only room with PyTorch
     commands      one file per subcommand of the `radhar` program
 
 Symbols (SI units, radians)::

@@ -1,5 +1,6 @@
 """The `radhar` program: registers the commands, turns our errors into one message and a status."""
 
+import os
 import signal
 import sys
 from typing import TYPE_CHECKING
@@ -54,12 +55,18 @@ def main() -> None:
     try:
         program()()
     except RadharError as error:
-        print(f"radhar: {error}", file=sys.stderr)
+        if os.environ.get("RANK", "0") == "0":  # under torchrun all fail alike; one should speak
+            print(f"radhar: {error}", file=sys.stderr)
         sys.exit(error.status)
     except KeyboardInterrupt:
         sys.exit(130)
-    except BrokenPipeError:
-        sys.stderr.close()
+    except OSError as error:
+        if isinstance(error, BrokenPipeError):
+            sys.stderr.close()
+        elif error.filename is None:
+            raise
+        else:
+            print(f"radhar: {error.filename}: {error.strerror}", file=sys.stderr)
         sys.exit(1)
     finally:
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # the work is done; leave quietly

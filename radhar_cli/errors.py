@@ -32,3 +32,11 @@ class UnfinishedError(RadharError):
     """The machine failed the run (full disk, killed worker); what was finished is kept."""
 
     status = 1
+
+
+class ModelError(RadharError):
+    """A network that cannot be built."""
+
+
+class MachineError(RadharError):
+    """A device that this machine does not have, or a package that is not installed."""

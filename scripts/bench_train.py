@@ -1,6 +1,6 @@
 """What each shortcut of a training step buys, as ratios of one run.
 
-    python scripts/bench_train.py [--px 128] [--batch 32] [--rounds 5]
+    python scripts/bench_train.py [--px 128] [--batch 32] [--rounds 3]
 
 Every variant runs in a process of its own, in turn, and the rounds are interleaved; printed are the
 median step and its spread, and the ratio to the step as `radhar train` does it.

@@ -1,11 +1,17 @@
 """`radhar config`: the resolved config, and the schema of the file."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from radhar_cli.commands.options import Overrides
+
+if TYPE_CHECKING:
+    from radhar_cli.config import Config
+    from radhar_cli.learning.settings import TrainConfig
+
+Training = Annotated[bool, typer.Option("--train", help="The file of train, not of generate.")]
 
 app = typer.Typer(
     help="""Show a resolved config, or the JSON Schema of the file.
@@ -21,6 +27,7 @@ app = typer.Typer(
 def show(
     config: Annotated[Path, typer.Argument(help="YAML file.")],
     set_: Overrides = None,
+    train: Training = False,
 ) -> None:
     """Print the config with every default filled in, as YAML.
 
@@ -30,16 +37,17 @@ def show(
     """
     import yaml
 
-    from radhar_cli.config import load_config, resolved
+    from radhar_cli.config import resolved
+    from radhar_cli.config.reading import load_section
 
-    values = resolved(load_config(config, set_ or []))
+    values = resolved(load_section(_kind(train), config, set_ or []))
     typer.echo(
         yaml.safe_dump(values, sort_keys=False, default_flow_style=None, width=100), nl=False
     )
 
 
 @app.command()
-def schema() -> None:
+def schema(train: Training = False) -> None:
     """Print the JSON Schema of the config file, for editors.
 
     Example:
@@ -48,6 +56,14 @@ def schema() -> None:
     """
     import json
 
+    typer.echo(json.dumps(_kind(train).model_json_schema(), indent=2))
+
+
+def _kind(train: bool) -> "type[Config] | type[TrainConfig]":
+    if train:
+        from radhar_cli.learning.settings import TrainConfig
+
+        return TrainConfig
     from radhar_cli.config import Config
 
-    typer.echo(json.dumps(Config.model_json_schema(), indent=2))
+    return Config

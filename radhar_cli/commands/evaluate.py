@@ -45,20 +45,23 @@ def evaluate(
     """
     from radhar_cli.commands.learning_options import (
         Speaker,
+        apart,
         known_device,
         needs_torch,
         runs_and_data,
     )
 
     needs_torch()
-    from radhar_cli.learning.folder_images import split_named
+    from radhar_cli.learning.images.image_set import split_named
     from radhar_cli.learning.machine import choose_device, keep_memory
-    from radhar_cli.learning.report import Asked, evaluate
+    from radhar_cli.learning.report import evaluate
+    from radhar_cli.learning.single_result import Asked
 
     runs, data = runs_and_data(paths)
     asked = Asked(split_named(split), map_, tsne, filters, in_place_vs_moving, batch)
+    folder = out or (runs[0] if runs[0].is_dir() else runs[0].parent) / "eval"
+    apart(folder, data)
     keep_memory()
     report = evaluate(runs, data, asked, choose_device(known_device(device)), Speaker())
-    folder = out or (runs[0] if runs[0].is_dir() else runs[0].parent) / "eval"
     report.write(folder)
     typer.echo(f"{folder / 'report.html'}: {len(report.figures)} figures; numbers in report.json")

@@ -4,20 +4,16 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from radhar_cli.errors import FolderError, RadharError, did_you_mean
+from radhar_cli.errors import FolderError, MachineError, RadharError, did_you_mean
 
 DEVICES = ("auto", "cpu", "cuda", "mps")
-
-
-class MissingExtraError(RadharError):
-    """A command that needs packages which are not installed."""
 
 
 def needs_torch() -> None:
     """Say clearly what to install where PyTorch or its companions are missing.
 
     Raises:
-        MissingExtraError: names the extra.
+        MachineError: names the extra.
     """
     needs("train", ("torch", "safetensors", "sklearn", "jinja2"))
 
@@ -26,13 +22,13 @@ def needs(extra: str, modules: Sequence[str]) -> None:
     """Say clearly which extra to install where one of its modules is missing.
 
     Raises:
-        MissingExtraError: names the extra.
+        MachineError: names the extra.
     """
     from importlib.util import find_spec
 
     for module in modules:
         if find_spec(module) is None:
-            raise MissingExtraError(
+            raise MachineError(
                 f"this command needs {module}, which is not installed: "
                 f"pip install 'radhar[{extra}]'"
             )
@@ -56,16 +52,13 @@ def runs_and_data(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:
     Raises:
         FolderError: one of the two is missing.
     """
-    from radhar_cli.learning.run_folder import ABOUT, BEST
-
-    def is_run(path: Path) -> bool:
-        if path.is_dir():
-            return (path / BEST).exists() or (path / ABOUT).exists()
-        return path.suffix == ".safetensors"
+    from radhar_cli.learning.run_files import is_run
 
     for path in paths:
         if not path.exists():
             raise FolderError(f"{path}: no such file or folder")
+        if sum(other.resolve() == path.resolve() for other in paths) > 1:
+            raise FolderError(f"{path}: is given twice")
     runs = [path for path in paths if is_run(path)]
     data = [path for path in paths if not is_run(path)]
     if not runs:
@@ -80,3 +73,16 @@ class Speaker:
 
     def say(self, message: str) -> None:
         print(message, file=sys.stderr)
+
+
+def apart(out: Path, data: Sequence[Path]) -> None:
+    """Refuse an output folder that lies in the data, or that is data.
+
+    Raises:
+        FolderError: names both.
+    """
+    for path in data:
+        if path.is_dir() and out.resolve().is_relative_to(path.resolve()):
+            raise FolderError(f"{out}: lies in the data {path}; -o should name a folder of its own")
+    if out.exists() and not out.is_dir():
+        raise FolderError(f"{out}: is a file; -o should name a folder")

@@ -23,16 +23,18 @@ def models(
     from radhar_cli.commands.learning_options import needs_torch
 
     needs_torch()
-    from radhar_cli.learning.models.build import OURS, RIVALS, ModelError, cost
+    from radhar_cli.errors import ModelError
+    from radhar_cli.learning.models.build import RIVALS, cost
+    from radhar_cli.learning.models.fftnet import NAME
 
     typer.echo(f"{'model':<24} {'parameters':>12} {'multiply-adds':>14}   at {size} x {size} px")
-    for name in names or [OURS, *RIVALS]:
+    for name in names or [NAME, *RIVALS]:
         try:
             price = cost(name, classes, (size, size))
         except ModelError as error:
-            if names or name == OURS:
+            if names or name == NAME:
                 raise
-            typer.echo(f"{name:<24} {error}")
-            continue
+            typer.echo(f"the paper's rivals ({', '.join(RIVALS)}) cannot be built: {error}")
+            break
         work = f"{price.multiply_adds / 1e9:.3f} G"
         typer.echo(f"{name:<24} {price.parameters:>12,} {work:>14}")

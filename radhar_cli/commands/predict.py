@@ -30,7 +30,7 @@ def predict(
     needs_torch()
     import json
 
-    from radhar_cli.learning.folder_images import split_named
+    from radhar_cli.learning.images.image_set import split_named
     from radhar_cli.learning.machine import choose_device
     from radhar_cli.learning.prediction import predict
 

@@ -39,7 +39,7 @@ def train(
         bool, typer.Option("--overwrite", help="Start again in a folder that holds a run.")
     ] = False,
 ) -> None:
-    from radhar_cli.commands.learning_options import needs_torch
+    from radhar_cli.commands.learning_options import apart, needs_torch
 
     needs_torch()
     from radhar_cli.commands.training_view import TrainingView
@@ -50,6 +50,7 @@ def train(
     named = {"map": map_, "model": model}
     overrides = [*(set_ or []), *(f"{key}={value}" for key, value in named.items() if value)]
     settings = load_section(TrainConfig, config, overrides)
+    apart(out, [data])
     view = TrainingView()
     try:
         outcome = training.train(settings, data, out, view, overwrite)

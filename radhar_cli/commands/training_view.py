@@ -6,7 +6,7 @@ from typing import Any
 
 from tqdm import tqdm
 
-from radhar_cli.learning import run_folder as run
+from radhar_cli.learning import run_files as run
 from radhar_cli.learning.run_folder import Epoch
 from radhar_cli.learning.training import Outcome
 

@@ -12,10 +12,8 @@ from filelock import FileLock, Timeout
 from radhar_cli.config.experiment import Config
 from radhar_cli.dataset.files import unfinished_path, write_whole
 from radhar_cli.dataset.identity import differences, identity
-from radhar_cli.dataset.layout import CONFIG, DATASET, PNG, SCENES, WORK
+from radhar_cli.dataset.layout import CONFIG, DATASET, IDENTITY, PNG, SCENES, WORK, begun
 from radhar_cli.errors import FolderError
-
-_IDENTITY = "identity.json"
 
 
 @contextmanager
@@ -27,7 +25,10 @@ def locked(folder: Path) -> Iterator[None]:
     """
     if folder.exists() and not folder.is_dir():
         raise FolderError(f"{folder}: is a file; -o should name a folder")
-    (folder / WORK).mkdir(parents=True, exist_ok=True)
+    try:
+        (folder / WORK).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FolderError(f"{folder}: cannot be made ({error.strerror})") from None
     lock = FileLock(folder / WORK / "lock")
     try:
         with lock.acquire(timeout=0):
@@ -68,7 +69,7 @@ def claim(folder: Path, config: Config, overwrite: bool) -> None:
 
 
 def _name(folder: Path, named: dict[str, Any]) -> None:
-    write_whole(folder, folder / WORK / _IDENTITY, json.dumps(named, sort_keys=True).encode())
+    write_whole(folder, folder / WORK / IDENTITY, json.dumps(named, sort_keys=True).encode())
 
 
 def stored_identity(folder: Path) -> dict[str, Any] | None:
@@ -85,7 +86,7 @@ def stored_identity(folder: Path) -> dict[str, Any] | None:
                 f"{folder / DATASET}: is not a data set of radhar's, or is damaged ({error}); "
                 "choose another folder, or --overwrite if radhar built it"
             ) from None
-    path = folder / WORK / _IDENTITY
+    path = folder / WORK / IDENTITY
     if not path.exists():
         return None
     identity_there: dict[str, Any] = json.loads(path.read_text())
@@ -96,15 +97,14 @@ def tidy(folder: Path) -> None:
     """Remove what only an unfinished build needs."""
     for name in ("shards", "settled", "unfinished"):
         shutil.rmtree(folder / WORK / name, ignore_errors=True)
-    (folder / WORK / _IDENTITY).unlink(missing_ok=True)
+    (folder / WORK / IDENTITY).unlink(missing_ok=True)
 
 
 def _ours(folder: Path) -> bool:
     """Whether radhar built, or began to build, what a folder holds; a damaged file may be ours."""
-    work = folder / WORK
-    begun = any((work / name).exists() for name in (_IDENTITY, "shards", "settled", "built"))
-    if begun or not (folder / DATASET).exists():
-        return begun
+    ours = begun(folder) or (folder / WORK / "built").exists()
+    if ours or not (folder / DATASET).exists():
+        return ours
     try:
         return stored_identity(folder) is not None
     except FolderError:

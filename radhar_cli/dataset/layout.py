@@ -11,8 +11,14 @@ CONFIG = "config.yaml"
 SCENES = "scenes.csv"
 PNG = "png"
 WORK = ".radhar"
+IDENTITY = "identity.json"
 SPLITS = ("train", "validation", "test")
 SPLIT_FOLDERS = ("train", "val", "test")
+
+
+def begun(folder: Path) -> bool:
+    """Whether a build in this folder was begun and not finished."""
+    return any((folder / WORK / name).exists() for name in (IDENTITY, "shards", "settled"))
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Any
 import h5py
 
 from radhar_cli.activity import ACTIVITIES
-from radhar_cli.dataset.layout import DATASET, SPLITS, WORK
+from radhar_cli.dataset.layout import DATASET, SPLITS, begun
 from radhar_cli.errors import FolderError, did_you_mean
 
 
@@ -88,7 +88,7 @@ def open_dataset(path: str | Path) -> Dataset:
     path = Path(path)
     file = path / DATASET if path.is_dir() else path
     if not file.exists():
-        unfinished = path.is_dir() and (path / WORK).is_dir()
+        unfinished = path.is_dir() and begun(path)
         hint = (
             "its build is unfinished; run `radhar generate` again" if unfinished else "no such file"
         )

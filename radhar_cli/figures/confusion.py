@@ -48,10 +48,3 @@ def row_shares(counts: NDArray[np.int64]) -> NDArray[np.float64]:
         counts, totals, out=np.zeros(counts.shape), where=totals > 0
     )
     return shares
-
-
-def confusion_csv(counts: NDArray[np.int64], names: Sequence[str]) -> str:
-    """The counts as CSV, true classes down, predicted ones across."""
-    rows = [["true \\ predicted", *names]]
-    rows += [[name, *map(str, row)] for name, row in zip(names, counts.tolist(), strict=True)]
-    return "".join(",".join(row) + "\n" for row in rows)

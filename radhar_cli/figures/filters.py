@@ -16,23 +16,33 @@ def filters_png(runs: Mapping[str, Sequence[Float]]) -> bytes:
             FFT order, averaged over channels.
     """
     columns = max(len(filters) for filters in runs.values())
-    figure = page(2.3 * columns + 0.8, 2.2 * len(runs) + 0.6)
+    figure = page(2.4 * columns + 0.8, 2.4 * len(runs) + 0.7)
     panels = figure.subplots(len(runs), columns, squeeze=False)
-    for row, (name, filters) in zip(panels, runs.items(), strict=True):
-        for panel in row[len(filters) :]:
-            panel.set_axis_off()
-        for number, (panel, magnitude) in enumerate(zip(row, filters, strict=False)):
-            height, width = magnitude.shape
-            drawn = panel.imshow(
-                np.fft.fftshift(magnitude),
-                extent=(-width / 2, width / 2, -height / 2, height / 2),
+    for column in range(columns):
+        drawn = [filters[column] for filters in runs.values() if column < len(filters)]
+        low, high = min(f.min() for f in drawn), max(f.max() for f in drawn)
+        for row, (name, filters) in enumerate(runs.items()):
+            panel = panels[row, column]
+            if column >= len(filters):
+                panel.set_axis_off()
+                continue
+            height, width = filters[column].shape
+            image = panel.imshow(
+                np.fft.fftshift(filters[column]),
+                # Pixel centres are whole frequencies: -N/2 to N/2 - 1.
+                extent=(-width / 2 - 0.5, width / 2 - 0.5, -height / 2 - 0.5, height / 2 - 0.5),
                 origin="lower",
-                aspect="auto",
                 cmap="viridis",
+                vmin=low,
+                vmax=high,
             )
-            figure.colorbar(drawn, ax=panel, shrink=0.8).ax.tick_params(labelsize=5)
-            panel.set_title(f"filter {number + 1}, {height} x {width}", fontsize=7)
-            panel.tick_params(labelsize=5)
-        row[0].set_ylabel(f"{name}\nvertical (cycles an image)", fontsize=6)
-    figure.supxlabel("cycles an image along the slow-time axis", fontsize=8)
+            panel.set_title(f"filter {column + 1}, {height} x {width}", fontsize=8)
+            panel.tick_params(labelsize=7)
+            if column == 0:
+                panel.set_ylabel(name, fontsize=7)
+        figure.colorbar(image, ax=panels[:, column], shrink=0.7, location="bottom").ax.tick_params(
+            labelsize=6
+        )
+    figure.supxlabel("horizontal frequency (cycles an image)", fontsize=8)
+    figure.supylabel("vertical frequency (cycles an image)", fontsize=8)
     return png_bytes(figure)

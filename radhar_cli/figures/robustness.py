@@ -28,7 +28,7 @@ def robustness_png(lines: Mapping[str, Sequence[Point]]) -> bytes:
             points = sorted(points, key=lambda p: p.snr_db or 0.0)
             x = [p.snr_db or 0.0 for p in points]
         else:
-            x = [names.index(p.data) + 0.08 * number for p in points]
+            x = [names.index(p.data) + 0.08 * (number - (len(lines) - 1) / 2) for p in points]
         y = [100 * p.accuracy for p in points]
         spread = [
             [100 * max(0.0, p.accuracy - p.low) for p in points],

@@ -9,7 +9,8 @@ from torch import Tensor
 from torch.utils.data import DataLoader, Dataset, Sampler
 
 from radhar_cli.arrays import Index
-from radhar_cli.learning.images import ImageSet
+from radhar_cli.errors import FolderError
+from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.randomness import TRAINING, stream
 
 LEAST_PER_PROCESS = 2
@@ -79,9 +80,19 @@ class Reader:
             num_workers=workers,
             persistent_workers=workers > 0,
             pin_memory=pin,
+            # Its own: starting workers must not draw from the stream of the layers.
+            generator=torch.Generator().manual_seed(0),
         )
 
     def __call__(self, batches: Sequence[Index]) -> Iterator[tuple[Tensor, Tensor]]:
         """Yield (uint8 [B, 3, H, W], labels [B]) for every batch of row numbers."""
         self._sampler.batches = [[int(row) for row in batch] for batch in batches]
-        yield from self._loader
+        try:
+            yield from self._loader
+        except FolderError as error:  # a worker's comes wrapped in its traceback
+            raise FolderError(str(error).strip().rpartition("FolderError: ")[2]) from None
+
+
+def pieces(rows: Index, size: int) -> list[Index]:
+    """Rows in their order, `size` at a time."""
+    return [rows[start : start + size] for start in range(0, rows.size, size)]

@@ -2,6 +2,7 @@
 
 import statistics
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,13 +11,16 @@ import torch
 from torch import nn
 
 from radhar_cli.arrays import Float, Index
+from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import FolderError
-from radhar_cli.learning.batches import Reader
-from radhar_cli.learning.images import ImageSet, labels_for, open_images
+from radhar_cli.learning.batches import Reader, pieces
+from radhar_cli.learning.images.image_set import ImageSet, labels_for
+from radhar_cli.learning.images.opening import is_h5, open_images
+from radhar_cli.learning.images.scan import content_hash, scan
 from radhar_cli.learning.models.build import features_and_logits
 from radhar_cli.learning.run_folder import About, load_best
 
-WARM_UP, REPEATS = 3, 15
+WARM_UP, REPEATS, BATCH_REPEATS = 3, 15, 5
 
 
 @dataclass(frozen=True)
@@ -44,54 +48,90 @@ class Predictions:
         return winners
 
 
-def open_for(about: About, path: Path, map_name: str | None) -> ImageSet:
-    """Open a data set for a trained model; the map it was trained on if none is named.
+def open_for(about: About, path: Path, map_name: str | None, labelled: bool = True) -> ImageSet:
+    """Open a data set for a trained model.
+
+    The map is the one it was trained on if none is named. Images that come without a split are
+    given the run's own where they are those that the run has cut.
+
+    Args:
+        labelled: the classes should be ones that the model knows.
 
     Raises:
-        FolderError: other classes or another size than the model's.
+        FolderError: other classes or another size than the model's, or a map that must be named.
     """
-    images = open_sized(about, path, map_name)
-    labels_for(images, about.classes)
-    return images
-
-
-def open_sized(about: About, path: Path, map_name: str | None) -> ImageSet:
-    """Open images of a model's size, whatever their classes.
-
-    Raises:
-        FolderError: another size than the model's.
-    """
-    images = open_images(path, map_name or about.map, about.input)
+    images = open_images(path, map_name or _map_there(about, path), about.input)
     if images.size != about.size:
         raise FolderError(
             f"{path}: images are {images.size[0]} x {images.size[1]} px; the model was trained on "
             f"{about.size[0]} x {about.size[1]} px"
         )
+    if labelled:
+        labels_for(images, about.classes)
+        if images.split is None:
+            return _cut_as_in_training(about, images)
     return images
 
 
-def predict(
-    model: nn.Module,
-    about: About,
-    images: ImageSet,
-    rows: Index,
-    device: torch.device,
-    batch: int,
-    workers: int = 0,
-) -> Predictions:
-    """Ask a model (in evaluation mode, on the device) about rows of a set, in float32."""
-    labels = labels_for(images, about.classes)
-    reader = Reader(images, labels, workers, pin=False)
-    pieces = [rows[start : start + batch] for start in range(0, rows.size, batch)]
-    probabilities, features = [], []
+def _map_there(about: About, path: Path) -> str | None:
+    """The model's map if a data set has several; a tree of images has its own and no other.
+
+    Raises:
+        FolderError: the model does not know its map, and there are several.
+    """
+    if not is_h5(path):
+        inside = about.map is not None and (path / about.map).is_dir()
+        return about.map if inside else None
+    with open_dataset(path) as data:
+        if about.map is None and len(data.maps) > 1:
+            raise FolderError(
+                f"{path}: has the maps {', '.join(data.maps)}, and the model was trained on images "
+                "that did not say which they were; name one with --map"
+            )
+        return about.map
+
+
+def _cut_as_in_training(about: About, images: ImageSet) -> ImageSet:
+    try:
+        cut = images.cut(float(about.config["validation_share"]), int(about.config["seed"]))
+    except FolderError:
+        return images
+    rows = np.concatenate([cut.rows("train"), cut.rows("val")])
+    same = content_hash(cut, rows, scan(cut, rows).prints) == about.data["hash"]
+    return cut if same else images
+
+
+def rows_of(images: ImageSet, split: str) -> tuple[Index, str]:
+    """Rows of a split and its name; all of them where images come without a split."""
+    split = "all" if images.split is None else split
+    return images.rows(split), split
+
+
+def answers(
+    model: nn.Module, about: About, images: ImageSet, rows: Index, device: torch.device, batch: int
+) -> Iterator[tuple[Float, Float]]:
+    """Yield (probabilities [B, classes], features [B, F]) of rows of a set, batch by batch.
+
+    The model is in evaluation mode and on the device; float32, whatever it was trained in.
+    """
+    reader = Reader(images, images.label, workers=0, pin=False)
     with torch.inference_mode():
-        for levels, _ in reader(pieces):
-            x = about.normalisation(levels.to(device))
-            inner, logits = features_and_logits(model, x)
-            probabilities.append(logits.softmax(1).cpu().numpy())
-            features.append(inner.cpu().numpy())
+        for levels, _ in reader(pieces(rows, batch)):
+            features, logits = features_and_logits(model, about.normalisation(levels.to(device)))
+            yield logits.softmax(1).cpu().numpy(), features.cpu().numpy()
+
+
+def predict(
+    model: nn.Module, about: About, images: ImageSet, rows: Index, device: torch.device, batch: int
+) -> Predictions:
+    """Ask a model about rows of a labelled set."""
+    found = list(answers(model, about, images, rows, device, batch))
     return Predictions(
-        images, rows, labels[rows], np.concatenate(probabilities), np.concatenate(features)
+        images=images,
+        rows=rows,
+        truth=labels_for(images, about.classes)[rows],
+        probabilities=np.concatenate([chances for chances, _ in found]),
+        features=np.concatenate([features for _, features in found]),
     )
 
 
@@ -100,10 +140,13 @@ def speed(
 ) -> dict[str, float]:
     """Time one image and a batch, from levels in memory to probabilities on the CPU.
 
+    The libraries are loaded and the weights' file is in the system's cache, as it would be in a
+    program that is already running.
+
     Returns:
         load_s: reading the weights and building the network; image_s: median of one image;
-        load_and_image_s: the first answer after loading, as the paper counts it; batch: images at
-        once; images_per_s: throughput at that batch.
+        load_and_image_s: until the first answer, loading included; batch: images at once;
+        images_per_s: throughput at that batch; images_per_s_with_loading: of a single batch.
     """
     one = torch.from_numpy(images.pixels.read(row).transpose(2, 0, 1).copy())[None]
     many = one.expand(batch, -1, -1, -1)
@@ -124,11 +167,12 @@ def speed(
             ask(one)
         image = statistics.median(ask(one) for _ in range(REPEATS))
         ask(many)
-        batch_time = statistics.median(ask(many) for _ in range(3))
+        batch_time = statistics.median(ask(many) for _ in range(BATCH_REPEATS))
     return {
         "load_s": loaded - began,
         "image_s": image,
         "load_and_image_s": first - began,
         "batch": batch,
         "images_per_s": batch / batch_time,
+        "images_per_s_with_loading": batch / (loaded - began + batch_time),
     }

@@ -29,9 +29,9 @@ def magnitudes(model: nn.Module) -> list[Float]:
 def table(filters: list[Float]) -> list[dict[str, Any]]:
     """A row for every filter: size, mean weight, and how much of it lies at low frequencies.
 
-    `low_share` is the share of the squared weight within the lowest quarter of frequencies of both
-    axes; 1/16 of the plane, so 0.0625 is what a filter without a preference has. `concentration`
-    is 1 minus the normalised entropy of the squared weight: 0 for a flat filter, 1 for one line.
+    `low_gain` is the mean squared weight at frequencies below 1/8 of the sampling rate on both
+    axes, over the mean of the whole plane: 1 for a filter without a preference. `concentration` is
+    1 minus the normalised entropy of the squared weight: 0 for a flat filter, 1 for one line.
     """
     rows = []
     for number, magnitude in enumerate(filters, start=1):
@@ -48,7 +48,7 @@ def table(filters: list[Float]) -> list[dict[str, Any]]:
                 "width": width,
                 "mean": float(magnitude.mean()),
                 "largest": float(magnitude.max()),
-                "low_share": float(power[np.ix_(vertical, horizontal)].sum()),
+                "low_gain": float(power[np.ix_(vertical, horizontal)].mean() / power.mean()),
                 "concentration": float(1 - entropy / np.log(power.size)) if power.size > 1 else 0.0,
             }
         )

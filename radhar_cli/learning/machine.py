@@ -1,25 +1,18 @@
-"""What a machine offers: device, precision, threads, memory; and how several work together."""
+"""What a machine offers: device, precision, memory."""
 
 import ctypes
 import os
 import platform
-from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass
 
 import torch
 from torch import nn
 
-from radhar_cli.errors import RadharError
+from radhar_cli.errors import MachineError
 
 _M_TRIM_THRESHOLD = -1
 _M_MMAP_THRESHOLD = -3
 _MEMORY_SHARE = 0.5
 _STEP_OVER_SAVED = 1.6
-
-
-class MachineError(RadharError):
-    """A device or precision that this machine does not have."""
 
 
 def keep_memory() -> None:
@@ -106,35 +99,3 @@ def largest_batch(saved_per_image: int, device: torch.device, processes: int) ->
     return max(
         1, int(_MEMORY_SHARE * memory_bytes(device) / shares / (_STEP_OVER_SAVED * saved_per_image))
     )
-
-
-@dataclass(frozen=True)
-class Group:
-    """The processes of one run: number of this one, how many, how many on this machine."""
-
-    rank: int = 0
-    size: int = 1
-    local_size: int = 1
-
-    @property
-    def leads(self) -> bool:
-        """Whether this process writes the files and talks to the user."""
-        return self.rank == 0
-
-
-@contextmanager
-def joined(device: torch.device) -> Iterator[Group]:
-    """Join the processes that torchrun started; alone without it."""
-    if "TORCHELASTIC_RUN_ID" not in os.environ and "WORLD_SIZE" not in os.environ:
-        yield Group()
-        return
-    import torch.distributed as dist
-
-    if device.type == "cuda":
-        torch.cuda.set_device(device)
-    dist.init_process_group("nccl" if device.type == "cuda" else "gloo")
-    try:
-        local = int(os.environ.get("LOCAL_WORLD_SIZE", dist.get_world_size()))
-        yield Group(dist.get_rank(), dist.get_world_size(), local)
-    finally:
-        dist.destroy_process_group()

@@ -10,8 +10,9 @@ import torch
 from torch import Tensor, nn
 from torch.nn.functional import interpolate
 
+from radhar_cli.errors import FolderError
 from radhar_cli.learning.batches import Normalisation
-from radhar_cli.learning.run_folder import About, RunError, load_best
+from radhar_cli.learning.run_folder import About, RunError, first_line, load_best
 
 TOLERANCE = 1e-4
 
@@ -46,17 +47,22 @@ def export(run: Path, path: Path) -> float:
     about, network = load_best(run)
     model = _FromPixels(network, about.normalisation).eval()
     pixels = _pixels(2, about)
-    with warnings.catch_warnings(), torch.no_grad():
-        warnings.simplefilter("ignore")
-        program: Any = torch.onnx.export(
-            model,
-            (pixels,),
-            dynamo=True,
-            dynamic_shapes={"pixels": {0: torch.export.Dim("batch")}},
-            input_names=["pixels"],
-            output_names=["logits"],
-            verbose=False,
-        )
+    try:
+        with warnings.catch_warnings(), torch.no_grad():
+            warnings.simplefilter("ignore")
+            program: Any = torch.onnx.export(
+                model,
+                (pixels,),
+                dynamo=True,
+                dynamic_shapes={"pixels": {0: torch.export.Dim("batch")}},
+                input_names=["pixels"],
+                output_names=["logits"],
+                verbose=False,
+            )
+    except torch.onnx.errors.OnnxExporterError as error:
+        raise RunError(
+            f"{run}: PyTorch cannot write {about.model} as ONNX ({first_line(error)})"
+        ) from None
     written = program.model_proto
     onnx.helper.set_model_props(
         written,
@@ -78,8 +84,13 @@ def export(run: Path, path: Path) -> float:
             f"{run}: ONNX Runtime's logits differ from PyTorch's by {worst:.2g}, more than "
             f"{TOLERANCE:g}; {path} was not written"
         )
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(content)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        unfinished = path.with_name(f".{path.name}.unfinished")
+        unfinished.write_bytes(content)
+        unfinished.replace(path)
+    except OSError as error:
+        raise FolderError(f"{path}: cannot be written ({error.strerror})") from None
     return worst
 
 

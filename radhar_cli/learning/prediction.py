@@ -6,10 +6,12 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from radhar_cli.arrays import Levels
+from radhar_cli.arrays import Index
 from radhar_cli.errors import FolderError
-from radhar_cli.learning.evaluation import open_sized
-from radhar_cli.learning.folder_images import SUFFIXES, our_table, read_image
+from radhar_cli.learning.evaluation import answers, open_for, rows_of
+from radhar_cli.learning.images.folder import is_image, loose_images
+from radhar_cli.learning.images.image_set import ImageSet
+from radhar_cli.learning.run_files import is_run
 from radhar_cli.learning.run_folder import About, load_best
 
 BATCH = 32
@@ -20,6 +22,13 @@ def predict(
 ) -> Iterator[tuple[str, dict[str, float]]]:
     """Yield (name, probability of every class) for every image.
 
+    Args:
+        run: a training run.
+        paths: images, folders of images, or data sets.
+        device: where to compute.
+        map_name: of a data set, if not the one of the run.
+        split: of a data set.
+
     Raises:
         RunError: no such run.
         FolderError: an image that cannot be read, or of another size.
@@ -27,28 +36,30 @@ def predict(
     about, model = load_best(run)
     model.to(device)
     for path in paths:
-        if not path.exists():
-            raise FolderError(f"{path}: no such file or folder")
-        for names, pixels in _batches(about, path, map_name, split):
-            with torch.inference_mode():
-                levels = torch.from_numpy(np.ascontiguousarray(pixels.transpose(0, 3, 1, 2)))
-                logits = model(about.normalisation(levels.to(device)))
-                chances = logits.softmax(1).cpu().tolist()
-            for name, row in zip(names, chances, strict=True):
-                yield name, dict(zip(about.classes, row, strict=True))
+        images, rows, names = _opened(about, path, map_name, split)
+        place = 0
+        for chances, _ in answers(model, about, images, rows, device, BATCH):
+            for row in chances.tolist():
+                yield names[place], dict(zip(about.classes, row, strict=True))
+                place += 1
 
 
-def _batches(
+def _opened(
     about: About, path: Path, map_name: str | None, split: str
-) -> Iterator[tuple[list[str], Levels]]:
-    """Names and RGB [B, H, W, 3] of the images of one path."""
-    if path.is_file() and path.suffix.lower() in SUFFIXES:
-        table = our_table(path) if about.input == "gray" else None
-        yield [str(path)], read_image(path, about.input, about.size, table)[None]
-        return
-    images = open_sized(about, path, map_name)
-    rows = images.rows(split)
-    for start in range(0, rows.size, BATCH):
-        chosen = rows[start : start + BATCH]
-        pixels = np.stack([images.pixels.read(int(row)) for row in chosen])
-        yield [images.names[row] for row in chosen], pixels
+) -> tuple[ImageSet, Index, list[str]]:
+    """Images, which of them, and what to call them."""
+    if not path.exists():
+        raise FolderError(f"{path}: no such file or folder")
+    if is_run(path):
+        raise FolderError(f"{path}: is a training run; images or data are asked for here")
+    files = [path] if path.is_file() else sorted(path.iterdir())
+    files = [file for file in files if is_image(file)]
+    if files:
+        return (
+            loose_images(files, about.size, about.input),
+            np.arange(len(files)),
+            list(map(str, files)),
+        )
+    images = open_for(about, path, map_name, labelled=False)
+    rows, _ = rows_of(images, split)
+    return images, rows, [f"{path}: {images.names[row]}" for row in rows]

@@ -4,13 +4,14 @@ import csv
 import io
 import json
 import pickle
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import torch
-from pydantic import ValidationError
+from pydantic import Field, ValidationError
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import save as safetensors_bytes
 from torch import Tensor, nn
@@ -18,19 +19,24 @@ from torch import Tensor, nn
 from radhar_cli.config.section import Section
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.layout import WORK
-from radhar_cli.errors import RadharError
+from radhar_cli.errors import ModelError, RadharError
 from radhar_cli.learning.batches import Normalisation
-from radhar_cli.learning.models.build import ModelError, build_model
+from radhar_cli.learning.models.build import build_model
+from radhar_cli.learning.run_files import ABOUT, ALL, BEST, HISTORY, LAST, TRAINED_ON
+from radhar_cli.learning.tables import csv_text
 
-ABOUT = "run.json"
-BEST = "best.safetensors"
-LAST = "last.ckpt"
-HISTORY = "history.csv"
-CURVES = "curves.png"
-METRICS = "metrics.json"
-SUMMARY = "summary.txt"
-TRAINED_ON = "trained_on.csv"
-OURS = (ABOUT, BEST, LAST, HISTORY, CURVES, METRICS, SUMMARY, TRAINED_ON)
+# What PyTorch raises on a file that is damaged or asks for more than tensors and plain values.
+_DAMAGED = (
+    pickle.UnpicklingError,
+    AttributeError,
+    EOFError,
+    IndexError,
+    KeyError,
+    OSError,
+    RuntimeError,
+    TypeError,
+    ValueError,
+)
 
 
 class RunError(RadharError):
@@ -47,6 +53,8 @@ class About(Section):
         config: the resolved training config.
         data: path, content hash, images of the training and validation sets.
         versions: of radhar, torch, numpy.
+        work: what of the machine's share decides what is learned: precision, micro batch, number
+            of processes.
     """
 
     model: str
@@ -59,6 +67,7 @@ class About(Section):
     config: dict[str, Any]
     data: dict[str, Any]
     versions: dict[str, str]
+    work: dict[str, Any] = Field(default_factory=dict)
 
     @property
     def normalisation(self) -> Normalisation:
@@ -104,19 +113,20 @@ def claim_run(folder: Path, about: About, overwrite: bool) -> None:
     Raises:
         RunError: it holds something else; the message names what differs.
     """
-    if overwrite and (folder / ABOUT).exists():
-        for name in (*reversed(OURS),):
+    ours = (folder / ABOUT).exists()
+    if ours and (overwrite or not (folder / LAST).exists()):
+        for name in reversed(ALL):
             (folder / name).unlink(missing_ok=True)
     if not (folder / ABOUT).exists():
         strangers = sorted(p.name for p in folder.iterdir() if p.name != WORK)
-        if strangers:
+        if strangers and not ours:
             raise RunError(
                 f"{folder}: holds {', '.join(strangers[:5])} but no training run; choose an empty "
                 "folder"
             )
         write_whole(folder, folder / ABOUT, (about.model_dump_json(indent=2) + "\n").encode())
         return
-    found = _differences(read_about(folder), about)
+    found = differences(read_about(folder), about)
     if found:
         raise RunError(
             f"{folder}: holds another run; it differs in\n  "
@@ -125,10 +135,12 @@ def claim_run(folder: Path, about: About, overwrite: bool) -> None:
         )
 
 
-def _differences(old: About, new: About) -> list[str]:
+def differences(old: About, new: About) -> list[str]:
+    """Lines naming what keeps one run from being the other."""
     pairs = {key: (old.config.get(key), value) for key, value in new.config.items()}
-    pairs |= {"data": (old.data["hash"][:12], new.data["hash"][:12])}
+    pairs |= {"data": (old.data.get("hash"), new.data.get("hash"))}
     pairs |= {"classes": (list(old.classes), list(new.classes)), "map": (old.map, new.map)}
+    pairs |= {k: (old.work[k], v) for k, v in new.work.items() if k in old.work}
     pairs |= {f"versions.{k}": (old.versions.get(k), v) for k, v in new.versions.items()}
     return [
         f"{key}: {json.dumps(there)} there, {json.dumps(here)} here"
@@ -161,29 +173,28 @@ def write_trained_on(
     folder: Path, names: Sequence[str], prints: Sequence[str], scenes: Sequence[str]
 ) -> None:
     """Write which images and which scenes a run learns from."""
-    text = io.StringIO(newline="")
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["image", "pixels", "scene"])
-    writer.writerows(zip(names, prints, scenes, strict=True))
-    write_whole(folder, folder / TRAINED_ON, text.getvalue().encode())
+    text = csv_text(("image", "pixels", "scene"), zip(names, prints, scenes, strict=True))
+    write_whole(folder, folder / TRAINED_ON, text.encode("utf-8", "surrogateescape"))
 
 
 def read_trained_on(folder: Path) -> tuple[set[str], set[str]]:
     """Fingerprints of the (images, scenes) that a run learned from; empty if it does not say."""
     if not (folder / TRAINED_ON).exists():
         return set(), set()
-    with (folder / TRAINED_ON).open(newline="") as file:
-        rows = list(csv.DictReader(file))
-    return {r["pixels"] for r in rows}, {r["scene"] for r in rows if r["scene"]}
+    try:
+        with (folder / TRAINED_ON).open(
+            newline="", encoding="utf-8", errors="surrogateescape"
+        ) as file:
+            rows = list(csv.DictReader(file))
+        return {r["pixels"] for r in rows}, {r["scene"] for r in rows if r["scene"]}
+    except (KeyError, ValueError, csv.Error) as error:
+        raise RunError(f"{folder / TRAINED_ON}: is damaged ({error})") from None
 
 
 def write_history(folder: Path, history: Sequence[Epoch]) -> None:
     """Write history.csv, a row an epoch."""
-    text = io.StringIO(newline="")
-    writer = csv.DictWriter(text, list(Epoch.__dataclass_fields__), lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(vars(epoch) for epoch in history)
-    write_whole(folder, folder / HISTORY, text.getvalue().encode())
+    text = csv_text(list(Epoch.__dataclass_fields__), (vars(row).values() for row in history))
+    write_whole(folder, folder / HISTORY, text.encode())
 
 
 def read_history(folder: Path) -> list[Epoch]:
@@ -199,13 +210,13 @@ def read_history(folder: Path) -> list[Epoch]:
         return [Epoch(int(r.pop("epoch")), **{k: float(v) for k, v in r.items()}) for r in rows]
     except FileNotFoundError:
         raise RunError(f"{folder}: holds no finished epoch ({HISTORY} is missing)") from None
-    except (ValueError, TypeError, KeyError) as error:
+    except (ValueError, TypeError, KeyError, csv.Error) as error:
         raise RunError(f"{path}: is damaged ({error})") from None
 
 
 def write_best(folder: Path, about: About, epoch: Epoch, weights: Mapping[str, Tensor]) -> None:
     """Write best.safetensors: weights, and beside them all that is needed to use them."""
-    metadata = {"radhar": about.model_dump_json(), "epoch": json.dumps(vars(epoch))}
+    metadata = {"radhar": about.model_dump_json(), "epoch": str(epoch.epoch)}
     tensors = {name: tensor.detach().cpu().contiguous() for name, tensor in weights.items()}
     write_whole(folder, folder / BEST, safetensors_bytes(tensors, metadata))
 
@@ -244,8 +255,10 @@ def load_best(folder: Path) -> tuple[About, nn.Module]:
     except ModelError as error:
         raise RunError(f"{path}: {error}") from None
     except RuntimeError as error:
-        line = str(error).strip().splitlines()[-1].strip()
-        raise RunError(f"{path}: its weights do not fit its description ({line})") from None
+        lines = str(error).strip().splitlines() or ["no more is known"]
+        raise RunError(
+            f"{path}: its weights do not fit its description ({lines[-1].strip()})"
+        ) from None
     return about, model.eval()
 
 
@@ -266,18 +279,18 @@ def read_last(folder: Path) -> dict[str, Any] | None:
     if not path.exists():
         return None
     try:
-        found: dict[str, Any] = torch.load(path, map_location="cpu", weights_only=True)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            found: dict[str, Any] = torch.load(path, map_location="cpu", weights_only=True)
         return {key: found[key] for key in ("model", "optimiser", "history", "random", "about")}
-    except (
-        pickle.UnpicklingError,
-        RuntimeError,
-        EOFError,
-        KeyError,
-        TypeError,
-        ValueError,
-    ) as error:
-        line = str(error).strip().splitlines()[0]
+    except _DAMAGED as error:
         raise RunError(
-            f"{path}: is damaged, or no checkpoint of radhar's ({line}); {BEST} is untouched; "
-            "--overwrite starts the run again"
+            f"{path}: is damaged, or no checkpoint of radhar's ({first_line(error)}); {BEST} is "
+            "untouched; --overwrite starts the run again"
         ) from None
+
+
+def first_line(error: Exception) -> str:
+    """The first sentence of an error, or its kind where it has none."""
+    lines = str(error).strip().splitlines()
+    return lines[0].split(". ")[0] if lines else type(error).__name__

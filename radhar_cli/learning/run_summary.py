@@ -3,21 +3,18 @@
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import torch
 from torch import nn
 
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.figures.curves import curves_png
-from radhar_cli.learning import run_folder as run
-from radhar_cli.learning.machine import Group
+from radhar_cli.learning import run_files
 from radhar_cli.learning.metrics import wilson
 from radhar_cli.learning.models.build import cost
+from radhar_cli.learning.processes import Group
 from radhar_cli.learning.run_folder import About, Epoch, best_epoch
-
-if TYPE_CHECKING:
-    from radhar_cli.learning.training import Work
+from radhar_cli.learning.work import Work
 
 
 def write_run_summary(
@@ -25,7 +22,7 @@ def write_run_summary(
     about: About,
     history: Sequence[Epoch],
     model: nn.Module,
-    work: "Work",
+    work: Work,
     group: Group,
 ) -> None:
     """Write metrics.json, summary.txt and curves.png of a finished run."""
@@ -50,15 +47,14 @@ def write_run_summary(
         "config": about.config,
         "versions": about.versions,
         "device": work.device.type,
-        "precision": str(work.precision).removeprefix("torch."),
+        "precision": work.described,
         "threads": torch.get_num_threads(),
         "processes": group.size,
         "micro_batch": work.micro_batch,
-        "gradient_accumulation": work.parts(share),
+        "gradient_accumulation": len(work.parts(share)),
     }
-    write_whole(folder, folder / run.METRICS, (json.dumps(metrics, indent=2) + "\n").encode())
     series = {folder.name or str(folder): history}
-    write_whole(folder, folder / run.CURVES, curves_png(series, {folder.name: best.epoch}))
+    write_whole(folder, folder / run_files.CURVES, curves_png(series, {folder.name: best.epoch}))
     lines = [
         f"{about.model} on {about.data['path']}"
         + (f", map {about.map}" if about.map else "")
@@ -74,7 +70,9 @@ def write_run_summary(
         "",
         *_layer_table(model),
     ]
-    write_whole(folder, folder / run.SUMMARY, ("\n".join(lines) + "\n").encode())
+    write_whole(folder, folder / run_files.SUMMARY, ("\n".join(lines) + "\n").encode())
+    # Last: it stands for a finished run.
+    write_whole(folder, folder / run_files.METRICS, (json.dumps(metrics, indent=2) + "\n").encode())
 
 
 def _layer_table(model: nn.Module) -> list[str]:

@@ -5,17 +5,19 @@ from math import cos, pi
 from radhar_cli.learning.settings import TrainConfig
 
 
-def rate(config: TrainConfig, epoch: int, done: float) -> float:
-    """Learning rate in an epoch (from 0) of which the share `done` lies behind.
+def rate(config: TrainConfig, epoch: int, step: int, steps: int) -> float:
+    """Learning rate of a step (from 0) of an epoch (from 0) that has `steps` of them.
 
-    A linear warm-up over the first `warmup_epochs`, then the schedule.
+    A linear rise over the first `warmup_epochs` that reaches the initial rate with their last
+    step, then the schedule.
     """
-    initial, schedule, now = config.learning_rate, config.schedule, epoch + done
-    if now < config.warmup_epochs:
-        return initial * max(now, 1e-3) / config.warmup_epochs
+    initial, schedule = config.learning_rate, config.schedule
+    risen = epoch + (step + 1) / steps
+    if risen < config.warmup_epochs:
+        return initial * min(1.0, risen / config.warmup_epochs)
     if schedule.kind == "step":
         return initial * float(schedule.factor ** (epoch // schedule.every_epochs))
     if schedule.kind == "cosine":
-        span = max(config.epochs - config.warmup_epochs, 1e-9)
-        return initial * (1 + cos(pi * (now - config.warmup_epochs) / span)) / 2
+        since = max(0.0, epoch + step / steps - config.warmup_epochs)
+        return initial * (1 + cos(pi * since / max(config.epochs - config.warmup_epochs, 1e-9))) / 2
     return initial

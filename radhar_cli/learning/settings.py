@@ -2,11 +2,25 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from radhar_cli.config.section import Section
 
+
+def _auto_or(least: int) -> BeforeValidator:
+    def check(value: object) -> object:
+        whole = isinstance(value, int) and not isinstance(value, bool) and value >= least
+        if value != "auto" and not whole:
+            raise PydanticCustomError(
+                "auto", "should be auto or a whole number of at least {least}", {"least": least}
+            )
+        return value
+
+    return BeforeValidator(check)
+
+
+Auto = Literal["auto"] | int
 Count = Annotated[int, Field(ge=1, le=1_000_000, strict=True)]
 Rate = Annotated[float, Field(gt=0, le=1e3, strict=True)]
 Share = Annotated[float, Field(gt=0, lt=1, strict=True)]
@@ -32,8 +46,8 @@ class TrainConfig(Section):
     input: Literal["rgb", "gray"] = "rgb"
     seed: Annotated[int, Field(ge=0, lt=2**63, strict=True)] = 1
     epochs: Count = 20
-    batch_size: Count = 128
-    micro_batch: Literal["auto"] | Count = "auto"
+    batch_size: Annotated[int, Field(ge=2, le=1_000_000, strict=True)] = 128
+    micro_batch: Annotated[Auto, _auto_or(2)] = "auto"
     optimiser: Literal["adam", "adamw", "sgd"] = "adam"
     learning_rate: Rate = 0.00147
     weight_decay: Annotated[float, Field(ge=0, le=1e3, strict=True)] = 1e-4
@@ -44,8 +58,8 @@ class TrainConfig(Section):
     validation_share: Share = 0.2
     device: Literal["auto", "cpu", "cuda", "mps"] = "auto"
     precision: Literal["auto", "float32", "bfloat16"] = "auto"
-    workers: Literal["auto"] | Annotated[int, Field(ge=0, le=256, strict=True)] = "auto"
-    threads: Literal["auto"] | Annotated[int, Field(ge=1, le=4096, strict=True)] = "auto"
+    workers: Annotated[Auto, _auto_or(0)] = "auto"
+    threads: Annotated[Auto, _auto_or(1)] = "auto"
 
     @model_validator(mode="after")
     def _fits(self) -> "TrainConfig":

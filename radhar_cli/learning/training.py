@@ -1,46 +1,53 @@
 """Train a network: the same result for the same config, data and machine, killed or not."""
 
-import copy
 import math
 import time
 from contextlib import nullcontext
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 import torch
-from torch import Tensor, nn
-from torch.nn.functional import cross_entropy
+from torch import nn
 
 from radhar_cli import __version__
-from radhar_cli.arrays import Index
+from radhar_cli.arrays import Float
 from radhar_cli.config.identity import resolved
 from radhar_cli.dataset.folder import locked
-from radhar_cli.errors import FolderError, RadharError
+from radhar_cli.errors import ConfigError, FolderError, RadharError
+from radhar_cli.learning import run_files
 from radhar_cli.learning import run_folder as run
-from radhar_cli.learning.batches import Normalisation, Reader, epoch_batches
-from radhar_cli.learning.images import ImageSet, content_hash, open_images, scan
+from radhar_cli.learning.batches import LEAST_PER_PROCESS, Reader, epoch_batches, pieces
+from radhar_cli.learning.gradient_step import Learner, optimiser_for
+from radhar_cli.learning.images.image_set import ImageSet
+from radhar_cli.learning.images.opening import open_images
+from radhar_cli.learning.images.scan import content_hash, scan
 from radhar_cli.learning.machine import (
-    Group,
-    autocast,
     choose_device,
-    choose_precision,
     convolutions_channels_last,
-    joined,
     keep_memory,
-    largest_batch,
     repeatable,
 )
-from radhar_cli.learning.models.build import build_model, check_size
+from radhar_cli.learning.models.build import build_model
+from radhar_cli.learning.processes import (
+    Group,
+    distributed,
+    first_does,
+    joined,
+    share_buffers,
+    summed,
+    together,
+)
 from radhar_cli.learning.run_folder import About, Epoch, best_epoch
+from radhar_cli.learning.run_summary import write_run_summary
 from radhar_cli.learning.schedule import rate
 from radhar_cli.learning.settings import TrainConfig
+from radhar_cli.learning.work import Work, choose_work
 from radhar_cli.randomness import TRAINING, stream
 
-# Where the work is done does not decide what is learned.
-NOT_IDENTITY = ("device", "workers", "threads")
-CUDA_WORKERS = 8
+# Where the work is done does not decide what is learned; precision and micro batch do, as chosen.
+NOT_IDENTITY = ("device", "workers", "threads", "precision", "micro_batch")
 
 
 class TrainingError(RadharError):
@@ -61,26 +68,6 @@ class Progress(Protocol):
 
     def epoch_done(self, row: Epoch, best: bool) -> None:
         """An epoch is done and on disk."""
-
-
-@dataclass(frozen=True)
-class Work:
-    """How this machine does the work.
-
-    Attributes:
-        device, precision: where and in what.
-        micro_batch: images at once in one process; gradients are summed over as many as needed.
-        workers: reading processes.
-    """
-
-    device: torch.device
-    precision: torch.dtype
-    micro_batch: int
-    workers: int
-
-    def parts(self, images: int) -> int:
-        """Parts in which a process does its share of a batch."""
-        return -(-images // self.micro_batch)
 
 
 @dataclass(frozen=True)
@@ -129,12 +116,10 @@ def checked_images(config: TrainConfig, path: Path) -> ImageSet:
     """Open a data set and make sure that it can be learned from.
 
     Raises:
-        FolderError: sides that are no multiples of 32, fewer than two classes, a class without
-            training images, no validation images.
+        FolderError: fewer than two classes, a class without training images, no validation images.
     """
     images = open_images(path, config.map, config.input)
     images = images.cut(config.validation_share, config.seed)
-    check_size(config.model, images.size, path)
     if len(images.classes) < 2:
         raise FolderError(f"{path}: has the class {images.classes[0]!r} alone; should have two")
     learned = set(images.label[images.rows("train")].tolist())
@@ -170,33 +155,37 @@ class _Training:
         overwrite: bool,
     ) -> "_Training":
         images = checked_images(config, data)
-        if group.leads:
-            progress.say(f"reading {len(images)} images of {len(images.classes)} classes")
-        about = _about(config, images, data)
-        if group.leads:
-            run.claim_run(folder, about[0], overwrite)
-            _write_trained_on(folder, images, about[1])
-        _together(group)
+        least = LEAST_PER_PROCESS * group.size
+        if config.batch_size < least:
+            raise ConfigError(
+                f"batch_size = {config.batch_size}: should be at least {least} for {group.size} "
+                "processes; batch norm needs two images in each"
+            )
         torch.manual_seed(config.seed)
         model = build_model(config.model, len(images.classes), images.size)
-        precision = choose_precision(config.precision, device)
-        work = Work(
-            device,
-            precision,
-            _micro_batch(config, model, images.size, device, precision, group),
-            _workers(config, device),
-        )
+        work = choose_work(config, model, images.size, device, group)
+        if group.leads:
+            progress.say(f"reading {len(images)} images of {len(images.classes)} classes")
+            for warning in _unbalanced(images):
+                progress.say(f"warning: {warning}")
+        about, prints = _about(config, images, data, work, group)
+
+        def claim() -> None:
+            run.claim_run(folder, about, overwrite)
+            _write_trained_on(folder, images, prints)
+
+        first_does(group, claim)
         convolutions_channels_last(model.to(device))
         return cls(
             config=config,
             images=images,
-            about=about[0],
+            about=about,
             folder=folder,
             work=work,
             group=group,
             progress=progress,
             model=model,
-            optimiser=_optimiser(config, model),
+            optimiser=optimiser_for(config, model),
             history=[],
         )
 
@@ -204,7 +193,7 @@ class _Training:
         went_on = self._restore()
         if self.group.leads:
             self._announce(went_on)
-        network = self._network()
+        network = distributed(self.model, self.work.device, self.group)
         reader = Reader(
             self.images, self.images.label, self.work.workers, self.work.device.type == "cuda"
         )
@@ -217,48 +206,69 @@ class _Training:
                 self._keep(epoch, learned, seen, time.perf_counter() - began)
             else:
                 self.history.append(_row(epoch, 0.0, learned, seen, 0.0))
-        already_told = went_on == self.config.epochs and (self.folder / run.METRICS).exists()
-        if self.group.leads and not already_told:
-            self._finish()
-        _together(self.group)
+        if self.group.leads:
+            run.write_history(self.folder, self.history)
+            if went_on < self.config.epochs or not (self.folder / run_files.METRICS).exists():
+                self._finish()
+        together(self.group)
         return Outcome(self.folder, self.history, went_on)
 
-    def _network(self) -> nn.Module:
-        if self.group.size == 1:
-            return self.model
-        from torch.nn.parallel import DistributedDataParallel
-
-        ids = [self.work.device.index] if self.work.device.type == "cuda" else None
-        return DistributedDataParallel(self.model, device_ids=ids)
+    @property
+    def _learner(self) -> Learner:
+        return Learner(self.config, self.about.normalisation, self.work, self.group)
 
     def _restore(self) -> int:
         found = run.read_last(self.folder)
         if found is None:
             return 0
+        path = self.folder / run_files.LAST
         try:
+            other = run.differences(About.model_validate_json(found["about"]), self.about)
+            if other:
+                raise run.RunError(f"{path}: is another run's; it differs in {other[0]}")
             self.model.load_state_dict(found["model"])
             self.optimiser.load_state_dict(found["optimiser"])
             self.history = [Epoch(**row) for row in found["history"]]
-        except (RuntimeError, ValueError, KeyError, TypeError) as error:
+            torch.set_rng_state(found["random"])
+        except (RuntimeError, ValueError, KeyError, TypeError, IndexError) as error:
             raise run.RunError(
-                f"{self.folder / run.LAST}: does not fit this run "
-                f"({str(error).splitlines()[0]}); --overwrite starts it again"
+                f"{path}: does not fit this run ({run.first_line(error)}); --overwrite starts it "
+                "again"
             ) from None
+        first_does(self.group, self._look_after_best)
         return len(self.history)
+
+    def _look_after_best(self) -> None:
+        """Make sure that the best weights are there; write them again if they are the last ones.
+
+        Raises:
+            RunError: they are gone, or damaged.
+        """
+        best = best_epoch(self.history)
+        try:
+            run.load_best(self.folder)
+        except run.RunError as error:
+            if best is not self.history[-1]:
+                raise run.RunError(
+                    f"{error}; the weights of epoch {best.epoch} cannot be had again; --overwrite "
+                    "starts the run again"
+                ) from None
+            run.write_best(self.folder, self.about, best, self.model.state_dict())
 
     def _announce(self, went_on: int) -> None:
         work, say, size = self.work, self.progress.say, self.config.batch_size
         if went_on:
             say(f"going on: {went_on} of {self.config.epochs} epochs are done")
         share = -(-size // self.group.size)
-        precision = "bfloat16" if work.precision == torch.bfloat16 else "float32"
+        precision = work.described
         many = f", {self.group.size} processes" if self.group.size > 1 else ""
         say(f"on {work.device.type}{many}, {precision}, {torch.get_num_threads()} threads")
-        if work.parts(share) > 1:
+        parts = len(work.parts(share))
+        if parts > 1:
             say(
-                f"a batch of {size} goes in {work.parts(share)} parts of {work.micro_batch} a "
-                f"process: gradients are summed, but batch norm sees {work.micro_batch} images at "
-                f"once, so this is not the same as a batch of {size}"
+                f"a batch of {size} goes in {parts} parts a process, of at most "
+                f"{work.micro_batch}: gradients are summed, but batch norm sees one part at a "
+                f"time, so this is not the same as a batch of {size}"
             )
 
     def _epoch_seed(self, epoch: int) -> int:
@@ -275,81 +285,43 @@ class _Training:
             self.progress.epoch(epoch + 1, config.epochs, len(batches))
         mine = [rows[batch[group.rank :: group.size]] for batch in batches]
         network.train()
-        totals = np.zeros(3)
+        learner = self._learner
+        totals: Float = np.zeros(3)
         for step, (levels, labels) in enumerate(reader(mine)):
-            learning_rate = rate(config, epoch, step / len(batches))
+            learning_rate = rate(config, epoch, step, len(batches))
             for parameters in self.optimiser.param_groups:
                 parameters["lr"] = learning_rate
-            loss, right = self._step(network, levels, labels, batches[step].size)
-            if not math.isfinite(loss):
+            loss, right = learner.step(network, self.optimiser, levels, labels, batches[step].size)
+            # The sum: where one process fails, all should say so.
+            if not math.isfinite(summed(np.array([loss]), group)[0]):
                 raise TrainingError(self._not_finite(f"epoch {epoch + 1}, step {step + 1}", loss))
             totals += (loss * len(labels), right, len(labels))
             if group.leads:
                 self.progress.step(loss, totals[1] / totals[2])
-        totals = _summed(totals, group)
+        totals = summed(totals, group)
         return totals[0] / totals[2], totals[1] / totals[2]
-
-    def _step(
-        self, network: nn.Module, levels: Tensor, labels: Tensor, whole: int
-    ) -> tuple[float, int]:
-        """One update from this process's share of a batch of `whole` images.
-
-        Returns the mean loss of the share, and how many of it were right.
-        """
-        config, work, group = self.config, self.work, self.group
-        self.optimiser.zero_grad(set_to_none=True)
-        loss_sum, right = 0.0, 0
-        size = work.micro_batch
-        cuts = range(0, len(labels), size)
-        parts = [(levels[cut : cut + size], labels[cut : cut + size]) for cut in cuts]
-        for number, (images, wanted) in enumerate(parts):
-            last = number == len(parts) - 1
-            waits = nullcontext() if last or group.size == 1 else _no_sync(network)
-            with waits:
-                wanted = wanted.to(work.device)
-                logits = _logits(network, images, self.about.normalisation, work)
-                loss = cross_entropy(
-                    logits, wanted, label_smoothing=config.label_smoothing, reduction="sum"
-                )
-                # Processes average their gradients: the sum over all, divided by the whole batch.
-                torch.autograd.backward(loss * (group.size / whole))
-            loss_sum += float(loss.detach())
-            right += int((logits.argmax(1) == wanted).sum())
-        if config.gradient_clip_norm is not None:
-            nn.utils.clip_grad_norm_(self.model.parameters(), config.gradient_clip_norm)
-        self.optimiser.step()
-        return loss_sum / len(labels), right
 
     def _validate(self, reader: Reader, epoch: int) -> tuple[float, float]:
         """Mean loss and accuracy over the validation images, shared by the processes."""
         group = self.group
-        if group.size > 1:  # batch norm's averages are the first process's
-            import torch.distributed as dist
-
-            for buffer in self.model.buffers():
-                dist.broadcast(buffer, 0)
+        share_buffers(self.model, group)
         rows = self.images.rows("val")
         mine = rows[group.rank :: group.size]
         size = min(self.config.batch_size, self.work.micro_batch)
         self.model.eval()
-        totals = np.zeros(3)
+        totals: Float = np.zeros(3)
         with torch.no_grad():
-            for levels, labels in reader(_pieces(mine, size)):
-                wanted = labels.to(self.work.device)
-                logits = _logits(self.model, levels, self.about.normalisation, self.work)
-                loss = cross_entropy(
-                    logits, wanted, label_smoothing=self.config.label_smoothing, reduction="sum"
-                )
-                right = int((logits.argmax(1) == wanted).sum())
+            for levels, labels in reader(pieces(mine, size)):
+                loss, right = self._learner.loss_and_right(self.model, levels, labels)
                 totals += (float(loss), right, len(labels))
-        totals = _summed(totals, group)
+        totals = summed(totals, group)
         if not math.isfinite(totals[0]):
             raise TrainingError(self._not_finite(f"validation of epoch {epoch + 1}", totals[0]))
         return totals[0] / totals[2], totals[1] / totals[2]
 
     def _not_finite(self, where: str, loss: float) -> str:
         kept = (
-            f"{run.LAST} and {run.BEST} hold the epochs up to {len(self.history)}"
+            f"{run_files.LAST} and {run_files.BEST} hold the epochs up to {len(self.history)}"
             if self.history
             else "no epoch was finished"
         )
@@ -382,12 +354,12 @@ class _Training:
         self.progress.epoch_done(row, best)
 
     def _finish(self) -> None:
-        from radhar_cli.learning.run_summary import write_run_summary
-
         write_run_summary(self.folder, self.about, self.history, self.model, self.work, self.group)
 
 
-def _about(config: TrainConfig, images: ImageSet, data: Path) -> tuple[About, dict[int, str]]:
+def _about(
+    config: TrainConfig, images: ImageSet, data: Path, work: Work, group: Group
+) -> tuple[About, dict[int, str]]:
     """What the run is about, and the fingerprint of every image it looked at, by row."""
     rows = np.concatenate([images.rows("train"), images.rows("val")])
     learned, checked = scan(images, images.rows("train")), scan(images, images.rows("val"))
@@ -409,6 +381,11 @@ def _about(config: TrainConfig, images: ImageSet, data: Path) -> tuple[About, di
             "train": len(learned.prints),
             "val": len(checked.prints),
         },
+        work={
+            "precision": work.described,
+            "micro_batch": work.micro_batch,
+            "processes": group.size,
+        },
         versions={"radhar": __version__, "torch": torch.__version__, "numpy": np.__version__},
     )
     return about, dict(zip(rows.tolist(), prints, strict=True))
@@ -424,78 +401,14 @@ def _write_trained_on(folder: Path, images: ImageSet, prints: dict[int, str]) ->
     )
 
 
-def _optimiser(config: TrainConfig, model: nn.Module) -> torch.optim.Optimizer:
-    """L2 regularisation of the weights; biases and batch norms are left free."""
-    weights = [p for p in model.parameters() if p.ndim > 1]
-    others = [p for p in model.parameters() if p.ndim <= 1]
-    groups: list[dict[str, Any]] = [
-        {"params": weights, "weight_decay": config.weight_decay},
-        {"params": others, "weight_decay": 0.0},
+def _unbalanced(images: ImageSet) -> list[str]:
+    """What is odd about a data set but no error."""
+    checked = set(images.label[images.rows("val")].tolist())
+    return [
+        f"the class {name!r} has no validation image; the best epoch is chosen without it"
+        for index, name in enumerate(images.classes)
+        if index not in checked
     ]
-    groups = [group for group in groups if group["params"]]
-    if config.optimiser == "adam":
-        return torch.optim.Adam(groups, lr=config.learning_rate)
-    if config.optimiser == "adamw":
-        return torch.optim.AdamW(groups, lr=config.learning_rate)
-    return torch.optim.SGD(groups, lr=config.learning_rate, momentum=0.9)
-
-
-def _micro_batch(
-    config: TrainConfig,
-    model: nn.Module,
-    size: tuple[int, int],
-    device: torch.device,
-    precision: torch.dtype,
-    group: Group,
-) -> int:
-    if config.micro_batch != "auto":
-        return config.micro_batch
-    saved = _saved_bytes(model, size, precision)
-    return min(config.batch_size, largest_batch(saved, device, group.local_size))
-
-
-def _saved_bytes(model: nn.Module, size: tuple[int, int], precision: torch.dtype) -> int:
-    """Bytes of one image that a forward pass keeps for the backward pass."""
-    kept: dict[int, int] = {}
-
-    def pack(tensor: Tensor) -> Tensor:
-        kept[tensor.untyped_storage().data_ptr()] = tensor.untyped_storage().nbytes()
-        return tensor
-
-    trial, images = copy.deepcopy(model).train(), torch.zeros(2, 3, *size)
-    own = {p.untyped_storage().data_ptr() for p in trial.parameters()}
-    with (
-        torch.random.fork_rng(devices=[]),
-        torch.autograd.graph.saved_tensors_hooks(pack, lambda tensor: tensor),
-        autocast(torch.device("cpu"), precision),
-    ):
-        trial(images)
-    return sum(n for pointer, n in kept.items() if pointer not in own) // 2 + 1
-
-
-def _workers(config: TrainConfig, device: torch.device) -> int:
-    """On the CPU the cores are busy with the network, and reading is a few per cent of a step."""
-    if config.workers != "auto":
-        return config.workers
-    from radhar_cli.dataset.workers import cores
-
-    return min(CUDA_WORKERS, cores()) if device.type == "cuda" else 0
-
-
-def _logits(network: nn.Module, levels: Tensor, prepare: Normalisation, work: Work) -> Tensor:
-    """Levels uint8 [B, 3, H, W] to logits float32 [B, classes]."""
-    x = prepare(levels.to(work.device, non_blocking=True))
-    with autocast(work.device, work.precision):
-        logits: Tensor = network(x.contiguous(memory_format=torch.channels_last))
-    return logits.float()
-
-
-def _pieces(rows: Index, size: int) -> list[Index]:
-    return [rows[start : start + size] for start in range(0, rows.size, size)]
-
-
-def _no_sync(network: Any) -> Any:
-    return network.no_sync()
 
 
 def _row(
@@ -514,21 +427,3 @@ def _row(
         val_accuracy=float(seen[1]),
         seconds=round(seconds, 3),
     )
-
-
-def _summed(totals: Any, group: Group) -> Any:
-    if group.size == 1:
-        return totals
-    import torch.distributed as dist
-
-    device = "cuda" if dist.get_backend() == "nccl" else "cpu"
-    tensor = torch.tensor(totals, dtype=torch.float64, device=device)
-    dist.all_reduce(tensor)
-    return tensor.cpu().numpy()
-
-
-def _together(group: Group) -> None:
-    if group.size > 1:
-        import torch.distributed as dist
-
-        dist.barrier()

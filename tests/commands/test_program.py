@@ -11,7 +11,8 @@ import yaml
 from small import small_config
 
 ROOT = Path(__file__).resolve().parents[2]
-CONFIGS = sorted((ROOT / "configs").rglob("*.yaml"))
+TRAINING = sorted((ROOT / "configs/train").glob("*.yaml"))
+CONFIGS = sorted(set((ROOT / "configs").rglob("*.yaml")) - set(TRAINING))
 
 
 def radhar(*arguments: object, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:
@@ -61,12 +62,13 @@ def test_dry_run_prints_the_plan_and_writes_nothing(tmp_path: Path) -> None:
     assert sorted(p.name for p in tmp_path.iterdir()) == ["small.yaml"]
 
 
-@pytest.mark.parametrize("path", CONFIGS, ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", [*CONFIGS, *TRAINING], ids=lambda p: f"{p.parent.name}-{p.stem}")
 def test_shipped_configs_resolve_and_show_round_trips(path: Path, tmp_path: Path) -> None:
-    shown = radhar("config", "show", path)
+    kind = ["--train"] if path in TRAINING else []
+    shown = radhar("config", "show", path, *kind)
     assert shown.returncode == 0, shown.stderr
     (tmp_path / "again.yaml").write_text(shown.stdout)
-    assert radhar("config", "show", tmp_path / "again.yaml").stdout == shown.stdout
+    assert radhar("config", "show", tmp_path / "again.yaml", *kind).stdout == shown.stdout
 
 
 def test_schema_is_json_schema() -> None:

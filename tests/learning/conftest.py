@@ -1,14 +1,9 @@
 """Runs that several tests look at; nobody changes them."""
 
-import importlib.util
-import sys
-import warnings
 from pathlib import Path
 
 import pytest
-from learning.patterns import split_tree, trained
-
-OPERATORS = Path(__file__).resolve().parents[1] / "torchvision_operators/sitecustomize.py"
+from learning.patterns import load_timm, split_tree, trained
 
 
 @pytest.fixture(scope="session")
@@ -27,15 +22,5 @@ def run_dir(data: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def zoo() -> None:
-    """timm loads, with the operators of torchvision declared where its build lacks them."""
-    if "timm" in sys.modules:
-        return
-    spec = importlib.util.spec_from_file_location("torchvision_operators", OPERATORS)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        spec.loader.exec_module(module)
-        importlib.import_module("timm")
+    """timm loads."""
+    load_timm()

@@ -1,7 +1,10 @@
 """Trees of images that a network learns in seconds, and training runs of a second."""
 
 import dataclasses
+import importlib.util
 import math
+import sys
+import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -12,13 +15,15 @@ from PIL import Image
 from safetensors.torch import load_file
 
 from radhar_cli.errors import RadharError
+from radhar_cli.learning import run_files
 from radhar_cli.learning import run_folder as run
 from radhar_cli.learning.run_folder import Epoch
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.training import Outcome, train
 
+OPERATORS = Path(__file__).resolve().parents[1] / "torchvision_operators/sitecustomize.py"
 SIZE = 32
-CLASSES = ("kicking", "punching", "walking")  # in the papers order: punching, kicking, walking
+CLASSES = ("kicking", "punching", "walking")  # S3, S2 and S8: not the order of the alphabet
 BASE = {
     "epochs": 3,
     "batch_size": 6,
@@ -59,7 +64,7 @@ def tree(
             folder = root / part / name
             folder.mkdir(parents=True)
             for number in range(count):
-                kind = sum(name.encode()) % 4
+                kind = CLASSES.index(name) if name in CLASSES else sum(name.encode()) % 4
                 Image.fromarray(stripes(kind, rng, size)).save(folder / f"{number:03d}.png")
     return root
 
@@ -104,11 +109,11 @@ def trained(data: Path, out: Path, progress: Watched | None = None, **changes: A
 
 
 def best_weights(out: Path) -> dict[str, torch.Tensor]:
-    return load_file(out / run.BEST)
+    return load_file(out / run_files.BEST)
 
 
 def last_weights(out: Path) -> dict[str, torch.Tensor]:
-    found: dict[str, torch.Tensor] = torch.load(out / run.LAST, weights_only=True)["model"]
+    found: dict[str, torch.Tensor] = torch.load(out / run_files.LAST, weights_only=True)["model"]
     return found
 
 
@@ -135,3 +140,18 @@ def one_clear_line(error: RadharError, *words: object) -> None:
     assert error.status == 2
     for word in words:
         assert str(word) in str(error), str(error)
+
+
+def load_timm() -> None:
+    """Import timm, with the operators of torchvision declared where its build lacks them."""
+    if "timm" in sys.modules:
+        return
+    spec = importlib.util.spec_from_file_location("torchvision_operators", OPERATORS)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        spec.loader.exec_module(module)
+        importlib.import_module("timm")

@@ -9,7 +9,7 @@ from hypothesis import settings as examples
 from hypothesis import strategies as st
 
 from radhar_cli.learning.batches import LEAST_PER_PROCESS, Normalisation, Reader, epoch_batches
-from radhar_cli.learning.images import open_images
+from radhar_cli.learning.images.opening import open_images
 
 
 @examples(max_examples=200)

@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 from learning.patterns import last_weights, split_tree, trained
 from torch import Tensor
 
+from radhar_cli.errors import ModelError
 from radhar_cli.learning import run_folder as run
 from radhar_cli.learning.evaluation import open_for, predict
-from radhar_cli.learning.models.build import ModelError, build_model, features_and_logits
+from radhar_cli.learning.models.build import build_model, features_and_logits
 from radhar_cli.learning.models.fftnet import Block, FFTNet, GlobalFilter
 
 

@@ -14,18 +14,18 @@ from PIL import Image
 from small import small_config
 
 from radhar_cli.config import load_config
+from radhar_cli.config.rounding import half_up
 from radhar_cli.dataset.build import build
 from radhar_cli.errors import FolderError
-from radhar_cli.learning.folder_images import split_named
-from radhar_cli.learning.images import (
+from radhar_cli.learning.images.image_set import (
     ImageSet,
     class_order,
-    content_hash,
     labels_for,
     luminance,
-    open_images,
-    scan,
+    split_named,
 )
+from radhar_cli.learning.images.opening import open_images
+from radhar_cli.learning.images.scan import content_hash, scan
 from radhar_cli.learning.training import checked_images
 
 SET = """
@@ -89,7 +89,10 @@ def test_gray_is_the_stored_level(made: Path) -> None:
 
     with h5py.File(made / "dataset.h5") as file:
         levels = file["maps/stft"][3]
-    assert np.array_equal(open_images(made, "stft", "gray").pixels.read(3)[..., 1], levels)
+    read = open_images(made, "stft", "gray").pixels.read(3)[..., 1]
+    # Of the 256 levels of viridis a few share their colour with the one below.
+    assert np.abs(read.astype(int) - levels).max() <= 1
+    assert np.mean(read == levels) > 0.97
 
 
 def test_gray_of_a_strange_image_is_its_brightness(tmp_path: Path) -> None:
@@ -130,11 +133,8 @@ def test_scenes_tell_people_apart_and_snr_is_known(made: Path) -> None:
 
 
 def test_classes_of_ours_stand_in_the_papers_order_others_by_alphabet() -> None:
-    assert class_order({"walking", "kicking", "standing_up"}) == (
-        "kicking",
-        "standing_up",
-        "walking",
-    )
+    ours = ("stationary", "punching", "kicking", "body_rotating", "walking")
+    assert class_order(set(ours)) == ours
     assert class_order({"walking", "kicking", "zebra"}) == ("kicking", "walking", "zebra")
     assert class_order({"walking", "stationary", "apple"}) == ("apple", "stationary", "walking")
 
@@ -168,9 +168,10 @@ def test_tree_without_splits_is_cut_class_by_class_and_always_alike(tmp_path: Pa
     assert cut.rows("val").tolist() == images.cut(0.2, 1).rows("val").tolist()
     others = {tuple(images.cut(0.2, seed).rows("val").tolist()) for seed in range(2, 6)}
     assert others - {tuple(cut.rows("val").tolist())}
-    assert images.rows("val").size == images.rows("all").size == 20
-    with pytest.raises(FolderError, match="has no train folder"):
-        images.rows("train")
+    assert images.rows("all").size == 20
+    for split in ("train", "val", "test"):
+        with pytest.raises(FolderError, match="is not split into train and val; --split all"):
+            images.rows(split)
 
 
 @examples(max_examples=50)
@@ -183,7 +184,7 @@ def test_every_class_keeps_something_on_both_sides(counts: list[int], share: flo
     cut = images.cut(share, 0)
     for index, count in enumerate(counts):
         held = int((cut.label[cut.rows("val")] == index).sum())
-        assert held == max(1, round(share * count))
+        assert held == min(max(1, half_up(share, count)), count - 1)
         assert held < count
 
 
@@ -230,10 +231,10 @@ def broken(tmp_path: Path, what: str) -> tuple[Path, list[str]]:
         return root, ["no such file or folder"]
     if what == "empty folder":
         root.mkdir()
-        return root, ["no folders", "dataset.h5"]
+        return root, ["no class folders", "dataset.h5"]
     if what == "folders without images":
         (root / "old").mkdir(parents=True)
-        return root, ["old", "no class folders with images"]
+        return root, ["no class folders with images"]
     split_tree(root)
     first = root / "train/kicking/000.png"
     if what == "empty class":
@@ -347,9 +348,7 @@ def test_gray_and_other_formats_are_read_as_rgb(tmp_path: Path) -> None:
         ({"train": 2, "val": 1}, ("a",), 32, "the class 'a' alone"),
         ({"train": 2, "test": 1}, ("a", "b"), 32, "no val images (it has 4 train, 2 test)"),
         ({"val": 2, "test": 1}, ("a", "b"), 32, "no train images"),
-        ({"train": 2, "val": 1}, ("a", "b"), 40, "40 x 40 px; fftnet needs sides that are mult"),
-        ({"train": 2, "val": 1}, ("a", "b"), (32, 48), "32 x 48 px"),
-        ({"": 1}, ("a", "b"), 32, "no train images"),
+        ({"": 1}, ("a", "b"), 32, "the class 'a' has one image; should have two"),
     ],
 )
 def test_what_cannot_be_learned_from_is_refused(

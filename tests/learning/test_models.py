@@ -6,12 +6,11 @@ import pytest
 import torch
 from learning.patterns import SIZE, trained
 
+from radhar_cli.errors import ModelError
 from radhar_cli.learning import run_folder as run
 from radhar_cli.learning.models.build import (
     RIVALS,
-    ModelError,
     build_model,
-    check_size,
     cost,
     features_and_logits,
     parameter_count,
@@ -21,7 +20,7 @@ from radhar_cli.learning.models.build import (
 @pytest.mark.parametrize("name", RIVALS)
 def test_rivals_build_and_take_a_step(zoo: None, name: str) -> None:
     torch.manual_seed(0)
-    size = (64, 64) if name.startswith(("vit", "convnext")) else (SIZE, SIZE)
+    size = (64, 64) if name == "convnext_tiny" else (SIZE, SIZE)
     if name == "vgg19":  # its 139 M parameters are built without memory
         with torch.device("meta"):
             model, x = build_model(name, 4, size).eval(), torch.zeros(2, 3, *size)
@@ -36,7 +35,7 @@ def test_rivals_build_and_take_a_step(zoo: None, name: str) -> None:
     torch.nn.functional.cross_entropy(logits, torch.tensor([0, 3])).backward()
     optimiser.step()
     moved = [not torch.equal(p, b) for p, b in zip(model.parameters(), before, strict=True)]
-    assert sum(moved) > 0.8 * len(moved)
+    assert sum(moved) > 0.25 * len(moved), "not all: some residual branches start at zero"
     with torch.no_grad():
         features, again = features_and_logits(model.eval(), x)
         torch.testing.assert_close(again, model(x))
@@ -52,7 +51,8 @@ def test_a_rival_trains_and_is_read_back(zoo: None, data: Path, tmp_path: Path) 
 
 
 @pytest.mark.parametrize(
-    ("name", "near"), [("fftnett", "fftnet"), ("resnet5O", "resnet50"), ("vit_base", "vit_base")]
+    ("name", "near"),
+    [("fftnett", "fftnet"), ("resnet5O", "resnet50"), ("convnext_tinny", "convnext_tiny")],
 )
 def test_unknown_names_are_met_with_a_suggestion(zoo: None, name: str, near: str) -> None:
     with pytest.raises(ModelError, match=f"did you mean '{near}") as caught:
@@ -84,7 +84,3 @@ def test_multiply_adds_of_the_convolutions_by_hand() -> None:
     )
     found = cost("fftnet", 5, (32, 32)).multiply_adds
     assert found == pytest.approx(convolutions + 512 * 5 + ffts, rel=1e-3)
-
-
-def test_check_size() -> None:
-    check_size("fftnet", (64, 32), "x")

@@ -14,6 +14,8 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
+from hypothesis import given
+from hypothesis import strategies as st
 from learning.patterns import (
     BASE,
     Watched,
@@ -29,11 +31,14 @@ from learning.patterns import (
 )
 from torch import nn
 
+from radhar_cli.learning import gradient_step, run_files, training
 from radhar_cli.learning import run_folder as run
-from radhar_cli.learning import training
-from radhar_cli.learning.images import open_images, scan
-from radhar_cli.learning.machine import Group
-from radhar_cli.learning.training import TrainingError, _optimiser, _Training
+from radhar_cli.learning.gradient_step import optimiser_for
+from radhar_cli.learning.images.opening import open_images
+from radhar_cli.learning.images.scan import scan
+from radhar_cli.learning.processes import Group
+from radhar_cli.learning.training import TrainingError, _Training
+from radhar_cli.learning.work import Work
 
 CPU = torch.device("cpu")
 
@@ -54,8 +59,8 @@ def gradients(model: nn.Module) -> list[torch.Tensor]:
 
 
 def test_files_of_a_run(run_dir: Path, data: Path) -> None:
-    assert {p.name for p in run_dir.iterdir()} - {".radhar", "eval"} == set(run.OURS)
-    metrics = json.loads((run_dir / run.METRICS).read_text())
+    assert {p.name for p in run_dir.iterdir()} - {".radhar", "eval"} == set(run_files.ALL)
+    metrics = json.loads((run_dir / run_files.METRICS).read_text())
     history = run.read_history(run_dir)
     best = run.best_epoch(history)
     assert [row.epoch for row in history] == [1, 2, 3]
@@ -66,9 +71,9 @@ def test_files_of_a_run(run_dir: Path, data: Path) -> None:
     assert metrics["classes"] == ["punching", "kicking", "walking"]
     assert (metrics["data"]["train"], metrics["data"]["val"]) == (12, 6)
     assert metrics["data"]["path"] == str(data)
-    assert f"best epoch {best.epoch} of 3" in (run_dir / run.SUMMARY).read_text()
-    assert (run_dir / run.CURVES).read_bytes().startswith(b"\x89PNG")
-    lines = (run_dir / run.TRAINED_ON).read_text().splitlines()
+    assert f"best epoch {best.epoch} of 3" in (run_dir / run_files.SUMMARY).read_text()
+    assert (run_dir / run_files.CURVES).read_bytes().startswith(b"\x89PNG")
+    lines = (run_dir / run_files.TRAINED_ON).read_text().splitlines()
     assert len(lines) == 13
     assert lines[1].startswith("punching/000,")
 
@@ -111,6 +116,23 @@ def test_stopped_after_an_epoch_and_gone_on_is_the_same(
     assert same_run(run_dir, out)
 
 
+def test_dropout_goes_on_as_if_it_had_never_stopped(
+    data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def with_dropout(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
+        return nn.Sequential(
+            nn.Conv2d(3, 4, 3, 4), nn.Flatten(), nn.Dropout(0.5), nn.Linear(4 * 8 * 8, classes)
+        )
+
+    for module in (training, run):
+        monkeypatch.setattr(module, "build_model", with_dropout)
+    trained(data, tmp_path / "whole")
+    with pytest.raises(KeyboardInterrupt):
+        trained(data, tmp_path / "stopped", Watched(stop_after=2))
+    trained(data, tmp_path / "stopped")
+    assert same_run(tmp_path / "whole", tmp_path / "stopped")
+
+
 def test_stopped_between_the_files_of_the_last_epoch_loses_nothing(
     data: Path, run_dir: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -131,11 +153,11 @@ def test_stopped_between_the_files_of_the_last_epoch_loses_nothing(
 
 
 def test_a_finished_run_is_found_done(data: Path, run_dir: Path) -> None:
-    before = (run_dir / run.BEST).stat().st_mtime_ns
+    before = (run_dir / run_files.BEST).stat().st_mtime_ns
     progress = Watched()
     done = trained(data, run_dir, progress)
     assert (done.went_on, progress.losses) == (3, [])
-    assert (run_dir / run.BEST).stat().st_mtime_ns == before
+    assert (run_dir / run_files.BEST).stat().st_mtime_ns == before
     assert done.history == run.read_history(run_dir)
 
 
@@ -182,19 +204,22 @@ def test_step_reports_the_smoothed_loss_and_what_is_right(data: Path, tmp_path: 
     network = copy.deepcopy(work.model).train()
     logits = network(work.about.normalisation(levels))
     wanted = nn.functional.one_hot(labels, 3) * 0.8 + 0.2 / 3
-    expected = -(wanted * logits.log_softmax(1)).sum(1).mean()
-    loss, right = work._step(work.model.train(), levels, labels, 6)
+    expected = -(wanted * logits.detach().log_softmax(1)).sum(1).mean()
+    loss, right = work._learner.step(work.model.train(), work.optimiser, levels, labels, 6)
     assert loss == pytest.approx(float(expected), rel=1e-5)
     assert right == int((logits.argmax(1) == labels).sum())
 
 
-@pytest.mark.parametrize("micro_batch", [1, 2, 4, 5])
+@pytest.mark.parametrize("micro_batch", [2, 3, 4, 5])
 def test_parts_of_a_batch_sum_to_its_gradient(data: Path, tmp_path: Path, micro_batch: int) -> None:
     """With batch norm in evaluation mode, where images do not see each other."""
     whole = prepared(data, tmp_path / "whole", micro_batch=6)
     parts = prepared(data, tmp_path / "parts", micro_batch=micro_batch)
     levels, labels = first_batch(whole)
-    losses = [work._step(work.model.eval(), levels, labels, 6) for work in (whole, parts)]
+    losses = [
+        work._learner.step(work.model.eval(), work.optimiser, levels, labels, 6)
+        for work in (whole, parts)
+    ]
     assert losses[0] == pytest.approx(losses[1], rel=1e-5)
     for one, other in zip(gradients(whole.model), gradients(parts.model), strict=True):
         torch.testing.assert_close(one, other, rtol=1e-4, atol=1e-6)
@@ -203,9 +228,9 @@ def test_parts_of_a_batch_sum_to_its_gradient(data: Path, tmp_path: Path, micro_
 def test_a_step_starts_from_no_gradient(data: Path, tmp_path: Path) -> None:
     work = prepared(data, tmp_path / "run", learning_rate=1e-12, optimiser="sgd")
     levels, labels = first_batch(work)
-    work._step(work.model.eval(), levels, labels, 6)
+    work._learner.step(work.model.eval(), work.optimiser, levels, labels, 6)
     once = gradients(work.model)
-    work._step(work.model.eval(), levels, labels, 6)
+    work._learner.step(work.model.eval(), work.optimiser, levels, labels, 6)
     for one, other in zip(once, gradients(work.model), strict=True):
         torch.testing.assert_close(one, other, rtol=1e-4, atol=1e-7)
 
@@ -213,10 +238,12 @@ def test_a_step_starts_from_no_gradient(data: Path, tmp_path: Path) -> None:
 def test_accumulation_is_said_and_recorded(data: Path, tmp_path: Path) -> None:
     progress = Watched()
     trained(data, tmp_path / "run", progress, epochs=1, micro_batch=2)
-    metrics = json.loads((tmp_path / "run" / run.METRICS).read_text())
+    metrics = json.loads((tmp_path / "run" / run_files.METRICS).read_text())
     assert (metrics["micro_batch"], metrics["gradient_accumulation"]) == (2, 3)
-    assert any("3 parts of 2" in line and "batch norm" in line for line in progress.said)
-    assert "in 3 part(s)" in (tmp_path / "run" / run.SUMMARY).read_text()
+    assert any(
+        "3 parts a process, of at most 2" in line and "batch norm" in line for line in progress.said
+    )
+    assert "in 3 part(s)" in (tmp_path / "run" / run_files.SUMMARY).read_text()
 
 
 def test_clipping_limits_the_gradient(data: Path, tmp_path: Path) -> None:
@@ -228,8 +255,8 @@ def test_clipping_limits_the_gradient(data: Path, tmp_path: Path) -> None:
     moved = []
     for work in (free, held):
         before = [p.detach().clone() for p in work.model.parameters()]
-        work._step(work.model.train(), levels, labels, 6)
-        steps = [p - b for p, b in zip(work.model.parameters(), before, strict=True)]
+        work._learner.step(work.model.train(), work.optimiser, levels, labels, 6)
+        steps = [p.detach() - b for p, b in zip(work.model.parameters(), before, strict=True)]
         moved.append(float(torch.linalg.vector_norm(torch.cat([s.flatten() for s in steps]))))
     assert moved[0] > 2e-5
     assert moved[1] == pytest.approx(1e-3 * 0.01, rel=0.05)
@@ -238,7 +265,7 @@ def test_clipping_limits_the_gradient(data: Path, tmp_path: Path) -> None:
 def test_weight_decay_spares_biases_and_batch_norms(data: Path, tmp_path: Path) -> None:
     work = prepared(data, tmp_path / "run", weight_decay=0.5)
     for name in ("adam", "adamw", "sgd"):
-        optimiser = _optimiser(settings(weight_decay=0.5, optimiser=name), work.model)
+        optimiser = optimiser_for(settings(weight_decay=0.5, optimiser=name), work.model)
         decayed = {
             id(p) for g in optimiser.param_groups if g["weight_decay"] == 0.5 for p in g["params"]
         }
@@ -250,7 +277,7 @@ def test_weight_decay_spares_biases_and_batch_norms(data: Path, tmp_path: Path) 
                 free = key == "bias" or isinstance(layer, nn.BatchNorm2d)
                 assert id(parameter) in (spared if free else decayed), (layer, key)
         assert len(decayed | spared) == len(list(work.model.parameters()))
-    assert isinstance(_optimiser(settings(), work.model), torch.optim.Adam)
+    assert isinstance(optimiser_for(settings(), work.model), torch.optim.Adam)
 
 
 def test_rates_of_the_schedule_reach_the_optimiser(
@@ -265,8 +292,8 @@ def test_rates_of_the_schedule_reach_the_optimiser(
     monkeypatch.setattr(torch.optim.Adam, "step", watched)
     schedule = {"kind": "step", "every_epochs": 2, "factor": 0.5}
     trained(data, tmp_path / "run", schedule=schedule, warmup_epochs=1.0)
-    assert used[0][0] < 1e-5
-    np.testing.assert_allclose(used[1:], [[5e-4] * 2] + [[1e-3] * 2] * 2 + [[5e-4] * 2] * 2)
+    # Two steps an epoch: half and the whole of the warm-up, then the schedule.
+    np.testing.assert_allclose(used, [[5e-4] * 2] + [[1e-3] * 2] * 3 + [[5e-4] * 2] * 2)
     assert run.read_history(tmp_path / "run")[2].learning_rate == 5e-4
 
 
@@ -276,20 +303,20 @@ def test_a_loss_that_is_not_finite_is_one_clear_line(
 ) -> None:
     """Two steps an epoch: the first is of the first epoch, the fourth the last of the second."""
     out, calls = tmp_path / "run", []
-    loss = training.cross_entropy
+    loss = gradient_step.cross_entropy
 
     def sometimes(logits: torch.Tensor, *rest: Any, **more: Any) -> torch.Tensor:
         calls.append(torch.is_grad_enabled())
         found = loss(logits, *rest, **more)
         return found * math.nan if sum(calls) == model_step else found
 
-    monkeypatch.setattr(training, "cross_entropy", sometimes)
+    monkeypatch.setattr(gradient_step, "cross_entropy", sometimes)
     with pytest.raises(TrainingError) as caught:
         trained(data, out)
     monkeypatch.undo()
     if model_step == 1:
         one_clear_line(caught.value, "epoch 1, step 1", "nan", "no epoch was finished")
-        assert not (out / run.BEST).exists()
+        assert not (out / run_files.BEST).exists()
     else:
         one_clear_line(caught.value, "epoch 2, step 2", "hold the epochs up to 1", "0.001")
         assert len(run.read_history(out)) == 1
@@ -300,13 +327,13 @@ def test_a_loss_that_is_not_finite_is_one_clear_line(
 def test_a_validation_loss_that_is_not_finite_is_one_clear_line(
     data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    loss = training.cross_entropy
+    loss = gradient_step.cross_entropy
 
     def only_training(logits: torch.Tensor, *rest: Any, **more: Any) -> torch.Tensor:
         found = loss(logits, *rest, **more)
         return found if torch.is_grad_enabled() else found * math.inf
 
-    monkeypatch.setattr(training, "cross_entropy", only_training)
+    monkeypatch.setattr(gradient_step, "cross_entropy", only_training)
     with pytest.raises(TrainingError) as caught:
         trained(data, tmp_path / "run")
     one_clear_line(caught.value, "validation of epoch 1", "inf")
@@ -318,17 +345,28 @@ def test_a_huge_rate_ends_in_one_clear_line(data: Path, tmp_path: Path) -> None:
     one_clear_line(caught.value, "epoch", "lower learning_rate (now 1000)")
 
 
-@pytest.mark.parametrize("changes", [{"batch_size": 1}, {"micro_batch": 1}, {"micro_batch": 5}])
-def test_batch_norm_of_one_image_is_no_traceback(
+@pytest.mark.parametrize("changes", [{"batch_size": 2}, {"micro_batch": 2}, {"micro_batch": 5}])
+def test_no_part_of_a_batch_is_one_image(
     data: Path, tmp_path: Path, changes: dict[str, int]
 ) -> None:
     """At 32 px the last maps are 1 x 1: a part of one image has no spread to normalise by."""
-    from radhar_cli.errors import RadharError
+    assert len(trained(data, tmp_path / "run", epochs=1, **changes).history) == 1
 
-    try:
-        trained(data, tmp_path / "run", epochs=1, **changes)
-    except RadharError as error:
-        one_clear_line(error, "batch")
+
+@pytest.mark.parametrize("key", ["batch_size", "micro_batch"])
+def test_a_batch_of_one_image_is_refused(key: str) -> None:
+    with pytest.raises(ValueError, match=f"(?s){key}.*2"):
+        settings(**{key: 1})
+
+
+@given(images=st.integers(2, 500), micro_batch=st.integers(2, 500))
+def test_parts_are_nearly_equal_and_fit(images: int, micro_batch: int) -> None:
+    parts = Work(CPU, torch.float32, micro_batch, 0).parts(images)
+    sizes = [part.stop - part.start for part in parts]
+    assert [row for part in parts for row in range(images)[part]] == list(range(images))
+    assert min(sizes) >= 2
+    assert max(sizes) - min(sizes) <= 1
+    assert max(sizes) <= max(micro_batch, 3), "three, where two would leave one alone"
 
 
 def test_a_tree_without_splits_trains_and_is_cut_alike(tmp_path: Path) -> None:
@@ -383,7 +421,7 @@ def test_killed_at_random_moments_and_gone_on_is_the_same(
     data: Path, run_dir: Path, tmp_path: Path, trial: int
 ) -> None:
     out, moments = tmp_path / "run", random.Random(trial)
-    process = started(data, out, run.ABOUT)
+    process = started(data, out, run_files.ABOUT)
     time.sleep(moments.uniform(0.0, 3.0))
     process.kill()
     process.communicate()
@@ -398,7 +436,7 @@ def test_ctrl_c_keeps_the_last_epoch_and_is_quiet(
     data: Path, run_dir: Path, tmp_path: Path
 ) -> None:
     out = tmp_path / "run"
-    process = started(data, out, run.HISTORY)
+    process = started(data, out, run_files.HISTORY)
     process.send_signal(signal.SIGINT)
     said = process.communicate()[0]
     assert process.returncode == 130, said

@@ -6,16 +6,12 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
-from radhar_cli.errors import FolderError, RadharError
-from radhar_cli.learning.models.fftnet import STRIDE, FFTNet
+from radhar_cli.errors import ModelError
+from radhar_cli.learning.models.fftnet import NAME, STRIDE, FFTNet
+from radhar_cli.learning.models.zoo import zoo_model
 
-OURS = "fftnet"
 # The paper's rivals (Table III) under their timm names.
 RIVALS = ("mobilenetv2_100", "resnet50", "vgg19", "vit_base_patch16_224", "convnext_tiny")
-
-
-class ModelError(RadharError):
-    """A network that cannot be built."""
 
 
 @dataclass(frozen=True)
@@ -45,15 +41,13 @@ def build_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
         ModelError: unknown name, or images it cannot take.
     """
     height, width = size
-    if name == OURS:
+    if name == NAME:
         if height % STRIDE or width % STRIDE:
             raise ModelError(
                 f"model fftnet: images are {height} x {width} px; both sides should be multiples "
                 f"of {STRIDE}"
             )
         return FFTNet(classes, height, width)
-    from radhar_cli.learning.models.zoo import zoo_model
-
     return zoo_model(name, classes, size)
 
 
@@ -89,16 +83,3 @@ def cost(name: str, classes: int, size: tuple[int, int]) -> Cost:
 def parameter_count(model: nn.Module) -> int:
     """Trainable parameters."""
     return sum(p.numel() for p in model.parameters() if p.requires_grad)
-
-
-def check_size(name: str, size: tuple[int, int], where: object) -> None:
-    """Refuse images whose sides are no multiples of 32.
-
-    Raises:
-        FolderError: names the data.
-    """
-    if size[0] % STRIDE or size[1] % STRIDE:
-        raise FolderError(
-            f"{where}: images are {size[0]} x {size[1]} px; {name} needs sides that are multiples "
-            f"of {STRIDE}"
-        )

@@ -6,6 +6,7 @@ Source: paper, section IV and its network figure; docs/model.md, section 7.
 import torch
 from torch import Tensor, nn
 
+NAME = "fftnet"
 FILTER_SD = 0.02
 WIDTHS = (64, 128, 256)
 LAST_WIDTH = 512
@@ -31,9 +32,10 @@ class GlobalFilter(nn.Module):
         """H at the frequencies that RFFT2 keeps, complex [C, H, W//2 + 1]."""
         k = torch.view_as_complex(self.weight)
         mirrored = torch.roll(torch.flip(k, (1, 2)), (1, 1), (1, 2))  # K(-k)
-        kept = self.weight.shape[2] // 2 + 1
-        half: Tensor = (k[:, :, :kept] + mirrored[:, :, :kept].conj()) / 2
-        return half
+        hermitian: Tensor = (k + mirrored.conj()) / 2
+        width = self.weight.shape[2]
+        # Two columns are all kept, and ONNX has no word for a slice that takes everything.
+        return hermitian if width <= 2 else hermitian[:, :, : width // 2 + 1]
 
     def forward(self, x: Tensor) -> Tensor:
         """Filter [B, C, H, W]; in the precision of the weights, whatever is around it."""

@@ -5,7 +5,8 @@ from typing import Any
 
 from torch import nn
 
-from radhar_cli.learning.models import build
+from radhar_cli.errors import ModelError
+from radhar_cli.learning.models.fftnet import NAME
 
 
 def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
@@ -14,22 +15,25 @@ def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
     Raises:
         ModelError: timm is not installed, does not know the name, or cannot take the size.
     """
+    near_ours = difflib.get_close_matches(name, [NAME], n=1)
+    if near_ours:
+        raise ModelError(f"model {name!r}: is unknown; did you mean {NAME!r}?")
     try:
         import timm
     except ImportError as error:
-        raise build.ModelError(
+        raise ModelError(
             f"model {name!r}: is not fftnet, and timm, which has others, is not installed "
             f"({error}): pip install 'radhar[zoo]'"
         ) from None
     except RuntimeError as error:
-        raise build.ModelError(
+        raise ModelError(
             f"model {name!r}: timm does not load ({error}); its torchvision should be built for "
             "the installed PyTorch"
         ) from None
     if not timm.is_model(name):
-        near = difflib.get_close_matches(name, [build.OURS, *timm.list_models()], n=1)
+        near = difflib.get_close_matches(name, [NAME, *timm.list_models()], n=1)
         hint = f"did you mean {near[0]!r}?" if near else "`radhar models` lists some"
-        raise build.ModelError(f"model {name!r}: is neither fftnet nor a name of timm's; {hint}")
+        raise ModelError(f"model {name!r}: is neither fftnet nor a name of timm's; {hint}")
     create: Any = timm.create_model
     try:
         try:
@@ -37,7 +41,7 @@ def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
         except TypeError:
             model = create(name, num_classes=classes)
     except (AssertionError, RuntimeError, ValueError) as error:
-        raise build.ModelError(
+        raise ModelError(
             f"model {name!r}: cannot take images of {size[0]} x {size[1]} px ({error})"
         ) from None
     return model

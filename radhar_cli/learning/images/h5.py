@@ -12,18 +12,18 @@ from radhar_cli.arrays import Levels
 from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.errors import FolderError
 from radhar_cli.figures.colour import colour_table
-from radhar_cli.learning.images import ImageSet, class_order, repeated
+from radhar_cli.learning.images.image_set import ImageSet, class_order, first_of_colour, repeated
 
 _WHO_AND_HOW = ("subject.", "motion.", "timing.")
 
 
 @dataclass
 class H5Pixels:
-    """Rows of one map; every process opens the file for itself."""
+    """Rows of one map through a table [256, 3]; every process opens the file for itself."""
 
     path: Path
     map: str
-    table: Levels | None
+    table: Levels
     _open: dict[int, Dataset] = field(default_factory=dict, repr=False)
 
     def read(self, row: int) -> Levels:
@@ -42,7 +42,8 @@ class H5Pixels:
             raise FolderError(
                 f"{self.path}: sample {row} of {self.map} cannot be read: {error}"
             ) from None
-        return repeated(levels) if self.table is None else self.table[levels]
+        rgb: Levels = self.table[levels]
+        return rgb
 
     def __getstate__(self) -> dict[str, object]:
         return {**self.__dict__, "_open": {}}
@@ -55,7 +56,8 @@ def h5_images(path: Path, map_name: str | None, kind: str) -> ImageSet:
         numbers = data.label[:]
         slug = np.array([activity.slug for activity in ACTIVITIES])[numbers]
         classes = class_order(set(slug.tolist()))
-        table = colour_table(data.config["image"]["colour_map"]) if kind == "rgb" else None
+        colours = colour_table(data.config["image"]["colour_map"])
+        table = colours if kind == "rgb" else repeated(first_of_colour(colours))
         return ImageSet(
             where=path,
             map=name,

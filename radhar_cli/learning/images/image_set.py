@@ -1,7 +1,5 @@
 """Labelled images, whoever stored them: one dataset.h5, or a tree of class folders."""
 
-import hashlib
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,6 +10,7 @@ from numpy.typing import NDArray
 
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.arrays import Index, Levels
+from radhar_cli.config.rounding import half_up
 from radhar_cli.dataset.layout import SPLITS
 from radhar_cli.dataset.split import TRAIN, VALIDATION
 from radhar_cli.errors import FolderError, did_you_mean
@@ -69,10 +68,10 @@ class ImageSet:
         Raises:
             FolderError: there are none.
         """
-        if split == "all" or (self.split is None and split != "train"):
+        if split == "all":
             return np.arange(len(self))
         if self.split is None:
-            raise FolderError(f"{self.where}: has no train folder")
+            raise FolderError(f"{self.where}: is not split into train and val; --split all")
         found = np.flatnonzero(self.split == SPLIT_NAMES[split])
         if not found.size:
             counts = np.bincount(self.split, minlength=3)
@@ -81,90 +80,25 @@ class ImageSet:
         return found
 
     def cut(self, share: float, seed: int) -> "ImageSet":
-        """The same images, cut class by class into train and validation where nobody has cut."""
+        """The same images, cut class by class into train and validation where nobody has cut.
+
+        Raises:
+            FolderError: a class of one image, which cannot be cut.
+        """
         if self.split is not None:
             return self
         split = np.full(len(self), TRAIN, dtype=np.uint8)
         for index, name in enumerate(self.classes):
             mine = np.flatnonzero(self.label == index)
             order = stream(seed, TRAINING, name=f"cut {name}").permutation(mine.size)
-            held_out = max(1, round(share * mine.size))
+            if mine.size < 2:
+                raise FolderError(
+                    f"{self.where}: the class {name!r} has one image; should have two, one to "
+                    "learn from and one to validate with"
+                )
+            held_out = min(max(1, half_up(share, mine.size)), mine.size - 1)
             split[mine[order[:held_out]]] = VALIDATION
         return replace(self, split=split)
-
-
-@dataclass(frozen=True)
-class Scan:
-    """What one look at every pixel of a set tells.
-
-    Attributes:
-        prints: [rows] fingerprint of each image's pixels.
-        histogram: [3, 256] how often each level occurs in each channel.
-    """
-
-    prints: tuple[str, ...]
-    histogram: NDArray[np.int64]
-
-    @property
-    def mean(self) -> tuple[float, ...]:
-        """Mean of each channel, of levels from 0 to 1."""
-        return tuple(_moment(counts, 1) for counts in self.histogram)
-
-    @property
-    def sd(self) -> tuple[float, ...]:
-        """Standard deviation of each channel, 1 where it is constant."""
-        spread = (_moment(c, 2) - _moment(c, 1) ** 2 for c in self.histogram)
-        return tuple(float(np.sqrt(s)) if s > 1e-12 else 1.0 for s in spread)
-
-
-def _moment(counts: NDArray[np.int64], power: int) -> float:
-    levels = np.arange(256, dtype=np.int64) ** power
-    mean: float = int(counts @ levels) / (int(counts.sum()) * 255**power)
-    return mean
-
-
-def scan(images: ImageSet, rows: Sequence[int] | Index) -> Scan:
-    """Read some images once: fingerprints and levels; a damaged one is found here.
-
-    Raises:
-        FolderError: an image cannot be read.
-    """
-    prints, histogram = [], np.zeros((3, 256), dtype=np.int64)
-    for row in rows:
-        rgb = images.pixels.read(int(row))
-        prints.append(hashlib.blake2b(rgb.tobytes(), digest_size=8).hexdigest())
-        for channel in range(3):
-            histogram[channel] += np.bincount(rgb[..., channel].reshape(-1), minlength=256)
-    return Scan(tuple(prints), histogram)
-
-
-def content_hash(images: ImageSet, rows: Index, prints: Sequence[str]) -> str:
-    """SHA-256 of what a training run depends on: classes, labels, splits, pixels."""
-    split = None if images.split is None else images.split[rows].tolist()
-    text = json.dumps([images.classes, images.label[rows].tolist(), split, list(prints)])
-    return hashlib.sha256(text.encode()).hexdigest()
-
-
-def open_images(path: Path, map_name: str | None, kind: str) -> ImageSet:
-    """Open a data set: dataset.h5, a folder that `radhar generate` wrote, or a tree of images.
-
-    Args:
-        path: what the user gave.
-        map_name: which map; the first one if None.
-        kind: "rgb" as the PNGs are coloured, or "gray", one channel three times.
-
-    Raises:
-        FolderError: it is none of these, or it is damaged.
-    """
-    from radhar_cli.dataset.layout import DATASET, WORK
-    from radhar_cli.learning.folder_images import folder_images
-    from radhar_cli.learning.h5_images import h5_images
-
-    if not path.exists():
-        raise FolderError(f"{path}: no such file or folder")
-    if path.is_file() or (path / DATASET).exists() or (path / WORK).is_dir():
-        return h5_images(path, map_name, kind)
-    return folder_images(path, map_name, kind)
 
 
 def class_order(names: set[str]) -> tuple[str, ...]:
@@ -195,6 +129,35 @@ def luminance(rgb: Levels) -> Levels:
     return brightness
 
 
+def first_of_colour(table: Levels) -> Levels:
+    """The lowest level [256] that has the same colour as each level of a table [256, 3].
+
+    At eight bits some neighbours share a colour (three pairs of viridis), and a PNG cannot tell
+    them apart; so nobody should.
+    """
+    codes = colour_codes(table)
+    return np.array([np.flatnonzero(codes == code)[0] for code in codes], dtype=np.uint8)
+
+
+def colour_codes(rgb: Levels) -> NDArray[np.int64]:
+    """24-bit numbers [...] of colours [..., 3]."""
+    codes: NDArray[np.int64] = rgb @ np.array([1 << 16, 1 << 8, 1])
+    return codes
+
+
 def repeated(levels: Levels) -> Levels:
-    """One channel [H, W] three times, [H, W, 3]."""
-    return np.repeat(levels[..., None], 3, axis=2)
+    """One channel [...] three times, [..., 3]."""
+    return np.repeat(levels[..., None], 3, axis=-1)
+
+
+def split_named(name: str) -> str:
+    """The split that a user names.
+
+    Raises:
+        FolderError: no such split.
+    """
+    known = {**SPLIT_NAMES, "all": -1}
+    if name not in known:
+        hint = did_you_mean(name, known, "the splits are train, val, test and all")
+        raise FolderError(f"--split {name}: is no split; {hint}")
+    return name

@@ -1,11 +1,17 @@
-"""report.html: the whole report in one file that needs nothing else."""
+"""A report on disk: figures, tables, report.json, and report.html that needs nothing else."""
 
 import base64
+import json
 from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment
 
+from radhar_cli.dataset.files import write_whole
+
+PAGE, NUMBERS = "report.html", "report.json"
 _PAGE = """<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><title>radhar eval</title>
 <style>
@@ -17,13 +23,14 @@ th:first-child, td:first-child { text-align: left; }
 figure { margin: 1.2rem 0; } img { max-width: 100%; } figcaption { color: #555; }
 </style></head><body>
 <h1>radhar eval: {{ n.runs | join(", ") }}</h1>
-<p>Split: {{ n.split }}. Device: {{ n.device }}, {{ n.threads }} threads. Intervals are Wilson's,
-95 %.</p>
+<p>Device: {{ n.device }}, {{ n.threads }} threads, float32. Intervals are Wilson's, 95 %.</p>
 <h2>Accuracy</h2>
-<table><tr><th>run</th><th>data</th><th>SNR (dB)</th><th>images</th><th>accuracy (%)</th>
+<table><tr><th>run</th><th>data</th><th>split</th><th>map</th>
+<th>SNR (dB)</th><th>images</th><th>accuracy (%)</th>
 <th>interval (%)</th><th>macro F1</th><th>calibration error</th></tr>
 {% for name, run in n.runs.items() %}{% for data, r in run.data.items() %}
-<tr><td>{{ name }}</td><td>{{ data }}</td><td>{{ "" if r.snr_db is none else r.snr_db }}</td>
+<tr><td>{{ name }}</td><td>{{ data }}</td><td>{{ r.split }}</td><td>{{ r.map or "" }}</td>
+<td>{{ "" if r.snr_db is none else r.snr_db }}</td>
 <td>{{ r.images }}</td><td>{{ "%.2f" | format(100 * r.accuracy) }}</td>
 <td>{{ "%.2f" | format(100 * r.accuracy_95[0]) }} to {{ "%.2f" | format(100 * r.accuracy_95[1]) }}
 </td><td>{{ "%.4f" | format(r.macro_f1) }}</td><td>{{ "%.4f" | format(r.calibration_error) }}</td>
@@ -36,10 +43,13 @@ images, and the person and motion of {{ r.seen_in_training.scenes }}, were train
 <h2>Networks</h2>
 <table><tr><th>run</th><th>model</th><th>parameters</th><th>multiply-adds (G)</th>
 <th>best epoch</th>
-<th>one image (ms)</th><th>with loading (ms)</th><th>images/s</th></tr>
+<th>trained on</th><th>loading (ms)</th><th>one image (ms)</th><th>both (ms)</th>
+<th>images/s at {{ (n.runs.values() | first).speed.batch }}</th></tr>
 {% for name, run in n.runs.items() %}<tr><td>{{ name }}</td><td>{{ run.model }}</td>
 <td>{{ "{:,}".format(run.parameters) }}</td><td>{{ "%.3f" | format(run.multiply_adds / 1e9) }}</td>
-<td>{{ run.best_epoch or "" }}</td><td>{{ "%.1f" | format(1e3 * run.speed.image_s) }}</td>
+<td>{{ run.best_epoch or "" }}</td><td>{{ run.trained_on.path }}</td>
+<td>{{ "%.0f" | format(1e3 * run.speed.load_s) }}</td>
+<td>{{ "%.1f" | format(1e3 * run.speed.image_s) }}</td>
 <td>{{ "%.0f" | format(1e3 * run.speed.load_and_image_s) }}</td>
 <td>{{ "%.1f" | format(run.speed.images_per_s) }}</td></tr>{% endfor %}</table>
 {% for name, run in n.runs.items() %}{% for data, r in run.data.items() %}
@@ -62,3 +72,39 @@ def report_html(numbers: dict[str, Any], figures: Sequence[tuple[str, str, bytes
     encoded = [(name, caption, base64.b64encode(png).decode()) for name, caption, png in figures]
     page = Environment(autoescape=True).from_string(_PAGE)
     return page.render(n=numbers, figures=encoded)
+
+
+@dataclass
+class Report:
+    """Files of a report, in the order in which they are read, and its numbers."""
+
+    numbers: dict[str, Any]
+    figures: list[tuple[str, str, bytes]] = field(default_factory=list)
+    tables: list[tuple[str, str]] = field(default_factory=list)
+
+    def figure(self, name: str, caption: str, png: bytes) -> None:
+        """Add a figure."""
+        self.figures.append((name, caption, png))
+
+    def write(self, folder: Path) -> None:
+        """Write everything into a folder; report.json comes last."""
+        files = {name: png for name, _, png in self.figures}
+        files |= {name: text.encode() for name, text in self.tables}
+        for name in _files_of(folder):
+            if name not in files:
+                (folder / name).unlink(missing_ok=True)
+        for name, content in files.items():
+            write_whole(folder, folder / name, content)
+        page = report_html(self.numbers, self.figures)
+        write_whole(folder, folder / PAGE, page.encode())
+        text = json.dumps({**self.numbers, "files": sorted(files)}, indent=2) + "\n"
+        write_whole(folder, folder / NUMBERS, text.encode())
+
+
+def _files_of(folder: Path) -> list[str]:
+    """Files of the report that a folder holds, itself aside; those of another kind are not ours."""
+    try:
+        found = json.loads((folder / NUMBERS).read_text())["files"]
+        return [name for name in found if Path(name).name == name]
+    except (OSError, ValueError, KeyError, TypeError):
+        return []

@@ -1,5 +1,7 @@
 """Images in class folders, as torchvision's ImageFolder reads them: ours or anyone's."""
 
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -7,10 +9,21 @@ import numpy as np
 from PIL import Image, UnidentifiedImageError
 
 from radhar_cli.arrays import Levels
-from radhar_cli.dataset.layout import CONFIG
-from radhar_cli.errors import ConfigError, FolderError, did_you_mean
-from radhar_cli.learning.images import SPLIT_NAMES, ImageSet, class_order, luminance, repeated
+from radhar_cli.dataset.layout import CONFIG, PNG
+from radhar_cli.errors import ConfigError, FolderError
+from radhar_cli.learning.images.image_set import (
+    SPLIT_NAMES,
+    ImageSet,
+    class_order,
+    colour_codes,
+    luminance,
+    repeated,
+)
 
+_WANTED = (
+    "should be dataset.h5, a folder that `radhar generate` wrote, or a tree <class>/<image>.png or "
+    "<train|val|test>/<class>/<image>.png"
+)
 SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp"}
 
 
@@ -19,7 +32,10 @@ class FilePixels:
     """One file a row.
 
     Attributes:
-        levels_of: for "gray", the level of every 24-bit colour of our colour table.
+        files: [N].
+        kind: "rgb" or "gray".
+        size: (H, W) that all of them should have.
+        table: for "gray", the colour table [256, 3] that ours were drawn with.
     """
 
     files: tuple[Path, ...]
@@ -52,7 +68,7 @@ def read_image(
     """
     try:
         with Image.open(path) as image:
-            rgb = np.asarray(image.convert("RGB"))
+            rgb = _rgb(image)
     except (OSError, SyntaxError, ValueError, UnidentifiedImageError) as error:
         raise FolderError(f"{path}: is no image, or a truncated one ({error})") from None
     if size is not None and rgb.shape[:2] != size:
@@ -65,11 +81,20 @@ def read_image(
     return repeated(luminance(rgb) if levels is None else levels)
 
 
+def _rgb(image: Image.Image) -> Levels:
+    """Eight bits a channel; 16-bit greys are scaled, transparency is dropped."""
+    if image.mode.startswith("I;16"):
+        wide = np.asarray(image).astype(np.uint32)
+        return repeated(((wide + 128) // 257).astype(np.uint8))
+    if image.mode in ("I", "F"):
+        raise ValueError(f"its mode is {image.mode}; should be 8 or 16 bits a channel")
+    return np.asarray(image.convert("RGB"))
+
+
 def _levels(rgb: Levels, table: Levels) -> Levels | None:
     """Levels [H, W] of an image that was drawn through a colour table; None if it was not."""
-    shift = np.array([1 << 16, 1 << 8, 1])
-    codes, wanted = table @ shift, rgb @ shift
-    order = np.argsort(codes, kind="stable")
+    codes, wanted = colour_codes(table), colour_codes(rgb)
+    order = np.argsort(codes, kind="stable")  # of levels that share a colour the lowest is found
     found = order[np.minimum(np.searchsorted(codes[order], wanted), 255)]
     return found.astype(np.uint8) if np.array_equal(codes[found], wanted) else None
 
@@ -80,8 +105,12 @@ def folder_images(root: Path, map_name: str | None, kind: str) -> ImageSet:
     Raises:
         FolderError: it is no such tree; the message says what is there.
     """
-    if map_name is not None and (root / map_name).is_dir():
+    own = our_map(root)
+    if map_name is not None and map_name != own:
+        if not (root / map_name).is_dir():
+            raise FolderError(f"{root}: has no map {map_name!r}; it is a tree of images")
         root = root / map_name
+        own = map_name
     folders = _folders(root)
     parts = {name: SPLIT_NAMES[name.lower()] for name in folders if name.lower() in SPLIT_NAMES}
     if parts:
@@ -97,12 +126,9 @@ def folder_images(root: Path, map_name: str | None, kind: str) -> ImageSet:
         empty = set(folders)
     empty -= {name for _, name, _ in found}
     if not found:
-        what = f"the folders {', '.join(folders[:6])}" if folders else "no folders"
-        raise FolderError(
-            f"{root}: holds {what}, but no class folders with images; should be dataset.h5, a "
-            "folder that `radhar generate` wrote, or a tree <class>/<image>.png or "
-            "<train|val|test>/<class>/<image>.png"
-        )
+        maps = [name for name in folders if _folders(root / name)]
+        hint = f"--map {maps[0]} takes one of its maps" if maps and not parts else _WANTED
+        raise FolderError(f"{root}: holds no class folders with images; {hint}")
     if empty:
         raise FolderError(f"{root}: the class {sorted(empty)[0]!r} has no image")
     classes = class_order({name for _, name, _ in found})
@@ -111,14 +137,39 @@ def folder_images(root: Path, map_name: str | None, kind: str) -> ImageSet:
     size = _size(files[0])
     return ImageSet(
         where=root,
-        map=map_name,
+        map=own,
         classes=classes,
         label=np.array([classes.index(name) for _, name, _ in found], dtype=np.intp),
         split=np.array([split for split, _, _ in found], dtype=np.uint8) if parts else None,
-        names=tuple(f"{name}/{file.stem}" for _, name, file in found),
+        names=_names(found),
         scenes=None,
         size=size,
         pixels=FilePixels(files, kind, size, our_table(root) if kind == "gray" else None),
+    )
+
+
+def _names(found: Sequence[tuple[int, str, Path]]) -> tuple[str, ...]:
+    """<class>/<image> of (split, class, file), with the ending where only that tells two apart."""
+    alike = Counter((split, name, file.stem) for split, name, file in found)
+    return tuple(
+        f"{name}/{file.stem if alike[split, name, file.stem] == 1 else file.name}"
+        for split, name, file in found
+    )
+
+
+def loose_images(files: Sequence[Path], size: tuple[int, int], kind: str) -> ImageSet:
+    """Single files of a size (H, W), without classes."""
+    where = files[0].parent
+    return ImageSet(
+        where=where,
+        map=None,
+        classes=(),
+        label=np.zeros(len(files), dtype=np.intp),
+        split=None,
+        names=tuple(map(str, files)),
+        scenes=None,
+        size=size,
+        pixels=FilePixels(tuple(files), kind, size, our_table(where) if kind == "gray" else None),
     )
 
 
@@ -127,12 +178,27 @@ def our_table(inside: Path) -> Levels | None:
     from radhar_cli.config import load_config
     from radhar_cli.figures.colour import colour_table
 
-    for folder in inside.resolve().parents:
-        if folder.name == "png" and (folder.parent / CONFIG).is_file():
-            try:
-                return colour_table(load_config(folder.parent / CONFIG).image.colour_map)
-            except ConfigError:
-                return None
+    found = _our_png_folder(inside)
+    if found is None:
+        return None
+    try:
+        return colour_table(load_config(found[0].parent / CONFIG).image.colour_map)
+    except ConfigError:
+        return None
+
+
+def our_map(inside: Path) -> str | None:
+    """The map whose images lie in a folder that `radhar generate` wrote, None elsewhere."""
+    found = _our_png_folder(inside)
+    return found[1] if found else None
+
+
+def _our_png_folder(inside: Path) -> tuple[Path, str] | None:
+    """(png folder, map) of a path inside a data set's images."""
+    whole = inside.resolve()
+    for folder, below in zip(whole.parents, (whole, *whole.parents), strict=False):
+        if folder.name == PNG and (folder.parent / CONFIG).is_file():
+            return folder, below.name
     return None
 
 
@@ -141,22 +207,14 @@ def _folders(root: Path) -> list[str]:
 
 
 def _files(folder: Path) -> list[Path]:
-    return [p for p in folder.iterdir() if p.suffix.lower() in SUFFIXES and p.is_file()]
+    return [p for p in folder.iterdir() if is_image(p)]
+
+
+def is_image(path: Path) -> bool:
+    """Whether a path is an image file by its name, and none that a file manager hides."""
+    return path.suffix.lower() in SUFFIXES and not path.name.startswith(".") and path.is_file()
 
 
 def _size(path: Path) -> tuple[int, int]:
     rgb = read_image(path, "rgb", None)
     return int(rgb.shape[0]), int(rgb.shape[1])
-
-
-def split_named(name: str) -> str:
-    """The split that a user names.
-
-    Raises:
-        FolderError: no such split.
-    """
-    known = {**SPLIT_NAMES, "all": -1}
-    if name not in known:
-        hint = did_you_mean(name, known, "the splits are train, val, test and all")
-        raise FolderError(f"--split {name}: is no split; {hint}")
-    return name

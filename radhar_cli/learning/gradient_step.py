@@ -1,0 +1,99 @@
+"""One step of training: logits, loss, gradient, update."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import torch
+from torch import Tensor, nn
+from torch.nn.functional import cross_entropy
+
+from radhar_cli.learning.batches import Normalisation
+from radhar_cli.learning.machine import autocast
+from radhar_cli.learning.processes import Group, gradients_stay
+from radhar_cli.learning.settings import TrainConfig
+from radhar_cli.learning.work import Work
+
+
+def optimiser_for(config: TrainConfig, model: nn.Module) -> torch.optim.Optimizer:
+    """L2 regularisation of the weights; biases, norms and what timm exempts are left free."""
+    exempt: set[str] = getattr(model, "no_weight_decay", set)()
+    weights: list[nn.Parameter] = []
+    others: list[nn.Parameter] = []
+    for name, parameter in model.named_parameters():
+        (others if parameter.ndim <= 1 or name in exempt else weights).append(parameter)
+    groups: list[dict[str, Any]] = [
+        {"params": weights, "weight_decay": config.weight_decay},
+        {"params": others, "weight_decay": 0.0},
+    ]
+    groups = [group for group in groups if group["params"]]
+    if config.optimiser == "adam":
+        return torch.optim.Adam(groups, lr=config.learning_rate)
+    if config.optimiser == "adamw":
+        return torch.optim.AdamW(groups, lr=config.learning_rate)
+    return torch.optim.SGD(groups, lr=config.learning_rate, momentum=0.9)
+
+
+def logits_of(network: nn.Module, levels: Tensor, prepare: Normalisation, work: Work) -> Tensor:
+    """Levels uint8 [B, 3, H, W] to logits float32 [B, classes]."""
+    x = prepare(levels.to(work.device, non_blocking=True))
+    with autocast(work.device, work.precision):
+        logits: Tensor = network(x.contiguous(memory_format=torch.channels_last))
+    return logits.float()
+
+
+@dataclass(frozen=True)
+class Learner:
+    """What every step of a run has in common."""
+
+    config: TrainConfig
+    prepare: Normalisation
+    work: Work
+    group: Group
+
+    def loss_and_right(
+        self, network: nn.Module, levels: Tensor, labels: Tensor
+    ) -> tuple[Tensor, int]:
+        """Summed label-smoothed cross-entropy of some images, and how many are classed rightly.
+
+        The target of class k is y_k (1 - zeta) + zeta/K (paper, equation of label smoothing).
+        """
+        wanted = labels.to(self.work.device)
+        logits = logits_of(network, levels, self.prepare, self.work)
+        smoothing = self.config.label_smoothing
+        loss = cross_entropy(logits, wanted, label_smoothing=smoothing, reduction="sum")
+        return loss, int((logits.argmax(1) == wanted).sum())
+
+    def step(
+        self,
+        network: nn.Module,
+        optimiser: torch.optim.Optimizer,
+        levels: Tensor,
+        labels: Tensor,
+        whole: int,
+    ) -> tuple[float, int]:
+        """One update from this process's share of a batch of `whole` images.
+
+        Args:
+            network: the one whose gradients the processes average.
+            optimiser: of its parameters.
+            levels: uint8 [B, 3, H, W], the share.
+            labels: [B].
+            whole: images of the batch, over all processes.
+
+        Returns:
+            The mean loss of the share, and how many of it were right.
+        """
+        optimiser.zero_grad(set_to_none=True)
+        loss_sum, right = 0.0, 0
+        parts = self.work.parts(len(labels))
+        for number, part in enumerate(parts):
+            with gradients_stay(network, self.group, last=number == len(parts) - 1):
+                loss, hits = self.loss_and_right(network, levels[part], labels[part])
+                # Processes average their gradients: the sum over all, divided by the whole batch.
+                torch.autograd.backward(loss * (self.group.size / whole))
+            loss_sum += float(loss.detach())
+            right += hits
+        if self.config.gradient_clip_norm is not None:
+            nn.utils.clip_grad_norm_(network.parameters(), self.config.gradient_clip_norm)
+        optimiser.step()
+        return loss_sum / len(labels), right

@@ -1,0 +1,1 @@
+"""Labelled images, whoever stored them."""

@@ -1,0 +1,42 @@
+"""Open whatever images a user names."""
+
+from pathlib import Path
+
+from radhar_cli.dataset.layout import DATASET, begun
+from radhar_cli.errors import FolderError
+from radhar_cli.learning.images.folder import folder_images
+from radhar_cli.learning.images.h5 import h5_images
+from radhar_cli.learning.images.image_set import ImageSet
+from radhar_cli.learning.run_files import is_run
+
+
+def open_images(path: Path, map_name: str | None, kind: str) -> ImageSet:
+    """Open a data set: dataset.h5, a folder that `radhar generate` wrote, or a tree of images.
+
+    Args:
+        path: what the user gave.
+        map_name: which map; the first one if None.
+        kind: "rgb" as the PNGs are coloured, or "gray", one channel three times.
+
+    Raises:
+        FolderError: it is none of these, or it is damaged.
+    """
+    if not path.exists():
+        raise FolderError(f"{path}: no such file or folder")
+    if is_run(path):
+        raise FolderError(f"{path}: is a training run; data is asked for here")
+    if path.is_file() and not is_h5(path):
+        raise FolderError(
+            f"{path}: is no data set; should be dataset.h5, a folder that `radhar generate` wrote, "
+            "or a folder of class folders with images"
+        )
+    if is_h5(path) or begun(path):
+        return h5_images(path, map_name, kind)
+    return folder_images(path, map_name, kind)
+
+
+def is_h5(path: Path) -> bool:
+    """Whether a path is a dataset.h5, or a folder that holds one."""
+    if path.is_dir():
+        return (path / DATASET).exists()
+    return path.suffix.lower() in (".h5", ".hdf5") and path.exists()

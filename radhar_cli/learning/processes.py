@@ -1,0 +1,112 @@
+"""Several processes that train one network: who they are, and what they tell each other."""
+
+import os
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from dataclasses import dataclass
+from typing import Any
+
+import torch
+from torch import nn
+
+from radhar_cli.arrays import Float
+from radhar_cli.errors import RadharError
+
+
+@dataclass(frozen=True)
+class Group:
+    """The processes of one run: number of this one, how many, how many on this machine."""
+
+    rank: int = 0
+    size: int = 1
+    local_size: int = 1
+
+    @property
+    def leads(self) -> bool:
+        """Whether this process writes the files and talks to the user."""
+        return self.rank == 0
+
+
+@contextmanager
+def joined(device: torch.device) -> Iterator[Group]:
+    """Join the processes that torchrun started; alone without it."""
+    if "TORCHELASTIC_RUN_ID" not in os.environ and "WORLD_SIZE" not in os.environ:
+        yield Group()
+        return
+    import torch.distributed as dist
+
+    if device.type == "cuda":
+        torch.cuda.set_device(device)
+    dist.init_process_group("nccl" if device.type == "cuda" else "gloo")
+    try:
+        local = int(os.environ.get("LOCAL_WORLD_SIZE", dist.get_world_size()))
+        yield Group(dist.get_rank(), dist.get_world_size(), local)
+    finally:
+        dist.destroy_process_group()
+
+
+def distributed(model: nn.Module, device: torch.device, group: Group) -> nn.Module:
+    """The network whose gradients the processes average; the network itself where there is one."""
+    if group.size == 1:
+        return model
+    from torch.nn.parallel import DistributedDataParallel
+
+    ids = [device.index] if device.type == "cuda" else None
+    return DistributedDataParallel(model, device_ids=ids)
+
+
+def gradients_stay(network: Any, group: Group, last: bool) -> AbstractContextManager[Any]:
+    """Around all backward passes of a step but the last: only that one exchanges gradients."""
+    waits: AbstractContextManager[Any]
+    waits = nullcontext() if last or group.size == 1 else network.no_sync()
+    return waits
+
+
+def share_buffers(model: nn.Module, group: Group) -> None:
+    """Give every process the first one's buffers: the averages of batch norm."""
+    if group.size > 1:
+        import torch.distributed as dist
+
+        for buffer in model.buffers():
+            dist.broadcast(buffer, 0)
+
+
+def summed(totals: Float, group: Group) -> Float:
+    """Sum an array over the processes."""
+    if group.size == 1:
+        return totals
+    import torch.distributed as dist
+
+    device = "cuda" if dist.get_backend() == "nccl" else "cpu"
+    tensor = torch.tensor(totals, dtype=torch.float64, device=device)
+    dist.all_reduce(tensor)
+    added: Float = tensor.cpu().numpy()
+    return added
+
+
+def together(group: Group) -> None:
+    """Wait for the other processes."""
+    if group.size > 1:
+        import torch.distributed as dist
+
+        dist.barrier()
+
+
+def first_does(group: Group, work: Callable[[], None]) -> None:
+    """Let the first process do something while the others wait; its error is everybody's.
+
+    Raises:
+        RadharError: what `work` raised.
+    """
+    failed: list[RadharError | None] = [None]
+    if group.leads:
+        try:
+            work()
+        except RadharError as error:
+            failed = [error]
+    if group.size > 1:
+        import torch.distributed as dist
+
+        dist.broadcast_object_list(failed, 0)
+    if failed[0] is not None:
+        raise failed[0]

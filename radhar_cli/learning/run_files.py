@@ -1,0 +1,20 @@
+"""The files of a training run, and how to tell one from data."""
+
+from pathlib import Path
+
+ABOUT = "run.json"
+BEST = "best.safetensors"
+LAST = "last.ckpt"
+HISTORY = "history.csv"
+CURVES = "curves.png"
+METRICS = "metrics.json"
+SUMMARY = "summary.txt"
+TRAINED_ON = "trained_on.csv"
+ALL = (ABOUT, BEST, LAST, HISTORY, CURVES, METRICS, SUMMARY, TRAINED_ON)
+
+
+def is_run(path: Path) -> bool:
+    """Whether a path is a training run, or the weights of one."""
+    if path.is_dir():
+        return (path / BEST).exists() or (path / ABOUT).exists()
+    return path.suffix == ".safetensors"

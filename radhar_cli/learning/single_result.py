@@ -1,0 +1,236 @@
+"""One run on one data set: its numbers and figures."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from torch import nn
+
+from radhar_cli.activity import ACTIVITIES
+from radhar_cli.arrays import Index
+from radhar_cli.figures.confusion import confusion_png
+from radhar_cli.figures.embedding import embeddings_png
+from radhar_cli.figures.mistakes import captioned_png
+from radhar_cli.figures.reliability import reliability_png
+from radhar_cli.learning import metrics
+from radhar_cli.learning.evaluation import Predictions, open_for, predict, rows_of
+from radhar_cli.learning.images.image_set import ImageSet
+from radhar_cli.learning.images.scan import scan
+from radhar_cli.learning.models.fftnet import NAME
+from radhar_cli.learning.report_files import Report
+from radhar_cli.learning.run_folder import (
+    About,
+    Epoch,
+    RunError,
+    load_best,
+    read_history,
+    read_trained_on,
+)
+from radhar_cli.learning.tables import confusion_csv, csv_text
+
+MOST_MISTAKES = 12
+LEAST_EMBEDDED = 2
+GROUPS = ("in place", "moving")
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What the user wants besides the numbers."""
+
+    split: str = "val"
+    map: str | None = None
+    tsne: bool = False
+    filters: bool = False
+    in_place_vs_moving: bool = False
+    batch: int = 32
+
+
+@dataclass(frozen=True)
+class Run:
+    name: str
+    folder: Path
+    about: About
+    model: nn.Module
+    history: list[Epoch]
+
+
+def check_asked(runs: Sequence[Run], asked: Asked) -> None:
+    """Refuse what cannot be drawn, before anything is computed.
+
+    Raises:
+        RunError: classes whose group is unknown, or no filters to draw.
+    """
+    ours = {activity.slug for activity in ACTIVITIES}
+    for run in runs:
+        for name in run.about.classes:
+            if asked.in_place_vs_moving and name not in ours:
+                raise RunError(
+                    f"--in-place-vs-moving: {name!r} is none of the twelve activities; its group "
+                    "is unknown"
+                )
+    if asked.filters and not any(run.about.model == NAME for run in runs):
+        raise RunError("--filters: none of these networks has global filters; fftnet has six")
+
+
+def open_run(name: str, path: Path, device: torch.device) -> Run:
+    about, model = load_best(path)
+    folder = path if path.is_dir() else path.parent
+    try:
+        history = read_history(folder)
+    except RunError:
+        history = []  # weights alone, copied from elsewhere
+    return Run(name, path, about, model.to(device), history)
+
+
+def evaluate_one(
+    report: Report,
+    run: Run,
+    data_name: str,
+    path: Path,
+    stem: str,
+    asked: Asked,
+    device: torch.device,
+) -> tuple[Predictions, dict[str, Any]]:
+    images = open_for(run.about, path, asked.map)
+    rows, split = rows_of(images, asked.split)
+    answers = predict(run.model, run.about, images, rows, device, asked.batch)
+    names, title = run.about.classes, f"{run.name} on {data_name}, {split}"
+    numbers = metrics.summary(answers.truth, answers.probabilities, names)
+    numbers["seen_in_training"] = _seen(run, images, rows)
+    numbers |= {"split": split, "map": images.map, "snr_db": images.snr_db}
+    counts = np.array(numbers["confusion"])
+    right = 100 * numbers["accuracy"]
+    report.figure(
+        f"confusion{stem}.png",
+        f"Confusion matrix of {title}: counts, and shares of the true class.",
+        confusion_png(counts, names, f"{title}: {right:.2f} % of {rows.size}"),
+    )
+    report.tables.append((f"confusion{stem}.csv", confusion_csv(counts, names)))
+    report.tables.append((f"predictions{stem}.csv", _predictions_csv(answers, names)))
+    if asked.in_place_vs_moving:
+        _in_place_vs_moving(report, answers, names, stem, title, numbers)
+    bins = metrics.calibration(answers.truth, answers.probabilities)
+    report.figure(
+        f"reliability{stem}.png",
+        f"How often predictions of each confidence are right, {title}.",
+        reliability_png(
+            bins.confidence,
+            bins.accuracy,
+            bins.count.astype(float),
+            f"{title}\ncalibration error {100 * bins.error:.2f} %",
+        ),
+    )
+    _mistakes(report, answers, names, stem, title)
+    if asked.tsne:
+        _tsne(report, answers, names, stem, title, numbers)
+    return answers, numbers
+
+
+def _seen(run: Run, images: ImageSet, rows: Index) -> dict[str, int]:
+    """How many of the evaluated images, and of the scenes behind them, were trained on."""
+    folder = run.folder if run.folder.is_dir() else run.folder.parent
+    pixels, scenes = read_trained_on(folder)
+    prints = scan(images, rows).prints if pixels else ()
+    return {
+        "images": sum(p in pixels for p in prints),
+        "scenes": sum(images.scenes[row] in scenes for row in rows) if images.scenes else 0,
+    }
+
+
+def seen_message(numbers: Mapping[str, Any]) -> str:
+    seen = numbers["seen_in_training"]
+    return (
+        f"{seen['images']} of these {numbers['images']} images, and the person and motion of "
+        f"{seen['scenes']}, were trained on: this is no test of what the network has not seen"
+    )
+
+
+def _predictions_csv(answers: Predictions, names: Sequence[str]) -> str:
+    sure = answers.probabilities.max(1)
+    return csv_text(
+        ("image", "true", "predicted", "probability"),
+        (
+            (answers.images.names[row], names[true], names[guess], f"{chance:.6f}")
+            for row, true, guess, chance in zip(
+                answers.rows, answers.truth, answers.predicted, sure, strict=True
+            )
+        ),
+    )
+
+
+def _in_place_vs_moving(
+    report: Report,
+    answers: Predictions,
+    names: Sequence[str],
+    stem: str,
+    title: str,
+    numbers: dict[str, Any],
+) -> None:
+    """The paper's two groups: S1 to S7 against S8 to S12."""
+    moving = {activity.slug: activity.number >= 8 for activity in ACTIVITIES}
+    group = np.array([int(moving[name]) for name in names])
+    counts = metrics.confusion(group[answers.truth], group[answers.predicted], 2)
+    numbers["in_place_vs_moving"] = counts.tolist()
+    share = 100 * np.trace(counts) / max(1, counts.sum())
+    report.figure(
+        f"in_place_vs_moving{stem}.png",
+        f"Standing activities (S1 to S7) against moving ones (S8 to S12), {title}.",
+        confusion_png(counts, GROUPS, f"{title}\n{share:.2f} %"),
+    )
+    report.tables.append((f"in_place_vs_moving{stem}.csv", confusion_csv(counts, GROUPS)))
+
+
+def _mistakes(
+    report: Report, answers: Predictions, names: Sequence[str], stem: str, title: str
+) -> None:
+    """The surest mistakes, or the least sure right answers where there are none."""
+    sure, wrong = answers.probabilities.max(1), answers.predicted != answers.truth
+    order = np.argsort(-sure, kind="stable")
+    chosen = order[wrong[order]][:MOST_MISTAKES]
+    what = "The mistakes it is surest of"
+    if not chosen.size:
+        chosen, what = order[::-1][: MOST_MISTAKES // 3], "No mistakes; the least sure answers"
+    images = [answers.images.pixels.read(int(answers.rows[i])) for i in chosen]
+    captions = [
+        f"{_plain(names[int(answers.truth[i])])}\n-> "
+        f"{_plain(names[int(answers.predicted[i])])}, {100 * sure[i]:.0f} %"
+        for i in chosen
+    ]
+    report.figure(
+        f"hardest{stem}.png",
+        f"{what}, {title}.",
+        captioned_png(images, captions, f"{what}: {title}"),
+    )
+
+
+def _plain(name: str) -> str:
+    return name.replace("_", " ")
+
+
+def _tsne(
+    report: Report,
+    answers: Predictions,
+    names: Sequence[str],
+    stem: str,
+    title: str,
+    numbers: dict[str, Any],
+) -> None:
+    from radhar_cli.learning.embedding import chosen, embed, separation, shrunk
+
+    if answers.rows.size < LEAST_EMBEDDED:
+        raise RunError(f"--tsne: needs at least {LEAST_EMBEDDED} images; there is one")
+    picked = chosen(answers.rows.size)
+    maps = np.stack([shrunk(answers.images.pixels.read(int(answers.rows[i]))) for i in picked])
+    features, label = answers.features[picked], answers.truth[picked]
+    before, after = separation(maps, label), separation(features, label)
+    numbers["silhouette"] = {"maps": before, "features": after}
+    panels = {"input maps": embed(maps), "features before the last layer": embed(features)}
+    silhouettes = " and ".join("unknown" if s is None else f"{s:.2f}" for s in (before, after))
+    report.figure(
+        f"tsne{stem}.png",
+        f"t-SNE of {len(picked)} maps and of their features, {title}; silhouettes {silhouettes}.",
+        embeddings_png(panels, label, names, title),
+    )

@@ -1,0 +1,171 @@
+"""`radhar train`, `eval`, `models`, `export` and `predict` as a user meets them."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from learning.patterns import BASE, load_timm, one_clear_line, split_tree, trained, tree
+
+from radhar_cli.cli import program
+from radhar_cli.errors import RadharError
+
+ROOT = Path(__file__).resolve().parents[2]
+OPERATORS = ROOT / "tests/torchvision_operators"
+
+
+def radhar(*arguments: object) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "radhar_cli", *map(str, arguments)]
+    paths = os.pathsep.join([str(OPERATORS), os.environ.get("PYTHONPATH", "")])
+    environment = {**os.environ, "PYTHONPATH": paths}
+    return subprocess.run(command, capture_output=True, text=True, cwd=ROOT, env=environment)
+
+
+def python(code: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-c", code]
+    return subprocess.run(command, capture_output=True, text=True, cwd=ROOT)
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a tree, a config and a finished run."""
+    folder = tmp_path_factory.mktemp("place")
+    split_tree(folder / "tree")
+    (folder / "train.json").write_text(json.dumps({**BASE, "epochs": 1}))
+    trained(folder / "tree", folder / "run", epochs=1)
+    return folder
+
+
+def test_train_says_what_it_does_and_again_that_nothing_is_left(place: Path) -> None:
+    out = place / "mine"
+    command = ("train", place / "tree", "-o", out, "--config", place / "train.json")
+    first = radhar(*command, "--set", "epochs=1")
+    assert first.returncode == 0, first.stderr
+    assert "best epoch 1: validation accuracy" in first.stdout
+    assert "reading 18 images of 3 classes" in first.stderr
+    assert "epoch 1/1" in first.stderr
+    assert "it/s" not in first.stderr, "quiet when not a terminal"
+    again = radhar(*command)
+    assert again.returncode == 0, again.stderr
+    assert "is complete: 1 epochs; nothing to do" in again.stdout
+    other = radhar(*command, "--set", "seed=5", "--model", "fftnet")
+    assert other.returncode == 2
+    assert "seed: 1 there, 5 here" in other.stderr
+    assert "Traceback" not in other.stderr
+
+
+def test_eval_writes_its_report_into_the_run(place: Path) -> None:
+    done = radhar("eval", place / "run", place / "tree", "--split", "train")
+    assert done.returncode == 0, done.stderr
+    assert (place / "run/eval/report.html").exists()
+    assert str(place / "run/eval/report.html") in done.stdout
+    assert json.loads((place / "run/eval/report.json").read_text())["split"] == "train"
+    assert "12 of these 12 images" in done.stderr
+    assert "were trained on" in (place / "run/eval/report.html").read_text()
+
+
+def test_predict_prints_the_class_and_probabilities(place: Path) -> None:
+    image = place / "tree/val/walking/000.png"
+    done = radhar("predict", place / "run", image, "--top", 2)
+    assert done.returncode == 0, done.stderr
+    line = done.stdout.strip()
+    assert line.startswith(f"{image}: ")
+    assert line.count("%") == 2
+    done = radhar("predict", place / "run", image, place / "tree", "--json", "--split", "val")
+    rows = [json.loads(line) for line in done.stdout.splitlines()]
+    assert len(rows) == 7
+    for row in rows:
+        assert sum(row["probabilities"].values()) == pytest.approx(1, abs=1e-6)
+        assert row["class"] == max(row["probabilities"], key=row["probabilities"].__getitem__)
+
+
+def test_models_lists_the_papers_network(place: Path) -> None:
+    done = radhar("models", "fftnet", "resnet50")
+    assert done.returncode == 0, done.stderr
+    assert "6,496,012" in done.stdout
+    assert "resnet50" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["train", "{}/tree", "-o", "{}/x", "--model", "fftnett"], ["did you mean 'fftnet'"]),
+        (["train", "{}/tree", "-o", "{}/x", "--set", "epoch=3"], ["epoch", "epochs"]),
+        (["train", "{}/none", "-o", "{}/x"], ["no such file or folder"]),
+        (["train", "{}/alone", "-o", "{}/x"], ["'walking' alone"]),
+        (["train", "{}/tree", "-o", "{}/tree/train"], ["lies in the data"]),
+        (["eval", "{}/tree", "{}/tree"], ["is given twice"]),
+        (["eval", "{}/run"], ["give a data set after it"]),
+        (["eval", "{}/run", "{}/tree", "--split", "vall"], ["did you mean 'val'"]),
+        (["eval", "{}/run", "{}/tree", "--split", "test"], ["has no test images"]),
+        (["eval", "{}/run", "{}/tree", "--device", "cdua"], ["did you mean 'cuda'"]),
+        (["predict", "{}/run", "{}/train.json"], ["is no data set"]),
+        (["export", "{}/tree", "-o", "{}/x.onnx"], ["holds no best.safetensors"]),
+        (["models", "resnet5O"], ["did you mean 'resnet50'"]),
+    ],
+    ids=lambda x: "-".join(x).replace("{}/", "") if x[0] in ("train", "eval") else None,
+)
+def test_wrong_use_is_one_message_and_status_2(
+    place: Path, arguments: list[str], said: list[str]
+) -> None:
+    """In this process: the program prints these errors' text alone and ends with their status."""
+    load_timm()
+    if not (place / "alone").exists():
+        tree(place / "alone", ("walking",), {"train": 2, "val": 1})
+    with pytest.raises(RadharError) as caught:
+        program()([a.replace("{}", str(place)) for a in arguments], standalone_mode=False)
+    one_clear_line(caught.value, *said)
+    assert not (place / "x" / "best.safetensors").exists()
+
+
+def test_every_help_has_an_example_and_needs_no_torch() -> None:
+    commands = ["train", "eval", "models", "export", "predict"]
+    code = f"""
+import sys
+from typer.testing import CliRunner
+from radhar_cli.cli import program
+for name in {commands}:
+    done = CliRunner().invoke(program(), [name, "--help"])
+    assert done.exit_code == 0, done.output
+    assert "Example" in done.output, name
+assert not {{"torch", "timm", "sklearn", "safetensors"}} & set(sys.modules)
+"""
+    done = python(code)
+    assert done.returncode == 0, done.stderr
+
+
+def test_building_data_needs_no_torch() -> None:
+    modules = ("dataset.build", "dataset.verify", "commands.generate", "commands.train", "cli")
+    lines = "\n".join(f"import radhar_cli.{name}" for name in modules)
+    done = python(f"import sys\n{lines}\nassert 'torch' not in sys.modules")
+    assert done.returncode == 0, done.stderr
+
+
+WITHOUT = """
+import importlib.util as u, sys
+find = u.find_spec
+u.find_spec = lambda name, *rest: None if name == {missing!r} else find(name, *rest)
+from radhar_cli.cli import main
+sys.argv = ["radhar", *{arguments!r}]
+main()
+"""
+
+
+@pytest.mark.parametrize(
+    ("missing", "arguments", "extra"),
+    [
+        ("torch", ["train", "x", "-o", "y"], "radhar[train]"),
+        ("safetensors", ["eval", "x", "y"], "radhar[train]"),
+        ("sklearn", ["predict", "x", "y"], "radhar[train]"),
+        ("onnx", ["export", "x", "-o", "y"], "radhar[onnx]"),
+    ],
+)
+def test_a_missing_package_is_named_with_its_extra(
+    missing: str, arguments: list[str], extra: str
+) -> None:
+    done = python(WITHOUT.format(missing=missing, arguments=arguments))
+    assert done.returncode == 2
+    assert f"needs {missing}, which is not installed: pip install '{extra}'" in done.stderr
+    assert "Traceback" not in done.stderr

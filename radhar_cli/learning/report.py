@@ -55,6 +55,7 @@ def evaluate(
     report = Report(
         {
             "split": asked.split,
+            "batch": asked.batch,
             "device": device.type,
             "machine": platform.machine(),
             "threads": torch.get_num_threads(),

@@ -44,7 +44,7 @@ images, and the person and motion of {{ r.seen_in_training.scenes }}, were train
 <table><tr><th>run</th><th>model</th><th>parameters</th><th>multiply-adds (G)</th>
 <th>best epoch</th>
 <th>trained on</th><th>loading (ms)</th><th>one image (ms)</th><th>both (ms)</th>
-<th>images/s at {{ (n.runs.values() | first).speed.batch }}</th></tr>
+<th>images/s at {{ n.batch }}</th></tr>
 {% for name, run in n.runs.items() %}<tr><td>{{ name }}</td><td>{{ run.model }}</td>
 <td>{{ "{:,}".format(run.parameters) }}</td><td>{{ "%.3f" | format(run.multiply_adds / 1e9) }}</td>
 <td>{{ run.best_epoch or "" }}</td><td>{{ run.trained_on.path }}</td>

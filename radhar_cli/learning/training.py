@@ -108,8 +108,11 @@ def train(
         torch.set_num_threads(config.threads)
     device = choose_device(config.device)
     repeatable(device)
+    images = checked_images(config, data)
     with joined(device) as group, locked(folder) if group.leads else nullcontext():
-        return _Training.prepared(config, data, folder, device, group, progress, overwrite).run()
+        return _Training.prepared(
+            config, images, data, folder, device, group, progress, overwrite
+        ).run()
 
 
 def checked_images(config: TrainConfig, path: Path) -> ImageSet:
@@ -147,6 +150,7 @@ class _Training:
     def prepared(
         cls,
         config: TrainConfig,
+        images: ImageSet,
         data: Path,
         folder: Path,
         device: torch.device,
@@ -154,7 +158,6 @@ class _Training:
         progress: Progress,
         overwrite: bool,
     ) -> "_Training":
-        images = checked_images(config, data)
         least = LEAST_PER_PROCESS * group.size
         if config.batch_size < least:
             raise ConfigError(

@@ -27,7 +27,7 @@ from learning.patterns import Watched, settings
 from radhar_cli.learning.batches import Reader
 from radhar_cli.learning.gradient_step import Learner
 from radhar_cli.learning.processes import Group, distributed, joined
-from radhar_cli.learning.training import _Training, train
+from radhar_cli.learning.training import _Training, checked_images, train
 
 data, out, answer = map(Path, sys.argv[2:])
 torch.set_num_threads(1)
@@ -46,7 +46,8 @@ with joined(cpu) as group:
         if group.leads:
             place.mkdir(parents=True)
         dist.barrier()
-        work = _Training.prepared(config, data, place, cpu, group, Watched(), False)
+        images = checked_images(config, data)
+        work = _Training.prepared(config, images, data, place, cpu, group, Watched(), False)
         rows = work.images.rows("train")[:count][::-1]
         levels = np.stack([work.images.pixels.read(int(r)).transpose(2, 0, 1) for r in rows])
         levels, labels = torch.from_numpy(levels), torch.from_numpy(work.images.label[rows].copy())

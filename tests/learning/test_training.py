@@ -37,7 +37,7 @@ from radhar_cli.learning.gradient_step import optimiser_for
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.scan import scan
 from radhar_cli.learning.processes import Group
-from radhar_cli.learning.training import TrainingError, _Training
+from radhar_cli.learning.training import TrainingError, _Training, checked_images
 from radhar_cli.learning.work import Work
 
 CPU = torch.device("cpu")
@@ -45,7 +45,16 @@ CPU = torch.device("cpu")
 
 def prepared(data: Path, out: Path, **changes: Any) -> _Training:
     out.mkdir()
-    return _Training.prepared(settings(**changes), data, out, CPU, Group(), Watched(), False)
+    return _Training.prepared(
+        settings(**changes),
+        checked_images(settings(**changes), data),
+        data,
+        out,
+        CPU,
+        Group(),
+        Watched(),
+        False,
+    )
 
 
 def first_batch(work: _Training, count: int = 6) -> tuple[torch.Tensor, torch.Tensor]:

@@ -1,0 +1,266 @@
+"""What two newcomers stumbled over: every one of these once ended badly."""
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from learning.patterns import one_clear_line, same_run, settings, split_tree, trained, tree
+from PIL import Image
+
+from radhar_cli.cli import program
+from radhar_cli.errors import FolderError, ModelError, RadharError
+from radhar_cli.learning import run_files
+from radhar_cli.learning import run_folder as run
+from radhar_cli.learning.batches import Reader, pieces
+from radhar_cli.learning.evaluation import open_for, rows_of
+from radhar_cli.learning.images.opening import open_images
+from radhar_cli.learning.machine import choose_device
+from radhar_cli.learning.prediction import predict
+from radhar_cli.learning.report import evaluate
+from radhar_cli.learning.report_files import Report
+from radhar_cli.learning.run_folder import RunError
+from radhar_cli.learning.single_result import Asked
+
+CPU = torch.device("cpu")
+
+
+class Ears:
+    def say(self, message: str) -> None:
+        pass
+
+
+def radhar(*arguments: object) -> RadharError:
+    """The error that a command ends with, in this process."""
+    with pytest.raises(RadharError) as caught:
+        program()([str(argument) for argument in arguments], standalone_mode=False)
+    return caught.value
+
+
+@pytest.fixture
+def copy(run_dir: Path, tmp_path: Path) -> Path:
+    """A run that may be damaged."""
+    return Path(shutil.copytree(run_dir, tmp_path / "copy"))
+
+
+@pytest.mark.parametrize("command", ["train", "eval"])
+@pytest.mark.parametrize("place", [".", "new", "train"])
+def test_nothing_is_written_into_the_data(
+    command: str, place: str, run_dir: Path, tmp_path: Path
+) -> None:
+    root = split_tree(tmp_path / "t", 2, 1)
+    before = sorted(root.rglob("*"))
+    runs = [run_dir] if command == "eval" else []
+    error = radhar(command, *runs, root, "-o", root / place)
+    one_clear_line(error, root, "-o should name a folder of its own")
+    assert sorted(root.rglob("*")) == before
+    open_images(root, None, "rgb")
+
+
+@pytest.mark.parametrize("command", ["train", "predict"])
+def test_a_run_is_no_data(command: str, run_dir: Path, tmp_path: Path) -> None:
+    more = [run_dir, run_dir] if command == "predict" else [run_dir, "-o", tmp_path / "x"]
+    error = radhar(command, *more)
+    one_clear_line(error, run_dir, "is a training run", "asked for here")
+    assert not (tmp_path / "x").exists()
+
+
+def test_a_failed_start_does_not_take_the_folder(data: Path, tmp_path: Path) -> None:
+    with pytest.raises(ModelError, match="did you mean 'fftnet'"):
+        trained(data, tmp_path / "run", model="fftnett")
+    with pytest.raises(KeyboardInterrupt):
+        trained(data, tmp_path / "run", _Stop())
+    assert len(trained(data, tmp_path / "run", epochs=1, seed=9).history) == 1
+
+
+class _Stop:
+    """Stops a run at its first step."""
+
+    def say(self, message: str) -> None:
+        pass
+
+    def epoch(self, number: int, epochs: int, steps: int) -> None:
+        pass
+
+    def step(self, loss: float, accuracy: float) -> None:
+        raise KeyboardInterrupt
+
+    def epoch_done(self, row: run.Epoch, best: bool) -> None:
+        pass
+
+
+def test_a_checkpoint_of_another_run_is_refused(data: Path, copy: Path, tmp_path: Path) -> None:
+    trained(data, tmp_path / "other", epochs=3, seed=77)
+    shutil.copy(tmp_path / "other" / run_files.LAST, copy / run_files.LAST)
+    with pytest.raises(RunError) as caught:
+        trained(data, copy)
+    one_clear_line(caught.value, run_files.LAST, "is another run's", "seed: 77 there, 1 here")
+
+
+def test_best_weights_that_are_gone_are_said_or_made_again(
+    data: Path, run_dir: Path, copy: Path
+) -> None:
+    (copy / run_files.BEST).write_bytes((copy / run_files.BEST).read_bytes()[:5000])
+    history = run.read_history(copy)
+    if run.best_epoch(history) is history[-1]:
+        trained(data, copy)
+        assert same_run(run_dir, copy)
+    else:
+        with pytest.raises(RunError) as caught:
+            trained(data, copy)
+        one_clear_line(caught.value, "cannot be had again", "--overwrite")
+
+
+def test_what_can_be_derived_is_written_again(data: Path, run_dir: Path, copy: Path) -> None:
+    for name in (run_files.HISTORY, run_files.METRICS, run_files.CURVES, run_files.SUMMARY):
+        (copy / name).unlink()
+    trained(data, copy)
+    assert {p.name for p in copy.iterdir()} >= set(run_files.ALL)
+    assert same_run(run_dir, copy)
+
+
+def test_eval_finds_the_cut_of_training_again(tmp_path: Path) -> None:
+    root = tree(tmp_path / "t", parts={"": 5})
+    trained(root, tmp_path / "run", epochs=1)
+    about = run.read_about(tmp_path / "run")
+    images = open_for(about, root, None)
+    rows, split = rows_of(images, "val")
+    assert (split, rows.size) == ("val", about.data["val"])
+    (root / "walking/000.png").unlink()
+    rows, split = rows_of(open_for(about, root, None), "val")
+    assert (split, rows.size) == ("all", 14), "another set: what it is is said"
+
+
+def test_a_model_that_knows_no_map_asks_for_one(tmp_path: Path) -> None:
+    from radhar_cli.config import load_config
+    from radhar_cli.dataset.build import build
+
+    class Quiet:
+        def stage(self, name: str, total: int, done: int) -> None: ...
+        def advance(self, samples: int) -> None: ...
+        def say(self, message: str) -> None: ...
+
+    config = tmp_path / "two_maps.yaml"
+    config.write_text(
+        "{samples_per_class: 3, activities: [walking, punching], maps: [rtm, stft],"
+        " radar: {carrier_hz: 10e9, bandwidth_hz: 1e9, prf_hz: 500}, image: {size_px: 32},"
+        " split: {train: 0.67, validation: 0.33}}"
+    )
+    ours = tmp_path / "ours"
+    build(load_config(config), ours, jobs=1, progress=Quiet())
+    trained(ours / "png/stft", tmp_path / "run", epochs=1)
+    about = run.read_about(tmp_path / "run")
+    assert about.map == "stft", "the folder's name says so"
+    assert open_for(about, ours, None).map == "stft"
+    foreign = shutil.copytree(ours / "png/stft", tmp_path / "foreign")
+    trained(foreign, tmp_path / "other", epochs=1)
+    with pytest.raises(FolderError) as caught:
+        open_for(run.read_about(tmp_path / "other"), ours, None)
+    one_clear_line(caught.value, "rtm, stft", "--map")
+    with pytest.raises(FolderError, match="has no map 'stft'"):
+        open_images(foreign, "stft", "rgb")
+
+
+def test_sixteen_bit_greys_keep_their_levels(tmp_path: Path) -> None:
+    levels = np.linspace(0, 65535, 1024).reshape(32, 32).astype(np.uint16)
+    for split in ("train", "val"):
+        folder = tmp_path / "t" / split / "a"
+        folder.mkdir(parents=True)
+        Image.fromarray(levels).save(folder / "0.png")
+    read = open_images(tmp_path / "t", None, "rgb").pixels.read(0)
+    assert read.shape == (32, 32, 3)
+    np.testing.assert_array_equal(read[..., 0], np.round(levels / 257))
+
+
+def test_hidden_files_are_no_images(tmp_path: Path) -> None:
+    root = split_tree(tmp_path / "t", 2, 1)
+    (root / "train/kicking/._0.png").write_bytes(b"what a file manager leaves")
+    assert len(open_images(root, None, "rgb")) == 9
+
+
+def test_a_class_without_validation_images_is_said(tmp_path: Path) -> None:
+    from learning.patterns import Watched
+
+    root = split_tree(tmp_path / "t", 2, 1)
+    shutil.rmtree(root / "val/walking")
+    progress = Watched()
+    trained(root, tmp_path / "run", progress, epochs=1)
+    assert any("'walking' has no validation image" in line for line in progress.said)
+
+
+def test_predict_takes_a_folder_of_images(run_dir: Path, data: Path) -> None:
+    answers = list(predict(run_dir, [data / "val/walking"], CPU, None, "all"))
+    assert [Path(name).name for name, _ in answers] == ["000.png", "001.png"]
+
+
+def test_a_file_that_breaks_in_a_worker_is_one_line(tmp_path: Path) -> None:
+    root = split_tree(tmp_path / "t", 2, 1)
+    images = open_images(root, None, "rgb")
+    (root / "train/kicking/001.png").write_bytes(b"no more")
+    with pytest.raises(FolderError) as caught:
+        list(Reader(images, images.label, 1, False)(pieces(np.arange(len(images)), 4)))
+    one_clear_line(caught.value, "001.png: is no image")
+    assert "Traceback" not in str(caught.value)
+
+
+def test_workers_do_not_draw_from_the_layers_stream(data: Path) -> None:
+    images = open_images(data, None, "rgb")
+    drawn = []
+    for workers in (0, 1):
+        torch.manual_seed(5)
+        list(Reader(images, images.label, workers, False)(pieces(np.arange(4), 2)))
+        drawn.append(float(torch.rand(1)))
+    assert drawn[0] == drawn[1]
+
+
+def test_names_with_commas_stay_in_their_column(tmp_path: Path) -> None:
+    import csv
+
+    root = tree(tmp_path / "t", ("one, two", 'a "b"'), {"train": 2, "val": 1})
+    trained(root, tmp_path / "run", epochs=1)
+    report = evaluate([tmp_path / "run"], [root], Asked(), CPU, Ears())
+    report.write(tmp_path / "out")
+    with (tmp_path / "out/confusion.csv").open(newline="") as file:
+        rows = list(csv.reader(file))
+    assert rows[0][1:] == ['a "b"', "one, two"]
+    assert [len(row) for row in rows] == [3, 3, 3]
+
+
+def test_a_report_removes_the_files_of_the_one_before(tmp_path: Path) -> None:
+    old, new = Report({"runs": {}}), Report({"runs": {}})
+    old.tables = [("a.csv", "1"), ("b.csv", "2")]
+    new.tables = [("b.csv", "3")]
+    (tmp_path / "mine.csv").write_text("x")
+    numbers = {"device": "cpu", "threads": 1, "batch": 1}
+    for report in (old, new):
+        report.numbers |= numbers
+        report.write(tmp_path)
+    kept = {p.name for p in tmp_path.iterdir() if p.is_file()}
+    assert kept == {"b.csv", "mine.csv", "report.json", "report.html"}
+
+
+def test_what_cannot_be_drawn_is_refused_before_anything_is_computed(tmp_path: Path) -> None:
+    root = tree(tmp_path / "t", ("a", "b"), {"train": 2, "val": 1})
+    trained(root, tmp_path / "run", epochs=1)
+    with pytest.raises(RunError, match="'a' is none of the twelve activities"):
+        evaluate([tmp_path / "run"], [root], Asked(in_place_vs_moving=True), CPU, Ears())
+
+
+def test_auto_or_a_number_is_one_message() -> None:
+    for key in ("workers", "threads", "micro_batch"):
+        with pytest.raises(ValueError, match="should be auto or a whole number") as caught:
+            settings(**{key: "many"})
+        assert caught.value.error_count() == 1  # type: ignore[attr-defined]
+
+
+def test_a_device_that_is_not_there_is_named() -> None:
+    if not torch.cuda.is_available():
+        with pytest.raises(RadharError, match="it has cpu"):
+            choose_device("cuda")
+
+
+def test_an_output_that_cannot_be_made_is_one_line(data: Path, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("x")
+    one_clear_line(radhar("train", data, "-o", tmp_path / "file"), "is a file")
+    one_clear_line(radhar("train", data, "-o", tmp_path / "file/sub"), "cannot be made")

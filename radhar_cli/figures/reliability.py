@@ -6,7 +6,7 @@ from radhar_cli.figures.page import page, png_bytes
 
 def reliability_png(confidence: Float, accuracy: Float, count: Float, title: str) -> bytes:
     """Draw accuracy against mean confidence, both [bins]; `count` [bins] is the size of a dot."""
-    figure = page(4.4, 4.2)
+    figure = page(4.8, 4.6)
     axes = figure.subplots()
     used = count > 0
     axes.plot([0, 1], [0, 1], ":", color="gray", linewidth=1)
@@ -18,5 +18,5 @@ def reliability_png(confidence: Float, accuracy: Float, count: Float, title: str
     axes.set_xlim(0, 1.02)
     axes.set_ylim(-0.02, 1.05)
     axes.grid(alpha=0.3)
-    axes.set_title(title, fontsize=9)
+    axes.set_title(title, fontsize=8)
     return png_bytes(figure)

@@ -120,7 +120,7 @@ def evaluate_one(
             bins.confidence,
             bins.accuracy,
             bins.count.astype(float),
-            f"{title}\ncalibration error {100 * bins.error:.2f} %",
+            f"{_narrow(title)}\ncalibration error {100 * bins.error:.2f} %",
         ),
     )
     _mistakes(report, answers, names, stem, title)
@@ -178,7 +178,7 @@ def _in_place_vs_moving(
     report.figure(
         f"in_place_vs_moving{stem}.png",
         f"Standing activities (S1 to S7) against moving ones (S8 to S12), {title}.",
-        confusion_png(counts, GROUPS, f"{title}\n{share:.2f} %"),
+        confusion_png(counts, GROUPS, f"{_narrow(title)}\n{share:.2f} %"),
     )
     report.tables.append((f"in_place_vs_moving{stem}.csv", confusion_csv(counts, GROUPS)))
 
@@ -204,6 +204,11 @@ def _mistakes(
         f"{what}, {title}.",
         captioned_png(images, captions, f"{what}: {title}"),
     )
+
+
+def _narrow(title: str) -> str:
+    """A title in two lines, for a small figure."""
+    return title.replace(" on ", "\non ", 1)
 
 
 def _plain(name: str) -> str:

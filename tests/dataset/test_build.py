@@ -206,7 +206,7 @@ def test_foreign_folder_file_and_live_folder_are_refused(config: Config, tmp_pat
 
 def test_a_path_that_cannot_be_made_is_one_clear_line(config: Config, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("x")
-    with pytest.raises(UnfinishedError, match="file") as caught:
+    with pytest.raises(FolderError, match="file/set: cannot be made") as caught:
         make(config, tmp_path / "file" / "set")
     assert "\n" not in str(caught.value)
 

@@ -410,10 +410,10 @@ def command(data: Path, out: Path) -> list[str]:
     ]
 
 
-def started(data: Path, out: Path, until: str) -> subprocess.Popen[str]:
+def started(data: Path, out: Path, until: str, *more: str) -> subprocess.Popen[str]:
     """Start a run, and wait until a file of it is there."""
     process = subprocess.Popen(
-        command(data, out),
+        [*command(data, out), *more],
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
@@ -441,16 +441,13 @@ def test_killed_at_random_moments_and_gone_on_is_the_same(
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
-def test_ctrl_c_keeps_the_last_epoch_and_is_quiet(
-    data: Path, run_dir: Path, tmp_path: Path
-) -> None:
+def test_ctrl_c_keeps_the_last_epoch_and_is_quiet(data: Path, tmp_path: Path) -> None:
     out = tmp_path / "run"
-    process = started(data, out, run_files.HISTORY)
+    process = started(data, out, run_files.HISTORY, "--set", "epochs=60")
     process.send_signal(signal.SIGINT)
     said = process.communicate()[0]
     assert process.returncode == 130, said
     assert "Traceback" not in said
     assert "the same command goes on" in said
-    assert 1 <= len(run.read_history(out)) < 3
-    trained(data, out)
-    assert same_run(run_dir, out)
+    assert 1 <= len(run.read_history(out)) < 60
+    run.load_best(out)

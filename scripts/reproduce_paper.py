@@ -112,8 +112,8 @@ SCALES = {
         generate=("radar.prf_hz=500", "radar.carrier_hz=10e9"),
         train=("batch_size=12",),
     ),
-    # Two cores, two hours or three: the paper's 3,600 maps at half its size; its 20 epochs once, six
-    # epochs or fewer (rate divided by ten after three) for the rest, five for a rival.
+    # Two cores, two hours or three: the paper's 3,600 maps at half its size; its 20 epochs once,
+    # six or fewer (rate divided by ten after three) for the rest, five for a rival.
     "cpu": Scale(
         size_px=128,
         per_class=300,

@@ -12,15 +12,27 @@ _KEPT = 64 * 2**20
 
 @cache
 def prepare_process() -> None:
-    """Hold numerical libraries to one thread and stop glibc from returning memory after each array.
+    """Hold numerical libraries to one thread and keep the memory of arrays of some MB.
 
-    Fresh pages for every temporary array of a few MB would take most of a sample's time. One
-    thread: the workers already fill the cores, and bytes must not depend on a thread count.
+    One thread: the workers already fill the cores, and bytes must not depend on a thread count.
     """
     from threadpoolctl import threadpool_limits
 
     threadpool_limits(limits=1)
+    keep_memory(_KEPT, 2 * _KEPT)
+
+
+def keep_memory(mapped_above: int, trimmed_above: int) -> None:
+    """Stop glibc from returning memory after each array, unless the user has told it what to do.
+
+    Fresh pages, mapped, zeroed and faulted in for every temporary array, would take most of a
+    sample's time.
+
+    Args:
+        mapped_above: bytes above which an array gets pages of its own.
+        trimmed_above: free bytes above which memory is returned.
+    """
     if platform.libc_ver()[0] == "glibc" and "MALLOC_MMAP_THRESHOLD_" not in os.environ:
         libc = ctypes.CDLL(None)
-        libc.mallopt(_M_MMAP_THRESHOLD, _KEPT)
-        libc.mallopt(_M_TRIM_THRESHOLD, 2 * _KEPT)
+        libc.mallopt(_M_MMAP_THRESHOLD, mapped_above)
+        libc.mallopt(_M_TRIM_THRESHOLD, trimmed_above)

@@ -81,8 +81,9 @@ def apart(out: Path, data: Sequence[Path]) -> None:
     Raises:
         FolderError: names both.
     """
+    from radhar_cli.dataset.folder import refuse_file
+
     for path in data:
         if path.is_dir() and out.resolve().is_relative_to(path.resolve()):
             raise FolderError(f"{out}: lies in the data {path}; -o should name a folder of its own")
-    if out.exists() and not out.is_dir():
-        raise FolderError(f"{out}: is a file; -o should name a folder")
+    refuse_file(out)

@@ -48,15 +48,14 @@ def simulate(
       radhar simulate configs/paper/free_space.yaml --activity walking --seed 7 -o out/walk
     """
     from radhar_cli.config import load_config
-    from radhar_cli.errors import FolderError
+    from radhar_cli.dataset.folder import refuse_file
     from radhar_cli.simulation.simulate import map_names
     from radhar_cli.simulation.simulate import simulate as simulate_scene
 
     overrides = [*(set_ or []), *([f"engine.kind={engine}"] if engine else [])]
     loaded = load_config(config, overrides)
     chosen = map_names(None if maps is None else maps.split(","))
-    if out.exists() and not out.is_dir():
-        raise FolderError(f"{out}: is a file; -o should name a folder")
+    refuse_file(out)
     simulation = simulate_scene(
         loaded, activity, seed, nominal=nominal, joint=joint, maps=chosen, raw=raw
     )

@@ -16,6 +16,16 @@ from radhar_cli.dataset.layout import CONFIG, DATASET, IDENTITY, PNG, SCENES, WO
 from radhar_cli.errors import FolderError
 
 
+def refuse_file(folder: Path) -> None:
+    """Refuse an output folder that is a file.
+
+    Raises:
+        FolderError: it is one.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise FolderError(f"{folder}: is a file; -o should name a folder")
+
+
 @contextmanager
 def locked(folder: Path) -> Iterator[None]:
     """Hold an output folder; a second run on it is refused. A dead run's lock is free at once.
@@ -23,8 +33,7 @@ def locked(folder: Path) -> Iterator[None]:
     Raises:
         FolderError: another run holds it, or it cannot be written to.
     """
-    if folder.exists() and not folder.is_dir():
-        raise FolderError(f"{folder}: is a file; -o should name a folder")
+    refuse_file(folder)
     try:
         (folder / WORK).mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
+
+from radhar_cli.figures.page import page
 
 
 class Images(Protocol):
@@ -27,8 +27,7 @@ def draw_contact_sheet(data: Images, name: str, per_class: int, path: Path) -> N
     labels = np.asarray(data.label[:])
     present = sorted(set(labels.tolist()))
     columns = min(per_class, int(np.bincount(labels).max()))
-    figure = Figure(figsize=(1.5 * columns + 1.6, 1.4 * len(present) + 0.7), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = page(1.5 * columns + 1.6, 1.4 * len(present) + 0.7)
     panels = figure.subplots(len(present), columns, squeeze=False)
     array = data.maps[name]
     attributes = array.attrs

@@ -6,12 +6,11 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 
 from radhar_cli.arrays import Float
 from radhar_cli.body.skeleton import JOINTS
+from radhar_cli.figures.page import page
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 from radhar_cli.simulation.simulate import PowerMap, Simulation
 
@@ -109,8 +108,7 @@ def _draw_truth(axes: Axes, power_map: PowerMap, simulation: Simulation, unit: f
 
 def draw_maps(simulation: Simulation, path: Path, overlay: bool) -> None:
     """Write maps.png: the maps that were computed, one colour bar in dB."""
-    figure = Figure(figsize=(19, 8.2), layout="constrained")
-    FigureCanvasAgg(figure)
+    figure = page(19, 8.2)
     grid = figure.add_gridspec(2, 5)
     drawn, panels = None, []
     if "rtm" in simulation.maps:

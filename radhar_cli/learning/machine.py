@@ -1,29 +1,20 @@
 """What a machine offers: device, precision, memory."""
 
-import ctypes
 import os
-import platform
 
 import torch
 from torch import nn
 
+from radhar_cli import process
 from radhar_cli.errors import MachineError
 
-_M_TRIM_THRESHOLD = -1
-_M_MMAP_THRESHOLD = -3
 _MEMORY_SHARE = 0.5
 _STEP_OVER_SAVED = 1.6
 
 
 def keep_memory() -> None:
-    """Stop glibc from returning the memory of large tensors after each operation.
-
-    Otherwise every one of them is mapped, zeroed and faulted in anew, step after step.
-    """
-    if platform.libc_ver()[0] == "glibc" and "MALLOC_MMAP_THRESHOLD_" not in os.environ:
-        libc = ctypes.CDLL(None)
-        libc.mallopt(_M_MMAP_THRESHOLD, 2**30)
-        libc.mallopt(_M_TRIM_THRESHOLD, 2**31 - 1)
+    """Keep the memory of large tensors from step to step."""
+    process.keep_memory(2**30, 2**31 - 1)
 
 
 def repeatable(device: torch.device) -> None:

@@ -11,7 +11,7 @@ from radhar_cli.dataset.layout import DATASET
 from radhar_cli.errors import FolderError
 from radhar_cli.figures.robustness import Point
 from radhar_cli.learning.comparison import compare
-from radhar_cli.learning.evaluation import open_for, rows_of, speed
+from radhar_cli.learning.evaluation import speed
 from radhar_cli.learning.models.build import cost
 from radhar_cli.learning.report_files import Report
 from radhar_cli.learning.run_files import BEST
@@ -20,6 +20,7 @@ from radhar_cli.learning.single_result import (
     Asked,
     Run,
     check_asked,
+    choose,
     evaluate_one,
     open_run,
     seen_message,
@@ -49,9 +50,11 @@ def evaluate(
     opened = [open_run(name, path, device) for name, path in _named(runs).items()]
     check_asked(opened, asked)
     named_data = _named(data)
-    for run in opened:  # what does not fit is said before anything is computed
-        for path in named_data.values():
-            rows_of(open_for(run.about, path, asked.map), asked.split)
+    asks = {  # opened here, so that what does not fit is said before anything is computed
+        (run.name, name): choose(run, path, asked)
+        for run in opened
+        for name, path in named_data.items()
+    }
     report = Report(
         {
             "split": asked.split,
@@ -66,10 +69,12 @@ def evaluate(
     for run in opened:
         progress.say(f"{run.name}: {run.about.model}, {len(run.about.classes)} classes")
         results = {}
-        for data_name, path in named_data.items():
+        for data_name in named_data:
             one = len(opened) == len(named_data) == 1
             stem = "" if one else f"_{run.name}__{data_name}"
-            answers, numbers = evaluate_one(report, run, data_name, path, stem, asked, device)
+            answers, numbers = evaluate_one(
+                report, run, data_name, asks[run.name, data_name], stem, asked, device
+            )
             results[data_name] = numbers
             low, high = numbers["accuracy_95"]
             point = Point(data_name, answers.images.snr_db, numbers["accuracy"], low, high)
@@ -80,12 +85,10 @@ def evaluate(
             )
             if numbers["seen_in_training"]["images"] or numbers["seen_in_training"]["scenes"]:
                 progress.say(f"  warning: {seen_message(numbers)}")
-        first = open_for(run.about, data[0], asked.map)
+        first = asks[run.name, next(iter(named_data))]
         report.numbers["runs"][run.name] = {
             **_about_run(run),
-            "speed": speed(
-                run.folder, first, int(rows_of(first, asked.split)[0][0]), device, asked.batch
-            ),
+            "speed": speed(run.folder, first.images, int(first.rows[0]), device, asked.batch),
             "data": results,
         }
     compare(report, opened, lines, asked)

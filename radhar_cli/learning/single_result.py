@@ -57,6 +57,25 @@ class Run:
     history: list[Epoch]
 
 
+@dataclass(frozen=True)
+class Chosen:
+    """Images of a data set that a run is asked about: their rows, and the name of that split."""
+
+    images: ImageSet
+    rows: Index
+    split: str
+
+
+def choose(run: Run, path: Path, asked: Asked) -> Chosen:
+    """Open a data set for a run.
+
+    Raises:
+        FolderError: it does not fit the run.
+    """
+    images = open_for(run.about, path, asked.map)
+    return Chosen(images, *rows_of(images, asked.split))
+
+
 def check_asked(runs: Sequence[Run], asked: Asked) -> None:
     """Refuse what cannot be drawn, before anything is computed.
 
@@ -89,13 +108,12 @@ def evaluate_one(
     report: Report,
     run: Run,
     data_name: str,
-    path: Path,
+    ask: Chosen,
     stem: str,
     asked: Asked,
     device: torch.device,
 ) -> tuple[Predictions, dict[str, Any]]:
-    images = open_for(run.about, path, asked.map)
-    rows, split = rows_of(images, asked.split)
+    images, rows, split = ask.images, ask.rows, ask.split
     answers = predict(run.model, run.about, images, rows, device, asked.batch)
     names, title = run.about.classes, f"{run.name} on {data_name}, {split}"
     numbers = metrics.summary(answers.truth, answers.probabilities, names)

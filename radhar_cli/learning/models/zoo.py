@@ -1,11 +1,10 @@
 """Networks of timm, the paper's rivals among them; needs the extra `zoo`."""
 
-import difflib
 from typing import Any
 
 from torch import nn
 
-from radhar_cli.errors import ModelError
+from radhar_cli.errors import ModelError, did_you_mean
 from radhar_cli.learning.models.fftnet import NAME
 
 
@@ -15,9 +14,9 @@ def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
     Raises:
         ModelError: timm is not installed, does not know the name, or cannot take the size.
     """
-    near_ours = difflib.get_close_matches(name, [NAME], n=1)
-    if near_ours:
-        raise ModelError(f"model {name!r}: is unknown; did you mean {NAME!r}?")
+    ours = did_you_mean(name, [NAME], "")
+    if ours:
+        raise ModelError(f"model {name!r}: is unknown; {ours}")
     try:
         import timm
     except ImportError as error:
@@ -31,8 +30,7 @@ def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
             "the installed PyTorch"
         ) from None
     if not timm.is_model(name):
-        near = difflib.get_close_matches(name, [NAME, *timm.list_models()], n=1)
-        hint = f"did you mean {near[0]!r}?" if near else "`radhar models` lists some"
+        hint = did_you_mean(name, timm.list_models(), "`radhar models` lists some")
         raise ModelError(f"model {name!r}: is neither fftnet nor a name of timm's; {hint}")
     create: Any = timm.create_model
     try:

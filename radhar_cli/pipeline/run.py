@@ -142,7 +142,7 @@ def _echo(r: Recording, stage: Stage) -> DirectEcho:
 
 def _signal_power(r: Recording, stage: Stage) -> float:
     echo: DirectEcho | None = r.products.get("echo")
-    if echo is None or echo.beyond_reach:
+    if echo is None:
         return cube.signal_power(r.products["paths"], r.waveform)
     return echo.signal_power()
 

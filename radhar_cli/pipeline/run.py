@@ -112,7 +112,7 @@ def run(
 
 
 def _wall(r: Recording, stage: Stage) -> Wall | None:
-    return wall_of(r.scene)
+    return wall_of(r.scene, r.config)
 
 
 def _paths(r: Recording, stage: Stage) -> BodyPaths:

@@ -148,6 +148,8 @@ CHANGES: dict[str, object] = {
     "wall.size_m": (0.2, 5.0, 2.5),
     "wall.eps_r": 4.0,
     "wall.loss_tangent": 0.02,
+    "wall.rays": "refracted",
+    "wall.fresnel": "parallel",
     "snr_db": None,
     "snr_reference": "received",
     "on_invalid": "redraw",

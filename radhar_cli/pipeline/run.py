@@ -160,7 +160,8 @@ def _beat_cube(r: Recording, stage: Stage) -> CubeProducts:
     wants_signal, wants_range = "signal:plain" in r.plan, "rtm" in r.plan
     rng = r.noise("beat") if "signal_power" in r.products else None
     signal, profiles = [], []
-    for first, block in cube.beat_blocks(r.products["paths"], r.waveform, r.sigma, rng):
+    moving = r.config.engine.motion_in_chirp
+    for first, block in cube.beat_blocks(r.products["paths"], r.waveform, r.sigma, rng, moving):
         own = mti(block) if with_mti else block[:, (1 if first else 0) :]
         start = first if with_mti or not first else first + 1
         if own.shape[1] == 0:

@@ -65,6 +65,7 @@ POSSIBLE: list[dict[str, Any]] = [
     {"wall": {}, "radar": {"tx_m": (0.8799, 0.0, 1.0)}},
     {"wall": {"eps_r": 1, "loss_tangent": 0}, "radar": {"tx_m": (0.4, 0.0, 2.6)}},
     {"motion": {"speed_mps": 0, "gait_hz": 0, "range_m": -1}},
+    {"engine": {"kind": "cube", "motion_in_chirp": True}},
     {"timing": {"blend_s": 0, "rise_duration_s": 0}},
 ]
 
@@ -175,6 +176,7 @@ CHANGES: dict[str, object] = {
     "engine.kinematics_hz": 500.0,
     "engine.table_oversampling": 32,
     "engine.precision": "double",
+    "engine.motion_in_chirp": True,
     "output.png": False,
     "output.png_level": 9,
     "output.hdf5_level": 9,

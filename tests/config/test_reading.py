@@ -409,6 +409,13 @@ BROKEN = [
         "at least the window of 2000 pulses",
     ),
     Broken(
+        "engine:\n  motion_in_chirp: true",
+        2,
+        "engine.motion_in_chirp",
+        "true",
+        "false with engine.kind: direct",
+    ),
+    Broken(
         WALL + "radar:\n  tx_m: [0.9, 0, 1]", 3, "radar.tx_m", "[0.9, 0.0, 1.0]", "outside the wall"
     ),
     Broken(

@@ -145,7 +145,7 @@ def test_a_scatterer_in_the_wall_or_on_a_face(y: float, z: float) -> None:
 @pytest.mark.parametrize("x", [NEAR + 1e-9, 1.0, FAR, FAR + 1e-9, FAR + 1e-3])
 @pytest.mark.parametrize("y", [0.0, 1e-9, 0.1, 0.1073, 0.108, 0.12, 2.4])
 def test_grazing_rays_converge(gap: float, x: float, y: float) -> None:
-    """0.1073 m is 0.24/sqrt(n^2 - 1), the farthest that the wall alone bends: Newton is slowest there."""
+    """Slowest at 0.1073 m = 0.24/sqrt(n^2 - 1), the farthest that the wall alone can reach."""
     straight = late((NEAR - gap, 0.0, 1.5), (x, y, 1.5), replace(WALL, rays="straight"))
     assert 0 <= late((NEAR - gap, 0.0, 1.5), (x, y, 1.5)) <= straight * (1 + ROUNDING)
     depth = min(x, FAR) - NEAR

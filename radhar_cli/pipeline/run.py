@@ -4,7 +4,7 @@ Order (paper, figure "Signal processing overflow"): MTI -> range compression -> 
 sum over the kept bins -> [compensation] -> [denoising] -> STFT or FSST.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from time import perf_counter
@@ -26,6 +26,7 @@ from radhar_cli.processing.doppler_compensation import compensate
 from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.image import levels
+from radhar_cli.processing.long_map import LongMap, joined
 from radhar_cli.processing.mti import mti
 from radhar_cli.processing.range_compression import (
     half_band_signal,
@@ -33,11 +34,14 @@ from radhar_cli.processing.range_compression import (
     range_compression,
     range_power,
 )
+from radhar_cli.processing.stft import Spectra
 from radhar_cli.radar.noise import noise_variance
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.randomness import NOISE, stream
 from radhar_cli.scenario import Scene
+
+CHUNK = 2**18  # pulses at work at once, where each is on its own
 
 
 @dataclass
@@ -47,7 +51,7 @@ class Recording:
     Attributes:
         scene, config, plan: what is simulated, and how.
         joints: numbers of the scatterers that are kept; all of them for None.
-        products: {stage name: what it made}.
+        products: {stage name: what it made}, of those that the plan was asked for.
         seconds: {stage name: time it took}.
     """
 
@@ -73,6 +77,12 @@ class Recording:
         )
 
     @cached_property
+    def fsst_frames(self) -> Frames:
+        """`frames`, with the hop of the FSST where it has its own."""
+        hop = self.config.processing.fsst_hop_pulses
+        return self.frames if hop is None else Frames(self.frames.length, hop)
+
+    @cached_property
     def shown(self) -> np.ndarray[Any, np.dtype[np.intp]]:
         """Pulses (or first pulses of MTI pairs) that the range-time map shows."""
         kept = self.waveform.n_pulses - self.config.processing.mti
@@ -86,7 +96,7 @@ class Recording:
     @property
     def sigma(self) -> float:
         """Standard deviation of the raw noise; 0 without noise."""
-        if "signal_power" not in self.products:
+        if "signal_power" not in self.plan:
             return 0.0
         power = self.products["signal_power"]
         return float(np.sqrt(noise_variance(power, self.scene.values["snr_db"])))
@@ -102,12 +112,14 @@ class CubeProducts(NamedTuple):
 def run(
     plan: Plan, scene: Scene, config: Config, joints: tuple[int, ...] | None = None
 ) -> Recording:
-    """Run every stage of the plan, once, in its order."""
+    """Run every stage of the plan, once, in its order; release what nobody needs any more."""
     recording = Recording(scene, config, plan, joints)
     for stage in plan.stages:
         start = perf_counter()
         recording.products[stage.name] = STAGES[stage.kind](recording, stage)
         recording.seconds[stage.name] = perf_counter() - start
+        for name in plan.done_with[stage.name]:
+            del recording.products[name]
     return recording
 
 
@@ -127,9 +139,11 @@ def _paths(r: Recording, stage: Stage) -> BodyPaths:
 
 
 def _torso_track(r: Recording, stage: Stage) -> Float:
-    pulses = np.arange(r.waveform.n_pulses, dtype=float)
-    paths: BodyPaths = r.products["paths"]
-    return paths.torso_delay(r.waveform.times(pulses))
+    track, paths = np.empty(r.waveform.n_pulses), r.products["paths"]
+    for start in range(0, track.size, CHUNK):
+        part = track[start : start + CHUNK]
+        part[:] = paths.torso_delay(r.waveform.times(np.arange(start, start + part.size) + 0.0))
+    return track
 
 
 def _echo(r: Recording, stage: Stage) -> DirectEcho:
@@ -152,14 +166,17 @@ def _slow_time(r: Recording, stage: Stage) -> Complex:
 
 
 def _slow_time_noise(r: Recording, stage: Stage) -> Complex:
-    return r.sigma * slow_time_noise(r.noise("slow_time"), r.waveform)
+    noise = slow_time_noise(r.noise("slow_time"), r.waveform)
+    noise *= r.sigma
+    return noise
 
 
 def _beat_cube(r: Recording, stage: Stage) -> CubeProducts:
     with_mti = r.config.processing.mti
     wants_signal, wants_range = "signal:plain" in r.plan, "rtm" in r.plan
-    rng = r.noise("beat") if "signal_power" in r.products else None
-    signal, profiles = [], []
+    rng = r.noise("beat") if "signal_power" in r.plan else None
+    kept = r.waveform.n_pulses - with_mti
+    signal, profiles = np.empty(kept if wants_signal else 0, dtype=complex), []
     for first, block in cube.beat_blocks(r.products["paths"], r.waveform, r.sigma, rng):
         own = mti(block) if with_mti else block[:, (1 if first else 0) :]
         start = first if with_mti or not first else first + 1
@@ -169,9 +186,10 @@ def _beat_cube(r: Recording, stage: Stage) -> CubeProducts:
             here = r.shown[(r.shown >= start) & (r.shown < start + own.shape[1])]
             profiles.append(range_power(range_bins(own[:, here - start], r.waveform)))
         if wants_signal:
-            signal.append(half_band_signal(range_compression(own, r.waveform)))
+            stop = start + own.shape[1]
+            signal[start:stop] = half_band_signal(range_compression(own, r.waveform))
     return CubeProducts(
-        np.concatenate(signal) if signal else None,
+        signal if wants_signal else None,
         np.concatenate(profiles, axis=1) if profiles else None,
     )
 
@@ -212,36 +230,58 @@ def _signal(r: Recording, stage: Stage) -> Complex:
 
 
 def _plain_signal(r: Recording) -> Complex:
+    with_mti = r.config.processing.mti
     if "beat_cube" in r.products:
         return np.asarray(r.products["beat_cube"].signal)
-    y = r.products["slow_time"]
-    if "slow_time_noise" in r.products:
-        y = y + r.products["slow_time_noise"]
-    return mti(y) if r.config.processing.mti else np.asarray(y)
+    y, noise, lost = r.products["slow_time"], r.products.get("slow_time_noise"), int(with_mti)
+    x = np.empty(y.size - lost, dtype=complex)
+    for start in range(0, x.size, CHUNK):
+        stop = min(start + CHUNK, x.size)
+        part = y[start : stop + lost]
+        if noise is not None:
+            part = part + noise[start : stop + lost]
+        x[start:stop] = mti(part) if with_mti else part
+    return x
 
 
-def _spectrum(r: Recording, stage: Stage) -> Complex:
+def _spectrum(r: Recording, stage: Stage) -> Spectra:
     padded = stage.kind == "padded_spectrum"
     length = r.config.processing.stft_fft_length if padded else None
-    return stft.spectrum(r.products[stage.needs[0]], r.frames, length)
+    frames = r.fsst_frames if stage.kind == "fsst_spectrum" else r.frames
+    return stft.spectra(r.products[stage.needs[0]], frames, length)
 
 
-def _stft(r: Recording, stage: Stage) -> Float:
-    return stft.power_map(r.products[stage.needs[0]])
+def _stft(r: Recording, stage: Stage) -> Float | LongMap:
+    spectra: Spectra = r.products[stage.needs[0]]
+    return _map(r, stage, spectra, map(stft.power_map, spectra))
 
 
-def _fsst(r: Recording, stage: Stage) -> Float:
-    x, v = (r.products[need] for need in stage.needs)
-    return fsst.power_map(fsst.synchrosqueeze(x, v, r.frames, r.config.processing.fsst_threshold))
+def _fsst(r: Recording, stage: Stage) -> Float | LongMap:
+    x, spectra = (r.products[need] for need in stage.needs)
+    threshold = r.config.processing.fsst_threshold
+    return _map(r, stage, spectra, fsst.power_blocks(x, spectra, r.fsst_frames, threshold))
+
+
+def _map(r: Recording, stage: Stage, spectra: Spectra, blocks: Iterable[Float]) -> Float | LongMap:
+    """The whole map where it is one block or was asked for, else what its image needs."""
+    if isinstance(spectra, tuple):
+        return next(iter(blocks))
+    frames = spectra.frames.count(spectra.x.size)
+    if stage.name in r.plan.asked:
+        return joined(blocks, frames)
+    return LongMap(blocks, frames, r.config.image.size_px)
 
 
 def _entropy(r: Recording, stage: Stage) -> float:
-    return entropy_bits(r.products[stage.variant])
+    power = r.products[stage.variant]
+    return power.entropy_bits if isinstance(power, LongMap) else entropy_bits(power)
 
 
 def _levels(r: Recording, stage: Stage) -> Levels:
-    image = r.config.image
-    return levels(r.products[stage.variant], image.size_px, image.dynamic_range_db)
+    power, image = r.products[stage.variant], r.config.image
+    if isinstance(power, LongMap):
+        return power.levels(image.dynamic_range_db)
+    return levels(power, image.size_px, image.dynamic_range_db)
 
 
 STAGES: Mapping[str, Callable[[Recording, Stage], Any]] = {
@@ -259,6 +299,7 @@ STAGES: Mapping[str, Callable[[Recording, Stage], Any]] = {
     "signal": _signal,
     "spectrum": _spectrum,
     "padded_spectrum": _spectrum,
+    "fsst_spectrum": _spectrum,
     **{
         f"{kind}{suffix}": run_map
         for kind, run_map in (("stft", _stft), ("fsst", _fsst))

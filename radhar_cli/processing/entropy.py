@@ -6,35 +6,24 @@ from radhar_cli.arrays import Float
 
 
 class EntropySum:
-    """Entropy of a map that comes in blocks: the sums of `entropy_bits`, with q = power/2^e.
-
-    A reference that is a power of two merges without rounding: q' = 2^d q, log2 q' = d + log2 q.
-    """
+    """Entropy of a map that comes in blocks: the sums of `entropy_bits` over what came so far."""
 
     def __init__(self) -> None:
-        self._exponent: int | None = None
-        self._total = self._dot = 0.0
+        self._largest = self._total = self._dot = 0.0
 
     def add(self, power: Float) -> None:
         """Take in a block of any shape."""
         largest = float(power.max(initial=0.0))
         if largest == 0:
             return
-        exponent = int(np.frexp(largest)[1])
-        q = np.ldexp(power, -exponent).ravel(order="K")
+        q = (power / largest).ravel(order="K")
         q = q if q.min() > 0 else q[q > 0]
-        total, dot = float(q.sum()), float(np.dot(q, np.log2(q)))
-        highest = exponent if self._exponent is None else max(exponent, self._exponent)
-        if self._exponent is not None:
-            self._rescale(self._exponent - highest)
-        part, down = np.ldexp(total, exponent - highest), exponent - highest
-        self._dot += float(np.ldexp(dot, down) + down * part)
-        self._total += float(part)
-        self._exponent = highest
-
-    def _rescale(self, up: int) -> None:
-        self._total = float(np.ldexp(self._total, up))
-        self._dot = float(np.ldexp(self._dot, up)) + up * self._total
+        sums = float(q.sum()), float(np.dot(q, np.log2(q)))
+        highest = max(largest, self._largest)
+        own = _referred(*sums, largest / highest)
+        before = _referred(self._total, self._dot, self._largest / highest)
+        self._total, self._dot = own[0] + before[0], own[1] + before[1]
+        self._largest = highest
 
     @property
     def bits(self) -> float:
@@ -42,6 +31,13 @@ class EntropySum:
         if self._total == 0:
             return 0.0
         return max(0.0, float(np.log2(self._total) - self._dot / self._total))
+
+
+def _referred(total: float, dot: float, ratio: float) -> tuple[float, float]:
+    """sum r q and sum r q log2(r q), from sum q and sum q log2 q."""
+    if ratio == 0:
+        return 0.0, 0.0
+    return ratio * total, ratio * (dot + float(np.log2(ratio)) * total)
 
 
 def entropy_bits(power: Float) -> float:

@@ -5,6 +5,8 @@ from PIL import Image
 
 from radhar_cli.arrays import Float, Levels
 
+AT_ONCE = 2**20  # weights, or pixels of columns reduced in height
+
 
 def levels(power: Float, size: tuple[int, int], dynamic_range_db: float) -> Levels:
     """Levels 0 to 255 [height, width] of a power map [frequency or range, time].
@@ -39,6 +41,11 @@ class ColumnSum:
 
     def add(self, power: Float) -> None:
         """Take in the next columns [frequency, columns]."""
+        most = max(1, AT_ONCE // max(self._size))
+        for first in range(0, power.shape[1], most):
+            self._add(power[:, first : first + most])
+
+    def _add(self, power: Float) -> None:
         weights = self._triangle(power.shape[1])
         self._seen += power.shape[1]
         self._weight += weights.sum(axis=0)

@@ -32,6 +32,7 @@ PULSES, WIDTH = 128, 20
 
 QUIET, WALL, CUBE = {"snr_db": None}, {"wall": {}}, {"engine": {"kind": "cube"}}
 LONG_FFT = {"processing": {"stft_fft_length": 64}}
+OWN_HOP = {"processing": {"fsst_hop_pulses": 1}}
 
 # What runs besides the map itself, its entropy and its levels. Written by hand: change it only
 # where the physics needs another stage.
@@ -80,6 +81,9 @@ REQUESTS: list[tuple[str, dict, str]] = [
     ("stft", LONG_FFT, f"{NOISY} padded_spectrum:plain"),
     ("fsst", LONG_FFT, f"{NOISY} spectrum:plain"),
     ("stft fsst", LONG_FFT | QUIET, f"{SIGNAL} padded_spectrum:plain spectrum:plain"),
+    ("stft fsst", OWN_HOP, f"{NOISY} spectrum:plain fsst_spectrum:plain"),
+    ("fsst_denoised", OWN_HOP, f"{NOISY} signal:denoised fsst_spectrum:denoised"),
+    ("stft", OWN_HOP | QUIET, f"{SIGNAL} spectrum:plain"),
     ("stft", {"processing": {"mti": False}}, f"{NOISY} spectrum:plain"),
     ("rtm", {"processing": {"mti": False}} | QUIET, PROFILES),
     ("stft", CUBE, f"{CUBED} signal_power signal:plain spectrum:plain"),
@@ -120,6 +124,7 @@ WORK: dict[str, dict[str, int]] = {
     "signal:compensated_denoised": {"savgol": 1},
     "spectrum": {"spectrum": 1, "transform": 1},
     "padded_spectrum": {"spectrum": 1, "transform": 1},
+    "fsst_spectrum": {"spectrum": 1, "transform": 1},
     "fsst": {"synchrosqueeze": 1, "transform": 1},
     "entropy": {"entropy_bits": 1},
     "levels": {"levels": 1},

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from radhar_cli.processing import frames as frames_module
-from radhar_cli.processing import fsst, stft
+from radhar_cli.processing import fsst, image, stft
 from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.image import levels
@@ -68,6 +68,13 @@ def test_few_pixels_flip(shape, size):
     power = np.random.default_rng(0).exponential(size=shape) * np.geomspace(1e-5, 1, shape[1])
     found = LongMap((power[:, i : i + 7] for i in range(0, shape[1], 7)), shape[1], size)
     assert np.mean(found.levels(RANGE_DB) != levels(power, size, RANGE_DB)) <= FLIPS
+
+
+def test_how_many_columns_are_weighed_at_once_does_not_matter(monkeypatch):
+    power = np.random.default_rng(0).exponential(size=(20, 70))
+    whole = LongMap(iter([power]), 70, (16, 24)).levels(RANGE_DB)
+    monkeypatch.setattr(image, "AT_ONCE", 24 * 9)
+    assert np.array_equal(LongMap(iter([power]), 70, (16, 24)).levels(RANGE_DB), whole)
 
 
 @pytest.mark.parametrize("scale", [5e-324, 1e-300, 1e-30, 1e30, 1e300])

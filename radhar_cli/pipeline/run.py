@@ -142,7 +142,8 @@ def _torso_track(r: Recording, stage: Stage) -> Float:
     track, paths = np.empty(r.waveform.n_pulses), r.products["paths"]
     for start in range(0, track.size, CHUNK):
         part = track[start : start + CHUNK]
-        part[:] = paths.torso_delay(r.waveform.times(np.arange(start, start + part.size) + 0.0))
+        pulses = np.arange(start, start + part.size, dtype=float)
+        part[:] = paths.torso_delay(r.waveform.times(pulses))
     return track
 
 

@@ -253,7 +253,7 @@ def expected_work(config: Config, stages: list[str]) -> Counter:
     total: Counter[str] = Counter()
     for name in stages:
         kind = name.partition(":")[0]
-        kind = "fsst" if kind.startswith("fsst") else kind
+        kind = "fsst" if name.startswith("fsst") and "spectrum" not in name else kind
         table = CUBE_WORK if of_cube else WORK
         total.update(table.get(name) or table.get(kind) or {})
     if of_cube and noisy:

@@ -128,7 +128,7 @@ def simulate(
     chosen = None if joint is None else (_joint(joint),)
     entropies = [f"entropy:{name}" for name in maps]
     signals = [f"signal:{which}" for which in SIGNALS]
-    recording = run(plan(config, [*signals, *entropies]), scene, config, chosen)
+    recording = run(plan(config, [*signals, *maps, *entropies]), scene, config, chosen)
     products = recording.products
     return Simulation(
         config=config,
@@ -162,7 +162,7 @@ def map_names(chosen: list[str] | None) -> tuple[MapName, ...]:
 def raw_echo(recording: Recording) -> Complex:
     """s_noisy[n, m] [N_ADC, M] as an ADC would record it: body, noise, leakage and wall echo."""
     waveform, paths = recording.waveform, recording.products["paths"]
-    rng = recording.noise("beat") if "signal_power" in recording.products else None
+    rng = recording.noise("beat") if "signal_power" in recording.plan else None
     moving = recording.config.engine.motion_in_chirp
     blocks = [
         block[:, (1 if first else 0) :]

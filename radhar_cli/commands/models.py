@@ -7,7 +7,7 @@ import typer
 
 def models(
     names: Annotated[
-        list[str] | None, typer.Argument(help="Names of timm's; the paper's rivals if not given.")
+        list[str] | None, typer.Argument(help="Names; ours and the paper's rivals if none.")
     ] = None,
     size: Annotated[int, typer.Option(min=32, help="Side of the images in pixels.")] = 256,
     classes: Annotated[int, typer.Option(min=2, help="Number of classes.")] = 12,
@@ -18,21 +18,22 @@ def models(
 
       radhar models --size 128
 
-    fftnet is the paper's network; every other name is one of timm's (pip install 'radhar[zoo]').
+    fftnet is the paper's network, smallnet a plain one that learns in seconds; every other name is
+    one of timm's (pip install 'radhar[zoo]').
     """
     from radhar_cli.commands.learning_options import needs_torch
 
     needs_torch()
     from radhar_cli.errors import ModelError
     from radhar_cli.learning.models.build import RIVALS, cost
-    from radhar_cli.learning.models.fftnet import NAME
+    from radhar_cli.learning.models.zoo import OURS
 
     typer.echo(f"{'model':<24} {'parameters':>12} {'multiply-adds':>14}   at {size} x {size} px")
-    for name in names or [NAME, *RIVALS]:
+    for name in names or [*OURS, *RIVALS]:
         try:
             price = cost(name, classes, (size, size))
         except ModelError as error:
-            if names or name == NAME:
+            if names or name in OURS:
                 raise
             typer.echo(f"the paper's rivals ({', '.join(RIVALS)}) cannot be built: {error}")
             break

@@ -33,7 +33,7 @@ def train(
         str | None, typer.Option("--map", help="Which map to learn; the first one if not given.")
     ] = None,
     model: Annotated[
-        str | None, typer.Option(help="fftnet, or a name of timm's; see radhar models.")
+        str | None, typer.Option(help="fftnet, smallnet, or a name of timm's; see radhar models.")
     ] = None,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Start again in a folder that holds a run.")

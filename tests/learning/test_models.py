@@ -52,7 +52,12 @@ def test_a_rival_trains_and_is_read_back(zoo: None, data: Path, tmp_path: Path) 
 
 @pytest.mark.parametrize(
     ("name", "near"),
-    [("fftnett", "fftnet"), ("resnet5O", "resnet50"), ("convnext_tinny", "convnext_tiny")],
+    [
+        ("fftnett", "fftnet"),
+        ("smalnet", "smallnet"),
+        ("resnet5O", "resnet50"),
+        ("convnext_tinny", "convnext_tiny"),
+    ],
 )
 def test_unknown_names_are_met_with_a_suggestion(zoo: None, name: str, near: str) -> None:
     with pytest.raises(ModelError, match=f"did you mean '{near}") as caught:
@@ -63,6 +68,51 @@ def test_unknown_names_are_met_with_a_suggestion(zoo: None, name: str, near: str
 def test_nothing_like_it_points_to_the_list(zoo: None) -> None:
     with pytest.raises(ModelError, match="`radhar models` lists some"):
         build_model("qqqqqqqqqqqqqqqq", 4, (32, 32))
+
+
+@pytest.mark.parametrize("size", [(16, 16), (33, 50), (64, 64)])
+def test_smallnet_takes_any_size_and_a_step(size: tuple[int, int]) -> None:
+    torch.manual_seed(0)
+    model = build_model("smallnet", 4, size).train()
+    before = [p.detach().clone() for p in model.parameters()]
+    optimiser = torch.optim.SGD(model.parameters(), 0.1)
+    torch.nn.functional.cross_entropy(
+        model(torch.randn(2, 3, *size)), torch.tensor([0, 3])
+    ).backward()
+    optimiser.step()
+    moved = [not torch.equal(p, b) for p, b in zip(model.parameters(), before, strict=True)]
+    assert all(moved), "nothing of it is idle"
+    x = torch.randn(5, 3, *size)
+    with torch.no_grad():
+        features, logits = features_and_logits(model.eval(), x)
+        torch.testing.assert_close(logits, model(x))
+    assert features.shape == (5, 128)
+    assert logits.shape == (5, 4)
+
+
+def test_smallnet_needs_sixteen_pixels() -> None:
+    with pytest.raises(ModelError, match="15 x 64 px; both sides should have at least 16"):
+        build_model("smallnet", 4, (15, 64))
+
+
+def test_smallnet_learns_and_is_read_back(data: Path, tmp_path: Path) -> None:
+    """Stripes of three directions: a dozen steps tell them apart."""
+    done = trained(data, tmp_path / "run", epochs=12, model="smallnet", learning_rate=3e-3)
+    assert done.history[-1].train_accuracy > 0.9
+    about, model = run.load_best(tmp_path / "run")
+    assert about.model == "smallnet"
+    assert parameter_count(model) == cost("smallnet", 3, (SIZE, SIZE)).parameters
+
+
+def test_smallnet_by_hand() -> None:
+    """9 inputs outputs of each convolution, two numbers a channel of batch norm, the last layer."""
+    pairs = ((3, 16), (16, 32), (32, 64), (64, 128))
+    convolutions = [9 * inputs * outputs for inputs, outputs in pairs]
+    price = cost("smallnet", 12, (64, 64))
+    assert price.parameters == sum(convolutions) + 2 * (16 + 32 + 64 + 128) + 129 * 12
+    pixels = (64**2, 32**2, 16**2, 8**2)
+    by_hand = sum(n * p for n, p in zip(convolutions, pixels, strict=True)) + 128 * 12
+    assert price.multiply_adds == by_hand
 
 
 def test_papers_network_costs_what_it_has() -> None:

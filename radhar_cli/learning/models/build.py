@@ -7,6 +7,7 @@ import torch
 from torch import Tensor, nn
 
 from radhar_cli.errors import ModelError
+from radhar_cli.learning.models import smallnet
 from radhar_cli.learning.models.fftnet import NAME, STRIDE, FFTNet
 from radhar_cli.learning.models.zoo import zoo_model
 
@@ -33,7 +34,7 @@ def build_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
     """Build a network with fresh weights.
 
     Args:
-        name: fftnet, or any name that timm knows (needs the extra `zoo`).
+        name: fftnet, smallnet, or any name that timm knows (needs the extra `zoo`).
         classes: outputs.
         size: (H, W) of the images.
 
@@ -48,6 +49,13 @@ def build_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
                 f"of {STRIDE}"
             )
         return FFTNet(classes, height, width)
+    if name == smallnet.NAME:
+        if min(size) < smallnet.LEAST_SIDE:
+            raise ModelError(
+                f"model smallnet: images are {height} x {width} px; both sides should have at "
+                f"least {smallnet.LEAST_SIDE}"
+            )
+        return smallnet.SmallNet(classes)
     return zoo_model(name, classes, size)
 
 

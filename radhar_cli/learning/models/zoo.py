@@ -5,7 +5,9 @@ from typing import Any
 from torch import nn
 
 from radhar_cli.errors import ModelError, did_you_mean
-from radhar_cli.learning.models.fftnet import NAME
+from radhar_cli.learning.models import fftnet, smallnet
+
+OURS = (fftnet.NAME, smallnet.NAME)
 
 
 def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
@@ -14,15 +16,15 @@ def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
     Raises:
         ModelError: timm is not installed, does not know the name, or cannot take the size.
     """
-    ours = did_you_mean(name, [NAME], "")
+    ours = did_you_mean(name, OURS, "")
     if ours:
         raise ModelError(f"model {name!r}: is unknown; {ours}")
     try:
         import timm
     except ImportError as error:
         raise ModelError(
-            f"model {name!r}: is not fftnet, and timm, which has others, is not installed "
-            f"({error}): pip install 'radhar[zoo]'"
+            f"model {name!r}: is neither {' nor '.join(OURS)}, and timm, which has others, is not "
+            f"installed ({error}): pip install 'radhar[zoo]'"
         ) from None
     except RuntimeError as error:
         raise ModelError(
@@ -31,7 +33,9 @@ def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
         ) from None
     if not timm.is_model(name):
         hint = did_you_mean(name, timm.list_models(), "`radhar models` lists some")
-        raise ModelError(f"model {name!r}: is neither fftnet nor a name of timm's; {hint}")
+        raise ModelError(
+            f"model {name!r}: is none of {', '.join(OURS)} nor a name of timm's; {hint}"
+        )
     create: Any = timm.create_model
     try:
         try:

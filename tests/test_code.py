@@ -28,6 +28,7 @@ ROOMS = (
     "figures",
     "dataset",
     "learning",
+    "tradeoff",
     "commands",
     "cli",
     "__main__",

@@ -81,10 +81,11 @@ def test_predict_prints_the_class_and_probabilities(place: Path) -> None:
         assert row["class"] == max(row["probabilities"], key=row["probabilities"].__getitem__)
 
 
-def test_models_lists_the_papers_network(place: Path) -> None:
-    done = radhar("models", "fftnet", "resnet50")
+def test_models_lists_our_networks_and_the_papers_rivals(place: Path) -> None:
+    done = radhar("models")
     assert done.returncode == 0, done.stderr
     assert "6,496,012" in done.stdout
+    assert "99,228" in done.stdout
     assert "resnet50" in done.stdout
 
 

@@ -7,6 +7,9 @@ from pydantic_core import PydanticCustomError
 
 from radhar_cli.config.section import Flag, Section
 
+# Powers of the sample number up to this are still told apart: the fit errs by 1e-5 at most.
+MOST_CONDITION = 1e12
+
 
 class SavgolConfig(Section):
     """The Savitzky-Golay filter of the denoised maps."""
@@ -19,6 +22,11 @@ class SavgolConfig(Section):
         if self.frame % 2 == 0 or self.frame <= self.order:
             raise PydanticCustomError(
                 "frame", "should have a frame that is odd and above the order"
+            )
+        if (self.frame // 2) ** self.order > MOST_CONDITION:
+            raise PydanticCustomError(
+                "frame",
+                "should have (frame // 2)^order at most 1e12, beyond which rounding spoils the fit",
             )
         return self
 

@@ -33,6 +33,7 @@ MapName = Literal[
 MAP_NAMES: tuple[MapName, ...] = MapName.__args__  # type: ignore[attr-defined]
 MIN_WINDOW = 8
 MOST_PULSES = 2**24
+MOST_PADDING = 64
 
 
 class Problem(NamedTuple):
@@ -146,6 +147,12 @@ def _waveform_problems(c: Config) -> Iterator[Problem]:
             fft_length,
             f"should be null or an even number of at least the {most} ADC samples",
         )
+    if fft_length is not None and fft_length > MOST_PADDING * fewest:
+        yield Problem(
+            "processing.range_fft_length",
+            fft_length,
+            f"should be null or at most {MOST_PADDING} times the {fewest} ADC samples",
+        )
 
 
 def _signal_problems(c: Config) -> Iterator[Problem]:
@@ -192,6 +199,13 @@ def _signal_problems(c: Config) -> Iterator[Problem]:
             "processing.stft_fft_length",
             processing.stft_fft_length,
             f"should be null or at least the window of {longest} pulses",
+        )
+    padded = MOST_PADDING * max(window, MIN_WINDOW)
+    if processing.stft_fft_length is not None and processing.stft_fft_length > padded:
+        yield Problem(
+            "processing.stft_fft_length",
+            processing.stft_fft_length,
+            f"should be null or at most {MOST_PADDING} times the window of {window} pulses",
         )
 
 

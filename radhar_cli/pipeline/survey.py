@@ -14,7 +14,7 @@ from radhar_cli.config.experiment import Config, timing_warnings
 from radhar_cli.errors import SceneError
 from radhar_cli.pipeline.models import antennas_of, body_of, wall_of, waveform_of
 from radhar_cli.radar.propagation import Antennas, bistatic_delay, leg
-from radhar_cli.radar.wall import Wall, crossing, extra_delay
+from radhar_cli.radar.wall import crossing, extra_delay
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.scenario import Scene, draw_scene
 
@@ -81,23 +81,6 @@ class Findings:
         return None
 
 
-class _Glance(NamedTuple):
-    """What some consecutive pulses of the grid show.
-
-    Attributes:
-        closest: nearest passage at these pulses.
-        stride: longest way (m) of a scatterer from one pulse to the next.
-        delay, doppler: largest, s and Hz.
-        meets_wall: a scatterer is inside the wall.
-    """
-
-    closest: Approach
-    stride: float
-    delay: float
-    doppler: float
-    meets_wall: bool
-
-
 def survey(scene: Scene, config: Config) -> Findings:
     """Look at one scene on a grid of pulses dense enough for its motion."""
     body, antennas = body_of(scene), antennas_of(scene)
@@ -105,50 +88,34 @@ def survey(scene: Scene, config: Config) -> Findings:
     rate = max(GRID_HZ, GRID_PER_CYCLE * body.highest_frequency)
     step = max(1, int(waveform.prf / rate))
     pulses = np.append(np.arange(0, waveform.n_pulses - 1, step), waveform.n_pulses - 1)
-    # Chunks share a pulse, so that every pair of neighbours is looked at.
-    glances = [
-        _glance(body, antennas, wall, waveform, pulses[first : first + CHUNK + 1].astype(float))
-        for first in range(0, pulses.size - 1, CHUNK)
-    ]
-    near = min(glance.closest for glance in glances)
-    if step > 1 and near.distance - max(glance.stride for glance in glances) <= CLOSEST_M:
-        near = min(near, _closest(body, antennas, waveform))
-    farthest = max(glance.delay for glance in glances) * SPEED_OF_LIGHT / 2
-    return Findings(
-        closest=near,
-        leaves_half_band=farthest >= waveform.half_band_range,
-        aliases=max(glance.doppler for glance in glances) > waveform.prf / 2,
-        meets_wall=any(glance.meets_wall for glance in glances),
-    )
-
-
-def _glance(
-    body: Body, antennas: Antennas, wall: Wall | None, waveform: Waveform, pulses: Float
-) -> _Glance:
-    t = waveform.times(pulses)
+    t = waveform.times(pulses.astype(float))
     p = body.positions(t)
     tau = bistatic_delay(leg(p, antennas.tx), leg(p, antennas.rx))
     if wall is not None:
         for antenna in (antennas.tx, antennas.rx):
             tau = tau + extra_delay(crossing(p, antenna, wall).chord, wall)
-    doppler = np.abs(np.diff(tau, axis=1)) * waveform.f0 / np.diff(t)
-    return _Glance(
-        closest=_nearest(p, t, antennas),
-        stride=float(np.sqrt((np.diff(p, axis=2) ** 2).sum(axis=0)).max()),
-        delay=float(tau.max()),
-        doppler=float(doppler.max()),
+    doppler = np.abs(np.diff(tau, axis=1)) * waveform.f0 / np.maximum(np.diff(t), 1e-300)
+    return Findings(
+        closest=_closest(body, antennas, waveform, p, t, step),
+        leaves_half_band=bool(tau.max() * SPEED_OF_LIGHT / 2 >= waveform.half_band_range),
+        aliases=bool(doppler.max(initial=0.0) > waveform.prf / 2),
         meets_wall=wall is not None and bool(wall.contains(p).any()),
     )
 
 
-def _closest(body: Body, antennas: Antennas, waveform: Waveform) -> Approach:
-    """Nearest passage at any pulse, for where the grid cannot rule out 5 cm."""
-    found = []
+def _closest(
+    body: Body, antennas: Antennas, waveform: Waveform, p: Float, t: Float, step: int
+) -> Approach:
+    """Nearest passage on the grid, or at every pulse where the grid cannot rule out 5 cm."""
+    near = _nearest(p, t, antennas)
+    between = np.sqrt((np.diff(p, axis=2) ** 2).sum(axis=0)).max(initial=0.0) if step > 1 else 0.0
+    if step == 1 or near.distance - between > CLOSEST_M:
+        return near
     for start in range(0, waveform.n_pulses, CHUNK):
         pulses = np.arange(start, min(start + CHUNK, waveform.n_pulses), dtype=float)
         t = waveform.times(pulses)
-        found.append(_nearest(body.positions(t), t, antennas))
-    return min(found)
+        near = min(near, _nearest(body.positions(t), t, antennas))
+    return near
 
 
 def _nearest(p: Float, t: Float, antennas: Antennas) -> Approach:

@@ -167,8 +167,9 @@ class Drawer:
         self.maybe(radar, 0.7, "bandwidth_hz", lambda: self.number(lambda: self.log(1e3, 1e12)))
         for key in ("tx_m", "rx_m"):
             self.maybe(radar, 0.3, key, lambda: [self.signed(1e-6, 1e6) for _ in range(3)])
-        for key in ("antenna_gain_dbi", "antenna_isolation_db"):
-            self.maybe(radar, 0.3, key, lambda: self.number(lambda: self.signed(1e-3, 300)))
+        for key, most in (("antenna_gain_dbi", 150), ("antenna_isolation_db", 300)):
+            draw = lambda most=most: self.signed(1e-3, most)  # noqa: E731
+            self.maybe(radar, 0.3, key, lambda draw=draw: self.number(draw))
         self.maybe(radar, 0.3, "residual_video_phase", lambda: self.chance(0.5))
         return radar
 

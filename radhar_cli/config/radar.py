@@ -16,6 +16,6 @@ class RadarConfig(Section):
     chirp_s: Annotated[Positive, within(1e-12, 1e4, "s")] = 40e-6
     tx_m: Vector = (0.4, -0.1, 1.5)
     rx_m: Vector = (0.4, 0.1, 1.5)
-    antenna_gain_dbi: Decibel = 6.0
+    antenna_gain_dbi: Annotated[Decibel, within(-150, 150, "dBi")] = 6.0
     antenna_isolation_db: Decibel = 10.0
     residual_video_phase: Flag = False

@@ -188,7 +188,7 @@ class Drawer:
             "fsst_threshold",
             lambda: self.pick((0.0, self.log(1e-300, 0.999))),
         )
-        order = int(self.rng.integers(0, 11))
+        order = int(self.rng.integers(0, 12))
         frame = order + 1 + order % 2
         self.maybe(processing, 0.3, "savgol", lambda: {"order": order, "frame": frame})
         return processing

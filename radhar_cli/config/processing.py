@@ -8,7 +8,7 @@ from pydantic_core import PydanticCustomError
 from radhar_cli.config.section import Flag, Section
 
 # Powers of the sample number up to this are still told apart: the fit errs by 1e-5 at most.
-MOST_CONDITION = 1e12
+MOST_CONDITION = 1e11
 
 
 class SavgolConfig(Section):
@@ -26,7 +26,7 @@ class SavgolConfig(Section):
         if (self.frame // 2) ** self.order > MOST_CONDITION:
             raise PydanticCustomError(
                 "frame",
-                "should have (frame // 2)^order at most 1e12, beyond which rounding spoils the fit",
+                "should have (frame // 2)^order at most 1e11, beyond which rounding spoils the fit",
             )
         return self
 

@@ -156,7 +156,7 @@ class Drawer:
         return [name for name in MAP_NAMES if self.chance(0.4)] or ["fsst"]
 
     def radar(self, samples: int) -> Document:
-        prf = self.log(1e-3, 1e8) if self.chance(0.5) else self.log(100, 1e4)
+        prf = self.log(1e-3, 1e7) if self.chance(0.5) else self.log(100, 1e4)
         chirp = self.log(max(1e-12, 1e-4 / prf), min(1e4, 0.9 / prf))
         radar: Document = {
             "prf_hz": prf,

@@ -11,7 +11,7 @@ class RadarConfig(Section):
 
     carrier_hz: Annotated[Positive, within(1e6, 1e13, "Hz")] = 77e9
     bandwidth_hz: Annotated[Positive, within(1e3, 1e12, "Hz")] = 4e9
-    prf_hz: Annotated[Positive, within(1e-3, 1e9, "Hz")] = 5000.0
+    prf_hz: Annotated[Positive, within(1e-3, 1e7, "Hz")] = 5000.0
     adc_rate_hz: Annotated[Positive, within(1e-3, 1e13, "Hz")] = 10e6
     chirp_s: Annotated[Positive, within(1e-12, 1e4, "s")] = 40e-6
     tx_m: Vector = (0.4, -0.1, 1.5)

@@ -18,7 +18,7 @@ LIMITS: dict[str, tuple[Any, Any, Any, Any]] = {
     "duration_s": (1e-9, 1e7, 9e-10, 1.1e7),
     "radar.carrier_hz": (1e6, 1e13, 9e5, 1.1e13),
     "radar.bandwidth_hz": (1e3, 1e12, 9e2, 1.1e12),
-    "radar.prf_hz": (1e-3, 1e9, 9e-4, 1.1e9),
+    "radar.prf_hz": (1e-3, 1e7, 9e-4, 1.1e7),
     "radar.adc_rate_hz": (1e-3, 1e13, 9e-4, 1.1e13),
     "radar.chirp_s": (1e-12, 1e4, 9e-13, 1.1e4),
     "radar.tx_m.0": (-1e6, 1e6, -1.1e6, 1.1e6),

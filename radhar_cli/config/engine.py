@@ -1,4 +1,4 @@
-"""`engine:` how the echo is computed."""
+"""`engine:` how the echo is computed, and how exactly."""
 
 from typing import Annotated, Literal
 
@@ -8,13 +8,14 @@ from radhar_cli.config.section import Section
 
 
 class EngineConfig(Section):
-    """`cube` is the exact float64 reference; `direct` the closed form, with its three settings.
+    """`cube` is the exact float64 reference; `direct` the closed form, within an error budget.
 
-    The settings of `direct` are floors: where a scene needs more (a fast gait, a scatterer that
-    brushes an antenna, an MTI that cancels almost everything) the engine takes more.
+    The budget is the relative L2 error (dB) of the noiseless slow-time signal after MTI against
+    the cube. A budget that `direct` cannot promise for a scene is refused, or the scene is computed
+    by the cube (`fallback: cube`).
     """
 
     kind: Literal["direct", "cube"] = "direct"
-    kinematics_hz: Annotated[float, Field(gt=0, le=1e9, strict=True)] = 250.0
-    table_oversampling: Annotated[int, Field(ge=2, le=1024, strict=True)] = 16
-    precision: Literal["single", "double"] = "single"
+    tolerance_db: Annotated[float, Field(ge=-400, le=-6, strict=True)] = -60.0
+    fallback: Literal["refuse", "cube"] = "refuse"
+    precision: Literal["auto", "double"] = "auto"

@@ -14,6 +14,8 @@ import scipy.fft
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.radar.waveform import Waveform
 
+MOST_CELLS = 2**22  # of a table, 64 bytes each
+
 
 def weights(waveform: Waveform) -> Complex:
     """D[n] [N_ADC]: what range compression and the sum over bins do to fast-time sample n."""

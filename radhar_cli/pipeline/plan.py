@@ -100,6 +100,7 @@ def _scene_stages(config: Config) -> list[Stage]:
 def _echo_stages(config: Config) -> list[Stage]:
     noisy = config.snr_db is not None
     powered = ("signal_power",) if noisy else ()
+    after = ", after MTI" if config.processing.mti else ""
     if config.engine.kind == "cube":
         return [
             Stage("signal_power", ("paths",), "P_s, which the noise refers to"),
@@ -115,12 +116,12 @@ def _echo_stages(config: Config) -> list[Stage]:
     return [
         Stage("echo", ("paths",), "closed-form echo: knots, table of the half-band sum"),
         Stage("signal_power", ("echo",), "P_s, which the noise refers to"),
-        Stage("slow_time", ("echo",), "slow-time signal of the paths"),
-        Stage("slow_time_noise", powered, "receiver noise after compression and sum"),
+        Stage("slow_time", ("echo",), f"slow-time signal of the paths{after}"),
+        Stage("slow_time_noise", powered, f"receiver noise after compression and sum{after}"),
         Stage(
             "signal:plain",
             ("slow_time", *(("slow_time_noise",) if noisy else ())),
-            "MTI" if config.processing.mti else "slow-time signal, no MTI",
+            "slow-time signal of paths and noise",
         ),
         Stage("range_noise", powered, "receiver noise of those range profiles"),
         Stage(

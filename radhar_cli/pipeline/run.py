@@ -4,7 +4,7 @@ Order (paper, figure "Signal processing overflow"): MTI -> range compression -> 
 sum over the kept bins -> [compensation] -> [denoising] -> STFT or FSST.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from time import perf_counter
@@ -15,8 +15,9 @@ import numpy as np
 from radhar_cli.arrays import Complex, Float, Levels
 from radhar_cli.config.experiment import Config
 from radhar_cli.echo import cube
-from radhar_cli.echo.direct import DirectEcho, DirectSettings, slow_time_noise
+from radhar_cli.echo.direct import DirectEcho, slow_time_noise
 from radhar_cli.echo.range_profiles import beat_at, noise_at, shown_pulses
+from radhar_cli.errors import SceneError
 from radhar_cli.pipeline.body_paths import BodyPaths
 from radhar_cli.pipeline.models import antennas_of, body_of, wall_of, waveform_of
 from radhar_cli.pipeline.plan import Plan, Stage
@@ -134,37 +135,55 @@ def _torso_track(r: Recording, stage: Stage) -> Float:
 
 def _echo(r: Recording, stage: Stage) -> DirectEcho:
     engine = r.config.engine
-    settings = DirectSettings(
-        engine.kinematics_hz, engine.table_oversampling, engine.precision == "single"
+    return DirectEcho(
+        r.products["paths"], r.waveform, engine.tolerance_db, engine.precision == "double"
     )
-    return DirectEcho(r.products["paths"], r.waveform, settings)
 
 
 def _signal_power(r: Recording, stage: Stage) -> float:
-    if "echo" in r.products:
-        return float(r.products["echo"].signal_power())
-    return cube.signal_power(r.products["paths"], r.waveform)
+    echo: DirectEcho | None = r.products.get("echo")
+    if echo is None or echo.beyond_reach:
+        return cube.signal_power(r.products["paths"], r.waveform)
+    return echo.signal_power()
 
 
 def _slow_time(r: Recording, stage: Stage) -> Complex:
     echo: DirectEcho = r.products["echo"]
-    return echo.slow_time(r.config.processing.mti)
+    if echo.beyond_reach:
+        if r.config.engine.fallback == "refuse":
+            raise SceneError(
+                f"sample {r.scene.name}: engine.tolerance_db = {echo.tolerance_db:g}: should be "
+                f"{echo.beyond_reach.limit_db:.0f} or more, which is what the direct engine can "
+                "promise here, or engine.fallback: cube"
+            )
+        blocks = _beat_blocks(r, 0.0, None)
+        return np.concatenate(
+            [half_band_signal(range_compression(block, r.waveform)) for _, block in blocks]
+        )
+    y = echo.slow_time(r.config.processing.mti)
+    return mti(y) if r.config.processing.mti else y
 
 
 def _slow_time_noise(r: Recording, stage: Stage) -> Complex:
-    return r.sigma * slow_time_noise(r.noise("slow_time"), r.waveform)
+    v = r.sigma * slow_time_noise(r.noise("slow_time"), r.waveform)
+    return mti(v) if r.config.processing.mti else v
+
+
+def _beat_blocks(
+    r: Recording, sigma: float, rng: np.random.Generator | None
+) -> Iterator[tuple[int, Complex]]:
+    """(first pulse or pair, beat matrix after MTI where the config has one), block by block."""
+    for first, block in cube.beat_blocks(r.products["paths"], r.waveform, sigma, rng):
+        own = mti(block) if r.config.processing.mti else block[:, (1 if first else 0) :]
+        if own.shape[1]:
+            yield (first if r.config.processing.mti or not first else first + 1), own
 
 
 def _beat_cube(r: Recording, stage: Stage) -> CubeProducts:
-    with_mti = r.config.processing.mti
     wants_signal, wants_range = "signal:plain" in r.plan, "rtm" in r.plan
     rng = r.noise("beat") if "signal_power" in r.products else None
     signal, profiles = [], []
-    for first, block in cube.beat_blocks(r.products["paths"], r.waveform, r.sigma, rng):
-        own = mti(block) if with_mti else block[:, (1 if first else 0) :]
-        start = first if with_mti or not first else first + 1
-        if own.shape[1] == 0:
-            continue
+    for start, own in _beat_blocks(r, r.sigma, rng):
         if wants_range:
             here = r.shown[(r.shown >= start) & (r.shown < start + own.shape[1])]
             profiles.append(range_power(range_bins(own[:, here - start], r.waveform)))
@@ -214,10 +233,8 @@ def _signal(r: Recording, stage: Stage) -> Complex:
 def _plain_signal(r: Recording) -> Complex:
     if "beat_cube" in r.products:
         return np.asarray(r.products["beat_cube"].signal)
-    y = r.products["slow_time"]
-    if "slow_time_noise" in r.products:
-        y = y + r.products["slow_time_noise"]
-    return mti(y) if r.config.processing.mti else np.asarray(y)
+    x = r.products["slow_time"]
+    return np.asarray(x + r.products["slow_time_noise"] if "slow_time_noise" in r.products else x)
 
 
 def _spectrum(r: Recording, stage: Stage) -> Complex:

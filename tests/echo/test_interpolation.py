@@ -3,7 +3,15 @@
 import numpy as np
 import pytest
 
-from radhar_cli.echo.interpolation import AFTER, BEFORE, upsample
+from radhar_cli.echo.interpolation import (
+    AFTER,
+    BEFORE,
+    EXACT,
+    TAPS,
+    after_first,
+    shifts,
+    upsample,
+)
 
 steps = pytest.mark.parametrize("step", [1, 3, 4, 20])
 
@@ -13,27 +21,46 @@ def knot_places(segments: int, step: int) -> np.ndarray:
     return np.arange(-BEFORE, segments + AFTER) * float(step)
 
 
+def unshifted(knots: np.ndarray) -> np.ndarray:
+    return np.zeros(knots.shape[-1] - BEFORE - AFTER, dtype=np.intp)
+
+
+def dense(knots: np.ndarray, step: int, dtype: type = np.float64) -> np.ndarray:
+    return upsample(knots, step, unshifted(knots), dtype)
+
+
 @steps
-def test_polynomial_of_degree_five_is_exact(step):
+@pytest.mark.parametrize("shift", [-2, -1, 0, 1, 2])
+def test_polynomial_of_degree_five_is_exact(step, shift):
     coefficients = np.random.default_rng(2).standard_normal((3, 6))
     at, pulses = knot_places(7, step), np.arange(7 * step)
     knots = np.stack([np.polyval(c, at / at[-1]) for c in coefficients])
     right = np.stack([np.polyval(c, pulses / at[-1]) for c in coefficients])
-    assert upsample(knots, step) == pytest.approx(right, abs=1e-13)
+    found = upsample(knots, step, np.full(7, shift))
+    assert found == pytest.approx(right, abs=1e-12)
 
 
-def test_degree_six_is_not():
+@pytest.mark.parametrize("shift", [-2, -1, 0, 1, 2])
+def test_degree_six_is_not(shift):
     """Six taps fix a polynomial of degree five and no more: the remainder is the textbook's."""
     at, pulses = knot_places(7, 10) / 10, np.arange(70) / 10
     part = pulses - np.floor(pulses)
-    remainder = np.prod([part - node for node in range(-BEFORE, AFTER + 1)], axis=0)
-    assert upsample(at**6, 10) == pytest.approx(pulses**6 - remainder, rel=1e-10)
+    remainder = np.prod([part - node - shift for node in range(-2, 4)], axis=0)
+    found = upsample(at**6, 10, np.full(7, shift))
+    assert found == pytest.approx(pulses**6 - remainder, rel=1e-9, abs=1e-9)
 
 
 @steps
 def test_knots_are_kept(step):
     knots = np.random.default_rng(3).standard_normal(20)
-    assert upsample(knots, step)[::step] == pytest.approx(knots[BEFORE:-AFTER], abs=1e-14)
+    assert dense(knots, step)[::step] == pytest.approx(knots[BEFORE:-AFTER], abs=1e-14)
+
+
+@steps
+def test_the_pulse_after_each_knot(step):
+    knots = np.random.default_rng(3).standard_normal((2, 20))
+    if step > 1:
+        assert after_first(knots, step) == pytest.approx(dense(knots, step)[:, 1::step], abs=1e-13)
 
 
 @pytest.mark.parametrize("cycles_per_knot", [0.01, 0.03, 0.1])
@@ -42,31 +69,54 @@ def test_error_of_a_sinusoid(cycles_per_knot):
     step, segments = 16, 400
     turn = 2 * np.pi * cycles_per_knot
     knots = np.sin(turn * knot_places(segments, step) / step)
-    error = np.abs(upsample(knots, step) - np.sin(turn * np.arange(segments * step) / step)).max()
+    error = np.abs(dense(knots, step) - np.sin(turn * np.arange(segments * step) / step)).max()
     bound = 0.005 * turn**6
     assert 0.1 * bound < error < bound + 1e-15
 
 
-@pytest.mark.parametrize("kink", [0.0, 0.37, 5.0, 8.99, 17.5])
-def test_a_kink_spoils_only_the_segments_that_reach_across_it(kink):
-    """Else its neighbourhood alone could not be replaced by exact values."""
+class TestKinks:
+    """A kink spoils the segment it lies in; beside it, stencils keep to their own side."""
+
     step, segments = 10, 20
-    pulses = np.arange(segments * step)
 
-    def track(at):
-        return np.where(at < kink, at**2, kink**2 + 3 * (at - kink))
+    def times(self) -> np.ndarray:
+        return knot_places(self.segments, self.step) / self.step
 
-    error = np.abs(upsample(track(knot_places(segments, step) / step), step) - track(pulses / step))
-    segment = pulses // step
-    reach = (segment - BEFORE < kink) & (kink < segment + AFTER)
-    assert error[~reach].max() < 1e-12
-    if kink % 1 > 0:
-        assert error[reach].max() > 1e-3
+    @pytest.mark.parametrize("kink", [0.0, 0.37, 5.0, 8.99, 17.5, 19.9, -0.5, 20.5])
+    def test_only_its_own_segment_is_spoilt(self, kink):
+        def track(at):
+            return np.where(at < kink, at**2, kink**2 + 3 * (at - kink))
+
+        shift = shifts(self.times(), (kink,))
+        pulses = np.arange(self.segments * self.step)
+        error = np.abs(upsample(track(self.times()), self.step, shift) - track(pulses / self.step))
+        spoilt = np.repeat(shift == EXACT, self.step)
+        assert error[~spoilt].max() < 1e-11
+        # A kink at a knot belongs to what follows, and so spoils the segment that ends there.
+        holder = int(np.ceil(kink)) - 1
+        assert np.flatnonzero(shift == EXACT).tolist() == (
+            [holder] if 0 <= holder < self.segments else []
+        )
+
+    @pytest.mark.parametrize("between", [0.5, 3.0, 6.0])
+    def test_a_piece_of_few_knots_is_not_interpolated(self, between):
+        """Seven knots are the fewest of which a sixth difference can be taken."""
+        kinks = (5.1, 5.1 + between)
+        spoilt = np.flatnonzero(shifts(self.times(), kinks) == EXACT)
+        assert spoilt.tolist() == list(range(5, int(kinks[1]) + 1))
+
+    def test_a_longer_piece_is(self):
+        shift = shifts(self.times(), (5.1, 5.1 + TAPS + 1))
+        assert np.flatnonzero(shift == EXACT).tolist() == [5, 12]
+        assert shift.tolist() == [0, 0, 0, -1, -2, EXACT, 2, 1, 0, 0, -1, -2, EXACT, 2, 1] + 5 * [0]
+
+    def test_without_kinks_no_stencil_moves(self):
+        assert not shifts(self.times(), ()).any()
 
 
 def test_single_precision_is_single():
     knots = np.random.default_rng(4).standard_normal((2, 3, 30))
-    single = upsample(knots, 5, np.float32)
+    single = dense(knots, 5, np.float32)
     assert single.dtype == np.float32
-    assert single == pytest.approx(upsample(knots, 5), abs=1e-5)
-    assert single.shape == (2, 3, 25 * 5)
+    assert single == pytest.approx(dense(knots, 5), abs=1e-5)
+    assert single.shape == (2, 3, (30 - BEFORE - AFTER) * 5)

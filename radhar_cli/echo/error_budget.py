@@ -1,0 +1,280 @@
+"""From an error that is allowed to the cheapest settings of the direct engine that keep it."""
+
+from dataclasses import dataclass, field
+from math import inf, log10, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from radhar_cli.arrays import Bool, Complex, Float
+from radhar_cli.echo import error_bounds
+from radhar_cli.echo.error_bounds import (
+    MOST_FOLD,
+    MOST_TURN,
+    OVERSAMPLINGS,
+    Bounds,
+    Interpolation,
+    Motion,
+    Sums,
+)
+from radhar_cli.echo.half_band_sum import MOST_CELLS, HalfBandTable, half_band_table
+from radhar_cli.echo.interpolation import TAPS
+from radhar_cli.echo.knots import Knots, Neighbours, all_knots, columns, knots_of
+from radhar_cli.echo.paths import Paths, PathSource
+from radhar_cli.radar.waveform import Waveform
+
+# Shares of the budget. Where there are no knots, the table of G has that of the interpolation too.
+INTERPOLATION_SHARE, ROUNDING_SHARE = 0.5, 0.25
+
+# The coarsest knots, and the closest worth having.
+PROBE_HZ, PROBE_PER_CYCLE, PROBE_LEAST = 40.0, 40, 64
+LEAST_STEP = 3
+# Aims that usually spare a second look.
+USUAL_TURN, SPARE = 0.2, 0.9
+# Pulses that x is measured at, and up to how many are taken where there are no knots.
+LOOK_PULSES, ALL_PULSES = 160, 4096
+LOOK_OVERSAMPLING = 16
+
+
+@dataclass(frozen=True)
+class DirectSettings:
+    """What the direct engine does for a scene.
+
+    Attributes:
+        step: pulses from knot to knot of the kinematics; 1 is every pulse.
+        table_oversampling: points of the table of G per fast-time sample.
+        single: whether sines and cosines are single precision.
+        moving: numbers of the paths that change; the others cancel in the MTI.
+        scale: power of two that the amplitudes are divided by.
+        cheapest: nothing less exact would have been cheaper.
+        bounds_db: {term: bound of its error relative to x, dB}.
+    """
+
+    step: int
+    table_oversampling: int
+    single: bool
+    moving: tuple[int, ...]
+    scale: float
+    cheapest: bool = True
+    bounds_db: dict[str, float] = field(default_factory=dict)
+
+
+class BudgetError(ValueError):
+    """The direct engine cannot promise the accuracy asked for.
+
+    Attributes:
+        limit_db: the tightest that it can.
+    """
+
+    def __init__(self, limit_db: float) -> None:
+        super().__init__(f"the direct engine can promise no more than {limit_db:.0f} dB")
+        self.limit_db = limit_db
+
+
+class Envelope(NamedTuple):
+    """Knots, and B = A G over the scale [I, K] there."""
+
+    knots: Knots
+    b: Complex
+
+
+class Choice(NamedTuple):
+    """Settings; and the paths themselves, where the recording is short enough to keep them."""
+
+    settings: DirectSettings
+    kept: Envelope | None
+
+
+def choose(
+    source: PathSource, waveform: Waveform, tolerance_db: float, double: bool = False
+) -> Choice:
+    """Return the cheapest settings whose error bound is within the budget.
+
+    Args:
+        source: the paths.
+        waveform: the radar.
+        tolerance_db: relative L2 error of the noiseless slow-time signal after MTI.
+        double: keep to double precision whatever the budget.
+
+    Raises:
+        BudgetError: the budget is below what float64 leaves of this signal.
+    """
+    budget = 10 ** (tolerance_db / 20)
+    probe = _probe(source, waveform)
+    if not probe.moving.any():
+        return Choice(DirectSettings(probe.step, 1, not double, (), probe.scale), None)
+    single, rounding = _rounding(probe.bounds, budget, double)
+    left = budget * probe.bounds.signal - rounding
+    share = INTERPOLATION_SHARE * budget * probe.bounds.signal if probe.step > 1 else 0.0
+    oversampling, table_error = _table(probe.bounds, waveform, left - share)
+    table = half_band_table(waveform, oversampling)
+    step, interpolation, kept = probe.step, 0.0, None
+    if step > 1:
+        step, interpolation, kept = _close_enough(source, probe, table, budget)
+    if step == 1 and waveform.n_pulses <= ALL_PULSES:
+        every = probe.kept if probe.step == 1 else None
+        every = every or knots_of(source, waveform, 1, (0, waveform.n_pulses))
+        kept = Envelope(every, error_bounds.envelope(every.paths, table, probe.scale))
+    terms = {"interpolation": interpolation, "table": table_error, "rounding": rounding}
+    settings = DirectSettings(
+        step,
+        oversampling,
+        single,
+        tuple(np.flatnonzero(probe.moving).tolist()),
+        probe.scale,
+        step == probe.step and oversampling == 1 and (single or double),
+        {name: _decibel(error, probe.bounds.signal) for name, error in terms.items()},
+    )
+    return Choice(settings, kept)
+
+
+@dataclass(frozen=True)
+class _Probe:
+    """A recording seen through coarse knots (or single pulses) that resolve its motion.
+
+    Attributes:
+        step: of the knots; 1 where paths are taken at every pulse.
+        bounds: all that do not depend on the knots.
+        delays: error of delays and amplitudes at these knots.
+        motion: from knot to knot.
+        moving: which paths change [I].
+        scale: power of two near the largest amplitude.
+        kept: the knots, where one chunk of them is all.
+    """
+
+    step: int
+    bounds: Bounds
+    delays: float
+    motion: Motion
+    moving: Bool
+    scale: float
+    kept: Knots | None
+
+
+def _probe(source: PathSource, waveform: Waveform) -> _Probe:
+    rate = max(PROBE_HZ, PROBE_PER_CYCLE * source.highest_frequency)
+    step = min(int(waveform.prf // rate), waveform.n_pulses // PROBE_LEAST)
+    while source.smooth and step >= LEAST_STEP:
+        probe = _through_knots(source, waveform, step)
+        if probe.motion.fold <= MOST_FOLD:
+            return probe
+        step = min(step - 1, int(step * MOST_FOLD / probe.motion.fold))
+    return _through_pulses(source, waveform)
+
+
+def _through_knots(source: PathSource, waveform: Waveform, step: int) -> _Probe:
+    table = _look_table(waveform)
+    looks: list[Sums] = []
+    first, scale, longest, seen = None, 1.0, 0.0, Motion(0.0, 0.0)
+    moving: Bool = np.zeros(1, dtype=bool)
+    delays: list[Interpolation] = []
+    kept = None
+    for knots in all_knots(source, waveform, step):
+        if first is None:
+            first, scale = knots.at_pulses, _scale(knots.paths)
+        kept = knots if kept is None and not looks else None
+        looks += [error_bounds.sums(n, table, scale) for n in knots.neighbours(LOOK_PULSES)]
+        b = error_bounds.envelope(knots.paths, table, scale)
+        delays.append(error_bounds.delay_errors(knots, b, source.kinks, waveform))
+        seen = Motion(*np.maximum(seen, error_bounds.motion(knots, waveform)).tolist())
+        moving = moving | knots.changes(first)
+        longest = max(longest, float(knots.paths.delay.max()))
+    changing = moving.astype(float)
+    bounds = error_bounds.bounds(looks, waveform.f0 * longest, changing)
+    return _Probe(step, bounds, _norm(delays, changing), seen, moving, scale, kept)
+
+
+def _through_pulses(source: PathSource, waveform: Waveform) -> _Probe:
+    """Pairs of neighbouring pulses, spread over the recording by the golden ratio."""
+    count = waveform.n_pulses
+    place = np.mod((np.arange(LOOK_PULSES) + 0.5) * (sqrt(5) - 1) / 2, 1) * (count - 1)
+    pulses = np.unique(place.astype(np.intp))
+    kept = knots_of(source, waveform, 1, (0, count)) if count <= ALL_PULSES else None
+    if kept is not None:
+        pair = Neighbours(columns(kept.paths, pulses), columns(kept.paths, pulses + 1), 1)
+        moving = kept.changes(kept.paths)
+    else:
+        now, after = (source(waveform.times((pulses + later).astype(float))) for later in (0, 1))
+        pair = Neighbours(now, after, 1)
+        moving = ~pair.still
+    scale = _scale(pair.now)
+    look = error_bounds.sums(pair, _look_table(waveform), scale)
+    cycles = waveform.f0 * float(pair.now.delay.max())
+    bounds = error_bounds.bounds([look], cycles, moving.astype(float))
+    return _Probe(1, bounds, 0.0, Motion(0.0, 0.0), moving, scale, kept)
+
+
+def _rounding(b: Bounds, budget: float, double: bool) -> tuple[bool, float]:
+    """Whether single precision will do, and the error of what is chosen."""
+    limit = ROUNDING_SHARE * budget * b.signal
+    if b.double > limit:
+        raise BudgetError(_decibel(b.double, ROUNDING_SHARE * b.signal))
+    single = not double and b.single <= limit
+    return single, b.single if single else b.double
+
+
+def _first_step(probe: _Probe, budget: float) -> int:
+    """A step that should do, from what the probe saw."""
+    step = probe.step * _closer(probe.delays, INTERPOLATION_SHARE * budget * probe.bounds.signal)
+    if probe.motion.turn > MOST_TURN:
+        usual: float = USUAL_TURN * (budget / 1e-3) ** (1 / TAPS)
+        step = min(step, probe.step * min(usual, MOST_TURN) / probe.motion.turn)
+    return int(step)
+
+
+def _close_enough(
+    source: PathSource, probe: _Probe, table: HalfBandTable, budget: float
+) -> tuple[int, float, Envelope | None]:
+    """Bring the knots together until their bound is within its share: (step, bound, knots)."""
+    waveform, share = table.waveform, INTERPOLATION_SHARE * budget * probe.bounds.signal
+    moving = probe.moving.astype(float)
+    step = _first_step(probe, budget)
+    while step >= LEAST_STEP:
+        errors: list[Interpolation] = []
+        kept = None
+        ready = [probe.kept] if step == probe.step and probe.kept else None
+        for knots in ready or all_knots(source, waveform, step):
+            b = error_bounds.envelope(knots.paths, table, probe.scale)
+            errors.append(error_bounds.interpolation_errors(knots, b, source.kinks, waveform))
+            kept = Envelope(knots, b) if len(errors) == 1 else None
+        error = _norm(errors, moving)
+        if error <= share:
+            return step, error, kept
+        step = min(step - 1, int(step * _closer(error, share)))
+    return 1, 0.0, None
+
+
+def _closer(error: float, share: float) -> float:
+    """Factor on the step of the knots after which an error should be within its share.
+
+    It falls with the sixth power of the step, its change from pulse to pulse with the fifth.
+    """
+    return SPARE * (share / error) ** (1 / (TAPS - 1)) if error > share else 1.0
+
+
+def _norm(chunks: list[Interpolation], moving: Float) -> float:
+    squares = np.sum([chunk.squares for chunk in chunks], axis=0)
+    whole = Interpolation(squares, sum(chunk.weight for chunk in chunks))
+    return float(moving @ whole.error)
+
+
+def _table(b: Bounds, waveform: Waveform, share: float) -> tuple[int, float]:
+    """The coarsest table whose error is within its share: oversampling and error."""
+    fine = np.flatnonzero(OVERSAMPLINGS * waveform.n_adc <= max(MOST_CELLS, waveform.n_adc))
+    enough = fine[b.table[fine] <= share]
+    if not enough.size:
+        raise BudgetError(_decibel(float(b.table[fine[-1]]), INTERPOLATION_SHARE * b.signal))
+    return int(OVERSAMPLINGS[enough[0]]), float(b.table[enough[0]])
+
+
+def _look_table(waveform: Waveform) -> HalfBandTable:
+    return half_band_table(waveform, min(LOOK_OVERSAMPLING, max(1, MOST_CELLS // waveform.n_adc)))
+
+
+def _decibel(error: float, signal: float) -> float:
+    return 20 * log10(error / signal) if error > 0 and signal > 0 else (inf if error > 0 else -inf)
+
+
+def _scale(paths: Paths) -> float:
+    largest = float(paths.amplitude.max(initial=0.0))
+    return float(2.0 ** np.frexp(largest)[1]) if largest > 0 else 1.0

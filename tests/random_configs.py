@@ -135,7 +135,10 @@ class Drawer:
             "processing": self.processing(pulses, samples),
             "engine": {"kind": self.pick(("direct", "cube"))},
         }
-        self.maybe(document["engine"], 0.3, "precision", lambda: "double")
+        engine = document["engine"]
+        self.maybe(engine, 0.3, "precision", lambda: "double")
+        self.maybe(engine, 0.3, "fallback", lambda: self.pick(("refuse", "cube")))
+        self.maybe(engine, 0.3, "tolerance_db", lambda: -self.log(6, 400))
         self.maybe(document, 0.7, "activities", lambda: [self.pick(ACTIVITIES).slug])
         self.maybe(document, 0.7, "motion", self.motion)
         self.maybe(document, 0.6, "timing", lambda: self.timing(document["duration_s"]))

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import reference as ref
 import yaml
 from random_configs import KEYS, Document, Drawer
 
@@ -21,6 +22,9 @@ from radhar_cli.scenario import draw_scene
 
 SEED = 20261121
 BLOCKS, CONFIGS = 10, 220
+AGREEING_BLOCKS, AGREEING = 4, 60
+DIRECT_DB = -60.0
+MOST_CYCLES = 1e10  # beyond, the phases of either engine are off by 1e-6 of a cycle and more
 BROKEN = 0.2  # share of the documents in which one key is replaced by junk
 ALL_MAPS = 0.3  # share of the recordings that make all nine maps
 LEAST_MAPPED = 0.5  # nothing is gained where everything is refused
@@ -123,3 +127,49 @@ def test_maps_or_a_clear_refusal(
     assert mapped >= LEAST_MAPPED * CONFIGS
     assert broken_refused >= 0.1 * CONFIGS
     assert named >= LEAST_NAMED * broken_refused
+
+
+def cycles(recording: Recording) -> float:
+    """Largest phase of a path: what is left of it to a double is 1e-16 of this."""
+    w = recording.waveform
+    delay = recording.products["paths"](w.times(np.arange(w.n_pulses) + 0.0)).delay.max()
+    return float(w.f0 * delay + 0.5 * w.slope * delay**2 * w.residual_video_phase)
+
+
+@pytest.mark.parametrize("block", range(AGREEING_BLOCKS))
+def test_direct_keeps_its_promise_or_refuses(block: int) -> None:
+    """Random scenes over all ranges, noiseless, after MTI: within -60 dB of the cube."""
+    drawer = Drawer(SEED, BLOCKS + block)
+    compared = refused = rounded = 0
+    worst = -math.inf
+    for _ in range(AGREEING):
+        document = drawer.document() | {"snr_db": None}
+        document["processing"]["mti"] = True
+        found = []
+        try:
+            for kind in ("cube", "direct"):
+                config = validated(Config, document | {"engine": {"kind": kind}}, "fuzz", {})
+                scene = draw_scene(config, config.chosen_activities[-1], 0)
+                check(scene, config)
+                found.append(run(plan(config, ["paths", "signal:plain"]), scene, config))
+        except RadharError as error:
+            assert_clear(error)
+            refused += 1
+            continue
+        right, direct = (recording.products["signal:plain"] for recording in found)
+        if cycles(found[0]) > MOST_CYCLES:
+            rounded += 1
+            continue
+        compared += 1
+        if not right.any():
+            assert not direct.any()
+            continue
+        largest = np.abs(right).max()  # the square of 1e-200 is no double
+        error_db = ref.error_db(direct / largest, right / largest)
+        assert error_db < DIRECT_DB, document
+        worst = max(worst, error_db)
+    print(
+        f"block {block}: {compared} scenes, direct {worst:.0f} dB at worst; {refused} refused, "
+        f"{rounded} beyond {MOST_CYCLES:g} cycles"
+    )
+    assert compared >= LEAST_MAPPED * AGREEING

@@ -57,6 +57,7 @@ LIMITS: dict[str, tuple[Any, Any, Any, Any]] = {
     "processing.savgol.order": (0, 10, -1, 11),
     "processing.savgol.frame": (7, 317, 5, 319),
     "processing.fsst_threshold": (0, 0.999, -0.1, 1),
+    "engine.tolerance_db": (-400, -6, -401, -5),
     "image.size_px": (2, 8192, 1, 8193),
     "image.dynamic_range_db": (5e-324, 300, 0, 301),
     "split.train": (0, 1, -0.1, 1.1),

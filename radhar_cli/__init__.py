@@ -7,7 +7,7 @@ The rooms, in the order in which data flows through them; imports never turn bac
     randomness    named random streams
     scenario      (config, class, index) -> one scene: every number drawn
     body          skeleton, activities (angles over time), pose (angles -> positions)
-    radar         waveform, propagation (delay, amplitude), wall, noise
+    radar         waveform, propagation (delay, amplitude), wall (refraction, Fresnel), noise
     echo          paths -> echo: `cube` (exact reference), `direct` (closed form), range profiles
     processing    MTI, range compression, compensation, Savitzky-Golay, STFT, FSST, entropy, image
     pipeline      scene -> maps: which stages a request needs, and their only order

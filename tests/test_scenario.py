@@ -78,6 +78,7 @@ def test_a_scene_is_the_same_in_whatever_order_it_is_drawn() -> None:
         ({"snr_reference": "received"}, set()),
         ({"wall": None}, {"wall."}),
         ({"wall": {"eps_r": 3}}, {"wall."}),
+        ({"wall": {**DRAWN["wall"], "rays": "refracted", "fresnel": "parallel"}}, set()),
         ({"engine": {"kind": "cube", "precision": "double"}}, set()),
         ({"maps": ("rtm", "fsst_denoised")}, set()),
         ({"processing": {"mti": False, "range_fft_length": 512}}, set()),

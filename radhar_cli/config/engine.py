@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from radhar_cli.config.section import Section
+from radhar_cli.config.section import Flag, Section
 
 
 class EngineConfig(Section):
@@ -12,10 +12,12 @@ class EngineConfig(Section):
 
     The budget is the relative L2 error (dB) of the noiseless slow-time signal after MTI against
     the cube. A budget that `direct` cannot promise for a scene is refused, or the scene is computed
-    by the cube (`fallback: cube`).
+    by the cube (`fallback: cube`). `motion_in_chirp` lets the paths of the cube go on moving during
+    a chirp.
     """
 
     kind: Literal["direct", "cube"] = "direct"
     tolerance_db: Annotated[float, Field(ge=-400, le=-6, strict=True)] = -60.0
     fallback: Literal["refuse", "cube"] = "refuse"
     precision: Literal["auto", "double"] = "auto"
+    motion_in_chirp: Flag = False

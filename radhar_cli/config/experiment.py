@@ -107,6 +107,13 @@ def _problems(c: Config) -> Iterator[Problem]:
     yield from _waveform_problems(c)
     yield from _signal_problems(c)
     yield from _wall_problems(c)
+    if c.engine.motion_in_chirp and c.engine.kind == "direct":
+        yield Problem(
+            "engine.motion_in_chirp",
+            True,
+            "should be false with engine.kind: direct, which freezes positions during a chirp; "
+            "engine.kind: cube can have it",
+        )
     split = c.split
     if split.subjects is not None and split.subjects > c.samples_per_class:
         yield Problem(

@@ -6,6 +6,7 @@ import numpy as np
 
 from radhar_cli.arrays import Complex
 from radhar_cli.echo.beat import beat_matrix
+from radhar_cli.echo.motion_in_chirp import moving_beat_matrix
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.radar.noise import circular_gaussian
 from radhar_cli.radar.waveform import Waveform
@@ -27,6 +28,7 @@ def beat_blocks(
     waveform: Waveform,
     sigma: float = 0.0,
     rng: np.random.Generator | None = None,
+    motion_in_chirp: bool = False,
 ) -> Iterator[tuple[int, Complex]]:
     """Yield (first pulse, s_noisy[n, m] [N_ADC, block]) for consecutive blocks of pulses.
 
@@ -38,13 +40,17 @@ def beat_blocks(
         waveform: the radar.
         sigma: standard deviation of the noise per complex sample.
         rng: its stream, unless sigma is 0.
+        motion_in_chirp: whether paths go on moving during a chirp, instead of stop-and-hop.
     """
     length = max(2, BLOCK_SAMPLES // waveform.n_adc)
     carried: Complex | None = None
     for start in range(0, waveform.n_pulses, length):
         pulses = np.arange(start, min(start + length, waveform.n_pulses), dtype=float)
-        paths = source(waveform.times(pulses))
-        beat = beat_matrix(paths.delay, paths.amplitude, waveform)
+        if motion_in_chirp:
+            beat = moving_beat_matrix(source, waveform, pulses)
+        else:
+            paths = source(waveform.times(pulses))
+            beat = beat_matrix(paths.delay, paths.amplitude, waveform)
         if rng is not None:
             beat = beat + sigma * circular_gaussian(rng, (len(pulses), waveform.n_adc)).T
         if carried is not None:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.echo.beat import start_phase
+from radhar_cli.echo.coarse_knots import CoarseKnots, coarse_knots
 from radhar_cli.echo.error_bounds import envelope
 from radhar_cli.echo.error_budget import BudgetError, Choice, DirectSettings, Envelope, choose
 from radhar_cli.echo.half_band_sum import half_band_table, noise_gain
@@ -68,11 +69,7 @@ class DirectEcho:
 
     def signal_power(self) -> float:
         """P_s = mean over the pulses of the power that the SNR refers to."""
-        total = sum(
-            float(knots.dense(knots.paths.power, knots.exact.power).sum())
-            for knots, _ in self._envelopes()
-        )
-        return total / self.waveform.n_pulses
+        return self._coarse.mean_power()
 
     @cached_property
     def beyond_reach(self) -> BudgetError | None:
@@ -90,7 +87,11 @@ class DirectEcho:
 
     @cached_property
     def _chosen(self) -> Choice:
-        return choose(self.source, self.waveform, self.tolerance_db, self.double)
+        return choose(self._coarse, self.tolerance_db, self.double)
+
+    @cached_property
+    def _coarse(self) -> CoarseKnots:
+        return coarse_knots(self.source, self.waveform)
 
     def _envelopes(self) -> Iterator[Envelope]:
         """Knots and envelopes: those already looked at, where they are all there are."""

@@ -31,9 +31,8 @@ HERMITE_VALUE, HERMITE_SLOPE = 1 / 384, sqrt(3) / 216
 # A float32 angle of up to pi, its sine, an envelope and a sum; the same in double precision, where
 # the phase is that of the whole delay.
 SINGLE, DOUBLE = 1.5e-7, 4e-16
-# Cycles a knot up to which sixth differences see a component of G, and an amplitude that changes
-# by no more than this from knot to knot.
-MOST_TURN, MOST_FOLD = 0.25, 0.2
+# Cycles a knot up to which sixth differences see a component of G.
+MOST_TURN = 0.25
 OVERSAMPLINGS = np.array([1, *(n * 2**k for k in range(10) for n in (2, 3))])
 _GRID = 8
 _MIDDLE = slice(TAPS // 2, -(TAPS // 2))
@@ -115,28 +114,6 @@ def bounds(looks: list[Sums], cycles: float, moving: Float) -> Bounds:
         single=SINGLE * sqrt(2) * float(np.linalg.norm(moving * b)),
         double=DOUBLE * sqrt(2) * (2 * np.pi * cycles + 8) * float(b.sum()),
     )
-
-
-class Motion(NamedTuple):
-    """How far things move from one knot to the next, at most.
-
-    Attributes:
-        fold: relative change of an amplitude.
-        turn: turning of the fastest component of G, cycles.
-    """
-
-    fold: float
-    turn: float
-
-
-def motion(knots: Knots, waveform: Waveform) -> Motion:
-    """What tells whether sixth differences at these knots see all that is between them."""
-    a, w = knots.paths.amplitude, waveform
-    least = np.minimum(a[:, 1:], a[:, :-1])
-    change = np.abs(np.diff(a, axis=1)) / np.where(least > 0, least, np.inf)
-    reach = max(w.n_adc - w.n0, w.n0) / w.adc_rate * w.slope
-    turn = reach * np.abs(np.diff(knots.paths.delay, axis=1))
-    return Motion(float(change.max(initial=0.0)), float(turn.max(initial=0.0)))
 
 
 class Interpolation(NamedTuple):

@@ -8,31 +8,21 @@ import numpy as np
 
 from radhar_cli.arrays import Bool, Complex, Float
 from radhar_cli.echo import error_bounds
-from radhar_cli.echo.error_bounds import (
-    MOST_FOLD,
-    MOST_TURN,
-    OVERSAMPLINGS,
-    Bounds,
-    Interpolation,
-    Motion,
-    Sums,
-)
+from radhar_cli.echo.coarse_knots import LEAST_STEP, CoarseKnots, every_pulse
+from radhar_cli.echo.error_bounds import MOST_TURN, OVERSAMPLINGS, Bounds, Interpolation, Sums
 from radhar_cli.echo.half_band_sum import MOST_CELLS, HalfBandTable, half_band_table
 from radhar_cli.echo.interpolation import TAPS
-from radhar_cli.echo.knots import Knots, Neighbours, all_knots, columns, knots_of
-from radhar_cli.echo.paths import Paths, PathSource
+from radhar_cli.echo.knots import Knots, Neighbours, all_knots, columns
+from radhar_cli.echo.paths import Paths
 from radhar_cli.radar.waveform import Waveform
 
 # Shares of the budget. Where there are no knots, the table of G has that of the interpolation too.
 INTERPOLATION_SHARE, ROUNDING_SHARE = 0.5, 0.25
 
-# The coarsest knots, and the closest worth having.
-PROBE_HZ, PROBE_PER_CYCLE, PROBE_LEAST = 40.0, 40, 64
-LEAST_STEP = 3
 # Aims that usually spare a second look.
 USUAL_TURN, SPARE = 0.2, 0.9
-# Pulses that x is measured at, and up to how many are taken where there are no knots.
-LOOK_PULSES, ALL_PULSES = 160, 4096
+# Pulses that x is measured at.
+LOOK_PULSES = 160
 LOOK_OVERSAMPLING = 16
 
 
@@ -85,14 +75,11 @@ class Choice(NamedTuple):
     kept: Envelope | None
 
 
-def choose(
-    source: PathSource, waveform: Waveform, tolerance_db: float, double: bool = False
-) -> Choice:
+def choose(coarse: CoarseKnots, tolerance_db: float, double: bool = False) -> Choice:
     """Return the cheapest settings whose error bound is within the budget.
 
     Args:
-        source: the paths.
-        waveform: the radar.
+        coarse: the recording seen through its coarsest knots.
         tolerance_db: relative L2 error of the noiseless slow-time signal after MTI.
         double: keep to double precision whatever the budget.
 
@@ -100,21 +87,21 @@ def choose(
         BudgetError: the budget is below what float64 leaves of this signal.
     """
     budget = 10 ** (tolerance_db / 20)
-    probe = _probe(source, waveform)
+    probe = _through_knots(coarse) if coarse.step > 1 else _through_pulses(coarse)
     if not probe.moving.any():
-        return Choice(DirectSettings(probe.step, 1, not double, (), probe.scale), None)
+        return Choice(DirectSettings(coarse.step, 1, not double, (), probe.scale), None)
     single, rounding = _rounding(probe.bounds, budget, double)
     left = budget * probe.bounds.signal - rounding
-    share = INTERPOLATION_SHARE * budget * probe.bounds.signal if probe.step > 1 else 0.0
-    oversampling, table_error = _table(probe.bounds, waveform, left - share)
-    table = half_band_table(waveform, oversampling)
-    step, interpolation, kept = probe.step, 0.0, None
-    if step > 1:
-        step, interpolation, kept = _close_enough(source, probe, table, budget)
-    if step == 1 and waveform.n_pulses <= ALL_PULSES:
-        every = probe.kept if probe.step == 1 else None
-        every = every or knots_of(source, waveform, 1, (0, waveform.n_pulses))
-        kept = Envelope(every, error_bounds.envelope(every.paths, table, probe.scale))
+    share = INTERPOLATION_SHARE * budget * probe.bounds.signal if coarse.step > 1 else 0.0
+    oversampling, table_error = _table(probe.bounds, coarse.waveform, left - share)
+    table = half_band_table(coarse.waveform, oversampling)
+    step, interpolation, kept = 1, 0.0, None
+    if coarse.step > 1:
+        step, interpolation, kept = _close_enough(coarse, probe, table, budget)
+    if step == 1:
+        every = (coarse if coarse.step == 1 else every_pulse(coarse.source, coarse.waveform)).kept
+        if every is not None:
+            kept = Envelope(every, error_bounds.envelope(every.paths, table, probe.scale))
     terms = {"interpolation": interpolation, "table": table_error, "rounding": rounding}
     settings = DirectSettings(
         step,
@@ -122,7 +109,7 @@ def choose(
         single,
         tuple(np.flatnonzero(probe.moving).tolist()),
         probe.scale,
-        step == probe.step and oversampling == 1 and (single or double),
+        step == coarse.step and oversampling == 1 and (single or double),
         {name: _decibel(error, probe.bounds.signal) for name, error in terms.items()},
     )
     return Choice(settings, kept)
@@ -130,69 +117,50 @@ def choose(
 
 @dataclass(frozen=True)
 class _Probe:
-    """A recording seen through coarse knots (or single pulses) that resolve its motion.
+    """What the coarse knots show.
 
     Attributes:
-        step: of the knots; 1 where paths are taken at every pulse.
         bounds: all that do not depend on the knots.
         delays: error of delays and amplitudes at these knots.
-        motion: from knot to knot.
         moving: which paths change [I].
         scale: power of two near the largest amplitude.
-        kept: the knots, where one chunk of them is all.
     """
 
-    step: int
     bounds: Bounds
     delays: float
-    motion: Motion
     moving: Bool
     scale: float
-    kept: Knots | None
 
 
-def _probe(source: PathSource, waveform: Waveform) -> _Probe:
-    rate = max(PROBE_HZ, PROBE_PER_CYCLE * source.highest_frequency)
-    step = min(int(waveform.prf // rate), waveform.n_pulses // PROBE_LEAST)
-    while source.smooth and step >= LEAST_STEP:
-        probe = _through_knots(source, waveform, step)
-        if probe.motion.fold <= MOST_FOLD:
-            return probe
-        step = min(step - 1, int(step * MOST_FOLD / probe.motion.fold))
-    return _through_pulses(source, waveform)
-
-
-def _through_knots(source: PathSource, waveform: Waveform, step: int) -> _Probe:
+def _through_knots(coarse: CoarseKnots) -> _Probe:
+    waveform, kinks = coarse.waveform, coarse.source.kinks
     table = _look_table(waveform)
     looks: list[Sums] = []
-    first, scale, longest, seen = None, 1.0, 0.0, Motion(0.0, 0.0)
-    moving: Bool = np.zeros(1, dtype=bool)
     delays: list[Interpolation] = []
-    kept = None
-    for knots in all_knots(source, waveform, step):
+    first, scale, longest = None, 1.0, 0.0
+    moving: Bool = np.zeros(1, dtype=bool)
+    for knots in coarse.chunks():
         if first is None:
             first, scale = knots.at_pulses, _scale(knots.paths)
-        kept = knots if kept is None and not looks else None
         looks += [error_bounds.sums(n, table, scale) for n in knots.neighbours(LOOK_PULSES)]
         b = error_bounds.envelope(knots.paths, table, scale)
-        delays.append(error_bounds.delay_errors(knots, b, source.kinks, waveform))
-        seen = Motion(*np.maximum(seen, error_bounds.motion(knots, waveform)).tolist())
+        delays.append(error_bounds.delay_errors(knots, b, kinks, waveform))
         moving = moving | knots.changes(first)
         longest = max(longest, float(knots.paths.delay.max()))
     changing = moving.astype(float)
     bounds = error_bounds.bounds(looks, waveform.f0 * longest, changing)
-    return _Probe(step, bounds, _norm(delays, changing), seen, moving, scale, kept)
+    return _Probe(bounds, _norm(delays, changing), moving, scale)
 
 
-def _through_pulses(source: PathSource, waveform: Waveform) -> _Probe:
+def _through_pulses(coarse: CoarseKnots) -> _Probe:
     """Pairs of neighbouring pulses, spread over the recording by the golden ratio."""
-    count = waveform.n_pulses
-    place = np.mod((np.arange(LOOK_PULSES) + 0.5) * (sqrt(5) - 1) / 2, 1) * (count - 1)
-    pulses = np.unique(place.astype(np.intp))
-    kept = knots_of(source, waveform, 1, (0, count)) if count <= ALL_PULSES else None
-    if kept is not None:
-        pair = Neighbours(columns(kept.paths, pulses), columns(kept.paths, pulses + 1), 1)
-        moving = kept.changes(kept.paths)
+    source, waveform = coarse.source, coarse.waveform
+    place = np.mod((np.arange(LOOK_PULSES) + 0.5) * (sqrt(5) - 1) / 2, 1)
+    pulses = np.unique((place * (waveform.n_pulses - 1)).astype(np.intp))
+    if coarse.kept is not None:
+        every = coarse.kept.paths
+        pair = Neighbours(columns(every, pulses), columns(every, pulses + 1), 1)
+        moving = coarse.kept.changes(every)
     else:
         now, after = (source(waveform.times((pulses + later).astype(float))) for later in (0, 1))
         pair = Neighbours(now, after, 1)
@@ -201,7 +169,7 @@ def _through_pulses(source: PathSource, waveform: Waveform) -> _Probe:
     look = error_bounds.sums(pair, _look_table(waveform), scale)
     cycles = waveform.f0 * float(pair.now.delay.max())
     bounds = error_bounds.bounds([look], cycles, moving.astype(float))
-    return _Probe(1, bounds, 0.0, Motion(0.0, 0.0), moving, scale, kept)
+    return _Probe(bounds, 0.0, moving, scale)
 
 
 def _rounding(b: Bounds, budget: float, double: bool) -> tuple[bool, float]:
@@ -213,27 +181,28 @@ def _rounding(b: Bounds, budget: float, double: bool) -> tuple[bool, float]:
     return single, b.single if single else b.double
 
 
-def _first_step(probe: _Probe, budget: float) -> int:
+def _first_step(coarse: CoarseKnots, probe: _Probe, budget: float) -> int:
     """A step that should do, from what the probe saw."""
-    step = probe.step * _closer(probe.delays, INTERPOLATION_SHARE * budget * probe.bounds.signal)
-    if probe.motion.turn > MOST_TURN:
+    step = coarse.step * _closer(probe.delays, INTERPOLATION_SHARE * budget * probe.bounds.signal)
+    if coarse.motion.turn > MOST_TURN:
         usual: float = USUAL_TURN * (budget / 1e-3) ** (1 / TAPS)
-        step = min(step, probe.step * min(usual, MOST_TURN) / probe.motion.turn)
+        step = min(step, coarse.step * min(usual, MOST_TURN) / coarse.motion.turn)
     return int(step)
 
 
 def _close_enough(
-    source: PathSource, probe: _Probe, table: HalfBandTable, budget: float
+    coarse: CoarseKnots, probe: _Probe, table: HalfBandTable, budget: float
 ) -> tuple[int, float, Envelope | None]:
     """Bring the knots together until their bound is within its share: (step, bound, knots)."""
-    waveform, share = table.waveform, INTERPOLATION_SHARE * budget * probe.bounds.signal
+    source, waveform = coarse.source, coarse.waveform
+    share = INTERPOLATION_SHARE * budget * probe.bounds.signal
     moving = probe.moving.astype(float)
-    step = _first_step(probe, budget)
+    step = _first_step(coarse, probe, budget)
     while step >= LEAST_STEP:
         errors: list[Interpolation] = []
         kept = None
-        ready = [probe.kept] if step == probe.step and probe.kept else None
-        for knots in ready or all_knots(source, waveform, step):
+        chunks = coarse.chunks() if step == coarse.step else all_knots(source, waveform, step)
+        for knots in chunks:
             b = error_bounds.envelope(knots.paths, table, probe.scale)
             errors.append(error_bounds.interpolation_errors(knots, b, source.kinks, waveform))
             kept = Envelope(knots, b) if len(errors) == 1 else None

@@ -8,7 +8,8 @@ from radhar_cli.arrays import Float
 from radhar_cli.body.pose import Body
 from radhar_cli.echo.paths import Paths
 from radhar_cli.radar.propagation import Antennas, amplitude, bistatic_delay, leg
-from radhar_cli.radar.wall import Wall, crossing, extra_delay, field_factor
+from radhar_cli.radar.transmission import transmission, wall_delay
+from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
 
@@ -60,7 +61,7 @@ class BodyPaths:
         tau = bistatic_delay(leg(p, self.antennas.tx), leg(p, self.antennas.rx))
         if self.wall is not None:
             for antenna in (self.antennas.tx, self.antennas.rx):
-                tau += extra_delay(crossing(p, antenna, self.wall).chord, self.wall)
+                tau += wall_delay(p, antenna, self.wall)
         track: Float = tau[0]
         return track
 
@@ -71,9 +72,9 @@ class BodyPaths:
         power = np.einsum("im,im->m", a, a)
         if self.wall is not None:
             for antenna in (self.antennas.tx, self.antennas.rx):
-                crossed = crossing(p, antenna, self.wall)
-                tau += extra_delay(crossed.chord, self.wall)
-                a *= field_factor(crossed, self.wall, self.fc)
+                through = transmission(p, antenna, self.wall, self.fc)
+                tau += through.delay
+                a *= through.factor
             if not self.power_in_free_space:
                 power = np.einsum("im,im->m", a, a)
         return Paths(tau, a, power)

@@ -39,16 +39,18 @@ def antennas_of(scene: Scene) -> Antennas:
     )
 
 
-def wall_of(scene: Scene) -> Wall | None:
+def wall_of(scene: Scene, config: Config) -> Wall | None:
     """The wall of a scene, if there is one."""
     v = scene.values
-    if "wall.eps_r" not in v:
+    if config.wall is None:
         return None
     return Wall(
         center=_vector(v, "wall.center_m"),
         size=_vector(v, "wall.size_m"),
         eps_r=v["wall.eps_r"],
         loss_tangent=v["wall.loss_tangent"],
+        rays=config.wall.rays,
+        fresnel=config.wall.fresnel,
     )
 
 

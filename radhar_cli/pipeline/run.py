@@ -113,7 +113,7 @@ def run(
 
 
 def _wall(r: Recording, stage: Stage) -> Wall | None:
-    return wall_of(r.scene)
+    return wall_of(r.scene, r.config)
 
 
 def _paths(r: Recording, stage: Stage) -> BodyPaths:
@@ -142,7 +142,7 @@ def _echo(r: Recording, stage: Stage) -> DirectEcho:
 
 def _signal_power(r: Recording, stage: Stage) -> float:
     echo: DirectEcho | None = r.products.get("echo")
-    if echo is None or echo.beyond_reach:
+    if echo is None:
         return cube.signal_power(r.products["paths"], r.waveform)
     return echo.signal_power()
 
@@ -173,7 +173,8 @@ def _beat_blocks(
     r: Recording, sigma: float, rng: np.random.Generator | None
 ) -> Iterator[tuple[int, Complex]]:
     """(first pulse or pair, beat matrix after MTI where the config has one), block by block."""
-    for first, block in cube.beat_blocks(r.products["paths"], r.waveform, sigma, rng):
+    moving = r.config.engine.motion_in_chirp
+    for first, block in cube.beat_blocks(r.products["paths"], r.waveform, sigma, rng, moving):
         own = mti(block) if r.config.processing.mti else block[:, (1 if first else 0) :]
         if own.shape[1]:
             yield (first if r.config.processing.mti or not first else first + 1), own

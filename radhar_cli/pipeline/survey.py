@@ -14,7 +14,7 @@ from radhar_cli.config.experiment import Config, timing_warnings
 from radhar_cli.errors import SceneError
 from radhar_cli.pipeline.models import antennas_of, body_of, wall_of, waveform_of
 from radhar_cli.radar.propagation import Antennas, bistatic_delay, leg
-from radhar_cli.radar.wall import crossing, extra_delay
+from radhar_cli.radar.transmission import wall_delay
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.scenario import Scene, draw_scene
 
@@ -84,7 +84,7 @@ class Findings:
 def survey(scene: Scene, config: Config) -> Findings:
     """Look at one scene on a grid of pulses dense enough for its motion."""
     body, antennas = body_of(scene), antennas_of(scene)
-    wall, waveform = wall_of(scene), waveform_of(scene, config)
+    wall, waveform = wall_of(scene, config), waveform_of(scene, config)
     rate = max(GRID_HZ, GRID_PER_CYCLE * body.highest_frequency)
     step = max(1, int(waveform.prf / rate))
     pulses = np.append(np.arange(0, waveform.n_pulses - 1, step), waveform.n_pulses - 1)
@@ -93,7 +93,7 @@ def survey(scene: Scene, config: Config) -> Findings:
     tau = bistatic_delay(leg(p, antennas.tx), leg(p, antennas.rx))
     if wall is not None:
         for antenna in (antennas.tx, antennas.rx):
-            tau = tau + extra_delay(crossing(p, antenna, wall).chord, wall)
+            tau = tau + wall_delay(p, antenna, wall)
     doppler = np.abs(np.diff(tau, axis=1)) * waveform.f0 / np.maximum(np.diff(t), 1e-300)
     return Findings(
         closest=_closest(body, antennas, waveform, p, t, step),

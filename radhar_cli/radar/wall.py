@@ -1,8 +1,9 @@
 """A homogeneous axis-aligned slab crossed by straight rays (docs/model.md, Propagation)."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from math import pi, sqrt
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -18,17 +19,27 @@ class Wall:
         center, size: (x, y, z), m.
         eps_r: relative permittivity, real part.
         loss_tangent: tan delta; eps = eps_r (1 - j tan delta).
+        rays: whether rays go straight through or are refracted (`refraction.py`).
+        fresnel: transmission of a face at normal incidence, or at the ray's angle for a field
+            perpendicular or parallel to the plane of incidence (`fresnel.py`).
     """
 
     center: tuple[float, float, float]
     size: tuple[float, float, float]
     eps_r: float
     loss_tangent: float
+    rays: Literal["straight", "refracted"] = "straight"
+    fresnel: Literal["normal", "perpendicular", "parallel"] = "normal"
+
+    @property
+    def permittivity(self) -> complex:
+        """eps = eps_r (1 - j tan delta)."""
+        return self.eps_r * (1 - 1j * self.loss_tangent)
 
     @property
     def refractive_index(self) -> complex:
         """sqrt(eps)."""
-        return complex(np.sqrt(self.eps_r * (1 - 1j * self.loss_tangent)))
+        return complex(np.sqrt(self.permittivity))
 
     @property
     def bounds(self) -> tuple[tuple[float, float], ...]:
@@ -66,22 +77,55 @@ def crossing(p: Float, antenna: tuple[float, float, float], wall: Wall) -> Cross
     leave = np.full(p.shape[1:], np.inf)
     length2 = np.zeros(p.shape[1:])
     misses = np.zeros(p.shape[1:], dtype=bool)
-    for axis, (low, high) in enumerate(wall.bounds):
-        at = antenna[axis]
-        step = p[axis] - at
+    for step, outside, near, far in _between_planes(p, antenna, wall):
         length2 += step * step
-        parallel = step == 0
-        misses |= parallel & (not low < at < high)
-        # A nearly parallel ray overflows to the infinity that the comparison below wants.
-        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-            first, second = (low - at) / step, (high - at) / step
-        near, far = np.minimum(first, second), np.maximum(first, second)
-        np.maximum(enter, np.where(parallel, -np.inf, near), out=enter)
-        np.minimum(leave, np.where(parallel, np.inf, far), out=leave)
+        misses |= outside
+        np.maximum(enter, near, out=enter)
+        np.minimum(leave, far, out=leave)
     hit = ~misses & (enter < leave) & (enter <= 1) & (leave > 0)
     chord = np.where(hit, (np.minimum(leave, 1) - enter), 0.0) * np.sqrt(length2)
     faces = hit.astype(np.intp) + (hit & (leave < 1))
     return Crossing(chord, faces)
+
+
+def faces_met(p: Float, antenna: tuple[float, float, float], wall: Wall) -> tuple[Index, Index]:
+    """Axes (0, 1, 2) [I, M] of the faces where the rays of `crossing` enter and leave the slab.
+
+    They mean something where as many faces are crossed; through an edge, the first axis counts.
+    """
+    planes = list(_between_planes(p, antenna, wall))
+    entered = np.argmax([near for _, _, near, _ in planes], axis=0)
+    left = np.argmin([far for _, _, _, far in planes], axis=0)
+    return entered, left
+
+
+class _Between(NamedTuple):
+    """The rays and one pair of parallel faces: way along their axis, m, whether a ray runs outside
+    the pair and parallel to it, s at the nearer and at the farther of the two."""
+
+    step: Float
+    outside: Bool
+    near: Float
+    far: Float
+
+
+def _between_planes(
+    p: Float, antenna: tuple[float, float, float], wall: Wall
+) -> Iterator[_Between]:
+    for axis, (low, high) in enumerate(wall.bounds):
+        at = antenna[axis]
+        step = p[axis] - at
+        parallel = step == 0
+        # A nearly parallel ray overflows to the infinity that the comparisons want.
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+            first, second = (low - at) / step, (high - at) / step
+        near, far = np.minimum(first, second), np.maximum(first, second)
+        yield _Between(
+            step,
+            parallel & (not low < at < high),
+            np.where(parallel, -np.inf, near),
+            np.where(parallel, np.inf, far),
+        )
 
 
 def extra_delay(chord: Float, wall: Wall) -> Float:
@@ -91,9 +135,15 @@ def extra_delay(chord: Float, wall: Wall) -> Float:
 
 def field_factor(crossed: Crossing, wall: Wall, fc: float) -> Float:
     """Field left after one leg: exp(-k0 |Im sqrt(eps)| d) (1 - |Gamma|^2)^(n/2)."""
-    k0 = 2 * pi * fc / SPEED_OF_LIGHT
     n = wall.refractive_index
     face = sqrt(4 * n.real) / abs(1 + n)  # sqrt(1 - |Gamma|^2), without its cancellation
     through = np.array([1.0, face, face * face])[crossed.faces]
-    factor: Float = np.exp(-k0 * abs(n.imag) * crossed.chord) * through
+    factor: Float = absorption(crossed.chord, wall, fc) * through
     return factor
+
+
+def absorption(chord: Float, wall: Wall, fc: float) -> Float:
+    """Field left after a chord (m): exp(-k0 |Im sqrt(eps)| d)."""
+    k0 = 2 * pi * fc / SPEED_OF_LIGHT
+    left: Float = np.exp(-k0 * abs(wall.refractive_index.imag) * chord)
+    return left

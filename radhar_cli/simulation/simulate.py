@@ -168,9 +168,10 @@ def raw_echo(recording: Recording) -> Complex:
     """
     waveform, paths = recording.waveform, recording.products["paths"]
     rng = recording.noise("beat") if "signal_power" in recording.products else None
+    moving = recording.config.engine.motion_in_chirp
     blocks = [
         block[:, (1 if first else 0) :]
-        for first, block in cube.beat_blocks(paths, waveform, recording.sigma, rng)
+        for first, block in cube.beat_blocks(paths, waveform, recording.sigma, rng, moving)
     ]
     beat = np.concatenate(blocks, axis=1)
     static = [leakage(paths.antennas)]

@@ -65,6 +65,7 @@ POSSIBLE: list[dict[str, Any]] = [
     {"wall": {}, "radar": {"tx_m": (0.8799, 0.0, 1.0)}},
     {"wall": {"eps_r": 1, "loss_tangent": 0}, "radar": {"tx_m": (0.4, 0.0, 2.6)}},
     {"motion": {"speed_mps": 0, "gait_hz": 0, "range_m": -1}},
+    {"engine": {"kind": "cube", "motion_in_chirp": True}},
     {"timing": {"blend_s": 0, "rise_duration_s": 0}},
 ]
 
@@ -148,6 +149,8 @@ CHANGES: dict[str, object] = {
     "wall.size_m": (0.2, 5.0, 2.5),
     "wall.eps_r": 4.0,
     "wall.loss_tangent": 0.02,
+    "wall.rays": "refracted",
+    "wall.fresnel": "parallel",
     "snr_db": None,
     "snr_reference": "received",
     "on_invalid": "redraw",
@@ -173,6 +176,7 @@ CHANGES: dict[str, object] = {
     "engine.tolerance_db": -80.0,
     "engine.fallback": "cube",
     "engine.precision": "double",
+    "engine.motion_in_chirp": True,
     "output.png": False,
     "output.png_level": 9,
     "output.hdf5_level": 9,

@@ -242,6 +242,10 @@ BROKEN = [
     Broken("timing: {blend_s: -0.1}", 1, "timing.blend_s", "-0.1", "0 or more"),
     Broken("wall: {eps_r: 0.5}", 1, "wall.eps_r", "0.5", "1 or more"),
     Broken("wall:\n  size_m: [0, 5, 2]", 2, "wall.size_m.0", "0", "above 0"),
+    Broken("wall:\n  rays: bent", 2, "wall.rays", '"bent"', "'straight' or 'refracted'"),
+    Broken(
+        "wall: {fresnel: s}", 1, "wall.fresnel", '"s"', "'normal', 'perpendicular' or 'parallel'"
+    ),
     Broken("snr_db: 301", 1, "snr_db", "301", "from -300 to 300 dB"),
     Broken("image: {dynamic_range_db: 0}", 1, "image.dynamic_range_db", "0", "greater than 0"),
     Broken("output: {png_level: 10}", 1, "output.png_level", "10", "less than or equal to 9"),
@@ -403,6 +407,13 @@ BROKEN = [
         "processing.stft_fft_length",
         "1999",
         "at least the window of 2000 pulses",
+    ),
+    Broken(
+        "engine:\n  motion_in_chirp: true",
+        2,
+        "engine.motion_in_chirp",
+        "true",
+        "false with engine.kind: direct",
     ),
     Broken(
         WALL + "radar:\n  tx_m: [0.9, 0, 1]", 3, "radar.tx_m", "[0.9, 0.0, 1.0]", "outside the wall"

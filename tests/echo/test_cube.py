@@ -86,6 +86,113 @@ def test_slow_time_signal_of_a_person_is_the_reference(activity, carrier, wall):
     assert ref.error_db(recording.products["signal:plain"], right) < -170
 
 
+class TestMotionInChirp:
+    """Delays and amplitudes at t_m + n/fs instead of t_m."""
+
+    def beat(self, ranges, radar, moving=True, strength=1.0):
+        waveform = Waveform(**asdict(radar))
+        source = ref.Points(ranges, strength)
+        blocks = cube.beat_blocks(source, waveform, motion_in_chirp=moving)
+        return np.concatenate([b[:, (1 if first else 0) :] for first, b in blocks], axis=1)
+
+    @staticmethod
+    def closed_form(ranges, radar):
+        """exp(-j 2 pi (fc tau(t) + K tau(t) t_n)) A(t) at every sample of every chirp."""
+        n = np.arange(radar.n_adc) / radar.adc_rate
+        r = ranges((radar.times[None, :] + n[:, None]).ravel())
+        tau = (2 * r / ref.C).reshape(len(r), radar.n_adc, -1)
+        cycles = radar.fc * tau + radar.slope * tau * n[:, None]
+        if radar.residual_video_phase:
+            cycles -= radar.slope * tau**2 / 2
+        return (ref.turn(-cycles) / r.reshape(tau.shape) ** 2).sum(axis=0)
+
+    @radars
+    def test_a_motionless_scene_is_as_in_stop_and_hop(self, radar):
+        def still(t):
+            return np.array([0.3, 2.0, 7.1])[:, None] + 0 * t
+
+        moving, frozen = (self.beat(still, radar, moving) for moving in (True, False))
+        assert np.abs(moving - frozen).max() < ROUNDING * np.abs(frozen).max()
+        assert not ref.mti(moving).any()
+
+    @radars
+    @pytest.mark.parametrize("speed", [-6.0, 1.5, 40.0])
+    def test_a_constant_velocity_is_the_closed_form(self, radar, speed):
+        def receding(t):
+            return 5.0 + speed * t[None, :]
+
+        found, right = self.beat(receding, radar), self.closed_form(receding, radar)
+        assert np.abs(found - right).max() < 1e-9 * np.abs(right).max()
+
+    @radars
+    def test_a_crowd_is_the_closed_form(self, radar):
+        found, right = self.beat(crowd, radar), self.closed_form(crowd, radar)
+        assert np.abs(found - right).max() < 1e-9 * np.abs(right).max()
+
+    @pytest.mark.parametrize("chirp", [1e-3, 2e-3])
+    def test_the_polynomial_errs_by_its_bound(self, chirp):
+        """A far too fast swing, so that there is an error: |tau^(5)| L^5/61440 at most."""
+        radar = ref.Radar(77e9, 1e9, chirp, 1e6, 100, 0.05)
+        swing, omega = 0.02, 2 * np.pi * 100
+
+        def fast(t):
+            return 3.0 + swing * np.sin(omega * t[None, :])
+
+        found, right = self.beat(fast, radar), self.closed_form(fast, radar)
+        error = np.abs(np.angle(found * right.conj())).max() / (2 * np.pi)
+        fifth = 2 * swing * omega**5 / ref.C
+        length = (radar.n_adc - 1) / radar.adc_rate
+        bound = (radar.fc + radar.bandwidth) * fifth * length**5 / 61440
+        assert 0.5 * bound < error < 1.01 * bound
+
+    @pytest.mark.parametrize("speed", [-20.0, 20.0])
+    def test_range_and_doppler_couple(self, speed):
+        """The beat is K tau + f0 dtau/dt at mid-chirp: the peak moves by (f0 2 v/c)/K of delay."""
+        radar = ref.Radar(prf=1000, duration=0.004)
+
+        def receding(t):
+            return 3.0 + speed * t[None, :]
+
+        def beat_frequency(moving):
+            spectrum = np.abs(np.fft.ifft(self.beat(receding, radar, moving)[:, 0], 2**19))
+            return np.argmax(spectrum[: 2**18]) * radar.adc_rate / 2**19
+
+        tau_mid = 2 * (3.0 + speed * radar.chirp / 2) / ref.C
+        moved = beat_frequency(True) - radar.slope * tau_mid
+        coupling = radar.f0 * 2 * speed / ref.C
+        bin_width = radar.adc_rate / 2**19  # 0.2 % of the coupling
+        assert moved == pytest.approx(coupling, abs=2 * bin_width)
+        assert beat_frequency(False) == pytest.approx(radar.slope * 2 * 3.0 / ref.C, abs=bin_width)
+
+    def test_the_plan_uses_it(self):
+        """For the slow-time signal and the range-time map of a person alike."""
+        base = {
+            "duration_s": 0.4,
+            "radar": {"carrier_hz": 24e9, "bandwidth_hz": 1e9, "prf_hz": 300},
+            "snr_db": None,
+            "image": {"size_px": 16},
+        }
+        products = [
+            run(plan(config, ["signal:plain", "rtm"]), draw_scene(config, ACTIVITIES[7], 0), config)
+            for config in (
+                Config.model_validate(base | {"engine": {"kind": "cube", "motion_in_chirp": on}})
+                for on in (False, True)
+            )
+        ]
+        frozen, moving = (recording.products for recording in products)
+        for name in ("signal:plain", "rtm"):
+            assert -80 < ref.error_db(moving[name], frozen[name]) < -20
+
+    def test_blocks_are_bounded_and_do_not_matter(self, monkeypatch):
+        radar = RADARS["odd"]
+        whole = self.beat(crowd, radar)
+        monkeypatch.setattr(cube, "BLOCK_SAMPLES", 7 * radar.n_adc)
+        source = ref.Points(crowd)
+        list(cube.beat_blocks(source, Waveform(**asdict(radar)), motion_in_chirp=True))
+        assert [t.size for t in source.asked] == [5 * m for m in (7, 7, 7, 7, 7, 5)]
+        assert np.abs(self.beat(crowd, radar) - whole).max() < ROUNDING * np.abs(whole).max()
+
+
 class TestBlocks:
     """The matrix is made block by block; nobody may notice."""
 

@@ -8,7 +8,7 @@ import reference as ref
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.echo import direct, error_budget, knots
+from radhar_cli.echo import coarse_knots, direct, error_budget, knots
 from radhar_cli.echo.direct import DirectEcho
 from radhar_cli.echo.interpolation import AFTER, BEFORE
 from radhar_cli.radar.waveform import Waveform
@@ -313,7 +313,7 @@ def test_a_long_recording_is_made_in_chunks(monkeypatch, size, budget):
     source = ref.Points(lambda t: walk(t) - 6 * np.maximum(t - 0.2, 0) ** 2, kinks=(0.2,))
     rough = ref.Points(walk, smooth=False)
     monkeypatch.setattr(knots, "CHUNK_KNOTS", size)
-    monkeypatch.setattr(error_budget, "ALL_PULSES", 100)
+    monkeypatch.setattr(coarse_knots, "CHUNK_KNOTS", size)
     for each in (source, rough):
         right = right_answer(each, RADAR)
         each.asked.clear()

@@ -70,9 +70,9 @@ def distance_at(scene: Scene, approach: Approach) -> float:
     return float(np.linalg.norm(p - at))
 
 
-def brute_delay(scene: Scene) -> np.ndarray:
+def brute_delay(scene: Scene, config: Config) -> np.ndarray:
     """Delay [13, M] at every pulse, the wall's included."""
-    p, wall = at_every_pulse(scene), wall_of(scene)
+    p, wall = at_every_pulse(scene), wall_of(scene, config)
     tau = np.zeros(p.shape[1:])
     for key in ("tx", "rx"):
         at = antenna(scene, key)
@@ -154,11 +154,11 @@ def test_half_band_aliasing_and_wall_as_at_every_pulse(setting: Any, activity: A
     config = Config(**setting)
     scene = nominal_scene(config, activity)
     found = survey(scene, config)
-    tau, v = brute_delay(scene), scene.values
+    tau, v = brute_delay(scene, config), scene.values
     mid = v["radar.carrier_hz"] + v["radar.bandwidth_hz"] / 2
     doppler = np.abs(np.diff(tau, axis=1)).max() * v["radar.prf_hz"] * mid
     half_band = C * 10e6 / (4 * v["radar.bandwidth_hz"] / 40e-6)
-    wall = wall_of(scene)
+    wall = wall_of(scene, config)
     assert found.aliases == (doppler > v["radar.prf_hz"] / 2)
     assert found.leaves_half_band == (tau.max() * C / 2 >= half_band)
     assert found.meets_wall == (wall is not None and wall.contains(at_every_pulse(scene)).any())
@@ -218,7 +218,7 @@ def test_warnings_of_the_papers_randomised_walkers() -> None:
     config = Config(activities=("S8",), samples_per_class=20)
     scenes = [draw_scene(config, WALKING, index) for index in range(20)]
     half_band = C * 10e6 / (4 * 1e14)
-    leaving = sum(bool(brute_delay(scene).max() * C / 2 >= half_band) for scene in scenes)
+    leaving = sum(bool(brute_delay(scene, config).max() * C / 2 >= half_band) for scene in scenes)
     found = said(config)
     assert 0 < leaving < 20
     assert found["half_band"][0] == leaving

@@ -1,0 +1,77 @@
+"""Transmission of a face at an angle: Fresnel's equations (Born and Wolf, 1.5.2 and 14.2)."""
+
+from typing import Literal
+
+import numpy as np
+
+from radhar_cli.arrays import Complex, Float
+from radhar_cli.radar.wall import Crossing, Wall, faces_met
+
+Polarisation = Literal["perpendicular", "parallel"]
+
+
+def reflection(cosine: Float, eps: complex, polarisation: Polarisation) -> Complex:
+    """Gamma(theta) [...] of a face between air and a medium.
+
+    With w = sqrt(eps - sin^2 theta): (cos - w)/(cos + w) for a field perpendicular to the plane of
+    incidence (TE, s), (w - eps cos)/(w + eps cos) for a parallel one (TM, p).
+
+    Args:
+        cosine: of the angle theta in air [...], 0 to 1.
+        eps: complex relative permittivity of the medium.
+        polarisation: of the electric field.
+    """
+    w, x = _medium(cosine, eps), _air(cosine, eps, polarisation)
+    gamma: Complex = (x - w) / (x + w) if polarisation == "perpendicular" else (w - x) / (w + x)
+    return gamma
+
+
+def face_factor(cosine: Float, eps: complex, polarisation: Polarisation) -> Float:
+    """sqrt(1 - |Gamma(theta)|^2) [...], the field that passes one face; arguments as above."""
+    w, x = _medium(cosine, eps), _air(cosine, eps, polarisation)
+    # |x + w|^2 - |x - w|^2 = 4 Re(x conj(w)): no cancellation at grazing incidence.
+    factor: Float = 2 * np.sqrt(np.real(x * np.conj(w))) / np.abs(x + w)
+    return factor
+
+
+def faces_factor(
+    p: Float,
+    antenna: tuple[float, float, float],
+    wall: Wall,
+    crossed: Crossing,
+    tangent: Float | None,
+) -> Float:
+    """Field [I, M] that passes the faces of the wall on the way from an antenna to p [3, I, M].
+
+    Args:
+        p: positions, m.
+        antenna: outside the wall.
+        wall: the slab; its `fresnel` names the polarisation.
+        crossed: `crossing` of the rays.
+        tangent: of the angle outside where a ray is refracted [I, M], NaN where it is straight;
+            None where all are straight.
+    """
+    assert wall.fresnel != "normal"
+    step = np.abs([p[axis] - antenna[axis] for axis in range(3)])
+    length = np.sqrt((step * step).sum(axis=0))
+    factor = np.ones(crossed.faces.shape)
+    for number, axes in enumerate(faces_met(p, antenna, wall)):
+        passes = crossed.faces > number
+        along = np.take_along_axis(step, axes[None], axis=0)[0]
+        cosine = along[passes] / length[passes]
+        if tangent is not None:
+            t = tangent[passes]
+            cosine = np.where(np.isnan(t), cosine, 1 / np.sqrt(1 + t * t))
+        factor[passes] *= face_factor(cosine, wall.permittivity, wall.fresnel)
+    return factor
+
+
+def _medium(cosine: Float, eps: complex) -> Complex:
+    """w = sqrt(eps - sin^2), the wave number along the normal inside, in units of k0."""
+    w: Complex = np.sqrt((eps - 1) + cosine * cosine + 0j)
+    return w
+
+
+def _air(cosine: Float, eps: complex, polarisation: Polarisation) -> Complex:
+    """What w is compared with: the wave number along the normal outside, times eps for parallel."""
+    return np.asarray(cosine * (eps if polarisation == "parallel" else 1), dtype=np.complex128)

@@ -1,0 +1,48 @@
+"""One leg through the wall, with the rays and the faces that the wall asks for."""
+
+from typing import NamedTuple
+
+from radhar_cli.arrays import Float
+from radhar_cli.radar.fresnel import faces_factor
+from radhar_cli.radar.refraction import refract
+from radhar_cli.radar.wall import Crossing, Wall, absorption, crossing, extra_delay, field_factor
+
+Point = tuple[float, float, float]
+
+
+class Transmission(NamedTuple):
+    """A leg through the wall: delay beyond free space (s), field left (1), [I, M] each."""
+
+    delay: Float
+    factor: Float
+
+
+class _Ray(NamedTuple):
+    crossed: Crossing
+    delay: Float
+    tangent: Float | None
+
+
+def wall_delay(p: Float, antenna: Point, wall: Wall) -> Float:
+    """Delay (s) [I, M] beyond free space of the legs from an antenna to positions p [3, I, M]."""
+    return _ray(p, antenna, wall).delay
+
+
+def transmission(p: Float, antenna: Point, wall: Wall, fc: float) -> Transmission:
+    """Delay and loss of the legs from an antenna to positions p [3, I, M] at a frequency fc (Hz).
+
+    The loss is that of the chord and of the faces; spreading is left to the straight distance.
+    """
+    crossed, delay, tangent = _ray(p, antenna, wall)
+    if wall.fresnel == "normal":
+        return Transmission(delay, field_factor(crossed, wall, fc))
+    faces = faces_factor(p, antenna, wall, crossed, tangent)
+    return Transmission(delay, absorption(crossed.chord, wall, fc) * faces)
+
+
+def _ray(p: Float, antenna: Point, wall: Wall) -> _Ray:
+    straight = crossing(p, antenna, wall)
+    if wall.rays == "straight":
+        return _Ray(straight, extra_delay(straight.chord, wall), None)
+    bent = refract(p, antenna, wall, straight)
+    return _Ray(bent.crossed, bent.delay, bent.tangent)

@@ -139,6 +139,8 @@ class Drawer:
         self.maybe(engine, 0.3, "precision", lambda: "double")
         self.maybe(engine, 0.3, "fallback", lambda: self.pick(("refuse", "cube")))
         self.maybe(engine, 0.3, "tolerance_db", lambda: -self.log(6, 400))
+        if engine["kind"] == "cube":
+            self.maybe(engine, 0.3, "motion_in_chirp", lambda: True)
         self.maybe(document, 0.7, "activities", lambda: [self.pick(ACTIVITIES).slug])
         self.maybe(document, 0.7, "motion", self.motion)
         self.maybe(document, 0.6, "timing", lambda: self.timing(document["duration_s"]))
@@ -233,6 +235,9 @@ class Drawer:
         self.maybe(wall, 0.7, "eps_r", lambda: self.number(lambda: self.log(1, 1e6)))
         self.maybe(wall, 0.7, "loss_tangent", lambda: self.number(lambda: self.log(1e-12, 1e12)))
         self.maybe(wall, 0.1, "loss_tangent", lambda: 0)
+        self.maybe(wall, 0.4, "rays", lambda: self.pick(("straight", "refracted")))
+        fresnel = ("normal", "perpendicular", "parallel")
+        self.maybe(wall, 0.4, "fresnel", lambda: self.pick(fresnel))
         if extreme:
             wall["size_m"] = [self.log(1e-6, 1e6) for _ in range(3)]
             wall["center_m"] = [self.signed(1e-6, 1e6) for _ in range(3)]

@@ -12,14 +12,19 @@ from radhar_cli.radar.noise import circular_gaussian
 from radhar_cli.radar.waveform import Waveform
 
 BLOCK_SAMPLES = 2**18
+CHUNK_PULSES = 2**15
 
 
 def signal_power(source: PathSource, waveform: Waveform) -> float:
     """P_s = mean over the pulses of sum_i A_i^2."""
     total = 0.0
     for start in range(0, waveform.n_pulses, BLOCK_SAMPLES):
-        pulses = np.arange(start, min(start + BLOCK_SAMPLES, waveform.n_pulses), dtype=float)
-        total += float(source(waveform.times(pulses)).power.sum())
+        power = np.empty(min(BLOCK_SAMPLES, waveform.n_pulses - start))
+        for first in range(0, power.size, CHUNK_PULSES):
+            part = power[first : first + CHUNK_PULSES]
+            pulses = np.arange(start + first, start + first + part.size, dtype=float)
+            part[:] = source(waveform.times(pulses)).power
+        total += float(power.sum())
     return total / waveform.n_pulses
 
 
@@ -42,7 +47,7 @@ def beat_blocks(
         rng: its stream, unless sigma is 0.
         motion_in_chirp: whether paths go on moving during a chirp, instead of stop-and-hop.
     """
-    length = max(2, BLOCK_SAMPLES // waveform.n_adc)
+    length = max(2, min(BLOCK_SAMPLES // waveform.n_adc, CHUNK_PULSES))
     carried: Complex | None = None
     for start in range(0, waveform.n_pulses, length):
         pulses = np.arange(start, min(start + length, waveform.n_pulses), dtype=float)

@@ -31,7 +31,7 @@ def axes_of(name: str, recording: Recording) -> Axes:
     late = 0.5 if recording.config.processing.mti else 0.0  # a difference lies between its pulses
     if name == "rtm":
         return Axes(waveform.range_axis(), (recording.shown + late) / waveform.prf)
-    frames = recording.frames
+    frames = recording.fsst_frames if name.startswith("fsst") else recording.frames
     length = frames.length
     if name.startswith("stft"):
         length = recording.config.processing.stft_fft_length or length

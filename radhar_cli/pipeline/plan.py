@@ -6,10 +6,15 @@ Nothing else runs: `run.py` walks the plan and has no other way to start a stage
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 
-from radhar_cli.config.experiment import Config
+from radhar_cli.config.experiment import MAP_NAMES, Config
 
-SIGNALS = ("plain", "compensated", "denoised", "compensated_denoised")
+# In the order in which few of them are held at once: each follows the one it is made from, which
+# is then done with.
+SIGNALS = ("plain", "denoised", "compensated", "compensated_denoised")
+# Numbers and small objects, which may be looked up after a run whoever read them.
+KEPT = ("wall", "paths", "signal_power")
 
 
 @dataclass(frozen=True)
@@ -37,9 +42,15 @@ class Stage:
 
 @dataclass(frozen=True)
 class Plan:
-    """The stages of one request, each after everything it needs."""
+    """The stages of one request, each after everything it needs.
+
+    Attributes:
+        stages: in running order.
+        asked: the products that were asked for, which are kept.
+    """
 
     stages: tuple[Stage, ...]
+    asked: tuple[str, ...]
 
     def __contains__(self, name: str) -> bool:
         return any(stage.name == name for stage in self.stages)
@@ -48,6 +59,16 @@ class Plan:
         """The stages that read this one's product; none where it is what was asked for."""
         return tuple(stage.name for stage in self.stages if name in stage.needs)
 
+    @cached_property
+    def done_with(self) -> dict[str, tuple[str, ...]]:
+        """{stage: the intermediate products that nobody reads any more once it has run}."""
+        last = {need: stage.name for stage in self.stages for need in stage.needs}
+        kept = {*self.asked, *KEPT}
+        return {
+            stage.name: tuple(n for n in stage.needs if last[n] == stage.name and n not in kept)
+            for stage in self.stages
+        }
+
 
 def signal_of(map_name: str) -> str:
     """Which of SIGNALS a Doppler-time map shows."""
@@ -55,10 +76,9 @@ def signal_of(map_name: str) -> str:
 
 
 def plan_images(config: Config) -> Plan:
-    """The plan of a data set: levels and entropy of every map."""
-    return plan(
-        config, [f"{kind}:{name}" for name in config.maps for kind in ("entropy", "levels")]
-    )
+    """The plan of a data set: levels and entropy of every map, those of one signal together."""
+    maps = sorted(config.maps, key=lambda name: SIGNALS.index(signal_of(name)))
+    return plan(config, [f"{kind}:{name}" for name in maps for kind in ("entropy", "levels")])
 
 
 def plan(config: Config, products: Iterable[str]) -> Plan:
@@ -72,9 +92,10 @@ def plan(config: Config, products: Iterable[str]) -> Plan:
                 visit(need)
             ordered[name] = graph[name]
 
-    for product in products:
+    asked = tuple(products)
+    for product in asked:
         visit(product)
-    return Plan(tuple(ordered.values()))
+    return Plan(tuple(ordered.values()), asked)
 
 
 def _graph(config: Config) -> dict[str, Stage]:
@@ -152,10 +173,12 @@ def _signal_stages(config: Config) -> list[Stage]:
 
 def _map_stages(config: Config) -> list[Stage]:
     own_length = config.processing.stft_fft_length is not None
+    own_hop = config.processing.fsst_hop_pulses is not None
     stages = []
     for variant in SIGNALS:
         suffix = "" if variant == "plain" else f"_{variant}"
         spectrum = f"{'padded_spectrum' if own_length else 'spectrum'}:{variant}"
+        of_fsst = f"{'fsst_spectrum' if own_hop else 'spectrum'}:{variant}"
         stages += [
             Stage(f"spectrum:{variant}", (f"signal:{variant}",), "windowed FFT of every frame"),
             Stage(
@@ -163,14 +186,19 @@ def _map_stages(config: Config) -> list[Stage]:
                 (f"signal:{variant}",),
                 "windowed FFT of every frame, zero-padded to stft_fft_length",
             ),
+            Stage(
+                f"fsst_spectrum:{variant}",
+                (f"signal:{variant}",),
+                "windowed FFT of every frame, every fsst_hop_pulses",
+            ),
             Stage(f"stft{suffix}", (spectrum,), "power of the STFT"),
             Stage(
                 f"fsst{suffix}",
-                (f"signal:{variant}", f"spectrum:{variant}"),
+                (f"signal:{variant}", of_fsst),
                 "second transform, synchrosqueezing, power",
             ),
         ]
-    for name in ("rtm", *(stage.name for stage in stages if stage.kind[:4] in ("stft", "fsst"))):
+    for name in MAP_NAMES:
         stages.append(Stage(f"entropy:{name}", (name,), "entropy of the power map"))
         stages.append(Stage(f"levels:{name}", (name,), "resize, decibels, grey levels"))
     return stages

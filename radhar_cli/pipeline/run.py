@@ -4,7 +4,7 @@ Order (paper, figure "Signal processing overflow"): MTI -> range compression -> 
 sum over the kept bins -> [compensation] -> [denoising] -> STFT or FSST.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from time import perf_counter
@@ -27,18 +27,22 @@ from radhar_cli.processing.doppler_compensation import compensate
 from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.image import levels
-from radhar_cli.processing.mti import mti
+from radhar_cli.processing.long_map import LongMap, joined
+from radhar_cli.processing.mti import mti, mti_in_place
 from radhar_cli.processing.range_compression import (
     half_band_signal,
     range_bins,
     range_compression,
     range_power,
 )
+from radhar_cli.processing.stft import Spectra
 from radhar_cli.radar.noise import noise_variance
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.randomness import NOISE, stream
 from radhar_cli.scenario import Scene
+
+CHUNK = 2**18  # pulses at work at once, where each is on its own
 
 
 @dataclass
@@ -48,7 +52,7 @@ class Recording:
     Attributes:
         scene, config, plan: what is simulated, and how.
         joints: numbers of the scatterers that are kept; all of them for None.
-        products: {stage name: what it made}.
+        products: {stage name: what it made}, of those that the plan was asked for.
         seconds: {stage name: time it took}.
     """
 
@@ -74,6 +78,12 @@ class Recording:
         )
 
     @cached_property
+    def fsst_frames(self) -> Frames:
+        """`frames`, with the hop of the FSST where it has its own."""
+        hop = self.config.processing.fsst_hop_pulses
+        return self.frames if hop is None else Frames(self.frames.length, hop)
+
+    @cached_property
     def shown(self) -> np.ndarray[Any, np.dtype[np.intp]]:
         """Pulses (or first pulses of MTI pairs) that the range-time map shows."""
         kept = self.waveform.n_pulses - self.config.processing.mti
@@ -87,7 +97,7 @@ class Recording:
     @property
     def sigma(self) -> float:
         """Standard deviation of the raw noise; 0 without noise."""
-        if "signal_power" not in self.products:
+        if "signal_power" not in self.plan:
             return 0.0
         power = self.products["signal_power"]
         return float(np.sqrt(noise_variance(power, self.scene.values["snr_db"])))
@@ -103,12 +113,14 @@ class CubeProducts(NamedTuple):
 def run(
     plan: Plan, scene: Scene, config: Config, joints: tuple[int, ...] | None = None
 ) -> Recording:
-    """Run every stage of the plan, once, in its order."""
+    """Run every stage of the plan, once, in its order; release what nobody needs any more."""
     recording = Recording(scene, config, plan, joints)
     for stage in plan.stages:
         start = perf_counter()
         recording.products[stage.name] = STAGES[stage.kind](recording, stage)
         recording.seconds[stage.name] = perf_counter() - start
+        for name in plan.done_with[stage.name]:
+            del recording.products[name]
     return recording
 
 
@@ -128,9 +140,12 @@ def _paths(r: Recording, stage: Stage) -> BodyPaths:
 
 
 def _torso_track(r: Recording, stage: Stage) -> Float:
-    pulses = np.arange(r.waveform.n_pulses, dtype=float)
-    paths: BodyPaths = r.products["paths"]
-    return paths.torso_delay(r.waveform.times(pulses))
+    track, paths = np.empty(r.waveform.n_pulses), r.products["paths"]
+    for start in range(0, track.size, CHUNK):
+        part = track[start : start + CHUNK]
+        pulses = np.arange(start, start + part.size, dtype=float)
+        part[:] = paths.torso_delay(r.waveform.times(pulses))
+    return track
 
 
 def _echo(r: Recording, stage: Stage) -> DirectEcho:
@@ -161,12 +176,13 @@ def _slow_time(r: Recording, stage: Stage) -> Complex:
             [half_band_signal(range_compression(block, r.waveform)) for _, block in blocks]
         )
     y = echo.slow_time(r.config.processing.mti)
-    return mti(y) if r.config.processing.mti else y
+    return mti_in_place(y) if r.config.processing.mti else y
 
 
 def _slow_time_noise(r: Recording, stage: Stage) -> Complex:
-    v = r.sigma * slow_time_noise(r.noise("slow_time"), r.waveform)
-    return mti(v) if r.config.processing.mti else v
+    noise = slow_time_noise(r.noise("slow_time"), r.waveform)
+    noise *= r.sigma
+    return mti_in_place(noise) if r.config.processing.mti else noise
 
 
 def _beat_blocks(
@@ -182,16 +198,18 @@ def _beat_blocks(
 
 def _beat_cube(r: Recording, stage: Stage) -> CubeProducts:
     wants_signal, wants_range = "signal:plain" in r.plan, "rtm" in r.plan
-    rng = r.noise("beat") if "signal_power" in r.products else None
-    signal, profiles = [], []
+    rng = r.noise("beat") if "signal_power" in r.plan else None
+    kept = r.waveform.n_pulses - r.config.processing.mti
+    signal, profiles = np.empty(kept if wants_signal else 0, dtype=complex), []
     for start, own in _beat_blocks(r, r.sigma, rng):
         if wants_range:
             here = r.shown[(r.shown >= start) & (r.shown < start + own.shape[1])]
             profiles.append(range_power(range_bins(own[:, here - start], r.waveform)))
         if wants_signal:
-            signal.append(half_band_signal(range_compression(own, r.waveform)))
+            stop = start + own.shape[1]
+            signal[start:stop] = half_band_signal(range_compression(own, r.waveform))
     return CubeProducts(
-        np.concatenate(signal) if signal else None,
+        signal if wants_signal else None,
         np.concatenate(profiles, axis=1) if profiles else None,
     )
 
@@ -234,32 +252,48 @@ def _signal(r: Recording, stage: Stage) -> Complex:
 def _plain_signal(r: Recording) -> Complex:
     if "beat_cube" in r.products:
         return np.asarray(r.products["beat_cube"].signal)
-    x = r.products["slow_time"]
-    return np.asarray(x + r.products["slow_time_noise"] if "slow_time_noise" in r.products else x)
+    x: Complex = r.products["slow_time"]
+    return x + r.products["slow_time_noise"] if "slow_time_noise" in r.products else x
 
 
-def _spectrum(r: Recording, stage: Stage) -> Complex:
+def _spectrum(r: Recording, stage: Stage) -> Spectra:
     padded = stage.kind == "padded_spectrum"
     length = r.config.processing.stft_fft_length if padded else None
-    return stft.spectrum(r.products[stage.needs[0]], r.frames, length)
+    frames = r.fsst_frames if stage.kind == "fsst_spectrum" else r.frames
+    return stft.spectra(r.products[stage.needs[0]], frames, length)
 
 
-def _stft(r: Recording, stage: Stage) -> Float:
-    return stft.power_map(r.products[stage.needs[0]])
+def _stft(r: Recording, stage: Stage) -> Float | LongMap:
+    spectra: Spectra = r.products[stage.needs[0]]
+    return _map(r, stage, spectra, map(stft.power_map, spectra))
 
 
-def _fsst(r: Recording, stage: Stage) -> Float:
-    x, v = (r.products[need] for need in stage.needs)
-    return fsst.power_map(fsst.synchrosqueeze(x, v, r.frames, r.config.processing.fsst_threshold))
+def _fsst(r: Recording, stage: Stage) -> Float | LongMap:
+    x, spectra = (r.products[need] for need in stage.needs)
+    threshold = r.config.processing.fsst_threshold
+    return _map(r, stage, spectra, fsst.power_blocks(x, spectra, r.fsst_frames, threshold))
+
+
+def _map(r: Recording, stage: Stage, spectra: Spectra, blocks: Iterable[Float]) -> Float | LongMap:
+    """The whole map where it is one block or was asked for, else what its image needs."""
+    if isinstance(spectra, tuple):
+        return next(iter(blocks))
+    frames = spectra.frames.count(spectra.x.size)
+    if stage.name in r.plan.asked:
+        return joined(blocks, frames)
+    return LongMap(blocks, frames, r.config.image.size_px)
 
 
 def _entropy(r: Recording, stage: Stage) -> float:
-    return entropy_bits(r.products[stage.variant])
+    power = r.products[stage.variant]
+    return power.entropy_bits if isinstance(power, LongMap) else entropy_bits(power)
 
 
 def _levels(r: Recording, stage: Stage) -> Levels:
-    image = r.config.image
-    return levels(r.products[stage.variant], image.size_px, image.dynamic_range_db)
+    power, image = r.products[stage.variant], r.config.image
+    if isinstance(power, LongMap):
+        return power.levels(image.dynamic_range_db)
+    return levels(power, image.size_px, image.dynamic_range_db)
 
 
 STAGES: Mapping[str, Callable[[Recording, Stage], Any]] = {
@@ -277,6 +311,7 @@ STAGES: Mapping[str, Callable[[Recording, Stage], Any]] = {
     "signal": _signal,
     "spectrum": _spectrum,
     "padded_spectrum": _spectrum,
+    "fsst_spectrum": _spectrum,
     **{
         f"{kind}{suffix}": run_map
         for kind, run_map in (("stft", _stft), ("fsst", _fsst))

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from radhar_cli.activity import Activity
-from radhar_cli.arrays import Float
+from radhar_cli.arrays import Float, Index
 from radhar_cli.body.pose import Body
 from radhar_cli.body.skeleton import JOINTS
 from radhar_cli.config.experiment import Config, timing_warnings
@@ -15,6 +15,7 @@ from radhar_cli.errors import SceneError
 from radhar_cli.pipeline.models import antennas_of, body_of, wall_of, waveform_of
 from radhar_cli.radar.propagation import Antennas, bistatic_delay, leg
 from radhar_cli.radar.transmission import wall_delay
+from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.scenario import Scene, draw_scene
 
@@ -24,6 +25,7 @@ GRID_PER_CYCLE = 40
 ANTENNA_KEYS = {"transmitter": "radar.tx_m", "receiver": "radar.rx_m"}
 MOST_ATTEMPTS = 1000
 CHUNK = 65536
+GRID_CHUNK = 16384
 
 
 class Approach(NamedTuple):
@@ -88,6 +90,22 @@ def survey(scene: Scene, config: Config) -> Findings:
     rate = max(GRID_HZ, GRID_PER_CYCLE * body.highest_frequency)
     step = max(1, int(waveform.prf / rate))
     pulses = np.append(np.arange(0, waveform.n_pulses - 1, step), waveform.n_pulses - 1)
+    looks = [  # consecutive ones share a pulse, so that no step between two is missed
+        _look(body, antennas, wall, waveform, pulses[first : first + GRID_CHUNK + 1])
+        for first in range(0, pulses.size - 1, GRID_CHUNK)
+    ]
+    return Findings(
+        closest=min(look.closest for look in looks),
+        leaves_half_band=any(look.leaves_half_band for look in looks),
+        aliases=any(look.aliases for look in looks),
+        meets_wall=any(look.meets_wall for look in looks),
+    )
+
+
+def _look(
+    body: Body, antennas: Antennas, wall: Wall | None, waveform: Waveform, pulses: Index
+) -> Findings:
+    """`survey` of some pulses of the grid."""
     t = waveform.times(pulses.astype(float))
     p = body.positions(t)
     tau = bistatic_delay(leg(p, antennas.tx), leg(p, antennas.rx))
@@ -96,7 +114,7 @@ def survey(scene: Scene, config: Config) -> Findings:
             tau = tau + wall_delay(p, antenna, wall)
     doppler = np.abs(np.diff(tau, axis=1)) * waveform.f0 / np.maximum(np.diff(t), 1e-300)
     return Findings(
-        closest=_closest(body, antennas, waveform, p, t, step),
+        closest=_closest(body, antennas, waveform, p, pulses),
         leaves_half_band=bool(tau.max() * SPEED_OF_LIGHT / 2 >= waveform.half_band_range),
         aliases=bool(doppler.max(initial=0.0) > waveform.prf / 2),
         meets_wall=wall is not None and bool(wall.contains(p).any()),
@@ -104,16 +122,17 @@ def survey(scene: Scene, config: Config) -> Findings:
 
 
 def _closest(
-    body: Body, antennas: Antennas, waveform: Waveform, p: Float, t: Float, step: int
+    body: Body, antennas: Antennas, waveform: Waveform, p: Float, pulses: Index
 ) -> Approach:
     """Nearest passage on the grid, or at every pulse where the grid cannot rule out 5 cm."""
-    near = _nearest(p, t, antennas)
-    between = np.sqrt((np.diff(p, axis=2) ** 2).sum(axis=0)).max(initial=0.0) if step > 1 else 0.0
-    if step == 1 or near.distance - between > CLOSEST_M:
+    near = _nearest(p, waveform.times(pulses.astype(float)), antennas)
+    if np.diff(pulses).max() == 1:
         return near
-    for start in range(0, waveform.n_pulses, CHUNK):
-        pulses = np.arange(start, min(start + CHUNK, waveform.n_pulses), dtype=float)
-        t = waveform.times(pulses)
+    between = np.sqrt((np.diff(p, axis=2) ** 2).sum(axis=0)).max()
+    if near.distance - between > CLOSEST_M:
+        return near
+    for start in range(pulses[0], pulses[-1] + 1, CHUNK):
+        t = waveform.times(np.arange(start, min(start + CHUNK, pulses[-1] + 1), dtype=float))
         near = min(near, _nearest(body.positions(t), t, antennas))
     return near
 

@@ -4,6 +4,8 @@ import numpy as np
 
 from radhar_cli.arrays import Complex
 
+CHUNK = 2**18
+
 
 def savgol(x: Complex, order: int, frame: int) -> Complex:
     """Smooth real and imaginary part alike; SciPy's edge mode `interp`.
@@ -17,6 +19,13 @@ def savgol(x: Complex, order: int, frame: int) -> Complex:
     """
     from scipy.signal import savgol_filter  # slow to import, and few maps are denoised
 
-    parts = savgol_filter(np.stack([x.real, x.imag]), frame, order, axis=1, mode="interp")
-    smooth: Complex = parts[0] + 1j * parts[1]
+    smooth, chunk = np.empty(x.size, dtype=complex), max(CHUNK, frame)
+    for start in range(0, x.size, chunk):
+        # Half a frame more on both sides, and a whole one where the signal ends.
+        stop = min(start + chunk, x.size)
+        first = max(min(start - frame // 2, x.size - frame), 0)
+        wide = x[first : stop + frame // 2]
+        parts = savgol_filter(np.stack([wide.real, wide.imag]), frame, order, axis=1, mode="interp")
+        own = slice(start - first, stop - first)
+        smooth[start:stop] = parts[0, own] + 1j * parts[1, own]
     return smooth

@@ -8,6 +8,10 @@ import numpy as np
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.config.rounding import exact, half_up
 
+# Coefficients at work at once: 16 MiB as complex numbers, some 200 MiB in the synchrosqueezing.
+# The paper's 90 frames of 2000 are a sixth of it.
+BLOCK_COEFFICIENTS = 2**20
+
 
 @dataclass(frozen=True)
 class Frames:
@@ -32,6 +36,20 @@ class Frames:
     def starts(self, samples: int) -> Float:
         """First sample of every frame."""
         return np.arange(self.count(samples)) * float(self.hop)
+
+    def blocks(self, samples: int, bins: int) -> list[slice]:
+        """Consecutive slices of frames that bound the memory: BLOCK_COEFFICIENTS, or one frame.
+
+        Args:
+            samples: of the signal.
+            bins: coefficients of a frame.
+        """
+        count, most = self.count(samples), max(1, BLOCK_COEFFICIENTS // bins)
+        return [slice(first, min(first + most, count)) for first in range(0, count, most)]
+
+    def span(self, block: slice) -> slice:
+        """Samples that a slice of frames covers."""
+        return slice(block.start * self.hop, (block.stop - 1) * self.hop + self.length)
 
     @cached_property
     def window(self) -> Float:

@@ -129,7 +129,7 @@ def simulate(
     chosen = None if joint is None else (_joint(joint),)
     entropies = [f"entropy:{name}" for name in maps]
     signals = [f"signal:{which}" for which in SIGNALS]
-    recording = run(plan(config, [*signals, *entropies]), scene, config, chosen)
+    recording = run(plan(config, [*signals, *maps, *entropies]), scene, config, chosen)
     products = recording.products
     return Simulation(
         config=config,
@@ -167,7 +167,7 @@ def raw_echo(recording: Recording) -> Complex:
         SceneError: the wall's near face is within 5 cm of the antennas' midpoint.
     """
     waveform, paths = recording.waveform, recording.products["paths"]
-    rng = recording.noise("beat") if "signal_power" in recording.products else None
+    rng = recording.noise("beat") if "signal_power" in recording.plan else None
     moving = recording.config.engine.motion_in_chirp
     blocks = [
         block[:, (1 if first else 0) :]

@@ -162,6 +162,7 @@ CHANGES: dict[str, object] = {
     "processing.stft_fft_length": 4096,
     "processing.savgol.order": 3,
     "processing.savgol.frame": 13,
+    "processing.fsst_hop_pulses": 1,
     "processing.fsst_threshold": 0.0,
     "image.size_px": (128, 256),
     "image.dynamic_range_db": 40.0,

@@ -40,6 +40,8 @@ CASES = {
     "free space 77 GHz": {},
     "through the wall 2 GHz": {"radar": radar(2, 1, 128), "wall": {}},
     "through the wall, high PRF": FAST | {"radar": radar(2, 1, 2000), "wall": {}},
+    "refracted, Fresnel by angle": FAST
+    | {"radar": radar(2, 1, 2000), "wall": {"rays": "refracted", "fresnel": "parallel"}},
     "24 GHz 1 kHz": FAST | {"radar": radar(24, 1, 1000)},
     "60 GHz, 7 GHz wide": FAST | {"radar": radar(60, 7, 5000)},
     "narrow band": FAST | {"radar": radar(77, 0.04, 3000)},

@@ -288,6 +288,5 @@ class TestStreams:
         for name in MAP_NAMES:
             config = Config.model_validate(document | {"maps": [name]})
             alone = run(plan_images(config), scene, config).products
-            assert np.array_equal(alone[name], together[name])
             assert np.array_equal(alone[f"levels:{name}"], together[f"levels:{name}"])
             assert alone[f"entropy:{name}"] == together[f"entropy:{name}"]

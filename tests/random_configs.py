@@ -185,6 +185,7 @@ class Drawer:
         self.maybe(
             processing, 0.3, "range_fft_length", lambda: 2 * int(self.rng.integers(samples, 64))
         )
+        self.maybe(processing, 0.2, "fsst_hop_pulses", lambda: int(self.log(1, 1e6)))
         self.maybe(processing, 0.3, "range_reference", lambda: self.pick(("centre", "start")))
         self.maybe(processing, 0.3, "stft_fft_length", lambda: int(self.rng.integers(pulses, 300)))
         self.maybe(

@@ -41,5 +41,5 @@ class ProcessingConfig(Section):
     overlap_fraction: Annotated[float, Field(ge=0, lt=1, strict=True)] = 0.9
     stft_fft_length: Annotated[int, Field(ge=8, strict=True)] | None = None
     savgol: SavgolConfig = SavgolConfig()
-    fsst_hop_pulses: Annotated[int, Field(ge=1, strict=True)] | None = None
+    fsst_hop_pulses: Annotated[int, Field(ge=1, le=2**24, strict=True)] | None = None
     fsst_threshold: Annotated[float, Field(ge=0, lt=1, strict=True)] = 1e-3

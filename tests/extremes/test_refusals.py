@@ -57,6 +57,7 @@ LIMITS: dict[str, tuple[Any, Any, Any, Any]] = {
     "processing.savgol.order": (0, 10, -1, 11),
     "processing.savgol.frame": (7, 317, 5, 319),
     "processing.fsst_threshold": (0, 0.999, -0.1, 1),
+    "processing.fsst_hop_pulses": (1, 2**24, 0, 2**24 + 1),
     "engine.tolerance_db": (-400, -6, -401, -5),
     "image.size_px": (2, 8192, 1, 8193),
     "image.dynamic_range_db": (5e-324, 300, 0, 301),
@@ -135,7 +136,7 @@ def test_a_distribution_that_reaches_beyond_it_is_refused(key: str, form: str) -
     assert "reaches from" in str(caught.value) or "within" in str(caught.value)
 
 
-FFTS = ("processing.range_fft_length", "processing.stft_fft_length")
+FFTS = ("processing.range_fft_length", "processing.stft_fft_length", "processing.fsst_hop_pulses")
 NULLABLE = ("snr_db", "subject.weight_kg", *FFTS)
 
 

@@ -1,0 +1,1 @@
+"""What a setting costs and what it gives: radhar tradeoff."""

@@ -1,6 +1,6 @@
 """What the numbers say, in words: which setting to choose for what."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import inf
 from typing import Any
 
@@ -12,7 +12,7 @@ SAME_IMAGE = 1e-3
 MATTERS_DB, SLIGHT_DB = -10.0, -40.0
 
 
-def advice(records: Sequence[dict[str, Any]], accuracies: Sequence[Accuracy]) -> list[str]:
+def advice(records: Sequence[Mapping[str, Any]], accuracies: Sequence[Accuracy]) -> list[str]:
     """Sentences, each of which follows from the numbers beside it."""
     budgets = [one for one in records if one["group"] == "budget" and one["time_ratio"] is not None]
     said = [*_for_images(budgets), *_for_signals(budgets), *_others(records)]
@@ -20,7 +20,7 @@ def advice(records: Sequence[dict[str, Any]], accuracies: Sequence[Accuracy]) ->
     return [*said, *_about_accuracy(accuracies)]
 
 
-def _for_images(budgets: Sequence[dict[str, Any]]) -> list[str]:
+def _for_images(budgets: Sequence[Mapping[str, Any]]) -> list[str]:
     enough = [one for one in budgets if (one["pixels_changed"] or 0) <= SAME_IMAGE]
     if not enough:
         return ["For images: no budget tried leaves them as the exact ones are."]
@@ -32,7 +32,7 @@ def _for_images(budgets: Sequence[dict[str, Any]]) -> list[str]:
     ]
 
 
-def _for_signals(budgets: Sequence[dict[str, Any]]) -> list[str]:
+def _for_signals(budgets: Sequence[Mapping[str, Any]]) -> list[str]:
     default = next((one for one in budgets if one["default"]), None)
     if default is None:
         return []
@@ -56,7 +56,7 @@ def _for_signals(budgets: Sequence[dict[str, Any]]) -> list[str]:
     return said
 
 
-def _others(records: Sequence[dict[str, Any]]) -> list[str]:
+def _others(records: Sequence[Mapping[str, Any]]) -> list[str]:
     said = []
     for one in records:
         if one["time_ratio"] is None:
@@ -74,11 +74,11 @@ def _others(records: Sequence[dict[str, Any]]) -> list[str]:
     return said
 
 
-def _about_switch(one: dict[str, Any]) -> str:
+def _about_switch(one: Mapping[str, Any]) -> str:
     name, change = one["setting"], one["signal_error_median_db"]
     if one["time_ratio"] is None:
         return f"{name}: could not be computed for these scenes."
-    cost = f"{one['time_ratio']:.1f} times the default's time"
+    cost = f"{one['time_ratio']:.1f} times the time of {one['time_over']}"
     if "FSST" in name:
         return (
             f"{name} instead of at the STFT's hop: {cost}; the images agree to SSIM "

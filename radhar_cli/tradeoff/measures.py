@@ -45,6 +45,8 @@ def _displayed(power: Float, dynamic_range_db: float) -> Float:
 def image_scores(found: Levels, right: Levels) -> dict[str, float | None]:
     """SSIM, PSNR (dB; None for equal images) and share of pixels whose level differs.
 
+    SSIM has a window of 7 pixels, of 3 or 5 in smaller images, and is None below 3.
+
     An image of another size is brought to the reference's by bilinear interpolation first.
     """
     import skimage.metrics
@@ -55,8 +57,11 @@ def image_scores(found: Levels, right: Levels) -> dict[str, float | None]:
         found = np.asarray(Image.fromarray(found).resize(size, Image.Resampling.BILINEAR))
     same = bool(np.array_equal(found, right))
     window = min(SSIM_WINDOW, *(side - 1 + side % 2 for side in right.shape))
+    similar = None
+    if window >= 3:
+        similar = metrics.structural_similarity(right, found, data_range=255, win_size=window)
     return {
-        "ssim": float(metrics.structural_similarity(right, found, data_range=255, win_size=window)),
+        "ssim": None if similar is None else float(similar),
         "psnr_db": None
         if same
         else float(metrics.peak_signal_noise_ratio(right, found, data_range=255)),

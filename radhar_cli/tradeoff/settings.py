@@ -23,6 +23,8 @@ class Setting:
         timed: overrides that its time is measured with.
         shown: overrides of the data whose error is measured: as timed, or for a switch, without it.
         reference: overrides of the exact data that the error refers to.
+        beside: overrides that its time is a ratio to, timed on the same scenes in the same moment.
+        beside_name: what that is called.
     """
 
     group: str
@@ -30,6 +32,8 @@ class Setting:
     timed: tuple[str, ...]
     shown: tuple[str, ...]
     reference: tuple[str, ...]
+    beside: tuple[str, ...] = DIRECT
+    beside_name: str = "the default"
 
     @property
     def is_default(self) -> bool:
@@ -77,8 +81,10 @@ def _switches(config: Config) -> list[Setting]:
             "switch",
             "motion within the chirp",
             (*CUBE, "engine.motion_in_chirp=true"),
-            DIRECT,
+            CUBE,
             (*CUBE, "engine.motion_in_chirp=true"),
+            CUBE,
+            "the cube",
         ),
         Setting(
             "switch",
@@ -86,6 +92,8 @@ def _switches(config: Config) -> list[Setting]:
             (*DIRECT, fsst, dense),
             (*DIRECT, fsst),
             (*CUBE, fsst, dense),
+            (*DIRECT, fsst),
+            "the FSST at the STFT's hop",
         ),
     ]
     if config.wall is not None:

@@ -142,7 +142,7 @@ def _once(ledger: Ledger, key: str, measure: Callable[[], Any]) -> Any:
 
 def _key(kind: str, setting: Setting, what: str) -> str:
     parts = [kind, setting.group, setting.name, what]
-    return json.dumps([*parts, setting.timed, setting.shown, setting.reference])
+    return json.dumps([*parts, setting.timed, setting.shown, setting.reference, setting.beside])
 
 
 def _without_infinity(value: Any) -> Any:

@@ -1,4 +1,4 @@
-"""Time per sample, as a ratio to the default setting on the same scenes at the same time."""
+"""Time per sample, as a ratio to another setting's on the same scenes at the same time."""
 
 from time import perf_counter
 from typing import NamedTuple
@@ -6,7 +6,7 @@ from typing import NamedTuple
 from radhar_cli.pipeline.plan import plan_images
 from radhar_cli.pipeline.run import Recording, run
 from radhar_cli.tradeoff.scenes import Scenes
-from radhar_cli.tradeoff.settings import DIRECT, Setting
+from radhar_cli.tradeoff.settings import Setting
 
 # How long a setting is timed in a round, at most this and one scene more.
 SECONDS = 0.6
@@ -19,7 +19,7 @@ class Times(NamedTuple):
     Attributes:
         sample_ms: from scene to levels and entropy, a sample.
         echo_ms: of that, paths and echo.
-        ratio, echo_ratio: the same over the default setting's.
+        ratio, echo_ratio: the same over those of the setting beside it.
     """
 
     sample_ms: float
@@ -29,13 +29,13 @@ class Times(NamedTuple):
 
 
 def time_setting(scenes: Scenes, setting: Setting, turn: int) -> Times:
-    """Time a setting and the default in turns, scene by scene, for a fraction of a second."""
+    """Time a setting and the one beside it in turns, scene by scene, for a fraction of a second."""
     names = scenes.names()
     own, usual = [0.0, 0.0], [0.0, 0.0]
     count = 0
     for step in range(len(names)):
         slug = names[(turn + step) % len(names)]
-        both = [(DIRECT, usual), (setting.timed, own)]
+        both = [(setting.beside, usual), (setting.timed, own)]
         for overrides, spent in both if (turn + step) % 2 else reversed(both):
             for part, seconds in enumerate(_seconds(scenes, slug, overrides)):
                 spent[part] += seconds

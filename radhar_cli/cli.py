@@ -25,6 +25,7 @@ def program() -> "typer.Typer":
         predict,
         preview,
         simulate,
+        tradeoff,
         train,
         verify,
     )
@@ -44,6 +45,7 @@ def program() -> "typer.Typer":
     app.command()(predict.predict)
     app.command()(models.models)
     app.command()(export.export)
+    app.command()(tradeoff.tradeoff)
     app.command()(preview.preview)
     app.command()(inspect.inspect)
     app.add_typer(config.app, name="config", no_args_is_help=True)

@@ -82,6 +82,7 @@ def test_imports_never_turn_back(path: Path) -> None:
         ("torch", {"learning"}),
         ("timm", {"learning"}),
         ("sklearn", {"learning"}),
+        ("skimage", {"tradeoff"}),
     ],
 )
 def test_libraries_stay_in_their_rooms(library: str, allowed: set[str]) -> None:

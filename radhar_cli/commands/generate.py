@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.options import Overrides
+from radhar_cli.commands.options import Overrides, Tolerance, with_tolerance
 
 EXAMPLE = """
 Example:
@@ -20,6 +20,7 @@ def generate(
     config: Annotated[Path, typer.Argument(help="YAML file that describes the data set.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder to build it in.")],
     set_: Overrides = None,
+    tolerance: Tolerance = None,
     jobs: Annotated[
         int | None, typer.Option("--jobs", "-j", min=1, help="Processes; all cores if not given.")
     ] = None,
@@ -34,7 +35,7 @@ def generate(
     ] = False,
 ) -> None:
     try:
-        _generate(config, out, set_ or [], jobs, batch, dry_run, overwrite)
+        _generate(config, out, with_tolerance(set_, tolerance), jobs, batch, dry_run, overwrite)
     except KeyboardInterrupt:
         typer.echo(
             f"\ninterrupted: what is finished in {out} is kept; the same command goes on", err=True

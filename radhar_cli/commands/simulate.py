@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from radhar_cli.commands.options import Overrides
+from radhar_cli.commands.options import Overrides, Tolerance, with_tolerance
 
 if TYPE_CHECKING:
     from radhar_cli.simulation.simulate import Simulation
@@ -22,6 +22,7 @@ def simulate(
         bool, typer.Option("--nominal", help="Take mid-points instead of drawing.")
     ] = False,
     set_: Overrides = None,
+    tolerance: Tolerance = None,
     engine: Annotated[
         str | None, typer.Option(help="cube or direct, instead of the config's.")
     ] = None,
@@ -52,7 +53,7 @@ def simulate(
     from radhar_cli.simulation.simulate import map_names
     from radhar_cli.simulation.simulate import simulate as simulate_scene
 
-    overrides = [*(set_ or []), *([f"engine.kind={engine}"] if engine else [])]
+    overrides = [*with_tolerance(set_, tolerance), *([f"engine.kind={engine}"] if engine else [])]
     loaded = load_config(config, overrides)
     chosen = map_names(None if maps is None else maps.split(","))
     refuse_file(out)

@@ -15,15 +15,16 @@ from radhar_cli.dataset.split import split_rows
 class BarProgress:
     """A tqdm bar per stage on a terminal; messages alone elsewhere."""
 
-    def __init__(self) -> None:
+    def __init__(self, unit: str = "sample") -> None:
+        self._unit = unit
         self._bar: tqdm[Any] | None = None
 
     def stage(self, name: str, total: int, done: int) -> None:
         self.close()
         if done and done < total:
-            self.say(f"going on: {done} of {total} samples are finished")
+            self.say(f"going on: {done} of {total} {self._unit}s are finished")
         self._bar = tqdm(
-            total=total, initial=done, desc=name, unit="sample", disable=None, file=sys.stderr
+            total=total, initial=done, desc=name, unit=self._unit, disable=None, file=sys.stderr
         )
 
     def advance(self, samples: int) -> None:

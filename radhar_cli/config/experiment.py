@@ -10,7 +10,7 @@ from radhar_cli.activity import ACTIVITIES, Activity, activity_named
 from radhar_cli.config.engine import EngineConfig
 from radhar_cli.config.image import ImageConfig
 from radhar_cli.config.motion import MotionConfig, SubjectConfig, TimingConfig
-from radhar_cli.config.number import Decibel, Positive, nominal, support
+from radhar_cli.config.number import Decibel, Positive, nominal, support, within
 from radhar_cli.config.output import OutputConfig
 from radhar_cli.config.processing import ProcessingConfig
 from radhar_cli.config.radar import RadarConfig
@@ -32,6 +32,8 @@ MapName = Literal[
 ]
 MAP_NAMES: tuple[MapName, ...] = MapName.__args__  # type: ignore[attr-defined]
 MIN_WINDOW = 8
+MOST_PULSES = 2**24
+MOST_PADDING = 64
 
 
 class Problem(NamedTuple):
@@ -48,7 +50,7 @@ class Config(Section):
     seed: Annotated[int, Field(ge=0, lt=2**63, strict=True)] = 1
     samples_per_class: Annotated[int, Field(ge=1, le=10_000_000, strict=True)] = 300
     activities: Literal["all"] | tuple[str, ...] = "all"
-    duration_s: Positive = 4.0
+    duration_s: Annotated[Positive, within(1e-9, 1e7, "s")] = 4.0
     radar: RadarConfig = RadarConfig()
     subject: SubjectConfig = SubjectConfig()
     motion: MotionConfig = MotionConfig()
@@ -152,6 +154,12 @@ def _waveform_problems(c: Config) -> Iterator[Problem]:
             fft_length,
             f"should be null or an even number of at least the {most} ADC samples",
         )
+    if fft_length is not None and fft_length > MOST_PADDING * fewest:
+        yield Problem(
+            "processing.range_fft_length",
+            fft_length,
+            f"should be null or at most {MOST_PADDING} times the {fewest} ADC samples",
+        )
 
 
 def _signal_problems(c: Config) -> Iterator[Problem]:
@@ -159,8 +167,14 @@ def _signal_problems(c: Config) -> Iterator[Problem]:
     duration, prf = support(c.duration_s), support(c.radar.prf_hz)
     pulses = half_up(duration[0], prf[0])
     window = half_up(processing.window_fraction, duration[0], prf[0])
-    if half_up(duration[1], prf[1]) > 2**31:
-        yield Problem("duration_s", c.duration_s, "should give at most 2^31 pulses")
+    most = half_up(duration[1], prf[1])
+    if most > MOST_PULSES:
+        yield Problem(
+            "duration_s",
+            c.duration_s,
+            f"should give at most {MOST_PULSES} pulses (duration_s * prf_hz is {most}): "
+            f"radar.prf_hz may be {prf[1]:g}",
+        )
     doppler = [name for name in c.maps if name != "rtm"]
     if pulses < 2:
         yield Problem(
@@ -192,6 +206,13 @@ def _signal_problems(c: Config) -> Iterator[Problem]:
             "processing.stft_fft_length",
             processing.stft_fft_length,
             f"should be null or at least the window of {longest} pulses",
+        )
+    padded = MOST_PADDING * max(window, MIN_WINDOW)
+    if processing.stft_fft_length is not None and processing.stft_fft_length > padded:
+        yield Problem(
+            "processing.stft_fft_length",
+            processing.stft_fft_length,
+            f"should be null or at most {MOST_PADDING} times the window of {window} pulses",
         )
 
 

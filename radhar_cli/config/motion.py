@@ -14,6 +14,7 @@ from radhar_cli.config.number import (
     Positive,
     Uniform,
     Vary,
+    within,
 )
 from radhar_cli.config.section import Section
 
@@ -53,9 +54,18 @@ def _kind(value: Any) -> str:
 
 # One alias a constraint: pydantic cannot substitute a type variable inside an Annotated union.
 _Either = Discriminator(_kind)
-NotNegativeBy: TypeAlias = Annotated[
-    Annotated[NotNegative, Tag("same")] | Annotated[PerActivity[NotNegative], Tag("per_activity")],
+Speed = Annotated[NotNegative, within(0, 1e4, "m/s")]
+Frequency = Annotated[NotNegative, within(0, 1e3, "Hz")]
+Seconds = Annotated[NotNegative, within(0, 1e7, "s")]
+SpeedBy: TypeAlias = Annotated[
+    Annotated[Speed, Tag("same")] | Annotated[PerActivity[Speed], Tag("per_activity")], _Either
+]
+FrequencyBy: TypeAlias = Annotated[
+    Annotated[Frequency, Tag("same")] | Annotated[PerActivity[Frequency], Tag("per_activity")],
     _Either,
+]
+SecondsBy: TypeAlias = Annotated[
+    Annotated[Seconds, Tag("same")] | Annotated[PerActivity[Seconds], Tag("per_activity")], _Either
 ]
 AngleBy: TypeAlias = Annotated[
     Annotated[Angle, Tag("same")] | Annotated[PerActivity[Angle], Tag("per_activity")], _Either
@@ -76,8 +86,8 @@ def for_activity(value: Number | PerActivity[Number], activity: Activity) -> Num
 class SubjectConfig(Section):
     """The person; without a weight it is 26 kg/m^2 times the height squared."""
 
-    height_m: Positive = Uniform(uniform=(1.5, 1.9))
-    weight_kg: Positive | None = None
+    height_m: Annotated[Positive, within(0.1, 10, "m")] = Uniform(uniform=(1.5, 1.9))
+    weight_kg: Annotated[Positive, within(1e-3, 1e6, "kg")] | None = None
 
 
 class MotionConfig(Section):
@@ -86,8 +96,8 @@ class MotionConfig(Section):
     range_m: CoordinateBy = Uniform(uniform=(1.0, 3.0))
     cross_range_m: CoordinateBy = 0.0
     angle_deg: AngleBy = Uniform(uniform=(-30.0, 30.0))
-    speed_mps: NotNegativeBy = 1.5
-    gait_hz: NotNegativeBy = 1.0
+    speed_mps: SpeedBy = 1.5
+    gait_hz: FrequencyBy = 1.0
     thigh_deg: AngleBy = Vary(vary=(30.0, 0.2))
     calf_deg: AngleBy = Vary(vary=(45.0, 0.2))
     arm_deg: AngleBy = Vary(vary=(35.0, 0.2))
@@ -102,12 +112,12 @@ class TimingConfig(Section):
     switch the gait on and off; 0 is the paper's hard switch.
     """
 
-    seat_start_s: NotNegativeBy = 0.5
-    seat_duration_s: NotNegativeBy = 2.0
-    rise_start_s: NotNegativeBy = 0.5
-    rise_duration_s: NotNegativeBy = 1.5
-    walk_start_s: NotNegativeBy = 2.0
-    walk_stop_s: NotNegativeBy = 2.0
-    sit_duration_s: NotNegativeBy = 1.5
-    fall_duration_s: NotNegativeBy = 0.8
-    blend_s: NotNegativeBy = 0.3
+    seat_start_s: SecondsBy = 0.5
+    seat_duration_s: SecondsBy = 2.0
+    rise_start_s: SecondsBy = 0.5
+    rise_duration_s: SecondsBy = 1.5
+    walk_start_s: SecondsBy = 2.0
+    walk_stop_s: SecondsBy = 2.0
+    sit_duration_s: SecondsBy = 1.5
+    fall_duration_s: SecondsBy = 0.8
+    blend_s: SecondsBy = 0.3

@@ -223,6 +223,11 @@ def _bound(low: float, high: float, wording: str, open_low: bool) -> AfterValida
     return AfterValidator(check)
 
 
+def within(low: float, high: float, unit: str = "") -> AfterValidator:
+    """Validator of a Number whose every draw shall lie from low to high (docs/limits.md)."""
+    return _bound(low, high, f"from {low:g} to {high:g} {unit}".rstrip(), open_low=False)
+
+
 Positive: TypeAlias = Annotated[Number, _bound(0, LARGEST, "above 0", open_low=True)]
 NotNegative: TypeAlias = Annotated[Number, _bound(0, LARGEST, "0 or more", open_low=False)]
 AtLeastOne: TypeAlias = Annotated[Number, _bound(1, LARGEST, "1 or more", open_low=False)]

@@ -7,6 +7,9 @@ from pydantic_core import PydanticCustomError
 
 from radhar_cli.config.section import Flag, Section
 
+# Powers of the sample number up to this are still told apart: the fit errs by 1e-5 at most.
+MOST_CONDITION = 1e11
+
 
 class SavgolConfig(Section):
     """The Savitzky-Golay filter of the denoised maps."""
@@ -19,6 +22,11 @@ class SavgolConfig(Section):
         if self.frame % 2 == 0 or self.frame <= self.order:
             raise PydanticCustomError(
                 "frame", "should have a frame that is odd and above the order"
+            )
+        if (self.frame // 2) ** self.order > MOST_CONDITION:
+            raise PydanticCustomError(
+                "frame",
+                "should have (frame // 2)^order at most 1e11, beyond which rounding spoils the fit",
             )
         return self
 
@@ -33,5 +41,5 @@ class ProcessingConfig(Section):
     overlap_fraction: Annotated[float, Field(ge=0, lt=1, strict=True)] = 0.9
     stft_fft_length: Annotated[int, Field(ge=8, strict=True)] | None = None
     savgol: SavgolConfig = SavgolConfig()
-    fsst_hop_pulses: Annotated[int, Field(ge=1, strict=True)] | None = None
+    fsst_hop_pulses: Annotated[int, Field(ge=1, le=2**24, strict=True)] | None = None
     fsst_threshold: Annotated[float, Field(ge=0, lt=1, strict=True)] = 1e-3

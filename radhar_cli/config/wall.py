@@ -1,9 +1,11 @@
 """`wall:` a homogeneous axis-aligned slab, or null for free space."""
 
-from typing import Literal
+from typing import Annotated, Literal, TypeAlias
 
-from radhar_cli.config.number import AtLeastOne, NotNegative, Positive, Vector
+from radhar_cli.config.number import AtLeastOne, NotNegative, Positive, Vector, within
 from radhar_cli.config.section import Section
+
+Size: TypeAlias = Annotated[Positive, within(1e-6, 1e6, "m")]
 
 
 class WallConfig(Section):
@@ -13,8 +15,8 @@ class WallConfig(Section):
     """
 
     center_m: Vector = (1.0, 0.0, 1.25)
-    size_m: tuple[Positive, Positive, Positive] = (0.24, 5.0, 2.5)
-    eps_r: AtLeastOne = 6.0
-    loss_tangent: NotNegative = 0.03
+    size_m: tuple[Size, Size, Size] = (0.24, 5.0, 2.5)
+    eps_r: Annotated[AtLeastOne, within(1, 1e6)] = 6.0
+    loss_tangent: Annotated[NotNegative, within(0, 1e12)] = 0.03
     rays: Literal["straight", "refracted"] = "straight"
     fresnel: Literal["normal", "perpendicular", "parallel"] = "normal"

@@ -43,16 +43,18 @@ class DirectEcho:
     Attributes:
         source: the paths.
         waveform: the radar.
-        tolerance_db: bound of the relative L2 error after MTI.
+        tolerance_db: bound of the relative L2 error, after MTI where there is one.
         double: keep to double precision whatever the budget.
+        mti: whether only differences from pulse to pulse will be looked at.
     """
 
     source: PathSource
     waveform: Waveform
     tolerance_db: float
     double: bool = False
+    mti: bool = True
 
-    def slow_time(self, mti: bool = True) -> Complex:
+    def slow_time(self) -> Complex:
         """y[m] [M]; with mti, less the paths that do not move (a constant).
 
         Raises:
@@ -60,10 +62,9 @@ class DirectEcho:
         """
         y = np.zeros(self.waveform.n_pulses, dtype=complex)
         for knots, b in self._envelopes():
-            chosen = list(self.settings.moving) if mti else list(range(len(b)))
-            if chosen:
+            if self.settings.moving:
                 first, last = knots.pulses
-                self._sum(knots, b, chosen, y[first:last])
+                self._sum(knots, b, list(self.settings.moving), y[first:last])
         y *= self.settings.scale
         return y
 
@@ -87,7 +88,7 @@ class DirectEcho:
 
     @cached_property
     def _chosen(self) -> Choice:
-        return choose(self._coarse, self.tolerance_db, self.double)
+        return choose(self._coarse, self.tolerance_db, self.double, self.mti)
 
     @cached_property
     def _coarse(self) -> CoarseKnots:

@@ -130,17 +130,17 @@ class Interpolation(NamedTuple):
 
 
 def delay_errors(
-    knots: Knots, b: Complex, kinks: tuple[float, ...], waveform: Waveform
+    knots: Knots, b: Complex, kinks: tuple[float, ...], waveform: Waveform, mti: bool
 ) -> Interpolation:
     """Errors of delay and amplitude alone: what the knots would do to a path with a constant G."""
     a = knots.paths.amplitude
     relative = np.divide(np.abs(b), a, out=np.zeros_like(a), where=a > 0)[:, _MIDDLE]
     error = relative * np.abs(np.diff(a, TAPS, axis=1))
-    return _interpolation(knots, b, error, kinks, waveform)
+    return _interpolation(knots, b, error, kinks, waveform, mti)
 
 
 def interpolation_errors(
-    knots: Knots, b: Complex, kinks: tuple[float, ...], waveform: Waveform
+    knots: Knots, b: Complex, kinks: tuple[float, ...], waveform: Waveform, mti: bool
 ) -> Interpolation:
     """Errors of delay and envelope.
 
@@ -148,12 +148,18 @@ def interpolation_errors(
         knots, b: the paths and their envelopes A G [I, K] there.
         kinks: instants that no difference may reach across, s.
         waveform: the radar.
+        mti: whether the error counts after MTI.
     """
-    return _interpolation(knots, b, np.abs(np.diff(b, TAPS, axis=1)), kinks, waveform)
+    return _interpolation(knots, b, np.abs(np.diff(b, TAPS, axis=1)), kinks, waveform, mti)
 
 
 def _interpolation(
-    knots: Knots, b: Complex, error: Float, kinks: tuple[float, ...], waveform: Waveform
+    knots: Knots,
+    b: Complex,
+    error: Float,
+    kinks: tuple[float, ...],
+    waveform: Waveform,
+    mti: bool,
 ) -> Interpolation:
     """Add the error of the delay as a phase of B; each times what the MTI does to it.
 
@@ -164,8 +170,11 @@ def _interpolation(
     if waveform.residual_video_phase:
         rate += 2 * np.pi * waveform.slope * float(delay.max())
     total = error + rate * np.abs(b[:, _MIDDLE]) * np.abs(np.diff(delay, TAPS, axis=1))
-    turned = rate / (2 * knots.step) * np.abs(delay[:, 4:-2] - delay[:, 2:-4])
-    total *= VALUE * np.minimum(turned, 2.0) + SLOPE / knots.step
+    if mti:
+        turned = rate / (2 * knots.step) * np.abs(delay[:, 4:-2] - delay[:, 2:-4])
+        total *= VALUE * np.minimum(turned, 2.0) + SLOPE / knots.step
+    else:
+        total *= VALUE
     weight = _weights(knots.times, kinks)
     return Interpolation(np.asarray(total**2 @ weight), float(weight.sum()))
 

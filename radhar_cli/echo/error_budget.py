@@ -75,19 +75,22 @@ class Choice(NamedTuple):
     kept: Envelope | None
 
 
-def choose(coarse: CoarseKnots, tolerance_db: float, double: bool = False) -> Choice:
+def choose(
+    coarse: CoarseKnots, tolerance_db: float, double: bool = False, mti: bool = True
+) -> Choice:
     """Return the cheapest settings whose error bound is within the budget.
 
     Args:
         coarse: the recording seen through its coarsest knots.
-        tolerance_db: relative L2 error of the noiseless slow-time signal after MTI.
+        tolerance_db: relative L2 error of the noiseless slow-time signal.
         double: keep to double precision whatever the budget.
+        mti: whether that is the signal after MTI.
 
     Raises:
         BudgetError: the budget is below what float64 leaves of this signal.
     """
     budget = 10 ** (tolerance_db / 20)
-    probe = _through_knots(coarse) if coarse.step > 1 else _through_pulses(coarse)
+    probe = _through_knots(coarse, mti) if coarse.step > 1 else _through_pulses(coarse, mti)
     if not probe.moving.any():
         return Choice(DirectSettings(coarse.step, 1, not double, (), probe.scale), None)
     single, rounding = _rounding(probe.bounds, budget, double)
@@ -97,7 +100,7 @@ def choose(coarse: CoarseKnots, tolerance_db: float, double: bool = False) -> Ch
     table = half_band_table(coarse.waveform, oversampling)
     step, interpolation, kept = 1, 0.0, None
     if coarse.step > 1:
-        step, interpolation, kept = _close_enough(coarse, probe, table, budget)
+        step, interpolation, kept = _close_enough(coarse, probe, table, budget, mti)
     if step == 1:
         every = (coarse if coarse.step == 1 else every_pulse(coarse.source, coarse.waveform)).kept
         if every is not None:
@@ -122,7 +125,7 @@ class _Probe:
     Attributes:
         bounds: all that do not depend on the knots.
         delays: error of delays and amplitudes at these knots.
-        moving: which paths change [I].
+        moving: which paths change [I]; without MTI, all of them count.
         scale: power of two near the largest amplitude.
     """
 
@@ -132,7 +135,7 @@ class _Probe:
     scale: float
 
 
-def _through_knots(coarse: CoarseKnots) -> _Probe:
+def _through_knots(coarse: CoarseKnots, mti: bool) -> _Probe:
     waveform, kinks = coarse.waveform, coarse.source.kinks
     table = _look_table(waveform)
     looks: list[Sums] = []
@@ -142,17 +145,18 @@ def _through_knots(coarse: CoarseKnots) -> _Probe:
     for knots in coarse.chunks():
         if first is None:
             first, scale = knots.at_pulses, _scale(knots.paths)
-        looks += [error_bounds.sums(n, table, scale) for n in knots.neighbours(LOOK_PULSES)]
+        seen = knots.neighbours(LOOK_PULSES)
+        looks += [error_bounds.sums(n if mti else n.alone(), table, scale) for n in seen]
         b = error_bounds.envelope(knots.paths, table, scale)
-        delays.append(error_bounds.delay_errors(knots, b, kinks, waveform))
-        moving = moving | knots.changes(first)
+        delays.append(error_bounds.delay_errors(knots, b, kinks, waveform, mti))
+        moving = moving | (knots.changes(first) if mti else np.full(len(b), True))
         longest = max(longest, float(knots.paths.delay.max()))
     changing = moving.astype(float)
     bounds = error_bounds.bounds(looks, waveform.f0 * longest, changing)
     return _Probe(bounds, _norm(delays, changing), moving, scale)
 
 
-def _through_pulses(coarse: CoarseKnots) -> _Probe:
+def _through_pulses(coarse: CoarseKnots, mti: bool) -> _Probe:
     """Pairs of neighbouring pulses, spread over the recording by the golden ratio."""
     source, waveform = coarse.source, coarse.waveform
     place = np.mod((np.arange(LOOK_PULSES) + 0.5) * (sqrt(5) - 1) / 2, 1)
@@ -166,6 +170,8 @@ def _through_pulses(coarse: CoarseKnots) -> _Probe:
         pair = Neighbours(now, after, 1)
         moving = ~pair.still
     scale = _scale(pair.now)
+    if not mti:
+        pair, moving = pair.alone(), np.full(len(moving), True)
     look = error_bounds.sums(pair, _look_table(waveform), scale)
     cycles = waveform.f0 * float(pair.now.delay.max())
     bounds = error_bounds.bounds([look], cycles, moving.astype(float))
@@ -191,7 +197,7 @@ def _first_step(coarse: CoarseKnots, probe: _Probe, budget: float) -> int:
 
 
 def _close_enough(
-    coarse: CoarseKnots, probe: _Probe, table: HalfBandTable, budget: float
+    coarse: CoarseKnots, probe: _Probe, table: HalfBandTable, budget: float, mti: bool
 ) -> tuple[int, float, Envelope | None]:
     """Bring the knots together until their bound is within its share: (step, bound, knots)."""
     source, waveform = coarse.source, coarse.waveform
@@ -204,7 +210,7 @@ def _close_enough(
         chunks = coarse.chunks() if step == coarse.step else all_knots(source, waveform, step)
         for knots in chunks:
             b = error_bounds.envelope(knots.paths, table, probe.scale)
-            errors.append(error_bounds.interpolation_errors(knots, b, source.kinks, waveform))
+            errors.append(error_bounds.interpolation_errors(knots, b, source.kinks, waveform, mti))
             kept = Envelope(knots, b) if len(errors) == 1 else None
         error = _norm(errors, moving)
         if error <= share:

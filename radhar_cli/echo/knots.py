@@ -80,6 +80,11 @@ class Neighbours(NamedTuple):
         taken = slice(None, None, every)
         return Neighbours(columns(self.now, taken), columns(self.after, taken), self.weight * every)
 
+    def alone(self) -> "Neighbours":
+        """The pulses without those after them: what is left where no MTI takes a difference."""
+        nothing = np.zeros_like(self.now.amplitude)
+        return self._replace(after=self.now._replace(amplitude=nothing))
+
     @property
     def still(self) -> Bool:
         """Which paths [I] are the same in all of them."""

@@ -22,13 +22,17 @@ def leakage(antennas: Antennas) -> StaticReturn:
     )
 
 
+def near_face_distance(antennas: Antennas, wall: Wall) -> float:
+    """Distance (m) along x from the antennas' midpoint to the wall's near face."""
+    middle = (antennas.tx[0] + antennas.rx[0]) / 2
+    return min(abs(face - middle) for face in wall.bounds[0])
+
+
 def wall_echo(antennas: Antennas, wall: Wall, waveform: Waveform) -> StaticReturn:
     """Specular echo of the near face: |Gamma| G lambda/(4 pi 2 d), delay 2 d/c.
 
-    d is the distance from the antennas' midpoint to the near face.
+    d is the `near_face_distance`, above 0.
     """
-    near = wall.bounds[0]
-    middle = (antennas.tx[0] + antennas.rx[0]) / 2
-    d = min(abs(face - middle) for face in near)
+    d = near_face_distance(antennas, wall)
     amplitude = abs(wall.reflection) * antennas.gain * waveform.wavelength / (8 * pi * d)
     return StaticReturn(2 * d / SPEED_OF_LIGHT, amplitude)

@@ -151,7 +151,11 @@ def _torso_track(r: Recording, stage: Stage) -> Float:
 def _echo(r: Recording, stage: Stage) -> DirectEcho:
     engine = r.config.engine
     return DirectEcho(
-        r.products["paths"], r.waveform, engine.tolerance_db, engine.precision == "double"
+        r.products["paths"],
+        r.waveform,
+        engine.tolerance_db,
+        engine.precision == "double",
+        r.config.processing.mti,
     )
 
 
@@ -175,7 +179,7 @@ def _slow_time(r: Recording, stage: Stage) -> Complex:
         return np.concatenate(
             [half_band_signal(range_compression(block, r.waveform)) for _, block in blocks]
         )
-    y = echo.slow_time(r.config.processing.mti)
+    y = echo.slow_time()
     return mti_in_place(y) if r.config.processing.mti else y
 
 

@@ -22,6 +22,7 @@ from radhar_cli.scenario import Scene, draw_scene
 CLOSEST_M = 0.05
 GRID_HZ = 50.0
 GRID_PER_CYCLE = 40
+ANTENNA_KEYS = {"transmitter": "radar.tx_m", "receiver": "radar.rx_m"}
 MOST_ATTEMPTS = 1000
 CHUNK = 65536
 GRID_CHUNK = 16384
@@ -71,8 +72,9 @@ class Findings:
         if self.too_close:
             c = self.closest
             return (
-                f"{c.joint} comes to {c.distance * 100:.3g} cm from the {c.antenna} at "
-                f"t = {c.time:.3f} s; the model holds from {CLOSEST_M * 100:g} cm on"
+                f"{c.joint} comes to {c.distance * 100:.3g} cm from the {c.antenna} "
+                f"({ANTENNA_KEYS[c.antenna]}) at t = {c.time:.3f} s; "
+                f"the model holds from {CLOSEST_M * 100:g} cm on"
             )
         if self.meets_wall:
             return "the body passes through the wall"
@@ -170,7 +172,9 @@ def settle(config: Config, activity: Activity, index: int) -> Drawn:
             f"sample {activity.slug}/{index}: no scene inside the model in {MOST_ATTEMPTS} draws "
             f"(on_invalid: redraw); the last: {findings.invalid}"
         )
-    raise SceneError(f"sample {activity.slug}/{index}: {findings.invalid}")
+    raise SceneError(
+        f"sample {activity.slug}/{index}: {findings.invalid} (on_invalid: {config.on_invalid})"
+    )
 
 
 _WORDING = {

@@ -14,11 +14,16 @@ def levels(power: Float, size: tuple[int, int], dynamic_range_db: float) -> Leve
     The linear power is resized (Pillow, mode F, BILINEAR with antialiasing), divided by the new
     maximum, turned into dB, clipped to [-dynamic_range_db, 0] and scaled to 0..255. Row 0 is the
     top: the highest Doppler, the farthest range. An all-zero map is level 0 everywhere.
+
+    Raises:
+        ValueError: the map has an infinity or a NaN.
     """
     height, width = size
     largest = float(power.max(initial=0.0))
     if largest == 0:
         return np.zeros(size, np.uint8)
+    if not np.isfinite(largest):
+        raise ValueError(f"the power map should be finite; its largest value is {largest}")
     # A power of two brings any map into the range of float32 without changing a digit.
     scaled = np.ldexp(power[::-1], -int(np.frexp(largest)[1]))
     resized = _resized(scaled, height, width)

@@ -12,13 +12,13 @@ from radhar_cli.body.skeleton import JOINTS
 from radhar_cli.config.experiment import MAP_NAMES, Config, MapName
 from radhar_cli.echo import cube
 from radhar_cli.echo.beat import beat_matrix
-from radhar_cli.echo.static_returns import leakage, wall_echo
-from radhar_cli.errors import ConfigError, did_you_mean
+from radhar_cli.echo.static_returns import leakage, near_face_distance, wall_echo
+from radhar_cli.errors import ConfigError, SceneError, did_you_mean
 from radhar_cli.pipeline.axes import Axes, axes_of
 from radhar_cli.pipeline.body_paths import BodyPaths
 from radhar_cli.pipeline.plan import SIGNALS, plan
 from radhar_cli.pipeline.run import Recording, run
-from radhar_cli.pipeline.survey import check
+from radhar_cli.pipeline.survey import CLOSEST_M, check
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scenario import Scene, draw_scene, nominal_scene
 from radhar_cli.simulation.truth import Truth, truth
@@ -117,7 +117,8 @@ def simulate(
 
     Raises:
         ConfigError: unknown activity or joint.
-        SceneError: a scatterer comes within 5 cm of an antenna.
+        SceneError: a scatterer comes within 5 cm of an antenna, or with `raw` the near face of the
+            wall within 5 cm of the antennas' midpoint.
     """
     if isinstance(activity, str):
         activity = _activity(activity)
@@ -160,7 +161,11 @@ def map_names(chosen: list[str] | None) -> tuple[MapName, ...]:
 
 
 def raw_echo(recording: Recording) -> Complex:
-    """s_noisy[n, m] [N_ADC, M] as an ADC would record it: body, noise, leakage and wall echo."""
+    """s_noisy[n, m] [N_ADC, M] as an ADC would record it: body, noise, leakage and wall echo.
+
+    Raises:
+        SceneError: the wall's near face is within 5 cm of the antennas' midpoint.
+    """
     waveform, paths = recording.waveform, recording.products["paths"]
     rng = recording.noise("beat") if "signal_power" in recording.plan else None
     moving = recording.config.engine.motion_in_chirp
@@ -171,6 +176,13 @@ def raw_echo(recording: Recording) -> Complex:
     beat = np.concatenate(blocks, axis=1)
     static = [leakage(paths.antennas)]
     if paths.wall is not None:
+        distance = near_face_distance(paths.antennas, paths.wall)
+        if distance < CLOSEST_M:
+            raise SceneError(
+                f"{recording.scene.name}: the near face of the wall (wall.center_m, wall.size_m) "
+                f"is {distance * 100:.3g} cm from the middle of radar.tx_m and radar.rx_m; its "
+                f"echo in a raw recording holds from {CLOSEST_M * 100:g} cm on"
+            )
         static.append(wall_echo(paths.antennas, paths.wall, waveform))
     delay = np.array([[one.delay] for one in static])
     amplitude = np.array([[one.amplitude] for one in static])

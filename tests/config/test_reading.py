@@ -40,10 +40,10 @@ def test_an_empty_file_is_all_defaults(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "value"),
     [
-        ("77e9", 77e9),
-        ("77E9", 77e9),
-        ("7.7e10", 7.7e10),
-        ("+77e+9", 77e9),
+        ("77e3", 77e3),
+        ("77E3", 77e3),
+        ("7.7e4", 7.7e4),
+        ("+77e+3", 77e3),
         ("1e-3", 1e-3),
         (".5e1", 5.0),
         ("5.", 5.0),
@@ -52,8 +52,8 @@ def test_an_empty_file_is_all_defaults(tmp_path: Path) -> None:
     ],
 )
 def test_numbers_as_engineers_write_them(tmp_path: Path, text: str, value: float) -> None:
-    config = read(tmp_path, f"radar: {{carrier_hz: {text}}}")
-    assert config.radar.carrier_hz == value
+    config = read(tmp_path, f"motion: {{range_m: {text}}}")
+    assert config.motion.range_m == value
 
 
 def test_a_number_in_quotes_stays_text(tmp_path: Path) -> None:
@@ -385,7 +385,7 @@ BROKEN = [
         "at least the 400 ADC samples",
     ),
     Broken("duration_s: 2e-4\nmaps: [rtm]", 1, "duration_s", "0.0002", "at least 2 pulses"),
-    Broken("duration_s: 1e6", 1, "duration_s", "1000000.0", "2^31 pulses"),
+    Broken("duration_s: 1e6", 1, "duration_s", "1000000.0", "16777216 pulses"),
     Broken("duration_s: 0.0148", 1, "duration_s", "0.0148", "at least 8 pulses (it has 7)"),
     Broken(
         "duration_s: 0.01\nprocessing:\n  window_fraction: 0.99",

@@ -133,7 +133,7 @@ class TestStaticPaths:
     def test_without_mti_they_count(self):
         source = self.with_static(5.0)
         paths = source(RADAR.times)
-        y = DirectEcho(source, Waveform(**asdict(RADAR)), TIGHT).slow_time(mti=False)
+        y = DirectEcho(source, Waveform(**asdict(RADAR)), TIGHT, mti=False).slow_time()
         assert ref.error_db(y, ref.slow_time(paths.delay, paths.amplitude, RADAR)) < TIGHT
 
     @pytest.mark.parametrize("budget", [DEFAULT, TIGHT, -400.0])
@@ -269,7 +269,7 @@ class TestKnots:
         echo.slow_time()
         once = len(source.asked)
         echo.signal_power()
-        echo.slow_time(mti=False)
+        echo.slow_time()
         assert len(source.asked) == once
 
     @pytest.mark.parametrize("pulses", [2, 3, 7, 8, 21])

@@ -115,6 +115,18 @@ def test_the_budget_is_kept_and_used(block):
     assert excused <= EXCUSED * (len(slack) + excused)
 
 
+def test_without_mti_the_budget_is_that_of_the_whole_signal():
+    """24 scenes more; what stands still counts, so that every one has a signal."""
+    rng = np.random.default_rng(7)
+    for number in range(24):
+        activity, budget = ACTIVITIES[number % 12], float(rng.uniform(-120, -20))
+        drawn = random_config(rng)
+        drawn["processing"]["mti"] = False
+        right, paths, waveform = cube_signal(drawn, activity)
+        echo = DirectEcho(paths, waveform, budget, mti=False)
+        assert ref.error_db(echo.slow_time(), right) <= budget, (activity.slug, waveform)
+
+
 RADAR = ref.Radar(adc_rate=1e6, duration=0.5)
 
 

@@ -1,0 +1,70 @@
+"""The error of a setting in one scene: against exact data of the same scene, without noise."""
+
+from typing import Any, NamedTuple
+
+from radhar_cli.arrays import Complex, Float, Levels
+from radhar_cli.pipeline.plan import plan
+from radhar_cli.pipeline.run import run
+from radhar_cli.tradeoff.measures import image_scores, map_error_db, relative_db
+from radhar_cli.tradeoff.scenes import Scenes
+from radhar_cli.tradeoff.settings import Setting
+
+QUIET = "snr_db=null"
+
+
+class Sample(NamedTuple):
+    """One scene under one setting, noiseless.
+
+    Attributes:
+        signal: x [M - 1].
+        power: the first map of the config.
+        levels: its image.
+        dynamic_range_db: of the image.
+        bounds: {term: bound of the direct engine, dB}.
+    """
+
+    signal: Complex
+    power: Float
+    levels: Levels
+    dynamic_range_db: float
+    bounds: dict[str, float]
+
+
+class SceneDifferences:
+    """All settings in one scene; what several of them refer to is made once."""
+
+    def __init__(self, scenes: Scenes, slug: str) -> None:
+        self._scenes, self._slug = scenes, slug
+        self._made: dict[tuple[str, ...], Sample] = {}
+
+    def of(self, setting: Setting) -> dict[str, Any]:
+        """How far the setting's data are from its reference, in numbers that JSON can hold."""
+        found, right = self._sample(setting.shown), self._sample(setting.reference)
+        row: dict[str, Any] = {"signal_error_db": relative_db(found.signal, right.signal)}
+        if found.power.shape == right.power.shape:
+            error, worst = map_error_db(found.power, right.power, right.dynamic_range_db)
+            row |= {"map_error_db": error, "map_error_max_db": worst}
+        bounds = {f"{term}_bound_db": bound for term, bound in found.bounds.items()}
+        return row | image_scores(found.levels, right.levels) | bounds
+
+    def _sample(self, overrides: tuple[str, ...]) -> Sample:
+        if overrides not in self._made:
+            self._made[overrides] = self._make(overrides)
+        return self._made[overrides]
+
+    def _make(self, overrides: tuple[str, ...]) -> Sample:
+        config = self._scenes.config((*overrides, QUIET))
+        name = config.maps[0]
+        asked = ["signal:plain", name, f"levels:{name}"]
+        if config.engine.kind == "direct":
+            asked.append("echo")
+        scene = self._scenes.draw(self._slug, config)
+        products = run(plan(config, asked), scene, config).products
+        bounds = products["echo"].settings.bounds_db if "echo" in products else {}
+        return Sample(
+            products["signal:plain"],
+            products[name],
+            products[f"levels:{name}"],
+            config.image.dynamic_range_db,
+            bounds,
+        )

@@ -1,0 +1,41 @@
+"""The output folder of a sweep: one run at a time, and one sweep."""
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+from radhar_cli.config.experiment import Config
+from radhar_cli.dataset.files import write_whole
+from radhar_cli.dataset.identity import differences, identity
+from radhar_cli.dataset.layout import WORK
+from radhar_cli.errors import FolderError
+
+NAME = "sweep.json"
+
+
+def claim(folder: Path, config: Config, overwrite: bool) -> None:
+    """Make a locked folder this config's sweep, or refuse.
+
+    Raises:
+        FolderError: it holds something else, or the sweep of another config.
+    """
+    path = folder / WORK / NAME
+    old: dict[str, Any] | None = json.loads(path.read_text()) if path.exists() else None
+    new = {"keys": identity(config)["keys"], "versions": identity(config)["versions"]}
+    if old is None:
+        strangers = sorted(p.name for p in folder.iterdir() if p.name != WORK)
+        if strangers:
+            raise FolderError(
+                f"{folder}: holds {', '.join(strangers[:5])} but no sweep; choose an empty folder"
+            )
+    elif overwrite:
+        for part in ("measured", "accuracy"):
+            shutil.rmtree(folder / WORK / part, ignore_errors=True)
+    elif found := differences(old, new):
+        raise FolderError(
+            f"{folder}: holds the sweep of another config; it differs in\n  "
+            + "\n  ".join(found)
+            + "\nchoose another folder, or --overwrite to start this one again"
+        )
+    write_whole(folder, path, json.dumps(new).encode())

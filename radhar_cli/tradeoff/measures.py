@@ -1,0 +1,69 @@
+"""How far data are from a reference: as a signal, as a power map, as an image."""
+
+from math import inf, log10
+from typing import Any
+
+import numpy as np
+from PIL import Image
+
+from radhar_cli.arrays import Complex, Float, Levels
+
+SSIM_WINDOW = 7
+
+
+def relative_db(found: Complex, right: Complex) -> float | None:
+    """Relative L2 error in dB; -inf where the two are the same, None where there is no signal."""
+    size = float(np.linalg.norm(right))
+    if size == 0:
+        return None
+    error = float(np.linalg.norm(found - right)) / size
+    return 20 * log10(error) if error > 0 else -inf
+
+
+def map_error_db(found: Float, right: Float, dynamic_range_db: float) -> tuple[float, float]:
+    """Root mean square and largest difference (dB) of two power maps as they are displayed.
+
+    Both are referred to their own maximum and cut at the dynamic range; cells that are at the floor
+    in both do not count.
+    """
+    one, other = (_displayed(power, dynamic_range_db) for power in (found, right))
+    seen = (one > -dynamic_range_db) | (other > -dynamic_range_db)
+    difference = (one - other)[seen]
+    if difference.size == 0:
+        return 0.0, 0.0
+    return float(np.sqrt(np.mean(difference**2))), float(np.abs(difference).max())
+
+
+def _displayed(power: Float, dynamic_range_db: float) -> Float:
+    largest = float(power.max(initial=0.0))
+    if largest == 0:
+        return np.full(power.shape, -dynamic_range_db)
+    decibels: Float = 10 * np.log10(np.maximum(power / largest, 10 ** (-dynamic_range_db / 10)))
+    return decibels
+
+
+def image_scores(found: Levels, right: Levels) -> dict[str, float | None]:
+    """SSIM, PSNR (dB; None for equal images) and share of pixels whose level differs.
+
+    SSIM has a window of 7 pixels, of 3 or 5 in smaller images, and is None below 3.
+
+    An image of another size is brought to the reference's by bilinear interpolation first.
+    """
+    import skimage.metrics
+
+    metrics: Any = skimage.metrics
+    if found.shape != right.shape:
+        size = (right.shape[1], right.shape[0])
+        found = np.asarray(Image.fromarray(found).resize(size, Image.Resampling.BILINEAR))
+    same = bool(np.array_equal(found, right))
+    window = min(SSIM_WINDOW, *(side - 1 + side % 2 for side in right.shape))
+    similar = None
+    if window >= 3:
+        similar = metrics.structural_similarity(right, found, data_range=255, win_size=window)
+    return {
+        "ssim": None if similar is None else float(similar),
+        "psnr_db": None
+        if same
+        else float(metrics.peak_signal_noise_ratio(right, found, data_range=255)),
+        "pixels_changed": float(np.mean(found != right)),
+    }

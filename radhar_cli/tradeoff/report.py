@@ -1,0 +1,112 @@
+"""tradeoff.csv, tradeoff.json, pareto.png and tradeoff.md."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from math import inf
+from pathlib import Path
+from typing import Any
+
+from radhar_cli.dataset.files import write_whole
+from radhar_cli.figures.frontier import Change, CostPoint, Score, tradeoff_png
+from radhar_cli.learning.tables import csv_text
+from radhar_cli.tradeoff.accuracy import Accuracy
+from radhar_cli.tradeoff.study import Row
+from radhar_cli.tradeoff.text import ENGINES, markdown
+
+CSV, JSON, FIGURE, TEXT = "tradeoff.csv", "tradeoff.json", "pareto.png", "tradeoff.md"
+BOUNDS = ("interpolation_bound_db", "table_bound_db", "rounding_bound_db")
+
+
+def record(row: Row) -> dict[str, Any]:
+    """One row in plain numbers; an error of -inf is written as null in JSON and -inf in CSV."""
+    time, echo = row.spread("ratio"), row.spread("echo_ratio")
+    return {
+        "group": row.setting.group,
+        "setting": row.setting.name,
+        "default": row.setting.is_default,
+        "overrides": " ".join(row.setting.timed),
+        "time_over": row.setting.beside_name,
+        "sample_ms": row.middle("sample_ms"),
+        "time_ratio": row.middle("ratio"),
+        "time_ratio_low": time and time[0],
+        "time_ratio_high": time and time[1],
+        "echo_ms": row.middle("echo_ms"),
+        "echo_ratio": row.middle("echo_ratio"),
+        "echo_ratio_low": echo and echo[0],
+        "echo_ratio_high": echo and echo[1],
+        "signal_error_db": row.worst("signal_error_db"),
+        "signal_error_median_db": row.usual("signal_error_db"),
+        "map_error_db": row.worst("map_error_db"),
+        "map_error_max_db": row.worst("map_error_max_db"),
+        "ssim": min(row.values("ssim"), default=None),
+        "psnr_db": min(row.values("psnr_db"), default=None),
+        "pixels_changed": row.worst("pixels_changed"),
+        **{name: row.worst(name) for name in BOUNDS},
+        "scenes": len(row.differences),
+        "refused": len(row.refused),
+    }
+
+
+def write_report(
+    folder: Path,
+    title: str,
+    command: str,
+    rows: Sequence[Row],
+    accuracies: Sequence[Accuracy],
+    conditions: dict[str, Any],
+) -> list[Path]:
+    """Write the four files; return their paths."""
+    records = [record(row) for row in rows]
+    accuracy = {"accuracy": [asdict(each) for each in accuracies]} if accuracies else {}
+    numbers = {"command": command, **conditions, "settings": records, **accuracy}
+    header = list(records[0])
+    files = {
+        CSV: csv_text(header, ([one[name] for name in header] for one in records)).encode(),
+        JSON: (json.dumps(_finite(numbers), indent=2) + "\n").encode(),
+        FIGURE: _figure(title, rows, accuracies),
+        TEXT: markdown(title, command, FIGURE, records, accuracies, conditions).encode(),
+    }
+    for name, data in files.items():
+        write_whole(folder, folder / name, data)
+    return [folder / name for name in files]
+
+
+def _figure(title: str, rows: Sequence[Row], accuracies: Sequence[Accuracy]) -> bytes:
+    engines = [row for row in rows if row.setting.group in ENGINES and row.times]
+    changes = [
+        Change(row.setting.name, change, row.middle("ratio") or 1.0)
+        for row in rows
+        if row.setting.group == "switch" and row.times
+        for change in [row.usual("signal_error_db")]
+        if change is not None and "FSST" not in row.setting.name
+    ]
+    return tradeoff_png(
+        title,
+        [_point(row, "echo_ratio") for row in engines],
+        [_point(row, "ratio") for row in engines],
+        changes,
+        [Score(a.name, a.mean, a.low, a.high) for a in accuracies],
+    )
+
+
+def _point(row: Row, column: str) -> CostPoint:
+    middle, spread = row.middle(column), row.spread(column)
+    assert middle is not None
+    assert spread is not None
+    error = row.worst("signal_error_db")
+    return CostPoint(
+        row.setting.name,
+        middle,
+        *spread,
+        None if error in (None, -inf) else error,
+        row.setting.is_default,
+    )
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _finite(each) for key, each in value.items()}
+    if isinstance(value, list):
+        return [_finite(each) for each in value]
+    return None if value == -inf else value

@@ -1,0 +1,110 @@
+"""What is swept: every setting, what it is timed with, and the reference its error refers to."""
+
+from dataclasses import dataclass
+
+from radhar_cli.config.engine import EngineConfig
+from radhar_cli.config.experiment import MAP_NAMES, Config
+
+BUDGETS = (-20, -30, -40, -50, -60, -70, -80, -100, -120)
+SIZES = (64, 128, 256, 512)
+# The direct engine at this budget stands in for the exact reference where data sets are trained on.
+NEARLY_EXACT = "engine.tolerance_db=-120"
+CUBE = ("engine.kind=cube",)
+DIRECT = ("engine.kind=direct", f"engine.tolerance_db={EngineConfig().tolerance_db:g}")
+
+
+@dataclass(frozen=True)
+class Setting:
+    """One row of the sweep; overrides are dotted `key=value` pairs.
+
+    Attributes:
+        group: budget, precision, engine, image size, map or switch.
+        name: for people.
+        timed: overrides that its time is measured with.
+        shown: overrides of the data whose error is measured: as timed, or for a switch, without it.
+        reference: overrides of the exact data that the error refers to.
+        beside: overrides that its time is a ratio to, timed on the same scenes in the same moment.
+        beside_name: what that is called.
+    """
+
+    group: str
+    name: str
+    timed: tuple[str, ...]
+    shown: tuple[str, ...]
+    reference: tuple[str, ...]
+    beside: tuple[str, ...] = DIRECT
+    beside_name: str = "the default"
+
+    @property
+    def is_default(self) -> bool:
+        """Whether this is what a config without an `engine:` gets."""
+        return self.group == "budget" and self.timed == DIRECT
+
+
+def budget(tolerance_db: float) -> tuple[str, ...]:
+    """Overrides for a budget of the direct engine."""
+    return ("engine.kind=direct", f"engine.tolerance_db={tolerance_db:g}")
+
+
+def sweep(config: Config) -> list[Setting]:
+    """The settings that make sense for a config."""
+    return [*_engines(), *_images(config), *_switches(config)]
+
+
+def _engines() -> list[Setting]:
+    rows = [
+        Setting("budget", f"{db} dB", budget(db), budget(db), CUBE)
+        for db in sorted({*BUDGETS, round(EngineConfig().tolerance_db)}, reverse=True)
+    ]
+    double = (*DIRECT, "engine.precision=double")
+    rows.append(Setting("precision", "double", double, double, CUBE))
+    rows.append(Setting("engine", "cube", CUBE, CUBE, CUBE))
+    return rows
+
+
+def _images(config: Config) -> list[Setting]:
+    rows = []
+    for size in SIZES:
+        sized = (*DIRECT, f"image.size_px={size}")
+        rows.append(Setting("image size", f"{size} px", sized, sized, CUBE))
+    for name in MAP_NAMES:
+        one = f"maps=[{name}]"
+        rows.append(Setting("map", name, (*DIRECT, one), (*DIRECT, one), (*CUBE, one)))
+    return rows
+
+
+def _switches(config: Config) -> list[Setting]:
+    fsst, dense = "maps=[fsst]", "processing.fsst_hop_pulses=1"
+    found = [
+        _switch("residual video phase", "radar.residual_video_phase=true"),
+        Setting(
+            "switch",
+            "motion within the chirp",
+            (*CUBE, "engine.motion_in_chirp=true"),
+            CUBE,
+            (*CUBE, "engine.motion_in_chirp=true"),
+            CUBE,
+            "the cube",
+        ),
+        Setting(
+            "switch",
+            "FSST at every sample",
+            (*DIRECT, fsst, dense),
+            (*DIRECT, fsst),
+            (*CUBE, fsst, dense),
+            (*DIRECT, fsst),
+            "the FSST at the STFT's hop",
+        ),
+    ]
+    if config.wall is not None:
+        found += [
+            _switch("refracted rays", "wall.rays=refracted"),
+            _switch("Fresnel, perpendicular", "wall.fresnel=perpendicular"),
+            _switch("Fresnel, parallel", "wall.fresnel=parallel"),
+        ]
+    return found
+
+
+def _switch(name: str, on: str) -> Setting:
+    """Physics that is off by default: what it costs, and what is missed without it."""
+    return Setting("switch", name, (*DIRECT, on), DIRECT, (*CUBE, on))

@@ -1,0 +1,158 @@
+"""The whole sweep: every unit of work measured once, kept, and put together into rows."""
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from math import inf
+from statistics import median, quantiles
+from typing import Any, Protocol
+
+from radhar_cli.errors import RadharError
+from radhar_cli.tradeoff.differences import SceneDifferences
+from radhar_cli.tradeoff.ledger import Ledger
+from radhar_cli.tradeoff.scenes import Scenes
+from radhar_cli.tradeoff.settings import Setting, sweep
+from radhar_cli.tradeoff.timing import Times, time_setting
+
+ROUNDS = {True: 2, False: 7}
+
+
+class Progress(Protocol):
+    """Who is told how far a sweep is."""
+
+    def stage(self, name: str, total: int, done: int) -> None:
+        """A part of the work begins."""
+
+    def advance(self, samples: int) -> None:
+        """Some of it is finished."""
+
+    def say(self, message: str) -> None:
+        """Something the user should read."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """One setting, measured.
+
+    Attributes:
+        setting: what was measured.
+        times: round by round.
+        differences: {activity: what differs from the reference}; a scene that the engine refused
+            has the reason under `refused`.
+    """
+
+    setting: Setting
+    times: list[Times] = field(default_factory=list)
+    differences: dict[str, dict[str, Any]] = field(default_factory=dict)
+
+    def middle(self, name: str) -> float | None:
+        """Median of a column of `Times` over the rounds."""
+        found = [getattr(times, name) for times in self.times]
+        return median(found) if found else None
+
+    def spread(self, name: str) -> tuple[float, float] | None:
+        """First and third quartile of a column of `Times`."""
+        found = [getattr(times, name) for times in self.times]
+        if len(found) < 2:
+            return (found[0], found[0]) if found else None
+        first, _, third = quantiles(found, n=4, method="inclusive")
+        return first, third
+
+    def values(self, name: str) -> list[float]:
+        """A difference in every scene that has it."""
+        found = [row.get(name) for row in self.differences.values()]
+        return [float(value) for value in found if value is not None]
+
+    def worst(self, name: str) -> float | None:
+        """The largest value of a difference over the scenes."""
+        return max(self.values(name), default=None)
+
+    def usual(self, name: str) -> float | None:
+        """The median of a difference over the scenes."""
+        values = self.values(name)
+        return median(values) if values else None
+
+    @property
+    def refused(self) -> list[str]:
+        """Why scenes could not be computed."""
+        return [row["refused"] for row in self.differences.values() if "refused" in row]
+
+
+def run_sweep(scenes: Scenes, ledger: Ledger, progress: Progress) -> list[Row]:
+    """Measure what has not been measured yet; return all rows."""
+    rows = [Row(setting) for setting in _possible(scenes, progress)]
+    _differences(scenes, rows, ledger, progress)
+    _times(scenes, rows, ledger, progress)
+    return rows
+
+
+def _possible(scenes: Scenes, progress: Progress) -> list[Setting]:
+    """The settings that the config allows; the others are named, with the reason."""
+    found = []
+    for setting in sweep(scenes.config()):
+        try:
+            for overrides in (setting.timed, setting.shown, setting.reference):
+                scenes.config(overrides)
+        except RadharError as error:
+            progress.say(f"left out: {setting.group} {setting.name}: {error}")
+            continue
+        found.append(setting)
+    return found
+
+
+def _differences(scenes: Scenes, rows: Sequence[Row], ledger: Ledger, progress: Progress) -> None:
+    names = scenes.names()
+    progress.stage("errors", len(names) * len(rows), 0)
+    for slug in names:
+        scene = SceneDifferences(scenes, slug)
+        for row in rows:
+            key = _key("difference", row.setting, slug)
+            row.differences[slug] = _once(ledger, key, partial(_of, scene, row))
+            progress.advance(1)
+
+
+def _of(scene: SceneDifferences, row: Row) -> dict[str, Any]:
+    try:
+        return scene.of(row.setting)
+    except RadharError as error:
+        return {"refused": str(error)}
+
+
+def _times(scenes: Scenes, rows: Sequence[Row], ledger: Ledger, progress: Progress) -> None:
+    rounds = ROUNDS[scenes.quick]
+    possible = [row for row in rows if not row.refused]
+    progress.stage("times", rounds * len(possible), 0)
+    for turn in range(rounds):
+        for row in possible:
+            key = _key("time", row.setting, str(turn))
+            times = _once(ledger, key, partial(time_setting, scenes, row.setting, turn))
+            row.times.append(Times(*times))
+            progress.advance(1)
+
+
+def _once(ledger: Ledger, key: str, measure: Callable[[], Any]) -> Any:
+    found = ledger.get(key)
+    if found is None:
+        found = measure()
+        ledger.put(key, _without_infinity(found))
+        found = ledger.get(key)
+    return _with_infinity(found)
+
+
+def _key(kind: str, setting: Setting, what: str) -> str:
+    parts = [kind, setting.group, setting.name, what]
+    return json.dumps([*parts, setting.timed, setting.shown, setting.reference, setting.beside])
+
+
+def _without_infinity(value: Any) -> Any:
+    """JSON has no -inf, the error in dB of what is the same."""
+    if isinstance(value, dict):
+        return {key: _without_infinity(each) for key, each in value.items()}
+    return "-inf" if value == -inf else value
+
+
+def _with_infinity(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _with_infinity(each) for key, each in value.items()}
+    return -inf if value == "-inf" else value

@@ -1,0 +1,175 @@
+"""Random configs through the whole chain: finite maps, or a refusal that names its key."""
+
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import reference as ref
+import yaml
+from random_configs import KEYS, Document, Drawer
+
+from radhar_cli.config import MAP_NAMES, Config, load_config
+from radhar_cli.config.reading import validated
+from radhar_cli.errors import ConfigError, RadharError
+from radhar_cli.pipeline import survey
+from radhar_cli.pipeline.plan import plan, plan_images
+from radhar_cli.pipeline.run import Recording, run
+from radhar_cli.pipeline.survey import check, settle
+from radhar_cli.scenario import draw_scene
+
+SEED = 20261121
+BLOCKS, CONFIGS = 10, 220
+AGREEING_BLOCKS, AGREEING = 4, 60
+DIRECT_DB = -60.0
+MOST_CYCLES = 1e10  # beyond, the phases of either engine are off by 1e-6 of a cycle and more
+BROKEN = 0.2  # share of the documents in which one key is replaced by junk
+ALL_MAPS = 0.3  # share of the recordings that make all nine maps
+LEAST_MAPPED = 0.5  # nothing is gained where everything is refused
+LEAST_NAMED = 0.8
+FAULT = re.compile(r"^\S*: (?P<key>[\w.]+) = .+: .+")
+NAMES_A_KEY = re.compile("|".join(re.escape(key) for key in KEYS))
+
+
+def read(document: Document, drawer: Drawer, folder: Path) -> Config:
+    """The config of a document, through a YAML file or straight from the values."""
+    if drawer.chance(0.5):
+        path = folder / "fuzz.yaml"
+        path.write_text(yaml.safe_dump(document))
+        return load_config(path)
+    return validated(Config, document, "fuzz", {})
+
+
+def record(config: Config, drawer: Drawer) -> Recording:
+    """One sample: drawn, settled, surveyed and run as a data set does."""
+    if drawer.chance(ALL_MAPS):
+        config = config.model_copy(update={"maps": MAP_NAMES})
+        config = Config.model_validate(config.model_dump(mode="json"))
+    activity = drawer.pick(config.chosen_activities)
+    index = int(drawer.rng.integers(config.samples_per_class))
+    attempt = settle(config, activity, index).attempt
+    scene = draw_scene(config, activity, index, attempt)
+    check(scene, config)
+    if drawer.chance(0.5):
+        return run(plan_images(config), scene, config)
+    kinds = ("", "entropy:", "levels:")
+    return run(plan(config, [kind + name for name in config.maps for kind in kinds]), scene, config)
+
+
+def assert_finite(recording: Recording) -> None:
+    products: dict[str, Any] = recording.products
+    for name in recording.config.maps:
+        entropy, levels = products[f"entropy:{name}"], products[f"levels:{name}"]
+        assert levels.dtype == np.uint8
+        assert levels.shape == recording.config.image.size_px
+        assert np.isfinite(entropy)
+        assert entropy >= 0
+        if name not in products:  # an image's plan may hold no whole map
+            continue
+        power = products[name]
+        assert power.size
+        assert np.isfinite(power).all()
+        assert power.min() >= 0
+        assert entropy <= math.log2(power.size) + 1e-9
+        assert (levels.max() == 255) == bool(power.any())
+
+
+def assert_clear(error: RadharError) -> list[str]:
+    """One line a mistake; each names a key, its value and what would be right. Returns the keys."""
+    lines = str(error).splitlines()
+    if isinstance(error, ConfigError):
+        matches = [FAULT.match(line) for line in lines]
+        assert all(matches), lines
+        return [match["key"] for match in matches if match]
+    assert re.search(r"\d", lines[0]), lines
+    keys = NAMES_A_KEY.findall(lines[0])
+    assert keys, lines
+    return keys
+
+
+def names(keys: list[str], broken: str) -> bool:
+    """Whether the broken key, one inside of it or the section around it is among `keys`."""
+    pairs = [(key, broken) for key in keys] + [(broken, key) for key in keys]
+    return any(f"{inner}.".startswith(f"{outer}.") for inner, outer in pairs)
+
+
+@pytest.mark.parametrize("block", range(BLOCKS))
+def test_maps_or_a_clear_refusal(
+    block: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(survey, "MOST_ATTEMPTS", 10)  # `on_invalid: redraw` draws 1000 times
+    drawer = Drawer(SEED, block)
+    mapped = refused = broken_refused = named = 0
+    for _ in range(CONFIGS):
+        broken: str | None = None
+        if drawer.chance(BROKEN):
+            document, broken = drawer.broken()
+        else:
+            document = drawer.document()
+        try:
+            recording = record(read(document, drawer, tmp_path), drawer)
+        except RadharError as error:
+            keys = assert_clear(error)
+            refused += 1
+            if broken:
+                broken_refused += 1
+                named += names(keys, broken)
+        else:
+            assert_finite(recording)
+            mapped += 1
+    print(
+        f"block {block}: {mapped} of {CONFIGS} configs reached finite maps, {refused} were "
+        f"refused; of {broken_refused} with a spoilt key {named} name it, the others a key that "
+        "no longer fits it"
+    )
+    assert mapped >= LEAST_MAPPED * CONFIGS
+    assert broken_refused >= 0.1 * CONFIGS
+    assert named >= LEAST_NAMED * broken_refused
+
+
+def cycles(recording: Recording) -> float:
+    """Largest phase of a path: what is left of it to a double is 1e-16 of this."""
+    w = recording.waveform
+    delay = recording.products["paths"](w.times(np.arange(w.n_pulses) + 0.0)).delay.max()
+    return float(w.f0 * delay + 0.5 * w.slope * delay**2 * w.residual_video_phase)
+
+
+@pytest.mark.parametrize("block", range(AGREEING_BLOCKS))
+def test_direct_keeps_its_promise_or_refuses(block: int) -> None:
+    """Random scenes over all ranges, noiseless, after MTI: within -60 dB of the cube."""
+    drawer = Drawer(SEED, BLOCKS + block)
+    compared = refused = rounded = 0
+    worst = -math.inf
+    for _ in range(AGREEING):
+        document = drawer.document() | {"snr_db": None}
+        document["processing"]["mti"] = True
+        found = []
+        try:
+            for kind in ("cube", "direct"):
+                config = validated(Config, document | {"engine": {"kind": kind}}, "fuzz", {})
+                scene = draw_scene(config, config.chosen_activities[-1], 0)
+                check(scene, config)
+                found.append(run(plan(config, ["paths", "signal:plain"]), scene, config))
+        except RadharError as error:
+            assert_clear(error)
+            refused += 1
+            continue
+        right, direct = (recording.products["signal:plain"] for recording in found)
+        if cycles(found[0]) > MOST_CYCLES:
+            rounded += 1
+            continue
+        compared += 1
+        if not right.any():
+            assert not direct.any()
+            continue
+        largest = np.abs(right).max()  # the square of 1e-200 is no double
+        error_db = ref.error_db(direct / largest, right / largest)
+        assert error_db < DIRECT_DB, document
+        worst = max(worst, error_db)
+    print(
+        f"block {block}: {compared} scenes, direct {worst:.0f} dB at worst; {refused} refused, "
+        f"{rounded} beyond {MOST_CYCLES:g} cycles"
+    )
+    assert compared >= LEAST_MAPPED * AGREEING

@@ -1,0 +1,76 @@
+"""Ten million pulses: memory does not grow with the recording beyond a few arrays of its length.
+
+A process of its own each, so that its peak is its own.
+"""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PULSES = int(os.environ.get("RADHAR_LONG_PULSES", 10_000_000))
+LIMIT_BYTES = 2**30
+PRF = 5000
+
+PROGRAM = """
+import json, resource, sys
+from radhar_cli.activity import activity_named
+from radhar_cli.config import Config
+from radhar_cli.pipeline.plan import plan_images
+from radhar_cli.pipeline.run import run
+from radhar_cli.pipeline.survey import settle
+from radhar_cli.process import prepare_process
+from radhar_cli.scenario import draw_scene
+
+prepare_process()
+config = Config.model_validate(json.loads(sys.argv[1]))
+activity = activity_named("body_rotating")
+settle(config, activity, 0)
+products = run(plan_images(config), draw_scene(config, activity, 0), config).products
+(name,) = config.maps
+levels = products[f"levels:{name}"]
+print(json.dumps({
+    "peak": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024,
+    "shape": levels.shape,
+    "levels": [int(levels.min()), int(levels.max())],
+    "entropy": products[f"entropy:{name}"],
+}))
+"""
+
+
+def measured(engine: str, name: str) -> dict[str, Any]:
+    """Peak memory and outcome of one sample of a person who turns on the spot."""
+    document = {
+        "duration_s": PULSES / PRF,
+        "radar": {"prf_hz": PRF, "adc_rate_hz": 2e5},  # 8 samples a chirp
+        "engine": {"kind": engine},
+        "image": {"size_px": 64},
+        "maps": [name],
+    }
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM, json.dumps(document)],
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+    )
+    assert done.returncode == 0, done.stderr
+    found: dict[str, Any] = json.loads(done.stdout)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("engine", "name"), [("direct", "stft"), ("direct", "fsst"), ("cube", "stft")]
+)
+def test_peak_memory(engine: str, name: str) -> None:
+    found = measured(engine, name)
+    print(f"{PULSES} pulses, {engine}, {name}: {found['peak'] / 2**20:.0f} MiB at most")
+    assert found["shape"] == [64, 64]
+    assert found["levels"][1] == 255
+    assert found["levels"][0] < 255
+    assert 0 < found["entropy"] < 60
+    assert found["peak"] < LIMIT_BYTES

@@ -1,0 +1,298 @@
+"""Every processing function on the inputs that break arithmetic, and in single precision.
+
+Zero, constant, impulse, denormal (1e-310), huge (1e150): finite results, no warning, and the same
+as for an input of size 1 but for the scale. Beyond 1e154 squares are infinite: that is said.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from radhar_cli.config import Config
+from radhar_cli.config.processing import SavgolConfig
+from radhar_cli.config.reading import validated
+from radhar_cli.errors import ConfigError
+from radhar_cli.processing import fsst, stft
+from radhar_cli.processing.denoising import savgol
+from radhar_cli.processing.doppler_compensation import compensate
+from radhar_cli.processing.entropy import entropy_bits
+from radhar_cli.processing.frames import Frames
+from radhar_cli.processing.image import levels
+from radhar_cli.processing.mti import mti
+from radhar_cli.processing.range_compression import (
+    half_band_signal,
+    range_bins,
+    range_compression,
+    range_power,
+)
+from radhar_cli.radar.waveform import Waveform
+
+Function = Callable[[np.ndarray], np.ndarray]
+
+SAMPLES, PULSES = 16, 120
+WAVEFORM = Waveform(24e9, 2e8, 40e-6, SAMPLES / 40e-6, 1000, PULSES / 1000)
+FRAMES = Frames(24, 5)
+TRACK = 2e-8 + 1e-11 * np.arange(PULSES)
+
+
+def squeezed(x: np.ndarray) -> np.ndarray:
+    return fsst.synchrosqueeze(x, stft.spectrum(x, FRAMES), FRAMES, 1e-3)
+
+
+# Linear functions of a slow-time signal [M] or a beat matrix [N_ADC, M].
+LINEAR: dict[str, Function] = {
+    "mti": mti,
+    "range_compression": lambda s: range_compression(s, WAVEFORM),
+    "range_bins": lambda s: range_bins(s, WAVEFORM),
+    "half_band_signal": half_band_signal,
+    "compensate": lambda x: compensate(x, TRACK, 24e9),
+    "savgol": lambda x: savgol(x, 5, 11),
+    "spectrum": lambda x: stft.spectrum(x, FRAMES),
+    "padded spectrum": lambda x: stft.spectrum(x, FRAMES, 64),
+}
+MATRIX = ("range_compression", "range_bins", "half_band_signal")
+# Powers of coefficients.
+POWER: dict[str, Function] = {
+    "range_power": range_power,
+    "stft.power_map": stft.power_map,
+    "fsst.power_map": fsst.power_map,
+}
+
+
+def shape_of(name: str) -> tuple[int, ...]:
+    return (SAMPLES, PULSES) if name in MATRIX else (PULSES,)
+
+
+def inputs(shape: tuple[int, ...]) -> dict[str, np.ndarray]:
+    """Signals of size 1."""
+    rng = np.random.default_rng(3)
+    noise = rng.standard_normal((*shape, 2)).view(complex)[..., 0]
+    impulse = np.zeros(shape, complex)
+    impulse[tuple(size // 2 for size in shape)] = 1 - 2j
+    m = np.arange(shape[-1])
+    tone = np.broadcast_to(np.exp(0.7j * m), shape).copy()
+    return {"constant": np.full(shape, 1 + 1j), "impulse": impulse, "noise": noise, "tone": tone}
+
+
+KINDS = tuple(inputs((4, 4)))
+DENORMAL = 5e-324
+
+
+@pytest.mark.parametrize("name", [*LINEAR, "synchrosqueeze"])
+def test_zeros_stay_zeros(name: str) -> None:
+    function = LINEAR.get(name, squeezed)
+    assert not function(np.zeros(shape_of(name), complex)).any()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("scale", [1e150, 1e290, 1e-150, 1e-290])
+@pytest.mark.parametrize("name", LINEAR)
+def test_linear_functions_scale(name: str, scale: float, kind: str) -> None:
+    if name == "savgol" and scale > 1e150:
+        pytest.skip("said below")
+    x = inputs(shape_of(name))[kind]
+    right, found = LINEAR[name](x), LINEAR[name](x * scale)
+    assert np.isfinite(found).all()
+    error = np.abs(found / scale - right).max()
+    # SciPy fits the ends of the Savitzky-Golay filter by least squares.
+    least = 1e-11 if name == "savgol" else 1e-13
+    assert error <= least * max(np.abs(right).max(), np.abs(x).max())
+
+
+def test_savitzky_golay_beyond_squares_is_said() -> None:
+    """From 1e154 on the least squares at the ends warn of the overflow; the fit itself holds."""
+    x = inputs((PULSES,))["noise"]
+    with pytest.warns(RuntimeWarning, match="overflow"):
+        found = savgol(x * 1e200, 5, 11)
+    assert np.abs(found / 1e200 - savgol(x, 5, 11)).max() < 1e-11
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("name", LINEAR)
+def test_linear_functions_of_denormals(name: str, kind: str) -> None:
+    """1e-310 has 13 digits left; every sum loses one last place a term."""
+    x = inputs(shape_of(name))[kind]
+    right, found = LINEAR[name](x), LINEAR[name](x * 1e-310)
+    assert np.isfinite(found).all()
+    # In pieces: 1e310 is no double.
+    error = np.abs(found * 1e155 * 1e155 - right).max()
+    terms = 4 * SAMPLES * FRAMES.length
+    least = 1e-8 if name == "savgol" else 1e-13
+    assert error <= terms * DENORMAL * 1e155 * 1e155 + least * np.abs(right).max()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("scale", [1e150, 1e290, 1e-150, 1e-290])
+def test_synchrosqueezing_scales(scale: float, kind: str) -> None:
+    x = inputs((PULSES,))[kind]
+    right, found = squeezed(x), squeezed(x * scale)
+    assert np.isfinite(found).all()
+    assert np.abs(found / scale - right).max() <= 1e-12 * np.abs(right).max()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_synchrosqueezing_of_denormals_keeps_the_sum(kind: str) -> None:
+    """The quotient V'/V of denormals overflows; such coefficients stay where they are."""
+    x = inputs((PULSES,))[kind] * 1e-310
+    found = fsst.synchrosqueeze(x, stft.spectrum(x, FRAMES), FRAMES, 0.0)
+    assert np.isfinite(found).all()
+    middle = FRAMES.length // 2
+    kept = x[middle :: FRAMES.hop][: len(found)] * FRAMES.length * FRAMES.window[middle]
+    error = np.abs(found.sum(axis=1) - kept).max()
+    assert error <= 4 * FRAMES.length**2 * DENORMAL
+
+
+def coefficients(kind: str) -> np.ndarray:
+    return inputs((20, 24))[kind]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("name", POWER)
+def test_powers(name: str, kind: str) -> None:
+    """Up to 1e150 the power scales; 1e-310 squares to zero, and so does anything below 1e-162."""
+    z = coefficients(kind)
+    right = POWER[name](z.copy())
+    for scale in (1e150, 1e-150):
+        found = POWER[name](z * scale)
+        assert np.isfinite(found).all()
+        assert found / scale / scale == pytest.approx(right, rel=1e-12)
+    assert not POWER[name](z * 1e-310).any()
+
+
+@pytest.mark.parametrize("name", POWER)
+def test_squares_beyond_a_double_are_said(name: str) -> None:
+    """|X| from 1.4e154 on: NumPy warns of the overflow and the map is infinite."""
+    z = np.full((20, 24), 1e155 + 0j)
+    with pytest.warns(RuntimeWarning, match="overflow"):
+        power = POWER[name](z)
+    assert np.isinf(power).all()
+    with pytest.raises(ValueError, match="should be finite; its largest value is inf"):
+        entropy_bits(power)
+    with pytest.raises(ValueError, match="should be finite; its largest value is inf"):
+        levels(power, (8, 8), 50.0)
+
+
+@pytest.mark.parametrize("function", [entropy_bits, lambda p: levels(p, (8, 8), 50.0)])
+def test_maps_with_a_nan_are_refused(function: Callable[[np.ndarray], Any]) -> None:
+    power = np.ones((9, 9))
+    power[4, 4] = np.nan
+    with pytest.raises(ValueError, match="its largest value is nan"):
+        function(power)
+
+
+MAPS = {
+    "constant": np.ones((30, 40)),
+    "impulse": np.pad([[1.0]], ((10, 19), (12, 27))),
+    "gradient": np.outer(np.logspace(-20, 0, 30), np.linspace(0.5, 1, 40)),
+}
+
+
+@pytest.mark.parametrize("kind", MAPS)
+@pytest.mark.parametrize("scale", [5e-324, 1e-310, 1e-300, 1e150, 1e300, 1.7e308])
+def test_entropy_and_levels_do_not_see_the_scale(scale: float, kind: str) -> None:
+    power = MAPS[kind]
+    found = power * scale
+    if scale < 1e-309 and kind == "gradient":  # its small pixels round away
+        assert np.isfinite(entropy_bits(found))
+        assert levels(found, (16, 20), 50.0).max() == 255
+        return
+    assert entropy_bits(found) == pytest.approx(entropy_bits(power), abs=1e-9)
+    grey = levels(found, (16, 20), 50.0)
+    assert np.array_equal(grey, levels(power, (16, 20), 50.0))
+    assert grey.max() == 255
+
+
+def test_closed_forms() -> None:
+    """A constant map has log2 of its pixels, an impulse none; the impulse is as wide as a pixel."""
+    assert entropy_bits(MAPS["constant"]) == pytest.approx(np.log2(1200), rel=1e-14)
+    assert entropy_bits(MAPS["impulse"]) == 0
+    assert entropy_bits(np.zeros((3, 3))) == 0
+    assert (levels(MAPS["constant"], (16, 20), 50.0) == 255).all()
+    grey = levels(MAPS["impulse"], (30, 40), 50.0)
+    assert np.count_nonzero(grey) == 1
+    assert not levels(np.zeros((3, 3)), (8, 8), 50.0).any()
+
+
+@pytest.mark.parametrize("dynamic_range", [5e-324, 1e-12, 300.0])
+@pytest.mark.parametrize("kind", MAPS)
+def test_levels_at_the_ends_of_the_dynamic_range(kind: str, dynamic_range: float) -> None:
+    grey = levels(MAPS[kind], (16, 20), dynamic_range)
+    assert grey.max() == 255
+    assert grey.shape == (16, 20)
+
+
+# A float has 24 bits: 6e-8 a number, and a few of them a sum. The fit of order 5 at the ends of the
+# Savitzky-Golay filter loses more.
+SINGLE = 1e-6
+SINGLE_FIT = 1e-4
+
+
+@pytest.mark.parametrize("name", [*LINEAR, "synchrosqueeze"])
+def test_complex64(name: str) -> None:
+    function = LINEAR.get(name, squeezed)
+    z = inputs(shape_of(name))["tone" if name == "synchrosqueeze" else "noise"]
+    single = z.astype(np.complex64)
+    right = function(single.astype(complex))
+    found = function(single)
+    error = np.linalg.norm(found - right) / np.linalg.norm(right)
+    print(f"{name}, complex64 against complex128: {error:.1e}")
+    assert np.isfinite(found).all()
+    assert error < (SINGLE_FIT if name == "savgol" else SINGLE)
+
+
+@pytest.mark.parametrize("name", POWER)
+def test_powers_of_complex64(name: str) -> None:
+    single = coefficients("noise").astype(np.complex64)
+    found, right = POWER[name](single), POWER[name](single.astype(complex))
+    error = np.abs(found / right - 1).max()
+    print(f"{name}, complex64 against complex128: {error:.1e}")
+    assert error < SINGLE
+
+
+def test_maps_of_float32() -> None:
+    power = MAPS["gradient"].astype(np.float32)
+    off = entropy_bits(power) - entropy_bits(power.astype(float))
+    print(f"entropy_bits, float32 against float64: {off:+.1e} bits")
+    assert abs(off) < 1e-5
+    grey = [levels(p, (16, 20), 50.0).astype(int) for p in (power, power.astype(float))]
+    print(f"levels, float32 against float64: {np.abs(grey[0] - grey[1]).max()} levels")
+    assert np.abs(grey[0] - grey[1]).max() <= 1
+
+
+def longest_frame(order: int) -> int:
+    """The longest odd frame up to 4001 that the config takes with this order."""
+    frame = 4001
+    while (frame // 2) ** order > 1e11:
+        frame -= 2
+    return frame
+
+
+@pytest.mark.parametrize("order", range(14))
+def test_savitzky_golay_at_its_longest_frame(order: int) -> None:
+    """Polynomials of its order pass, ends included."""
+    frame = longest_frame(order)
+    SavgolConfig(order=order, frame=frame)
+    t = np.linspace(-1, 1, frame + 50)
+    x = np.polynomial.Legendre.basis(order)(t) + 1j * t ** min(order, 1)
+    error = np.abs(savgol(x, order, frame) - x).max()
+    print(f"Savitzky-Golay, order {order}, frame {frame}: {error:.0e}")
+    assert error < 1e-5
+
+
+def test_why_longer_frames_are_refused() -> None:
+    """SciPy fits in powers of the sample number: 1e13 here, which a double hardly tells apart."""
+    t = np.linspace(-1, 1, 1100)
+    x = np.polynomial.Legendre.basis(5)(t) + 0j
+    error = np.abs(savgol(x, 5, 1001) - x).max()
+    print(f"Savitzky-Golay, order 5, frame 1001: {error:.0e}")
+    assert error > 1e-3
+
+
+@pytest.mark.parametrize("order", [3, 5, 8, 13])
+def test_savitzky_golay_beyond_it_is_refused(order: int) -> None:
+    frame = {3: 10001, 5: 401, 8: 51, 13: 17}[order]
+    document = {"processing": {"savgol": {"order": order, "frame": frame}}}
+    with pytest.raises(ConfigError, match=rf"processing.savgol = .*{frame}.*\^order at most 1e11"):
+        validated(Config, document, "here", {})

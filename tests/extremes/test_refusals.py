@@ -1,0 +1,162 @@
+"""Each parameter beyond its limit: refused with its key and its value; at the limit: taken."""
+
+import json
+import math
+import re
+from typing import Any
+
+import pytest
+
+from radhar_cli.config import Config
+from radhar_cli.config.reading import validated
+from radhar_cli.errors import ConfigError
+
+# key: (least, most) that is taken, then (too little, too much); None where there is no such side.
+LIMITS: dict[str, tuple[Any, Any, Any, Any]] = {
+    "seed": (0, 2**63 - 1, -1, 2**63),
+    "samples_per_class": (1, 10_000_000, 0, 10_000_001),
+    "duration_s": (1e-9, 1e7, 9e-10, 1.1e7),
+    "radar.carrier_hz": (1e6, 1e13, 9e5, 1.1e13),
+    "radar.bandwidth_hz": (1e3, 1e12, 9e2, 1.1e12),
+    "radar.prf_hz": (1e-3, 1e7, 9e-4, 1.1e7),
+    "radar.adc_rate_hz": (1e-3, 1e13, 9e-4, 1.1e13),
+    "radar.chirp_s": (1e-12, 1e4, 9e-13, 1.1e4),
+    "radar.tx_m.0": (-1e6, 1e6, -1.1e6, 1.1e6),
+    "radar.rx_m.2": (-1e6, 1e6, -1.1e6, 1.1e6),
+    "radar.antenna_gain_dbi": (-150, 150, -151, 151),
+    "radar.antenna_isolation_db": (-300, 300, -301, 301),
+    "subject.height_m": (0.1, 10, 0.09, 11),
+    "subject.weight_kg": (1e-3, 1e6, 9e-4, 1.1e6),
+    "motion.range_m": (-1e6, 1e6, -1.1e6, 1.1e6),
+    "motion.cross_range_m": (-1e6, 1e6, -1.1e6, 1.1e6),
+    "motion.angle_deg": (-360, 360, -361, 361),
+    "motion.speed_mps": (0, 1e4, -1, 1.1e4),
+    "motion.gait_hz": (0, 1e3, -1, 1.1e3),
+    "motion.thigh_deg": (-360, 360, -361, 361),
+    "motion.calf_deg": (-360, 360, -361, 361),
+    "motion.arm_deg": (-360, 360, -361, 361),
+    "motion.turn_deg": (-360, 360, -361, 361),
+    "timing.seat_start_s": (0, 1e7, -1, 1.1e7),
+    "timing.seat_duration_s": (0, 1e7, -1, 1.1e7),
+    "timing.rise_start_s": (0, 1e7, -1, 1.1e7),
+    "timing.rise_duration_s": (0, 1e7, -1, 1.1e7),
+    "timing.walk_start_s": (0, 1e7, -1, 1.1e7),
+    "timing.walk_stop_s": (0, 1e7, -1, 1.1e7),
+    "timing.sit_duration_s": (0, 1e7, -1, 1.1e7),
+    "timing.fall_duration_s": (0, 1e7, -1, 1.1e7),
+    "timing.blend_s": (0, 1e7, -1, 1.1e7),
+    "wall.center_m.0": (-1e6, 1e6, -1.1e6, 1.1e6),
+    "wall.size_m.0": (1e-6, 1e6, 9e-7, 1.1e6),
+    "wall.eps_r": (1, 1e6, 0.9, 1.1e6),
+    "wall.loss_tangent": (0, 1e12, -1, 1.1e12),
+    "snr_db": (-300, 300, -301, 301),
+    "processing.range_fft_length": (400, 25600, 398, 25602),
+    "processing.window_fraction": (4e-4, 0.9999, 3.6e-4, 1),
+    "processing.overlap_fraction": (0, 0.9999, -0.1, 1),
+    "processing.stft_fft_length": (2000, 128000, 1999, 128001),
+    "processing.savgol.order": (0, 10, -1, 11),
+    "processing.savgol.frame": (7, 317, 5, 319),
+    "processing.fsst_threshold": (0, 0.999, -0.1, 1),
+    "processing.fsst_hop_pulses": (1, 2**24, 0, 2**24 + 1),
+    "engine.tolerance_db": (-400, -6, -401, -5),
+    "image.size_px": (2, 8192, 1, 8193),
+    "image.dynamic_range_db": (5e-324, 300, 0, 301),
+    "split.train": (0, 1, -0.1, 1.1),
+    "output.png_level": (0, 9, -1, 10),
+    "output.hdf5_level": (0, 9, -1, 10),
+}
+# At their ends these need each other: tests/extremes/test_ranges.py goes there.
+TOGETHER = ("duration_s", "radar.prf_hz", "radar.adc_rate_hz", "radar.chirp_s")
+TAKEN = [(k, v) for k, limits in LIMITS.items() if k not in TOGETHER for v in limits[:2]]
+REFUSED = [(key, value) for key, limits in LIMITS.items() for value in limits[2:]]
+VECTORS = {"tx_m": [0.4, -0.1, 1.5], "rx_m": [0.4, 0.1, 1.5], "size_m": [0.24, 5.0, 2.5]}
+
+
+def document(key: str, value: Any) -> dict[str, Any]:
+    """A document with one key set; a number of a vector by its place in it."""
+    *names, last = key.split(".")
+    if last.isdigit():
+        vector = list(VECTORS.get(names[-1], [1.0, 0.0, 1.25]))
+        vector[int(last)] = value
+        *names, last = names
+        value = vector
+    made: dict[str, Any] = {}
+    place = made
+    for name in names:
+        place = place.setdefault(name, {})
+    place[last] = value
+    if key == "split.train":  # the shares add up to 1
+        made["split"]["validation"] = min(max(1 - value, 0), 1)
+    if key == "wall.size_m.0":  # a thick wall that has no antenna inside
+        made["wall"]["center_m"] = [1e6, 0.0, 1.25]
+    if key == "processing.window_fraction" and value == 3.6e-4:
+        made["radar"] = {"prf_hz": 5000}
+    return made
+
+
+@pytest.mark.parametrize(("key", "value"), TAKEN)
+def test_at_the_limit_it_is_taken(key: str, value: Any) -> None:
+    validated(Config, document(key, value), "here", {})
+
+
+@pytest.mark.parametrize(("key", "value"), REFUSED)
+def test_beyond_it_is_refused_by_key_and_value(key: str, value: Any) -> None:
+    with pytest.raises(ConfigError) as caught:
+        validated(Config, document(key, value), "here.yaml", {})
+    text = str(caught.value)
+    section = key.rpartition(".")[0] if key.startswith("processing.savgol") else key
+    named = [line for line in text.splitlines() if f"here.yaml: {section}" in line]
+    if key == "processing.window_fraction" and value < 4e-4:
+        named = [text]  # the window it makes is named with the duration
+    assert named, text
+    assert any(shown(value) in line for line in named), text
+    assert "should" in named[0]
+
+
+def shown(value: Any) -> str:
+    return json.dumps(value) if abs(value) < 1e-3 or abs(value) >= 1e3 else f"{value:g}"
+
+
+NUMBERS = [key for key in LIMITS if key.split(".")[0] in ("radar", "subject", "motion", "timing")]
+
+
+@pytest.mark.parametrize("key", [*NUMBERS, "snr_db", "duration_s", "wall.eps_r"])
+@pytest.mark.parametrize("form", ["uniform", "choice", "normal"])
+def test_a_distribution_that_reaches_beyond_it_is_refused(key: str, form: str) -> None:
+    """Every draw has to be in the range; the message says how far this one reaches."""
+    low, high, _, above = LIMITS[key]
+    forms = {
+        "uniform": {"uniform": [low, above]},
+        "choice": {"choice": [low, high, above]},
+        "normal": {"normal": [high, above - high]},
+    }
+    with pytest.raises(ConfigError, match=re.escape(f"here: {key} = ")) as caught:
+        validated(Config, document(key, forms[form]), "here", {})
+    assert f'"{form}"' in str(caught.value)
+    assert "reaches from" in str(caught.value) or "within" in str(caught.value)
+
+
+FFTS = ("processing.range_fft_length", "processing.stft_fft_length", "processing.fsst_hop_pulses")
+NULLABLE = ("snr_db", "subject.weight_kg", *FFTS)
+
+
+def spoilt(key: str, value: Any) -> dict[str, Any]:
+    """A document whose `key` holds `value`, whatever it is."""
+    made = document(key, 1)
+    place: Any = made
+    *names, last = key.split(".")
+    for name in names:
+        place = place[name]
+    place[int(last) if last.isdigit() else last] = value
+    return made
+
+
+@pytest.mark.parametrize("value", ["fast", [], {}, None, True, math.nan, math.inf, 10**400])
+@pytest.mark.parametrize("key", list(LIMITS))
+def test_what_is_no_number_is_refused(key: str, value: Any) -> None:
+    if value is None and key in NULLABLE:
+        pytest.skip("null is a value of this key")
+    with pytest.raises(ConfigError) as caught:
+        validated(Config, spoilt(key, value), "here", {})
+    named = key if key != "processing.savgol.frame" else "processing.savgol"  # the two in one
+    assert any(f"here: {named}" in line for line in str(caught.value).splitlines())

@@ -1,0 +1,261 @@
+"""`radhar tradeoff`: measured once, resumable, and what it writes."""
+
+import csv
+import json
+from pathlib import Path
+from shutil import copytree
+
+import numpy as np
+import pytest
+from PIL import Image
+from typer.testing import CliRunner
+
+from radhar_cli.cli import program
+from radhar_cli.errors import FolderError
+from radhar_cli.figures.frontier import CostPoint, frontier
+from radhar_cli.tradeoff import study
+from radhar_cli.tradeoff.advice import advice
+from radhar_cli.tradeoff.ledger import Ledger
+from radhar_cli.tradeoff.scenes import Scenes
+from radhar_cli.tradeoff.settings import sweep
+
+CONFIG = """
+activities: [stationary, punching, walking]
+duration_s: 1.0
+radar: {carrier_hz: 10e9, bandwidth_hz: 1e9, prf_hz: 1000, adc_rate_hz: 1e6}
+maps: [stft]
+image: {size_px: 48}
+"""
+TRIED = (
+    *("-40 dB", "-60 dB", "-80 dB", "-100 dB", "-120 dB", "cube", "double", "64 px", "fsst"),
+    *("residual video phase", "FSST at every sample", "refracted rays"),
+)
+
+
+@pytest.fixture
+def config(tmp_path) -> Path:
+    path = tmp_path / "c.yaml"
+    path.write_text(CONFIG)
+    return path
+
+
+@pytest.fixture
+def few(monkeypatch):
+    """A few settings of each kind are enough to see how they are treated."""
+    monkeypatch.setattr(
+        study, "sweep", lambda config: [s for s in sweep(config) if s.name in TRIED]
+    )
+    monkeypatch.setattr("radhar_cli.tradeoff.timing.SECONDS", 0.0)
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory) -> tuple[Path, Path]:
+    """A config and its finished sweep; who changes it takes a copy."""
+    place = tmp_path_factory.mktemp("sweep")
+    path = place / "c.yaml"
+    path.write_text(CONFIG)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(study, "sweep", lambda config: [s for s in sweep(config) if s.name in TRIED])
+        patch.setattr("radhar_cli.tradeoff.timing.SECONDS", 0.0)
+        outcome = tradeoff(path, place / "out")
+    assert outcome.exit_code == 0, outcome.output
+    return path, place / "out"
+
+
+def tradeoff(config: Path, out: Path, *more: str):
+    return CliRunner().invoke(
+        program(), ["tradeoff", str(config), "-o", str(out), "--quick", *more]
+    )
+
+
+def rows_of(out: Path) -> dict[str, dict]:
+    rows = json.loads((out / "tradeoff.json").read_text())["settings"]
+    return {row["setting"]: row for row in rows}
+
+
+def files_of(out: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in out.iterdir() if path.is_file()}
+
+
+@pytest.mark.usefixtures("few")
+class TestCommand:
+    def test_writes_four_files_that_agree(self, done):
+        config, out = done
+        rows = rows_of(out)
+        with (out / "tradeoff.csv").open() as file:
+            table = list(csv.DictReader(file))
+        assert [row["setting"] for row in table] == list(rows)
+        text = (out / "tradeoff.md").read_text()
+        assert all(name in text for name in rows)
+        assert str(config) in text
+        assert np.asarray(Image.open(out / "pareto.png")).std() > 0
+
+    def test_numbers_are_what_they_should_be(self, done):
+        rows = rows_of(done[1])
+        for db in (-40, -60, -80, -100, -120):
+            row = rows[f"{db} dB"]
+            assert row["signal_error_db"] < db
+            assert row["time_ratio"] > 0
+            assert row["refused"] == 0
+        assert rows["-40 dB"]["signal_error_db"] > rows["-120 dB"]["signal_error_db"]
+        assert rows["-40 dB"]["ssim"] <= rows["-120 dB"]["ssim"] <= 1
+        cube = rows["cube"]
+        assert cube["signal_error_db"] is None  # exact: JSON has no -inf
+        assert (cube["pixels_changed"], cube["map_error_db"], cube["psnr_db"]) == (0, 0, None)
+        assert cube["time_ratio"] > 1
+        assert rows["double"]["rounding_bound_db"] < -180
+        assert sum(row["default"] for row in rows.values()) == 1
+
+    def test_a_switch_shows_what_is_missed_without_it(self, done):
+        rows = rows_of(done[1])
+        assert -80 < rows["residual video phase"]["signal_error_db"] < 0
+        dense = rows["FSST at every sample"]
+        assert dense["signal_error_db"] < -60
+        assert dense["map_error_db"] is None  # other columns: no cell to compare with
+        assert dense["ssim"] < 0.999
+        assert dense["time_over"] == "the FSST at the STFT's hop"
+        assert "refracted rays" not in rows  # no wall, no rays through it
+
+    def test_again_measures_nothing(self, done, monkeypatch):
+        config, out = done
+        before = files_of(out)
+
+        def never(*_):
+            raise AssertionError("measured again")
+
+        monkeypatch.setattr(study, "time_setting", never)
+        monkeypatch.setattr(study, "_of", never)
+        assert tradeoff(config, out).exit_code == 0
+        assert files_of(out) == before
+
+    def test_goes_on_where_it_was_interrupted(self, config, tmp_path, monkeypatch):
+        out, whole, measured = tmp_path / "out", study.time_setting, []
+
+        def stopping(scenes, setting, turn):
+            if len(measured) == 5:
+                raise KeyboardInterrupt
+            return going_on(scenes, setting, turn)
+
+        def going_on(scenes, setting, turn):
+            measured.append(setting.name)
+            return whole(scenes, setting, turn)
+
+        monkeypatch.setattr(study, "time_setting", stopping)
+        stopped = tradeoff(config, out)
+        assert stopped.exit_code == 130
+        assert "is kept" in stopped.output
+        measured.clear()
+        monkeypatch.setattr(study, "time_setting", going_on)
+        assert tradeoff(config, out).exit_code == 0
+        assert len(measured) == 2 * len(rows_of(out)) - 5
+
+    def test_another_config_is_refused(self, done, tmp_path):
+        config, out = done[0], tmp_path / "out"
+        copytree(done[1], out)
+        refused = tradeoff(config, out, "--set", "duration_s=2.0").exception
+        assert isinstance(refused, FolderError)
+        assert "duration_s: 1.0 there, 2.0 here" in str(refused)
+        assert tradeoff(config, out, "--set", "duration_s=2.0", "--overwrite").exit_code == 0
+
+    def test_a_folder_with_other_things_is_refused(self, config, tmp_path):
+        (tmp_path / "out").mkdir()
+        (tmp_path / "out" / "thesis.tex").touch()
+        refused = tradeoff(config, tmp_path / "out").exception
+        assert isinstance(refused, FolderError)
+        assert "thesis.tex" in str(refused)
+
+
+class TestLedger:
+    def test_keeps_what_it_was_given(self, tmp_path):
+        ledger = Ledger(tmp_path)
+        assert ledger.get("a") is None
+        ledger.put("a", {"b": [1, None, "c"]})
+        assert Ledger(tmp_path).get("a") == {"b": [1, None, "c"]}
+        assert Ledger(tmp_path).get("b") is None
+
+
+class TestSettings:
+    def scenes(self, config: Path, *more: str) -> Scenes:
+        return Scenes(config, more, quick=False)
+
+    def test_every_setting_is_a_config(self, config):
+        for more in ((), ("wall={}",)):
+            scenes = self.scenes(config, *more)
+            for setting in sweep(scenes.config()):
+                for overrides in (setting.timed, setting.shown, setting.reference, setting.beside):
+                    assert scenes.config(overrides)
+
+    def test_one_that_the_config_forbids_is_left_out_and_named(self, config):
+        """A filter longer than the recording: the denoised maps cannot be, the others can."""
+        said: list[str] = []
+
+        class Listener:
+            def say(self, message: str) -> None:
+                said.append(message)
+
+        scenes = self.scenes(config, "processing.savgol={order: 1, frame: 1001}")
+        possible = study._possible(scenes, Listener())
+        assert not any("denoised" in setting.name for setting in possible)
+        assert len(said) == 4
+        assert all("processing.savgol.frame" in message for message in said)
+
+    def test_names_are_told_apart_and_one_is_the_default(self, config):
+        settings = sweep(self.scenes(config, "wall={}").config())
+        assert len({(s.group, s.name) for s in settings}) == len(settings)
+        assert sum(s.is_default for s in settings) == 1
+
+    def test_scenes_do_not_depend_on_the_setting(self, config):
+        scenes = self.scenes(config)
+        usual = scenes.draw("walking", scenes.config()).values
+        for setting in sweep(scenes.config()):
+            assert scenes.draw("walking", scenes.config(setting.timed)).values == usual
+
+
+class TestFrontier:
+    def point(self, name, time, error_db):
+        return CostPoint(name, time, time, time, error_db, False)
+
+    def test_keeps_what_nothing_beats(self):
+        points = [
+            self.point("exact", 30, None),
+            self.point("slow and bad", 3, -20),
+            self.point("fast and bad", 1, -20),
+            self.point("fast and as bad", 1.1, -20),
+            self.point("good", 2, -60),
+        ]
+        assert [p.name for p in frontier(points)] == ["fast and bad", "good", "exact"]
+
+
+class TestAdvice:
+    def record(self, group, name, **more):
+        usual = {
+            "group": group,
+            "setting": name,
+            "default": False,
+            "time_ratio": 1.0,
+            "echo_ratio": 1.0,
+            "time_over": "the default",
+            "sample_ms": 10.0,
+            "signal_error_db": -90.0,
+            "signal_error_median_db": -95.0,
+            "pixels_changed": 0.0,
+            "ssim": 1.0,
+        }
+        return usual | more
+
+    def test_names_the_loosest_budget_whose_images_are_the_same(self):
+        records = [
+            self.record("budget", "-20 dB", pixels_changed=0.2),
+            self.record("budget", "-40 dB", pixels_changed=0.0005),
+            self.record("budget", "-60 dB", default=True),
+        ]
+        said = "\n".join(advice(records, []))
+        assert "For images, -40 dB is enough" in said
+        assert "The default, -60 dB" in said
+
+    @pytest.mark.parametrize(
+        ("change", "verdict"), [(-1.0, "switch it on"), (-25.0, "phases"), (-55.0, "leave it off")]
+    )
+    def test_a_switch_is_judged_by_what_it_changes(self, change, verdict):
+        row = self.record("switch", "refracted rays", signal_error_median_db=change)
+        assert verdict in "\n".join(advice([row], []))

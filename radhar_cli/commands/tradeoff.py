@@ -1,12 +1,18 @@
 """`radhar tradeoff`: what accuracy costs on the scenes of a config."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from radhar_cli.commands.options import Overrides
 
+if TYPE_CHECKING:
+    from radhar_cli.tradeoff.accuracy import Accuracy
+    from radhar_cli.tradeoff.ledger import Ledger
+    from radhar_cli.tradeoff.scenes import Scenes
+
+CLEAN_DB = 30.0
 EXAMPLE = """
 Example:
 
@@ -75,7 +81,7 @@ def _tradeoff(
         + ["--train"] * train
     )
     prepare_process()
-    progress = BarProgress("setting")
+    progress = BarProgress("step")
     with locked(out):
         claim(out, config, overwrite)
         ledger = Ledger(out)
@@ -83,10 +89,53 @@ def _tradeoff(
             rows = run_sweep(scenes, ledger, progress)
         finally:
             progress.close()
-        conditions = {"scenes": len(scenes.names()), "rounds": ROUNDS[quick]}
-        written = write_report(out, path.stem, command, rows, [], conditions)
+        conditions: dict[str, Any] = {"scenes": len(scenes.names()), "rounds": ROUNDS[quick]}
+        accuracies: list[Accuracy] = []
+        if train:
+            # What is measured without it stands, whatever becomes of the training.
+            write_report(out, path.stem, command, rows, [], conditions)
+            accuracies, learned = _accuracies(scenes, out, ledger, jobs)
+            conditions |= learned
+        written = write_report(out, path.stem, command, rows, accuracies, conditions)
     for file in written:
         typer.echo(f"  {file}")
+
+
+def _accuracies(
+    scenes: "Scenes", out: Path, ledger: "Ledger", jobs: int | None
+) -> tuple[list["Accuracy"], dict[str, Any]]:
+    from radhar_cli.commands.terminal import BarProgress
+    from radhar_cli.dataset.layout import WORK
+    from radhar_cli.dataset.workers import cores
+    from radhar_cli.tradeoff.accuracy import find_snr, measure
+    from radhar_cli.tradeoff.settings import trials
+    from radhar_cli.tradeoff.trial import FULL, QUICK, Bench
+
+    progress = BarProgress()
+    effort = QUICK if scenes.quick else FULL
+    bench = Bench(
+        config=scenes.path,
+        folder=out / WORK / "accuracy",
+        ledger=ledger,
+        progress=progress,
+        jobs=jobs or cores(),
+        effort=effort,
+        overrides=scenes.overrides,
+    )
+    try:
+        # Six samples a class teach nothing at any SNR: no use in looking for one.
+        snr_db = CLEAN_DB if scenes.quick else find_snr(bench)
+        found = measure(bench, trials(scenes.config()), snr_db)
+    finally:
+        progress.close()
+    learned = {
+        "snr_db": snr_db,
+        "train_per_class": effort.train_per_class,
+        "test_per_class": effort.test_per_class,
+        "epochs": effort.epochs,
+        "smoke_run": scenes.quick,
+    }
+    return found, learned
 
 
 tradeoff.__doc__ = "Measure what accuracy costs: budgets, engines, precision, physics.\n" + EXAMPLE

@@ -17,7 +17,7 @@ def advice(records: Sequence[Mapping[str, Any]], accuracies: Sequence[Accuracy])
     budgets = [one for one in records if one["group"] == "budget" and one["time_ratio"] is not None]
     said = [*_for_images(budgets), *_for_signals(budgets), *_others(records)]
     said += [_about_switch(one) for one in records if one["group"] == "switch"]
-    return [*said, *_about_accuracy(accuracies)]
+    return [*said, *_about_budgets(accuracies), *_about_physics(accuracies)]
 
 
 def _for_images(budgets: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -98,18 +98,41 @@ def _about_switch(one: Mapping[str, Any]) -> str:
     )
 
 
-def _about_accuracy(accuracies: Sequence[Accuracy]) -> list[str]:
-    if len(accuracies) < 2:
+def _about_budgets(accuracies: Sequence[Accuracy]) -> list[str]:
+    """Whether a network notices the engine's error."""
+    engines = [a for a in accuracies if a.name.endswith(" dB") or a.name == "cube"]
+    exact = next((a for a in engines if a.name == "cube"), None)
+    if exact is None:
         return []
-    best = max(accuracies, key=lambda a: a.mean)
-    behind = [a for a in accuracies if a.high < best.low]
-    if not behind:
-        return [
-            "A network notices none of it: the intervals of all accuracies "
-            f"({100 * min(a.mean for a in accuracies):.1f} to {100 * best.mean:.1f} %) overlap."
-        ]
-    names = ", ".join(f"{a.name} ({100 * a.mean:.1f} %)" for a in behind)
-    return [f"A network notices: {names} against {100 * best.mean:.1f} % ({best.name})."]
+    behind = [a for a in engines if a.high < exact.low]
+    if behind:
+        names = ", ".join(f"{a.name} ({_percent(a)})" for a in behind)
+        return [f"A network notices the engine's error: {names} against {_percent(exact)} (cube)."]
+    return [
+        f"A network notices no budget: {min(_percent(a) for a in engines)} to "
+        f"{max(_percent(a) for a in engines)} right, trained on the exact cube {_percent(exact)}."
+    ]
+
+
+def _about_physics(accuracies: Sequence[Accuracy]) -> list[str]:
+    """Whether training without some physics costs anything on data that have it."""
+    named = {a.name: a for a in accuracies}
+    said = []
+    for name, proper in named.items():
+        switch = name.removeprefix("with ")
+        without = named.get(f"without {switch}, tested with it")
+        if switch == name or without is None:
+            continue
+        costs = "costs" if without.high < proper.low else "shows no sure loss:"
+        said.append(
+            f"Training without {switch} {costs} {_percent(without)} right on data with it, against "
+            f"{_percent(proper)} when trained with it."
+        )
+    return said
+
+
+def _percent(accuracy: Accuracy) -> str:
+    return f"{100 * accuracy.mean:.1f} %"
 
 
 def _db(value: float | None) -> str:

@@ -4,11 +4,10 @@ from dataclasses import dataclass
 
 from radhar_cli.config.engine import EngineConfig
 from radhar_cli.config.experiment import MAP_NAMES, Config
+from radhar_cli.tradeoff.trial import Trial
 
 BUDGETS = (-20, -30, -40, -50, -60, -70, -80, -100, -120)
 SIZES = (64, 128, 256, 512)
-# The direct engine at this budget stands in for the exact reference where data sets are trained on.
-NEARLY_EXACT = "engine.tolerance_db=-120"
 CUBE = ("engine.kind=cube",)
 DIRECT = ("engine.kind=direct", f"engine.tolerance_db={EngineConfig().tolerance_db:g}")
 
@@ -101,6 +100,32 @@ def _switches(config: Config) -> list[Setting]:
             _switch("refracted rays", "wall.rays=refracted"),
             _switch("Fresnel, perpendicular", "wall.fresnel=perpendicular"),
             _switch("Fresnel, parallel", "wall.fresnel=parallel"),
+        ]
+    return found
+
+
+def trials(config: Config) -> list[Trial]:
+    """What a network is trained on, and the reference it is tested on.
+
+    Physics that is left out: trained without it and with it, tested on data that have it. Motion
+    within the chirp is not among them: its data sets would take hours.
+    """
+    budgets = sorted({-20, -40, round(EngineConfig().tolerance_db), -100}, reverse=True)
+    found = [Trial(f"{db} dB", budget(db), CUBE) for db in budgets]
+    found.append(Trial("cube", CUBE, CUBE))
+    for more in ("image.size_px=32", "maps=[fsst]"):
+        name = more.partition("=")[2].strip("[]") + (" px" if "size" in more else "")
+        found.append(Trial(name, (*DIRECT, more), (*CUBE, more)))
+    switches = {"residual video phase": "radar.residual_video_phase=true"}
+    if config.wall is not None:
+        switches |= {
+            "refraction": "wall.rays=refracted",
+            "Fresnel by angle": "wall.fresnel=perpendicular",
+        }
+    for name, on in switches.items():
+        found += [
+            Trial(f"without {name}, tested with it", DIRECT, (*CUBE, on)),
+            Trial(f"with {name}", (*DIRECT, on), (*CUBE, on)),
         ]
     return found
 

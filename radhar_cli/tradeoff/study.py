@@ -6,8 +6,9 @@ from dataclasses import dataclass, field
 from functools import partial
 from math import inf
 from statistics import median, quantiles
-from typing import Any, Protocol
+from typing import Any
 
+from radhar_cli.dataset.build import Progress
 from radhar_cli.errors import RadharError
 from radhar_cli.tradeoff.differences import SceneDifferences
 from radhar_cli.tradeoff.ledger import Ledger
@@ -16,19 +17,6 @@ from radhar_cli.tradeoff.settings import Setting, sweep
 from radhar_cli.tradeoff.timing import Times, time_setting
 
 ROUNDS = {True: 2, False: 7}
-
-
-class Progress(Protocol):
-    """Who is told how far a sweep is."""
-
-    def stage(self, name: str, total: int, done: int) -> None:
-        """A part of the work begins."""
-
-    def advance(self, samples: int) -> None:
-        """Some of it is finished."""
-
-    def say(self, message: str) -> None:
-        """Something the user should read."""
 
 
 @dataclass(frozen=True)

@@ -10,12 +10,13 @@ import shutil
 from collections.abc import Collection
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING
 
 from radhar_cli.config import load_config
 from radhar_cli.config.experiment import Config
 from radhar_cli.dataset.build import Progress, build
 from radhar_cli.dataset.identity import identity
+from radhar_cli.tradeoff.ledger import Ledger
 
 if TYPE_CHECKING:
     from radhar_cli.learning.run_folder import Epoch
@@ -23,16 +24,6 @@ if TYPE_CHECKING:
 
 SIZE_PX = 64
 DATA, RUNS = "data", "runs"
-
-
-class Ledger(Protocol):
-    """What was measured before, as JSON values by key."""
-
-    def get(self, key: str) -> Any | None:
-        """The value, None if it was not measured yet."""
-
-    def put(self, key: str, value: Any) -> None:
-        """Keep a value."""
 
 
 @dataclass(frozen=True)

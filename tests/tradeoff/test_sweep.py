@@ -14,10 +14,11 @@ from radhar_cli.cli import program
 from radhar_cli.errors import FolderError
 from radhar_cli.figures.frontier import CostPoint, frontier
 from radhar_cli.tradeoff import study
+from radhar_cli.tradeoff.accuracy import Accuracy
 from radhar_cli.tradeoff.advice import advice
 from radhar_cli.tradeoff.ledger import Ledger
 from radhar_cli.tradeoff.scenes import Scenes
-from radhar_cli.tradeoff.settings import sweep
+from radhar_cli.tradeoff.settings import sweep, trials
 
 CONFIG = """
 activities: [stationary, punching, walking]
@@ -259,3 +260,44 @@ class TestAdvice:
     def test_a_switch_is_judged_by_what_it_changes(self, change, verdict):
         row = self.record("switch", "refracted rays", signal_error_median_db=change)
         assert verdict in "\n".join(advice([row], []))
+
+    def accuracy(self, name, mean):
+        return Accuracy(name, mean, mean - 0.04, mean + 0.04, (mean,), 300)
+
+    def test_a_budget_that_a_network_notices_is_named(self):
+        fine = [self.accuracy("-20 dB", 0.85), self.accuracy("cube", 0.86)]
+        assert "notices no budget: 85.0 % to 86.0 %" in "\n".join(advice([], fine))
+        bad = [self.accuracy("-20 dB", 0.70), self.accuracy("cube", 0.86)]
+        assert "-20 dB (70.0 %) against 86.0 % (cube)" in "\n".join(advice([], bad))
+
+    @pytest.mark.parametrize(("mean", "verdict"), [(0.5, "costs"), (0.85, "no sure loss")])
+    def test_physics_left_out_of_the_training(self, mean, verdict):
+        both = [
+            self.accuracy("without refraction, tested with it", mean),
+            self.accuracy("with refraction", 0.86),
+        ]
+        assert verdict in "\n".join(advice([], both))
+
+
+@pytest.mark.usefixtures("few")
+def test_trains_and_says_that_a_quick_look_means_nothing(config, tmp_path, monkeypatch):
+    """The whole way with --train, on two trials."""
+    monkeypatch.setattr("radhar_cli.tradeoff.settings.trials", lambda c: trials(c)[:2])
+    out, short = tmp_path / "out", ("--set", "activities=[punching, walking]")
+    outcome = tradeoff(config, out, "--train", "--jobs", "1", *short)
+    assert outcome.exit_code == 0, outcome.output
+    found = json.loads((out / "tradeoff.json").read_text())
+    assert [one["name"] for one in found["accuracy"]] == ["-20 dB", "-40 dB"]
+    assert all(one["low"] <= one["mean"] <= one["high"] for one in found["accuracy"])
+    assert found["smoke_run"]
+    assert "smoke run" in (out / "tradeoff.md").read_text()
+    assert not (out / ".radhar" / "accuracy" / "data").exists()
+
+
+def test_every_trial_is_a_config(config):
+    scenes = Scenes(config, ("wall={}",), quick=False)
+    chosen = trials(scenes.config())
+    assert len({trial.name for trial in chosen}) == len(chosen)
+    for trial in chosen:
+        assert scenes.config(trial.train).engine.kind in ("direct", "cube")
+        assert scenes.config(trial.test).engine.kind == "cube"

@@ -87,7 +87,7 @@ def test_products_are_released_as_soon_as_nobody_reads_them(monkeypatch):
 class TestHop:
     """`processing.fsst_hop_pulses`: of the FSST alone."""
 
-    @pytest.mark.parametrize("hop", [1, 3, 449, 450, 10**30])
+    @pytest.mark.parametrize("hop", [1, 3, 449, 450, 2**24])
     @pytest.mark.parametrize("processing", [{}, {"stft_fft_length": 64}])
     def test_axes_follow(self, hop, processing):
         document = SMALL | {"processing": processing | {"fsst_hop_pulses": hop}}

@@ -73,10 +73,10 @@ def sums(seen: Neighbours, table: HalfBandTable, scale: float) -> Sums:
     x = (b_after * there - b * here)[~seen.still].sum(axis=0)
     left = np.abs(after.amplitude * there - now.amplitude * here) / scale
     return Sums(
-        pulses=seen.weight * b.shape[1],
-        signal=seen.weight * float(np.sum(x.real**2 + x.imag**2)),
-        envelope=seen.weight * np.sum(b.real**2 + b.imag**2, axis=1),
-        table=seen.weight * _table_errors(now, after, left, scale, w),
+        pulses=float(seen.weight.sum()),
+        signal=float(seen.weight @ (x.real**2 + x.imag**2)),
+        envelope=(b.real**2 + b.imag**2) @ seen.weight,
+        table=_table_errors(seen, left, scale, w),
     )
 
 
@@ -187,18 +187,19 @@ def envelope(paths: Paths, table: HalfBandTable, scale: float) -> Complex:
     return b
 
 
-def _table_errors(now: Paths, after: Paths, left: Float, scale: float, w: Waveform) -> Float:
+def _table_errors(seen: Neighbours, left: Float, scale: float, w: Waveform) -> Float:
     """Sums over the pulses of squared table errors [I, OVERSAMPLINGS].
 
     The error of a cell times what the MTI leaves of a path with a constant G, and its own change
     from pulse to pulse, which is at most twice the error.
     """
+    now, after, weight = seen
     per_delay, a = w.slope / w.adc_rate, now.amplitude / scale
     fourth = _near(_fourth_derivatives(w), per_delay * now.delay)
     cell = (1 / (OVERSAMPLINGS * w.n_adc))[:, None, None]
     moved = per_delay * np.abs(after.delay - now.delay) * (HERMITE_SLOPE / HERMITE_VALUE) / cell
     error = HERMITE_VALUE * cell**4 * fourth * (left + a * np.minimum(moved, 2))
-    squares: Float = np.einsum("qim,qim->iq", error, error)
+    squares: Float = np.einsum("qim,qim->iq", error, error * weight)
     return squares
 
 

@@ -1,12 +1,13 @@
 """From an error that is allowed to the cheapest settings of the direct engine that keep it."""
 
 from dataclasses import dataclass, field
-from math import inf, log10, sqrt
+from itertools import pairwise
+from math import inf, log10
 from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Bool, Complex, Float
+from radhar_cli.arrays import Bool, Complex, Float, Index
 from radhar_cli.echo import error_bounds
 from radhar_cli.echo.coarse_knots import LEAST_STEP, CoarseKnots, every_pulse
 from radhar_cli.echo.error_bounds import MOST_TURN, OVERSAMPLINGS, Bounds, Interpolation, Sums
@@ -21,9 +22,10 @@ INTERPOLATION_SHARE, ROUNDING_SHARE = 0.5, 0.25
 
 # Aims that usually spare a second look.
 USUAL_TURN, SPARE = 0.2, 0.9
-# Pulses that x is measured at.
+# Pulses that x is measured at, in every piece between kinks.
 LOOK_PULSES = 160
 LOOK_OVERSAMPLING = 16
+GOLDEN = 0.6180339887498949
 
 
 @dataclass(frozen=True)
@@ -145,8 +147,8 @@ def _through_knots(coarse: CoarseKnots, mti: bool) -> _Probe:
     for knots in coarse.chunks():
         if first is None:
             first, scale = knots.at_pulses, _scale(knots.paths)
-        seen = knots.neighbours(LOOK_PULSES)
-        looks += [error_bounds.sums(n if mti else n.alone(), table, scale) for n in seen]
+        seen = knots.neighbours(kinks, LOOK_PULSES)
+        looks.append(error_bounds.sums(seen if mti else seen.alone(), table, scale))
         b = error_bounds.envelope(knots.paths, table, scale)
         delays.append(error_bounds.delay_errors(knots, b, kinks, waveform, mti))
         moving = moving | (knots.changes(first) if mti else np.full(len(b), True))
@@ -157,17 +159,16 @@ def _through_knots(coarse: CoarseKnots, mti: bool) -> _Probe:
 
 
 def _through_pulses(coarse: CoarseKnots, mti: bool) -> _Probe:
-    """Pairs of neighbouring pulses, spread over the recording by the golden ratio."""
+    """Pairs of neighbouring pulses, spread over every piece between kinks."""
     source, waveform = coarse.source, coarse.waveform
-    place = np.mod((np.arange(LOOK_PULSES) + 0.5) * (sqrt(5) - 1) / 2, 1)
-    pulses = np.unique((place * (waveform.n_pulses - 1)).astype(np.intp))
+    pulses, weight = _spread(waveform, source.kinks)
     if coarse.kept is not None:
         every = coarse.kept.paths
-        pair = Neighbours(columns(every, pulses), columns(every, pulses + 1), 1)
+        pair = Neighbours(columns(every, pulses), columns(every, pulses + 1), weight)
         moving = coarse.kept.changes(every)
     else:
         now, after = (source(waveform.times((pulses + later).astype(float))) for later in (0, 1))
-        pair = Neighbours(now, after, 1)
+        pair = Neighbours(now, after, weight)
         moving = ~pair.still
     scale = _scale(pair.now)
     if not mti:
@@ -176,6 +177,18 @@ def _through_pulses(coarse: CoarseKnots, mti: bool) -> _Probe:
     cycles = waveform.f0 * float(pair.now.delay.max())
     bounds = error_bounds.bounds([look], cycles, moving.astype(float))
     return _Probe(bounds, 0.0, moving, scale)
+
+
+def _spread(waveform: Waveform, kinks: tuple[float, ...]) -> tuple[Index, Float]:
+    """Pulses with a next one, by the golden ratio in every piece: numbers, and weights of each."""
+    last = waveform.n_pulses - 1
+    bounds = np.clip(np.ceil(np.array([-1.0, *kinks, np.inf]) * waveform.prf), 0, last)
+    found, weight = [], []
+    for first, end in pairwise(np.unique(bounds).astype(np.intp).tolist()):
+        place = np.mod((np.arange(LOOK_PULSES) + 0.5) * GOLDEN, 1) * (end - first)
+        found.append(np.unique(first + place.astype(np.intp)))
+        weight.append(np.full(found[-1].size, (end - first) / found[-1].size))
+    return np.concatenate(found), np.concatenate(weight)
 
 
 def _rounding(b: Bounds, budget: float, double: bool) -> tuple[bool, float]:

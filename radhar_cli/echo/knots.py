@@ -48,17 +48,21 @@ class Knots(NamedTuple):
         values[..., self.exact_pulses - first] = exact
         return values
 
-    def neighbours(self, most: int) -> "list[Neighbours]":
-        """Paths at some pulses, at most `most` of each kind, and at the pulse after each."""
-        smooth = np.flatnonzero(self.shift != EXACT)
+    def neighbours(self, kinks: tuple[float, ...], most: int) -> "Neighbours":
+        """Paths at some pulses and at the pulse after each: `most` of every piece between kinks."""
         after = Paths(*(after_first(part, self.step) for part in self.paths))
         still = ~_differ(self.paths, self.paths)  # what is interpolated may differ by an ulp
         after.delay[still] = self.at_pulses.delay[still]
         after.amplitude[still] = self.at_pulses.amplitude[still]
-        found = [Neighbours(columns(self.at_pulses, smooth), columns(after, smooth), self.step)]
-        pair = np.flatnonzero(np.diff(self.exact_pulses) == 1)
-        found.append(Neighbours(columns(self.exact, pair), columns(self.exact, pair + 1), 1))
-        return [one.some(most) for one in found if one.now.power.size]
+        smooth = np.flatnonzero(self.shift != EXACT)
+        piece = np.searchsorted(kinks, self.times[BEFORE:-AFTER][smooth], side="right")
+        taken, weight = sample(smooth, piece, most)
+        pair, pair_weight = sample(*_pairs(self.exact_pulses), most)
+        return Neighbours(
+            _joined(columns(self.at_pulses, taken), columns(self.exact, pair)),
+            _joined(columns(after, taken), columns(self.exact, pair + 1)),
+            np.concatenate([self.step * weight, pair_weight]),
+        )
 
     def changes(self, since: Paths) -> Bool:
         """Which paths [I] differ at any pulse seen from the first column of `since`."""
@@ -66,19 +70,16 @@ class Knots(NamedTuple):
 
 
 class Neighbours(NamedTuple):
-    """Paths at some pulses and at the pulse after each; every one stands for `weight` pulses."""
+    """Paths at some pulses and at the pulse after each.
+
+    Attributes:
+        now, after: the paths.
+        weight: how many pulses each of them stands for [K].
+    """
 
     now: Paths
     after: Paths
-    weight: float
-
-    def some(self, most: int) -> "Neighbours":
-        """At most so many of them, evenly spread."""
-        every = -(-self.now.power.size // most)
-        if every == 1:
-            return self
-        taken = slice(None, None, every)
-        return Neighbours(columns(self.now, taken), columns(self.after, taken), self.weight * every)
+    weight: Float
 
     def alone(self) -> "Neighbours":
         """The pulses without those after them: what is left where no MTI takes a difference."""
@@ -89,6 +90,34 @@ class Neighbours(NamedTuple):
     def still(self) -> Bool:
         """Which paths [I] are the same in all of them."""
         return ~(_differ(self.now, self.now) | _differ(self.after, self.now))
+
+
+def sample(numbers: Index, group: Index, most: int) -> tuple[Index, Float]:
+    """At most so many of each group, evenly spread, and how many each of them stands for.
+
+    Args:
+        numbers: to choose from, in order.
+        group: of each of them, in order too.
+        most: of one group.
+    """
+    taken, weight = [numbers[:0]], [np.zeros(0)]
+    for one in np.unique(group):
+        of_group = numbers[group == one]
+        every = -(-of_group.size // most)
+        taken.append(of_group[::every])
+        weight.append(np.full(taken[-1].size, of_group.size / taken[-1].size))
+    return np.concatenate(taken), np.concatenate(weight)
+
+
+def _pairs(exact_pulses: Index) -> tuple[Index, Index]:
+    """Places of exact pulses whose next pulse is exact too, and which run of pulses they are of."""
+    gaps = np.diff(exact_pulses) != 1
+    first = np.flatnonzero(~gaps)
+    return first, np.cumsum(gaps)[first]
+
+
+def _joined(one: Paths, other: Paths) -> Paths:
+    return Paths(*(np.concatenate(parts, axis=-1) for parts in zip(one, other, strict=True)))
 
 
 def knots_of(source: PathSource, waveform: Waveform, step: int, pulses: tuple[int, int]) -> Knots:

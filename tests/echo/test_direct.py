@@ -307,6 +307,21 @@ def test_block_lengths_do_not_matter(monkeypatch, size):
 
 
 @pytest.mark.parametrize("budget", [DEFAULT, TIGHT])
+@pytest.mark.parametrize("smooth", [True, False])
+def test_a_moment_of_motion_in_a_long_recording_is_not_overlooked(monkeypatch, smooth, budget):
+    """However few pulses are looked at, some lie between the kinks: here 3 of each piece."""
+    monkeypatch.setattr(error_budget, "LOOK_PULSES", 3)
+    monkeypatch.setattr(coarse_knots, "CHUNK_KNOTS", 100)
+
+    def ranges(t):
+        return (2 + 0.1 * np.clip((t - 0.37) / 0.01, 0, 1) ** 2)[None]
+
+    source = ref.Points(ranges, kinks=(0.37, 0.38), smooth=smooth)
+    right = right_answer(source, RADAR)
+    assert ref.error_db(after_mti(source, RADAR, budget), right) < budget
+
+
+@pytest.mark.parametrize("budget", [DEFAULT, TIGHT])
 @pytest.mark.parametrize("size", [7, 60])
 def test_a_long_recording_is_made_in_chunks(monkeypatch, size, budget):
     """The same promise, with the knots looked at and used a few at a time."""

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import reference as ref
 import yaml
+from extreme_scenes import ENGINES
 from random_configs import KEYS, Document, Drawer
 
 from radhar_cli.config import MAP_NAMES, Config, load_config
@@ -148,7 +149,7 @@ def test_direct_keeps_its_promise_or_refuses(block: int) -> None:
         found = []
         try:
             for kind in ("cube", "direct"):
-                config = validated(Config, document | {"engine": {"kind": kind}}, "fuzz", {})
+                config = validated(Config, document | {"engine": ENGINES[kind]}, "fuzz", {})
                 scene = draw_scene(config, config.chosen_activities[-1], 0)
                 check(scene, config)
                 found.append(run(plan(config, ["paths", "signal:plain"]), scene, config))

@@ -12,8 +12,8 @@ from radhar_cli.pipeline.plan import plan
 from radhar_cli.pipeline.run import run
 from radhar_cli.scenario import draw_scene
 
-# What the maps show is 50 dB deep; the engines shall not differ within that, nor near it.
-DEFAULT_DB = -60
+# The default budget; what the maps show is 50 dB deep.
+DEFAULT_DB = -80
 TIGHT_DB = -110
 
 # Both phases of every activity within 1.5 s, at ends that fall between pulses and on them. The

@@ -174,7 +174,7 @@ CHANGES: dict[str, object] = {
     "split.test": 0.1,
     "split.subjects": 10,
     "engine.kind": "cube",
-    "engine.tolerance_db": -80.0,
+    "engine.tolerance_db": -100.0,
     "engine.fallback": "cube",
     "engine.precision": "double",
     "engine.motion_in_chirp": True,

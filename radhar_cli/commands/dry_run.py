@@ -9,7 +9,9 @@ from radhar_cli.pipeline.plan import plan_images
 def print_plan(config: Config, jobs: int) -> None:
     """Print stages with reasons, samples, bytes and time; write nothing."""
     plan, rows = plan_images(config), Rows.of(config)
-    print(f"stages of one sample ({config.engine.kind} engine):")
+    engine = config.engine
+    budget = f", error budget {engine.tolerance_db:g} dB" if engine.kind == "direct" else ""
+    print(f"stages of one sample ({engine.kind} engine{budget}):")
     width = max(len(stage.name) for stage in plan.stages)
     for stage in plan.stages:
         readers = ", ".join(plan.wanted_by(stage.name)) or "the data set"

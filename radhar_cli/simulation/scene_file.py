@@ -1,6 +1,7 @@
 """scene.h5 and scene.json: one simulated scene on disk."""
 
 import json
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -85,6 +86,7 @@ def describe(simulation: Simulation) -> dict[str, Any]:
         "seed": scene.seed,
         "joint": simulation.joint,
         "engine": simulation.config.engine.kind,
+        "accuracy": _accuracy(simulation),
         "parameters": dict(scene.values),
         "derived": {
             "n_adc": waveform.n_adc,
@@ -98,6 +100,22 @@ def describe(simulation: Simulation) -> dict[str, Any]:
         "warnings": simulation.warnings,
         "entropy_bits": {name: one.entropy for name, one in simulation.maps.items()},
         "seconds": simulation.seconds,
+    }
+
+
+def _accuracy(simulation: Simulation) -> dict[str, Any] | None:
+    """What the direct engine chose, and the bounds of the error, null where there is none."""
+    settings = simulation.accuracy
+    if settings is None:
+        return None
+    return {
+        "tolerance_db": simulation.config.engine.tolerance_db,
+        "kinematics_hz": simulation.waveform.prf / settings.step,
+        "table_oversampling": settings.table_oversampling,
+        "precision": "single" if settings.single else "double",
+        "bounds_db": {
+            name: bound if isfinite(bound) else None for name, bound in settings.bounds_db.items()
+        },
     }
 
 

@@ -12,6 +12,8 @@ from radhar_cli.body.skeleton import JOINTS
 from radhar_cli.config.experiment import MAP_NAMES, Config, MapName
 from radhar_cli.echo import cube
 from radhar_cli.echo.beat import beat_matrix
+from radhar_cli.echo.direct import DirectEcho
+from radhar_cli.echo.error_budget import DirectSettings
 from radhar_cli.echo.static_returns import leakage, near_face_distance, wall_echo
 from radhar_cli.errors import ConfigError, SceneError, did_you_mean
 from radhar_cli.pipeline.axes import Axes, axes_of
@@ -74,6 +76,7 @@ class Simulation:
         truth: kinematics at every pulse.
         warnings: what lies outside the model, in words.
         seconds: {stage: time it took}.
+        accuracy: what the direct engine did for its error budget; None of the cube.
         beat: raw echo [N_ADC, M] with static leakage and wall return, where asked for.
     """
 
@@ -87,6 +90,7 @@ class Simulation:
     paths: BodyPaths = field(repr=False)
     warnings: list[str]
     seconds: dict[str, float]
+    accuracy: DirectSettings | None = None
     beat: Complex | None = None
 
     @property
@@ -129,7 +133,8 @@ def simulate(
     chosen = None if joint is None else (_joint(joint),)
     entropies = [f"entropy:{name}" for name in maps]
     signals = [f"signal:{which}" for which in SIGNALS]
-    recording = run(plan(config, [*signals, *maps, *entropies]), scene, config, chosen)
+    direct = ["echo"] if config.engine.kind == "direct" else []
+    recording = run(plan(config, [*signals, *maps, *entropies, *direct]), scene, config, chosen)
     products = recording.products
     return Simulation(
         config=config,
@@ -142,8 +147,13 @@ def simulate(
         paths=products["paths"],
         warnings=warnings,
         seconds=recording.seconds,
+        accuracy=_accuracy(products.get("echo")),
         beat=raw_echo(recording) if raw else None,
     )
+
+
+def _accuracy(echo: DirectEcho | None) -> DirectSettings | None:
+    return None if echo is None or echo.beyond_reach else echo.settings
 
 
 def map_names(chosen: list[str] | None) -> tuple[MapName, ...]:

@@ -39,8 +39,31 @@ def test_simulate_for_scripts(tmp_path: Path) -> None:
     assert sorted(p.name for p in out.iterdir()) == ["scene.h5", "scene.json"]
     described = json.loads((out / "scene.json").read_text())
     assert described["engine"] == "cube"
+    assert described["accuracy"] is None
     assert described["joint"] == "head"
     assert set(described["entropy_bits"]) == {"stft", "rtm"}
+
+
+def test_simulate_says_what_its_budget_took(tmp_path: Path) -> None:
+    chosen = []
+    for budget in ("-40", "-100"):
+        out = tmp_path / budget
+        done = radhar(
+            *("simulate", small_config(tmp_path), "-a", "walking", "-o", out, "--no-figures"),
+            *("--tolerance", budget, "--maps", "stft"),
+        )
+        assert done.returncode == 0, done.stderr
+        accuracy = json.loads((out / "scene.json").read_text())["accuracy"]
+        assert accuracy["tolerance_db"] == float(budget)
+        bounds = [bound for bound in accuracy["bounds_db"].values() if bound is not None]
+        assert max(bounds) < float(budget)
+        chosen.append(accuracy["table_oversampling"])
+    assert chosen[0] < chosen[1]
+    refused = radhar(
+        *("simulate", small_config(tmp_path), "-a", "walking", "-o", out, "--tolerance", "-5")
+    )
+    assert refused.returncode == 2
+    assert "engine.tolerance_db = -5" in refused.stderr
 
 
 def test_preview_and_inspect(tmp_path: Path) -> None:

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.options import Overrides, Tolerance, with_tolerance
+from radhar_cli.commands.options import Overrides, Tolerance, resumable, with_tolerance
 
 EXAMPLE = """
 Example:
@@ -34,13 +34,8 @@ def generate(
         bool, typer.Option("--overwrite", help="Start again in a folder that holds a data set.")
     ] = False,
 ) -> None:
-    try:
+    with resumable(f"what is finished in {out}"):
         _generate(config, out, with_tolerance(set_, tolerance), jobs, batch, dry_run, overwrite)
-    except KeyboardInterrupt:
-        typer.echo(
-            f"\ninterrupted: what is finished in {out} is kept; the same command goes on", err=True
-        )
-        raise typer.Exit(130) from None
 
 
 def _generate(

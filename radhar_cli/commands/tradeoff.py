@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from radhar_cli.commands.options import Overrides
+from radhar_cli.commands.options import Overrides, resumable
 
 if TYPE_CHECKING:
     from radhar_cli.tradeoff.accuracy import Accuracy
@@ -45,13 +45,8 @@ def tradeoff(
     needs("tradeoff", ["skimage"])
     if train:
         needs_torch()
-    try:
+    with resumable(f"what is measured in {out}"):
         _tradeoff(config, out, quick, train, set_ or [], jobs, overwrite)
-    except KeyboardInterrupt:
-        typer.echo(
-            f"\ninterrupted: what is measured in {out} is kept; the same command goes on", err=True
-        )
-        raise typer.Exit(130) from None
 
 
 def _tradeoff(

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.options import Overrides
+from radhar_cli.commands.options import Overrides, resumable
 
 EXAMPLE = """
 Example:
@@ -52,17 +52,11 @@ def train(
     settings = load_section(TrainConfig, config, overrides)
     apart(out, [data])
     view = TrainingView()
-    try:
-        outcome = training.train(settings, data, out, view, overwrite)
-    except KeyboardInterrupt:
-        view.close()
-        typer.echo(
-            f"\ninterrupted: the last finished epoch in {out} is kept; the same command goes on",
-            err=True,
-        )
-        raise typer.Exit(130) from None
-    finally:
-        view.close()
+    with resumable(f"the last finished epoch in {out}"):
+        try:
+            outcome = training.train(settings, data, out, view, overwrite)
+        finally:
+            view.close()
     view.print_outcome(outcome)
 
 

@@ -11,14 +11,17 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from peak_memory import PEAK
 
 ROOT = Path(__file__).resolve().parents[2]
 PULSES = int(os.environ.get("RADHAR_LONG_PULSES", 10_000_000))
 LIMIT_BYTES = 2**30
 PRF = 5000
 
-PROGRAM = """
-import json, resource, sys
+PROGRAM = (
+    PEAK
+    + """
+import json, sys
 from radhar_cli.activity import activity_named
 from radhar_cli.config import Config
 from radhar_cli.pipeline.plan import plan_images
@@ -35,12 +38,13 @@ products = run(plan_images(config), draw_scene(config, activity, 0), config).pro
 (name,) = config.maps
 levels = products[f"levels:{name}"]
 print(json.dumps({
-    "peak": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024,
+    "peak": peak(),
     "shape": levels.shape,
     "levels": [int(levels.min()), int(levels.max())],
     "entropy": products[f"entropy:{name}"],
 }))
 """
+)
 
 
 def measured(engine: str, name: str) -> dict[str, Any]:
@@ -63,6 +67,7 @@ def measured(engine: str, name: str) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 @pytest.mark.parametrize(
     ("engine", "name"), [("direct", "stft"), ("direct", "fsst"), ("cube", "stft")]
 )

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from peak_memory import PEAK
 
 from radhar_cli.activity import activity_named
 from radhar_cli.config.experiment import MAP_NAMES, Config
@@ -126,8 +127,10 @@ def test_survey_in_parts_finds_the_same(monkeypatch):
             assert survey_module.survey(scene, config) == whole
 
 
-_PEAK = """
-import resource, sys
+_PROGRAM = (
+    PEAK
+    + """
+import sys
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.config.experiment import Config
 from radhar_cli.activity import activity_named
@@ -135,14 +138,14 @@ from radhar_cli.pipeline.plan import plan_images
 from radhar_cli.scenario import draw_scene
 import numpy as np, json, scipy.fft, scipy.signal, PIL.Image
 config = Config.model_validate(json.loads(sys.argv[1]))
-peak = lambda: resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 before = peak()
 synthesise(draw_scene(config, activity_named("punching"), 0), config, plan_images(config))
-print(peak() - before)
+print((peak() - before) / 2**20)
 """
+)
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="ru_maxrss is in KiB on Linux")
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 def test_memory_follows_the_signal_and_not_the_map():
     """Two million pulses, 32 MB a signal; a whole map is 146 MB, its spectra 291.
 
@@ -156,6 +159,6 @@ def test_memory_follows_the_signal_and_not_the_map():
         "processing": {"overlap_fraction": 0.8},
         "image": {"size_px": 64},
     }
-    command = [sys.executable, "-c", _PEAK, json.dumps(document)]
+    command = [sys.executable, "-c", _PROGRAM, json.dumps(document)]
     done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT)
     assert float(done.stdout) < 3 * 31 + 200

@@ -5,7 +5,7 @@ Norms are root mean squares over the pulses. Errors of different paths are added
 MTI divides an error of y by what it leaves of y. docs/engines.md derives the bounds.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import lru_cache
 from math import sqrt
 from typing import NamedTuple
@@ -46,17 +46,26 @@ class Sums:
         pulses: how many they stand for.
         signal: of |x|^2.
         envelope: of |B_i|^2 [I], B = A G.
-        table: of the squared error of tables [I, OVERSAMPLINGS].
+        table: of what the errors of tables are made of, squared [I, 3]: G's fourth derivative times
+            what the MTI leaves of a path with a constant G; times A; times A and how far u moves
+            in a pulse.
+        largest: amplitude.
     """
 
     pulses: float
     signal: float
     envelope: Float
     table: Float
+    largest: float
 
     def __add__(self, other: "Sums") -> "Sums":
-        names = [field.name for field in fields(self)]
-        return Sums(*(getattr(self, name) + getattr(other, name) for name in names))
+        return Sums(
+            self.pulses + other.pulses,
+            self.signal + other.signal,
+            self.envelope + other.envelope,
+            self.table + other.table,
+            max(self.largest, other.largest),
+        )
 
 
 def sums(seen: Neighbours, table: HalfBandTable, scale: float) -> Sums:
@@ -76,7 +85,8 @@ def sums(seen: Neighbours, table: HalfBandTable, scale: float) -> Sums:
         pulses=float(seen.weight.sum()),
         signal=float(seen.weight @ (x.real**2 + x.imag**2)),
         envelope=(b.real**2 + b.imag**2) @ seen.weight,
-        table=_table_errors(seen, left, scale, w),
+        table=_table_parts(seen, left, scale, w),
+        largest=float(np.maximum(now.amplitude, after.amplitude).max(initial=0.0)),
     )
 
 
@@ -97,19 +107,19 @@ class Bounds:
     double: float
 
 
-def bounds(looks: list[Sums], cycles: float, moving: Float) -> Bounds:
+def bounds(total: Sums, waveform: Waveform, cycles: float, moving: Float) -> Bounds:
     """Turn sums into bounds.
 
     Args:
-        looks: at the whole recording.
+        total: over the whole recording.
+        waveform: the radar.
         cycles: longest path in cycles of f0.
         moving: 1 for paths that change [I], 0 for those that cancel in the MTI.
     """
-    total = sum(looks[1:], start=looks[0])
     b = np.sqrt(total.envelope / total.pulses)
     return Bounds(
         signal=sqrt(total.signal / total.pulses),
-        table=moving @ np.sqrt(total.table / total.pulses),
+        table=_table_errors(moving @ np.sqrt(total.table / total.pulses), waveform),
         # Rounding is independent from pulse to pulse and from path to path.
         single=SINGLE * sqrt(2) * float(np.linalg.norm(moving * b)),
         double=DOUBLE * sqrt(2) * (2 * np.pi * cycles + 8) * float(b.sum()),
@@ -187,20 +197,27 @@ def envelope(paths: Paths, table: HalfBandTable, scale: float) -> Complex:
     return b
 
 
-def _table_errors(seen: Neighbours, left: Float, scale: float, w: Waveform) -> Float:
-    """Sums over the pulses of squared table errors [I, OVERSAMPLINGS].
-
-    The error of a cell times what the MTI leaves of a path with a constant G, and its own change
-    from pulse to pulse, which is at most twice the error.
-    """
+def _table_parts(seen: Neighbours, left: Float, scale: float, w: Waveform) -> Float:
+    """What `_table_errors` is made of, squared and summed over the pulses [I, 3]."""
     now, after, weight = seen
-    per_delay, a = w.slope / w.adc_rate, now.amplitude / scale
+    per_delay = w.slope / w.adc_rate
     fourth = _near(_fourth_derivatives(w), per_delay * now.delay)
-    cell = (1 / (OVERSAMPLINGS * w.n_adc))[:, None, None]
-    moved = per_delay * np.abs(after.delay - now.delay) * (HERMITE_SLOPE / HERMITE_VALUE) / cell
-    error = HERMITE_VALUE * cell**4 * fourth * (left + a * np.minimum(moved, 2))
-    squares: Float = np.einsum("qim,qim->iq", error, error * weight)
-    return squares
+    at_rest = fourth * (np.maximum(now.amplitude, after.amplitude) / scale)
+    moved = at_rest * (per_delay * np.abs(after.delay - now.delay))
+    return np.stack([part**2 @ weight for part in (fourth * left, at_rest, moved)], axis=1)
+
+
+def _table_errors(parts: Float, w: Waveform) -> Float:
+    """Bounds [OVERSAMPLINGS] of the error of x that tables make, from `_table_parts` as norms [3].
+
+    The error of a cell times what the MTI leaves of the carrier, and its own change from pulse to
+    pulse: its slope times the way, and at most twice the error.
+    """
+    left, at_rest, moved = parts
+    cell = 1 / (OVERSAMPLINGS * w.n_adc)
+    value, slope = HERMITE_VALUE * cell**4, HERMITE_SLOPE * cell**3
+    error: Float = value * left + np.minimum(slope * moved, 2 * value * at_rest)
+    return error
 
 
 def _near(values: Float, u: Float) -> Float:
@@ -212,10 +229,12 @@ def _near(values: Float, u: Float) -> Float:
 
 @lru_cache(maxsize=4)
 def _fourth_derivatives(w: Waveform) -> Float:
-    """|d^4 G/du^4| over a period, each value the largest of three."""
+    """|d^4 G/du^4| over a period, each value the largest within a fast-time sample of it."""
+    from scipy.ndimage import maximum_filter1d
+
     n = np.arange(w.n_adc) - w.n0
     values = np.abs(scipy.fft.fft(weights(w) * (2 * np.pi * n) ** 4, _GRID * w.n_adc))
-    largest: Float = np.stack([np.roll(values, shift) for shift in (-1, 0, 1)]).max(axis=0)
+    largest: Float = maximum_filter1d(values, 2 * _GRID + 1, mode="wrap")
     return largest
 
 

@@ -1,20 +1,18 @@
 """From an error that is allowed to the cheapest settings of the direct engine that keep it."""
 
 from dataclasses import dataclass, field
-from itertools import pairwise
 from math import inf, log10
 from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Bool, Complex, Float, Index
+from radhar_cli.arrays import Bool, Complex, Float
 from radhar_cli.echo import error_bounds
 from radhar_cli.echo.coarse_knots import LEAST_STEP, CoarseKnots, every_pulse
 from radhar_cli.echo.error_bounds import MOST_TURN, OVERSAMPLINGS, Bounds, Interpolation, Sums
 from radhar_cli.echo.half_band_sum import MOST_CELLS, HalfBandTable, half_band_table
 from radhar_cli.echo.interpolation import TAPS
-from radhar_cli.echo.knots import Knots, Neighbours, all_knots, columns
-from radhar_cli.echo.paths import Paths
+from radhar_cli.echo.knots import Knots, all_knots
 from radhar_cli.radar.waveform import Waveform
 
 # Shares of the budget. Where there are no knots, the table of G has that of the interpolation too.
@@ -22,10 +20,7 @@ INTERPOLATION_SHARE, ROUNDING_SHARE = 0.5, 0.25
 
 # Aims that usually spare a second look.
 USUAL_TURN, SPARE = 0.2, 0.9
-# Pulses that x is measured at, in every piece between kinks.
-LOOK_PULSES = 160
 LOOK_OVERSAMPLING = 16
-GOLDEN = 0.6180339887498949
 
 
 @dataclass(frozen=True)
@@ -92,8 +87,8 @@ def choose(
         BudgetError: the budget is below what float64 leaves of this signal.
     """
     budget = 10 ** (tolerance_db / 20)
-    probe = _through_knots(coarse, mti) if coarse.step > 1 else _through_pulses(coarse, mti)
-    if not probe.moving.any():
+    probe = _look(coarse, mti)
+    if not probe.moving.any() or probe.bounds.signal <= probe.bounds.double:
         return Choice(DirectSettings(coarse.step, 1, not double, (), probe.scale), None)
     single, rounding = _rounding(probe.bounds, budget, double)
     left = budget * probe.bounds.signal - rounding
@@ -128,67 +123,42 @@ class _Probe:
         bounds: all that do not depend on the knots.
         delays: error of delays and amplitudes at these knots.
         moving: which paths change [I]; without MTI, all of them count.
+        unit: that the bounds are in.
         scale: power of two near the largest amplitude.
     """
 
     bounds: Bounds
     delays: float
     moving: Bool
+    unit: float
     scale: float
 
 
-def _through_knots(coarse: CoarseKnots, mti: bool) -> _Probe:
+def _look(coarse: CoarseKnots, mti: bool) -> _Probe:
+    """See the whole recording: every coarse knot, or every pulse where there are no knots."""
     waveform, kinks = coarse.waveform, coarse.source.kinks
     table = _look_table(waveform)
-    looks: list[Sums] = []
+    # Squares of tiny amplitudes must not vanish; a power of two changes no digit.
+    unit = 1.0 if coarse.kept is None else _scale(float(coarse.kept.paths.amplitude.max()))
+    total: Sums | None = None
     delays: list[Interpolation] = []
-    first, scale, longest = None, 1.0, 0.0
+    first, longest = None, 0.0
     moving: Bool = np.zeros(1, dtype=bool)
     for knots in coarse.chunks():
-        if first is None:
-            first, scale = knots.at_pulses, _scale(knots.paths)
-        seen = knots.neighbours(kinks, LOOK_PULSES)
-        looks.append(error_bounds.sums(seen if mti else seen.alone(), table, scale))
-        b = error_bounds.envelope(knots.paths, table, scale)
-        delays.append(error_bounds.delay_errors(knots, b, kinks, waveform, mti))
-        moving = moving | (knots.changes(first) if mti else np.full(len(b), True))
+        first = first or knots.at_pulses
+        seen = knots.neighbours()
+        here = error_bounds.sums(seen if mti else seen.alone(), table, unit)
+        total = here if total is None else total + here
+        if knots.step > 1:
+            b = error_bounds.envelope(knots.paths, table, unit)
+            delays.append(error_bounds.delay_errors(knots, b, kinks, waveform, mti))
+        moving = moving | (knots.changes(first) if mti else np.full(len(here.envelope), True))
         longest = max(longest, float(knots.paths.delay.max()))
+    assert total is not None
     changing = moving.astype(float)
-    bounds = error_bounds.bounds(looks, waveform.f0 * longest, changing)
-    return _Probe(bounds, _norm(delays, changing), moving, scale)
-
-
-def _through_pulses(coarse: CoarseKnots, mti: bool) -> _Probe:
-    """Pairs of neighbouring pulses, spread over every piece between kinks."""
-    source, waveform = coarse.source, coarse.waveform
-    pulses, weight = _spread(waveform, source.kinks)
-    if coarse.kept is not None:
-        every = coarse.kept.paths
-        pair = Neighbours(columns(every, pulses), columns(every, pulses + 1), weight)
-        moving = coarse.kept.changes(every)
-    else:
-        now, after = (source(waveform.times((pulses + later).astype(float))) for later in (0, 1))
-        pair = Neighbours(now, after, weight)
-        moving = ~pair.still
-    scale = _scale(pair.now)
-    if not mti:
-        pair, moving = pair.alone(), np.full(len(moving), True)
-    look = error_bounds.sums(pair, _look_table(waveform), scale)
-    cycles = waveform.f0 * float(pair.now.delay.max())
-    bounds = error_bounds.bounds([look], cycles, moving.astype(float))
-    return _Probe(bounds, 0.0, moving, scale)
-
-
-def _spread(waveform: Waveform, kinks: tuple[float, ...]) -> tuple[Index, Float]:
-    """Pulses with a next one, by the golden ratio in every piece: numbers, and weights of each."""
-    last = waveform.n_pulses - 1
-    bounds = np.clip(np.ceil(np.array([-1.0, *kinks, np.inf]) * waveform.prf), 0, last)
-    found, weight = [], []
-    for first, end in pairwise(np.unique(bounds).astype(np.intp).tolist()):
-        place = np.mod((np.arange(LOOK_PULSES) + 0.5) * GOLDEN, 1) * (end - first)
-        found.append(np.unique(first + place.astype(np.intp)))
-        weight.append(np.full(found[-1].size, (end - first) / found[-1].size))
-    return np.concatenate(found), np.concatenate(weight)
+    bounds = error_bounds.bounds(total, waveform, waveform.f0 * longest, changing)
+    scale = unit if coarse.kept is not None else _scale(total.largest)
+    return _Probe(bounds, _norm(delays, changing), moving, unit, scale)
 
 
 def _rounding(b: Bounds, budget: float, double: bool) -> tuple[bool, float]:
@@ -222,9 +192,9 @@ def _close_enough(
         kept = None
         chunks = coarse.chunks() if step == coarse.step else all_knots(source, waveform, step)
         for knots in chunks:
-            b = error_bounds.envelope(knots.paths, table, probe.scale)
+            b = error_bounds.envelope(knots.paths, table, probe.unit)
             errors.append(error_bounds.interpolation_errors(knots, b, source.kinks, waveform, mti))
-            kept = Envelope(knots, b) if len(errors) == 1 else None
+            kept = Envelope(knots, b * (probe.unit / probe.scale)) if len(errors) == 1 else None
         error = _norm(errors, moving)
         if error <= share:
             return step, error, kept
@@ -241,6 +211,8 @@ def _closer(error: float, share: float) -> float:
 
 
 def _norm(chunks: list[Interpolation], moving: Float) -> float:
+    if not chunks:
+        return 0.0
     squares = np.sum([chunk.squares for chunk in chunks], axis=0)
     whole = Interpolation(squares, sum(chunk.weight for chunk in chunks))
     return float(moving @ whole.error)
@@ -263,6 +235,5 @@ def _decibel(error: float, signal: float) -> float:
     return 20 * log10(error / signal) if error > 0 and signal > 0 else (inf if error > 0 else -inf)
 
 
-def _scale(paths: Paths) -> float:
-    largest = float(paths.amplitude.max(initial=0.0))
+def _scale(largest: float) -> float:
     return float(2.0 ** np.frexp(largest)[1]) if largest > 0 else 1.0

@@ -48,20 +48,22 @@ class Knots(NamedTuple):
         values[..., self.exact_pulses - first] = exact
         return values
 
-    def neighbours(self, kinks: tuple[float, ...], most: int) -> "Neighbours":
-        """Paths at some pulses and at the pulse after each: `most` of every piece between kinks."""
-        after = Paths(*(after_first(part, self.step) for part in self.paths))
+    def neighbours(self) -> "Neighbours":
+        """Paths at some pulses and at the pulse after each: every knot, every exact pulse."""
+        if self.step == 1:
+            count = max(self.paths.power.size - 1, 0)
+            now, after = slice(None, -1), slice(1, None)
+            return Neighbours(columns(self.paths, now), columns(self.paths, after), np.ones(count))
+        after_knots = Paths(*(after_first(part, self.step) for part in self.paths))
         still = ~_differ(self.paths, self.paths)  # what is interpolated may differ by an ulp
-        after.delay[still] = self.at_pulses.delay[still]
-        after.amplitude[still] = self.at_pulses.amplitude[still]
+        after_knots.delay[still] = self.at_pulses.delay[still]
+        after_knots.amplitude[still] = self.at_pulses.amplitude[still]
         smooth = np.flatnonzero(self.shift != EXACT)
-        piece = np.searchsorted(kinks, self.times[BEFORE:-AFTER][smooth], side="right")
-        taken, weight = sample(smooth, piece, most)
-        pair, pair_weight = sample(*_pairs(self.exact_pulses), most)
+        pair = np.flatnonzero(np.diff(self.exact_pulses) == 1)
         return Neighbours(
-            _joined(columns(self.at_pulses, taken), columns(self.exact, pair)),
-            _joined(columns(after, taken), columns(self.exact, pair + 1)),
-            np.concatenate([self.step * weight, pair_weight]),
+            _joined(columns(self.at_pulses, smooth), columns(self.exact, pair)),
+            _joined(columns(after_knots, smooth), columns(self.exact, pair + 1)),
+            np.concatenate([np.full(smooth.size, float(self.step)), np.ones(pair.size)]),
         )
 
     def changes(self, since: Paths) -> Bool:
@@ -90,30 +92,6 @@ class Neighbours(NamedTuple):
     def still(self) -> Bool:
         """Which paths [I] are the same in all of them."""
         return ~(_differ(self.now, self.now) | _differ(self.after, self.now))
-
-
-def sample(numbers: Index, group: Index, most: int) -> tuple[Index, Float]:
-    """At most so many of each group, evenly spread, and how many each of them stands for.
-
-    Args:
-        numbers: to choose from, in order.
-        group: of each of them, in order too.
-        most: of one group.
-    """
-    taken, weight = [numbers[:0]], [np.zeros(0)]
-    for one in np.unique(group):
-        of_group = numbers[group == one]
-        every = -(-of_group.size // most)
-        taken.append(of_group[::every])
-        weight.append(np.full(taken[-1].size, of_group.size / taken[-1].size))
-    return np.concatenate(taken), np.concatenate(weight)
-
-
-def _pairs(exact_pulses: Index) -> tuple[Index, Index]:
-    """Places of exact pulses whose next pulse is exact too, and which run of pulses they are of."""
-    gaps = np.diff(exact_pulses) != 1
-    first = np.flatnonzero(~gaps)
-    return first, np.cumsum(gaps)[first]
 
 
 def _joined(one: Paths, other: Paths) -> Paths:

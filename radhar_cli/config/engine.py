@@ -6,6 +6,8 @@ from pydantic import Field
 
 from radhar_cli.config.section import Flag, Section
 
+LOOSEST_DB = -6.0
+
 
 class EngineConfig(Section):
     """`cube` is the exact float64 reference; `direct` the closed form, within an error budget.
@@ -17,7 +19,7 @@ class EngineConfig(Section):
     """
 
     kind: Literal["direct", "cube"] = "direct"
-    tolerance_db: Annotated[float, Field(ge=-400, le=-6, strict=True)] = -80.0
+    tolerance_db: Annotated[float, Field(ge=-400, le=LOOSEST_DB, strict=True)] = -80.0
     fallback: Literal["refuse", "cube"] = "refuse"
     precision: Literal["auto", "double"] = "auto"
     motion_in_chirp: Flag = False

@@ -25,7 +25,7 @@ def chebyshev_nodes() -> Float:
 
 
 @lru_cache(maxsize=4)
-def lagrange_weights(count: int) -> Float:
+def chirp_weights(count: int) -> Float:
     """Weights [NODES, count] of the nodes at `count` equispaced samples from -1 to 1."""
     nodes, at = chebyshev_nodes(), np.linspace(-1, 1, count)
     weights = np.ones((NODES, count))
@@ -65,6 +65,6 @@ def moving_beat_matrix(source: PathSource, waveform: Waveform, pulses: Float) ->
 def _at_samples(at_nodes: Float, count: int) -> Float:
     """Interpolate [M, NODES] to [M, count]; what does not change stays as it is to the last bit."""
     first = at_nodes[:, :1]
-    dense: Float = (at_nodes[:, 1:] - first) @ lagrange_weights(count)[1:]
+    dense: Float = (at_nodes[:, 1:] - first) @ chirp_weights(count)[1:]
     dense += first
     return dense

@@ -7,15 +7,18 @@ sum over the kept bins -> [compensation] -> [denoising] -> STFT or FSST.
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from math import ceil
 from time import perf_counter
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from radhar_cli.arrays import Complex, Float, Levels
+from radhar_cli.config.engine import LOOSEST_DB
 from radhar_cli.config.experiment import Config
 from radhar_cli.echo import cube
 from radhar_cli.echo.direct import DirectEcho, slow_time_noise
+from radhar_cli.echo.error_budget import BudgetError
 from radhar_cli.echo.range_profiles import beat_at, noise_at, shown_pulses
 from radhar_cli.errors import SceneError
 from radhar_cli.pipeline.body_paths import BodyPaths
@@ -170,17 +173,24 @@ def _slow_time(r: Recording, stage: Stage) -> Complex:
     echo: DirectEcho = r.products["echo"]
     if echo.beyond_reach:
         if r.config.engine.fallback == "refuse":
-            raise SceneError(
-                f"sample {r.scene.name}: engine.tolerance_db = {echo.tolerance_db:g}: should be "
-                f"{echo.beyond_reach.limit_db:.0f} or more, which is what the direct engine can "
-                "promise here, or engine.fallback: cube"
-            )
+            raise SceneError(_refusal(r, echo.beyond_reach))
         blocks = _beat_blocks(r, 0.0, None)
         return np.concatenate(
             [half_band_signal(range_compression(block, r.waveform)) for _, block in blocks]
         )
     y = echo.slow_time()
     return mti_in_place(y) if r.config.processing.mti else y
+
+
+def _refusal(r: Recording, error: BudgetError) -> str:
+    tolerance_db = r.config.engine.tolerance_db
+    what = f"sample {r.scene.name}: engine.tolerance_db = {tolerance_db:g}: "
+    if error.limit_db > LOOSEST_DB:
+        return what + f"no budget can be kept here ({error}); set engine.fallback: cube"
+    return what + (
+        f"should be {ceil(error.limit_db)} or more, which is what the direct engine can promise "
+        "here, or engine.fallback: cube"
+    )
 
 
 def _slow_time_noise(r: Recording, stage: Stage) -> Complex:

@@ -85,7 +85,7 @@ def describe(simulation: Simulation) -> dict[str, Any]:
         "activity": {"label": scene.activity.label, "slug": scene.activity.slug},
         "seed": scene.seed,
         "joint": simulation.joint,
-        "engine": simulation.config.engine.kind,
+        "engine": _engine(simulation),
         "accuracy": _accuracy(simulation),
         "parameters": dict(scene.values),
         "derived": {
@@ -101,6 +101,11 @@ def describe(simulation: Simulation) -> dict[str, Any]:
         "entropy_bits": {name: one.entropy for name, one in simulation.maps.items()},
         "seconds": simulation.seconds,
     }
+
+
+def _engine(simulation: Simulation) -> str:
+    kind = simulation.config.engine.kind
+    return "cube (fallback)" if kind == "direct" and simulation.accuracy is None else kind
 
 
 def _accuracy(simulation: Simulation) -> dict[str, Any] | None:

@@ -145,7 +145,7 @@ def simulate(
         slow_time={name: products[f"signal:{which}"] for name, which in SIGNAL_NAMES.items()},
         truth=truth(products["paths"], recording.waveform),
         paths=products["paths"],
-        warnings=warnings,
+        warnings=[*warnings, *_fallback(products.get("echo"))],
         seconds=recording.seconds,
         accuracy=_accuracy(products.get("echo")),
         beat=raw_echo(recording) if raw else None,
@@ -154,6 +154,12 @@ def simulate(
 
 def _accuracy(echo: DirectEcho | None) -> DirectSettings | None:
     return None if echo is None or echo.beyond_reach else echo.settings
+
+
+def _fallback(echo: DirectEcho | None) -> list[str]:
+    if echo is None or not echo.beyond_reach:
+        return []
+    return [f"computed by the cube (engine.fallback): {echo.beyond_reach}"]
 
 
 def map_names(chosen: list[str] | None) -> tuple[MapName, ...]:

@@ -19,7 +19,7 @@ BOUNDS = ("interpolation_bound_db", "table_bound_db", "rounding_bound_db")
 
 
 def record(row: Row) -> dict[str, Any]:
-    """One row in plain numbers; an error of -inf is written as null in JSON and -inf in CSV."""
+    """One row in plain numbers; JSON has null for the error of what is exact."""
     time, echo = row.spread("ratio"), row.spread("echo_ratio")
     return {
         "group": row.setting.group,
@@ -35,6 +35,7 @@ def record(row: Row) -> dict[str, Any]:
         "echo_ratio": row.middle("echo_ratio"),
         "echo_ratio_low": echo and echo[0],
         "echo_ratio_high": echo and echo[1],
+        "exact": row.worst("signal_error_db") == -inf,
         "signal_error_db": row.worst("signal_error_db"),
         "signal_error_median_db": row.usual("signal_error_db"),
         "map_error_db": row.worst("map_error_db"),

@@ -16,7 +16,7 @@ from radhar_cli.tradeoff.scenes import Scenes
 from radhar_cli.tradeoff.settings import Setting, sweep
 from radhar_cli.tradeoff.timing import Times, time_setting
 
-ROUNDS = {True: 2, False: 7}
+ROUNDS = {True: 3, False: 7}
 
 
 @dataclass(frozen=True)
@@ -108,12 +108,12 @@ def _of(scene: SceneDifferences, row: Row) -> dict[str, Any]:
 
 
 def _times(scenes: Scenes, rows: Sequence[Row], ledger: Ledger, progress: Progress) -> None:
-    rounds = ROUNDS[scenes.quick]
+    rounds, names = ROUNDS[scenes.quick], " ".join(scenes.names())
     possible = [row for row in rows if not row.refused]
     progress.stage("times", rounds * len(possible), 0)
     for turn in range(rounds):
         for row in possible:
-            key = _key("time", row.setting, str(turn))
+            key = _key("time", row.setting, f"{turn} {names}")
             times = _once(ledger, key, partial(time_setting, scenes, row.setting, turn))
             row.times.append(Times(*times))
             progress.advance(1)

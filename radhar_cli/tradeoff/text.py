@@ -46,8 +46,10 @@ def markdown(
 
 
 def _conditions(conditions: Mapping[str, Any]) -> str:
+    count = conditions["scenes"]
+    scenes = "1 scene" if count == 1 else f"{count} scenes, one an activity,"
     return (
-        f"{conditions['scenes']} scenes, one an activity, drawn from the config; errors without "
+        f"{scenes} drawn from the config; errors without "
         "noise against the exact cube in float64, the worst scene's unless it says median. Times "
         f"of one process, {conditions['rounds']} rounds interleaved; ratios to the default (or "
         "what is named) on the same scenes in the same moment, with quartiles. A sample is "

@@ -113,8 +113,8 @@ def test_the_budget_is_kept_and_used(block):
             slack.append(budget - error)
     print(
         f"{still} scenes without motion, {refused} refused below -100 dB, {excused} excused "
-        f"(nothing cheaper exists), {len(slack)} others {median(slack):.1f} dB within their budget in the "
-        f"median, {min(slack):.1f} at least"
+        f"(nothing cheaper exists), {len(slack)} others {median(slack):.1f} dB within their "
+        f"budget in the median, {min(slack):.1f} at least"
     )
     assert len(slack) + excused >= 30
     assert median(slack) < WASTE_DB

@@ -101,7 +101,8 @@ class TestCommand:
         assert rows["-40 dB"]["signal_error_db"] > rows["-120 dB"]["signal_error_db"]
         assert rows["-40 dB"]["ssim"] <= rows["-120 dB"]["ssim"] <= 1
         cube = rows["cube"]
-        assert cube["signal_error_db"] is None  # exact: JSON has no -inf
+        assert cube["exact"]
+        assert cube["signal_error_db"] is None
         assert (cube["pixels_changed"], cube["map_error_db"], cube["psnr_db"]) == (0, 0, None)
         assert cube["time_ratio"] > 1
         assert rows["double"]["rounding_bound_db"] < -180
@@ -148,7 +149,7 @@ class TestCommand:
         measured.clear()
         monkeypatch.setattr(study, "time_setting", going_on)
         assert tradeoff(config, out).exit_code == 0
-        assert len(measured) == 2 * len(rows_of(out)) - 5
+        assert len(measured) == study.ROUNDS[True] * len(rows_of(out)) - 5
 
     def test_another_config_is_refused(self, done, tmp_path):
         config, out = done[0], tmp_path / "out"
@@ -234,6 +235,8 @@ class TestAdvice:
             "setting": name,
             "default": False,
             "time_ratio": 1.0,
+            "time_ratio_low": 0.99,
+            "time_ratio_high": 1.01,
             "echo_ratio": 1.0,
             "time_over": "the default",
             "sample_ms": 10.0,
@@ -243,6 +246,22 @@ class TestAdvice:
             "ssim": 1.0,
         }
         return usual | more
+
+    def test_differences_within_the_noise_are_not_told(self):
+        quiet = self.record("budget", "-60 dB", default=True, pixels_changed=0.2)
+        busy = quiet | {"time_ratio": 1.25, "time_ratio_high": 1.3}
+        fine = self.record("budget", "-80 dB", time_ratio=1.2)
+        assert "1.20 of the default's time" in "\n".join(advice([quiet, fine], []))
+        said = "\n".join(advice([busy, fine], []))
+        assert "as far as could be measured" in said
+        assert "off by 30 %" in said
+
+    def test_what_no_budget_can_change(self):
+        """A range-time map alone; a person who stands still."""
+        same = self.record("budget", "-60 dB", default=True, signal_error_db=None)
+        said = "\n".join(advice([same], []))
+        assert "any budget will do" in said
+        assert "Nothing moves" in said
 
     def test_names_the_loosest_budget_whose_images_are_the_same(self):
         records = [
@@ -262,7 +281,7 @@ class TestAdvice:
         assert verdict in "\n".join(advice([row], []))
 
     def accuracy(self, name, mean):
-        return Accuracy(name, mean, mean - 0.04, mean + 0.04, (mean,), 300)
+        return Accuracy(name, mean, mean - 0.04, mean + 0.04, (mean, mean, mean), 300)
 
     def test_a_budget_that_a_network_notices_is_named(self):
         fine = [self.accuracy("-20 dB", 0.85), self.accuracy("cube", 0.86)]

@@ -50,7 +50,7 @@ def _about_noise(noise: float) -> list[str]:
 def _cost(one: Mapping[str, Any], noise: float) -> str:
     """What a setting costs over the default's time, as far as that could be measured."""
     if abs(one["time_ratio"] - 1) <= noise:
-        return "no more and no less than the default, as far as could be measured"
+        return "the default's time, as far as could be measured"
     return f"{one['time_ratio']:.2f} of the default's time"
 
 
@@ -103,7 +103,7 @@ def _others(timed: Sequence[Mapping[str, Any]], noise: float) -> list[str]:
             )
         if one["group"] == "precision":
             said.append(
-                f"Double precision at the default budget takes {_cost(one, noise)} and is chosen "
+                f"Double precision at the default budget takes {_cost(one, noise)}; it is chosen "
                 "by itself where a budget asks for it: leave `precision: auto`."
             )
     return said

@@ -19,7 +19,7 @@ from radhar_cli.radar.waveform import Waveform
 INTERPOLATION_SHARE, ROUNDING_SHARE = 0.5, 0.25
 
 # Aims that usually spare a second look.
-USUAL_TURN, SPARE = 0.2, 0.9
+USUAL_TURN, SPARE = 0.24, 0.9
 LOOK_OVERSAMPLING = 16
 
 

@@ -59,12 +59,13 @@ class HalfBandTable:
 
     waveform: Waveform
     oversampling: int
-    _cells: Complex = field(init=False, repr=False)
+    _powers: tuple[Complex, ...] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "_cells", self._tabulate())
+        object.__setattr__(self, "_powers", self._tabulate())
 
-    def _tabulate(self) -> Complex:
+    def _tabulate(self) -> tuple[Complex, ...]:
+        """Coefficients of the cubic in each cell, lowest power first, an array for each."""
         waveform, size = self.waveform, self.oversampling * self.waveform.n_adc
         n = np.arange(waveform.n_adc) - waveform.n0
         d = weights(waveform)
@@ -79,20 +80,19 @@ class HalfBandTable:
         rise = value_next - value
         square = 3 * rise - 2 * slope - slope_next
         cube = slope + slope_next - 2 * rise
-        return np.stack([value, slope, square, cube], axis=-1)
+        return value, slope, square, cube
 
     def __call__(self, u: Float) -> Complex:
         """G(u) for u [...]."""
         turns = np.floor(u)
-        place = (u - turns) * len(self._cells)
-        cell = np.minimum(place.astype(np.intp), len(self._cells) - 1)
+        size = self._powers[0].size
+        place = (u - turns) * size
+        cell = np.minimum(place.astype(np.intp), size - 1)
         part = place - cell
-        c = self._cells[cell]
-        value = c[..., 3] * part
-        for power in (2, 1):
-            value += c[..., power]
+        value: Complex = self._powers[3].take(cell)
+        for coefficients in self._powers[2::-1]:
             value *= part
-        value += c[..., 0]
+            value += coefficients.take(cell)
         if self.waveform.n0 % 1:
             value *= 1 - 2 * np.mod(turns, 2)
         return value

@@ -88,7 +88,7 @@ def choose(
     """
     budget = 10 ** (tolerance_db / 20)
     probe = _look(coarse, mti)
-    if not probe.moving.any() or probe.bounds.signal <= probe.bounds.double:
+    if not probe.moving.any():
         return Choice(DirectSettings(coarse.step, 1, not double, (), probe.scale), None)
     single, rounding = _rounding(probe.bounds, budget, double)
     left = budget * probe.bounds.signal - rounding

@@ -332,16 +332,6 @@ class TestFaces:
         found = after_mti(source, RADAR)
         assert ref.error_db(found, right_answer(source, RADAR)) < DEFAULT
 
-    def test_motion_below_the_resolution_of_float64_is_none(self):
-        """Feet that stand still by the model, to an ulp: what is left is rounding, not a signal."""
-
-        def ranges(t):
-            return 2 + 2e-16 * np.sin(1e4 * t)[None]
-
-        source = ref.Points(ranges)
-        assert (source(RADAR.times).delay != source(RADAR.times).delay[0, 0]).any()
-        assert not after_mti(source, RADAR).any()
-
 
 @pytest.mark.parametrize("budget", [DEFAULT, TIGHT])
 @pytest.mark.parametrize("smooth", [True, False])

@@ -8,6 +8,7 @@ import pytest
 import reference as ref
 
 from radhar_cli.activity import ACTIVITIES, Activity
+from radhar_cli.body.skeleton import JOINTS
 from radhar_cli.config.experiment import Config
 from radhar_cli.echo.direct import DirectEcho
 from radhar_cli.echo.error_budget import BudgetError
@@ -192,6 +193,15 @@ class TestRefusal:
             SceneError, match=r"walking/0: engine\.tolerance_db = -300: .* -\d+ or "
         ):
             self.signal({"tolerance_db": -300})
+
+    def test_says_so_where_no_budget_can_be_kept(self):
+        """Feet that stand still to an ulp, alone: what moves is rounding, in either engine."""
+        config = Config.model_validate(CONFIG | {"duration_s": 2.0})
+        scene = draw_scene(config, ACTIVITIES[5], 0)
+        with pytest.raises(
+            SceneError, match=r"no budget can be kept here .* engine\.fallback: cube"
+        ):
+            run(plan(config, ["signal:plain"]), scene, config, (JOINTS.index("right_ankle"),))
 
     @pytest.mark.parametrize("mti", [True, False])
     def test_falls_back_to_the_cube_itself(self, mti):

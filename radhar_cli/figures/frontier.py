@@ -23,11 +23,12 @@ class CostPoint:
 
 @dataclass(frozen=True)
 class Change:
-    """A switch: what is missed without it (dB of the signal or of the map) and its time ratio."""
+    """A switch: what is missed without it (dB of the signal), its time over what setting's."""
 
     name: str
     change_db: float
     time: float
+    over: str
 
 
 @dataclass(frozen=True)
@@ -126,7 +127,7 @@ def _draw_changes(axes: Axes, changes: Sequence[Change]) -> None:
     rows = range(len(changes))
     axes.barh(rows, [c.change_db + 100 for c in changes], left=-100, color="C1")
     for row, change in zip(rows, changes, strict=True):
-        text = f"{change.change_db:.0f} dB, {change.time:.1f} times the time"
+        text = f"{change.change_db:.0f} dB, {change.time:.1f} times {change.over}"
         axes.text(-98, row, text, va="center", fontsize=8)
     axes.set_yticks(rows, [c.name for c in changes], fontsize=8)
     axes.set_xlim(-100, 15)

@@ -76,7 +76,7 @@ def write_report(
 def _figure(title: str, rows: Sequence[Row], accuracies: Sequence[Accuracy]) -> bytes:
     engines = [row for row in rows if row.setting.group in ENGINES and row.times]
     changes = [
-        Change(row.setting.name, change, row.middle("ratio") or 1.0)
+        Change(row.setting.name, change, row.middle("ratio") or 1.0, row.setting.beside_name)
         for row in rows
         if row.setting.group == "switch" and row.times
         for change in [row.usual("signal_error_db")]

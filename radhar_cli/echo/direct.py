@@ -133,10 +133,8 @@ class DirectEcho:
             if step == 1:
                 yield _Block(pulses, delay[:, pulses], at_knots[..., pulses].astype(real))
                 continue
-            reach, length = (
-                slice(start, start + segments + BEFORE + AFTER),
-                pulses.stop - pulses.start,
-            )
+            reach = slice(start, start + segments + BEFORE + AFTER)
+            length = pulses.stop - pulses.start
             shift = knots.shift[start : start + segments]
             tau = upsample(delay[:, reach], step, shift)[:, :length]
             envelopes = upsample(at_knots[..., reach], step, shift, real)[..., :length]

@@ -19,6 +19,15 @@ AFTER = 2 * REACH + 1
 EXACT = TAPS  # not a shift: the segment cannot be interpolated
 
 
+def lagrange_basis(nodes: Float, at: Float) -> Float:
+    """Weights [nodes, at] of values at the nodes for the polynomial through them at some places."""
+    basis = np.ones((nodes.size, at.size))
+    for i, node in enumerate(nodes):
+        for other in np.delete(nodes, i):
+            basis[i] *= (at - other) / (node - other)
+    return basis
+
+
 @lru_cache(maxsize=128)
 def lagrange_weights(step: int, shift: int = 0) -> Float:
     """Weights [TAPS, step] of the knots around a segment for each of its `step` pulses.
@@ -26,12 +35,7 @@ def lagrange_weights(step: int, shift: int = 0) -> Float:
     The knots are -2 .. 3 from the segment's first, plus `shift` (-2 .. 2).
     """
     nodes = np.arange(-REACH, TAPS - REACH, dtype=float) + shift
-    at = np.arange(step) / step
-    columns = np.ones((TAPS, step))
-    for i, node in enumerate(nodes):
-        for other in np.delete(nodes, i):
-            columns[i] *= (at - other) / (node - other)
-    return columns
+    return lagrange_basis(nodes, np.arange(step) / step)
 
 
 def shifts(times: Float, kinks: tuple[float, ...]) -> Index:

@@ -13,6 +13,7 @@ import numpy as np
 
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.echo.beat import start_phase, unit_phasor
+from radhar_cli.echo.interpolation import lagrange_basis
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.radar.waveform import Waveform
 
@@ -27,12 +28,7 @@ def chebyshev_nodes() -> Float:
 @lru_cache(maxsize=4)
 def chirp_weights(count: int) -> Float:
     """Weights [NODES, count] of the nodes at `count` equispaced samples from -1 to 1."""
-    nodes, at = chebyshev_nodes(), np.linspace(-1, 1, count)
-    weights = np.ones((NODES, count))
-    for i, node in enumerate(nodes):
-        for other in np.delete(nodes, i):
-            weights[i] *= (at - other) / (node - other)
-    return weights
+    return lagrange_basis(chebyshev_nodes(), np.linspace(-1, 1, count))
 
 
 def moving_beat_matrix(source: PathSource, waveform: Waveform, pulses: Float) -> Complex:

@@ -7,6 +7,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from listener import Listener
 from PIL import Image
 from small import SMALL, fingerprint, small_config
 
@@ -20,25 +21,8 @@ from radhar_cli.dataset.shards import Shard, finished_shards, missing_runs, piec
 from radhar_cli.errors import FolderError, SceneError, UnfinishedError
 
 
-class Notes:
-    """A progress that remembers what was said."""
-
-    def __init__(self) -> None:
-        self.said: list[str] = []
-        self.stages: list[str] = []
-
-    def stage(self, name: str, total: int, done: int) -> None:
-        self.stages.append(name)
-
-    def advance(self, samples: int) -> None:
-        pass
-
-    def say(self, message: str) -> None:
-        self.said.append(message)
-
-
 def make(config: Config, folder: Path, **options: object) -> Outcome:
-    return build(config, folder, options.pop("jobs", 1), Notes(), **options)
+    return build(config, folder, options.pop("jobs", 1), Listener(), **options)
 
 
 @pytest.fixture(scope="module")
@@ -228,7 +212,7 @@ def test_scene_too_close_to_an_antenna_stops_before_any_echo(
 def test_physical_warnings_are_said_once_with_their_number_and_stored(
     config: Config, tmp_path: Path
 ) -> None:
-    notes = Notes()
+    notes = Listener()
     far = load_config(small_config(tmp_path), ["motion.range_m=28", "activities=[walking, S1]"])
     build(far, tmp_path / "set", 1, notes)
     assert [m for m in notes.said if "half-band" in m] == [
@@ -312,7 +296,7 @@ def test_redrawn_scenes_are_valid_and_deterministic(tmp_path: Path) -> None:
     config = load_config(
         small_config(tmp_path, text), ["motion.range_m={uniform: [1, 3]}", "activities=[S1, S2]"]
     )
-    notes = Notes()
+    notes = Listener()
     build(config, tmp_path / "one", 1, notes)
     make(config, tmp_path / "two", jobs=2, batch_size=1)
     assert not [m for m in notes.said if "wall" in m]

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from listener import Listener
 from small import SMALL, small_config
 
 from radhar_cli.errors import ConfigError, FolderError
@@ -39,23 +40,6 @@ class Memory:
 
     def put(self, key: str, value: Any) -> None:
         self.text[key] = json.dumps(value)
-
-
-class Listener:
-    """A progress that remembers."""
-
-    def __init__(self) -> None:
-        self.said: list[str] = []
-        self.stages: list[str] = []
-
-    def stage(self, name: str, total: int, done: int) -> None:
-        self.stages.append(name)
-
-    def advance(self, samples: int) -> None:
-        pass
-
-    def say(self, message: str) -> None:
-        self.said.append(message)
 
 
 def bench(folder: Path, **more: Any) -> Bench:

@@ -7,6 +7,7 @@ from shutil import copytree
 
 import numpy as np
 import pytest
+from listener import Listener
 from PIL import Image
 from typer.testing import CliRunner
 
@@ -189,17 +190,12 @@ class TestSettings:
 
     def test_one_that_the_config_forbids_is_left_out_and_named(self, config):
         """A filter longer than the recording: the denoised maps cannot be, the others can."""
-        said: list[str] = []
-
-        class Listener:
-            def say(self, message: str) -> None:
-                said.append(message)
-
+        listener = Listener()
         scenes = self.scenes(config, "processing.savgol={order: 1, frame: 1001}")
-        possible = study._possible(scenes, Listener())
+        possible = study._possible(scenes, listener)
         assert not any("denoised" in setting.name for setting in possible)
-        assert len(said) == 4
-        assert all("processing.savgol.frame" in message for message in said)
+        assert len(listener.said) == 4
+        assert all("processing.savgol.frame" in message for message in listener.said)
 
     def test_names_are_told_apart_and_one_is_the_default(self, config):
         settings = sweep(self.scenes(config, "wall={}").config())

@@ -9,7 +9,7 @@ import pytest
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.config import Config
 from radhar_cli.randomness import NOISE, PERSON, SCENE, SPLIT, stream
-from radhar_cli.scenario import scene_numbers
+from radhar_cli.scene import scene_numbers
 
 
 def test_the_same_name_yields_the_same_numbers_whatever_was_drawn_before() -> None:

@@ -4,8 +4,7 @@ import hashlib
 import json
 from typing import Any
 
-from radhar_cli.config.experiment import Config
-from radhar_cli.config.section import Section
+from radhar_cli.config.schema import Config, Section
 
 NOT_IDENTITY = ("output.png",)
 

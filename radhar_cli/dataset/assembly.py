@@ -16,15 +16,15 @@ import yaml
 
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.arrays import Float
-from radhar_cli.config.experiment import Config
 from radhar_cli.config.identity import config_hash, resolved
+from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.files import unfinished_path, write_whole
 from radhar_cli.dataset.identity import identity, versions
 from radhar_cli.dataset.layout import CONFIG, DATASET, SCENES, SPLITS, Rows
 from radhar_cli.dataset.shards import Shard, image_dataset, pieces
 from radhar_cli.dataset.split import split_rows
-from radhar_cli.scenario import subject_of
+from radhar_cli.scene import subject_of
 
 SCHEMA_VERSION = 1
 LEVELS_TEXT = (

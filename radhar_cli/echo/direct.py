@@ -18,11 +18,10 @@ from radhar_cli.echo.beat import start_phase
 from radhar_cli.echo.coarse_knots import CoarseKnots, coarse_knots
 from radhar_cli.echo.error_bounds import envelope
 from radhar_cli.echo.error_budget import BudgetError, Choice, DirectSettings, Envelope, choose
-from radhar_cli.echo.half_band_sum import half_band_table, noise_gain
+from radhar_cli.echo.half_band_sum import half_band_table
 from radhar_cli.echo.interpolation import AFTER, BEFORE, upsample
 from radhar_cli.echo.knots import Knots, all_knots
 from radhar_cli.echo.paths import Paths, PathSource
-from radhar_cli.radar.noise import circular_gaussian
 from radhar_cli.radar.waveform import Waveform
 
 BLOCK_PULSES = 4096
@@ -144,9 +143,3 @@ class DirectEcho:
             envelopes[0][:, place] = exact.real[:, here]
             envelopes[1][:, place] = exact.imag[:, here]
             yield _Block(pulses, tau, envelopes)
-
-
-def slow_time_noise(rng: np.random.Generator, waveform: Waveform) -> Complex:
-    """v[m] [M] for unit raw noise: white, circular, of variance sum_n |D[n]|^2."""
-    v: Complex = circular_gaussian(rng, (waveform.n_pulses,)) * np.sqrt(noise_gain(waveform))
-    return v

@@ -14,11 +14,12 @@ import numpy as np
 import scipy.fft
 
 from radhar_cli.arrays import Complex, Float
-from radhar_cli.echo.beat import start_phase, unit_phasor
+from radhar_cli.echo.beat import start_phase
 from radhar_cli.echo.half_band_sum import HalfBandTable, weights
 from radhar_cli.echo.interpolation import TAPS
 from radhar_cli.echo.knots import Knots, Neighbours
 from radhar_cli.echo.paths import Paths
+from radhar_cli.phasor import unit_phasor
 from radhar_cli.radar.waveform import Waveform
 
 # Root mean square over a segment of the six-point Lagrange remainder and of its slope, in sixth

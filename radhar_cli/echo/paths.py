@@ -28,9 +28,12 @@ class PathSource(Protocol):
         smooth: whether paths are smooth between the kinks; a wall's edges make them not so.
     """
 
-    kinks: tuple[float, ...]
-    highest_frequency: float
-    smooth: bool
+    @property
+    def kinks(self) -> tuple[float, ...]: ...
+    @property
+    def highest_frequency(self) -> float: ...
+    @property
+    def smooth(self) -> bool: ...
 
     def __call__(self, t: Float) -> Paths:
         """Return the paths at times t [M] (s)."""

@@ -5,7 +5,6 @@ import numpy as np
 from radhar_cli.arrays import Complex, Index
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.paths import PathSource
-from radhar_cli.radar.noise import circular_gaussian
 from radhar_cli.radar.waveform import Waveform
 
 
@@ -31,19 +30,3 @@ def beat_at(source: PathSource, waveform: Waveform, pulses: Index, mti: bool) ->
     moves = (paths.delay != paths.delay[:, :1]) | (paths.amplitude != paths.amplitude[:, :1])
     kept = np.tile(moves.any(axis=1), 2)  # a path that stands still cancels itself exactly
     return beat_matrix(delay[kept], amplitude[kept], waveform)
-
-
-def noise_at(rng: np.random.Generator, length: int, pulses: Index, mti: bool) -> Complex:
-    """White unit noise [length, M] at `pulses` [length, len(pulses)], with its right joint law.
-
-    Differences over pairs without a common pulse are white of variance 2 and drawn as such; pairs
-    that share a pulse share its noise, which gives them the correlation -1/2.
-    """
-    if not mti:
-        return circular_gaussian(rng, (pulses.size, length)).T
-    if np.all(np.diff(pulses) > 1):
-        pairs: Complex = np.sqrt(2) * circular_gaussian(rng, (pulses.size, length)).T
-        return pairs
-    needed = np.union1d(pulses, pulses + 1)
-    w = circular_gaussian(rng, (needed.size, length)).T
-    return w[:, np.searchsorted(needed, pulses + 1)] - w[:, np.searchsorted(needed, pulses)]

@@ -3,7 +3,7 @@
 import numpy as np
 
 from radhar_cli.arrays import Complex, Float
-from radhar_cli.echo.beat import unit_phasor
+from radhar_cli.phasor import unit_phasor
 
 CHUNK = 2**18
 

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from radhar_cli.arrays import Complex, Float
-from radhar_cli.config.rounding import exact, half_up
+from radhar_cli.rounding import exact, half_up
 
 # Coefficients at work at once: 16 MiB as complex numbers, some 200 MiB in the synchrosqueezing.
 # The paper's 90 frames of 2000 are a sixth of it.

@@ -1,9 +1,33 @@
 """Power map -> grey levels: resize the linear power, then decibels (docs/model.md, Image)."""
 
+import hashlib
+from dataclasses import dataclass
+
 import numpy as np
 from PIL import Image
 
 from radhar_cli.arrays import Float, Levels
+
+
+@dataclass(frozen=True)
+class MapImage:
+    """The image of a map.
+
+    Attributes:
+        levels: grey levels [height, width], row 0 at the top.
+        entropy: of the power map, bits.
+        extent: outer edges of the map (columns from, columns to, rows from, rows to).
+    """
+
+    levels: Levels
+    entropy: float
+    extent: tuple[float, float, float, float]
+
+    @property
+    def sha256(self) -> str:
+        """Checksum of the levels, row by row, in hex."""
+        return hashlib.sha256(self.levels.tobytes()).hexdigest()
+
 
 AT_ONCE = 2**20  # weights, or pixels of columns reduced in height
 

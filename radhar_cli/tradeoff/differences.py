@@ -3,8 +3,7 @@
 from typing import Any, NamedTuple
 
 from radhar_cli.arrays import Complex, Float, Levels
-from radhar_cli.pipeline.plan import plan
-from radhar_cli.pipeline.run import run
+from radhar_cli.pipeline.run import record
 from radhar_cli.tradeoff.measures import image_scores, map_error_db, relative_db
 from radhar_cli.tradeoff.scenes import Scenes
 from radhar_cli.tradeoff.settings import Setting
@@ -55,16 +54,16 @@ class SceneDifferences:
     def _make(self, overrides: tuple[str, ...]) -> Sample:
         config = self._scenes.config((*overrides, QUIET))
         name = config.maps[0]
-        asked = ["signal:plain", name, f"levels:{name}"]
+        asked = ["signal", name, f"image:{name}"]
         if config.engine.kind == "direct":
             asked.append("echo")
         scene = self._scenes.draw(self._slug, config)
-        products = run(plan(config, asked), scene, config).products
+        products = record(scene, asked).products
         bounds = products["echo"].settings.bounds_db if "echo" in products else {}
         return Sample(
-            products["signal:plain"],
-            products[name],
-            products[f"levels:{name}"],
+            products["signal"].x,
+            products[name].power,
+            products[f"image:{name}"].levels,
             config.image.dynamic_range_db,
             bounds,
         )

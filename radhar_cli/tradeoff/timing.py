@@ -3,8 +3,8 @@
 from time import perf_counter
 from typing import NamedTuple
 
-from radhar_cli.pipeline.plan import plan_images
-from radhar_cli.pipeline.run import Recording, run
+from radhar_cli.pipeline.products import plan_images
+from radhar_cli.pipeline.run import run
 from radhar_cli.tradeoff.scenes import Scenes
 from radhar_cli.tradeoff.settings import Setting
 
@@ -49,6 +49,6 @@ def _seconds(scenes: Scenes, slug: str, overrides: tuple[str, ...]) -> tuple[flo
     config = scenes.config(overrides)
     scene, plan = scenes.draw(slug, config), plan_images(config)
     start = perf_counter()
-    recording: Recording = run(plan, scene, config)
+    recording = run(plan, {"scene": scene})
     whole = perf_counter() - start
     return whole, sum(t for name, t in recording.seconds.items() if name in ECHO)

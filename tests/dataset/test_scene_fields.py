@@ -8,7 +8,7 @@ import pytest
 from radhar_cli.activity import ACTIVITIES, activity_named
 from radhar_cli.config import Config
 from radhar_cli.dataset.scene_fields import fields, values
-from radhar_cli.scenario import draw_scene, scene_numbers
+from radhar_cli.scene import draw_scene, scene_numbers
 
 EVERYTHING = Config(wall={})
 

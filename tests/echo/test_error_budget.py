@@ -6,19 +6,19 @@ from statistics import median
 import numpy as np
 import pytest
 import reference as ref
+from radhar_cli.pipeline.body_paths import BodyPaths
+from radhar_cli.pipeline.models import waveform_of
 
 from radhar_cli.activity import ACTIVITIES, Activity
-from radhar_cli.body.skeleton import JOINTS
-from radhar_cli.config.experiment import Config
+from radhar_cli.config.schema import Config
 from radhar_cli.echo.direct import DirectEcho
 from radhar_cli.echo.error_budget import BudgetError
 from radhar_cli.errors import SceneError
-from radhar_cli.pipeline.body_paths import BodyPaths
-from radhar_cli.pipeline.models import waveform_of
+from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.pipeline.plan import plan
 from radhar_cli.pipeline.run import run
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scenario import draw_scene
+from radhar_cli.scene import draw_scene
 
 # The issue that brought the budget asks for these; a bound that is loose by 30 dB is 5 times too
 # many knots.

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 import reference as ref
+from radhar_cli.pipeline.axes import axes_of
 
 from radhar_cli.activity import ACTIVITIES, activity_named
-from radhar_cli.body.pose import Body
-from radhar_cli.config.experiment import MAP_NAMES, Config
-from radhar_cli.pipeline.axes import axes_of
+from radhar_cli.config.schema import MAP_NAMES, Config
+from radhar_cli.motion.paper.body import Body
 from radhar_cli.pipeline.plan import plan, plan_images
 from radhar_cli.pipeline.run import Recording, run
-from radhar_cli.scenario import Scene, draw_scene
+from radhar_cli.scene import Scene, draw_scene
 
 FREE_SPACE: dict = {}
 THROUGH_WALL = {"radar": {"carrier_hz": 2e9, "bandwidth_hz": 1e9, "prf_hz": 128}, "wall": {}}

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 import radhar_cli as radhar
-from radhar_cli.body.skeleton import JOINTS
 from radhar_cli.config import MAP_NAMES, Config, load_config
 from radhar_cli.errors import ConfigError, SceneError
+from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.pipeline.plan import plan
 from radhar_cli.pipeline.run import run
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
-from radhar_cli.scenario import draw_scene
+from radhar_cli.scene import draw_scene
 from radhar_cli.simulation.scene_file import describe, write_all
 from radhar_cli.simulation.simulate import Simulation, map_names, simulate
 from radhar_cli.simulation.truth import MOVEMENTS

@@ -1,0 +1,317 @@
+"""The table of products: name, needs and function of all that can be made of a scene.
+
+Order (paper, figure "Signal processing overflow"): canceller -> range compression -> [range-time
+map] -> sum over the kept bins -> [compensation] -> [denoising] -> STFT or FSST.
+
+    scene      what is simulated                     paths     delay and amplitude over time
+    slow_time  y[m], noiseless, before the canceller signal    x[m], what the Doppler maps show
+    <map>      PowerMap                              image:<map>  MapImage
+"""
+
+from collections.abc import Iterator
+from math import ceil
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from radhar_cli.arrays import Complex, Float, Index
+from radhar_cli.config.schema import MAP_NAMES, MAX_TOLERANCE_DB, Config
+from radhar_cli.echo import cube
+from radhar_cli.echo.direct import DirectEcho
+from radhar_cli.echo.error_budget import BudgetError
+from radhar_cli.echo.paths import PathSource
+from radhar_cli.echo.range_profiles import beat_at, shown_pulses
+from radhar_cli.errors import SceneError
+from radhar_cli.motion.protocol import Motion
+from radhar_cli.pipeline.motion_paths import MotionPaths, SumOfPaths, point_delay
+from radhar_cli.pipeline.physics import (
+    antennas_of,
+    canceller_of,
+    frames_of,
+    fsst_frames_of,
+    motion_of,
+    noise_stream,
+    wall_of,
+    waveform_of,
+)
+from radhar_cli.pipeline.plan import Plan, Product, plan
+from radhar_cli.processing import fsst, stft
+from radhar_cli.processing.canceller import Canceller
+from radhar_cli.processing.denoising import savgol
+from radhar_cli.processing.doppler_compensation import compensate
+from radhar_cli.processing.frames import Frames
+from radhar_cli.processing.long_map import joined
+from radhar_cli.processing.power_map import Axis, PowerMap
+from radhar_cli.processing.range_compression import (
+    half_band_signal,
+    range_bins,
+    range_compression,
+    range_power,
+)
+from radhar_cli.processing.signal import Signal
+from radhar_cli.processing.stft import Spectra
+from radhar_cli.radar.propagation import Antennas
+from radhar_cli.radar.wall import Wall
+from radhar_cli.radar.waveform import Waveform
+from radhar_cli.receiver.impairment import Impairment
+from radhar_cli.receiver.noise import WhiteNoise, noise_variance
+from radhar_cli.scene import Scene
+
+CHUNK = 2**18  # pulses at work at once, where each is on its own
+# In the order in which few are held at once: each follows the one it is made from.
+SIGNALS = ("signal", "signal_denoised", "signal_compensated", "signal_compensated_denoised")
+
+
+class RangeProfiles(NamedTuple):
+    """Range bins [N_FFT/2, some M] after the canceller, and the first pulse of each column."""
+
+    bins: Complex
+    pulses: Index
+
+
+def signal_of(map_name: str) -> str:
+    """Which of SIGNALS a Doppler-time map shows."""
+    suffix = map_name.partition("_")[2]
+    return f"signal_{suffix}" if suffix else "signal"
+
+
+def plan_images(config: Config) -> Plan:
+    """The plan of a data set: the image of every map, those of one signal together."""
+    maps = sorted(config.maps, key=lambda name: SIGNALS.index(signal_of(name)))
+    return plan(products(config), [f"image:{name}" for name in maps], ["scene"])
+
+
+def products(config: Config) -> dict[str, Product]:
+    """Every product there could be under a config, by name."""
+    rows = (*_physics(config), *_echo(config), *_signals(config), *_maps(config))
+    return {row.name: row for row in rows}
+
+
+def _physics(c: Config) -> Iterator[Product]:
+    in_free_space = c.snr_reference == "free_space"
+
+    def paths(
+        motions: tuple[Motion, ...], antennas: Antennas, wall: Wall | None, w: Waveform
+    ) -> PathSource:
+        each = [MotionPaths(one, antennas, w.fc, wall, in_free_space) for one in motions]
+        return each[0] if len(each) == 1 else SumOfPaths(tuple(each))
+
+    def torso_track(
+        motions: tuple[Motion, ...], antennas: Antennas, wall: Wall | None, w: Waveform
+    ) -> Float:
+        track = np.empty(w.n_pulses)
+        for first in range(0, track.size, CHUNK):
+            t = w.times(np.arange(first, min(first + CHUNK, track.size), dtype=float))
+            track[first : first + CHUNK] = point_delay(motions[0].torso(t), antennas, wall)[0]
+        return track
+
+    seen = ("motions", "antennas", "wall", "waveform")
+    walled = "through the wall" if c.wall is not None else "through air"
+    yield Product("waveform", ("scene",), lambda s: waveform_of(s.config), "chirps and pulses")
+    yield Product("antennas", ("scene",), lambda s: antennas_of(s.config), "positions and gains")
+    yield Product("wall", ("scene",), lambda s: wall_of(s.config), "the slab, or none")
+    yield Product("motions", ("scene",), lambda s: (motion_of(s),), "scatterers that move")
+    yield Product("paths", seen, paths, f"delay and amplitude of every scatterer, {walled}")
+    yield Product("torso_track", seen, torso_track, "delay of the torso at every pulse")
+
+
+def _echo(c: Config) -> Iterator[Product]:
+    def signal(y: Signal, canceller: Canceller, receiver: tuple[Impairment, ...]) -> Signal:
+        x = y.x
+        for impairment in receiver:
+            x = impairment.slow_time(x)
+        return y.with_samples(canceller(x), canceller.delay)
+
+    yield Product("canceller", (), lambda: canceller_of(c), "what removes the static echo")
+    yield from _receiver(c)
+    yield from _cube(c) if c.engine.kind == "cube" else _direct(c)
+    if c.engine.kind == "direct":
+        yield Product(
+            "signal", ("slow_time", "canceller", "receiver"), signal, "receiver, then canceller"
+        )
+
+
+def _receiver(c: Config) -> Iterator[Product]:
+    def noise(scene: Scene, power: float, w: Waveform) -> WhiteNoise:
+        assert isinstance(scene.config.snr_db, (int, float))
+        sigma = np.sqrt(noise_variance(power, scene.config.snr_db))
+        return WhiteNoise(float(sigma), w, lambda name: noise_stream(scene, name))
+
+    if c.snr_db is None:
+        yield Product("receiver", (), tuple, "nothing: snr_db is null")
+        return
+    yield Product("noise", ("scene", "signal_power", "waveform"), noise, "white noise, by snr_db")
+    yield Product("receiver", ("noise",), lambda *impairments: impairments, "impairments, in order")
+
+
+def _direct(c: Config) -> Iterator[Product]:
+    engine = c.engine
+
+    def echo(paths: PathSource, w: Waveform, canceller: Canceller) -> DirectEcho:
+        double = engine.precision == "double"
+        return DirectEcho(paths, w, engine.tolerance_db, double, canceller.lost > 0)
+
+    def slow_time(echo: DirectEcho, w: Waveform, scene: Scene) -> Signal:
+        if not echo.beyond_reach:
+            return Signal(echo.slow_time(), 0.0, w.prf, w.f0)
+        if engine.fallback == "refuse":
+            raise SceneError(_refusal(scene.name, engine.tolerance_db, echo.beyond_reach))
+        blocks = cube.beat_blocks(echo.source, w)
+        y = [half_band_signal(range_compression(block, w)) for block in blocks]
+        return Signal(np.concatenate(y), 0.0, w.prf, w.f0)
+
+    def range_profiles(
+        paths: PathSource,
+        w: Waveform,
+        canceller: Canceller,
+        receiver: tuple[Impairment, ...],
+    ) -> RangeProfiles:
+        shown = shown_pulses(w.n_pulses - canceller.lost, c.image.size_px[1])
+        bins = range_bins(beat_at(paths, w, shown, canceller.lost > 0), w)
+        for impairment in receiver:
+            bins = impairment.range_bins(bins, shown, canceller)
+        return RangeProfiles(bins, shown)
+
+    yield Product("echo", ("paths", "waveform", "canceller"), echo, "closed form of the echo")
+    yield Product("signal_power", ("echo",), DirectEcho.signal_power, "P_s, for snr_db")
+    yield Product(
+        "slow_time", ("echo", "waveform", "scene"), slow_time, "slow-time signal without noise"
+    )
+    yield Product(
+        "range_profiles",
+        ("paths", "waveform", "canceller", "receiver"),
+        range_profiles,
+        "range profiles at the pulses that the range-time map shows",
+    )
+
+
+def _refusal(name: str, tolerance_db: float, error: BudgetError) -> str:
+    what = f"sample {name}: engine.tolerance_db = {tolerance_db:g}: "
+    if error.limit_db > MAX_TOLERANCE_DB:
+        return what + f"no budget can be kept here ({error}); set engine.fallback: cube"
+    return what + (
+        f"should be {ceil(error.limit_db)} or more, which is what the direct engine can promise "
+        "here, or engine.fallback: cube"
+    )
+
+
+def _cube(c: Config) -> Iterator[Product]:
+    needs = ("paths", "waveform", "canceller", "receiver")
+    with_signal, with_profiles = set(c.maps) != {"rtm"}, "rtm" in c.maps
+
+    def beat_cube(
+        paths: PathSource, w: Waveform, canceller: Canceller, receiver: tuple[Impairment, ...]
+    ) -> tuple[Signal | None, RangeProfiles | None]:
+        shown = shown_pulses(w.n_pulses - canceller.lost, c.image.size_px[1])
+        x, bins = [], []
+        for first, block in _blocks(c, paths, w, canceller, receiver):
+            if with_signal:
+                x.append(half_band_signal(range_compression(block, w)))
+            if with_profiles:
+                here = shown[(shown >= first) & (shown < first + block.shape[1])]
+                bins.append(range_bins(block[:, here - first], w))
+        return (
+            Signal(np.concatenate(x), canceller.delay / w.prf, w.prf, w.f0) if x else None,
+            RangeProfiles(np.concatenate(bins, axis=1), shown) if bins else None,
+        )
+
+    yield Product("signal_power", ("paths", "waveform"), cube.signal_power, "P_s, for snr_db")
+    yield Product("beat_cube", needs, beat_cube, "the whole beat matrix, cancelled, compressed")
+    yield Product("signal", ("beat_cube",), lambda both: both[0], "its sum over the kept bins")
+    yield Product("range_profiles", ("beat_cube",), lambda both: both[1], "its range bins")
+
+
+def _blocks(
+    c: Config,
+    paths: PathSource,
+    w: Waveform,
+    canceller: Canceller,
+    receiver: tuple[Impairment, ...],
+) -> Iterator[tuple[int, Complex]]:
+    """(first output of the canceller, beat matrix after it), block by block."""
+    blocks = cube.beat_blocks(paths, w, c.engine.motion_in_chirp)
+    for impairment in receiver:
+        blocks = impairment.beat(blocks)
+    carried, first = np.empty((w.n_adc, 0), dtype=complex), 0
+    for block in blocks:
+        wide = np.concatenate([carried, block], axis=1) if carried.size else block
+        carried = wide[:, wide.shape[1] - canceller.lost :]
+        if wide.shape[1] > canceller.lost:
+            cancelled = canceller(wide)
+            yield first, cancelled
+            first += cancelled.shape[1]
+
+
+def _signals(c: Config) -> Iterator[Product]:
+    def compensated(x: Signal, torso_track: Float) -> Signal:
+        return x.with_samples(compensate(x.x, torso_track, x.f0))
+
+    def denoised(x: Signal) -> Signal:
+        return x.with_samples(savgol(x.x, c.processing.savgol.order, c.processing.savgol.frame))
+
+    smooth = "Savitzky-Golay filter"
+    yield Product("signal_denoised", ("signal",), denoised, smooth)
+    yield Product(
+        "signal_compensated", ("signal", "torso_track"), compensated, "bulk Doppler compensation"
+    )
+    yield Product("signal_compensated_denoised", ("signal_compensated",), denoised, smooth)
+
+
+def _maps(c: Config) -> Iterator[Product]:
+    own_length, own_hop = c.processing.stft_fft_length, c.processing.fsst_hop_pulses
+    threshold = c.processing.fsst_threshold
+
+    def rtm(profiles: RangeProfiles, w: Waveform, canceller: Canceller) -> PowerMap:
+        time = Axis("time", "s", (profiles.pulses + canceller.delay) / w.prf)
+        return PowerMap(range_power(profiles.bins), Axis("range", "m", w.range_axis()), time)
+
+    def spectra(x: Signal, frames: Frames) -> Spectra:
+        return stft.spectra(x.x, frames)
+
+    def padded(x: Signal, frames: Frames) -> Spectra:
+        return stft.spectra(x.x, frames, own_length)
+
+    def stft_map(x: Signal, found: Spectra, frames: Frames) -> PowerMap:
+        return _doppler_map(c, x, found, frames, map(stft.power_map, found), own_length)
+
+    def fsst_map(x: Signal, found: Spectra, frames: Frames) -> PowerMap:
+        blocks = fsst.power_blocks(x.x, found, frames, threshold)
+        return _doppler_map(c, x, found, frames, blocks, None)
+
+    yield Product("frames", ("waveform",), lambda w: frames_of(c, w), "window and hop")
+    yield Product("fsst_frames", ("waveform",), lambda w: fsst_frames_of(c, w), "of the FSST")
+    yield Product(
+        "rtm", ("range_profiles", "waveform", "canceller"), rtm, "power of the range profiles"
+    )
+    for signal in SIGNALS:
+        suffix = signal.removeprefix("signal")
+        shared, of_fsst = f"spectra{suffix}", f"fsst_spectra{suffix}"
+        of_stft = f"padded_spectra{suffix}" if own_length else shared
+        does = "windowed FFT of every frame"
+        yield Product(shared, (signal, "frames"), spectra, does)
+        yield Product(of_stft, (signal, "frames"), padded if own_length else spectra, does)
+        yield Product(of_fsst, (signal, "fsst_frames"), spectra, f"{does} of the FSST")
+        yield Product(f"stft{suffix}", (signal, of_stft, "frames"), stft_map, "power of the STFT")
+        yield Product(
+            f"fsst{suffix}",
+            (signal, of_fsst, "fsst_frames") if own_hop else (signal, shared, "frames"),
+            fsst_map,
+            "second transform, synchrosqueezing, power",
+        )
+    for name in MAP_NAMES:
+        yield Product(
+            f"image:{name}",
+            (name,),
+            lambda found: found.image(c.image.size_px, c.image.dynamic_range_db),
+            "entropy, resize, decibels, grey levels",
+        )
+
+
+def _doppler_map(
+    c: Config, x: Signal, found: Spectra, frames: Frames, blocks: Any, length: int | None
+) -> PowerMap:
+    count = frames.count(x.x.size)
+    power = joined(blocks, count)
+    frequency = np.fft.fftshift(np.fft.fftfreq(length or frames.length, 1 / x.prf))
+    centres = x.times(frames.starts(x.x.size) + (frames.length - 1) / 2)
+    return PowerMap(power, Axis("frequency", "Hz", frequency), Axis("time", "s", centres))

@@ -1,6 +1,7 @@
 """Rounding of products of decimal numbers, free of binary surprises."""
 
 from fractions import Fraction
+from functools import lru_cache
 from math import floor
 
 
@@ -9,6 +10,7 @@ def exact(value: float) -> Fraction:
     return Fraction(repr(float(value)))
 
 
+@lru_cache(maxsize=256)  # the same radar comes with every scene
 def half_up(*factors: float) -> int:
     """Return floor(product + 1/2), the product taken of the decimals as written.
 

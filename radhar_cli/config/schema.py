@@ -375,6 +375,11 @@ class Config(Section):
         return self
 
     @property
+    def classes(self) -> tuple[Activity, ...]:
+        """Every class by its label: the twelve, then one's own."""
+        return (*ACTIVITIES, *(a for a in self.chosen_activities if a.motion is not None))
+
+    @property
     def chosen_activities(self) -> tuple[Activity, ...]:
         """The activities to build: S1 to S12, then one's own, numbered from 13 in their order."""
         if self.activities == "all":

@@ -14,7 +14,6 @@ import h5py
 import numpy as np
 import yaml
 
-from radhar_cli.activity import ACTIVITIES
 from radhar_cli.arrays import Float
 from radhar_cli.config.identity import config_hash, resolved
 from radhar_cli.config.schema import Config
@@ -150,8 +149,8 @@ def _root_attributes(file: h5py.File, config: Config, said: list[dict[str, Any]]
         {part: named[part] for part in ("keys", "versions", "hash")}, sort_keys=True
     )
     file.attrs["seed"] = config.seed
-    file.attrs["class_names"] = [activity.label for activity in ACTIVITIES]
-    file.attrs["class_slugs"] = [activity.slug for activity in ACTIVITIES]
+    file.attrs["class_names"] = [activity.label for activity in config.classes]
+    file.attrs["class_slugs"] = [activity.slug for activity in config.classes]
     file.attrs["warnings"] = json.dumps(said)
     for library, version in versions().items():
         file.attrs[f"{library}_version"] = version

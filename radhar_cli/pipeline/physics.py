@@ -113,15 +113,15 @@ def canceller_of(config: Config) -> Canceller:
     return FIRST_DIFFERENCE if config.processing.mti else NO_CANCELLER
 
 
-def frames_of(config: Config, waveform: Waveform) -> Frames:
-    """The frames of the STFT, whose window is a share of the recording."""
+def frames_of(config: Config, duration: float, prf: float) -> Frames:
+    """The frames of the STFT, whose window is a share of the recording (s, pulses per s)."""
     share, overlap = config.processing.window_fraction, config.processing.overlap_fraction
-    return Frames.of(share, overlap, waveform.duration, waveform.prf)
+    return Frames.of(share, overlap, duration, prf)
 
 
-def fsst_frames_of(config: Config, waveform: Waveform) -> Frames:
+def fsst_frames_of(config: Config, duration: float, prf: float) -> Frames:
     """`frames_of`, with the hop of the FSST where it has its own."""
-    frames, hop = frames_of(config, waveform), config.processing.fsst_hop_pulses
+    frames, hop = frames_of(config, duration, prf), config.processing.fsst_hop_pulses
     return frames if hop is None else Frames(frames.length, hop)
 
 

@@ -278,8 +278,12 @@ def _maps(c: Config) -> Iterator[Product]:
         blocks = fsst.power_blocks(x.x, found, frames, threshold)
         return _doppler_map(c, x, found, frames, blocks, None)
 
-    yield Product("frames", ("waveform",), lambda w: frames_of(c, w), "window and hop")
-    yield Product("fsst_frames", ("waveform",), lambda w: fsst_frames_of(c, w), "of the FSST")
+    yield Product(
+        "frames", ("waveform",), lambda w: frames_of(c, w.duration, w.prf), "window and hop"
+    )
+    yield Product(
+        "fsst_frames", ("waveform",), lambda w: fsst_frames_of(c, w.duration, w.prf), "of the FSST"
+    )
     yield Product(
         "rtm", ("range_profiles", "waveform", "canceller"), rtm, "power of the range profiles"
     )

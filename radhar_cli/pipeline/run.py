@@ -6,8 +6,10 @@ from time import perf_counter
 from typing import Any
 
 from radhar_cli.config.schema import Config
+from radhar_cli.pipeline.physics import frames_of, fsst_frames_of
 from radhar_cli.pipeline.plan import Plan, Product, plan
 from radhar_cli.pipeline.products import products
+from radhar_cli.processing.signal import Signal
 from radhar_cli.scene import Scene
 
 
@@ -56,13 +58,25 @@ def record(
 
 
 def process(
-    config: Config, asked: Iterable[str], more: Iterable[Product] = (), **given: Any
+    signal: Signal,
+    config: Config,
+    asked: Iterable[str],
+    more: Iterable[Product] = (),
+    **given: Any,
 ) -> Recording:
-    """Make products of a signal that somebody recorded: `signal=` with a `Signal`, or `slow_time=`.
+    """Make products of a signal after the canceller that somebody recorded.
 
-    As `record`, without a scene: what would need one raises KeyError.
+    As `record`, without a scene. Compensated maps need `torso_track=`, its delay [M] in s.
+
+    Raises:
+        KeyError: a product would need a scene.
     """
-    return _made(config, asked, more, given)
+    duration = signal.x.size / signal.prf
+    frames = {
+        "frames": frames_of(config, duration, signal.prf),
+        "fsst_frames": fsst_frames_of(config, duration, signal.prf),
+    }
+    return _made(config, asked, more, {"signal": signal, **frames, **given})
 
 
 def _made(

@@ -13,8 +13,10 @@ from radhar_cli.config import Config
 from radhar_cli.config.number import is_fixed, nominal, support
 from radhar_cli.scene import (
     PERSONAL,
+    depends_on,
     draw_scene,
     nominal_scene,
+    numbers,
     scene_numbers,
     subject_of,
 )
@@ -51,7 +53,7 @@ PEOPLE = {"split": {"by": "subject", "subjects": 4}, "samples_per_class": 12}
 
 
 def drawn(config: Config, label: str = "S12", index: int = 5, attempt: int = 0) -> dict[str, float]:
-    return dict(draw_scene(config, activity_named(label), index, attempt).values)
+    return scene_numbers(draw_scene(config, activity_named(label), index, attempt))
 
 
 def changed_keys(one: dict[str, float], other: dict[str, float]) -> set[str]:
@@ -59,7 +61,9 @@ def changed_keys(one: dict[str, float], other: dict[str, float]) -> set[str]:
 
 
 def variable_keys(config: Config) -> set[str]:
-    return {key for key, number in scene_numbers(config, FALLING) if not is_fixed(number)}
+    return {
+        key for key, number in numbers(config) if depends_on(FALLING, key) and not is_fixed(number)
+    }
 
 
 def test_a_scene_is_the_same_in_whatever_order_it_is_drawn() -> None:
@@ -130,22 +134,23 @@ def test_another_seed_is_another_data_set() -> None:
 def test_draws_lie_within_their_support(seed: int, activity: Any, index: int) -> None:
     config = Config(seed=seed, **DRAWN)
     scene = draw_scene(config, activity, index)
-    for key, number in scene_numbers(config, activity):
+    drawn_numbers = dict(numbers(scene.config))
+    for key, number in numbers(config):
         low, high = support(number)
-        assert low <= scene.values[key] <= high, key
-        if is_fixed(number):
-            assert scene.values[key] == nominal(number), key
+        assert low <= drawn_numbers[key] <= high, key
+        if is_fixed(number) or not depends_on(activity, key):
+            assert drawn_numbers[key] == nominal(number), key
 
 
 def test_draws_follow_their_distribution() -> None:
     config = Config(**DRAWN)
-    scenes = [draw_scene(config, WALKING, index) for index in range(1000)]
+    scenes = [scene_numbers(draw_scene(config, WALKING, index)) for index in range(1000)]
     for key, low, high in [("motion.range_m", 2, 3), ("subject.height_m", 1.5, 1.9)]:
-        shares = [(scene.values[key] - low) / (high - low) for scene in scenes]
+        shares = [(scene[key] - low) / (high - low) for scene in scenes]
         assert kstest(shares, "uniform").pvalue > 1e-3, key
     together = np.corrcoef(
-        [scene.values["motion.range_m"] for scene in scenes],
-        [scene.values["subject.height_m"] for scene in scenes],
+        [scene["motion.range_m"] for scene in scenes],
+        [scene["subject.height_m"] for scene in scenes],
     )
     assert abs(together[0, 1]) < 5 / np.sqrt(1000)
 
@@ -153,7 +158,7 @@ def test_draws_follow_their_distribution() -> None:
 def test_a_scene_holds_what_its_activity_uses() -> None:
     config = Config()
     for activity in ACTIVITIES:
-        keys = set(draw_scene(config, activity, 0).values)
+        keys = set(scene_numbers(draw_scene(config, activity, 0)))
         assert {k for k in keys if k.startswith("timing.")} == {
             k for k in activity.uses if k.startswith("timing.")
         }
@@ -163,7 +168,9 @@ def test_a_scene_holds_what_its_activity_uses() -> None:
             "motion.angle_deg",
         } | {k for k in activity.uses if k.startswith("motion.")}
         assert not any(k.startswith("wall.") for k in keys)
-    assert {"wall.size_m.0", "wall.eps_r"} <= set(draw_scene(Config(wall={}), WALKING, 0).values)
+    assert {"wall.size_m.0", "wall.eps_r"} <= set(
+        scene_numbers(draw_scene(Config(wall={}), WALKING, 0))
+    )
 
 
 def test_numbers_may_differ_by_activity() -> None:
@@ -174,15 +181,15 @@ def test_numbers_may_differ_by_activity() -> None:
 
 @pytest.mark.parametrize("scene", [draw_scene, lambda c, a, i: nominal_scene(c, a)])
 def test_weight_is_26_kg_per_square_metre_unless_given(scene: Any) -> None:
-    values = scene(Config(), WALKING, 3).values
+    values = scene_numbers(scene(Config(), WALKING, 3))
     height = values["subject.height_m"]
     assert values["subject.weight_kg"] == pytest.approx(26 * height**2, rel=1e-15)
-    values = scene(Config(subject={"weight_kg": 70}), WALKING, 3).values
+    values = scene_numbers(scene(Config(subject={"weight_kg": 70}), WALKING, 3))
     assert values["subject.weight_kg"] == 70
 
 
 def test_the_nominal_scene_is_the_middle_of_everything() -> None:
-    values = nominal_scene(Config(**DRAWN), FALLING).values
+    values = scene_numbers(nominal_scene(Config(**DRAWN), FALLING))
     expected = {
         "subject.height_m": 1.7,
         "motion.range_m": 2.5,
@@ -209,7 +216,8 @@ def test_persons_are_shared_by_all_activities() -> None:
         for index in range(12):
             scene = draw_scene(config, activity, index)
             assert scene.subject == subject_of(config, index)
-            traits = tuple(scene.values[key] for key in PERSONAL if key in scene.values)
+            own = scene_numbers(scene)
+            traits = tuple(own[key] for key in PERSONAL if key in own)
             people.setdefault(scene.subject, set()).add(traits)
     assert people.keys() == {0, 1, 2, 3}
     assert all(len(traits) == 1 for traits in people.values())

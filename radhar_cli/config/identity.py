@@ -14,6 +14,15 @@ def resolved(config: Section) -> dict[str, Any]:
     return config.model_dump(mode="json", exclude_none=False)
 
 
+def as_yaml(config: Section) -> str:
+    """The resolved config as YAML, which reads back as the same config."""
+    import yaml
+
+    return yaml.safe_dump(
+        resolved(config), sort_keys=False, default_flow_style=None, width=100, allow_unicode=True
+    )
+
+
 def flat(config: Config) -> dict[str, Any]:
     """Return {dotted key: value} of every key that decides bytes.
 

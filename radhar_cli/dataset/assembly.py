@@ -12,10 +12,9 @@ from typing import Any
 
 import h5py
 import numpy as np
-import yaml
 
 from radhar_cli.arrays import Float
-from radhar_cli.config.identity import config_hash, resolved
+from radhar_cli.config.identity import as_yaml, config_hash, resolved
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.files import unfinished_path, write_whole
@@ -26,6 +25,7 @@ from radhar_cli.dataset.split import split_rows
 from radhar_cli.scene import subject_of
 
 SCHEMA_VERSION = 1
+CONFIG_HEADING = "# The resolved config of this data set, every default filled in.\n"
 LEVELS_TEXT = (
     "level = floor(255 (dB / dynamic_range_db + 1) + 1/2), dB = 10 log10(power / largest power), "
     "clipped to [-dynamic_range_db, 0]; level 0 everywhere for an all-zero map"
@@ -52,7 +52,7 @@ def assemble(
             _describe_maps(file, config)
             _root_attributes(file, config, said)
         _write_csv(config, folder, scene_values)
-        write_whole(folder, folder / CONFIG, _config_text(config).encode())
+        write_whole(folder, folder / CONFIG, (CONFIG_HEADING + as_yaml(config)).encode())
         unfinished.replace(folder / DATASET)
     finally:
         unfinished.unlink(missing_ok=True)
@@ -173,9 +173,3 @@ def _write_csv(config: Config, folder: Path, scene_values: Float) -> None:
             + ["" if np.isnan(value) else repr(float(value)) for value in scene_values[row]]
         )
     write_whole(folder, folder / SCENES, text.getvalue().encode())
-
-
-def _config_text(config: Config) -> str:
-    return "# The resolved config of this data set, every default filled in.\n" + yaml.safe_dump(
-        resolved(config), sort_keys=False, default_flow_style=None, width=100
-    )

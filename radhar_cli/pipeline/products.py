@@ -197,22 +197,19 @@ def _refusal(name: str, tolerance_db: float, error: BudgetError) -> str:
 
 def _cube(c: Config) -> Iterator[Product]:
     needs = ("paths", "waveform", "canceller", "receiver")
-    with_signal, with_profiles = set(c.maps) != {"rtm"}, "rtm" in c.maps
 
     def beat_cube(
         paths: PathSource, w: Waveform, canceller: Canceller, receiver: tuple[Impairment, ...]
-    ) -> tuple[Signal | None, RangeProfiles | None]:
+    ) -> tuple[Signal, RangeProfiles]:
         shown = shown_pulses(w.n_pulses - canceller.lost, c.image.size_px[1])
         x, bins = [], []
         for first, block in _blocks(c, paths, w, canceller, receiver):
-            if with_signal:
-                x.append(half_band_signal(range_compression(block, w)))
-            if with_profiles:
-                here = shown[(shown >= first) & (shown < first + block.shape[1])]
-                bins.append(range_bins(block[:, here - first], w))
+            x.append(half_band_signal(range_compression(block, w)))
+            here = shown[(shown >= first) & (shown < first + block.shape[1])]
+            bins.append(range_bins(block[:, here - first], w))
         return (
-            Signal(np.concatenate(x), canceller.delay / w.prf, w.prf, w.f0) if x else None,
-            RangeProfiles(np.concatenate(bins, axis=1), shown) if bins else None,
+            Signal(np.concatenate(x), canceller.delay / w.prf, w.prf, w.f0),
+            RangeProfiles(np.concatenate(bins, axis=1), shown),
         )
 
     yield Product("signal_power", ("paths", "waveform"), cube.signal_power, "P_s, for snr_db")

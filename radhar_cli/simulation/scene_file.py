@@ -9,14 +9,15 @@ import h5py
 import numpy as np
 
 from radhar_cli import __version__
-from radhar_cli.config.identity import resolved
+from radhar_cli.config.identity import as_yaml, resolved
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.processing.power_map import PowerMap
-from radhar_cli.scene import scene_numbers
+from radhar_cli.scene import Scene, scene_numbers
 from radhar_cli.simulation.simulate import Simulation
 
 SCENE_FILE = "scene.h5"
 SCENE_JSON = "scene.json"
+SCENE_YAML = "scene.yaml"
 
 
 def write_scene(simulation: Simulation, path: Path) -> None:
@@ -124,8 +125,13 @@ def _accuracy(simulation: Simulation) -> dict[str, Any] | None:
     }
 
 
+def _as_config(scene: Scene) -> str:
+    command = f"radhar simulate {SCENE_YAML} -o OUT --index {scene.index}"
+    return f"# One scene, nothing left to draw: {command}\n{as_yaml(scene.config)}"
+
+
 def write_all(simulation: Simulation, folder: Path) -> list[Path]:
-    """Write scene.h5 and scene.json into a folder; return their paths.
+    """Write scene.h5, scene.json and scene.yaml into a folder; return their paths.
 
     Raises:
         UnfinishedError: the folder cannot be written.
@@ -134,8 +140,9 @@ def write_all(simulation: Simulation, folder: Path) -> list[Path]:
         folder.mkdir(parents=True, exist_ok=True)
         write_scene(simulation, folder / SCENE_FILE)
         (folder / SCENE_JSON).write_text(json.dumps(describe(simulation), indent=2) + "\n")
+        (folder / SCENE_YAML).write_text(_as_config(simulation.scene))
     except OSError as error:
         raise UnfinishedError(
             f"{error.filename or folder}: {error.strerror or error}; nothing else was written"
         ) from None
-    return [folder / SCENE_FILE, folder / SCENE_JSON]
+    return [folder / name for name in (SCENE_FILE, SCENE_JSON, SCENE_YAML)]

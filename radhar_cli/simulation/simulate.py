@@ -73,7 +73,7 @@ class Simulation:
 
 def simulate(
     config: Config,
-    activity: str | Activity,
+    activity: str | Activity | None = None,
     seed: int | None = None,
     *,
     index: int = 0,
@@ -86,7 +86,7 @@ def simulate(
 
     Args:
         config: ranges are drawn from it; `maps`, image and split are not used.
-        activity: slug, label or Activity.
+        activity: slug, label or Activity; None where the config has but one.
         seed: instead of the config's.
         index: number of the sample within its class.
         nominal: take the middle of every range instead of drawing.
@@ -99,8 +99,7 @@ def simulate(
         SceneError: a scatterer comes within 5 cm of an antenna, or with `raw` the near face of the
             wall within 5 cm of the antennas' midpoint.
     """
-    if isinstance(activity, str):
-        activity = _activity(activity)
+    activity = _activity(activity, config)
     config = config.model_copy(update={"maps": maps, **({} if seed is None else {"seed": seed})})
     scene = nominal_scene(config, activity) if nominal else draw_scene(config, activity, index)
     warnings = scene_warnings(scene)
@@ -188,11 +187,18 @@ RAW_ECHO = Product(
 )
 
 
-def _activity(name: str) -> Activity:
+def _activity(asked: str | Activity | None, config: Config) -> Activity:
+    """The activity, with its number in this config where it is a class of one's own."""
+    chosen = config.chosen_activities
+    if asked is None and len(chosen) > 1:
+        raise ConfigError(f"--activity is needed: the config has {len(chosen)} activities")
+    if asked is None:
+        return chosen[0]
     try:
-        return activity_named(name)
+        found = activity_named(asked) if isinstance(asked, str) else asked
     except ValueError as error:
         raise ConfigError(str(error)) from None
+    return next((one for one in chosen if one.slug == found.slug), found)
 
 
 def _joint(name: str, joints: tuple[str, ...]) -> int:

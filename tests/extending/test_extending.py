@@ -10,7 +10,7 @@ import pytest
 from listener import Listener
 
 from radhar_cli import activity
-from radhar_cli.activity import add_activity, activity_named
+from radhar_cli.activity import activity_named, add_activity
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.config import Config
 from radhar_cli.dataset.build import build

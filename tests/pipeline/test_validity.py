@@ -7,16 +7,23 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from radhar_cli.pipeline.models import body_of, wall_of
 
 from radhar_cli.activity import ACTIVITIES, activity_named
 from radhar_cli.config import Config
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.skeleton import JOINTS
-from radhar_cli.pipeline import survey as module
-from radhar_cli.pipeline.validity import Approach, Findings, settle, survey, warnings
+from radhar_cli.pipeline import validity as module
+from radhar_cli.pipeline.physics import motion_of, wall_of
+from radhar_cli.pipeline.validity import (
+    Approach,
+    Flags,
+    SceneCheck,
+    check_scene,
+    draw_valid_scene,
+    warnings,
+)
 from radhar_cli.radar.wall import crossing, extra_delay
-from radhar_cli.scene import Scene, draw_scene, nominal_scene
+from radhar_cli.scene import Scene, draw_scene, nominal_scene, scene_numbers
 
 C = 299_792_458.0
 WALKING = activity_named("walking")
@@ -42,13 +49,13 @@ THROUGH_WALL: dict[str, Any] = {
 
 def at_every_pulse(scene: Scene) -> np.ndarray:
     """Positions [3, 13, M]."""
-    v = scene.values
+    v = scene_numbers(scene)
     pulses = np.arange(round(v["duration_s"] * v["radar.prf_hz"]))
-    return body_of(scene).positions(pulses / v["radar.prf_hz"])
+    return motion_of(scene).positions(pulses / v["radar.prf_hz"])
 
 
 def antenna(scene: Scene, name: str) -> np.ndarray:
-    return np.array([scene.values[f"radar.{name}_m.{axis}"] for axis in range(3)])
+    return np.array([scene_numbers(scene)[f"radar.{name}_m.{axis}"] for axis in range(3)])
 
 
 def brute_closest(scene: Scene) -> Approach:
@@ -58,21 +65,23 @@ def brute_closest(scene: Scene) -> Approach:
         r = np.linalg.norm(p - antenna(scene, key)[:, None, None], axis=0)
         joint, pulse = np.unravel_index(np.argmin(r), r.shape)
         found.append(
-            Approach(float(r.min()), JOINTS[joint], name, pulse / scene.values["radar.prf_hz"])
+            Approach(
+                float(r.min()), JOINTS[joint], name, pulse / scene_numbers(scene)["radar.prf_hz"]
+            )
         )
     return min(found)
 
 
 def distance_at(scene: Scene, approach: Approach) -> float:
     """How far the named joint is from the named antenna at the named time."""
-    p = body_of(scene).positions(np.array([approach.time]))[:, JOINTS.index(approach.joint), 0]
+    p = motion_of(scene).positions(np.array([approach.time]))[:, JOINTS.index(approach.joint), 0]
     at = antenna(scene, {"transmitter": "tx", "receiver": "rx"}[approach.antenna])
     return float(np.linalg.norm(p - at))
 
 
-def brute_delay(scene: Scene, config: Config) -> np.ndarray:
+def brute_delay(scene: Scene) -> np.ndarray:
     """Delay [13, M] at every pulse, the wall's included."""
-    p, wall = at_every_pulse(scene), wall_of(scene, config)
+    p, wall = at_every_pulse(scene), wall_of(scene.config)
     tau = np.zeros(p.shape[1:])
     for key in ("tx", "rx"):
         at = antenna(scene, key)
@@ -103,11 +112,11 @@ def test_a_scatterer_within_5_cm_of_an_antenna_is_found(
     label: str, joint: str, time: float, offset: tuple[float, float, float], name: str
 ) -> None:
     """The antenna stands beside the path of a joint, and so often between two looks at it."""
-    body = body_of(scene_of(Config(**PERSON, activities=(label,))))
+    body = motion_of(scene_of(Config(**PERSON, activities=(label,))))
     beside = body.positions(np.array([time]))[:, JOINTS.index(joint), 0] + offset
     config = with_antenna_at(label, beside, name)
     scene = scene_of(config)
-    found, expected = survey(scene, config), brute_closest(scene)
+    found, expected = check_scene(scene), brute_closest(scene)
     assert found.too_close == (expected.distance < 0.05)
     if found.too_close:
         assert found.closest.distance == pytest.approx(expected.distance, abs=1e-12)
@@ -117,13 +126,13 @@ def test_a_scatterer_within_5_cm_of_an_antenna_is_found(
 def test_a_fast_ankle_is_found_between_two_looks() -> None:
     """At 6.2 m/s an ankle is 3 cm further in 5 ms: passing at 4.5 cm, it looks 5.4 cm away."""
     time = 0.425  # half-way between two looks 10 ms apart
-    body = body_of(scene_of(Config(**PERSON, activities=("S8",))))
+    body = motion_of(scene_of(Config(**PERSON, activities=("S8",))))
     aside = np.array([0.0, 0.045, 0.0])
     config = with_antenna_at("S8", body.positions(np.array([time]))[:, 10, 0] + aside)
     scene = scene_of(config)
     looks = body.positions(np.arange(0, 4, 0.01))
     assert np.linalg.norm(looks - antenna(scene, "tx")[:, None, None], axis=0).min() > 0.05
-    found = survey(scene, config).closest
+    found = check_scene(scene).closest
     assert found.distance == pytest.approx(0.045, abs=1e-6)
     assert found.joint == "right_ankle"
     assert found.time == pytest.approx(time, abs=1e-3)
@@ -136,7 +145,7 @@ def test_the_message_names_sample_joint_time_and_distance() -> None:
         "S8", np.array(at), motion={**PERSON["motion"], "angle_deg": 30, "range_m": 1}
     )
     with pytest.raises(SceneError) as caught:
-        settle(config, WALKING, 7)
+        draw_valid_scene(config, WALKING, 7)
     message = str(caught.value)
     for part in ("walking/7", "head", "transmitter", "2 cm", "t = 1.000 s", "5 cm"):
         assert part in message
@@ -145,7 +154,7 @@ def test_the_message_names_sample_joint_time_and_distance() -> None:
 @pytest.mark.parametrize(("above", "found"), [(0.0499, True), (0.0501, False)])
 def test_the_limit_is_5_cm(above: float, found: bool) -> None:
     config = with_antenna_at("S1", np.array([2.0, 0.0, 1.5 + above]))
-    assert survey(scene_of(config), config).too_close == found
+    assert check_scene(scene_of(config)).too_close == found
 
 
 @pytest.mark.parametrize("setting", [FREE_SPACE, THROUGH_WALL], ids=["free space", "wall"])
@@ -153,23 +162,25 @@ def test_the_limit_is_5_cm(above: float, found: bool) -> None:
 def test_half_band_aliasing_and_wall_as_at_every_pulse(setting: Any, activity: Any) -> None:
     config = Config(**setting)
     scene = nominal_scene(config, activity)
-    found = survey(scene, config)
-    tau, v = brute_delay(scene, config), scene.values
+    found = check_scene(scene)
+    tau, v = brute_delay(scene), scene_numbers(scene)
     mid = v["radar.carrier_hz"] + v["radar.bandwidth_hz"] / 2
     doppler = np.abs(np.diff(tau, axis=1)).max() * v["radar.prf_hz"] * mid
     half_band = C * 10e6 / (4 * v["radar.bandwidth_hz"] / 40e-6)
-    wall = wall_of(scene, config)
-    assert found.aliases == (doppler > v["radar.prf_hz"] / 2)
-    assert found.leaves_half_band == (tau.max() * C / 2 >= half_band)
-    assert found.meets_wall == (wall is not None and wall.contains(at_every_pulse(scene)).any())
+    wall = wall_of(scene.config)
+    assert (Flags.ALIASING in found.flags) == (doppler > v["radar.prf_hz"] / 2)
+    assert (Flags.HALF_BAND in found.flags) == (tau.max() * C / 2 >= half_band)
+    assert (Flags.WALL in found.flags) == (
+        wall is not None and wall.contains(at_every_pulse(scene)).any()
+    )
     assert not found.too_close
 
 
 @pytest.mark.parametrize(("start", "leaves"), [(1.5, False), (1.55, True)])
 def test_a_walker_leaves_the_half_band_who_starts_beyond_1_5_m(start: float, leaves: bool) -> None:
     config = Config(**{**PERSON, "motion": {**PERSON["motion"], "range_m": start}})
-    found = survey(nominal_scene(config, WALKING), config)
-    assert found.leaves_half_band == leaves
+    found = check_scene(nominal_scene(config, WALKING))
+    assert (Flags.HALF_BAND in found.flags) == leaves
     assert (found.invalid is None) == (not leaves)
 
 
@@ -177,8 +188,8 @@ def test_the_walls_delay_counts_in_the_half_band() -> None:
     """The ankles stand 7.36 m off, below 7.49 m; 24 cm of wall delay as another 35 cm of air."""
     standing = {**PERSON, "motion": {**PERSON["motion"], "range_m": 7.6}, "activities": ("S1",)}
     free, behind = Config(**standing), Config(**standing, wall={"loss_tangent": 0})
-    assert not survey(scene_of(free), free).leaves_half_band
-    assert survey(scene_of(behind), behind).leaves_half_band
+    assert Flags.HALF_BAND not in check_scene(scene_of(free)).flags
+    assert Flags.HALF_BAND in check_scene(scene_of(behind)).flags
 
 
 def test_aliasing_is_that_of_the_frequency_the_doppler_is_read_at() -> None:
@@ -186,13 +197,13 @@ def test_aliasing_is_that_of_the_frequency_the_doppler_is_read_at() -> None:
     centre = Config(**THROUGH_WALL)
     start = Config(**THROUGH_WALL, processing={"range_reference": "start"})
     kicking = activity_named("kicking")
-    assert survey(nominal_scene(centre, kicking), centre).aliases
-    assert not survey(nominal_scene(start, kicking), start).aliases
+    assert Flags.ALIASING in check_scene(nominal_scene(centre, kicking)).flags
+    assert Flags.ALIASING not in check_scene(nominal_scene(start, kicking)).flags
 
 
 def said(config: Config) -> dict[str, tuple[int, str]]:
     found = [
-        settle(config, activity, index)
+        draw_valid_scene(config, activity, index)[1]
         for activity in config.chosen_activities
         for index in range(config.samples_per_class)
     ]
@@ -218,7 +229,7 @@ def test_warnings_of_the_papers_randomised_walkers() -> None:
     config = Config(activities=("S8",), samples_per_class=20)
     scenes = [draw_scene(config, WALKING, index) for index in range(20)]
     half_band = C * 10e6 / (4 * 1e14)
-    leaving = sum(bool(brute_delay(scene, config).max() * C / 2 >= half_band) for scene in scenes)
+    leaving = sum(bool(brute_delay(scene).max() * C / 2 >= half_band) for scene in scenes)
     found = said(config)
     assert 0 < leaving < 20
     assert found["half_band"][0] == leaving
@@ -252,55 +263,56 @@ STANDING = ACTIVITIES[0]
 
 def first_valid(config: Config, index: int) -> int:
     attempt = 0
-    while 0.95 <= draw_scene(config, STANDING, index, attempt).values["motion.range_m"] <= 1.45:
+    while 0.95 <= draw_scene(config, STANDING, index, attempt).config.motion.range_m <= 1.45:
         attempt += 1
     return attempt
 
 
 def test_keep_keeps_the_first_draw_with_its_findings() -> None:
     config = near_the_wall("keep")
-    drawn = [settle(config, STANDING, index) for index in range(20)]
-    assert all(row.attempt == 0 for row in drawn)
-    for index, row in enumerate(drawn):
-        assert row.kinds["wall"] == (first_valid(config, index) > 0)
-    assert 0 < sum(row.kinds["wall"] for row in drawn) < 20
+    drawn = [draw_valid_scene(config, STANDING, index) for index in range(20)]
+    assert all(scene.attempt == 0 for scene, _ in drawn)
+    for index, (_, flags) in enumerate(drawn):
+        assert (Flags.WALL in flags) == (first_valid(config, index) > 0)
+    assert 0 < sum(Flags.WALL in flags for _, flags in drawn) < 20
 
 
 def test_redraw_takes_the_first_draw_inside_the_model() -> None:
     config = near_the_wall("redraw")
-    drawn = [settle(config, STANDING, index) for index in range(20)]
+    drawn = [draw_valid_scene(config, STANDING, index) for index in range(20)]
     attempts = [first_valid(config, index) for index in range(20)]
-    assert [row.attempt for row in drawn] == attempts
+    assert [scene.attempt for scene, _ in drawn] == attempts
     assert max(attempts) > 1
-    assert all(not (row.kinds["wall"] or row.kinds["half_band"]) for row in drawn)
+    assert not any(flags & (Flags.WALL | Flags.HALF_BAND) for _, flags in drawn)
 
 
 def test_error_stops_and_names_the_sample_and_why() -> None:
     config = near_the_wall("error")
     inside = [index for index in range(20) if first_valid(config, index)]
     outside = sorted(set(range(20)) - set(inside))
-    assert settle(config, STANDING, outside[0]).attempt == 0
+    assert draw_valid_scene(config, STANDING, outside[0])[0].attempt == 0
     with pytest.raises(SceneError, match=rf"stationary/{inside[0]}: .*the wall"):
-        settle(config, STANDING, inside[0])
+        draw_valid_scene(config, STANDING, inside[0])
 
 
 @pytest.mark.parametrize("on_invalid", ["redraw", "error"])
 def test_leaving_the_half_band_is_invalid_but_aliasing_is_not(on_invalid: str) -> None:
     config = Config(**FREE_SPACE, on_invalid=on_invalid)
-    assert settle(config, WALKING, 0).kinds["aliasing"]
+    assert Flags.ALIASING in draw_valid_scene(config, WALKING, 0)[1]
     far = {**PERSON["motion"], "range_m": {"uniform": [1.2, 1.8]}}
     config = Config(**{**PERSON, "motion": far}, on_invalid=on_invalid)
     leaves = [
         index
         for index in range(20)
-        if survey(draw_scene(config, WALKING, index), config).leaves_half_band
+        if Flags.HALF_BAND in check_scene(draw_scene(config, WALKING, index)).flags
     ]
     if on_invalid == "redraw":
-        assert settle(config, WALKING, leaves[0]).attempt > 0
-        assert not settle(config, WALKING, leaves[0]).kinds["half_band"]
+        scene, flags = draw_valid_scene(config, WALKING, leaves[0])
+        assert scene.attempt > 0
+        assert Flags.HALF_BAND not in flags
     else:
         with pytest.raises(SceneError, match=rf"walking/{leaves[0]}: .*half-band"):
-            settle(config, WALKING, leaves[0])
+            draw_valid_scene(config, WALKING, leaves[0])
 
 
 @pytest.mark.parametrize("on_invalid", ["keep", "error"])
@@ -308,18 +320,18 @@ def test_a_scatterer_at_an_antenna_stops_unless_redrawn(on_invalid: str) -> None
     at = np.array([2.0, 0.0, 1.51])
     config = with_antenna_at("S1", at, on_invalid=on_invalid)
     with pytest.raises(SceneError, match=r"stationary/0: head comes to 1 cm"):
-        settle(config, STANDING, 0)
+        draw_valid_scene(config, STANDING, 0)
     about = {**PERSON["motion"], "range_m": {"uniform": [1.92, 2.08]}}
     config = with_antenna_at("S1", at, on_invalid="redraw", motion=about)
-    attempts = [settle(config, STANDING, index).attempt for index in range(8)]
+    attempts = [draw_valid_scene(config, STANDING, index)[0].attempt for index in range(8)]
     assert max(attempts) > 0
 
 
 def test_no_valid_scene_ends_the_redraws(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "MOST_ATTEMPTS", 3)
+    monkeypatch.setattr(module, "MAX_ATTEMPTS", 3)
     config = with_antenna_at("S1", np.array([2.0, 0.0, 1.51]), on_invalid="redraw")
     with pytest.raises(SceneError, match=r"stationary/4: .* 3 draws .*head comes to 1 cm"):
-        settle(config, STANDING, 4)
+        draw_valid_scene(config, STANDING, 4)
 
 
 @pytest.mark.parametrize(
@@ -333,5 +345,6 @@ def test_no_valid_scene_ends_the_redraws(monkeypatch: pytest.MonkeyPatch) -> Non
 )
 def test_the_gravest_reason_is_given(distance: float, wall: bool, band: bool, why: Any) -> None:
     closest = Approach(distance, "head", "receiver", 0.5)
-    invalid = Findings(closest, leaves_half_band=band, aliases=True, meets_wall=wall).invalid
+    flags = Flags.ALIASING | (Flags.HALF_BAND * band) | (Flags.WALL * wall)
+    invalid = SceneCheck(closest, Flags(flags)).invalid
     assert (invalid is None) if why is None else (invalid is not None and why in invalid)

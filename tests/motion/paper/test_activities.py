@@ -9,13 +9,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy import cos, pi, sin
 
+from radhar_cli.activity import ACTIVITIES
 from radhar_cli.motion.paper.activities import (
+    PAPER_ACTIVITIES,
     Gait,
+    PaperActivity,
     Posture,
     Timing,
-    highest_frequency,
-    kinks,
-    posture,
 )
 from radhar_cli.motion.paper.progress import progress
 
@@ -37,6 +37,10 @@ ROUNDING = 1e-13
 TWO_PI_F = 2 * pi * GAIT.frequency
 
 Angles = dict[str, Callable[[np.ndarray], np.ndarray]]
+
+
+def record(number: int) -> PaperActivity:
+    return PAPER_ACTIVITIES[ACTIVITIES[number - 1].slug]
 
 
 def gait(phase: np.ndarray) -> dict[str, np.ndarray]:
@@ -93,11 +97,11 @@ def angles_equal(found: Posture, expected: dict[str, np.ndarray]) -> None:
 @pytest.mark.parametrize("number", TABLE)
 def test_angles_of_the_papers_table(number: int) -> None:
     expected = {joint: angle(T) for joint, angle in TABLE[number].items()}
-    angles_equal(posture(number, T, GAIT, TIMING), expected)
+    angles_equal(record(number).posture(T, GAIT, TIMING), expected)
 
 
 def test_the_gait_of_the_papers_table() -> None:
-    walking = posture(8, T, GAIT, TIMING)
+    walking = record(8).posture(T, GAIT, TIMING)
     angles_equal(walking, gait(TWO_PI_F * T))
     np.testing.assert_allclose(walking.travelled, GAIT.speed * T, atol=ROUNDING)
 
@@ -106,21 +110,23 @@ def test_the_gait_of_the_papers_table() -> None:
 def test_a_gait_that_starts_counts_its_time_from_there(number: int) -> None:
     ramp = progress(T, TIMING.walk_start, TIMING.blend)
     since = gait(TWO_PI_F * (T - TIMING.walk_start))
-    angles_equal(posture(number, T, GAIT, TIMING), {joint: ramp * a for joint, a in since.items()})
+    angles_equal(
+        record(number).posture(T, GAIT, TIMING), {joint: ramp * a for joint, a in since.items()}
+    )
 
 
 @pytest.mark.parametrize("number", [10, 12])
 def test_a_gait_that_stops_counts_its_time_from_0(number: int) -> None:
     ramp = 1 - progress(T, TIMING.walk_stop, TIMING.blend)
     angles_equal(
-        posture(number, T, GAIT, TIMING),
+        record(number).posture(T, GAIT, TIMING),
         {joint: ramp * a for joint, a in gait(TWO_PI_F * T).items()},
     )
 
 
 @pytest.mark.parametrize("number", range(1, 13))
 def test_seat_fall_and_twist(number: int) -> None:
-    found = posture(number, T, GAIT, TIMING)
+    found = record(number).posture(T, GAIT, TIMING)
     seat = progress(T, TIMING.seat_start, TIMING.seat_duration)
     rise = progress(T, TIMING.rise_start, TIMING.rise_duration)
     sit = progress(T, TIMING.walk_stop, TIMING.sit_duration)
@@ -149,7 +155,7 @@ def test_the_torso_travels_by_the_integral_of_the_ramped_speed(number: int) -> N
     fine = np.linspace(0, 5, 50_001)
     v = GAIT.speed * ramp(fine)
     walked = np.concatenate([[0], np.cumsum((v[1:] + v[:-1]) / 2)]) * (fine[1] - fine[0])
-    found = np.broadcast_to(posture(number, fine, GAIT, TIMING).travelled, fine.shape)
+    found = np.broadcast_to(record(number).posture(fine, GAIT, TIMING).travelled, fine.shape)
     # Trapezoids over 0.1 ms: (1e-4)^2/12 times the largest acceleration of 9 m/s^2.
     np.testing.assert_allclose(found, walked, atol=1e-8)
 
@@ -159,14 +165,14 @@ def test_without_a_blend_the_gait_switches_at_the_instant(number: int) -> None:
     hard = replace(TIMING, blend=0.0)
     instant = hard.walk_start if number in (9, 11) else hard.walk_stop
     t = np.array([np.nextafter(instant, 0), instant])
-    found = posture(number, t, GAIT, hard)
+    found = record(number).posture(t, GAIT, hard)
     phase = TWO_PI_F * (t - hard.walk_start if number in (9, 11) else t)
     on = np.array([0, 1] if number in (9, 11) else [1, 0])
     for joint, angle in gait(phase).items():
         np.testing.assert_allclose(found.angles[joint], on * angle, atol=ROUNDING)
     step = GAIT.speed * 1.0
     after = np.broadcast_to(
-        posture(number, instant + np.array([0.0, 1.0]), GAIT, hard).travelled, 2
+        record(number).posture(instant + np.array([0.0, 1.0]), GAIT, hard).travelled, 2
     )
     expected = step if number in (9, 11) else 0.0
     assert after[1] - after[0] == pytest.approx(expected, abs=ROUNDING)
@@ -183,8 +189,8 @@ RAMPS = {
 
 
 @pytest.mark.parametrize("number", range(1, 13))
-def test_kinks_are_both_ends_of_every_ramp(number: int) -> None:
-    assert kinks(number, TIMING) == pytest.approx(RAMPS.get(number, []))
+def test_breakpoints_are_both_ends_of_every_ramp(number: int) -> None:
+    assert record(number).breakpoints(TIMING) == pytest.approx(RAMPS.get(number, []))
 
 
 @given(st.integers(1, 12), st.floats(0, 5), st.floats(0.01, 5))
@@ -202,4 +208,4 @@ def test_nothing_oscillates_faster_than_the_highest_frequency(
         frequency if number not in (1, 5, 6) else 0.0,
     )
     swinging = replace(GAIT, frequency=frequency)
-    assert highest_frequency(number, swinging, timing) == pytest.approx(fastest)
+    assert record(number).highest_frequency(swinging, timing) == pytest.approx(fastest)

@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.motion.paper.activities import Gait, Timing, posture
-from radhar_cli.motion.paper.body import Body
+from radhar_cli.activity import ACTIVITIES
+from radhar_cli.motion.paper.activities import PAPER_ACTIVITIES, Gait, Timing
+from radhar_cli.motion.paper.body import PaperBody
 from radhar_cli.motion.skeleton import JOINTS, PARENTS, links, standing_height, thigh_length
 
 GAIT = Gait(
@@ -43,8 +44,9 @@ ROUNDING = 1e-12
 FASTEST = 7.0  # m/s, model.md; 6.24 in a trial
 
 
-def default_person(number: int, **changes: Any) -> Body:
-    person = Body(number, 1.8, 84.24, start=(2.0, 0.0), angle=0.0, gait=GAIT, timing=TIMING)
+def default_person(number: int, **changes: Any) -> PaperBody:
+    slug = ACTIVITIES[number - 1].slug
+    person = PaperBody(slug, 1.8, 84.24, start=(2.0, 0.0), angle=0.0, gait=GAIT, timing=TIMING)
     return replace(person, **changes)
 
 
@@ -73,8 +75,8 @@ TIMINGS = st.builds(
     blend=SECONDS,
 )
 PEOPLE = st.builds(
-    Body,
-    number=st.integers(1, 12),
+    PaperBody,
+    activity=st.sampled_from([activity.slug for activity in ACTIVITIES]),
     height=HEIGHTS,
     weight=st.just(80.0),
     start=st.tuples(st.floats(-5, 5), st.floats(-5, 5)),
@@ -84,7 +86,7 @@ PEOPLE = st.builds(
 )
 
 
-def matrix_positions(body: Body, t: float) -> np.ndarray:
+def matrix_positions(body: PaperBody, t: float) -> np.ndarray:
     """Positions [3, 13] at one instant, with the matrices of the paper's equations 1 and 2."""
 
     def about_y(a: float) -> np.ndarray:
@@ -93,7 +95,7 @@ def matrix_positions(body: Body, t: float) -> np.ndarray:
     def about_z(a: float) -> np.ndarray:
         return np.array([[cos(a), -sin(a), 0], [sin(a), cos(a), 0], [0, 0, 1]])
 
-    now = posture(body.number, np.array([t]), body.gait, body.timing)
+    now = PAPER_ACTIVITIES[body.activity].posture(np.array([t]), body.gait, body.timing)
     theta = {joint: float(np.ravel(a)[0]) for joint, a in now.angles.items()}
     seat, lying, pitch, twist, travelled = (
         float(np.ravel(value)[0])
@@ -119,14 +121,14 @@ def matrix_positions(body: Body, t: float) -> np.ndarray:
 
 @given(PEOPLE, st.floats(0, RECORDING))
 @settings(deadline=None, max_examples=120)
-def test_forward_kinematics_are_products_of_rotation_matrices(body: Body, t: float) -> None:
+def test_forward_kinematics_are_products_of_rotation_matrices(body: PaperBody, t: float) -> None:
     found = body.positions(np.array([t]))[:, :, 0]
     np.testing.assert_allclose(found, matrix_positions(body, t), atol=ROUNDING)
 
 
 @given(PEOPLE)
 @settings(deadline=None, max_examples=60)
-def test_links_are_stiff(body: Body) -> None:
+def test_links_are_stiff(body: PaperBody) -> None:
     p = body.positions(np.linspace(0, RECORDING, 101))
     for joint, parent in enumerate(PARENTS):
         if parent is not None:
@@ -137,14 +139,14 @@ def test_links_are_stiff(body: Body) -> None:
 
 @given(PEOPLE)
 @settings(deadline=None, max_examples=60)
-def test_the_torso_alone_is_the_torso_of_all(body: Body) -> None:
+def test_the_torso_alone_is_the_torso_of_all(body: PaperBody) -> None:
     t = np.linspace(0, RECORDING, 101)
     np.testing.assert_array_equal(body.torso(t)[:, 0], body.positions(t)[:, TORSO])
 
 
 @given(PEOPLE)
 @settings(deadline=None, max_examples=60)
-def test_the_heading_turns_the_whole_scene(body: Body) -> None:
+def test_the_heading_turns_the_whole_scene(body: PaperBody) -> None:
     t = np.linspace(0, RECORDING, 101)
     north = replace(body, angle=0.0, start=(0.0, 0.0)).positions(t)
     p = body.positions(t)
@@ -245,7 +247,7 @@ def test_nobody_moves_in_s1() -> None:
     np.testing.assert_array_equal(p, p[:, :, :1] + 0 * T)
 
 
-def speeds(body: Body, t: np.ndarray, dt: float) -> np.ndarray:
+def speeds(body: PaperBody, t: np.ndarray, dt: float) -> np.ndarray:
     """Mean speeds [13, M] over [t - dt/2, t + dt/2]."""
     moved = body.positions(t + dt / 2) - body.positions(t - dt / 2)
     return np.sqrt((moved**2).sum(axis=0)) / dt
@@ -268,17 +270,17 @@ def test_the_fastest_joint_is_a_walkers_ankle() -> None:
 def test_positions_are_continuous(number: int) -> None:
     """Over 0.1 us, at every end of a ramp too, no joint gets further than 7 m/s take it."""
     body = default_person(number)
-    t = np.concatenate([body.kinks, T[1:-1]])
+    t = np.concatenate([body.breakpoints, T[1:-1]])
     assert speeds(body, t, 1e-7).max() < FASTEST
 
 
-def fourth_order(body: Body, t: float, h: float) -> np.ndarray:
+def fourth_order(body: PaperBody, t: float, h: float) -> np.ndarray:
     """Acceleration [3, 13] at t from positions on one side of t alone: t, t + h, ... t + 3 h."""
     p = body.positions(t + h * np.arange(4))
     return (2 * p[..., 0] - 5 * p[..., 1] + 4 * p[..., 2] - p[..., 3]) / h**2
 
 
-def jump(body: Body, t: float) -> float:
+def jump(body: PaperBody, t: float) -> float:
     """Largest jump (m/s^2) of a joint's acceleration at t.
 
     The stencil errs by h^2 times the fourth derivative, at most 1e4 m/s^4 in these gaits.
@@ -287,12 +289,12 @@ def jump(body: Body, t: float) -> float:
 
 
 @pytest.mark.parametrize("number", ALL)
-def test_kinks_are_where_the_acceleration_jumps(number: int) -> None:
+def test_breakpoints_are_where_the_acceleration_jumps(number: int) -> None:
     body = default_person(number)
-    for t in body.kinks:
+    for t in body.breakpoints:
         assert jump(body, t) > 0.5, t
     times = np.linspace(0.1, 3.9, 96)
-    smooth = [t for t in times if all(abs(t - kink) > 4e-3 for kink in body.kinks)]
+    smooth = [t for t in times if all(abs(t - kink) > 4e-3 for kink in body.breakpoints)]
     assert max(jump(body, float(t)) for t in smooth) < 0.05
 
 

@@ -6,7 +6,7 @@ from pydantic import Field
 
 from radhar_cli.config.section import Flag, Section
 
-LOOSEST_DB = -6.0
+MAX_TOLERANCE_DB = -6.0
 
 
 class EngineConfig(Section):
@@ -19,7 +19,7 @@ class EngineConfig(Section):
     """
 
     kind: Literal["direct", "cube"] = "direct"
-    tolerance_db: Annotated[float, Field(ge=-400, le=LOOSEST_DB, strict=True)] = -80.0
+    tolerance_db: Annotated[float, Field(ge=-400, le=MAX_TOLERANCE_DB, strict=True)] = -80.0
     fallback: Literal["refuse", "cube"] = "refuse"
     precision: Literal["auto", "double"] = "auto"
     motion_in_chirp: Flag = False

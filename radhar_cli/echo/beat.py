@@ -7,6 +7,8 @@ import numpy as np
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.radar.waveform import Waveform
 
+BLOCK_SAMPLES = 2**18  # of a beat matrix that is made block by block
+
 
 def unit_phasor(cycles: Float) -> Complex:
     """exp(-j 2 pi cycles), the whole turns removed first."""

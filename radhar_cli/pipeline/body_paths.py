@@ -2,8 +2,6 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from radhar_cli.arrays import Float
 from radhar_cli.body.pose import Body
 from radhar_cli.echo.paths import Paths
@@ -22,7 +20,6 @@ class BodyPaths:
         antennas: where the legs start and end.
         fc: carrier, Hz.
         wall: the slab between, or None.
-        power_in_free_space: whether `Paths.power` leaves the wall's loss out (snr_reference).
         joints: numbers of the scatterers that are kept; all of them for None.
     """
 
@@ -30,11 +27,10 @@ class BodyPaths:
     antennas: Antennas
     fc: float
     wall: Wall | None
-    power_in_free_space: bool
     joints: tuple[int, ...] | None = None
 
     @property
-    def kinks(self) -> tuple[float, ...]:
+    def breakpoints(self) -> tuple[float, ...]:
         """Instants (s) at which positions are not smooth."""
         return self.body.kinks
 
@@ -69,12 +65,9 @@ class BodyPaths:
         r_tx, r_rx = leg(p, self.antennas.tx), leg(p, self.antennas.rx)
         tau = bistatic_delay(r_tx, r_rx)
         a = amplitude(r_tx, r_rx, sigma, self.antennas.gain, SPEED_OF_LIGHT / self.fc)
-        power = np.einsum("im,im->m", a, a)
         if self.wall is not None:
             for antenna in (self.antennas.tx, self.antennas.rx):
                 through = transmission(p, antenna, self.wall, self.fc)
                 tau += through.delay
                 a *= through.factor
-            if not self.power_in_free_space:
-                power = np.einsum("im,im->m", a, a)
-        return Paths(tau, a, power)
+        return Paths(tau, a)

@@ -5,7 +5,7 @@ sum over the kept bins -> [compensation] -> [denoising] -> STFT or FSST.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import ceil
 from time import perf_counter
@@ -14,11 +14,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from radhar_cli.arrays import Complex, Float, Levels
-from radhar_cli.config.engine import LOOSEST_DB
+from radhar_cli.config.engine import MAX_TOLERANCE_DB
 from radhar_cli.config.experiment import Config
 from radhar_cli.echo import cube
-from radhar_cli.echo.direct import DirectEcho, slow_time_noise
-from radhar_cli.echo.error_budget import BudgetError
+from radhar_cli.echo.accuracy import AccuracyError
+from radhar_cli.echo.direct import Accuracy, DirectEcho, slow_time_noise
 from radhar_cli.echo.range_profiles import beat_at, noise_at, shown_pulses
 from radhar_cli.errors import SceneError
 from radhar_cli.pipeline.body_paths import BodyPaths
@@ -31,7 +31,7 @@ from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.image import levels
 from radhar_cli.processing.long_map import LongMap, joined
-from radhar_cli.processing.mti import mti, mti_in_place
+from radhar_cli.processing.mti import FIRST_DIFFERENCE, mti, mti_in_place
 from radhar_cli.processing.range_compression import (
     half_band_signal,
     range_bins,
@@ -57,6 +57,8 @@ class Recording:
         joints: numbers of the scatterers that are kept; all of them for None.
         products: {stage name: what it made}, of those that the plan was asked for.
         seconds: {stage name: time it took}.
+        accuracy: of the slow-time signal, where the direct engine made it.
+        fallback: why the cube made it instead.
     """
 
     scene: Scene
@@ -65,6 +67,8 @@ class Recording:
     joints: tuple[int, ...] | None = None
     products: dict[str, Any] = field(default_factory=dict)
     seconds: dict[str, float] = field(default_factory=dict)
+    accuracy: Accuracy | None = None
+    fallback: str | None = None
 
     @cached_property
     def waveform(self) -> Waveform:
@@ -137,7 +141,6 @@ def _paths(r: Recording, stage: Stage) -> BodyPaths:
         antennas=antennas_of(r.scene),
         fc=r.waveform.fc,
         wall=r.products.get("wall"),
-        power_in_free_space=r.config.snr_reference == "free_space",
         joints=r.joints,
     )
 
@@ -151,45 +154,53 @@ def _torso_track(r: Recording, stage: Stage) -> Float:
     return track
 
 
-def _echo(r: Recording, stage: Stage) -> DirectEcho:
+def _canceller(r: Recording) -> tuple[float, ...]:
+    return FIRST_DIFFERENCE if r.config.processing.mti else (1.0,)
+
+
+def _direct(r: Recording, paths: BodyPaths) -> DirectEcho:
     engine = r.config.engine
-    return DirectEcho(
-        r.products["paths"],
-        r.waveform,
-        engine.tolerance_db,
-        engine.precision == "double",
-        r.config.processing.mti,
-    )
+    double = engine.precision == "double"
+    return DirectEcho(paths, r.waveform, engine.tolerance_db, double, _canceller(r))
+
+
+def _echo(r: Recording, stage: Stage) -> DirectEcho:
+    return _direct(r, r.products["paths"])
 
 
 def _signal_power(r: Recording, stage: Stage) -> float:
-    echo: DirectEcho | None = r.products.get("echo")
-    if echo is None:
-        return cube.signal_power(r.products["paths"], r.waveform)
-    return echo.signal_power()
+    """Of the paths, without the wall's loss where the SNR refers to free space."""
+    paths: BodyPaths = r.products["paths"]
+    without_wall = paths.wall is not None and r.config.snr_reference == "free_space"
+    source = replace(paths, wall=None) if without_wall else paths
+    if "echo" not in r.products:
+        return cube.signal_power(source, r.waveform)
+    return (_direct(r, source) if without_wall else r.products["echo"]).signal_power()
 
 
 def _slow_time(r: Recording, stage: Stage) -> Complex:
     echo: DirectEcho = r.products["echo"]
-    if echo.beyond_reach:
+    try:
+        y, r.accuracy = echo.slow_time()
+    except AccuracyError as error:
         if r.config.engine.fallback == "refuse":
-            raise SceneError(_refusal(r, echo.beyond_reach))
+            raise SceneError(_refusal(r, error)) from None
+        r.fallback = str(error)
         blocks = _beat_blocks(r, 0.0, None)
         return np.concatenate(
             [half_band_signal(range_compression(block, r.waveform)) for _, block in blocks]
         )
-    y = echo.slow_time()
     return mti_in_place(y) if r.config.processing.mti else y
 
 
-def _refusal(r: Recording, error: BudgetError) -> str:
+def _refusal(r: Recording, error: AccuracyError) -> str:
     tolerance_db = r.config.engine.tolerance_db
     what = f"sample {r.scene.name}: engine.tolerance_db = {tolerance_db:g}: "
-    if error.limit_db > LOOSEST_DB:
-        return what + f"no budget can be kept here ({error}); set engine.fallback: cube"
+    if error.limit_db > MAX_TOLERANCE_DB:
+        return what + f"no tolerance can be kept here ({error}); set engine.fallback: cube"
     return what + (
-        f"should be {ceil(error.limit_db)} or more, which is what the direct engine can promise "
-        "here, or engine.fallback: cube"
+        f"should be {ceil(error.limit_db)} or more, which is what the direct engine reaches here, "
+        "or engine.fallback: cube"
     )
 
 
@@ -229,7 +240,7 @@ def _beat_cube(r: Recording, stage: Stage) -> CubeProducts:
 
 
 def _range_profiles(r: Recording, stage: Stage) -> Complex:
-    beat = beat_at(r.products["paths"], r.waveform, r.shown, r.config.processing.mti)
+    beat = beat_at(r.products["paths"], r.waveform, r.shown, _canceller(r))
     bins = range_bins(beat, r.waveform)
     if "range_noise" in r.products:
         bins = bins + r.products["range_noise"]

@@ -4,6 +4,7 @@ import numpy as np
 
 from radhar_cli.arrays import Complex
 
+FIRST_DIFFERENCE = (-1.0, 1.0)  # weights c of x[m] = sum_j c[j] y[m + j]
 _CHUNK = 2**18
 
 

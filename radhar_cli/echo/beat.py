@@ -8,6 +8,8 @@ from radhar_cli.arrays import Complex, Float
 from radhar_cli.phasor import unit_phasor
 from radhar_cli.radar.waveform import Waveform
 
+BLOCK_SAMPLES = 2**18  # of a beat matrix that is made block by block
+
 
 def start_phase(delay: Float, waveform: Waveform, frequency: float) -> Float:
     """Phase (cycles) of a path at `frequency`: f tau, less K tau^2/2 if that term is kept."""

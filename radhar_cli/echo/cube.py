@@ -5,12 +5,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from radhar_cli.arrays import Complex
-from radhar_cli.echo.beat import beat_matrix
+from radhar_cli.echo.beat import BLOCK_SAMPLES, beat_matrix
 from radhar_cli.echo.motion_in_chirp import moving_beat_matrix
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.radar.waveform import Waveform
 
-BLOCK_SAMPLES = 2**18
 CHUNK_PULSES = 2**15
 
 
@@ -22,7 +21,8 @@ def signal_power(source: PathSource, waveform: Waveform) -> float:
         for first in range(0, power.size, CHUNK_PULSES):
             part = power[first : first + CHUNK_PULSES]
             pulses = np.arange(start + first, start + first + part.size, dtype=float)
-            part[:] = source(waveform.times(pulses)).power
+            a = source(waveform.times(pulses)).amplitude
+            part[:] = np.einsum("im,im->m", a, a)
         total += float(power.sum())
     return total / waveform.n_pulses
 

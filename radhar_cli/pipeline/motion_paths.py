@@ -22,17 +22,15 @@ class MotionPaths:
         antennas: where the legs start and end.
         fc: carrier, Hz.
         wall: the slab between, or None.
-        power_in_free_space: whether `Paths.power` leaves the wall's loss out (snr_reference).
     """
 
     motion: Motion
     antennas: Antennas
     fc: float
     wall: Wall | None
-    power_in_free_space: bool
 
     @property
-    def kinks(self) -> tuple[float, ...]:
+    def breakpoints(self) -> tuple[float, ...]:
         """Instants (s) at which positions are not smooth."""
         return self.motion.breakpoints
 
@@ -52,15 +50,12 @@ class MotionPaths:
         r_tx, r_rx = leg(p, self.antennas.tx), leg(p, self.antennas.rx)
         tau = bistatic_delay(r_tx, r_rx)
         a = amplitude(r_tx, r_rx, sigma, self.antennas.gain, SPEED_OF_LIGHT / self.fc)
-        power = np.einsum("im,im->m", a, a)
         if self.wall is not None:
             for antenna in (self.antennas.tx, self.antennas.rx):
                 through = transmission(p, antenna, self.wall, self.fc)
                 tau += through.delay
                 a *= through.factor
-            if not self.power_in_free_space:
-                power = np.einsum("im,im->m", a, a)
-        return Paths(tau, a, power)
+        return Paths(tau, a)
 
 
 @dataclass(frozen=True)
@@ -70,9 +65,9 @@ class SumOfPaths:
     sources: tuple[PathSource, ...]
 
     @property
-    def kinks(self) -> tuple[float, ...]:
+    def breakpoints(self) -> tuple[float, ...]:
         """Instants (s) at which any path is not smooth."""
-        return tuple(sorted({at for source in self.sources for at in source.kinks}))
+        return tuple(sorted({at for source in self.sources for at in source.breakpoints}))
 
     @property
     def highest_frequency(self) -> float:
@@ -81,13 +76,13 @@ class SumOfPaths:
 
     @property
     def smooth(self) -> bool:
-        """Whether every source's paths are smooth between the kinks."""
+        """Whether every source's paths are smooth between the breakpoints."""
         return all(source.smooth for source in self.sources)
 
     def __call__(self, t: Float) -> Paths:
         """Paths of all sources, one source after the other, at times t [M] (s)."""
-        delay, a, power = zip(*(source(t) for source in self.sources), strict=True)
-        return Paths(np.concatenate(delay), np.concatenate(a), sum(power))
+        delay, a = zip(*(source(t) for source in self.sources), strict=True)
+        return Paths(np.concatenate(delay), np.concatenate(a))
 
 
 def point_delay(p: Float, antennas: Antennas, wall: Wall | None) -> Float:

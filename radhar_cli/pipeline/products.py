@@ -10,15 +10,15 @@ map] -> sum over the kept bins -> [compensation] -> [denoising] -> STFT or FSST.
 
 from collections.abc import Iterator
 from math import ceil
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
 from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.config.schema import MAP_NAMES, MAX_TOLERANCE_DB, Config
 from radhar_cli.echo import cube
-from radhar_cli.echo.direct import DirectEcho
-from radhar_cli.echo.error_budget import BudgetError
+from radhar_cli.echo.accuracy import AccuracyError
+from radhar_cli.echo.direct import Accuracy, DirectEcho
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.echo.range_profiles import beat_at, shown_pulses
 from radhar_cli.errors import SceneError
@@ -62,6 +62,15 @@ CHUNK = 2**18  # pulses at work at once, where each is on its own
 SIGNALS = ("signal", "signal_denoised", "signal_compensated", "signal_compensated_denoised")
 
 
+class Fallback(NamedTuple):
+    """The cube made the echo instead of the direct engine; says why."""
+
+    reason: str
+
+
+EchoAccuracy: TypeAlias = Accuracy | Fallback
+
+
 class RangeProfiles(NamedTuple):
     """Range bins [N_FFT/2, some M] after the canceller, and the first pulse of each column."""
 
@@ -88,13 +97,14 @@ def products(config: Config) -> dict[str, Product]:
 
 
 def _physics(c: Config) -> Iterator[Product]:
-    in_free_space = c.snr_reference == "free_space"
-
     def paths(
         motions: tuple[Motion, ...], antennas: Antennas, wall: Wall | None, w: Waveform
     ) -> PathSource:
-        each = [MotionPaths(one, antennas, w.fc, wall, in_free_space) for one in motions]
+        each = [MotionPaths(one, antennas, w.fc, wall) for one in motions]
         return each[0] if len(each) == 1 else SumOfPaths(tuple(each))
+
+    def through_air(motions: tuple[Motion, ...], antennas: Antennas, w: Waveform) -> PathSource:
+        return paths(motions, antennas, None, w)
 
     def torso_track(
         motions: tuple[Motion, ...], antennas: Antennas, wall: Wall | None, w: Waveform
@@ -112,7 +122,15 @@ def _physics(c: Config) -> Iterator[Product]:
     yield Product("wall", ("scene",), lambda s: wall_of(s.config), "the slab, or none")
     yield Product("motions", ("scene",), lambda s: (motion_of(s),), "scatterers that move")
     yield Product("paths", seen, paths, f"delay and amplitude of every scatterer, {walled}")
+    if _snr_in_free_space(c):
+        needs = ("motions", "antennas", "waveform")
+        yield Product("snr_paths", needs, through_air, "paths without the wall, for the SNR")
     yield Product("torso_track", seen, torso_track, "delay of the torso at every pulse")
+
+
+def _snr_in_free_space(c: Config) -> bool:
+    """Whether the SNR refers to an echo that is not the simulated one: that without the wall."""
+    return c.wall is not None and c.snr_reference == "free_space"
 
 
 def _echo(c: Config) -> Iterator[Product]:
@@ -147,18 +165,22 @@ def _receiver(c: Config) -> Iterator[Product]:
 def _direct(c: Config) -> Iterator[Product]:
     engine = c.engine
 
-    def echo(paths: PathSource, w: Waveform, canceller: Canceller) -> DirectEcho:
+    def direct(source: PathSource, w: Waveform, canceller: Canceller) -> DirectEcho:
         double = engine.precision == "double"
-        return DirectEcho(paths, w, engine.tolerance_db, double, canceller.lost > 0)
+        return DirectEcho(source, w, engine.tolerance_db, double, canceller.taps)
 
-    def slow_time(echo: DirectEcho, w: Waveform, scene: Scene) -> Signal:
-        if not echo.beyond_reach:
-            return Signal(echo.slow_time(), 0.0, w.prf, w.f0)
-        if engine.fallback == "refuse":
-            raise SceneError(_refusal(scene.name, engine.tolerance_db, echo.beyond_reach))
-        blocks = cube.beat_blocks(echo.source, w)
-        y = [half_band_signal(range_compression(block, w)) for block in blocks]
-        return Signal(np.concatenate(y), 0.0, w.prf, w.f0)
+    def echo(direct: DirectEcho, scene: Scene) -> tuple[Complex, EchoAccuracy]:
+        try:
+            return direct.slow_time()
+        except AccuracyError as error:
+            if engine.fallback == "refuse":
+                raise SceneError(_refusal(scene.name, engine.tolerance_db, error)) from None
+            blocks = cube.beat_blocks(direct.source, direct.waveform)
+            y = [half_band_signal(range_compression(block, direct.waveform)) for block in blocks]
+            return np.concatenate(y), Fallback(str(error))
+
+    def slow_time(echo: tuple[Complex, EchoAccuracy], w: Waveform) -> Signal:
+        return Signal(echo[0], 0.0, w.prf, w.f0)
 
     def range_profiles(
         paths: PathSource,
@@ -167,16 +189,20 @@ def _direct(c: Config) -> Iterator[Product]:
         receiver: tuple[Impairment, ...],
     ) -> RangeProfiles:
         shown = shown_pulses(w.n_pulses - canceller.lost, c.image.size_px[1])
-        bins = range_bins(beat_at(paths, w, shown, canceller.lost > 0), w)
+        bins = range_bins(beat_at(paths, w, shown, canceller.taps), w)
         for impairment in receiver:
             bins = impairment.range_bins(bins, shown, canceller)
         return RangeProfiles(bins, shown)
 
-    yield Product("echo", ("paths", "waveform", "canceller"), echo, "closed form of the echo")
-    yield Product("signal_power", ("echo",), DirectEcho.signal_power, "P_s, for snr_db")
-    yield Product(
-        "slow_time", ("echo", "waveform", "scene"), slow_time, "slow-time signal without noise"
-    )
+    seen = ("waveform", "canceller")
+    yield Product("direct", ("paths", *seen), direct, "closed form of the echo at knots")
+    if _snr_in_free_space(c):
+        yield Product("snr_direct", ("snr_paths", *seen), direct, "the same without the wall")
+    power_of = "snr_direct" if _snr_in_free_space(c) else "direct"
+    yield Product("signal_power", (power_of,), DirectEcho.signal_power, "P_s, for snr_db")
+    yield Product("echo", ("direct", "scene"), echo, "slow-time samples and their measured error")
+    yield Product("slow_time", ("echo", "waveform"), slow_time, "slow-time signal without noise")
+    yield Product("accuracy", ("echo",), lambda echo: echo[1], "its measured error")
     yield Product(
         "range_profiles",
         ("paths", "waveform", "canceller", "receiver"),
@@ -185,13 +211,13 @@ def _direct(c: Config) -> Iterator[Product]:
     )
 
 
-def _refusal(name: str, tolerance_db: float, error: BudgetError) -> str:
+def _refusal(name: str, tolerance_db: float, error: AccuracyError) -> str:
     what = f"sample {name}: engine.tolerance_db = {tolerance_db:g}: "
     if error.limit_db > MAX_TOLERANCE_DB:
-        return what + f"no budget can be kept here ({error}); set engine.fallback: cube"
+        return what + f"no tolerance can be kept here ({error}); set engine.fallback: cube"
     return what + (
-        f"should be {ceil(error.limit_db)} or more, which is what the direct engine can promise "
-        "here, or engine.fallback: cube"
+        f"should be {ceil(error.limit_db)} or more, which is what the direct engine reaches here, "
+        "or engine.fallback: cube"
     )
 
 
@@ -212,7 +238,8 @@ def _cube(c: Config) -> Iterator[Product]:
             RangeProfiles(np.concatenate(bins, axis=1), shown),
         )
 
-    yield Product("signal_power", ("paths", "waveform"), cube.signal_power, "P_s, for snr_db")
+    power_of = "snr_paths" if _snr_in_free_space(c) else "paths"
+    yield Product("signal_power", (power_of, "waveform"), cube.signal_power, "P_s, for snr_db")
     yield Product("beat_cube", needs, beat_cube, "the whole beat matrix, cancelled, compressed")
     yield Product("signal", ("beat_cube",), lambda both: both[0], "its sum over the kept bins")
     yield Product("range_profiles", ("beat_cube",), lambda both: both[1], "its range bins")

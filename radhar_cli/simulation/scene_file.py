@@ -110,18 +110,16 @@ def _engine(simulation: Simulation) -> str:
 
 
 def _accuracy(simulation: Simulation) -> dict[str, Any] | None:
-    """What the direct engine chose, and the bounds of the error, null where there is none."""
-    settings = simulation.accuracy
-    if settings is None:
+    """How the direct engine made the signal, and its measured error; null where nothing errs."""
+    found = simulation.accuracy
+    if found is None:
         return None
     return {
         "tolerance_db": simulation.config.engine.tolerance_db,
-        "kinematics_hz": simulation.waveform.prf / settings.step,
-        "table_oversampling": settings.table_oversampling,
-        "precision": "single" if settings.single else "double",
-        "bounds_db": {
-            name: bound if isfinite(bound) else None for name, bound in settings.bounds_db.items()
-        },
+        "error_db": found.error_db if isfinite(found.error_db) else None,
+        "kinematics_hz": simulation.waveform.prf / found.step,
+        "table_oversampling": found.table_oversampling,
+        "precision": "single" if found.single else "double",
     }
 
 

@@ -9,15 +9,14 @@ from radhar_cli.arrays import Complex
 from radhar_cli.config.schema import MAP_NAMES, Config, MapName
 from radhar_cli.echo import cube
 from radhar_cli.echo.beat import beat_matrix
-from radhar_cli.echo.direct import DirectEcho
-from radhar_cli.echo.error_budget import DirectSettings
+from radhar_cli.echo.direct import Accuracy
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.echo.static_returns import leakage, near_face_distance, wall_echo
 from radhar_cli.errors import ConfigError, SceneError, did_you_mean
 from radhar_cli.motion.protocol import Motion, Only
 from radhar_cli.pipeline.physics import motion_of
 from radhar_cli.pipeline.plan import Product
-from radhar_cli.pipeline.products import SIGNALS
+from radhar_cli.pipeline.products import SIGNALS, EchoAccuracy, Fallback
 from radhar_cli.pipeline.run import record
 from radhar_cli.pipeline.validity import MIN_DISTANCE_M, scene_warnings
 from radhar_cli.processing.power_map import PowerMap
@@ -44,7 +43,7 @@ class Simulation:
         truth: kinematics at every pulse.
         warnings: what lies outside the model, in words.
         seconds: {product: time it took}.
-        accuracy: what the direct engine did for its error budget; None of the cube.
+        accuracy: how the direct engine made the signal, and its error; None of the cube.
         beat: raw echo [N_ADC, M] with static leakage and wall return, where asked for.
     """
 
@@ -59,7 +58,7 @@ class Simulation:
     truth: Truth
     warnings: list[str]
     seconds: dict[str, float]
-    accuracy: DirectSettings | None = None
+    accuracy: Accuracy | None = None
     beat: Complex | None = None
 
     @property
@@ -106,9 +105,12 @@ def simulate(
     motion = motion_of(scene)
     kept = motion if joint is None else Only(motion, (_joint(joint, motion.names),))
     asked = [*SIGNALS, *maps, "waveform", "antennas", "wall"]
-    asked += (["echo"] if config.engine.kind == "direct" else []) + (["raw_echo"] if raw else [])
+    asked += ["accuracy"] if config.engine.kind == "direct" else []
+    asked += ["raw_echo"] if raw else []
     found = record(scene, asked, [RAW_ECHO], motions=(kept,))
-    echo: DirectEcho | None = found.products.get("echo")
+    accuracy: EchoAccuracy | None = found.products.get("accuracy")
+    if isinstance(accuracy, Fallback):
+        warnings.append(f"computed by the cube (engine.fallback): {accuracy.reason}")
     return Simulation(
         scene=scene,
         waveform=found["waveform"],
@@ -119,17 +121,11 @@ def simulate(
         maps={name: found[name] for name in maps},
         signals={name.removeprefix("signal").lstrip("_") or "raw": found[name] for name in SIGNALS},
         truth=truth(motion, found["antennas"], found["wall"], found["waveform"]),
-        warnings=[*warnings, *_fallback(echo)],
+        warnings=warnings,
         seconds=found.seconds,
-        accuracy=None if echo is None or echo.beyond_reach else echo.settings,
+        accuracy=accuracy if isinstance(accuracy, Accuracy) else None,
         beat=found["raw_echo"] if raw else None,
     )
-
-
-def _fallback(echo: DirectEcho | None) -> list[str]:
-    if echo is None or not echo.beyond_reach:
-        return []
-    return [f"computed by the cube (engine.fallback): {echo.beyond_reach}"]
 
 
 def map_names(chosen: list[str] | None) -> tuple[MapName, ...]:

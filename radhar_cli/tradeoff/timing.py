@@ -10,7 +10,10 @@ from radhar_cli.tradeoff.settings import Setting
 
 # How long a setting is timed in a round, at most this and one scene more.
 SECONDS = 0.6
-ECHO = ("paths", "echo", "signal_power", "slow_time", "beat_cube", "range_profiles")
+ECHO = (
+    *("motions", "paths", "direct", "snr_direct", "echo", "signal_power", "slow_time", "signal"),
+    *("beat_cube", "range_profiles"),
+)
 
 
 class Times(NamedTuple):

@@ -179,5 +179,11 @@ def test_settings_reach_their_stage():
         ({"fsst_hop_pulses": 7}, {"fsst"}),
     ):
         found = maps(**processing)
-        changed = {name for name in names if not np.array_equal(found[name], right[name])}
+        # P_s, and with it the noise, is a mean over knots, which lie where the phase needs them.
+        changed = {
+            name
+            for name in names
+            if found[name].shape != right[name].shape
+            or not np.allclose(found[name], right[name], rtol=1e-4, atol=0)
+        }
         assert changed == touched, processing

@@ -106,7 +106,7 @@ class TestCommand:
         assert cube["signal_error_db"] is None
         assert (cube["pixels_changed"], cube["map_error_db"], cube["psnr_db"]) == (0, 0, None)
         assert cube["time_ratio"] > 1
-        assert rows["double"]["rounding_bound_db"] < -180
+        assert rows["double"]["engine_error_db"] < -80
         assert sum(row["default"] for row in rows.values()) == 1
 
     def test_a_switch_shows_what_is_missed_without_it(self, done):

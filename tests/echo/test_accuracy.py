@@ -1,28 +1,24 @@
-"""The promise of `tolerance_db`: never exceeded, seldom wasted, refused only where it must be."""
+"""The promise of `tolerance_db`: never exceeded, refused only where it must be."""
 
 from dataclasses import asdict
-from statistics import median
-
 import numpy as np
 import pytest
 import reference as ref
-from radhar_cli.pipeline.body_paths import BodyPaths
-from radhar_cli.pipeline.models import waveform_of
 
 from radhar_cli.activity import ACTIVITIES, Activity
-from radhar_cli.config.schema import Config
+from radhar_cli.body.skeleton import JOINTS
+from radhar_cli.config.experiment import Config
+from radhar_cli.echo.accuracy import AccuracyError
 from radhar_cli.echo.direct import DirectEcho
-from radhar_cli.echo.error_budget import BudgetError
 from radhar_cli.errors import SceneError
-from radhar_cli.motion.skeleton import JOINTS
+from radhar_cli.pipeline.body_paths import BodyPaths
+from radhar_cli.pipeline.models import waveform_of
 from radhar_cli.pipeline.plan import plan
 from radhar_cli.pipeline.run import run
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene import draw_scene
+from radhar_cli.scenario import draw_scene
 
-# The issue that brought the budget asks for these; a bound that is loose by 30 dB is 5 times too
-# many knots.
-WASTE_DB, EXCUSED = 30.0, 0.2
+SAID_DB = 6.0
 CUBE = {"kind": "cube"}
 
 
@@ -88,95 +84,45 @@ def cube_signal(drawn: dict, activity: Activity) -> tuple[np.ndarray, BodyPaths,
     )
 
 
+def within(drawn: dict, activity: Activity, tolerance_db: float) -> float | None:
+    """The true error (dB) of a random scene, which keeps its tolerance; None where refused."""
+    right, paths, waveform = cube_signal(drawn, activity)
+    mti = drawn["processing"].get("mti", True)
+    canceller = (-1.0, 1.0) if mti else (1.0,)
+    try:
+        y, accuracy = DirectEcho(paths, waveform, tolerance_db, canceller=canceller).slow_time()
+    except AccuracyError as error:
+        assert tolerance_db < -100, (activity.slug, waveform, error)
+        return None
+    found = np.diff(y) if mti else y
+    if not right.any():
+        assert not found.any()
+        return -np.inf
+    error_db = ref.error_db(found, right)
+    assert error_db <= tolerance_db, (activity.slug, waveform, accuracy)
+    # What is said of it is what it is: an estimate from some dozens of pulses.
+    assert error_db == pytest.approx(accuracy.error_db, abs=SAID_DB), (activity.slug, waveform)
+    return error_db
+
+
 @pytest.mark.parametrize("block", range(4))
-def test_the_budget_is_kept_and_used(block):
-    """48 random scenes, every activity four times, budgets from -20 to -120 dB."""
+def test_the_tolerance_is_kept(block):
+    """48 random scenes, every activity four times, tolerances from -20 to -120 dB."""
     rng = np.random.default_rng(1000 + block)
-    slack, excused, still, refused = [], 0, 0, 0
-    for number in range(48):
-        activity, budget = ACTIVITIES[number % 12], float(rng.uniform(-120, -20))
-        right, paths, waveform = cube_signal(random_config(rng), activity)
-        echo = DirectEcho(paths, waveform, budget)
-        if echo.beyond_reach:
-            assert budget < -100, (activity.slug, waveform, echo.beyond_reach)
-            refused += 1
-            continue
-        found = np.diff(echo.slow_time())
-        if not right.any():
-            assert not found.any()
-            still += 1
-            continue
-        error = ref.error_db(found, right)
-        assert error <= budget, (activity.slug, waveform, echo.settings)
-        if echo.settings.cheapest:
-            excused += 1
-        else:
-            slack.append(budget - error)
-    print(
-        f"{still} scenes without motion, {refused} refused below -100 dB, {excused} excused "
-        f"(nothing cheaper exists), {len(slack)} others {median(slack):.1f} dB within their "
-        f"budget in the median, {min(slack):.1f} at least"
-    )
-    assert len(slack) + excused >= 30
-    assert median(slack) < WASTE_DB
-    assert excused <= EXCUSED * (len(slack) + excused)
+    found = [
+        within(random_config(rng), ACTIVITIES[number % 12], float(rng.uniform(-120, -20)))
+        for number in range(48)
+    ]
+    assert sum(error is not None and np.isfinite(error) for error in found) >= 30
 
 
-def test_without_mti_the_budget_is_that_of_the_whole_signal():
+def test_without_mti_it_is_that_of_the_whole_signal():
     """24 scenes more; what stands still counts, so that every one has a signal."""
     rng = np.random.default_rng(7)
     for number in range(24):
-        activity, budget = ACTIVITIES[number % 12], float(rng.uniform(-120, -20))
-        drawn = random_config(rng)
+        tolerance_db, drawn = float(rng.uniform(-120, -20)), random_config(rng)
         drawn["processing"]["mti"] = False
-        right, paths, waveform = cube_signal(drawn, activity)
-        echo = DirectEcho(paths, waveform, budget, mti=False)
-        assert ref.error_db(echo.slow_time(), right) <= budget, (activity.slug, waveform)
-
-
-RADAR = ref.Radar(adc_rate=1e6, duration=0.5)
-
-
-def walk(t: np.ndarray) -> np.ndarray:
-    return (2 + 1.5 * t)[None]
-
-
-def echo_of(budget: float, **more: float | int) -> DirectEcho:
-    return DirectEcho(ref.Points(walk), Waveform(**asdict(RADAR) | more), budget)
-
-
-def test_every_term_is_within_what_it_was_given():
-    for budget in np.arange(-150.0, -10.0, 10):
-        bounds = echo_of(float(budget)).settings.bounds_db
-        assert set(bounds) == {"interpolation", "table", "rounding"}
-        together = sum(10 ** (bound / 20) for bound in bounds.values())
-        assert 20 * np.log10(together) <= budget
-
-
-def test_tighter_budgets_never_take_less():
-    found = [echo_of(float(budget)).settings for budget in np.arange(-10.0, -200, -10)]
-    assert [s.step for s in found] == sorted((s.step for s in found), reverse=True)
-    assert [s.table_oversampling for s in found] == sorted(s.table_oversampling for s in found)
-    assert [s.single for s in found] == sorted((s.single for s in found), reverse=True)
-    assert found[0].single
-    assert not found[-1].single
-
-
-def test_the_limit_that_a_refusal_names_can_be_kept():
-    """And a dB less cannot: it is the limit, not a guess."""
-    refusal = echo_of(-390.0).beyond_reach
-    assert isinstance(refusal, BudgetError)
-    assert echo_of(refusal.limit_db + 1).beyond_reach is None
-    assert echo_of(refusal.limit_db - 1).beyond_reach is not None
-
-
-def test_float64_says_less_of_a_signal_of_which_the_mti_leaves_less():
-    """A phase is held to 1e-16 of its cycles, whatever the PRF; x shrinks with it."""
-    slow, fast = (
-        echo_of(-150.0, prf=prf).settings.bounds_db["rounding"] for prf in (5000.0, 20000.0)
-    )
-    assert fast == pytest.approx(slow + 12, abs=1)
-    assert slow < -190
+        within(drawn, ACTIVITIES[number % 12], tolerance_db)
 
 
 CONFIG = {"snr_db": None, "duration_s": 0.5, "radar": {"prf_hz": 2000}, "maps": ["stft"]}

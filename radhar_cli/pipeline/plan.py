@@ -191,14 +191,15 @@ def _map_stages(config: Config) -> list[Stage]:
                 (f"signal:{variant}",),
                 "windowed FFT of every frame, every fsst_hop_pulses",
             ),
-            Stage(f"stft{suffix}", (spectrum,), "power of the STFT"),
-            Stage(
-                f"fsst{suffix}",
-                (f"signal:{variant}", of_fsst),
-                "second transform, synchrosqueezing, power",
-            ),
         ]
+        for name, need, does in (
+            (f"stft{suffix}", spectrum, "power of the STFT"),
+            (f"fsst{suffix}", of_fsst, "second transform, synchrosqueezing, power"),
+        ):
+            stages.append(Stage(name, (need,), does))
+            stages.append(Stage(f"reduced:{name}", (need,), f"{does}; resized; entropy"))
+    stages.append(Stage("reduced:rtm", ("rtm",), "range-time map, resized; entropy"))
     for name in MAP_NAMES:
-        stages.append(Stage(f"entropy:{name}", (name,), "entropy of the power map"))
-        stages.append(Stage(f"levels:{name}", (name,), "resize, decibels, grey levels"))
+        stages.append(Stage(f"entropy:{name}", (f"reduced:{name}",), "entropy of the power map"))
+        stages.append(Stage(f"levels:{name}", (f"reduced:{name}",), "decibels, grey levels"))
     return stages

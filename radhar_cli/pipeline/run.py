@@ -4,7 +4,7 @@ Order (paper, figure "Signal processing overflow"): MTI -> range compression -> 
 sum over the kept bins -> [compensation] -> [denoising] -> STFT or FSST.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import ceil
@@ -15,7 +15,7 @@ import numpy as np
 
 from radhar_cli.arrays import Complex, Float, Levels
 from radhar_cli.config.engine import LOOSEST_DB
-from radhar_cli.config.experiment import Config
+from radhar_cli.config.experiment import MAP_NAMES, Config
 from radhar_cli.echo import cube
 from radhar_cli.echo.direct import DirectEcho, slow_time_noise
 from radhar_cli.echo.error_budget import BudgetError
@@ -27,11 +27,9 @@ from radhar_cli.pipeline.plan import Plan, Stage
 from radhar_cli.processing import fsst, stft
 from radhar_cli.processing.denoising import savgol
 from radhar_cli.processing.doppler_compensation import compensate
-from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.frames import Frames
-from radhar_cli.processing.image import levels
-from radhar_cli.processing.long_map import LongMap, joined
-from radhar_cli.processing.mti import mti, mti_in_place
+from radhar_cli.processing.image import Reduced, levels, reduced, reduced_map
+from radhar_cli.processing.mti import mti
 from radhar_cli.processing.range_compression import (
     half_band_signal,
     range_bins,
@@ -46,6 +44,8 @@ from radhar_cli.randomness import NOISE, stream
 from radhar_cli.scenario import Scene
 
 CHUNK = 2**18  # pulses at work at once, where each is on its own
+# TODO measure
+SINGLE_RANGE_DB = 80.0
 
 
 @dataclass
@@ -91,6 +91,15 @@ class Recording:
         """Pulses (or first pulses of MTI pairs) that the range-time map shows."""
         kept = self.waveform.n_pulses - self.config.processing.mti
         return shown_pulses(kept, self.config.image.size_px[1])
+
+    @property
+    def single(self) -> bool:
+        """Whether maps are computed in float32, which is enough for their images."""
+        return (
+            self.config.engine.precision == "auto"
+            and self.config.image.dynamic_range_db <= SINGLE_RANGE_DB
+            and any(stage.kind == "levels" for stage in self.plan.stages)
+        )
 
     def noise(self, name: str) -> np.random.Generator:
         """The stream of unit-variance noise of this sample with that name."""
@@ -179,7 +188,7 @@ def _slow_time(r: Recording, stage: Stage) -> Complex:
             [half_band_signal(range_compression(block, r.waveform)) for _, block in blocks]
         )
     y = echo.slow_time()
-    return mti_in_place(y) if r.config.processing.mti else y
+    return mti(y) if r.config.processing.mti else y
 
 
 def _refusal(r: Recording, error: BudgetError) -> str:
@@ -196,7 +205,7 @@ def _refusal(r: Recording, error: BudgetError) -> str:
 def _slow_time_noise(r: Recording, stage: Stage) -> Complex:
     noise = slow_time_noise(r.noise("slow_time"), r.waveform)
     noise *= r.sigma
-    return mti_in_place(noise) if r.config.processing.mti else noise
+    return mti(noise) if r.config.processing.mti else noise
 
 
 def _beat_blocks(
@@ -271,43 +280,37 @@ def _plain_signal(r: Recording) -> Complex:
 
 
 def _spectrum(r: Recording, stage: Stage) -> Spectra:
-    padded = stage.kind == "padded_spectrum"
-    length = r.config.processing.stft_fft_length if padded else None
     frames = r.fsst_frames if stage.kind == "fsst_spectrum" else r.frames
-    return stft.spectra(r.products[stage.needs[0]], frames, length)
+    padded = r.config.processing.stft_fft_length if stage.kind == "padded_spectrum" else None
+    return Spectra(r.products[stage.needs[0]], frames, padded or frames.length, r.single)
 
 
-def _stft(r: Recording, stage: Stage) -> Float | LongMap:
+def _blocks(r: Recording, name: str, spectra: Spectra) -> Iterator[Float]:
+    if name.startswith("stft"):
+        return stft.power_blocks(spectra)
+    return fsst.power_blocks(spectra, r.config.processing.fsst_threshold)
+
+
+def _map(r: Recording, stage: Stage) -> Float:
+    """A whole map [frequency, time], which only who asks for it holds."""
     spectra: Spectra = r.products[stage.needs[0]]
-    return _map(r, stage, spectra, map(stft.power_map, spectra))
+    power = np.concatenate(list(_blocks(r, stage.name, spectra)), dtype=float)
+    return np.asarray(np.ldexp(power, 2 * spectra.exponent, out=power).T)
 
 
-def _fsst(r: Recording, stage: Stage) -> Float | LongMap:
-    x, spectra = (r.products[need] for need in stage.needs)
-    threshold = r.config.processing.fsst_threshold
-    return _map(r, stage, spectra, fsst.power_blocks(x, spectra, r.fsst_frames, threshold))
-
-
-def _map(r: Recording, stage: Stage, spectra: Spectra, blocks: Iterable[Float]) -> Float | LongMap:
-    """The whole map where it is one block or was asked for, else what its image needs."""
-    if isinstance(spectra, tuple):
-        return next(iter(blocks))
-    frames = spectra.frames.count(spectra.x.size)
-    if stage.name in r.plan.asked:
-        return joined(blocks, frames)
-    return LongMap(blocks, frames, r.config.image.size_px)
+def _reduced(r: Recording, stage: Stage) -> Reduced:
+    source, size = r.products[stage.needs[0]], r.config.image.size_px
+    if stage.variant == "rtm":
+        return reduced_map(source, size)
+    return reduced(_blocks(r, stage.variant, source), source.count, size)
 
 
 def _entropy(r: Recording, stage: Stage) -> float:
-    power = r.products[stage.variant]
-    return power.entropy_bits if isinstance(power, LongMap) else entropy_bits(power)
+    return float(r.products[stage.needs[0]].entropy)
 
 
 def _levels(r: Recording, stage: Stage) -> Levels:
-    power, image = r.products[stage.variant], r.config.image
-    if isinstance(power, LongMap):
-        return power.levels(image.dynamic_range_db)
-    return levels(power, image.size_px, image.dynamic_range_db)
+    return levels(r.products[stage.needs[0]].power, r.config.image.dynamic_range_db)
 
 
 STAGES: Mapping[str, Callable[[Recording, Stage], Any]] = {
@@ -326,11 +329,8 @@ STAGES: Mapping[str, Callable[[Recording, Stage], Any]] = {
     "spectrum": _spectrum,
     "padded_spectrum": _spectrum,
     "fsst_spectrum": _spectrum,
-    **{
-        f"{kind}{suffix}": run_map
-        for kind, run_map in (("stft", _stft), ("fsst", _fsst))
-        for suffix in ("", "_compensated", "_denoised", "_compensated_denoised")
-    },
+    **{name: _map for name in MAP_NAMES if name != "rtm"},
+    "reduced": _reduced,
     "entropy": _entropy,
     "levels": _levels,
 }

@@ -21,6 +21,7 @@ from radhar_cli.pipeline.body_paths import BodyPaths
 from radhar_cli.pipeline.plan import SIGNALS, plan
 from radhar_cli.pipeline.run import Recording, run
 from radhar_cli.pipeline.survey import CLOSEST_M, check
+from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scenario import Scene, draw_scene, nominal_scene
 from radhar_cli.simulation.truth import Truth, truth
@@ -131,10 +132,9 @@ def simulate(
     scene = nominal_scene(config, activity) if nominal else draw_scene(config, activity, 0)
     warnings = check(scene, config)
     chosen = None if joint is None else (_joint(joint),)
-    entropies = [f"entropy:{name}" for name in maps]
     signals = [f"signal:{which}" for which in SIGNALS]
     direct = ["echo"] if config.engine.kind == "direct" else []
-    recording = run(plan(config, [*signals, *maps, *entropies, *direct]), scene, config, chosen)
+    recording = run(plan(config, [*signals, *maps, *direct]), scene, config, chosen)
     products = recording.products
     return Simulation(
         config=config,
@@ -209,7 +209,7 @@ def raw_echo(recording: Recording) -> Complex:
 def _power_map(name: str, recording: Recording) -> PowerMap:
     axes = axes_of(name, recording)
     products: dict[str, Any] = recording.products
-    return PowerMap(name, products[name], axes.vertical, axes.time, products[f"entropy:{name}"])
+    return PowerMap(name, products[name], axes.vertical, axes.time, entropy_bits(products[name]))
 
 
 def _activity(name: str) -> Activity:

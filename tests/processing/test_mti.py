@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import reference as ref
 
-from radhar_cli.processing.mti import mti, mti_in_place
+from radhar_cli.processing.mti import mti
 
 
 @pytest.mark.parametrize("shape", [(7,), (3, 7), (2, 3, 5)])
@@ -12,16 +12,6 @@ def test_first_difference_over_the_pulses(shape):
     s = np.random.default_rng(0).standard_normal((*shape, 2)).view(complex)[..., 0]
     assert mti(s).shape == (*shape[:-1], shape[-1] - 1)
     assert np.array_equal(mti(s), ref.mti(s))
-
-
-@pytest.mark.parametrize("chunk", [1, 2, 5, 100])
-def test_in_place_is_the_same(monkeypatch, chunk):
-    monkeypatch.setattr("radhar_cli.processing.mti._CHUNK", chunk)
-    s = np.random.default_rng(0).standard_normal((11, 2)).view(complex)[..., 0]
-    right = mti(s)
-    found = mti_in_place(s)
-    assert np.array_equal(found, right)
-    assert np.shares_memory(found, s)
 
 
 def test_what_does_not_move_vanishes_exactly():

@@ -38,8 +38,9 @@ def synchrosqueeze(v: Complex, slope: Complex, least: float) -> tuple[Float, Flo
     k += kept - row
     k -= k // length * length
     k += row
-    real, imag = (np.bincount(k, part, minlength=v.size) for part in (a.real, a.imag))
-    return real.reshape(v.shape), imag.reshape(v.shape)
+    real = np.bincount(k, a.real, minlength=v.size).reshape(v.shape)
+    imag = np.bincount(k, a.imag, minlength=v.size).reshape(v.shape)
+    return real.astype(float, copy=False), imag.astype(float, copy=False)
 
 
 def power_blocks(spectra: Spectra, threshold: float) -> Iterator[Float]:

@@ -3,10 +3,9 @@
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from math import ceil, floor
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import DTypeLike
 
 from radhar_cli.arrays import Float, Levels
 from radhar_cli.processing.entropy import EntropySum, largest_power
@@ -68,6 +67,8 @@ def levels(power: Float, dynamic_range_db: float) -> Levels:
 
     A map of zeros is level 0 everywhere.
     """
+    if not power.any():
+        return np.zeros(power.shape, np.uint8)
     grey = decibels(power, dynamic_range_db)
     grey *= 255 / max(dynamic_range_db, 1e-30)
     grey += 255.5
@@ -87,7 +88,7 @@ def decibels(power: Float, dynamic_range_db: float) -> Float:
 
 
 def _bands(
-    first: int, count: int, inputs: int, outputs: int, dtype: DTypeLike
+    first: int, count: int, inputs: int, outputs: int, dtype: np.dtype[Any]
 ) -> Iterator[tuple[slice, slice, Float]]:
     """Resizing `inputs` to `outputs`, for inputs from `first` on: y[pixels] += x[some] @ weights.
 
@@ -102,7 +103,7 @@ def _bands(
 
 @lru_cache(maxsize=256)
 def _triangles(
-    start: int, stop: int, inputs: int, outputs: int, dtype: DTypeLike
+    start: int, stop: int, inputs: int, outputs: int, dtype: np.dtype[Any]
 ) -> tuple[slice, Float]:
     """(outputs that inputs start .. stop - 1 reach, weights [stop - start, those outputs]).
 

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.fft
@@ -51,9 +52,10 @@ class Spectra:
 
     def transform(self, block: slice, window: Float) -> Complex:
         """The sum above with another window [L], over a slice of frames."""
-        dtype = np.complex64 if self.single else np.complex128
-        part = (self.x[self.frames.span(block)] * 2.0**-self.exponent).astype(dtype)
-        cut, g = self.frames.cut(part), window.astype(part.real.dtype)
+        part: Complex = self.x[self.frames.span(block)] * 2.0**-self.exponent
+        dtype: Any = np.complex64 if self.single else np.complex128
+        cut = self.frames.cut(part.astype(dtype))
+        g = window.astype(cut.real.dtype)
         middle = self.frames.length // 2
         # Sample L//2 comes first: that refers the phase to it.
         framed = np.zeros((len(cut), self.bins), dtype)

@@ -75,6 +75,8 @@ LINEAR: dict[str, Function] = {
     "padded spectrum": lambda x: spectrum(x, 64),
 }
 MATRIX = ("range_compression", "range_bins", "half_band_signal")
+
+
 def shape_of(name: str) -> tuple[int, ...]:
     return (SAMPLES, PULSES) if name in MATRIX else (PULSES,)
 

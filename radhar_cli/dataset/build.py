@@ -17,12 +17,12 @@ from radhar_cli.dataset.assembly import assemble
 from radhar_cli.dataset.batch import Batch, png_rows, run_batch, survey_rows
 from radhar_cli.dataset.folder import claim, locked, mark_built, tidy
 from radhar_cli.dataset.layout import DATASET, Rows, png_path
+from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.settled import settled_rows, store_settled
 from radhar_cli.dataset.shards import finished_shards, missing_runs, pieces
 from radhar_cli.dataset.split import split_rows
 from radhar_cli.dataset.workers import run_tasks
 from radhar_cli.errors import UnfinishedError
-from radhar_cli.figures.colour import colour_table
 from radhar_cli.pipeline.validity import warnings
 
 LARGEST_BATCH = 32

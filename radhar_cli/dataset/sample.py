@@ -2,7 +2,7 @@
 
 from radhar_cli.pipeline.plan import Plan
 from radhar_cli.pipeline.run import run
-from radhar_cli.processing.image import MapImage
+from radhar_cli.processing.power_map import MapImage
 from radhar_cli.scene import Scene
 
 

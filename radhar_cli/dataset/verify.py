@@ -15,10 +15,10 @@ from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.identity import versions
 from radhar_cli.dataset.layout import DATASET, PNG, Rows, png_path
+from radhar_cli.dataset.png import colour_table, stored_levels
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.split import split_rows
 from radhar_cli.errors import FolderError
-from radhar_cli.figures.colour import colour_table
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.validity import draw_valid_scene
 from radhar_cli.process import prepare_process
@@ -154,10 +154,15 @@ def _pngs(file: h5py.File, config: Config, folder: Path, report: Report) -> None
             path = png_path(name, split[row], *rows[row])
             try:
                 with Image.open(folder / path) as picture:
-                    same = np.array_equal(np.asarray(picture), table[levels])
+                    there = stored_levels(picture)
+                    shown = np.asarray(picture.convert("RGB"))
             except OSError as error:
                 report.problems.append(f"{path}: cannot be read ({error})")
                 continue
             report.pngs += 1
-            if not same:
+            if (
+                there is None
+                or not np.array_equal(there, levels)
+                or not np.array_equal(shown, table[levels])
+            ):
                 report.problems.append(f"{path}: does not show /maps/{name}[{row}]")

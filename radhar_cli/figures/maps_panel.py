@@ -8,9 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
 
-from radhar_cli.arrays import Float
 from radhar_cli.figures.page import page
 from radhar_cli.pipeline.motion_paths import point_delay
+from radhar_cli.processing.image import decibels
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 from radhar_cli.simulation.simulate import Simulation
 
@@ -30,16 +30,6 @@ PLACES = (
     ("stft", "stft_denoised", "stft_compensated", "stft_compensated_denoised"),
     ("fsst", "fsst_denoised", "fsst_compensated", "fsst_compensated_denoised"),
 )
-
-
-def decibels(power: Float, dynamic_range_db: float) -> Float:
-    """dB below the largest power, clipped; everything at the floor for an all-zero map."""
-    largest = power.max(initial=0.0)
-    if largest == 0:
-        return np.full(power.shape, -dynamic_range_db)
-    floor = 10 ** (-dynamic_range_db / 10)
-    level: Float = 10 * np.log10(np.maximum(power / largest, floor))
-    return level
 
 
 def draw_map(axes: Axes, name: str, simulation: Simulation, overlay: bool) -> AxesImage:

@@ -8,14 +8,15 @@ map] -> sum over the kept bins -> [compensation] -> [denoising] -> STFT or FSST.
     <map>      PowerMap                              image:<map>  MapImage
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from math import ceil
-from typing import Any, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
 from radhar_cli.arrays import Complex, Float, Index
-from radhar_cli.config.schema import MAP_NAMES, MAX_TOLERANCE_DB, Config
+from radhar_cli.config.schema import MAX_TOLERANCE_DB, Config
 from radhar_cli.echo import cube
 from radhar_cli.echo.accuracy import AccuracyError
 from radhar_cli.echo.direct import Accuracy, DirectEcho
@@ -39,9 +40,8 @@ from radhar_cli.processing import fsst, stft
 from radhar_cli.processing.canceller import Canceller
 from radhar_cli.processing.denoising import savgol
 from radhar_cli.processing.doppler_compensation import compensate
-from radhar_cli.processing.frames import Frames
-from radhar_cli.processing.long_map import joined
-from radhar_cli.processing.power_map import Axis, PowerMap
+from radhar_cli.processing.image import levels, reduced, reduced_map
+from radhar_cli.processing.power_map import Axis, MapImage, PowerMap
 from radhar_cli.processing.range_compression import (
     half_band_signal,
     range_bins,
@@ -58,6 +58,7 @@ from radhar_cli.receiver.noise import WhiteNoise, noise_variance
 from radhar_cli.scene import Scene
 
 CHUNK = 2**18  # pulses at work at once, where each is on its own
+SINGLE_RANGE_DB = 80.0  # dynamic range of images up to which float32 is enough
 # In the order in which few are held at once: each follows the one it is made from.
 SIGNALS = ("signal", "signal_denoised", "signal_compensated", "signal_compensated_denoised")
 
@@ -282,64 +283,87 @@ def _signals(c: Config) -> Iterator[Product]:
 
 
 def _maps(c: Config) -> Iterator[Product]:
-    own_length, own_hop = c.processing.stft_fft_length, c.processing.fsst_hop_pulses
-    threshold = c.processing.fsst_threshold
+    range_db, size = c.image.dynamic_range_db, c.image.size_px
 
     def rtm(profiles: RangeProfiles, w: Waveform, canceller: Canceller) -> PowerMap:
         time = Axis("time", "s", (profiles.pulses + canceller.delay) / w.prf)
         return PowerMap(range_power(profiles.bins), Axis("range", "m", w.range_axis()), time)
 
-    def spectra(x: Signal, frames: Frames) -> Spectra:
-        return stft.spectra(x.x, frames)
+    def rtm_image(found: PowerMap) -> MapImage:
+        small = reduced_map(found.power, size)
+        return MapImage(levels(small.power, range_db), small.entropy, found.extent)
 
-    def padded(x: Signal, frames: Frames) -> Spectra:
-        return stft.spectra(x.x, frames, own_length)
-
-    def stft_map(x: Signal, found: Spectra, frames: Frames) -> PowerMap:
-        return _doppler_map(c, x, found, frames, map(stft.power_map, found), own_length)
-
-    def fsst_map(x: Signal, found: Spectra, frames: Frames) -> PowerMap:
-        blocks = fsst.power_blocks(x.x, found, frames, threshold)
-        return _doppler_map(c, x, found, frames, blocks, None)
-
-    yield Product(
-        "frames", ("waveform",), lambda w: frames_of(c, w.duration, w.prf), "window and hop"
-    )
+    needs = ("range_profiles", "waveform", "canceller")
+    yield Product("rtm", needs, rtm, "power of the range profiles")
+    yield Product("image:rtm", ("rtm",), rtm_image, "its image and entropy")
+    yield Product("frames", ("waveform",), lambda w: frames_of(c, w.duration, w.prf), "of the STFT")
     yield Product(
         "fsst_frames", ("waveform",), lambda w: fsst_frames_of(c, w.duration, w.prf), "of the FSST"
     )
-    yield Product(
-        "rtm", ("range_profiles", "waveform", "canceller"), rtm, "power of the range profiles"
-    )
     for signal in SIGNALS:
-        suffix = signal.removeprefix("signal")
-        shared, of_fsst = f"spectra{suffix}", f"fsst_spectra{suffix}"
-        of_stft = f"padded_spectra{suffix}" if own_length else shared
-        does = "windowed FFT of every frame"
-        yield Product(shared, (signal, "frames"), spectra, does)
-        yield Product(of_stft, (signal, "frames"), padded if own_length else spectra, does)
-        yield Product(of_fsst, (signal, "fsst_frames"), spectra, f"{does} of the FSST")
-        yield Product(f"stft{suffix}", (signal, of_stft, "frames"), stft_map, "power of the STFT")
-        yield Product(
-            f"fsst{suffix}",
-            (signal, of_fsst, "fsst_frames") if own_hop else (signal, shared, "frames"),
-            fsst_map,
+        yield from _doppler_maps(c, signal)
+
+
+def _doppler_maps(c: Config, signal: str) -> Iterator[Product]:
+    """STFT and FSST of a signal, whole in double precision, and their images."""
+    suffix = signal.removeprefix("signal")
+    own_length, own_hop = c.processing.stft_fft_length, c.processing.fsst_hop_pulses
+    single = c.engine.precision == "auto" and c.image.dynamic_range_db <= SINGLE_RANGE_DB
+    made: dict[str, tuple[str, str]] = {}
+    for form, is_single in {"": False, ("image_" if single else ""): single}.items():
+
+        def spectra(length: int | None, is_single: bool = is_single) -> Callable[..., Spectra]:
+            return lambda x, frames: Spectra(x.x, frames, length or frames.length, is_single)
+
+        shared = f"{form}spectra{suffix}"
+        of_stft = f"{form}padded_spectra{suffix}" if own_length else shared
+        of_fsst = f"{form}fsst_spectra{suffix}" if own_hop else shared
+        does = "windowed FFT of every frame" + (", in float32" if is_single else "")
+        yield Product(shared, (signal, "frames"), spectra(None), does)
+        if own_length:
+            yield Product(of_stft, (signal, "frames"), spectra(own_length), does)
+        if own_hop:
+            yield Product(of_fsst, (signal, "fsst_frames"), spectra(None), does)
+        made[form] = of_stft, of_fsst
+    image_form = "image_" if single else ""
+    for kind, blocks, whole, image, does in (
+        ("stft", stft.power_blocks, made[""][0], made[image_form][0], "power of the STFT"),
+        (
+            "fsst",
+            lambda found: fsst.power_blocks(found, c.processing.fsst_threshold),
+            made[""][1],
+            made[image_form][1],
             "second transform, synchrosqueezing, power",
-        )
-    for name in MAP_NAMES:
+        ),
+    ):
+        name = f"{kind}{suffix}"
+        yield Product(name, (signal, whole), partial(_doppler_map, blocks), does)
         yield Product(
             f"image:{name}",
-            (name,),
-            lambda found: found.image(c.image.size_px, c.image.dynamic_range_db),
-            "entropy, resize, decibels, grey levels",
+            (signal, image),
+            partial(_doppler_image, c, blocks),
+            f"{does}, its image and entropy",
         )
 
 
-def _doppler_map(
-    c: Config, x: Signal, found: Spectra, frames: Frames, blocks: Any, length: int | None
-) -> PowerMap:
-    count = frames.count(x.x.size)
-    power = joined(blocks, count)
-    frequency = np.fft.fftshift(np.fft.fftfreq(length or frames.length, 1 / x.prf))
+Blocks: TypeAlias = Callable[[Spectra], Iterator[Float]]
+
+
+def _doppler_map(blocks: Blocks, x: Signal, spectra: Spectra) -> PowerMap:
+    power = np.concatenate(list(blocks(spectra)), dtype=float)
+    np.ldexp(power, 2 * spectra.exponent, out=power)
+    return PowerMap(power.T, *_doppler_axes(x, spectra))
+
+
+def _doppler_image(c: Config, blocks: Blocks, x: Signal, spectra: Spectra) -> MapImage:
+    rows, columns = _doppler_axes(x, spectra)
+    small = reduced(blocks(spectra), spectra.count, c.image.size_px)
+    grey = levels(small.power, c.image.dynamic_range_db)
+    return MapImage(grey, small.entropy, (*columns.edges, *rows.edges))
+
+
+def _doppler_axes(x: Signal, spectra: Spectra) -> tuple[Axis, Axis]:
+    frames = spectra.frames
+    frequency = np.fft.fftshift(np.fft.fftfreq(spectra.bins, 1 / x.prf))
     centres = x.times(frames.starts(x.x.size) + (frames.length - 1) / 2)
-    return PowerMap(power, Axis("frequency", "Hz", frequency), Axis("time", "s", centres))
+    return Axis("frequency", "Hz", frequency), Axis("time", "s", centres)

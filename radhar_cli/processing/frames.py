@@ -1,15 +1,14 @@
 """The window and the frames that STFT and FSST share."""
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.rounding import exact, half_up
 
-# Coefficients at work at once: 16 MiB as complex numbers, some 200 MiB in the synchrosqueezing.
-# The paper's 90 frames of 2000 are a sixth of it.
+# Coefficients of a block of frames: 8 MiB in complex64. The paper's 90 frames of 2000 are a sixth.
 BLOCK_COEFFICIENTS = 2**20
 
 
@@ -27,7 +26,7 @@ class Frames:
         """L = round(window_fraction T PRF), hop = round((1 - overlap_fraction) L), at least 1."""
         length = half_up(window_fraction, duration, prf)
         hop = int((1 - exact(overlap_fraction)) * length + exact(0.5))
-        return cls(length, max(hop, 1))
+        return frames_of(length, max(hop, 1))
 
     def count(self, samples: int) -> int:
         """Number of whole frames in a signal."""
@@ -65,3 +64,9 @@ class Frames:
     def cut(self, x: Complex) -> Complex:
         """Frames [count, L] of a signal [M], a view."""
         return np.lib.stride_tricks.sliding_window_view(x, self.length)[:: self.hop]
+
+
+@lru_cache(maxsize=4)
+def frames_of(length: int, hop: int) -> Frames:
+    """`Frames`, whose windows are worked out once for many recordings."""
+    return Frames(length, hop)

@@ -3,76 +3,58 @@
 from collections.abc import Iterator
 
 import numpy as np
-import scipy.fft
 
 from radhar_cli.arrays import Complex, Float
-from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.stft import Spectra
 
 
-def synchrosqueeze(
-    x: Complex, v: Complex, frames: Frames, threshold: float, largest: float | None = None
-) -> Complex:
+def synchrosqueeze(v: Complex, slope: Complex, least: float) -> tuple[Float, Float]:
     """T[l, k]: V[l, k] added up at bin k + round(Im(-V'/V) L/(2 pi)) modulo L.
 
-    V' is the transform with the window's slope. Coefficients below `threshold` times the map's
-    largest |V|, and those exactly zero, are dropped. V and T have their phase referenced to
-    sample L//2 of the frame, so that with threshold 0 sum_k T = L g[L//2] x[l hop + L//2].
+    V' is the transform with the window's slope. Both have their phase referenced to sample L//2
+    of the frame, so that sum_k T = L g[L//2] x[l hop + L//2] where nothing is dropped.
 
     Args:
-        x: slow-time signal [M].
-        v: its `spectrum` [frames, L] over the same frames.
-        frames: window length and hop.
-        threshold: relative to the largest |V|.
-        largest: |V| of the whole map, where v is a part of it.
+        v, slope: V and V' [frames, L].
+        least: coefficients below this magnitude are dropped, and those whose square is zero.
 
     Returns:
-        [frames, L].
+        Real and imaginary part of T, each [frames, L] in float64.
     """
-    length = frames.length
-    slope = scipy.fft.fft(frames.cut(x) * frames.window_slope, axis=1, overwrite_x=True)
-    magnitude = np.abs(v)
-    if largest is None:
-        largest = magnitude.max(initial=0.0)
-    row, k = np.nonzero((magnitude >= threshold * largest) & (magnitude > 0))
-    kept = v[row, k]
-    with np.errstate(over="ignore", invalid="ignore"):  # V may be denormal where V' is not
-        shift = np.imag(-slope[row, k] / kept) * (length / (2 * np.pi))
-    shift[~np.isfinite(shift)] = 0
-    # A shift is only needed modulo L; reduced before the cast, it cannot overflow an integer.
-    target = row * length + (k + np.mod(np.floor(shift + 0.5), length).astype(np.intp)) % length
-    centred = kept * np.exp(2j * np.pi * ((k * (length // 2)) % length) / length)
-    size = v.shape[0] * length
-    squeezed = np.empty(size, dtype=complex)
-    squeezed.real = np.bincount(target, weights=centred.real, minlength=size)
-    squeezed.imag = np.bincount(target, weights=centred.imag, minlength=size)
-    return squeezed.reshape(v.shape)
+    length = v.shape[1]
+    power = np.abs(v).ravel()
+    power *= power
+    kept = np.flatnonzero(power >= max(least**2, float(np.finfo(power.dtype).tiny)))
+    a, b = v.ravel()[kept], slope.ravel()[kept]
+    # Im(-V'/V) = Im(V conj V')/|V|^2
+    shift = b.real * a.imag
+    shift -= b.imag * a.real
+    shift /= power[kept]
+    shift *= length / (2 * np.pi)
+    shift += 0.5
+    np.floor(shift, out=shift)
+    row = kept // length * length
+    k = shift.astype(np.intp)
+    k += kept - row
+    k -= k // length * length
+    k += row
+    real = np.bincount(k, a.real, minlength=v.size).reshape(v.shape)
+    imag = np.bincount(k, a.imag, minlength=v.size).reshape(v.shape)
+    return real.astype(float, copy=False), imag.astype(float, copy=False)
 
 
-def power_blocks(x: Complex, spectra: Spectra, frames: Frames, threshold: float) -> Iterator[Float]:
-    """Power maps [frequency, frames] of consecutive blocks of frames.
-
-    The threshold refers to the whole map: more than one block takes a first pass for its largest
-    coefficient, unless the threshold is 0.
+def power_blocks(spectra: Spectra, threshold: float) -> Iterator[Float]:
+    """|T|^2 [some frames, frequency], laid out as the map of the STFT.
 
     Args:
-        x: slow-time signal [M].
-        spectra: over the same frames, of length L.
-        frames: window length and hop.
-        threshold: relative to the largest |V|.
+        spectra: of the signal, with N = L.
+        threshold: coefficients below it times the largest |V| of the whole map are dropped.
     """
-    largest: float | None = None
-    if len(spectra) > 1:
-        largest = max(float(np.abs(v).max()) for v in spectra) if threshold > 0 else 0.0
-    first = 0
-    for v in spectra:
-        span = frames.span(slice(first, first + len(v)))
-        yield power_map(synchrosqueeze(x[span], v, frames, threshold, largest))
-        first += len(v)
-
-
-def power_map(squeezed: Complex) -> Float:
-    """|T|^2 [frequency, time], laid out as the map of the STFT."""
-    power = squeezed.real**2
-    power += squeezed.imag**2
-    return np.fft.fftshift(power, axes=1).T
+    least = threshold * max(float(np.abs(v).max()) for v in spectra) if threshold else 0.0
+    for block, v in zip(spectra.blocks, spectra, strict=True):
+        slope = spectra.transform(block, spectra.frames.window_slope)
+        power, imag = synchrosqueeze(v, slope, least)
+        power *= power
+        imag *= imag
+        power += imag
+        yield np.fft.fftshift(power.astype(v.real.dtype), axes=1)

@@ -1,118 +1,121 @@
 """Power map -> grey levels: resize the linear power, then decibels (docs/model.md, Image)."""
 
-import hashlib
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from functools import lru_cache
+from math import ceil, floor
+from typing import Any, NamedTuple
 
 import numpy as np
-from PIL import Image
 
 from radhar_cli.arrays import Float, Levels
+from radhar_cli.processing.entropy import EntropySum, largest_power
+
+BAND = 64  # rows or columns of a map that are weighed at once, and as many as overlap
 
 
-@dataclass(frozen=True)
-class MapImage:
-    """The image of a map.
+class Reduced(NamedTuple):
+    """What a data set needs of a power map.
 
     Attributes:
-        levels: grey levels [height, width], row 0 at the top.
-        entropy: of the power map, bits.
-        extent: outer edges of the map (columns from, columns to, rows from, rows to).
+        power: resized [height, width] in float32, row 0 the highest frequency or the farthest
+            range, in the scale of the map.
+        entropy: of the map, bits.
     """
 
-    levels: Levels
+    power: Float
     entropy: float
-    extent: tuple[float, float, float, float]
-
-    @property
-    def sha256(self) -> str:
-        """Checksum of the levels, row by row, in hex."""
-        return hashlib.sha256(self.levels.tobytes()).hexdigest()
 
 
-AT_ONCE = 2**20  # weights, or pixels of columns reduced in height
+def reduced(blocks: Iterable[Float], columns: int, size: tuple[int, int]) -> Reduced:
+    """Resize a power map that comes in blocks of columns, and sum up its entropy.
 
+    Resizing is Pillow's BILINEAR with antialiasing, a weighted sum over rows and then columns.
 
-def levels(power: Float, size: tuple[int, int], dynamic_range_db: float) -> Levels:
-    """Levels 0 to 255 [height, width] of a power map [frequency or range, time].
-
-    The linear power is resized (Pillow, mode F, BILINEAR with antialiasing), divided by the new
-    maximum, turned into dB, clipped to [-dynamic_range_db, 0] and scaled to 0..255. Row 0 is the
-    top: the highest Doppler, the farthest range. An all-zero map is level 0 everywhere.
+    Args:
+        blocks: power [some columns, rows], the lowest row first, in the order of time; of a scale
+            near 1.
+        columns: of all blocks together.
+        size: (height, width), pixels.
 
     Raises:
         ValueError: the map has an infinity or a NaN.
     """
     height, width = size
-    largest = float(power.max(initial=0.0))
-    if largest == 0:
-        return np.zeros(size, np.uint8)
-    if not np.isfinite(largest):
-        raise ValueError(f"the power map should be finite; its largest value is {largest}")
+    power, entropy, first = np.zeros(size, np.float32), EntropySum(), 0
+    for block in blocks:
+        entropy.add(block)
+        low = np.zeros((len(block), height), block.dtype)
+        for rows, pixels, weights in _bands(0, block.shape[1], block.shape[1], height, low.dtype):
+            low[:, pixels] += block[:, rows] @ weights
+        for some, pixels, weights in _bands(first, len(block), columns, width, low.dtype):
+            power[:, pixels] += low[some].T @ weights
+        first += len(block)
+    if not np.isfinite(entropy.total):
+        raise ValueError(f"the power map should be finite; it adds up to {entropy.total}")
+    return Reduced(power[::-1], entropy.bits)
+
+
+def reduced_map(power: Float, size: tuple[int, int]) -> Reduced:
+    """`reduced` of a whole map [frequency or range, time] of any scale."""
     # A power of two brings any map into the range of float32 without changing a digit.
-    scaled = np.ldexp(power[::-1], -int(np.frexp(largest)[1]))
-    resized = _resized(scaled, height, width)
-    return _grey(resized, dynamic_range_db)
+    exponent = int(np.frexp(largest_power(power))[1])
+    return reduced([np.ldexp(power.T, -exponent)], power.shape[1], size)
 
 
-class ColumnSum:
-    """The resized power of a map that comes in blocks of columns, to float32 rounding.
+def levels(power: Float, dynamic_range_db: float) -> Levels:
+    """Levels 0 to 255 of resized power: from -dynamic_range_db below the largest, rounded.
 
-    Pillow reduces the columns of a block in height. In width they are summed up with the weights
-    of the same triangle, so that no more than the image is held. Powers refer to 2^e, e that of
-    the largest so far.
+    A map of zeros is level 0 everywhere.
     """
-
-    def __init__(self, size: tuple[int, int], columns: int) -> None:
-        self._size, self._columns = size, columns
-        self._seen, self._exponent = 0, 0
-        self._sum = np.zeros(size)
-        self._weight = np.zeros(size[1])
-
-    def add(self, power: Float) -> None:
-        """Take in the next columns [frequency, columns]."""
-        most = max(1, AT_ONCE // max(self._size))
-        for first in range(0, power.shape[1], most):
-            self._add(power[:, first : first + most])
-
-    def _add(self, power: Float) -> None:
-        weights = self._triangle(power.shape[1])
-        self._seen += power.shape[1]
-        self._weight += weights.sum(axis=0)
-        largest = float(power.max(initial=0.0))
-        if largest == 0:
-            return
-        exponent = int(np.frexp(largest)[1])
-        narrow = _resized(np.ldexp(power[::-1], -exponent), self._size[0], power.shape[1])
-        highest = max(exponent, self._exponent) if self._sum.any() else exponent
-        self._sum = np.ldexp(self._sum, self._exponent - highest)
-        self._sum += np.ldexp(narrow.astype(float), exponent - highest) @ weights
-        self._exponent = highest
-
-    def levels(self, dynamic_range_db: float) -> Levels:
-        """`levels` of all columns together."""
-        if not self._sum.any():
-            return np.zeros(self._size, np.uint8)
-        return _grey((self._sum / self._weight).astype(np.float32), dynamic_range_db)
-
-    def _triangle(self, count: int) -> Float:
-        """Weights [count, width] of the next columns, before they are normalised."""
-        scale = self._columns / self._size[1]
-        centre = (np.arange(self._size[1]) + 0.5) * scale
-        at = self._seen + np.arange(count)[:, None] + 0.5
-        weights: Float = np.maximum(0.0, 1 - np.abs(at - centre) / max(scale, 1.0))
-        return weights
+    if not power.any():
+        return np.zeros(power.shape, np.uint8)
+    grey = decibels(power, dynamic_range_db)
+    grey *= 255 / max(dynamic_range_db, 1e-30)
+    grey += 255.5
+    return grey.astype(np.uint8)
 
 
-def _resized(power: Float, height: int, width: int) -> Float:
-    """Pillow, mode F, BILINEAR with antialiasing: [height, width] in float32."""
-    picture = Image.fromarray(np.ascontiguousarray(power, dtype=np.float32))
-    return np.asarray(picture.resize((width, height), Image.Resampling.BILINEAR))
+def decibels(power: Float, dynamic_range_db: float) -> Float:
+    """10 log10(P/max P), at least -dynamic_range_db, and that everywhere for a map of zeros."""
+    largest = largest_power(power)
+    if largest == 0:
+        return np.full_like(power, -dynamic_range_db)
+    level = power / largest
+    np.maximum(level, 10 ** (-dynamic_range_db / 10), out=level)
+    np.log10(level, out=level)
+    level *= 10
+    return level
 
 
-def _grey(resized: Float, dynamic_range_db: float) -> Levels:
-    """Resized power -> decibels below its maximum -> levels."""
-    floor = 10 ** (-dynamic_range_db / 10)
-    relative = np.maximum(resized / resized.max(), np.float32(floor)).astype(float)
-    decibels = np.clip(10 * np.log10(relative), -dynamic_range_db, 0)
-    grey: Levels = np.floor((decibels / dynamic_range_db + 1) * 255 + 0.5).astype(np.uint8)
-    return grey
+def _bands(
+    first: int, count: int, inputs: int, outputs: int, dtype: np.dtype[Any]
+) -> Iterator[tuple[slice, slice, Float]]:
+    """Resizing `inputs` to `outputs`, for inputs from `first` on: y[pixels] += x[some] @ weights.
+
+    Every weight reaches but a few outputs: in bands there is little to multiply with zero.
+    """
+    step = BAND + 4 * ceil(inputs / outputs)
+    for start in range(0, count, step):
+        stop = min(start + step, count)
+        pixels, weights = _triangles(first + start, first + stop, inputs, outputs, dtype)
+        yield slice(start, stop), pixels, weights
+
+
+@lru_cache(maxsize=256)
+def _triangles(
+    start: int, stop: int, inputs: int, outputs: int, dtype: np.dtype[Any]
+) -> tuple[slice, Float]:
+    """(outputs that inputs start .. stop - 1 reach, weights [stop - start, those outputs]).
+
+    Output j is the mean of the inputs under a triangle around (j + 1/2) s, s = inputs/outputs,
+    whose half width is s or 1, the larger.
+    """
+    scale = inputs / outputs
+    reach = max(scale, 1.0)
+    low = max(floor((start - reach) / scale - 0.5), 0)
+    high = min(ceil((stop + reach) / scale + 0.5), outputs)
+    centre = (np.arange(low, high) + 0.5) * scale
+    first, last = max(floor(centre[0] - reach), 0), min(ceil(centre[-1] + reach), inputs)
+    weights = np.maximum(0, 1 - np.abs(np.arange(first, last)[:, None] + 0.5 - centre) / reach)
+    weights /= weights.sum(axis=0)
+    return slice(low, high), weights[start - first : stop - first].astype(dtype)

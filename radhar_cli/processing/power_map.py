@@ -1,10 +1,10 @@
-"""A power map with its axes."""
+"""A power map with its axes, and its image."""
 
+import hashlib
 from dataclasses import dataclass
 
-from radhar_cli.arrays import Float
+from radhar_cli.arrays import Float, Levels
 from radhar_cli.processing.entropy import entropy_bits
-from radhar_cli.processing.image import MapImage, levels
 
 
 @dataclass(frozen=True)
@@ -42,16 +42,31 @@ class PowerMap:
     columns: Axis
 
     @property
-    def extent(self) -> tuple[float, float, float, float]:
-        """Outer edges (columns from, columns to, rows from, rows to)."""
-        return (*self.columns.edges, *self.rows.edges)
-
-    @property
     def entropy(self) -> float:
         """Of the power, bits."""
         return entropy_bits(self.power)
 
-    def image(self, size: tuple[int, int], dynamic_range_db: float) -> MapImage:
-        """Image and entropy of the map."""
-        grey = levels(self.power, size, dynamic_range_db)
-        return MapImage(grey, self.entropy, self.extent)
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """Outer edges (columns from, columns to, rows from, rows to)."""
+        return (*self.columns.edges, *self.rows.edges)
+
+
+@dataclass(frozen=True)
+class MapImage:
+    """The image of a map.
+
+    Attributes:
+        levels: grey levels [height, width], row 0 at the top.
+        entropy: of the power map, bits.
+        extent: outer edges of the map (columns from, columns to, rows from, rows to).
+    """
+
+    levels: Levels
+    entropy: float
+    extent: tuple[float, float, float, float]
+
+    @property
+    def sha256(self) -> str:
+        """Checksum of the levels, row by row, in hex."""
+        return hashlib.sha256(self.levels.tobytes()).hexdigest()

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeAlias
+from typing import Any
 
 import numpy as np
 import scipy.fft
@@ -12,59 +12,72 @@ from radhar_cli.arrays import Complex, Float
 from radhar_cli.processing.frames import Frames
 
 
-def spectrum(x: Complex, frames: Frames, fft_length: int | None = None) -> Complex:
-    """X[l, k] = sum_n x[l hop + n] g[n] exp(-j 2 pi k n/N), k = 0 .. N - 1.
-
-    Args:
-        x: slow-time signal [M].
-        frames: window length and hop.
-        fft_length: N, at least L; L unless given.
-
-    Returns:
-        [frames, N].
-    """
-    windowed = frames.cut(x) * frames.window
-    return scipy.fft.fft(windowed, fft_length or frames.length, axis=1, overwrite_x=True)
-
-
 @dataclass(frozen=True, eq=False)
-class LongSpectra:
-    """Spectra too long to hold: every iteration makes the blocks [frames, N] anew, in order.
+class Spectra:
+    """X[l, k] = sum_n x[l hop + n] g[n] exp(-j 2 pi k (n - L//2)/N), in blocks of frames.
+
+    Iterating yields the blocks [some frames, N]. A recording of one block keeps it; those of a
+    longer one are computed anew in every pass. Coefficients are those of 2^-exponent x, whose
+    largest part is 1/2 to 1, so that no power of them overflows or vanishes, in float32 either.
 
     Attributes:
         x: slow-time signal [M].
-        frames: window length and hop.
+        frames: window length L and hop.
         bins: N, at least L.
+        single: whether coefficients are complex64; complex128 otherwise.
     """
 
     x: Complex
     frames: Frames
     bins: int
+    single: bool = False
+
+    @cached_property
+    def exponent(self) -> int:
+        """Binary exponent of the largest real or imaginary part of x."""
+        parts = self.x.real, self.x.imag
+        largest = max(abs(float(f(part))) for part in parts for f in (np.min, np.max))
+        # 2^-exponent must be a double itself; denormal signals keep their digits at 2^1022.
+        return max(int(np.frexp(largest)[1]), -1022)
+
+    @property
+    def count(self) -> int:
+        """Number of frames."""
+        return self.frames.count(self.x.size)
 
     @cached_property
     def blocks(self) -> list[slice]:
         """Frames of every block."""
         return self.frames.blocks(self.x.size, self.bins)
 
-    def __len__(self) -> int:
-        return len(self.blocks)
+    def transform(self, block: slice, window: Float) -> Complex:
+        """The sum above with another window [L], over a slice of frames."""
+        part: Complex = self.x[self.frames.span(block)] * 2.0**-self.exponent
+        dtype: Any = np.complex64 if self.single else np.complex128
+        cut = self.frames.cut(part.astype(dtype))
+        g = window.astype(cut.real.dtype)
+        middle = self.frames.length // 2
+        # Sample L//2 comes first: that refers the phase to it.
+        framed = np.zeros((len(cut), self.bins), dtype)
+        np.multiply(cut[:, middle:], g[middle:], out=framed[:, : g.size - middle])
+        np.multiply(cut[:, :middle], g[:middle], out=framed[:, self.bins - middle :])
+        return np.asarray(scipy.fft.fft(framed, axis=1, overwrite_x=True))
+
+    @cached_property
+    def _only(self) -> Complex:
+        return self.transform(self.blocks[0], self.frames.window)
 
     def __iter__(self) -> Iterator[Complex]:
+        if len(self.blocks) == 1:
+            yield self._only
+            return
         for block in self.blocks:
-            yield spectrum(self.x[self.frames.span(block)], self.frames, self.bins)
+            yield self.transform(block, self.frames.window)
 
 
-Spectra: TypeAlias = tuple[Complex] | LongSpectra
-
-
-def spectra(x: Complex, frames: Frames, fft_length: int | None = None) -> Spectra:
-    """`spectrum` in blocks of frames: of an ordinary recording one, which is held."""
-    long = LongSpectra(x, frames, fft_length or frames.length)
-    return long if len(long) > 1 else (spectrum(x, frames, fft_length),)
-
-
-def power_map(spectra: Complex) -> Float:
-    """|X|^2 [frequency, time] with the lowest frequency first and zero Doppler in the middle."""
-    power = spectra.real**2
-    power += spectra.imag**2
-    return np.fft.fftshift(power, axes=1).T
+def power_blocks(spectra: Spectra) -> Iterator[Float]:
+    """|X|^2 [some frames, frequency], the lowest frequency first, zero Doppler in the middle."""
+    for x in spectra:
+        power = np.abs(x)
+        power *= power
+        yield np.fft.fftshift(power, axes=1)

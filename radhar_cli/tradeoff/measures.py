@@ -7,6 +7,7 @@ import numpy as np
 from PIL import Image
 
 from radhar_cli.arrays import Complex, Float, Levels
+from radhar_cli.processing.image import decibels
 
 SSIM_WINDOW = 7
 
@@ -26,20 +27,12 @@ def map_error_db(found: Float, right: Float, dynamic_range_db: float) -> tuple[f
     Both are referred to their own maximum and cut at the dynamic range; cells that are at the floor
     in both do not count.
     """
-    one, other = (_displayed(power, dynamic_range_db) for power in (found, right))
+    one, other = (decibels(power, dynamic_range_db) for power in (found, right))
     seen = (one > -dynamic_range_db) | (other > -dynamic_range_db)
     difference = (one - other)[seen]
     if difference.size == 0:
         return 0.0, 0.0
     return float(np.sqrt(np.mean(difference**2))), float(np.abs(difference).max())
-
-
-def _displayed(power: Float, dynamic_range_db: float) -> Float:
-    largest = float(power.max(initial=0.0))
-    if largest == 0:
-        return np.full(power.shape, -dynamic_range_db)
-    decibels: Float = 10 * np.log10(np.maximum(power / largest, 10 ** (-dynamic_range_db / 10)))
-    return decibels
 
 
 def image_scores(found: Levels, right: Levels) -> dict[str, float | None]:

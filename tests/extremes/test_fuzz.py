@@ -73,8 +73,12 @@ def assert_finite(recording: Recording) -> None:
         assert power.size
         assert np.isfinite(power).all()
         assert power.min() >= 0
-        assert entropy <= math.log2(power.size) + 1e-9
-        assert (levels.max() == 255) == bool(power.any())
+        assert entropy <= math.log2(power.size) + 1e-5  # images are made in float32
+        # In physical units the square of an echo below 1e-162 vanishes; its image does not.
+        if power.any():
+            assert levels.max() == 255
+        elif levels.any():
+            assert recording.products["paths"](np.zeros(1)).amplitude.max() < 1e-150
 
 
 def assert_clear(error: RadharError) -> list[str]:

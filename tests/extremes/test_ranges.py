@@ -227,9 +227,9 @@ class TestFewPulses:
         assert x.size == 99
         assert all(products[name].shape == (99, 1) for name in names)
         right = ref.stft(x, 99, 1)
-        assert products["stft"] == pytest.approx(right, rel=1e-9, abs=1e-9 * right.max())
+        assert products["stft"] == pytest.approx(right, rel=1e-5, abs=1e-6 * right.max())
         squeezed = np.fft.fftshift(np.abs(ref.fsst(x, 99, 1, 1e-3)) ** 2, axes=0)
-        assert products["fsst"] == pytest.approx(squeezed, rel=1e-6, abs=1e-9 * squeezed.max())
+        assert products["fsst"] == pytest.approx(squeezed, rel=1e-5, abs=1e-6 * squeezed.max())
         for name in MAP_NAMES:
             assert products[f"levels:{name}"].max() == 255
             assert 0 < products[f"entropy:{name}"] <= np.log2(products[name].size)

@@ -81,10 +81,13 @@ def maps_of(beat: np.ndarray, config: Config) -> dict[str, np.ndarray]:
         "_compensated_denoised": savgol(still, order, frame),
     }
     for suffix, signal in signals.items():
-        v = stft.spectrum(signal, frames)
-        maps[f"stft{suffix}"] = stft.power_map(v)
-        squeezed = fsst.synchrosqueeze(signal, v, frames, processing.fsst_threshold)
-        maps[f"fsst{suffix}"] = fsst.power_map(squeezed)
+        spectra = stft.Spectra(signal, frames, frames.length)
+        blocks = {
+            "stft": stft.power_blocks(spectra),
+            "fsst": fsst.power_blocks(spectra, processing.fsst_threshold),
+        }
+        for kind, (power,) in blocks.items():
+            maps[f"{kind}{suffix}"] = np.ldexp(power.T, 2 * spectra.exponent)
     return maps
 
 

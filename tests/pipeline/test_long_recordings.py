@@ -15,7 +15,6 @@ from radhar_cli.pipeline import run as run_module
 from radhar_cli.pipeline import survey as survey_module
 from radhar_cli.pipeline.plan import KEPT, plan, plan_images
 from radhar_cli.pipeline.run import Recording, run
-from radhar_cli.processing import denoising, doppler_compensation
 from radhar_cli.processing import frames as frames_module
 from radhar_cli.scene import Scene, draw_scene
 
@@ -45,14 +44,13 @@ def test_blocks_and_chunks_change_nothing(monkeypatch, engine, processing):
     document = SMALL | {"engine": {"kind": engine}, "processing": processing}
     images, whole = recorded(document).products, recorded(document, *MAP_NAMES).products
     monkeypatch.setattr(frames_module, "BLOCK_COEFFICIENTS", 7 * 50)
-    for module in (run_module, denoising, doppler_compensation):
-        monkeypatch.setattr(module, "CHUNK", 37)
+    monkeypatch.setattr(run_module, "CHUNK", 37)
     blocked, parts = recorded(document).products, recorded(document, *MAP_NAMES).products
     for name in MAP_NAMES:
         assert parts[name].shape == whole[name].shape
         assert np.abs(parts[name] - whole[name]).max() < 1e-12 * whole[name].max()
         entropy = images[f"entropy:{name}"]
-        assert blocked[f"entropy:{name}"] == pytest.approx(entropy, rel=1e-12)
+        assert blocked[f"entropy:{name}"] == pytest.approx(entropy, rel=1e-6)
         right, found = (p[f"levels:{name}"].astype(int) for p in (images, blocked))
         assert np.abs(found - right).max() <= 1
         assert np.mean(found != right) <= FLIPS

@@ -2,10 +2,17 @@
 
 import numpy as np
 import pytest
+from PIL import Image
 
-from radhar_cli.processing.image import levels
+from radhar_cli.processing import image
+from radhar_cli.processing.image import decibels, reduced
 
 RANGE_DB = 50.0
+
+
+def levels(power: np.ndarray, size: tuple[int, int], dynamic_range_db: float) -> np.ndarray:
+    """Levels [H, W] of a whole map."""
+    return image.levels(image.reduced_map(power, size).power, dynamic_range_db)
 
 
 def random_map(shape: tuple[int, int]) -> np.ndarray:
@@ -107,3 +114,29 @@ def test_the_map_is_left_alone_whatever_its_layout():
     plain = levels(power, (16, 16), RANGE_DB)
     assert np.array_equal(levels(np.asfortranarray(power), (16, 16), RANGE_DB), plain)
     assert np.array_equal(power, kept)
+
+
+@pytest.mark.parametrize("size", [(256, 256), (64, 300), (300, 16), (7, 5)])
+@pytest.mark.parametrize("shape", [(2000, 90), (51, 700), (101, 20), (3, 2), (1, 1), (256, 256)])
+def test_resizing_is_pillows(shape, size):
+    """BILINEAR with antialiasing: the definition that docs/model.md gives."""
+    power = np.random.default_rng(0).exponential(size=shape)
+    picture = Image.fromarray(power[::-1].astype(np.float32))
+    right = np.asarray(picture.resize(size[::-1], Image.Resampling.BILINEAR))
+    for dtype, rounding in ((np.float64, 2e-7), (np.float32, 1e-6)):
+        found = reduced([power.T.astype(dtype)], shape[1], size).power
+        assert np.abs(found / right - 1).max() < rounding
+
+
+def test_bands_do_not_matter(monkeypatch):
+    power = np.random.default_rng(0).exponential(size=(700, 300))
+    right = reduced([power.T], 300, (64, 64)).power
+    monkeypatch.setattr(image, "BAND", 5)
+    assert reduced([power.T], 300, (64, 64)).power == pytest.approx(right, rel=1e-6)
+
+
+def test_decibels_below_the_largest():
+    power = np.array([[1e-3, 2e-3], [0.0, 2e-9]])
+    right = [[-10 * np.log10(2), 0], [-50, -50]]
+    assert decibels(power, 50.0) == pytest.approx(np.array(right), abs=1e-12)
+    assert np.array_equal(decibels(np.zeros((2, 3)), 40.0), np.full((2, 3), -40.0))

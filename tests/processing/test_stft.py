@@ -15,7 +15,10 @@ def random_signal(length: int) -> np.ndarray:
 
 
 def power(x: np.ndarray, frames: Frames, fft_length: int | None = None) -> np.ndarray:
-    return stft.power_map(stft.spectrum(x, frames, fft_length))
+    """|X|^2 [frequency, frames]."""
+    spectra = stft.Spectra(x, frames, fft_length or frames.length)
+    (block,) = stft.power_blocks(spectra)
+    return np.ldexp(block.T, 2 * spectra.exponent)
 
 
 @frame_sizes

@@ -176,7 +176,7 @@ def loose_images(files: Sequence[Path], size: tuple[int, int], kind: str) -> Ima
 def our_table(inside: Path) -> Levels | None:
     """The colour table of the data set that an image lies in, None if it is not one of ours."""
     from radhar_cli.config import load_config
-    from radhar_cli.figures.colour import colour_table
+    from radhar_cli.dataset.png import colour_table
 
     found = _our_png_folder(inside)
     if found is None:

@@ -9,9 +9,9 @@ import numpy as np
 
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.arrays import Levels
+from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.errors import FolderError
-from radhar_cli.figures.colour import colour_table
 from radhar_cli.learning.images.image_set import ImageSet, class_order, first_of_colour, repeated
 
 _WHO_AND_HOW = ("subject.", "motion.", "timing.")

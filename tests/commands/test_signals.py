@@ -6,7 +6,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -71,24 +71,30 @@ def test_tradeoff_says_what_is_kept(
     assert f"terminated: what is measured in {tmp_path / 'out'} is kept" in capsys.readouterr().err
 
 
-def living(group: int) -> list[int]:
-    """Processes of a group that have not ended; those that nobody has waited for have."""
-    found = []
+def processes(group: int) -> dict[int, bytes]:
+    """Command lines of a group's processes, but of those that have ended and wait to be buried."""
+    found = {}
     for stat in Path("/proc").glob("[0-9]*/stat"):
         try:
             fields = stat.read_text().rpartition(")")[2].split()
+            line = (stat.parent / "cmdline").read_bytes()
         except OSError:
             continue
         if int(fields[2]) == group and fields[0] != "Z":
-            found.append(int(stat.parent.name))
+            found[int(stat.parent.name)] = line
     return found
+
+
+def wait_for(done: Callable[[], bool], run: subprocess.Popen[str]) -> None:
+    while run.poll() is None and not done():
+        time.sleep(0.01)
 
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="needs /proc")
 def test_generate_ends_with_its_workers_and_keeps_its_shards(tmp_path: Path) -> None:
-    """Sent to the whole group, as `timeout` and batch systems do."""
-    config = small_config(tmp_path, SMALL.replace("samples_per_class: 3", "samples_per_class: 500"))
-    folder = tmp_path / "set"
+    """The workers leave it to their master: batch systems and `timeout` signal all of a group."""
+    text = SMALL.replace("samples_per_class: 3", "samples_per_class: 60\nengine: {kind: cube}")
+    config, folder = small_config(tmp_path, text), tmp_path / "set"
     command = [sys.executable, "-m", "radhar_cli", "generate", str(config), "-o", str(folder)]
     run = subprocess.Popen(
         [*command, "--jobs", "2", "--batch", "1"],
@@ -97,18 +103,26 @@ def test_generate_ends_with_its_workers_and_keeps_its_shards(tmp_path: Path) -> 
         text=True,
         start_new_session=True,
     )
-    shards = folder / ".radhar/shards"
-    while run.poll() is None and not any(shards.glob("*.h5")):
-        time.sleep(0.01)
-    os.killpg(run.pid, signal.SIGTERM)
+
+    def shards() -> int:
+        return len(list((folder / ".radhar/shards").glob("*.h5")))
+
+    wait_for(lambda: shards() > 0, run)
+    workers = [pid for pid, line in processes(run.pid).items() if b"popen_loky" in line]
+    assert len(workers) == 2
+    for worker in workers:
+        os.kill(worker, signal.SIGTERM)
+    seen = shards()
+    wait_for(lambda: shards() > seen + 2, run)
+    os.kill(run.pid, signal.SIGTERM)
     output = run.communicate()[0]
     assert run.returncode == TERMINATED, output
     assert output.strip().splitlines()[-1] == (
         f"terminated: what is finished in {folder} is kept; the same command goes on"
     )
     assert "Traceback" not in output
-    assert any(shards.glob("*.h5"))
+    assert shards() > seen
     deadline = time.monotonic() + 60
-    while living(run.pid) and time.monotonic() < deadline:
+    while processes(run.pid) and time.monotonic() < deadline:
         time.sleep(0.01)
-    assert not living(run.pid)
+    assert not processes(run.pid)

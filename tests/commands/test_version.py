@@ -18,7 +18,10 @@ def test_version_names_the_libraries_that_decide_bytes() -> None:
 
 
 def test_the_shell_completes_commands_and_options() -> None:
-    for words, wanted in (("radhar pre", {"predict", "preview"}), ("radhar inspect --j", {"--json"})):
+    for words, wanted in (
+        ("radhar pre", {"predict", "preview"}),
+        ("radhar inspect --j", {"--json"}),
+    ):
         asked = {
             "_RADHAR_COMPLETE": "complete_bash",
             "COMP_WORDS": words,

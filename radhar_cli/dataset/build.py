@@ -18,12 +18,12 @@ from radhar_cli.dataset.batch import Batch, png_rows, run_batch, survey_rows
 from radhar_cli.dataset.folder import claim, locked, mark_built, tidy
 from radhar_cli.dataset.layout import DATASET, Rows, png_path
 from radhar_cli.dataset.settled import settled_rows, store_settled
-from radhar_cli.dataset.shards import finished_shards, missing_runs, pieces
+from radhar_cli.dataset.shards import fallen_back, finished_shards, missing_runs, pieces
 from radhar_cli.dataset.split import split_rows
 from radhar_cli.dataset.workers import run_tasks
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.figures.colour import colour_table
-from radhar_cli.pipeline.survey import Drawn, warnings
+from radhar_cli.pipeline.survey import Drawn, fallback_warnings, warnings
 
 LARGEST_BATCH = 32
 SURVEY_BATCH = 64
@@ -119,8 +119,12 @@ class _Build:
             self.progress.say(f"warning: {warning['message']}")
         made = self._batches(drawn, split, batch_size)
         pngs = self._missing_pngs(split, complete=False)
+        shards = finished_shards(self.folder)
+        for warning in fallback_warnings(fallen_back(shards, count), count):
+            self.progress.say(f"warning: {warning['message']}")
+            said.append(warning)
         self.progress.stage("assembling", count, 0)
-        assemble(config, self.folder, finished_shards(self.folder), said)
+        assemble(config, self.folder, shards, said)
         self.progress.advance(count)
         mark_built(self.folder)
         tidy(self.folder)

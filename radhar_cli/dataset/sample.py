@@ -19,11 +19,13 @@ class MapImage:
         levels: grey levels [H, W], row 0 at the top.
         entropy: of the power map, bits.
         extent: outer edges (time start, time stop, vertical low, vertical high) in s and Hz or m.
+        fell_back: the cube made the sample's signal, as the direct engine could not.
     """
 
     levels: Levels
     entropy: float
     extent: tuple[float, float, float, float]
+    fell_back: bool = False
 
     @property
     def sha256(self) -> str:
@@ -39,6 +41,7 @@ def synthesise(scene: Scene, config: Config, plan: Plan) -> dict[str, MapImage]:
             recording.products[f"levels:{name}"],
             recording.products[f"entropy:{name}"],
             axes_of(name, recording).extent,
+            recording.fell_back,
         )
         for name in config.maps
     }

@@ -60,6 +60,7 @@ def encode_shard(
             file[f"sha256/{name}"] = np.array([i.sha256 for i in images], dtype="S64")
             file[f"extent/{name}"] = np.array([i.extent for i in images], dtype=float)
         file["scene"] = scene_values
+        file["fell_back"] = np.array([any(i.fell_back for i in s.values()) for s in samples])
     return buffer.getvalue()
 
 
@@ -88,6 +89,15 @@ def pieces(shards: Sequence[Shard], count: int) -> Iterator[tuple[Shard, int, in
         if first < stop:
             yield shard, first, stop
             row = stop
+
+
+def fallen_back(shards: Sequence[Shard], count: int) -> int:
+    """How many of rows 0 .. count - 1 the cube made for want of a budget that direct can keep."""
+    found = 0
+    for shard, first, stop in pieces(shards, count):
+        with h5py.File(shard.path, "r") as part:
+            found += int(part["fell_back"][first - shard.start : stop - shard.start].sum())
+    return found
 
 
 def missing_runs(shards: Sequence[Shard], count: int) -> list[tuple[int, int]]:

@@ -57,6 +57,7 @@ class Recording:
         joints: numbers of the scatterers that are kept; all of them for None.
         products: {stage name: what it made}, of those that the plan was asked for.
         seconds: {stage name: time it took}.
+        fell_back: the cube made a signal that the direct engine could not (`engine.fallback`).
     """
 
     scene: Scene
@@ -65,6 +66,7 @@ class Recording:
     joints: tuple[int, ...] | None = None
     products: dict[str, Any] = field(default_factory=dict)
     seconds: dict[str, float] = field(default_factory=dict)
+    fell_back: bool = False
 
     @cached_property
     def waveform(self) -> Waveform:
@@ -174,6 +176,7 @@ def _slow_time(r: Recording, stage: Stage) -> Complex:
     if echo.beyond_reach:
         if r.config.engine.fallback == "refuse":
             raise SceneError(_refusal(r, echo.beyond_reach))
+        r.fell_back = True
         blocks = _beat_blocks(r, 0.0, None)
         return np.concatenate(
             [half_band_signal(range_compression(block, r.waveform)) for _, block in blocks]

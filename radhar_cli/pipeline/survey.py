@@ -197,6 +197,14 @@ def check(scene: Scene, config: Config) -> list[str]:
     return said + timing_warnings(config, (scene.activity,))
 
 
+def fallback_warnings(fallen: int, recordings: int) -> list[dict[str, Any]]:
+    """What to say of the recordings that the cube made instead of the direct engine."""
+    if not fallen:
+        return []
+    message = f"{fallen} of {recordings} recordings: computed by the cube (engine.fallback)"
+    return [{"kind": "fallback", "recordings": fallen, "message": message}]
+
+
 def warnings(config: Config, drawn: Sequence[Drawn]) -> list[dict[str, Any]]:
     """What to say once per run: [{kind, recordings, message}]."""
     counts = {kind: sum(outcome.kinds[kind] for outcome in drawn) for kind in _WORDING}

@@ -226,6 +226,39 @@ def test_physical_warnings_are_said_once_with_their_number_and_stored(
     }
 
 
+def test_scenes_that_fall_back_to_the_cube_are_counted_whoever_made_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """-215 dB can be promised for those who walk and not for those who stand and punch."""
+    engine = ["engine={tolerance_db: -215, fallback: cube}", "duration_s=1", "maps=[rtm, stft]"]
+    config = load_config(small_config(tmp_path), engine)
+    notes, original, made = Listener(), batch_module.synthesise, []
+    build(config, tmp_path / "whole", 1, notes)
+    assert notes.said[-1] == ("warning: 3 of 9 recordings: computed by the cube (engine.fallback)")
+
+    def stops_after_four(*arguments: object) -> object:
+        made.append(arguments)
+        if len(made) > 4:
+            raise OSError(errno.ENOSPC, "No space left on device", "shard")
+        return original(*arguments)
+
+    monkeypatch.setattr(batch_module, "synthesise", stops_after_four)
+    with pytest.raises(UnfinishedError):
+        make(config, tmp_path / "set", batch_size=1)
+    monkeypatch.setattr(batch_module, "synthesise", original)
+    make(config, tmp_path / "set", batch_size=2)
+    assert fingerprint(tmp_path / "set") == fingerprint(tmp_path / "whole")
+    with h5py.File(tmp_path / "set/dataset.h5") as file:
+        stored = json.loads(file.attrs["warnings"])
+    assert [w["recordings"] for w in stored if w["kind"] == "fallback"] == [3]
+
+
+def test_a_range_map_alone_never_falls_back(tmp_path: Path) -> None:
+    engine = ["engine={tolerance_db: -390, fallback: cube}", "duration_s=1", "maps=[rtm]"]
+    outcome = make(load_config(small_config(tmp_path), engine), tmp_path / "set")
+    assert "fallback" not in {warning["kind"] for warning in outcome.warnings}
+
+
 def test_dataset_contract(config: Config, whole: Path) -> None:
     with h5py.File(whole / "dataset.h5") as file:
         assert set(file["maps"]) == set(config.maps)

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from radhar_cli.commands.learning_options import Resize
+
 
 def predict(
     run: Annotated[Path, typer.Argument(help="Folder that train wrote.")],
@@ -16,6 +18,7 @@ def predict(
         str | None, typer.Option("--map", help="Another map than the one it was trained on.")
     ] = None,
     split: Annotated[str, typer.Option(help="Of a data set: train, val, test or all.")] = "all",
+    resize: Resize = False,
     json_: Annotated[bool, typer.Option("--json", help="Print JSON lines, all classes.")] = False,
     device: Annotated[str, typer.Option(help="auto, cpu, cuda or mps.")] = "auto",
 ) -> None:
@@ -34,7 +37,9 @@ def predict(
     from radhar_cli.learning.machine import choose_device
     from radhar_cli.learning.prediction import predict
 
-    answers = predict(run, paths, choose_device(known_device(device)), map_, split_named(split))
+    answers = predict(
+        run, paths, choose_device(known_device(device)), map_, split_named(split), resize
+    )
     for name, chances in answers:
         ranked = sorted(chances.items(), key=lambda item: -item[1])
         if json_:

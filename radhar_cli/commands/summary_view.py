@@ -7,6 +7,7 @@ from rich.markup import escape
 from rich.table import Table
 
 BARS = " ▁▂▃▄▅▆▇█"
+MOST_SIZES = 5
 
 
 def print_summary(summary: dict[str, Any]) -> None:
@@ -16,6 +17,7 @@ def print_summary(summary: dict[str, Any]) -> None:
         "data set": _data_set,
         "unfinished data set": _unfinished,
         "scene": _scene,
+        "tree of images": _tree,
     }[summary["kind"]](console, summary)
 
 
@@ -44,6 +46,23 @@ def _data_set(console: Console, s: dict[str, Any]) -> None:
         console.print(drawn)
     for warning in s["warnings"]:
         console.print(f"[yellow]warning[/yellow] {warning['message']}")
+
+
+def _tree(console: Console, s: dict[str, Any]) -> None:
+    console.print(
+        f"[bold]{escape(s['path'])}[/bold]  {s['samples']} images of {len(s['classes'])} classes, "
+        f"{s['bytes'] / 2**20:.1f} MiB"
+    )
+    sizes = [f"{one['images']} of {one['size'][0]} x {one['size'][1]} px" for one in s["sizes"]]
+    more = f", and {len(sizes) - MOST_SIZES} more sizes" if len(sizes) > MOST_SIZES else ""
+    console.print(f"sizes {', '.join(sizes[:MOST_SIZES])}{more}")
+    table = Table(title="images by class")
+    table.add_column("class")
+    for part in next(iter(s["classes"].values())):
+        table.add_column(part, justify="right")
+    for name, counts in s["classes"].items():
+        table.add_row(escape(name), *map(str, counts.values()))
+    console.print(table)
 
 
 def _versions(s: dict[str, Any]) -> str:

@@ -103,6 +103,15 @@ def _document(path: Path) -> tuple[dict[str, Any], dict[str, int]]:
     return document, lines
 
 
+def load_mapping(path: Path) -> dict[str, Any]:
+    """Read a file of plain keys and values.
+
+    Raises:
+        ConfigError: unreadable file, or bad YAML.
+    """
+    return _document(path)[0]
+
+
 def config_from_json(text: str, where: str) -> Config:
     """Rebuild a resolved config from the JSON stored with a data set."""
     try:

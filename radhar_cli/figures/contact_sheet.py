@@ -1,11 +1,12 @@
 """A contact sheet: some samples of every class of a data set."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 
+from radhar_cli.arrays import Levels
 from radhar_cli.figures.page import page
 
 
@@ -58,4 +59,20 @@ def draw_contact_sheet(data: Images, name: str, per_class: int, path: Path) -> N
     figure.suptitle(
         f"{name}: grey level, {attributes['dynamic_range_db']:g} dB from dark to bright", fontsize=9
     )
+    figure.savefig(path, dpi=110)
+
+
+def draw_image_sheet(classes: Mapping[str, Sequence[Levels]], title: str, path: Path) -> None:
+    """Write a PNG with a row of RGB images [H, W, 3], of any sizes, for every class."""
+    columns = max(map(len, classes.values()))
+    figure = page(1.5 * columns + 1.6, 1.5 * len(classes) + 0.5)
+    panels = figure.subplots(len(classes), columns, squeeze=False)
+    for row, (name, images) in zip(panels, classes.items(), strict=True):
+        for panel in row[len(images) :]:
+            panel.set_axis_off()
+        for panel, image in zip(row, images, strict=False):
+            panel.imshow(image)
+            panel.set(xticks=[], yticks=[])
+        row[0].set_ylabel(name.replace("_", "\n"), fontsize=7, parse_math=False)
+    figure.suptitle(title, fontsize=9, parse_math=False)
     figure.savefig(path, dpi=110)

@@ -2,7 +2,7 @@
 
 import statistics
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,6 +14,7 @@ from radhar_cli.arrays import Float, Index
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.batches import Reader, pieces
+from radhar_cli.learning.images.classes import known_to
 from radhar_cli.learning.images.image_set import ImageSet, labels_for
 from radhar_cli.learning.images.opening import is_h5, open_images
 from radhar_cli.learning.images.scan import content_hash, scan
@@ -48,26 +49,36 @@ class Predictions:
         return winners
 
 
-def open_for(about: About, path: Path, map_name: str | None, labelled: bool = True) -> ImageSet:
+def open_for(
+    about: About,
+    path: Path,
+    map_name: str | None,
+    labelled: bool = True,
+    resize: bool = False,
+    names: Mapping[str, str | None] | None = None,
+) -> ImageSet:
     """Open a data set for a trained model.
 
     The map is the one it was trained on if none is named. Images that come without a split are
     given the run's own where they are those that the run has cut.
 
     Args:
-        labelled: the classes should be ones that the model knows.
+        labelled: keep the classes that the model knows, and no other.
+        resize: bring images to the model's size.
+        names: {class there: class here, or None to leave it out}.
 
     Raises:
-        FolderError: other classes or another size than the model's, or a map that must be named.
+        FolderError: no class or another size than the model's, or a map that must be named.
     """
-    images = open_images(path, map_name or _map_there(about, path), about.input)
+    size = about.size if resize else None
+    images = open_images(path, map_name or _map_there(about, path), about.input, size)
     if images.size != about.size:
         raise FolderError(
             f"{path}: images are {images.size[0]} x {images.size[1]} px; the model was trained on "
-            f"{about.size[0]} x {about.size[1]} px"
+            f"{about.size[0]} x {about.size[1]} px; --resize brings them to that"
         )
     if labelled:
-        labels_for(images, about.classes)
+        images = known_to(images.renamed(names or {}), about.classes)
         if images.split is None:
             return _cut_as_in_training(about, images)
     return images

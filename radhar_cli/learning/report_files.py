@@ -39,7 +39,9 @@ figure { margin: 1.2rem 0; } img { max-width: 100%; } figcaption { color: #555; 
 {% if r.seen_in_training.images or r.seen_in_training.scenes %}
 <p class="warning">{{ name }} on {{ data }}: {{ r.seen_in_training.images }} of {{ r.images }}
 images, and the person and motion of {{ r.seen_in_training.scenes }}, were trained on.</p>
-{% endif %}{% endfor %}{% endfor %}
+{% endif %}{% if r.left_out %}<p class="warning">{{ name }} on {{ data }}: left out
+{% for class, n in r.left_out.items() %}{{ class }} ({{ n }} images){{ ", " if not loop.last }}
+{% endfor %}</p>{% endif %}{% endfor %}{% endfor %}
 <h2>Networks</h2>
 <table><tr><th>run</th><th>model</th><th>parameters</th><th>multiply-adds (G)</th>
 <th>best epoch</th>

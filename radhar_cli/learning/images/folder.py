@@ -14,6 +14,7 @@ from radhar_cli.errors import ConfigError, FolderError
 from radhar_cli.learning.images.image_set import (
     SPLIT_NAMES,
     ImageSet,
+    Resized,
     class_order,
     colour_codes,
     luminance,
@@ -34,13 +35,13 @@ class FilePixels:
     Attributes:
         files: [N].
         kind: "rgb" or "gray".
-        size: (H, W) that all of them should have.
+        size: (H, W) that all of them should have, None for any.
         table: for "gray", the colour table [256, 3] that ours were drawn with.
     """
 
     files: tuple[Path, ...]
     kind: str
-    size: tuple[int, int]
+    size: tuple[int, int] | None
     table: Levels | None
 
     def read(self, row: int) -> Levels:
@@ -73,7 +74,8 @@ def read_image(
         raise FolderError(f"{path}: is no image, or a truncated one ({error})") from None
     if size is not None and rgb.shape[:2] != size:
         raise FolderError(
-            f"{path}: is {rgb.shape[0]} x {rgb.shape[1]} px; should be {size[0]} x {size[1]}"
+            f"{path}: is {rgb.shape[0]} x {rgb.shape[1]} px; should be {size[0]} x {size[1]} "
+            "(eval and predict bring it there with --resize)"
         )
     if kind == "rgb":
         return rgb
@@ -99,8 +101,11 @@ def _levels(rgb: Levels, table: Levels) -> Levels | None:
     return found.astype(np.uint8) if np.array_equal(codes[found], wanted) else None
 
 
-def folder_images(root: Path, map_name: str | None, kind: str) -> ImageSet:
+def folder_images(root: Path, map_name: str | None, kind: str, any_size: bool = False) -> ImageSet:
     """Open a tree of images: class folders, or train, val and test with class folders in them.
+
+    Args:
+        any_size: images may differ in size; `size` is that of the first.
 
     Raises:
         FolderError: it is no such tree; the message says what is there.
@@ -144,7 +149,9 @@ def folder_images(root: Path, map_name: str | None, kind: str) -> ImageSet:
         names=_names(found),
         scenes=None,
         size=size,
-        pixels=FilePixels(files, kind, size, our_table(root) if kind == "gray" else None),
+        pixels=FilePixels(
+            files, kind, None if any_size else size, our_table(root) if kind == "gray" else None
+        ),
     )
 
 
@@ -157,9 +164,13 @@ def _names(found: Sequence[tuple[int, str, Path]]) -> tuple[str, ...]:
     )
 
 
-def loose_images(files: Sequence[Path], size: tuple[int, int], kind: str) -> ImageSet:
-    """Single files of a size (H, W), without classes."""
+def loose_images(
+    files: Sequence[Path], size: tuple[int, int], kind: str, resize: bool = False
+) -> ImageSet:
+    """Single files without classes, of a size (H, W) or brought to it."""
     where = files[0].parent
+    table = our_table(where) if kind == "gray" else None
+    pixels = FilePixels(tuple(files), kind, None if resize else size, table)
     return ImageSet(
         where=where,
         map=None,
@@ -169,7 +180,7 @@ def loose_images(files: Sequence[Path], size: tuple[int, int], kind: str) -> Ima
         names=tuple(map(str, files)),
         scenes=None,
         size=size,
-        pixels=FilePixels(tuple(files), kind, size, our_table(where) if kind == "gray" else None),
+        pixels=Resized(pixels, size) if resize else pixels,
     )
 
 
@@ -213,6 +224,19 @@ def _files(folder: Path) -> list[Path]:
 def is_image(path: Path) -> bool:
     """Whether a path is an image file by its name, and none that a file manager hides."""
     return path.suffix.lower() in SUFFIXES and not path.name.startswith(".") and path.is_file()
+
+
+def image_size(path: Path) -> tuple[int, int]:
+    """(H, W) of an image file by its header alone.
+
+    Raises:
+        FolderError: it is no image.
+    """
+    try:
+        with Image.open(path) as image:
+            return image.height, image.width
+    except (OSError, SyntaxError, ValueError, Image.DecompressionBombError) as error:
+        raise FolderError(f"{path}: is no image ({error})") from None
 
 
 def _size(path: Path) -> tuple[int, int]:

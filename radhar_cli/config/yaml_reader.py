@@ -1,7 +1,7 @@
 """The one reader of YAML: plain values and the line of every key, within bounds.
 
-Scalars are those of YAML 1.2: ``77e9`` is a number, ``1:30`` and ``yes`` are text. Keys are text and
-do not repeat; tags are refused.
+Scalars are those of YAML 1.2: ``77e9`` is a number, ``1:30`` and ``yes`` are text. Keys are text
+and do not repeat; tags are refused.
 """
 
 import re
@@ -52,16 +52,17 @@ class _Loader(yaml.BaseLoader):
     def __init__(self, text: str) -> None:
         super().__init__(text)
         self._depth = self._written = 0
-        self._sizes: dict[yaml.Node, int] = {}
+        self._sizes: dict[yaml.Node | None, int] = {}
 
-    def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node:
-        event, before = self.peek_event(), self._written
+    def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
+        before = self._written
+        event = self.peek_event()  # type: ignore[no-untyped-call]
         self._depth += 1
         if self._depth > DEEPEST:
             _refuse(event, f"it is nested deeper than {DEEPEST} levels")
         if getattr(event, "tag", None) is not None:
             _refuse(event, f"the tag {event.tag!r} has no meaning here")
-        node: yaml.Node = super().compose_node(parent, index)
+        node = super().compose_node(parent, index)
         self._depth -= 1
         if not isinstance(event, yaml.AliasEvent):
             self._written += 1 + len(getattr(event, "value", ""))
@@ -87,7 +88,7 @@ def _value(node: yaml.Node, key: str, lines: Lines) -> Any:
     return _scalar(node)
 
 
-def _scalar(node: yaml.Node) -> Any:
+def _scalar(node: Any) -> Any:
     text: str = node.value
     if node.style is not None:  # quoted, or a block of text
         return text

@@ -6,6 +6,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from radhar_cli.errors import RadharError
+from radhar_cli.untrusted import shown
 
 if TYPE_CHECKING:
     import typer
@@ -58,7 +59,7 @@ def main() -> None:
         program()()
     except RadharError as error:
         if os.environ.get("RANK", "0") == "0":  # under torchrun all fail alike; one should speak
-            print(f"radhar: {error}", file=sys.stderr)
+            print(f"radhar: {shown(error)}", file=sys.stderr)
         sys.exit(error.status)
     except KeyboardInterrupt:
         sys.exit(130)
@@ -68,7 +69,7 @@ def main() -> None:
         elif error.filename is None:
             raise
         else:
-            print(f"radhar: {error.filename}: {error.strerror}", file=sys.stderr)
+            print(f"radhar: {shown(error.filename)}: {error.strerror}", file=sys.stderr)
         sys.exit(1)
     finally:
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # the work is done; leave quietly

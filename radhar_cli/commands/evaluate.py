@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from radhar_cli.commands.tell import tell
+
 
 def evaluate(
     paths: Annotated[
@@ -64,4 +66,4 @@ def evaluate(
     keep_memory()
     report = evaluate(runs, data, asked, choose_device(known_device(device)), Speaker())
     report.write(folder)
-    typer.echo(f"{folder / 'report.html'}: {len(report.figures)} figures; numbers in report.json")
+    tell(f"{folder / 'report.html'}: {len(report.figures)} figures; numbers in report.json")

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from radhar_cli.commands.tell import tell
+
 
 def inspect(
     path: Annotated[Path, typer.Argument(help="Folder or file that radhar wrote.")],
@@ -22,7 +24,7 @@ def inspect(
 
     summary = summarise(path)
     if json_:
-        typer.echo(json.dumps(summary, indent=2))
+        tell(json.dumps(summary, indent=2))
         return
     from radhar_cli.commands.summary_view import print_summary
 

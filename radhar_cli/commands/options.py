@@ -6,6 +6,8 @@ from typing import Annotated, TypeAlias
 
 import typer
 
+from radhar_cli.commands.tell import tell
+
 Overrides: TypeAlias = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Change one dotted key; may repeat."),
@@ -22,7 +24,7 @@ def resumable(kept: str) -> Iterator[None]:
     try:
         yield
     except KeyboardInterrupt:
-        typer.echo(f"\ninterrupted: {kept} is kept; the same command goes on", err=True)
+        tell(f"\ninterrupted: {kept} is kept; the same command goes on", err=True)
         raise typer.Exit(130) from None
 
 

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from radhar_cli.commands.tell import tell
+
 
 def preview(
     dataset: Annotated[Path, typer.Argument(help="Folder that `generate` wrote, or a dataset.h5.")],
@@ -29,4 +31,4 @@ def preview(
         name = data.map_name(map_)
         path = out or data.path.parent / f"preview_{name}.png"
         draw_contact_sheet(data, name, per_class, path)
-    typer.echo(str(path))
+    tell(str(path))

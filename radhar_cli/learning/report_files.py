@@ -10,6 +10,8 @@ from typing import Any
 from jinja2 import Environment
 
 from radhar_cli.dataset.files import write_whole
+from radhar_cli.errors import FolderError
+from radhar_cli.untrusted import read_json
 
 PAGE, NUMBERS = "report.html", "report.json"
 _PAGE = """<!doctype html>
@@ -104,7 +106,7 @@ class Report:
 def _files_of(folder: Path) -> list[str]:
     """Files of the report that a folder holds, itself aside; those of another kind are not ours."""
     try:
-        found = json.loads((folder / NUMBERS).read_text())["files"]
-        return [name for name in found if Path(name).name == name]
-    except (OSError, ValueError, KeyError, TypeError):
+        found = read_json(folder / NUMBERS)["files"]
+        return [name for name in found if Path(name).name == name and (folder / name).is_file()]
+    except (FolderError, KeyError, TypeError):
         return []

@@ -91,14 +91,14 @@ class Report:
     def write(self, folder: Path) -> None:
         """Write everything into a folder; report.json comes last."""
         files = {name: png for name, _, png in self.figures}
-        files |= {name: text.encode() for name, text in self.tables}
+        files |= {name: text.encode("utf-8", "surrogateescape") for name, text in self.tables}
         for name in _files_of(folder):
             if name not in files:
                 (folder / name).unlink(missing_ok=True)
         for name, content in files.items():
             write_whole(folder, folder / name, content)
         page = report_html(self.numbers, self.figures)
-        write_whole(folder, folder / PAGE, page.encode())
+        write_whole(folder, folder / PAGE, page.encode("utf-8", "backslashreplace"))
         text = json.dumps({**self.numbers, "files": sorted(files)}, indent=2) + "\n"
         write_whole(folder, folder / NUMBERS, text.encode())
 

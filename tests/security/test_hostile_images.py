@@ -80,7 +80,7 @@ REFUSED: dict[str, tuple[Callable[[Path], object], str]] = {
     "20000.png": (bytes_of(png(20000, 20000, rows=0)), "400000000 pixels"),
     "2e9.png": (bytes_of(png(2**31 - 1, 2**31 - 1, rows=0)), "pixels"),
     "zero.png": (bytes_of(png(0, 0)), "zero.png: "),
-    "short.png": (bytes_of(png(SIZE, SIZE, rows=3)), "truncated"),
+    "short.png": (bytes_of(png(SIZE, SIZE)[:50]), "truncated"),
     "text.png": (bytes_of(png(SIZE, SIZE, chunk(b"zTXt", b"a\0\0" + zeros(2**28)))), "text.png: "),
     "many.png": (
         bytes_of(png(SIZE, SIZE, *[chunk(b"zTXt", b"a\0\0" + zeros(2**20))] * 200)),
@@ -135,11 +135,10 @@ READ: dict[str, Callable[[Path], object]] = {
 
 
 def classes(root: Path, *names: str) -> Path:
-    """A tree of two images a class."""
+    """A tree of one image a class."""
     for name in names:
         (root / name).mkdir(parents=True)
-        for number in range(2):
-            PICTURE.save(root / name / f"{number}.png")
+        PICTURE.save(root / name / "0.png")
     return root
 
 
@@ -159,14 +158,14 @@ def trees(place: Path) -> dict[str, tuple[Path, str]]:
         "a file's link out": (one, "9.png: is a link to"),
         "links in a circle": (circle, "0.png: is no image"),
         "many classes": (
-            classes(place / "many", *(f"c{i}" for i in range(300))),
-            "has 300 classes; should have at most 128",
+            classes(place / "many", *(f"c{i}" for i in range(129))),
+            "has 129 classes; should have at most 128",
         ),
         "escapes": (
             classes(place / "1", "a", "\x1b[2J[red]"),
             r"'\x1b[2J[red]' should have a name",
         ),
-        "no UTF-8": (classes(place / "2", "a", "\udcff"), r"'\udcff' should have a name"),
+        "no UTF-8": (classes(place / "2", "a", "\udcff"), r"'\udcff' should have"),
         "a line break": (classes(place / "3", "a", "b\nradhar: x"), r"'b\nradhar: x' should have"),
     }
 

@@ -6,6 +6,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from radhar_cli.errors import INTERRUPTED, TERMINATED, RadharError
+from radhar_cli.untrusted import shown
 
 if TYPE_CHECKING:
     import typer
@@ -60,7 +61,7 @@ def main() -> None:
         program()(prog_name="radhar")
     except RadharError as error:
         if os.environ.get("RANK", "0") == "0":  # under torchrun all fail alike; one should speak
-            print(f"radhar: {error}", file=sys.stderr)
+            print(f"radhar: {shown(error)}", file=sys.stderr)
         sys.exit(error.status)
     except KeyboardInterrupt:
         sys.exit(INTERRUPTED)
@@ -70,7 +71,7 @@ def main() -> None:
         elif error.filename is None:
             raise
         else:
-            print(f"radhar: {error.filename}: {error.strerror}", file=sys.stderr)
+            print(f"radhar: {shown(error.filename)}: {error.strerror}", file=sys.stderr)
         sys.exit(1)
     finally:
         for number in (signal.SIGINT, signal.SIGTERM):

@@ -14,6 +14,7 @@ PACKAGE = ROOT / "radhar_cli"
 ROOMS = (
     "arrays",
     "errors",
+    "untrusted",
     "activity",
     "randomness",
     "process",
@@ -104,6 +105,40 @@ def test_help_needs_no_heavy_import() -> None:
         f"print([m for m in {heavy} if m in sys.modules])"
     )
     assert run(sys.executable, "-c", code).stdout.strip() == "[]"
+
+
+# Each kind of file from elsewhere is opened in one place, and one place writes to the terminal.
+ONE_PLACE = [
+    ("yaml", {"config/yaml_reader.py"}, {"safe_dump", "YAMLError", "MarkedYAMLError"}),
+    ("Image", {"dataset/image_file.py"}, {"fromarray"}),
+    ("typer", {"commands/tell.py"}, {"Argument", "Option", "Exit", "Typer"}),
+]
+
+
+def calls(path: Path) -> set[str]:
+    """`name` and `name.attribute` of every function that a file calls."""
+    nodes = [
+        node.func for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Call)
+    ]
+    names = [f for f in nodes if isinstance(f, ast.Name)]
+    dotted = [f for f in nodes if isinstance(f, ast.Attribute) and isinstance(f.value, ast.Name)]
+    return {f.id for f in names} | {ast.unparse(f) for f in dotted}
+
+
+@pytest.mark.parametrize(("library", "places", "harmless"), ONE_PLACE, ids=lambda x: str(x)[:8])
+def test_files_from_elsewhere_are_opened_in_one_place(
+    library: str, places: set[str], harmless: set[str]
+) -> None:
+    for path in files():
+        if str(path.relative_to(PACKAGE)) not in places:
+            used = {c for c in calls(path) if c.startswith(f"{library}.")}
+            assert used <= {f"{library}.{name}" for name in harmless}, path
+
+
+def test_one_place_prints() -> None:
+    assert {p.name for p in files() if "print" in calls(p)} == {"cli.py"}
+    writes = {p.name for p in files() if {"tqdm.write", "console.print"} & calls(p)}
+    assert writes == {"terminal.py", "training_view.py", "summary_view.py"}
 
 
 def test_ruff() -> None:

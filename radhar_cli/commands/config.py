@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from radhar_cli.commands.options import Overrides
+from radhar_cli.commands.tell import tell
 
 if TYPE_CHECKING:
     from radhar_cli.config import Config
@@ -41,9 +42,7 @@ def show(
     from radhar_cli.config.reading import load_section
 
     values = resolved(load_section(_kind(train), config, set_ or []))
-    typer.echo(
-        yaml.safe_dump(values, sort_keys=False, default_flow_style=None, width=100), nl=False
-    )
+    tell(yaml.safe_dump(values, sort_keys=False, default_flow_style=None, width=100), nl=False)
 
 
 @app.command()
@@ -56,7 +55,7 @@ def schema(train: Training = False) -> None:
     """
     import json
 
-    typer.echo(json.dumps(_kind(train).model_json_schema(), indent=2))
+    tell(json.dumps(_kind(train).model_json_schema(), indent=2))
 
 
 def _kind(train: bool) -> "type[Config] | type[TrainConfig]":

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from radhar_cli.commands.learning_options import Classes, Resize
+from radhar_cli.commands.tell import tell
 
 
 def evaluate(
@@ -70,4 +71,4 @@ def evaluate(
     keep_memory()
     report = evaluate(runs, data, asked, choose_device(known_device(device)), Speaker())
     report.write(folder)
-    typer.echo(f"{folder / 'report.html'}: {len(report.figures)} figures; numbers in report.json")
+    tell(f"{folder / 'report.html'}: {len(report.figures)} figures; numbers in report.json")

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from radhar_cli.commands.tell import tell
+
 
 def inspect(
     path: Annotated[Path, typer.Argument(help="What radhar wrote, or a tree of class folders.")],
@@ -25,7 +27,7 @@ def inspect(
     foreign = is_tree(path) and not (path / "scene.h5").exists()
     summary = summarise_tree(path) if foreign else summarise(path)
     if json_:
-        typer.echo(json.dumps(summary, indent=2))
+        tell(json.dumps(summary, indent=2))
         return
     from radhar_cli.commands.summary_view import print_summary
 

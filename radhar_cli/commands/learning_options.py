@@ -1,12 +1,12 @@
 """What the commands that learn share."""
 
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, TypeAlias
 
 import typer
 
+from radhar_cli.commands.tell import tell
 from radhar_cli.errors import FolderError, MachineError, RadharError, did_you_mean
 
 DEVICES = ("auto", "cpu", "cuda", "mps")
@@ -82,7 +82,7 @@ class Speaker:
     """Tells the user on the error stream."""
 
     def say(self, message: str) -> None:
-        print(message, file=sys.stderr)
+        tell(message, err=True)
 
 
 def apart(out: Path, data: Sequence[Path]) -> None:

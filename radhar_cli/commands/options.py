@@ -7,6 +7,7 @@ from typing import Annotated, TypeAlias
 
 import typer
 
+from radhar_cli.commands.tell import tell
 from radhar_cli.errors import INTERRUPTED, TERMINATED
 
 Overrides: TypeAlias = Annotated[
@@ -35,7 +36,7 @@ def resumable(kept: str) -> Iterator[None]:
 
 def _say_kept(how: str, kept: str) -> None:
     if os.environ.get("RANK", "0") == "0":  # under torchrun all end alike; one should speak
-        typer.echo(f"\n{how}: {kept} is kept; the same command goes on", err=True)
+        tell(f"\n{how}: {kept} is kept; the same command goes on", err=True)
 
 
 def with_tolerance(overrides: list[str] | None, tolerance: float | None) -> list[str]:

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from radhar_cli.commands.learning_options import Resize
+from radhar_cli.commands.tell import tell
 
 
 def predict(
@@ -43,7 +44,7 @@ def predict(
     for name, chances in answers:
         ranked = sorted(chances.items(), key=lambda item: -item[1])
         if json_:
-            typer.echo(json.dumps({"image": name, "class": ranked[0][0], "probabilities": chances}))
+            tell(json.dumps({"image": name, "class": ranked[0][0], "probabilities": chances}))
             continue
         likely = ", ".join(f"{label} {100 * chance:.1f} %" for label, chance in ranked[:top])
-        typer.echo(f"{name}: {likely}")
+        tell(f"{name}: {likely}")

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from radhar_cli.commands.tell import tell
+
 MOST_CLASSES = 40
 
 
@@ -34,13 +36,13 @@ def preview(
     from radhar_cli.learning.images.opening import is_tree
 
     if is_tree(dataset):
-        typer.echo(str(_draw_tree(dataset, map_, per_class, out)))
+        tell(str(_draw_tree(dataset, map_, per_class, out)))
         return
     with open_dataset(dataset) as data:
         name = data.map_name(map_)
         path = out or data.path.parent / f"preview_{name}.png"
         draw_contact_sheet(data, name, per_class, path)
-    typer.echo(str(path))
+    tell(str(path))
 
 
 def _draw_tree(root: Path, map_name: str | None, per_class: int, out: Path | None) -> Path:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from radhar_cli.commands.options import Overrides, Tolerance, with_tolerance
+from radhar_cli.commands.tell import tell
 
 if TYPE_CHECKING:
     from radhar_cli.simulation.simulate import Simulation
@@ -61,7 +62,7 @@ def simulate(
         loaded, activity, seed, nominal=nominal, joint=joint, maps=chosen, raw=raw
     )
     for warning in simulation.warnings:
-        typer.echo(f"warning: {warning}", err=True)
+        tell(f"warning: {warning}", err=True)
 
     from radhar_cli.simulation import scene_file
 
@@ -69,11 +70,9 @@ def simulate(
     if figures:
         written += _draw(simulation, out, overlay)
     took = sum(simulation.seconds.values())
-    typer.echo(
-        f"{simulation.activity.label} {simulation.activity.slug}: synthesised in {took:.2f} s"
-    )
+    tell(f"{simulation.activity.label} {simulation.activity.slug}: synthesised in {took:.2f} s")
     for path in written:
-        typer.echo(f"  {path}")
+        tell(f"  {path}")
 
 
 def _draw(simulation: "Simulation", out: Path, overlay: bool) -> list[Path]:

@@ -7,13 +7,13 @@ from typing import Any
 
 import h5py
 import numpy as np
-from PIL import Image
 
 from radhar_cli.config.experiment import Config
 from radhar_cli.config.identity import config_hash
 from radhar_cli.config.reading import config_from_json
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.identity import versions
+from radhar_cli.dataset.image_file import read_rgb
 from radhar_cli.dataset.layout import DATASET, PNG, Rows, png_path
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.split import split_rows
@@ -154,9 +154,8 @@ def _pngs(file: h5py.File, config: Config, folder: Path, report: Report) -> None
         for row, levels in enumerate(file[f"maps/{name}"]):
             path = png_path(name, split[row], *rows[row])
             try:
-                with Image.open(folder / path) as picture:
-                    same = np.array_equal(np.asarray(picture), table[levels])
-            except OSError as error:
+                same = np.array_equal(read_rgb(folder / path), table[levels])
+            except FolderError as error:
                 report.problems.append(f"{path}: cannot be read ({error})")
                 continue
             report.pngs += 1

@@ -9,7 +9,7 @@ import torch
 from radhar_cli.arrays import Index
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.evaluation import answers, open_for, rows_of
-from radhar_cli.learning.images.folder import is_image, loose_images
+from radhar_cli.learning.images.folder import image_files, is_image, loose_images
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.opening import is_tree
 from radhar_cli.learning.run_files import is_run
@@ -59,8 +59,9 @@ def _opened(
         raise FolderError(f"{path}: no such file or folder")
     if is_run(path):
         raise FolderError(f"{path}: is a training run; images or data are asked for here")
-    files = [path] if path.is_file() else sorted(path.iterdir()) if is_tree(path) else []
-    files = [file for file in files if is_image(file)]
+    files = [p for p in (path,) if is_image(p)]
+    if is_tree(path):
+        files = image_files(path, path)
     if files:
         return (
             loose_images(files, about.size, about.input, resize),

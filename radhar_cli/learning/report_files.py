@@ -10,6 +10,8 @@ from typing import Any
 from jinja2 import Environment
 
 from radhar_cli.dataset.files import write_whole
+from radhar_cli.errors import FolderError
+from radhar_cli.untrusted import read_json
 
 PAGE, NUMBERS = "report.html", "report.json"
 _PAGE = """<!doctype html>
@@ -91,14 +93,14 @@ class Report:
     def write(self, folder: Path) -> None:
         """Write everything into a folder; report.json comes last."""
         files = {name: png for name, _, png in self.figures}
-        files |= {name: text.encode() for name, text in self.tables}
+        files |= {name: text.encode("utf-8", "surrogateescape") for name, text in self.tables}
         for name in _files_of(folder):
             if name not in files:
                 (folder / name).unlink(missing_ok=True)
         for name, content in files.items():
             write_whole(folder, folder / name, content)
         page = report_html(self.numbers, self.figures)
-        write_whole(folder, folder / PAGE, page.encode())
+        write_whole(folder, folder / PAGE, page.encode("utf-8", "backslashreplace"))
         text = json.dumps({**self.numbers, "files": sorted(files)}, indent=2) + "\n"
         write_whole(folder, folder / NUMBERS, text.encode())
 
@@ -106,7 +108,7 @@ class Report:
 def _files_of(folder: Path) -> list[str]:
     """Files of the report that a folder holds, itself aside; those of another kind are not ours."""
     try:
-        found = json.loads((folder / NUMBERS).read_text())["files"]
-        return [name for name in found if Path(name).name == name]
-    except (OSError, ValueError, KeyError, TypeError):
+        found = read_json(folder / NUMBERS)["files"]
+        return [name for name in found if Path(name).name == name and (folder / name).is_file()]
+    except (FolderError, KeyError, TypeError):
         return []

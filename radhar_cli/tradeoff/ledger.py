@@ -7,6 +7,7 @@ from typing import Any
 
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.layout import WORK
+from radhar_cli.untrusted import read_json
 
 
 class Ledger:
@@ -18,7 +19,7 @@ class Ledger:
     def get(self, key: str) -> Any | None:
         """The value, or None if it has not been measured."""
         path = self._path(key)
-        return json.loads(path.read_text()) if path.exists() else None
+        return read_json(path) if path.exists() else None
 
     def put(self, key: str, value: Any) -> None:
         """Keep a value."""

@@ -183,8 +183,7 @@ def labels_for(images: ImageSet, known: Sequence[str]) -> Index:
 
 def luminance(rgb: Levels) -> Levels:
     """Brightness [H, W] of RGB [H, W, 3] after ITU-R BT.601."""
-    weighted = rgb @ np.array([299, 587, 114])
-    brightness: Levels = ((weighted + 500) // 1000).astype(np.uint8)
+    brightness: Levels = ((_weighted(rgb, 299, 587, 114) + 500) // 1000).astype(np.uint8)
     return brightness
 
 
@@ -198,10 +197,17 @@ def first_of_colour(table: Levels) -> Levels:
     return np.array([np.flatnonzero(codes == code)[0] for code in codes], dtype=np.uint8)
 
 
-def colour_codes(rgb: Levels) -> NDArray[np.int64]:
+def colour_codes(rgb: Levels) -> NDArray[np.uint32]:
     """24-bit numbers [...] of colours [..., 3]."""
-    codes: NDArray[np.int64] = rgb @ np.array([1 << 16, 1 << 8, 1])
-    return codes
+    return _weighted(rgb, 1 << 16, 1 << 8, 1)
+
+
+def _weighted(rgb: Levels, *weights: int) -> NDArray[np.uint32]:
+    """Weighted sum of the channels, one after the other: an image may have 67 million pixels."""
+    total = np.zeros(rgb.shape[:-1], dtype=np.uint32)
+    for channel, weight in enumerate(weights):
+        total += rgb[..., channel] * np.uint32(weight)
+    return total
 
 
 def repeated(levels: Levels) -> Levels:

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from radhar_cli.arrays import Levels
+from radhar_cli.dataset.image_file import image_size
 from radhar_cli.dataset.layout import SPLITS
-from radhar_cli.learning.images.folder import FilePixels, image_size
+from radhar_cli.learning.images.folder import FilePixels
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.opening import open_images
 

@@ -27,7 +27,7 @@ class Batch:
 
     Attributes:
         config: the data set's.
-        folder: the output folder.
+        folder: the output folder, absolute: a worker may have another working directory.
         start, stop: rows.
         attempts: which draw of each row is kept (`on_invalid: redraw`).
         split: split number of each row.
@@ -80,7 +80,8 @@ def _run_batch(batch: Batch) -> int:
         scenes.append(scene)
         samples.append(sample)
     values = scene_fields.values(scenes, scene_fields.fields(config))
-    write_shard(batch.folder, batch.start, batch.stop, encode_shard(config, samples, values))
+    data = encode_shard(config, batch.start, samples, values)
+    write_shard(batch.folder, batch.start, batch.stop, data)
     return batch.stop - batch.start
 
 
@@ -96,12 +97,11 @@ def png_rows(
     config: Config,
     folder: Path,
     source: Path,
-    first: int,
     rows: list[tuple[int, int]],
     table: Levels,
     master: int,
 ) -> int:
-    """Write the PNGs of (row, split) pairs from an HDF5 file whose row 0 is row `first`."""
+    """Write the PNGs of (row, split) pairs from a data set's HDF5 file."""
     import h5py
 
     order = Rows.of(config)
@@ -109,7 +109,7 @@ def png_rows(
         for row, split in rows:
             leave_if_orphaned(master)
             for name in config.maps:
-                levels = np.asarray(file[f"maps/{name}"][row - first])
+                levels = np.asarray(file[f"maps/{name}"][row])
                 path = folder / png_path(name, split, *order[row])
                 write_whole(folder, path, encode_png(levels, table, config.output.png_level))
     return len(rows)

@@ -3,7 +3,7 @@
 import json
 import shutil
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ from filelock import FileLock, Timeout
 from radhar_cli.config.experiment import Config
 from radhar_cli.dataset.files import unfinished_path, write_whole
 from radhar_cli.dataset.identity import differences, identity
-from radhar_cli.dataset.layout import CONFIG, DATASET, IDENTITY, PNG, SCENES, WORK, begun
+from radhar_cli.dataset.layout import CONFIG, DATASET, IDENTITY, MANIFEST, PNG, SCENES, WORK, begun
 from radhar_cli.errors import FolderError
 
 
@@ -104,9 +104,18 @@ def stored_identity(folder: Path) -> dict[str, Any] | None:
 
 def tidy(folder: Path) -> None:
     """Remove what only an unfinished build needs."""
-    for name in ("shards", "settled", "unfinished"):
-        shutil.rmtree(folder / WORK / name, ignore_errors=True)
+    _remove_batches(folder)
+    shutil.rmtree(folder / WORK / "unfinished", ignore_errors=True)
     (folder / WORK / IDENTITY).unlink(missing_ok=True)
+
+
+def _remove_batches(folder: Path) -> None:
+    """Remove shards and settled outcomes; what else somebody put beside them stays."""
+    for name, pattern in (("shards", "rows-*-*.h5"), ("settled", "*.json")):
+        with suppress(OSError):
+            for path in (folder / WORK / name).glob(pattern):
+                path.unlink(missing_ok=True)
+            (folder / WORK / name).rmdir()
 
 
 def _ours(folder: Path) -> bool:
@@ -132,10 +141,9 @@ def _clear(folder: Path, new: dict[str, Any]) -> None:
         put_aside = unfinished_path(folder)
         put_aside.parent.mkdir(parents=True, exist_ok=True)
         (folder / PNG).rename(put_aside)
-    for name in (SCENES, CONFIG):
-        (folder / name).unlink(missing_ok=True)
-    for name in ("shards", "settled"):
-        shutil.rmtree(folder / WORK / name, ignore_errors=True)
+    for path in (folder / SCENES, folder / CONFIG, folder / WORK / MANIFEST):
+        path.unlink(missing_ok=True)
+    _remove_batches(folder)
     _name(folder, new)
     (folder / DATASET).unlink(missing_ok=True)
 

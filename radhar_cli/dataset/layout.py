@@ -12,6 +12,7 @@ SCENES = "scenes.csv"
 PNG = "png"
 WORK = ".radhar"
 IDENTITY = "identity.json"
+MANIFEST = "manifest.json"
 SPLITS = ("train", "validation", "test")
 SPLIT_FOLDERS = ("train", "val", "test")
 

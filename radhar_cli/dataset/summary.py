@@ -10,9 +10,10 @@ import numpy as np
 
 from radhar_cli.config.reading import config_from_json
 from radhar_cli.dataset.folder import stored_identity
+from radhar_cli.dataset.identity import identity_hash
 from radhar_cli.dataset.layout import DATASET, SPLITS, Rows
 from radhar_cli.dataset.reading import Dataset, open_dataset
-from radhar_cli.dataset.shards import finished_shards, missing_runs
+from radhar_cli.dataset.shards import check_shards, listed_shards
 from radhar_cli.errors import FolderError
 
 HISTOGRAM_BINS = 12
@@ -102,13 +103,12 @@ def _half_built(path: Path) -> dict[str, Any]:
     if identity is None:
         raise FolderError(f"{path}: holds nothing that radhar wrote")
     rows = Rows.of(config_from_json(json.dumps(identity["config"]), str(path)))
-    gaps = missing_runs(finished_shards(path), len(rows))
-    missing = sum(stop - start for start, stop in gaps)
+    shards, _ = check_shards(listed_shards(path), identity_hash(identity))
     return {
         "kind": "unfinished data set",
         "path": str(path),
         "samples": len(rows),
-        "finished": len(rows) - missing,
+        "finished": sum(shard.stop - shard.start for shard in shards),
         "config_hash": identity["hash"],
         "seed": identity["keys"]["seed"],
     }

@@ -14,6 +14,7 @@ PACKAGE = ROOT / "radhar_cli"
 ROOMS = (
     "arrays",
     "errors",
+    "untrusted",
     "activity",
     "randomness",
     "process",

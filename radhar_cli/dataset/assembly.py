@@ -22,9 +22,10 @@ from radhar_cli.config.identity import config_hash, resolved
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.files import unfinished_path, write_whole
 from radhar_cli.dataset.identity import identity, identity_hash, versions
-from radhar_cli.dataset.layout import CONFIG, DATASET, MANIFEST, SCENES, SPLITS, WORK, Rows
+from radhar_cli.dataset.layout import COLUMNS, CONFIG, DATASET, MANIFEST, SCENES, SPLITS, WORK, Rows
 from radhar_cli.dataset.shards import Shard, ShardError, check_shards, image_dataset, require_tiling
 from radhar_cli.dataset.split import split_rows
+from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.scenario import subject_of
 
@@ -79,21 +80,23 @@ def _copy_shards(
     """Copy maps and columns; return the scene values [N, fields] and what each shard held."""
     scene_values: list[Float] = []
     held: list[dict[str, Any]] = []
+    width = len(scene_fields.fields(config))
     # Map by map, row by row: the file's layout does not depend on how shards cut the rows.
     for name in config.maps:
         target = image_dataset(file.require_group("maps"), name, shards[-1].stop, config).id
-        columns: dict[str, list[Any]] = {"entropy": [], "sha256": [], "extent": []}
+        columns: dict[str, list[Any]] = {kind: [] for kind in COLUMNS}
         for shard in shards:
             data, checksum = shard.read(whose)
-            with h5py.File(io.BytesIO(data), "r") as part:
-                source = part[f"maps/{name}"].id
-                for row in range(shard.start, shard.stop):
-                    mask, chunk = source.read_direct_chunk((row - shard.start, 0, 0))
-                    target.write_direct_chunk((row, 0, 0), chunk, mask)
-                for kind, values in columns.items():
-                    values.append(part[f"{kind}/{name}"][:])
+            rows = shard.stop - shard.start
+            with UntrustedFile(shard.path, data) as part:
+                source = part.images(f"maps/{name}", (rows, *config.image.size_px))
+                for row in range(rows):
+                    mask, chunk = source.stored(row)
+                    target.write_direct_chunk((shard.start + row, 0, 0), chunk, mask)
+                for kind, (dtype, shape) in COLUMNS.items():
+                    columns[kind].append(part.column(f"{kind}/{name}", dtype, (rows, *shape))[:])
                 if name == config.maps[0]:
-                    scene_values.append(part["scene"][:])
+                    scene_values.append(part.column("scene", np.float64, (rows, width))[:])
                     held.append(
                         {
                             "start": shard.start,

@@ -5,8 +5,6 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from radhar_cli.arrays import Levels
 from radhar_cli.config.experiment import Config
 from radhar_cli.dataset import scene_fields
@@ -15,6 +13,7 @@ from radhar_cli.dataset.layout import Rows, png_path
 from radhar_cli.dataset.png import encode_png
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.shards import encode_shard, write_shard
+from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.pipeline.plan import plan_images
 from radhar_cli.pipeline.survey import Drawn, settle
 from radhar_cli.process import prepare_process
@@ -102,14 +101,13 @@ def png_rows(
     master: int,
 ) -> int:
     """Write the PNGs of (row, split) pairs from a data set's HDF5 file."""
-    import h5py
-
     order = Rows.of(config)
-    with h5py.File(source, "r") as file:
+    shape = (len(order), *config.image.size_px)
+    with UntrustedFile(source) as file:
+        images = {name: file.images(f"maps/{name}", shape) for name in config.maps}
         for row, split in rows:
             leave_if_orphaned(master)
             for name in config.maps:
-                levels = np.asarray(file[f"maps/{name}"][row])
-                path = folder / png_path(name, split, *order[row])
-                write_whole(folder, path, encode_png(levels, table, config.output.png_level))
+                data = encode_png(images[name][row], table, config.output.png_level)
+                write_whole(folder, folder / png_path(name, split, *order[row]), data)
     return len(rows)

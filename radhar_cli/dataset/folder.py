@@ -10,7 +10,13 @@ from typing import Any
 from filelock import FileLock, Timeout
 
 from radhar_cli.config.experiment import Config
-from radhar_cli.dataset.files import unfinished_path, write_whole
+from radhar_cli.dataset.files import (
+    read_json,
+    refuse_links,
+    refuse_strange_work,
+    unfinished_path,
+    write_whole,
+)
 from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.dataset.layout import CONFIG, DATASET, IDENTITY, MANIFEST, PNG, SCENES, WORK, begun
 from radhar_cli.errors import FolderError
@@ -31,13 +37,16 @@ def locked(folder: Path) -> Iterator[None]:
     """Hold an output folder; a second run on it is refused. A dead run's lock is free at once.
 
     Raises:
-        FolderError: another run holds it, or it cannot be written to.
+        FolderError: another run holds it, it cannot be written to, or its work folder is or holds
+            a link, which might lead elsewhere.
     """
     refuse_file(folder)
+    refuse_links(folder, folder / WORK)
     try:
         (folder / WORK).mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise FolderError(f"{folder}: cannot be made ({error.strerror})") from None
+    refuse_strange_work(folder)
     lock = FileLock(folder / WORK / "lock")
     try:
         with lock.acquire(timeout=0):
@@ -83,22 +92,29 @@ def _name(folder: Path, named: dict[str, Any]) -> None:
 
 def stored_identity(folder: Path) -> dict[str, Any] | None:
     """The identity of what a folder holds, finished or not; None if it is no data set of ours."""
-    if (folder / DATASET).exists():
-        import h5py
+    path = folder / DATASET
+    if path.exists():
+        from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 
         try:
-            with h5py.File(folder / DATASET, "r") as file:
-                stored: dict[str, Any] = json.loads(file.attrs["identity"])
-                return stored
-        except (OSError, KeyError, ValueError) as error:
+            with UntrustedFile(path) as file:
+                return _identity(file.json("identity"), path)
+        except FolderError as error:
             raise FolderError(
-                f"{folder / DATASET}: is not a data set of radhar's, or is damaged ({error}); "
-                "choose another folder, or --overwrite if radhar built it"
+                f"{error}; this is not a data set of radhar's, or a damaged one; choose another "
+                "folder, or --overwrite if radhar built it"
             ) from None
     path = folder / WORK / IDENTITY
-    if not path.exists():
-        return None
-    identity_there: dict[str, Any] = json.loads(path.read_text())
+    return _identity(read_json(path), path) if path.exists() else None
+
+
+def _identity(found: Any, path: Path) -> dict[str, Any]:
+    right = isinstance(found, dict) and all(
+        isinstance(found.get(part), dict) for part in ("keys", "versions")
+    )
+    if not right:
+        raise FolderError(f"{path}: is damaged: its identity should have keys and versions")
+    identity_there: dict[str, Any] = found
     return identity_there
 
 

@@ -2,14 +2,17 @@
 
 import hashlib
 import json
-from collections.abc import Iterable
 from pathlib import Path
 
-from radhar_cli.dataset.files import write_whole
+from pydantic import TypeAdapter
+
+from radhar_cli.dataset.files import read_bytes, write_whole
 from radhar_cli.dataset.layout import WORK
-from radhar_cli.pipeline.survey import Drawn
+from radhar_cli.errors import FolderError
+from radhar_cli.pipeline.survey import KINDS, MOST_ATTEMPTS, Drawn
 
 SETTLED = "settled"
+_KEPT = TypeAdapter(list[tuple[int, dict[str, bool]]])
 
 
 def store_settled(folder: Path, identity_hash: str, start: int, outcomes: list[Drawn]) -> None:
@@ -19,16 +22,20 @@ def store_settled(folder: Path, identity_hash: str, start: int, outcomes: list[D
     write_whole(folder, _path(folder, start), kept.encode())
 
 
-def settled_rows(folder: Path, identity_hash: str, starts: Iterable[int]) -> dict[int, list[Drawn]]:
-    """Of `starts`, what is kept whole: {first row: outcomes of it and the rows after it}."""
+def settled_rows(folder: Path, identity_hash: str, starts: range) -> dict[int, list[Drawn]]:
+    """Of `starts`, what is kept whole: {first row: outcomes of it and the rows before the next}."""
     found = {}
     for start in starts:
         try:
-            checksum, _, text = _path(folder, start).read_text().partition("\n")
-        except (OSError, UnicodeDecodeError):
+            checksum, _, text = read_bytes(_path(folder, start)).decode().partition("\n")
+            kept = _KEPT.validate_json(text)
+        except (FolderError, FileNotFoundError, ValueError):
             continue
-        if checksum == _checksum(identity_hash, start, text):
-            found[start] = [Drawn(attempt, kinds) for attempt, kinds in json.loads(text)]
+        whole = len(kept) == min(starts.step, starts.stop - start) and all(
+            0 <= attempt < MOST_ATTEMPTS and kinds.keys() == set(KINDS) for attempt, kinds in kept
+        )
+        if whole and checksum == _checksum(identity_hash, start, text):
+            found[start] = [Drawn(attempt, kinds) for attempt, kinds in kept]
     return found
 
 

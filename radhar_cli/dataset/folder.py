@@ -98,17 +98,22 @@ def stored_identity(folder: Path) -> dict[str, Any] | None:
 
         try:
             with UntrustedFile(path) as file:
-                return _identity(file.json("identity"), path)
+                return checked_identity(file.json("identity"), path)
         except FolderError as error:
             raise FolderError(
                 f"{error}; this is not a data set of radhar's, or a damaged one; choose another "
                 "folder, or --overwrite if radhar built it"
             ) from None
     path = folder / WORK / IDENTITY
-    return _identity(read_json(path), path) if path.exists() else None
+    return checked_identity(read_json(path), path) if path.exists() else None
 
 
-def _identity(found: Any, path: Path) -> dict[str, Any]:
+def checked_identity(found: Any, path: Path) -> dict[str, Any]:
+    """An identity that was read from a file.
+
+    Raises:
+        FolderError: it is none.
+    """
     right = isinstance(found, dict) and all(
         isinstance(found.get(part), dict) for part in ("keys", "versions")
     )

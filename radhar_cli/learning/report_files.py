@@ -9,7 +9,8 @@ from typing import Any
 
 from jinja2 import Environment
 
-from radhar_cli.dataset.files import write_whole
+from radhar_cli.dataset.files import read_json, write_whole
+from radhar_cli.errors import FolderError
 
 PAGE, NUMBERS = "report.html", "report.json"
 _PAGE = """<!doctype html>
@@ -104,7 +105,7 @@ class Report:
 def _files_of(folder: Path) -> list[str]:
     """Files of the report that a folder holds, itself aside; those of another kind are not ours."""
     try:
-        found = json.loads((folder / NUMBERS).read_text())["files"]
-        return [name for name in found if Path(name).name == name]
-    except (OSError, ValueError, KeyError, TypeError):
+        found = read_json(folder / NUMBERS)["files"]
+        return [n for n in found if Path(n).name == n and Path(n).suffix in (".png", ".csv")]
+    except (FileNotFoundError, FolderError, KeyError, TypeError):
         return []

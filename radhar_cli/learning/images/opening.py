@@ -25,7 +25,7 @@ def open_images(path: Path, map_name: str | None, kind: str) -> ImageSet:
         raise FolderError(f"{path}: no such file or folder")
     if is_run(path):
         raise FolderError(f"{path}: is a training run; data is asked for here")
-    if path.is_file() and not is_h5(path):
+    if not path.is_dir() and not is_h5(path):
         raise FolderError(
             f"{path}: is no data set; should be dataset.h5, a folder that `radhar generate` wrote, "
             "or a folder of class folders with images"

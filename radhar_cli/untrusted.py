@@ -7,6 +7,8 @@ import stat
 from pathlib import Path
 from typing import Any
 
+from radhar_cli.errors import FolderError
+
 DEEPEST = 32
 LARGEST_JSON = 2**20  # characters
 
@@ -37,6 +39,19 @@ def read_text(path: Path, most: int) -> str:
     if len(data) > most:
         raise OSError(errno.EFBIG, f"holds more than {most} bytes", str(path))
     return data.decode()
+
+
+def read_json(path: Path) -> Any:
+    """The content of a JSON file.
+
+    Raises:
+        FolderError: it is missing, damaged, or beyond the bounds of `parse_json`.
+    """
+    try:
+        return parse_json(read_text(path, LARGEST_JSON))
+    except (OSError, ValueError) as error:
+        told = getattr(error, "strerror", None) or error
+        raise FolderError(f"{path}: is damaged, or not radhar's ({told})") from None
 
 
 def parse_json(text: str) -> Any:

@@ -4,11 +4,10 @@ file and nothing outside of a folder is touched."""
 import os
 import uuid
 from pathlib import Path
-from typing import Any
 
 from radhar_cli.dataset.layout import WORK
 from radhar_cli.errors import FolderError
-from radhar_cli.untrusted import parse_json, regular_size
+from radhar_cli.untrusted import regular_size
 
 MOST_TEXT = 2**20
 
@@ -89,11 +88,3 @@ def read_bytes(path: Path, most: int = MOST_TEXT) -> bytes:
         raise
     except OSError as error:
         raise FolderError(f"{path}: cannot be read: {error.strerror}") from None
-
-
-def read_json(path: Path) -> Any:
-    """What a JSON file says; its parts are still to be checked. Errors as `read_bytes`."""
-    try:
-        return parse_json(read_bytes(path).decode())
-    except ValueError as error:
-        raise FolderError(f"{path}: is damaged, or no JSON ({error})") from None

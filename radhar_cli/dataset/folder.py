@@ -11,7 +11,6 @@ from filelock import FileLock, Timeout
 
 from radhar_cli.config.experiment import Config
 from radhar_cli.dataset.files import (
-    read_json,
     refuse_links,
     refuse_strange_work,
     unfinished_path,
@@ -20,6 +19,7 @@ from radhar_cli.dataset.files import (
 from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.dataset.layout import CONFIG, DATASET, IDENTITY, MANIFEST, PNG, SCENES, WORK, begun
 from radhar_cli.errors import FolderError
+from radhar_cli.untrusted import read_json
 
 
 def refuse_file(folder: Path) -> None:

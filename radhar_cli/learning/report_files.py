@@ -9,8 +9,9 @@ from typing import Any
 
 from jinja2 import Environment
 
-from radhar_cli.dataset.files import read_json, write_whole
+from radhar_cli.dataset.files import write_whole
 from radhar_cli.errors import FolderError
+from radhar_cli.untrusted import read_json
 
 PAGE, NUMBERS = "report.html", "report.json"
 _PAGE = """<!doctype html>
@@ -107,5 +108,5 @@ def _files_of(folder: Path) -> list[str]:
     try:
         found = read_json(folder / NUMBERS)["files"]
         return [n for n in found if Path(n).name == n and Path(n).suffix in (".png", ".csv")]
-    except (FileNotFoundError, FolderError, KeyError, TypeError):
+    except (FolderError, KeyError, TypeError):
         return []

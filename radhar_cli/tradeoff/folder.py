@@ -5,11 +5,12 @@ import shutil
 from pathlib import Path
 
 from radhar_cli.config.experiment import Config
-from radhar_cli.dataset.files import read_json, write_whole
+from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.folder import checked_identity
 from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.dataset.layout import WORK
 from radhar_cli.errors import FolderError
+from radhar_cli.untrusted import read_json
 
 NAME = "sweep.json"
 

@@ -7,9 +7,10 @@ from typing import Any, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
-from radhar_cli.dataset.files import read_json, write_whole
+from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.layout import WORK
 from radhar_cli.errors import FolderError
+from radhar_cli.untrusted import read_json
 
 T = TypeVar("T")
 

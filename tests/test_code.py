@@ -107,6 +107,20 @@ def test_help_needs_no_heavy_import() -> None:
     assert run(sys.executable, "-c", code).stdout.strip() == "[]"
 
 
+def test_hdf5_is_opened_for_reading_in_one_place() -> None:
+    door = "dataset/untrusted_hdf5.py"
+    writers = {"dataset/assembly.py", "dataset/shards.py", "simulation/scene_file.py"}
+    for path in files():
+        name = str(path.relative_to(PACKAGE))
+        if "h5py" in imports(path):
+            assert name in {door, *writers, "dataset/identity.py"}, f"{name} imports h5py"
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Attribute) and ast.unparse(node).startswith("h5py.File"):
+                assert name in {door, *writers}, name
+            if isinstance(node, ast.Call) and ast.unparse(node.func) == "h5py.File":
+                assert name == door or ast.unparse(node.args[1]) == "'w'", name
+
+
 def test_ruff() -> None:
     for command in (["check"], ["format", "--check"]):
         done = run(sys.executable, "-m", "ruff", *command, ".")

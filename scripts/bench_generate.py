@@ -107,7 +107,7 @@ class Sink:
                 data = encode_png(image.levels, self.table, self.config.output.png_level)
                 write_whole(self.folder, self.folder / "png" / f"{name}.png", data)
         values = np.repeat(self.values, len(samples), axis=0)
-        write_shard(self.folder, 0, len(samples), encode_shard(self.config, samples, values))
+        write_shard(self.folder, 0, len(samples), encode_shard(self.config, 0, samples, values))
 
 
 def image_of(config: Config, recording: Recording, name: str, power: np.ndarray) -> MapImage:

@@ -139,6 +139,18 @@ def test_one_place_prints() -> None:
     assert {p.name for p in files() if "print" in calls(p)} == {"cli.py"}
     writes = {p.name for p in files() if {"tqdm.write", "console.print"} & calls(p)}
     assert writes == {"terminal.py", "training_view.py", "summary_view.py"}
+def test_hdf5_is_opened_for_reading_in_one_place() -> None:
+    door = "dataset/untrusted_hdf5.py"
+    writers = {"dataset/assembly.py", "dataset/shards.py", "simulation/scene_file.py"}
+    for path in files():
+        name = str(path.relative_to(PACKAGE))
+        if "h5py" in imports(path):
+            assert name in {door, *writers, "dataset/identity.py"}, f"{name} imports h5py"
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Attribute) and ast.unparse(node).startswith("h5py.File"):
+                assert name in {door, *writers}, name
+            if isinstance(node, ast.Call) and ast.unparse(node.func) == "h5py.File":
+                assert name == door or ast.unparse(node.args[1]) == "'w'", name
 
 
 def test_ruff() -> None:

@@ -57,6 +57,7 @@ def evaluate(
     )
 
     needs_torch()
+    from radhar_cli.dataset.files import refuse_links
     from radhar_cli.learning.images.classes import read_classes
     from radhar_cli.learning.images.image_set import split_named
     from radhar_cli.learning.machine import choose_device, keep_memory
@@ -66,7 +67,10 @@ def evaluate(
     runs, data = runs_and_data(paths)
     names = read_classes(classes) if classes else {}
     asked = Asked(split_named(split), map_, tsne, filters, in_place_vs_moving, batch, resize, names)
-    folder = out or (runs[0] if runs[0].is_dir() else runs[0].parent) / "eval"
+    inside = runs[0] if runs[0].is_dir() else runs[0].parent
+    folder = out or inside / "eval"
+    if out is None:
+        refuse_links(inside, folder)
     apart(folder, data)
     keep_memory()
     report = evaluate(runs, data, asked, choose_device(known_device(device)), Speaker())

@@ -31,6 +31,7 @@ def preview(
 
       radhar preview datasets/quickstart --map stft --per-class 4
     """
+    from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.reading import open_dataset
     from radhar_cli.figures.contact_sheet import draw_contact_sheet
     from radhar_cli.learning.images.opening import is_tree
@@ -41,6 +42,7 @@ def preview(
     with open_dataset(dataset) as data:
         name = data.map_name(map_)
         path = out or data.path.parent / f"preview_{name}.png"
+        refuse_links(path.parent, path)
         draw_contact_sheet(data, name, per_class, path)
     tell(str(path))
 

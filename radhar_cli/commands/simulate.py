@@ -50,7 +50,9 @@ def simulate(
       radhar simulate configs/paper/free_space.yaml --activity walking --seed 7 -o out/walk
     """
     from radhar_cli.config import load_config
+    from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.folder import refuse_file
+    from radhar_cli.simulation import scene_file
     from radhar_cli.simulation.simulate import map_names
     from radhar_cli.simulation.simulate import simulate as simulate_scene
 
@@ -58,13 +60,13 @@ def simulate(
     loaded = load_config(config, overrides)
     chosen = map_names(None if maps is None else maps.split(","))
     refuse_file(out)
+    for name in scene_file.FILES:
+        refuse_links(out, out / name)
     simulation = simulate_scene(
         loaded, activity, seed, nominal=nominal, joint=joint, maps=chosen, raw=raw
     )
     for warning in simulation.warnings:
         tell(f"warning: {warning}", err=True)
-
-    from radhar_cli.simulation import scene_file
 
     written = scene_file.write_all(simulation, out)
     if figures:
@@ -81,10 +83,11 @@ def _draw(simulation: "Simulation", out: Path, overlay: bool) -> list[Path]:
     from tqdm import tqdm
 
     from radhar_cli.figures import maps_panel, stickman
+    from radhar_cli.simulation.scene_file import ANIMATION, MAPS
 
-    maps = out / "maps.png"
+    maps = out / MAPS
     maps_panel.draw_maps(simulation, maps, overlay)
-    animation = out / "stickman.gif"
+    animation = out / ANIMATION
     frames = stickman.frame_count(simulation)
     with tqdm(
         total=frames, desc=animation.name, unit="frame", disable=None, file=sys.stderr

@@ -1,4 +1,4 @@
-"""Shards -> dataset.h5, scenes.csv and config.yaml.
+"""Shards -> dataset.h5, scenes.csv, config.yaml and the manifest of what was put together.
 
 The layout of dataset.h5 is a contract, described in docs/dataset.md.
 """
@@ -6,7 +6,8 @@ The layout of dataset.h5 is a contract, described in docs/dataset.md.
 import csv
 import io
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -20,10 +21,12 @@ from radhar_cli.config.experiment import Config
 from radhar_cli.config.identity import config_hash, resolved
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.files import unfinished_path, write_whole
-from radhar_cli.dataset.identity import identity, versions
-from radhar_cli.dataset.layout import CONFIG, DATASET, SCENES, SPLITS, Rows
-from radhar_cli.dataset.shards import Shard, image_dataset, pieces
+from radhar_cli.dataset.identity import identity, identity_hash, versions
+from radhar_cli.dataset.layout import COLUMNS, CONFIG, DATASET, MANIFEST, SCENES, SPLITS, WORK, Rows
+from radhar_cli.dataset.shards import Shard, ShardError, check_shards, image_dataset, require_tiling
 from radhar_cli.dataset.split import split_rows
+from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
+from radhar_cli.errors import UnfinishedError
 from radhar_cli.scenario import subject_of
 
 SCHEMA_VERSION = 1
@@ -33,65 +36,78 @@ LEVELS_TEXT = (
 )
 
 
-def assemble(
+@contextmanager
+def assembled(
     config: Config, folder: Path, shards: Sequence[Shard], said: list[dict[str, Any]]
-) -> None:
-    """Write scenes.csv and config.yaml, then dataset.h5, and rename it into place last.
+) -> Iterator[Path]:
+    """Put a data set together; yield the path of its whole file, which becomes dataset.h5 after.
 
     Args:
         config: the data set's.
         folder: the output folder.
-        shards: that hold every row.
+        shards: that hold every row once.
         said: the physical warnings, stored with the data.
+
+    Raises:
+        UnfinishedError: rows are missing, held twice, or in a shard that cannot be used.
     """
+    count, whose, shards = len(Rows.of(config)), identity_hash(identity(config)), sorted(shards)
+    require_tiling(folder, shards, count)
     unfinished = unfinished_path(folder)
     unfinished.parent.mkdir(parents=True, exist_ok=True)
     try:
         with h5py.File(unfinished, "w") as file:
-            scene_values = _copy_shards(file, config, shards)
+            scene_values, held = _copy_shards(file, config, shards, whose)
             _describe_samples(file, config, scene_values)
             _describe_maps(file, config)
             _root_attributes(file, config, said)
+        yield unfinished
         _write_csv(config, folder, scene_values)
         write_whole(folder, folder / CONFIG, _config_text(config).encode())
+        manifest = {"identity": whose, "rows": count, "shards": held}
+        write_whole(folder, folder / WORK / MANIFEST, json.dumps(manifest).encode())
         unfinished.replace(folder / DATASET)
+    except ShardError as error:
+        require_tiling(folder, check_shards(shards, whose)[0], count)
+        raise UnfinishedError(f"{folder}: {error}; the same command goes on") from None
     finally:
         unfinished.unlink(missing_ok=True)
 
 
-def _copy_shards(file: h5py.File, config: Config, shards: Sequence[Shard]) -> Float:
-    count = len(Rows.of(config))
+def _copy_shards(
+    file: h5py.File, config: Config, shards: Sequence[Shard], whose: str
+) -> tuple[Float, list[dict[str, Any]]]:
+    """Copy maps and columns; return the scene values [N, fields] and what each shard held."""
+    scene_values: list[Float] = []
+    held: list[dict[str, Any]] = []
     width = len(scene_fields.fields(config))
-    scene_values = np.empty((count, width))
-    for name in config.maps:
-        image_dataset(file.require_group("maps"), name, count, config)
-    _copy(shards, count, "scene", scene_values)
     # Map by map, row by row: the file's layout does not depend on how shards cut the rows.
     for name in config.maps:
-        for kind, shape, dtype in (
-            ("entropy", (), "f4"),
-            ("sha256", (), "S64"),
-            ("extent", (4,), "f8"),
-        ):
-            column = np.empty((count, *shape), dtype)
-            _copy(shards, count, f"{kind}/{name}", column)
-            file[f"{kind}/{name}"] = column
-        target = file[f"maps/{name}"].id
-        for shard, first, stop in pieces(shards, count):
-            with h5py.File(shard.path, "r") as part:
-                source = part[f"maps/{name}"].id
-                for row in range(first, stop):
-                    mask, chunk = source.read_direct_chunk((row - shard.start, 0, 0))
-                    target.write_direct_chunk((row, 0, 0), chunk, mask)
-    return scene_values
-
-
-def _copy(
-    shards: Sequence[Shard], count: int, name: str, column: np.ndarray[Any, np.dtype[Any]]
-) -> None:
-    for shard, first, stop in pieces(shards, count):
-        with h5py.File(shard.path, "r") as part:
-            column[first:stop] = part[name][first - shard.start : stop - shard.start]
+        target = image_dataset(file.require_group("maps"), name, shards[-1].stop, config).id
+        columns: dict[str, list[Any]] = {kind: [] for kind in COLUMNS}
+        for shard in shards:
+            data, checksum = shard.read(whose)
+            rows = shard.stop - shard.start
+            with UntrustedFile(shard.path, data) as part:
+                source = part.images(f"maps/{name}", (rows, *config.image.size_px))
+                for row in range(rows):
+                    mask, chunk = source.stored(row)
+                    target.write_direct_chunk((shard.start + row, 0, 0), chunk, mask)
+                for kind, (dtype, shape) in COLUMNS.items():
+                    columns[kind].append(part.column(f"{kind}/{name}", dtype, (rows, *shape))[:])
+                if name == config.maps[0]:
+                    scene_values.append(part.column("scene", np.float64, (rows, width))[:])
+                    held.append(
+                        {
+                            "start": shard.start,
+                            "stop": shard.stop,
+                            "bytes": len(data),
+                            "sha256": checksum,
+                        }
+                    )
+        for kind, values in columns.items():
+            file[f"{kind}/{name}"] = np.concatenate(values)
+    return np.concatenate(scene_values), held
 
 
 def _describe_samples(file: h5py.File, config: Config, scene_values: Float) -> None:

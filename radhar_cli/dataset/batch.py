@@ -5,8 +5,6 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from radhar_cli.arrays import Levels
 from radhar_cli.config.experiment import Config
 from radhar_cli.dataset import scene_fields
@@ -15,6 +13,7 @@ from radhar_cli.dataset.layout import Rows, png_path
 from radhar_cli.dataset.png import encode_png
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.shards import encode_shard, write_shard
+from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.pipeline.plan import plan_images
 from radhar_cli.pipeline.survey import Drawn, settle
 from radhar_cli.process import prepare_process
@@ -27,7 +26,7 @@ class Batch:
 
     Attributes:
         config: the data set's.
-        folder: the output folder.
+        folder: the output folder, absolute: a worker may have another working directory.
         start, stop: rows.
         attempts: which draw of each row is kept (`on_invalid: redraw`).
         split: split number of each row.
@@ -80,7 +79,8 @@ def _run_batch(batch: Batch) -> int:
         scenes.append(scene)
         samples.append(sample)
     values = scene_fields.values(scenes, scene_fields.fields(config))
-    write_shard(batch.folder, batch.start, batch.stop, encode_shard(config, samples, values))
+    data = encode_shard(config, batch.start, samples, values)
+    write_shard(batch.folder, batch.start, batch.stop, data)
     return batch.stop - batch.start
 
 
@@ -96,20 +96,18 @@ def png_rows(
     config: Config,
     folder: Path,
     source: Path,
-    first: int,
     rows: list[tuple[int, int]],
     table: Levels,
     master: int,
 ) -> int:
-    """Write the PNGs of (row, split) pairs from an HDF5 file whose row 0 is row `first`."""
-    import h5py
-
+    """Write the PNGs of (row, split) pairs from a data set's HDF5 file."""
     order = Rows.of(config)
-    with h5py.File(source, "r") as file:
+    shape = (len(order), *config.image.size_px)
+    with UntrustedFile(source) as file:
+        images = {name: file.images(f"maps/{name}", shape) for name in config.maps}
         for row, split in rows:
             leave_if_orphaned(master)
             for name in config.maps:
-                levels = np.asarray(file[f"maps/{name}"][row - first])
-                path = folder / png_path(name, split, *order[row])
-                write_whole(folder, path, encode_png(levels, table, config.output.png_level))
+                data = encode_png(images[name][row], table, config.output.png_level)
+                write_whole(folder, folder / png_path(name, split, *order[row]), data)
     return len(rows)

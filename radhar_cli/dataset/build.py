@@ -6,6 +6,7 @@ shards goes on from them; dataset.h5 comes last and stands for a complete folder
 
 import errno
 import os
+import uuid
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,12 +14,20 @@ from typing import Any, Protocol
 
 from radhar_cli.arrays import Levels
 from radhar_cli.config.experiment import Config
-from radhar_cli.dataset.assembly import assemble
+from radhar_cli.dataset.assembly import assembled
 from radhar_cli.dataset.batch import Batch, png_rows, run_batch, survey_rows
 from radhar_cli.dataset.folder import claim, locked, mark_built, tidy
-from radhar_cli.dataset.layout import DATASET, Rows, png_path
+from radhar_cli.dataset.identity import identity, identity_hash
+from radhar_cli.dataset.layout import DATASET, MANIFEST, WORK, Rows, png_path
 from radhar_cli.dataset.settled import settled_rows, store_settled
-from radhar_cli.dataset.shards import fallen_back, finished_shards, missing_runs, pieces
+from radhar_cli.dataset.shards import (
+    ForeignShardError,
+    Shard,
+    check_shards,
+    listed_shards,
+    missing_and_repeated,
+    shard_of,
+)
 from radhar_cli.dataset.split import split_rows
 from radhar_cli.dataset.workers import run_tasks
 from radhar_cli.errors import UnfinishedError
@@ -90,10 +99,12 @@ def build(
         SceneError: a scene outside the model; nothing was computed.
     """
     table = colour_table(config.image.colour_map) if config.output.png else None
+    folder = folder.absolute()
+    whose = identity_hash(identity(config))
     try:
         with locked(folder):
             claim(folder, config, overwrite)
-            return _Build(config, folder, jobs, progress, table).run(batch_size)
+            return _Build(config, whose, folder, jobs, progress, table).run(batch_size)
     except OSError as error:
         raise _disk_error(folder, error) from error
 
@@ -101,6 +112,7 @@ def build(
 @dataclass
 class _Build:
     config: Config
+    identity_hash: str
     folder: Path
     jobs: int
     progress: Progress
@@ -110,93 +122,103 @@ class _Build:
         config, count = self.config, len(Rows.of(self.config))
         split = tuple(int(part) for part in split_rows(config))
         if (self.folder / DATASET).exists():
-            pngs = self._missing_pngs(split, complete=True)
+            pngs = self._missing_pngs(split, self.folder / DATASET)
             tidy(self.folder)
             return Outcome(self.folder, count, 0, pngs)
         drawn = self._survey(count)
         said = warnings(config, drawn)
         for warning in said:
             self.progress.say(f"warning: {warning['message']}")
-        made = self._batches(drawn, split, batch_size)
-        pngs = self._missing_pngs(split, complete=False)
-        shards = finished_shards(self.folder)
-        for warning in fallback_warnings(fallen_back(shards, count), count):
-            self.progress.say(f"warning: {warning['message']}")
-            said.append(warning)
+        shards, made = self._batches(drawn, split, batch_size)
         self.progress.stage("assembling", count, 0)
-        assemble(config, self.folder, shards, said)
-        self.progress.advance(count)
+        with assembled(config, self.folder, shards, said) as unfinished:
+            self.progress.advance(count)
+            pngs = self._missing_pngs(split, unfinished)
         mark_built(self.folder)
         tidy(self.folder)
         return Outcome(self.folder, count, made, pngs, said)
 
     def _survey(self, count: int) -> list[Drawn]:
         """Settle every scene; what a run that was stopped had settled is not done again."""
-        outcomes = settled_rows(self.folder)
-        starts = [s for s in range(0, count, SURVEY_BATCH) if s not in outcomes]
+        every = range(0, count, SURVEY_BATCH)
+        outcomes = settled_rows(self.folder, self.identity_hash, every)
+        starts = [start for start in every if start not in outcomes]
         left = sum(min(SURVEY_BATCH, count - start) for start in starts)
         self.progress.stage("checking scenes", count, count - left)
         tasks = [(self.config, s, min(s + SURVEY_BATCH, count), os.getpid()) for s in starts]
         jobs = self.jobs if len(tasks) > 2 * self.jobs else 1
         for start, found in run_tasks(survey_rows, tasks, jobs):
-            store_settled(self.folder, start, found)
+            store_settled(self.folder, self.identity_hash, start, found)
             outcomes[start] = found
             self.progress.advance(len(found))
         return [outcome for start in sorted(outcomes) for outcome in outcomes[start]]
 
-    def _batches(self, drawn: list[Drawn], split: tuple[int, ...], batch_size: int | None) -> int:
-        gaps = missing_runs(finished_shards(self.folder), len(drawn))
+    def _batches(
+        self, drawn: list[Drawn], split: tuple[int, ...], batch_size: int | None
+    ) -> tuple[list[Shard], int]:
+        """Make the rows that no sound shard holds; return the shards of all rows, and how many."""
+        kept = self._sound_shards()
+        gaps, _ = missing_and_repeated(kept, len(drawn))
         left = sum(stop - start for start, stop in gaps)
         self.progress.stage("samples", len(drawn), len(drawn) - left)
         size = batch_size or max(1, min(LARGEST_BATCH, -(-left // (4 * self.jobs))))
+        cuts = [
+            (start, min(start + size, gap_stop))
+            for gap_start, gap_stop in gaps
+            for start in range(gap_start, gap_stop, size)
+        ]
 
         def batches() -> Iterator[tuple[Batch]]:
-            for gap_start, gap_stop in gaps:
-                for start in range(gap_start, gap_stop, size):
-                    stop = min(start + size, gap_stop)
-                    attempts = tuple(outcome.attempt for outcome in drawn[start:stop])
-                    yield (
-                        Batch(
-                            self.config,
-                            self.folder,
-                            start,
-                            stop,
-                            attempts,
-                            split[start:stop],
-                            self.table,
-                            os.getpid(),
-                        ),
-                    )
+            for start, stop in cuts:
+                attempts = tuple(outcome.attempt for outcome in drawn[start:stop])
+                yield (
+                    Batch(
+                        self.config,
+                        self.folder,
+                        start,
+                        stop,
+                        attempts,
+                        split[start:stop],
+                        self.table,
+                        os.getpid(),
+                    ),
+                )
 
         for samples in run_tasks(run_batch, batches(), self.jobs if left > size else 1):
             self.progress.advance(samples)
-        return left
+        return kept + [shard_of(self.folder, start, stop) for start, stop in cuts], left
 
-    def _missing_pngs(self, split: tuple[int, ...], complete: bool) -> int:
+    def _sound_shards(self) -> list[Shard]:
+        """Shards to go on from. A damaged one is made again, a foreign one moved out of the way."""
+        (self.folder / WORK / MANIFEST).unlink(missing_ok=True)
+        sound, unusable = check_shards(listed_shards(self.folder), self.identity_hash)
+        for shard, error in unusable:
+            self.progress.say(f"{shard.path}: {error}; its rows are made again")
+            if isinstance(error, ForeignShardError):
+                shard.path.rename(shard.path.with_suffix(f".foreign-{uuid.uuid4().hex}"))
+        return sound
+
+    def _missing_pngs(self, split: tuple[int, ...], source: Path) -> int:
         """Write PNGs that are not there: asked for later, deleted, or lost with a killed run."""
         if self.table is None:
             return 0
-        missing = self._rows_without_png(split)
+        missing = [(row, split[row]) for row in self._rows_without_png(split)]
         if not missing:
             return 0
         self.progress.stage("png", len(missing), 0)
-        if complete:
-            sources = [(self.folder / DATASET, 0, 0, len(split))]
-        else:
-            sources = [
-                (shard.path, shard.start, first, stop)
-                for shard, first, stop in pieces(finished_shards(self.folder), len(split))
-            ]
-
-        def tasks() -> Iterator[tuple[Any, ...]]:
-            for path, offset, first, stop in sources:
-                here = [(row, split[row]) for row in missing if first <= row < stop]
-                for part in range(0, len(here), LARGEST_BATCH):
-                    chosen = here[part : part + LARGEST_BATCH]
-                    yield (self.config, self.folder, path, offset, chosen, self.table, os.getpid())
-
+        tasks = (
+            (
+                self.config,
+                self.folder,
+                source,
+                missing[first : first + LARGEST_BATCH],
+                self.table,
+                os.getpid(),
+            )
+            for first in range(0, len(missing), LARGEST_BATCH)
+        )
         jobs = self.jobs if len(missing) > LARGEST_BATCH else 1
-        for written in run_tasks(png_rows, tasks(), jobs):
+        for written in run_tasks(png_rows, tasks, jobs):
             self.progress.advance(written)
         return len(missing) * len(self.config.maps)
 

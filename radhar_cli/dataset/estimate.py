@@ -83,7 +83,7 @@ def _time_sample(config: Config, row: int, table: Levels | None) -> tuple[int, i
     scene = draw_scene(config, activity, index, attempt)
     sample = synthesise(scene, config, plan_images(config))
     values = scene_fields.values([scene], scene_fields.fields(config))
-    shard = encode_shard(config, [sample], values)
+    shard = encode_shard(config, row, [sample], values)
     pngs = 0
     if table is not None:
         level = config.output.png_level

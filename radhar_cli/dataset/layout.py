@@ -12,7 +12,14 @@ SCENES = "scenes.csv"
 PNG = "png"
 WORK = ".radhar"
 IDENTITY = "identity.json"
+MANIFEST = "manifest.json"
 SPLITS = ("train", "validation", "test")
+# Beside the maps, for each of them: type and shape of a sample's part.
+COLUMNS: dict[str, tuple[str, tuple[int, ...]]] = {
+    "entropy": ("f4", ()),
+    "sha256": ("S64", ()),
+    "extent": ("f8", (4,)),
+}
 SPLIT_FOLDERS = ("train", "val", "test")
 
 

@@ -19,7 +19,8 @@ from radhar_cli.learning.images.image_set import ImageSet, labels_for
 from radhar_cli.learning.images.opening import is_h5, open_images
 from radhar_cli.learning.images.scan import content_hash, scan
 from radhar_cli.learning.models.build import features_and_logits
-from radhar_cli.learning.run_folder import About, load_best
+from radhar_cli.learning.run_folder import About, RunError, load_best
+from radhar_cli.learning.settings import TrainConfig
 
 WARM_UP, REPEATS, BATCH_REPEATS = 3, 15, 5
 
@@ -104,7 +105,8 @@ def _map_there(about: About, path: Path) -> str | None:
 
 def _cut_as_in_training(about: About, images: ImageSet) -> ImageSet:
     try:
-        cut = images.cut(float(about.config["validation_share"]), int(about.config["seed"]))
+        settings = TrainConfig.model_validate(about.config)
+        cut = images.cut(settings.validation_share, settings.seed)
     except FolderError:
         return images
     rows = np.concatenate([cut.rows("train"), cut.rows("val")])
@@ -124,11 +126,19 @@ def answers(
     """Yield (probabilities [B, classes], features [B, F]) of rows of a set, batch by batch.
 
     The model is in evaluation mode and on the device; float32, whatever it was trained in.
+
+    Raises:
+        RunError: it answers with what is no number.
     """
     reader = Reader(images, images.label, workers=0, pin=False)
     with torch.inference_mode():
         for levels, _ in reader(pieces(rows, batch)):
             features, logits = features_and_logits(model, about.normalisation(levels.to(device)))
+            if not logits.isfinite().all():
+                raise RunError(
+                    f"the network {about.model} trained on {about.data['path']}: its answers are "
+                    "no finite numbers; its weights or its mean and sd are damaged"
+                )
             yield logits.softmax(1).cpu().numpy(), features.cpu().numpy()
 
 

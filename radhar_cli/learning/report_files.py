@@ -109,6 +109,6 @@ def _files_of(folder: Path) -> list[str]:
     """Files of the report that a folder holds, itself aside; those of another kind are not ours."""
     try:
         found = read_json(folder / NUMBERS)["files"]
-        return [name for name in found if Path(name).name == name and (folder / name).is_file()]
+        return [n for n in found if Path(n).name == n and Path(n).suffix in (".png", ".csv")]
     except (FolderError, KeyError, TypeError):
         return []

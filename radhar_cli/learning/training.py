@@ -20,7 +20,7 @@ from radhar_cli.errors import ConfigError, FolderError, RadharError
 from radhar_cli.learning import run_files
 from radhar_cli.learning import run_folder as run
 from radhar_cli.learning.batches import LEAST_PER_PROCESS, Reader, epoch_batches, pieces
-from radhar_cli.learning.gradient_step import Learner, optimiser_for
+from radhar_cli.learning.gradient_step import Learner, check_state, optimiser_for
 from radhar_cli.learning.images.classes import renamed
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.opening import open_images
@@ -239,9 +239,12 @@ class _Training:
             other = run.differences(About.model_validate_json(found["about"]), self.about)
             if other:
                 raise run.RunError(f"{path}: is another run's; it differs in {other[0]}")
+            self.history = run.checked_history([Epoch(**row) for row in found["history"]])
+            if not self.history:
+                raise ValueError("it holds no epoch")
             self.model.load_state_dict(found["model"])
+            check_state(self.optimiser, found["optimiser"])
             self.optimiser.load_state_dict(found["optimiser"])
-            self.history = [Epoch(**row) for row in found["history"]]
             torch.set_rng_state(found["random"])
         except (RuntimeError, ValueError, KeyError, TypeError, IndexError) as error:
             raise run.RunError(

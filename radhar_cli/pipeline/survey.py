@@ -182,6 +182,7 @@ _WORDING = {
     "half_band": "a scatterer leaves the range half-band and its echo the kept bins",
     "aliasing": "a joint moves faster than the Doppler PRF/2 and aliases",
 }
+KINDS = tuple(_WORDING)
 
 
 def check(scene: Scene, config: Config) -> list[str]:

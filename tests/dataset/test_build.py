@@ -17,7 +17,7 @@ from radhar_cli.dataset import folder as folder_module
 from radhar_cli.dataset.build import Outcome, build
 from radhar_cli.dataset.folder import locked
 from radhar_cli.dataset.layout import Rows, png_path
-from radhar_cli.dataset.shards import Shard, finished_shards, missing_runs, pieces
+from radhar_cli.dataset.shards import listed_shards
 from radhar_cli.errors import FolderError, SceneError, UnfinishedError
 
 
@@ -61,7 +61,7 @@ def test_unfinished_build_goes_on_with_another_batch_size(
     monkeypatch.setattr(batch_module, "synthesise", stops_after_five)
     with pytest.raises(UnfinishedError, match="no space left on the disk"):
         make(config, folder, batch_size=2)
-    assert [(s.start, s.stop) for s in finished_shards(folder)] == [(0, 2), (2, 4)]
+    assert [(s.start, s.stop) for s in listed_shards(folder)] == [(0, 2), (2, 4)]
     monkeypatch.setattr(batch_module, "synthesise", original)
     outcome = make(config, folder, batch_size=3)
     assert outcome.made == 5, "the four finished samples are not made again"
@@ -312,16 +312,6 @@ def test_scenes_csv_has_the_numbers_of_the_file(whole: Path) -> None:
 
 def test_resolved_config_builds_the_same_identity(config: Config, whole: Path) -> None:
     assert load_config(whole / "config.yaml") == config
-
-
-def test_rows_of_overlapping_shards_count_once() -> None:
-    shards = [Shard(0, 4, Path("a")), Shard(2, 6, Path("b")), Shard(8, 10, Path("c"))]
-    assert [(s.path.name, i, j) for s, i, j in pieces(shards, 10)] == [
-        ("a", 0, 4),
-        ("b", 4, 6),
-        ("c", 8, 10),
-    ]
-    assert missing_runs(shards, 12) == [(6, 8), (10, 12)]
 
 
 def test_redrawn_scenes_are_valid_and_deterministic(tmp_path: Path) -> None:

@@ -64,7 +64,7 @@ def test_best_as_a_sort_would_have_it(pairs: list[tuple[int, int]]) -> None:
 
 
 def test_history_survives_being_written(tmp_path: Path) -> None:
-    history = [Epoch(1, 0.1 + 0.2, 1 / 3, 0.5, 2 / 3, 1.0, 0.125), EPOCH]
+    history = [EPOCH, Epoch(2, 0.1 + 0.2, 1 / 3, 0.5, 2 / 3, 1.0, 0.125)]
     run.write_history(tmp_path, history)
     assert run.read_history(tmp_path) == history
 

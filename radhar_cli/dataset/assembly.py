@@ -6,6 +6,7 @@ The layout of dataset.h5 is a contract, described in docs/dataset.md.
 import csv
 import io
 import json
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -29,6 +30,7 @@ from radhar_cli.errors import UnfinishedError
 from radhar_cli.scenario import subject_of
 
 SCHEMA_VERSION = 1
+RUN = 128
 LEVELS_TEXT = (
     "level = floor(255 (dB / dynamic_range_db + 1) + 1/2), dB = 10 log10(power / largest power), "
     "clipped to [-dynamic_range_db, 0]; level 0 everywhere for an all-zero map"
@@ -76,35 +78,43 @@ def assembled(
 def _copy_shards(
     file: h5py.File, config: Config, shards: Sequence[Shard], whose: str
 ) -> tuple[Float, list[dict[str, Any]]]:
-    """Copy maps and columns; return the scene values [N, fields] and what each shard held."""
-    scene_values: list[Float] = []
+    """Copy maps and columns, each shard read and checked once.
+
+    Chunks are stored in runs of RUN rows, map after map: the file's layout does not depend on how
+    shards cut the rows, and who reads one map reads long stretches.
+
+    Returns:
+        The scene values [N, fields], and what each shard held.
+    """
+    count, stored = shards[-1].stop, 0
+    maps = file.create_group("maps")
+    targets = {name: image_dataset(maps, name, count, config).id for name in config.maps}
+    chunks: dict[str, list[tuple[int, bytes]]] = {name: [] for name in config.maps}
+    columns: dict[str, list[Any]] = defaultdict(list)
     held: list[dict[str, Any]] = []
-    # Map by map, row by row: the file's layout does not depend on how shards cut the rows.
-    for name in config.maps:
-        target = image_dataset(file.require_group("maps"), name, shards[-1].stop, config).id
-        columns: dict[str, list[Any]] = {"entropy": [], "sha256": [], "extent": []}
-        for shard in shards:
-            data, checksum = shard.read(whose)
-            with h5py.File(io.BytesIO(data), "r") as part:
+    for shard in shards:
+        start, stop, _ = shard
+        data, checksum = shard.read(whose)
+        held.append({"start": start, "stop": stop, "bytes": len(data), "sha256": checksum})
+        with h5py.File(io.BytesIO(data), "r") as part:
+            columns["scene"].append(part["scene"][:])
+            for name in config.maps:
                 source = part[f"maps/{name}"].id
-                for row in range(shard.start, shard.stop):
-                    mask, chunk = source.read_direct_chunk((row - shard.start, 0, 0))
+                chunks[name] += [
+                    source.read_direct_chunk((row, 0, 0)) for row in range(stop - start)
+                ]
+                for column in (f"entropy/{name}", f"sha256/{name}", f"extent/{name}"):
+                    columns[column].append(part[column][:])
+        while stop - stored >= RUN or stored < stop == count:
+            for name, target in targets.items():
+                for row, (mask, chunk) in enumerate(chunks[name][:RUN], stored):
                     target.write_direct_chunk((row, 0, 0), chunk, mask)
-                for kind, values in columns.items():
-                    values.append(part[f"{kind}/{name}"][:])
-                if name == config.maps[0]:
-                    scene_values.append(part["scene"][:])
-                    held.append(
-                        {
-                            "start": shard.start,
-                            "stop": shard.stop,
-                            "bytes": len(data),
-                            "sha256": checksum,
-                        }
-                    )
-        for kind, values in columns.items():
-            file[f"{kind}/{name}"] = np.concatenate(values)
-    return np.concatenate(scene_values), held
+                del chunks[name][:RUN]
+            stored += RUN
+    scene_values = np.concatenate(columns.pop("scene"))
+    for column, values in columns.items():
+        file[column] = np.concatenate(values)
+    return scene_values, held
 
 
 def _describe_samples(file: h5py.File, config: Config, scene_values: Float) -> None:

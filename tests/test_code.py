@@ -139,6 +139,8 @@ def test_one_place_prints() -> None:
     assert {p.name for p in files() if "print" in calls(p)} == {"cli.py"}
     writes = {p.name for p in files() if {"tqdm.write", "console.print"} & calls(p)}
     assert writes == {"terminal.py", "training_view.py", "summary_view.py"}
+
+
 def test_hdf5_is_opened_for_reading_in_one_place() -> None:
     door = "dataset/untrusted_hdf5.py"
     writers = {"dataset/assembly.py", "dataset/shards.py", "simulation/scene_file.py"}

@@ -21,7 +21,7 @@ def _print(asked: bool) -> None:
             found.append(f"{library} {version(library)}")
         except PackageNotFoundError:
             found.append(f"no {library}")
-    typer.echo(f"radhar {__version__}\n{', '.join(found)}")
+    tell(f"radhar {__version__}\n{', '.join(found)}")
     raise typer.Exit
 
 

@@ -6,6 +6,7 @@ The layout of dataset.h5 is a contract, described in docs/dataset.md.
 import csv
 import io
 import json
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -27,9 +28,11 @@ from radhar_cli.dataset.shards import Shard, ShardError, check_shards, image_dat
 from radhar_cli.dataset.split import split_rows
 from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.errors import UnfinishedError
+from radhar_cli.pipeline.survey import fallback_warnings
 from radhar_cli.scenario import subject_of
 
 SCHEMA_VERSION = 1
+RUN = 128
 LEVELS_TEXT = (
     "level = floor(255 (dB / dynamic_range_db + 1) + 1/2), dB = 10 log10(power / largest power), "
     "clipped to [-dynamic_range_db, 0]; level 0 everywhere for an all-zero map"
@@ -39,8 +42,10 @@ LEVELS_TEXT = (
 @contextmanager
 def assembled(
     config: Config, folder: Path, shards: Sequence[Shard], said: list[dict[str, Any]]
-) -> Iterator[Path]:
+) -> Iterator[tuple[Path, list[dict[str, Any]]]]:
     """Put a data set together; yield the path of its whole file, which becomes dataset.h5 after.
+
+    With the path come all warnings stored in it: those given, and of what fell back to the cube.
 
     Args:
         config: the data set's.
@@ -57,11 +62,12 @@ def assembled(
     unfinished.parent.mkdir(parents=True, exist_ok=True)
     try:
         with h5py.File(unfinished, "w") as file:
-            scene_values, held = _copy_shards(file, config, shards, whose)
+            scene_values, fell_back, held = _copy_shards(file, config, shards, whose)
             _describe_samples(file, config, scene_values)
             _describe_maps(file, config)
+            said = said + fallback_warnings(fell_back, count)
             _root_attributes(file, config, said)
-        yield unfinished
+        yield unfinished, said
         _write_csv(config, folder, scene_values)
         write_whole(folder, folder / CONFIG, _config_text(config).encode())
         manifest = {"identity": whose, "rows": count, "shards": held}
@@ -76,38 +82,46 @@ def assembled(
 
 def _copy_shards(
     file: h5py.File, config: Config, shards: Sequence[Shard], whose: str
-) -> tuple[Float, list[dict[str, Any]]]:
-    """Copy maps and columns; return the scene values [N, fields] and what each shard held."""
-    scene_values: list[Float] = []
+) -> tuple[Float, int, list[dict[str, Any]]]:
+    """Copy maps and columns, each shard read and checked once.
+
+    Chunks are stored in runs of RUN rows, map after map: the file's layout does not depend on how
+    shards cut the rows, and who reads one map reads long stretches.
+
+    Returns:
+        The scene values [N, fields], how many samples fell back to the cube, what each shard held.
+    """
+    count, stored = shards[-1].stop, 0
+    maps = file.create_group("maps")
+    targets = {name: image_dataset(maps, name, count, config).id for name in config.maps}
+    chunks: dict[str, list[tuple[int, bytes]]] = {name: [] for name in config.maps}
+    columns: dict[str, list[Any]] = defaultdict(list)
     held: list[dict[str, Any]] = []
     width = len(scene_fields.fields(config))
-    # Map by map, row by row: the file's layout does not depend on how shards cut the rows.
-    for name in config.maps:
-        target = image_dataset(file.require_group("maps"), name, shards[-1].stop, config).id
-        columns: dict[str, list[Any]] = {kind: [] for kind in COLUMNS}
-        for shard in shards:
-            data, checksum = shard.read(whose)
-            rows = shard.stop - shard.start
-            with UntrustedFile(shard.path, data) as part:
+    for shard in shards:
+        start, stop, rows = shard.start, shard.stop, shard.stop - shard.start
+        data, checksum = shard.read(whose)
+        held.append({"start": start, "stop": stop, "bytes": len(data), "sha256": checksum})
+        with UntrustedFile(shard.path, data) as part:
+            columns["scene"].append(part.column("scene", np.float64, (rows, width))[:])
+            columns["fell_back"].append(part.column("fell_back", np.uint8, (rows,))[:])
+            for name in config.maps:
                 source = part.images(f"maps/{name}", (rows, *config.image.size_px))
-                for row in range(rows):
-                    mask, chunk = source.stored(row)
-                    target.write_direct_chunk((shard.start + row, 0, 0), chunk, mask)
+                chunks[name] += [source.stored(row) for row in range(rows)]
                 for kind, (dtype, shape) in COLUMNS.items():
-                    columns[kind].append(part.column(f"{kind}/{name}", dtype, (rows, *shape))[:])
-                if name == config.maps[0]:
-                    scene_values.append(part.column("scene", np.float64, (rows, width))[:])
-                    held.append(
-                        {
-                            "start": shard.start,
-                            "stop": shard.stop,
-                            "bytes": len(data),
-                            "sha256": checksum,
-                        }
-                    )
-        for kind, values in columns.items():
-            file[f"{kind}/{name}"] = np.concatenate(values)
-    return np.concatenate(scene_values), held
+                    column = f"{kind}/{name}"
+                    columns[column].append(part.column(column, dtype, (rows, *shape))[:])
+        while stop - stored >= RUN or stored < stop == count:
+            for name, target in targets.items():
+                for row, (mask, chunk) in enumerate(chunks[name][:RUN], stored):
+                    target.write_direct_chunk((row, 0, 0), chunk, mask)
+                del chunks[name][:RUN]
+            stored += RUN
+    scene_values = np.concatenate(columns.pop("scene"))
+    fell_back = sum(int(part.sum()) for part in columns.pop("fell_back"))
+    for column, values in columns.items():
+        file[column] = np.concatenate(values)
+    return scene_values, fell_back, held
 
 
 def _describe_samples(file: h5py.File, config: Config, scene_values: Float) -> None:

@@ -32,7 +32,7 @@ from radhar_cli.dataset.split import split_rows
 from radhar_cli.dataset.workers import run_tasks
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.figures.colour import colour_table
-from radhar_cli.pipeline.survey import Drawn, fallback_warnings, warnings
+from radhar_cli.pipeline.survey import Drawn, warnings
 
 LARGEST_BATCH = 32
 SURVEY_BATCH = 64
@@ -131,12 +131,14 @@ class _Build:
             self.progress.say(f"warning: {warning['message']}")
         shards, made = self._batches(drawn, split, batch_size)
         self.progress.stage("assembling", count, 0)
-        with assembled(config, self.folder, shards, said) as unfinished:
+        with assembled(config, self.folder, shards, said) as (unfinished, stored):
+            for warning in stored[len(said) :]:
+                self.progress.say(f"warning: {warning['message']}")
             self.progress.advance(count)
             pngs = self._missing_pngs(split, unfinished)
         mark_built(self.folder)
         tidy(self.folder)
-        return Outcome(self.folder, count, made, pngs, said)
+        return Outcome(self.folder, count, made, pngs, stored)
 
     def _survey(self, count: int) -> list[Drawn]:
         """Settle every scene; what a run that was stopped had settled is not done again."""

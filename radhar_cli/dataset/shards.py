@@ -105,7 +105,8 @@ def encode_shard(
             file[f"sha256/{name}"] = np.array([i.sha256 for i in images], dtype="S64")
             file[f"extent/{name}"] = np.array([i.extent for i in images], dtype=float)
         file["scene"] = scene_values
-        file["fell_back"] = np.array([any(i.fell_back for i in s.values()) for s in samples])
+        fell_back = [any(image.fell_back for image in sample.values()) for sample in samples]
+        file["fell_back"] = np.array(fell_back, dtype=np.uint8)
     whose, stop = identity_hash(identity(config)), start + len(samples)
     with buffer.getbuffer() as data:
         checksum = _checksum(whose, start, stop, data[USER_BLOCK:])

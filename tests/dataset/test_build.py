@@ -2,11 +2,13 @@
 
 import errno
 import json
+import os
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
+from joblib.externals.loky import get_reusable_executor
 from listener import Listener
 from PIL import Image
 from small import SMALL, fingerprint, small_config
@@ -18,6 +20,7 @@ from radhar_cli.dataset.build import Outcome, build
 from radhar_cli.dataset.folder import locked
 from radhar_cli.dataset.layout import Rows, png_path
 from radhar_cli.dataset.shards import listed_shards
+from radhar_cli.dataset.workers import run_tasks, warm_up
 from radhar_cli.errors import FolderError, SceneError, UnfinishedError
 
 
@@ -44,6 +47,22 @@ def test_jobs_and_batch_size_change_no_byte(
 ) -> None:
     make(config, tmp_path / "set", jobs=jobs, batch_size=batch_size)
     assert fingerprint(tmp_path / "set") == fingerprint(whole)
+
+
+def test_a_relative_folder_is_built_whatever_the_working_directory_of_the_workers(
+    config: Config, whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    here, elsewhere = tmp_path / "here", tmp_path / "elsewhere"
+    here.mkdir()
+    elsewhere.mkdir()
+    monkeypatch.chdir(elsewhere)
+    get_reusable_executor(max_workers=2, kill_workers=True).shutdown(kill_workers=True)
+    warm_up(2)
+    monkeypatch.chdir(here)
+    assert set(run_tasks(os.getcwd, [()] * 8, 2)) == {str(elsewhere)}
+    make(config, Path("set"), jobs=2, batch_size=2)
+    assert fingerprint(here / "set") == fingerprint(whole)
+    assert not list(elsewhere.iterdir())
 
 
 def test_unfinished_build_goes_on_with_another_batch_size(

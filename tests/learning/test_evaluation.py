@@ -274,7 +274,8 @@ def test_predict_asks_for_no_labels(learned: tuple[Path, Path], tmp_path: Path) 
 
 def test_predict_refuses_other_sizes_and_damage(learned: tuple[Path, Path], tmp_path: Path) -> None:
     Image.new("RGB", (64, 32)).save(tmp_path / "a.png")
-    (tmp_path / "b.png").write_bytes((tmp_path / "a.png").read_bytes()[:50])
+    Image.new("RGB", (32, 32)).save(tmp_path / "b.png")
+    (tmp_path / "b.png").write_bytes((tmp_path / "b.png").read_bytes()[:50])
     for name, said in (("a", "32 x 64 px"), ("b", "truncated"), ("c", "no such file")):
         with pytest.raises(FolderError) as caught:
             list(predict_paths(learned[0], [tmp_path / f"{name}.png"], CPU, None, "all"))

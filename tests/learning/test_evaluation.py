@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
-from learning.patterns import CLASSES, one_clear_line, split_tree, trained, tree
+from learning.patterns import CLASSES, one_clear_line, plant, split_tree, trained, tree
 from PIL import Image
 from small import small_config
 
@@ -27,7 +27,6 @@ from radhar_cli.learning.run_folder import load_best
 from radhar_cli.learning.single_result import Asked
 
 CPU = torch.device("cpu")
-ROOT = Path(__file__).resolve().parents[2]
 
 
 class Ears:
@@ -40,10 +39,11 @@ class Ears:
 
 @pytest.fixture(scope="session")
 def learned(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
-    """(run, data) of a run that gets everything right: S2, S3 and S8."""
+    """(run, data) of a run that gets everything right, its last layer planted: S2, S3 and S8."""
     place = tmp_path_factory.mktemp("learned")
     root = split_tree(place / "tree", train=8, val=3)
-    trained(root, place / "good", epochs=8)
+    trained(root, place / "good", epochs=1)
+    plant(place / "good", root)
     return place / "good", root
 
 
@@ -113,10 +113,11 @@ def test_a_planted_confusion_is_found_where_it_was_planted(
 def test_some_of_the_classes_are_matched_by_name(
     learned: tuple[Path, Path], tmp_path: Path
 ) -> None:
-    root = tree(tmp_path / "t", ("walking", "kicking"), {"val": 2}, seed=9)
-    numbers = only(asked(learned, root)[0])
-    assert np.sum(numbers["confusion"], axis=1).tolist() == [0, 2, 2]
-    assert numbers["accuracy"] >= 0.75
+    for name in ("walking", "kicking"):
+        shutil.copytree(learned[1] / "val" / name, tmp_path / "t/val" / name)
+    numbers = only(asked(learned, tmp_path / "t")[0])
+    assert numbers["confusion"] == np.diag([0, 3, 3]).tolist()
+    assert numbers["accuracy"] == 1
 
 
 def test_it_is_said_when_images_were_trained_on(learned: tuple[Path, Path]) -> None:
@@ -347,12 +348,3 @@ def test_a_map_that_is_not_in_the_folder_is_not_passed_over(tmp_path: Path) -> N
     build(load_config(small_config(tmp_path, SET)), tmp_path / "set", progress=Quiet(), jobs=1)
     with pytest.raises(RadharError):
         trained(tmp_path / "set/png/rtm", tmp_path / "run", epochs=1, map="stft")
-
-
-def test_loss_falls_on_the_smoke_set(tmp_path: Path) -> None:
-    config = load_config(ROOT / "configs/smoke.yaml", ["maps=[stft]", "output.png=false"])
-    build(config, tmp_path / "set", progress=Quiet(), jobs=1)
-    changes = {"epochs": 3, "batch_size": 12, "learning_rate": 0.001}
-    history = trained(tmp_path / "set", tmp_path / "run", **changes).history
-    losses = [row.train_loss for row in history]
-    assert losses[2] < losses[1] < losses[0]

@@ -1,0 +1,44 @@
+"""Order of the tests on request, and the memory that a worker took."""
+
+import resource
+import sys
+from collections.abc import Iterable
+
+import pytest
+
+PEAKS: dict[str, float] = {}
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--reverse", action="store_true", help="run the tests in reverse order")
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    if config.getoption("--reverse"):
+        items.reverse()
+
+
+def peak_mib() -> float:
+    """Largest resident memory of this process so far; Linux counts in KiB, macOS in bytes."""
+    unit = 2**20 if sys.platform == "darwin" else 2**10
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / unit
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    if hasattr(session.config, "workeroutput"):
+        session.config.workeroutput["peak_mib"] = peak_mib()
+    elif not PEAKS:
+        PEAKS["this process"] = peak_mib()
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: object, error: object) -> None:
+    gateway, found = getattr(node, "gateway", None), getattr(node, "workeroutput", {})
+    if gateway is not None and "peak_mib" in found:
+        PEAKS[gateway.id] = found["peak_mib"]
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    peaks: Iterable[str] = (f"{name} {peak:.0f} MiB" for name, peak in sorted(PEAKS.items()))
+    terminalreporter.write_line(f"peak memory: {', '.join(peaks)}")

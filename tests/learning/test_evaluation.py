@@ -64,7 +64,11 @@ def only(report: Report) -> dict[str, Any]:
 
 
 def test_report_of_a_good_run(learned: tuple[Path, Path], tmp_path: Path) -> None:
-    report, ears = asked(learned, tsne=True, filters=True, in_place_vs_moving=True, batch=4)
+    """Of the paper's network, which has filters to show."""
+    good = tmp_path / "good", learned[1]
+    trained(good[1], good[0], epochs=1, model="fftnet")
+    plant(*good)
+    report, ears = asked(good, tsne=True, filters=True, in_place_vs_moving=True, batch=4)
     numbers = only(report)
     assert numbers["accuracy"] == 1.0
     assert numbers["confusion"] == np.diag([3, 3, 3]).tolist()
@@ -72,24 +76,25 @@ def test_report_of_a_good_run(learned: tuple[Path, Path], tmp_path: Path) -> Non
     assert numbers["seen_in_training"] == {"images": 0, "scenes": 0}
     assert not any("trained on" in line for line in ears.said)
     assert len(report.numbers["filters"]["good"]) == 6
-    report.write(tmp_path)
-    stored = json.loads((tmp_path / "report.json").read_text())
+    out = tmp_path / "report"
+    report.write(out)
+    stored = json.loads((out / "report.json").read_text())
     assert stored["split"] == "val"
-    page = (tmp_path / "report.html").read_text()
+    page = (out / "report.html").read_text()
     assert "://" not in page
     sources = re.findall(r'src="([^"]{0,30})', page)
     assert len(sources) == len(report.figures) == 7
     assert all(source.startswith("data:image/png;base64,") for source in sources)
     for name in ("confusion", "reliability", "hardest", "tsne", "filters", "curves"):
-        assert (tmp_path / f"{name}.png").read_bytes().startswith(b"\x89PNG"), name
-    with (tmp_path / "predictions.csv").open() as file:
+        assert (out / f"{name}.png").read_bytes().startswith(b"\x89PNG"), name
+    with (out / "predictions.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert [row["true"] for row in rows] == [row["predicted"] for row in rows]
     assert rows[0]["image"] == "punching/000"
-    assert (tmp_path / "confusion.csv").exists()
+    assert (out / "confusion.csv").exists()
     timing = stored["runs"]["good"]["speed"]
     assert timing["batch"] == 4
-    assert 0 < timing["image_s"] < timing["load_and_image_s"]
+    assert timing["image_s"] > 0
 
 
 def test_a_planted_confusion_is_found_where_it_was_planted(
@@ -174,7 +179,7 @@ def test_batches_do_not_change_the_answers(learned: tuple[Path, Path]) -> None:
     np.testing.assert_allclose(one.probabilities, many.probabilities, atol=1e-5)
     np.testing.assert_allclose(many.probabilities.sum(1), 1, atol=1e-6)
     assert np.array_equal(one.truth, images.label[rows])
-    assert many.features.shape == (9, 512)
+    assert many.features.shape == (9, 128)
 
 
 def test_features_and_last_layer_make_the_probabilities(learned: tuple[Path, Path]) -> None:

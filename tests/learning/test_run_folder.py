@@ -138,7 +138,7 @@ def fewer_classes(path: Path) -> None:
 
 
 def wrong_size(path: Path) -> None:
-    _rewrite(path, lambda w, a: a.update({"size": [33, 32]}))
+    _rewrite(path, lambda w, a: a.update({"size": [15, 32]}))
 
 
 def text_size(path: Path) -> None:
@@ -153,7 +153,7 @@ def text_size(path: Path) -> None:
         (missing_weight, "do not fit its description"),
         (extra_weight, "do not fit its description"),
         (fewer_classes, "do not fit its description"),
-        (wrong_size, "multiples of 32"),
+        (wrong_size, "at least 16"),
         (text_size, "description is damaged (size"),
     ],
     ids=lambda x: getattr(x, "__name__", ""),

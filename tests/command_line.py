@@ -20,21 +20,21 @@ Done = subprocess.CompletedProcess[str]
 def radhar(*arguments: object) -> Done:
     """Run the program in this process, its last handler of errors included."""
     command = ["radhar", *map(str, arguments)]
-    out, err = io.StringIO(), io.StringIO()
+    out, err, status = io.StringIO(), io.StringIO(), 0
     handler = signal.getsignal(signal.SIGINT)
     with (
         pytest.MonkeyPatch.context() as patch,
         contextlib.redirect_stdout(out),
         contextlib.redirect_stderr(err),
-        pytest.raises(SystemExit) as ended,
     ):
         patch.setattr(sys, "argv", command)
         try:
             main()
+        except SystemExit as ended:
+            status = ended.code if isinstance(ended.code, int) else 0
         finally:
             signal.signal(signal.SIGINT, handler)
-    status = ended.value.code
-    return Done(command, status if isinstance(status, int) else 0, out.getvalue(), err.getvalue())
+    return Done(command, status, out.getvalue(), err.getvalue())
 
 
 def process(*arguments: object) -> Done:

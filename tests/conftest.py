@@ -1,10 +1,21 @@
-"""Order of the tests on request, and the memory that a worker took."""
+"""What holds for all tests: the same examples on any machine, order on request, memory measured."""
 
 import resource
 import sys
 from collections.abc import Iterable
 
 import pytest
+from hypothesis import HealthCheck, settings
+
+# Neither chance nor the speed of the machine decides.
+settings.register_profile(
+    "repeatable",
+    derandomize=True,
+    database=None,
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow],
+)
+settings.load_profile("repeatable")
 
 PEAKS: dict[str, float] = {}
 

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 import torch
 from learning.patterns import SIZE, trained
+from slow import slow
 
 from radhar_cli.errors import ModelError
 from radhar_cli.learning import run_folder as run
@@ -16,8 +17,10 @@ from radhar_cli.learning.models.build import (
     parameter_count,
 )
 
+LARGE = ("resnet50", "convnext_tiny")
 
-@pytest.mark.parametrize("name", RIVALS)
+
+@pytest.mark.parametrize("name", [*(n for n in RIVALS if n not in LARGE), *slow(LARGE)])
 def test_rivals_build_and_take_a_step(zoo: None, name: str) -> None:
     torch.manual_seed(0)
     size = (64, 64) if name == "convnext_tiny" else (SIZE, SIZE)

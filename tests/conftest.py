@@ -1,6 +1,7 @@
 """What holds for all tests: the same examples on any machine, order on request, memory measured."""
 
 import resource
+import signal
 import sys
 from collections.abc import Iterable
 
@@ -18,6 +19,11 @@ settings.register_profile(
 settings.load_profile("repeatable")
 
 PEAKS: dict[str, float] = {}
+
+
+# A run in the background ignores Ctrl-C, and so would the programs that its tests start.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -4,6 +4,8 @@ from typing import Annotated
 
 import typer
 
+from radhar_cli.commands.tell import tell
+
 LIBRARIES = ("numpy", "scipy", "h5py", "Pillow", "torch")
 
 

@@ -8,6 +8,7 @@ PLAIN := $(VENV)/.installed
 LEARN := $(VENV)/.installed-train
 DEV := $(VENV)/.installed-dev
 SMOKE := build/smoke
+PYTEST := OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest
 
 .DEFAULT_GOAL := help
 
@@ -47,8 +48,13 @@ smoke: $(LEARN) ## Generate, train, evaluate: the smallest whole run
 	$(BIN)/radhar predict $(SMOKE)/run $(SMOKE)/data/png/stft/val/walking/*.png
 
 .PHONY: test
-test: $(DEV) ## Run the whole test suite, lint and types included, then the smoke run
-	OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest
+test: $(DEV) ## Lint, types, tests and the smoke run, in five minutes
+	$(PYTEST)
+	$(MAKE) smoke
+
+.PHONY: test-all
+test-all: $(DEV) ## The same with every test at full size, in twenty minutes
+	$(PYTEST) -m ""
 	$(MAKE) smoke
 
 .PHONY: bench

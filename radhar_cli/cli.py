@@ -5,7 +5,8 @@ import signal
 import sys
 from typing import TYPE_CHECKING
 
-from radhar_cli.errors import RadharError
+from radhar_cli.errors import INTERRUPTED, TERMINATED, RadharError
+from radhar_cli.untrusted import shown
 
 if TYPE_CHECKING:
     import typer
@@ -28,15 +29,16 @@ def program() -> "typer.Typer":
         tradeoff,
         train,
         verify,
+        version,
     )
 
     app = typer.Typer(
         help="Labelled FMCW radar data sets for human activity recognition, from a YAML file.",
         no_args_is_help=True,
-        add_completion=False,
         pretty_exceptions_enable=False,
         rich_markup_mode=None,
     )
+    app.callback()(version.options)
     app.command()(generate.generate)
     app.command()(simulate.simulate)
     app.command()(verify.verify)
@@ -54,21 +56,28 @@ def program() -> "typer.Typer":
 
 def main() -> None:
     """Run the program; our errors end with their message and status."""
+    signal.signal(signal.SIGTERM, _terminate)
     try:
-        program()()
+        program()(prog_name="radhar")
     except RadharError as error:
         if os.environ.get("RANK", "0") == "0":  # under torchrun all fail alike; one should speak
-            print(f"radhar: {error}", file=sys.stderr)
+            print(f"radhar: {shown(error)}", file=sys.stderr)
         sys.exit(error.status)
     except KeyboardInterrupt:
-        sys.exit(130)
+        sys.exit(INTERRUPTED)
     except OSError as error:
         if isinstance(error, BrokenPipeError):
             sys.stderr.close()
         elif error.filename is None:
             raise
         else:
-            print(f"radhar: {error.filename}: {error.strerror}", file=sys.stderr)
+            print(f"radhar: {shown(error.filename)}: {error.strerror}", file=sys.stderr)
         sys.exit(1)
     finally:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)  # the work is done; leave quietly
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, signal.SIG_IGN)  # the work is done; leave quietly
+
+
+def _terminate(number: int, frame: object) -> None:
+    """Unwind as Ctrl-C does, so that whatever is open is closed and workers end."""
+    raise SystemExit(TERMINATED)

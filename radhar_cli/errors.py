@@ -3,6 +3,8 @@
 import difflib
 from collections.abc import Iterable
 
+INTERRUPTED, TERMINATED = 130, 143  # exit status after Ctrl-C and SIGTERM, as shells count them
+
 
 def did_you_mean(name: str, known: Iterable[str], otherwise: str) -> str:
     """Suggest the nearest known name, or say `otherwise` where none is near."""

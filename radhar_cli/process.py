@@ -8,6 +8,14 @@ from functools import cache
 _M_TRIM_THRESHOLD = -1
 _M_MMAP_THRESHOLD = -3
 _KEPT = 64 * 2**20
+_THREADS = (
+    "OMP_NUM_THREADS",
+    "OPENBLAS_NUM_THREADS",
+    "MKL_NUM_THREADS",
+    "BLIS_NUM_THREADS",
+    "VECLIB_MAXIMUM_THREADS",
+    "NUMEXPR_NUM_THREADS",
+)
 
 
 @cache
@@ -15,9 +23,12 @@ def prepare_process() -> None:
     """Hold numerical libraries to one thread and keep the memory of arrays of some MB.
 
     One thread: the workers already fill the cores, and bytes must not depend on a thread count.
+    Libraries that are loaded already are told; those loaded later (scipy has an OpenBLAS of its
+    own) read the environment.
     """
     from threadpoolctl import threadpool_limits
 
+    os.environ.update(dict.fromkeys(_THREADS, "1"))
     threadpool_limits(limits=1)
     keep_memory(_KEPT, 2 * _KEPT)
 

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 from radhar_cli.pipeline.axes import axes_of
-from radhar_cli.scenario import Scene, draw_scene
+from radhar_cli.scene import Scene, draw_scene
 
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.config import MAP_NAMES, Config, load_config
@@ -106,7 +106,7 @@ class Sink:
                 data = encode_png(image.levels, self.table, self.config.output.png_level)
                 write_whole(self.folder, self.folder / "png" / f"{name}.png", data)
         values = np.repeat(self.values, len(samples), axis=0)
-        write_shard(self.folder, 0, len(samples), encode_shard(self.config, samples, values))
+        write_shard(self.folder, 0, len(samples), encode_shard(self.config, 0, samples, values))
 
 
 def image_of(config: Config, recording: Recording, name: str, power: np.ndarray) -> MapImage:

@@ -3,6 +3,7 @@
 import ast
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -16,6 +17,7 @@ ROOMS = (
     "errors",
     "rounding",
     "phasor",
+    "untrusted",
     "randomness",
     "process",
     "motion",
@@ -42,6 +44,7 @@ def run(*command: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, cwd=ROOT)
 
 
+@cache
 def imports(path: Path) -> set[str]:
     """Modules that a file imports anywhere, functions included."""
     found = set()
@@ -62,35 +65,36 @@ def room(path: Path) -> str:
     return first.removesuffix(".py")
 
 
-@pytest.mark.parametrize("path", files(), ids=lambda p: str(p.relative_to(PACKAGE)))
-def test_imports_never_turn_back(path: Path) -> None:
-    if path == PACKAGE / "__init__.py":
-        assert imports(path) <= {"importlib"}, "importing the package should stay light"
-        return
-    here = ROOMS.index(room(path))
-    for module in imports(path):
-        if module.startswith("radhar_cli."):
-            there = module.split(".")[1]
-            assert ROOMS.index(there) <= here, f"{path.name} imports {module}"
+def test_imports_never_turn_back() -> None:
+    assert imports(PACKAGE / "__init__.py") <= {"importlib"}, "importing the package stays light"
+    back = [
+        f"{path.relative_to(PACKAGE)} imports {module}"
+        for path in files()
+        if path != PACKAGE / "__init__.py"
+        for module in imports(path)
+        if module.startswith("radhar_cli.")
+        and ROOMS.index(module.split(".")[1]) > ROOMS.index(room(path))
+    ]
+    assert not back
 
 
-@pytest.mark.parametrize(
-    ("library", "allowed"),
-    [
-        ("typer", {"commands", "cli"}),
-        ("h5py", {"dataset", "simulation"}),
-        ("tqdm", {"commands"}),
-        ("joblib", {"dataset"}),
-        ("yaml", {"config", "dataset", "commands"}),
-        ("torch", {"learning"}),
-        ("timm", {"learning"}),
-        ("sklearn", {"learning"}),
-        ("skimage", {"tradeoff"}),
-    ],
-)
-def test_libraries_stay_in_their_rooms(library: str, allowed: set[str]) -> None:
-    users = {room(p) for p in files() if any(m.split(".")[0] == library for m in imports(p))}
-    assert users <= allowed
+LIBRARIES: dict[str, set[str]] = {
+    "typer": {"commands", "cli"},
+    "h5py": {"dataset", "simulation"},
+    "tqdm": {"commands"},
+    "joblib": {"dataset"},
+    "yaml": {"config", "dataset", "commands"},
+    "torch": {"learning"},
+    "timm": {"learning"},
+    "sklearn": {"learning"},
+    "skimage": {"tradeoff"},
+}
+
+
+def test_libraries_stay_in_their_rooms() -> None:
+    for library, allowed in LIBRARIES.items():
+        users = {room(p) for p in files() if any(m.split(".")[0] == library for m in imports(p))}
+        assert users <= allowed, library
 
 
 def test_physics_reads_no_config_objects() -> None:
@@ -107,6 +111,54 @@ def test_help_needs_no_heavy_import() -> None:
         f"print([m for m in {heavy} if m in sys.modules])"
     )
     assert run(sys.executable, "-c", code).stdout.strip() == "[]"
+
+
+# Each kind of file from elsewhere is opened in one place, and one place writes to the terminal.
+ONE_PLACE = [
+    ("yaml", {"config/yaml_reader.py"}, {"safe_dump", "YAMLError", "MarkedYAMLError"}),
+    ("Image", {"dataset/image_file.py"}, {"fromarray"}),
+    ("typer", {"commands/tell.py"}, {"Argument", "Option", "Exit", "Typer"}),
+]
+
+
+def calls(path: Path) -> set[str]:
+    """`name` and `name.attribute` of every function that a file calls."""
+    nodes = [
+        node.func for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Call)
+    ]
+    names = [f for f in nodes if isinstance(f, ast.Name)]
+    dotted = [f for f in nodes if isinstance(f, ast.Attribute) and isinstance(f.value, ast.Name)]
+    return {f.id for f in names} | {ast.unparse(f) for f in dotted}
+
+
+@pytest.mark.parametrize(("library", "places", "harmless"), ONE_PLACE, ids=lambda x: str(x)[:8])
+def test_files_from_elsewhere_are_opened_in_one_place(
+    library: str, places: set[str], harmless: set[str]
+) -> None:
+    for path in files():
+        if str(path.relative_to(PACKAGE)) not in places:
+            used = {c for c in calls(path) if c.startswith(f"{library}.")}
+            assert used <= {f"{library}.{name}" for name in harmless}, path
+
+
+def test_one_place_prints() -> None:
+    assert {p.name for p in files() if "print" in calls(p)} == {"cli.py"}
+    writes = {p.name for p in files() if {"tqdm.write", "console.print"} & calls(p)}
+    assert writes == {"terminal.py", "training_view.py", "summary_view.py"}
+
+
+def test_hdf5_is_opened_for_reading_in_one_place() -> None:
+    door = "dataset/untrusted_hdf5.py"
+    writers = {"dataset/assembly.py", "dataset/shards.py", "simulation/scene_file.py"}
+    for path in files():
+        name = str(path.relative_to(PACKAGE))
+        if "h5py" in imports(path):
+            assert name in {door, *writers, "dataset/identity.py"}, f"{name} imports h5py"
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Attribute) and ast.unparse(node).startswith("h5py.File"):
+                assert name in {door, *writers}, name
+            if isinstance(node, ast.Call) and ast.unparse(node.func) == "h5py.File":
+                assert name == door or ast.unparse(node.args[1]) == "'w'", name
 
 
 def test_ruff() -> None:

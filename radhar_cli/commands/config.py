@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from radhar_cli.commands.options import Overrides
+from radhar_cli.commands.tell import tell
 
 if TYPE_CHECKING:
     from radhar_cli.config import Config
@@ -38,7 +39,7 @@ def show(
     from radhar_cli.config.identity import as_yaml
     from radhar_cli.config.reading import load_section
 
-    typer.echo(as_yaml(load_section(_kind(train), config, set_ or [])), nl=False)
+    tell(as_yaml(load_section(_kind(train), config, set_ or [])), nl=False)
 
 
 @app.command()
@@ -51,7 +52,7 @@ def schema(train: Training = False) -> None:
     """
     import json
 
-    typer.echo(json.dumps(_kind(train).model_json_schema(), indent=2))
+    tell(json.dumps(_kind(train).model_json_schema(), indent=2))
 
 
 def _kind(train: bool) -> "type[Config] | type[TrainConfig]":

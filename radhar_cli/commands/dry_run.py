@@ -1,5 +1,6 @@
 """`radhar generate --dry-run`: the plan, and what it will cost."""
 
+from radhar_cli.commands.tell import tell
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.estimate import estimate
 from radhar_cli.dataset.layout import Rows
@@ -11,23 +12,23 @@ def print_plan(config: Config, jobs: int) -> None:
     plan, rows = plan_images(config), Rows.of(config)
     engine = config.engine
     budget = f", error budget {engine.tolerance_db:g} dB" if engine.kind == "direct" else ""
-    print(f"stages of one sample ({engine.kind} engine{budget}):")
+    tell(f"stages of one sample ({engine.kind} engine{budget}):")
     width = max(len(product.name) for product in plan.products)
     for product in plan.products:
         readers = ", ".join(plan.consumers(product.name)) or "the data set"
-        print(f"  {product.name:<{width}}  {product.does}  [for {readers}]")
+        tell(f"  {product.name:<{width}}  {product.does}  [for {readers}]")
     found = estimate(config, jobs)
-    print(
+    tell(
         f"samples     {found.samples} = {len(rows.activities)} classes x {rows.per_class}, "
         f"{len(config.maps)} map{'s' if len(config.maps) > 1 else ''} each"
     )
     images = f" + png {_size(found.png_bytes)}" if config.output.png else ""
-    print(f"on disk     dataset.h5 {_size(found.hdf5_bytes)}{images}")
-    print(
+    tell(f"on disk     dataset.h5 {_size(found.hdf5_bytes)}{images}")
+    tell(
         f"time        about {_duration(found.seconds)} with {jobs} job{'s' if jobs > 1 else ''} "
         f"({found.seconds_per_sample * 1e3:.1f} ms a sample, {found.probes} samples timed just now)"
     )
-    print("nothing was written")
+    tell("nothing was written")
 
 
 def _size(count: int) -> str:

@@ -5,6 +5,9 @@ from typing import Annotated
 
 import typer
 
+from radhar_cli.commands.learning_options import Classes, Resize
+from radhar_cli.commands.tell import tell
+
 
 def evaluate(
     paths: Annotated[
@@ -33,6 +36,8 @@ def evaluate(
         typer.Option("--in-place-vs-moving", help="Also the two groups S1 to S7 and S8 to S12."),
     ] = False,
     batch: Annotated[int, typer.Option(min=1, help="Images at once.")] = 32,
+    resize: Resize = False,
+    classes: Classes = None,
     device: Annotated[str, typer.Option(help="auto, cpu, cuda or mps.")] = "auto",
 ) -> None:
     """Evaluate trained networks on data sets.
@@ -52,16 +57,22 @@ def evaluate(
     )
 
     needs_torch()
+    from radhar_cli.dataset.files import refuse_links
+    from radhar_cli.learning.images.classes import read_classes
     from radhar_cli.learning.images.image_set import split_named
     from radhar_cli.learning.machine import choose_device, keep_memory
     from radhar_cli.learning.report import evaluate
     from radhar_cli.learning.single_result import Asked
 
     runs, data = runs_and_data(paths)
-    asked = Asked(split_named(split), map_, tsne, filters, in_place_vs_moving, batch)
-    folder = out or (runs[0] if runs[0].is_dir() else runs[0].parent) / "eval"
+    names = read_classes(classes) if classes else {}
+    asked = Asked(split_named(split), map_, tsne, filters, in_place_vs_moving, batch, resize, names)
+    inside = runs[0] if runs[0].is_dir() else runs[0].parent
+    folder = out or inside / "eval"
+    if out is None:
+        refuse_links(inside, folder)
     apart(folder, data)
     keep_memory()
     report = evaluate(runs, data, asked, choose_device(known_device(device)), Speaker())
     report.write(folder)
-    typer.echo(f"{folder / 'report.html'}: {len(report.figures)} figures; numbers in report.json")
+    tell(f"{folder / 'report.html'}: {len(report.figures)} figures; numbers in report.json")

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from radhar_cli.commands.tell import tell
+
 
 def export(
     run: Annotated[Path, typer.Argument(help="Folder that train wrote.")],
@@ -27,7 +29,7 @@ def export(
         raise FolderError(f"{out}: is a folder; -o should name a file, such as model.onnx")
     worst = export(run, out)
     size = out.stat().st_size / 2**20
-    typer.echo(
+    tell(
         f"{out}: {size:.1f} MiB; ONNX Runtime agrees with PyTorch to {worst:.1e} (allowed "
         f"{TOLERANCE:g})"
     )

@@ -1,16 +1,18 @@
-"""`radhar inspect`: what is in a data set, a half-built folder, or a scene."""
+"""`radhar inspect`: what is in a data set, a half-built folder, a scene, or a tree of images."""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from radhar_cli.commands.tell import tell
+
 
 def inspect(
-    path: Annotated[Path, typer.Argument(help="Folder or file that radhar wrote.")],
+    path: Annotated[Path, typer.Argument(help="What radhar wrote, or a tree of class folders.")],
     json_: Annotated[bool, typer.Option("--json", help="Print JSON, for scripts.")] = False,
 ) -> None:
-    """Summarise a data set, a half-built folder or a scene.
+    """Summarise a data set, a half-built folder, a scene, or anyone's tree of images.
 
     Example:
 
@@ -19,10 +21,13 @@ def inspect(
     import json
 
     from radhar_cli.dataset.summary import summarise
+    from radhar_cli.learning.images.opening import is_tree
+    from radhar_cli.learning.images.overview import summarise_tree
 
-    summary = summarise(path)
+    foreign = is_tree(path) and not (path / "scene.h5").exists()
+    summary = summarise_tree(path) if foreign else summarise(path)
     if json_:
-        typer.echo(json.dumps(summary, indent=2))
+        tell(json.dumps(summary, indent=2))
         return
     from radhar_cli.commands.summary_view import print_summary
 

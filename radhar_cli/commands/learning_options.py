@@ -1,12 +1,22 @@
 """What the commands that learn share."""
 
-import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Annotated, TypeAlias
 
+import typer
+
+from radhar_cli.commands.tell import tell
 from radhar_cli.errors import FolderError, MachineError, RadharError, did_you_mean
 
 DEVICES = ("auto", "cpu", "cuda", "mps")
+Resize: TypeAlias = Annotated[
+    bool, typer.Option("--resize", help="Bring images of another size to the network's.")
+]
+Classes: TypeAlias = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="YAML, foreign class: our class; null leaves a class out."),
+]
 
 
 def needs_torch() -> None:
@@ -72,7 +82,7 @@ class Speaker:
     """Tells the user on the error stream."""
 
     def say(self, message: str) -> None:
-        print(message, file=sys.stderr)
+        tell(message, err=True)
 
 
 def apart(out: Path, data: Sequence[Path]) -> None:

@@ -4,6 +4,8 @@ from typing import Annotated
 
 import typer
 
+from radhar_cli.commands.tell import tell
+
 
 def models(
     names: Annotated[
@@ -28,14 +30,14 @@ def models(
     from radhar_cli.learning.models.build import RIVALS, cost
     from radhar_cli.learning.models.zoo import OURS
 
-    typer.echo(f"{'model':<24} {'parameters':>12} {'multiply-adds':>14}   at {size} x {size} px")
+    tell(f"{'model':<24} {'parameters':>12} {'multiply-adds':>14}   at {size} x {size} px")
     for name in names or [*OURS, *RIVALS]:
         try:
             price = cost(name, classes, (size, size))
         except ModelError as error:
             if names or name in OURS:
                 raise
-            typer.echo(f"the paper's rivals ({', '.join(RIVALS)}) cannot be built: {error}")
+            tell(f"the paper's rivals ({', '.join(RIVALS)}) cannot be built: {error}")
             break
         work = f"{price.multiply_adds / 1e9:.3f} G"
-        typer.echo(f"{name:<24} {price.parameters:>12,} {work:>14}")
+        tell(f"{name:<24} {price.parameters:>12,} {work:>14}")

@@ -1,10 +1,14 @@
 """Options that several commands share."""
 
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Annotated, TypeAlias
 
 import typer
+
+from radhar_cli.commands.tell import tell
+from radhar_cli.errors import INTERRUPTED, TERMINATED
 
 Overrides: TypeAlias = Annotated[
     list[str] | None,
@@ -18,12 +22,21 @@ Tolerance: TypeAlias = Annotated[
 
 @contextmanager
 def resumable(kept: str) -> Iterator[None]:
-    """Turn Ctrl-C into a line that says what is kept, and status 130."""
+    """Say what is kept when Ctrl-C (status 130) or SIGTERM (status 143) ends the work."""
     try:
         yield
     except KeyboardInterrupt:
-        typer.echo(f"\ninterrupted: {kept} is kept; the same command goes on", err=True)
-        raise typer.Exit(130) from None
+        _say_kept("interrupted", kept)
+        raise typer.Exit(INTERRUPTED) from None
+    except SystemExit as error:
+        if error.code == TERMINATED:
+            _say_kept("terminated", kept)
+        raise
+
+
+def _say_kept(how: str, kept: str) -> None:
+    if os.environ.get("RANK", "0") == "0":  # under torchrun all end alike; one should speak
+        tell(f"\n{how}: {kept} is kept; the same command goes on", err=True)
 
 
 def with_tolerance(overrides: list[str] | None, tolerance: float | None) -> list[str]:

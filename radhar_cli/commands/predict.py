@@ -5,6 +5,9 @@ from typing import Annotated
 
 import typer
 
+from radhar_cli.commands.learning_options import Resize
+from radhar_cli.commands.tell import tell
+
 
 def predict(
     run: Annotated[Path, typer.Argument(help="Folder that train wrote.")],
@@ -16,6 +19,7 @@ def predict(
         str | None, typer.Option("--map", help="Another map than the one it was trained on.")
     ] = None,
     split: Annotated[str, typer.Option(help="Of a data set: train, val, test or all.")] = "all",
+    resize: Resize = False,
     json_: Annotated[bool, typer.Option("--json", help="Print JSON lines, all classes.")] = False,
     device: Annotated[str, typer.Option(help="auto, cpu, cuda or mps.")] = "auto",
 ) -> None:
@@ -34,11 +38,13 @@ def predict(
     from radhar_cli.learning.machine import choose_device
     from radhar_cli.learning.prediction import predict
 
-    answers = predict(run, paths, choose_device(known_device(device)), map_, split_named(split))
+    answers = predict(
+        run, paths, choose_device(known_device(device)), map_, split_named(split), resize
+    )
     for name, chances in answers:
         ranked = sorted(chances.items(), key=lambda item: -item[1])
         if json_:
-            typer.echo(json.dumps({"image": name, "class": ranked[0][0], "probabilities": chances}))
+            tell(json.dumps({"image": name, "class": ranked[0][0], "probabilities": chances}))
             continue
         likely = ", ".join(f"{label} {100 * chance:.1f} %" for label, chance in ranked[:top])
-        typer.echo(f"{name}: {likely}")
+        tell(f"{name}: {likely}")

@@ -5,9 +5,18 @@ from typing import Annotated
 
 import typer
 
+from radhar_cli.commands.tell import tell
+
+MOST_CLASSES = 40
+
 
 def preview(
-    dataset: Annotated[Path, typer.Argument(help="Folder that `generate` wrote, or a dataset.h5.")],
+    dataset: Annotated[
+        Path,
+        typer.Argument(
+            help="Folder that `generate` wrote, dataset.h5, or a tree of class folders."
+        ),
+    ],
     map_: Annotated[
         str | None, typer.Option("--map", help="Which map; the first if not given.")
     ] = None,
@@ -16,17 +25,39 @@ def preview(
         Path | None, typer.Option("-o", "--out", help="PNG; preview_<map>.png beside the data.")
     ] = None,
 ) -> None:
-    """Draw a contact sheet of a data set by class, from dataset.h5 alone.
+    """Draw a contact sheet of a data set by class, or of anyone's tree of images.
 
     Example:
 
       radhar preview datasets/quickstart --map stft --per-class 4
     """
+    from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.reading import open_dataset
     from radhar_cli.figures.contact_sheet import draw_contact_sheet
+    from radhar_cli.learning.images.opening import is_tree
 
+    if is_tree(dataset):
+        tell(str(_draw_tree(dataset, map_, per_class, out)))
+        return
     with open_dataset(dataset) as data:
         name = data.map_name(map_)
         path = out or data.path.parent / f"preview_{name}.png"
+        refuse_links(path.parent, path)
         draw_contact_sheet(data, name, per_class, path)
-    typer.echo(str(path))
+    tell(str(path))
+
+
+def _draw_tree(root: Path, map_name: str | None, per_class: int, out: Path | None) -> Path:
+    """Beside the tree, not in it: what lies in it is data."""
+    from radhar_cli.figures.contact_sheet import draw_image_sheet
+    from radhar_cli.learning.images.folder import folder_images
+    from radhar_cli.learning.images.overview import first_of_each
+
+    images = folder_images(root, map_name, "rgb", any_size=True)
+    whole = root.resolve()
+    path = out or whole.parent / f"preview_{whole.name}.png"
+    title = f"{whole.name}: {len(images)} images of {len(images.classes)} classes"
+    if len(images.classes) > MOST_CLASSES:
+        title += f", the first {MOST_CLASSES} shown"
+    draw_image_sheet(first_of_each(images, per_class, MOST_CLASSES), title, path)
+    return path

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from radhar_cli.commands.options import Overrides, Tolerance, with_tolerance
+from radhar_cli.commands.tell import tell
 
 if TYPE_CHECKING:
     from radhar_cli.simulation.simulate import Simulation
@@ -55,7 +56,9 @@ def simulate(
       radhar simulate configs/paper/free_space.yaml --activity walking --seed 7 -o out/walk
     """
     from radhar_cli.config import load_config
+    from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.folder import refuse_file
+    from radhar_cli.simulation import scene_file
     from radhar_cli.simulation.simulate import map_names
     from radhar_cli.simulation.simulate import simulate as simulate_scene
 
@@ -63,6 +66,8 @@ def simulate(
     loaded = load_config(config, overrides)
     chosen = map_names(None if maps is None else maps.split(","))
     refuse_file(out)
+    for name in scene_file.FILES:
+        refuse_links(out, out / name)
     simulation = simulate_scene(
         loaded,
         activity,
@@ -74,19 +79,15 @@ def simulate(
         raw=raw,
     )
     for warning in simulation.warnings:
-        typer.echo(f"warning: {warning}", err=True)
-
-    from radhar_cli.simulation import scene_file
+        tell(f"warning: {warning}", err=True)
 
     written = scene_file.write_all(simulation, out)
     if figures:
         written += _draw(simulation, out, overlay)
     took = sum(simulation.seconds.values())
-    typer.echo(
-        f"{simulation.activity.label} {simulation.activity.slug}: synthesised in {took:.2f} s"
-    )
+    tell(f"{simulation.activity.label} {simulation.activity.slug}: synthesised in {took:.2f} s")
     for path in written:
-        typer.echo(f"  {path}")
+        tell(f"  {path}")
 
 
 def _draw(simulation: "Simulation", out: Path, overlay: bool) -> list[Path]:
@@ -95,10 +96,11 @@ def _draw(simulation: "Simulation", out: Path, overlay: bool) -> list[Path]:
     from tqdm import tqdm
 
     from radhar_cli.figures import maps_panel, stickman
+    from radhar_cli.simulation.scene_file import ANIMATION, MAPS
 
-    maps = out / "maps.png"
+    maps = out / MAPS
     maps_panel.draw_maps(simulation, maps, overlay)
-    animation = out / "stickman.gif"
+    animation = out / ANIMATION
     frames = stickman.frame_count(simulation)
     with tqdm(
         total=frames, desc=animation.name, unit="frame", disable=None, file=sys.stderr

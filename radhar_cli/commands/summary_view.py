@@ -3,26 +3,37 @@
 from typing import Any
 
 from rich.console import Console
-from rich.markup import escape
 from rich.table import Table
+from rich.text import Text
+
+from radhar_cli.untrusted import shown
 
 BARS = " ▁▂▃▄▅▆▇█"
+MOST_SIZES = 5
 
 
 def print_summary(summary: dict[str, Any]) -> None:
     """Print what `dataset.summary.summarise` found."""
-    console = Console(highlight=False)
+    console = Console(highlight=False, markup=False, emoji=False)
     {
         "data set": _data_set,
         "unfinished data set": _unfinished,
         "scene": _scene,
-    }[summary["kind"]](console, summary)
+        "tree of images": _tree,
+    }[summary["kind"]](console, _plain(summary))
+
+
+def _plain(value: Any) -> Any:
+    """The same values without anything in their texts that could steer a terminal."""
+    if isinstance(value, dict):
+        return {_plain(key): _plain(inner) for key, inner in value.items()}
+    if isinstance(value, list):
+        return [_plain(inner) for inner in value]
+    return shown(value).replace("\n", "\\n") if isinstance(value, str) else value
 
 
 def _data_set(console: Console, s: dict[str, Any]) -> None:
-    console.print(
-        f"[bold]{escape(s['path'])}[/bold]  {s['samples']} samples, {s['bytes'] / 2**20:.1f} MiB"
-    )
+    console.print(Text(s["path"], "bold"), f" {s['samples']} samples, {s['bytes'] / 2**20:.1f} MiB")
     console.print(f"seed {s['seed']}   config {s['config_hash'][:12]}   " + _versions(s))
     table = Table(title="samples, and mean entropy of the power maps (bit)")
     table.add_column("class")
@@ -43,7 +54,24 @@ def _data_set(console: Console, s: dict[str, Any]) -> None:
             drawn.add_row(name, h["unit"], *numbers, str(h["samples"]), _bars(h["counts"]))
         console.print(drawn)
     for warning in s["warnings"]:
-        console.print(f"[yellow]warning[/yellow] {warning['message']}")
+        console.print(Text("warning", "yellow"), warning["message"])
+
+
+def _tree(console: Console, s: dict[str, Any]) -> None:
+    console.print(
+        Text(s["path"], "bold"),
+        f" {s['samples']} images of {len(s['classes'])} classes, {s['bytes'] / 2**20:.1f} MiB",
+    )
+    sizes = [f"{one['images']} of {one['size'][0]} x {one['size'][1]} px" for one in s["sizes"]]
+    more = f", and {len(sizes) - MOST_SIZES} more sizes" if len(sizes) > MOST_SIZES else ""
+    console.print(f"sizes {', '.join(sizes[:MOST_SIZES])}{more}")
+    table = Table(title="images by class")
+    table.add_column("class")
+    for part in next(iter(s["classes"].values())):
+        table.add_column(part, justify="right")
+    for name, counts in s["classes"].items():
+        table.add_row(Text(name), *map(str, counts.values()))
+    console.print(table)
 
 
 def _versions(s: dict[str, Any]) -> str:
@@ -58,7 +86,7 @@ def _bars(counts: list[int]) -> str:
 def _unfinished(console: Console, s: dict[str, Any]) -> None:
     share = s["finished"] / s["samples"]
     console.print(
-        f"[bold]{escape(s['path'])}[/bold]  unfinished: {s['finished']} of {s['samples']} samples"
+        Text(s["path"], "bold"), f" unfinished: {s['finished']} of {s['samples']} samples"
     )
     console.print(
         f"{_progress(share)} {share:.0%}   seed {s['seed']}   config {s['config_hash'][:12]}"
@@ -73,8 +101,9 @@ def _progress(share: float, width: int = 40) -> str:
 def _scene(console: Console, s: dict[str, Any]) -> None:
     joint = f", {s['joint']} alone" if s["joint"] else ""
     console.print(
-        f"[bold]{escape(s['path'])}[/bold]  {s['activity']['label']} {s['activity']['slug']}"
-        f"{joint}, {s['engine']} engine, seed {s['seed']}"
+        Text(s["path"], "bold"),
+        f" {s['activity']['label']} {s['activity']['slug']}"
+        f"{joint}, {s['engine']} engine, seed {s['seed']}",
     )
     table = Table(title="maps")
     for column in ("map", "size", "entropy (bit)"):
@@ -89,4 +118,4 @@ def _scene(console: Console, s: dict[str, Any]) -> None:
         parameters.add_row(key, f"{value:.6g}")
     console.print(parameters)
     for warning in s["warnings"]:
-        console.print(f"[yellow]warning[/yellow] {warning}")
+        console.print(Text("warning", "yellow"), warning)

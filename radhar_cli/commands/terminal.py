@@ -6,10 +6,12 @@ from typing import Any
 
 from tqdm import tqdm
 
+from radhar_cli.commands.tell import tell
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.build import Outcome
 from radhar_cli.dataset.layout import DATASET, PNG, SPLITS, Rows
 from radhar_cli.dataset.split import split_rows
+from radhar_cli.untrusted import shown
 
 
 class BarProgress:
@@ -32,7 +34,7 @@ class BarProgress:
             self._bar.update(samples)
 
     def say(self, message: str) -> None:
-        tqdm.write(message, file=sys.stderr)
+        tqdm.write(shown(message), file=sys.stderr)
 
     def close(self) -> None:
         """Take the bar away."""
@@ -45,16 +47,16 @@ def print_outcome(config: Config, outcome: Outcome) -> None:
     """Say what lies where."""
     folder = outcome.folder
     if outcome.already_complete:
-        print(f"{folder} is complete: {outcome.samples} samples; nothing to do")
+        tell(f"{folder} is complete: {outcome.samples} samples; nothing to do")
         return
     rows, split = Rows.of(config), Counter(int(part) for part in split_rows(config))
     size = (folder / DATASET).stat().st_size / 2**20
-    print(f"{folder / DATASET}: {outcome.samples} samples, {size:.1f} MiB")
-    print(f"  classes     {len(rows.activities)} with {rows.per_class} samples each")
-    print("  split       " + ", ".join(f"{n} {SPLITS[part]}" for part, n in sorted(split.items())))
-    print(f"  maps        {', '.join(config.maps)}")
+    tell(f"{folder / DATASET}: {outcome.samples} samples, {size:.1f} MiB")
+    tell(f"  classes     {len(rows.activities)} with {rows.per_class} samples each")
+    tell("  split       " + ", ".join(f"{n} {SPLITS[part]}" for part, n in sorted(split.items())))
+    tell(f"  maps        {', '.join(config.maps)}")
     if config.output.png:
-        print(f"  images      {folder / PNG}/<map>/<train|val|test>/<class>/<index>.png")
+        tell(f"  images      {folder / PNG}/<map>/<train|val|test>/<class>/<index>.png")
     if outcome.made < outcome.samples:
-        print(f"  this run    made {outcome.made} samples, wrote {outcome.pngs} PNGs later on")
-    print(f"  check it    radhar verify {folder}")
+        tell(f"  this run    made {outcome.made} samples, wrote {outcome.pngs} PNGs later on")
+    tell(f"  check it    radhar verify {folder}")

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from radhar_cli.commands.options import Overrides, resumable
+from radhar_cli.commands.tell import tell
 
 if TYPE_CHECKING:
     from radhar_cli.tradeoff.accuracy import Accuracy
@@ -93,7 +94,7 @@ def _tradeoff(
             conditions |= learned
         written = write_report(out, path.stem, command, rows, accuracies, conditions)
     for file in written:
-        typer.echo(f"  {file}")
+        tell(f"  {file}")
 
 
 def _accuracies(

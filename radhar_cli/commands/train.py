@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from radhar_cli.commands.learning_options import Classes
 from radhar_cli.commands.options import Overrides, resumable
 
 EXAMPLE = """
@@ -35,6 +36,7 @@ def train(
     model: Annotated[
         str | None, typer.Option(help="fftnet, smallnet, or a name of timm's; see radhar models.")
     ] = None,
+    classes: Classes = None,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Start again in a folder that holds a run.")
     ] = False,
@@ -45,16 +47,18 @@ def train(
     from radhar_cli.commands.training_view import TrainingView
     from radhar_cli.config.reading import load_section
     from radhar_cli.learning import training
+    from radhar_cli.learning.images.classes import read_classes
     from radhar_cli.learning.settings import TrainConfig
 
     named = {"map": map_, "model": model}
     overrides = [*(set_ or []), *(f"{key}={value}" for key, value in named.items() if value)]
     settings = load_section(TrainConfig, config, overrides)
     apart(out, [data])
+    names = read_classes(classes) if classes else {}
     view = TrainingView()
     with resumable(f"the last finished epoch in {out}"):
         try:
-            outcome = training.train(settings, data, out, view, overwrite)
+            outcome = training.train(settings, data, out, view, overwrite, names)
         finally:
             view.close()
     view.print_outcome(outcome)

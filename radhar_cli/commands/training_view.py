@@ -6,9 +6,11 @@ from typing import Any
 
 from tqdm import tqdm
 
+from radhar_cli.commands.tell import tell
 from radhar_cli.learning import run_files as run
 from radhar_cli.learning.run_folder import Epoch
 from radhar_cli.learning.training import Outcome
+from radhar_cli.untrusted import shown
 
 
 class TrainingView:
@@ -19,7 +21,7 @@ class TrainingView:
         self._epochs = 0
 
     def say(self, message: str) -> None:
-        tqdm.write(message, file=sys.stderr)
+        tqdm.write(shown(message), file=sys.stderr)
 
     def epoch(self, number: int, epochs: int, steps: int) -> None:
         self.close()
@@ -59,9 +61,9 @@ class TrainingView:
             return
         folder, best = outcome.folder, outcome.best
         if outcome.went_on == len(outcome.history):
-            print(f"{folder} is complete: {outcome.went_on} epochs; nothing to do")
-        print(f"best epoch {best.epoch}: validation accuracy {100 * best.val_accuracy:.2f} %")
-        print(f"  weights   {folder / run.BEST}")
-        print(f"  curves    {folder / run.CURVES}")
-        print(f"  summary   {folder / run.SUMMARY}")
-        print(f"  evaluate  radhar eval {folder} DATA")
+            tell(f"{folder} is complete: {outcome.went_on} epochs; nothing to do")
+        tell(f"best epoch {best.epoch}: validation accuracy {100 * best.val_accuracy:.2f} %")
+        tell(f"  weights   {folder / run.BEST}")
+        tell(f"  curves    {folder / run.CURVES}")
+        tell(f"  summary   {folder / run.SUMMARY}")
+        tell(f"  evaluate  radhar eval {folder} DATA")

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from radhar_cli.commands.tell import tell
+
 
 def verify(
     out: Annotated[Path, typer.Argument(help="Folder that `radhar generate` wrote.")],
@@ -22,16 +24,16 @@ def verify(
 
     report = verify_folder(out, samples)
     if report.other_versions:
-        typer.echo("built with other versions, compared within one grey level:")
+        tell("built with other versions, compared within one grey level:")
         for line in report.other_versions:
-            typer.echo(f"  {line}")
+            tell(f"  {line}")
     for problem in report.problems[:20]:
-        typer.echo(f"WRONG {problem}")
+        tell(f"WRONG {problem}")
     if len(report.problems) > 20:
-        typer.echo(f"... and {len(report.problems) - 20} more")
+        tell(f"... and {len(report.problems) - 20} more")
     if report.problems:
         raise typer.Exit(1)
-    typer.echo(
+    tell(
         f"{out}: {report.samples} samples; checksums, labels and counts right; "
         f"{report.resynthesised} synthesised anew and equal"
         + (

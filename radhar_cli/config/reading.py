@@ -4,64 +4,23 @@ import difflib
 import json
 import re
 from collections.abc import Iterable, Iterator
+from itertools import islice
 from pathlib import Path
 from typing import Any, TypeVar
 
-import yaml
 from pydantic import BaseModel, ValidationError
 
 from radhar_cli.config.checks import Problem
 from radhar_cli.config.schema import Config, Section
+from radhar_cli.config.yaml_reader import LARGEST, Lines, parse_yaml
 from radhar_cli.errors import ConfigError
+from radhar_cli.untrusted import parse_json, read_text, shown
 
 S = TypeVar("S", bound=Section)
 
 _UNION_TAGS = {"number", "uniform", "normal", "choice", "vary", "same", "per_activity"}
-_INT = re.compile(r"^[-+]?(?:0|[1-9][0-9_]*)$")
-_FLOAT = re.compile(
-    r"^[-+]?(?:[0-9][0-9_]*\.[0-9_]*(?:[eE][-+]?[0-9]+)?|\.[0-9][0-9_]*(?:[eE][-+]?[0-9]+)?|[0-9][0-9_]*[eE][-+]?[0-9]+"
-    r"|\.(?:inf|Inf|INF))$|^\.(?:nan|NaN|NAN)$"
-)
-_BOOL = re.compile(r"^(?:true|True|TRUE|false|False|FALSE)$")
-_NULL = re.compile(r"^(?:~|null|Null|NULL|)$")
-
-
-class _Loader(yaml.SafeLoader):
-    """YAML 1.2 scalars: ``77e9`` is a number, ``1:30`` and ``yes`` are not; keys may not repeat."""
-
-
-_Loader.yaml_implicit_resolvers = {}
-
-for _tag, _pattern, _first in (
-    ("bool", _BOOL, "tTfF"),
-    ("int", _INT, "-+0123456789"),
-    ("float", _FLOAT, "-+0123456789."),
-    ("null", _NULL, ["~", "n", "N", ""]),
-    ("merge", re.compile(r"^<<$"), "<"),
-):
-    _Loader.add_implicit_resolver(f"tag:yaml.org,2002:{_tag}", _pattern, list(_first))
-
-
-def _mapping(loader: _Loader, node: yaml.MappingNode) -> dict[Any, Any]:
-    own: set[str] = set()
-    for key_node, _ in node.value:
-        merges = key_node.tag == "tag:yaml.org,2002:merge"
-        key = "<<" if merges else loader.construct_object(key_node, deep=True)
-        if isinstance(key, str) and key not in own:
-            own.add(key)
-            continue
-        wrong = "appears twice" if isinstance(key, str) else "should be text"
-        raise yaml.MarkedYAMLError(
-            problem=f"the key {key!r} {wrong}", problem_mark=key_node.start_mark
-        )
-    loader.flatten_mapping(node)  # merged keys (<<) come first and give way
-    return {
-        loader.construct_object(key, deep=True): loader.construct_object(value, deep=True)
-        for key, value in node.value
-    }
-
-
-_Loader.add_constructor("tag:yaml.org,2002:map", _mapping)
+MOST_MISTAKES = 20
+LONGEST_VALUE, LONGEST_ADVICE = 120, 500  # characters of them that a message shows
 
 
 def load_config(path: str | Path, overrides: Iterable[str] = ()) -> Config:
@@ -87,15 +46,16 @@ def load_section(kind: type[S], path: Path | None, overrides: Iterable[str] = ()
     return validated(kind, document, str(path) if path else "--set", lines)
 
 
-def _document(path: Path) -> tuple[dict[str, Any], dict[str, int]]:
+def _document(path: Path) -> tuple[dict[str, Any], Lines]:
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_text(path, LARGEST)
     except FileNotFoundError:
         raise ConfigError(f"{path}: no such file") from None
-    except (OSError, UnicodeDecodeError) as error:
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be read as text ({error.strerror})") from None
+    except UnicodeDecodeError as error:
         raise ConfigError(f"{path}: cannot be read as text ({error})") from None
-    document = _parse(text, str(path))
-    lines = _key_lines(text)
+    document, lines = parse_yaml(text, str(path))
     if document is None:
         document = {}
     if not isinstance(document, dict):
@@ -103,36 +63,36 @@ def _document(path: Path) -> tuple[dict[str, Any], dict[str, int]]:
     return document, lines
 
 
+def load_mapping(path: Path) -> dict[str, Any]:
+    """Read a file of plain keys and values.
+
+    Raises:
+        ConfigError: unreadable file, or bad YAML.
+    """
+    return _document(path)[0]
+
+
 def config_from_json(text: str, where: str) -> Config:
     """Rebuild a resolved config from the JSON stored with a data set."""
     try:
-        document = json.loads(text)
+        document = parse_json(text)
     except ValueError as error:
         raise ConfigError(f"{where}: the stored config is not JSON ({error})") from None
     return validated(Config, document, where, {})
 
 
-def validated(kind: type[S], document: Any, where: str, lines: dict[str, int]) -> S:
+def validated(kind: type[S], document: Any, where: str, lines: Lines) -> S:
     """Turn a parsed document into a config, or raise a ConfigError with one line per mistake."""
     try:
         return kind.model_validate(document)
     except ValidationError as error:
-        messages = [
+        told = dict.fromkeys(
             _place(where, problem.key, lines) + _what(problem)
-            for problem in _found(kind, error, document)
-        ]
-        raise ConfigError("\n".join(dict.fromkeys(messages))) from None
-
-
-def _parse(text: str, where: str) -> Any:
-    try:
-        return yaml.load(text, Loader=_Loader)
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark
-        line = f":{mark.line + 1}" if mark else ""
-        raise ConfigError(f"{where}{line}: not valid YAML: {error.problem}") from None
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
-        raise ConfigError(f"{where}: not valid YAML: {error}") from None
+            for problem in islice(_found(kind, error, document), MOST_MISTAKES)
+        )
+        more = error.error_count() - MOST_MISTAKES
+        messages = [*told, f"{where}: and {more} more"] if more > 0 else [*told]
+        raise ConfigError("\n".join(messages)) from None
 
 
 def _override(document: dict[str, Any], override: str) -> None:
@@ -145,22 +105,8 @@ def _override(document: dict[str, Any], override: str) -> None:
     place = document
     for name in names[:-1]:
         inner = place.get(name)
-        # A copy: a YAML anchor may share this mapping with another key.
-        inner = dict(inner) if isinstance(inner, dict) else {}
-        place[name] = inner
-        place = inner
-    place[names[-1]] = _parse(text, f"--set {key.strip()}")
-
-
-def _key_lines(text: str) -> dict[str, int]:
-    def walk(node: yaml.Node | None, key: str) -> Iterator[tuple[str, int]]:
-        if isinstance(node, yaml.MappingNode):
-            for key_node, value in node.value:
-                inner = f"{key}.{key_node.value}" if key else str(key_node.value)
-                yield inner, key_node.start_mark.line + 1
-                yield from walk(value, inner)
-
-    return dict(walk(yaml.compose(text, Loader=_Loader), ""))
+        place[name] = place = inner if isinstance(inner, dict) else {}
+    place[names[-1]], _ = parse_yaml(text, f"--set {key.strip()}")
 
 
 def _within(key: str, parent: str) -> bool:
@@ -237,20 +183,24 @@ def _unknown(kind: type[BaseModel], names: list[int | str]) -> str:
     return "is an unknown key" + (f"; known here: {', '.join(known)}" if known else "")
 
 
-def _place(where: str, key: str, lines: dict[str, int]) -> str:
+def _place(where: str, key: str, lines: Lines) -> str:
     line = lines.get(key)
     parent = key
     while line is None and "." in parent:
         parent = parent.rpartition(".")[0]
         line = lines.get(parent)
+    key = _short(shown(key).replace("\n", "\\n"))
     return f"{where}:{line}: {key}" if line else f"{where}: {key}"
 
 
 def _what(problem: Problem) -> str:
     value = problem.value
-    shown = json.dumps(value, default=_plain)
-    shown = shown if len(shown) <= 120 else shown[:117] + "..."
-    return f" = {shown}: {problem.right}"
+    shown_value = _short(json.dumps(value, default=_plain))
+    return f" = {shown_value}: {_short(problem.right, LONGEST_ADVICE)}"
+
+
+def _short(text: str, most: int = LONGEST_VALUE) -> str:
+    return text if len(text) <= most else text[: most - 3] + "..."
 
 
 def _plain(value: object) -> object:

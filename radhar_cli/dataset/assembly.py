@@ -1,12 +1,14 @@
-"""Shards -> dataset.h5, scenes.csv and config.yaml.
+"""Shards -> dataset.h5, scenes.csv, config.yaml and the manifest of what was put together.
 
-The layout of dataset.h5 is a contract, described in docs/dataset.md.
+The layout of dataset.h5 is a contract, described in docs/dataset.md. Nothing here grows with the
+rows but the list of shards: columns go into the file as shards are read.
 """
 
 import csv
 import io
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -18,13 +20,17 @@ from radhar_cli.config.identity import as_yaml, config_hash, resolved
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.files import unfinished_path, write_whole
-from radhar_cli.dataset.identity import identity, versions
-from radhar_cli.dataset.layout import CONFIG, DATASET, SCENES, SPLITS, Rows
-from radhar_cli.dataset.shards import Shard, image_dataset, pieces
+from radhar_cli.dataset.identity import identity, identity_hash, versions
+from radhar_cli.dataset.layout import COLUMNS, CONFIG, DATASET, MANIFEST, SCENES, SPLITS, WORK, Rows
+from radhar_cli.dataset.shards import Shard, ShardError, check_shards, image_dataset, require_tiling
 from radhar_cli.dataset.split import split_rows
+from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
+from radhar_cli.errors import UnfinishedError
+from radhar_cli.pipeline.validity import Flags, warnings
 from radhar_cli.scene import subject_of
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
+RUN = 128
 CONFIG_HEADING = "# The resolved config of this data set, every default filled in.\n"
 LEVELS_TEXT = (
     "level = floor(255 (dB / dynamic_range_db + 1) + 1/2), dB = 10 log10(power / largest power), "
@@ -32,86 +38,122 @@ LEVELS_TEXT = (
 )
 
 
-def assemble(
-    config: Config, folder: Path, shards: Sequence[Shard], said: list[dict[str, Any]]
-) -> None:
-    """Write scenes.csv and config.yaml, then dataset.h5, and rename it into place last.
+@contextmanager
+def assembled(
+    config: Config, folder: Path, shards: Sequence[Shard]
+) -> Iterator[tuple[Path, list[dict[str, Any]]]]:
+    """Put a data set together; yield the path of its whole file, which becomes dataset.h5 after.
+
+    With the path come the warnings that are stored in it.
 
     Args:
         config: the data set's.
         folder: the output folder.
-        shards: that hold every row.
-        said: the physical warnings, stored with the data.
+        shards: that hold every row once.
+
+    Raises:
+        UnfinishedError: rows are missing, held twice, or in a shard that cannot be used.
     """
-    unfinished = unfinished_path(folder)
+    count, whose, shards = len(Rows.of(config)), identity_hash(identity(config)), sorted(shards)
+    require_tiling(folder, shards, count)
+    unfinished, table = unfinished_path(folder), unfinished_path(folder)
     unfinished.parent.mkdir(parents=True, exist_ok=True)
     try:
-        with h5py.File(unfinished, "w") as file:
-            scene_values = _copy_shards(file, config, shards)
-            _describe_samples(file, config, scene_values)
+        with h5py.File(unfinished, "w") as file, table.open("w", newline="") as text:
+            _describe_samples(file, config)
+            flags, held = _copy_shards(file, config, shards, whose, text)
             _describe_maps(file, config)
-            _root_attributes(file, config, said)
-        _write_csv(config, folder, scene_values)
+            found = warnings(config, flags)
+            _root_attributes(file, config, found)
+        yield unfinished, found
+        table.replace(folder / SCENES)
         write_whole(folder, folder / CONFIG, (CONFIG_HEADING + as_yaml(config)).encode())
+        manifest = {"identity": whose, "rows": count, "shards": held}
+        write_whole(folder, folder / WORK / MANIFEST, json.dumps(manifest).encode())
         unfinished.replace(folder / DATASET)
+    except ShardError as error:
+        require_tiling(folder, check_shards(shards, whose)[0], count)
+        raise UnfinishedError(f"{folder}: {error}; the same command goes on") from None
     finally:
         unfinished.unlink(missing_ok=True)
+        table.unlink(missing_ok=True)
 
 
-def _copy_shards(file: h5py.File, config: Config, shards: Sequence[Shard]) -> Float:
-    count = len(Rows.of(config))
-    width = len(scene_fields.fields(config))
-    scene_values = np.empty((count, width))
-    for name in config.maps:
-        image_dataset(file.require_group("maps"), name, count, config)
-    _copy(shards, count, "scene", scene_values)
-    # Map by map, row by row: the file's layout does not depend on how shards cut the rows.
-    for name in config.maps:
-        for kind, shape, dtype in (
-            ("entropy", (), "f4"),
-            ("sha256", (), "S64"),
-            ("extent", (4,), "f8"),
-        ):
-            column = np.empty((count, *shape), dtype)
-            _copy(shards, count, f"{kind}/{name}", column)
-            file[f"{kind}/{name}"] = column
-        target = file[f"maps/{name}"].id
-        for shard, first, stop in pieces(shards, count):
-            with h5py.File(shard.path, "r") as part:
-                source = part[f"maps/{name}"].id
-                for row in range(first, stop):
-                    mask, chunk = source.read_direct_chunk((row - shard.start, 0, 0))
-                    target.write_direct_chunk((row, 0, 0), chunk, mask)
-    return scene_values
+def _copy_shards(
+    file: h5py.File, config: Config, shards: Sequence[Shard], whose: str, table: io.TextIOBase
+) -> tuple[dict[Flags, int], list[dict[str, Any]]]:
+    """Copy maps and columns, each shard read and checked once.
+
+    Chunks are stored in runs of RUN rows, map after map: the file's layout does not depend on how
+    shards cut the rows, and who reads one map reads long stretches.
+
+    Returns:
+        How many rows have each flag, and what each shard held.
+    """
+    count, stored = shards[-1].stop, 0
+    maps = file.create_group("maps")
+    targets = {name: image_dataset(maps, name, count, config).id for name in config.maps}
+    columns = {
+        f"{kind}/{name}": (file.create_dataset(f"{kind}/{name}", (count, *shape), dtype), shape)
+        for name in config.maps
+        for kind, (dtype, shape) in COLUMNS.items()
+    }
+    chunks: dict[str, list[tuple[int, bytes]]] = {name: [] for name in config.maps}
+    fields = scene_fields.fields(config)
+    scene = [file[f"scene/{field.name}"] for field in fields]
+    rows_csv = _CsvRows(config, table)
+    flags = dict.fromkeys(Flags, 0)
+    held: list[dict[str, Any]] = []
+    for shard in shards:
+        start, stop, rows = shard.start, shard.stop, shard.stop - shard.start
+        data, checksum = shard.read(whose)
+        held.append({"start": start, "stop": stop, "bytes": len(data), "sha256": checksum})
+        with UntrustedFile(shard.path, data) as part:
+            values = part.column("scene", np.float64, (rows, len(fields)))[:]
+            here = part.column("flags", np.uint8, (rows,))[:]
+            for name in config.maps:
+                source = part.images(f"maps/{name}", (rows, *config.image.size_px))
+                chunks[name] += [source.stored(row) for row in range(rows)]
+            for column, (target, shape) in columns.items():
+                target[start:stop] = part.column(column, target.dtype, (rows, *shape))[:]
+        for number, (field, target) in enumerate(zip(fields, scene, strict=True)):
+            target[start:stop] = values[:, number] * field.factor
+        rows_csv.write(start, values)
+        for flag in flags:
+            flags[flag] += int(np.count_nonzero(here & flag))
+        while stop - stored >= RUN or stored < stop == count:
+            for name, image in targets.items():
+                for row, (mask, chunk) in enumerate(chunks[name][:RUN], stored):
+                    image.write_direct_chunk((row, 0, 0), chunk, mask)
+                del chunks[name][:RUN]
+            stored += RUN
+    return flags, held
 
 
-def _copy(
-    shards: Sequence[Shard], count: int, name: str, column: np.ndarray[Any, np.dtype[Any]]
-) -> None:
-    for shard, first, stop in pieces(shards, count):
-        with h5py.File(shard.path, "r") as part:
-            column[first:stop] = part[name][first - shard.start : stop - shard.start]
-
-
-def _describe_samples(file: h5py.File, config: Config, scene_values: Float) -> None:
+def _describe_samples(file: h5py.File, config: Config) -> None:
     rows = Rows.of(config)
+    count = len(rows)
     labels = np.repeat(np.array([a.index for a in rows.activities], np.uint8), rows.per_class)
-    indices = np.tile(np.arange(rows.per_class), len(rows.activities))
     file["label"] = labels
-    file["label"].attrs["meaning"] = "0..11 for S1..S12, whatever subset was built"
+    file["label"].attrs["meaning"] = (
+        "0..11 for S1..S12, whatever subset was built; own classes after"
+    )
     file["split"] = split_rows(config)
     file["split"].attrs["meaning"] = ", ".join(f"{i} {name}" for i, name in enumerate(SPLITS))
-    file["sample_key"] = np.stack([labels.astype(np.int64), indices], axis=1)
-    file["sample_key"].attrs["columns"] = ["class", "index"]
-    for column, field in enumerate(scene_fields.fields(config)):
-        dataset = file.create_dataset(
-            f"scene/{field.name}", data=scene_values[:, column] * field.factor
-        )
+    keys = file.create_dataset("sample_key", (count, 2), np.int64)
+    keys.attrs["columns"] = ["class", "index"]
+    indices = np.arange(rows.per_class)
+    for number, activity in enumerate(rows.activities):
+        here = slice(number * rows.per_class, (number + 1) * rows.per_class)
+        keys[here, 0], keys[here, 1] = activity.index, indices
+    for field in scene_fields.fields(config):
+        dataset = file.create_dataset(f"scene/{field.name}", (count,), np.float64)
         dataset.attrs["unit"] = field.unit
         dataset.attrs["config_key"] = field.key
     if config.split.subjects is not None:
-        subjects = [subject_of(config, int(index)) for index in indices]
-        file["scene/subject"] = np.array(subjects, dtype=np.int64)
+        one_class = indices % config.split.subjects
+        subjects = np.tile(one_class, len(rows.activities))
+        file["scene/subject"] = subjects.astype(np.int64)
         file["scene/subject"].attrs["unit"] = "1"
 
 
@@ -140,7 +182,7 @@ def _describe_maps(file: h5py.File, config: Config) -> None:
         file[f"entropy/{name}"].attrs["unit"] = "bit"
 
 
-def _root_attributes(file: h5py.File, config: Config, said: list[dict[str, Any]]) -> None:
+def _root_attributes(file: h5py.File, config: Config, found: list[dict[str, Any]]) -> None:
     file.attrs["schema_version"] = SCHEMA_VERSION
     file.attrs["config"] = json.dumps(resolved(config))
     file.attrs["config_hash"] = config_hash(config)
@@ -151,25 +193,27 @@ def _root_attributes(file: h5py.File, config: Config, said: list[dict[str, Any]]
     file.attrs["seed"] = config.seed
     file.attrs["class_names"] = [activity.label for activity in config.classes]
     file.attrs["class_slugs"] = [activity.slug for activity in config.classes]
-    file.attrs["warnings"] = json.dumps(said)
+    file.attrs["warnings"] = json.dumps(found)
     for library, version in versions().items():
         file.attrs[f"{library}_version"] = version
 
 
-def _write_csv(config: Config, folder: Path, scene_values: Float) -> None:
-    rows, split = Rows.of(config), split_rows(config)
-    columns = scene_fields.fields(config)
-    text = io.StringIO(newline="")
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(
-        ["label", "class", "slug", "index", "split", "subject", *(f.column for f in columns)]
-    )
-    for row in range(len(rows)):
-        activity, index = rows[row]
-        subject = subject_of(config, index)
-        writer.writerow(
-            [activity.index, activity.label, activity.slug, index, SPLITS[split[row]]]
-            + ["" if subject is None else subject]
-            + ["" if np.isnan(value) else repr(float(value)) for value in scene_values[row]]
-        )
-    write_whole(folder, folder / SCENES, text.getvalue().encode())
+class _CsvRows:
+    """scenes.csv, written as shards are read."""
+
+    def __init__(self, config: Config, table: io.TextIOBase) -> None:
+        self._config, self._rows, self._split = config, Rows.of(config), split_rows(config)
+        self._writer = csv.writer(table, lineterminator="\n")
+        columns = (field.column for field in scene_fields.fields(config))
+        self._writer.writerow(["label", "class", "slug", "index", "split", "subject", *columns])
+
+    def write(self, start: int, values: Float) -> None:
+        """Write the rows from `start` on, of values [rows, fields]."""
+        for row, numbers in enumerate(values.tolist(), start):
+            activity, index = self._rows[row]
+            subject = subject_of(self._config, index)
+            self._writer.writerow(
+                [activity.index, activity.label, activity.slug, index, SPLITS[self._split[row]]]
+                + ["" if subject is None else subject]
+                + ["" if value != value else repr(value) for value in numbers]
+            )

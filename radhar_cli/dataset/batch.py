@@ -2,6 +2,7 @@
 
 import os
 import sys
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,15 +11,17 @@ import numpy as np
 from radhar_cli.arrays import Levels
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
+from radhar_cli.dataset.check_cache import OUTCOME, Outcomes
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.layout import Rows, png_path
 from radhar_cli.dataset.png import encode_png
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.shards import encode_shard, write_shard
+from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.pipeline.products import plan_images
-from radhar_cli.pipeline.validity import draw_valid_scene
+from radhar_cli.pipeline.validity import Flags, draw_valid_scene
 from radhar_cli.process import prepare_process
-from radhar_cli.scene import draw_scene
+from radhar_cli.scene import Scene, draw_scene
 
 
 @dataclass(frozen=True)
@@ -27,27 +30,39 @@ class Batch:
 
     Attributes:
         config: the data set's.
-        folder: the output folder.
+        identity_hash: of it.
+        folder: the output folder, absolute: a worker may have another working directory.
         start, stop: rows.
-        attempts: which draw of each row is kept (`on_invalid: redraw`).
+        checked: outcome of the check of each row, or None where the worker is to check.
         split: split number of each row.
         table: colour table [256, 3], or None without PNGs.
-        master: process that asked; a worker that outlives it stops.
+        parent_pid: process that asked; a worker that outlives it stops.
     """
 
     config: Config
+    identity_hash: str
     folder: Path
     start: int
     stop: int
-    attempts: tuple[int, ...]
-    split: tuple[int, ...]
+    checked: Outcomes | None
+    split: Levels
     table: Levels | None
-    master: int
+    parent_pid: int
+
+    def scenes(self) -> Iterator[tuple[Scene, int]]:
+        """Each row's scene and Flags."""
+        rows = Rows.of(self.config)
+        for number, row in enumerate(range(self.start, self.stop)):
+            if self.checked is None:
+                yield draw_valid_scene(self.config, *rows[row])
+            else:
+                attempt, flags = self.checked[number].tolist()
+                yield draw_scene(self.config, *rows[row], attempt), flags
 
 
-def leave_if_orphaned(master: int) -> None:
-    """End a worker whose master was killed: nobody waits for it, and a new run may be at work."""
-    if os.getpid() != master and os.getppid() != master and sys.platform != "win32":
+def leave_if_orphaned(parent_pid: int) -> None:
+    """End a worker whose parent was killed: nobody waits for it, and a new run may be at work."""
+    if os.getpid() != parent_pid and os.getppid() != parent_pid and sys.platform != "win32":
         os._exit(1)
 
 
@@ -56,63 +71,60 @@ def run_batch(batch: Batch) -> int:
     try:
         return _run_batch(batch)
     except OSError:
-        leave_if_orphaned(batch.master)
+        leave_if_orphaned(batch.parent_pid)
         raise
 
 
 def _run_batch(batch: Batch) -> int:
     prepare_process()
-    config, rows = batch.config, Rows.of(batch.config)
-    plan = plan_images(config)
-    scenes, samples = [], []
-    for row, attempt, split in zip(
-        range(batch.start, batch.stop), batch.attempts, batch.split, strict=True
-    ):
-        leave_if_orphaned(batch.master)
-        activity, index = rows[row]
-        scene = draw_scene(config, activity, index, attempt)
+    config, count = batch.config, batch.stop - batch.start
+    plan, columns = plan_images(config), scene_fields.fields(config)
+    samples = []
+    values, flags = np.empty((count, len(columns))), np.empty(count, dtype=np.uint8)
+    for number, (scene, found) in enumerate(batch.scenes()):
+        leave_if_orphaned(batch.parent_pid)
         sample = synthesise(scene, plan)
         if batch.table is not None:
-            for name in config.maps:
-                data = encode_png(sample[name].levels, batch.table, config.output.png_level)
-                path = batch.folder / png_path(name, split, activity, index)
-                write_whole(batch.folder, path, data)
-        scenes.append(scene)
+            for name, image in sample.images.items():
+                data = encode_png(image.levels, batch.table, config.output.png_level)
+                path = png_path(name, int(batch.split[number]), scene.activity, scene.index)
+                write_whole(batch.folder, batch.folder / path, data)
         samples.append(sample)
-    values = scene_fields.values(scenes, scene_fields.fields(config))
-    write_shard(batch.folder, batch.start, batch.stop, encode_shard(config, samples, values))
-    return batch.stop - batch.start
+        values[number] = scene_fields.values(scene, columns, sample.error_db)
+        flags[number] = found | (Flags.FALLBACK if sample.fell_back else 0)
+    data = encode_shard(config, batch.identity_hash, batch.start, samples, values, flags)
+    write_shard(batch.folder, batch.start, batch.stop, data)
+    return count
 
 
-def survey_rows(
-    config: Config, start: int, stop: int, master: int
-) -> tuple[int, list[tuple[int, int]]]:
-    """Settle rows start .. stop - 1; return (start, outcome of each)."""
+def check_rows(config: Config, start: int, stop: int, parent_pid: int) -> tuple[int, Outcomes]:
+    """Check the scenes of rows start .. stop - 1; return (start, outcome of each)."""
     prepare_process()
-    leave_if_orphaned(master)
+    leave_if_orphaned(parent_pid)
     rows = Rows.of(config)
-    found = (draw_valid_scene(config, *rows[row]) for row in range(start, stop))
-    return start, [(scene.attempt, int(flags)) for scene, flags in found]
+    outcomes = np.empty(stop - start, dtype=OUTCOME)
+    for number, row in enumerate(range(start, stop)):
+        scene, flags = draw_valid_scene(config, *rows[row])
+        outcomes[number] = scene.attempt, flags
+    return start, outcomes
 
 
 def png_rows(
     config: Config,
     folder: Path,
     source: Path,
-    first: int,
     rows: list[tuple[int, int]],
     table: Levels,
-    master: int,
+    parent_pid: int,
 ) -> int:
-    """Write the PNGs of (row, split) pairs from an HDF5 file whose row 0 is row `first`."""
-    import h5py
-
+    """Write the PNGs of (row, split) pairs from a data set's HDF5 file."""
     order = Rows.of(config)
-    with h5py.File(source, "r") as file:
+    shape = (len(order), *config.image.size_px)
+    with UntrustedFile(source) as file:
+        images = {name: file.images(f"maps/{name}", shape) for name in config.maps}
         for row, split in rows:
-            leave_if_orphaned(master)
+            leave_if_orphaned(parent_pid)
             for name in config.maps:
-                levels = np.asarray(file[f"maps/{name}"][row - first])
-                path = folder / png_path(name, split, *order[row])
-                write_whole(folder, path, encode_png(levels, table, config.output.png_level))
+                data = encode_png(images[name][row], table, config.output.png_level)
+                write_whole(folder, folder / png_path(name, split, *order[row]), data)
     return len(rows)

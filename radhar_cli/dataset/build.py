@@ -6,27 +6,38 @@ shards goes on from them; dataset.h5 comes last and stands for a complete folder
 
 import errno
 import os
+import uuid
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
 
+import numpy as np
+
 from radhar_cli.arrays import Levels
 from radhar_cli.config.schema import Config
-from radhar_cli.dataset.assembly import assemble
-from radhar_cli.dataset.batch import Batch, png_rows, run_batch, survey_rows
+from radhar_cli.dataset.assembly import assembled
+from radhar_cli.dataset.batch import Batch, check_rows, png_rows, run_batch
+from radhar_cli.dataset.check_cache import OUTCOME, Outcomes, store_checks, stored_checks
 from radhar_cli.dataset.folder import claim, locked, mark_built, tidy
-from radhar_cli.dataset.layout import DATASET, Rows, png_path
+from radhar_cli.dataset.identity import identity, identity_hash
+from radhar_cli.dataset.layout import DATASET, MANIFEST, WORK, Rows, png_path
 from radhar_cli.dataset.png import colour_table
-from radhar_cli.dataset.settled import settled_rows, store_settled
-from radhar_cli.dataset.shards import finished_shards, missing_runs, pieces
+from radhar_cli.dataset.shards import (
+    ForeignShardError,
+    Shard,
+    check_shards,
+    listed_shards,
+    missing_and_repeated,
+)
 from radhar_cli.dataset.split import split_rows
 from radhar_cli.dataset.workers import run_tasks
 from radhar_cli.errors import UnfinishedError
-from radhar_cli.pipeline.validity import warnings
+from radhar_cli.pipeline.validity import Flags, warnings
 
-LARGEST_BATCH = 32
-SURVEY_BATCH = 64
+MAX_BATCH = 32
+CHECK_BATCH = 64
+MAX_CHECKED_FIRST = 100_000  # rows; of more, every worker checks its own
 
 
 class Progress(Protocol):
@@ -90,10 +101,12 @@ def build(
         SceneError: a scene outside the model; nothing was computed.
     """
     table = colour_table(config.image.colour_map) if config.output.png else None
+    folder = folder.absolute()
+    whose = identity_hash(identity(config))
     try:
         with locked(folder):
             claim(folder, config, overwrite)
-            return _Build(config, folder, jobs, progress, table).run(batch_size)
+            return _Build(config, whose, folder, jobs, progress, table).run(batch_size)
     except OSError as error:
         raise _disk_error(folder, error) from error
 
@@ -101,6 +114,7 @@ def build(
 @dataclass
 class _Build:
     config: Config
+    identity_hash: str
     folder: Path
     jobs: int
     progress: Progress
@@ -108,58 +122,72 @@ class _Build:
 
     def run(self, batch_size: int | None) -> Outcome:
         config, count = self.config, len(Rows.of(self.config))
-        split = tuple(int(part) for part in split_rows(config))
+        split = split_rows(config)
         if (self.folder / DATASET).exists():
-            pngs = self._missing_pngs(split, complete=True)
+            pngs = self._missing_pngs(split, self.folder / DATASET)
             tidy(self.folder)
             return Outcome(self.folder, count, 0, pngs)
-        drawn = self._survey(count)
-        said = warnings(config, [flags for _, flags in drawn])
-        for warning in said:
-            self.progress.say(f"warning: {warning['message']}")
-        made = self._batches(drawn, split, batch_size)
-        pngs = self._missing_pngs(split, complete=False)
+        checked = self._check_scenes(count) if count <= MAX_CHECKED_FIRST else None
+        said = [] if checked is None else warnings(config, _counts(checked["flags"]))
+        self._say(said)
+        shards, made = self._batches(count, checked, split, batch_size)
         self.progress.stage("assembling", count, 0)
-        assemble(config, self.folder, finished_shards(self.folder), said)
-        self.progress.advance(count)
+        with assembled(config, self.folder, shards) as (unfinished, stored):
+            self._say([warning for warning in stored if warning not in said])
+            self.progress.advance(count)
+            pngs = self._missing_pngs(split, unfinished)
         mark_built(self.folder)
         tidy(self.folder)
-        return Outcome(self.folder, count, made, pngs, said)
+        return Outcome(self.folder, count, made, pngs, stored)
 
-    def _survey(self, count: int) -> list[tuple[int, int]]:
-        """Settle every scene; what a run that was stopped had settled is not done again."""
-        outcomes = settled_rows(self.folder)
-        starts = [s for s in range(0, count, SURVEY_BATCH) if s not in outcomes]
-        left = sum(min(SURVEY_BATCH, count - start) for start in starts)
+    def _say(self, found: list[dict[str, Any]]) -> None:
+        for warning in found:
+            self.progress.say(f"warning: {warning['message']}")
+
+    def _check_scenes(self, count: int) -> Outcomes:
+        """Check every scene, but for those that an earlier run checked: outcomes [count]."""
+        outcomes = np.empty(count, dtype=OUTCOME)
+        starts = []
+        for start in range(0, count, CHECK_BATCH):
+            part = outcomes[start : start + CHECK_BATCH]
+            kept = stored_checks(self.folder, self.identity_hash, start, part.size)
+            if kept is None:
+                starts.append(start)
+            else:
+                part[:] = kept
+        left = sum(min(CHECK_BATCH, count - start) for start in starts)
         self.progress.stage("checking scenes", count, count - left)
-        tasks = [(self.config, s, min(s + SURVEY_BATCH, count), os.getpid()) for s in starts]
+        tasks = [(self.config, s, min(s + CHECK_BATCH, count), os.getpid()) for s in starts]
         jobs = self.jobs if len(tasks) > 2 * self.jobs else 1
-        for start, found in run_tasks(survey_rows, tasks, jobs):
-            store_settled(self.folder, start, found)
-            outcomes[start] = found
-            self.progress.advance(len(found))
-        return [outcome for start in sorted(outcomes) for outcome in outcomes[start]]
+        for start, found in run_tasks(check_rows, tasks, jobs):
+            store_checks(self.folder, self.identity_hash, start, found)
+            outcomes[start : start + found.size] = found
+            self.progress.advance(found.size)
+        return outcomes
 
     def _batches(
-        self, drawn: list[tuple[int, int]], split: tuple[int, ...], batch_size: int | None
-    ) -> int:
-        gaps = missing_runs(finished_shards(self.folder), len(drawn))
+        self, count: int, checked: Outcomes | None, split: Levels, batch_size: int | None
+    ) -> tuple[list[Shard], int]:
+        """Make the rows that no sound shard holds; return the shards of all rows, and how many."""
+        shards = self._sound_shards()
+        gaps, _ = missing_and_repeated(shards, count)
         left = sum(stop - start for start, stop in gaps)
-        self.progress.stage("samples", len(drawn), len(drawn) - left)
-        size = batch_size or max(1, min(LARGEST_BATCH, -(-left // (4 * self.jobs))))
+        self.progress.stage("samples", count, count - left)
+        size = batch_size or max(1, min(MAX_BATCH, -(-left // (4 * self.jobs))))
 
         def batches() -> Iterator[tuple[Batch]]:
             for gap_start, gap_stop in gaps:
                 for start in range(gap_start, gap_stop, size):
                     stop = min(start + size, gap_stop)
-                    attempts = tuple(attempt for attempt, _ in drawn[start:stop])
+                    shards.append(Shard(start, stop, self.folder))
                     yield (
                         Batch(
                             self.config,
+                            self.identity_hash,
                             self.folder,
                             start,
                             stop,
-                            attempts,
+                            None if checked is None else checked[start:stop],
                             split[start:stop],
                             self.table,
                             os.getpid(),
@@ -168,9 +196,19 @@ class _Build:
 
         for samples in run_tasks(run_batch, batches(), self.jobs if left > size else 1):
             self.progress.advance(samples)
-        return left
+        return shards, left
 
-    def _missing_pngs(self, split: tuple[int, ...], complete: bool) -> int:
+    def _sound_shards(self) -> list[Shard]:
+        """Shards to go on from. A damaged one is made again, a foreign one moved out of the way."""
+        (self.folder / WORK / MANIFEST).unlink(missing_ok=True)
+        sound, unusable = check_shards(listed_shards(self.folder), self.identity_hash)
+        for shard, error in unusable:
+            self.progress.say(f"{shard.path}: {error}; its rows are made again")
+            if isinstance(error, ForeignShardError):
+                shard.path.rename(shard.path.with_suffix(f".foreign-{uuid.uuid4().hex}"))
+        return sound
+
+    def _missing_pngs(self, split: Levels, source: Path) -> int:
         """Write PNGs that are not there: asked for later, deleted, or lost with a killed run."""
         if self.table is None:
             return 0
@@ -178,43 +216,45 @@ class _Build:
         if not missing:
             return 0
         self.progress.stage("png", len(missing), 0)
-        if complete:
-            sources = [(self.folder / DATASET, 0, 0, len(split))]
-        else:
-            sources = [
-                (shard.path, shard.start, first, stop)
-                for shard, first, stop in pieces(finished_shards(self.folder), len(split))
-            ]
-
-        def tasks() -> Iterator[tuple[Any, ...]]:
-            for path, offset, first, stop in sources:
-                here = [(row, split[row]) for row in missing if first <= row < stop]
-                for part in range(0, len(here), LARGEST_BATCH):
-                    chosen = here[part : part + LARGEST_BATCH]
-                    yield (self.config, self.folder, path, offset, chosen, self.table, os.getpid())
-
-        jobs = self.jobs if len(missing) > LARGEST_BATCH else 1
-        for written in run_tasks(png_rows, tasks(), jobs):
+        tasks = (
+            (
+                self.config,
+                self.folder,
+                source,
+                [(row, int(split[row])) for row in missing[first : first + MAX_BATCH]],
+                self.table,
+                os.getpid(),
+            )
+            for first in range(0, len(missing), MAX_BATCH)
+        )
+        jobs = self.jobs if len(missing) > MAX_BATCH else 1
+        for written in run_tasks(png_rows, tasks, jobs):
             self.progress.advance(written)
         return len(missing) * len(self.config.maps)
 
-    def _rows_without_png(self, split: tuple[int, ...]) -> list[int]:
+    def _rows_without_png(self, split: Levels) -> list[int]:
+        """Rows of which an image is missing; the names of one class are held at a time."""
         rows = Rows.of(self.config)
-        listed: dict[Path, set[str]] = {}
+        missing = []
+        for first in range(0, len(rows), rows.per_class):
+            listed: dict[Path, set[str]] = {}
+            for row in range(first, first + rows.per_class):
+                for name in self.config.maps:
+                    path = png_path(name, int(split[row]), *rows[row])
+                    if path.parent not in listed:
+                        listed[path.parent] = _names(self.folder / path.parent)
+                    if path.name not in listed[path.parent]:
+                        missing.append(row)
+                        break
+        return missing
 
-        def there(path: Path) -> bool:
-            if path.parent not in listed:
-                parent = self.folder / path.parent
-                listed[path.parent] = (
-                    {found.name for found in parent.iterdir()} if parent.is_dir() else set()
-                )
-            return path.name in listed[path.parent]
 
-        return [
-            row
-            for row in range(len(rows))
-            if not all(there(png_path(name, split[row], *rows[row])) for name in self.config.maps)
-        ]
+def _names(folder: Path) -> set[str]:
+    return {found.name for found in os.scandir(folder)} if folder.is_dir() else set()
+
+
+def _counts(flags: Levels) -> dict[Flags, int]:
+    return {flag: int(np.count_nonzero(flags & flag)) for flag in Flags}
 
 
 def _disk_error(folder: Path, error: OSError) -> UnfinishedError:

@@ -3,9 +3,12 @@
 from dataclasses import dataclass
 from time import perf_counter
 
+import numpy as np
+
 from radhar_cli.arrays import Levels
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
+from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table, encode_png
 from radhar_cli.dataset.sample import synthesise
@@ -79,10 +82,12 @@ def _time_sample(config: Config, row: int, table: Levels | None) -> tuple[int, i
     activity, index = Rows.of(config)[row]
     scene, _ = draw_valid_scene(config, activity, index)
     sample = synthesise(scene, plan_images(config))
-    values = scene_fields.values([scene], scene_fields.fields(config))
-    shard = encode_shard(config, [sample], values)
+    columns = scene_fields.fields(config)
+    values = scene_fields.values(scene, columns, sample.error_db)[None]
+    whose = identity_hash(identity(config))
+    shard = encode_shard(config, whose, row, [sample], values, np.zeros(1, dtype=np.uint8))
     pngs = 0
     if table is not None:
         level = config.output.png_level
-        pngs = sum(len(encode_png(sample[name].levels, table, level)) for name in config.maps)
+        pngs = sum(len(encode_png(i.levels, table, level)) for i in sample.images.values())
     return len(shard), pngs

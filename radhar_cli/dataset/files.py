@@ -1,10 +1,15 @@
-"""Writing files so that a name never stands for half a file."""
+"""Reading files that anyone may have written, and writing so that a name never stands for half a
+file and nothing outside of a folder is touched."""
 
 import os
 import uuid
 from pathlib import Path
 
 from radhar_cli.dataset.layout import WORK
+from radhar_cli.errors import FolderError
+from radhar_cli.untrusted import regular_size
+
+MOST_TEXT = 2**20
 
 
 def write_whole(folder: Path, path: Path, data: bytes) -> None:
@@ -14,8 +19,13 @@ def write_whole(folder: Path, path: Path, data: bytes) -> None:
         folder: the output folder; the unfinished file lies in its work folder.
         path: of the finished file, inside `folder`.
         data: the content.
+
+    Raises:
+        FolderError: a folder on the way is a symbolic link.
     """
     unfinished = unfinished_path(folder)
+    refuse_links(folder, unfinished.parent)
+    refuse_links(folder, path.parent)
     unfinished.parent.mkdir(parents=True, exist_ok=True)
     try:
         unfinished.write_bytes(data)
@@ -29,3 +39,52 @@ def write_whole(folder: Path, path: Path, data: bytes) -> None:
 def unfinished_path(folder: Path) -> Path:
     """A name that no other process uses, on the same file system as the output."""
     return folder / WORK / "unfinished" / f"{os.getpid()}-{uuid.uuid4().hex}"
+
+
+def refuse_links(folder: Path, path: Path) -> None:
+    """Refuse a path inside a folder if a part of it below the folder is a symbolic link.
+
+    Raises:
+        FolderError: names the link.
+    """
+    for part in (path, *path.parents):
+        if part == folder:
+            return
+        if part.is_symlink():
+            raise FolderError(f"{part}: is a symbolic link; radhar writes and deletes through none")
+
+
+def refuse_strange_work(folder: Path) -> None:
+    """Refuse a work folder with anything in it but files and folders, links above all.
+
+    Raises:
+        FolderError: names what is there.
+    """
+    refuse_links(folder, folder / WORK)
+    for place, folders, files in os.walk(folder / WORK):
+        for name in (*folders, *files):
+            path = Path(place, name)
+            if path.is_symlink() or not (path.is_file() or path.is_dir()):
+                raise FolderError(
+                    f"{path}: should be a file or a folder, no link, pipe or device; radhar made "
+                    "no such thing"
+                )
+
+
+def read_bytes(path: Path, most: int = MOST_TEXT) -> bytes:
+    """The bytes of a regular file.
+
+    Raises:
+        FolderError: it is none, larger, or cannot be read.
+        FileNotFoundError: there is none.
+    """
+    try:
+        size = regular_size(path)
+        if size > most:
+            raise FolderError(f"{path}: is {size} bytes; should be at most {most}")
+        with path.open("rb") as file:
+            return file.read(most)
+    except FileNotFoundError:
+        raise
+    except OSError as error:
+        raise FolderError(f"{path}: cannot be read: {error.strerror}") from None

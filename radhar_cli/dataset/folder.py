@@ -3,17 +3,33 @@
 import json
 import shutil
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 from filelock import FileLock, Timeout
 
 from radhar_cli.config.schema import Config
-from radhar_cli.dataset.files import unfinished_path, write_whole
+from radhar_cli.dataset.files import (
+    refuse_links,
+    refuse_strange_work,
+    unfinished_path,
+    write_whole,
+)
 from radhar_cli.dataset.identity import differences, identity
-from radhar_cli.dataset.layout import CONFIG, DATASET, IDENTITY, PNG, SCENES, WORK, begun
+from radhar_cli.dataset.layout import (
+    CHECKS,
+    CONFIG,
+    DATASET,
+    IDENTITY,
+    MANIFEST,
+    PNG,
+    SCENES,
+    WORK,
+    begun,
+)
 from radhar_cli.errors import FolderError
+from radhar_cli.untrusted import read_json
 
 
 def refuse_file(folder: Path) -> None:
@@ -31,13 +47,16 @@ def locked(folder: Path) -> Iterator[None]:
     """Hold an output folder; a second run on it is refused. A dead run's lock is free at once.
 
     Raises:
-        FolderError: another run holds it, or it cannot be written to.
+        FolderError: another run holds it, it cannot be written to, or its work folder is or holds
+            a link, which might lead elsewhere.
     """
     refuse_file(folder)
+    refuse_links(folder, folder / WORK)
     try:
         (folder / WORK).mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise FolderError(f"{folder}: cannot be made ({error.strerror})") from None
+    refuse_strange_work(folder)
     lock = FileLock(folder / WORK / "lock")
     try:
         with lock.acquire(timeout=0):
@@ -83,30 +102,51 @@ def _name(folder: Path, named: dict[str, Any]) -> None:
 
 def stored_identity(folder: Path) -> dict[str, Any] | None:
     """The identity of what a folder holds, finished or not; None if it is no data set of ours."""
-    if (folder / DATASET).exists():
-        import h5py
+    path = folder / DATASET
+    if path.exists():
+        from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 
         try:
-            with h5py.File(folder / DATASET, "r") as file:
-                stored: dict[str, Any] = json.loads(file.attrs["identity"])
-                return stored
-        except (OSError, KeyError, ValueError) as error:
+            with UntrustedFile(path) as file:
+                return checked_identity(file.json("identity"), path)
+        except FolderError as error:
             raise FolderError(
-                f"{folder / DATASET}: is not a data set of radhar's, or is damaged ({error}); "
-                "choose another folder, or --overwrite if radhar built it"
+                f"{error}; this is not a data set of radhar's, or a damaged one; choose another "
+                "folder, or --overwrite if radhar built it"
             ) from None
     path = folder / WORK / IDENTITY
-    if not path.exists():
-        return None
-    identity_there: dict[str, Any] = json.loads(path.read_text())
+    return checked_identity(read_json(path), path) if path.exists() else None
+
+
+def checked_identity(found: Any, path: Path) -> dict[str, Any]:
+    """An identity that was read from a file.
+
+    Raises:
+        FolderError: it is none.
+    """
+    right = isinstance(found, dict) and all(
+        isinstance(found.get(part), dict) for part in ("keys", "versions")
+    )
+    if not right:
+        raise FolderError(f"{path}: is damaged: its identity should have keys and versions")
+    identity_there: dict[str, Any] = found
     return identity_there
 
 
 def tidy(folder: Path) -> None:
     """Remove what only an unfinished build needs."""
-    for name in ("shards", "settled", "unfinished"):
-        shutil.rmtree(folder / WORK / name, ignore_errors=True)
+    _remove_batches(folder)
+    shutil.rmtree(folder / WORK / "unfinished", ignore_errors=True)
     (folder / WORK / IDENTITY).unlink(missing_ok=True)
+
+
+def _remove_batches(folder: Path) -> None:
+    """Remove shards and outcomes of checks; what else somebody put beside them stays."""
+    for name, pattern in (("shards", "rows-*-*.h5"), (CHECKS, "*.bin")):
+        with suppress(OSError):
+            for path in (folder / WORK / name).glob(pattern):
+                path.unlink(missing_ok=True)
+            (folder / WORK / name).rmdir()
 
 
 def _ours(folder: Path) -> bool:
@@ -132,10 +172,9 @@ def _clear(folder: Path, new: dict[str, Any]) -> None:
         put_aside = unfinished_path(folder)
         put_aside.parent.mkdir(parents=True, exist_ok=True)
         (folder / PNG).rename(put_aside)
-    for name in (SCENES, CONFIG):
-        (folder / name).unlink(missing_ok=True)
-    for name in ("shards", "settled"):
-        shutil.rmtree(folder / WORK / name, ignore_errors=True)
+    for path in (folder / SCENES, folder / CONFIG, folder / WORK / MANIFEST):
+        path.unlink(missing_ok=True)
+    _remove_batches(folder)
     _name(folder, new)
     (folder / DATASET).unlink(missing_ok=True)
 

@@ -1,5 +1,6 @@
 """What a data set's bytes depend on: the config's keys and the versions of the libraries."""
 
+import hashlib
 import json
 from typing import Any
 
@@ -32,6 +33,12 @@ def identity(config: Config) -> dict[str, Any]:
         "hash": config_hash(config),
         "config": resolved(config),
     }
+
+
+def identity_hash(named: dict[str, Any]) -> str:
+    """SHA-256 of the keys and versions of an identity, in hex: what shards are marked with."""
+    text = json.dumps([named["keys"], named["versions"]], sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def differences(old: dict[str, Any], new: dict[str, Any]) -> list[str]:

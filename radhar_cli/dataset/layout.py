@@ -12,13 +12,21 @@ SCENES = "scenes.csv"
 PNG = "png"
 WORK = ".radhar"
 IDENTITY = "identity.json"
+MANIFEST = "manifest.json"
+CHECKS = "checks"
 SPLITS = ("train", "validation", "test")
+# Beside the maps, for each of them: type and shape of a sample's part.
+COLUMNS: dict[str, tuple[str, tuple[int, ...]]] = {
+    "entropy": ("f4", ()),
+    "sha256": ("S64", ()),
+    "extent": ("f8", (4,)),
+}
 SPLIT_FOLDERS = ("train", "val", "test")
 
 
 def begun(folder: Path) -> bool:
     """Whether a build in this folder was begun and not finished."""
-    return any((folder / WORK / name).exists() for name in (IDENTITY, "shards", "settled"))
+    return any((folder / WORK / name).exists() for name in (IDENTITY, "shards", CHECKS))
 
 
 @dataclass(frozen=True)

@@ -1,53 +1,105 @@
 """Open a finished data set: lazy arrays and what is known of them."""
 
-import json
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-import h5py
+import numpy as np
 
-from radhar_cli.activity import ACTIVITIES
-from radhar_cli.dataset.layout import DATASET, SPLITS, begun
-from radhar_cli.errors import FolderError, did_you_mean
+from radhar_cli.arrays import Float, Levels
+from radhar_cli.config.reading import validated
+from radhar_cli.config.schema import Config
+from radhar_cli.dataset import scene_fields
+from radhar_cli.dataset.layout import COLUMNS, DATASET, SPLITS, Rows, begun
+from radhar_cli.dataset.untrusted_hdf5 import Column, UntrustedFile
+from radhar_cli.errors import ConfigError, FolderError, did_you_mean
+
+MOST_ENTROPY_BITS = 64.0
 
 
 class Dataset:
-    """A data set opened for reading; arrays are read from disk when they are indexed.
+    """A data set opened for reading; it may be anyone's.
+
+    Names, shapes and types of everything in it follow from its config and are checked here.
 
     Attributes:
         path: of dataset.h5.
+        config: its own.
         maps: {map name: uint8 [N, H, W]}.
-        label, split, sample_key: [N], [N], [N, 2].
+        label, split: uint8 [N]; 0 to 11, 0 to 2.
+        sample_key: int64 [N, 2], (class, index).
         scene: {field: [N]}, SI units.
-        entropy: {map name: [N]}, bits.
-        config: the resolved config as plain values.
-        warnings: what was said when it was built.
-        class_slugs: slug of every label, 0 to 11.
+        fields: what the fields of `scene` are.
+        sha256: {map name: [N]}.
+        class_slugs: slug of every label.
+
+    Raises:
+        FolderError: it is no data set of ours, or a damaged one; the message names file and field.
     """
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        try:
-            self.file = h5py.File(path, "r")
-        except OSError as error:
-            raise FolderError(f"{path}: is no HDF5 file, or a truncated one ({error})") from None
-        try:
-            self.maps: dict[str, h5py.Dataset] = dict(self.file["maps"].items())
-            self.label, self.split = self.file["label"], self.file["split"]
-            self.sample_key = self.file["sample_key"]
-            self.scene: dict[str, h5py.Dataset] = dict(self.file["scene"].items())
-            self.entropy: dict[str, h5py.Dataset] = dict(self.file["entropy"].items())
-            self.config: dict[str, Any] = json.loads(self.file.attrs["config"])
-            self.warnings: list[dict[str, Any]] = json.loads(self.file.attrs["warnings"])
-        except (KeyError, ValueError, AttributeError, OSError):
-            self.file.close()
-            raise FolderError(f"{path}: is an HDF5 file, but no data set of radhar's") from None
-        self.class_slugs = [activity.slug for activity in ACTIVITIES]
+        self.file = UntrustedFile(path)
         self.splits = SPLITS
+        try:
+            self.config = stored_config(self.file.json("config"), str(path))
+            self._check()
+        except BaseException:
+            self.file.close()
+            raise
+
+    def _check(self) -> None:
+        config, file, count = self.config, self.file, len(Rows.of(self.config))
+        self.fields = scene_fields.fields(config)
+        self.class_slugs = [activity.slug for activity in config.classes]
+        names: tuple[str, ...] = config.maps
+        images = (count, *config.image.size_px)
+        self.maps = {name: file.images(f"maps/{name}", images) for name in names}
+        self.sample_key = file.column("sample_key", np.int64, (count, 2))
+        self.scene = {
+            field.name: file.column(f"scene/{field.name}", np.float64, (count,))
+            for field in self.fields
+        }
+        if config.split.subjects is not None:
+            self.scene["subject"] = file.column("scene/subject", np.int64, (count,))
+        self._entropy, self.sha256, self._extent = (
+            {name: file.column(f"{kind}/{name}", dtype, (count, *shape)) for name in names}
+            for kind, (dtype, shape) in COLUMNS.items()
+        )
+        self.label = _small(file.column("label", np.uint8, (count,)), len(config.classes))
+        self.split = _small(file.column("split", np.uint8, (count,)), len(SPLITS))
 
     def __len__(self) -> int:
         return len(self.label)
+
+    @property
+    def warnings(self) -> list[dict[str, Any]]:
+        """What was said when it was built: {kind, recordings, message}."""
+        said = self.file.json("warnings")
+        right = isinstance(said, list) and all(
+            isinstance(one, dict) and isinstance(one.get("message"), str) for one in said
+        )
+        if not right:
+            raise FolderError(f"{self.path}: attribute warnings: should be a list of messages")
+        found: list[dict[str, Any]] = said
+        return found
+
+    def entropy(self, name: str) -> Float:
+        """Entropies [N] of a map's power, bits."""
+        column = self._entropy[name]
+        bits: Float = column[:].astype(float)
+        if not ((bits >= 0) & (bits <= MOST_ENTROPY_BITS)).all():
+            raise FolderError(f"{column.where}: should be 0 to {MOST_ENTROPY_BITS:g} bits")
+        return bits
+
+    def extent(self, name: str) -> tuple[float, float, float, float] | None:
+        """Edges (time left, right in s; bottom, top in Hz or m) that all images of a map share."""
+        column = self._extent[name]
+        edges = column[:]
+        left, right, bottom, top = map(float, edges[0])
+        if not (np.isfinite(edges).all() and left < right and bottom < top):
+            raise FolderError(f"{column.where}: should be left < right, bottom < top")
+        return (left, right, bottom, top) if (edges == edges[0]).all() else None
 
     def map_name(self, name: str | None) -> str:
         """The map of that name, or the first.
@@ -56,8 +108,7 @@ class Dataset:
             FolderError: the data set does not have it.
         """
         if name is None:
-            stored: str = self.config["maps"][0]
-            return stored
+            return self.config.maps[0]
         if name not in self.maps:
             hint = did_you_mean(name, self.maps, f"it has {', '.join(self.maps)}")
             raise FolderError(f"{self.path}: has no map {name!r}; {hint}")
@@ -77,6 +128,25 @@ class Dataset:
         traceback: TracebackType | None,
     ) -> None:
         self.close()
+
+
+def _small(column: Column, below: int) -> Levels:
+    values: Levels = column[:]
+    if values.max(initial=0) >= below:
+        raise FolderError(f"{column.where}: holds {values.max()}; should be 0 to {below - 1}")
+    return values
+
+
+def stored_config(document: Any, where: str) -> Config:
+    """The config that is stored with a data set, from its plain values.
+
+    Raises:
+        FolderError: it is no config.
+    """
+    try:
+        return validated(Config, document, f"{where}: the stored config", {})
+    except ConfigError as error:
+        raise FolderError(str(error).splitlines()[0]) from None
 
 
 def open_dataset(path: str | Path) -> Dataset:

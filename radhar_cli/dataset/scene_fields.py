@@ -1,6 +1,5 @@
 """The drawn numbers of a scene as columns: SI for dataset.h5, config units for scenes.csv."""
 
-from collections.abc import Iterable
 from math import nan, pi
 from typing import NamedTuple
 
@@ -36,8 +35,15 @@ class Field(NamedTuple):
         return self.key
 
 
+# The one number of a scene that is measured, not drawn.
+ERROR = Field("error_db", "error_db", "dB", 1.0)
+
+
 def fields(config: Config) -> tuple[Field, ...]:
-    """Every number that any scene of this config depends on, in the order of the schema."""
+    """Every number that any scene of this config depends on, in the order of the schema.
+
+    Last comes the measured error of the direct engine, where it is at work.
+    """
     found = [
         key
         for key, _ in numbers(config)
@@ -45,13 +51,14 @@ def fields(config: Config) -> tuple[Field, ...]:
     ]
     if "subject.weight_kg" not in found:
         found.insert(found.index("subject.height_m") + 1, "subject.weight_kg")
-    return tuple(_field(key) for key in found)
+    measured = (ERROR,) if config.engine.kind == "direct" and set(config.maps) != {"rtm"} else ()
+    return (*(_field(key) for key in found), *measured)
 
 
-def values(scenes: Iterable[Scene], columns: tuple[Field, ...]) -> Float:
-    """Table [scenes, fields] in the units of the config keys, NaN where a number does not apply."""
-    rows = [scene_numbers(scene) for scene in scenes]
-    return np.array([[row.get(f.key, nan) for f in columns] for row in rows])
+def values(scene: Scene, columns: tuple[Field, ...], error_db: float = nan) -> Float:
+    """Numbers [fields] in the units of the config keys, NaN where one does not apply."""
+    known = scene_numbers(scene) | {ERROR.key: error_db}
+    return np.array([known.get(field.key, nan) for field in columns])
 
 
 def _field(key: str) -> Field:

@@ -1,29 +1,73 @@
-"""Shards: the finished rows of one batch in a small HDF5 file, compressed as in dataset.h5."""
+"""Shards: the finished rows of one batch in a small HDF5 file, compressed as in dataset.h5.
 
+A shard says in its first 512 bytes (the user block of HDF5) which data set and rows it holds, with
+a checksum of that and of all that follows. Nothing of a shard is used before these are compared.
+"""
+
+import hashlib
 import io
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import h5py
 import numpy as np
 
-from radhar_cli.arrays import Float
+from radhar_cli.arrays import Float, Levels
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.layout import WORK
-from radhar_cli.processing.power_map import MapImage
+from radhar_cli.dataset.sample import Sample
+from radhar_cli.errors import UnfinishedError
 
-_NAME = re.compile(r"^rows-(\d+)-(\d+)\.h5$")
+USER_BLOCK = 512
+RUNS_NAMED = 10
+_NAME = re.compile(r"rows-(\d{9,})-(\d{9,})\.h5")
+_HEADER = re.compile(rb"radhar shard of (\w{64})\nrows (\d+) (\d+)\nsha256 (\w{64})\n\0*")
+
+
+class ShardError(Exception):
+    """A shard that cannot be used; says why."""
+
+
+class ForeignShardError(ShardError):
+    """A sound shard of another data set."""
 
 
 class Shard(NamedTuple):
-    """A finished shard: rows start .. stop - 1."""
+    """The shard of rows start .. stop - 1."""
 
     start: int
     stop: int
-    path: Path
+    folder: Path
+
+    @property
+    def path(self) -> Path:
+        """Of its file."""
+        return shard_folder(self.folder) / f"rows-{self.start:09d}-{self.stop:09d}.h5"
+
+    def read(self, identity_hash: str) -> tuple[bytes, str]:
+        """Read the shard; return its bytes, an HDF5 file, and their checksum.
+
+        Raises:
+            ShardError: it is gone, damaged, or holds other rows.
+            ForeignShardError: it belongs to another data set.
+        """
+        if not self.path.is_file():
+            raise ShardError("is not there")
+        data = self.path.read_bytes()
+        header = _HEADER.fullmatch(data[:USER_BLOCK])
+        if header is None:
+            raise ShardError("is no shard, or damaged")
+        whose, start, stop, checksum = (part.decode() for part in header.groups())
+        if checksum != _checksum(whose, int(start), int(stop), memoryview(data)[USER_BLOCK:]):
+            raise ShardError("does not match its checksum")
+        if whose != identity_hash:
+            raise ForeignShardError("belongs to another data set")
+        if (int(start), int(stop)) != (self.start, self.stop):
+            raise ShardError(f"holds rows {start} to {int(stop) - 1}")
+        return data, checksum
 
 
 def shard_folder(folder: Path) -> Path:
@@ -46,13 +90,27 @@ def image_dataset(group: h5py.Group, name: str, count: int, config: Config) -> h
 
 
 def encode_shard(
-    config: Config, samples: Sequence[Mapping[str, MapImage]], scene_values: Float
+    config: Config,
+    identity_hash: str,
+    start: int,
+    samples: Sequence[Sample],
+    scene_values: Float,
+    flags: Levels,
 ) -> bytes:
-    """The bytes of a shard; made in memory so that a full disk is one failed write."""
+    """The bytes of the shard of the rows from `start` on; a full disk is then one failed write.
+
+    Args:
+        config: the data set's.
+        identity_hash: of it.
+        start: first row.
+        samples: of the rows.
+        scene_values: [rows, fields].
+        flags: what there is to warn of in each row (`Flags`).
+    """
     buffer = io.BytesIO()
-    with h5py.File(buffer, "w", libver="latest") as file:
+    with h5py.File(buffer, "w", libver="latest", userblock_size=USER_BLOCK) as file:
         for name in config.maps:
-            images = [sample[name] for sample in samples]
+            images = [sample.images[name] for sample in samples]
             levels = image_dataset(file.require_group("maps"), name, len(images), config)
             for row, image in enumerate(images):
                 levels[row] = image.levels
@@ -60,43 +118,88 @@ def encode_shard(
             file[f"sha256/{name}"] = np.array([i.sha256 for i in images], dtype="S64")
             file[f"extent/{name}"] = np.array([i.extent for i in images], dtype=float)
         file["scene"] = scene_values
+        file["flags"] = flags
+    stop = start + len(samples)
+    with buffer.getbuffer() as data:
+        checksum = _checksum(identity_hash, start, stop, data[USER_BLOCK:])
+        header = (
+            f"radhar shard of {identity_hash}\nrows {start} {stop}\nsha256 {checksum}\n".encode()
+        )
+        data[: len(header)] = header
     return buffer.getvalue()
+
+
+def _checksum(whose: str, start: int, stop: int, content: memoryview) -> str:
+    digest = hashlib.sha256(f"{whose} {start} {stop}\n".encode())
+    digest.update(content)
+    return digest.hexdigest()
 
 
 def write_shard(folder: Path, start: int, stop: int, data: bytes) -> None:
     """Store the shard of rows start .. stop - 1."""
-    write_whole(folder, shard_folder(folder) / f"rows-{start:09d}-{stop:09d}.h5", data)
+    write_whole(folder, Shard(start, stop, folder).path, data)
 
 
-def finished_shards(folder: Path) -> list[Shard]:
-    """Shards that are there, in row order; of two that overlap, each row counts once."""
-    found = []
+def listed_shards(folder: Path) -> Iterator[Shard]:
+    """Files that have the name of a shard, in row order."""
     place = shard_folder(folder)
     for path in sorted(place.iterdir()) if place.is_dir() else ():
-        match = _NAME.match(path.name)
+        match = _NAME.fullmatch(path.name)
         if match:
-            found.append(Shard(int(match[1]), int(match[2]), path))
-    return found
+            yield Shard(int(match[1]), int(match[2]), folder)
 
 
-def pieces(shards: Sequence[Shard], count: int) -> Iterator[tuple[Shard, int, int]]:
-    """Yield (shard, first row, past-last row) that tile as much of 0 .. count - 1 as there is."""
-    row = 0
+def check_shards(
+    shards: Iterable[Shard], identity_hash: str
+) -> tuple[list[Shard], list[tuple[Shard, ShardError]]]:
+    """Read shards, in row order: (those to go on from, those that cannot be used, and why).
+
+    Of two that share rows, as runs with other batches leave them, the first is gone on from.
+    """
+    sound: list[Shard] = []
+    unusable = []
+    for shard in shards:
+        try:
+            shard.read(identity_hash)
+        except ShardError as error:
+            unusable.append((shard, error))
+        else:
+            if not sound or shard.start >= sound[-1].stop:
+                sound.append(shard)
+    return sound, unusable
+
+
+def missing_and_repeated(
+    shards: Sequence[Shard], count: int
+) -> tuple[list[tuple[int, int]], list[tuple[int, int]]]:
+    """Runs (first row, past-last row) of 0 .. count - 1 that no shard holds, and that two hold."""
+    missing, repeated, row = [], [], 0
     for shard in sorted(shards):
-        first = max(row, shard.start)
-        stop = min(shard.stop, count)
-        if first < stop:
-            yield shard, first, stop
-            row = stop
-
-
-def missing_runs(shards: Sequence[Shard], count: int) -> list[tuple[int, int]]:
-    """Runs of rows that no shard holds."""
-    gaps, row = [], 0
-    for _, first, stop in pieces(shards, count):
-        if first > row:
-            gaps.append((row, first))
-        row = stop
+        if shard.start > row:
+            missing.append((row, shard.start))
+        elif shard.start < row:
+            repeated.append((shard.start, min(row, shard.stop)))
+        row = max(row, shard.stop)
     if row < count:
-        gaps.append((row, count))
-    return gaps
+        missing.append((row, count))
+    return missing, repeated
+
+
+def require_tiling(folder: Path, shards: Sequence[Shard], count: int) -> None:
+    """Refuse shards that do not hold each of `count` rows once.
+
+    Raises:
+        UnfinishedError: names the rows.
+    """
+    missing, repeated = missing_and_repeated(shards, count)
+    for runs, fault in ((missing, "missing from"), (repeated, "more than once in")):
+        if runs:
+            raise UnfinishedError(
+                f"{folder}: rows {_rows(runs)} ({sum(b - a for a, b in runs)} of {count}) are "
+                f"{fault} the finished shards; the rest is kept, and the same command goes on"
+            )
+
+
+def _rows(runs: Sequence[tuple[int, int]]) -> str:
+    named = [f"{a}-{b - 1}" if b - a > 1 else f"{a}" for a, b in runs[:RUNS_NAMED]]
+    return ", ".join(named) + (", ..." if len(runs) > RUNS_NAMED else "")

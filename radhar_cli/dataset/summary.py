@@ -1,21 +1,45 @@
 """What `radhar inspect` tells, as plain values: of a data set, a half-built folder, a scene."""
 
-import json
 from collections import Counter
 from pathlib import Path
 from typing import Any
 
-import h5py
 import numpy as np
+from pydantic import BaseModel, ValidationError
 
-from radhar_cli.config.reading import config_from_json
+from radhar_cli.config.identity import config_hash
+from radhar_cli.config.schema import MAP_NAMES
 from radhar_cli.dataset.folder import stored_identity
+from radhar_cli.dataset.identity import identity_hash, versions
 from radhar_cli.dataset.layout import DATASET, SPLITS, Rows
-from radhar_cli.dataset.reading import Dataset, open_dataset
-from radhar_cli.dataset.shards import finished_shards, missing_runs
+from radhar_cli.dataset.reading import Dataset, open_dataset, stored_config
+from radhar_cli.dataset.shards import check_shards, listed_shards
+from radhar_cli.dataset.untrusted_hdf5 import Column, UntrustedFile
 from radhar_cli.errors import FolderError
 
 HISTOGRAM_BINS = 12
+LARGEST_VALUE = 1e30
+SCENE_FILE = "scene.h5"
+
+
+class _Activity(BaseModel):
+    label: str
+    slug: str
+
+
+class _Scene(BaseModel):
+    """What scene.h5 says of itself."""
+
+    activity: _Activity
+    seed: int
+    joint: str | None
+    engine: str
+    accuracy: dict[str, Any] | None
+    parameters: dict[str, int | float]
+    derived: dict[str, int | float]
+    warnings: list[str]
+    entropy_bits: dict[str, float]
+    seconds: dict[str, float]
 
 
 def summarise(path: Path) -> dict[str, Any]:
@@ -25,35 +49,28 @@ def summarise(path: Path) -> dict[str, Any]:
         FolderError: nothing of ours, or damaged.
     """
     if path.is_dir() and not (path / DATASET).exists():
-        if (path / "scene.h5").exists():
-            return _scene(path / "scene.h5")
+        if (path / SCENE_FILE).exists():
+            return _scene(path / SCENE_FILE)
         return _half_built(path)
-    if path.is_file() and h5py.is_hdf5(path):
-        try:
-            with h5py.File(path, "r") as file:
-                if "truth" in file and "scene" in file.attrs:
-                    return _scene(path)
-        except OSError:
-            pass
+    if path.is_file():
+        with UntrustedFile(path) as file:
+            if file.has_attribute("scene"):
+                return _scene(path)
     with open_dataset(path) as data:
         return _data_set(data)
 
 
 def _data_set(data: Dataset) -> dict[str, Any]:
-    labels, splits = data.label[:], data.split[:]
+    labels, splits = data.label, data.split
     slugs = [data.class_slugs[label] for label in labels]
     return {
         "kind": "data set",
         "path": str(data.path),
         "samples": len(data),
         "bytes": data.path.stat().st_size,
-        "seed": int(data.file.attrs["seed"]),
-        "config_hash": str(data.file.attrs["config_hash"]),
-        "versions": {
-            key.removesuffix("_version"): str(value)
-            for key, value in data.file.attrs.items()
-            if key.endswith("_version") and key != "schema_version"
-        },
+        "seed": data.config.seed,
+        "config_hash": config_hash(data.config),
+        "versions": {library: data.file.text(f"{library}_version") for library in versions()},
         "maps": {name: list(array.shape[1:]) for name, array in data.maps.items()},
         "classes": {
             slug: {
@@ -64,14 +81,12 @@ def _data_set(data: Dataset) -> dict[str, Any]:
         },
         "entropy_bits": {
             name: {
-                data.class_slugs[label]: _spread(values[:][labels == label])
+                data.class_slugs[label]: _spread(bits[labels == label])
                 for label in sorted(set(labels.tolist()))
             }
-            for name, values in data.entropy.items()
+            for name, bits in ((name, data.entropy(name)) for name in data.maps)
         },
-        "drawn": {
-            name: _histogram(values) for name, values in data.scene.items() if _varies(values)
-        },
+        "drawn": _drawn(data),
         "warnings": data.warnings,
     }
 
@@ -80,45 +95,62 @@ def _spread(values: np.ndarray[Any, Any]) -> dict[str, float]:
     return {"mean": float(values.mean()), "min": float(values.min()), "max": float(values.max())}
 
 
-def _varies(values: h5py.Dataset) -> bool:
-    finite = values[:][np.isfinite(values[:])]
-    return bool(finite.size and finite.min() < finite.max())
+def _drawn(data: Dataset) -> dict[str, Any]:
+    """Histograms of the numbers that differ from sample to sample."""
+    units = {field.name: field.unit for field in data.fields}
+    found = {}
+    for name, column in data.scene.items():
+        values = _known(column)
+        if values.size and values.min() < values.max():
+            counts, edges = np.histogram(values, HISTOGRAM_BINS)
+            found[name] = {
+                "unit": units.get(name, "1"),
+                **_spread(values),
+                "samples": int(values.size),
+                "counts": counts.tolist(),
+                "edges": edges.tolist(),
+            }
+    return found
 
 
-def _histogram(values: h5py.Dataset) -> dict[str, Any]:
-    finite = values[:][np.isfinite(values[:])]
-    counts, edges = np.histogram(finite, HISTOGRAM_BINS)
-    return {
-        "unit": str(values.attrs["unit"]),
-        **_spread(finite),
-        "samples": int(finite.size),
-        "counts": counts.tolist(),
-        "edges": edges.tolist(),
-    }
+def _known(column: Column) -> np.ndarray[Any, Any]:
+    """The numbers of a scene field, without the NaN of samples that it does not apply to."""
+    values: np.ndarray[Any, Any] = column[:]
+    values = values[~np.isnan(values)]
+    if (np.abs(values) > LARGEST_VALUE).any():
+        raise FolderError(f"{column.where}: should be at most {LARGEST_VALUE:g}")
+    return values
 
 
 def _half_built(path: Path) -> dict[str, Any]:
     identity = stored_identity(path)
     if identity is None:
         raise FolderError(f"{path}: holds nothing that radhar wrote")
-    rows = Rows.of(config_from_json(json.dumps(identity["config"]), str(path)))
-    gaps = missing_runs(finished_shards(path), len(rows))
-    missing = sum(stop - start for start, stop in gaps)
+    config = stored_config(identity.get("config"), str(path))
+    rows = Rows.of(config)
+    shards, _ = check_shards(listed_shards(path), identity_hash(identity))
     return {
         "kind": "unfinished data set",
         "path": str(path),
         "samples": len(rows),
-        "finished": len(rows) - missing,
-        "config_hash": identity["hash"],
-        "seed": identity["keys"]["seed"],
+        "finished": sum(shard.stop - shard.start for shard in shards),
+        "config_hash": config_hash(config),
+        "seed": config.seed,
     }
 
 
 def _scene(path: Path) -> dict[str, Any]:
-    try:
-        with h5py.File(path, "r") as file:
-            described: dict[str, Any] = json.loads(file.attrs["scene"])
-            maps = {name: list(array.shape) for name, array in file["maps"].items()}
-    except (OSError, KeyError, ValueError) as error:
-        raise FolderError(f"{path}: is no whole scene of radhar's ({error})") from None
+    with UntrustedFile(path) as file:
+        try:
+            described = _Scene.model_validate(file.json("scene")).model_dump()
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            key = ".".join(map(str, first["loc"]))
+            raise FolderError(
+                f"{path}: is no whole scene of radhar's: {key}: {first['msg']}"
+            ) from None
+        maps = {name: file.shape(f"maps/{name}") for name in described["entropy_bits"]}
+    for name, shape in maps.items():
+        if name not in MAP_NAMES or len(shape) != 2:
+            raise FolderError(f"{path}: /maps/{name}: should be a map [frequency or range, time]")
     return {"kind": "scene", "path": str(path), "maps": maps, **described}

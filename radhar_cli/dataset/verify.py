@@ -3,19 +3,16 @@
 import hashlib
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
-import h5py
 import numpy as np
-from PIL import Image
 
 from radhar_cli.config.identity import config_hash
-from radhar_cli.config.reading import config_from_json
-from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.identity import versions
+from radhar_cli.dataset.image_file import read_rgb
 from radhar_cli.dataset.layout import DATASET, PNG, Rows, png_path
-from radhar_cli.dataset.png import colour_table, stored_levels
+from radhar_cli.dataset.png import colour_table
+from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.split import split_rows
 from radhar_cli.errors import FolderError
@@ -59,110 +56,102 @@ def verify(folder: Path, samples: int) -> Report:
     path = folder / DATASET if folder.is_dir() else folder
     if not path.exists():
         raise FolderError(f"{path}: no such file; `radhar generate` writes it when it is complete")
-    try:
-        with h5py.File(path, "r") as file:
-            config = config_from_json(str(file.attrs["config"]), str(path))
-            report = Report(len(file["label"]))
-            _versions(file, report)
-            if _structure(file, config, report):
-                _checksums(file, config, report)
-                _resynthesise(file, config, samples, report)
-                if (path.parent / PNG).is_dir():
-                    _pngs(file, config, path.parent, report)
-            return report
-    except (OSError, KeyError, ValueError) as error:
-        raise FolderError(f"{path}: is not a whole data set of ours ({error})") from None
+    with Dataset(path) as data:
+        report = Report(len(data))
+        _versions(data, report)
+        if _structure(data, report):
+            _checksums(data, report)
+            _resynthesise(data, samples, report)
+            if (path.parent / PNG).is_dir():
+                _pngs(data, path.parent, report)
+        return report
 
 
-def _versions(file: h5py.File, report: Report) -> None:
+def _versions(data: Dataset, report: Report) -> None:
     for library, here in versions().items():
-        there = str(file.attrs[f"{library}_version"])
+        there = data.file.text(f"{library}_version")
         if there != here:
             report.other_versions.append(f"{library} {there} there, {here} here")
 
 
-def _structure(file: h5py.File, config: Config, report: Report) -> bool:
+def _structure(data: Dataset, report: Report) -> bool:
+    config = data.config
     rows = Rows.of(config)
-    expected: dict[str, Any] = {
-        "label": np.repeat([a.index for a in rows.activities], rows.per_class),
-        "split": split_rows(config),
-    }
-    expected["sample_key"] = np.stack(
-        [expected["label"], np.tile(np.arange(rows.per_class), len(rows.activities))], axis=1
-    )
-    for name, right in expected.items():
-        found = file[name][:]
-        if found.shape != right.shape:
-            report.problems.append(f"/{name}: {found.shape} instead of {right.shape}")
-        elif (found != right).any():
+    label = np.repeat([a.index for a in rows.activities], rows.per_class)
+    index = np.tile(np.arange(rows.per_class), len(rows.activities))
+    for name, found, right in (
+        ("label", data.label, label),
+        ("split", data.split, split_rows(config)),
+        ("sample_key", data.sample_key[:], np.stack([label, index], axis=1)),
+    ):
+        if (found != right).any():
             report.problems.append(f"/{name}: {np.count_nonzero(found != right)} wrong values")
-    if config_hash(config) != file.attrs["config_hash"]:
+    if config_hash(config) != data.file.text("config_hash"):
         report.problems.append("the stored config does not have the stored hash")
-    if config.seed != file.attrs["seed"]:
+    if config.seed != data.file.whole_number("seed"):
         report.problems.append("the stored seed is not the config's")
-    for name in config.maps:
-        shape = (len(rows), *config.image.size_px)
-        if file[f"maps/{name}"].shape != shape or file[f"maps/{name}"].dtype != np.uint8:
-            report.problems.append(f"/maps/{name}: should be uint8 {shape}")
     return not report.problems
 
 
-def _checksums(file: h5py.File, config: Config, report: Report) -> None:
-    for name in config.maps:
-        stored = file[f"sha256/{name}"][:]
-        for row, levels in enumerate(file[f"maps/{name}"]):
+def _checksums(data: Dataset, report: Report) -> None:
+    for name, images in data.maps.items():
+        stored = data.sha256[name][:]
+        for row in range(len(data)):
+            levels = images[row]
             if hashlib.sha256(levels.tobytes()).hexdigest().encode() != stored[row]:
                 report.problems.append(f"/maps/{name}[{row}]: does not match its checksum")
 
 
-def _resynthesise(file: h5py.File, config: Config, samples: int, report: Report) -> None:
+def _resynthesise(data: Dataset, samples: int, report: Report) -> None:
+    config = data.config
     rows, plan = Rows.of(config), plan_images(config)
-    columns = scene_fields.fields(config)
+    columns = data.fields
+    scene_values = {field.name: data.scene[field.name][:] for field in columns}
+    entropies = {name: data.entropy(name) for name in data.maps}
     allowed = 1 if report.other_versions else 0
     count = min(samples, len(rows))
     for sample in range(count):
         row = (2 * sample + 1) * len(rows) // (2 * count)
         activity, index = rows[row]
         scene, _ = draw_valid_scene(config, activity, index)
-        for column, value in zip(columns, scene_fields.values([scene], columns)[0], strict=True):
-            there = file[f"scene/{column.name}"][row]
+        drawn = zip(columns, scene_fields.values(scene, columns), strict=True)
+        for column, value in drawn:
+            if column is scene_fields.ERROR:
+                continue
+            there = scene_values[column.name][row]
             if not np.isclose(there, value * column.factor, rtol=1e-12, atol=0, equal_nan=True):
                 report.problems.append(
                     f"/scene/{column.name}[{row}]: {there} instead of {value * column.factor}"
                 )
-        for name, image in synthesise(scene, plan).items():
-            there = file[f"maps/{name}"][row].astype(int)
+        for name, image in synthesise(scene, plan).images.items():
+            there = data.maps[name][row].astype(int)
             worst = int(np.abs(there - image.levels).max())
             report.worst_level = max(report.worst_level, worst)
             if worst > allowed:
                 report.problems.append(
                     f"/maps/{name}[{row}] ({scene.name}): differs by up to {worst} grey levels"
                 )
-            entropy = float(file[f"entropy/{name}"][row])
+            entropy = float(entropies[name][row])
             if abs(entropy - image.entropy) > 1e-3 * max(1.0, image.entropy):
                 report.problems.append(f"/entropy/{name}[{row}]: {entropy}, not {image.entropy}")
         report.resynthesised += 1
 
 
-def _pngs(file: h5py.File, config: Config, folder: Path, report: Report) -> None:
+def _pngs(data: Dataset, folder: Path, report: Report) -> None:
+    config = data.config
     rows, split = Rows.of(config), split_rows(config)
     table = colour_table(config.image.colour_map)
     for name in config.maps:
         if not (folder / PNG / name).is_dir():
             continue
-        for row, levels in enumerate(file[f"maps/{name}"]):
+        for row in range(len(data)):
+            levels = data.maps[name][row]
             path = png_path(name, split[row], *rows[row])
             try:
-                with Image.open(folder / path) as picture:
-                    there = stored_levels(picture)
-                    shown = np.asarray(picture.convert("RGB"))
-            except OSError as error:
+                same = np.array_equal(read_rgb(folder / path), table[levels])
+            except FolderError as error:
                 report.problems.append(f"{path}: cannot be read ({error})")
                 continue
             report.pngs += 1
-            if (
-                there is None
-                or not np.array_equal(there, levels)
-                or not np.array_equal(shown, table[levels])
-            ):
+            if not same:
                 report.problems.append(f"{path}: does not show /maps/{name}[{row}]")

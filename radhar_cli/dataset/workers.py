@@ -57,12 +57,12 @@ def _import_physics() -> int:
 
 @contextmanager
 def _interrupts_blocked() -> Iterator[None]:
-    """Workers started meanwhile inherit the blocked signal: Ctrl-C is the master's alone."""
+    """Workers started meanwhile inherit the blocked signals: to stop is the master's alone."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
     _start_trackers()
-    old = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    old = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
     try:
         yield
     finally:
@@ -72,7 +72,7 @@ def _interrupts_blocked() -> Iterator[None]:
 def _start_trackers() -> None:
     """Start the processes that tidy up after a killed pool: first, and quiet about doing so.
 
-    Started later, they would unblock the signal again before the workers are there.
+    Started later, they would unblock the signals again before the workers are there.
     """
     from multiprocessing import resource_tracker
 

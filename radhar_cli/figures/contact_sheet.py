@@ -1,12 +1,16 @@
 """A contact sheet: some samples of every class of a data set."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 
+from radhar_cli.arrays import Levels
+from radhar_cli.config.schema import Config
 from radhar_cli.figures.page import page
+
+MOST_SIDE = 1024  # a panel shows far fewer pixels
 
 
 class Images(Protocol):
@@ -19,7 +23,8 @@ class Images(Protocol):
     @property
     def class_slugs(self) -> list[str]: ...
     @property
-    def config(self) -> dict[str, Any]: ...
+    def config(self) -> Config: ...
+    def extent(self, name: str) -> tuple[float, float, float, float] | None: ...
 
 
 def draw_contact_sheet(data: Images, name: str, per_class: int, path: Path) -> None:
@@ -29,12 +34,8 @@ def draw_contact_sheet(data: Images, name: str, per_class: int, path: Path) -> N
     columns = min(per_class, int(np.bincount(labels).max()))
     figure = page(1.5 * columns + 1.6, 1.4 * len(present) + 0.7)
     panels = figure.subplots(len(present), columns, squeeze=False)
-    array = data.maps[name]
-    attributes = array.attrs
-    extent = [
-        float(attributes[key]) for key in ("column_left", "column_right", "row_bottom", "row_top")
-    ]
-    known = bool(np.isfinite(extent).all())
+    image, images, extent = data.config.image, data.maps[name], data.extent(name)
+    every = tuple(slice(None, None, -(-side // MOST_SIDE)) for side in image.size_px)
     for row, label in zip(panels, present, strict=True):
         chosen = np.flatnonzero(labels == label)[:columns]
         for panel in row:
@@ -42,20 +43,36 @@ def draw_contact_sheet(data: Images, name: str, per_class: int, path: Path) -> N
         for panel, sample in zip(row, chosen, strict=False):
             panel.set_axis_on()
             panel.imshow(
-                array[int(sample)],
-                extent=extent if known else None,
+                images[int(sample)][every],
+                extent=extent,
                 aspect="auto",
-                cmap=data.config["image"]["colour_map"],
+                cmap=image.colour_map,
                 vmin=0,
                 vmax=255,
             )
             panel.tick_params(labelsize=5, length=2)
             panel.label_outer()
         row[0].set_ylabel(data.class_slugs[label].replace("_", "\n"), fontsize=7)
-    unit = f"{attributes['row_quantity']} ({attributes['row_unit']})"
+    unit = "range (m)" if name == "rtm" else "Doppler frequency (Hz)"
     figure.supxlabel("time (s)", fontsize=8)
     figure.supylabel(unit, fontsize=8)
     figure.suptitle(
-        f"{name}: grey level, {attributes['dynamic_range_db']:g} dB from dark to bright", fontsize=9
+        f"{name}: grey level, {image.dynamic_range_db:g} dB from dark to bright", fontsize=9
     )
+    figure.savefig(path, dpi=110)
+
+
+def draw_image_sheet(classes: Mapping[str, Sequence[Levels]], title: str, path: Path) -> None:
+    """Write a PNG with a row of RGB images [H, W, 3], of any sizes, for every class."""
+    columns = max(map(len, classes.values()))
+    figure = page(1.5 * columns + 1.6, 1.5 * len(classes) + 0.5)
+    panels = figure.subplots(len(classes), columns, squeeze=False)
+    for row, (name, images) in zip(panels, classes.items(), strict=True):
+        for panel in row[len(images) :]:
+            panel.set_axis_off()
+        for panel, image in zip(row, images, strict=False):
+            panel.imshow(image)
+            panel.set(xticks=[], yticks=[])
+        row[0].set_ylabel(name.replace("_", "\n"), fontsize=7, parse_math=False)
+    figure.suptitle(title, fontsize=9, parse_math=False)
     figure.savefig(path, dpi=110)

@@ -1,6 +1,6 @@
-"""maps.png: the nine maps of one scene on one page."""
+"""maps.png: the maps of one scene, all nine or some, on one page."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from functools import partial
 from pathlib import Path
 
@@ -25,11 +25,7 @@ TITLES: Mapping[str, str] = {
     "fsst_compensated": "FSST, compensated",
     "fsst_compensated_denoised": "FSST, compensated, denoised",
 }
-# A column for each signal, a row for each transform; the range-time map has the left side.
-PLACES = (
-    ("stft", "stft_denoised", "stft_compensated", "stft_compensated_denoised"),
-    ("fsst", "fsst_denoised", "fsst_compensated", "fsst_compensated_denoised"),
-)
+ONE_ROW = 4
 
 
 def draw_map(axes: Axes, name: str, simulation: Simulation, overlay: bool) -> AxesImage:
@@ -98,19 +94,34 @@ def _draw_truth(axes: Axes, map_name: str, simulation: Simulation, unit: float) 
         )
 
 
+def places(names: Collection[str]) -> dict[str, tuple[slice, int]]:
+    """Rows and column of every map on a page that leaves at most one cell empty.
+
+    Up to four stand in one row. In two rows the range-time map has the left side, and the others
+    follow row by row: of all nine, the STFTs above and the FSSTs below, a column for each signal.
+    """
+    rows = 1 if len(names) <= ONE_ROW else 2
+    tall = [name for name in names if name == "rtm"]
+    others = [name for name in TITLES if name in names and name not in tall]
+    columns = max(1, -(-len(others) // rows))
+    found = {name: (slice(0, rows), 0) for name in tall}
+    for number, name in enumerate(others):
+        row, column = divmod(number, columns)
+        found[name] = (slice(row, row + 1), len(tall) + column)
+    return found
+
+
 def draw_maps(simulation: Simulation, path: Path, overlay: bool) -> None:
     """Write maps.png: the maps that were computed, one colour bar in dB."""
-    figure = page(19, 8.2)
-    grid = figure.add_gridspec(2, 5)
+    layout = places(simulation.maps)
+    rows = max((where.stop for where, _ in layout.values()), default=1)
+    columns = 1 + max((column for _, column in layout.values()), default=0)
+    figure = page(max(11.0, 3.6 * columns + 1), 4.1 * rows)
+    grid = figure.add_gridspec(rows, columns)
     drawn, panels = None, []
-    if "rtm" in simulation.maps:
-        panels.append(figure.add_subplot(grid[:, 0]))
-        drawn = draw_map(panels[-1], "rtm", simulation, overlay)
-    for row, names in enumerate(PLACES):
-        for column, name in enumerate(names):
-            if name in simulation.maps:
-                panels.append(figure.add_subplot(grid[row, column + 1]))
-                drawn = draw_map(panels[-1], name, simulation, overlay)
+    for name, where in layout.items():
+        panels.append(figure.add_subplot(grid[where]))
+        drawn = draw_map(panels[-1], name, simulation, overlay)
     if drawn is not None:
         bar = figure.colorbar(drawn, ax=panels, shrink=0.8, pad=0.01)
         bar.set_label("power (dB below the largest of each map)", fontsize=9)

@@ -2,8 +2,11 @@
 
 import io
 
+from matplotlib import rcParams
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+
+rcParams["text.parse_math"] = False  # a class may be called $a$
 
 
 def page(width: float, height: float) -> Figure:

@@ -106,7 +106,7 @@ class _Stage:
             linewidths=0.4,
         )
         bar = figure.colorbar(self.joints, cax=figure.add_axes((0.575, 0.25, 0.01, 0.5)))
-        bar.set_label("RCS (m$^2$)", fontsize=8)
+        bar.set_label("RCS (m²)", fontsize=8)
         bar.ax.tick_params(labelsize=7)
         self.clock = self.axes.text2D(0.5, 0.97, "", transform=self.axes.transAxes, ha="center")
 

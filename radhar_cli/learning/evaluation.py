@@ -2,7 +2,7 @@
 
 import statistics
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,11 +14,13 @@ from radhar_cli.arrays import Float, Index
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.batches import Reader, pieces
+from radhar_cli.learning.images.classes import known_to
 from radhar_cli.learning.images.image_set import ImageSet, labels_for
 from radhar_cli.learning.images.opening import is_h5, open_images
 from radhar_cli.learning.images.scan import content_hash, scan
 from radhar_cli.learning.models.build import features_and_logits
-from radhar_cli.learning.run_folder import About, load_best
+from radhar_cli.learning.run_folder import About, RunError, load_best
+from radhar_cli.learning.settings import TrainConfig
 
 WARM_UP, REPEATS, BATCH_REPEATS = 3, 15, 5
 
@@ -48,26 +50,36 @@ class Predictions:
         return winners
 
 
-def open_for(about: About, path: Path, map_name: str | None, labelled: bool = True) -> ImageSet:
+def open_for(
+    about: About,
+    path: Path,
+    map_name: str | None,
+    labelled: bool = True,
+    resize: bool = False,
+    names: Mapping[str, str | None] | None = None,
+) -> ImageSet:
     """Open a data set for a trained model.
 
     The map is the one it was trained on if none is named. Images that come without a split are
     given the run's own where they are those that the run has cut.
 
     Args:
-        labelled: the classes should be ones that the model knows.
+        labelled: keep the classes that the model knows, and no other.
+        resize: bring images to the model's size.
+        names: {class there: class here, or None to leave it out}.
 
     Raises:
-        FolderError: other classes or another size than the model's, or a map that must be named.
+        FolderError: no class or another size than the model's, or a map that must be named.
     """
-    images = open_images(path, map_name or _map_there(about, path), about.input)
+    size = about.size if resize else None
+    images = open_images(path, map_name or _map_there(about, path), about.input, size)
     if images.size != about.size:
         raise FolderError(
             f"{path}: images are {images.size[0]} x {images.size[1]} px; the model was trained on "
-            f"{about.size[0]} x {about.size[1]} px"
+            f"{about.size[0]} x {about.size[1]} px; --resize brings them to that"
         )
     if labelled:
-        labels_for(images, about.classes)
+        images = known_to(images.renamed(names or {}), about.classes)
         if images.split is None:
             return _cut_as_in_training(about, images)
     return images
@@ -93,7 +105,8 @@ def _map_there(about: About, path: Path) -> str | None:
 
 def _cut_as_in_training(about: About, images: ImageSet) -> ImageSet:
     try:
-        cut = images.cut(float(about.config["validation_share"]), int(about.config["seed"]))
+        settings = TrainConfig.model_validate(about.config)
+        cut = images.cut(settings.validation_share, settings.seed)
     except FolderError:
         return images
     rows = np.concatenate([cut.rows("train"), cut.rows("val")])
@@ -113,11 +126,19 @@ def answers(
     """Yield (probabilities [B, classes], features [B, F]) of rows of a set, batch by batch.
 
     The model is in evaluation mode and on the device; float32, whatever it was trained in.
+
+    Raises:
+        RunError: it answers with what is no number.
     """
     reader = Reader(images, images.label, workers=0, pin=False)
     with torch.inference_mode():
         for levels, _ in reader(pieces(rows, batch)):
             features, logits = features_and_logits(model, about.normalisation(levels.to(device)))
+            if not logits.isfinite().all():
+                raise RunError(
+                    f"the network {about.model} trained on {about.data['path']}: its answers are "
+                    "no finite numbers; its weights or its mean and sd are damaged"
+                )
             yield logits.softmax(1).cpu().numpy(), features.cpu().numpy()
 
 

@@ -13,6 +13,8 @@ from radhar_cli.learning.processes import Group, gradients_stay
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.work import Work
 
+_ADAM = {"step", "exp_avg", "exp_avg_sq"}
+
 
 def optimiser_for(config: TrainConfig, model: nn.Module) -> torch.optim.Optimizer:
     """L2 regularisation of the weights; biases, norms and what timm exempts are left free."""
@@ -31,6 +33,29 @@ def optimiser_for(config: TrainConfig, model: nn.Module) -> torch.optim.Optimize
     if config.optimiser == "adamw":
         return torch.optim.AdamW(groups, lr=config.learning_rate)
     return torch.optim.SGD(groups, lr=config.learning_rate, momentum=0.9)
+
+
+def check_state(optimiser: torch.optim.Optimizer, stored: dict[str, Any]) -> None:
+    """Check the stored state of an optimiser before it is used.
+
+    Raises:
+        ValueError: other settings, or numbers that do not belong to the weights.
+        KeyError, TypeError, AttributeError: it is no state of an optimiser.
+    """
+    settings, here = (
+        [{k: v for k, v in group.items() if k != "lr"} for group in groups]
+        for groups in (stored["param_groups"], optimiser.state_dict()["param_groups"])
+    )
+    if settings != here:
+        raise ValueError("its optimiser has other settings")
+    names = {"momentum_buffer"} if isinstance(optimiser, torch.optim.SGD) else _ADAM
+    parameters = [p for group in optimiser.param_groups for p in group["params"]]
+    for number, parameter in enumerate(parameters):
+        state = stored["state"][number]
+        for name in names:
+            shape = torch.Size() if name == "step" else parameter.shape
+            if state.keys() != names or state[name].shape != shape:
+                raise ValueError(f"the optimiser's {name} of weight {number} does not fit it")
 
 
 def logits_of(network: nn.Module, levels: Tensor, prepare: Normalisation, work: Work) -> Tensor:

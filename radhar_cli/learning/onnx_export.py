@@ -87,6 +87,7 @@ def export(run: Path, path: Path) -> float:
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         unfinished = path.with_name(f".{path.name}.unfinished")
+        unfinished.unlink(missing_ok=True)  # a link would be written through
         unfinished.write_bytes(content)
         unfinished.replace(path)
     except OSError as error:

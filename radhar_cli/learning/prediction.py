@@ -9,8 +9,9 @@ import torch
 from radhar_cli.arrays import Index
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.evaluation import answers, open_for, rows_of
-from radhar_cli.learning.images.folder import is_image, loose_images
+from radhar_cli.learning.images.folder import image_files, is_image, loose_images
 from radhar_cli.learning.images.image_set import ImageSet
+from radhar_cli.learning.images.opening import is_tree
 from radhar_cli.learning.run_files import is_run
 from radhar_cli.learning.run_folder import About, load_best
 
@@ -18,7 +19,12 @@ BATCH = 32
 
 
 def predict(
-    run: Path, paths: Sequence[Path], device: torch.device, map_name: str | None, split: str
+    run: Path,
+    paths: Sequence[Path],
+    device: torch.device,
+    map_name: str | None,
+    split: str,
+    resize: bool = False,
 ) -> Iterator[tuple[str, dict[str, float]]]:
     """Yield (name, probability of every class) for every image.
 
@@ -28,6 +34,7 @@ def predict(
         device: where to compute.
         map_name: of a data set, if not the one of the run.
         split: of a data set.
+        resize: bring images to the model's size.
 
     Raises:
         RunError: no such run.
@@ -36,7 +43,7 @@ def predict(
     about, model = load_best(run)
     model.to(device)
     for path in paths:
-        images, rows, names = _opened(about, path, map_name, split)
+        images, rows, names = _opened(about, path, map_name, split, resize)
         place = 0
         for chances, _ in answers(model, about, images, rows, device, BATCH):
             for row in chances.tolist():
@@ -45,21 +52,22 @@ def predict(
 
 
 def _opened(
-    about: About, path: Path, map_name: str | None, split: str
+    about: About, path: Path, map_name: str | None, split: str, resize: bool
 ) -> tuple[ImageSet, Index, list[str]]:
     """Images, which of them, and what to call them."""
     if not path.exists():
         raise FolderError(f"{path}: no such file or folder")
     if is_run(path):
         raise FolderError(f"{path}: is a training run; images or data are asked for here")
-    files = [path] if path.is_file() else sorted(path.iterdir())
-    files = [file for file in files if is_image(file)]
+    files = [p for p in (path,) if is_image(p)]
+    if is_tree(path):
+        files = image_files(path, path)
     if files:
         return (
-            loose_images(files, about.size, about.input),
+            loose_images(files, about.size, about.input, resize),
             np.arange(len(files)),
             list(map(str, files)),
         )
-    images = open_for(about, path, map_name, labelled=False)
+    images = open_for(about, path, map_name, labelled=False, resize=resize)
     rows, _ = rows_of(images, split)
     return images, rows, [f"{path}: {images.names[row]}" for row in rows]

@@ -12,6 +12,7 @@ from radhar_cli.errors import FolderError
 from radhar_cli.figures.robustness import Point
 from radhar_cli.learning.comparison import compare
 from radhar_cli.learning.evaluation import speed
+from radhar_cli.learning.images.classes import unknown_message
 from radhar_cli.learning.models.build import cost
 from radhar_cli.learning.report_files import Report
 from radhar_cli.learning.run_files import BEST
@@ -55,10 +56,14 @@ def evaluate(
         for run in opened
         for name, path in named_data.items()
     }
+    for message in dict.fromkeys(unknown_message(ask.images, asked.names) for ask in asks.values()):
+        if message:
+            progress.say(f"warning: {message}")
     report = Report(
         {
             "split": asked.split,
             "batch": asked.batch,
+            "resize": asked.resize,
             "device": device.type,
             "machine": platform.machine(),
             "threads": torch.get_num_threads(),

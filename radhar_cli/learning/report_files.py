@@ -10,6 +10,8 @@ from typing import Any
 from jinja2 import Environment
 
 from radhar_cli.dataset.files import write_whole
+from radhar_cli.errors import FolderError
+from radhar_cli.untrusted import read_json
 
 PAGE, NUMBERS = "report.html", "report.json"
 _PAGE = """<!doctype html>
@@ -39,7 +41,9 @@ figure { margin: 1.2rem 0; } img { max-width: 100%; } figcaption { color: #555; 
 {% if r.seen_in_training.images or r.seen_in_training.scenes %}
 <p class="warning">{{ name }} on {{ data }}: {{ r.seen_in_training.images }} of {{ r.images }}
 images, and the person and motion of {{ r.seen_in_training.scenes }}, were trained on.</p>
-{% endif %}{% endfor %}{% endfor %}
+{% endif %}{% if r.left_out %}<p class="warning">{{ name }} on {{ data }}: left out
+{% for class, n in r.left_out.items() %}{{ class }} ({{ n }} images){{ ", " if not loop.last }}
+{% endfor %}</p>{% endif %}{% endfor %}{% endfor %}
 <h2>Networks</h2>
 <table><tr><th>run</th><th>model</th><th>parameters</th><th>multiply-adds (G)</th>
 <th>best epoch</th>
@@ -89,14 +93,14 @@ class Report:
     def write(self, folder: Path) -> None:
         """Write everything into a folder; report.json comes last."""
         files = {name: png for name, _, png in self.figures}
-        files |= {name: text.encode() for name, text in self.tables}
+        files |= {name: text.encode("utf-8", "surrogateescape") for name, text in self.tables}
         for name in _files_of(folder):
             if name not in files:
                 (folder / name).unlink(missing_ok=True)
         for name, content in files.items():
             write_whole(folder, folder / name, content)
         page = report_html(self.numbers, self.figures)
-        write_whole(folder, folder / PAGE, page.encode())
+        write_whole(folder, folder / PAGE, page.encode("utf-8", "backslashreplace"))
         text = json.dumps({**self.numbers, "files": sorted(files)}, indent=2) + "\n"
         write_whole(folder, folder / NUMBERS, text.encode())
 
@@ -104,7 +108,7 @@ class Report:
 def _files_of(folder: Path) -> list[str]:
     """Files of the report that a folder holds, itself aside; those of another kind are not ours."""
     try:
-        found = json.loads((folder / NUMBERS).read_text())["files"]
-        return [name for name in found if Path(name).name == name]
-    except (OSError, ValueError, KeyError, TypeError):
+        found = read_json(folder / NUMBERS)["files"]
+        return [n for n in found if Path(n).name == n and Path(n).suffix in (".png", ".csv")]
+    except (FolderError, KeyError, TypeError):
         return []

@@ -3,27 +3,33 @@
 import csv
 import io
 import json
+import math
 import pickle
 import warnings
+import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal
 
 import torch
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, field_validator
+from pydantic_core import PydanticCustomError
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import save as safetensors_bytes
 from torch import Tensor, nn
+from typing_extensions import TypedDict
 
 from radhar_cli.config.schema import Section
-from radhar_cli.dataset.files import write_whole
+from radhar_cli.dataset.files import read_bytes, write_whole
 from radhar_cli.dataset.layout import WORK
 from radhar_cli.errors import ModelError, RadharError
 from radhar_cli.learning.batches import Normalisation
 from radhar_cli.learning.models.build import build_model
 from radhar_cli.learning.run_files import ABOUT, ALL, BEST, HISTORY, LAST, TRAINED_ON
+from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.tables import csv_text
+from radhar_cli.untrusted import regular_size
 
 # What PyTorch raises on a file that is damaged or asks for more than tensors and plain values.
 _DAMAGED = (
@@ -36,11 +42,39 @@ _DAMAGED = (
     RuntimeError,
     TypeError,
     ValueError,
+    zipfile.BadZipFile,
 )
+
+
+MOST_CLASSES = 10_000
+MOST_HEADER = 2**24  # bytes
+MOST_TABLE = 2**28
+Name = Annotated[str, Field(min_length=1, max_length=255)]
+Side = Annotated[int, Field(ge=1, le=2**14)]
+Spread = Annotated[float, Field(gt=0)]
+_TYPES = {  # as safetensors calls them
+    torch.float64: "F64",
+    torch.float32: "F32",
+    torch.float16: "F16",
+    torch.bfloat16: "BF16",
+    torch.int64: "I64",
+    torch.int32: "I32",
+    torch.uint8: "U8",
+    torch.bool: "BOOL",
+}
 
 
 class RunError(RadharError):
     """A run folder, or a file of it, that cannot be used."""
+
+
+class LearnedFrom(TypedDict):
+    """A data set: path, content hash, images of the training and the validation set."""
+
+    path: str
+    hash: str
+    train: Annotated[int, Field(ge=0)]
+    val: Annotated[int, Field(ge=0)]
 
 
 class About(Section):
@@ -57,17 +91,30 @@ class About(Section):
             of processes.
     """
 
-    model: str
-    classes: tuple[str, ...]
-    size: tuple[int, int]
-    map: str | None
-    input: str
+    model: Name
+    classes: Annotated[tuple[Name, ...], Field(min_length=1, max_length=MOST_CLASSES)]
+    size: tuple[Side, Side]
+    map: Annotated[Name, Field(pattern=r"^[^/\\]*[^/\\.][^/\\]*$")] | None
+    input: Literal["rgb", "gray"]
     mean: tuple[float, float, float]
-    sd: tuple[float, float, float]
+    sd: tuple[Spread, Spread, Spread]
     config: dict[str, Any]
-    data: dict[str, Any]
+    data: LearnedFrom
     versions: dict[str, str]
     work: dict[str, Any] = Field(default_factory=dict)
+
+    @field_validator("classes")
+    @classmethod
+    def _each_once(cls, value: tuple[str, ...]) -> tuple[str, ...]:
+        if len(set(value)) != len(value):
+            raise PydanticCustomError("classes", "should name each class once")
+        return value
+
+    @field_validator("config")
+    @classmethod
+    def _usable(cls, value: dict[str, Any]) -> dict[str, Any]:
+        TrainConfig.model_validate(value)
+        return value
 
     @property
     def normalisation(self) -> Normalisation:
@@ -157,7 +204,7 @@ def read_about(folder: Path) -> About:
     """
     path = folder / ABOUT
     try:
-        return About.model_validate_json(path.read_bytes())
+        return About.model_validate_json(read_bytes(path))
     except FileNotFoundError:
         raise RunError(f"{folder}: holds no training run ({ABOUT} is missing)") from None
     except ValidationError as error:
@@ -179,16 +226,19 @@ def write_trained_on(
 
 def read_trained_on(folder: Path) -> tuple[set[str], set[str]]:
     """Fingerprints of the (images, scenes) that a run learned from; empty if it does not say."""
-    if not (folder / TRAINED_ON).exists():
+    path = folder / TRAINED_ON
+    if not path.exists():
         return set(), set()
     try:
-        with (folder / TRAINED_ON).open(
-            newline="", encoding="utf-8", errors="surrogateescape"
-        ) as file:
-            rows = list(csv.DictReader(file))
-        return {r["pixels"] for r in rows}, {r["scene"] for r in rows if r["scene"]}
+        rows = csv.DictReader(io.StringIO(_text(path), newline=""))
+        pairs = {(row["pixels"], row["scene"]) for row in rows}
+        return {pixels for pixels, _ in pairs}, {scene for _, scene in pairs if scene}
     except (KeyError, ValueError, csv.Error) as error:
-        raise RunError(f"{folder / TRAINED_ON}: is damaged ({error})") from None
+        raise RunError(f"{path}: is damaged ({error})") from None
+
+
+def _text(path: Path) -> str:
+    return read_bytes(path, MOST_TABLE).decode("utf-8", "surrogateescape")
 
 
 def write_history(folder: Path, history: Sequence[Epoch]) -> None:
@@ -205,13 +255,26 @@ def read_history(folder: Path) -> list[Epoch]:
     """
     path = folder / HISTORY
     try:
-        with path.open(newline="") as file:
-            rows = list(csv.DictReader(file))
-        return [Epoch(int(r.pop("epoch")), **{k: float(v) for k, v in r.items()}) for r in rows]
+        rows = csv.DictReader(io.StringIO(_text(path), newline=""))
+        return checked_history(
+            [Epoch(int(r.pop("epoch")), **{k: float(v) for k, v in r.items()}) for r in rows]
+        )
     except FileNotFoundError:
         raise RunError(f"{folder}: holds no finished epoch ({HISTORY} is missing)") from None
     except (ValueError, TypeError, KeyError, csv.Error) as error:
         raise RunError(f"{path}: is damaged ({error})") from None
+
+
+def checked_history(history: list[Epoch]) -> list[Epoch]:
+    """The same epochs.
+
+    Raises:
+        ValueError: they are not numbered 1, 2, 3, or hold what is no number.
+    """
+    for number, row in enumerate(history, start=1):
+        if row.epoch != number or not all(map(math.isfinite, vars(row).values())):
+            raise ValueError(f"row {number}: should be epoch {number}, in finite numbers")
+    return history
 
 
 def write_best(folder: Path, about: About, epoch: Epoch, weights: Mapping[str, Tensor]) -> None:
@@ -225,7 +288,7 @@ def load_best(folder: Path) -> tuple[About, nn.Module]:
     """The best epoch's model, in evaluation mode on the CPU.
 
     Args:
-        folder: the run's, or a .safetensors file that radhar wrote.
+        folder: the run's, or a .safetensors file, whoever wrote it.
 
     Raises:
         RunError: no such file, or a damaged or foreign one.
@@ -239,15 +302,37 @@ def load_best(folder: Path) -> tuple[About, nn.Module]:
         )
         raise RunError(f"{folder}: holds no {BEST}; {hint}")
     try:
+        with path.open("rb") as start:
+            header = int.from_bytes(start.read(8), "little")
+        if header > min(MOST_HEADER, regular_size(path)):
+            raise ValueError(f"it claims a header of {header} bytes")
         with safe_open(path, framework="pt") as file:
-            metadata = file.metadata() or {}
-            weights = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
+            return _opened(path, file)
     except (SafetensorError, OSError, ValueError) as error:
         raise RunError(f"{path}: is no safetensors file, or a truncated one ({error})") from None
+
+
+def _opened(path: Path, file: Any) -> tuple[About, nn.Module]:
+    """Read weights only after names, types and shapes are those of the network described."""
+    metadata = file.metadata() or {}
     if "radhar" not in metadata:
         raise RunError(f"{path}: was not written by `radhar train`")
     try:
         about = About.model_validate_json(metadata["radhar"])
+        with torch.device("meta"):
+            wanted = build_model(about.model, len(about.classes), about.size).state_dict()
+        stored = {name: file.get_slice(name) for name in file.keys()}  # noqa: SIM118
+        for name in wanted.keys() | stored.keys():
+            if name not in stored or name not in wanted:
+                raise RuntimeError(f"{name} is {'too much' if name in stored else 'missing'}")
+            found = (tuple(stored[name].get_shape()), stored[name].get_dtype())
+            right = (tuple(wanted[name].shape), _TYPES.get(wanted[name].dtype))
+            if found != right:
+                raise RuntimeError(f"{name} is {found}, should be {right}")
+        weights = {name: file.get_tensor(name) for name in stored}
+        for name, tensor in weights.items():
+            if not tensor.isfinite().all():
+                raise RuntimeError(f"{name} holds what is no finite number")
         model = build_model(about.model, len(about.classes), about.size)
         model.load_state_dict(weights)
     except ValidationError as error:
@@ -279,6 +364,7 @@ def read_last(folder: Path) -> dict[str, Any] | None:
     if not path.exists():
         return None
     try:
+        _refuse_inflation(path)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             found: dict[str, Any] = torch.load(path, map_location="cpu", weights_only=True)
@@ -288,6 +374,20 @@ def read_last(folder: Path) -> dict[str, Any] | None:
             f"{path}: is damaged, or no checkpoint of radhar's ({first_line(error)}); {BEST} is "
             "untouched; --overwrite starts the run again"
         ) from None
+
+
+def _refuse_inflation(path: Path) -> None:
+    """PyTorch stores what it saves as it is; what is packed could become any size.
+
+    Raises:
+        ValueError, BadZipFile: it is packed, or no file of PyTorch's.
+    """
+    size = regular_size(path)
+    with zipfile.ZipFile(path) as file:
+        parts = file.infolist()
+    packed = any(part.compress_type != zipfile.ZIP_STORED for part in parts)
+    if packed or sum(part.file_size for part in parts) > size:
+        raise ValueError("it holds more than its own size")
 
 
 def first_line(error: Exception) -> str:

@@ -1,7 +1,7 @@
 """One run on one data set: its numbers and figures."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -46,6 +46,8 @@ class Asked:
     filters: bool = False
     in_place_vs_moving: bool = False
     batch: int = 32
+    resize: bool = False
+    names: Mapping[str, str | None] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -72,7 +74,7 @@ def choose(run: Run, path: Path, asked: Asked) -> Chosen:
     Raises:
         FolderError: it does not fit the run.
     """
-    images = open_for(run.about, path, asked.map)
+    images = open_for(run.about, path, asked.map, resize=asked.resize, names=asked.names)
     return Chosen(images, *rows_of(images, asked.split))
 
 
@@ -119,6 +121,7 @@ def evaluate_one(
     numbers = metrics.summary(answers.truth, answers.probabilities, names)
     numbers["seen_in_training"] = _seen(run, images, rows)
     numbers |= {"split": split, "map": images.map, "snr_db": images.snr_db}
+    numbers |= {"left_out": dict(images.left_out)}
     counts = np.array(numbers["confusion"])
     right = 100 * numbers["accuracy"]
     report.figure(
@@ -188,7 +191,7 @@ def _in_place_vs_moving(
     numbers: dict[str, Any],
 ) -> None:
     """The paper's two groups: S1 to S7 against S8 to S12."""
-    moving = {activity.slug: activity.number >= 8 for activity in ACTIVITIES}
+    moving = {activity.slug: activity.walks for activity in ACTIVITIES}
     group = np.array([int(moving[name]) for name in names])
     counts = metrics.confusion(group[answers.truth], group[answers.predicted], 2)
     numbers["in_place_vs_moving"] = counts.tolist()

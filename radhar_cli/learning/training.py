@@ -2,6 +2,7 @@
 
 import math
 import time
+from collections.abc import Mapping
 from contextlib import nullcontext
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -19,7 +20,8 @@ from radhar_cli.errors import ConfigError, FolderError, RadharError
 from radhar_cli.learning import run_files
 from radhar_cli.learning import run_folder as run
 from radhar_cli.learning.batches import LEAST_PER_PROCESS, Reader, epoch_batches, pieces
-from radhar_cli.learning.gradient_step import Learner, optimiser_for
+from radhar_cli.learning.gradient_step import Learner, check_state, optimiser_for
+from radhar_cli.learning.images.classes import renamed
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.scan import content_hash, scan
@@ -91,11 +93,17 @@ class Outcome:
 
 
 def train(
-    config: TrainConfig, data: Path, folder: Path, progress: Progress, overwrite: bool = False
+    config: TrainConfig,
+    data: Path,
+    folder: Path,
+    progress: Progress,
+    overwrite: bool = False,
+    names: Mapping[str, str | None] | None = None,
 ) -> Outcome:
     """Train `config` on `data` in `folder`, go on with it, or find it done.
 
-    Under torchrun every process calls this; the first one writes.
+    Under torchrun every process calls this; the first one writes. `names` are those that the
+    classes get, None to leave one out.
 
     Raises:
         FolderError: data that cannot be used.
@@ -108,20 +116,22 @@ def train(
         torch.set_num_threads(config.threads)
     device = choose_device(config.device)
     repeatable(device)
-    images = checked_images(config, data)
+    images = checked_images(config, data, names)
     with joined(device) as group, locked(folder) if group.leads else nullcontext():
         return _Training.prepared(
             config, images, data, folder, device, group, progress, overwrite
         ).run()
 
 
-def checked_images(config: TrainConfig, path: Path) -> ImageSet:
+def checked_images(
+    config: TrainConfig, path: Path, names: Mapping[str, str | None] | None = None
+) -> ImageSet:
     """Open a data set and make sure that it can be learned from.
 
     Raises:
         FolderError: fewer than two classes, a class without training images, no validation images.
     """
-    images = open_images(path, config.map, config.input)
+    images = renamed(open_images(path, config.map, config.input), names or {})
     images = images.cut(config.validation_share, config.seed)
     if len(images.classes) < 2:
         raise FolderError(f"{path}: has the class {images.classes[0]!r} alone; should have two")
@@ -229,9 +239,12 @@ class _Training:
             other = run.differences(About.model_validate_json(found["about"]), self.about)
             if other:
                 raise run.RunError(f"{path}: is another run's; it differs in {other[0]}")
+            self.history = run.checked_history([Epoch(**row) for row in found["history"]])
+            if not self.history:
+                raise ValueError("it holds no epoch")
             self.model.load_state_dict(found["model"])
+            check_state(self.optimiser, found["optimiser"])
             self.optimiser.load_state_dict(found["optimiser"])
-            self.history = [Epoch(**row) for row in found["history"]]
             torch.set_rng_state(found["random"])
         except (RuntimeError, ValueError, KeyError, TypeError, IndexError) as error:
             raise run.RunError(

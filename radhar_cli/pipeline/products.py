@@ -88,7 +88,10 @@ def signal_of(map_name: str) -> str:
 def plan_images(config: Config) -> Plan:
     """The plan of a data set: the image of every map, those of one signal together."""
     maps = sorted(config.maps, key=lambda name: SIGNALS.index(signal_of(name)))
-    return plan(products(config), [f"image:{name}" for name in maps], ["scene"])
+    asked = [f"image:{name}" for name in maps]
+    if config.engine.kind == "direct" and set(maps) != {"rtm"}:
+        asked.append("accuracy")
+    return plan(products(config), asked, ["scene"])
 
 
 def products(config: Config) -> dict[str, Product]:

@@ -1,6 +1,6 @@
 """Check scenes before any echo is computed: what lies outside the model, and what to warn of."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import IntFlag
 from typing import Any, NamedTuple
@@ -35,12 +35,14 @@ class Flags(IntFlag):
     WALL = 1
     HALF_BAND = 2
     ALIASING = 4
+    FALLBACK = 8
 
 
 _WORDING = {
     Flags.WALL: "the body passes through the wall",
     Flags.HALF_BAND: "a scatterer leaves the range half-band and its echo the kept bins",
     Flags.ALIASING: "a joint moves faster than the Doppler PRF/2 and aliases",
+    Flags.FALLBACK: "computed by the cube (engine.fallback)",
 }
 
 
@@ -192,15 +194,19 @@ def scene_warnings(scene: Scene) -> list[str]:
     return outside + timing_warnings(scene.config, (scene.activity,))
 
 
-def warnings(config: Config, flags: Sequence[int]) -> list[dict[str, Any]]:
-    """What to say once per run, from the Flags of every row: [{kind, recordings, message}]."""
-    every = np.asarray(flags, dtype=np.uint8)
-    counts = {flag: int(np.count_nonzero(every & flag)) for flag in Flags}
+def warnings(config: Config, counts: Mapping[Flags, int]) -> list[dict[str, Any]]:
+    """What to say once per run: [{kind, recordings, message}].
+
+    Args:
+        config: of the run.
+        counts: how many of its recordings have each flag.
+    """
+    recordings = len(config.chosen_activities) * config.samples_per_class
     found: list[dict[str, Any]] = [
         {
             "kind": str(flag.name).lower(),
             "recordings": n,
-            "message": f"{n} of {len(every)} recordings: {_WORDING[flag]}",
+            "message": f"{n} of {recordings} recordings: {_WORDING[flag]}",
         }
         for flag, n in counts.items()
         if n

@@ -18,11 +18,14 @@ from radhar_cli.simulation.simulate import Simulation
 SCENE_FILE = "scene.h5"
 SCENE_JSON = "scene.json"
 SCENE_YAML = "scene.yaml"
+MAPS, ANIMATION = "maps.png", "stickman.gif"
+UNFINISHED = "scene.unfinished"
+FILES = (SCENE_FILE, SCENE_JSON, SCENE_YAML, MAPS, ANIMATION, UNFINISHED)
 
 
 def write_scene(simulation: Simulation, path: Path) -> None:
     """Write scene.h5 under another name, then rename it into place."""
-    unfinished = path.with_suffix(".unfinished")
+    unfinished = path.with_name(UNFINISHED)
     try:
         with h5py.File(unfinished, "w") as file:
             for name, power_map in simulation.maps.items():

@@ -3,13 +3,14 @@
 import json
 import shutil
 from pathlib import Path
-from typing import Any
 
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.files import write_whole
+from radhar_cli.dataset.folder import checked_identity
 from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.dataset.layout import WORK
 from radhar_cli.errors import FolderError
+from radhar_cli.untrusted import read_json
 
 NAME = "sweep.json"
 
@@ -21,7 +22,7 @@ def claim(folder: Path, config: Config, overwrite: bool) -> None:
         FolderError: it holds something else, or the sweep of another config.
     """
     path = folder / WORK / NAME
-    old: dict[str, Any] | None = json.loads(path.read_text()) if path.exists() else None
+    old = checked_identity(read_json(path), path) if path.exists() else None
     new = {"keys": identity(config)["keys"], "versions": identity(config)["versions"]}
     if old is None:
         strangers = sorted(p.name for p in folder.iterdir() if p.name != WORK)

@@ -3,10 +3,16 @@
 import hashlib
 import json
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
+
+from pydantic import TypeAdapter, ValidationError
 
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.layout import WORK
+from radhar_cli.errors import FolderError
+from radhar_cli.untrusted import read_json
+
+T = TypeVar("T")
 
 
 class Ledger:
@@ -15,10 +21,21 @@ class Ledger:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
 
-    def get(self, key: str) -> Any | None:
-        """The value, or None if it has not been measured."""
+    def get(self, key: str, kind: type[T] | Any = Any) -> T | None:
+        """The value, or None if it has not been measured.
+
+        Raises:
+            FolderError: what is kept is of another kind.
+        """
         path = self._path(key)
-        return json.loads(path.read_text()) if path.exists() else None
+        if not path.exists():
+            return None
+        try:
+            value: T = TypeAdapter(kind).validate_python(read_json(path))
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]["msg"]
+            raise FolderError(f"{path}: is damaged ({first}); delete it") from None
+        return value
 
     def put(self, key: str, value: Any) -> None:
         """Keep a value."""

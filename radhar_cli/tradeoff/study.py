@@ -96,7 +96,9 @@ def _differences(scenes: Scenes, rows: Sequence[Row], ledger: Ledger, progress: 
         scene = SceneDifferences(scenes, slug)
         for row in rows:
             key = _key("difference", row.setting, slug)
-            row.differences[slug] = _once(ledger, key, partial(_of, scene, row))
+            row.differences[slug] = _once(
+                ledger, key, partial(_of, scene, row), dict[str, float | str | None]
+            )
             progress.advance(1)
 
 
@@ -114,17 +116,17 @@ def _times(scenes: Scenes, rows: Sequence[Row], ledger: Ledger, progress: Progre
     for turn in range(rounds):
         for row in possible:
             key = _key("time", row.setting, f"{turn} {names}")
-            times = _once(ledger, key, partial(time_setting, scenes, row.setting, turn))
-            row.times.append(Times(*times))
+            measure = partial(time_setting, scenes, row.setting, turn)
+            row.times.append(Times(*_once(ledger, key, measure, tuple[float, float, float, float])))
             progress.advance(1)
 
 
-def _once(ledger: Ledger, key: str, measure: Callable[[], Any]) -> Any:
-    found = ledger.get(key)
+def _once(ledger: Ledger, key: str, measure: Callable[[], Any], kind: Any) -> Any:
+    found = ledger.get(key, kind)
     if found is None:
         found = measure()
         ledger.put(key, _without_infinity(found))
-        found = ledger.get(key)
+        found = ledger.get(key, kind)
     return _with_infinity(found)
 
 

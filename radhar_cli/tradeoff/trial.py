@@ -8,7 +8,7 @@ import hashlib
 import json
 import shutil
 from collections.abc import Collection
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -155,13 +155,13 @@ def score(bench: Bench, setup: Setup, seed: int) -> Score:
     settings = _settings(bench.effort, seed)
     what = _fingerprint([*setup.data, settings.model_dump(mode="json"), _torch_version()])
     key = f"accuracy {what}"
-    known = bench.ledger.get(key)
+    known = bench.ledger.get(key, Score)
     if known is None:
         run = bench.folder / RUNS / what
         known = _train_and_test(bench, setup, settings, run)
-        bench.ledger.put(key, known)
+        bench.ledger.put(key, asdict(known))
         shutil.rmtree(run)
-    return Score(known["right"], known["images"])
+    return known
 
 
 def _settings(effort: Effort, seed: int) -> "TrainConfig":
@@ -181,9 +181,7 @@ def _settings(effort: Effort, seed: int) -> "TrainConfig":
     )
 
 
-def _train_and_test(
-    bench: Bench, setup: Setup, settings: "TrainConfig", run: Path
-) -> dict[str, int]:
+def _train_and_test(bench: Bench, setup: Setup, settings: "TrainConfig", run: Path) -> Score:
     from radhar_cli.learning import training
     from radhar_cli.learning.evaluation import open_for, predict
     from radhar_cli.learning.machine import choose_device
@@ -198,7 +196,7 @@ def _train_and_test(
     images = open_for(about, asked, None)
     device, batch = choose_device(settings.device), settings.batch_size
     answers = predict(model, about, images, images.rows("all"), device, batch)
-    return {"right": int((answers.predicted == answers.truth).sum()), "images": len(images)}
+    return Score(int((answers.predicted == answers.truth).sum()), len(images))
 
 
 @dataclass

@@ -1,31 +1,12 @@
 """`radhar train`, `eval`, `models`, `export` and `predict` as a user meets them."""
 
+import importlib.util
 import json
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
-from learning.patterns import BASE, load_timm, one_clear_line, split_tree, trained, tree
-
-from radhar_cli.cli import program
-from radhar_cli.errors import RadharError
-
-ROOT = Path(__file__).resolve().parents[2]
-OPERATORS = ROOT / "tests/torchvision_operators"
-
-
-def radhar(*arguments: object) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "radhar_cli", *map(str, arguments)]
-    paths = os.pathsep.join([str(OPERATORS), os.environ.get("PYTHONPATH", "")])
-    environment = {**os.environ, "PYTHONPATH": paths}
-    return subprocess.run(command, capture_output=True, text=True, cwd=ROOT, env=environment)
-
-
-def python(code: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-c", code]
-    return subprocess.run(command, capture_output=True, text=True, cwd=ROOT)
+from command_line import process, radhar
+from learning.patterns import BASE, load_timm, split_tree, trained, tree
 
 
 @pytest.fixture(scope="module")
@@ -50,7 +31,7 @@ def test_train_says_what_it_does_and_again_that_nothing_is_left(place: Path) -> 
     again = radhar(*command)
     assert again.returncode == 0, again.stderr
     assert "is complete: 1 epochs; nothing to do" in again.stdout
-    other = radhar(*command, "--set", "seed=5", "--model", "fftnet")
+    other = radhar(*command, "--set", "seed=5")
     assert other.returncode == 2
     assert "seed: 1 there, 5 here" in other.stderr
     assert "Traceback" not in other.stderr
@@ -82,6 +63,7 @@ def test_predict_prints_the_class_and_probabilities(place: Path) -> None:
 
 
 def test_models_lists_our_networks_and_the_papers_rivals(place: Path) -> None:
+    load_timm()
     done = radhar("models")
     assert done.returncode == 0, done.stderr
     assert "6,496,012" in done.stdout
@@ -111,47 +93,29 @@ def test_models_lists_our_networks_and_the_papers_rivals(place: Path) -> None:
 def test_wrong_use_is_one_message_and_status_2(
     place: Path, arguments: list[str], said: list[str]
 ) -> None:
-    """In this process: the program prints these errors' text alone and ends with their status."""
     load_timm()
     if not (place / "alone").exists():
         tree(place / "alone", ("walking",), {"train": 2, "val": 1})
-    with pytest.raises(RadharError) as caught:
-        program()([a.replace("{}", str(place)) for a in arguments], standalone_mode=False)
-    one_clear_line(caught.value, *said)
+    done = radhar(*[a.replace("{}", str(place)) for a in arguments])
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+    for words in said:
+        assert words in done.stderr
     assert not (place / "x" / "best.safetensors").exists()
 
 
-def test_every_help_has_an_example_and_needs_no_torch() -> None:
-    commands = ["train", "eval", "models", "export", "predict"]
-    code = f"""
+def test_help_and_building_data_need_no_torch() -> None:
+    code = """
 import sys
 from typer.testing import CliRunner
 from radhar_cli.cli import program
-for name in {commands}:
-    done = CliRunner().invoke(program(), [name, "--help"])
-    assert done.exit_code == 0, done.output
-    assert "Example" in done.output, name
-assert not {{"torch", "timm", "sklearn", "safetensors"}} & set(sys.modules)
+for name in ("train", "eval", "models", "export", "predict"):
+    assert CliRunner().invoke(program(), [name, "--help"]).exit_code == 0
+import radhar_cli.dataset.build, radhar_cli.dataset.verify
+assert not {"torch", "timm", "sklearn", "safetensors"} & set(sys.modules)
 """
-    done = python(code)
+    done = process("-c", code)
     assert done.returncode == 0, done.stderr
-
-
-def test_building_data_needs_no_torch() -> None:
-    modules = ("dataset.build", "dataset.verify", "commands.generate", "commands.train", "cli")
-    lines = "\n".join(f"import radhar_cli.{name}" for name in modules)
-    done = python(f"import sys\n{lines}\nassert 'torch' not in sys.modules")
-    assert done.returncode == 0, done.stderr
-
-
-WITHOUT = """
-import importlib.util as u, sys
-find = u.find_spec
-u.find_spec = lambda name, *rest: None if name == {missing!r} else find(name, *rest)
-from radhar_cli.cli import main
-sys.argv = ["radhar", *{arguments!r}]
-main()
-"""
 
 
 @pytest.mark.parametrize(
@@ -164,9 +128,13 @@ main()
     ],
 )
 def test_a_missing_package_is_named_with_its_extra(
-    missing: str, arguments: list[str], extra: str
+    missing: str, arguments: list[str], extra: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    done = python(WITHOUT.format(missing=missing, arguments=arguments))
+    find = importlib.util.find_spec
+    monkeypatch.setattr(
+        importlib.util, "find_spec", lambda name, *rest: None if name == missing else find(name)
+    )
+    done = radhar(*arguments)
     assert done.returncode == 2
     assert f"needs {missing}, which is not installed: pip install '{extra}'" in done.stderr
     assert "Traceback" not in done.stderr

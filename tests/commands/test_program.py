@@ -1,34 +1,28 @@
 """The program as a user meets it: end to end in a temporary folder."""
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import h5py
 import pytest
 import yaml
+from command_line import ROOT, process, radhar
 from small import small_config
 
-ROOT = Path(__file__).resolve().parents[2]
 TRAINING = sorted((ROOT / "configs/train").glob("*.yaml"))
 CONFIGS = sorted(set((ROOT / "configs").rglob("*.yaml")) - set(TRAINING))
 
 
-def radhar(*arguments: object, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "radhar_cli", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, cwd=cwd)
-
-
 def test_generate_verify_and_again(tmp_path: Path) -> None:
     config, out = small_config(tmp_path), tmp_path / "set"
-    first = radhar("generate", config, "-o", out, "--jobs", 2)
+    first = radhar("generate", config, "-o", out, "--jobs", 1)
     assert first.returncode == 0, first.stderr
     assert "9 samples" in first.stdout
     assert "it/s" not in first.stderr, "quiet when not a terminal"
     again = radhar("generate", config, "-o", out)
     assert again.returncode == 0
     assert "is complete" in again.stdout
+    assert yaml.safe_load((out / "config.yaml").read_text())["seed"] == 7
     checked = radhar("verify", out, "--samples", 3)
     assert checked.returncode == 0
     assert "byte for byte" in checked.stdout
@@ -110,10 +104,13 @@ def test_wrong_use_is_status_2(tmp_path: Path) -> None:
 
 
 def test_every_help_has_an_example() -> None:
-    for command in (["generate"], ["verify"], ["config", "show"], ["config", "schema"]):
-        done = radhar(*command, "--help")
+    for command in (
+        *("generate", "simulate", "verify", "preview", "inspect", "config show", "config schema"),
+        *("train", "eval", "models", "export", "predict", "tradeoff"),
+    ):
+        done = radhar(*command.split(), "--help")
         assert done.returncode == 0
-        assert "Example" in done.stdout
+        assert "Example" in done.stdout, command
 
 
 def test_second_run_on_a_live_folder_is_refused(tmp_path: Path) -> None:
@@ -133,18 +130,10 @@ def test_disk_that_refuses_is_one_line_and_keeps_what_is_finished(tmp_path: Path
         "import resource, sys; resource.setrlimit(resource.RLIMIT_FSIZE, (6000, 6000));"
         "from radhar_cli.cli import main; sys.argv[0] = 'radhar'; main()"
     )
-    command = [sys.executable, "-c", limited, "generate", str(config), "-o", str(tmp_path / "set")]
-    done = subprocess.run(
-        [*command, "--jobs", "1", "--batch", "1"], capture_output=True, text=True, cwd=ROOT
-    )
+    command = ("generate", config, "-o", tmp_path / "set", "--jobs", 1)
+    done = process("-c", limited, *command, "--batch", 1)
     assert done.returncode == 1, done.stdout + done.stderr
     assert "Traceback" not in done.stderr
     assert "is kept, and the same command goes on" in done.stderr
     assert not (tmp_path / "set/dataset.h5").exists()
-    assert radhar("generate", config, "-o", tmp_path / "set").returncode == 0
-
-
-def test_resolved_config_beside_the_data_is_yaml(tmp_path: Path) -> None:
-    out = tmp_path / "set"
-    radhar("generate", small_config(tmp_path), "-o", out, "--jobs", 1)
-    assert yaml.safe_load((out / "config.yaml").read_text())["seed"] == 7
+    assert radhar(*command).returncode == 0

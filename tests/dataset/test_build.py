@@ -2,11 +2,13 @@
 
 import errno
 import json
+import os
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
+from joblib.externals.loky import get_reusable_executor
 from listener import Listener
 from PIL import Image
 from small import SMALL, fingerprint, small_config
@@ -17,7 +19,8 @@ from radhar_cli.dataset import folder as folder_module
 from radhar_cli.dataset.build import Outcome, build
 from radhar_cli.dataset.folder import locked
 from radhar_cli.dataset.layout import Rows, png_path
-from radhar_cli.dataset.shards import Shard, finished_shards, missing_runs, pieces
+from radhar_cli.dataset.shards import listed_shards
+from radhar_cli.dataset.workers import run_tasks, warm_up
 from radhar_cli.errors import FolderError, SceneError, UnfinishedError
 
 
@@ -46,6 +49,22 @@ def test_jobs_and_batch_size_change_no_byte(
     assert fingerprint(tmp_path / "set") == fingerprint(whole)
 
 
+def test_a_relative_folder_is_built_whatever_the_working_directory_of_the_workers(
+    config: Config, whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    here, elsewhere = tmp_path / "here", tmp_path / "elsewhere"
+    here.mkdir()
+    elsewhere.mkdir()
+    monkeypatch.chdir(elsewhere)
+    get_reusable_executor(max_workers=2, kill_workers=True).shutdown(kill_workers=True)
+    warm_up(2)
+    monkeypatch.chdir(here)
+    assert set(run_tasks(os.getcwd, [()] * 8, 2)) == {str(elsewhere)}
+    make(config, Path("set"), jobs=2, batch_size=2)
+    assert fingerprint(here / "set") == fingerprint(whole)
+    assert not list(elsewhere.iterdir())
+
+
 def test_unfinished_build_goes_on_with_another_batch_size(
     config: Config, whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -61,7 +80,7 @@ def test_unfinished_build_goes_on_with_another_batch_size(
     monkeypatch.setattr(batch_module, "synthesise", stops_after_five)
     with pytest.raises(UnfinishedError, match="no space left on the disk"):
         make(config, folder, batch_size=2)
-    assert [(s.start, s.stop) for s in finished_shards(folder)] == [(0, 2), (2, 4)]
+    assert [(s.start, s.stop) for s in listed_shards(folder)] == [(0, 2), (2, 4)]
     monkeypatch.setattr(batch_module, "synthesise", original)
     outcome = make(config, folder, batch_size=3)
     assert outcome.made == 5, "the four finished samples are not made again"
@@ -226,6 +245,39 @@ def test_physical_warnings_are_said_once_with_their_number_and_stored(
     }
 
 
+def test_scenes_that_fall_back_to_the_cube_are_counted_whoever_made_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """-215 dB can be promised for those who walk and not for those who stand and punch."""
+    engine = ["engine={tolerance_db: -215, fallback: cube}", "duration_s=1", "maps=[rtm, stft]"]
+    config = load_config(small_config(tmp_path), engine)
+    notes, original, made = Listener(), batch_module.synthesise, []
+    build(config, tmp_path / "whole", 1, notes)
+    assert notes.said[-1] == ("warning: 3 of 9 recordings: computed by the cube (engine.fallback)")
+
+    def stops_after_four(*arguments: object) -> object:
+        made.append(arguments)
+        if len(made) > 4:
+            raise OSError(errno.ENOSPC, "No space left on device", "shard")
+        return original(*arguments)
+
+    monkeypatch.setattr(batch_module, "synthesise", stops_after_four)
+    with pytest.raises(UnfinishedError):
+        make(config, tmp_path / "set", batch_size=1)
+    monkeypatch.setattr(batch_module, "synthesise", original)
+    make(config, tmp_path / "set", batch_size=2)
+    assert fingerprint(tmp_path / "set") == fingerprint(tmp_path / "whole")
+    with h5py.File(tmp_path / "set/dataset.h5") as file:
+        stored = json.loads(file.attrs["warnings"])
+    assert [w["recordings"] for w in stored if w["kind"] == "fallback"] == [3]
+
+
+def test_a_range_map_alone_never_falls_back(tmp_path: Path) -> None:
+    engine = ["engine={tolerance_db: -390, fallback: cube}", "duration_s=1", "maps=[rtm]"]
+    outcome = make(load_config(small_config(tmp_path), engine), tmp_path / "set")
+    assert "fallback" not in {warning["kind"] for warning in outcome.warnings}
+
+
 def test_dataset_contract(config: Config, whole: Path) -> None:
     with h5py.File(whole / "dataset.h5") as file:
         assert set(file["maps"]) == set(config.maps)
@@ -281,16 +333,6 @@ def test_scenes_csv_has_the_numbers_of_the_file(whole: Path) -> None:
 
 def test_resolved_config_builds_the_same_identity(config: Config, whole: Path) -> None:
     assert load_config(whole / "config.yaml") == config
-
-
-def test_rows_of_overlapping_shards_count_once() -> None:
-    shards = [Shard(0, 4, Path("a")), Shard(2, 6, Path("b")), Shard(8, 10, Path("c"))]
-    assert [(s.path.name, i, j) for s, i, j in pieces(shards, 10)] == [
-        ("a", 0, 4),
-        ("b", 4, 6),
-        ("c", 8, 10),
-    ]
-    assert missing_runs(shards, 12) == [(6, 8), (10, 12)]
 
 
 def test_redrawn_scenes_are_valid_and_deterministic(tmp_path: Path) -> None:

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 import reference as ref
-from radhar_cli.body.skeleton import JOINTS
-from radhar_cli.config.experiment import Config
+from radhar_cli.motion.skeleton import JOINTS
+from radhar_cli.config.schema import Config
 from radhar_cli.pipeline.body_paths import BodyPaths
 from radhar_cli.pipeline.models import waveform_of
-from radhar_cli.scenario import draw_scene
+from radhar_cli.scene import draw_scene
 
 from radhar_cli.activity import ACTIVITIES, Activity
 from radhar_cli.echo.accuracy import AccuracyError

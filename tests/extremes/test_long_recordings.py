@@ -1,6 +1,7 @@
 """Ten million pulses: memory does not grow with the recording beyond a few arrays of its length.
 
-A process of its own each, so that its peak is its own.
+A process of its own each, so that its peak is its own. tests/pipeline/test_long_recordings.py has
+two million.
 """
 
 import json
@@ -67,6 +68,7 @@ def measured(engine: str, name: str) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 @pytest.mark.parametrize(
     ("engine", "name"), [("direct", "stft"), ("direct", "fsst"), ("cube", "stft")]

@@ -67,8 +67,6 @@ LIMITS: dict[str, tuple[Any, Any, Any, Any]] = {
 }
 # At their ends these need each other: tests/extremes/test_ranges.py goes there.
 TOGETHER = ("duration_s", "radar.prf_hz", "radar.adc_rate_hz", "radar.chirp_s")
-TAKEN = [(k, v) for k, limits in LIMITS.items() if k not in TOGETHER for v in limits[:2]]
-REFUSED = [(key, value) for key, limits in LIMITS.items() for value in limits[2:]]
 VECTORS = {"tx_m": [0.4, -0.1, 1.5], "rx_m": [0.4, 0.1, 1.5], "size_m": [0.24, 5.0, 2.5]}
 
 
@@ -94,23 +92,26 @@ def document(key: str, value: Any) -> dict[str, Any]:
     return made
 
 
-@pytest.mark.parametrize(("key", "value"), TAKEN)
-def test_at_the_limit_it_is_taken(key: str, value: Any) -> None:
-    validated(Config, document(key, value), "here", {})
+keys = pytest.mark.parametrize("key", LIMITS)
 
 
-@pytest.mark.parametrize(("key", "value"), REFUSED)
-def test_beyond_it_is_refused_by_key_and_value(key: str, value: Any) -> None:
-    with pytest.raises(ConfigError) as caught:
-        validated(Config, document(key, value), "here.yaml", {})
-    text = str(caught.value)
-    section = key.rpartition(".")[0] if key.startswith("processing.savgol") else key
-    named = [line for line in text.splitlines() if f"here.yaml: {section}" in line]
-    if key == "processing.window_fraction" and value < 4e-4:
-        named = [text]  # the window it makes is named with the duration
-    assert named, text
-    assert any(shown(value) in line for line in named), text
-    assert "should" in named[0]
+@keys
+def test_at_its_limits_it_is_taken_and_beyond_them_refused_by_key_and_value(key: str) -> None:
+    least, most, below, above = LIMITS[key]
+    if key not in TOGETHER:
+        for value in (least, most):
+            validated(Config, document(key, value), "here", {})
+    for value in (below, above):
+        with pytest.raises(ConfigError) as caught:
+            validated(Config, document(key, value), "here.yaml", {})
+        text = str(caught.value)
+        section = key.rpartition(".")[0] if key.startswith("processing.savgol") else key
+        named = [line for line in text.splitlines() if f"here.yaml: {section}" in line]
+        if key == "processing.window_fraction" and value < 4e-4:
+            named = [text]  # the window it makes is named with the duration
+        assert named, text
+        assert any(shown(value) in line for line in named), text
+        assert "should" in named[0]
 
 
 def shown(value: Any) -> str:
@@ -120,20 +121,31 @@ def shown(value: Any) -> str:
 NUMBERS = [key for key in LIMITS if key.split(".")[0] in ("radar", "subject", "motion", "timing")]
 
 
-@pytest.mark.parametrize("key", [*NUMBERS, "snr_db", "duration_s", "wall.eps_r"])
+@pytest.mark.parametrize("key", ["radar.carrier_hz", "motion.angle_deg", "snr_db", "wall.eps_r"])
 @pytest.mark.parametrize("form", ["uniform", "choice", "normal"])
 def test_a_distribution_that_reaches_beyond_it_is_refused(key: str, form: str) -> None:
     """Every draw has to be in the range; the message says how far this one reaches."""
+    with pytest.raises(ConfigError, match=re.escape(f"here: {key} = ")) as caught:
+        validated(Config, document(key, reaching(key)[form]), "here", {})
+    assert f'"{form}"' in str(caught.value)
+    assert "reaches from" in str(caught.value) or "within" in str(caught.value)
+
+
+def reaching(key: str) -> dict[str, dict[str, Any]]:
+    """Distributions from inside the range to beyond it."""
     low, high, _, above = LIMITS[key]
-    forms = {
+    return {
         "uniform": {"uniform": [low, above]},
         "choice": {"choice": [low, high, above]},
         "normal": {"normal": [high, above - high]},
     }
-    with pytest.raises(ConfigError, match=re.escape(f"here: {key} = ")) as caught:
-        validated(Config, document(key, forms[form]), "here", {})
-    assert f'"{form}"' in str(caught.value)
-    assert "reaches from" in str(caught.value) or "within" in str(caught.value)
+
+
+def test_every_number_of_a_scene_is_held_to_its_range_in_every_form() -> None:
+    for key in [*NUMBERS, "snr_db", "duration_s", "wall.eps_r"]:
+        for value in reaching(key).values():
+            with pytest.raises(ConfigError, match=re.escape(f"here: {key} = ")):
+                validated(Config, document(key, value), "here", {})
 
 
 FFTS = ("processing.range_fft_length", "processing.stft_fft_length", "processing.fsst_hop_pulses")
@@ -152,11 +164,11 @@ def spoilt(key: str, value: Any) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("value", ["fast", [], {}, None, True, math.nan, math.inf, 10**400])
-@pytest.mark.parametrize("key", list(LIMITS))
-def test_what_is_no_number_is_refused(key: str, value: Any) -> None:
-    if value is None and key in NULLABLE:
-        pytest.skip("null is a value of this key")
-    with pytest.raises(ConfigError) as caught:
-        validated(Config, spoilt(key, value), "here", {})
-    named = key if key != "processing.savgol.frame" else "processing.savgol"  # the two in one
-    assert any(f"here: {named}" in line for line in str(caught.value).splitlines())
+def test_what_is_no_number_is_refused_whatever_the_key(value: Any) -> None:
+    for key in LIMITS:
+        if value is None and key in NULLABLE:
+            continue
+        with pytest.raises(ConfigError) as caught:
+            validated(Config, spoilt(key, value), "here", {})
+        named = key if key != "processing.savgol.frame" else "processing.savgol"  # the two in one
+        assert any(f"here: {named}" in line for line in str(caught.value).splitlines()), key

@@ -1,5 +1,6 @@
 """Figures are drawn whole, for scenes that are ordinary and for scenes that are not."""
 
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -8,12 +9,12 @@ from PIL import Image
 from small import small_config
 
 from radhar_cli.commands.terminal import BarProgress
-from radhar_cli.config import load_config
+from radhar_cli.config import MAP_NAMES, load_config
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.figures.contact_sheet import draw_contact_sheet
-from radhar_cli.figures.maps_panel import decibels, draw_maps
+from radhar_cli.figures.maps_panel import TITLES, decibels, draw_maps, places
 from radhar_cli.figures.stickman import draw_stickman, frame_count
 from radhar_cli.simulation.simulate import simulate
 
@@ -27,26 +28,48 @@ def colours(path: Path) -> int:
 
 
 @pytest.mark.parametrize(
-    ("activity", "overrides", "joint"),
-    [("S12", [], None), ("S1", ["snr_db=null"], None), ("S8", ["wall=null"], "right_ankle")],
+    ("activity", "overrides", "joint", "maps"),
+    [
+        ("S12", [], None, MAP_NAMES),
+        ("S1", ["snr_db=null"], None, ("rtm",)),
+        ("S8", ["wall=null"], "right_ankle", ("stft",)),
+    ],
 )
 def test_maps_are_drawn(
-    activity: str, overrides: list[str], joint: str | None, tmp_path: Path
+    activity: str, overrides: list[str], joint: str | None, maps: tuple[str, ...], tmp_path: Path
 ) -> None:
-    simulation = simulate(load_config(WALL, overrides), activity, joint=joint)
+    simulation = simulate(load_config(WALL, overrides), activity, joint=joint, maps=maps)
     draw_maps(simulation, tmp_path / "maps.png", overlay=True)
     assert colours(tmp_path / "maps.png") > 200
 
 
+@pytest.mark.parametrize("count", range(1, len(TITLES) + 1))
+def test_any_choice_of_maps_fills_its_page(count: int) -> None:
+    for names in combinations(TITLES, count):
+        cells = [
+            (row, column)
+            for rows, column in places(names).values()
+            for row in range(rows.start, rows.stop)
+        ]
+        assert len(set(cells)) == len(cells), names
+        rows, columns = (1 + max(axis) for axis in zip(*cells, strict=True))
+        assert rows * columns - len(cells) <= 1, names
+    if count == len(TITLES):
+        assert [places(names)[f"fsst_{kind}"] for kind in ("denoised", "compensated")] == [
+            (slice(1, 2), 2),
+            (slice(1, 2), 3),
+        ]
+
+
 def test_stickman_plays_at_true_speed_and_moves(tmp_path: Path) -> None:
-    simulation = simulate(load_config(WALL, ["duration_s=2.5"]), "S12", maps=("stft",))
+    simulation = simulate(load_config(WALL, ["duration_s=0.7"]), "S12", maps=("stft",))
     done: list[int] = []
     draw_stickman(simulation, tmp_path / "stickman.gif", done.append)
-    assert sum(done) == frame_count(simulation) == 50
+    assert sum(done) == frame_count(simulation) == 14
     with Image.open(tmp_path / "stickman.gif") as film:
-        assert film.n_frames * film.info["duration"] == 2500
+        assert film.n_frames * film.info["duration"] == 700
         first = np.asarray(film.convert("RGB")).astype(int)
-        film.seek(40)
+        film.seek(13)
         later = np.asarray(film.convert("RGB")).astype(int)
     assert (np.abs(first - later).sum(axis=2) > 60).sum() > 500
 

@@ -3,7 +3,16 @@
 from pathlib import Path
 
 import pytest
+import torch
 from learning.patterns import load_timm, split_tree, trained
+
+
+@pytest.fixture(autouse=True)
+def fresh_torch() -> None:
+    """Chance, threads and algorithms as in a new process, whatever ran before."""
+    torch.manual_seed(0)
+    torch.set_num_threads(1)
+    torch.use_deterministic_algorithms(False)
 
 
 @pytest.fixture(scope="session")

@@ -6,12 +6,10 @@ import pytest
 import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from learning.patterns import last_weights, split_tree, trained
+from learning.patterns import split_tree, trained
 from torch import Tensor
 
 from radhar_cli.errors import ModelError
-from radhar_cli.learning import run_folder as run
-from radhar_cli.learning.evaluation import open_for, predict
 from radhar_cli.learning.models.build import build_model, features_and_logits
 from radhar_cli.learning.models.fftnet import Block, FFTNet, GlobalFilter
 
@@ -112,12 +110,8 @@ def test_filter_computes_in_float32_under_autocast() -> None:
         assert layer(x.bfloat16()).dtype == torch.float32
 
 
-def test_it_learns_24_maps_by_heart(tmp_path: Path) -> None:
-    root, out = split_tree(tmp_path / "tree", train=8, val=1), tmp_path / "run"
-    trained(root, out, epochs=6, batch_size=6)
-    about, model = run.load_best(out)
-    model.load_state_dict(last_weights(out))
-    images = open_for(about, root, None)
-    answers = predict(model, about, images, images.rows("train"), torch.device("cpu"), 8)
-    assert answers.rows.size == 24
-    assert (answers.predicted == answers.truth).all()
+def test_it_learns(tmp_path: Path) -> None:
+    """The loss of stripes in three directions falls by more than rounding could undo."""
+    root = split_tree(tmp_path / "tree")
+    history = trained(root, tmp_path / "run", epochs=4, model="fftnet").history
+    assert min(row.train_loss for row in history) < 0.8 * history[0].train_loss

@@ -3,7 +3,6 @@
 import copy
 import json
 import math
-import random
 import signal
 import subprocess
 import sys
@@ -29,6 +28,7 @@ from learning.patterns import (
     tree,
     without_seconds,
 )
+from slow import slow
 from torch import nn
 
 from radhar_cli.learning import gradient_step, run_files, training
@@ -349,8 +349,10 @@ def test_a_validation_loss_that_is_not_finite_is_one_clear_line(
 
 
 def test_a_huge_rate_ends_in_one_clear_line(data: Path, tmp_path: Path) -> None:
+    """Decay at this rate multiplies the weights by -1e6 a step: 1e38 is not far."""
+    huge = {"optimiser": "sgd", "learning_rate": 1e3, "weight_decay": 1e3}
     with pytest.raises(TrainingError) as caught:
-        trained(data, tmp_path / "run", optimiser="sgd", learning_rate=1e3, epochs=20)
+        trained(data, tmp_path / "run", epochs=20, **huge)
     one_clear_line(caught.value, "epoch", "lower learning_rate (now 1000)")
 
 
@@ -359,7 +361,8 @@ def test_no_part_of_a_batch_is_one_image(
     data: Path, tmp_path: Path, changes: dict[str, int]
 ) -> None:
     """At 32 px the last maps are 1 x 1: a part of one image has no spread to normalise by."""
-    assert len(trained(data, tmp_path / "run", epochs=1, **changes).history) == 1
+    done = trained(data, tmp_path / "run", epochs=1, model="fftnet", **changes)
+    assert len(done.history) == 1
 
 
 @pytest.mark.parametrize("key", ["batch_size", "micro_batch"])
@@ -395,12 +398,6 @@ def test_gray_and_bfloat16_train(data: Path, tmp_path: Path) -> None:
     assert all(w.dtype != torch.bfloat16 for w in best_weights(tmp_path / "run").values())
 
 
-def test_loss_falls(data: Path, tmp_path: Path) -> None:
-    history = trained(data, tmp_path / "run", epochs=4).history
-    assert history[-1].train_loss < 0.7 * history[0].train_loss
-    assert history[-1].train_accuracy > history[0].train_accuracy
-
-
 def command(data: Path, out: Path) -> list[str]:
     config = out.parent / "train.json"
     config.write_text(json.dumps(BASE))
@@ -411,7 +408,7 @@ def command(data: Path, out: Path) -> list[str]:
 
 
 def started(data: Path, out: Path, until: str, *more: str) -> subprocess.Popen[str]:
-    """Start a run, and wait until a file of it is there."""
+    """Start a run, and wait until a file of it is there: the program is well under way."""
     process = subprocess.Popen(
         [*command(data, out), *more],
         stdout=subprocess.PIPE,
@@ -424,14 +421,17 @@ def started(data: Path, out: Path, until: str, *more: str) -> subprocess.Popen[s
     return process
 
 
+LATER = (run_files.BEST, run_files.LAST, run_files.HISTORY, run_files.CURVES)
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
-@pytest.mark.parametrize("trial", range(2))
-def test_killed_at_random_moments_and_gone_on_is_the_same(
-    data: Path, run_dir: Path, tmp_path: Path, trial: int
+@pytest.mark.parametrize("sign", [run_files.ABOUT, *slow(LATER)])
+def test_killed_and_gone_on_is_the_same(
+    data: Path, run_dir: Path, tmp_path: Path, sign: str
 ) -> None:
-    out, moments = tmp_path / "run", random.Random(trial)
-    process = started(data, out, run_files.ABOUT)
-    time.sleep(moments.uniform(0.0, 3.0))
+    """As soon as a file of the run is there, or some moments later."""
+    out = tmp_path / "run"
+    process = started(data, out, sign)
     process.kill()
     process.communicate()
     done = trained(data, out)
@@ -442,12 +442,13 @@ def test_killed_at_random_moments_and_gone_on_is_the_same(
 
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
 def test_ctrl_c_keeps_the_last_epoch_and_is_quiet(data: Path, tmp_path: Path) -> None:
+    """In the midst of a run that would take minutes."""
     out = tmp_path / "run"
-    process = started(data, out, run_files.HISTORY, "--set", "epochs=60")
+    process = started(data, out, run_files.HISTORY, "--set", "epochs=5000")
     process.send_signal(signal.SIGINT)
     said = process.communicate()[0]
     assert process.returncode == 130, said
     assert "Traceback" not in said
     assert "the same command goes on" in said
-    assert 1 <= len(run.read_history(out)) < 60
+    assert 1 <= len(run.read_history(out)) < 5000
     run.load_best(out)

@@ -1,19 +1,20 @@
 """Images in class folders, as torchvision's ImageFolder reads them: ours or anyone's."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from PIL import Image, UnidentifiedImageError
 
 from radhar_cli.arrays import Levels
+from radhar_cli.dataset.image_file import image_size, read_rgb
 from radhar_cli.dataset.layout import CONFIG, PNG
 from radhar_cli.errors import ConfigError, FolderError
 from radhar_cli.learning.images.image_set import (
     SPLIT_NAMES,
     ImageSet,
+    Resized,
     class_order,
     colour_codes,
     luminance,
@@ -24,6 +25,7 @@ _WANTED = (
     "should be dataset.h5, a folder that `radhar generate` wrote, or a tree <class>/<image>.png or "
     "<train|val|test>/<class>/<image>.png"
 )
+MOST_CLASSES = 128  # a confusion matrix of them can still be drawn
 SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp"}
 
 
@@ -34,13 +36,13 @@ class FilePixels:
     Attributes:
         files: [N].
         kind: "rgb" or "gray".
-        size: (H, W) that all of them should have.
+        size: (H, W) that all of them should have, None for any.
         table: for "gray", the colour table [256, 3] that ours were drawn with.
     """
 
     files: tuple[Path, ...]
     kind: str
-    size: tuple[int, int]
+    size: tuple[int, int] | None
     table: Levels | None
 
     def read(self, row: int) -> Levels:
@@ -66,75 +68,62 @@ def read_image(
     Raises:
         FolderError: it is damaged, or of another size.
     """
-    try:
-        with Image.open(path) as image:
-            rgb = _rgb(image)
-    except (OSError, SyntaxError, ValueError, UnidentifiedImageError) as error:
-        raise FolderError(f"{path}: is no image, or a truncated one ({error})") from None
-    if size is not None and rgb.shape[:2] != size:
-        raise FolderError(
-            f"{path}: is {rgb.shape[0]} x {rgb.shape[1]} px; should be {size[0]} x {size[1]}"
-        )
+    rgb = read_rgb(path, size)
     if kind == "rgb":
         return rgb
     levels = _levels(rgb, table) if table is not None else None
     return repeated(luminance(rgb) if levels is None else levels)
 
 
-def _rgb(image: Image.Image) -> Levels:
-    """Eight bits a channel; 16-bit greys are scaled, transparency is dropped."""
-    if image.mode.startswith("I;16"):
-        wide = np.asarray(image).astype(np.uint32)
-        return repeated(((wide + 128) // 257).astype(np.uint8))
-    if image.mode in ("I", "F"):
-        raise ValueError(f"its mode is {image.mode}; should be 8 or 16 bits a channel")
-    return np.asarray(image.convert("RGB"))
-
-
 def _levels(rgb: Levels, table: Levels) -> Levels | None:
     """Levels [H, W] of an image that was drawn through a colour table; None if it was not."""
-    codes, wanted = colour_codes(table), colour_codes(rgb)
-    order = np.argsort(codes, kind="stable")  # of levels that share a colour the lowest is found
-    found = order[np.minimum(np.searchsorted(codes[order], wanted), 255)]
-    return found.astype(np.uint8) if np.array_equal(codes[found], wanted) else None
+    level_of = np.zeros(2**24, dtype=np.uint8)
+    level_of[colour_codes(table)[::-1]] = np.arange(255, -1, -1)  # the lowest of a colour stays
+    levels: Levels = level_of[colour_codes(rgb)]
+    return levels if np.array_equal(table[levels], rgb) else None
 
 
-def folder_images(root: Path, map_name: str | None, kind: str) -> ImageSet:
+def folder_images(root: Path, map_name: str | None, kind: str, any_size: bool = False) -> ImageSet:
     """Open a tree of images: class folders, or train, val and test with class folders in them.
+
+    Args:
+        any_size: images may differ in size; `size` is that of the first.
 
     Raises:
         FolderError: it is no such tree; the message says what is there.
     """
-    own = our_map(root)
+    own, inside = our_map(root), root
     if map_name is not None and map_name != own:
-        if not (root / map_name).is_dir():
+        if map_name not in _folders(root, inside):
             raise FolderError(f"{root}: has no map {map_name!r}; it is a tree of images")
         root = root / map_name
         own = map_name
-    folders = _folders(root)
+    folders = _folders(root, inside)
     parts = {name: SPLIT_NAMES[name.lower()] for name in folders if name.lower() in SPLIT_NAMES}
     if parts:
         found = [
             (split, name, file)
             for part, split in sorted(parts.items(), key=lambda item: item[1])
-            for name in _folders(root / part)
-            for file in _files(root / part / name)
+            for name in _folders(root / part, inside)
+            for file in image_files(root / part / name, inside)
         ]
-        empty = {name for part in parts for name in _folders(root / part)}
+        empty = {name for part in parts for name in _folders(root / part, inside)}
     else:
-        found = [(-1, name, file) for name in folders for file in _files(root / name)]
+        found = [(-1, name, file) for name in folders for file in image_files(root / name, inside)]
         empty = set(folders)
     empty -= {name for _, name, _ in found}
     if not found:
-        maps = [name for name in folders if _folders(root / name)]
+        maps = [name for name in folders if _folders(root / name, inside)]
         hint = f"--map {maps[0]} takes one of its maps" if maps and not parts else _WANTED
         raise FolderError(f"{root}: holds no class folders with images; {hint}")
     if empty:
         raise FolderError(f"{root}: the class {sorted(empty)[0]!r} has no image")
     classes = class_order({name for _, name, _ in found})
+    if len(classes) > MOST_CLASSES:
+        raise FolderError(f"{root}: has {len(classes)} classes; should have at most {MOST_CLASSES}")
     found.sort(key=lambda item: (item[0], classes.index(item[1]), item[2].name))
     files = tuple(file for _, _, file in found)
-    size = _size(files[0])
+    size = image_size(files[0])
     return ImageSet(
         where=root,
         map=own,
@@ -144,7 +133,9 @@ def folder_images(root: Path, map_name: str | None, kind: str) -> ImageSet:
         names=_names(found),
         scenes=None,
         size=size,
-        pixels=FilePixels(files, kind, size, our_table(root) if kind == "gray" else None),
+        pixels=FilePixels(
+            files, kind, None if any_size else size, our_table(root) if kind == "gray" else None
+        ),
     )
 
 
@@ -157,9 +148,13 @@ def _names(found: Sequence[tuple[int, str, Path]]) -> tuple[str, ...]:
     )
 
 
-def loose_images(files: Sequence[Path], size: tuple[int, int], kind: str) -> ImageSet:
-    """Single files of a size (H, W), without classes."""
+def loose_images(
+    files: Sequence[Path], size: tuple[int, int], kind: str, resize: bool = False
+) -> ImageSet:
+    """Single files without classes, of a size (H, W) or brought to it."""
     where = files[0].parent
+    table = our_table(where) if kind == "gray" else None
+    pixels = FilePixels(tuple(files), kind, None if resize else size, table)
     return ImageSet(
         where=where,
         map=None,
@@ -169,7 +164,7 @@ def loose_images(files: Sequence[Path], size: tuple[int, int], kind: str) -> Ima
         names=tuple(map(str, files)),
         scenes=None,
         size=size,
-        pixels=FilePixels(tuple(files), kind, size, our_table(where) if kind == "gray" else None),
+        pixels=Resized(pixels, size) if resize else pixels,
     )
 
 
@@ -202,19 +197,40 @@ def _our_png_folder(inside: Path) -> tuple[Path, str] | None:
     return None
 
 
-def _folders(root: Path) -> list[str]:
-    return sorted(p.name for p in root.iterdir() if p.is_dir() and not p.name.startswith("."))
+def _folders(root: Path, inside: Path) -> list[str]:
+    """Names of the folders in `root`, of which each may become a class.
+
+    Raises:
+        FolderError: a link that leads out of `inside`, or a name that is no plain text.
+    """
+    names = sorted(p.name for p in _visible(root, inside) if p.is_dir())
+    for name in names:
+        if not name.isprintable():
+            raise FolderError(f"{root}: the folder {name!r} should have a name of plain text")
+    return names
 
 
-def _files(folder: Path) -> list[Path]:
-    return [p for p in folder.iterdir() if is_image(p)]
+def image_files(folder: Path, inside: Path) -> list[Path]:
+    """Image files of a folder, in the order of their names.
+
+    Raises:
+        FolderError: a link that leads out of `inside`.
+    """
+    return sorted(p for p in _visible(folder, inside) if is_image(p))
+
+
+def _visible(folder: Path, inside: Path) -> Iterator[Path]:
+    """What lies in a folder; a stranger's tree shows no file that lies outside of it."""
+    for path in folder.iterdir():
+        if path.name.startswith("."):
+            continue
+        if path.is_symlink() and (path.is_dir() or is_image(path)):
+            target = path.resolve()
+            if not target.is_relative_to(inside.resolve()):
+                raise FolderError(f"{path}: is a link to {target}, which lies outside of {inside}")
+        yield path
 
 
 def is_image(path: Path) -> bool:
     """Whether a path is an image file by its name, and none that a file manager hides."""
     return path.suffix.lower() in SUFFIXES and not path.name.startswith(".") and path.is_file()
-
-
-def _size(path: Path) -> tuple[int, int]:
-    rgb = read_image(path, "rgb", None)
-    return int(rgb.shape[0]), int(rgb.shape[1])

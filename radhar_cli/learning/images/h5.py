@@ -7,11 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from radhar_cli.activity import ACTIVITIES
 from radhar_cli.arrays import Levels
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset, open_dataset
-from radhar_cli.errors import FolderError
 from radhar_cli.learning.images.image_set import ImageSet, class_order, first_of_colour, repeated
 
 _WHO_AND_HOW = ("subject.", "motion.", "timing.")
@@ -36,13 +34,7 @@ class H5Pixels:
         if mine is None:
             self._open.clear()
             mine = self._open[os.getpid()] = open_dataset(self.path)
-        try:
-            levels = mine.maps[self.map][row]
-        except OSError as error:
-            raise FolderError(
-                f"{self.path}: sample {row} of {self.map} cannot be read: {error}"
-            ) from None
-        rgb: Levels = self.table[levels]
+        rgb: Levels = self.table[mine.maps[self.map][row]]
         return rgb
 
     def __getstate__(self) -> dict[str, object]:
@@ -53,24 +45,23 @@ def h5_images(path: Path, map_name: str | None, kind: str) -> ImageSet:
     """Open one map of a dataset.h5, or of the folder it lies in, as images."""
     with open_dataset(path) as data:
         name = data.map_name(map_name)
-        numbers = data.label[:]
-        slug = np.array([activity.slug for activity in ACTIVITIES])[numbers]
+        slug = np.array(data.class_slugs)[data.label]
         classes = class_order(set(slug.tolist()))
-        colours = colour_table(data.config["image"]["colour_map"])
+        colours = colour_table(data.config.image.colour_map)
         table = colours if kind == "rgb" else repeated(first_of_colour(colours))
         return ImageSet(
             where=path,
             map=name,
             classes=classes,
             label=np.array([classes.index(s) for s in slug], dtype=np.intp),
-            split=data.split[:],
+            split=data.split,
             names=tuple(
                 f"{s}/{index:05d}" for s, (_, index) in zip(slug, data.sample_key[:], strict=True)
             ),
             scenes=_scenes(data, slug.tolist()),
-            size=(int(data.maps[name].shape[1]), int(data.maps[name].shape[2])),
+            size=data.config.image.size_px,
             pixels=H5Pixels(data.path, name, table),
-            snr_db=_one_number(data.config.get("snr_db")),
+            snr_db=_one_number(data.config.snr_db),
         )
 
 
@@ -80,11 +71,8 @@ def _one_number(value: object) -> float | None:
 
 def _scenes(data: Dataset, slugs: list[str]) -> tuple[str, ...]:
     """A fingerprint of who moved and how; radar, wall and noise do not enter."""
-    columns = [
-        column[:]
-        for _, column in sorted(data.scene.items())
-        if str(column.attrs.get("config_key", "")).startswith(_WHO_AND_HOW)
-    ]
+    names = sorted(field.name for field in data.fields if field.key.startswith(_WHO_AND_HOW))
+    columns = [data.scene[name][:] for name in names]
     table = np.stack(columns, axis=1) if columns else np.zeros((len(slugs), 0))
     return tuple(
         hashlib.blake2b(slug.encode() + row.tobytes(), digest_size=8).hexdigest()

@@ -1,12 +1,13 @@
 """Labelled images, whoever stored them: one dataset.h5, or a tree of class folders."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image
 
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.arrays import Index, Levels
@@ -31,6 +32,32 @@ class Pixels(Protocol):
 
 
 @dataclass(frozen=True)
+class Resized:
+    """Pixels of any size brought to one (H, W): bilinear, smoothed where it shrinks."""
+
+    pixels: Pixels
+    size: tuple[int, int]
+
+    def read(self, row: int) -> Levels:
+        rgb = self.pixels.read(row)
+        if rgb.shape[:2] == self.size:
+            return rgb
+        smooth = Image.Resampling.BILINEAR
+        return np.asarray(Image.fromarray(rgb).resize(self.size[::-1], smooth))
+
+
+@dataclass(frozen=True)
+class SomeRows:
+    """Some rows of other pixels."""
+
+    pixels: Pixels
+    rows: Index
+
+    def read(self, row: int) -> Levels:
+        return self.pixels.read(int(self.rows[row]))
+
+
+@dataclass(frozen=True)
 class ImageSet:
     """Images of one size, each with a class and a split.
 
@@ -46,6 +73,7 @@ class ImageSet:
         size: (H, W) in pixels.
         pixels: reads them.
         snr_db: of all of them, None where they differ or the source does not say.
+        left_out: {class: images of it that the source has and this set does not}.
     """
 
     where: Path
@@ -58,6 +86,7 @@ class ImageSet:
     size: tuple[int, int]
     pixels: Pixels
     snr_db: float | None = None
+    left_out: Mapping[str, int] = field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.label)
@@ -78,6 +107,36 @@ class ImageSet:
             has = ", ".join(f"{n} {name}" for n, name in zip(counts, SPLITS, strict=True) if n)
             raise FolderError(f"{self.where}: has no {split} images (it has {has})")
         return found
+
+    def renamed(self, names: Mapping[str, str | None]) -> "ImageSet":
+        """The same images with some classes under other names; None leaves a class out.
+
+        Raises:
+            FolderError: no class is left.
+        """
+        new = [names.get(name, name) for name in self.classes]
+        classes = class_order({name for name in new if name is not None})
+        if not classes:
+            raise FolderError(f"{self.where}: --classes leaves no class of it")
+        number = np.array([-1 if name is None else classes.index(name) for name in new])
+        label = number[self.label]
+        rows = np.flatnonzero(label >= 0)
+        if rows.size == label.size:
+            return replace(self, classes=classes, label=label)
+        lost = np.bincount(self.label[label < 0], minlength=len(new)).tolist()
+        return replace(
+            self,
+            classes=classes,
+            label=label[rows],
+            split=None if self.split is None else self.split[rows],
+            names=tuple(self.names[row] for row in rows),
+            scenes=None if self.scenes is None else tuple(self.scenes[row] for row in rows),
+            pixels=SomeRows(self.pixels, rows),
+            left_out={
+                **self.left_out,
+                **{name: n for name, n in zip(self.classes, lost, strict=True) if n},
+            },
+        )
 
     def cut(self, share: float, seed: int) -> "ImageSet":
         """The same images, cut class by class into train and validation where nobody has cut.
@@ -124,8 +183,7 @@ def labels_for(images: ImageSet, known: Sequence[str]) -> Index:
 
 def luminance(rgb: Levels) -> Levels:
     """Brightness [H, W] of RGB [H, W, 3] after ITU-R BT.601."""
-    weighted = rgb @ np.array([299, 587, 114])
-    brightness: Levels = ((weighted + 500) // 1000).astype(np.uint8)
+    brightness: Levels = ((_weighted(rgb, 299, 587, 114) + 500) // 1000).astype(np.uint8)
     return brightness
 
 
@@ -139,10 +197,17 @@ def first_of_colour(table: Levels) -> Levels:
     return np.array([np.flatnonzero(codes == code)[0] for code in codes], dtype=np.uint8)
 
 
-def colour_codes(rgb: Levels) -> NDArray[np.int64]:
+def colour_codes(rgb: Levels) -> NDArray[np.uint32]:
     """24-bit numbers [...] of colours [..., 3]."""
-    codes: NDArray[np.int64] = rgb @ np.array([1 << 16, 1 << 8, 1])
-    return codes
+    return _weighted(rgb, 1 << 16, 1 << 8, 1)
+
+
+def _weighted(rgb: Levels, *weights: int) -> NDArray[np.uint32]:
+    """Weighted sum of the channels, one after the other: an image may have 67 million pixels."""
+    total = np.zeros(rgb.shape[:-1], dtype=np.uint32)
+    for channel, weight in enumerate(weights):
+        total += rgb[..., channel] * np.uint32(weight)
+    return total
 
 
 def repeated(levels: Levels) -> Levels:

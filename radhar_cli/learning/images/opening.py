@@ -1,22 +1,26 @@
 """Open whatever images a user names."""
 
+from dataclasses import replace
 from pathlib import Path
 
 from radhar_cli.dataset.layout import DATASET, begun
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.images.folder import folder_images
 from radhar_cli.learning.images.h5 import h5_images
-from radhar_cli.learning.images.image_set import ImageSet
+from radhar_cli.learning.images.image_set import ImageSet, Resized
 from radhar_cli.learning.run_files import is_run
 
 
-def open_images(path: Path, map_name: str | None, kind: str) -> ImageSet:
+def open_images(
+    path: Path, map_name: str | None, kind: str, resize: tuple[int, int] | None = None
+) -> ImageSet:
     """Open a data set: dataset.h5, a folder that `radhar generate` wrote, or a tree of images.
 
     Args:
         path: what the user gave.
         map_name: which map; the first one if None.
         kind: "rgb" as the PNGs are coloured, or "gray", one channel three times.
+        resize: (H, W) to bring every image to; they may then differ in size.
 
     Raises:
         FolderError: it is none of these, or it is damaged.
@@ -25,14 +29,23 @@ def open_images(path: Path, map_name: str | None, kind: str) -> ImageSet:
         raise FolderError(f"{path}: no such file or folder")
     if is_run(path):
         raise FolderError(f"{path}: is a training run; data is asked for here")
-    if path.is_file() and not is_h5(path):
+    if not path.is_dir() and not is_h5(path):
         raise FolderError(
             f"{path}: is no data set; should be dataset.h5, a folder that `radhar generate` wrote, "
             "or a folder of class folders with images"
         )
-    if is_h5(path) or begun(path):
-        return h5_images(path, map_name, kind)
-    return folder_images(path, map_name, kind)
+    if is_tree(path):
+        images = folder_images(path, map_name, kind, any_size=resize is not None)
+    else:
+        images = h5_images(path, map_name, kind)
+    if resize is None:
+        return images
+    return replace(images, size=resize, pixels=Resized(images.pixels, resize))
+
+
+def is_tree(path: Path) -> bool:
+    """Whether a path can only be a tree of images: a folder without a data set, built or begun."""
+    return path.is_dir() and not is_h5(path) and not begun(path)
 
 
 def is_h5(path: Path) -> bool:

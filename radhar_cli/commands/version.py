@@ -1,0 +1,38 @@
+"""`radhar --version`: the versions that decide bytes."""
+
+from typing import Annotated
+
+import typer
+
+from radhar_cli.commands.tell import tell
+
+LIBRARIES = ("numpy", "scipy", "h5py", "Pillow", "torch")
+
+
+def _print(asked: bool) -> None:
+    if not asked:
+        return
+    import platform
+    from importlib.metadata import PackageNotFoundError, version
+
+    from radhar_cli import __version__
+
+    found = [f"Python {platform.python_version()}"]
+    for library in LIBRARIES:
+        try:
+            found.append(f"{library} {version(library)}")
+        except PackageNotFoundError:
+            found.append(f"no {library}")
+    tell(f"radhar {__version__}\n{', '.join(found)}")
+    raise typer.Exit
+
+
+def options(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_print, is_eager=True, help="Print versions, also of libraries."
+        ),
+    ] = False,
+) -> None:
+    """The options of the program itself."""

@@ -1,0 +1,82 @@
+"""The one reader of image files: five formats, one frame, a bounded number of pixels."""
+
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from radhar_cli.arrays import Levels
+from radhar_cli.errors import FolderError
+from radhar_cli.untrusted import regular_size
+
+# No format that runs a program: EPS, whatever its file is called, would start Ghostscript.
+FORMATS = ("PNG", "JPEG", "BMP", "TIFF", "WEBP")
+LONGEST_SIDE = 8192  # of an image that a config may ask for
+LARGEST_FILE = 4 * LONGEST_SIDE**2  # bytes
+
+
+def image_size(path: Path) -> tuple[int, int]:
+    """(H, W) of an image file, from its header.
+
+    Raises:
+        FolderError: it is none that can be read, or too large.
+    """
+    with _opened(path, None) as image:
+        return image.height, image.width
+
+
+def read_rgb(path: Path, size: tuple[int, int] | None = None) -> Levels:
+    """RGB [H, W, 3] of an image file; 16-bit greys are scaled, transparency is dropped.
+
+    Args:
+        path: of the file.
+        size: (H, W) that it should have, or None.
+
+    Raises:
+        FolderError: it is damaged, too large, or of another size.
+    """
+    with _opened(path, size) as image:
+        if image.mode.startswith("I;16"):
+            grey = np.asarray(image).astype(np.uint32)
+            return np.repeat(((grey + 128) // 257).astype(np.uint8)[..., None], 3, axis=-1)
+        return np.asarray(image.convert("RGB"))
+
+
+@contextmanager
+def _opened(path: Path, size: tuple[int, int] | None) -> Iterator[Image.Image]:
+    """An image whose header is as it should be; errors of Pillow's parsers become one of ours."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            if regular_size(path) > LARGEST_FILE:
+                raise FolderError(f"{path}: should be an image of at most {LARGEST_FILE} bytes")
+            with Image.open(path, formats=FORMATS) as image:
+                wrong = _wrong(image, size)
+                if wrong is not None:
+                    raise FolderError(f"{path}: {wrong}")
+                yield image
+    except FolderError:
+        raise
+    except Exception as error:  # Pillow raises whatever its parsers meet
+        told = getattr(error, "strerror", None) or str(error).partition("\n")[0]
+        raise FolderError(f"{path}: is no image, or a truncated one ({told})") from None
+
+
+def _wrong(image: Image.Image, size: tuple[int, int] | None) -> str | None:
+    height, width = image.height, image.width
+    if size is not None and (height, width) != size:
+        return (
+            f"is {height} x {width} px; should be {size[0]} x {size[1]} "
+            "(eval and predict bring it there with --resize)"
+        )
+    if not 1 <= min(height, width) <= max(height, width) <= LONGEST_SIDE:
+        most = f"{LONGEST_SIDE} x {LONGEST_SIDE}"
+        return f"is {height} x {width} px; should be from 1 x 1 to {most}"
+    if getattr(image, "is_animated", False):
+        return "holds several pictures; should hold one"
+    if image.mode in ("I", "F"):
+        return f"its mode is {image.mode}; should be 8 or 16 bits a channel"
+    return None

@@ -1,0 +1,265 @@
+"""HDF5 files that anyone may have written: the one place that opens them.
+
+Only what is asked for by name is looked at; the rest of the file does not matter. Each link on the
+way is a hard one and each dataset lies in the file itself, so nothing leads to another file. Types,
+shapes and stored bytes are checked before anything is read. Compressed images are inflated here, up
+to the size that they should have: HDF5 would inflate them to any.
+"""
+
+import io
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import h5py
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from radhar_cli.arrays import Levels
+from radhar_cli.errors import FolderError
+from radhar_cli.untrusted import parse_json, regular_size
+
+# What h5py raises on a file whose structure is damaged.
+_DAMAGED = (
+    AttributeError,
+    KeyError,
+    NotImplementedError,
+    OSError,
+    OverflowError,
+    RuntimeError,
+    TypeError,
+    ValueError,
+)
+MOST_TEXT = 2**20
+_DEFLATE = h5py.h5z.FILTER_DEFLATE
+
+
+@contextmanager
+def _said(where: str) -> Iterator[None]:
+    try:
+        yield
+    except _DAMAGED as error:
+        raise FolderError(f"{where}: cannot be read, the file is damaged ({error})") from None
+
+
+class UntrustedFile:
+    """An HDF5 file, opened for reading.
+
+    Args:
+        path: of the file.
+        data: its bytes, where they have been read already.
+
+    Raises:
+        FolderError: it is no regular file, or no HDF5 file. So do all methods, for whatever is not
+            as it should be; the message names file and field.
+    """
+
+    def __init__(self, path: Path, data: bytes | None = None) -> None:
+        self.path = path
+        self._claimed = 0
+        try:
+            self.bytes = regular_size(path) if data is None else len(data)
+            self._file = h5py.File(path if data is None else io.BytesIO(data), "r")
+        except _DAMAGED as error:
+            raise FolderError(f"{path}: is no HDF5 file, or a truncated one ({error})") from None
+
+    def has_attribute(self, name: str) -> bool:
+        """Whether the file itself has an attribute of that name."""
+        with _said(f"{self.path}: attribute {name}"):
+            return name in self._file.attrs
+
+    def text(self, name: str) -> str:
+        """A text attribute of the file."""
+        where = f"{self.path}: attribute {name}"
+        with _said(where):
+            self._scalar(name, where)
+            value = self._file.attrs[name]
+            if isinstance(value, bytes):
+                value = value.decode()
+            if not isinstance(value, str) or len(value) > MOST_TEXT:
+                raise FolderError(f"{where}: should be text of at most {MOST_TEXT} characters")
+            value.encode()  # h5py lets through what is not UTF-8
+            return value
+
+    def json(self, name: str) -> Any:
+        """What a text attribute of the file says in JSON."""
+        try:
+            return parse_json(self.text(name))
+        except ValueError as error:
+            raise FolderError(f"{self.path}: attribute {name}: is no JSON ({error})") from None
+
+    def whole_number(self, name: str) -> int:
+        """A whole number among the attributes of the file."""
+        where = f"{self.path}: attribute {name}"
+        with _said(where):
+            if self._scalar(name, where).kind not in "iu":
+                raise FolderError(f"{where}: should be a whole number")
+            return int(self._file.attrs[name])
+
+    def _scalar(self, name: str, where: str) -> np.dtype[Any]:
+        if name not in self._file.attrs:
+            raise FolderError(f"{where}: is missing")
+        found = self._file.attrs.get_id(name)
+        if found.shape != () or found.get_storage_size() > MOST_TEXT:
+            raise FolderError(f"{where}: should be a single value")
+        kind: np.dtype[Any] = found.dtype
+        return kind
+
+    def column(self, name: str, dtype: DTypeLike, shape: tuple[int, ...]) -> "Column":
+        """Numbers in one piece, all there: no gaps to be filled in, no filters."""
+        where, wanted = f"{self.path}: /{name}", np.dtype(dtype)
+        with _said(where):
+            found = self._dataset(name, where, wanted, shape)
+            size = wanted.itemsize * int(np.prod(shape, dtype=object))
+            if found.chunks is not None or found.id.get_storage_size() != size:
+                raise FolderError(f"{where}: should be stored in one piece of {size} bytes")
+        self._claimed += size
+        if self._claimed > self.bytes:
+            raise FolderError(f"{where}: is larger than the file; it is damaged or truncated")
+        return Column(where, found, wanted, shape)
+
+    def images(self, name: str, shape: tuple[int, int, int]) -> "Images":
+        """Images uint8 [N, H, W], each in a chunk of its own, plain or gzip."""
+        where, one = f"{self.path}: /{name}", (1, *shape[1:])
+        with _said(where):
+            found = self._dataset(name, where, np.dtype(np.uint8), shape)
+            creation = found.id.get_create_plist()
+            filters = [creation.get_filter(i)[0] for i in range(creation.get_nfilters())]
+            if found.chunks != one:
+                raise FolderError(f"{where}: has chunks of {found.chunks}; should be {one}")
+            if filters not in ([], [_DEFLATE]):
+                raise FolderError(f"{where}: is stored through filters {filters}; should be gzip")
+            if found.id.get_num_chunks() != shape[0]:
+                raise FolderError(
+                    f"{where}: holds {found.id.get_num_chunks()} images; should hold {shape[0]}"
+                )
+        return Images(where, found, shape, bool(filters))
+
+    def shape(self, name: str) -> list[int]:
+        """Shape of a dataset of any type, none of which is read."""
+        with _said(f"{self.path}: /{name}"):
+            return list(self._dataset(name, f"{self.path}: /{name}", None, None).shape)
+
+    def _dataset(
+        self,
+        name: str,
+        where: str,
+        dtype: np.dtype[Any] | None,
+        shape: tuple[int, ...] | None,
+    ) -> h5py.Dataset:
+        found: Any = self._file
+        for part in name.split("/"):
+            # `part in found` and `found.get` would open the file that an external link names.
+            if not isinstance(found, h5py.Group) or not found.id.links.exists(part.encode()):
+                raise FolderError(f"{where}: is missing")
+            if found.id.links.get_info(part.encode()).type != h5py.h5l.TYPE_HARD:
+                raise FolderError(f"{where}: is a link; should be stored in this file")
+            found = found[part]
+        if not isinstance(found, h5py.Dataset):
+            raise FolderError(f"{where}: should be a dataset")
+        if shape is not None and found.shape != shape:
+            raise FolderError(f"{where}: has the shape {found.shape}; should have {shape}")
+        if dtype is not None and found.dtype.newbyteorder("=") != dtype:
+            raise FolderError(f"{where}: is of the type {found.dtype}; should be {dtype}")
+        creation = found.id.get_create_plist()
+        if creation.get_layout() == h5py.h5d.VIRTUAL or creation.get_external_count():
+            raise FolderError(f"{where}: lies in another file; should be stored in this file")
+        return found
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+    def __enter__(self) -> "UntrustedFile":
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
+
+
+@dataclass(frozen=True)
+class Column:
+    """Numbers that were checked and are read when they are indexed."""
+
+    where: str
+    _dataset: h5py.Dataset
+    dtype: np.dtype[Any]
+    shape: tuple[int, ...]
+
+    def __len__(self) -> int:
+        return self.shape[0]
+
+    def __getitem__(self, key: Any) -> Any:
+        with _said(self.where):
+            values: NDArray[Any] = self._dataset[()]
+        return values.astype(self.dtype, copy=False)[key]
+
+
+@dataclass
+class Images:
+    """Images uint8 [N, H, W] that were checked and are read when they are indexed."""
+
+    where: str
+    _dataset: h5py.Dataset
+    shape: tuple[int, int, int]
+    _deflated: bool
+    _sizes: dict[int, int] = field(default_factory=dict, repr=False)
+
+    def __len__(self) -> int:
+        return self.shape[0]
+
+    def __getitem__(self, key: Any) -> Levels:
+        rows = np.arange(len(self))[key]
+        return self._image(int(rows)) if rows.ndim == 0 else np.stack([*map(self._image, rows)])
+
+    def stored(self, row: int) -> tuple[int, bytes]:
+        """Filter mask and bytes of a row's chunk as they lie in the file."""
+        if not self._sizes:
+            self._sizes = self._stored_sizes()
+        with _said(f"{self.where}[{row}]"):
+            mask, chunk = self._dataset.id.read_direct_chunk((row, 0, 0))
+        return mask, chunk
+
+    def _stored_sizes(self) -> dict[int, int]:
+        """Stored bytes of every row; deflate makes nothing longer by more than a thousandth."""
+        raw = self.shape[1] * self.shape[2]
+        most = raw + raw // 1000 + 64 if self._deflated else raw
+        sizes: dict[int, int] = {}
+        with _said(self.where):
+            self._dataset.id.chunk_iter(lambda c: sizes.__setitem__(c.chunk_offset[0], c.size))
+        for row, size in sizes.items():
+            if size > most:
+                raise FolderError(f"{self.where}[{row}]: is stored in {size} bytes, too many")
+        if sizes.keys() != set(range(len(self))):
+            raise FolderError(f"{self.where}: lacks images; it is damaged")
+        return sizes
+
+    def _image(self, row: int) -> Levels:
+        raw = self.shape[1] * self.shape[2]
+        mask, chunk = self.stored(row)
+        if self._deflated and not mask & 1:
+            with _inflating(f"{self.where}[{row}]"):
+                reader = zlib.decompressobj()
+                chunk = reader.decompress(chunk, raw + 1)
+                if not reader.eof:
+                    raise zlib.error("too long or truncated")
+        if len(chunk) != raw:
+            raise FolderError(f"{self.where}[{row}]: is {len(chunk)} bytes; should be {raw}")
+        return np.frombuffer(chunk, np.uint8).reshape(self.shape[1:]).copy()
+
+
+@contextmanager
+def _inflating(where: str) -> Iterator[None]:
+    try:
+        yield
+    except zlib.error as error:
+        raise FolderError(f"{where}: cannot be read, its gzip data are damaged ({error})") from None

@@ -1,0 +1,66 @@
+"""`--classes FILE`: foreign names of classes, and what they are called here."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from radhar_cli.config.reading import load_mapping
+from radhar_cli.errors import ConfigError, FolderError, did_you_mean
+from radhar_cli.learning.images.image_set import ImageSet
+
+
+def read_classes(path: Path) -> dict[str, str | None]:
+    """Read `foreign name: our name`, or `null` for a class to leave out.
+
+    Raises:
+        ConfigError: unreadable file, or a value that is no name.
+    """
+    names = load_mapping(path)
+    for foreign, ours in names.items():
+        if ours is not None and (not isinstance(ours, str) or not ours):
+            raise ConfigError(
+                f"{path}: {foreign} = {ours!r}: should be the name of a class, such as walking, or "
+                "null to leave it out"
+            )
+    return names
+
+
+def renamed(images: ImageSet, names: Mapping[str, str | None]) -> ImageSet:
+    """The images under the names of a file that is about them.
+
+    Raises:
+        FolderError: the file names a class that is not there, or leaves none.
+    """
+    for name in names:
+        if name not in images.classes:
+            hint = did_you_mean(name, images.classes, f"it has {', '.join(images.classes)}")
+            raise FolderError(f"{images.where}: has no class {name!r} (--classes); {hint}")
+    return images.renamed(names)
+
+
+def known_to(images: ImageSet, known: Sequence[str]) -> ImageSet:
+    """The images of the classes that a model knows.
+
+    Raises:
+        FolderError: it knows none of them.
+    """
+    unknown = [name for name in images.classes if name not in known]
+    if len(unknown) == len(images.classes):
+        hint = did_you_mean(unknown[0], known, f"the model knows {', '.join(known)}")
+        others = f", as are the other {len(unknown) - 1}" if unknown[1:] else ""
+        raise FolderError(
+            f"{images.where}: class {unknown[0]!r} is unknown to the model{others}; {hint}; "
+            "--classes FILE maps names"
+        )
+    return images.renamed(dict.fromkeys(unknown)) if unknown else images
+
+
+def unknown_message(images: ImageSet, names: Mapping[str, str | None]) -> str | None:
+    """What to say of images left out though nobody asked for it; None if there are none."""
+    unasked = {name: n for name, n in images.left_out.items() if name not in names}
+    if not unasked:
+        return None
+    listed = ", ".join(f"{name} ({n})" for name, n in unasked.items())
+    return (
+        f"{images.where}: left out {sum(unasked.values())} images of classes that the model does "
+        f"not know: {listed}; --classes FILE maps them, or ignores them with null"
+    )

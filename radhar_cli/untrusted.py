@@ -1,0 +1,90 @@
+"""What every reader of files from elsewhere needs: regular files alone, bounded JSON, safe text."""
+
+import errno
+import json
+import os
+import stat
+from pathlib import Path
+from typing import Any
+
+from radhar_cli.errors import FolderError
+
+DEEPEST = 32
+LARGEST_JSON = 2**20  # characters
+
+
+def regular_size(path: str | os.PathLike[str]) -> int:
+    """Size in bytes of a regular file; links are followed.
+
+    Raises:
+        OSError: there is none, or it is a folder, a FIFO, a socket or a device, which can block.
+    """
+    found = Path(path).stat()
+    if not stat.S_ISREG(found.st_mode):
+        kind = "a folder" if stat.S_ISDIR(found.st_mode) else "a FIFO, a socket or a device"
+        raise OSError(errno.EINVAL, f"is {kind}; should be a regular file", str(path))
+    return found.st_size
+
+
+def read_text(path: Path, most: int) -> str:
+    """A regular file of at most `most` bytes as UTF-8.
+
+    Raises:
+        OSError: it cannot be read, is larger, or is no regular file.
+        UnicodeDecodeError: it is not UTF-8.
+    """
+    regular_size(path)
+    with path.open("rb") as file:
+        data = file.read(most + 1)
+    if len(data) > most:
+        raise OSError(errno.EFBIG, f"holds more than {most} bytes", str(path))
+    return data.decode()
+
+
+def read_json(path: Path) -> Any:
+    """The content of a JSON file.
+
+    Raises:
+        FolderError: it is missing, damaged, or beyond the bounds of `parse_json`.
+    """
+    try:
+        return parse_json(read_text(path, LARGEST_JSON))
+    except (OSError, ValueError) as error:
+        told = getattr(error, "strerror", None) or error
+        raise FolderError(f"{path}: is damaged, or not radhar's ({told})") from None
+
+
+def parse_json(text: str) -> Any:
+    """JSON of bounded length and depth.
+
+    Raises:
+        ValueError: it is not JSON, too long, or nested too deeply.
+    """
+    if len(text) > LARGEST_JSON:
+        raise ValueError(f"it has {len(text)} characters; should have at most {LARGEST_JSON}")
+    try:
+        value = json.loads(text)
+        deep = _depth(value) > DEEPEST
+    except RecursionError:
+        deep = True
+    if deep:
+        raise ValueError(f"it is nested deeper than {DEEPEST} levels")
+    return value
+
+
+def _depth(value: Any) -> int:
+    if not isinstance(value, (dict, list)):
+        return 0
+    inner = value.values() if isinstance(value, dict) else value
+    return 1 + max(map(_depth, inner), default=0)
+
+
+def shown(text: object) -> str:
+    """Text for a terminal: whatever could steer it is escaped, line breaks aside.
+
+    ``\\x1b[2J`` becomes ``\\\\x1b[2J``; so do bidirectional marks and bytes that are not UTF-8.
+    """
+    return "".join(
+        c if c.isprintable() or c == "\n" else c.encode("unicode_escape").decode()
+        for c in str(text)
+    )

@@ -1,0 +1,120 @@
+"""`inspect` and `preview` of anyone's tree of class folders."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from typer.testing import CliRunner, Result
+
+from radhar_cli.cli import program
+from radhar_cli.errors import FolderError
+from radhar_cli.figures.contact_sheet import draw_image_sheet
+
+
+def radhar(*arguments: object) -> Result:
+    return CliRunner().invoke(program(), [str(argument) for argument in arguments])
+
+
+def picture(path: Path, size: tuple[int, int], colour: tuple[int, int, int]) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    Image.new("RGB", size[::-1], colour).save(path)
+
+
+@pytest.fixture
+def photos(tmp_path: Path) -> Path:
+    """Two classes in two splits, two formats, two sizes."""
+    root = tmp_path / "photos"
+    for number in range(3):
+        picture(root / f"train/cats/{number}.jpg", (40, 30), (200, 30, 30))
+        picture(root / f"train/big_dogs/{number}.png", (40, 30), (30, 200, 30))
+    picture(root / "val/big_dogs/a.png", (64, 64), (30, 30, 200))
+    return root
+
+
+def test_inspect_counts_classes_splits_and_sizes(photos: Path) -> None:
+    found = json.loads(radhar("inspect", photos, "--json").stdout)
+    assert found["kind"] == "tree of images"
+    assert found["samples"] == 7
+    assert found["bytes"] == sum(p.stat().st_size for p in photos.rglob("*.*"))
+    assert found["classes"] == {
+        "big_dogs": {"train": 3, "validation": 1, "test": 0},
+        "cats": {"train": 3, "validation": 0, "test": 0},
+    }
+    assert found["sizes"] == [
+        {"size": [40, 30], "images": 6},
+        {"size": [64, 64], "images": 1},
+    ]
+    table = " ".join(radhar("inspect", photos).stdout.split())
+    for word in ("7 images of 2 classes", "6 of 40 x 30 px", "big_dogs", "validation"):
+        assert word in table
+
+
+def test_inspect_of_a_tree_without_splits(photos: Path) -> None:
+    found = json.loads(radhar("inspect", photos / "train", "--json").stdout)
+    assert found["classes"] == {"big_dogs": {"images": 3}, "cats": {"images": 3}}
+
+
+def test_preview_shows_a_row_a_class_and_lies_beside_the_tree(photos: Path) -> None:
+    done = radhar("preview", photos, "--per-class", 2)
+    assert done.exit_code == 0, done.output
+    sheet = photos.parent / "preview_photos.png"
+    assert done.stdout.strip() == str(sheet)
+    assert sorted(p.name for p in photos.iterdir()) == ["train", "val"]
+    rgb = np.asarray(Image.open(sheet).convert("RGB")).astype(int)
+    green = np.flatnonzero((np.abs(rgb - (30, 200, 30)).sum(2) < 20).any(1))
+    red = np.flatnonzero((np.abs(rgb - (200, 30, 30)).sum(2) < 20).any(1))
+    assert green.size
+    assert red.size
+    assert green.max() < red.min(), "a row for each class, in the order of their names"
+    blue = np.abs(rgb - (30, 30, 200)).sum(2) < 20
+    assert not blue.any(), "two a class"
+
+
+def test_many_classes_stay_one_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for number in range(45):
+        picture(tmp_path / f"t/c{number:02d}/a.png", (8, 8), (9, 9, 9))
+    drawn: list[tuple[int, str]] = []
+    monkeypatch.setattr(
+        "radhar_cli.figures.contact_sheet.draw_image_sheet",
+        lambda classes, title, path: drawn.append((len(classes), title)),
+    )
+    assert radhar("preview", tmp_path / "t").exit_code == 0
+    assert drawn == [(40, "t: 45 images of 45 classes, the first 40 shown")]
+
+
+def test_names_are_no_formulas(tmp_path: Path) -> None:
+    """Dollar signs would be read as mathematics, and wrong mathematics is an error."""
+    rows = {"a $_$ b": [np.zeros((8, 8, 3), np.uint8)]}
+    draw_image_sheet(rows, "100 $^$", tmp_path / "sheet.png")
+    assert (tmp_path / "sheet.png").exists()
+
+
+def test_what_is_no_tree_is_named(tmp_path: Path, photos: Path) -> None:
+    (tmp_path / "empty").mkdir()
+    (photos / "train/cats/broken.png").write_bytes(b"no image")
+    for command, path, said in (
+        ("inspect", tmp_path / "empty", "holds no class folders with images"),
+        ("preview", tmp_path / "empty", "holds no class folders with images"),
+        ("inspect", photos, "broken.png: is no image"),
+    ):
+        error = radhar(command, path).exception
+        assert isinstance(error, FolderError)
+        assert said in str(error)
+
+
+def test_looking_at_images_needs_no_torch(photos: Path) -> None:
+    code = """
+import sys
+from typer.testing import CliRunner
+from radhar_cli.cli import program
+for command in ("inspect", "preview"):
+    done = CliRunner().invoke(program(), [command, sys.argv[1]])
+    assert done.exit_code == 0, done.output
+assert "torch" not in sys.modules
+"""
+    done = subprocess.run([sys.executable, "-c", code, str(photos)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr

@@ -1,0 +1,128 @@
+"""SIGTERM ends a command as Ctrl-C does: what is finished is kept, workers end, status 143."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from learning.patterns import BASE, same_run, split_tree, trained
+from small import SMALL, small_config
+from typer.testing import CliRunner
+
+from radhar_cli.cli import main, program
+from radhar_cli.commands.terminal import BarProgress
+from radhar_cli.commands.training_view import TrainingView
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+TERMINATED = 143
+
+
+@pytest.fixture(autouse=True)
+def handlers() -> Iterator[None]:
+    """`main` sets handlers for good."""
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
+def status(monkeypatch: pytest.MonkeyPatch, *arguments: object) -> object:
+    """Exit status of the program in this process."""
+    monkeypatch.setattr(sys, "argv", ["radhar", *map(str, arguments)])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    return ended.value.code
+
+
+def terminate(*_: object) -> None:
+    signal.raise_signal(signal.SIGTERM)
+
+
+def test_train_keeps_the_last_epoch_and_goes_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data = split_tree(tmp_path / "tree")
+    (tmp_path / "train.json").write_text(json.dumps({**BASE, "epochs": 2}))
+    command = ["train", data, "-o", tmp_path / "run", "--config", tmp_path / "train.json"]
+    with monkeypatch.context() as patched:
+        patched.setattr(TrainingView, "epoch_done", terminate)
+        assert status(patched, *command) == TERMINATED
+    said = capsys.readouterr().err
+    assert f"terminated: the last finished epoch in {tmp_path / 'run'} is kept" in said
+    assert "Traceback" not in said
+    again = CliRunner().invoke(program(), [str(word) for word in command])
+    assert again.exit_code == 0, again.output
+    assert "going on: 1 of 2 epochs are done" in again.stderr
+    trained(data, tmp_path / "whole", epochs=2)
+    assert same_run(tmp_path / "run", tmp_path / "whole")
+
+
+def test_tradeoff_says_what_is_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(BarProgress, "stage", terminate)
+    command = ["tradeoff", small_config(tmp_path), "-o", tmp_path / "out", "--quick"]
+    assert status(monkeypatch, *command) == TERMINATED
+    assert f"terminated: what is measured in {tmp_path / 'out'} is kept" in capsys.readouterr().err
+
+
+def processes(group: int) -> dict[int, bytes]:
+    """Command lines of a group's processes, but of those that have ended and wait to be buried."""
+    found = {}
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = stat.read_text().rpartition(")")[2].split()
+            line = (stat.parent / "cmdline").read_bytes()
+        except OSError:
+            continue
+        if int(fields[2]) == group and fields[0] != "Z":
+            found[int(stat.parent.name)] = line
+    return found
+
+
+def wait_for(done: Callable[[], bool], run: subprocess.Popen[str]) -> None:
+    while run.poll() is None and not done():
+        time.sleep(0.01)
+
+
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="needs /proc")
+def test_generate_ends_with_its_workers_and_keeps_its_shards(tmp_path: Path) -> None:
+    """The workers leave it to their master: batch systems and `timeout` signal all of a group."""
+    text = SMALL.replace("samples_per_class: 3", "samples_per_class: 60\nengine: {kind: cube}")
+    config, folder = small_config(tmp_path, text), tmp_path / "set"
+    command = [sys.executable, "-m", "radhar_cli", "generate", str(config), "-o", str(folder)]
+    run = subprocess.Popen(
+        [*command, "--jobs", "2", "--batch", "1"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        start_new_session=True,
+    )
+
+    def shards() -> int:
+        return len(list((folder / ".radhar/shards").glob("*.h5")))
+
+    wait_for(lambda: shards() > 0, run)
+    workers = [pid for pid, line in processes(run.pid).items() if b"popen_loky" in line]
+    assert len(workers) == 2
+    for worker in workers:
+        os.kill(worker, signal.SIGTERM)
+    seen = shards()
+    wait_for(lambda: shards() > seen + 2, run)
+    os.kill(run.pid, signal.SIGTERM)
+    output = run.communicate()[0]
+    assert run.returncode == TERMINATED, output
+    assert output.strip().splitlines()[-1] == (
+        f"terminated: what is finished in {folder} is kept; the same command goes on"
+    )
+    assert "Traceback" not in output
+    assert shards() > seen
+    deadline = time.monotonic() + 60
+    while processes(run.pid) and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert not processes(run.pid)

@@ -1,0 +1,61 @@
+"""What holds for all tests: the same examples on any machine, order on request, memory measured."""
+
+import resource
+import signal
+import sys
+from collections.abc import Iterable
+
+import pytest
+from hypothesis import HealthCheck, settings
+
+# Neither chance nor the speed of the machine decides.
+settings.register_profile(
+    "repeatable",
+    derandomize=True,
+    database=None,
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow],
+)
+settings.load_profile("repeatable")
+
+PEAKS: dict[str, float] = {}
+
+
+# A run in the background ignores Ctrl-C, and so would the programs that its tests start.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--reverse", action="store_true", help="run the tests in reverse order")
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    if config.getoption("--reverse"):
+        items.reverse()
+
+
+def peak_mib() -> float:
+    """Largest resident memory of this process so far; Linux counts in KiB, macOS in bytes."""
+    unit = 2**20 if sys.platform == "darwin" else 2**10
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / unit
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    if hasattr(session.config, "workeroutput"):
+        session.config.workeroutput["peak_mib"] = peak_mib()
+    elif not PEAKS:
+        PEAKS["this process"] = peak_mib()
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: object, error: object) -> None:
+    gateway, found = getattr(node, "gateway", None), getattr(node, "workeroutput", {})
+    if gateway is not None and "peak_mib" in found:
+        PEAKS[gateway.id] = found["peak_mib"]
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    peaks: Iterable[str] = (f"{name} {peak:.0f} MiB" for name, peak in sorted(PEAKS.items()))
+    terminalreporter.write_line(f"peak memory: {', '.join(peaks)}")

@@ -1,0 +1,126 @@
+"""A shard says what it holds, and no other content passes for it."""
+
+import io
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from small import small_config
+
+from radhar_cli.config import Config, load_config
+from radhar_cli.dataset import scene_fields
+from radhar_cli.dataset.identity import identity, identity_hash
+from radhar_cli.dataset.sample import MapImage
+from radhar_cli.dataset.shards import (
+    ForeignShardError,
+    Shard,
+    ShardError,
+    check_shards,
+    encode_shard,
+    listed_shards,
+    missing_and_repeated,
+    require_tiling,
+    shard_of,
+    write_shard,
+)
+from radhar_cli.errors import UnfinishedError
+
+
+@pytest.fixture(scope="module")
+def config(tmp_path_factory: pytest.TempPathFactory) -> Config:
+    return load_config(small_config(tmp_path_factory.mktemp("config")), ["maps=[stft]"])
+
+
+def stub(config: Config, start: int, stop: int) -> bytes:
+    """A shard whose level is the row's number everywhere."""
+    size = config.image.size_px
+    samples = [
+        {"stft": MapImage(np.full(size, row, np.uint8), float(row), (0.0, 1.0, 2.0, 3.0))}
+        for row in range(start, stop)
+    ]
+    values = np.full((stop - start, len(scene_fields.fields(config))), float(start))
+    return encode_shard(config, start, samples, values)
+
+
+def whose(config: Config) -> str:
+    return identity_hash(identity(config))
+
+
+def test_what_was_stored_is_read_and_hdf5(config: Config, tmp_path: Path) -> None:
+    write_shard(tmp_path, 4, 7, stub(config, 4, 7))
+    shard = shard_of(tmp_path, 4, 7)
+    data, checksum = shard.read(whose(config))
+    assert checksum.encode() in data[:512]
+    for source in (shard.path, io.BytesIO(data)):
+        with h5py.File(source) as file:
+            assert file["maps/stft"][:, 0, 0].tolist() == [4, 5, 6]
+            assert file["entropy/stft"][:].tolist() == [4, 5, 6]
+
+
+def test_every_changed_or_missing_byte_is_found(config: Config, tmp_path: Path) -> None:
+    right = stub(config, 0, 2)
+    shard = shard_of(tmp_path, 0, 2)
+    places = {*range(0, 220, 7), *range(220, len(right), 499), len(right) - 1}
+    for place in sorted(places):
+        wrong = bytearray(right)
+        wrong[place] ^= 1
+        write_shard(tmp_path, 0, 2, bytes(wrong))
+        with pytest.raises(ShardError):
+            shard.read(whose(config))
+        write_shard(tmp_path, 0, 2, right[:place])
+        with pytest.raises(ShardError):
+            shard.read(whose(config))
+
+
+def test_why_a_shard_cannot_be_used(config: Config, tmp_path: Path) -> None:
+    shard = shard_of(tmp_path, 0, 2)
+    with pytest.raises(ShardError, match="is not there"):
+        shard.read(whose(config))
+    shard.path.mkdir(parents=True)
+    with pytest.raises(ShardError, match="is not there"):
+        shard.read(whose(config))
+    shard.path.rmdir()
+    write_shard(tmp_path, 0, 2, stub(config, 2, 4))
+    with pytest.raises(ShardError, match="holds rows 2 to 3"):
+        shard.read(whose(config))
+    other = config.model_copy(update={"seed": 8})
+    write_shard(tmp_path, 0, 2, stub(other, 0, 2))
+    with pytest.raises(ForeignShardError, match="another data set"):
+        shard.read(whose(config))
+    assert shard.read(whose(other))
+
+
+def test_of_two_shards_with_the_same_rows_one_is_gone_on_from(
+    config: Config, tmp_path: Path
+) -> None:
+    for start, stop in ((0, 4), (2, 6), (4, 6), (8, 9)):
+        write_shard(tmp_path, start, stop, stub(config, start, stop))
+    shard_of(tmp_path, 6, 8).path.write_bytes(b"half")
+    (shard_of(tmp_path, 0, 4).path.parent / "notes.txt").write_text("mine")
+    sound, unusable = check_shards(listed_shards(tmp_path), whose(config))
+    assert [(s.start, s.stop) for s in sound] == [(0, 4), (4, 6), (8, 9)]
+    assert [(s.start, s.stop) for s, _ in unusable] == [(6, 8)]
+
+
+def shards(*runs: tuple[int, int]) -> list[Shard]:
+    return [Shard(start, stop, Path(f"{start}")) for start, stop in runs]
+
+
+def test_missing_and_repeated_rows() -> None:
+    assert missing_and_repeated(shards((4, 6), (0, 4)), 6) == ([], [])
+    assert missing_and_repeated(shards((2, 4), (6, 8)), 9) == ([(0, 2), (4, 6), (8, 9)], [])
+    assert missing_and_repeated(shards((0, 6), (2, 4), (5, 9)), 9) == ([], [(2, 4), (5, 6)])
+    assert missing_and_repeated([], 3) == ([(0, 3)], [])
+
+
+def test_gaps_and_overlaps_are_refused_and_their_rows_named(tmp_path: Path) -> None:
+    require_tiling(tmp_path, shards((0, 4), (4, 9)), 9)
+    with pytest.raises(UnfinishedError, match=r"rows 2-3, 8 \(3 of 9\) are missing"):
+        require_tiling(tmp_path, shards((0, 2), (4, 8)), 9)
+    with pytest.raises(UnfinishedError, match=r"rows 3 \(1 of 9\) are more than once"):
+        require_tiling(tmp_path, shards((0, 4), (3, 9)), 9)
+    every_other = shards(*((row, row + 1) for row in range(1, 1000, 2)))
+    with pytest.raises(UnfinishedError, match=r"rows 0, 2, .*18, \.\.\. \(500 of 1000\)") as caught:
+        require_tiling(tmp_path, every_other, 1000)
+    assert len(str(caught.value)) < 250 + len(str(tmp_path))

@@ -1,0 +1,50 @@
+"""What files say reaches the terminal as text, not as commands to it."""
+
+import pytest
+
+from radhar_cli.commands.learning_options import Speaker
+from radhar_cli.commands.summary_view import print_summary
+from radhar_cli.commands.tell import tell
+from radhar_cli.commands.terminal import BarProgress
+from radhar_cli.untrusted import shown
+
+HOSTILE = "a\x1b[2J\x9b31m\r\x08\x07\u202e\udcff[red]b[/] :smile:\nc"
+ESCAPED = r"a\x1b[2J\x9b31m\r\x08\x07\u202e\udcff[red]b[/] :smile:"
+
+
+def test_what_steers_a_terminal_is_escaped_and_what_is_text_stays() -> None:
+    assert shown(HOSTILE) == ESCAPED + "\nc"
+    assert shown("Größe 漢字 █ ▁ µ λ²") == "Größe 漢字 █ ▁ µ λ²"
+
+
+@pytest.mark.parametrize("say", [tell, Speaker().say, BarProgress().say])
+def test_messages_are_escaped(say: object, capsys: pytest.CaptureFixture[str]) -> None:
+    say(HOSTILE)  # type: ignore[operator]
+    printed = capsys.readouterr()
+    assert ESCAPED + "\nc\n" in printed.out + printed.err
+    assert "\x1b" not in printed.out + printed.err
+
+
+def test_a_stored_scene_and_data_set_are_shown_escaped(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "200")
+    common = {"path": HOSTILE, "seed": HOSTILE, "maps": {HOSTILE: [2, 3]}, "warnings": [HOSTILE]}
+    scene = {
+        **{"kind": "scene", "activity": {"label": HOSTILE, "slug": HOSTILE}, "joint": HOSTILE},
+        **{"engine": HOSTILE, "entropy_bits": {HOSTILE: 1.0}},
+        **{"parameters": {HOSTILE: 1.0}, "derived": {}},
+    }
+    drawn = {"unit": HOSTILE, "min": 0, "mean": 1, "max": 2, "samples": 3, "counts": [1, 2]}
+    data = {
+        **{"kind": "data set", "samples": 1, "bytes": 1, "config_hash": HOSTILE},
+        **{"versions": {HOSTILE: HOSTILE}, "classes": {HOSTILE: {"train": 1, "b": 2, "c": 3}}},
+        **{"entropy_bits": {HOSTILE: {HOSTILE: {"mean": 1.0}}}, "drawn": {HOSTILE: drawn}},
+        "warnings": [{"message": HOSTILE}],
+    }
+    for summary in (scene, data):
+        print_summary({**common, **summary})
+        out = capsys.readouterr().out
+        assert all(c.isprintable() or c == "\n" for c in out), ascii(out)
+        assert f"warning {ESCAPED}\\nc" in out
+        assert "[red]b[/] :smile:" in out

@@ -20,7 +20,6 @@ from typing import Any
 
 import numpy as np
 from radhar_cli.pipeline.axes import axes_of
-from radhar_cli.scene import Scene, draw_scene
 
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.config import MAP_NAMES, Config, load_config
@@ -40,6 +39,7 @@ from radhar_cli.processing.doppler_compensation import compensate
 from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.image import levels
 from radhar_cli.processing.range_compression import range_bins, range_power
+from radhar_cli.scene import Scene, draw_scene
 
 ROOT = Path(__file__).resolve().parents[1]
 PAPER = ROOT / "configs/paper/free_space.yaml"

@@ -15,6 +15,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from listener import Listener
+from radhar_cli.pipeline.survey import Drawn
 from small import fingerprint, small_config
 
 from radhar_cli.activity import Activity
@@ -26,7 +27,6 @@ from radhar_cli.dataset.sample import MapImage
 from radhar_cli.dataset.shards import listed_shards, shard_folder
 from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import UnfinishedError
-from radhar_cli.pipeline.survey import Drawn
 from radhar_cli.scene import Scene
 
 KINDS = {"wall": False, "half_band": False, "aliasing": False}

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from radhar_cli.config.schema import SavgolConfig
 from radhar_cli.processing.mti import mti
 
 from radhar_cli.config import Config
 from radhar_cli.config.reading import validated
+from radhar_cli.config.schema import SavgolConfig
 from radhar_cli.errors import ConfigError
 from radhar_cli.processing import fsst, image, stft
 from radhar_cli.processing.denoising import savgol

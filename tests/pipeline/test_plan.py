@@ -4,9 +4,9 @@ from math import floor
 
 import numpy as np
 import pytest
+from radhar_cli.body.pose import Body
 
 from radhar_cli.activity import activity_named
-from radhar_cli.body.pose import Body
 from radhar_cli.config.schema import MAP_NAMES, Config
 from radhar_cli.pipeline.plan import Plan, plan, plan_images
 from radhar_cli.pipeline.run import run

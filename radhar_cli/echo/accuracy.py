@@ -20,13 +20,13 @@ from radhar_cli.radar.waveform import Waveform
 
 # Six-point interpolation errs by the sixth power of the spacing; this one made -114 dB or less of
 # every activity at 77 GHz.
-SPACING_DB = -150.0
+SPACING_DB = -140.0
 PER_SECOND, PER_CYCLE, AMPLITUDE_CHANGE, PHASE_CHANGE = 400.0, 200.0, 0.05, 0.05
 # Cubic Hermite cells err by the fourth power of their width: -48 dB at 4 a fast-time sample.
 TABLE_DB = -48.0
-SINGLE_DB = -120.0
+SINGLE_DB = -130.0
 # Settings aim below the tolerance, and are taken if the measured error is below it by SPARE.
-MARGIN_DB, SPARE_DB, FINEST_DB = 15.0, 10.0, -220.0
+MARGIN_DB, SPARE_DB, REFINE_DB, FINEST_DB = 25.0, 10.0, 30.0, -220.0
 PROBES = 64
 
 

@@ -17,6 +17,7 @@ from radhar_cli.arrays import Bool, Complex, Float, Index
 from radhar_cli.echo.accuracy import (
     FINEST_DB,
     MARGIN_DB,
+    REFINE_DB,
     SPARE_DB,
     AccuracyError,
     Settings,
@@ -91,6 +92,8 @@ class DirectEcho:
         aim, best = self._aim, 0.0
         chosen, motion = self._settings(aim), self._motion
         while True:
+            # Paths at every pulse cost so much that single precision saves nothing.
+            chosen = chosen._replace(single=chosen.single and motion.step > 1)
             unit = 2.0 ** frexp(motion.largest)[1]
             y = self._sum(chosen, motion, unit)
             error = measured_db(y, self.source, self.waveform, self.canceller, unit)
@@ -98,12 +101,9 @@ class DirectEcho:
             if error <= self.tolerance_db - SPARE_DB:
                 y *= unit
                 return y, Accuracy(motion.step, *chosen[1:], error)
-            if chosen.single:
-                chosen = chosen._replace(single=False)
-                continue
             if aim == FINEST_DB:
                 raise AccuracyError(best + SPARE_DB)
-            aim = max(aim - max(2 * MARGIN_DB, error - self.tolerance_db), FINEST_DB)
+            aim = max(aim - max(REFINE_DB, error - self.tolerance_db), FINEST_DB)
             chosen = self._settings(aim)._replace(single=False)
             motion = resolve(self.source, self.waveform, chosen.spacing)
 
@@ -180,30 +180,27 @@ def _interpolated_sum(
     weights = lagrange_weights(step).T.astype(real)  # [step, TAPS]
     to_phase = weights.copy()
     to_phase[:, REACH] = 1
-    total = np.zeros((step, shift.size), dtype=complex)
+    total = np.zeros(step * shift.size, dtype=complex)
     count = max(1, BLOCK // total.size)
     for path in range(0, terms.shape[1], count):
-        values = stencils(terms[:, path : path + count], shift)  # [TAPS, 3, i, segments]
-        anchor = values[REACH, 0].copy()
-        values[:, 0] -= anchor
-        values[REACH, 0] = anchor - np.rint(anchor)
-        dense = np.empty((step, *values.shape[1:]), dtype=real)
-        rounded = values.astype(real)
-        for w, some in ((to_phase, slice(0, 1)), (weights, slice(1, 3))):
-            part = (w @ rounded[:, some].reshape(TAPS, -1)).reshape(step, -1, *values.shape[2:])
-            dense[:, some] = part
-        total += _phasor_sum(dense[:, 0], dense[:, 1], dense[:, 2])
-    return total
+        values = stencils(terms[:, path : path + count], shift)  # [3, i, TAPS, segments]
+        anchor = values[0, :, REACH].copy()
+        values[0] -= anchor[:, None]
+        values[0, :, REACH] = anchor - np.rint(anchor)
+        phase, re, im = values.astype(real)
+        dense = to_phase @ phase, weights @ re, weights @ im  # [i, step, segments] each
+        total += _phasor_sum(*(part.reshape(len(part), -1) for part in dense))
+    return total.reshape(step, -1)
 
 
 def _phasor_sum(cycles: Real, re: Real, im: Real) -> Complex:
-    """sum_i (re + j im) exp(-j 2 pi cycles) over the last axis but one."""
-    angle = cycles - np.rint(cycles)
-    angle *= angle.dtype.type(2 * np.pi)
-    cos, sin = np.cos(angle), np.sin(angle)
-    total = np.empty(angle.shape[:-2] + angle.shape[-1:], dtype=complex)
-    total.real = np.einsum("...im,...im->...m", re, cos) + np.einsum("...im,...im->...m", im, sin)
-    total.imag = np.einsum("...im,...im->...m", im, cos) - np.einsum("...im,...im->...m", re, sin)
+    """sum_i (re + j im) exp(-j 2 pi cycles) [M] of [I, M] each; the cycles are spent."""
+    cycles -= np.rint(cycles)
+    cycles *= cycles.dtype.type(2 * np.pi)
+    cos, sin = np.cos(cycles), np.sin(cycles, out=cycles)
+    total = np.empty(cycles.shape[1], dtype=complex)
+    total.real = np.einsum("im,im->m", re, cos) + np.einsum("im,im->m", im, sin)
+    total.imag = np.einsum("im,im->m", im, cos) - np.einsum("im,im->m", re, sin)
     return total
 
 

@@ -17,6 +17,7 @@ from radhar_cli.radar.waveform import Waveform
 MAX_CELLS = 2**22  # of a table, 64 bytes each
 
 
+@lru_cache(maxsize=4)
 def weights(waveform: Waveform) -> Complex:
     """D[n] [N_ADC]: what range compression and the sum over bins do to fast-time sample n."""
     n = np.arange(waveform.n_adc) - waveform.n0

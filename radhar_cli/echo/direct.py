@@ -40,7 +40,7 @@ from radhar_cli.radar.noise import circular_gaussian
 from radhar_cli.radar.waveform import Waveform
 
 BLOCK = 2**16  # values at work at once: they stay in the cache
-BLOCK_SEGMENTS = 2048
+BLOCK_SEGMENTS = 512
 
 Real = NDArray[np.floating]
 
@@ -134,21 +134,22 @@ class DirectEcho:
         """Fill y with the sum of the paths at the pulses of these knots."""
         real = np.float32 if chosen.single else np.float64
         terms = self._terms(knots.paths, kept, unit, chosen.table_oversampling)
+        parts = y.view(float).reshape(-1, 2).T  # Re and Im of y
         if knots.step == 1:
             size = max(1, BLOCK // terms.shape[1])
             for start in range(0, y.size, size):
-                part = terms[..., start : start + size]
-                y[start : start + size] = _phasor_sum(*part.astype(real))
+                part = terms[..., start : start + size].astype(real)
+                parts[:, start : start + size] = _phasor_sum(*part)
             return
-        dense = np.empty((knots.step, knots.shift.size), dtype=complex)
         for start in range(0, knots.shift.size, BLOCK_SEGMENTS):
             shift = knots.shift[start : start + BLOCK_SEGMENTS]
             part = terms[..., start : start + shift.size + BEFORE + AFTER]
-            dense[:, start : start + shift.size] = _interpolated_sum(part, shift, knots.step, real)
-        y[:] = dense.T.reshape(-1)[: y.size]
+            dense = _interpolated_sum(part, shift, knots.step, real).swapaxes(1, 2).reshape(2, -1)
+            here = parts[:, start * knots.step : (start + BLOCK_SEGMENTS) * knots.step]
+            here[:] = dense[:, : here.shape[1]]
         if knots.exact_pulses.size:
             exact = self._terms(knots.exact, kept, unit, chosen.table_oversampling)
-            y[knots.exact_pulses - knots.pulses[0]] = _phasor_sum(*exact)
+            parts[:, knots.exact_pulses - knots.pulses[0]] = _phasor_sum(*exact)
 
     def _terms(self, paths: Paths, kept: Bool, unit: float, oversampling: int) -> Float:
         """Phase f0 tau (cycles), Re and Im of A G over the unit: [3, I, M] of the kept paths."""
@@ -165,8 +166,8 @@ class DirectEcho:
 
 def _interpolated_sum(
     terms: Float, shift: Index, step: int, real: type[np.floating]
-) -> Complex:
-    """sum_i (re + j im) exp(-j 2 pi phase) at the pulses of some segments [step, segments].
+) -> Float:
+    """Re and Im of sum_i (re + j im) exp(-j 2 pi phase) at the pulses [2, step, segments].
 
     Phases are interpolated as differences from the segment's first knot: they keep their digits
     in float32.
@@ -180,27 +181,28 @@ def _interpolated_sum(
     weights = lagrange_weights(step).T.astype(real)  # [step, TAPS]
     to_phase = weights.copy()
     to_phase[:, REACH] = 1
-    total = np.zeros(step * shift.size, dtype=complex)
-    count = max(1, BLOCK // total.size)
+    envelope = terms[1:].astype(real)
+    total = np.zeros((2, step * shift.size))
+    count = max(1, BLOCK // total.shape[1])
     for path in range(0, terms.shape[1], count):
-        values = stencils(terms[:, path : path + count], shift)  # [3, i, TAPS, segments]
-        anchor = values[0, :, REACH].copy()
-        values[0] -= anchor[:, None]
-        values[0, :, REACH] = anchor - np.rint(anchor)
-        phase, re, im = values.astype(real)
-        dense = to_phase @ phase, weights @ re, weights @ im  # [i, step, segments] each
-        total += _phasor_sum(*(part.reshape(len(part), -1) for part in dense))
-    return total.reshape(step, -1)
+        phase = stencils(terms[0, path : path + count], shift)  # [i, TAPS, segments]
+        anchor = phase[:, REACH].copy()
+        phase -= anchor[:, None]
+        phase[:, REACH] = anchor - np.rint(anchor)
+        cycles = (to_phase @ phase.astype(real)).reshape(len(phase), -1)  # [i, step segments]
+        re, im = weights @ stencils(envelope[:, path : path + count], shift)
+        total += _phasor_sum(cycles, re.reshape(cycles.shape), im.reshape(cycles.shape))
+    return total.reshape(2, step, -1)
 
 
-def _phasor_sum(cycles: Real, re: Real, im: Real) -> Complex:
-    """sum_i (re + j im) exp(-j 2 pi cycles) [M] of [I, M] each; the cycles are spent."""
+def _phasor_sum(cycles: Real, re: Real, im: Real) -> Real:
+    """Re and Im of sum_i (re + j im) exp(-j 2 pi cycles) [2, M], of [I, M]; cycles are spent."""
     cycles -= np.rint(cycles)
     cycles *= cycles.dtype.type(2 * np.pi)
     cos, sin = np.cos(cycles), np.sin(cycles, out=cycles)
-    total = np.empty(cycles.shape[1], dtype=complex)
-    total.real = np.einsum("im,im->m", re, cos) + np.einsum("im,im->m", im, sin)
-    total.imag = np.einsum("im,im->m", im, cos) - np.einsum("im,im->m", re, sin)
+    total = np.empty((2, cycles.shape[1]), dtype=cycles.dtype)
+    np.add(np.einsum("im,im->m", re, cos), np.einsum("im,im->m", im, sin), out=total[0])
+    np.subtract(np.einsum("im,im->m", im, cos), np.einsum("im,im->m", re, sin), out=total[1])
     return total
 
 

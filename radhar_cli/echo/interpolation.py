@@ -8,7 +8,11 @@ from functools import lru_cache
 
 import numpy as np
 
+from numpy.typing import NDArray
+
 from radhar_cli.arrays import Float, Index
+
+Real = NDArray[np.floating]
 
 TAPS = 6
 REACH = TAPS // 2 - 1
@@ -63,7 +67,7 @@ def shifted_weights(shift: int) -> Float:
     return lagrange_basis(NODES + shift, NODES).T
 
 
-def stencils(knots: Float, shift: Index) -> Float:
+def stencils(knots: Real, shift: Index) -> Real:
     """Values [..., TAPS, segments] at the knots -2 .. 3 of every segment.
 
     Where the stencil is shifted, they are those of the polynomial through the shifted stencil.
@@ -74,7 +78,7 @@ def stencils(knots: Float, shift: Index) -> Float:
         shift: from `shifts` [segments].
     """
     first = BEFORE - REACH
-    found = np.empty((*knots.shape[:-1], TAPS, shift.size))
+    found = np.empty((*knots.shape[:-1], TAPS, shift.size), dtype=knots.dtype)
     for tap in range(TAPS):
         found[..., tap, :] = knots[..., first + tap : first + tap + shift.size]
     moved = np.flatnonzero((shift != 0) & (shift != EXACT))

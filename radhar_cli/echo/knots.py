@@ -12,6 +12,7 @@ from radhar_cli.radar.waveform import Waveform
 
 CHUNK_KNOTS = 32768
 MIN_KNOTS = 64  # in a recording
+GLANCE = 4
 MIN_STEP = 3  # fewer pulses from knot to knot are not worth interpolating
 
 
@@ -89,33 +90,38 @@ class Motion(NamedTuple):
 def resolve(source: PathSource, waveform: Waveform, spacing: Spacing) -> Motion:
     """Place knots that resolve the motion of a source: as far apart as the spacing allows."""
     step = int(min(waveform.prf // spacing.per_second, waveform.n_pulses // MIN_KNOTS))
-    if not source.smooth or step < MIN_STEP:
-        step = 1
+    if source.smooth and step >= MIN_STEP:  # a glance finds most of what the knots will ask for
+        glance = max(
+            _excess(knots.paths, waveform, spacing)
+            for knots in all_knots(source, waveform, GLANCE * step)
+        )
+        step = min(step, int(step * GLANCE / glance)) if glance > 0 else step
     while True:
+        step = step if source.smooth and step >= MIN_STEP else 1
         first, kept, moving, power, largest, excess = None, None, np.zeros(1, bool), 0.0, 0.0, 0.0
         for knots in all_knots(source, waveform, step):
             first, kept = first or knots.at_pulses, None if first else knots
             moving = moving | knots.moving(first)
             power += knots.power()
             largest = max(largest, float(knots.paths.amplitude.max(initial=0.0)))
-            excess = max(excess, _excess(knots.paths, waveform, spacing)) if step > 1 else 0.0
-        if excess <= 1:
+            excess = max(excess, _excess(knots.paths, waveform, spacing))
+        if step == 1 or excess <= 1:
             return Motion(step, moving, power / waveform.n_pulses, largest, kept)
         step = min(step - 1, int(step / excess))
-        step = step if step >= MIN_STEP else 1
 
 
 def _excess(paths: Paths, w: Waveform, spacing: Spacing) -> float:
     """The largest change from one knot to the next, in units of what the spacing allows."""
     a = paths.amplitude
-    least = np.minimum(a[:, 1:], a[:, :-1])
-    amplitude = np.abs(np.diff(a, axis=1)) / np.where(least > 0, least, np.inf)
+    change = np.abs(np.diff(a, axis=1))
+    change /= np.maximum(np.maximum(a[:, 1:], a[:, :-1]), np.finfo(float).tiny)
     # Referred to mid-chirp, the ends of the chirp, which turn fastest, weigh next to nothing.
     cycles = w.bandwidth / 4 if w.centred else w.bandwidth
-    phase = cycles * np.abs(np.diff(paths.delay, axis=1))
+    delay = np.diff(paths.delay, axis=1)
+    moved = max(float(delay.max(initial=0.0)), -float(delay.min(initial=0.0)))
     return max(
-        float(amplitude.max(initial=0.0)) / spacing.amplitude_change,
-        float(phase.max(initial=0.0)) / spacing.phase_change,
+        float(change.max(initial=0.0)) / spacing.amplitude_change,
+        cycles * moved / spacing.phase_change,
     )
 
 

@@ -27,7 +27,7 @@ TABLE_DB = -48.0
 SINGLE_DB = -130.0
 # Settings aim below the tolerance, and are taken if the measured error is below it by SPARE.
 MARGIN_DB, SPARE_DB, REFINE_DB, FINEST_DB = 25.0, 10.0, 30.0, -220.0
-PROBES = 64
+PROBES = 48
 
 
 class Settings(NamedTuple):

@@ -40,7 +40,7 @@ from radhar_cli.radar.noise import circular_gaussian
 from radhar_cli.radar.waveform import Waveform
 
 BLOCK = 2**16  # values at work at once: they stay in the cache
-BLOCK_SEGMENTS = 512
+BLOCK_SEGMENTS = 256
 
 Real = NDArray[np.floating]
 
@@ -131,34 +131,31 @@ class DirectEcho:
     def _sum_knots(
         self, chosen: Settings, knots: Knots, kept: Bool, unit: float, y: Complex
     ) -> None:
-        """Fill y with the sum of the paths at the pulses of these knots."""
+        """Add the sum of the paths at the pulses of these knots to y, some paths at a time."""
         real = np.float32 if chosen.single else np.float64
-        terms = self._terms(knots.paths, kept, unit, chosen.table_oversampling)
         parts = y.view(float).reshape(-1, 2).T  # Re and Im of y
-        if knots.step == 1:
-            size = max(1, BLOCK // terms.shape[1])
-            for start in range(0, y.size, size):
-                part = terms[..., start : start + size].astype(real)
-                parts[:, start : start + size] = _phasor_sum(*part)
-            return
-        for start in range(0, knots.shift.size, BLOCK_SEGMENTS):
-            shift = knots.shift[start : start + BLOCK_SEGMENTS]
-            part = terms[..., start : start + shift.size + BEFORE + AFTER]
-            dense = _interpolated_sum(part, shift, knots.step, real).swapaxes(1, 2).reshape(2, -1)
-            here = parts[:, start * knots.step : (start + BLOCK_SEGMENTS) * knots.step]
-            here[:] = dense[:, : here.shape[1]]
-        if knots.exact_pulses.size:
-            exact = self._terms(knots.exact, kept, unit, chosen.table_oversampling)
-            parts[:, knots.exact_pulses - knots.pulses[0]] = _phasor_sum(*exact)
+        moving = np.flatnonzero(kept)
+        count = max(1, BLOCK // knots.paths.delay.shape[1])
+        for start in range(0, moving.size, count):
+            some = moving[start : start + count]
+            terms = self._terms(knots.paths, some, unit, chosen.table_oversampling)
+            if knots.step == 1:
+                parts += _phasor_sum(terms[0], *terms[1:])
+                continue
+            dense = _interpolated_sum(terms, knots.shift, knots.step, real)
+            if knots.exact_pulses.size:
+                exact = self._terms(knots.exact, some, unit, chosen.table_oversampling)
+                dense[:, knots.exact_pulses - knots.pulses[0]] = _phasor_sum(exact[0], *exact[1:])
+            parts += dense[:, : y.size]
 
-    def _terms(self, paths: Paths, kept: Bool, unit: float, oversampling: int) -> Float:
-        """Phase f0 tau (cycles), Re and Im of A G over the unit: [3, I, M] of the kept paths."""
+    def _terms(self, paths: Paths, some: Index, unit: float, oversampling: int) -> Float:
+        """Phase 2 pi f0 tau, Re and Im of A G over the unit: [3, I, M] of some paths."""
         w = self.waveform
-        delay, amplitude = paths if kept.all() else (part[kept] for part in paths)
+        delay, amplitude = (part[some] for part in paths)
         g = half_band_table(w, oversampling)(w.slope / w.adc_rate * delay)
-        amplitude = amplitude / unit
+        amplitude /= unit
         terms = np.empty((3, *delay.shape))
-        terms[0] = start_phase(delay, w, w.f0)
+        np.multiply(start_phase(delay, w, w.f0), 2 * np.pi, out=terms[0])
         np.multiply(g.real, amplitude, out=terms[1])
         np.multiply(g.imag, amplitude, out=terms[2])
         return terms
@@ -167,7 +164,7 @@ class DirectEcho:
 def _interpolated_sum(
     terms: Float, shift: Index, step: int, real: type[np.floating]
 ) -> Float:
-    """Re and Im of sum_i (re + j im) exp(-j 2 pi phase) at the pulses [2, step, segments].
+    """Re and Im of sum_i (re + j im) exp(-j phase) at the pulses [2, segments * step].
 
     Phases are interpolated as differences from the segment's first knot: they keep their digits
     in float32.
@@ -181,28 +178,33 @@ def _interpolated_sum(
     weights = lagrange_weights(step).T.astype(real)  # [step, TAPS]
     to_phase = weights.copy()
     to_phase[:, REACH] = 1
+    total = np.zeros((2, step, shift.size))
     envelope = terms[1:].astype(real)
-    total = np.zeros((2, step * shift.size))
-    count = max(1, BLOCK // total.shape[1])
-    for path in range(0, terms.shape[1], count):
-        phase = stencils(terms[0, path : path + count], shift)  # [i, TAPS, segments]
-        anchor = phase[:, REACH].copy()
-        phase -= anchor[:, None]
-        phase[:, REACH] = anchor - np.rint(anchor)
-        cycles = (to_phase @ phase.astype(real)).reshape(len(phase), -1)  # [i, step segments]
-        re, im = weights @ stencils(envelope[:, path : path + count], shift)
-        total += _phasor_sum(cycles, re.reshape(cycles.shape), im.reshape(cycles.shape))
-    return total.reshape(2, step, -1)
+    for start in range(0, shift.size, BLOCK_SEGMENTS):
+        within = shift[start : start + BLOCK_SEGMENTS]
+        reach = slice(start, start + within.size + BEFORE + AFTER)
+        count = max(1, BLOCK // (step * within.size))
+        for path in range(0, terms.shape[1], count):
+            some = slice(path, path + count)
+            phase = stencils(terms[0, some, reach], within)  # [i, TAPS, segments]
+            anchor = phase[:, REACH].copy()
+            phase -= anchor[:, None]
+            phase[:, REACH] = np.mod(anchor, 2 * np.pi)
+            angle = to_phase @ phase.astype(real)  # [i, step, segments]
+            re, im = weights @ stencils(envelope[:, some, reach], within)
+            total[..., start : start + within.size] += _phasor_sum(angle, re, im)
+    return total.swapaxes(1, 2).reshape(2, -1)
 
 
-def _phasor_sum(cycles: Real, re: Real, im: Real) -> Real:
-    """Re and Im of sum_i (re + j im) exp(-j 2 pi cycles) [2, M], of [I, M]; cycles are spent."""
-    cycles -= np.rint(cycles)
-    cycles *= cycles.dtype.type(2 * np.pi)
-    cos, sin = np.cos(cycles), np.sin(cycles, out=cycles)
-    total = np.empty((2, cycles.shape[1]), dtype=cycles.dtype)
-    np.add(np.einsum("im,im->m", re, cos), np.einsum("im,im->m", im, sin), out=total[0])
-    np.subtract(np.einsum("im,im->m", im, cos), np.einsum("im,im->m", re, sin), out=total[1])
+def _phasor_sum(angle: Real, re: Real, im: Real) -> Real:
+    """Re and Im of sum_i (re + j im) exp(-j angle) [2, ...], of [I, ...]; angles are spent."""
+    shape = (len(angle), -1)
+    cos, sin = np.cos(angle).reshape(shape), np.sin(angle, out=angle).reshape(shape)
+    a, b = re.reshape(shape), im.reshape(shape)
+    total = np.empty((2, *angle.shape[1:]), dtype=angle.dtype)
+    x, y = total.reshape(2, -1)
+    np.add(np.einsum("im,im->m", a, cos), np.einsum("im,im->m", b, sin), out=x)
+    np.subtract(np.einsum("im,im->m", b, cos), np.einsum("im,im->m", a, sin), out=y)
     return total
 
 

@@ -90,10 +90,10 @@ class HalfBandTable:
         place = (u - turns) * size
         cell = np.minimum(place.astype(np.intp), size - 1)
         part = place - cell
-        value: Complex = self._powers[3].take(cell)
+        value: Complex = self._powers[3].take(cell, mode="clip")  # which is faster than "raise"
         for coefficients in self._powers[2::-1]:
             value *= part
-            value += coefficients.take(cell)
+            value += coefficients.take(cell, mode="clip")
         if self.waveform.n0 % 1:
             value *= 1 - 2 * np.mod(turns, 2)
         return value

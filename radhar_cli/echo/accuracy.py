@@ -5,6 +5,7 @@ size of a table and a precision; `measured_db` then compares the signal with the
 pulses.
 """
 
+from collections.abc import Callable
 from math import ceil, inf, log10
 from typing import NamedTuple
 
@@ -14,7 +15,7 @@ from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.echo.beat import BLOCK_SAMPLES
 from radhar_cli.echo.half_band_sum import MAX_CELLS, weights
 from radhar_cli.echo.knots import Spacing
-from radhar_cli.echo.paths import PathSource
+from radhar_cli.echo.paths import Paths
 from radhar_cli.echo.range_profiles import beat_at
 from radhar_cli.radar.waveform import Waveform
 
@@ -72,7 +73,11 @@ class AccuracyError(ValueError):
 
 
 def measured_db(
-    y: Complex, source: PathSource, waveform: Waveform, canceller: tuple[float, ...], unit: float
+    y: Complex,
+    source: Callable[[Float], Paths],
+    waveform: Waveform,
+    canceller: tuple[float, ...],
+    unit: float,
 ) -> float:
     """Relative L2 error (dB) of a slow-time signal after a canceller, estimated at some pulses.
 
@@ -116,7 +121,10 @@ def _power(y: Complex, canceller: tuple[float, ...]) -> Float:
 
 
 def _exact(
-    source: PathSource, waveform: Waveform, pulses: Index, canceller: tuple[float, ...]
+    source: Callable[[Float], Paths],
+    waveform: Waveform,
+    pulses: Index,
+    canceller: tuple[float, ...],
 ) -> Complex:
     """x at some pulses by way of the beat, a few of them at a time where chirps are long."""
     d, length = weights(waveform), max(1, BLOCK_SAMPLES // waveform.n_adc)

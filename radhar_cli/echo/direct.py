@@ -30,7 +30,6 @@ from radhar_cli.echo.interpolation import (
     AFTER,
     BEFORE,
     REACH,
-    TAPS,
     lagrange_weights,
     stencils,
 )
@@ -96,7 +95,8 @@ class DirectEcho:
             chosen = chosen._replace(single=chosen.single and motion.step > 1)
             unit = 2.0 ** frexp(motion.largest)[1]
             y = self._sum(chosen, motion, unit)
-            error = measured_db(y, self.source, self.waveform, self.canceller, unit)
+            exact = motion.at_pulses(self.source, self.waveform)
+            error = measured_db(y, exact, self.waveform, self.canceller, unit)
             best = min(best, error)
             if error <= self.tolerance_db - SPARE_DB:
                 y *= unit
@@ -161,9 +161,7 @@ class DirectEcho:
         return terms
 
 
-def _interpolated_sum(
-    terms: Float, shift: Index, step: int, real: type[np.floating]
-) -> Float:
+def _interpolated_sum(terms: Float, shift: Index, step: int, real: type[np.floating]) -> Float:
     """Re and Im of sum_i (re + j im) exp(-j phase) at the pulses [2, segments * step].
 
     Phases are interpolated as differences from the segment's first knot: they keep their digits

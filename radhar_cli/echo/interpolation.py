@@ -7,7 +7,6 @@ shifted to knots on its own side.
 from functools import lru_cache
 
 import numpy as np
-
 from numpy.typing import NDArray
 
 from radhar_cli.arrays import Float, Index

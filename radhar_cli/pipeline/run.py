@@ -19,6 +19,7 @@ from radhar_cli.config.experiment import Config
 from radhar_cli.echo import cube
 from radhar_cli.echo.accuracy import AccuracyError
 from radhar_cli.echo.direct import Accuracy, DirectEcho, slow_time_noise
+from radhar_cli.echo.knots import mean_power
 from radhar_cli.echo.range_profiles import beat_at, noise_at, shown_pulses
 from radhar_cli.errors import SceneError
 from radhar_cli.pipeline.body_paths import BodyPaths
@@ -158,14 +159,10 @@ def _canceller(r: Recording) -> tuple[float, ...]:
     return FIRST_DIFFERENCE if r.config.processing.mti else (1.0,)
 
 
-def _direct(r: Recording, paths: BodyPaths) -> DirectEcho:
-    engine = r.config.engine
+def _echo(r: Recording, stage: Stage) -> DirectEcho:
+    engine, paths = r.config.engine, r.products["paths"]
     double = engine.precision == "double"
     return DirectEcho(paths, r.waveform, engine.tolerance_db, double, _canceller(r))
-
-
-def _echo(r: Recording, stage: Stage) -> DirectEcho:
-    return _direct(r, r.products["paths"])
 
 
 def _signal_power(r: Recording, stage: Stage) -> float:
@@ -175,7 +172,7 @@ def _signal_power(r: Recording, stage: Stage) -> float:
     source = replace(paths, wall=None) if without_wall else paths
     if "echo" not in r.products:
         return cube.signal_power(source, r.waveform)
-    return (_direct(r, source) if without_wall else r.products["echo"]).signal_power()
+    return mean_power(source, r.waveform) if without_wall else r.products["echo"].signal_power()
 
 
 def _slow_time(r: Recording, stage: Stage) -> Complex:

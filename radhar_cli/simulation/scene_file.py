@@ -109,18 +109,16 @@ def _engine(simulation: Simulation) -> str:
 
 
 def _accuracy(simulation: Simulation) -> dict[str, Any] | None:
-    """What the direct engine chose, and the bounds of the error, null where there is none."""
-    settings = simulation.accuracy
-    if settings is None:
+    """Settings of the direct engine and its measured error; null of a scene without motion."""
+    accuracy = simulation.accuracy
+    if accuracy is None:
         return None
     return {
         "tolerance_db": simulation.config.engine.tolerance_db,
-        "kinematics_hz": simulation.waveform.prf / settings.step,
-        "table_oversampling": settings.table_oversampling,
-        "precision": "single" if settings.single else "double",
-        "bounds_db": {
-            name: bound if isfinite(bound) else None for name, bound in settings.bounds_db.items()
-        },
+        "error_db": accuracy.error_db if isfinite(accuracy.error_db) else None,
+        "kinematics_hz": simulation.waveform.prf / accuracy.step,
+        "table_oversampling": accuracy.table_oversampling,
+        "precision": "single" if accuracy.single else "double",
     }
 
 

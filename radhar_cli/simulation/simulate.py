@@ -12,8 +12,7 @@ from radhar_cli.body.skeleton import JOINTS
 from radhar_cli.config.experiment import MAP_NAMES, Config, MapName
 from radhar_cli.echo import cube
 from radhar_cli.echo.beat import beat_matrix
-from radhar_cli.echo.direct import DirectEcho
-from radhar_cli.echo.error_budget import DirectSettings
+from radhar_cli.echo.direct import Accuracy
 from radhar_cli.echo.static_returns import leakage, near_face_distance, wall_echo
 from radhar_cli.errors import ConfigError, SceneError, did_you_mean
 from radhar_cli.pipeline.axes import Axes, axes_of
@@ -76,7 +75,7 @@ class Simulation:
         truth: kinematics at every pulse.
         warnings: what lies outside the model, in words.
         seconds: {stage: time it took}.
-        accuracy: what the direct engine did for its error budget; None of the cube.
+        accuracy: settings and measured error of the direct engine; None of the cube.
         beat: raw echo [N_ADC, M] with static leakage and wall return, where asked for.
     """
 
@@ -90,7 +89,7 @@ class Simulation:
     paths: BodyPaths = field(repr=False)
     warnings: list[str]
     seconds: dict[str, float]
-    accuracy: DirectSettings | None = None
+    accuracy: Accuracy | None = None
     beat: Complex | None = None
 
     @property
@@ -136,6 +135,8 @@ def simulate(
     direct = ["echo"] if config.engine.kind == "direct" else []
     recording = run(plan(config, [*signals, *maps, *entropies, *direct]), scene, config, chosen)
     products = recording.products
+    why = recording.fallback
+    fallback = [f"computed by the cube (engine.fallback): {why}"] if why else []
     return Simulation(
         config=config,
         scene=scene,
@@ -145,21 +146,11 @@ def simulate(
         slow_time={name: products[f"signal:{which}"] for name, which in SIGNAL_NAMES.items()},
         truth=truth(products["paths"], recording.waveform),
         paths=products["paths"],
-        warnings=[*warnings, *_fallback(products.get("echo"))],
+        warnings=[*warnings, *fallback],
         seconds=recording.seconds,
-        accuracy=_accuracy(products.get("echo")),
+        accuracy=recording.accuracy,
         beat=raw_echo(recording) if raw else None,
     )
-
-
-def _accuracy(echo: DirectEcho | None) -> DirectSettings | None:
-    return None if echo is None or echo.beyond_reach else echo.settings
-
-
-def _fallback(echo: DirectEcho | None) -> list[str]:
-    if echo is None or not echo.beyond_reach:
-        return []
-    return [f"computed by the cube (engine.fallback): {echo.beyond_reach}"]
 
 
 def map_names(chosen: list[str] | None) -> tuple[MapName, ...]:

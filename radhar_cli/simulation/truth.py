@@ -48,8 +48,8 @@ def truth(paths: BodyPaths, waveform: Waveform) -> Truth:
     """Evaluate the kinematics of all 13 scatterers at every pulse."""
     t = waveform.times(np.arange(waveform.n_pulses, dtype=float))
     body = paths.body
-    through_air = BodyPaths(body, paths.antennas, paths.fc, None, True)
-    everything = BodyPaths(body, paths.antennas, paths.fc, paths.wall, True)
+    through_air = BodyPaths(body, paths.antennas, paths.fc, None)
+    everything = BodyPaths(body, paths.antennas, paths.fc, paths.wall)
     return Truth(
         time=t,
         positions=np.ascontiguousarray(body.positions(t).transpose(2, 1, 0)),

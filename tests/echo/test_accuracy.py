@@ -1,6 +1,5 @@
 """The promise of `tolerance_db`: never exceeded, refused only where it must be."""
 
-from dataclasses import asdict
 import numpy as np
 import pytest
 import reference as ref
@@ -91,9 +90,10 @@ def within(drawn: dict, activity: Activity, tolerance_db: float) -> float | None
     canceller = (-1.0, 1.0) if mti else (1.0,)
     try:
         y, accuracy = DirectEcho(paths, waveform, tolerance_db, canceller=canceller).slow_time()
-    except AccuracyError as error:
-        assert tolerance_db < -100, (activity.slug, waveform, error)
-        return None
+    except AccuracyError:
+        if tolerance_db < -100:
+            return None
+        raise
     found = np.diff(y) if mti else y
     if not right.any():
         assert not found.any()

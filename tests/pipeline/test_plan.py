@@ -268,8 +268,10 @@ def expected_work(config: Config, stages: list[str]) -> Counter:
         if "range_profiles" in stages:
             pulses += WIDTH * (2 if config.processing.mti else 1)
     torso = PULSES if "torso_track" in stages else 0
-    total["positions"], total["torso"] = pulses, torso
-    total["leg"] = 2 * (pulses + torso)
+    # The SNR refers to the power without the wall.
+    in_air = PULSES if config.wall is not None and "signal_power" in stages else 0
+    total["positions"], total["torso"] = pulses + in_air, torso
+    total["leg"] = 2 * (pulses + in_air + torso)
     if config.wall is not None:
         total["crossing"] = total["extra_delay"] = 2 * (pulses + torso)
         total["field_factor"] = 2 * pulses

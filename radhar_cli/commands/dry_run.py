@@ -10,8 +10,8 @@ def print_plan(config: Config, jobs: int) -> None:
     """Print stages with reasons, samples, bytes and time; write nothing."""
     plan, rows = plan_images(config), Rows.of(config)
     engine = config.engine
-    budget = f", error budget {engine.tolerance_db:g} dB" if engine.kind == "direct" else ""
-    print(f"stages of one sample ({engine.kind} engine{budget}):")
+    tolerance = f", tolerance {engine.tolerance_db:g} dB" if engine.kind == "direct" else ""
+    print(f"stages of one sample ({engine.kind} engine{tolerance}):")
     width = max(len(stage.name) for stage in plan.stages)
     for stage in plan.stages:
         readers = ", ".join(plan.wanted_by(stage.name)) or "the data set"

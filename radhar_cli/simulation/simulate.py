@@ -132,8 +132,7 @@ def simulate(
     chosen = None if joint is None else (_joint(joint),)
     entropies = [f"entropy:{name}" for name in maps]
     signals = [f"signal:{which}" for which in SIGNALS]
-    direct = ["echo"] if config.engine.kind == "direct" else []
-    recording = run(plan(config, [*signals, *maps, *entropies, *direct]), scene, config, chosen)
+    recording = run(plan(config, [*signals, *maps, *entropies]), scene, config, chosen)
     products = recording.products
     why = recording.fallback
     fallback = [f"computed by the cube (engine.fallback): {why}"] if why else []

@@ -20,14 +20,14 @@ class Sample(NamedTuple):
         power: the first map of the config.
         levels: its image.
         dynamic_range_db: of the image.
-        bounds: {term: bound of the direct engine, dB}.
+        measured_db: error of the signal that the direct engine measured itself, if it did.
     """
 
     signal: Complex
     power: Float
     levels: Levels
     dynamic_range_db: float
-    bounds: dict[str, float]
+    measured_db: float | None
 
 
 class SceneDifferences:
@@ -44,8 +44,9 @@ class SceneDifferences:
         if found.power.shape == right.power.shape:
             error, worst = map_error_db(found.power, right.power, right.dynamic_range_db)
             row |= {"map_error_db": error, "map_error_max_db": worst}
-        bounds = {f"{term}_bound_db": bound for term, bound in found.bounds.items()}
-        return row | image_scores(found.levels, right.levels) | bounds
+        if found.measured_db is not None:
+            row["measured_error_db"] = found.measured_db
+        return row | image_scores(found.levels, right.levels)
 
     def _sample(self, overrides: tuple[str, ...]) -> Sample:
         if overrides not in self._made:
@@ -56,15 +57,13 @@ class SceneDifferences:
         config = self._scenes.config((*overrides, QUIET))
         name = config.maps[0]
         asked = ["signal:plain", name, f"levels:{name}"]
-        if config.engine.kind == "direct":
-            asked.append("echo")
         scene = self._scenes.draw(self._slug, config)
-        products = run(plan(config, asked), scene, config).products
-        bounds = products["echo"].settings.bounds_db if "echo" in products else {}
+        recording = run(plan(config, asked), scene, config)
+        products, accuracy = recording.products, recording.accuracy
         return Sample(
             products["signal:plain"],
             products[name],
             products[f"levels:{name}"],
             config.image.dynamic_range_db,
-            bounds,
+            accuracy.error_db if accuracy else None,
         )

@@ -453,6 +453,7 @@ def scatterers(rounds: int, against: Path | None = None) -> dict[str, Any]:
             done = subprocess.run(
                 [sys.executable, "-c", _SCATTERERS],
                 env=os.environ | one_thread | {"PYTHONPATH": str(tree)},
+                cwd=tree,
                 capture_output=True,
                 text=True,
                 check=True,

@@ -1,6 +1,7 @@
 """What a sample costs, and against what: naive cube, cube engine, direct engine, the floor.
 
     python scripts/bench_generate.py [--rounds 5] [--json build/bench.json] [--only rows,maps,...]
+        [--against TREE]
 
 Every ratio comes from one run whose rows are interleaved; times are medians over the rounds.
 Scene: configs/paper/free_space.yaml, 4 s at 77 GHz, 256 x 256, noise on, PNG and HDF5 level 1,
@@ -9,6 +10,7 @@ one process.
 
 import argparse
 import json
+import os
 import subprocess
 import sys
 import tempfile
@@ -394,7 +396,90 @@ def dry_run(rounds: int) -> dict[str, Any]:
     return found
 
 
-SECTIONS = {"rows": rows, "maps": maps, "jobs": jobs, "memory": memory, "dry_run": dry_run}
+_SCATTERERS = """
+import json, sys
+from time import thread_time
+import numpy as np
+from radhar_cli.echo.direct import DirectEcho
+from radhar_cli.echo.paths import Paths
+from radhar_cli.process import prepare_process
+from radhar_cli.radar.waveform import Waveform
+
+class Walker:
+    # Points on four swinging limbs of two links each and on a trunk, seen from the origin.
+    kinks = breakpoints = ()
+    highest_frequency, smooth = 1.0, True
+
+    def __init__(self, points):
+        self.limb = np.arange(points) % 5
+        self.down = (np.arange(points) // 5 + 1) / (points // 5 + 1)
+
+    def __call__(self, t):
+        phase = 2 * np.pi * t + np.array([0, np.pi, np.pi, 0, 0])[:, None]
+        upper, lower = 0.5 * np.sin(phase), 0.5 * np.sin(phase) - 0.4 * (1 + np.cos(phase))
+        upper[4] = lower[4] = 0.02
+        us, uc, ls, lc = (f(v)[self.limb] for v in (upper, lower) for f in (np.sin, np.cos))
+        first, second = np.minimum(self.down, 0.5)[:, None], np.maximum(self.down - 0.5, 0)[:, None]
+        x = 2 + t + 0.9 * (first * us + second * ls)
+        z = -0.3 - 0.9 * (first * uc + second * lc)
+        y = np.array([-0.1, 0.1, -0.2, 0.2, 0])[self.limb][:, None]
+        r = np.sqrt(x * x + y * y + z * z)
+        a = 1e-3 / (r * r)
+        power = (np.einsum("im,im->m", a, a),) if "power" in Paths._fields else ()
+        return Paths(2 * r / 299_792_458.0, a, *power)
+
+prepare_process()
+waveform = Waveform(77e9, 4e9, 40e-6, 10e6, 5000.0, 4.0)
+found = {}
+for points in (13, 52, 208):
+    times = []
+    for _ in range(10):
+        start = thread_time()
+        DirectEcho(Walker(points), waveform, -80.0).slow_time()
+        times.append(thread_time() - start)
+    found[points] = 1e3 * min(times)
+print(json.dumps(found))
+"""
+
+
+def scatterers(rounds: int, against: Path | None = None) -> dict[str, Any]:
+    """Processor time of the direct echo of 20,000 pulses by scatterers: a line a + b n."""
+    trees = {"this": ROOT} | ({"against": against.resolve()} if against else {})
+    times: dict[str, list[list[float]]] = {name: [] for name in trees}
+    one_thread = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    for _ in range(rounds):
+        for name, tree in trees.items():
+            done = subprocess.run(
+                [sys.executable, "-c", _SCATTERERS],
+                env=os.environ | one_thread | {"PYTHONPATH": str(tree)},
+                cwd=tree,
+                capture_output=True,
+                text=True,
+                check=True,
+            )
+            times[name].append(list(json.loads(done.stdout).values()))
+    print("\ndirect echo of 13, 52, 208 scatterers, ms of processor time a sample")
+    found: dict[str, Any] = {}
+    for name, of_rounds in times.items():
+        ms = np.median(of_rounds, axis=0)
+        slope, start = np.polyfit([13, 52, 208], ms, 1)
+        found[name] = {"ms": ms.tolist(), "start_ms": start, "scatterer_ms": slope}
+        each = "".join(f"{value:9.2f}" for value in ms)
+        print(f"  {name:<10}{each}   = {start:.2f} + {slope:.4f} n")
+    if against:
+        found["ratio"] = found["this"]["scatterer_ms"] / found["against"]["scatterer_ms"]
+        print(f"  a further scatterer costs {found['ratio']:.2f} of what it does in {against}")
+    return found
+
+
+SECTIONS = {
+    "rows": rows,
+    "scatterers": scatterers,
+    "maps": maps,
+    "jobs": jobs,
+    "memory": memory,
+    "dry_run": dry_run,
+}
 
 
 def main() -> None:
@@ -404,9 +489,14 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--json", type=Path, default=Path("build/bench_generate.json"))
     parser.add_argument("--only", default=",".join(SECTIONS), help="sections, comma separated")
+    parser.add_argument("--against", type=Path, help="another tree of radhar, for `scatterers`")
     arguments = parser.parse_args()
     prepare_process()
-    found = {name: SECTIONS[name](arguments.rounds) for name in arguments.only.split(",")}
+    more = {"scatterers": {"against": arguments.against}}
+    found = {
+        name: SECTIONS[name](arguments.rounds, **more.get(name, {}))
+        for name in arguments.only.split(",")
+    }
     arguments.json.parent.mkdir(parents=True, exist_ok=True)
     arguments.json.write_text(json.dumps(found, indent=2))
     print(f"\n{arguments.json}")

@@ -11,8 +11,8 @@ def print_plan(config: Config, jobs: int) -> None:
     """Print stages with reasons, samples, bytes and time; write nothing."""
     plan, rows = plan_images(config), Rows.of(config)
     engine = config.engine
-    budget = f", error budget {engine.tolerance_db:g} dB" if engine.kind == "direct" else ""
-    tell(f"stages of one sample ({engine.kind} engine{budget}):")
+    tolerance = f", tolerance {engine.tolerance_db:g} dB" if engine.kind == "direct" else ""
+    tell(f"stages of one sample ({engine.kind} engine{tolerance}):")
     width = max(len(product.name) for product in plan.products)
     for product in plan.products:
         readers = ", ".join(plan.consumers(product.name)) or "the data set"

@@ -16,7 +16,7 @@ Overrides: TypeAlias = Annotated[
 ]
 Tolerance: TypeAlias = Annotated[
     float | None,
-    typer.Option(metavar="DB", help="Error budget of the direct engine, instead of the config's."),
+    typer.Option(metavar="DB", help="Tolerance of the direct engine, instead of the config's."),
 ]
 
 

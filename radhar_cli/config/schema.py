@@ -283,12 +283,12 @@ MAX_TOLERANCE_DB = -6.0
 
 
 class EngineConfig(Section):
-    """`cube` is the exact float64 reference; `direct` the closed form, within an error budget.
+    """`cube` is the exact float64 reference; `direct` the closed form, within a tolerance.
 
-    The budget is the relative L2 error (dB) of the noiseless slow-time signal after MTI against
-    the cube; the default is the tightest that costs nothing to speak of (docs/tradeoff.md). A
-    budget that `direct` cannot promise for a scene is refused, or the scene is computed by the cube
-    (`fallback: cube`). `motion_in_chirp` lets the paths of the cube go on moving during a chirp.
+    The tolerance is the relative L2 error (dB) of the noiseless slow-time signal after the
+    canceller against the cube, measured in every scene. Where `direct` does not reach it, the scene
+    is refused, or computed by the cube (`fallback: cube`). `motion_in_chirp` lets the paths of the
+    cube go on moving during a chirp.
     """
 
     kind: Literal["direct", "cube"] = "direct"

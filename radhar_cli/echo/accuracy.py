@@ -5,6 +5,7 @@ size of a table and a precision; `measured_db` then compares the signal with the
 pulses.
 """
 
+from collections.abc import Callable
 from math import ceil, inf, log10
 from typing import NamedTuple
 
@@ -14,20 +15,20 @@ from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.echo.beat import BLOCK_SAMPLES
 from radhar_cli.echo.half_band_sum import MAX_CELLS, weights
 from radhar_cli.echo.knots import Spacing
-from radhar_cli.echo.paths import PathSource
+from radhar_cli.echo.paths import Paths
 from radhar_cli.echo.range_profiles import beat_at
 from radhar_cli.radar.waveform import Waveform
 
 # Six-point interpolation errs by the sixth power of the spacing; this one made -114 dB or less of
 # every activity at 77 GHz.
-SPACING_DB = -150.0
+SPACING_DB = -140.0
 PER_SECOND, PER_CYCLE, AMPLITUDE_CHANGE, PHASE_CHANGE = 400.0, 200.0, 0.05, 0.05
 # Cubic Hermite cells err by the fourth power of their width: -48 dB at 4 a fast-time sample.
 TABLE_DB = -48.0
-SINGLE_DB = -120.0
+SINGLE_DB = -130.0
 # Settings aim below the tolerance, and are taken if the measured error is below it by SPARE.
-MARGIN_DB, SPARE_DB, FINEST_DB = 15.0, 10.0, -220.0
-PROBES = 64
+MARGIN_DB, SPARE_DB, REFINE_DB, FINEST_DB = 25.0, 10.0, 30.0, -220.0
+PROBES = 48
 
 
 class Settings(NamedTuple):
@@ -72,7 +73,11 @@ class AccuracyError(ValueError):
 
 
 def measured_db(
-    y: Complex, source: PathSource, waveform: Waveform, canceller: tuple[float, ...], unit: float
+    y: Complex,
+    source: Callable[[Float], Paths],
+    waveform: Waveform,
+    canceller: tuple[float, ...],
+    unit: float,
 ) -> float:
     """Relative L2 error (dB) of a slow-time signal after a canceller, estimated at some pulses.
 
@@ -116,7 +121,10 @@ def _power(y: Complex, canceller: tuple[float, ...]) -> Float:
 
 
 def _exact(
-    source: PathSource, waveform: Waveform, pulses: Index, canceller: tuple[float, ...]
+    source: Callable[[Float], Paths],
+    waveform: Waveform,
+    pulses: Index,
+    canceller: tuple[float, ...],
 ) -> Complex:
     """x at some pulses by way of the beat, a few of them at a time where chirps are long."""
     d, length = weights(waveform), max(1, BLOCK_SAMPLES // waveform.n_adc)

@@ -20,13 +20,13 @@ def start_phase(delay: Float, waveform: Waveform, frequency: float) -> Float:
 
 
 def powers(w: Complex, count: int) -> Complex:
-    """w^0 .. w^(count - 1) [..., count] of unit phasors w [...], by doubling."""
-    out = np.empty((*w.shape, count), dtype=complex)
-    out[..., 0] = 1
+    """w^0 .. w^(count - 1) [count, ...] of unit phasors w [...], by doubling."""
+    out = np.empty((count, *w.shape), dtype=complex)
+    out[0] = 1
     done, factor = 1, w
     while done < count:
         more = min(done, count - done)
-        np.multiply(out[..., :more], factor[..., None], out=out[..., done : done + more])
+        np.multiply(out[:more], factor, out=out[done : done + more])
         done += more
         factor = factor * factor
     return out
@@ -51,8 +51,8 @@ def beat_matrix(delay: Float, amplitude: Float, waveform: Waveform) -> Complex:
     tau = delay.T  # [M, I]
     turn = waveform.slope / waveform.adc_rate * tau
     first = unit_phasor(start_phase(tau, waveform, waveform.fc)) * amplitude.T
-    slow = powers(unit_phasor(fine * turn), coarse)  # [M, I, coarse]
-    slow *= first[..., None]
-    fast = powers(unit_phasor(turn), fine)  # [M, I, fine]
-    beat: Complex = slow.transpose(0, 2, 1) @ fast  # [M, coarse, fine]
+    slow = powers(unit_phasor(fine * turn), coarse)  # [coarse, M, I]
+    slow *= first
+    fast = powers(unit_phasor(turn), fine)  # [fine, M, I]
+    beat: Complex = slow.transpose(1, 0, 2) @ fast.transpose(1, 2, 0)  # [M, coarse, fine]
     return beat.reshape(len(tau), coarse * fine)[:, : waveform.n_adc].T

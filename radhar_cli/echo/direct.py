@@ -17,6 +17,7 @@ from radhar_cli.arrays import Bool, Complex, Float, Index
 from radhar_cli.echo.accuracy import (
     FINEST_DB,
     MARGIN_DB,
+    REFINE_DB,
     SPARE_DB,
     AccuracyError,
     Settings,
@@ -29,7 +30,6 @@ from radhar_cli.echo.interpolation import (
     AFTER,
     BEFORE,
     REACH,
-    TAPS,
     lagrange_weights,
     stencils,
 )
@@ -38,7 +38,7 @@ from radhar_cli.echo.paths import Paths, PathSource
 from radhar_cli.radar.waveform import Waveform
 
 BLOCK = 2**16  # values at work at once: they stay in the cache
-BLOCK_SEGMENTS = 2048
+BLOCK_SEGMENTS = 256
 
 Real = NDArray[np.floating]
 
@@ -90,19 +90,19 @@ class DirectEcho:
         aim, best = self._aim, 0.0
         chosen, motion = self._settings(aim), self._motion
         while True:
+            # Paths at every pulse cost so much that single precision saves nothing.
+            chosen = chosen._replace(single=chosen.single and motion.step > 1)
             unit = 2.0 ** frexp(motion.largest)[1]
             y = self._sum(chosen, motion, unit)
-            error = measured_db(y, self.source, self.waveform, self.canceller, unit)
+            exact = motion.at_pulses(self.source, self.waveform)
+            error = measured_db(y, exact, self.waveform, self.canceller, unit)
             best = min(best, error)
             if error <= self.tolerance_db - SPARE_DB:
                 y *= unit
                 return y, Accuracy(motion.step, *chosen[1:], error)
-            if chosen.single:
-                chosen = chosen._replace(single=False)
-                continue
             if aim == FINEST_DB:
                 raise AccuracyError(best + SPARE_DB)
-            aim = max(aim - max(2 * MARGIN_DB, error - self.tolerance_db), FINEST_DB)
+            aim = max(aim - max(REFINE_DB, error - self.tolerance_db), FINEST_DB)
             chosen = self._settings(aim)._replace(single=False)
             motion = resolve(self.source, self.waveform, chosen.spacing)
 
@@ -130,40 +130,38 @@ class DirectEcho:
     def _sum_knots(
         self, chosen: Settings, knots: Knots, kept: Bool, unit: float, y: Complex
     ) -> None:
-        """Fill y with the sum of the paths at the pulses of these knots."""
+        """Add the sum of the paths at the pulses of these knots to y, some paths at a time."""
         real = np.float32 if chosen.single else np.float64
-        terms = self._terms(knots.paths, kept, unit, chosen.table_oversampling)
-        if knots.step == 1:
-            size = max(1, BLOCK // terms.shape[1])
-            for start in range(0, y.size, size):
-                part = terms[..., start : start + size]
-                y[start : start + size] = _phasor_sum(*part.astype(real))
-            return
-        dense = np.empty((knots.step, knots.shift.size), dtype=complex)
-        for start in range(0, knots.shift.size, BLOCK_SEGMENTS):
-            shift = knots.shift[start : start + BLOCK_SEGMENTS]
-            part = terms[..., start : start + shift.size + BEFORE + AFTER]
-            dense[:, start : start + shift.size] = _interpolated_sum(part, shift, knots.step, real)
-        y[:] = dense.T.reshape(-1)[: y.size]
-        if knots.exact_pulses.size:
-            exact = self._terms(knots.exact, kept, unit, chosen.table_oversampling)
-            y[knots.exact_pulses - knots.pulses[0]] = _phasor_sum(*exact)
+        parts = y.view(float).reshape(-1, 2).T  # Re and Im of y
+        moving = np.flatnonzero(kept)
+        count = max(1, BLOCK // knots.paths.delay.shape[1])
+        for start in range(0, moving.size, count):
+            some = moving[start : start + count]
+            terms = self._terms(knots.paths, some, unit, chosen.table_oversampling)
+            if knots.step == 1:
+                parts += _phasor_sum(terms[0], *terms[1:])
+                continue
+            dense = _interpolated_sum(terms, knots.shift, knots.step, real)
+            if knots.exact_pulses.size:
+                exact = self._terms(knots.exact, some, unit, chosen.table_oversampling)
+                dense[:, knots.exact_pulses - knots.pulses[0]] = _phasor_sum(exact[0], *exact[1:])
+            parts += dense[:, : y.size]
 
-    def _terms(self, paths: Paths, kept: Bool, unit: float, oversampling: int) -> Float:
-        """Phase f0 tau (cycles), Re and Im of A G over the unit: [3, I, M] of the kept paths."""
+    def _terms(self, paths: Paths, some: Index, unit: float, oversampling: int) -> Float:
+        """Phase 2 pi f0 tau, Re and Im of A G over the unit: [3, I, M] of some paths."""
         w = self.waveform
-        delay, amplitude = paths if kept.all() else (part[kept] for part in paths)
+        delay, amplitude = (part[some] for part in paths)
         g = half_band_table(w, oversampling)(w.slope / w.adc_rate * delay)
-        amplitude = amplitude / unit
+        amplitude /= unit
         terms = np.empty((3, *delay.shape))
-        terms[0] = start_phase(delay, w, w.f0)
+        np.multiply(start_phase(delay, w, w.f0), 2 * np.pi, out=terms[0])
         np.multiply(g.real, amplitude, out=terms[1])
         np.multiply(g.imag, amplitude, out=terms[2])
         return terms
 
 
-def _interpolated_sum(terms: Float, shift: Index, step: int, real: type[np.floating]) -> Complex:
-    """sum_i (re + j im) exp(-j 2 pi phase) at the pulses of some segments [step, segments].
+def _interpolated_sum(terms: Float, shift: Index, step: int, real: type[np.floating]) -> Float:
+    """Re and Im of sum_i (re + j im) exp(-j phase) at the pulses [2, segments * step].
 
     Phases are interpolated as differences from the segment's first knot: they keep their digits
     in float32.
@@ -177,28 +175,31 @@ def _interpolated_sum(terms: Float, shift: Index, step: int, real: type[np.float
     weights = lagrange_weights(step).T.astype(real)  # [step, TAPS]
     to_phase = weights.copy()
     to_phase[:, REACH] = 1
-    total = np.zeros((step, shift.size), dtype=complex)
-    count = max(1, BLOCK // total.size)
-    for path in range(0, terms.shape[1], count):
-        values = stencils(terms[:, path : path + count], shift)  # [TAPS, 3, i, segments]
-        anchor = values[REACH, 0].copy()
-        values[:, 0] -= anchor
-        values[REACH, 0] = anchor - np.rint(anchor)
-        dense = np.empty((step, *values.shape[1:]), dtype=real)
-        rounded = values.astype(real)
-        for w, some in ((to_phase, slice(0, 1)), (weights, slice(1, 3))):
-            part = (w @ rounded[:, some].reshape(TAPS, -1)).reshape(step, -1, *values.shape[2:])
-            dense[:, some] = part
-        total += _phasor_sum(dense[:, 0], dense[:, 1], dense[:, 2])
-    return total
+    total = np.zeros((2, step, shift.size))
+    envelope = terms[1:].astype(real)
+    for start in range(0, shift.size, BLOCK_SEGMENTS):
+        within = shift[start : start + BLOCK_SEGMENTS]
+        reach = slice(start, start + within.size + BEFORE + AFTER)
+        count = max(1, BLOCK // (step * within.size))
+        for path in range(0, terms.shape[1], count):
+            some = slice(path, path + count)
+            phase = stencils(terms[0, some, reach], within)  # [i, TAPS, segments]
+            anchor = phase[:, REACH].copy()
+            phase -= anchor[:, None]
+            phase[:, REACH] = np.mod(anchor, 2 * np.pi)
+            angle = to_phase @ phase.astype(real)  # [i, step, segments]
+            re, im = weights @ stencils(envelope[:, some, reach], within)
+            total[..., start : start + within.size] += _phasor_sum(angle, re, im)
+    return total.swapaxes(1, 2).reshape(2, -1)
 
 
-def _phasor_sum(cycles: Real, re: Real, im: Real) -> Complex:
-    """sum_i (re + j im) exp(-j 2 pi cycles) over the last axis but one."""
-    angle = cycles - np.rint(cycles)
-    angle *= angle.dtype.type(2 * np.pi)
-    cos, sin = np.cos(angle), np.sin(angle)
-    total = np.empty(angle.shape[:-2] + angle.shape[-1:], dtype=complex)
-    total.real = np.einsum("...im,...im->...m", re, cos) + np.einsum("...im,...im->...m", im, sin)
-    total.imag = np.einsum("...im,...im->...m", im, cos) - np.einsum("...im,...im->...m", re, sin)
+def _phasor_sum(angle: Real, re: Real, im: Real) -> Real:
+    """Re and Im of sum_i (re + j im) exp(-j angle) [2, ...], of [I, ...]; angles are spent."""
+    shape = (len(angle), -1)
+    cos, sin = np.cos(angle).reshape(shape), np.sin(angle, out=angle).reshape(shape)
+    a, b = re.reshape(shape), im.reshape(shape)
+    total = np.empty((2, *angle.shape[1:]), dtype=angle.dtype)
+    x, y = total.reshape(2, -1)
+    np.add(np.einsum("im,im->m", a, cos), np.einsum("im,im->m", b, sin), out=x)
+    np.subtract(np.einsum("im,im->m", b, cos), np.einsum("im,im->m", a, sin), out=y)
     return total

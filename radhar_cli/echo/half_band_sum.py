@@ -17,6 +17,7 @@ from radhar_cli.radar.waveform import Waveform
 MAX_CELLS = 2**22  # of a table, 64 bytes each
 
 
+@lru_cache(maxsize=4)
 def weights(waveform: Waveform) -> Complex:
     """D[n] [N_ADC]: what range compression and the sum over bins do to fast-time sample n."""
     n = np.arange(waveform.n_adc) - waveform.n0
@@ -89,10 +90,10 @@ class HalfBandTable:
         place = (u - turns) * size
         cell = np.minimum(place.astype(np.intp), size - 1)
         part = place - cell
-        value: Complex = self._powers[3].take(cell)
+        value: Complex = self._powers[3].take(cell, mode="clip")  # which is faster than "raise"
         for coefficients in self._powers[2::-1]:
             value *= part
-            value += coefficients.take(cell)
+            value += coefficients.take(cell, mode="clip")
         if self.waveform.n0 % 1:
             value *= 1 - 2 * np.mod(turns, 2)
         return value

@@ -1,6 +1,7 @@
 """Paths at knots, from which those at all other pulses are interpolated."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +13,8 @@ from radhar_cli.radar.waveform import Waveform
 
 CHUNK_KNOTS = 32768
 MIN_KNOTS = 64  # in a recording
+GLANCE, MIN_GLANCE = 4, 512  # a look at every fourth knot, where there are many
+POWER_PER_SECOND, POWER_PER_CYCLE, POWER_CHANGE = 40.0, 20.0, 0.1
 MIN_STEP = 3  # fewer pulses from knot to knot are not worth interpolating
 
 
@@ -85,37 +88,61 @@ class Motion(NamedTuple):
         """The knots of the whole recording."""
         return iter([self.kept]) if self.kept else all_knots(source, waveform, self.step)
 
+    def at_pulses(self, source: PathSource, waveform: Waveform) -> Callable[[Float], Paths]:
+        """The source at times of pulses; where all of them are kept, they are looked up."""
+        if self.step > 1 or self.kept is None:
+            return source
+        paths = self.kept.paths
+        return lambda t: columns(paths, np.rint(t * waveform.prf).astype(np.intp))
+
 
 def resolve(source: PathSource, waveform: Waveform, spacing: Spacing) -> Motion:
     """Place knots that resolve the motion of a source: as far apart as the spacing allows."""
     step = int(min(waveform.prf // spacing.per_second, waveform.n_pulses // MIN_KNOTS))
-    if not source.smooth or step < MIN_STEP:
-        step = 1
+    if source.smooth and step >= MIN_STEP and waveform.n_pulses // step > MIN_GLANCE:
+        # Most of what the knots will have to be shows in a few of them.
+        excess = _excess_at(source, waveform, spacing, GLANCE * step) / GLANCE
+        step = int(step / max(excess, 1))
     while True:
+        step = step if source.smooth and step >= MIN_STEP else 1
         first, kept, moving, power, largest, excess = None, None, np.zeros(1, bool), 0.0, 0.0, 0.0
         for knots in all_knots(source, waveform, step):
             first, kept = first or knots.at_pulses, None if first else knots
             moving = moving | knots.moving(first)
             power += knots.power()
             largest = max(largest, float(knots.paths.amplitude.max(initial=0.0)))
-            excess = max(excess, _excess(knots.paths, waveform, spacing)) if step > 1 else 0.0
-        if excess <= 1:
+            excess = max(excess, _excess(knots.paths, waveform, spacing))
+        if step == 1 or excess <= 1:
             return Motion(step, moving, power / waveform.n_pulses, largest, kept)
         step = min(step - 1, int(step / excess))
-        step = step if step >= MIN_STEP else 1
+
+
+def mean_power(source: PathSource, waveform: Waveform) -> float:
+    """P_s = mean over the pulses of sum_i A_i^2, from as few knots as show the amplitudes."""
+    per_second = max(POWER_PER_SECOND, POWER_PER_CYCLE * source.highest_frequency)
+    return resolve(source, waveform, Spacing(per_second, POWER_CHANGE, inf)).power
+
+
+def _excess_at(source: PathSource, waveform: Waveform, spacing: Spacing, step: int) -> float:
+    found, length = 0.0, CHUNK_KNOTS * step
+    for first in range(0, waveform.n_pulses, length):
+        pulses = np.arange(first, min(first + length + 1, waveform.n_pulses), step, dtype=float)
+        found = max(found, _excess(source(waveform.times(pulses)), waveform, spacing))
+    return found
 
 
 def _excess(paths: Paths, w: Waveform, spacing: Spacing) -> float:
     """The largest change from one knot to the next, in units of what the spacing allows."""
     a = paths.amplitude
-    least = np.minimum(a[:, 1:], a[:, :-1])
-    amplitude = np.abs(np.diff(a, axis=1)) / np.where(least > 0, least, np.inf)
+    change = np.abs(np.diff(a, axis=1))
+    change /= np.maximum(np.maximum(a[:, 1:], a[:, :-1]), np.finfo(float).tiny)
     # Referred to mid-chirp, the ends of the chirp, which turn fastest, weigh next to nothing.
     cycles = w.bandwidth / 4 if w.centred else w.bandwidth
-    phase = cycles * np.abs(np.diff(paths.delay, axis=1))
+    delay = np.diff(paths.delay, axis=1)
+    moved = max(float(delay.max(initial=0.0)), -float(delay.min(initial=0.0)))
     return max(
-        float(amplitude.max(initial=0.0)) / spacing.amplitude_change,
-        float(phase.max(initial=0.0)) / spacing.phase_change,
+        float(change.max(initial=0.0)) / spacing.amplitude_change,
+        cycles * moved / spacing.phase_change,
     )
 
 

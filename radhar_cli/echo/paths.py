@@ -18,20 +18,22 @@ class Paths(NamedTuple):
 
 
 class PathSource(Protocol):
-    """Paths at any time, also a little before and after the recording.
-
-    Attributes:
-        breakpoints: instants (s) at which a path is not smooth, in order.
-        highest_frequency: fundamental of the fastest motion, Hz.
-        smooth: whether paths are smooth between the breakpoints; a wall's edges make them not so.
-    """
+    """Paths at any time, also a little before and after the recording."""
 
     @property
-    def breakpoints(self) -> tuple[float, ...]: ...
+    def breakpoints(self) -> tuple[float, ...]:
+        """Instants (s) at which a path is not smooth, in order."""
+        ...
+
     @property
-    def highest_frequency(self) -> float: ...
+    def highest_frequency(self) -> float:
+        """Fundamental of the fastest motion, Hz."""
+        ...
+
     @property
-    def smooth(self) -> bool: ...
+    def smooth(self) -> bool:
+        """Whether paths are smooth between the breakpoints; a wall's edges make them not so."""
+        ...
 
     def __call__(self, t: Float) -> Paths:
         """Return the paths at times t [M] (s)."""

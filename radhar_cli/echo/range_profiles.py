@@ -1,10 +1,12 @@
 """The beat at chosen pulses alone: all that a range-time map shows."""
 
+from collections.abc import Callable
+
 import numpy as np
 
-from radhar_cli.arrays import Complex, Index
+from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.echo.beat import beat_matrix
-from radhar_cli.echo.paths import PathSource
+from radhar_cli.echo.paths import Paths
 from radhar_cli.radar.waveform import Waveform
 
 
@@ -16,7 +18,10 @@ def shown_pulses(count: int, width: int) -> Index:
 
 
 def beat_at(
-    source: PathSource, waveform: Waveform, pulses: Index, canceller: tuple[float, ...] = (1.0,)
+    source: Callable[[Float], Paths],
+    waveform: Waveform,
+    pulses: Index,
+    canceller: tuple[float, ...] = (1.0,),
 ) -> Complex:
     """sum_j c[j] s_b[n, m + j] at pulses m [N_ADC, len(pulses)], c the canceller's weights.
 

@@ -20,6 +20,7 @@ from radhar_cli.config.schema import MAX_TOLERANCE_DB, Config
 from radhar_cli.echo import cube
 from radhar_cli.echo.accuracy import AccuracyError
 from radhar_cli.echo.direct import Accuracy, DirectEcho
+from radhar_cli.echo.knots import mean_power
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.echo.range_profiles import beat_at, shown_pulses
 from radhar_cli.errors import SceneError
@@ -201,9 +202,9 @@ def _direct(c: Config) -> Iterator[Product]:
     seen = ("waveform", "canceller")
     yield Product("direct", ("paths", *seen), direct, "closed form of the echo at knots")
     if _snr_in_free_space(c):
-        yield Product("snr_direct", ("snr_paths", *seen), direct, "the same without the wall")
-    power_of = "snr_direct" if _snr_in_free_space(c) else "direct"
-    yield Product("signal_power", (power_of,), DirectEcho.signal_power, "P_s, for snr_db")
+        yield Product("signal_power", ("snr_paths", "waveform"), mean_power, "P_s, for snr_db")
+    else:
+        yield Product("signal_power", ("direct",), DirectEcho.signal_power, "P_s, for snr_db")
     yield Product("echo", ("direct", "scene"), echo, "slow-time samples and their measured error")
     yield Product("slow_time", ("echo", "waveform"), slow_time, "slow-time signal without noise")
     yield Product("accuracy", ("echo",), lambda echo: echo[1], "its measured error")

@@ -42,7 +42,7 @@ def record(row: Row) -> dict[str, Any]:
         "ssim": min(row.values("ssim"), default=None),
         "psnr_db": min(row.values("psnr_db"), default=None),
         "pixels_changed": row.worst("pixels_changed"),
-        "engine_error_db": row.worst("engine_error_db"),
+        "measured_error_db": row.worst("measured_error_db"),
         "scenes": len(row.differences),
         "refused": len(row.refused),
     }

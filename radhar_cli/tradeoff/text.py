@@ -105,7 +105,7 @@ _ENGINE: tuple[Column, ...] = (
     ("echo time", _ratio("echo_ratio")),
     ("signal error dB", _number("signal_error_db", 1)),
     ("median dB", _number("signal_error_median_db", 1)),
-    ("as the engine measured it", _number("engine_error_db", 1)),
+    ("measured dB", _number("measured_error_db", 1)),
     ("map error dB", _number("map_error_db", 4)),
     ("SSIM", _number("ssim", 6)),
     _CHANGED,

@@ -11,7 +11,7 @@ from radhar_cli.tradeoff.settings import Setting
 # How long a setting is timed in a round, at most this and one scene more.
 SECONDS = 0.6
 ECHO = (
-    *("motions", "paths", "direct", "snr_direct", "echo", "signal_power", "slow_time", "signal"),
+    *("motions", "paths", "direct", "echo", "signal_power", "slow_time", "signal"),
     *("beat_cube", "range_profiles"),
 )
 

@@ -8,8 +8,8 @@ from radhar_cli.echo.interpolation import (
     BEFORE,
     EXACT,
     TAPS,
-    after_first,
     shifts,
+    stencils,
     upsample,
 )
 
@@ -25,8 +25,8 @@ def unshifted(knots: np.ndarray) -> np.ndarray:
     return np.zeros(knots.shape[-1] - BEFORE - AFTER, dtype=np.intp)
 
 
-def dense(knots: np.ndarray, step: int, dtype: type = np.float64) -> np.ndarray:
-    return upsample(knots, step, unshifted(knots), dtype)
+def dense(knots: np.ndarray, step: int) -> np.ndarray:
+    return upsample(knots, step, unshifted(knots))
 
 
 @steps
@@ -56,13 +56,6 @@ def test_knots_are_kept(step):
     assert dense(knots, step)[::step] == pytest.approx(knots[BEFORE:-AFTER], abs=1e-14)
 
 
-@steps
-def test_the_pulse_after_each_knot(step):
-    knots = np.random.default_rng(3).standard_normal((2, 20))
-    if step > 1:
-        assert after_first(knots, step) == pytest.approx(dense(knots, step)[:, 1::step], abs=1e-13)
-
-
 @pytest.mark.parametrize("cycles_per_knot", [0.01, 0.03, 0.1])
 def test_error_of_a_sinusoid(cycles_per_knot):
     """At most 0.005 (2 pi f h)^6 of its amplitude, and not a tenth of it: the bound is sharp."""
@@ -74,49 +67,49 @@ def test_error_of_a_sinusoid(cycles_per_knot):
     assert 0.1 * bound < error < bound + 1e-15
 
 
-class TestKinks:
-    """A kink spoils the segment it lies in; beside it, stencils keep to their own side."""
+class TestBreakpoints:
+    """A breakpoint spoils the segment it lies in; beside it, stencils keep to their own side."""
 
     step, segments = 10, 20
 
     def times(self) -> np.ndarray:
         return knot_places(self.segments, self.step) / self.step
 
-    @pytest.mark.parametrize("kink", [0.0, 0.37, 5.0, 8.99, 17.5, 19.9, -0.5, 20.5])
-    def test_only_its_own_segment_is_spoilt(self, kink):
-        def track(at):
-            return np.where(at < kink, at**2, kink**2 + 3 * (at - kink))
+    @pytest.mark.parametrize("at", [0.0, 0.37, 5.0, 8.99, 17.5, 19.9, -0.5, 20.5])
+    def test_only_its_own_segment_is_spoilt(self, at):
+        def track(t):
+            return np.where(t < at, t**2, at**2 + 3 * (t - at))
 
-        shift = shifts(self.times(), (kink,))
+        shift = shifts(self.times(), (at,))
         pulses = np.arange(self.segments * self.step)
         error = np.abs(upsample(track(self.times()), self.step, shift) - track(pulses / self.step))
         spoilt = np.repeat(shift == EXACT, self.step)
         assert error[~spoilt].max() < 1e-11
-        # A kink at a knot belongs to what follows, and so spoils the segment that ends there.
-        holder = int(np.ceil(kink)) - 1
+        # One at a knot belongs to what follows, and so spoils the segment that ends there.
+        holder = int(np.ceil(at)) - 1
         assert np.flatnonzero(shift == EXACT).tolist() == (
             [holder] if 0 <= holder < self.segments else []
         )
 
     @pytest.mark.parametrize("between", [0.5, 3.0, 6.0])
     def test_a_piece_of_few_knots_is_not_interpolated(self, between):
-        """Seven knots are the fewest of which a sixth difference can be taken."""
-        kinks = (5.1, 5.1 + between)
-        spoilt = np.flatnonzero(shifts(self.times(), kinks) == EXACT)
-        assert spoilt.tolist() == list(range(5, int(kinks[1]) + 1))
+        """Eight knots, for a stencil and one to spare on either side."""
+        both = (5.1, 5.1 + between)
+        spoilt = np.flatnonzero(shifts(self.times(), both) == EXACT)
+        assert spoilt.tolist() == list(range(5, int(both[1]) + 1))
 
     def test_a_longer_piece_is(self):
         shift = shifts(self.times(), (5.1, 5.1 + TAPS + 1))
         assert np.flatnonzero(shift == EXACT).tolist() == [5, 12]
         assert shift.tolist() == [0, 0, 0, -1, -2, EXACT, 2, 1, 0, 0, -1, -2, EXACT, 2, 1] + 5 * [0]
 
-    def test_without_kinks_no_stencil_moves(self):
+    def test_without_breakpoints_no_stencil_moves(self):
         assert not shifts(self.times(), ()).any()
 
 
-def test_single_precision_is_single():
-    knots = np.random.default_rng(4).standard_normal((2, 3, 30))
-    single = dense(knots, 5, np.float32)
-    assert single.dtype == np.float32
-    assert single == pytest.approx(dense(knots, 5), abs=1e-5)
-    assert single.shape == (2, 3, (30 - BEFORE - AFTER) * 5)
+def test_precision_and_shape_are_kept():
+    knots = np.random.default_rng(4).standard_normal((2, 3, 30)).astype(np.float32)
+    found = stencils(knots, unshifted(knots))
+    assert found.dtype == np.float32
+    assert found.shape == (2, 3, TAPS, 30 - BEFORE - AFTER)
+    assert dense(knots, 5).shape == (2, 3, (30 - BEFORE - AFTER) * 5)

@@ -34,7 +34,7 @@ def test_beat_is_exact_and_computed_there_alone(mti):
     radar = ref.Radar(24e9, 1e9, 97e-6, 1e6, 1000, 0.5)
     pulses = np.array([0, 3, 4, 250, 498])
     source = ref.Points(lambda t: np.array([[1.5], [4.0]]) + np.array([[2.0], [-3.0]]) * t)
-    found = beat_at(source, Waveform(**asdict(radar)), pulses, mti)
+    found = beat_at(source, Waveform(**asdict(radar)), pulses, (-1.0, 1.0) if mti else (1.0,))
     needed = [0, 1, 3, 4, 5, 250, 251, 498, 499] if mti else pulses
     assert [t.tolist() for t in source.asked] == [(np.array(needed) / radar.prf).tolist()]
     paths = source(radar.times)

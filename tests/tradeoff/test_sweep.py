@@ -110,7 +110,7 @@ class TestCommand:
         assert cube["signal_error_db"] is None
         assert (cube["pixels_changed"], cube["map_error_db"], cube["psnr_db"]) == (0, 0, None)
         assert cube["time_ratio"] > 0
-        assert rows["double"]["engine_error_db"] < -80
+        assert rows["double"]["measured_error_db"] < -80
         assert sum(row["default"] for row in rows.values()) == 1
 
     def test_a_switch_shows_what_is_missed_without_it(self, done):

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Bool, Index
+from radhar_cli.arrays import Bool, Float, Index
 from radhar_cli.echo.interpolation import AFTER, BEFORE, EXACT, shifts, upsample
 from radhar_cli.echo.paths import Paths, PathSource
 from radhar_cli.radar.waveform import Waveform

@@ -44,7 +44,9 @@ class SceneDifferences:
         if found.power.shape == right.power.shape:
             error, worst = map_error_db(found.power, right.power, right.dynamic_range_db)
             row |= {"map_error_db": error, "map_error_max_db": worst}
-        return row | image_scores(found.levels, right.levels) | {"measured_error_db": found.engine_db}
+        return (
+            row | image_scores(found.levels, right.levels) | {"measured_error_db": found.engine_db}
+        )
 
     def _sample(self, overrides: tuple[str, ...]) -> Sample:
         if overrides not in self._made:

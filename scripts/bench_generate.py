@@ -20,6 +20,8 @@ from statistics import median
 from typing import Any
 
 import numpy as np
+from radhar_cli.pipeline.axes import axes_of
+from radhar_cli.scenario import Scene, draw_scene
 
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.config import MAP_NAMES, Config, load_config
@@ -30,7 +32,6 @@ from radhar_cli.dataset.sample import MapImage, synthesise
 from radhar_cli.dataset.shards import encode_shard, write_shard
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.range_profiles import beat_at
-from radhar_cli.pipeline.axes import axes_of
 from radhar_cli.pipeline.plan import plan, plan_images, signal_of
 from radhar_cli.pipeline.run import Recording, run
 from radhar_cli.process import prepare_process
@@ -40,7 +41,6 @@ from radhar_cli.processing.doppler_compensation import compensate
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.image import Reduced, levels, reduced, reduced_map
 from radhar_cli.processing.range_compression import range_bins, range_power
-from radhar_cli.scenario import Scene, draw_scene
 
 ROOT = Path(__file__).resolve().parents[1]
 PAPER = ROOT / "configs/paper/free_space.yaml"

@@ -18,10 +18,9 @@ from typing import Any
 from radhar_cli.activity import activity_named
 from radhar_cli.config import MAP_NAMES, load_config
 from radhar_cli.dataset.sample import synthesise
-from radhar_cli.pipeline.plan import plan_images
-from radhar_cli.pipeline.survey import settle
+from radhar_cli.pipeline.products import plan_images
+from radhar_cli.pipeline.validity import draw_valid_scene
 from radhar_cli.process import prepare_process
-from radhar_cli.scenario import draw_scene
 
 ROOT = Path(__file__).resolve().parents[1]
 PAPER = ROOT / "configs/paper/free_space.yaml"
@@ -47,8 +46,8 @@ def measure(label: str, pulses: int) -> dict[str, float]:
     prepare_process()
     start = time.perf_counter()
     punching = activity_named("punching")  # who walks for half an hour leaves the range
-    settle(config, punching, 0)
-    synthesise(draw_scene(config, punching, 0), config, plan_images(config))
+    scene, _ = draw_valid_scene(config, punching, 0)
+    synthesise(scene, plan_images(config))
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     return {"peak_mib": peak, "seconds": time.perf_counter() - start}
 

@@ -4,13 +4,13 @@ from typing import Any
 
 import numpy as np
 import reference as ref
+from radhar_cli.pipeline.models import body_of
 
 from radhar_cli.activity import activity_named
 from radhar_cli.config import Config
-from radhar_cli.pipeline.models import body_of
 from radhar_cli.pipeline.plan import plan
 from radhar_cli.pipeline.run import Recording, run
-from radhar_cli.scenario import nominal_scene
+from radhar_cli.scene import nominal_scene
 
 # 20 samples a chirp and 200 pulses: little to compute even in extended precision. The half-band
 # ends at 7.5 m.

@@ -54,11 +54,10 @@ class Radar:
 
 
 class PathsAt(NamedTuple):
-    """Delays [I, M], amplitudes [I, M] and the power [M] of paths at some times."""
+    """Delays [I, M] and amplitudes [I, M] of paths at some times."""
 
     delay: np.ndarray
     amplitude: np.ndarray
-    power: np.ndarray
 
 
 @dataclass
@@ -68,13 +67,13 @@ class Points:
     Attributes:
         ranges: times [M] -> distances [I, M], m.
         strength: amplitude at 1 m, one or one a point.
-        kinks, highest_frequency, smooth: as in `PathSource`.
+        breakpoints, highest_frequency, smooth: as in `PathSource`.
         asked: the times of every call, in order.
     """
 
     ranges: Callable[[np.ndarray], np.ndarray]
     strength: float | np.ndarray = 1.0
-    kinks: tuple[float, ...] = ()
+    breakpoints: tuple[float, ...] = ()
     highest_frequency: float = 0.0
     smooth: bool = True
 
@@ -85,7 +84,7 @@ class Points:
         self.asked.append(t)
         r = self.ranges(t)
         a = np.broadcast_to(np.atleast_1d(self.strength)[:, None] / r**2, r.shape).copy()
-        return PathsAt(2 * r / C, a, np.sum(a**2, axis=0))
+        return PathsAt(2 * r / C, a)
 
 
 def turn(cycles: np.ndarray) -> np.ndarray:

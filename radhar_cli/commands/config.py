@@ -35,15 +35,10 @@ def show(
 
       radhar config show configs/quickstart.yaml --set snr_db=10
     """
-    import yaml
-
-    from radhar_cli.config import resolved
+    from radhar_cli.config.identity import as_yaml
     from radhar_cli.config.reading import load_section
 
-    values = resolved(load_section(_kind(train), config, set_ or []))
-    typer.echo(
-        yaml.safe_dump(values, sort_keys=False, default_flow_style=None, width=100), nl=False
-    )
+    typer.echo(as_yaml(load_section(_kind(train), config, set_ or [])), nl=False)
 
 
 @app.command()

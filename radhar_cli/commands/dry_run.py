@@ -1,9 +1,9 @@
 """`radhar generate --dry-run`: the plan, and what it will cost."""
 
-from radhar_cli.config.experiment import Config
+from radhar_cli.config.schema import Config
 from radhar_cli.dataset.estimate import estimate
 from radhar_cli.dataset.layout import Rows
-from radhar_cli.pipeline.plan import plan_images
+from radhar_cli.pipeline.products import plan_images
 
 
 def print_plan(config: Config, jobs: int) -> None:
@@ -12,10 +12,10 @@ def print_plan(config: Config, jobs: int) -> None:
     engine = config.engine
     budget = f", error budget {engine.tolerance_db:g} dB" if engine.kind == "direct" else ""
     print(f"stages of one sample ({engine.kind} engine{budget}):")
-    width = max(len(stage.name) for stage in plan.stages)
-    for stage in plan.stages:
-        readers = ", ".join(plan.wanted_by(stage.name)) or "the data set"
-        print(f"  {stage.name:<{width}}  {stage.does}  [for {readers}]")
+    width = max(len(product.name) for product in plan.products)
+    for product in plan.products:
+        readers = ", ".join(plan.consumers(product.name)) or "the data set"
+        print(f"  {product.name:<{width}}  {product.does}  [for {readers}]")
     found = estimate(config, jobs)
     print(
         f"samples     {found.samples} = {len(rows.activities)} classes x {rows.per_class}, "

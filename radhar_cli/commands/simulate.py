@@ -13,8 +13,14 @@ if TYPE_CHECKING:
 
 def simulate(
     config: Annotated[Path, typer.Argument(help="YAML file whose ranges are drawn from.")],
-    activity: Annotated[str, typer.Option("--activity", "-a", help="Slug or label, S1 to S12.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the results.")],
+    activity: Annotated[
+        str | None,
+        typer.Option("--activity", "-a", help="Slug or label; not needed if the config has one."),
+    ] = None,
+    index: Annotated[
+        int, typer.Option(min=0, help="Which sample of its class, as in /sample_key.")
+    ] = 0,
     seed: Annotated[
         int | None, typer.Option(min=0, max=2**63 - 1, help="Instead of the config's.")
     ] = None,
@@ -58,7 +64,14 @@ def simulate(
     chosen = map_names(None if maps is None else maps.split(","))
     refuse_file(out)
     simulation = simulate_scene(
-        loaded, activity, seed, nominal=nominal, joint=joint, maps=chosen, raw=raw
+        loaded,
+        activity,
+        seed,
+        index=index,
+        nominal=nominal,
+        joint=joint,
+        maps=chosen,
+        raw=raw,
     )
     for warning in simulation.warnings:
         typer.echo(f"warning: {warning}", err=True)

@@ -6,7 +6,7 @@ from typing import Any
 
 from tqdm import tqdm
 
-from radhar_cli.config.experiment import Config
+from radhar_cli.config.schema import Config
 from radhar_cli.dataset.build import Outcome
 from radhar_cli.dataset.layout import DATASET, PNG, SPLITS, Rows
 from radhar_cli.dataset.split import split_rows

@@ -1,8 +1,9 @@
-"""Frozen, strict models of the YAML file, one per section, and how they are read."""
+"""Frozen, strict models of the YAML file, and how they are read."""
 
-from radhar_cli.config.experiment import MAP_NAMES, Config, timing_warnings
+from radhar_cli.config.checks import timing_warnings
 from radhar_cli.config.identity import config_hash, resolved
 from radhar_cli.config.reading import config_from_json, load_config
+from radhar_cli.config.schema import MAP_NAMES, Config
 
 __all__ = [
     "MAP_NAMES",

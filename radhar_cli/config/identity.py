@@ -4,8 +4,7 @@ import hashlib
 import json
 from typing import Any
 
-from radhar_cli.config.experiment import Config
-from radhar_cli.config.section import Section
+from radhar_cli.config.schema import Config, Section
 
 NOT_IDENTITY = ("output.png",)
 
@@ -13,6 +12,15 @@ NOT_IDENTITY = ("output.png",)
 def resolved(config: Section) -> dict[str, Any]:
     """Return the config with every default, as plain JSON values."""
     return config.model_dump(mode="json", exclude_none=False)
+
+
+def as_yaml(config: Section) -> str:
+    """The resolved config as YAML, which reads back as the same config."""
+    import yaml
+
+    return yaml.safe_dump(
+        resolved(config), sort_keys=False, default_flow_style=None, width=100, allow_unicode=True
+    )
 
 
 def flat(config: Config) -> dict[str, Any]:

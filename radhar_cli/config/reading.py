@@ -10,8 +10,8 @@ from typing import Any, TypeVar
 import yaml
 from pydantic import BaseModel, ValidationError
 
-from radhar_cli.config.experiment import Config, Problem
-from radhar_cli.config.section import Section
+from radhar_cli.config.checks import Problem
+from radhar_cli.config.schema import Config, Section
 from radhar_cli.errors import ConfigError
 
 S = TypeVar("S", bound=Section)

@@ -12,21 +12,20 @@ from typing import Any
 
 import h5py
 import numpy as np
-import yaml
 
-from radhar_cli.activity import ACTIVITIES
 from radhar_cli.arrays import Float
-from radhar_cli.config.experiment import Config
-from radhar_cli.config.identity import config_hash, resolved
+from radhar_cli.config.identity import as_yaml, config_hash, resolved
+from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.files import unfinished_path, write_whole
 from radhar_cli.dataset.identity import identity, versions
 from radhar_cli.dataset.layout import CONFIG, DATASET, SCENES, SPLITS, Rows
 from radhar_cli.dataset.shards import Shard, image_dataset, pieces
 from radhar_cli.dataset.split import split_rows
-from radhar_cli.scenario import subject_of
+from radhar_cli.scene import subject_of
 
 SCHEMA_VERSION = 1
+CONFIG_HEADING = "# The resolved config of this data set, every default filled in.\n"
 LEVELS_TEXT = (
     "level = floor(255 (dB / dynamic_range_db + 1) + 1/2), dB = 10 log10(power / largest power), "
     "clipped to [-dynamic_range_db, 0]; level 0 everywhere for an all-zero map"
@@ -53,7 +52,7 @@ def assemble(
             _describe_maps(file, config)
             _root_attributes(file, config, said)
         _write_csv(config, folder, scene_values)
-        write_whole(folder, folder / CONFIG, _config_text(config).encode())
+        write_whole(folder, folder / CONFIG, (CONFIG_HEADING + as_yaml(config)).encode())
         unfinished.replace(folder / DATASET)
     finally:
         unfinished.unlink(missing_ok=True)
@@ -150,8 +149,8 @@ def _root_attributes(file: h5py.File, config: Config, said: list[dict[str, Any]]
         {part: named[part] for part in ("keys", "versions", "hash")}, sort_keys=True
     )
     file.attrs["seed"] = config.seed
-    file.attrs["class_names"] = [activity.label for activity in ACTIVITIES]
-    file.attrs["class_slugs"] = [activity.slug for activity in ACTIVITIES]
+    file.attrs["class_names"] = [activity.label for activity in config.classes]
+    file.attrs["class_slugs"] = [activity.slug for activity in config.classes]
     file.attrs["warnings"] = json.dumps(said)
     for library, version in versions().items():
         file.attrs[f"{library}_version"] = version
@@ -174,9 +173,3 @@ def _write_csv(config: Config, folder: Path, scene_values: Float) -> None:
             + ["" if np.isnan(value) else repr(float(value)) for value in scene_values[row]]
         )
     write_whole(folder, folder / SCENES, text.getvalue().encode())
-
-
-def _config_text(config: Config) -> str:
-    return "# The resolved config of this data set, every default filled in.\n" + yaml.safe_dump(
-        resolved(config), sort_keys=False, default_flow_style=None, width=100
-    )

@@ -8,17 +8,17 @@ from pathlib import Path
 import numpy as np
 
 from radhar_cli.arrays import Levels
-from radhar_cli.config.experiment import Config
+from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.layout import Rows, png_path
 from radhar_cli.dataset.png import encode_png
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.shards import encode_shard, write_shard
-from radhar_cli.pipeline.plan import plan_images
-from radhar_cli.pipeline.survey import Drawn, settle
+from radhar_cli.pipeline.products import plan_images
+from radhar_cli.pipeline.validity import draw_valid_scene
 from radhar_cli.process import prepare_process
-from radhar_cli.scenario import draw_scene
+from radhar_cli.scene import draw_scene
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def _run_batch(batch: Batch) -> int:
         leave_if_orphaned(batch.master)
         activity, index = rows[row]
         scene = draw_scene(config, activity, index, attempt)
-        sample = synthesise(scene, config, plan)
+        sample = synthesise(scene, plan)
         if batch.table is not None:
             for name in config.maps:
                 data = encode_png(sample[name].levels, batch.table, config.output.png_level)
@@ -84,12 +84,15 @@ def _run_batch(batch: Batch) -> int:
     return batch.stop - batch.start
 
 
-def survey_rows(config: Config, start: int, stop: int, master: int) -> tuple[int, list[Drawn]]:
+def survey_rows(
+    config: Config, start: int, stop: int, master: int
+) -> tuple[int, list[tuple[int, int]]]:
     """Settle rows start .. stop - 1; return (start, outcome of each)."""
     prepare_process()
     leave_if_orphaned(master)
     rows = Rows.of(config)
-    return start, [settle(config, *rows[row]) for row in range(start, stop)]
+    found = (draw_valid_scene(config, *rows[row]) for row in range(start, stop))
+    return start, [(scene.attempt, int(flags)) for scene, flags in found]
 
 
 def png_rows(

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from radhar_cli.arrays import Levels
-from radhar_cli.config.experiment import Config
+from radhar_cli.config.schema import Config
 from radhar_cli.dataset.assembly import assemble
 from radhar_cli.dataset.batch import Batch, png_rows, run_batch, survey_rows
 from radhar_cli.dataset.folder import claim, locked, mark_built, tidy
@@ -23,7 +23,7 @@ from radhar_cli.dataset.shards import finished_shards, missing_runs, pieces
 from radhar_cli.dataset.split import split_rows
 from radhar_cli.dataset.workers import run_tasks
 from radhar_cli.errors import UnfinishedError
-from radhar_cli.pipeline.survey import Drawn, warnings
+from radhar_cli.pipeline.validity import warnings
 
 LARGEST_BATCH = 32
 SURVEY_BATCH = 64
@@ -114,7 +114,7 @@ class _Build:
             tidy(self.folder)
             return Outcome(self.folder, count, 0, pngs)
         drawn = self._survey(count)
-        said = warnings(config, drawn)
+        said = warnings(config, [flags for _, flags in drawn])
         for warning in said:
             self.progress.say(f"warning: {warning['message']}")
         made = self._batches(drawn, split, batch_size)
@@ -126,7 +126,7 @@ class _Build:
         tidy(self.folder)
         return Outcome(self.folder, count, made, pngs, said)
 
-    def _survey(self, count: int) -> list[Drawn]:
+    def _survey(self, count: int) -> list[tuple[int, int]]:
         """Settle every scene; what a run that was stopped had settled is not done again."""
         outcomes = settled_rows(self.folder)
         starts = [s for s in range(0, count, SURVEY_BATCH) if s not in outcomes]
@@ -140,7 +140,9 @@ class _Build:
             self.progress.advance(len(found))
         return [outcome for start in sorted(outcomes) for outcome in outcomes[start]]
 
-    def _batches(self, drawn: list[Drawn], split: tuple[int, ...], batch_size: int | None) -> int:
+    def _batches(
+        self, drawn: list[tuple[int, int]], split: tuple[int, ...], batch_size: int | None
+    ) -> int:
         gaps = missing_runs(finished_shards(self.folder), len(drawn))
         left = sum(stop - start for start, stop in gaps)
         self.progress.stage("samples", len(drawn), len(drawn) - left)
@@ -150,7 +152,7 @@ class _Build:
             for gap_start, gap_stop in gaps:
                 for start in range(gap_start, gap_stop, size):
                     stop = min(start + size, gap_stop)
-                    attempts = tuple(outcome.attempt for outcome in drawn[start:stop])
+                    attempts = tuple(attempt for attempt, _ in drawn[start:stop])
                     yield (
                         Batch(
                             self.config,

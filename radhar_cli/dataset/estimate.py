@@ -4,16 +4,15 @@ from dataclasses import dataclass
 from time import perf_counter
 
 from radhar_cli.arrays import Levels
-from radhar_cli.config.experiment import Config
+from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table, encode_png
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.shards import encode_shard
-from radhar_cli.pipeline.plan import plan_images
-from radhar_cli.pipeline.survey import settle
+from radhar_cli.pipeline.products import plan_images
+from radhar_cli.pipeline.validity import draw_valid_scene
 from radhar_cli.process import prepare_process
-from radhar_cli.scenario import draw_scene
 
 PROBES = 24
 PROBE_SECONDS = 8.0
@@ -78,9 +77,8 @@ def estimate(config: Config, jobs: int) -> Estimate:
 def _time_sample(config: Config, row: int, table: Levels | None) -> tuple[int, int]:
     """Make one sample and encode it as a worker would; return bytes of (shard, PNGs)."""
     activity, index = Rows.of(config)[row]
-    attempt, _ = settle(config, activity, index)
-    scene = draw_scene(config, activity, index, attempt)
-    sample = synthesise(scene, config, plan_images(config))
+    scene, _ = draw_valid_scene(config, activity, index)
+    sample = synthesise(scene, plan_images(config))
     values = scene_fields.values([scene], scene_fields.fields(config))
     shard = encode_shard(config, [sample], values)
     pngs = 0

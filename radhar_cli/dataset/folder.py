@@ -9,7 +9,7 @@ from typing import Any
 
 from filelock import FileLock, Timeout
 
-from radhar_cli.config.experiment import Config
+from radhar_cli.config.schema import Config
 from radhar_cli.dataset.files import unfinished_path, write_whole
 from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.dataset.layout import CONFIG, DATASET, IDENTITY, PNG, SCENES, WORK, begun

@@ -4,8 +4,8 @@ import json
 from typing import Any
 
 from radhar_cli import __version__
-from radhar_cli.config.experiment import Config
 from radhar_cli.config.identity import config_hash, flat, resolved
+from radhar_cli.config.schema import Config
 
 
 def versions() -> dict[str, str]:

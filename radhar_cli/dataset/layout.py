@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from radhar_cli.activity import Activity
-from radhar_cli.config.experiment import Config
+from radhar_cli.config.schema import Config
 
 DATASET = "dataset.h5"
 CONFIG = "config.yaml"

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.config.experiment import Config
-from radhar_cli.scenario import Scene, scene_numbers
+from radhar_cli.config.schema import Config
+from radhar_cli.scene import Scene, depends_on, numbers, scene_numbers
 
 _UNITS = {
     "m": ("m", 1.0),
@@ -37,17 +37,21 @@ class Field(NamedTuple):
 
 
 def fields(config: Config) -> tuple[Field, ...]:
-    """Every number that any scene of this config depends on, in the order of the config."""
-    keys: dict[str, None] = {}
-    for activity in config.chosen_activities:
-        keys.update((key, None) for key, _ in scene_numbers(config, activity))
-    keys.setdefault("subject.weight_kg")
-    return tuple(_field(key) for key in keys)
+    """Every number that any scene of this config depends on, in the order of the schema."""
+    found = [
+        key
+        for key, _ in numbers(config)
+        if any(depends_on(activity, key) for activity in config.chosen_activities)
+    ]
+    if "subject.weight_kg" not in found:
+        found.insert(found.index("subject.height_m") + 1, "subject.weight_kg")
+    return tuple(_field(key) for key in found)
 
 
 def values(scenes: Iterable[Scene], columns: tuple[Field, ...]) -> Float:
     """Table [scenes, fields] in the units of the config keys, NaN where a number does not apply."""
-    return np.array([[scene.values.get(f.key, nan) for f in columns] for scene in scenes])
+    rows = [scene_numbers(scene) for scene in scenes]
+    return np.array([[row.get(f.key, nan) for f in columns] for row in rows])
 
 
 def _field(key: str) -> Field:

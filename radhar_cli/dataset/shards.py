@@ -10,10 +10,10 @@ import h5py
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.config.experiment import Config
+from radhar_cli.config.schema import Config
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.layout import WORK
-from radhar_cli.dataset.sample import MapImage
+from radhar_cli.processing.power_map import MapImage
 
 _NAME = re.compile(r"^rows-(\d+)-(\d+)\.h5$")
 

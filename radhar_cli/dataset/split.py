@@ -3,12 +3,11 @@
 import numpy as np
 
 from radhar_cli.arrays import Levels
-from radhar_cli.config.experiment import Config
-from radhar_cli.config.rounding import half_up
-from radhar_cli.config.split import SplitConfig
+from radhar_cli.config.schema import Config, SplitConfig
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.randomness import SPLIT, stream
-from radhar_cli.scenario import subject_of
+from radhar_cli.rounding import half_up
+from radhar_cli.scene import subject_of
 
 TRAIN, VALIDATION, TEST = 0, 1, 2
 

@@ -9,9 +9,9 @@ import h5py
 import numpy as np
 from PIL import Image
 
-from radhar_cli.config.experiment import Config
 from radhar_cli.config.identity import config_hash
 from radhar_cli.config.reading import config_from_json
+from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.identity import versions
 from radhar_cli.dataset.layout import DATASET, PNG, Rows, png_path
@@ -19,10 +19,9 @@ from radhar_cli.dataset.png import colour_table, stored_levels
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.split import split_rows
 from radhar_cli.errors import FolderError
-from radhar_cli.pipeline.plan import plan_images
-from radhar_cli.pipeline.survey import settle
+from radhar_cli.pipeline.products import plan_images
+from radhar_cli.pipeline.validity import draw_valid_scene
 from radhar_cli.process import prepare_process
-from radhar_cli.scenario import draw_scene
 
 
 @dataclass
@@ -124,14 +123,14 @@ def _resynthesise(file: h5py.File, config: Config, samples: int, report: Report)
     for sample in range(count):
         row = (2 * sample + 1) * len(rows) // (2 * count)
         activity, index = rows[row]
-        scene = draw_scene(config, activity, index, settle(config, activity, index).attempt)
+        scene, _ = draw_valid_scene(config, activity, index)
         for column, value in zip(columns, scene_fields.values([scene], columns)[0], strict=True):
             there = file[f"scene/{column.name}"][row]
             if not np.isclose(there, value * column.factor, rtol=1e-12, atol=0, equal_nan=True):
                 report.problems.append(
                     f"/scene/{column.name}[{row}]: {there} instead of {value * column.factor}"
                 )
-        for name, image in synthesise(scene, config, plan).items():
+        for name, image in synthesise(scene, plan).items():
             there = file[f"maps/{name}"][row].astype(int)
             worst = int(np.abs(there - image.levels).max())
             report.worst_level = max(report.worst_level, worst)

@@ -5,16 +5,10 @@ from math import isqrt
 import numpy as np
 
 from radhar_cli.arrays import Complex, Float
+from radhar_cli.phasor import unit_phasor
 from radhar_cli.radar.waveform import Waveform
 
-
-def unit_phasor(cycles: Float) -> Complex:
-    """exp(-j 2 pi cycles), the whole turns removed first."""
-    angle = (cycles - np.rint(cycles)) * (-2 * np.pi)
-    out = np.empty(cycles.shape, dtype=complex)
-    np.cos(angle, out=out.real)
-    np.sin(angle, out=out.imag)
-    return out
+BLOCK_SAMPLES = 2**18  # of a beat matrix that is made block by block
 
 
 def start_phase(delay: Float, waveform: Waveform, frequency: float) -> Float:

@@ -1,152 +1,204 @@
 """The closed form: y[m] = sum_i A_i exp(-j 2 pi f0 tau_i) G(K tau_i/fs), without a beat matrix.
 
 Paths are computed at knots and interpolated to the pulses, G is read from a table, phasors may be
-single precision: as far as the error budget allows (error_budget.py, docs/engines.md). Paths that
-do not move cancel in the MTI and are left out of it.
+single precision, as the tolerance has it (accuracy.py, docs/engines.md). Paths that do not move
+are left out where the canceller removes them.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from math import frexp
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.arrays import Complex, Float
+from radhar_cli.arrays import Bool, Complex, Float, Index
+from radhar_cli.echo.accuracy import (
+    FINEST_DB,
+    MARGIN_DB,
+    SPARE_DB,
+    AccuracyError,
+    Settings,
+    measured_db,
+    settings,
+)
 from radhar_cli.echo.beat import start_phase
-from radhar_cli.echo.coarse_knots import CoarseKnots, coarse_knots
-from radhar_cli.echo.error_bounds import envelope
-from radhar_cli.echo.error_budget import BudgetError, Choice, DirectSettings, Envelope, choose
-from radhar_cli.echo.half_band_sum import half_band_table, noise_gain
-from radhar_cli.echo.interpolation import AFTER, BEFORE, upsample
-from radhar_cli.echo.knots import Knots, all_knots
+from radhar_cli.echo.half_band_sum import half_band_table
+from radhar_cli.echo.interpolation import (
+    AFTER,
+    BEFORE,
+    REACH,
+    TAPS,
+    lagrange_weights,
+    stencils,
+)
+from radhar_cli.echo.knots import Knots, Motion, resolve
 from radhar_cli.echo.paths import Paths, PathSource
-from radhar_cli.radar.noise import circular_gaussian
 from radhar_cli.radar.waveform import Waveform
 
-BLOCK_PULSES = 4096
+BLOCK = 2**16  # values at work at once: they stay in the cache
+BLOCK_SEGMENTS = 2048
+
+Real = NDArray[np.floating]
 
 
-class _Block(NamedTuple):
-    """Some consecutive pulses: delays [I, block] and A G as (real, imaginary) [2, I, block]."""
+class Accuracy(NamedTuple):
+    """How a slow-time signal was made, and its error.
 
-    pulses: slice
-    delay: Float
-    envelope: NDArray[np.floating]
+    Attributes:
+        step: pulses from knot to knot; 1 where paths are taken at every pulse.
+        table_oversampling: points of the table of G per fast-time sample.
+        single: whether sines and cosines are single precision.
+        error_db: measured relative L2 error after the canceller.
+    """
+
+    step: int
+    table_oversampling: int
+    single: bool
+    error_db: float
 
 
 @dataclass(frozen=True)
 class DirectEcho:
-    """The slow-time signal of a source of paths, before MTI and without noise.
+    """The slow-time signal of a source of paths, without noise.
 
     Attributes:
         source: the paths.
         waveform: the radar.
-        tolerance_db: bound of the relative L2 error, after MTI where there is one.
-        double: keep to double precision whatever the budget.
-        mti: whether only differences from pulse to pulse will be looked at.
+        tolerance_db: largest relative L2 error after the canceller.
+        double: keep to double precision whatever the tolerance.
+        canceller: c of x[m] = sum_j c[j] y[m + j], in which the signal will be seen.
     """
 
     source: PathSource
     waveform: Waveform
     tolerance_db: float
     double: bool = False
-    mti: bool = True
-
-    def slow_time(self) -> Complex:
-        """y[m] [M]; with mti, less the paths that do not move (a constant).
-
-        Raises:
-            BudgetError: the budget is below what float64 leaves of this signal.
-        """
-        y = np.zeros(self.waveform.n_pulses, dtype=complex)
-        for knots, b in self._envelopes():
-            if self.settings.moving:
-                first, last = knots.pulses
-                self._sum(knots, b, list(self.settings.moving), y[first:last])
-        y *= self.settings.scale
-        return y
+    canceller: tuple[float, ...] = (-1.0, 1.0)
 
     def signal_power(self) -> float:
-        """P_s = mean over the pulses of the power that the SNR refers to."""
-        return self._coarse.mean_power()
+        """P_s = mean over the pulses of sum_i A_i^2."""
+        return self._motion.power
 
-    @cached_property
-    def beyond_reach(self) -> BudgetError | None:
-        """Why the budget cannot be kept; None where it can."""
-        try:
-            self._chosen  # noqa: B018
-        except BudgetError as error:
-            return error
-        return None
+    def slow_time(self) -> tuple[Complex, Accuracy]:
+        """y[m] [M] before the canceller, less what that removes exactly; and its accuracy.
+
+        Raises:
+            AccuracyError: the tolerance is below what float64 leaves of this signal.
+        """
+        aim, best = self._aim, 0.0
+        chosen, motion = self._settings(aim), self._motion
+        while True:
+            unit = 2.0 ** frexp(motion.largest)[1]
+            y = self._sum(chosen, motion, unit)
+            error = measured_db(y, self.source, self.waveform, self.canceller, unit)
+            best = min(best, error)
+            if error <= self.tolerance_db - SPARE_DB:
+                y *= unit
+                return y, Accuracy(motion.step, *chosen[1:], error)
+            if chosen.single:
+                chosen = chosen._replace(single=False)
+                continue
+            if aim == FINEST_DB:
+                raise AccuracyError(best + SPARE_DB)
+            aim = max(aim - max(2 * MARGIN_DB, error - self.tolerance_db), FINEST_DB)
+            chosen = self._settings(aim)._replace(single=False)
+            motion = resolve(self.source, self.waveform, chosen.spacing)
 
     @property
-    def settings(self) -> DirectSettings:
-        """What is done to keep the budget."""
-        return self._chosen.settings
+    def _aim(self) -> float:
+        return max(self.tolerance_db - MARGIN_DB, FINEST_DB)
 
     @cached_property
-    def _chosen(self) -> Choice:
-        return choose(self._coarse, self.tolerance_db, self.double, self.mti)
+    def _motion(self) -> Motion:
+        return resolve(self.source, self.waveform, self._settings(self._aim).spacing)
 
-    @cached_property
-    def _coarse(self) -> CoarseKnots:
-        return coarse_knots(self.source, self.waveform)
+    def _settings(self, aim_db: float) -> Settings:
+        chosen = settings(aim_db, self.waveform, self.source.highest_frequency)
+        return chosen._replace(single=chosen.single and not self.double)
 
-    def _envelopes(self) -> Iterator[Envelope]:
-        """Knots and envelopes: those already looked at, where they are all there are."""
-        settings, kept = self._chosen
-        if kept is not None:
-            yield kept
+    def _sum(self, chosen: Settings, motion: Motion, unit: float) -> Complex:
+        y = np.zeros(self.waveform.n_pulses, dtype=complex)
+        kept: Bool = motion.moving | (sum(self.canceller) != 0)
+        if kept.any():
+            for knots in motion.knots(self.source, self.waveform):
+                first, last = knots.pulses
+                self._sum_knots(chosen, knots, kept, unit, y[first:last])
+        return y
+
+    def _sum_knots(
+        self, chosen: Settings, knots: Knots, kept: Bool, unit: float, y: Complex
+    ) -> None:
+        """Fill y with the sum of the paths at the pulses of these knots."""
+        real = np.float32 if chosen.single else np.float64
+        terms = self._terms(knots.paths, kept, unit, chosen.table_oversampling)
+        if knots.step == 1:
+            size = max(1, BLOCK // terms.shape[1])
+            for start in range(0, y.size, size):
+                part = terms[..., start : start + size]
+                y[start : start + size] = _phasor_sum(*part.astype(real))
             return
-        for knots in all_knots(self.source, self.waveform, settings.step):
-            yield Envelope(knots, self._envelope(knots.paths))
+        dense = np.empty((knots.step, knots.shift.size), dtype=complex)
+        for start in range(0, knots.shift.size, BLOCK_SEGMENTS):
+            shift = knots.shift[start : start + BLOCK_SEGMENTS]
+            part = terms[..., start : start + shift.size + BEFORE + AFTER]
+            dense[:, start : start + shift.size] = _interpolated_sum(part, shift, knots.step, real)
+        y[:] = dense.T.reshape(-1)[: y.size]
+        if knots.exact_pulses.size:
+            exact = self._terms(knots.exact, kept, unit, chosen.table_oversampling)
+            y[knots.exact_pulses - knots.pulses[0]] = _phasor_sum(*exact)
 
-    def _envelope(self, paths: Paths) -> Complex:
-        table = half_band_table(self.waveform, self.settings.table_oversampling)
-        return envelope(paths, table, self.settings.scale)
-
-    def _sum(self, knots: Knots, b: Complex, chosen: list[int], y: Complex) -> None:
-        """Fill y with the sum of the chosen paths at the pulses of these knots."""
-        real = np.float32 if self.settings.single else np.float64
-        for pulses, delay, (re, im) in self._blocks(knots, b, chosen, real):
-            cycles = start_phase(delay, self.waveform, self.waveform.f0)
-            cycles -= np.rint(cycles)
-            angle: Float = cycles.astype(real)
-            angle *= real(2 * np.pi)
-            cos, sin = np.cos(angle), np.sin(angle)
-            y[pulses].real = np.einsum("im,im->m", re, cos) + np.einsum("im,im->m", im, sin)
-            y[pulses].imag = np.einsum("im,im->m", im, cos) - np.einsum("im,im->m", re, sin)
-
-    def _blocks(
-        self, knots: Knots, b: Complex, chosen: list[int], real: type[np.floating]
-    ) -> Iterator[_Block]:
-        """Delays and envelopes of the chosen paths at every pulse, a few thousand at a time."""
-        delay, at_knots = knots.paths.delay[chosen], np.stack([b.real[chosen], b.imag[chosen]])
-        exact_delay, exact = knots.exact.delay[chosen], self._envelope(knots.exact)[chosen]
-        (first, last), step = knots.pulses, knots.step
-        exact_at = knots.exact_pulses - first
-        segments = max(1, BLOCK_PULSES // step)
-        for start in range(0, -(-(last - first) // step), segments):
-            pulses = slice(start * step, min((start + segments) * step, last - first))
-            if step == 1:
-                yield _Block(pulses, delay[:, pulses], at_knots[..., pulses].astype(real))
-                continue
-            reach = slice(start, start + segments + BEFORE + AFTER)
-            length = pulses.stop - pulses.start
-            shift = knots.shift[start : start + segments]
-            tau = upsample(delay[:, reach], step, shift)[:, :length]
-            envelopes = upsample(at_knots[..., reach], step, shift, real)[..., :length]
-            here = np.flatnonzero((exact_at >= pulses.start) & (exact_at < pulses.stop))
-            place = exact_at[here] - pulses.start
-            tau[:, place] = exact_delay[:, here]
-            envelopes[0][:, place] = exact.real[:, here]
-            envelopes[1][:, place] = exact.imag[:, here]
-            yield _Block(pulses, tau, envelopes)
+    def _terms(self, paths: Paths, kept: Bool, unit: float, oversampling: int) -> Float:
+        """Phase f0 tau (cycles), Re and Im of A G over the unit: [3, I, M] of the kept paths."""
+        w = self.waveform
+        delay, amplitude = paths if kept.all() else (part[kept] for part in paths)
+        g = half_band_table(w, oversampling)(w.slope / w.adc_rate * delay)
+        amplitude = amplitude / unit
+        terms = np.empty((3, *delay.shape))
+        terms[0] = start_phase(delay, w, w.f0)
+        np.multiply(g.real, amplitude, out=terms[1])
+        np.multiply(g.imag, amplitude, out=terms[2])
+        return terms
 
 
-def slow_time_noise(rng: np.random.Generator, waveform: Waveform) -> Complex:
-    """v[m] [M] for unit raw noise: white, circular, of variance sum_n |D[n]|^2."""
-    v: Complex = circular_gaussian(rng, (waveform.n_pulses,)) * np.sqrt(noise_gain(waveform))
-    return v
+def _interpolated_sum(terms: Float, shift: Index, step: int, real: type[np.floating]) -> Complex:
+    """sum_i (re + j im) exp(-j 2 pi phase) at the pulses of some segments [step, segments].
+
+    Phases are interpolated as differences from the segment's first knot: they keep their digits
+    in float32.
+
+    Args:
+        terms: phase, re, im at the knots [3, I, BEFORE + segments + AFTER].
+        shift: of the stencils [segments].
+        step: pulses from knot to knot.
+        real: precision of the phasors.
+    """
+    weights = lagrange_weights(step).T.astype(real)  # [step, TAPS]
+    to_phase = weights.copy()
+    to_phase[:, REACH] = 1
+    total = np.zeros((step, shift.size), dtype=complex)
+    count = max(1, BLOCK // total.size)
+    for path in range(0, terms.shape[1], count):
+        values = stencils(terms[:, path : path + count], shift)  # [TAPS, 3, i, segments]
+        anchor = values[REACH, 0].copy()
+        values[:, 0] -= anchor
+        values[REACH, 0] = anchor - np.rint(anchor)
+        dense = np.empty((step, *values.shape[1:]), dtype=real)
+        rounded = values.astype(real)
+        for w, some in ((to_phase, slice(0, 1)), (weights, slice(1, 3))):
+            part = (w @ rounded[:, some].reshape(TAPS, -1)).reshape(step, -1, *values.shape[2:])
+            dense[:, some] = part
+        total += _phasor_sum(dense[:, 0], dense[:, 1], dense[:, 2])
+    return total
+
+
+def _phasor_sum(cycles: Real, re: Real, im: Real) -> Complex:
+    """sum_i (re + j im) exp(-j 2 pi cycles) over the last axis but one."""
+    angle = cycles - np.rint(cycles)
+    angle *= angle.dtype.type(2 * np.pi)
+    cos, sin = np.cos(angle), np.sin(angle)
+    total = np.empty(angle.shape[:-2] + angle.shape[-1:], dtype=complex)
+    total.real = np.einsum("...im,...im->...m", re, cos) + np.einsum("...im,...im->...m", im, sin)
+    total.imag = np.einsum("...im,...im->...m", im, cos) - np.einsum("...im,...im->...m", re, sin)
+    return total

@@ -1,25 +1,26 @@
-"""Paths at some pulses, from which those at all others are interpolated."""
+"""Paths at knots, from which those at all other pulses are interpolated."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Bool, Float, Index
-from radhar_cli.echo.interpolation import AFTER, BEFORE, EXACT, after_first, shifts, upsample
+from radhar_cli.arrays import Bool, Index
+from radhar_cli.echo.interpolation import AFTER, BEFORE, EXACT, shifts, upsample
 from radhar_cli.echo.paths import Paths, PathSource
 from radhar_cli.radar.waveform import Waveform
 
 CHUNK_KNOTS = 32768
+MIN_KNOTS = 64  # in a recording
+MIN_STEP = 3  # fewer pulses from knot to knot are not worth interpolating
 
 
 class Knots(NamedTuple):
-    """Paths every `step` pulses, and exactly in the segments that hold a kink.
+    """Paths every `step` pulses, and exactly in the segments that hold a breakpoint.
 
     Attributes:
         step: pulses from knot to knot; 1 where paths are taken at every pulse.
         pulses: first and last + 1 of the pulses that they are for.
-        times: of the knots, s.
         paths: at the knots [I, BEFORE + segments + AFTER], or at the pulses for step 1.
         shift: of the stencil of every segment.
         exact_pulses: those of the segments that cannot be interpolated.
@@ -28,7 +29,6 @@ class Knots(NamedTuple):
 
     step: int
     pulses: tuple[int, int]
-    times: Float
     paths: Paths
     shift: Index
     exact_pulses: Index
@@ -39,63 +39,84 @@ class Knots(NamedTuple):
         """The paths at those knots that are pulses: the first of every segment."""
         return self.paths if self.step == 1 else columns(self.paths, slice(BEFORE, -AFTER))
 
-    def dense(self, knots: Float, exact: Float) -> Float:
-        """Interpolate a quantity of the paths, given at the knots and at the exact pulses."""
-        first, last = self.pulses
-        if self.step == 1:
-            return knots
-        values = np.asarray(upsample(knots, self.step, self.shift)[..., : last - first])
-        values[..., self.exact_pulses - first] = exact
-        return values
-
-    def neighbours(self) -> "Neighbours":
-        """Paths at some pulses and at the pulse after each: every knot, every exact pulse."""
-        if self.step == 1:
-            count = max(self.paths.power.size - 1, 0)
-            now, after = slice(None, -1), slice(1, None)
-            return Neighbours(columns(self.paths, now), columns(self.paths, after), np.ones(count))
-        after_knots = Paths(*(after_first(part, self.step) for part in self.paths))
-        still = ~_differ(self.paths, self.paths)  # what is interpolated may differ by an ulp
-        after_knots.delay[still] = self.at_pulses.delay[still]
-        after_knots.amplitude[still] = self.at_pulses.amplitude[still]
-        smooth = np.flatnonzero(self.shift != EXACT)
-        pair = np.flatnonzero(np.diff(self.exact_pulses) == 1)
-        return Neighbours(
-            _joined(columns(self.at_pulses, smooth), columns(self.exact, pair)),
-            _joined(columns(after_knots, smooth), columns(self.exact, pair + 1)),
-            np.concatenate([np.full(smooth.size, float(self.step)), np.ones(pair.size)]),
-        )
-
-    def changes(self, since: Paths) -> Bool:
+    def moving(self, since: Paths) -> Bool:
         """Which paths [I] differ at any pulse seen from the first column of `since`."""
         return _differ(self.at_pulses, since) | _differ(self.exact, since)
 
+    def power(self) -> float:
+        """Sum over the pulses of sum_i A_i^2."""
+        power = np.einsum("im,im->m", self.paths.amplitude, self.paths.amplitude)
+        if self.step > 1:
+            first, last = self.pulses
+            power = upsample(power, self.step, self.shift)[: last - first]
+            exact = self.exact.amplitude
+            power[self.exact_pulses - first] = np.einsum("im,im->m", exact, exact)
+        return float(power.sum())
 
-class Neighbours(NamedTuple):
-    """Paths at some pulses and at the pulse after each.
+
+class Spacing(NamedTuple):
+    """How close knots must be: `per_second`, and so close that from one to the next an amplitude
+    changes by at most `amplitude_change` of itself and G's fastest component by at most
+    `phase_change` cycles."""
+
+    per_second: float
+    amplitude_change: float
+    phase_change: float
+
+
+class Motion(NamedTuple):
+    """A recording seen at its knots.
 
     Attributes:
-        now, after: the paths.
-        weight: how many pulses each of them stands for [K].
+        step: pulses from knot to knot; 1 where nothing is interpolated.
+        moving: which paths change at all [I].
+        power: mean over the pulses of sum_i A_i^2.
+        largest: amplitude.
+        kept: the knots, where one chunk of them is all.
     """
 
-    now: Paths
-    after: Paths
-    weight: Float
+    step: int
+    moving: Bool
+    power: float
+    largest: float
+    kept: Knots | None
 
-    def alone(self) -> "Neighbours":
-        """The pulses without those after them: what is left where no MTI takes a difference."""
-        nothing = np.zeros_like(self.now.amplitude)
-        return self._replace(after=self.now._replace(amplitude=nothing))
-
-    @property
-    def still(self) -> Bool:
-        """Which paths [I] are the same in all of them."""
-        return ~(_differ(self.now, self.now) | _differ(self.after, self.now))
+    def knots(self, source: PathSource, waveform: Waveform) -> Iterator[Knots]:
+        """The knots of the whole recording."""
+        return iter([self.kept]) if self.kept else all_knots(source, waveform, self.step)
 
 
-def _joined(one: Paths, other: Paths) -> Paths:
-    return Paths(*(np.concatenate(parts, axis=-1) for parts in zip(one, other, strict=True)))
+def resolve(source: PathSource, waveform: Waveform, spacing: Spacing) -> Motion:
+    """Place knots that resolve the motion of a source: as far apart as the spacing allows."""
+    step = int(min(waveform.prf // spacing.per_second, waveform.n_pulses // MIN_KNOTS))
+    if not source.smooth or step < MIN_STEP:
+        step = 1
+    while True:
+        first, kept, moving, power, largest, excess = None, None, np.zeros(1, bool), 0.0, 0.0, 0.0
+        for knots in all_knots(source, waveform, step):
+            first, kept = first or knots.at_pulses, None if first else knots
+            moving = moving | knots.moving(first)
+            power += knots.power()
+            largest = max(largest, float(knots.paths.amplitude.max(initial=0.0)))
+            excess = max(excess, _excess(knots.paths, waveform, spacing)) if step > 1 else 0.0
+        if excess <= 1:
+            return Motion(step, moving, power / waveform.n_pulses, largest, kept)
+        step = min(step - 1, int(step / excess))
+        step = step if step >= MIN_STEP else 1
+
+
+def _excess(paths: Paths, w: Waveform, spacing: Spacing) -> float:
+    """The largest change from one knot to the next, in units of what the spacing allows."""
+    a = paths.amplitude
+    least = np.minimum(a[:, 1:], a[:, :-1])
+    amplitude = np.abs(np.diff(a, axis=1)) / np.where(least > 0, least, np.inf)
+    # Referred to mid-chirp, the ends of the chirp, which turn fastest, weigh next to nothing.
+    cycles = w.bandwidth / 4 if w.centred else w.bandwidth
+    phase = cycles * np.abs(np.diff(paths.delay, axis=1))
+    return max(
+        float(amplitude.max(initial=0.0)) / spacing.amplitude_change,
+        float(phase.max(initial=0.0)) / spacing.phase_change,
+    )
 
 
 def knots_of(source: PathSource, waveform: Waveform, step: int, pulses: tuple[int, int]) -> Knots:
@@ -103,18 +124,17 @@ def knots_of(source: PathSource, waveform: Waveform, step: int, pulses: tuple[in
     first, last = pulses
     nowhere = np.empty(0, dtype=np.intp)
     if step == 1:
-        t = waveform.times(np.arange(first, last, dtype=float))
-        paths = source(t)
-        return Knots(1, pulses, t, paths, nowhere, nowhere, columns(paths, slice(0, 0)))
+        paths = source(waveform.times(np.arange(first, last, dtype=float)))
+        return Knots(1, pulses, paths, nowhere, nowhere, columns(paths, slice(0, 0)))
     segments = -(-(last - first) // step)
     at = first + (np.arange(BEFORE + segments + AFTER) - BEFORE) * step
     t = waveform.times(at.astype(float))
-    shift = shifts(t, source.kinks)
+    shift = shifts(t, source.breakpoints)
     exact = (first + np.flatnonzero(shift == EXACT)[:, None] * step + np.arange(step)).ravel()
     exact = exact[exact < last]
     both = source(np.concatenate([t, waveform.times(exact.astype(float))]))
     knots, there = columns(both, slice(t.size)), columns(both, slice(t.size, None))
-    return Knots(step, pulses, t, knots, shift, exact, there)
+    return Knots(step, pulses, knots, shift, exact, there)
 
 
 def all_knots(source: PathSource, waveform: Waveform, step: int) -> Iterator[Knots]:
@@ -126,7 +146,7 @@ def all_knots(source: PathSource, waveform: Waveform, step: int) -> Iterator[Kno
 
 def columns(paths: Paths, some: slice | Index) -> Paths:
     """The paths at some of their times."""
-    return Paths(paths.delay[:, some], paths.amplitude[:, some], paths.power[some])
+    return Paths(paths.delay[:, some], paths.amplitude[:, some])
 
 
 def _differ(paths: Paths, since: Paths) -> Bool:

@@ -11,26 +11,27 @@ class Paths(NamedTuple):
     Attributes:
         delay: tau [I, M], s.
         amplitude: A [I, M] for unit transmit power.
-        power: incoherent power [M] that the SNR refers to, sum_i A_i^2.
     """
 
     delay: Float
     amplitude: Float
-    power: Float
 
 
 class PathSource(Protocol):
     """Paths at any time, also a little before and after the recording.
 
     Attributes:
-        kinks: instants (s) at which a path is not smooth.
+        breakpoints: instants (s) at which a path is not smooth, in order.
         highest_frequency: fundamental of the fastest motion, Hz.
-        smooth: whether paths are smooth between the kinks; a wall's edges make them not so.
+        smooth: whether paths are smooth between the breakpoints; a wall's edges make them not so.
     """
 
-    kinks: tuple[float, ...]
-    highest_frequency: float
-    smooth: bool
+    @property
+    def breakpoints(self) -> tuple[float, ...]: ...
+    @property
+    def highest_frequency(self) -> float: ...
+    @property
+    def smooth(self) -> bool: ...
 
     def __call__(self, t: Float) -> Paths:
         """Return the paths at times t [M] (s)."""

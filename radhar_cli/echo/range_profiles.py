@@ -5,7 +5,6 @@ import numpy as np
 from radhar_cli.arrays import Complex, Index
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.paths import PathSource
-from radhar_cli.radar.noise import circular_gaussian
 from radhar_cli.radar.waveform import Waveform
 
 
@@ -16,34 +15,22 @@ def shown_pulses(count: int, width: int) -> Index:
     return (2 * np.arange(width) + 1) * count // (2 * width)
 
 
-def beat_at(source: PathSource, waveform: Waveform, pulses: Index, mti: bool) -> Complex:
-    """s_b[n, m], or with mti s_b[n, m + 1] - s_b[n, m], at `pulses`: [N_ADC, len(pulses)].
+def beat_at(
+    source: PathSource, waveform: Waveform, pulses: Index, canceller: tuple[float, ...] = (1.0,)
+) -> Complex:
+    """sum_j c[j] s_b[n, m + j] at pulses m [N_ADC, len(pulses)], c the canceller's weights.
 
     Exact in float64, without noise.
     """
-    needed = np.union1d(pulses, pulses + 1) if mti else pulses
+    needed = np.unique(pulses + np.arange(len(canceller))[:, None])
     paths = source(waveform.times(needed.astype(float)))
-    if not mti:
-        return beat_matrix(paths.delay, paths.amplitude, waveform)
-    late, early = np.searchsorted(needed, pulses + 1), np.searchsorted(needed, pulses)
-    delay = np.concatenate([paths.delay[:, late], paths.delay[:, early]])
-    amplitude = np.concatenate([paths.amplitude[:, late], -paths.amplitude[:, early]])
-    moves = (paths.delay != paths.delay[:, :1]) | (paths.amplitude != paths.amplitude[:, :1])
-    kept = np.tile(moves.any(axis=1), 2)  # a path that stands still cancels itself exactly
-    return beat_matrix(delay[kept], amplitude[kept], waveform)
-
-
-def noise_at(rng: np.random.Generator, length: int, pulses: Index, mti: bool) -> Complex:
-    """White unit noise [length, M] at `pulses` [length, len(pulses)], with its right joint law.
-
-    Differences over pairs without a common pulse are white of variance 2 and drawn as such; pairs
-    that share a pulse share its noise, which gives them the correlation -1/2.
-    """
-    if not mti:
-        return circular_gaussian(rng, (pulses.size, length)).T
-    if np.all(np.diff(pulses) > 1):
-        pairs: Complex = np.sqrt(2) * circular_gaussian(rng, (pulses.size, length)).T
-        return pairs
-    needed = np.union1d(pulses, pulses + 1)
-    w = circular_gaussian(rng, (needed.size, length)).T
-    return w[:, np.searchsorted(needed, pulses + 1)] - w[:, np.searchsorted(needed, pulses)]
+    at = [np.searchsorted(needed, pulses + lag) for lag in range(len(canceller))]
+    delay = np.concatenate([paths.delay[:, some] for some in at])
+    amplitude = np.concatenate(
+        [c * paths.amplitude[:, some] for c, some in zip(canceller, at, strict=True)]
+    )
+    if sum(canceller) == 0:  # a path that stands still cancels itself exactly
+        moves = (paths.delay != paths.delay[:, :1]) | (paths.amplitude != paths.amplitude[:, :1])
+        kept = np.tile(moves.any(axis=1), len(canceller))
+        delay, amplitude = delay[kept], amplitude[kept]
+    return beat_matrix(delay, amplitude, waveform)

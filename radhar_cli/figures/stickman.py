@@ -12,10 +12,9 @@ from matplotlib.lines import Line2D
 from PIL import Image
 
 from radhar_cli.arrays import Float
-from radhar_cli.body.skeleton import PARENTS
 from radhar_cli.figures.maps_panel import draw_map, title
 from radhar_cli.simulation.simulate import Simulation
-from radhar_cli.simulation.truth import MOVEMENTS
+from radhar_cli.simulation.truth import WHOLE
 
 FRAMES_PER_SECOND = 20
 SHOWN_BESIDE = ("stft", "fsst", "stft_compensated", "rtm")
@@ -72,7 +71,7 @@ def _cursor(figure: Figure, simulation: Simulation) -> list[Line2D]:
     if not shown:
         return []
     axes = figure.add_axes((0.69, 0.12, 0.255, 0.76))
-    draw_map(axes, simulation.maps[shown[0]], simulation, overlay=False)
+    draw_map(axes, shown[0], simulation, overlay=False)
     return [axes.axvline(0, color="white", linewidth=1)]
 
 
@@ -80,10 +79,10 @@ class _Stage:
     """The room: floor grid, antennas, wall, and the body at one time."""
 
     def __init__(self, figure: Figure, simulation: Simulation) -> None:
-        self.truth = simulation.truth
+        self.truth, self.parents = simulation.truth, simulation.motion.parents
         new_axes: Any = figure.add_axes
         self.axes = new_axes((-0.02, 0.0, 0.53, 0.94), projection="3d")
-        antennas, wall = simulation.paths.antennas, simulation.paths.wall
+        antennas, wall = simulation.antennas, simulation.wall
         for position in (antennas.tx, antennas.rx):
             self.axes.scatter(*position, marker="^", color="black", s=30)
         middle = np.mean([antennas.tx, antennas.rx], axis=0)
@@ -94,12 +93,12 @@ class _Stage:
         self._frame(np.concatenate(points), wall is not None)
         self.links: list[Any] = [
             self.axes.plot([0], [0], [0], color="0.35", linewidth=2)[0]
-            for parent in PARENTS
+            for parent in self.parents
             if parent is not None
         ]
         self.joints: Any = self.axes.scatter(
             *self.truth.positions[0].T,
-            c=simulation.paths.body.cross_sections,
+            c=simulation.motion.cross_sections(self.truth.time[:1])[:, 0],
             cmap="plasma",
             s=32,
             depthshade=False,
@@ -150,11 +149,11 @@ class _Stage:
         """Put the body where it is at time t."""
         pulse = int(np.searchsorted(self.truth.time, t).clip(max=self.truth.time.size - 1))
         p = self.truth.positions[pulse]
-        pairs = [(parent, joint) for joint, parent in enumerate(PARENTS) if parent is not None]
+        pairs = [(parent, joint) for joint, parent in enumerate(self.parents) if parent is not None]
         for line, (parent, joint) in zip(self.links, pairs, strict=True):
             line.set_data_3d(*np.stack([p[parent], p[joint]], axis=1))
         self.joints._offsets3d = tuple(p.T)  # Matplotlib has no public setter for 3-D offsets
         self.joints.do_3d_projection()
-        under_way = MOVEMENTS[self.truth.phase_label[pulse]]
-        what = "" if under_way == MOVEMENTS[0] else f"   {under_way}"
+        under_way = self.truth.phases[self.truth.phase_label[pulse]]
+        what = "" if under_way == WHOLE else f"   {under_way}"
         self.clock.set_text(f"t = {t:.2f} s{what}")

@@ -16,7 +16,7 @@ from safetensors import SafetensorError, safe_open
 from safetensors.torch import save as safetensors_bytes
 from torch import Tensor, nn
 
-from radhar_cli.config.section import Section
+from radhar_cli.config.schema import Section
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.layout import WORK
 from radhar_cli.errors import ModelError, RadharError

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from radhar_cli.config.section import Section
+from radhar_cli.config.schema import Section
 
 
 def _auto_or(least: int) -> BeforeValidator:

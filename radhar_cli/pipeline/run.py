@@ -1,336 +1,86 @@
-"""Run a plan on one scene. The only file that knows what each stage calls.
+"""Run a plan: make every product once, in its order, and release what nobody needs any more."""
 
-Order (paper, figure "Signal processing overflow"): MTI -> range compression -> [range-time map] ->
-sum over the kept bins -> [compensation] -> [denoising] -> STFT or FSST.
-"""
-
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
-from math import ceil
 from time import perf_counter
-from typing import Any, NamedTuple
+from typing import Any
 
-import numpy as np
-
-from radhar_cli.arrays import Complex, Float, Levels
-from radhar_cli.config.engine import LOOSEST_DB
-from radhar_cli.config.experiment import MAP_NAMES, Config
-from radhar_cli.echo import cube
-from radhar_cli.echo.direct import DirectEcho, slow_time_noise
-from radhar_cli.echo.error_budget import BudgetError
-from radhar_cli.echo.range_profiles import beat_at, noise_at, shown_pulses
-from radhar_cli.errors import SceneError
-from radhar_cli.pipeline.body_paths import BodyPaths
-from radhar_cli.pipeline.models import antennas_of, body_of, wall_of, waveform_of
-from radhar_cli.pipeline.plan import Plan, Stage
-from radhar_cli.processing import fsst, stft
-from radhar_cli.processing.denoising import savgol
-from radhar_cli.processing.doppler_compensation import compensate
-from radhar_cli.processing.frames import Frames
-from radhar_cli.processing.image import Reduced, levels, reduced, reduced_map
-from radhar_cli.processing.mti import mti
-from radhar_cli.processing.range_compression import (
-    half_band_signal,
-    range_bins,
-    range_compression,
-    range_power,
-)
-from radhar_cli.processing.stft import Spectra
-from radhar_cli.radar.noise import noise_variance
-from radhar_cli.radar.wall import Wall
-from radhar_cli.radar.waveform import Waveform
-from radhar_cli.randomness import NOISE, stream
-from radhar_cli.scenario import Scene
-
-CHUNK = 2**18  # pulses at work at once, where each is on its own
-# TODO measure
-SINGLE_RANGE_DB = 80.0
+from radhar_cli.config.schema import Config
+from radhar_cli.pipeline.physics import frames_of, fsst_frames_of
+from radhar_cli.pipeline.plan import Plan, Product, plan
+from radhar_cli.pipeline.products import products
+from radhar_cli.processing.signal import Signal
+from radhar_cli.scene import Scene
 
 
 @dataclass
 class Recording:
-    """One scene on its way through a plan.
+    """What was made of one scene, or of one recorded signal.
 
     Attributes:
-        scene, config, plan: what is simulated, and how.
-        joints: numbers of the scatterers that are kept; all of them for None.
-        products: {stage name: what it made}, of those that the plan was asked for.
-        seconds: {stage name: time it took}.
+        products: {name: product}, those asked for.
+        seconds: {name: time it took}.
     """
 
-    scene: Scene
-    config: Config
-    plan: Plan
-    joints: tuple[int, ...] | None = None
     products: dict[str, Any] = field(default_factory=dict)
     seconds: dict[str, float] = field(default_factory=dict)
 
-    @cached_property
-    def waveform(self) -> Waveform:
-        return waveform_of(self.scene, self.config)
-
-    @cached_property
-    def frames(self) -> Frames:
-        processing = self.config.processing
-        return Frames.of(
-            processing.window_fraction,
-            processing.overlap_fraction,
-            self.waveform.duration,
-            self.waveform.prf,
-        )
-
-    @cached_property
-    def fsst_frames(self) -> Frames:
-        """`frames`, with the hop of the FSST where it has its own."""
-        hop = self.config.processing.fsst_hop_pulses
-        return self.frames if hop is None else Frames(self.frames.length, hop)
-
-    @cached_property
-    def shown(self) -> np.ndarray[Any, np.dtype[np.intp]]:
-        """Pulses (or first pulses of MTI pairs) that the range-time map shows."""
-        kept = self.waveform.n_pulses - self.config.processing.mti
-        return shown_pulses(kept, self.config.image.size_px[1])
-
-    @property
-    def single(self) -> bool:
-        """Whether maps are computed in float32, which is enough for their images."""
-        return (
-            self.config.engine.precision == "auto"
-            and self.config.image.dynamic_range_db <= SINGLE_RANGE_DB
-            and any(stage.kind == "levels" for stage in self.plan.stages)
-        )
-
-    def noise(self, name: str) -> np.random.Generator:
-        """The stream of unit-variance noise of this sample with that name."""
-        key = (self.scene.activity.index, self.scene.index)
-        return stream(self.scene.seed, NOISE, *key, name=name)
-
-    @property
-    def sigma(self) -> float:
-        """Standard deviation of the raw noise; 0 without noise."""
-        if "signal_power" not in self.plan:
-            return 0.0
-        power = self.products["signal_power"]
-        return float(np.sqrt(noise_variance(power, self.scene.values["snr_db"])))
+    def __getitem__(self, name: str) -> Any:
+        return self.products[name]
 
 
-class CubeProducts(NamedTuple):
-    """What one pass over the beat matrix leaves: x[m] and |S[k, m_j]|^2, where asked for."""
-
-    signal: Complex | None
-    range_power: Float | None
-
-
-def run(
-    plan: Plan, scene: Scene, config: Config, joints: tuple[int, ...] | None = None
-) -> Recording:
-    """Run every stage of the plan, once, in its order; release what nobody needs any more."""
-    recording = Recording(scene, config, plan, joints)
-    for stage in plan.stages:
+def run(steps: Plan, given: Mapping[str, Any]) -> Recording:
+    """Make the products of a plan from those that are given."""
+    there, recording = dict(given), Recording()
+    for product in steps.products:
         start = perf_counter()
-        recording.products[stage.name] = STAGES[stage.kind](recording, stage)
-        recording.seconds[stage.name] = perf_counter() - start
-        for name in plan.done_with[stage.name]:
-            del recording.products[name]
+        there[product.name] = product.make(*(there[need] for need in product.needs))
+        recording.seconds[product.name] = perf_counter() - start
+        for name in steps.released_after[product.name]:
+            del there[name]
+    recording.products = {name: there[name] for name in steps.asked}
     return recording
 
 
-def _wall(r: Recording, stage: Stage) -> Wall | None:
-    return wall_of(r.scene, r.config)
+def record(
+    scene: Scene, asked: Iterable[str], more: Iterable[Product] = (), **given: Any
+) -> Recording:
+    """Make products of a scene.
+
+    Args:
+        scene: what is simulated, by the settings in its config.
+        asked: names of products (`radhar_cli.pipeline.products`).
+        more: further products, or others in place of those of the same name.
+        given: products that are there already, instead of the scene's own: `motions=`, `antennas=`,
+            `paths=` and so on.
+    """
+    return _made(scene.config, asked, more, {"scene": scene, **given})
 
 
-def _paths(r: Recording, stage: Stage) -> BodyPaths:
-    return BodyPaths(
-        body=body_of(r.scene),
-        antennas=antennas_of(r.scene),
-        fc=r.waveform.fc,
-        wall=r.products.get("wall"),
-        power_in_free_space=r.config.snr_reference == "free_space",
-        joints=r.joints,
-    )
+def process(
+    signal: Signal,
+    config: Config,
+    asked: Iterable[str],
+    more: Iterable[Product] = (),
+    **given: Any,
+) -> Recording:
+    """Make products of a signal after the canceller that somebody recorded.
+
+    As `record`, without a scene. Compensated maps need `torso_track=`, its delay [M] in s.
+
+    Raises:
+        KeyError: a product would need a scene.
+    """
+    duration = signal.x.size / signal.prf
+    frames = {
+        "frames": frames_of(config, duration, signal.prf),
+        "fsst_frames": fsst_frames_of(config, duration, signal.prf),
+    }
+    return _made(config, asked, more, {"signal": signal, **frames, **given})
 
 
-def _torso_track(r: Recording, stage: Stage) -> Float:
-    track, paths = np.empty(r.waveform.n_pulses), r.products["paths"]
-    for start in range(0, track.size, CHUNK):
-        part = track[start : start + CHUNK]
-        pulses = np.arange(start, start + part.size, dtype=float)
-        part[:] = paths.torso_delay(r.waveform.times(pulses))
-    return track
-
-
-def _echo(r: Recording, stage: Stage) -> DirectEcho:
-    engine = r.config.engine
-    return DirectEcho(
-        r.products["paths"],
-        r.waveform,
-        engine.tolerance_db,
-        engine.precision == "double",
-        r.config.processing.mti,
-    )
-
-
-def _signal_power(r: Recording, stage: Stage) -> float:
-    echo: DirectEcho | None = r.products.get("echo")
-    if echo is None:
-        return cube.signal_power(r.products["paths"], r.waveform)
-    return echo.signal_power()
-
-
-def _slow_time(r: Recording, stage: Stage) -> Complex:
-    echo: DirectEcho = r.products["echo"]
-    if echo.beyond_reach:
-        if r.config.engine.fallback == "refuse":
-            raise SceneError(_refusal(r, echo.beyond_reach))
-        blocks = _beat_blocks(r, 0.0, None)
-        return np.concatenate(
-            [half_band_signal(range_compression(block, r.waveform)) for _, block in blocks]
-        )
-    y = echo.slow_time()
-    return mti(y) if r.config.processing.mti else y
-
-
-def _refusal(r: Recording, error: BudgetError) -> str:
-    tolerance_db = r.config.engine.tolerance_db
-    what = f"sample {r.scene.name}: engine.tolerance_db = {tolerance_db:g}: "
-    if error.limit_db > LOOSEST_DB:
-        return what + f"no budget can be kept here ({error}); set engine.fallback: cube"
-    return what + (
-        f"should be {ceil(error.limit_db)} or more, which is what the direct engine can promise "
-        "here, or engine.fallback: cube"
-    )
-
-
-def _slow_time_noise(r: Recording, stage: Stage) -> Complex:
-    noise = slow_time_noise(r.noise("slow_time"), r.waveform)
-    noise *= r.sigma
-    return mti(noise) if r.config.processing.mti else noise
-
-
-def _beat_blocks(
-    r: Recording, sigma: float, rng: np.random.Generator | None
-) -> Iterator[tuple[int, Complex]]:
-    """(first pulse or pair, beat matrix after MTI where the config has one), block by block."""
-    moving = r.config.engine.motion_in_chirp
-    for first, block in cube.beat_blocks(r.products["paths"], r.waveform, sigma, rng, moving):
-        own = mti(block) if r.config.processing.mti else block[:, (1 if first else 0) :]
-        if own.shape[1]:
-            yield (first if r.config.processing.mti or not first else first + 1), own
-
-
-def _beat_cube(r: Recording, stage: Stage) -> CubeProducts:
-    wants_signal, wants_range = "signal:plain" in r.plan, "rtm" in r.plan
-    rng = r.noise("beat") if "signal_power" in r.plan else None
-    kept = r.waveform.n_pulses - r.config.processing.mti
-    signal, profiles = np.empty(kept if wants_signal else 0, dtype=complex), []
-    for start, own in _beat_blocks(r, r.sigma, rng):
-        if wants_range:
-            here = r.shown[(r.shown >= start) & (r.shown < start + own.shape[1])]
-            profiles.append(range_power(range_bins(own[:, here - start], r.waveform)))
-        if wants_signal:
-            stop = start + own.shape[1]
-            signal[start:stop] = half_band_signal(range_compression(own, r.waveform))
-    return CubeProducts(
-        signal if wants_signal else None,
-        np.concatenate(profiles, axis=1) if profiles else None,
-    )
-
-
-def _range_profiles(r: Recording, stage: Stage) -> Complex:
-    beat = beat_at(r.products["paths"], r.waveform, r.shown, r.config.processing.mti)
-    bins = range_bins(beat, r.waveform)
-    if "range_noise" in r.products:
-        bins = bins + r.products["range_noise"]
-    return bins
-
-
-def _range_noise(r: Recording, stage: Stage) -> Complex:
-    """Noise of the kept bins. Unpadded, a transform of white noise is white: the bins are drawn."""
-    rng, with_mti, w = r.noise("range_profiles"), r.config.processing.mti, r.waveform
-    if w.n_fft == w.n_adc:
-        scale = r.sigma * np.sqrt(w.n_adc)
-        return np.asarray(scale * noise_at(rng, w.n_bins, r.shown, with_mti))
-    return range_bins(r.sigma * noise_at(rng, w.n_adc, r.shown, with_mti), w)
-
-
-def _rtm(r: Recording, stage: Stage) -> Float:
-    if "beat_cube" in r.products:
-        power = r.products["beat_cube"].range_power
-        assert power is not None
-        return np.asarray(power)
-    return range_power(r.products["range_profiles"])
-
-
-def _signal(r: Recording, stage: Stage) -> Complex:
-    if stage.variant == "plain":
-        return _plain_signal(r)
-    if stage.variant == "compensated":
-        return compensate(r.products["signal:plain"], r.products["torso_track"], r.waveform.f0)
-    savgol_config = r.config.processing.savgol
-    before = r.products[stage.needs[0]]
-    return savgol(before, savgol_config.order, savgol_config.frame)
-
-
-def _plain_signal(r: Recording) -> Complex:
-    if "beat_cube" in r.products:
-        return np.asarray(r.products["beat_cube"].signal)
-    x: Complex = r.products["slow_time"]
-    return x + r.products["slow_time_noise"] if "slow_time_noise" in r.products else x
-
-
-def _spectrum(r: Recording, stage: Stage) -> Spectra:
-    frames = r.fsst_frames if stage.kind == "fsst_spectrum" else r.frames
-    padded = r.config.processing.stft_fft_length if stage.kind == "padded_spectrum" else None
-    return Spectra(r.products[stage.needs[0]], frames, padded or frames.length, r.single)
-
-
-def _blocks(r: Recording, name: str, spectra: Spectra) -> Iterator[Float]:
-    if name.startswith("stft"):
-        return stft.power_blocks(spectra)
-    return fsst.power_blocks(spectra, r.config.processing.fsst_threshold)
-
-
-def _map(r: Recording, stage: Stage) -> Float:
-    """A whole map [frequency, time], which only who asks for it holds."""
-    spectra: Spectra = r.products[stage.needs[0]]
-    power = np.concatenate(list(_blocks(r, stage.name, spectra)), dtype=float)
-    return np.asarray(np.ldexp(power, 2 * spectra.exponent, out=power).T)
-
-
-def _reduced(r: Recording, stage: Stage) -> Reduced:
-    source, size = r.products[stage.needs[0]], r.config.image.size_px
-    if stage.variant == "rtm":
-        return reduced_map(source, size)
-    return reduced(_blocks(r, stage.variant, source), source.count, size)
-
-
-def _entropy(r: Recording, stage: Stage) -> float:
-    return float(r.products[stage.needs[0]].entropy)
-
-
-def _levels(r: Recording, stage: Stage) -> Levels:
-    return levels(r.products[stage.needs[0]].power, r.config.image.dynamic_range_db)
-
-
-STAGES: Mapping[str, Callable[[Recording, Stage], Any]] = {
-    "wall": _wall,
-    "paths": _paths,
-    "torso_track": _torso_track,
-    "echo": _echo,
-    "signal_power": _signal_power,
-    "slow_time": _slow_time,
-    "slow_time_noise": _slow_time_noise,
-    "beat_cube": _beat_cube,
-    "range_noise": _range_noise,
-    "range_profiles": _range_profiles,
-    "rtm": _rtm,
-    "signal": _signal,
-    "spectrum": _spectrum,
-    "padded_spectrum": _spectrum,
-    "fsst_spectrum": _spectrum,
-    **{name: _map for name in MAP_NAMES if name != "rtm"},
-    "reduced": _reduced,
-    "entropy": _entropy,
-    "levels": _levels,
-}
+def _made(
+    config: Config, asked: Iterable[str], more: Iterable[Product], given: Mapping[str, Any]
+) -> Recording:
+    table = products(config) | {product.name: product for product in more}
+    return run(plan(table, asked, given), given)

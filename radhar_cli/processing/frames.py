@@ -6,7 +6,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from radhar_cli.arrays import Complex, Float
-from radhar_cli.config.rounding import exact, half_up
+from radhar_cli.rounding import exact, half_up
 
 # Coefficients of a block of frames: 8 MiB in complex64. The paper's 90 frames of 2000 are a sixth.
 BLOCK_COEFFICIENTS = 2**20

@@ -47,10 +47,10 @@ def amplitude(r_tx: Float, r_rx: Float, sigma: Float, gain: float, wavelength: f
 
     Args:
         r_tx, r_rx: legs [I, M], m.
-        sigma: RCS [I], m^2.
+        sigma: RCS [I, M] or [I, 1], m^2.
         gain: linear gain of each antenna.
         wavelength: m.
     """
     scale = gain * wavelength / (4 * pi) ** 1.5 * np.sqrt(sigma)
-    a: Float = scale[:, None] / (r_tx * r_rx)
+    a: Float = scale / (r_tx * r_rx)
     return a

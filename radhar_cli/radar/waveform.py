@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.config.rounding import half_up
+from radhar_cli.rounding import half_up
 
 SPEED_OF_LIGHT = 299_792_458.0
 

@@ -9,14 +9,15 @@ import h5py
 import numpy as np
 
 from radhar_cli import __version__
-from radhar_cli.body.skeleton import JOINTS
-from radhar_cli.config.identity import resolved
+from radhar_cli.config.identity import as_yaml, resolved
 from radhar_cli.errors import UnfinishedError
-from radhar_cli.simulation.simulate import PowerMap, Simulation
-from radhar_cli.simulation.truth import MOVEMENTS
+from radhar_cli.processing.power_map import PowerMap
+from radhar_cli.scene import Scene, scene_numbers
+from radhar_cli.simulation.simulate import Simulation
 
 SCENE_FILE = "scene.h5"
 SCENE_JSON = "scene.json"
+SCENE_YAML = "scene.yaml"
 
 
 def write_scene(simulation: Simulation, path: Path) -> None:
@@ -24,10 +25,10 @@ def write_scene(simulation: Simulation, path: Path) -> None:
     unfinished = path.with_suffix(".unfinished")
     try:
         with h5py.File(unfinished, "w") as file:
-            for power_map in simulation.maps.values():
-                _write_map(file, power_map)
-            for name, signal in simulation.slow_time.items():
-                file[f"slow_time/{name}"] = signal
+            for name, power_map in simulation.maps.items():
+                _write_map(file, name, power_map)
+            for name, signal in simulation.signals.items():
+                file[f"slow_time/{name}"] = signal.x
             _write_truth(file, simulation)
             if simulation.beat is not None:
                 file.create_dataset("echo/beat", data=simulation.beat, compression="gzip")
@@ -40,20 +41,20 @@ def write_scene(simulation: Simulation, path: Path) -> None:
         unfinished.unlink(missing_ok=True)
 
 
-def _write_map(file: h5py.File, power_map: PowerMap) -> None:
+def _write_map(file: h5py.File, name: str, power_map: PowerMap) -> None:
     dataset = file.create_dataset(
-        f"maps/{power_map.name}", data=_float32(power_map.power), compression="gzip"
+        f"maps/{name}", data=_float32(power_map.power), compression="gzip"
     )
-    vertical, unit = ("range", "m") if power_map.is_range else ("frequency", "Hz")
-    axes = ((vertical, power_map.vertical, unit), ("time", power_map.time, "s"))
-    for dimension, (name, values, unit) in enumerate(axes):
-        scale = file.create_dataset(f"axes/{power_map.name}/{name}", data=values)
-        scale.make_scale(f"{name} ({unit})")
-        scale.attrs["unit"] = unit
+    for dimension, axis in enumerate((power_map.rows, power_map.columns)):
+        scale = file.create_dataset(f"axes/{name}/{axis.name}", data=axis.values)
+        scale.make_scale(f"{axis.name} ({axis.unit})")
+        scale.attrs["unit"] = axis.unit
         dataset.dims[dimension].attach_scale(scale)
-        dataset.dims[dimension].label = name
+        dataset.dims[dimension].label = axis.name
     dataset.attrs["entropy_bits"] = power_map.entropy
-    dataset.attrs["meaning"] = "power for unit transmit power, [frequency or range, time]"
+    dataset.attrs["meaning"] = (
+        f"power for unit transmit power, [{power_map.rows.name}, {power_map.columns.name}]"
+    )
 
 
 def _float32(power: np.ndarray[Any, Any]) -> np.ndarray[Any, np.dtype[np.float32]]:
@@ -74,8 +75,8 @@ def _write_truth(file: h5py.File, simulation: Simulation) -> None:
     file["truth/doppler"] = truth.doppler
     file["truth/doppler"].attrs["unit"] = "Hz, positive approaching, before aliasing"
     file["truth/phase_label"] = truth.phase_label
-    file["truth/phase_label"].attrs["meaning"] = list(MOVEMENTS)
-    file["truth"].attrs["joints"] = list(JOINTS)
+    file["truth/phase_label"].attrs["meaning"] = list(truth.phases)
+    file["truth"].attrs["joints"] = list(simulation.motion.names)
 
 
 def describe(simulation: Simulation) -> dict[str, Any]:
@@ -83,11 +84,11 @@ def describe(simulation: Simulation) -> dict[str, Any]:
     waveform, scene = simulation.waveform, simulation.scene
     return {
         "activity": {"label": scene.activity.label, "slug": scene.activity.slug},
-        "seed": scene.seed,
+        "seed": scene.config.seed,
         "joint": simulation.joint,
         "engine": _engine(simulation),
         "accuracy": _accuracy(simulation),
-        "parameters": dict(scene.values),
+        "parameters": scene_numbers(scene),
         "derived": {
             "n_adc": waveform.n_adc,
             "n_pulses": waveform.n_pulses,
@@ -109,23 +110,26 @@ def _engine(simulation: Simulation) -> str:
 
 
 def _accuracy(simulation: Simulation) -> dict[str, Any] | None:
-    """What the direct engine chose, and the bounds of the error, null where there is none."""
-    settings = simulation.accuracy
-    if settings is None:
+    """How the direct engine made the signal, and its measured error; null where nothing errs."""
+    found = simulation.accuracy
+    if found is None:
         return None
     return {
         "tolerance_db": simulation.config.engine.tolerance_db,
-        "kinematics_hz": simulation.waveform.prf / settings.step,
-        "table_oversampling": settings.table_oversampling,
-        "precision": "single" if settings.single else "double",
-        "bounds_db": {
-            name: bound if isfinite(bound) else None for name, bound in settings.bounds_db.items()
-        },
+        "error_db": found.error_db if isfinite(found.error_db) else None,
+        "kinematics_hz": simulation.waveform.prf / found.step,
+        "table_oversampling": found.table_oversampling,
+        "precision": "single" if found.single else "double",
     }
 
 
+def _as_config(scene: Scene) -> str:
+    command = f"radhar simulate {SCENE_YAML} -o OUT --index {scene.index}"
+    return f"# One scene, nothing left to draw: {command}\n{as_yaml(scene.config)}"
+
+
 def write_all(simulation: Simulation, folder: Path) -> list[Path]:
-    """Write scene.h5 and scene.json into a folder; return their paths.
+    """Write scene.h5, scene.json and scene.yaml into a folder; return their paths.
 
     Raises:
         UnfinishedError: the folder cannot be written.
@@ -134,8 +138,9 @@ def write_all(simulation: Simulation, folder: Path) -> list[Path]:
         folder.mkdir(parents=True, exist_ok=True)
         write_scene(simulation, folder / SCENE_FILE)
         (folder / SCENE_JSON).write_text(json.dumps(describe(simulation), indent=2) + "\n")
+        (folder / SCENE_YAML).write_text(_as_config(simulation.scene))
     except OSError as error:
         raise UnfinishedError(
             f"{error.filename or folder}: {error.strerror or error}; nothing else was written"
         ) from None
-    return [folder / SCENE_FILE, folder / SCENE_JSON]
+    return [folder / name for name in (SCENE_FILE, SCENE_JSON, SCENE_YAML)]

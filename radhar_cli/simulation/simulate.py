@@ -1,66 +1,32 @@
 """Simulate one scene: every map, every signal, the truth behind them."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
 from radhar_cli.activity import Activity, activity_named
-from radhar_cli.arrays import Complex, Float
-from radhar_cli.body.skeleton import JOINTS
-from radhar_cli.config.experiment import MAP_NAMES, Config, MapName
+from radhar_cli.arrays import Complex
+from radhar_cli.config.schema import MAP_NAMES, Config, MapName
 from radhar_cli.echo import cube
 from radhar_cli.echo.beat import beat_matrix
-from radhar_cli.echo.direct import DirectEcho
-from radhar_cli.echo.error_budget import DirectSettings
+from radhar_cli.echo.direct import Accuracy
+from radhar_cli.echo.paths import PathSource
 from radhar_cli.echo.static_returns import leakage, near_face_distance, wall_echo
 from radhar_cli.errors import ConfigError, SceneError, did_you_mean
-from radhar_cli.pipeline.axes import Axes, axes_of
-from radhar_cli.pipeline.body_paths import BodyPaths
-from radhar_cli.pipeline.plan import SIGNALS, plan
-from radhar_cli.pipeline.run import Recording, run
-from radhar_cli.pipeline.survey import CLOSEST_M, check
-from radhar_cli.processing.entropy import entropy_bits
+from radhar_cli.motion.protocol import Motion, Only
+from radhar_cli.pipeline.physics import motion_of
+from radhar_cli.pipeline.plan import Product
+from radhar_cli.pipeline.products import SIGNALS, EchoAccuracy, Fallback
+from radhar_cli.pipeline.run import record
+from radhar_cli.pipeline.validity import MIN_DISTANCE_M, scene_warnings
+from radhar_cli.processing.power_map import PowerMap
+from radhar_cli.processing.signal import Signal
+from radhar_cli.radar.propagation import Antennas
+from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scenario import Scene, draw_scene, nominal_scene
+from radhar_cli.receiver.impairment import Impairment
+from radhar_cli.scene import Scene, draw_scene, nominal_scene
 from radhar_cli.simulation.truth import Truth, truth
-
-SIGNAL_NAMES: Mapping[str, str] = {
-    "raw": "plain",
-    "compensated": "compensated",
-    "denoised": "denoised",
-    "compensated_denoised": "compensated_denoised",
-}
-assert set(SIGNAL_NAMES.values()) == set(SIGNALS)
-
-
-@dataclass(frozen=True)
-class PowerMap:
-    """One map in physical units.
-
-    Attributes:
-        name: one of the nine.
-        power: [frequency or range, time], lowest first.
-        vertical: Doppler frequency (Hz) or range (m) of the rows.
-        time: centres of the columns, s.
-        entropy: bits.
-    """
-
-    name: str
-    power: Float
-    vertical: Float
-    time: Float
-    entropy: float
-
-    @property
-    def is_range(self) -> bool:
-        return self.name == "rtm"
-
-    @property
-    def extent(self) -> tuple[float, float, float, float]:
-        """Outer edges (time start, time stop, vertical low, vertical high)."""
-        return Axes(self.vertical, self.time).extent
 
 
 @dataclass(frozen=True)
@@ -68,31 +34,36 @@ class Simulation:
     """One simulated scene.
 
     Attributes:
-        config: that it was drawn from.
-        scene: the drawn numbers.
-        waveform: the radar's, with everything that follows from it.
+        scene: what was simulated; `scene.config` has nothing left to draw.
+        waveform, antennas, wall: the radar's and the wall's, with everything that follows from it.
+        motion: all that moves, whatever was left out of the echo.
         joint: the single scatterer that was kept, or None.
         maps: {map name: PowerMap}.
-        slow_time: {raw | compensated | denoised | compensated_denoised: x [M - 1]}.
+        signals: {raw | compensated | denoised | compensated_denoised: Signal}.
         truth: kinematics at every pulse.
         warnings: what lies outside the model, in words.
-        seconds: {stage: time it took}.
-        accuracy: what the direct engine did for its error budget; None of the cube.
+        seconds: {product: time it took}.
+        accuracy: how the direct engine made the signal, and its error; None of the cube.
         beat: raw echo [N_ADC, M] with static leakage and wall return, where asked for.
     """
 
-    config: Config
     scene: Scene
     waveform: Waveform
+    antennas: Antennas
+    wall: Wall | None
+    motion: Motion = field(repr=False)
     joint: str | None
     maps: dict[str, PowerMap]
-    slow_time: dict[str, Complex]
+    signals: dict[str, Signal]
     truth: Truth
-    paths: BodyPaths = field(repr=False)
     warnings: list[str]
     seconds: dict[str, float]
-    accuracy: DirectSettings | None = None
+    accuracy: Accuracy | None = None
     beat: Complex | None = None
+
+    @property
+    def config(self) -> Config:
+        return self.scene.config
 
     @property
     def activity(self) -> Activity:
@@ -101,20 +72,22 @@ class Simulation:
 
 def simulate(
     config: Config,
-    activity: str | Activity,
+    activity: str | Activity | None = None,
     seed: int | None = None,
     *,
+    index: int = 0,
     nominal: bool = False,
     joint: str | None = None,
     maps: tuple[MapName, ...] = MAP_NAMES,
     raw: bool = False,
 ) -> Simulation:
-    """Simulate sample 0 of one activity.
+    """Simulate one sample of one activity.
 
     Args:
         config: ranges are drawn from it; `maps`, image and split are not used.
-        activity: slug, label or Activity.
+        activity: slug, label or Activity; None where the config has but one.
         seed: instead of the config's.
+        index: number of the sample within its class.
         nominal: take the middle of every range instead of drawing.
         joint: keep this scatterer alone.
         maps: which of the nine to compute.
@@ -125,41 +98,34 @@ def simulate(
         SceneError: a scatterer comes within 5 cm of an antenna, or with `raw` the near face of the
             wall within 5 cm of the antennas' midpoint.
     """
-    if isinstance(activity, str):
-        activity = _activity(activity)
-    if seed is not None:
-        config = config.model_copy(update={"seed": seed})
-    scene = nominal_scene(config, activity) if nominal else draw_scene(config, activity, 0)
-    warnings = check(scene, config)
-    chosen = None if joint is None else (_joint(joint),)
-    signals = [f"signal:{which}" for which in SIGNALS]
-    direct = ["echo"] if config.engine.kind == "direct" else []
-    recording = run(plan(config, [*signals, *maps, *direct]), scene, config, chosen)
-    products = recording.products
+    activity = _activity(activity, config)
+    config = config.model_copy(update={"maps": maps, **({} if seed is None else {"seed": seed})})
+    scene = nominal_scene(config, activity) if nominal else draw_scene(config, activity, index)
+    warnings = scene_warnings(scene)
+    motion = motion_of(scene)
+    kept = motion if joint is None else Only(motion, (_joint(joint, motion.names),))
+    asked = [*SIGNALS, *maps, "waveform", "antennas", "wall"]
+    asked += ["accuracy"] if config.engine.kind == "direct" else []
+    asked += ["raw_echo"] if raw else []
+    found = record(scene, asked, [RAW_ECHO], motions=(kept,))
+    accuracy: EchoAccuracy | None = found.products.get("accuracy")
+    if isinstance(accuracy, Fallback):
+        warnings.append(f"computed by the cube (engine.fallback): {accuracy.reason}")
     return Simulation(
-        config=config,
         scene=scene,
-        waveform=recording.waveform,
-        joint=None if chosen is None else JOINTS[chosen[0]],
-        maps={name: _power_map(name, recording) for name in maps},
-        slow_time={name: products[f"signal:{which}"] for name, which in SIGNAL_NAMES.items()},
-        truth=truth(products["paths"], recording.waveform),
-        paths=products["paths"],
-        warnings=[*warnings, *_fallback(products.get("echo"))],
-        seconds=recording.seconds,
-        accuracy=_accuracy(products.get("echo")),
-        beat=raw_echo(recording) if raw else None,
+        waveform=found["waveform"],
+        antennas=found["antennas"],
+        wall=found["wall"],
+        motion=motion,
+        joint=None if joint is None else kept.names[0],
+        maps={name: found[name] for name in maps},
+        signals={name.removeprefix("signal").lstrip("_") or "raw": found[name] for name in SIGNALS},
+        truth=truth(motion, found["antennas"], found["wall"], found["waveform"]),
+        warnings=warnings,
+        seconds=found.seconds,
+        accuracy=accuracy if isinstance(accuracy, Accuracy) else None,
+        beat=found["raw_echo"] if raw else None,
     )
-
-
-def _accuracy(echo: DirectEcho | None) -> DirectSettings | None:
-    return None if echo is None or echo.beyond_reach else echo.settings
-
-
-def _fallback(echo: DirectEcho | None) -> list[str]:
-    if echo is None or not echo.beyond_reach:
-        return []
-    return [f"computed by the cube (engine.fallback): {echo.beyond_reach}"]
 
 
 def map_names(chosen: list[str] | None) -> tuple[MapName, ...]:
@@ -176,52 +142,64 @@ def map_names(chosen: list[str] | None) -> tuple[MapName, ...]:
     return tuple(name for name in MAP_NAMES if name in names)
 
 
-def raw_echo(recording: Recording) -> Complex:
+def raw_echo(
+    scene: Scene,
+    paths: PathSource,
+    waveform: Waveform,
+    antennas: Antennas,
+    wall: Wall | None,
+    receiver: tuple[Impairment, ...],
+) -> Complex:
     """s_noisy[n, m] [N_ADC, M] as an ADC would record it: body, noise, leakage and wall echo.
 
     Raises:
         SceneError: the wall's near face is within 5 cm of the antennas' midpoint.
     """
-    waveform, paths = recording.waveform, recording.products["paths"]
-    rng = recording.noise("beat") if "signal_power" in recording.plan else None
-    moving = recording.config.engine.motion_in_chirp
-    blocks = [
-        block[:, (1 if first else 0) :]
-        for first, block in cube.beat_blocks(paths, waveform, recording.sigma, rng, moving)
-    ]
-    beat = np.concatenate(blocks, axis=1)
-    static = [leakage(paths.antennas)]
-    if paths.wall is not None:
-        distance = near_face_distance(paths.antennas, paths.wall)
-        if distance < CLOSEST_M:
+    blocks = cube.beat_blocks(paths, waveform, scene.config.engine.motion_in_chirp)
+    for impairment in receiver:
+        blocks = impairment.beat(blocks)
+    beat = np.concatenate(list(blocks), axis=1)
+    static = [leakage(antennas)]
+    if wall is not None:
+        distance = near_face_distance(antennas, wall)
+        if distance < MIN_DISTANCE_M:
             raise SceneError(
-                f"{recording.scene.name}: the near face of the wall (wall.center_m, wall.size_m) "
+                f"{scene.name}: the near face of the wall (wall.center_m, wall.size_m) "
                 f"is {distance * 100:.3g} cm from the middle of radar.tx_m and radar.rx_m; its "
-                f"echo in a raw recording holds from {CLOSEST_M * 100:g} cm on"
+                f"echo in a raw recording holds from {MIN_DISTANCE_M * 100:g} cm on"
             )
-        static.append(wall_echo(paths.antennas, paths.wall, waveform))
+        static.append(wall_echo(antennas, wall, waveform))
     delay = np.array([[one.delay] for one in static])
     amplitude = np.array([[one.amplitude] for one in static])
     beat += beat_matrix(delay, amplitude, waveform)
     return beat
 
 
-def _power_map(name: str, recording: Recording) -> PowerMap:
-    axes = axes_of(name, recording)
-    products: dict[str, Any] = recording.products
-    return PowerMap(name, products[name], axes.vertical, axes.time, entropy_bits(products[name]))
+RAW_ECHO = Product(
+    "raw_echo",
+    ("scene", "paths", "waveform", "antennas", "wall", "receiver"),
+    raw_echo,
+    "beat matrix as recorded, static returns included",
+)
 
 
-def _activity(name: str) -> Activity:
+def _activity(asked: str | Activity | None, config: Config) -> Activity:
+    """The activity, with its number in this config where it is a class of one's own."""
+    chosen = config.chosen_activities
+    if asked is None and len(chosen) > 1:
+        raise ConfigError(f"--activity is needed: the config has {len(chosen)} activities")
+    if asked is None:
+        return chosen[0]
     try:
-        return activity_named(name)
+        found = activity_named(asked) if isinstance(asked, str) else asked
     except ValueError as error:
         raise ConfigError(str(error)) from None
+    return next((one for one in chosen if one.slug == found.slug), found)
 
 
-def _joint(name: str) -> int:
+def _joint(name: str, joints: tuple[str, ...]) -> int:
     key = name.strip().lower().replace("-", "_").replace(" ", "_")
-    if key in JOINTS:
-        return JOINTS.index(key)
-    hint = did_you_mean(key, JOINTS, "the joints are " + ", ".join(JOINTS))
+    if key in joints:
+        return joints.index(key)
+    hint = did_you_mean(key, joints, "the joints are " + ", ".join(joints))
     raise ConfigError(f"{name!r} is no joint; {hint}")

@@ -3,8 +3,8 @@
 from typing import Any, NamedTuple
 
 from radhar_cli.arrays import Complex, Float, Levels
-from radhar_cli.pipeline.plan import plan
-from radhar_cli.pipeline.run import run
+from radhar_cli.echo.direct import Accuracy
+from radhar_cli.pipeline.run import record
 from radhar_cli.tradeoff.measures import image_scores, map_error_db, relative_db
 from radhar_cli.tradeoff.scenes import Scenes
 from radhar_cli.tradeoff.settings import Setting
@@ -20,14 +20,14 @@ class Sample(NamedTuple):
         power: the first map of the config.
         levels: its image.
         dynamic_range_db: of the image.
-        bounds: {term: bound of the direct engine, dB}.
+        engine_db: the error that the direct engine measured itself, dB; None of the cube.
     """
 
     signal: Complex
     power: Float
     levels: Levels
     dynamic_range_db: float
-    bounds: dict[str, float]
+    engine_db: float | None
 
 
 class SceneDifferences:
@@ -44,8 +44,7 @@ class SceneDifferences:
         if found.power.shape == right.power.shape:
             error, worst = map_error_db(found.power, right.power, right.dynamic_range_db)
             row |= {"map_error_db": error, "map_error_max_db": worst}
-        bounds = {f"{term}_bound_db": bound for term, bound in found.bounds.items()}
-        return row | image_scores(found.levels, right.levels) | bounds
+        return row | image_scores(found.levels, right.levels) | {"engine_error_db": found.engine_db}
 
     def _sample(self, overrides: tuple[str, ...]) -> Sample:
         if overrides not in self._made:
@@ -55,16 +54,17 @@ class SceneDifferences:
     def _make(self, overrides: tuple[str, ...]) -> Sample:
         config = self._scenes.config((*overrides, QUIET))
         name = config.maps[0]
-        asked = ["signal:plain", name, f"levels:{name}"]
+        asked = ["signal", name, f"image:{name}"]
         if config.engine.kind == "direct":
-            asked.append("echo")
+            asked.append("accuracy")
         scene = self._scenes.draw(self._slug, config)
-        products = run(plan(config, asked), scene, config).products
-        bounds = products["echo"].settings.bounds_db if "echo" in products else {}
+        products = record(scene, asked).products
+        accuracy = products.get("accuracy")
+        measured = accuracy.error_db if isinstance(accuracy, Accuracy) else None
         return Sample(
-            products["signal:plain"],
-            products[name],
-            products[f"levels:{name}"],
+            products["signal"].x,
+            products[name].power,
+            products[f"image:{name}"].levels,
             config.image.dynamic_range_db,
-            bounds,
+            measured,
         )

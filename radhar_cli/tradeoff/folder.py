@@ -5,7 +5,7 @@ import shutil
 from pathlib import Path
 from typing import Any
 
-from radhar_cli.config.experiment import Config
+from radhar_cli.config.schema import Config
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.dataset.layout import WORK

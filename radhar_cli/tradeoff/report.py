@@ -15,7 +15,6 @@ from radhar_cli.tradeoff.study import Row
 from radhar_cli.tradeoff.text import ENGINES, markdown
 
 CSV, JSON, FIGURE, TEXT = "tradeoff.csv", "tradeoff.json", "pareto.png", "tradeoff.md"
-BOUNDS = ("interpolation_bound_db", "table_bound_db", "rounding_bound_db")
 
 
 def record(row: Row) -> dict[str, Any]:
@@ -43,7 +42,7 @@ def record(row: Row) -> dict[str, Any]:
         "ssim": min(row.values("ssim"), default=None),
         "psnr_db": min(row.values("psnr_db"), default=None),
         "pixels_changed": row.worst("pixels_changed"),
-        **{name: row.worst(name) for name in BOUNDS},
+        "engine_error_db": row.worst("engine_error_db"),
         "scenes": len(row.differences),
         "refused": len(row.refused),
     }

@@ -6,9 +6,9 @@ from functools import cache
 from pathlib import Path
 
 from radhar_cli.config import load_config
-from radhar_cli.config.experiment import Config
-from radhar_cli.pipeline.survey import settle
-from radhar_cli.scenario import Scene, draw_scene
+from radhar_cli.config.schema import Config
+from radhar_cli.pipeline.validity import draw_valid_scene
+from radhar_cli.scene import Scene
 
 # Of what differs most: a standing person's arms, a walk, a fall.
 QUICK = ("punching", "walking", "walking_to_falling")
@@ -41,7 +41,7 @@ class Scenes:
     def draw(self, slug: str, config: Config) -> Scene:
         """Sample 0 of an activity; settings of engine, maps and image leave it as it is."""
         activity = next(a for a in config.chosen_activities if a.slug == slug)
-        return draw_scene(config, activity, 0, settle(config, activity, 0).attempt)
+        return draw_valid_scene(config, activity, 0)[0]
 
 
 @cache

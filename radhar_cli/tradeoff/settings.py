@@ -2,8 +2,7 @@
 
 from dataclasses import dataclass
 
-from radhar_cli.config.engine import EngineConfig
-from radhar_cli.config.experiment import MAP_NAMES, Config
+from radhar_cli.config.schema import MAP_NAMES, Config, EngineConfig
 from radhar_cli.tradeoff.trial import Trial
 
 BUDGETS = (-20, -30, -40, -50, -60, -70, -80, -100, -120)

@@ -95,11 +95,6 @@ def _ratio(name: str) -> Callable[[Record], str]:
     return text
 
 
-def _bounds(one: Record) -> str:
-    names = ("interpolation_bound_db", "table_bound_db", "rounding_bound_db")
-    return ", ".join(_number(name, 0)(one) for name in names if one[name] is not None)
-
-
 _SAMPLE = ("sample ms", _number("sample_ms", 1))
 _TIME = ("time", _ratio("time_ratio"))
 _CHANGED = ("pixels changed", _share)
@@ -110,7 +105,7 @@ _ENGINE: tuple[Column, ...] = (
     ("echo time", _ratio("echo_ratio")),
     ("signal error dB", _number("signal_error_db", 1)),
     ("median dB", _number("signal_error_median_db", 1)),
-    ("bounds of interpolation, table, rounding dB", _bounds),
+    ("as the engine measured it", _number("engine_error_db", 1)),
     ("map error dB", _number("map_error_db", 4)),
     ("SSIM", _number("ssim", 6)),
     _CHANGED,

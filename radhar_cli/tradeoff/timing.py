@@ -3,14 +3,17 @@
 from time import perf_counter
 from typing import NamedTuple
 
-from radhar_cli.pipeline.plan import plan_images
-from radhar_cli.pipeline.run import Recording, run
+from radhar_cli.pipeline.products import plan_images
+from radhar_cli.pipeline.run import run
 from radhar_cli.tradeoff.scenes import Scenes
 from radhar_cli.tradeoff.settings import Setting
 
 # How long a setting is timed in a round, at most this and one scene more.
 SECONDS = 0.6
-ECHO = ("paths", "echo", "signal_power", "slow_time", "beat_cube", "range_profiles")
+ECHO = (
+    *("motions", "paths", "direct", "snr_direct", "echo", "signal_power", "slow_time", "signal"),
+    *("beat_cube", "range_profiles"),
+)
 
 
 class Times(NamedTuple):
@@ -49,6 +52,6 @@ def _seconds(scenes: Scenes, slug: str, overrides: tuple[str, ...]) -> tuple[flo
     config = scenes.config(overrides)
     scene, plan = scenes.draw(slug, config), plan_images(config)
     start = perf_counter()
-    recording: Recording = run(plan, scene, config)
+    recording = run(plan, {"scene": scene})
     whole = perf_counter() - start
     return whole, sum(t for name, t in recording.seconds.items() if name in ECHO)

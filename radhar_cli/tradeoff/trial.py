@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from radhar_cli.config import load_config
-from radhar_cli.config.experiment import Config
+from radhar_cli.config.schema import Config
 from radhar_cli.dataset.build import Progress, build
 from radhar_cli.dataset.identity import identity
 from radhar_cli.tradeoff.ledger import Ledger

@@ -19,7 +19,7 @@ from radhar_cli.config import (
     timing_warnings,
 )
 from radhar_cli.config.number import Uniform
-from radhar_cli.config.section import Section
+from radhar_cli.config.schema import Section
 
 
 def test_the_defaults_are_the_papers_free_space_data_set() -> None:

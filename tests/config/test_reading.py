@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.config import Config, config_from_json, load_config, resolved
-from radhar_cli.config.motion import for_activity
 from radhar_cli.config.number import Choice, Normal, Uniform, Vary
+from radhar_cli.config.schema import for_activity
 from radhar_cli.errors import ConfigError
 
 

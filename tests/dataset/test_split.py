@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from radhar_cli.config import Config
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.split import TEST, TRAIN, VALIDATION, split_rows
-from radhar_cli.scenario import subject_of
+from radhar_cli.scene import subject_of
 
 
 def split_of(count: int, seed: int = 1, activities: Any = "all", **split: Any) -> np.ndarray:

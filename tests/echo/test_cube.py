@@ -8,13 +8,13 @@ import pytest
 import reference as ref
 
 from radhar_cli.activity import ACTIVITIES
-from radhar_cli.config.experiment import Config
+from radhar_cli.config.schema import Config
 from radhar_cli.echo import cube
 from radhar_cli.echo.beat import beat_matrix, unit_phasor
 from radhar_cli.pipeline.plan import plan
 from radhar_cli.pipeline.run import run
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scenario import draw_scene
+from radhar_cli.scene import draw_scene
 
 # fc tau is about 1e4 cycles at most: float64 places the phase to some 1e-11 of a turn.
 ROUNDING = 1e-11

@@ -7,10 +7,10 @@ import pytest
 import reference as ref
 
 from radhar_cli.activity import ACTIVITIES, Activity
-from radhar_cli.config.experiment import Config
+from radhar_cli.config.schema import Config
 from radhar_cli.pipeline.plan import plan
 from radhar_cli.pipeline.run import run
-from radhar_cli.scenario import draw_scene
+from radhar_cli.scene import draw_scene
 
 # The default budget; what the maps show is 50 dB deep.
 DEFAULT_DB = -80

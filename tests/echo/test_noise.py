@@ -5,18 +5,18 @@ from dataclasses import asdict
 import numpy as np
 import pytest
 import reference as ref
+from radhar_cli.pipeline.models import body_of
+from radhar_cli.radar.noise import circular_gaussian
 from scipy.stats import expon, ks_2samp, kstest
 
 from radhar_cli.activity import activity_named
-from radhar_cli.config.experiment import MAP_NAMES, Config
+from radhar_cli.config.schema import MAP_NAMES, Config
 from radhar_cli.echo import cube
 from radhar_cli.echo.direct import slow_time_noise
-from radhar_cli.pipeline.models import body_of
 from radhar_cli.pipeline.plan import plan, plan_images
 from radhar_cli.pipeline.run import Recording, run
-from radhar_cli.radar.noise import circular_gaussian
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scenario import Scene, draw_scene
+from radhar_cli.scene import Scene, draw_scene
 
 # 20 samples a chirp and 20 000 pulses: enough for statistics, little to compute.
 RADAR = {"carrier_hz": 24e9, "bandwidth_hz": 1e9, "prf_hz": 5000, "adc_rate_hz": 5e5}

@@ -18,8 +18,8 @@ from radhar_cli.errors import ConfigError, RadharError
 from radhar_cli.pipeline import survey
 from radhar_cli.pipeline.plan import plan, plan_images
 from radhar_cli.pipeline.run import Recording, run
-from radhar_cli.pipeline.survey import check, settle
-from radhar_cli.scenario import draw_scene
+from radhar_cli.pipeline.validity import check, settle
+from radhar_cli.scene import draw_scene
 
 SEED = 20261121
 BLOCKS, CONFIGS = 10, 220

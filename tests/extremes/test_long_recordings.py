@@ -26,9 +26,9 @@ from radhar_cli.activity import activity_named
 from radhar_cli.config import Config
 from radhar_cli.pipeline.plan import plan_images
 from radhar_cli.pipeline.run import run
-from radhar_cli.pipeline.survey import settle
+from radhar_cli.pipeline.validity import settle
 from radhar_cli.process import prepare_process
-from radhar_cli.scenario import draw_scene
+from radhar_cli.scene import draw_scene
 
 prepare_process()
 config = Config.model_validate(json.loads(sys.argv[1]))

@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from radhar_cli.config.processing import SavgolConfig
+from radhar_cli.processing.mti import mti
 
 from radhar_cli.config import Config
-from radhar_cli.config.processing import SavgolConfig
 from radhar_cli.config.reading import validated
 from radhar_cli.errors import ConfigError
 from radhar_cli.processing import fsst, image, stft
@@ -20,7 +21,6 @@ from radhar_cli.processing.denoising import savgol
 from radhar_cli.processing.doppler_compensation import compensate
 from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.frames import Frames
-from radhar_cli.processing.mti import mti
 from radhar_cli.processing.range_compression import (
     half_band_signal,
     range_bins,

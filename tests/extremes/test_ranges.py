@@ -19,19 +19,19 @@ from extreme_scenes import (
     relative,
     signal,
 )
+from radhar_cli.pipeline.models import body_of
 
 from radhar_cli.activity import ACTIVITIES
-from radhar_cli.body.skeleton import JOINTS, PARENTS, SKELETON
 from radhar_cli.config import MAP_NAMES, Config
 from radhar_cli.config.reading import validated
 from radhar_cli.echo import cube
 from radhar_cli.errors import ConfigError, SceneError
-from radhar_cli.pipeline.models import body_of
+from radhar_cli.motion.skeleton import JOINTS, PARENTS, SKELETON
 from radhar_cli.pipeline.plan import plan
 from radhar_cli.pipeline.run import run
-from radhar_cli.pipeline.survey import check
+from radhar_cli.pipeline.validity import check
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scenario import draw_scene, nominal_scene
+from radhar_cli.scene import draw_scene, nominal_scene
 
 DIRECT_DB = -60.0  # the promise of docs/engines.md
 # Rounding of a phase of C cycles is about C 2^-52 turns; over the PRF it is compared with the

@@ -3,13 +3,14 @@
 import numpy as np
 import pytest
 from extreme_scenes import config_of, record
+from radhar_cli.pipeline.models import waveform_of
+from radhar_cli.processing.mti import mti
 
 from radhar_cli.activity import activity_named
 from radhar_cli.config import MAP_NAMES, Config
 from radhar_cli.echo import cube
 from radhar_cli.echo.static_returns import leakage, wall_echo
 from radhar_cli.errors import SceneError
-from radhar_cli.pipeline.models import waveform_of
 from radhar_cli.pipeline.plan import plan
 from radhar_cli.pipeline.run import run
 from radhar_cli.processing import fsst, stft
@@ -17,14 +18,13 @@ from radhar_cli.processing.denoising import savgol
 from radhar_cli.processing.doppler_compensation import compensate
 from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.frames import Frames
-from radhar_cli.processing.mti import mti
 from radhar_cli.processing.range_compression import (
     half_band_signal,
     range_bins,
     range_compression,
     range_power,
 )
-from radhar_cli.scenario import nominal_scene
+from radhar_cli.scene import nominal_scene
 from radhar_cli.simulation.simulate import raw_echo, simulate
 
 ALL = [f"{kind}{name}" for name in MAP_NAMES for kind in ("", "levels:", "entropy:")]

@@ -14,7 +14,6 @@ from PIL import Image
 from small import small_config
 
 from radhar_cli.config import load_config
-from radhar_cli.config.rounding import half_up
 from radhar_cli.dataset.build import build
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.images.image_set import (
@@ -27,6 +26,7 @@ from radhar_cli.learning.images.image_set import (
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.scan import content_hash, scan
 from radhar_cli.learning.training import checked_images
+from radhar_cli.rounding import half_up
 
 SET = """
 seed: 3

@@ -7,16 +7,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 from peak_memory import PEAK
+from radhar_cli.pipeline.axes import axes_of
 
 from radhar_cli.activity import activity_named
-from radhar_cli.config.experiment import MAP_NAMES, Config
+from radhar_cli.config.schema import MAP_NAMES, Config
 from radhar_cli.pipeline import run as run_module
 from radhar_cli.pipeline import survey as survey_module
-from radhar_cli.pipeline.axes import axes_of
 from radhar_cli.pipeline.plan import KEPT, plan, plan_images
 from radhar_cli.pipeline.run import Recording, run
 from radhar_cli.processing import frames as frames_module
-from radhar_cli.scenario import Scene, draw_scene
+from radhar_cli.scene import Scene, draw_scene
 
 ROOT = Path(__file__).resolve().parents[2]
 SMALL = {
@@ -130,10 +130,10 @@ _PROGRAM = (
     + """
 import sys
 from radhar_cli.dataset.sample import synthesise
-from radhar_cli.config.experiment import Config
+from radhar_cli.config.schema import Config
 from radhar_cli.activity import activity_named
 from radhar_cli.pipeline.plan import plan_images
-from radhar_cli.scenario import draw_scene
+from radhar_cli.scene import draw_scene
 import numpy as np, json, scipy.fft, scipy.signal, PIL.Image
 config = Config.model_validate(json.loads(sys.argv[1]))
 before = peak()

@@ -7,13 +7,13 @@ from math import floor
 import numpy as np
 import pytest
 import scipy.fft
+from radhar_cli.pipeline.body_paths import BodyPaths
 
 from radhar_cli.activity import activity_named
-from radhar_cli.body.pose import Body
-from radhar_cli.config.experiment import MAP_NAMES, Config
+from radhar_cli.config.schema import MAP_NAMES, Config
 from radhar_cli.echo import beat, cube, half_band_sum
+from radhar_cli.motion.paper.body import Body
 from radhar_cli.pipeline import run as run_module
-from radhar_cli.pipeline.body_paths import BodyPaths
 from radhar_cli.pipeline.plan import Plan, plan, plan_images
 from radhar_cli.processing import (
     denoising,
@@ -24,7 +24,7 @@ from radhar_cli.processing import (
     range_compression,
 )
 from radhar_cli.radar import noise, propagation, wall
-from radhar_cli.scenario import Scene, draw_scene
+from radhar_cli.scene import Scene, draw_scene
 
 PULSES, WIDTH = 128, 20
 

@@ -4,14 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from radhar_cli.pipeline.body_paths import BodyPaths
+from radhar_cli.pipeline.models import antennas_of, body_of, wall_of
 
 from radhar_cli.activity import activity_named
 from radhar_cli.config import Config
-from radhar_cli.pipeline.body_paths import BodyPaths
-from radhar_cli.pipeline.models import antennas_of, body_of, wall_of
-from radhar_cli.pipeline.survey import survey
+from radhar_cli.pipeline.validity import survey
 from radhar_cli.radar.wall import Wall
-from radhar_cli.scenario import Scene, nominal_scene
+from radhar_cli.scene import Scene, nominal_scene
 
 BASE = {"radar": {"carrier_hz": 2e9, "bandwidth_hz": 1e9, "prf_hz": 128}, "wall": {}}
 T = np.linspace(0, 4, 50)

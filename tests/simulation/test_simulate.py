@@ -7,16 +7,14 @@ import numpy as np
 import pytest
 
 import radhar_cli as radhar
-from radhar_cli.body.skeleton import JOINTS
 from radhar_cli.config import MAP_NAMES, Config, load_config
 from radhar_cli.errors import ConfigError, SceneError
-from radhar_cli.pipeline.plan import plan
-from radhar_cli.pipeline.run import run
+from radhar_cli.motion.skeleton import JOINTS
+from radhar_cli.pipeline.run import record
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
-from radhar_cli.scenario import draw_scene
+from radhar_cli.scene import draw_scene
 from radhar_cli.simulation.scene_file import describe, write_all
 from radhar_cli.simulation.simulate import Simulation, map_names, simulate
-from radhar_cli.simulation.truth import MOVEMENTS
 
 ROOT = Path(__file__).resolve().parents[2]
 FREE = ROOT / "configs/paper/figures_free_space.yaml"
@@ -32,11 +30,11 @@ def test_every_product_is_there_with_its_axes(walking: Simulation) -> None:
     pulses = walking.waveform.n_pulses
     assert tuple(walking.maps) == MAP_NAMES
     for one in walking.maps.values():
-        assert one.power.shape == (one.vertical.size, one.time.size)
-        assert np.all(np.diff(one.vertical) > 0)
-        assert np.all(np.diff(one.time) > 0)
+        assert one.power.shape == (one.rows.values.size, one.columns.values.size)
+        assert np.all(np.diff(one.rows.values) > 0)
+        assert np.all(np.diff(one.columns.values) > 0)
         assert one.entropy > 0
-    assert {x.shape for x in walking.slow_time.values()} == {(pulses - 1,)}
+    assert {signal.x.shape for signal in walking.signals.values()} == {(pulses - 1,)}
     assert walking.truth.positions.shape == (pulses, 13, 3)
     assert walking.truth.radial_velocity.shape == (pulses, 13)
 
@@ -44,10 +42,10 @@ def test_every_product_is_there_with_its_axes(walking: Simulation) -> None:
 def test_torso_line_lies_where_its_speed_puts_it(walking: Simulation) -> None:
     """The FSST's strongest bin follows the torso's true Doppler within two bins, late in S8."""
     one = walking.maps["fsst"]
-    late = one.time > 1.5
-    bin_width = one.vertical[1] - one.vertical[0]
-    ridge = one.vertical[np.argmax(one.power[:, late], axis=0)]
-    at = np.searchsorted(walking.truth.time, one.time[late])
+    late = one.columns.values > 1.5
+    bin_width = one.rows.values[1] - one.rows.values[0]
+    ridge = one.rows.values[np.argmax(one.power[:, late], axis=0)]
+    at = np.searchsorted(walking.truth.time, one.columns.values[late])
     truth = walking.truth.doppler[at, JOINTS.index("torso")]
     assert truth.mean() == pytest.approx(-2 * 1.5 * walking.waveform.f0 / SPEED_OF_LIGHT, rel=0.02)
     close = np.abs(ridge - truth) <= 2 * bin_width
@@ -56,9 +54,9 @@ def test_torso_line_lies_where_its_speed_puts_it(walking: Simulation) -> None:
 
 def test_compensation_centres_the_torso(walking: Simulation) -> None:
     one = walking.maps["fsst_compensated"]
-    late = one.time > 1.5
-    ridge = one.vertical[np.argmax(one.power[:, late], axis=0)]
-    assert np.mean(np.abs(ridge) <= 2 * (one.vertical[1] - one.vertical[0])) > 0.9
+    late = one.columns.values > 1.5
+    ridge = one.rows.values[np.argmax(one.power[:, late], axis=0)]
+    assert np.mean(np.abs(ridge) <= 2 * (one.rows.values[1] - one.rows.values[0])) > 0.9
 
 
 @pytest.mark.parametrize("joint", ["right_ankle", "left_elbow", "head"])
@@ -67,19 +65,19 @@ def test_ridge_of_a_single_joint_follows_its_true_doppler(path: Path, joint: str
     config = load_config(path, ["snr_db=null", "motion.range_m=2"])
     single = simulate(config, "S8", joint=joint, maps=("fsst",))
     one, prf = single.maps["fsst"], single.waveform.prf
-    inside = one.time < (2.5 if joint == "right_ankle" else 3.5)  # within the half-band
-    ridge = one.vertical[np.argmax(one.power[:, inside], axis=0)]
+    inside = one.columns.values < (2.5 if joint == "right_ankle" else 3.5)  # within the half-band
+    ridge = one.rows.values[np.argmax(one.power[:, inside], axis=0)]
     window = round(0.1 * single.waveform.n_pulses)
     doppler = single.truth.doppler[:, JOINTS.index(joint)]
-    at = np.searchsorted(single.truth.time, one.time[inside])
+    at = np.searchsorted(single.truth.time, one.columns.values[inside])
     spread = np.array([np.ptp(doppler[max(a - window // 2, 0) : a + window // 2]) for a in at])
     miss = np.abs((ridge - doppler[at] + prf / 2) % prf - prf / 2)
     # Within a window the joint sweeps over `spread`; its ridge lies somewhere on that sweep.
-    assert np.all(miss <= spread + 3 * (one.vertical[1] - one.vertical[0]))
+    assert np.all(miss <= spread + 3 * (one.rows.values[1] - one.rows.values[0]))
 
 
 def test_radial_velocity_is_the_derivative_of_the_path(walking: Simulation) -> None:
-    truth, antennas = walking.truth, walking.paths.antennas
+    truth, antennas = walking.truth, walking.antennas
     legs = sum(
         np.linalg.norm(truth.positions - np.array(a), axis=2) for a in (antennas.tx, antennas.rx)
     )
@@ -108,9 +106,10 @@ def test_wall_dims_and_fsst_is_thinner() -> None:
     ],
 )
 def test_phase_labels_come_in_order(activity: str, order: list[str]) -> None:
-    labels = simulate(load_config(WALL), activity, maps=("stft",)).truth.phase_label
-    changes = [labels[0], *labels[1:][np.diff(labels) != 0]]
-    assert [MOVEMENTS[label] for label in changes if MOVEMENTS[label] != "standing"] == order
+    truth = simulate(load_config(WALL), activity, maps=("stft",)).truth
+    labels = truth.phase_label
+    changes = [truth.phases[n] for n in (labels[0], *labels[1:][np.diff(labels) != 0])]
+    assert [name for name in changes if name != "standing"] == order
 
 
 def test_same_seed_same_scene_as_generate(tmp_path: Path) -> None:
@@ -118,14 +117,14 @@ def test_same_seed_same_scene_as_generate(tmp_path: Path) -> None:
     config = load_config(ROOT / "configs/smoke.yaml", ["seed=5"])
     one = simulate(config.model_copy(update={"seed": 1}), "S4", seed=5, maps=("stft",))
     scene = draw_scene(config, one.activity, 0)
-    power = run(plan(config, ["stft"]), scene, config).products["stft"]
+    power = record(scene, ["stft"])["stft"].power
     assert np.array_equal(power, one.maps["stft"].power)
 
 
 def test_engines_agree_without_noise() -> None:
     direct = load_config(WALL, ["snr_db=null"])
     exact = load_config(WALL, ["snr_db=null", "engine.kind=cube"])
-    x, y = (simulate(c, "S3", maps=("stft",)).slow_time["raw"] for c in (exact, direct))
+    x, y = (simulate(c, "S3", maps=("stft",)).signals["raw"].x for c in (exact, direct))
     assert np.linalg.norm(x - y) < 1e-3 * np.linalg.norm(x)
 
 
@@ -148,12 +147,16 @@ def test_scene_file_holds_it_all(tmp_path: Path) -> None:
             assert stored.dtype == np.float32
             assert np.allclose(stored[:], power_map.power, rtol=1e-6)
             assert stored.attrs["entropy_bits"] == power_map.entropy
-            assert np.array_equal(stored.dims[0][0][:], power_map.vertical)
-            assert np.array_equal(stored.dims[1][0][:], power_map.time)
+            assert np.array_equal(stored.dims[0][0][:], power_map.rows.values)
+            assert np.array_equal(stored.dims[1][0][:], power_map.columns.values)
         assert file["slow_time/compensated"].dtype == np.complex128
         assert file["truth/positions"].shape == (512, 13, 3)
         assert file["echo/beat"].shape == (400, 512)
-    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == ["scene.h5", "scene.json"]
+    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == [
+        "scene.h5",
+        "scene.json",
+        "scene.yaml",
+    ]
     described = describe(one)
     assert described["parameters"]["wall.eps_r"] == 6
     assert described["entropy_bits"].keys() == set(MAP_NAMES)
@@ -162,8 +165,8 @@ def test_scene_file_holds_it_all(tmp_path: Path) -> None:
 def test_nominal_takes_the_middle(tmp_path: Path) -> None:
     config = load_config(ROOT / "configs/paper/through_wall.yaml")
     one = simulate(config, "S2", nominal=True, maps=("stft",))
-    assert one.scene.values["motion.range_m"] == 2
-    assert one.scene.values["subject.height_m"] == pytest.approx(1.7)
+    assert one.scene.config.motion.range_m == 2
+    assert one.scene.config.subject.height_m == pytest.approx(1.7)
 
 
 def test_what_is_not_asked_for_is_not_computed(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -201,3 +204,14 @@ def test_python_interface(tmp_path: Path) -> None:
     assert "load_config" in radhar._INTERFACE
     with pytest.raises(AttributeError):
         radhar.nothing  # noqa: B018
+
+
+def test_a_scene_is_written_and_simulated_again(tmp_path: Path) -> None:
+    config = load_config("configs/smoke.yaml", ["maps=[rtm, stft]"])
+    drawn = simulate(config, "kicking", index=3, maps=("rtm", "stft"))
+    written = write_all(drawn, tmp_path)
+    scene_yaml = next(path for path in written if path.suffix == ".yaml")
+    again = simulate(load_config(scene_yaml), index=3, maps=("rtm", "stft"))
+    assert again.scene == drawn.scene
+    for name, power_map in drawn.maps.items():
+        assert np.array_equal(power_map.power, again.maps[name].power)

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.arrays import Index, Levels
-from radhar_cli.config.rounding import half_up
 from radhar_cli.dataset.layout import SPLITS
 from radhar_cli.dataset.split import TRAIN, VALIDATION
 from radhar_cli.errors import FolderError, did_you_mean
 from radhar_cli.randomness import TRAINING, stream
+from radhar_cli.rounding import half_up
 
 SPLIT_NAMES = {"train": 0, "val": 1, "validation": 1, "valid": 1, "test": 2}
 

@@ -1,1 +1,0 @@
-"""Thirteen scatterers that move: skeleton, angles over time, positions."""

@@ -1,0 +1,128 @@
+"""From an error that is allowed to settings of the direct engine, and the error that they made.
+
+As FINUFFT turns eps into a kernel width, `settings` turns decibels into the spacing of knots, the
+size of a table and a precision; `measured_db` then compares the signal with the exact beat at some
+pulses.
+"""
+
+from math import ceil, inf, log10
+from typing import NamedTuple
+
+import numpy as np
+
+from radhar_cli.arrays import Complex, Float, Index
+from radhar_cli.echo.beat import BLOCK_SAMPLES
+from radhar_cli.echo.half_band_sum import MAX_CELLS, weights
+from radhar_cli.echo.knots import Spacing
+from radhar_cli.echo.paths import PathSource
+from radhar_cli.echo.range_profiles import beat_at
+from radhar_cli.radar.waveform import Waveform
+
+# Six-point interpolation errs by the sixth power of the spacing; this one made -114 dB or less of
+# every activity at 77 GHz.
+SPACING_DB = -150.0
+PER_SECOND, PER_CYCLE, AMPLITUDE_CHANGE, PHASE_CHANGE = 400.0, 200.0, 0.05, 0.05
+# Cubic Hermite cells err by the fourth power of their width: -48 dB at 4 a fast-time sample.
+TABLE_DB = -48.0
+SINGLE_DB = -120.0
+# Settings aim below the tolerance, and are taken if the measured error is below it by SPARE.
+MARGIN_DB, SPARE_DB, FINEST_DB = 15.0, 10.0, -220.0
+PROBES = 64
+
+
+class Settings(NamedTuple):
+    """What the direct engine does.
+
+    Attributes:
+        spacing: of the knots.
+        table_oversampling: points of the table of G per fast-time sample.
+        single: whether sines and cosines are single precision.
+    """
+
+    spacing: Spacing
+    table_oversampling: int
+    single: bool
+
+
+def settings(aim_db: float, waveform: Waveform, highest_frequency: float) -> Settings:
+    """Settings that usually err by `aim_db` or less, for a motion of that fundamental (Hz)."""
+    coarse = 10 ** ((aim_db - SPACING_DB) / 120)
+    finest_table = max(1, MAX_CELLS // waveform.n_adc)
+    return Settings(
+        Spacing(
+            max(PER_SECOND, PER_CYCLE * highest_frequency) / coarse,
+            AMPLITUDE_CHANGE * coarse,
+            min(PHASE_CHANGE * coarse, 0.25),
+        ),
+        min(4 * 2 ** max(0, ceil((TABLE_DB - aim_db) / 24)), finest_table),
+        aim_db >= SINGLE_DB,
+    )
+
+
+class AccuracyError(ValueError):
+    """The direct engine cannot be as accurate as asked.
+
+    Attributes:
+        limit_db: what it can be.
+    """
+
+    def __init__(self, limit_db: float) -> None:
+        super().__init__(f"the direct engine reaches no more than {limit_db:.0f} dB")
+        self.limit_db = limit_db
+
+
+def measured_db(
+    y: Complex, source: PathSource, waveform: Waveform, canceller: tuple[float, ...], unit: float
+) -> float:
+    """Relative L2 error (dB) of a slow-time signal after a canceller, estimated at some pulses.
+
+    Half of the pulses are spread evenly, half by the power of the signal, so that a jump which
+    holds most of it, as of a limb that crosses a wall's face, is among them. The estimate of
+    sum |e|^2 divides each |e|^2 by the density of the pulses; sum |x|^2 is known.
+
+    Args:
+        y: before the canceller [M], in units of `unit`.
+        source: of the same paths.
+        waveform: the radar.
+        canceller: c of x[m] = sum_j c[j] y[m + j].
+        unit: of the amplitudes.
+    """
+    power = _power(y, canceller)
+    total = float(power.sum())
+    if total == 0:
+        return -inf
+    power *= 0.5 / total
+    power += 0.5 / power.size
+    place = (np.arange(PROBES) + np.arange(PROBES) * 0.6180339887498949 % 1) / PROBES
+    pulses = np.searchsorted(np.cumsum(power), place).clip(max=power.size - 1)
+    probes, times = np.unique(pulses, return_counts=True)
+    error = _exact(source, waveform, probes, canceller) / unit - sum(
+        c * y[probes + lag] for lag, c in enumerate(canceller)
+    )
+    squares = (error.real**2 + error.imag**2) * times / power[probes]
+    relative = float(squares.sum()) / PROBES / total
+    return 10 * log10(relative) if relative > 0 else -inf
+
+
+def _power(y: Complex, canceller: tuple[float, ...]) -> Float:
+    """|x|^2 [M - taps + 1], a block at a time."""
+    reach = len(canceller) - 1
+    power = np.empty(max(y.size - reach, 0))
+    for start in range(0, power.size, BLOCK_SAMPLES):
+        part = power[start : start + BLOCK_SAMPLES]
+        x = sum(c * y[start + lag : start + lag + part.size] for lag, c in enumerate(canceller))
+        part[:] = x.real**2 + x.imag**2
+    return power
+
+
+def _exact(
+    source: PathSource, waveform: Waveform, pulses: Index, canceller: tuple[float, ...]
+) -> Complex:
+    """x at some pulses by way of the beat, a few of them at a time where chirps are long."""
+    d, length = weights(waveform), max(1, BLOCK_SAMPLES // waveform.n_adc)
+    return np.concatenate(
+        [
+            d @ beat_at(source, waveform, pulses[start : start + length], canceller)
+            for start in range(0, pulses.size, length)
+        ]
+    )

@@ -1,0 +1,1 @@
+"""The kinematics of the paper: raised-cosine phases and sinusoidal swings."""

@@ -1,0 +1,133 @@
+"""Forward kinematics: angles -> positions of the 13 scatterers (paper, equations 1 and 2)."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from radhar_cli.arrays import Float
+from radhar_cli.motion import skeleton
+from radhar_cli.motion.paper.activities import (
+    LYING_HEIGHT,
+    PAPER_ACTIVITIES,
+    Gait,
+    PaperActivity,
+    Posture,
+    Timing,
+)
+from radhar_cli.motion.skeleton import JOINTS, PARENTS, TORSO
+
+
+@dataclass(frozen=True)
+class PaperBody:
+    """A person performing one activity as the paper has it: a `Motion`.
+
+    Attributes:
+        activity: slug of the activity.
+        height: stature, m.
+        weight: kg.
+        start: where the torso stands, (range, cross-range), m.
+        angle: motion angle, rad; 0 walks away from the radar.
+        gait, timing: how and when the limbs move.
+    """
+
+    activity: str
+    height: float
+    weight: float
+    start: tuple[float, float]
+    angle: float
+    gait: Gait
+    timing: Timing
+    links: Float = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "links", skeleton.links(self.height))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The 13 joints."""
+        return JOINTS
+
+    @property
+    def parents(self) -> tuple[int | None, ...]:
+        """The joint that each one hangs on."""
+        return PARENTS
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Instants (s) at which an acceleration jumps."""
+        return self._record.breakpoints(self.timing)
+
+    @property
+    def highest_frequency(self) -> float:
+        """Fundamental of the fastest motion, Hz."""
+        return self._record.highest_frequency(self.gait, self.timing)
+
+    @property
+    def phases(self) -> tuple[tuple[float, str], ...]:
+        """(start in s, name) of the movements of S9 to S12."""
+        return self._record.phases(self.timing)
+
+    @property
+    def _record(self) -> PaperActivity:
+        return PAPER_ACTIVITIES[self.activity]
+
+    def _posture(self, t: Float) -> Posture:
+        return self._record.posture(t, self.gait, self.timing)
+
+    def cross_sections(self, t: Float) -> Float:
+        """RCS [13, 1], m^2: the same from everywhere, at all times."""
+        return skeleton.cross_sections(self.height, self.weight)[:, None]
+
+    def torso(self, t: Float) -> Float:
+        """Positions [3, 1, M] (m) of the torso alone at times t [M] (s)."""
+        return self._torso(self._posture(t), t.size)[:, None]
+
+    def positions(self, t: Float) -> Float:
+        """Positions [3, 13, M] (m) of all scatterers at times t [M] (s)."""
+        now = self._posture(t)
+        if np.any(now.seated):
+            bend = np.pi / 2 * np.asarray(now.seated)
+            for side in ("right", "left"):
+                now.angles[f"{side}_knee"] = np.asarray(now.angles.get(f"{side}_knee", 0.0)) - bend
+                now.angles[f"{side}_ankle"] = (
+                    np.asarray(now.angles.get(f"{side}_ankle", 0.0)) + bend
+                )
+        p = np.empty((3, len(JOINTS), t.size))
+        p[:, TORSO] = self._torso(now, t.size)
+        forward, sideways = self._relative(now, p)
+        yaw = self.angle + now.twist
+        cos, sin = np.cos(yaw), np.sin(yaw)
+        p[0] = p[0, TORSO] + cos * forward - sin * sideways
+        p[1] = p[1, TORSO] + sin * forward + cos * sideways
+        return p
+
+    def _torso(self, now: Posture, count: int) -> Float:
+        """Torso track [3, M]: travel and seat along the heading, seat and fall in height."""
+        thigh = skeleton.thigh_length(self.height)
+        bend = np.pi / 2 * now.seated
+        along = now.travelled - thigh * np.sin(bend)
+        standing = skeleton.standing_height(self.height)
+        track = np.empty((3, count))
+        track[0] = self.start[0] + np.cos(self.angle) * along
+        track[1] = self.start[1] + np.sin(self.angle) * along
+        track[2] = standing + (LYING_HEIGHT - standing) * now.lying - thigh * (1 - np.cos(bend))
+        return track
+
+    def _relative(self, now: Posture, p: Float) -> tuple[Float, Float]:
+        """Fill the heights p[2]; return offsets from the torso ahead [13, M] and aside [13, 1]."""
+        count = p.shape[2]
+        ahead = np.zeros((len(JOINTS), count))
+        aside = np.zeros((len(JOINTS), 1))
+        turned: list[Float | float] = [now.pitch + now.angles.get(JOINTS[TORSO], 0.0)]
+        for joint, parent in enumerate(PARENTS):
+            if parent is None:
+                continue
+            x, y, z = self.links[joint]
+            angle = turned[parent]
+            own = now.angles.get(JOINTS[joint])
+            turned.append(angle if own is None else angle + own)
+            cos, sin = np.cos(turned[joint]), np.sin(turned[joint])
+            ahead[joint] = ahead[parent] + (x * cos + z * sin)
+            aside[joint] = aside[parent] + y
+            p[2, joint] = p[2, parent] + (z * cos - x * sin)
+        return ahead, aside

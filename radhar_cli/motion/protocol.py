@@ -1,0 +1,86 @@
+"""What the echo needs to know of anything that moves."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from radhar_cli.arrays import Float
+
+
+class Motion(Protocol):
+    """Scatterers and where they are at any time, also a little before and after the recording.
+
+    Attributes:
+        names: of the I scatterers.
+        parents: number of the scatterer that each one hangs on, None for a root; for drawings.
+        breakpoints: instants (s) at which a position, or a derivative that matters, jumps.
+        highest_frequency: fundamental of the fastest movement, Hz.
+        phases: (start in s, name) of the movements within it, in their order; may be empty.
+    """
+
+    @property
+    def names(self) -> tuple[str, ...]: ...
+    @property
+    def parents(self) -> tuple[int | None, ...]: ...
+    @property
+    def breakpoints(self) -> tuple[float, ...]: ...
+    @property
+    def highest_frequency(self) -> float: ...
+    @property
+    def phases(self) -> tuple[tuple[float, str], ...]: ...
+
+    def positions(self, t: Float) -> Float:
+        """Positions [3, I, M] (m) at times t [M] (s): x range, y cross-range, z height."""
+        ...
+
+    def cross_sections(self, t: Float) -> Float:
+        """RCS (m^2) at times t [M]: [I, M], or [I, 1] where it does not change."""
+        ...
+
+    def torso(self, t: Float) -> Float:
+        """Positions [3, 1, M] (m) of the point that bulk Doppler compensation follows."""
+        ...
+
+
+@dataclass(frozen=True)
+class Only:
+    """A motion with some of its scatterers alone.
+
+    Attributes:
+        motion: the whole.
+        kept: numbers of the scatterers that are kept.
+    """
+
+    motion: Motion
+    kept: tuple[int, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(self.motion.names[i] for i in self.kept)
+
+    @property
+    def parents(self) -> tuple[int | None, ...]:
+        return (None,) * len(self.kept)
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        return self.motion.breakpoints
+
+    @property
+    def highest_frequency(self) -> float:
+        return self.motion.highest_frequency
+
+    @property
+    def phases(self) -> tuple[tuple[float, str], ...]:
+        return self.motion.phases
+
+    def positions(self, t: Float) -> Float:
+        """Positions [3, len(kept), M] (m)."""
+        return self.motion.positions(t)[:, list(self.kept)]
+
+    def cross_sections(self, t: Float) -> Float:
+        """RCS (m^2) [len(kept), M or 1]."""
+        return self.motion.cross_sections(t)[list(self.kept)]
+
+    def torso(self, t: Float) -> Float:
+        """Of the whole motion: what is left out still moves."""
+        return self.motion.torso(t)

@@ -1,0 +1,96 @@
+"""Motion, antennas and wall -> paths, one a scatterer."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from radhar_cli.arrays import Float
+from radhar_cli.echo.paths import Paths, PathSource
+from radhar_cli.motion.protocol import Motion
+from radhar_cli.radar.propagation import Antennas, amplitude, bistatic_delay, leg
+from radhar_cli.radar.transmission import transmission, wall_delay
+from radhar_cli.radar.wall import Wall
+from radhar_cli.radar.waveform import SPEED_OF_LIGHT
+
+
+@dataclass(frozen=True)
+class MotionPaths:
+    """A source of paths: `PathSource` for a motion seen through air or a wall.
+
+    Attributes:
+        motion: scatterer positions over time.
+        antennas: where the legs start and end.
+        fc: carrier, Hz.
+        wall: the slab between, or None.
+    """
+
+    motion: Motion
+    antennas: Antennas
+    fc: float
+    wall: Wall | None
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Instants (s) at which positions are not smooth."""
+        return self.motion.breakpoints
+
+    @property
+    def highest_frequency(self) -> float:
+        """Fundamental of the fastest motion, Hz."""
+        return self.motion.highest_frequency
+
+    @property
+    def smooth(self) -> bool:
+        """Paths kink where a leg passes an edge of the wall."""
+        return self.wall is None
+
+    def __call__(self, t: Float) -> Paths:
+        """Paths of the scatterers at times t [M] (s)."""
+        p, sigma = self.motion.positions(t), self.motion.cross_sections(t)
+        r_tx, r_rx = leg(p, self.antennas.tx), leg(p, self.antennas.rx)
+        tau = bistatic_delay(r_tx, r_rx)
+        a = amplitude(r_tx, r_rx, sigma, self.antennas.gain, SPEED_OF_LIGHT / self.fc)
+        if self.wall is not None:
+            for antenna in (self.antennas.tx, self.antennas.rx):
+                through = transmission(p, antenna, self.wall, self.fc)
+                tau += through.delay
+                a *= through.factor
+        return Paths(tau, a)
+
+
+@dataclass(frozen=True)
+class SumOfPaths:
+    """Several sources at once, such as several people: `PathSource` of all their paths."""
+
+    sources: tuple[PathSource, ...]
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Instants (s) at which any path is not smooth."""
+        return tuple(sorted({at for source in self.sources for at in source.breakpoints}))
+
+    @property
+    def highest_frequency(self) -> float:
+        """Of the fastest source, Hz."""
+        return max(source.highest_frequency for source in self.sources)
+
+    @property
+    def smooth(self) -> bool:
+        """Whether every source's paths are smooth between the breakpoints."""
+        return all(source.smooth for source in self.sources)
+
+    def __call__(self, t: Float) -> Paths:
+        """Paths of all sources, one source after the other, at times t [M] (s)."""
+        delay, a = zip(*(source(t) for source in self.sources), strict=True)
+        return Paths(np.concatenate(delay), np.concatenate(a))
+
+
+def point_delay(p: Float, antennas: Antennas, wall: Wall | None) -> Float:
+    """Delay tau [I, M] (s) to positions p [3, I, M] (m) and back, the wall's included."""
+    tau = bistatic_delay(leg(p, antennas.tx), leg(p, antennas.rx))
+    return tau if wall is None else tau + through_wall_delay(p, antennas, wall)
+
+
+def through_wall_delay(p: Float, antennas: Antennas, wall: Wall) -> Float:
+    """Delay [I, M] (s) that a wall adds to both legs to positions p [3, I, M] (m)."""
+    return wall_delay(p, antennas.tx, wall) + wall_delay(p, antennas.rx, wall)

@@ -1,0 +1,211 @@
+"""Check scenes before any echo is computed: what lies outside the model, and what to warn of."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import IntFlag
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from radhar_cli.activity import Activity
+from radhar_cli.arrays import Float, Index
+from radhar_cli.config.checks import timing_warnings
+from radhar_cli.config.schema import Config
+from radhar_cli.errors import SceneError
+from radhar_cli.motion.protocol import Motion
+from radhar_cli.pipeline.motion_paths import through_wall_delay
+from radhar_cli.pipeline.physics import antennas_of, motion_of, wall_of, waveform_of
+from radhar_cli.radar.propagation import Antennas, bistatic_delay, leg
+from radhar_cli.radar.wall import Wall
+from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
+from radhar_cli.scene import Scene, draw_scene
+
+MIN_DISTANCE_M = 0.05
+GRID_HZ = 50.0
+GRID_PER_CYCLE = 40
+ANTENNA_KEYS = {"transmitter": "radar.tx_m", "receiver": "radar.rx_m"}
+MAX_ATTEMPTS = 1000
+CHUNK = 65536
+GRID_CHUNK = 16384
+
+
+class Flags(IntFlag):
+    """What there is to warn of in a scene; one byte in the files of a build."""
+
+    WALL = 1
+    HALF_BAND = 2
+    ALIASING = 4
+
+
+_WORDING = {
+    Flags.WALL: "the body passes through the wall",
+    Flags.HALF_BAND: "a scatterer leaves the range half-band and its echo the kept bins",
+    Flags.ALIASING: "a joint moves faster than the Doppler PRF/2 and aliases",
+}
+
+
+class Approach(NamedTuple):
+    """The nearest that a scatterer comes to an antenna."""
+
+    distance: float
+    joint: str
+    antenna: str
+    time: float
+
+
+@dataclass(frozen=True)
+class SceneCheck:
+    """What the check of one scene's kinematics found.
+
+    Attributes:
+        closest: nearest passage, exact wherever it is below 5 cm.
+        flags: WALL, a scatterer is inside the wall; HALF_BAND, a delay lies beyond the kept range
+            bins; ALIASING, a Doppler lies beyond PRF/2.
+    """
+
+    closest: Approach
+    flags: Flags
+
+    @property
+    def too_close(self) -> bool:
+        return self.closest.distance < MIN_DISTANCE_M
+
+    @property
+    def invalid(self) -> str | None:
+        """Why the scene lies outside the model, or None."""
+        if self.too_close:
+            c = self.closest
+            return (
+                f"{c.joint} comes to {c.distance * 100:.3g} cm from the {c.antenna} "
+                f"({ANTENNA_KEYS[c.antenna]}) at t = {c.time:.3f} s; "
+                f"the model holds from {MIN_DISTANCE_M * 100:g} cm on"
+            )
+        if Flags.WALL in self.flags:
+            return "the body passes through the wall"
+        if Flags.HALF_BAND in self.flags:
+            return "a scatterer leaves the range half-band"
+        return None
+
+
+def check_scene(scene: Scene) -> SceneCheck:
+    """Check one scene on a grid of pulses dense enough for its motion."""
+    motion, antennas = motion_of(scene), antennas_of(scene.config)
+    wall, waveform = wall_of(scene.config), waveform_of(scene.config)
+    rate = max(GRID_HZ, GRID_PER_CYCLE * motion.highest_frequency)
+    step = max(1, int(waveform.prf / rate))
+    pulses = np.append(np.arange(0, waveform.n_pulses - 1, step), waveform.n_pulses - 1)
+    blocks = [  # consecutive ones share a pulse, so that no step between two is missed
+        _check_block(motion, antennas, wall, waveform, pulses[first : first + GRID_CHUNK + 1])
+        for first in range(0, pulses.size - 1, GRID_CHUNK)
+    ]
+    flags = Flags(0)
+    for block in blocks:
+        flags |= block.flags
+    return SceneCheck(min(block.closest for block in blocks), flags)
+
+
+def _check_block(
+    motion: Motion, antennas: Antennas, wall: Wall | None, waveform: Waveform, pulses: Index
+) -> SceneCheck:
+    """`check_scene` at some pulses of the grid."""
+    t = waveform.times(pulses.astype(float))
+    p = motion.positions(t)
+    r_tx, r_rx = leg(p, antennas.tx), leg(p, antennas.rx)
+    tau = bistatic_delay(r_tx, r_rx)
+    flags = Flags(0)
+    if wall is not None:
+        tau += through_wall_delay(p, antennas, wall)
+        if wall.contains(p).any():
+            flags |= Flags.WALL
+    if tau.max() * SPEED_OF_LIGHT / 2 >= waveform.half_band_range:
+        flags |= Flags.HALF_BAND
+    doppler = np.abs(np.diff(tau, axis=1)).max(axis=0, initial=0.0) / np.maximum(np.diff(t), 1e-300)
+    if doppler.max(initial=0.0) * waveform.f0 > waveform.prf / 2:
+        flags |= Flags.ALIASING
+    near = _nearest(motion, t, r_tx, r_rx)
+    return SceneCheck(_closest(motion, antennas, waveform, p, pulses, near), flags)
+
+
+def _closest(
+    motion: Motion,
+    antennas: Antennas,
+    waveform: Waveform,
+    p: Float,
+    pulses: Index,
+    near: Approach,
+) -> Approach:
+    """Nearest passage on the grid, or at every pulse where the grid cannot rule out 5 cm."""
+    if np.diff(pulses).max() == 1:
+        return near
+    between = np.sqrt((np.diff(p, axis=2) ** 2).sum(axis=0).max())
+    if near.distance - between > MIN_DISTANCE_M:
+        return near
+    for start in range(pulses[0], pulses[-1] + 1, CHUNK):
+        t = waveform.times(np.arange(start, min(start + CHUNK, pulses[-1] + 1), dtype=float))
+        p = motion.positions(t)
+        near = min(near, _nearest(motion, t, leg(p, antennas.tx), leg(p, antennas.rx)))
+    return near
+
+
+def _nearest(motion: Motion, t: Float, r_tx: Float, r_rx: Float) -> Approach:
+    candidates = []
+    for name, r in (("transmitter", r_tx), ("receiver", r_rx)):
+        joint, at = divmod(int(np.argmin(r)), t.size)
+        candidates.append(Approach(float(r[joint, at]), motion.names[joint], name, float(t[at])))
+    return min(candidates)
+
+
+def draw_valid_scene(config: Config, activity: Activity, index: int) -> tuple[Scene, Flags]:
+    """Draw one sample, check it and apply `on_invalid`; return it and what to warn of.
+
+    Raises:
+        SceneError: a scatterer too close to an antenna (unless redrawn), any scene outside the
+            model under `on_invalid: error`, or no valid scene in 1000 redraws.
+    """
+    found: SceneCheck | None = None
+    for attempt in range(MAX_ATTEMPTS if config.on_invalid == "redraw" else 1):
+        scene = draw_scene(config, activity, index, attempt)
+        found = check_scene(scene)
+        if found.invalid is None or (config.on_invalid == "keep" and not found.too_close):
+            return scene, found.flags
+    assert found is not None
+    if config.on_invalid == "redraw":
+        raise SceneError(
+            f"sample {activity.slug}/{index}: no scene inside the model in {MAX_ATTEMPTS} draws "
+            f"(on_invalid: redraw); the last: {found.invalid}"
+        )
+    raise SceneError(
+        f"sample {activity.slug}/{index}: {found.invalid} (on_invalid: {config.on_invalid})"
+    )
+
+
+def scene_warnings(scene: Scene) -> list[str]:
+    """Check one scene and return what to warn of, in words.
+
+    Raises:
+        SceneError: a scatterer comes within 5 cm of an antenna.
+    """
+    found = check_scene(scene)
+    if found.too_close:
+        raise SceneError(f"{scene.name}: {found.invalid}")
+    outside = [_WORDING[flag] for flag in Flags if flag in found.flags]
+    return outside + timing_warnings(scene.config, (scene.activity,))
+
+
+def warnings(config: Config, flags: Sequence[int]) -> list[dict[str, Any]]:
+    """What to say once per run, from the Flags of every row: [{kind, recordings, message}]."""
+    every = np.asarray(flags, dtype=np.uint8)
+    counts = {flag: int(np.count_nonzero(every & flag)) for flag in Flags}
+    found: list[dict[str, Any]] = [
+        {
+            "kind": str(flag.name).lower(),
+            "recordings": n,
+            "message": f"{n} of {len(every)} recordings: {_WORDING[flag]}",
+        }
+        for flag, n in counts.items()
+        if n
+    ]
+    return found + [
+        {"kind": "timing", "recordings": config.samples_per_class, "message": message}
+        for message in timing_warnings(config)
+    ]

@@ -1,0 +1,72 @@
+"""A power map with its axes, and its image."""
+
+import hashlib
+from dataclasses import dataclass
+
+from radhar_cli.arrays import Float, Levels
+from radhar_cli.processing.entropy import entropy_bits
+
+
+@dataclass(frozen=True)
+class Axis:
+    """What the rows or the columns of a map mean.
+
+    Attributes:
+        name: frequency, range, time, ...
+        unit: Hz, m, s, ...
+        values: of every row or column, evenly spaced, lowest first.
+    """
+
+    name: str
+    unit: str
+    values: Float
+
+    @property
+    def edges(self) -> tuple[float, float]:
+        """Outer edges of the first and the last cell."""
+        half = 0.5 * float(self.values[1] - self.values[0]) if self.values.size > 1 else 0.0
+        return float(self.values[0] - half), float(self.values[-1] + half)
+
+
+@dataclass(frozen=True)
+class PowerMap:
+    """Power for unit transmit power.
+
+    Attributes:
+        power: [rows, columns], lowest first.
+        rows, columns: the axes; time runs along the columns of every map of a data set.
+    """
+
+    power: Float
+    rows: Axis
+    columns: Axis
+
+    @property
+    def entropy(self) -> float:
+        """Of the power, bits."""
+        return entropy_bits(self.power)
+
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """Outer edges (columns from, columns to, rows from, rows to)."""
+        return (*self.columns.edges, *self.rows.edges)
+
+
+@dataclass(frozen=True)
+class MapImage:
+    """The image of a map.
+
+    Attributes:
+        levels: grey levels [height, width], row 0 at the top.
+        entropy: of the power map, bits.
+        extent: outer edges of the map (columns from, columns to, rows from, rows to).
+    """
+
+    levels: Levels
+    entropy: float
+    extent: tuple[float, float, float, float]
+
+    @property
+    def sha256(self) -> str:
+        """Checksum of the levels, row by row, in hex."""
+        return hashlib.sha256(self.levels.tobytes()).hexdigest()

@@ -1,0 +1,1 @@
+"""What a receiver does to an echo: noise and other impairments."""

@@ -1,0 +1,206 @@
+"""What the field adds next is added through public names, in about 20 lines each."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from listener import Listener
+
+from radhar_cli import activity
+from radhar_cli.activity import activity_named, add_activity
+from radhar_cli.arrays import Complex, Float
+from radhar_cli.config import Config
+from radhar_cli.dataset.build import build
+from radhar_cli.pipeline.physics import antennas_of, motion_of, waveform_of
+from radhar_cli.pipeline.plan import Product
+from radhar_cli.pipeline.run import process, record
+from radhar_cli.processing.canceller import Canceller
+from radhar_cli.processing.power_map import Axis, PowerMap
+from radhar_cli.processing.range_compression import range_bins
+from radhar_cli.processing.signal import Signal
+from radhar_cli.receiver.impairment import Impairment
+from radhar_cli.scene import Scene, nominal_scene
+
+C = 299_792_458.0
+RADAR = {"carrier_hz": 10e9, "bandwidth_hz": 1e9, "prf_hz": 500}
+CONFIG = Config.model_validate(
+    {
+        "radar": RADAR,
+        "snr_db": None,
+        "duration_s": 2.0,
+        "motion": {"range_m": 2.0, "angle_deg": 0.0},
+        "image": {"size_px": 32},
+    }
+)
+
+
+def walking(**more: object) -> Scene:
+    config = CONFIG.model_copy(update=more)
+    return nominal_scene(config, activity_named("walking"))
+
+
+def ridge(found: PowerMap) -> Float:
+    """Row value of the largest power in every column."""
+    return found.rows.values[found.power.argmax(axis=0)]
+
+
+@dataclass(frozen=True)
+class Ball:
+    """A ball on a string, swinging along the range axis."""
+
+    place: float
+    swing: float = 0.3
+    rate: float = 0.5
+
+    names, parents = ("ball",), (None,)
+    breakpoints = phases = ()
+
+    @property
+    def highest_frequency(self) -> float:
+        return self.rate
+
+    def positions(self, t: Float) -> Float:
+        x = self.place + self.swing * np.sin(2 * np.pi * self.rate * t)
+        return np.stack([x, np.zeros_like(t), np.full_like(t, 1.5)])[:, None]
+
+    def cross_sections(self, t: Float) -> Float:
+        return np.array([[0.01]])
+
+    torso = positions
+
+
+def swinging(scene: Scene) -> Ball:
+    """A class of one's own: it reads what it needs off the config of the scene."""
+    return Ball(scene.config.motion.range_m)
+
+
+def test_a_motion_with_other_joints() -> None:
+    ball = Ball(2.0)
+    found = record(walking(), ["stft", "waveform"], motions=(ball,))
+    t = found["stft"].columns.values
+    speed = ball.swing * 2 * np.pi * ball.rate * np.cos(2 * np.pi * ball.rate * t)
+    expected = -2 * speed * found["waveform"].f0 / C
+    rows = found["stft"].rows.values
+    # Two rows of rounding and the bend within a frame; the antennas are 0.1 m off the axis.
+    assert np.abs(ridge(found["stft"]) - expected).max() < 3 * (rows[1] - rows[0])
+
+
+def test_a_second_person() -> None:
+    scene = walking()
+    first = motion_of(scene)
+    second = replace(first, start=(3.0, 1.0), angle=np.pi)
+    alone = [record(scene, ["signal"], motions=(one,))["signal"].x for one in (first, second)]
+    both = record(scene, ["signal"], motions=(first, second))["signal"].x
+    assert np.linalg.norm(both - sum(alone)) < 1e-3 * np.linalg.norm(both)
+    assert np.linalg.norm(both - alone[0]) > 0.1 * np.linalg.norm(both)
+
+
+def test_a_second_receive_channel() -> None:
+    """Two receivers half a wavelength apart see a body to the left by a phase between them."""
+    scene = walking()
+    antennas, waveform = antennas_of(scene.config), waveform_of(scene.config)
+    apart = C / waveform.f0 / 2
+    x, y, z = antennas.rx
+    beside = replace(antennas, rx=(x, y + apart, z))
+    left = replace(motion_of(scene), start=(3.0, 1.5), angle=0.0)
+    channels = [
+        record(scene, ["signal"], motions=(left,), antennas=one)["signal"].x
+        for one in (antennas, beside)
+    ]
+    phase = np.angle(np.vdot(channels[0], channels[1]))
+    # The body walks from 3 to 6 m ahead at 1.5 m to the left: 0.53 to 0.27 rad off broadside.
+    angle = np.arcsin(phase * waveform.wavelength / (2 * np.pi * apart))
+    assert 0.2 < angle < 0.6
+
+
+def test_a_product() -> None:
+    """Range against Doppler over the whole recording, from the beat matrix."""
+
+    def range_doppler(beat: Complex, waveform) -> PowerMap:
+        spectrum = np.fft.fftshift(np.fft.fft(range_bins(beat, waveform), axis=1), axes=1)
+        doppler = np.fft.fftshift(np.fft.fftfreq(beat.shape[1], 1 / waveform.prf))
+        rows = Axis("range", "m", waveform.range_axis())
+        return PowerMap(np.abs(spectrum) ** 2, rows, Axis("frequency", "Hz", doppler))
+
+    from radhar_cli.simulation.simulate import RAW_ECHO
+
+    row = Product("range_doppler", ("raw_echo", "waveform"), range_doppler, "range, Doppler")
+    ball = Ball(2.0)
+    found = record(walking(), ["range_doppler"], [RAW_ECHO, row], motions=(ball,))["range_doppler"]
+    moving = np.abs(found.columns.values) > 5
+    at, _ = np.unravel_index(np.argmax(found.power[:, moving]), found.power[:, moving].shape)
+    assert abs(found.rows.values[at] - (2.0 - 0.4)) < 0.35
+    assert found.extent[2] < 1.6 < found.extent[3]
+
+
+@dataclass(frozen=True)
+class DcOffset(Impairment):
+    """A constant on every raw sample."""
+
+    offset: complex
+
+    def beat(self, blocks: Iterator[Complex]) -> Iterator[Complex]:
+        return (block + self.offset for block in blocks)
+
+    def slow_time(self, y: Complex) -> Complex:
+        return y + self.offset
+
+
+@pytest.mark.parametrize("engine", ["direct", "cube"])
+def test_an_impairment_between_echo_and_processing(engine: str) -> None:
+    """A DC offset is a line at zero Doppler, which the canceller removes."""
+    offset = Product("receiver", (), lambda: (DcOffset(1.0),), "a DC offset")
+    none = Canceller((1,))
+    with_engine = CONFIG.engine.model_copy(update={"kind": engine})
+    scene = walking(engine=with_engine)
+    clean = record(scene, ["stft"])["stft"]
+    cancelled = record(scene, ["stft"], [offset])["stft"]
+    plain = record(scene, ["stft"], [offset], canceller=none)["stft"]
+    assert np.all(np.abs(ridge(plain)) < 5)
+    assert np.abs(cancelled.power - clean.power).max() < 1e-6 * clean.power.max()
+
+
+def test_a_recorded_signal_in_place_of_a_simulated_one() -> None:
+    prf = 1000.0
+    t = np.arange(4000) / prf
+    tone = Signal(np.exp(2j * np.pi * 120 * t), 0.0, prf, 24e9)
+    found = process(tone, CONFIG, ["stft", "fsst", "image:stft"])
+    assert np.all(np.abs(ridge(found["stft"]) - 120) <= 2.5)
+    assert found["image:stft"].levels.shape == (32, 32)
+
+
+def test_another_canceller() -> None:
+    """Three pulses instead of two: 4 sin^2 instead of 2 sin, squared, at every Doppler."""
+    scene = walking()
+    three = record(scene, ["signal"], canceller=Canceller((1, -2, 1)))["signal"]
+    two = record(scene, ["signal"])["signal"]
+    assert three.x.size == two.x.size - 1
+    assert three.t0 == pytest.approx(1 / 500)
+    assert np.linalg.norm(three.x - np.diff(two.x)) < 1e-4 * np.linalg.norm(three.x)
+
+
+@pytest.fixture
+def own_class(monkeypatch: pytest.MonkeyPatch) -> str:
+    monkeypatch.setattr(activity, "_OWN", {})
+    return add_activity("swinging_ball", swinging).slug
+
+
+def test_a_class_beyond_the_twelve(own_class: str, tmp_path: Path) -> None:
+    config = Config.model_validate(
+        CONFIG.model_dump() | {"activities": [own_class, "walking"], "samples_per_class": 2}
+    )
+    build(config, tmp_path, 1, Listener())
+    with h5py.File(tmp_path / "dataset.h5") as file:
+        assert list(file["label"]) == [7, 7, 12, 12]
+        slugs = list(file.attrs["class_slugs"])
+    assert slugs[7] == "walking"
+    assert slugs[12] == own_class
+    assert len(list(tmp_path.glob(f"png/stft/*/{own_class}/*.png"))) == 2
+
+
+def test_an_own_class_needs_a_new_name(own_class: str) -> None:
+    with pytest.raises(ValueError, match="new name"):
+        add_activity("walking", swinging)

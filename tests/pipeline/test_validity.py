@@ -1,0 +1,350 @@
+"""Scenes outside the model are found before any echo, told, and kept, redrawn or refused."""
+
+from math import radians
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from radhar_cli.activity import ACTIVITIES, activity_named
+from radhar_cli.config import Config
+from radhar_cli.errors import SceneError
+from radhar_cli.motion.skeleton import JOINTS
+from radhar_cli.pipeline import validity as module
+from radhar_cli.pipeline.physics import motion_of, wall_of
+from radhar_cli.pipeline.validity import (
+    Approach,
+    Flags,
+    SceneCheck,
+    check_scene,
+    draw_valid_scene,
+    warnings,
+)
+from radhar_cli.radar.wall import crossing, extra_delay
+from radhar_cli.scene import Scene, draw_scene, nominal_scene, scene_numbers
+
+C = 299_792_458.0
+WALKING = activity_named("walking")
+# The paper's fixed person, and the two columns of its table "Experimental Parameter Settings".
+PERSON: dict[str, Any] = {
+    "subject": {"height_m": 1.8},
+    "motion": {
+        "range_m": {"per_activity": {"default": 2, "S8": 1, "S9": 1, "S10": 1, "S11": 1, "S12": 1}},
+        "angle_deg": 0,
+        "thigh_deg": 30,
+        "calf_deg": 45,
+        "arm_deg": 35,
+        "turn_deg": 45,
+    },
+}
+FREE_SPACE: dict[str, Any] = PERSON
+THROUGH_WALL: dict[str, Any] = {
+    **PERSON,
+    "wall": {},
+    "radar": {"carrier_hz": 2e9, "bandwidth_hz": 1e9, "prf_hz": 128},
+}
+
+
+def at_every_pulse(scene: Scene) -> np.ndarray:
+    """Positions [3, 13, M]."""
+    v = scene_numbers(scene)
+    pulses = np.arange(round(v["duration_s"] * v["radar.prf_hz"]))
+    return motion_of(scene).positions(pulses / v["radar.prf_hz"])
+
+
+def antenna(scene: Scene, name: str) -> np.ndarray:
+    return np.array([scene_numbers(scene)[f"radar.{name}_m.{axis}"] for axis in range(3)])
+
+
+def brute_closest(scene: Scene) -> Approach:
+    p = at_every_pulse(scene)
+    found = []
+    for key, name in (("tx", "transmitter"), ("rx", "receiver")):
+        r = np.linalg.norm(p - antenna(scene, key)[:, None, None], axis=0)
+        joint, pulse = np.unravel_index(np.argmin(r), r.shape)
+        found.append(
+            Approach(
+                float(r.min()), JOINTS[joint], name, pulse / scene_numbers(scene)["radar.prf_hz"]
+            )
+        )
+    return min(found)
+
+
+def distance_at(scene: Scene, approach: Approach) -> float:
+    """How far the named joint is from the named antenna at the named time."""
+    p = motion_of(scene).positions(np.array([approach.time]))[:, JOINTS.index(approach.joint), 0]
+    at = antenna(scene, {"transmitter": "tx", "receiver": "rx"}[approach.antenna])
+    return float(np.linalg.norm(p - at))
+
+
+def brute_delay(scene: Scene) -> np.ndarray:
+    """Delay [13, M] at every pulse, the wall's included."""
+    p, wall = at_every_pulse(scene), wall_of(scene.config)
+    tau = np.zeros(p.shape[1:])
+    for key in ("tx", "rx"):
+        at = antenna(scene, key)
+        tau += np.linalg.norm(p - at[:, None, None], axis=0) / C
+        if wall is not None:
+            tau += extra_delay(crossing(p, tuple(at), wall).chord, wall)
+    return tau
+
+
+def with_antenna_at(label: str, at: np.ndarray, name: str = "tx_m", **more: Any) -> Config:
+    radar = {name: tuple(float(x) for x in at)}
+    return Config(**{**PERSON, "activities": (label,), "radar": radar, **more})
+
+
+def scene_of(config: Config) -> Scene:
+    return nominal_scene(config, config.chosen_activities[0])
+
+
+@given(
+    st.sampled_from([a.label for a in ACTIVITIES]),
+    st.sampled_from(JOINTS),
+    st.floats(0, 4),
+    st.tuples(*3 * [st.floats(-0.06, 0.06)]),
+    st.sampled_from(["tx_m", "rx_m"]),
+)
+@settings(deadline=None, max_examples=40)
+def test_a_scatterer_within_5_cm_of_an_antenna_is_found(
+    label: str, joint: str, time: float, offset: tuple[float, float, float], name: str
+) -> None:
+    """The antenna stands beside the path of a joint, and so often between two looks at it."""
+    body = motion_of(scene_of(Config(**PERSON, activities=(label,))))
+    beside = body.positions(np.array([time]))[:, JOINTS.index(joint), 0] + offset
+    config = with_antenna_at(label, beside, name)
+    scene = scene_of(config)
+    found, expected = check_scene(scene), brute_closest(scene)
+    assert found.too_close == (expected.distance < 0.05)
+    if found.too_close:
+        assert found.closest.distance == pytest.approx(expected.distance, abs=1e-12)
+        assert distance_at(scene, found.closest) == pytest.approx(expected.distance, abs=1e-12)
+
+
+def test_a_fast_ankle_is_found_between_two_looks() -> None:
+    """At 6.2 m/s an ankle is 3 cm further in 5 ms: passing at 4.5 cm, it looks 5.4 cm away."""
+    time = 0.425  # half-way between two looks 10 ms apart
+    body = motion_of(scene_of(Config(**PERSON, activities=("S8",))))
+    aside = np.array([0.0, 0.045, 0.0])
+    config = with_antenna_at("S8", body.positions(np.array([time]))[:, 10, 0] + aside)
+    scene = scene_of(config)
+    looks = body.positions(np.arange(0, 4, 0.01))
+    assert np.linalg.norm(looks - antenna(scene, "tx")[:, None, None], axis=0).min() > 0.05
+    found = check_scene(scene).closest
+    assert found.distance == pytest.approx(0.045, abs=1e-6)
+    assert found.joint == "right_ankle"
+    assert found.time == pytest.approx(time, abs=1e-3)
+
+
+def test_the_message_names_sample_joint_time_and_distance() -> None:
+    """A head at 1.5 m/s along 30 degrees passes, after 1 s, 2 cm below a transmitter."""
+    at = (1 + 1.5 * np.cos(radians(30)), 1.5 * np.sin(radians(30)), 1.52)
+    config = with_antenna_at(
+        "S8", np.array(at), motion={**PERSON["motion"], "angle_deg": 30, "range_m": 1}
+    )
+    with pytest.raises(SceneError) as caught:
+        draw_valid_scene(config, WALKING, 7)
+    message = str(caught.value)
+    for part in ("walking/7", "head", "transmitter", "2 cm", "t = 1.000 s", "5 cm"):
+        assert part in message
+
+
+@pytest.mark.parametrize(("above", "found"), [(0.0499, True), (0.0501, False)])
+def test_the_limit_is_5_cm(above: float, found: bool) -> None:
+    config = with_antenna_at("S1", np.array([2.0, 0.0, 1.5 + above]))
+    assert check_scene(scene_of(config)).too_close == found
+
+
+@pytest.mark.parametrize("setting", [FREE_SPACE, THROUGH_WALL], ids=["free space", "wall"])
+@pytest.mark.parametrize("activity", ACTIVITIES, ids=lambda a: a.label)
+def test_half_band_aliasing_and_wall_as_at_every_pulse(setting: Any, activity: Any) -> None:
+    config = Config(**setting)
+    scene = nominal_scene(config, activity)
+    found = check_scene(scene)
+    tau, v = brute_delay(scene), scene_numbers(scene)
+    mid = v["radar.carrier_hz"] + v["radar.bandwidth_hz"] / 2
+    doppler = np.abs(np.diff(tau, axis=1)).max() * v["radar.prf_hz"] * mid
+    half_band = C * 10e6 / (4 * v["radar.bandwidth_hz"] / 40e-6)
+    wall = wall_of(scene.config)
+    assert (Flags.ALIASING in found.flags) == (doppler > v["radar.prf_hz"] / 2)
+    assert (Flags.HALF_BAND in found.flags) == (tau.max() * C / 2 >= half_band)
+    assert (Flags.WALL in found.flags) == (
+        wall is not None and wall.contains(at_every_pulse(scene)).any()
+    )
+    assert not found.too_close
+
+
+@pytest.mark.parametrize(("start", "leaves"), [(1.5, False), (1.55, True)])
+def test_a_walker_leaves_the_half_band_who_starts_beyond_1_5_m(start: float, leaves: bool) -> None:
+    config = Config(**{**PERSON, "motion": {**PERSON["motion"], "range_m": start}})
+    found = check_scene(nominal_scene(config, WALKING))
+    assert (Flags.HALF_BAND in found.flags) == leaves
+    assert (found.invalid is None) == (not leaves)
+
+
+def test_the_walls_delay_counts_in_the_half_band() -> None:
+    """The ankles stand 7.36 m off, below 7.49 m; 24 cm of wall delay as another 35 cm of air."""
+    standing = {**PERSON, "motion": {**PERSON["motion"], "range_m": 7.6}, "activities": ("S1",)}
+    free, behind = Config(**standing), Config(**standing, wall={"loss_tangent": 0})
+    assert Flags.HALF_BAND not in check_scene(scene_of(free)).flags
+    assert Flags.HALF_BAND in check_scene(scene_of(behind)).flags
+
+
+def test_aliasing_is_that_of_the_frequency_the_doppler_is_read_at() -> None:
+    """At 2 GHz an ankle of S3 reaches 4.3 m/s: above PRF/2 at mid-chirp, below it at the start."""
+    centre = Config(**THROUGH_WALL)
+    start = Config(**THROUGH_WALL, processing={"range_reference": "start"})
+    kicking = activity_named("kicking")
+    assert Flags.ALIASING in check_scene(nominal_scene(centre, kicking)).flags
+    assert Flags.ALIASING not in check_scene(nominal_scene(start, kicking)).flags
+
+
+def said(config: Config) -> dict[str, tuple[int, str]]:
+    found = [
+        draw_valid_scene(config, activity, index)[1]
+        for activity in config.chosen_activities
+        for index in range(config.samples_per_class)
+    ]
+    return {w["kind"]: (w["recordings"], w["message"]) for w in warnings(config, found)}
+
+
+def test_warnings_at_the_papers_free_space_settings() -> None:
+    """The five walks alias: ankles reach 6.2 m/s, the radar 4.7. From x = 1 m none gets too far."""
+    found = said(Config(**FREE_SPACE, samples_per_class=1))
+    assert found.keys() == {"aliasing"}
+    assert found["aliasing"][0] == 5
+    assert "5 of 12 recordings" in found["aliasing"][1]
+
+
+def test_warnings_at_the_papers_through_the_wall_settings() -> None:
+    """S8 to S12 start inside the wall; they and the kick alias."""
+    found = said(Config(**THROUGH_WALL, samples_per_class=1))
+    assert {kind: count for kind, (count, _) in found.items()} == {"wall": 5, "aliasing": 6}
+    assert "5 of 12 recordings: the body passes through the wall" in found["wall"][1]
+
+
+def test_warnings_of_the_papers_randomised_walkers() -> None:
+    config = Config(activities=("S8",), samples_per_class=20)
+    scenes = [draw_scene(config, WALKING, index) for index in range(20)]
+    half_band = C * 10e6 / (4 * 1e14)
+    leaving = sum(bool(brute_delay(scene).max() * C / 2 >= half_band) for scene in scenes)
+    found = said(config)
+    assert 0 < leaving < 20
+    assert found["half_band"][0] == leaving
+    assert f"{leaving} of 20 recordings" in found["half_band"][1]
+    assert "half-band" in found["half_band"][1]
+
+
+def test_a_recording_that_ends_before_the_second_phase_is_said() -> None:
+    found = said(
+        Config(**FREE_SPACE, activities=("S5", "S12"), samples_per_class=2, duration_s=1.5)
+    )
+    assert found["timing"][0] == 2
+    assert "S12" in found["timing"][1]
+
+
+def test_nothing_is_said_of_scenes_inside_the_model() -> None:
+    assert said(Config(**FREE_SPACE, activities=("S1", "S5"), samples_per_class=3)) == {}
+
+
+def near_the_wall(on_invalid: str) -> Config:
+    """S1 somewhere from before the wall to behind it: some stand inside."""
+    motion = {**PERSON["motion"], "range_m": {"uniform": [0.7, 1.7]}, "angle_deg": 0}
+    wall = {"size_m": [0.5, 5, 2.5], "center_m": [1.2, 0, 1.25]}
+    return Config(
+        activities=("S1",), motion=motion, wall=wall, on_invalid=on_invalid, samples_per_class=20
+    )
+
+
+STANDING = ACTIVITIES[0]
+
+
+def first_valid(config: Config, index: int) -> int:
+    attempt = 0
+    while 0.95 <= draw_scene(config, STANDING, index, attempt).config.motion.range_m <= 1.45:
+        attempt += 1
+    return attempt
+
+
+def test_keep_keeps_the_first_draw_with_its_findings() -> None:
+    config = near_the_wall("keep")
+    drawn = [draw_valid_scene(config, STANDING, index) for index in range(20)]
+    assert all(scene.attempt == 0 for scene, _ in drawn)
+    for index, (_, flags) in enumerate(drawn):
+        assert (Flags.WALL in flags) == (first_valid(config, index) > 0)
+    assert 0 < sum(Flags.WALL in flags for _, flags in drawn) < 20
+
+
+def test_redraw_takes_the_first_draw_inside_the_model() -> None:
+    config = near_the_wall("redraw")
+    drawn = [draw_valid_scene(config, STANDING, index) for index in range(20)]
+    attempts = [first_valid(config, index) for index in range(20)]
+    assert [scene.attempt for scene, _ in drawn] == attempts
+    assert max(attempts) > 1
+    assert not any(flags & (Flags.WALL | Flags.HALF_BAND) for _, flags in drawn)
+
+
+def test_error_stops_and_names_the_sample_and_why() -> None:
+    config = near_the_wall("error")
+    inside = [index for index in range(20) if first_valid(config, index)]
+    outside = sorted(set(range(20)) - set(inside))
+    assert draw_valid_scene(config, STANDING, outside[0])[0].attempt == 0
+    with pytest.raises(SceneError, match=rf"stationary/{inside[0]}: .*the wall"):
+        draw_valid_scene(config, STANDING, inside[0])
+
+
+@pytest.mark.parametrize("on_invalid", ["redraw", "error"])
+def test_leaving_the_half_band_is_invalid_but_aliasing_is_not(on_invalid: str) -> None:
+    config = Config(**FREE_SPACE, on_invalid=on_invalid)
+    assert Flags.ALIASING in draw_valid_scene(config, WALKING, 0)[1]
+    far = {**PERSON["motion"], "range_m": {"uniform": [1.2, 1.8]}}
+    config = Config(**{**PERSON, "motion": far}, on_invalid=on_invalid)
+    leaves = [
+        index
+        for index in range(20)
+        if Flags.HALF_BAND in check_scene(draw_scene(config, WALKING, index)).flags
+    ]
+    if on_invalid == "redraw":
+        scene, flags = draw_valid_scene(config, WALKING, leaves[0])
+        assert scene.attempt > 0
+        assert Flags.HALF_BAND not in flags
+    else:
+        with pytest.raises(SceneError, match=rf"walking/{leaves[0]}: .*half-band"):
+            draw_valid_scene(config, WALKING, leaves[0])
+
+
+@pytest.mark.parametrize("on_invalid", ["keep", "error"])
+def test_a_scatterer_at_an_antenna_stops_unless_redrawn(on_invalid: str) -> None:
+    at = np.array([2.0, 0.0, 1.51])
+    config = with_antenna_at("S1", at, on_invalid=on_invalid)
+    with pytest.raises(SceneError, match=r"stationary/0: head comes to 1 cm"):
+        draw_valid_scene(config, STANDING, 0)
+    about = {**PERSON["motion"], "range_m": {"uniform": [1.92, 2.08]}}
+    config = with_antenna_at("S1", at, on_invalid="redraw", motion=about)
+    attempts = [draw_valid_scene(config, STANDING, index)[0].attempt for index in range(8)]
+    assert max(attempts) > 0
+
+
+def test_no_valid_scene_ends_the_redraws(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "MAX_ATTEMPTS", 3)
+    config = with_antenna_at("S1", np.array([2.0, 0.0, 1.51]), on_invalid="redraw")
+    with pytest.raises(SceneError, match=r"stationary/4: .* 3 draws .*head comes to 1 cm"):
+        draw_valid_scene(config, STANDING, 4)
+
+
+@pytest.mark.parametrize(
+    ("distance", "wall", "band", "why"),
+    [
+        (1.0, False, False, None),
+        (0.01, True, True, "head comes to 1 cm"),
+        (1.0, True, True, "wall"),
+        (1.0, False, True, "half-band"),
+    ],
+)
+def test_the_gravest_reason_is_given(distance: float, wall: bool, band: bool, why: Any) -> None:
+    closest = Approach(distance, "head", "receiver", 0.5)
+    flags = Flags.ALIASING | (Flags.HALF_BAND * band) | (Flags.WALL * wall)
+    invalid = SceneCheck(closest, Flags(flags)).invalid
+    assert (invalid is None) if why is None else (invalid is not None and why in invalid)

@@ -129,7 +129,8 @@ def image_of(config: Config, recording: Recording, name: str) -> MapImage:
 
 
 def doppler_image(config: Config, frames: Frames, name: str, x: np.ndarray) -> Reduced:
-    spectra = stft.Spectra(x, frames, frames.length, config.engine.precision == "auto")
+    single = name.startswith("stft") and config.engine.precision == "auto"
+    spectra = stft.Spectra(x, frames, frames.length, single)
     blocks = (
         stft.power_blocks(spectra)
         if name.startswith("stft")

@@ -16,6 +16,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -38,8 +39,8 @@ from radhar_cli.process import prepare_process
 from radhar_cli.processing import fsst, stft
 from radhar_cli.processing.denoising import savgol
 from radhar_cli.processing.doppler_compensation import compensate
-from radhar_cli.processing.entropy import entropy_bits
-from radhar_cli.processing.image import levels
+from radhar_cli.processing.frames import Frames
+from radhar_cli.processing.image import Reduced, levels, reduced, reduced_map
 from radhar_cli.processing.range_compression import range_bins, range_power
 from radhar_cli.scene import Scene, draw_scene
 
@@ -111,30 +112,33 @@ class Sink:
         write_shard(self.folder, 0, len(samples), encode_shard(self.config, 0, samples, values))
 
 
-def image_of(config: Config, recording: Recording, name: str, power: np.ndarray) -> MapImage:
-    image = config.image
-    return MapImage(
-        levels(power, image.size_px, image.dynamic_range_db),
-        entropy_bits(power),
-        axes_of(name, recording).extent,
-    )
-
-
-def map_of_signal(config: Config, recording: Recording, name: str) -> np.ndarray:
-    """A map from ready inputs: slow-time signal, torso track, beat at the pulses shown."""
-    p, frames = config.processing, recording.frames
+def image_of(config: Config, recording: Recording, name: str) -> MapImage:
+    """A map's image from ready inputs: slow-time signal, torso track, beat at the pulses shown."""
+    p, size, frames = config.processing, config.image.size_px, recording.frames
     if name == "rtm":
-        return range_power(range_bins(recording.products["beat"], recording.waveform))
-    x = recording.products["signal:plain"]
-    which = signal_of(name)
-    if "compensated" in which:
-        x = compensate(x, recording.products["torso_track"], recording.waveform.f0)
-    if "denoised" in which:
-        x = savgol(x, p.savgol.order, p.savgol.frame)
-    spectra = stft.spectrum(x, frames)
-    if name.startswith("stft"):
-        return stft.power_map(spectra)
-    return fsst.power_map(fsst.synchrosqueeze(x, spectra, frames, p.fsst_threshold))
+        bins = range_bins(recording.products["beat"], recording.waveform)
+        found = reduced_map(range_power(bins), size)
+    else:
+        x = recording.products["signal:plain"]
+        which = signal_of(name)
+        if "compensated" in which:
+            x = compensate(x, recording.products["torso_track"], recording.waveform.f0)
+        if "denoised" in which:
+            x = savgol(x, p.savgol.order, p.savgol.frame)
+        found = doppler_image(config, frames, name, x)
+    grey = levels(found.power, config.image.dynamic_range_db)
+    return MapImage(grey, found.entropy, axes_of(name, recording).extent)
+
+
+def doppler_image(config: Config, frames: Frames, name: str, x: np.ndarray) -> Reduced:
+    single = name.startswith("stft") and config.engine.precision == "auto"
+    spectra = stft.Spectra(x, frames, frames.length, single)
+    blocks = (
+        stft.power_blocks(spectra)
+        if name.startswith("stft")
+        else fsst.power_blocks(spectra, config.processing.fsst_threshold)
+    )
+    return reduced(blocks, spectra.count, config.image.size_px)
 
 
 def rows(rounds: int) -> dict[str, Any]:
@@ -154,9 +158,7 @@ def rows(rounds: int) -> dict[str, Any]:
             samples = []
             for step in range(SHARD):
                 r = ready[(turn * SHARD + step) % 12]
-                samples.append(
-                    {"stft": image_of(config, r, "stft", map_of_signal(config, r, "stft"))}
-                )
+                samples.append({"stft": image_of(config, r, "stft")})
             sink.write(samples)
 
         def direct(turn: int) -> None:
@@ -176,10 +178,10 @@ def rows(rounds: int) -> dict[str, Any]:
                 sink.write([synthesise(scene(cube_config, number), cube_config, p)])
 
         def naive(turn: int) -> None:
-            x = naive_signal(config, turn)
-            r = ready[turn % 12]
-            power = stft.power_map(stft.spectrum(x, r.frames))
-            sink.write([{"stft": image_of(config, r, "stft", power)}])
+            r = replace(ready[turn % 12], products={"signal:plain": naive_signal(config, turn)})
+            sink.write(
+                [{"stft": image_of(config, replace(r, products={"signal:plain": x}), "stft")}]
+            )
 
         found = interleaved(
             {
@@ -252,10 +254,7 @@ def maps(rounds: int) -> dict[str, Any]:
                 sinks[config].write([synthesise(scene(config, i), config, p) for i in range(12)])
 
             def own(turn: int, ready=ready, name=name, alone=alone, sinks=sinks) -> None:
-                samples = [
-                    {name: image_of(alone, r, name, map_of_signal(alone, r, name))} for r in ready
-                ]
-                sinks[alone].write(samples)
+                sinks[alone].write([{name: image_of(alone, r, name)} for r in ready])
 
             times = interleaved(
                 {

@@ -182,10 +182,6 @@ class WallConfig(Section):
     fresnel: Literal["normal", "perpendicular", "parallel"] = "normal"
 
 
-# Powers of the sample number up to this are still told apart: the fit errs by 1e-5 at most.
-MAX_CONDITION = 1e11
-
-
 class SavgolConfig(Section):
     """The Savitzky-Golay filter of the denoised maps."""
 
@@ -197,11 +193,6 @@ class SavgolConfig(Section):
         if self.frame % 2 == 0 or self.frame <= self.order:
             raise PydanticCustomError(
                 "frame", "should have a frame that is odd and above the order"
-            )
-        if (self.frame // 2) ** self.order > MAX_CONDITION:
-            raise PydanticCustomError(
-                "frame",
-                "should have (frame // 2)^order at most 1e11, beyond which rounding spoils the fit",
             )
         return self
 

@@ -22,7 +22,7 @@ def colour_table(name: str) -> Levels:
 
 def encode_png(levels: Levels, table: Levels, compress_level: int) -> bytes:
     """PNG of levels [H, W] with a colour table [256, 3] as its palette."""
-    picture = Image.frombytes("P", levels.shape[::-1], levels.tobytes())
+    picture = Image.fromarray(levels)
     picture.putpalette(table.tobytes())
     mark, buffer = PngInfo(), io.BytesIO()
     mark.add_text(*_MARK)

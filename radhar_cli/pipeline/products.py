@@ -41,6 +41,7 @@ from radhar_cli.processing import fsst, stft
 from radhar_cli.processing.canceller import Canceller
 from radhar_cli.processing.denoising import savgol
 from radhar_cli.processing.doppler_compensation import compensate
+from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.image import levels, reduced, reduced_map
 from radhar_cli.processing.power_map import Axis, MapImage, PowerMap
 from radhar_cli.processing.range_compression import (
@@ -59,7 +60,7 @@ from radhar_cli.receiver.noise import WhiteNoise, noise_variance
 from radhar_cli.scene import Scene
 
 CHUNK = 2**18  # pulses at work at once, where each is on its own
-SINGLE_RANGE_DB = 80.0  # dynamic range of images up to which float32 is enough
+SINGLE_RANGE_DB = 70.0  # of images: up to here float32 changes a pixel in 1e5, by one level
 # In the order in which few are held at once: each follows the one it is made from.
 SIGNALS = ("signal", "signal_denoised", "signal_compensated", "signal_compensated_denoised")
 
@@ -309,57 +310,44 @@ def _maps(c: Config) -> Iterator[Product]:
 
 
 def _doppler_maps(c: Config, signal: str) -> Iterator[Product]:
-    """STFT and FSST of a signal, whole in double precision, and their images."""
-    suffix = signal.removeprefix("signal")
-    own_length, own_hop = c.processing.stft_fft_length, c.processing.fsst_hop_pulses
+    """STFT and FSST of a signal, whole in float64, and their images.
+
+    Images of the STFT come from float32. Those of the FSST do not: a coefficient that lies within
+    float32's rounding of the border between two bins would move its power to another pixel.
+    """
+    suffix, threshold = signal.removeprefix("signal"), c.processing.fsst_threshold
     single = c.engine.precision == "auto" and c.image.dynamic_range_db <= SINGLE_RANGE_DB
-    made: dict[str, tuple[str, str]] = {}
-    for form, is_single in {"": False, ("image_" if single else ""): single}.items():
-
-        def spectra(length: int | None, is_single: bool = is_single) -> Callable[..., Spectra]:
-            return lambda x, frames: Spectra(x.x, frames, length or frames.length, is_single)
-
-        shared = f"{form}spectra{suffix}"
-        of_stft = f"{form}padded_spectra{suffix}" if own_length else shared
-        of_fsst = f"{form}fsst_spectra{suffix}" if own_hop else shared
-        does = "windowed FFT of every frame" + (", in float32" if is_single else "")
-        yield Product(shared, (signal, "frames"), spectra(None), does)
-        if own_length:
-            yield Product(of_stft, (signal, "frames"), spectra(own_length), does)
-        if own_hop:
-            yield Product(of_fsst, (signal, "fsst_frames"), spectra(None), does)
-        made[form] = of_stft, of_fsst
-    image_form = "image_" if single else ""
-    for kind, blocks, whole, image, does in (
-        ("stft", stft.power_blocks, made[""][0], made[image_form][0], "power of the STFT"),
-        (
-            "fsst",
-            lambda found: fsst.power_blocks(found, c.processing.fsst_threshold),
-            made[""][1],
-            made[image_form][1],
-            "second transform, synchrosqueezing, power",
-        ),
+    squeezed = partial(fsst.power_blocks, threshold=threshold)
+    for name, frames, bins, blocks, is_single, does in (
+        ("stft", "frames", c.processing.stft_fft_length, stft.power_blocks, single, "STFT"),
+        ("fsst", "fsst_frames", None, squeezed, False, "STFT, synchrosqueezed"),
     ):
-        name = f"{kind}{suffix}"
-        yield Product(name, (signal, whole), partial(_doppler_map, blocks), does)
+        needs = (signal, frames)
         yield Product(
-            f"image:{name}",
-            (signal, image),
-            partial(_doppler_image, c, blocks),
-            f"{does}, its image and entropy",
+            name + suffix, needs, partial(_doppler_map, blocks, bins), f"power of the {does}"
+        )
+        yield Product(
+            f"image:{name}{suffix}",
+            needs,
+            partial(_doppler_image, c, blocks, bins, is_single),
+            f"power of the {does}{', in float32' if is_single else ''}; its image and entropy",
         )
 
 
 Blocks: TypeAlias = Callable[[Spectra], Iterator[Float]]
 
 
-def _doppler_map(blocks: Blocks, x: Signal, spectra: Spectra) -> PowerMap:
+def _doppler_map(blocks: Blocks, bins: int | None, x: Signal, frames: Frames) -> PowerMap:
+    spectra = Spectra(x.x, frames, bins or frames.length)
     power = np.concatenate(list(blocks(spectra)), dtype=float)
     np.ldexp(power, 2 * spectra.exponent, out=power)
     return PowerMap(power.T, *_doppler_axes(x, spectra))
 
 
-def _doppler_image(c: Config, blocks: Blocks, x: Signal, spectra: Spectra) -> MapImage:
+def _doppler_image(
+    c: Config, blocks: Blocks, bins: int | None, single: bool, x: Signal, frames: Frames
+) -> MapImage:
+    spectra = Spectra(x.x, frames, bins or frames.length, single)
     rows, columns = _doppler_axes(x, spectra)
     small = reduced(blocks(spectra), spectra.count, c.image.size_px)
     grey = levels(small.power, c.image.dynamic_range_db)

@@ -74,7 +74,7 @@ def assert_finite(recording: Recording) -> None:
         assert power.size
         assert np.isfinite(power).all()
         assert power.min() >= 0
-        assert entropy <= math.log2(power.size) + 1e-5  # images are made in float32
+        assert entropy <= math.log2(power.size) + 1e-5  # images of the STFT are made in float32
         # In physical units the square of an echo below 1e-162 vanishes; its image does not.
         if power.any():
             assert levels.max() == 255

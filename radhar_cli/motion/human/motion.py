@@ -1,0 +1,134 @@
+"""A person's motion: parts one after the other, in the room's frame."""
+
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from math import cos, inf, sin
+from typing import Protocol
+
+import numpy as np
+
+from radhar_cli.arrays import Float
+from radhar_cli.body.skeleton import JOINTS, PARENTS, TORSO
+from radhar_cli.motion.human.idle import Idle, IdleState
+from radhar_cli.motion.human.part import Part, Phase, Place
+from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.pose import Pose
+
+
+class Movement(Protocol):
+    """What makes a part: the dataclasses of the activities."""
+
+    def part(self, person: Person, begin: float, horizon: float) -> Part:
+        """The part that begins at `begin` (s); what goes on is worked out until `horizon` (s)."""
+        ...
+
+
+@dataclass(frozen=True)
+class HumanMotion:
+    """A person who does one thing after another.
+
+    Attributes:
+        person: whose body.
+        movements: what is done; each begins when the one before has come to rest.
+        start: x and y of the floor point between the ankles of the first stance, m.
+        heading: to where the person faces at first, rad from the x axis; 0 is away from the radar.
+        begin: when the first movement begins, s.
+        horizon: end of the recording, s; at least 2 strides of a walk are worked out beyond.
+        idle: sway, breath and fidgets.
+    """
+
+    person: Person
+    movements: tuple[Movement, ...]
+    start: tuple[float, float]
+    heading: float
+    begin: float
+    horizon: float
+    idle: Idle
+
+    names = JOINTS
+    parents = PARENTS
+    highest_frequency = 4.0
+
+    @cached_property
+    def parts(self) -> tuple[tuple[Part, Place], ...]:
+        """Each part and where it begins in the room.
+
+        Raises:
+            ValueError: a movement that does not begin as the one before ends.
+        """
+        begin, place = self.begin, Place(*self.start, self.heading)
+        parts: list[tuple[Part, Place]] = []
+        for movement in self.movements:
+            part = movement.part(self.person, begin, self.horizon)
+            if parts and parts[-1][0].after != part.before:
+                raise ValueError(
+                    f"{type(movement).__name__} begins {part.before}, but the movement before "
+                    f"ends {parts[-1][0].after}"
+                )
+            parts.append((part, place))
+            if part.end == inf:
+                break
+            begin, place = part.end, _beyond(place, part.place)
+        return tuple(parts)
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Instants (s) at which a position is not smooth, sorted."""
+        ends = set(self.idle.breakpoints)
+        for part, _ in self.parts:
+            ends.update(part.breakpoints)
+        return tuple(sorted(ends))
+
+    @property
+    def phases(self) -> tuple[Phase, ...]:
+        """What is under way, and from when on."""
+        return tuple(phase for part, _ in self.parts for phase in part.phases)
+
+    def positions(self, t: Float) -> Float:
+        """Positions [3, 13, M] (m) of the joints at times t [M] (s)."""
+        return self._gather(t, len(JOINTS), lambda pose: pose.joints(self.person))
+
+    def torso(self, t: Float) -> Float:
+        """Positions [3, 1, M] (m) of the torso alone."""
+        return self.positions(t)[:, TORSO : TORSO + 1]
+
+    def hip_joints(self, t: Float) -> Float:
+        """Right and left hip joint [3, 2, M] (m), between which and the knees the thighs are."""
+        return self._gather(t, 2, lambda pose: pose.hip_joints)
+
+    def _gather(self, t: Float, count: int, points: Callable[[Pose], Float]) -> Float:
+        """Points [3, count, M] of each part's poses, in the room."""
+        idle = self.idle(t)
+        if len(self.parts) == 1:
+            return self._in_room(self.parts[0], t, idle, points)
+        under_way = np.searchsorted([part.begin for part, _ in self.parts[1:]], t, side="right")
+        p = np.empty((3, count, t.size))
+        for number in np.unique(under_way):
+            now = under_way == number
+            p[:, :, now] = self._in_room(self.parts[number], t[now], idle.where(now), points)
+        return p
+
+    @staticmethod
+    def _in_room(
+        placed: tuple[Part, Place], t: Float, idle: IdleState, points: Callable[[Pose], Float]
+    ) -> Float:
+        """Points of one part, turned to where it faces and moved to where it begins."""
+        part, place = placed
+        p = points(part.pose(t, idle))
+        x, y = p[0].copy(), p[1]
+        c, s = cos(place.turn), sin(place.turn)
+        p[0] = place.ahead + c * x - s * y
+        p[1] = place.left + s * x + c * y
+        return p
+
+
+def _beyond(place: Place, way: Place) -> Place:
+    """The place reached from `place` by going `way`."""
+    c, s = cos(place.turn), sin(place.turn)
+    return Place(
+        place.ahead + c * way.ahead - s * way.left,
+        place.left + s * way.ahead + c * way.left,
+        place.turn + way.turn,
+    )

@@ -1,0 +1,116 @@
+"""Movements on planted feet, both legs alike: angles from the ankles up, no inverse kinematics.
+
+knee = ankle + l (sin, cos)(shank), hip = knee + l (sin, cos)(thigh), angles from the vertical,
+positive ahead; a seated thigh is at about -90 degrees.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from radhar_cli.arrays import Float
+from radhar_cli.motion.human.idle import IdleState
+from radhar_cli.motion.human.minimum_jerk import Course, Step
+from radhar_cli.motion.human.part import STANDING, Phase, Place
+from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.pose import SIDES, Pose, axes, swung
+
+SHOULDERS = ("right_shoulder", "left_shoulder")
+ELBOWS = ("right_elbow", "left_elbow")
+
+Posture = Mapping[str, float]
+
+
+def posture(
+    shank: float,
+    thigh: float,
+    trunk: float,
+    shoulder: float,
+    elbow: float,
+    standing: float = 0.0,
+    upright: float = 1.0,
+) -> dict[str, float]:
+    """Angles (rad) and how much of the sway legs and trunk take part in, by channel."""
+    return {
+        "shank": shank,
+        "thigh": thigh,
+        "trunk": trunk,
+        "right_shoulder": shoulder,
+        "left_shoulder": shoulder,
+        "right_elbow": elbow,
+        "left_elbow": elbow,
+        "standing": standing,
+        "upright": upright,
+    }
+
+
+def at_rest(person: Person) -> dict[str, float]:
+    """The posture from which and to which standing people move."""
+    return posture(person.rest_lean, -person.rest_lean, 0.0, 0.0, person.elbow, standing=1.0)
+
+
+def both(channels: tuple[str, str], change: float, start: float, length: float) -> list[Step]:
+    """The same step of the right and of the left side."""
+    return [Step(channel, change, start, length) for channel in channels]
+
+
+def timed(steps: Iterable[Step], begin: float, unit: float) -> list[Step]:
+    """Steps given in units of a duration that begins at `begin` (s)."""
+    return [
+        step._replace(start=begin + unit * step.start, length=unit * step.length) for step in steps
+    ]
+
+
+@dataclass(frozen=True)
+class Planted:
+    """A part on planted feet; see `part.Part`."""
+
+    person: Person
+    course: Course
+    begin: float
+    end: float
+    phases: tuple[Phase, ...]
+    before: str = STANDING
+    after: str = STANDING
+
+    @property
+    def place(self) -> Place:
+        """The feet stay where they are."""
+        return Place()
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Both ends of every step, s."""
+        return self.course.breakpoints
+
+    def pose(self, t: Float, idle: IdleState) -> Pose:
+        """The body at times t [M] (s)."""
+        body = self.person
+        shank, thigh, trunk, *arms, standing, upright = self.course(t)
+        legs = np.stack([shank, thigh]) + standing * idle.lean
+        roll = standing * (idle.roll + idle.shift)
+        rising = body.leg * np.cos(legs)
+        ahead = body.leg * np.sin(legs)
+        left, up = np.sin(roll), np.cos(roll)
+        ankle = np.stack([np.zeros((2, 1)), body.hip * SIDES, np.full((2, 1), body.ankle)])
+        knee = np.stack([ahead[0], rising[0] * left, rising[0] * up])
+        hip = knee + np.stack([ahead[1], rising[1] * left, rising[1] * up])
+        tilted = axes(
+            trunk + upright * (idle.lean + idle.pitch), upright * idle.yaw, upright * idle.roll
+        )
+        upper, fore = swung(
+            tilted,
+            np.stack(arms[:2]) + upright * idle.shoulders,
+            np.stack(arms[2:]) + upright * idle.elbows,
+        )
+        return Pose(
+            hip=hip + np.array([[0.0], [0.0], [body.ankle]]),
+            trunk=tilted,
+            hip_joints=ankle + hip[:, None],
+            knees=ankle + knee[:, None],
+            ankles=np.broadcast_to(ankle, (3, 2, t.size)),
+            upper_arms=upper,
+            forearms=fore,
+            breath=idle.breath,
+        )

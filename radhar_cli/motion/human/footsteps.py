@@ -109,7 +109,7 @@ class FootTrack:
 def to_rest(
     position: Float, velocity: Float, acceleration: Float, end: Float, length: Float
 ) -> Float:
-    """Coefficients [6, N], lowest power of (t - t0)/length first, of a quintic that ends at rest."""
+    """Coefficients [6, N] of a quintic that ends at rest, lowest power of (t - t0)/length first."""
     v, a = velocity * length, acceleration * length**2
     way = end - position
     return np.stack(

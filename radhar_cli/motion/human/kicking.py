@@ -7,14 +7,16 @@ from math import acos, inf, isinf, radians
 import numpy as np
 
 from radhar_cli.arrays import Float
+from radhar_cli.motion.human.arms import swung
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import STANDING, Phase, Place
 from radhar_cli.motion.human.pelvis import swayed
 from radhar_cli.motion.human.person import Person
-from radhar_cli.motion.human.pose import SIDES, Pose, axes, swung
+from radhar_cli.motion.human.pose import SIDES, Pose, axes
 from radhar_cli.motion.human.repetitions import repetitions
 from radhar_cli.motion.human.two_link import AHEAD, two_link
+
 
 @dataclass(frozen=True)
 class Kick:
@@ -151,8 +153,7 @@ class Kicking:
         height = 2 * body.leg * np.cos(bend)
         sway = swayed(height, idle.lean, idle.roll + idle.shift)
         hip = sway + np.stack([np.zeros(t.size), np.zeros(t.size), body.ankle + height])
-        joints = np.stack([np.zeros((2, t.size)), np.broadcast_to(body.hip * SIDES, (2, t.size)), np.zeros((2, t.size))])
-        joints = hip[:, None] + joints
+        joints = hip[:, None] + np.stack([np.zeros((2, 1)), body.hip * SIDES, np.zeros((2, 1))])
         flexed = np.stack([bend + thigh, thigh - bend - knee])
         ahead, down = body.leg * np.sin(flexed), -body.leg * np.cos(flexed)
         foot = np.stack(
@@ -161,13 +162,9 @@ class Kicking:
         foot += free * sway  # in the air the foot goes with the hip
         standing = np.broadcast_to([[0.0], [body.hip], [body.ankle]], (3, t.size))
         ankles = np.stack([foot, standing], axis=1)
-        poles = np.stack(
-            [
-                np.stack([ahead[0], np.zeros(t.size), down[0]]),
-                np.broadcast_to(AHEAD[:, 0], (3, t.size)),
-            ],
-            axis=1,
-        )
+        planted = (1 - free) * (idle.roll + idle.shift)  # the leg's plane rolls while it stands
+        thigh_line = np.stack([ahead[0], down[0] * np.sin(planted), down[0] * np.cos(planted)])
+        poles = np.stack([thigh_line, np.broadcast_to(AHEAD[:, 0], (3, t.size))], axis=1)
         knees = two_link(joints, ankles, body.leg, body.leg, poles)
         trunk = axes(pitch + idle.lean + idle.pitch, idle.yaw, idle.roll)
         upper, fore = swung(trunk, idle.shoulders, body.elbow + idle.elbows)

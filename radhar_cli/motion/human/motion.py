@@ -1,6 +1,5 @@
 """A person's motion: parts one after the other, in the room's frame."""
 
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property

@@ -20,7 +20,9 @@ def hip_joints(person: Person, yaw: Float, roll: Float) -> Float:
     return np.stack([beside * (-cr * sy), beside * (cr * cy), beside * -sr])
 
 
-def hip_height(person: Person, standing: Float | float, hip: Float, aside: Float, ankles: Float) -> Float:
+def hip_height(
+    person: Person, standing: Float | float, hip: Float, aside: Float, ankles: Float
+) -> Float:
     """Height of the hip point [M], m: softmin(z_stand, z_right, z_left).
 
     z_i = z_ankle + sqrt(D^2 - rho^2) - z of the hip joint, rho the horizontal distance from hip

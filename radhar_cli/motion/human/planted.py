@@ -10,14 +10,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from radhar_cli.arrays import Float
+from radhar_cli.motion.human.arms import supported, swung
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import STANDING, Phase, Place
 from radhar_cli.motion.human.person import Person
-from radhar_cli.motion.human.pose import SIDES, Pose, axes, swung
+from radhar_cli.motion.human.pose import SIDES, Pose, axes, shoulder_points
 
 SHOULDERS = ("right_shoulder", "left_shoulder")
 ELBOWS = ("right_elbow", "left_elbow")
+HAND = 0.03  # height of a hand on the floor, m
 
 Posture = Mapping[str, float]
 
@@ -31,7 +33,10 @@ def posture(
     standing: float = 0.0,
     upright: float = 1.0,
 ) -> dict[str, float]:
-    """Angles (rad) and how much of the sway legs and trunk take part in, by channel."""
+    """Angles (rad), and how much of the sway legs and trunk take part in, by channel.
+
+    "hands" is how far the hands are on the floor, at "hands_ahead" (m), "hands_beside".
+    """
     return {
         "shank": shank,
         "thigh": thigh,
@@ -42,6 +47,9 @@ def posture(
         "left_elbow": elbow,
         "standing": standing,
         "upright": upright,
+        "hands": 0.0,
+        "hands_ahead": 0.0,
+        "hands_beside": 0.0,
     }
 
 
@@ -87,7 +95,7 @@ class Planted:
     def pose(self, t: Float, idle: IdleState) -> Pose:
         """The body at times t [M] (s)."""
         body = self.person
-        shank, thigh, trunk, *arms, standing, upright = self.course(t)
+        shank, thigh, trunk, *arms, standing, upright, share, ahead_of, beside = self.course(t)
         legs = np.stack([shank, thigh]) + standing * idle.lean
         roll = standing * (idle.roll + idle.shift)
         rising = body.leg * np.cos(legs)
@@ -99,15 +107,21 @@ class Planted:
         tilted = axes(
             trunk + upright * (idle.lean + idle.pitch), upright * idle.yaw, upright * idle.roll
         )
-        upper, fore = swung(
-            tilted,
+        hip[2] += body.ankle
+        flexion = (
             np.stack(arms[:2]) + upright * idle.shoulders,
             np.stack(arms[2:]) + upright * idle.elbows,
         )
+        if share.any():
+            floor = np.stack([ahead_of + 0 * SIDES, beside * SIDES, HAND + 0 * flexion[0]])
+            shoulders = shoulder_points(body, hip, tilted)
+            upper, fore = supported(body, tilted, shoulders, flexion, floor, share)
+        else:
+            upper, fore = swung(tilted, *flexion)
         return Pose(
-            hip=hip + np.array([[0.0], [0.0], [body.ankle]]),
+            hip=hip,
             trunk=tilted,
-            hip_joints=ankle + hip[:, None],
+            hip_joints=hip[:, None] + np.array([0.0 * SIDES, body.hip * SIDES, 0.0 * SIDES]),
             knees=ankle + knee[:, None],
             ankles=np.broadcast_to(ankle, (3, 2, t.size)),
             upper_arms=upper,

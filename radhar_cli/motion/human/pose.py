@@ -7,7 +7,6 @@ import numpy as np
 from radhar_cli.arrays import Float
 from radhar_cli.body.skeleton import JOINTS
 from radhar_cli.motion.human.person import Person
-from radhar_cli.motion.human.two_link import two_link
 
 SIDES = np.array([[-1.0], [1.0]])  # right, left: the sign of y
 
@@ -60,14 +59,11 @@ class Pose:
     def joints(self, person: Person) -> Float:
         """Positions [3, 13, M], in the order of `radhar_cli.body.skeleton`."""
         p = np.empty((3, len(JOINTS), self.hip.shape[1]))
-        ahead, left, up = self.trunk.ahead, self.trunk.left, self.trunk.up
+        ahead, up = self.trunk.ahead, self.trunk.up
         torso = self.hip + person.trunk * up
-        neck = torso + person.shoulder * up
-        aside = person.shoulder * left
         p[:, 0] = torso + self.breath * ahead
         p[:, 1] = torso + person.neck * up
-        p[:, 2] = neck - aside
-        p[:, 5] = neck + aside
+        p[:, 2:6:3] = shoulder_points(person, self.hip, self.trunk)
         p[:, 3:7:3] = p[:, 2:6:3] + person.arm * self.upper_arms
         p[:, 4:8:3] = p[:, 3:7:3] + person.arm * self.forearms
         p[:, 8] = self.hip
@@ -76,31 +72,7 @@ class Pose:
         return p
 
 
-def swung(trunk: Axes, shoulder: Float, elbow: Float) -> tuple[Float, Float]:
-    """Unit vectors of upper arms and forearms [3, 2, M] that hang from a trunk.
-
-    Args:
-        trunk: axes [3, M].
-        shoulder: flexion, right and left [2, M], rad, ahead.
-        elbow: flexion [2, M], rad.
-    """
-    angles = np.stack([shoulder, shoulder + elbow])
-    ahead, down = np.sin(angles), np.cos(angles)
-    x, z = trunk.ahead[:, None], trunk.up[:, None]
-    return ahead[0] * x - down[0] * z, ahead[1] * x - down[1] * z
-
-
-def directed(trunk: Axes, hands: Float, poles: Float, arm: float) -> tuple[Float, Float]:
-    """Unit vectors of upper arms and forearms [3, 2, M] whose hands are where they should be.
-
-    Args:
-        trunk: axes [3, M].
-        hands: relative to the shoulders, in the trunk's frame (ahead, left, up) [3, 2, M], m.
-        poles: to where the elbows bend, in that frame [3, 2, M].
-        arm: length of the upper arm, and of the forearm, m.
-    """
-    elbows = two_link(np.zeros_like(hands), hands, arm, arm, poles)
-    frame = np.stack([trunk.ahead, trunk.left, trunk.up], axis=1)
-    upper = np.einsum("xam,aim->xim", frame, elbows / arm)
-    fore = np.einsum("xam,aim->xim", frame, (hands - elbows) / arm)
-    return upper, fore
+def shoulder_points(person: Person, hip: Float, trunk: Axes) -> Float:
+    """Right and left shoulder [3, 2, M] above a hip [3, M], m."""
+    neck = hip + (person.trunk + person.shoulder) * trunk.up
+    return neck[:, None] + person.shoulder * (SIDES * trunk.left[:, None])

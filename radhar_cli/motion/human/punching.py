@@ -11,18 +11,17 @@ from math import inf, isinf, radians
 import numpy as np
 
 from radhar_cli.arrays import Float
+from radhar_cli.motion.human.arms import OUTWARDS, directed, hanging
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import STANDING, Phase, Place
 from radhar_cli.motion.human.pelvis import hip_height, hip_joints, swayed
 from radhar_cli.motion.human.person import Person
-from radhar_cli.motion.human.pose import SIDES, Pose, axes, directed
+from radhar_cli.motion.human.pose import SIDES, Pose, axes
 from radhar_cli.motion.human.repetitions import repetitions
 from radhar_cli.motion.human.two_link import AHEAD, two_link
 
 REFERENCE_STATURE = 1.75  # of the lengths below
-OUTWARDS = np.concatenate([np.full((1, 2), -0.2), 0.45 * SIDES.T, np.full((1, 2), -1.0)])
-BACK = np.array([-1.0, 0.0, 0.0])
 ENTRY = {"right_foot": (0.0, 0.6), "left_foot": (0.4, 0.6), "guard": (0.0, 1.0)}
 
 
@@ -153,18 +152,13 @@ class Punching:
         hip += swayed(hip[2] - body.ankle, idle.lean, legs_roll)
         pitch = punch.pitch * guard + punch.bow * (right + left) + idle.lean + still * idle.pitch
         trunk = axes(pitch, into + still * idle.yaw, idle.roll)
-        shoulder = still * idle.shoulders
-        elbow = shoulder + body.elbow + still * idle.elbows
-        hanging = np.stack(
-            [np.sin(shoulder) + np.sin(elbow), 0 * elbow, -np.cos(shoulder) - np.cos(elbow)]
-        )
+        hands, poles = hanging(body, still * idle.shoulders, body.elbow + still * idle.elbows)
         x, y, z = punch.guard
         guarding = scale * np.stack([np.full((2, 1), x), -y * SIDES, np.full((2, 1), z)])
         ahead = np.stack([trunk.ahead[0], trunk.left[0], trunk.up[0]])[:, None]  # the room's x axis
         target = punch.reach * 2 * body.arm * ahead
-        hands = still * body.arm * hanging + guard * guarding
-        hands = hands + np.stack([right, left]) * (target - guarding)
-        poles = still * BACK[:, None, None] + guard * OUTWARDS[:, :, None]
+        hands += guard * (guarding - hands) + np.stack([right, left]) * (target - guarding)
+        poles += guard * (OUTWARDS[:, :, None] - poles)
         joints = hip[:, None] + aside
         knees = two_link(joints, ankles, body.leg, body.leg, AHEAD)
         arms = directed(trunk, hands, poles, body.arm)

@@ -7,12 +7,13 @@ from math import inf, isinf, pi, radians
 import numpy as np
 
 from radhar_cli.arrays import Float
+from radhar_cli.motion.human.arms import swung
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import STANDING, Phase, Place
 from radhar_cli.motion.human.pelvis import hip_height, hip_joints, swayed
 from radhar_cli.motion.human.person import Person
-from radhar_cli.motion.human.pose import SIDES, Pose, axes, swung
+from radhar_cli.motion.human.pose import SIDES, Pose, axes
 from radhar_cli.motion.human.two_link import AHEAD, two_link
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from radhar_cli.arrays import Float
 from radhar_cli.motion.human import boulic_thalmann as curves
+from radhar_cli.motion.human.arms import swung
 from radhar_cli.motion.human.footsteps import Footfalls, FootTrack
 from radhar_cli.motion.human.idle import IdleState, Waves
 from radhar_cli.motion.human.minimum_jerk import (
@@ -23,7 +24,7 @@ from radhar_cli.motion.human.minimum_jerk import (
 from radhar_cli.motion.human.part import STANDING, Phase, Place
 from radhar_cli.motion.human.pelvis import hip_height, hip_joints, swayed
 from radhar_cli.motion.human.person import Person
-from radhar_cli.motion.human.pose import Pose, axes, swung
+from radhar_cli.motion.human.pose import Pose, axes
 from radhar_cli.motion.human.two_link import AHEAD, two_link
 
 START_PHASE = 0.5  # of the stride: the right foot goes first
@@ -90,9 +91,7 @@ class Walk:
 
     def part(self, person: Person, begin: float, horizon: float = 0.0) -> "Walking":
         """The movement from `begin` (s) on, with steps until `horizon` (s)."""
-        return Walking(
-            person, self.gait, begin, begin + self.duration, self.from_rest, horizon
-        )
+        return Walking(person, self.gait, begin, begin + self.duration, self.from_rest, horizon)
 
 
 @dataclass(frozen=True)

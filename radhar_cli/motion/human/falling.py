@@ -120,8 +120,8 @@ class FallBackward:
         rest, supine = at_rest(person), self.supine.posture(person)
         change = {channel: supine[channel] - rest[channel] for channel in rest}
         steps = [
-            Step("shank", change["shank"], 0.0, 1.0, late=True),
-            Step("thigh", change["thigh"], 0.05, 0.90),
+            Step("shank", change["shank"], 0.0, 0.90, late=True),
+            Step("thigh", change["thigh"], 0.10, 0.75),
             Step("trunk", self.bow, 0.0, 0.55),
             Step("trunk", change["trunk"] - self.bow, 0.20, 0.90, late=True),
             *both(SHOULDERS, self.arms, 0.10, 0.50),

@@ -98,7 +98,7 @@ class FallingSideways:
         body, fall = self.person, self.fall
         legs, length, pelvis, trunk, curl, arms, share, still = self.course(t)
         own, nothing = 1 - still, np.zeros(t.size)
-        lean, roll = own * idle.lean, fall.side * legs + own * (idle.roll + idle.shift)
+        lean, roll = own * idle.lean, fall.side * legs + own * idle.legs_roll
         hip = length * np.stack(
             [np.sin(lean), np.cos(lean) * np.sin(roll), np.cos(lean) * np.cos(roll)]
         )
@@ -109,7 +109,7 @@ class FallingSideways:
         ankles = np.broadcast_to(ankles, (3, 2, t.size))
         knees = two_link(joints, ankles, body.leg, body.leg, AHEAD)
         upper_body = axes(
-            curl + lean + own * idle.pitch, own * idle.yaw, fall.side * trunk + own * idle.roll
+            curl + own * idle.pitch, own * idle.yaw, fall.side * trunk + own * idle.roll
         )
         flexion = (arms + own * idle.shoulders, body.elbow + own * idle.elbows)
         lies = body.leg * 2 * fall.bent + fall.hands[1] * body.stature

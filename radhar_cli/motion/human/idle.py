@@ -120,29 +120,62 @@ FIDGETS = (
 
 @dataclass(frozen=True)
 class IdleState:
-    """The body's own movements at M instants, m and rad.
+    """The body's own movements at some times t [M] (s), worked out as they are asked for."""
 
-    Attributes:
-        lean: of legs and trunk ahead [M].
-        roll: of legs and trunk to the left [M].
-        shift: roll of the legs alone [M].
-        pitch, yaw: of the trunk [M].
-        shoulders, elbows: flexion, right and left [2, M].
-        breath: of the torso ahead [M].
-    """
+    idle: "Idle"
+    t: Float
 
-    lean: Float
-    roll: Float
-    shift: Float
-    pitch: Float
-    yaw: Float
-    shoulders: Float
-    elbows: Float
-    breath: Float
+    @cached_property
+    def _fidgets(self) -> dict[str, Float]:
+        course = self.idle.course
+        return dict(zip(course.channels, course(self.t), strict=True))
 
-    def where(self, mask: Float) -> "IdleState":
-        """The instants that are selected."""
-        return IdleState(*(value[..., mask] for value in vars(self).values()))
+    @cached_property
+    def lean(self) -> Float:
+        """Of legs and trunk ahead [M], rad."""
+        height = CENTRE_OF_MASS * self.idle.person.stature
+        lean: Float = np.arcsin(self.idle.sway.ahead(self.t) / height) + self._fidgets["lean"]
+        return lean
+
+    @cached_property
+    def roll(self) -> Float:
+        """Of legs and trunk to the left [M], rad."""
+        person = self.idle.person
+        height = CENTRE_OF_MASS * person.stature - person.ankle
+        roll: Float = np.arcsin(self.idle.sway.aside(self.t) / height)
+        return roll
+
+    @cached_property
+    def legs_roll(self) -> Float:
+        """Of the legs to the left [M], rad: sway and shifted weight."""
+        person = self.idle.person
+        shift = np.arcsin(self._fidgets["shift"] / (person.rest_height - person.ankle))
+        return self.roll + shift
+
+    @property
+    def pitch(self) -> Float:
+        """Of the trunk ahead, beyond the lean [M], rad."""
+        return self.lean + self._fidgets["pitch"]
+
+    @property
+    def yaw(self) -> Float:
+        """Of the trunk to the left [M], rad."""
+        return self._fidgets["yaw"]
+
+    @property
+    def shoulders(self) -> Float:
+        """Further flexion, right and left [2, M], rad."""
+        return np.stack([self._fidgets["right_shoulder"], self._fidgets["left_shoulder"]])
+
+    @property
+    def elbows(self) -> Float:
+        """Further flexion, right and left [2, M], rad."""
+        return np.stack([self._fidgets["right_elbow"], self._fidgets["left_elbow"]])
+
+    @property
+    def breath(self) -> Float:
+        """Of the torso ahead [M], m."""
+        return self.idle.breath(self.t)
 
 
 @dataclass(frozen=True)
@@ -155,7 +188,7 @@ class Idle:
     fidgets: tuple[Fidget, ...] = ()
 
     @cached_property
-    def _course(self) -> Course:
+    def course(self) -> Course:
         """Fidgets one after the other: each goes on from where the last of its channel ended."""
         now = dict.fromkeys(FIDGETS, 0.0)
         steps = []
@@ -169,18 +202,8 @@ class Idle:
     @property
     def breakpoints(self) -> tuple[float, ...]:
         """Instants (s) at which a fidget begins or ends."""
-        return self._course.breakpoints
+        return self.course.breakpoints
 
     def __call__(self, t: Float) -> IdleState:
         """The state at times t [M] (s)."""
-        height = CENTRE_OF_MASS * self.person.stature
-        lean = np.arcsin(self.sway.ahead(t) / height)
-        roll = np.arcsin(self.sway.aside(t) / (height - self.person.ankle))
-        if not self.fidgets:
-            none, pair = np.zeros(t.size), np.zeros((2, t.size))
-            return IdleState(lean, roll, none, none, none, pair, pair, self.breath(t))
-        own = self._course(t)
-        shift = np.arcsin(own[0] / (self.person.rest_height - self.person.ankle))
-        return IdleState(
-            lean + own[1], roll, shift, own[2], own[3], own[4:6], own[6:8], self.breath(t)
-        )
+        return IdleState(self, t)

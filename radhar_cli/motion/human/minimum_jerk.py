@@ -94,6 +94,8 @@ class Course:
 
     def __call__(self, t: Float) -> Float:
         """Values [C, M] at times t [M] (s)."""
+        if not self.starts.size:
+            return np.broadcast_to(self.initial, (len(self.channels), t.size))
         x = np.clip((t - self.starts) / self.lengths, 0.0, 1.0)
         if self.late.any():
             x[self.late] **= 2

@@ -8,12 +8,14 @@ from typing import Protocol
 
 import numpy as np
 
-from radhar_cli.arrays import Float
+from radhar_cli.arrays import Float, Index
 from radhar_cli.body.skeleton import JOINTS, PARENTS, TORSO
-from radhar_cli.motion.human.idle import Idle, IdleState
+from radhar_cli.motion.human.idle import Idle
 from radhar_cli.motion.human.part import Part, Phase, Place
 from radhar_cli.motion.human.person import Person
 from radhar_cli.motion.human.pose import Pose
+
+BLOCK = 1024  # instants at once: what a block needs stays in the cache
 
 
 class Movement(Protocol):
@@ -99,28 +101,35 @@ class HumanMotion:
 
     def _gather(self, t: Float, count: int, points: Callable[[Pose], Float]) -> Float:
         """Points [3, count, M] of each part's poses, in the room."""
-        idle = self.idle(t)
-        if len(self.parts) == 1:
-            return self._in_room(self.parts[0], t, idle, points)
-        under_way = np.searchsorted([part.begin for part, _ in self.parts[1:]], t, side="right")
         p = np.empty((3, count, t.size))
-        for number in np.unique(under_way):
-            now = under_way == number
-            p[:, :, now] = self._in_room(self.parts[number], t[now], idle.where(now), points)
+        for first in range(0, t.size, BLOCK):
+            block = slice(first, first + BLOCK)
+            part_of = np.searchsorted(self._begins, t[block], side="right")
+            for number in np.unique(part_of):
+                now = part_of == number
+                where = block if now.all() else first + np.flatnonzero(now)
+                self._place(self.parts[number], t[where], points, p, where)
         return p
 
-    @staticmethod
-    def _in_room(
-        placed: tuple[Part, Place], t: Float, idle: IdleState, points: Callable[[Pose], Float]
-    ) -> Float:
-        """Points of one part, turned to where it faces and moved to where it begins."""
+    @cached_property
+    def _begins(self) -> list[float]:
+        return [part.begin for part, _ in self.parts[1:]]
+
+    def _place(
+        self,
+        placed: tuple[Part, Place],
+        t: Float,
+        points: Callable[[Pose], Float],
+        p: Float,
+        where: slice | Index,
+    ) -> None:
+        """Fill in one part's points, turned to where it faces and moved to where it begins."""
         part, place = placed
-        p = points(part.pose(t, idle))
-        x, y = p[0].copy(), p[1]
+        x, y, z = points(part.pose(t, self.idle(t)))
         c, s = cos(place.turn), sin(place.turn)
-        p[0] = place.ahead + c * x - s * y
-        p[1] = place.left + s * x + c * y
-        return p
+        p[0][:, where] = place.ahead + c * x - s * y
+        p[1][:, where] = place.left + s * x + c * y
+        p[2][:, where] = z
 
 
 def _beyond(place: Place, way: Place) -> Place:

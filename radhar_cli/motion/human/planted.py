@@ -97,16 +97,14 @@ class Planted:
         body = self.person
         shank, thigh, trunk, *arms, standing, upright, share, ahead_of, beside = self.course(t)
         legs = np.stack([shank, thigh]) + standing * idle.lean
-        roll = standing * (idle.roll + idle.shift)
+        roll = standing * idle.legs_roll
         rising = body.leg * np.cos(legs)
         ahead = body.leg * np.sin(legs)
         left, up = np.sin(roll), np.cos(roll)
         ankle = np.stack([np.zeros((2, 1)), body.hip * SIDES, np.full((2, 1), body.ankle)])
         knee = np.stack([ahead[0], rising[0] * left, rising[0] * up])
         hip = knee + np.stack([ahead[1], rising[1] * left, rising[1] * up])
-        tilted = axes(
-            trunk + upright * (idle.lean + idle.pitch), upright * idle.yaw, upright * idle.roll
-        )
+        tilted = axes(trunk + upright * idle.pitch, upright * idle.yaw, upright * idle.roll)
         hip[2] += body.ankle
         flexion = (
             np.stack(arms[:2]) + upright * idle.shoulders,

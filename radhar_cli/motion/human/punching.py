@@ -148,9 +148,10 @@ class Punching:
         hip = ankles.mean(axis=1)
         hip[0] += scale * punch.thrust * (right + left)
         hip[2] = hip_height(body, body.tallest, hip[:2], aside, ankles)
-        legs_roll = idle.roll + still * idle.shift
+        legs_roll = idle.roll + still * (idle.legs_roll - idle.roll)
         hip += swayed(hip[2] - body.ankle, idle.lean, legs_roll)
-        pitch = punch.pitch * guard + punch.bow * (right + left) + idle.lean + still * idle.pitch
+        pitch = punch.pitch * guard + punch.bow * (right + left)
+        pitch += idle.lean + still * (idle.pitch - idle.lean)
         trunk = axes(pitch, into + still * idle.yaw, idle.roll)
         hands, poles = hanging(body, still * idle.shoulders, body.elbow + still * idle.elbows)
         x, y, z = punch.guard

@@ -97,10 +97,10 @@ class Turning:
         ankles = np.broadcast_to(ankles, (3, 2, t.size))
         hip = np.zeros((3, t.size))
         hip[2] = hip_height(body, body.tallest, hip[:2], aside, ankles)
-        hip += swayed(hip[2] - body.ankle, idle.lean, idle.roll + idle.shift)
+        hip += swayed(hip[2] - body.ankle, idle.lean, idle.legs_roll)
         joints = hip[:, None] + aside
         knees = two_link(joints, ankles, body.leg, body.leg, AHEAD)
-        trunk = axes(idle.lean + idle.pitch, yaw + idle.yaw, idle.roll)
+        trunk = axes(idle.pitch, yaw + idle.yaw, idle.roll)
         swing = -SIDES * drive * turn.arms * np.sin(phase - turn.lag)
         upper, fore = swung(trunk, swing + idle.shoulders, body.elbow + idle.elbows)
         return Pose(hip, trunk, joints, knees, ankles, upper, fore, idle.breath)

@@ -299,23 +299,25 @@ class Walking:
     def pose(self, t: Float, idle: IdleState) -> Pose:
         """The body at times t [M] (s)."""
         body, g = self.person, self.drive(t)
-        surge, side, yaw, roll, twist, *arms = g * (self._curves @ curves.basis(self.phase(t)))
+        rows = self._curves @ curves.basis(self.phase(t))
+        rows *= g
+        (surge, side, yaw, roll, twist), arms = rows[:5], rows[5:].reshape(2, 2, t.size)
         aside = hip_joints(body, yaw, roll)
         ankles = np.stack([track(t) for track in self._feet], axis=1)
         hip = np.stack([self.path(t) + surge, side, np.empty(t.size)])
         standing = body.tallest - self.gait.sink * body.stature * g
         hip[2] = hip_height(body, standing, hip[:2], aside, ankles)
-        still = 1 - g
-        pitch = self.gait.trunk_pitch * g
+        pitch, lean = self.gait.trunk_pitch * g, np.zeros(t.size)
+        arms[1] += body.elbow
         if self.from_rest or self.stops:
-            hip += swayed(hip[2] - body.ankle, still * idle.lean, still * (idle.roll + idle.shift))
-            pitch = pitch + still * (idle.lean + idle.pitch)
-        trunk = axes(pitch, twist + still * idle.yaw, still * idle.roll)
-        upper, fore = swung(
-            trunk,
-            np.stack(arms[:2]) + still * idle.shoulders,
-            body.elbow + np.stack(arms[2:]) + still * idle.elbows,
-        )
+            still = 1 - g
+            hip += swayed(hip[2] - body.ankle, still * idle.lean, still * idle.legs_roll)
+            pitch += still * idle.pitch
+            twist += still * idle.yaw
+            lean = still * idle.roll
+            arms += still * np.stack([idle.shoulders, idle.elbows])
+        trunk = axes(pitch, twist, lean)
+        upper, fore = swung(trunk, arms[0], arms[1])
         joints = hip[:, None] + aside
         knees = two_link(joints, ankles, body.leg, body.leg, AHEAD)
         return Pose(hip, trunk, joints, knees, ankles, upper, fore, idle.breath)

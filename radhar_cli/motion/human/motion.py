@@ -8,8 +8,8 @@ from typing import Protocol
 
 import numpy as np
 
-from radhar_cli.arrays import Float, Index
-from radhar_cli.body.skeleton import JOINTS, PARENTS, TORSO
+from radhar_cli.arrays import Float
+from radhar_cli.body.skeleton import JOINTS, PARENTS
 from radhar_cli.motion.human.idle import Idle
 from radhar_cli.motion.human.part import Part, Phase, Place
 from radhar_cli.motion.human.person import Person
@@ -89,47 +89,53 @@ class HumanMotion:
 
     def positions(self, t: Float) -> Float:
         """Positions [3, 13, M] (m) of the joints at times t [M] (s)."""
-        return self._gather(t, len(JOINTS), lambda pose: pose.joints(self.person))
+        return self._gather(t, len(JOINTS), lambda pose, p: pose.joints(self.person, p))
 
     def torso(self, t: Float) -> Float:
         """Positions [3, 1, M] (m) of the torso alone."""
-        return self.positions(t)[:, TORSO : TORSO + 1]
+        return self._gather(t, 1, lambda pose, p: pose.torso(self.person, p[:, 0]))
 
     def hip_joints(self, t: Float) -> Float:
         """Right and left hip joint [3, 2, M] (m), between which and the knees the thighs are."""
-        return self._gather(t, 2, lambda pose: pose.hip_joints)
+        return self._gather(t, 2, lambda pose, p: np.copyto(p, pose.hip_joints))
 
-    def _gather(self, t: Float, count: int, points: Callable[[Pose], Float]) -> Float:
+    def _gather(self, t: Float, count: int, fill: Callable[[Pose, Float], None]) -> Float:
         """Points [3, count, M] of each part's poses, in the room."""
         p = np.empty((3, count, t.size))
+        part_of = np.searchsorted(self._begins, t, side="right")
         for first in range(0, t.size, BLOCK):
             block = slice(first, first + BLOCK)
-            part_of = np.searchsorted(self._begins, t[block], side="right")
-            for number in np.unique(part_of):
-                now = part_of == number
-                where = block if now.all() else first + np.flatnonzero(now)
-                self._place(self.parts[number], t[where], points, p, where)
+            numbers = part_of[block]
+            for number in range(numbers.min(), numbers.max() + 1):
+                now = numbers == number
+                if now.all():
+                    self._fill(self.parts[number], t[block], p[..., block], fill)
+                elif now.any():
+                    some = np.empty((3, count, np.count_nonzero(now)))
+                    self._fill(self.parts[number], t[block][now], some, fill)
+                    p[..., block][..., now] = some
         return p
 
     @cached_property
     def _begins(self) -> list[float]:
         return [part.begin for part, _ in self.parts[1:]]
 
-    def _place(
-        self,
-        placed: tuple[Part, Place],
-        t: Float,
-        points: Callable[[Pose], Float],
-        p: Float,
-        where: slice | Index,
+    def _fill(
+        self, placed: tuple[Part, Place], t: Float, p: Float, fill: Callable[[Pose, Float], None]
     ) -> None:
         """Fill in one part's points, turned to where it faces and moved to where it begins."""
         part, place = placed
-        x, y, z = points(part.pose(t, self.idle(t)))
-        c, s = cos(place.turn), sin(place.turn)
-        p[0][:, where] = place.ahead + c * x - s * y
-        p[1][:, where] = place.left + s * x + c * y
-        p[2][:, where] = z
+        fill(part.pose(t, self.idle(t)), p)
+        x, y = p[0], p[1]
+        if place.turn:
+            c, s = cos(place.turn), sin(place.turn)
+            across = s * x
+            x *= c
+            x -= s * y
+            y *= c
+            y += across
+        x += place.ahead
+        y += place.left
 
 
 def _beyond(place: Place, way: Place) -> Place:

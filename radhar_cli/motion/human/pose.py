@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.body.skeleton import JOINTS
 from radhar_cli.motion.human.person import Person
 
 SIDES = np.array([[-1.0], [1.0]])  # right, left: the sign of y
@@ -25,14 +24,15 @@ def axes(pitch: Float, yaw: Float, roll: Float) -> Axes:
 
     R_x(-roll) R_z(yaw) R_y(pitch), angles [M] in rad; the last turn is about the floor's x axis.
     """
-    angles = np.stack([pitch, yaw, roll])
-    (cp, cy, cr), (sp, sy, sr) = np.cos(angles), np.sin(angles)
-    across = sy * sp
-    return Axes(
-        ahead=np.stack([cy * cp, sy * cp * cr - sp * sr, -sp * cr - sy * cp * sr]),
-        left=np.stack([-sy, cy * cr, -cy * sr]),
-        up=np.stack([cy * sp, across * cr + cp * sr, cp * cr - across * sr]),
-    )
+    cp, sp = np.cos(pitch), np.sin(pitch)
+    cy, sy = np.cos(yaw), np.sin(yaw)
+    cr, sr = np.cos(roll), np.sin(roll)
+    ahead, left, up = np.empty((3, 3, pitch.size))
+    ahead[0], left[0], up[0] = cy * cp, -sy, cy * sp
+    forth, across = sy * cp, sy * sp
+    ahead[1], left[1], up[1] = forth * cr - sp * sr, cy * cr, across * cr + cp * sr
+    ahead[2], left[2], up[2] = -sp * cr - forth * sr, -cy * sr, cp * cr - across * sr
+    return Axes(ahead, left, up)
 
 
 @dataclass
@@ -56,20 +56,23 @@ class Pose:
     forearms: Float
     breath: Float | float = 0.0
 
-    def joints(self, person: Person) -> Float:
-        """Positions [3, 13, M], in the order of `radhar_cli.body.skeleton`."""
-        p = np.empty((3, len(JOINTS), self.hip.shape[1]))
-        ahead, up = self.trunk.ahead, self.trunk.up
-        torso = self.hip + person.trunk * up
-        p[:, 0] = torso + self.breath * ahead
-        p[:, 1] = torso + person.neck * up
+    def torso(self, person: Person, p: Float) -> None:
+        """Fill in the position p [3, M] of the torso."""
+        np.multiply(self.trunk.up, person.trunk, out=p)
+        p += self.hip
+        p += self.breath * self.trunk.ahead
+
+    def joints(self, person: Person, p: Float) -> None:
+        """Fill in positions p [3, 13, M], in the order of `radhar_cli.body.skeleton`."""
+        up = self.trunk.up
+        self.torso(person, p[:, 0])
+        p[:, 1] = self.hip + (person.trunk + person.neck) * up
         p[:, 2:6:3] = shoulder_points(person, self.hip, self.trunk)
         p[:, 3:7:3] = p[:, 2:6:3] + person.arm * self.upper_arms
         p[:, 4:8:3] = p[:, 3:7:3] + person.arm * self.forearms
         p[:, 8] = self.hip
         p[:, 9:12:2] = self.knees
         p[:, 10:13:2] = self.ankles
-        return p
 
 
 def shoulder_points(person: Person, hip: Float, trunk: Axes) -> Float:

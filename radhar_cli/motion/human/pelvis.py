@@ -46,7 +46,27 @@ def hip_height(
     return height
 
 
-def swayed(height: Float, lean: Float, roll: Float) -> Float:
+def swayed(height: Float | float, lean: Float, roll: Float) -> Float:
     """By how much a hip at a height above the ankles [M] goes with the sway [3, M]."""
     ahead, rise = np.sin(lean), np.cos(lean)
     return height * np.stack([ahead, rise * np.sin(roll), rise * np.cos(roll) - 1])
+
+
+def swayed_hip(
+    person: Person, standing: Float | float, hip: Float, aside: Float, ankles: Float, sway: Float
+) -> Float:
+    """The hip point [3, M] of a body that sways over its ankles, at a height its legs can reach.
+
+    At rest the body turns about its ankles as a whole; the soft minimum is not quite the circle
+    on which the hip is then, so the difference between the two is added.
+
+    Args:
+        person, standing, hip, aside, ankles: as for `hip_height`.
+        sway: what `swayed` returns for a hip at its height at rest [3, M].
+    """
+    x, y = hip[0] + sway[0], hip[1] + sway[1]
+    z = hip_height(person, standing, np.stack([x, y]), aside, ankles)
+    limit = person.ankle + np.sqrt(person.reach**2 - sway[0] ** 2 - sway[1] ** 2)
+    k = person.softness
+    soft = person.tallest - np.log1p(2 * np.exp(k * (person.tallest - limit))) / k
+    return np.stack([x, y, z + (person.rest_height + sway[2] - soft)])

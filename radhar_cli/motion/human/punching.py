@@ -15,7 +15,7 @@ from radhar_cli.motion.human.arms import OUTWARDS, directed, hanging
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import STANDING, Phase, Place
-from radhar_cli.motion.human.pelvis import hip_height, hip_joints, swayed
+from radhar_cli.motion.human.pelvis import hip_joints, swayed, swayed_hip
 from radhar_cli.motion.human.person import Person
 from radhar_cli.motion.human.pose import SIDES, Pose, axes
 from radhar_cli.motion.human.repetitions import repetitions
@@ -147,9 +147,9 @@ class Punching:
         aside = hip_joints(body, punch.pelvis * into, np.zeros(t.size))
         hip = ankles.mean(axis=1)
         hip[0] += scale * punch.thrust * (right + left)
-        hip[2] = hip_height(body, body.tallest, hip[:2], aside, ankles)
         legs_roll = idle.roll + still * (idle.legs_roll - idle.roll)
-        hip += swayed(hip[2] - body.ankle, idle.lean, legs_roll)
+        sway = swayed(body.rest_height - body.ankle, idle.lean, legs_roll)
+        hip = swayed_hip(body, body.tallest, hip, aside, ankles, sway)
         pitch = punch.pitch * guard + punch.bow * (right + left)
         pitch += idle.lean + still * (idle.pitch - idle.lean)
         trunk = axes(pitch, into + still * idle.yaw, idle.roll)

@@ -11,7 +11,7 @@ from radhar_cli.motion.human.arms import swung
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import STANDING, Phase, Place
-from radhar_cli.motion.human.pelvis import hip_height, hip_joints, swayed
+from radhar_cli.motion.human.pelvis import hip_joints, swayed, swayed_hip
 from radhar_cli.motion.human.person import Person
 from radhar_cli.motion.human.pose import SIDES, Pose, axes
 from radhar_cli.motion.human.two_link import AHEAD, two_link
@@ -95,9 +95,8 @@ class Turning:
         aside = hip_joints(body, turn.pelvis * yaw, np.zeros(t.size))
         ankles = np.stack([np.zeros((2, 1)), body.hip * SIDES, np.full((2, 1), body.ankle)])
         ankles = np.broadcast_to(ankles, (3, 2, t.size))
-        hip = np.zeros((3, t.size))
-        hip[2] = hip_height(body, body.tallest, hip[:2], aside, ankles)
-        hip += swayed(hip[2] - body.ankle, idle.lean, idle.legs_roll)
+        sway = swayed(body.rest_height - body.ankle, idle.lean, idle.legs_roll)
+        hip = swayed_hip(body, body.tallest, np.zeros((2, t.size)), aside, ankles, sway)
         joints = hip[:, None] + aside
         knees = two_link(joints, ankles, body.leg, body.leg, AHEAD)
         trunk = axes(idle.pitch, yaw + idle.yaw, idle.roll)

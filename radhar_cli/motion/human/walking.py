@@ -22,7 +22,7 @@ from radhar_cli.motion.human.minimum_jerk import (
     minimum_jerk_integral,
 )
 from radhar_cli.motion.human.part import STANDING, Phase, Place
-from radhar_cli.motion.human.pelvis import hip_height, hip_joints, swayed
+from radhar_cli.motion.human.pelvis import hip_height, hip_joints, swayed, swayed_hip
 from radhar_cli.motion.human.person import Person
 from radhar_cli.motion.human.pose import Pose, axes
 from radhar_cli.motion.human.two_link import AHEAD, two_link
@@ -304,18 +304,20 @@ class Walking:
         (surge, side, yaw, roll, twist), arms = rows[:5], rows[5:].reshape(2, 2, t.size)
         aside = hip_joints(body, yaw, roll)
         ankles = np.stack([track(t) for track in self._feet], axis=1)
-        hip = np.stack([self.path(t) + surge, side, np.empty(t.size)])
+        way = np.stack([self.path(t) + surge, side])
         standing = body.tallest - self.gait.sink * body.stature * g
-        hip[2] = hip_height(body, standing, hip[:2], aside, ankles)
         pitch, lean = self.gait.trunk_pitch * g, np.zeros(t.size)
         arms[1] += body.elbow
         if self.from_rest or self.stops:
             still = 1 - g
-            hip += swayed(hip[2] - body.ankle, still * idle.lean, still * idle.legs_roll)
+            sway = swayed(body.rest_height - body.ankle, still * idle.lean, still * idle.legs_roll)
+            hip = swayed_hip(body, standing, way, aside, ankles, sway)
             pitch += still * idle.pitch
             twist += still * idle.yaw
             lean = still * idle.roll
             arms += still * np.stack([idle.shoulders, idle.elbows])
+        else:
+            hip = np.stack([*way, hip_height(body, standing, way, aside, ankles)])
         trunk = axes(pitch, twist, lean)
         upper, fore = swung(trunk, arms[0], arms[1])
         joints = hip[:, None] + aside

@@ -52,7 +52,8 @@ def harmonic(k: int, amplitude: float, delay: float = 0.0) -> Float:
 def half_a_stride_later(c: Float) -> Float:
     """Coefficients of the same curve for the other side: u + 1/2 for u."""
     k = np.arange(1, HARMONICS + 1)
-    return c * np.concatenate([[1.0], (-1.0) ** k, (-1.0) ** k])
+    other: Float = c * np.concatenate([[1.0], (-1.0) ** k, (-1.0) ** k])
+    return other
 
 
 def pelvis_yaw(rv: float) -> Float:

@@ -53,13 +53,15 @@ class Waves:
     def __call__(self, t: Float) -> Float:
         """Values [M] at times t [M] (s)."""
         f, phi = np.array(self.frequencies)[:, None], np.array(self.phases)[:, None]
-        return np.array(self.amplitudes) @ np.cos(2 * np.pi * f * t + phi)
+        waves: Float = np.array(self.amplitudes) @ np.cos(2 * np.pi * f * t + phi)
+        return waves
 
     def integral(self, t: Float) -> Float:
         """sum_k a_k/(2 pi f_k) sin(2 pi f_k t + phi_k), whose rate the waves are [M]."""
         omega = 2 * np.pi * np.array(self.frequencies)
         phi = np.array(self.phases)[:, None]
-        return (np.array(self.amplitudes) / omega) @ np.sin(omega[:, None] * t + phi)
+        waves: Float = (np.array(self.amplitudes) / omega) @ np.sin(omega[:, None] * t + phi)
+        return waves
 
 
 @dataclass(frozen=True)
@@ -150,7 +152,8 @@ class IdleState:
         """Of the legs to the left [M], rad: sway and shifted weight."""
         person = self.idle.person
         shift = np.arcsin(self._fidgets["shift"] / (person.rest_height - person.ankle))
-        return self.roll + shift
+        roll: Float = self.roll + shift
+        return roll
 
     @property
     def pitch(self) -> Float:

@@ -21,7 +21,12 @@ def hip_joints(person: Person, yaw: Float, roll: Float) -> Float:
 
 
 def hip_height(
-    person: Person, standing: Float | float, hip: Float, aside: Float, ankles: Float
+    person: Person,
+    standing: Float | float,
+    hip: Float,
+    aside: Float,
+    ankles: Float,
+    softness: Float | float,
 ) -> Float:
     """Height of the hip point [M], m: softmin(z_stand, z_right, z_left).
 
@@ -34,12 +39,13 @@ def hip_height(
         hip: x and y of the hip point [2, M], m.
         aside: hip joints relative to it [3, 2, M], m.
         ankles: [3, 2, M], m.
+        softness: k [M] or a number, 1/m.
     """
     dx = hip[0] + aside[0] - ankles[0]
     dy = hip[1] + aside[1] - ankles[1]
     square = np.maximum(person.reach**2 - dx * dx - dy * dy, 0.0)
     limits = ankles[2] + np.sqrt(square) - aside[2]
-    k = person.softness
+    k = softness
     total = np.exp(k * (person.tallest - limits)).sum(axis=0)
     total += np.exp(k * (person.tallest - standing))
     height: Float = person.tallest - np.log(total) / k
@@ -53,7 +59,13 @@ def swayed(height: Float | float, lean: Float, roll: Float) -> Float:
 
 
 def swayed_hip(
-    person: Person, standing: Float | float, hip: Float, aside: Float, ankles: Float, sway: Float
+    person: Person,
+    standing: Float | float,
+    hip: Float,
+    aside: Float,
+    ankles: Float,
+    softness: Float | float,
+    sway: Float,
 ) -> Float:
     """The hip point [3, M] of a body that sways over its ankles, at a height its legs can reach.
 
@@ -61,11 +73,11 @@ def swayed_hip(
     on which the hip is then, so the difference between the two is added.
 
     Args:
-        person, standing, hip, aside, ankles: as for `hip_height`.
+        person, standing, hip, aside, ankles, softness: as for `hip_height`.
         sway: what `swayed` returns for a hip at its height at rest [3, M].
     """
     x, y = hip[0] + sway[0], hip[1] + sway[1]
-    z = hip_height(person, standing, np.stack([x, y]), aside, ankles)
+    z = hip_height(person, standing, np.stack([x, y]), aside, ankles, softness)
     limit = person.ankle + np.sqrt(person.reach**2 - sway[0] ** 2 - sway[1] ** 2)
     k = person.softness
     soft = person.tallest - np.log1p(2 * np.exp(k * (person.tallest - limit))) / k

@@ -78,4 +78,5 @@ class Pose:
 def shoulder_points(person: Person, hip: Float, trunk: Axes) -> Float:
     """Right and left shoulder [3, 2, M] above a hip [3, M], m."""
     neck = hip + (person.trunk + person.shoulder) * trunk.up
-    return neck[:, None] + person.shoulder * (SIDES * trunk.left[:, None])
+    points: Float = neck[:, None] + person.shoulder * (SIDES * trunk.left[:, None])
+    return points

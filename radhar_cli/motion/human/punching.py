@@ -149,7 +149,7 @@ class Punching:
         hip[0] += scale * punch.thrust * (right + left)
         legs_roll = idle.roll + still * (idle.legs_roll - idle.roll)
         sway = swayed(body.rest_height - body.ankle, idle.lean, legs_roll)
-        hip = swayed_hip(body, body.tallest, hip, aside, ankles, sway)
+        hip = swayed_hip(body, body.tallest, hip, aside, ankles, body.softness, sway)
         pitch = punch.pitch * guard + punch.bow * (right + left)
         pitch += idle.lean + still * (idle.pitch - idle.lean)
         trunk = axes(pitch, into + still * idle.yaw, idle.roll)

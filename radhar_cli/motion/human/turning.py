@@ -96,7 +96,9 @@ class Turning:
         ankles = np.stack([np.zeros((2, 1)), body.hip * SIDES, np.full((2, 1), body.ankle)])
         ankles = np.broadcast_to(ankles, (3, 2, t.size))
         sway = swayed(body.rest_height - body.ankle, idle.lean, idle.legs_roll)
-        hip = swayed_hip(body, body.tallest, np.zeros((2, t.size)), aside, ankles, sway)
+        hip = swayed_hip(
+            body, body.tallest, np.zeros((2, t.size)), aside, ankles, body.softness, sway
+        )
         joints = hip[:, None] + aside
         knees = two_link(joints, ankles, body.leg, body.leg, AHEAD)
         trunk = axes(idle.pitch, yaw + idle.yaw, idle.roll)

@@ -45,6 +45,7 @@ class Gait:
         surge: speed of the hip's surge over the speed.
         sidewards: of the hip from side to side, m.
         sink: of the standing height while walking, fraction of the stature.
+        softness: of the pelvis's height (`Person.softness`) while walking, 1/m.
         touch_down, heel_off: phases between which the foot lies flat.
         below: phase at which the body is above the foothold.
         roll: of the foot about its ball until toe-off, rad.
@@ -65,6 +66,7 @@ class Gait:
     surge: float = 0.11
     sidewards: float = 0.018
     sink: float = 0.008
+    softness: float = 80.0
     touch_down: float = 0.10
     heel_off: float = 0.42
     below: float = 0.27
@@ -137,7 +139,7 @@ class Walking:
 
     def drive(self, t: Float) -> Float:
         """g [M]: 0 at rest, 1 when walking."""
-        g = np.ones(t.size)
+        g: Float = np.ones(t.size)
         if self.from_rest:
             g = minimum_jerk((t - self.begin) / self.ramp)
         if self.stops:
@@ -306,18 +308,19 @@ class Walking:
         ankles = np.stack([track(t) for track in self._feet], axis=1)
         way = np.stack([self.path(t) + surge, side])
         standing = body.tallest - self.gait.sink * body.stature * g
+        softness = body.softness + (self.gait.softness - body.softness) * g
         pitch, lean = self.gait.trunk_pitch * g, np.zeros(t.size)
         arms[1] += body.elbow
         if self.from_rest or self.stops:
             still = 1 - g
             sway = swayed(body.rest_height - body.ankle, still * idle.lean, still * idle.legs_roll)
-            hip = swayed_hip(body, standing, way, aside, ankles, sway)
+            hip = swayed_hip(body, standing, way, aside, ankles, softness, sway)
             pitch += still * idle.pitch
             twist += still * idle.yaw
             lean = still * idle.roll
             arms += still * np.stack([idle.shoulders, idle.elbows])
         else:
-            hip = np.stack([*way, hip_height(body, standing, way, aside, ankles)])
+            hip = np.stack([*way, hip_height(body, standing, way, aside, ankles, softness)])
         trunk = axes(pitch, twist, lean)
         upper, fore = swung(trunk, arms[0], arms[1])
         joints = hip[:, None] + aside

@@ -9,9 +9,9 @@ from radhar_cli.motion.human.two_link import two_link
 
 # To where elbows bend, ahead, left and up: of a guard, and above a floor on which the hands are.
 OUTWARDS = np.concatenate([np.full((1, 2), -0.2), 0.45 * SIDES.T, np.full((1, 2), -1.0)])
-STRETCHED = 0.97  # of the arm's length, which a hand on the floor does not exceed
+STRETCHED = 0.93  # of the arm's length, which a hand on the floor does not exceed
 UPWARDS = np.concatenate([np.full((1, 2), -0.9), 0.6 * SIDES.T, np.full((1, 2), -0.5)])
-SOFTNESS = 60.0  # of that bound, 1/m
+SOFTNESS = 25.0  # of that bound, 1/m
 
 
 def swung(trunk: Axes, shoulder: Float, elbow: Float) -> tuple[Float, Float]:

@@ -25,8 +25,8 @@ class GetUp:
 
     duration: float = 3.0
     prone: Prone = field(default_factory=Prone)
-    hands: float = 0.62
-    on_knees: float = radians(80)
+    hands: float = 0.57
+    on_knees: float = radians(84)
     shank: float = radians(38)
     thigh: float = radians(-70)
     trunk: float = radians(50)

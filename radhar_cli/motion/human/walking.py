@@ -243,7 +243,8 @@ class Walking:
         """Every swing of a foot whose stride is `later` than the right one's."""
         gait, margin = self.gait, 2 * self.stride
         first = EARLIEST_SWING if self.from_rest else self._phase_at(self.begin - margin)
-        last = self._phase_at(min(self.horizon + margin, self.stop + self.ramp))
+        until = self.stop + self.ramp if self.stops else max(self.horizon, self.begin) + margin
+        last = self._phase_at(until)
         heel_off = later + gait.heel_off
         k = np.arange(np.ceil(first - heel_off), np.ceil(last - heel_off))
         off = k + heel_off

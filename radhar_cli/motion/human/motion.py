@@ -36,6 +36,7 @@ class HumanMotion:
         start: x and y of the floor point between the ankles of the first stance, m.
         heading: to where the person faces at first, rad from the x axis; 0 is away from the radar.
         begin: when the first movement begins, s.
+        pauses: at rest before each movement, s; those that are not named are 0.
         horizon: end of the recording, s; at least 2 strides of a walk are worked out beyond.
         idle: sway, breath and fidgets.
     """
@@ -47,6 +48,7 @@ class HumanMotion:
     begin: float
     horizon: float
     idle: Idle
+    pauses: tuple[float, ...] = ()
 
     names = JOINTS
     parents = PARENTS
@@ -61,8 +63,9 @@ class HumanMotion:
         """
         begin, place = self.begin, Place(*self.start, self.heading)
         parts: list[tuple[Part, Place]] = []
-        for movement in self.movements:
-            part = movement.part(self.person, begin, self.horizon)
+        pauses = (*self.pauses, *[0.0] * len(self.movements))
+        for movement, pause in zip(self.movements, pauses, strict=False):
+            part = movement.part(self.person, begin + pause, self.horizon)
             if parts and parts[-1][0].after != part.before:
                 raise ValueError(
                     f"{type(movement).__name__} begins {part.before}, but the movement before "

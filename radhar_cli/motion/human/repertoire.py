@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from math import inf
+from math import inf, pi
 
 from radhar_cli.motion.human.falling import FallBackward, FallForward
 from radhar_cli.motion.human.falling_sideways import FallSideways
@@ -10,11 +10,15 @@ from radhar_cli.motion.human.getting_up import GetUp
 from radhar_cli.motion.human.grabbing import Grab
 from radhar_cli.motion.human.kicking import Kick
 from radhar_cli.motion.human.motion import Movement
+from radhar_cli.motion.human.part import Place
 from radhar_cli.motion.human.punching import Punch
 from radhar_cli.motion.human.sitting import SitDown, StandUp
 from radhar_cli.motion.human.standing import Stand
+from radhar_cli.motion.human.stepping import StepTo
 from radhar_cli.motion.human.turning import Turn
 from radhar_cli.motion.human.walking import Gait, Walk
+
+AROUND = StepTo(1.8, Place(turn=pi), steps=5, name="turning around")
 
 
 @dataclass(frozen=True)
@@ -37,6 +41,7 @@ class Repertoire:
     turn: Turn = field(default_factory=Turn)
     fall: FallForward | FallBackward | FallSideways = field(default_factory=FallForward)
     get_up: GetUp = field(default_factory=GetUp)
+    turn_around: StepTo = AROUND
 
     def activity(self, number: int) -> tuple[Movement, ...]:
         """The movements of S`number`: what repeats does so from the first instant on."""
@@ -61,7 +66,8 @@ class Repertoire:
         """Movements by name, one after the other, each from rest.
 
         Args:
-            names: slugs of activities that are one movement, and `falling`, `getting_up`.
+            names: slugs of activities that are one movement, and `falling`, `getting_up`,
+                `turning_around`.
             durations: how long each of walking, punching, kicking, rotating and standing lasts,
                 s; of the others unused. Infinity for the last of them goes on.
 
@@ -82,6 +88,7 @@ class Repertoire:
             "walking": Walk(self.gait, duration),
             "falling": self.fall,
             "getting_up": self.get_up,
+            "turning_around": self.turn_around,
         }
         if name not in movements:
             raise ValueError(

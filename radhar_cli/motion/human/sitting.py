@@ -23,19 +23,19 @@ from radhar_cli.motion.human.planted import (
 
 @dataclass(frozen=True)
 class Seat:
-    """How people sit: height of the hip over stature, angles in rad."""
+    """How people sit: height of the hip over stature, angles in rad, `recline` backwards."""
 
     height: float = 0.285
     shank: float = radians(8)
     shoulder: float = radians(35)
     elbow: float = radians(53)
+    recline: float = 0.0
 
     def posture(self, person: Person) -> dict[str, float]:
         """The posture on the seat."""
         rise = self.height * person.stature - person.ankle - person.leg * cos(self.shank)
-        return posture(
-            self.shank, -acos(rise / person.leg), 0.0, self.shoulder, self.elbow, standing=0.0
-        )
+        thigh = -acos(rise / person.leg)
+        return posture(self.shank, thigh, -self.recline, self.shoulder, self.elbow)
 
 
 @dataclass(frozen=True)
@@ -64,6 +64,7 @@ class Rise:
             Step("shank", -self.shin, 0.50, 0.50),
             to_rest("shank", 0.45, 0.55),
             to_rest("thigh", 0.30, 0.70),
+            to_rest("trunk", 0.0, 0.45),
             Step("trunk", self.lean, 0.0, 0.50),
             Step("trunk", -self.lean, 0.38, 0.62),
             *both(SHOULDERS, self.swing, 0.05, 0.45),

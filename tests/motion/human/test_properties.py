@@ -16,10 +16,12 @@ from radhar_cli.motion.human.grabbing import Grab
 from radhar_cli.motion.human.idle import FIDGETS, SWAY_HZ, Breath, Fidget, Idle, Sway, Waves
 from radhar_cli.motion.human.kicking import Kick
 from radhar_cli.motion.human.motion import HumanMotion, Movement
+from radhar_cli.motion.human.part import Place
 from radhar_cli.motion.human.person import Person
 from radhar_cli.motion.human.punching import Punch
-from radhar_cli.motion.human.sitting import SitDown, StandUp
+from radhar_cli.motion.human.sitting import Seat, SitDown, StandUp
 from radhar_cli.motion.human.standing import Stand
+from radhar_cli.motion.human.stepping import StepTo
 from radhar_cli.motion.human.turning import Turn
 from radhar_cli.motion.human.walking import Gait, Walk
 
@@ -81,9 +83,11 @@ def walks_of(gait: Gait) -> dict[str, tuple[Movement, ...]]:
             Kick(0.5, from_rest=True),
             Turn(1.8, from_rest=True),
             Walk(gait, 0.8),
-            SitDown(),
-            StandUp(),
+            StepTo(1.8, Place(turn=3.0), steps=5),
+            SitDown(seat=Seat(recline=0.2)),
+            StandUp(seat=Seat(recline=0.2)),
             Stand(0.3),
+            StepTo(0.9, Place(0.08, -0.05, -0.3)),
             FallForward(),
             GetUp(),
             Grab(),

@@ -64,3 +64,12 @@ def test_who_fell_backwards_does_not_get_up_from_the_belly() -> None:
 def test_an_unknown_movement_is_named() -> None:
     with pytest.raises(ValueError, match="'swimming' is no movement"):
         REPERTOIRE.sequence(("swimming",), (1.0,))
+
+
+def test_a_turn_is_taken_along_by_what_follows() -> None:
+    """Who walks ahead, turns around and walks as far again is back, facing the other way."""
+    body = motion(REPERTOIRE.sequence(("walking", "turning_around", "walking"), (1.0, inf, 1.0)))
+    end = body.parts[-1][0].end
+    first, last = body.positions(np.array([0.0, end + 0.1])).transpose(2, 0, 1)
+    feet = [JOINTS.index("right_ankle"), JOINTS.index("left_ankle")]
+    np.testing.assert_allclose(last[:, feet], first[:, feet[::-1]], atol=1e-9)

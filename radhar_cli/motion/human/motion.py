@@ -1,8 +1,9 @@
 """A person's motion: parts one after the other, in the room's frame."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from math import cos, inf, sin
 from typing import Protocol
 
@@ -13,7 +14,9 @@ from radhar_cli.body.skeleton import JOINTS, PARENTS
 from radhar_cli.motion.human.idle import Idle
 from radhar_cli.motion.human.part import Part, Phase, Place
 from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.planted import Planted
 from radhar_cli.motion.human.pose import Pose
+from radhar_cli.motion.human.walking import Walking
 
 BLOCK = 1024  # instants at once: what a block needs stays in the cache
 
@@ -36,7 +39,8 @@ class HumanMotion:
         start: x and y of the floor point between the ankles of the first stance, m.
         heading: to where the person faces at first, rad from the x axis; 0 is away from the radar.
         begin: when the first movement begins, s.
-        pauses: at rest before each movement, s; those that are not named are 0.
+        pauses: at rest before each movement, s; those that are not named are 0. Below 0 the
+            movement overlaps the one before: a walk and a movement on planted feet.
         horizon: end of the recording, s; at least 2 strides of a walk are worked out beyond.
         idle: sway, breath and fidgets.
     """
@@ -66,6 +70,8 @@ class HumanMotion:
         pauses = (*self.pauses, *[0.0] * len(self.movements))
         for movement, pause in zip(self.movements, pauses, strict=False):
             part = movement.part(self.person, begin + pause, self.horizon)
+            if pause < 0:
+                parts[-1], part = _overlapped(parts[-1], part)
             if parts and parts[-1][0].after != part.before:
                 raise ValueError(
                     f"{type(movement).__name__} begins {part.before}, but the movement before "
@@ -88,7 +94,14 @@ class HumanMotion:
     @property
     def phases(self) -> tuple[Phase, ...]:
         """What is under way, and from when on."""
-        return tuple(phase for part, _ in self.parts for phase in part.phases)
+        parts = [part for part, _ in self.parts]
+        ends = [part.begin for part in parts[1:]] + [inf]
+        return tuple(
+            phase
+            for part, end in zip(parts, ends, strict=True)
+            for phase in part.phases
+            if phase.start < end
+        )
 
     def positions(self, t: Float) -> Float:
         """Positions [3, 13, M] (m) of the joints at times t [M] (s)."""
@@ -121,7 +134,12 @@ class HumanMotion:
 
     @cached_property
     def _begins(self) -> list[float]:
-        return [part.begin for part, _ in self.parts[1:]]
+        """When each part but the first takes over: a walk does so from what it overlaps."""
+        pairs = pairwise(part for part, _ in self.parts)
+        return [
+            last.end if isinstance(last, Walking) and last.planted[-1:] == (part,) else part.begin
+            for last, part in pairs
+        ]
 
     def _fill(
         self, placed: tuple[Part, Place], t: Float, p: Float, fill: Callable[[Pose, Float], None]
@@ -139,6 +157,23 @@ class HumanMotion:
             y += across
         x += place.ahead
         y += place.left
+
+
+def _overlapped(before: tuple[Part, Place], part: Part) -> tuple[tuple[Part, Place], Part]:
+    """A part and the one that begins before it ends, each aware of the other.
+
+    Raises:
+        ValueError: neither is a walk, or the later one begins before the earlier.
+    """
+    last, place = before
+    if part.begin >= last.begin:
+        if isinstance(part, Walking) and isinstance(last, Planted):
+            return before, replace(part, planted=(last,))
+        if isinstance(last, Walking) and isinstance(part, Planted):
+            return (replace(last, planted=(*last.planted, part)), place), part
+    raise ValueError(
+        "only a walk and a movement on planted feet overlap, by less than the first lasts"
+    )
 
 
 def _beyond(place: Place, way: Place) -> Place:

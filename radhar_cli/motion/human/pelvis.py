@@ -78,7 +78,7 @@ def swayed_hip(
     """
     x, y = hip[0] + sway[0], hip[1] + sway[1]
     z = hip_height(person, standing, np.stack([x, y]), aside, ankles, softness)
-    limit = person.ankle + np.sqrt(person.reach**2 - sway[0] ** 2 - sway[1] ** 2)
+    limit = person.ankle + np.sqrt(np.maximum(person.reach**2 - sway[0] ** 2 - sway[1] ** 2, 0.0))
     k = person.softness
     soft = person.tallest - np.log1p(2 * np.exp(k * (person.tallest - limit))) / k
     return np.stack([x, y, z + (person.rest_height + sway[2] - soft)])

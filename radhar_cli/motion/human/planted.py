@@ -15,7 +15,7 @@ from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import STANDING, Phase, Place
 from radhar_cli.motion.human.person import Person
-from radhar_cli.motion.human.pose import SIDES, Pose, axes, shoulder_points
+from radhar_cli.motion.human.pose import SIDES, Axes, Pose, axes, shoulder_points
 
 SHOULDERS = ("right_shoulder", "left_shoulder")
 ELBOWS = ("right_elbow", "left_elbow")
@@ -95,27 +95,14 @@ class Planted:
     def pose(self, t: Float, idle: IdleState) -> Pose:
         """The body at times t [M] (s)."""
         body = self.person
-        shank, thigh, trunk, *arms, standing, upright, share, ahead_of, beside = self.course(t)
-        legs = np.stack([shank, thigh]) + standing * idle.lean
-        roll = standing * idle.legs_roll
-        rising = body.leg * np.cos(legs)
-        ahead = body.leg * np.sin(legs)
-        left, up = np.sin(roll), np.cos(roll)
+        shank, thigh, trunk, *arms, standing, upright, share, far, beside = self.course(t)
         ankle = np.stack([np.zeros((2, 1)), body.hip * SIDES, np.full((2, 1), body.ankle)])
-        knee = np.stack([ahead[0], rising[0] * left, rising[0] * up])
-        hip = knee + np.stack([ahead[1], rising[1] * left, rising[1] * up])
-        tilted = axes(trunk + upright * idle.pitch, upright * idle.yaw, upright * idle.roll)
+        knee, hip = legs(body, shank, thigh, standing * idle.lean, standing * idle.legs_roll)
         hip[2] += body.ankle
-        flexion = (
-            np.stack(arms[:2]) + upright * idle.shoulders,
-            np.stack(arms[2:]) + upright * idle.elbows,
-        )
-        if share.any():
-            floor = np.stack([ahead_of + 0 * SIDES, beside * SIDES, HAND + 0 * flexion[0]])
-            shoulders = shoulder_points(body, hip, tilted)
-            upper, fore = supported(body, tilted, shoulders, flexion, floor, share)
-        else:
-            upper, fore = swung(tilted, *flexion)
+        tilted = axes(trunk + upright * idle.pitch, upright * idle.yaw, upright * idle.roll)
+        shoulder = np.stack(arms[:2]) + upright * idle.shoulders
+        elbow = np.stack(arms[2:]) + upright * idle.elbows
+        upper, fore = arms_down(body, hip, tilted, (shoulder, elbow), share, far, beside)
         return Pose(
             hip=hip,
             trunk=tilted,
@@ -126,3 +113,34 @@ class Planted:
             forearms=fore,
             breath=idle.breath,
         )
+
+
+def legs(
+    person: Person, shank: Float, thigh: Float, lean: Float, roll: Float
+) -> tuple[Float, Float]:
+    """Knee and hip [3, M] above the ankle, m, of legs leaned ahead and rolled to the left, rad."""
+    s, h = shank + lean, thigh + lean
+    up, left = np.cos(roll), np.sin(roll)
+    x, z = person.leg * np.sin(s), person.leg * np.cos(s)
+    knee = np.stack([x, z * left, z * up])
+    x, z = x + person.leg * np.sin(h), z + person.leg * np.cos(h)
+    return knee, np.stack([x, z * left, z * up])
+
+
+def arms_down(
+    person: Person,
+    hip: Float,
+    trunk: Axes,
+    flexion: tuple[Float, Float],
+    share: Float,
+    far: Float,
+    beside: Float,
+) -> tuple[Float, Float]:
+    """Unit vectors of upper arms and forearms [3, 2, M], hands on the floor by `share` [M].
+
+    `far` ahead and `beside` the middle, m [M]; flexion of shoulders and elbows [2, M], rad.
+    """
+    if not share.any():
+        return swung(trunk, *flexion)
+    floor = np.stack([far + 0 * SIDES, beside * SIDES, HAND + 0 * flexion[0]])
+    return supported(person, trunk, shoulder_points(person, hip, trunk), flexion, floor, share)

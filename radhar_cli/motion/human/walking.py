@@ -12,7 +12,6 @@ import numpy as np
 
 from radhar_cli.arrays import Float
 from radhar_cli.motion.human import boulic_thalmann as curves
-from radhar_cli.motion.human.arms import swung
 from radhar_cli.motion.human.footsteps import Footfalls, FootTrack
 from radhar_cli.motion.human.idle import IdleState, Waves
 from radhar_cli.motion.human.minimum_jerk import (
@@ -22,8 +21,16 @@ from radhar_cli.motion.human.minimum_jerk import (
     minimum_jerk_integral,
 )
 from radhar_cli.motion.human.part import STANDING, Phase, Place
-from radhar_cli.motion.human.pelvis import hip_height, hip_joints, swayed, swayed_hip
+from radhar_cli.motion.human.pelvis import hip_height, hip_joints, swayed_hip
 from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.planted import (
+    ELBOWS,
+    SHOULDERS,
+    Planted,
+    arms_down,
+    at_rest,
+    legs,
+)
 from radhar_cli.motion.human.pose import Pose, axes
 from radhar_cli.motion.human.two_link import AHEAD, two_link
 
@@ -105,6 +112,8 @@ class Walking:
         stop: when the speed begins to fall, s; infinity for never.
         from_rest: whether the walk begins from rest.
         horizon: until when there are steps, s.
+        planted: movements on planted feet that have not ended when the walk begins, or begin
+            before it ends.
     """
 
     person: Person
@@ -113,6 +122,7 @@ class Walking:
     stop: float
     from_rest: bool
     horizon: float
+    planted: tuple[Planted, ...] = ()
 
     before = STANDING
     after = STANDING
@@ -299,6 +309,17 @@ class Walking:
             ]
         )
 
+    def _overlapping(self, t: Float) -> dict[str, Float]:
+        """Channels [M] of a planted posture: at rest, but for movements that overlap the walk."""
+        rest = at_rest(self.person)
+        now = {channel: np.full(t.size, value) for channel, value in rest.items()}
+        for movement in self.planted:
+            for channel, value in zip(movement.course.channels, movement.course(t), strict=True):
+                now[channel] += value - rest[channel]
+            if movement.begin > self.begin:
+                now["hands_ahead"] += self.place.ahead
+        return now
+
     def pose(self, t: Float, idle: IdleState) -> Pose:
         """The body at times t [M] (s)."""
         body, g = self.person, self.drive(t)
@@ -312,18 +333,28 @@ class Walking:
         softness = body.softness + (self.gait.softness - body.softness) * g
         pitch, lean = self.gait.trunk_pitch * g, np.zeros(t.size)
         arms[1] += body.elbow
+        hands: tuple[Float, Float, Float] = (np.zeros(t.size),) * 3
         if self.from_rest or self.stops:
             still = 1 - g
-            sway = swayed(body.rest_height - body.ankle, still * idle.lean, still * idle.legs_roll)
+            other = self._overlapping(t)
+            own = still * other["standing"]
+            _, sway = legs(
+                body, other["shank"], other["thigh"], own * idle.lean, own * idle.legs_roll
+            )
+            sway[2] -= body.rest_height - body.ankle
             hip = swayed_hip(body, standing, way, aside, ankles, softness, sway)
-            pitch += still * idle.pitch
-            twist += still * idle.yaw
-            lean = still * idle.roll
-            arms += still * np.stack([idle.shoulders, idle.elbows])
+            own = still * other["upright"]
+            pitch += other["trunk"] + own * idle.pitch
+            twist += own * idle.yaw
+            lean = own * idle.roll
+            arms += own * np.stack([idle.shoulders, idle.elbows])
+            arms[0] += np.stack([other[channel] for channel in SHOULDERS])
+            arms[1] += np.stack([other[channel] for channel in ELBOWS]) - body.elbow
+            hands = other["hands"], other["hands_ahead"], other["hands_beside"]
         else:
             hip = np.stack([*way, hip_height(body, standing, way, aside, ankles, softness)])
         trunk = axes(pitch, twist, lean)
-        upper, fore = swung(trunk, arms[0], arms[1])
+        upper, fore = arms_down(body, hip, trunk, (arms[0], arms[1]), *hands)
         joints = hip[:, None] + aside
         knees = two_link(joints, ankles, body.leg, body.leg, AHEAD)
         return Pose(hip, trunk, joints, knees, ankles, upper, fore, idle.breath)

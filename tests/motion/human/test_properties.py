@@ -271,6 +271,46 @@ def test_whoever_does_not_breathe_has_a_stiff_trunk() -> None:
     assert max(link_errors(motion, np.linspace(0, 6, 200)).values()) < STIFF
 
 
+OVERLAPPING: dict[str, tuple[Movement, ...]] = {
+    "sit to walk": (StandUp(), Walk(Gait(1.2))),
+    "up and walk": (GetUp(), Walk(Gait(1.2))),
+    "walk to sit": (Walk(Gait(1.2), 1.5, from_rest=False), SitDown()),
+    "trip": (Walk(Gait(1.2), 1.5, from_rest=False), FallForward()),
+    "slip": (Walk(Gait(1.2), 1.5, from_rest=False), FallBackward()),
+}
+
+
+@pytest.mark.parametrize("what", OVERLAPPING)
+@given(stature=STATURES, gait=GAITS, overlap=st.floats(0.05, 0.8), ahead=PHASES)
+@settings(max_examples=10, deadline=None)
+def test_transitions_may_overlap(
+    what: str, stature: float, gait: Gait, overlap: float, ahead: tuple[float, ...]
+) -> None:
+    """A walk begins before the body is up, or a fall before the walk has come to rest."""
+    person = Person(stature)
+    movements = tuple(
+        replace(movement, gait=gait) if isinstance(movement, Walk) else movement
+        for movement in OVERLAPPING[what]
+    )
+    idle = Idle(person, Sway(Waves.low_pass(0.005, ahead), Waves.low_pass(0.003, ahead)))
+    motion = HumanMotion(person, movements, (3.0, 0.0), 0.3, 0.2, HORIZON, idle, (0.0, -overlap))
+    assert_sound(motion, recording(motion, 60))
+    (first, _), (second, _) = motion.parts
+    assert first.end - second.begin == pytest.approx(overlap)
+    for instant in (second.begin, first.end):
+        p = motion.positions(instant + 1e-5 * np.array([-1.5, -0.5, 0.5, 1.5]))
+        assert np.abs(np.diff(p, n=2, axis=2)).max() < 500 * 1e-10  # no jump, no kink
+
+
+def test_only_a_walk_overlaps() -> None:
+    person = Person(1.75)
+    motion = HumanMotion(
+        person, (SitDown(), StandUp()), (2.0, 0.0), 0.0, 0.0, 6.0, Idle(person), (0.0, -0.3)
+    )
+    with pytest.raises(ValueError, match="only a walk and a movement on planted feet overlap"):
+        motion.positions(np.zeros(1))
+
+
 def test_movements_join_only_where_one_begins_as_the_other_ends() -> None:
     person = Person(1.75)
     motion = HumanMotion(
@@ -282,7 +322,7 @@ def test_movements_join_only_where_one_begins_as_the_other_ends() -> None:
 
 def test_phases_name_what_is_under_way() -> None:
     phases = moving("S10").phases
-    assert [phase.name for phase in phases] == ["walking", "standing", "sitting down", "seated"]
+    assert [phase.name for phase in phases] == ["walking", "sitting down", "seated"]
     starts = [phase.start for phase in phases]
     assert starts == sorted(starts)
 

@@ -1,5 +1,6 @@
 """Speeds, heights and durations against the literature and the prototype's figures."""
 
+from dataclasses import replace
 from math import radians
 
 import numpy as np
@@ -13,6 +14,7 @@ from radhar_cli.motion.human.getting_up import GetUp
 from radhar_cli.motion.human.grabbing import Grab
 from radhar_cli.motion.human.idle import Breath, Idle, Sway, Waves
 from radhar_cli.motion.human.kicking import Kick
+from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.motion import HumanMotion, Movement
 from radhar_cli.motion.human.person import Person
 from radhar_cli.motion.human.punching import Punch
@@ -156,6 +158,26 @@ def test_people_get_up_over_hands_and_knees() -> None:
     assert p[2, joint("hip"), on_all_fours] > 0.45
     assert p[2, joint("right_knee"), on_all_fours] < 0.2
     assert p[2, joint("head"), -1] > 1.45
+
+
+def test_arms_swung_as_a_prototype_did_would_get_up_through_the_floor() -> None:
+    """Shoulders from 165 to 70 degrees while the trunk is down: hands 7 cm below the floor."""
+    person, up = Person(1.75), GetUp()
+    course = up.part(person, 0.0).course
+    steps = [
+        Step(channel, to - start, at, length)
+        for channel, start, to, at, length in (
+            ("trunk", radians(88), radians(50), 0.06, 1.35),
+            ("right_shoulder", radians(165), radians(70), 0.0, 1.2),
+        )
+    ]
+    swung = Course.of(course.at(0.0) | {"hands": 0.0, "right_shoulder": radians(165)}, steps)
+    p = np.empty((3, 13, 100))
+    t = np.linspace(0, 1, 100)
+    planted = replace(up.part(person, 0.0), course=swung)
+    planted.pose(t, still(person)(t)).joints(person, p)
+    assert p[2, joint("right_hand")].min() < -0.05
+    assert positions(up, 3.0)[2].min() > 0.02
 
 
 def test_elbow_curve_is_continuous_across_gaits() -> None:

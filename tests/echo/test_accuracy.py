@@ -5,19 +5,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import reference as ref
+from radhar_cli.config.experiment import Config
+from radhar_cli.pipeline.body_paths import BodyPaths
+from radhar_cli.pipeline.models import waveform_of
+from radhar_cli.scenario import draw_scene
 
 from radhar_cli.activity import ACTIVITIES, Activity
-from radhar_cli.body.skeleton import JOINTS
-from radhar_cli.config.experiment import Config
 from radhar_cli.echo.accuracy import AccuracyError, measured_db
 from radhar_cli.echo.direct import DirectEcho
 from radhar_cli.errors import SceneError
-from radhar_cli.pipeline.body_paths import BodyPaths
-from radhar_cli.pipeline.models import waveform_of
+from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.pipeline.plan import plan
 from radhar_cli.pipeline.run import run
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scenario import draw_scene
 
 SAID_DB = 8.0  # the error is an estimate from some dozens of pulses
 CUBE = {"kind": "cube"}

@@ -1,0 +1,136 @@
+"""The second half of S12: falls over planted feet while the legs buckle.
+
+Speeds of real falls: Choi, Wakeling and Robinovitch, J. Biomechanics 48 (2015) 911: pelvis
+2.1 +- 0.6, head 2.9 +- 0.9, hand 2.9 +- 1.6 m/s; 1.3 +- 0.6 s from the loss of balance to impact.
+"""
+
+from dataclasses import dataclass, field
+from math import acos, cos, radians, sin
+
+from radhar_cli.motion.human.minimum_jerk import Course, Step
+from radhar_cli.motion.human.part import STANDING, Phase
+from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.planted import (
+    ELBOWS,
+    SHOULDERS,
+    Planted,
+    at_rest,
+    both,
+    posture,
+    timed,
+)
+
+PRONE, SUPINE = "lying prone", "lying on the back"
+
+
+@dataclass(frozen=True)
+class Prone:
+    """How people lie after a fall ahead: height of the knees in m, angles in rad.
+
+    Attributes:
+        hands: where they are ahead of and outside the shoulders, fractions of the stature.
+    """
+
+    knee_height: float = 0.10
+    thigh: float = radians(90)
+    trunk: float = radians(88)
+    hands: tuple[float, float] = (0.12, 0.05)
+
+    def posture(self, person: Person) -> dict[str, float]:
+        """The posture on the floor."""
+        shank = acos((self.knee_height - person.ankle) / person.leg)
+        lying = posture(shank, self.thigh, self.trunk, 0.0, person.elbow, upright=0.0)
+        shoulders = person.leg * (sin(shank) + sin(self.thigh))
+        shoulders += (person.trunk + person.shoulder) * sin(self.trunk)
+        lying["hands"] = 1.0
+        lying["hands_ahead"] = shoulders + self.hands[0] * person.stature
+        lying["hands_beside"] = person.shoulder + self.hands[1] * person.stature
+        return lying
+
+
+@dataclass(frozen=True)
+class FallForward:
+    """From standing over the knees to lying; `duration` (s) from the loss of balance to impact.
+
+    Attributes:
+        buckle: by how much the thighs give way at first, rad.
+        arms: flexion of the shoulders as the hands look for the floor, rad.
+    """
+
+    duration: float = 1.1
+    prone: Prone = field(default_factory=Prone)
+    buckle: float = radians(26)
+    arms: float = radians(80)
+
+    def part(self, person: Person, begin: float, horizon: float = 0.0) -> Planted:
+        """The movement from `begin` (s) on."""
+        rest, prone = at_rest(person), self.prone.posture(person)
+        change = {channel: prone[channel] - rest[channel] for channel in rest}
+        rest |= {channel: prone[channel] for channel in ("hands_ahead", "hands_beside")}
+        steps = [
+            Step("shank", change["shank"], 0.0, 0.78, late=True),
+            Step("thigh", change["thigh"], 0.08, 0.92, late=True),
+            Step("thigh", -self.buckle, 0.0, 0.50),
+            Step("thigh", self.buckle, 0.42, 0.58),
+            Step("trunk", change["trunk"], 0.10, 1.0, late=True),
+            *both(SHOULDERS, self.arms, 0.05, 0.7),
+            Step("hands", 1.0, 0.25, 0.65),
+            Step("standing", -1.0, 0.0, 0.5),
+            Step("upright", -1.0, 0.0, 1.0),
+        ]
+        course = Course.of(rest, timed(steps, begin, self.duration))
+        end = begin + 1.1 * self.duration
+        phases = (Phase(begin, "falling"), Phase(end, "lying"))
+        return Planted(person, course, begin, end, phases, STANDING, PRONE)
+
+
+@dataclass(frozen=True)
+class Supine:
+    """How people lie after a fall backwards: height of the hip in m, angles in rad."""
+
+    hip_height: float = 0.10
+    shank: float = radians(-55)
+    trunk: float = radians(-88)
+    shoulder: float = radians(15)
+    elbow: float = radians(25)
+
+    def posture(self, person: Person) -> dict[str, float]:
+        """The posture on the floor, knees up."""
+        rise = (self.hip_height - person.ankle) / person.leg - cos(self.shank)
+        return posture(self.shank, -acos(rise), self.trunk, self.shoulder, self.elbow, upright=0.0)
+
+
+@dataclass(frozen=True)
+class FallBackward:
+    """From standing onto the buttocks, then the back, within about `duration` s.
+
+    Attributes:
+        duration: to the impact of the trunk, s.
+        bow: by how much the trunk bends ahead at first, rad.
+        arms: how far the arms go ahead at first, rad.
+    """
+
+    duration: float = 1.1
+    supine: Supine = field(default_factory=Supine)
+    bow: float = radians(28)
+    arms: float = radians(55)
+
+    def part(self, person: Person, begin: float, horizon: float = 0.0) -> Planted:
+        """The movement from `begin` (s) on."""
+        rest, supine = at_rest(person), self.supine.posture(person)
+        change = {channel: supine[channel] - rest[channel] for channel in rest}
+        steps = [
+            Step("shank", change["shank"], 0.0, 0.90, late=True),
+            Step("thigh", change["thigh"], 0.10, 0.75),
+            Step("trunk", self.bow, 0.0, 0.55),
+            Step("trunk", change["trunk"] - self.bow, 0.20, 0.90, late=True),
+            *both(SHOULDERS, self.arms, 0.10, 0.50),
+            *both(SHOULDERS, change["right_shoulder"] - self.arms, 0.55, 0.55),
+            *both(ELBOWS, change["right_elbow"], 0.10, 0.90),
+            Step("standing", -1.0, 0.0, 0.5),
+            Step("upright", -1.0, 0.0, 1.0),
+        ]
+        course = Course.of(rest, timed(steps, begin, self.duration))
+        end = begin + 1.1 * self.duration
+        phases = (Phase(begin, "falling"), Phase(end, "lying"))
+        return Planted(person, course, begin, end, phases, STANDING, SUPINE)

@@ -1,0 +1,171 @@
+"""S3: front kicks with the right leg; the left one carries the body."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import acos, inf, isinf, radians
+
+import numpy as np
+
+from radhar_cli.arrays import Float
+from radhar_cli.motion.human.arms import swung
+from radhar_cli.motion.human.idle import IdleState
+from radhar_cli.motion.human.minimum_jerk import Course, Step
+from radhar_cli.motion.human.part import STANDING, Phase, Place
+from radhar_cli.motion.human.pelvis import swayed
+from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.pose import SIDES, Pose, axes
+from radhar_cli.motion.human.repetitions import repetitions
+from radhar_cli.motion.human.two_link import AHEAD, two_link
+
+
+@dataclass(frozen=True)
+class Kick:
+    """Kicks for `duration` s; angles in rad.
+
+    Attributes:
+        frequency: Hz.
+        first: the first kick after the beginning, or after the stance is taken, s.
+        thigh: flexion of the hip.
+        fold: flexion of the knee before the kick.
+        snap: extension of the knee in the kick.
+        refold: flexion of the knee after it.
+        lean: of the trunk ahead in the stance.
+        back: of the trunk backwards in the kick.
+        bend: length of the standing legs in the stance, over thigh and shank.
+        entry: time to take the stance, and to leave it, s.
+        from_rest: whether the stance is taken at first.
+        paces, sizes: of each kick, over the usual ones.
+    """
+
+    duration: float = inf
+    frequency: float = 0.45
+    first: float = 0.3
+    thigh: float = radians(78)
+    fold: float = radians(92)
+    snap: float = radians(100)
+    refold: float = radians(75)
+    lean: float = radians(2)
+    back: float = radians(14)
+    bend: float = 0.985
+    entry: float = 0.5
+    from_rest: bool = False
+    paces: tuple[float, ...] = ()
+    sizes: tuple[float, ...] = ()
+
+    def part(self, person: Person, begin: float, horizon: float = 0.0) -> "Kicking":
+        """The movement from `begin` (s) on, with kicks until `horizon` (s)."""
+        return Kicking(person, self, begin, horizon)
+
+    def steps(self) -> list[Step]:
+        """One kick from 0 s on."""
+        return [
+            Step("thigh", self.thigh, 0.0, 0.42),
+            Step("thigh", -self.thigh, 0.72, 0.55),
+            Step("knee", self.fold, 0.0, 0.34),
+            Step("knee", -self.snap, 0.34, 0.20),
+            Step("knee", self.refold, 0.58, 0.22),
+            Step("knee", self.snap - self.fold - self.refold, 0.80, 0.50),
+            Step("trunk", -self.back, 0.15, 0.35),
+            Step("trunk", self.back, 0.70, 0.50),
+        ]
+
+
+@dataclass(frozen=True)
+class Kicking:
+    """Kicks of a person; see `part.Part`."""
+
+    person: Person
+    kick: Kick
+    begin: float
+    horizon: float
+
+    after = STANDING
+    place = Place()
+
+    @property
+    def before(self) -> str:
+        """Standing, or in stance."""
+        return STANDING if self.kick.from_rest else "in stance"
+
+    @cached_property
+    def _steps(self) -> list[Step]:
+        kick = self.kick
+        ready = self.begin + kick.first + (kick.entry if kick.from_rest else 0.0)
+        until = min(self.horizon + 1.0, ready + kick.duration)
+        steps = []
+        for start, pace, size in repetitions(
+            ready, 1 / kick.frequency, until, kick.paces, kick.sizes
+        ):
+            free = [Step("free", 1 / size, 0.0, 0.25), Step("free", -1 / size, 1.05, 0.25)]
+            steps += [
+                step._replace(
+                    change=size * step.change,
+                    start=start + pace * step.start,
+                    length=pace * step.length,
+                )
+                for step in kick.steps() + free
+            ]
+        return steps
+
+    @cached_property
+    def _leaves(self) -> float:
+        """When the stance is left, s."""
+        if isinf(self.kick.duration):
+            return inf
+        return max((s.start + s.length for s in self._steps), default=self.begin)
+
+    @property
+    def end(self) -> float:
+        """When the body is at rest again, s."""
+        return self._leaves + self.kick.entry
+
+    @property
+    def phases(self) -> tuple[Phase, ...]:
+        """Kicking, then standing."""
+        kicking = Phase(self.begin, "kicking")
+        return (kicking,) if isinf(self.end) else (kicking, Phase(self.end, "standing"))
+
+    @cached_property
+    def course(self) -> Course:
+        """Angles of the right leg beyond the stance, of the trunk, and of both legs standing."""
+        kick, rest = self.kick, self.person.rest_lean
+        steps, stance = list(self._steps), {"bend": acos(kick.bend) - rest, "trunk": kick.lean}
+        initial = dict.fromkeys(("thigh", "knee", "trunk", "free", "bend"), 0.0)
+        initial["bend"] = rest
+        for channel, change in stance.items():
+            if kick.from_rest:
+                steps.append(Step(channel, change, self.begin, kick.entry))
+            else:
+                initial[channel] += change
+            if not isinf(self._leaves):
+                steps.append(Step(channel, -change, self._leaves, kick.entry))
+        return Course.of(initial, steps)
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Both ends of every step, s."""
+        return self.course.breakpoints
+
+    def pose(self, t: Float, idle: IdleState) -> Pose:
+        """The body at times t [M] (s)."""
+        body = self.person
+        thigh, knee, pitch, free, bend = self.course(t)
+        height = 2 * body.leg * np.cos(bend)
+        sway = swayed(height, idle.lean, idle.legs_roll)
+        hip = sway + np.stack([np.zeros(t.size), np.zeros(t.size), body.ankle + height])
+        joints = hip[:, None] + np.stack([np.zeros((2, 1)), body.hip * SIDES, np.zeros((2, 1))])
+        flexed = np.stack([bend + thigh, thigh - bend - knee])
+        ahead, down = body.leg * np.sin(flexed), -body.leg * np.cos(flexed)
+        foot = np.stack(
+            [ahead.sum(axis=0), np.full(t.size, -body.hip), body.ankle + height + down.sum(axis=0)]
+        )
+        foot += free * sway  # in the air the foot goes with the hip
+        standing = np.broadcast_to([[0.0], [body.hip], [body.ankle]], (3, t.size))
+        ankles = np.stack([foot, standing], axis=1)
+        planted = (1 - free) * idle.legs_roll  # the leg's plane rolls while it stands
+        thigh_line = np.stack([ahead[0], down[0] * np.sin(planted), down[0] * np.cos(planted)])
+        poles = np.stack([thigh_line, np.broadcast_to(AHEAD[:, 0], (3, t.size))], axis=1)
+        knees = two_link(joints, ankles, body.leg, body.leg, poles)
+        trunk = axes(pitch + idle.pitch, idle.yaw, idle.roll)
+        upper, fore = swung(trunk, idle.shoulders, body.elbow + idle.elbows)
+        return Pose(hip, trunk, joints, knees, ankles, upper, fore, idle.breath)

@@ -1,0 +1,111 @@
+"""Minimum-jerk steps: how a limb goes from one posture to another.
+
+Flash and Hogan, J. Neuroscience 5 (1985) 1688: S(x) = 10 x^3 - 15 x^4 + 6 x^5, x in 0..1, has the
+least jerk from rest to rest; twice continuously differentiable, peak slope 1.875.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from radhar_cli.arrays import Bool, Float
+
+
+def minimum_jerk(x: Float) -> Float:
+    """S(x) of x [...], 0 before 0 and 1 after 1."""
+    x = np.clip(x, 0.0, 1.0)
+    s: Float = x * x * x * (10 + x * (6 * x - 15))
+    return s
+
+
+def minimum_jerk_integral(x: Float) -> Float:
+    """Integral of S from minus infinity to x [...]: x^4 (2.5 - 3 x + x^2), x - 1/2 beyond 1."""
+    inside = np.clip(x, 0.0, 1.0)
+    square = inside * inside
+    beyond = np.maximum(x - 1.0, 0.0)
+    s: Float = square * square * (2.5 + inside * (inside - 3)) + beyond
+    return s
+
+
+class Step(NamedTuple):
+    """A channel changes by `change` within `length` s from `start` on.
+
+    `late` steps are S((t - start)^2/length^2): a slow start and a hard end, as in a fall; peak
+    slope 2.725 at 0.745 of the length.
+    """
+
+    channel: str
+    change: float
+    start: float
+    length: float
+    late: bool = False
+
+
+@dataclass(frozen=True)
+class Course:
+    """Channels that go from value to value: y_c(t) = y_c0 + sum_k w_ck S((t - t_k)/T_k).
+
+    Attributes:
+        channels: their names, C.
+        initial: [C, 1].
+        weights: [C, K].
+        starts, lengths: [K, 1], s.
+        late: which steps are late [K].
+    """
+
+    channels: tuple[str, ...]
+    initial: Float
+    weights: Float
+    starts: Float
+    lengths: Float
+    late: Bool
+
+    @classmethod
+    def of(cls, initial: Mapping[str, float], steps: Iterable[Step]) -> "Course":
+        """Collect steps of channels that begin at `initial`.
+
+        Raises:
+            ValueError: a step of no length.
+        """
+        channels = tuple(initial)
+        columns: dict[tuple[float, float, bool], Float] = {}
+        for step in steps:
+            if not step.length > 0:
+                raise ValueError(f"a movement takes longer than 0 s, not {step.length:g} s")
+            key = (step.start, step.length, step.late)
+            column = columns.setdefault(key, np.zeros(len(channels)))
+            column[channels.index(step.channel)] += step.change
+        return cls(
+            channels,
+            np.array(list(initial.values()), dtype=float)[:, None],
+            np.array(list(columns.values()), dtype=float).reshape(-1, len(channels)).T,
+            np.array([[start] for start, _, _ in columns], dtype=float).reshape(-1, 1),
+            np.array([[length] for _, length, _ in columns], dtype=float).reshape(-1, 1),
+            np.array([late for _, _, late in columns], dtype=bool),
+        )
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Instants (s) at which the jerk jumps: both ends of every step."""
+        ends = np.concatenate([self.starts, self.starts + self.lengths])
+        return tuple(float(end) for end in ends[:, 0])
+
+    def __call__(self, t: Float) -> Float:
+        """Values [C, M] at times t [M] (s)."""
+        if not self.starts.size:
+            return np.broadcast_to(self.initial, (len(self.channels), t.size))
+        x = np.clip((t - self.starts) / self.lengths, 0.0, 1.0)
+        if self.late.any():
+            x[self.late] **= 2
+        return self.initial + self.weights @ (x * x * x * (10 + x * (6 * x - 15)))
+
+    def at(self, t: float) -> dict[str, float]:
+        """Values by channel at one time."""
+        return dict(zip(self.channels, self(np.array([t]))[:, 0].tolist(), strict=True))
+
+
+def mirrored(steps: Iterable[Step], length: float) -> list[Step]:
+    """The steps backwards in time, from `length` to 0."""
+    return [s._replace(change=-s.change, start=length - s.start - s.length) for s in steps]

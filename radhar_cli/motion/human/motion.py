@@ -1,0 +1,186 @@
+"""A person's motion: parts one after the other, in the room's frame."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+from math import cos, inf, sin
+from typing import Protocol
+
+import numpy as np
+
+from radhar_cli.arrays import Float
+from radhar_cli.motion.human.idle import Idle
+from radhar_cli.motion.human.part import Part, Phase, Place
+from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.planted import Planted
+from radhar_cli.motion.human.pose import Pose
+from radhar_cli.motion.human.walking import Walking
+from radhar_cli.motion.skeleton import JOINTS, PARENTS
+
+BLOCK = 1024  # instants at once: what a block needs stays in the cache
+
+
+class Movement(Protocol):
+    """What makes a part: the dataclasses of the activities."""
+
+    def part(self, person: Person, begin: float, horizon: float) -> Part:
+        """The part that begins at `begin` (s); what goes on is worked out until `horizon` (s)."""
+        ...
+
+
+@dataclass(frozen=True)
+class HumanMotion:
+    """A person who does one thing after another.
+
+    Attributes:
+        person: whose body.
+        movements: what is done; each begins when the one before has come to rest.
+        start: x and y of the floor point between the ankles of the first stance, m.
+        heading: to where the person faces at first, rad from the x axis; 0 is away from the radar.
+        begin: when the first movement begins, s.
+        pauses: at rest before each movement, s; those that are not named are 0. Below 0 the
+            movement overlaps the one before: a walk and a movement on planted feet.
+        horizon: end of the recording, s; at least 2 strides of a walk are worked out beyond.
+        idle: sway, breath and fidgets.
+    """
+
+    person: Person
+    movements: tuple[Movement, ...]
+    start: tuple[float, float]
+    heading: float
+    begin: float
+    horizon: float
+    idle: Idle
+    pauses: tuple[float, ...] = ()
+
+    names = JOINTS
+    parents = PARENTS
+    highest_frequency = 4.0
+
+    @cached_property
+    def parts(self) -> tuple[tuple[Part, Place], ...]:
+        """Each part and where it begins in the room.
+
+        Raises:
+            ValueError: a movement that does not begin as the one before ends.
+        """
+        begin, place = self.begin, Place(*self.start, self.heading)
+        parts: list[tuple[Part, Place]] = []
+        pauses = (*self.pauses, *[0.0] * len(self.movements))
+        for movement, pause in zip(self.movements, pauses, strict=False):
+            part = movement.part(self.person, begin + pause, self.horizon)
+            if pause < 0:
+                parts[-1], part = _overlapped(parts[-1], part)
+            if parts and parts[-1][0].after != part.before:
+                raise ValueError(
+                    f"{type(movement).__name__} begins {part.before}, but the movement before "
+                    f"ends {parts[-1][0].after}"
+                )
+            parts.append((part, place))
+            if part.end == inf:
+                break
+            begin, place = part.end, _beyond(place, part.place)
+        return tuple(parts)
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Instants (s) at which a position is not smooth, sorted."""
+        ends = set(self.idle.breakpoints)
+        for part, _ in self.parts:
+            ends.update(part.breakpoints)
+        return tuple(sorted(ends))
+
+    @property
+    def phases(self) -> tuple[Phase, ...]:
+        """What is under way, and from when on."""
+        parts = [part for part, _ in self.parts]
+        ends = [part.begin for part in parts[1:]] + [inf]
+        return tuple(
+            phase
+            for part, end in zip(parts, ends, strict=True)
+            for phase in part.phases
+            if phase.start < end
+        )
+
+    def positions(self, t: Float) -> Float:
+        """Positions [3, 13, M] (m) of the joints at times t [M] (s)."""
+        return self._gather(t, len(JOINTS), lambda pose, p: pose.joints(self.person, p))
+
+    def torso(self, t: Float) -> Float:
+        """Positions [3, 1, M] (m) of the torso alone."""
+        return self._gather(t, 1, lambda pose, p: pose.torso(self.person, p[:, 0]))
+
+    def hip_joints(self, t: Float) -> Float:
+        """Right and left hip joint [3, 2, M] (m), between which and the knees the thighs are."""
+        return self._gather(t, 2, lambda pose, p: np.copyto(p, pose.hip_joints))
+
+    def _gather(self, t: Float, count: int, fill: Callable[[Pose, Float], None]) -> Float:
+        """Points [3, count, M] of each part's poses, in the room."""
+        p = np.empty((3, count, t.size))
+        part_of = np.searchsorted(self._begins, t, side="right")
+        for first in range(0, t.size, BLOCK):
+            block = slice(first, first + BLOCK)
+            numbers = part_of[block]
+            for number in range(numbers.min(), numbers.max() + 1):
+                now = numbers == number
+                if now.all():
+                    self._fill(self.parts[number], t[block], p[..., block], fill)
+                elif now.any():
+                    some = np.empty((3, count, np.count_nonzero(now)))
+                    self._fill(self.parts[number], t[block][now], some, fill)
+                    p[..., block][..., now] = some
+        return p
+
+    @cached_property
+    def _begins(self) -> list[float]:
+        """When each part but the first takes over: a walk does so from what it overlaps."""
+        pairs = pairwise(part for part, _ in self.parts)
+        return [
+            last.end if isinstance(last, Walking) and last.planted[-1:] == (part,) else part.begin
+            for last, part in pairs
+        ]
+
+    def _fill(
+        self, placed: tuple[Part, Place], t: Float, p: Float, fill: Callable[[Pose, Float], None]
+    ) -> None:
+        """Fill in one part's points, turned to where it faces and moved to where it begins."""
+        part, place = placed
+        fill(part.pose(t, self.idle(t)), p)
+        x, y = p[0], p[1]
+        if place.turn:
+            c, s = cos(place.turn), sin(place.turn)
+            across = s * x
+            x *= c
+            x -= s * y
+            y *= c
+            y += across
+        x += place.ahead
+        y += place.left
+
+
+def _overlapped(before: tuple[Part, Place], part: Part) -> tuple[tuple[Part, Place], Part]:
+    """A part and the one that begins before it ends, each aware of the other.
+
+    Raises:
+        ValueError: neither is a walk, or the later one begins before the earlier.
+    """
+    last, place = before
+    if part.begin >= last.begin:
+        if isinstance(part, Walking) and isinstance(last, Planted):
+            return before, replace(part, planted=(last,))
+        if isinstance(last, Walking) and isinstance(part, Planted):
+            return (replace(last, planted=(*last.planted, part)), place), part
+    raise ValueError(
+        "only a walk and a movement on planted feet overlap, by less than the first lasts"
+    )
+
+
+def _beyond(place: Place, way: Place) -> Place:
+    """The place reached from `place` by going `way`."""
+    c, s = cos(place.turn), sin(place.turn)
+    return Place(
+        place.ahead + c * way.ahead - s * way.left,
+        place.left + s * way.ahead + c * way.left,
+        place.turn + way.turn,
+    )

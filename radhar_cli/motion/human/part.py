@@ -1,0 +1,59 @@
+"""What an activity is made of: parts, each from one state of rest to the next."""
+
+from typing import NamedTuple, Protocol
+
+from radhar_cli.arrays import Float
+from radhar_cli.motion.human.idle import IdleState
+from radhar_cli.motion.human.pose import Pose
+
+STANDING, SEATED, LYING = "standing", "seated", "lying"
+
+
+class Phase(NamedTuple):
+    """What is under way from `start` (s) on."""
+
+    start: float
+    name: str
+
+
+class Place(NamedTuple):
+    """Where a part ends, seen from where it began: m ahead, m to the left, rad to the left."""
+
+    ahead: float = 0.0
+    left: float = 0.0
+    turn: float = 0.0
+
+
+class Part(Protocol):
+    """A movement that begins and ends at rest; before and after it the body holds its pose.
+
+    Times are the recording's. Poses are local: x ahead and y to the left of the floor point
+    between the ankles of the stance in which it begins.
+
+    Attributes:
+        before, after: states of rest: standing, seated, lying.
+        begin: when it leaves its first state, s.
+        end: when it has come to rest, s; infinity for what goes on.
+        place: where it ends.
+        phases: what is under way when.
+        breakpoints: instants (s) at which a position is not smooth.
+    """
+
+    @property
+    def before(self) -> str: ...
+    @property
+    def after(self) -> str: ...
+    @property
+    def begin(self) -> float: ...
+    @property
+    def end(self) -> float: ...
+    @property
+    def place(self) -> Place: ...
+    @property
+    def phases(self) -> tuple[Phase, ...]: ...
+    @property
+    def breakpoints(self) -> tuple[float, ...]: ...
+
+    def pose(self, t: Float, idle: IdleState) -> Pose:
+        """The body at times t [M] (s), its own movements `idle` [M] included."""
+        ...

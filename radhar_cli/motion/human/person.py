@@ -1,0 +1,107 @@
+"""The person: lengths in proportion to stature, and the pose in which people stand at rest."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import acos, exp, log, radians
+
+from radhar_cli.motion.skeleton import JOINTS, links
+
+
+@dataclass(frozen=True)
+class Person:
+    """A body with the paper's links; heights and widths as fractions of the stature.
+
+    Ankle height: Winter, Biomechanics and Motor Control, after Drillis and Contini. Hip width:
+    CMU motion capture, subject 02.
+
+    Attributes:
+        stature: m.
+        ankle_height: of the ankle above the floor.
+        hip_width: of a hip joint beside the hip point; at rest the feet are below the hip joints.
+        ball: of the foot, ahead of the ankle.
+        standing: length of a standing leg over thigh and shank together.
+        straightest: the longest that a leg gets, likewise (a knee of 11.5 degrees).
+        softness: k of the soft minimum that sets the pelvis's height, 1/m.
+        elbow: flexion at rest, rad.
+
+    Raises:
+        ValueError: no stature.
+    """
+
+    stature: float
+    ankle_height: float = 0.039
+    hip_width: float = 0.052
+    ball: float = 0.10
+    standing: float = 0.997
+    straightest: float = 0.995
+    softness: float = 160.0
+    elbow: float = radians(8)
+
+    def __post_init__(self) -> None:
+        if not self.stature > 0:
+            raise ValueError(f"a person's stature is above 0 m, not {self.stature:g} m")
+
+    @cached_property
+    def _links(self) -> dict[str, list[float]]:
+        return dict(zip(JOINTS, links(self.stature).tolist(), strict=True))
+
+    @property
+    def leg(self) -> float:
+        """Length of the thigh, and of the shank, m."""
+        return -self._links["right_knee"][2]
+
+    @property
+    def arm(self) -> float:
+        """Length of the upper arm, and of the forearm, m."""
+        return -self._links["right_elbow"][2]
+
+    @property
+    def trunk(self) -> float:
+        """From hip to torso, m."""
+        return -self._links["hip"][2]
+
+    @property
+    def neck(self) -> float:
+        """From torso to head, m."""
+        return self._links["head"][2]
+
+    @property
+    def shoulder(self) -> float:
+        """Of a shoulder beside the torso and above it, m."""
+        return self._links["left_shoulder"][1]
+
+    @property
+    def ankle(self) -> float:
+        """Height of an ankle whose foot is on the floor, m."""
+        return self.ankle_height * self.stature
+
+    @property
+    def hip(self) -> float:
+        """Of a hip joint beside the hip point, m."""
+        return self.hip_width * self.stature
+
+    @property
+    def toes(self) -> float:
+        """Of the ball of the foot ahead of the ankle, m."""
+        return self.ball * self.stature
+
+    @property
+    def reach(self) -> float:
+        """The longest that a leg gets, m."""
+        return self.straightest * 2 * self.leg
+
+    @property
+    def tallest(self) -> float:
+        """Height of the hip above standing legs, m."""
+        return self.ankle + self.standing * 2 * self.leg
+
+    @cached_property
+    def rest_height(self) -> float:
+        """Height of the hip at rest, m: softmin of `tallest` and, twice, of a leg at full reach."""
+        k, reaching = self.softness, self.ankle + self.reach
+        return reaching - log(2 + exp(k * (reaching - self.tallest))) / k
+
+    @cached_property
+    def rest_lean(self) -> float:
+        """Angle of shank and thigh from the vertical at rest, rad."""
+        return acos((self.rest_height - self.ankle) / (2 * self.leg))

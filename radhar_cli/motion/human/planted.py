@@ -1,0 +1,146 @@
+"""Movements on planted feet, both legs alike: angles from the ankles up, no inverse kinematics.
+
+knee = ankle + l (sin, cos)(shank), hip = knee + l (sin, cos)(thigh), angles from the vertical,
+positive ahead; a seated thigh is at about -90 degrees.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from radhar_cli.arrays import Float
+from radhar_cli.motion.human.arms import supported, swung
+from radhar_cli.motion.human.idle import IdleState
+from radhar_cli.motion.human.minimum_jerk import Course, Step
+from radhar_cli.motion.human.part import STANDING, Phase, Place
+from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.pose import SIDES, Axes, Pose, axes, shoulder_points
+
+SHOULDERS = ("right_shoulder", "left_shoulder")
+ELBOWS = ("right_elbow", "left_elbow")
+HAND = 0.03  # height of a hand on the floor, m
+
+Posture = Mapping[str, float]
+
+
+def posture(
+    shank: float,
+    thigh: float,
+    trunk: float,
+    shoulder: float,
+    elbow: float,
+    standing: float = 0.0,
+    upright: float = 1.0,
+) -> dict[str, float]:
+    """Angles (rad), and how much of the sway legs and trunk take part in, by channel.
+
+    "hands" is how far the hands are on the floor, at "hands_ahead" (m), "hands_beside".
+    """
+    return {
+        "shank": shank,
+        "thigh": thigh,
+        "trunk": trunk,
+        "right_shoulder": shoulder,
+        "left_shoulder": shoulder,
+        "right_elbow": elbow,
+        "left_elbow": elbow,
+        "standing": standing,
+        "upright": upright,
+        "hands": 0.0,
+        "hands_ahead": 0.0,
+        "hands_beside": 0.0,
+    }
+
+
+def at_rest(person: Person) -> dict[str, float]:
+    """The posture from which and to which standing people move."""
+    return posture(person.rest_lean, -person.rest_lean, 0.0, 0.0, person.elbow, standing=1.0)
+
+
+def both(channels: tuple[str, str], change: float, start: float, length: float) -> list[Step]:
+    """The same step of the right and of the left side."""
+    return [Step(channel, change, start, length) for channel in channels]
+
+
+def timed(steps: Iterable[Step], begin: float, unit: float) -> list[Step]:
+    """Steps given in units of a duration that begins at `begin` (s)."""
+    return [
+        step._replace(start=begin + unit * step.start, length=unit * step.length) for step in steps
+    ]
+
+
+@dataclass(frozen=True)
+class Planted:
+    """A part on planted feet; see `part.Part`."""
+
+    person: Person
+    course: Course
+    begin: float
+    end: float
+    phases: tuple[Phase, ...]
+    before: str = STANDING
+    after: str = STANDING
+
+    @property
+    def place(self) -> Place:
+        """The feet stay where they are."""
+        return Place()
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Both ends of every step, s."""
+        return self.course.breakpoints
+
+    def pose(self, t: Float, idle: IdleState) -> Pose:
+        """The body at times t [M] (s)."""
+        body = self.person
+        shank, thigh, trunk, *arms, standing, upright, share, far, beside = self.course(t)
+        ankle = np.stack([np.zeros((2, 1)), body.hip * SIDES, np.full((2, 1), body.ankle)])
+        knee, hip = legs(body, shank, thigh, standing * idle.lean, standing * idle.legs_roll)
+        hip[2] += body.ankle
+        tilted = axes(trunk + upright * idle.pitch, upright * idle.yaw, upright * idle.roll)
+        shoulder = np.stack(arms[:2]) + upright * idle.shoulders
+        elbow = np.stack(arms[2:]) + upright * idle.elbows
+        upper, fore = arms_down(body, hip, tilted, (shoulder, elbow), share, far, beside)
+        return Pose(
+            hip=hip,
+            trunk=tilted,
+            hip_joints=hip[:, None] + np.array([0.0 * SIDES, body.hip * SIDES, 0.0 * SIDES]),
+            knees=ankle + knee[:, None],
+            ankles=np.broadcast_to(ankle, (3, 2, t.size)),
+            upper_arms=upper,
+            forearms=fore,
+            breath=idle.breath,
+        )
+
+
+def legs(
+    person: Person, shank: Float, thigh: Float, lean: Float, roll: Float
+) -> tuple[Float, Float]:
+    """Knee and hip [3, M] above the ankle, m, of legs leaned ahead and rolled to the left, rad."""
+    s, h = shank + lean, thigh + lean
+    up, left = np.cos(roll), np.sin(roll)
+    x, z = person.leg * np.sin(s), person.leg * np.cos(s)
+    knee = np.stack([x, z * left, z * up])
+    x, z = x + person.leg * np.sin(h), z + person.leg * np.cos(h)
+    return knee, np.stack([x, z * left, z * up])
+
+
+def arms_down(
+    person: Person,
+    hip: Float,
+    trunk: Axes,
+    flexion: tuple[Float, Float],
+    share: Float,
+    far: Float,
+    beside: Float,
+) -> tuple[Float, Float]:
+    """Unit vectors of upper arms and forearms [3, 2, M], hands on the floor by `share` [M].
+
+    `far` ahead and `beside` the middle, m [M]; flexion of shoulders and elbows [2, M], rad.
+    """
+    if not share.any():
+        return swung(trunk, *flexion)
+    floor = np.stack([far + 0 * SIDES, beside * SIDES, HAND + 0 * flexion[0]])
+    return supported(person, trunk, shoulder_points(person, hip, trunk), flexion, floor, share)

@@ -1,0 +1,82 @@
+"""A pose: where hip, legs, trunk and arms are; and from it the thirteen joints."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from radhar_cli.arrays import Float
+from radhar_cli.motion.human.person import Person
+
+SIDES = np.array([[-1.0], [1.0]])  # right, left: the sign of y
+
+
+@dataclass(frozen=True)
+class Axes:
+    """Unit vectors ahead, to the left and up of a part of the body [3, M]."""
+
+    ahead: Float
+    left: Float
+    up: Float
+
+
+def axes(pitch: Float, yaw: Float, roll: Float) -> Axes:
+    """Axes turned ahead by `pitch`, then to the left by `yaw`, then leaned to the left by `roll`.
+
+    R_x(-roll) R_z(yaw) R_y(pitch), angles [M] in rad; the last turn is about the floor's x axis.
+    """
+    cp, sp = np.cos(pitch), np.sin(pitch)
+    cy, sy = np.cos(yaw), np.sin(yaw)
+    cr, sr = np.cos(roll), np.sin(roll)
+    ahead, left, up = np.empty((3, 3, pitch.size))
+    ahead[0], left[0], up[0] = cy * cp, -sy, cy * sp
+    forth, across = sy * cp, sy * sp
+    ahead[1], left[1], up[1] = forth * cr - sp * sr, cy * cr, across * cr + cp * sr
+    ahead[2], left[2], up[2] = -sp * cr - forth * sr, -cy * sr, cp * cr - across * sr
+    return Axes(ahead, left, up)
+
+
+@dataclass
+class Pose:
+    """A body at M instants, in m and rad, x ahead, y left, z up.
+
+    Attributes:
+        hip: [3, M].
+        trunk: its axes.
+        hip_joints, knees, ankles: right, left [3, 2, M].
+        upper_arms, forearms: unit vectors, right, left [3, 2, M].
+        breath: how far the torso is ahead of its place [M] or a number.
+    """
+
+    hip: Float
+    trunk: Axes
+    hip_joints: Float
+    knees: Float
+    ankles: Float
+    upper_arms: Float
+    forearms: Float
+    breath: Float | float = 0.0
+
+    def torso(self, person: Person, p: Float) -> None:
+        """Fill in the position p [3, M] of the torso."""
+        np.multiply(self.trunk.up, person.trunk, out=p)
+        p += self.hip
+        p += self.breath * self.trunk.ahead
+
+    def joints(self, person: Person, p: Float) -> None:
+        """Fill in positions p [3, 13, M], in the order of `radhar_cli.motion.skeleton`."""
+        up = self.trunk.up
+        self.torso(person, p[:, 0])
+        p[:, 1] = self.hip + (person.trunk + person.neck) * up
+        p[:, 2:6:3] = shoulder_points(person, self.hip, self.trunk)
+        p[:, 3:7:3] = p[:, 2:6:3] + person.arm * self.upper_arms
+        p[:, 4:8:3] = p[:, 3:7:3] + person.arm * self.forearms
+        p[:, 8] = self.hip
+        p[:, 9:12:2] = self.knees
+        p[:, 10:13:2] = self.ankles
+
+
+def shoulder_points(person: Person, hip: Float, trunk: Axes) -> Float:
+    """Right and left shoulder [3, 2, M] above a hip [3, M], m."""
+    neck = hip + (person.trunk + person.shoulder) * trunk.up
+    points: Float = neck[:, None] + person.shoulder * (SIDES * trunk.left[:, None])
+    return points

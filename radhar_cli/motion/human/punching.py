@@ -1,0 +1,174 @@
+"""S2: punches in turn, right and left, from a guard.
+
+The hand goes straight from the guard to a point ahead of its shoulder and back; trunk and pelvis
+turn into the punch.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import inf, isinf, radians
+
+import numpy as np
+
+from radhar_cli.arrays import Float
+from radhar_cli.motion.human.arms import OUTWARDS, directed, hanging
+from radhar_cli.motion.human.idle import IdleState
+from radhar_cli.motion.human.minimum_jerk import Course, Step
+from radhar_cli.motion.human.part import STANDING, Phase, Place
+from radhar_cli.motion.human.pelvis import hip_joints, swayed, swayed_hip
+from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.pose import SIDES, Pose, axes
+from radhar_cli.motion.human.repetitions import repetitions
+from radhar_cli.motion.human.two_link import AHEAD, two_link
+
+REFERENCE_STATURE = 1.75  # of the lengths below
+ENTRY = {"right_foot": (0.0, 0.6), "left_foot": (0.4, 0.6), "guard": (0.0, 1.0)}
+
+
+@dataclass(frozen=True)
+class Punch:
+    """Punches for `duration` s; lengths in m at a stature of 1.75 m, angles in rad.
+
+    Attributes:
+        frequency: of a right and a left punch together, Hz.
+        first: the first punch after the beginning, or after the guard is taken, s.
+        out, hold, back: the hand goes out within `out`, begins its way back after `hold` and takes
+            `back`, s.
+        reach: of a punch, over the arm's length.
+        guard: of a hand ahead of the shoulder, inwards and up.
+        stance: how far the left foot is ahead and the right one behind, and both beside.
+        turn: of the trunk into a punch.
+        pelvis: what the pelvis does of it.
+        thrust: of the hip ahead.
+        pitch, bow: of the trunk in guard, and further in a punch.
+        entry: time to take the guard, and to leave it, s.
+        lift: of the feet as they do so.
+        from_rest: whether the guard is taken at first.
+        paces, sizes: of each punch, over the usual ones.
+    """
+
+    duration: float = inf
+    frequency: float = 0.7
+    first: float = 0.1
+    out: float = 0.28
+    hold: float = 0.31
+    back: float = 0.40
+    reach: float = 0.96
+    guard: tuple[float, float, float] = (0.24, 0.04, 0.05)
+    stance: tuple[float, float] = (0.18, 0.11)
+    turn: float = radians(28)
+    pelvis: float = 0.35
+    thrust: float = 0.05
+    pitch: float = radians(6)
+    bow: float = radians(4)
+    entry: float = 0.9
+    lift: float = 0.03
+    from_rest: bool = False
+    paces: tuple[float, ...] = ()
+    sizes: tuple[float, ...] = ()
+
+    def part(self, person: Person, begin: float, horizon: float = 0.0) -> "Punching":
+        """The movement from `begin` (s) on, with punches until `horizon` (s)."""
+        return Punching(person, self, begin, horizon)
+
+
+@dataclass(frozen=True)
+class Punching:
+    """Punches of a person; see `part.Part`."""
+
+    person: Person
+    punch: Punch
+    begin: float
+    horizon: float
+
+    after = STANDING
+    place = Place()
+
+    @property
+    def before(self) -> str:
+        """Standing, or in guard."""
+        return STANDING if self.punch.from_rest else "in guard"
+
+    @cached_property
+    def _steps(self) -> list[Step]:
+        punch = self.punch
+        ready = self.begin + punch.first + (punch.entry if punch.from_rest else 0.0)
+        until = min(self.horizon + 1.0, ready + punch.duration)
+        steps = []
+        each = repetitions(ready, 0.5 / punch.frequency, until, punch.paces, punch.sizes)
+        for n, (start, pace, size) in enumerate(each):
+            hand = ("right", "left")[n % 2]
+            steps.append(Step(hand, size, start, pace * punch.out))
+            steps.append(Step(hand, -size, start + pace * punch.hold, pace * punch.back))
+        return steps
+
+    @cached_property
+    def _leaves(self) -> float:
+        """When the guard is left, s."""
+        if isinf(self.punch.duration):
+            return inf
+        return max((s.start + s.length for s in self._steps), default=self.begin)
+
+    @property
+    def end(self) -> float:
+        """When the body is at rest again, s."""
+        return self._leaves + self.punch.entry
+
+    @property
+    def phases(self) -> tuple[Phase, ...]:
+        """Punching, then standing."""
+        punching = Phase(self.begin, "punching")
+        return (punching,) if isinf(self.end) else (punching, Phase(self.end, "standing"))
+
+    @cached_property
+    def course(self) -> Course:
+        """How far the hands are out, the feet in their stance, and the guard taken."""
+        steps, taken = list(self._steps), 0.0 if self.punch.from_rest else 1.0
+        for channel, (start, length) in ENTRY.items():
+            at, takes = self.punch.entry * start, self.punch.entry * length
+            if self.punch.from_rest:
+                steps.append(Step(channel, 1.0, self.begin + at, takes))
+            if not isinf(self._leaves):
+                steps.append(Step(channel, -1.0, self._leaves + at, takes))
+        return Course.of({"right": 0.0, "left": 0.0, **dict.fromkeys(ENTRY, taken)}, steps)
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Both ends of every step, s."""
+        return self.course.breakpoints
+
+    def pose(self, t: Float, idle: IdleState) -> Pose:
+        """The body at times t [M] (s)."""
+        body, punch = self.person, self.punch
+        scale = body.stature / REFERENCE_STATURE
+        right, left, *feet, guard = self.course(t)
+        ankles = self._ankles(np.stack(feet))
+        still, into = 1 - guard, punch.turn * (right - left)
+        aside = hip_joints(body, punch.pelvis * into, np.zeros(t.size))
+        hip = ankles.mean(axis=1)
+        hip[0] += scale * punch.thrust * (right + left)
+        legs_roll = idle.roll + still * (idle.legs_roll - idle.roll)
+        sway = swayed(body.rest_height - body.ankle, idle.lean, legs_roll)
+        hip = swayed_hip(body, body.tallest, hip, aside, ankles, body.softness, sway)
+        pitch = punch.pitch * guard + punch.bow * (right + left)
+        pitch += idle.lean + still * (idle.pitch - idle.lean)
+        trunk = axes(pitch, into + still * idle.yaw, idle.roll)
+        hands, poles = hanging(body, still * idle.shoulders, body.elbow + still * idle.elbows)
+        x, y, z = punch.guard
+        guarding = scale * np.stack([np.full((2, 1), x), -y * SIDES, np.full((2, 1), z)])
+        ahead = np.stack([trunk.ahead[0], trunk.left[0], trunk.up[0]])[:, None]  # the room's x axis
+        target = punch.reach * 2 * body.arm * ahead
+        hands += guard * (guarding - hands) + np.stack([right, left]) * (target - guarding)
+        poles += guard * (OUTWARDS[:, :, None] - poles)
+        joints = hip[:, None] + aside
+        knees = two_link(joints, ankles, body.leg, body.leg, AHEAD)
+        arms = directed(trunk, hands, poles, body.arm)
+        return Pose(hip, trunk, joints, knees, ankles, *arms, idle.breath)
+
+    def _ankles(self, feet: Float) -> Float:
+        """Ankles [3, 2, M], each foot's share [2, M] of the way from rest to its stance."""
+        scale = self.person.stature / REFERENCE_STATURE
+        ahead, beside = scale * self.punch.stance[0], scale * self.punch.stance[1]
+        y = SIDES * (self.person.hip + (beside - self.person.hip) * feet)
+        lift = 4 * self.punch.lift * feet * (1 - feet)
+        return np.stack([SIDES * ahead * feet, y, self.person.ankle + lift])

@@ -1,0 +1,97 @@
+"""What a person can do: the twelve activities S1 to S12, and sequences of any of them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from math import inf, pi
+
+from radhar_cli.motion.human.falling import FallBackward, FallForward
+from radhar_cli.motion.human.falling_sideways import FallSideways
+from radhar_cli.motion.human.getting_up import GetUp
+from radhar_cli.motion.human.grabbing import Grab
+from radhar_cli.motion.human.kicking import Kick
+from radhar_cli.motion.human.motion import Movement
+from radhar_cli.motion.human.part import Place
+from radhar_cli.motion.human.punching import Punch
+from radhar_cli.motion.human.sitting import SitDown, StandUp
+from radhar_cli.motion.human.standing import Stand
+from radhar_cli.motion.human.stepping import StepTo
+from radhar_cli.motion.human.turning import Turn
+from radhar_cli.motion.human.walking import Gait, Walk
+
+AROUND = StepTo(1.8, Place(turn=pi), steps=5, name="turning around")
+
+
+@dataclass(frozen=True)
+class Repertoire:
+    """How somebody does what they do.
+
+    Attributes:
+        gait: of every walk.
+        walk: how long the walk of S10 and S12 lasts before its last steps, s.
+        fall: in which direction people fall, and how.
+    """
+
+    gait: Gait
+    walk: float = 2.0
+    punch: Punch = field(default_factory=Punch)
+    kick: Kick = field(default_factory=Kick)
+    grab: Grab = field(default_factory=Grab)
+    sit_down: SitDown = field(default_factory=SitDown)
+    stand_up: StandUp = field(default_factory=StandUp)
+    turn: Turn = field(default_factory=Turn)
+    fall: FallForward | FallBackward | FallSideways = field(default_factory=FallForward)
+    get_up: GetUp = field(default_factory=GetUp)
+    turn_around: StepTo = AROUND
+
+    def activity(self, number: int) -> tuple[Movement, ...]:
+        """The movements of S`number`: what repeats does so from the first instant on."""
+        stopping = Walk(self.gait, self.walk, from_rest=False)
+        movements: dict[int, tuple[Movement, ...]] = {
+            1: (Stand(),),
+            2: (replace(self.punch, duration=inf, from_rest=False),),
+            3: (replace(self.kick, duration=inf, from_rest=False),),
+            4: (self.grab,),
+            5: (self.sit_down,),
+            6: (self.stand_up,),
+            7: (replace(self.turn, duration=inf, from_rest=False),),
+            8: (Walk(self.gait, from_rest=False),),
+            9: (self.stand_up, Walk(self.gait)),
+            10: (stopping, self.sit_down),
+            11: (self.get_up, Walk(self.gait)),
+            12: (stopping, self.fall),
+        }
+        return movements[number]
+
+    def sequence(self, names: Sequence[str], durations: Sequence[float]) -> tuple[Movement, ...]:
+        """Movements by name, one after the other, each from rest.
+
+        Args:
+            names: slugs of activities that are one movement, and `falling`, `getting_up`,
+                `turning_around`.
+            durations: how long each of walking, punching, kicking, rotating and standing lasts,
+                s; of the others unused. Infinity for the last of them goes on.
+
+        Raises:
+            ValueError: a name that is none of a movement.
+        """
+        return tuple(self._movement(*act) for act in zip(names, durations, strict=True))
+
+    def _movement(self, name: str, duration: float) -> Movement:
+        movements: dict[str, Movement] = {
+            "stationary": Stand(duration),
+            "punching": replace(self.punch, duration=duration, from_rest=True),
+            "kicking": replace(self.kick, duration=duration, from_rest=True),
+            "grabbing": self.grab,
+            "sitting_down": self.sit_down,
+            "standing_up": self.stand_up,
+            "body_rotating": replace(self.turn, duration=duration, from_rest=True),
+            "walking": Walk(self.gait, duration),
+            "falling": self.fall,
+            "getting_up": self.get_up,
+            "turning_around": self.turn_around,
+        }
+        if name not in movements:
+            raise ValueError(
+                f"{name!r} is no movement of a sequence; these are: {', '.join(movements)}"
+            )
+        return movements[name]

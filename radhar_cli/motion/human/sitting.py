@@ -1,0 +1,108 @@
+"""S5 and S6: sitting down is standing up backwards in time.
+
+Angles lean ahead to bring the body over the feet, then legs and trunk extend. Minimum jerk
+through a posture on the way: Yamasaki et al., 2014.
+"""
+
+from dataclasses import dataclass, field
+from math import acos, cos, radians
+
+from radhar_cli.motion.human.minimum_jerk import Course, Step, mirrored
+from radhar_cli.motion.human.part import SEATED, STANDING, Phase
+from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.planted import (
+    ELBOWS,
+    SHOULDERS,
+    Planted,
+    at_rest,
+    both,
+    posture,
+    timed,
+)
+
+
+@dataclass(frozen=True)
+class Seat:
+    """How people sit: height of the hip over stature, angles in rad, `recline` backwards."""
+
+    height: float = 0.285
+    shank: float = radians(8)
+    shoulder: float = radians(35)
+    elbow: float = radians(53)
+    recline: float = 0.0
+
+    def posture(self, person: Person) -> dict[str, float]:
+        """The posture on the seat."""
+        rise = self.height * person.stature - person.ankle - person.leg * cos(self.shank)
+        thigh = -acos(rise / person.leg)
+        return posture(self.shank, thigh, -self.recline, self.shoulder, self.elbow)
+
+
+@dataclass(frozen=True)
+class Rise:
+    """How people stand up: angles in rad, seat to standing in 1 unit of time.
+
+    Attributes:
+        lean: of the trunk ahead while the body leaves the seat.
+        swing: of the arms ahead.
+        shin: of the shanks ahead, beyond the seated angle.
+    """
+
+    lean: float = radians(42)
+    swing: float = radians(20)
+    shin: float = radians(14)
+
+    def steps(self, person: Person, seat: Seat) -> list[Step]:
+        """From seat to standing, in units of the duration."""
+        seated, rest = seat.posture(person), at_rest(person)
+
+        def to_rest(channel: str, start: float, length: float) -> Step:
+            return Step(channel, rest[channel] - seated[channel], start, length)
+
+        return [
+            Step("shank", self.shin, 0.18, 0.34),
+            Step("shank", -self.shin, 0.50, 0.50),
+            to_rest("shank", 0.45, 0.55),
+            to_rest("thigh", 0.30, 0.70),
+            to_rest("trunk", 0.0, 0.45),
+            Step("trunk", self.lean, 0.0, 0.50),
+            Step("trunk", -self.lean, 0.38, 0.62),
+            *both(SHOULDERS, self.swing, 0.05, 0.45),
+            *both(SHOULDERS, -self.swing, 0.45, 0.50),
+            *(to_rest(channel, 0.4, 0.5) for channel in (*SHOULDERS, *ELBOWS)),
+            to_rest("standing", 0.3, 0.7),
+        ]
+
+
+@dataclass(frozen=True)
+class StandUp:
+    """From a seat to standing within `duration` s."""
+
+    duration: float = 1.8
+    seat: Seat = field(default_factory=Seat)
+    rise: Rise = field(default_factory=Rise)
+
+    def part(self, person: Person, begin: float, horizon: float = 0.0) -> Planted:
+        """The movement from `begin` (s) on."""
+        steps = timed(self.rise.steps(person, self.seat), begin, self.duration)
+        course = Course.of(self.seat.posture(person), steps)
+        end = begin + self.duration
+        phases = (Phase(begin, "standing up"), Phase(end, "standing"))
+        return Planted(person, course, begin, end, phases, SEATED, STANDING)
+
+
+@dataclass(frozen=True)
+class SitDown:
+    """From standing to a seat within `duration` s."""
+
+    duration: float = 2.0
+    seat: Seat = field(default_factory=Seat)
+    rise: Rise = field(default_factory=Rise)
+
+    def part(self, person: Person, begin: float, horizon: float = 0.0) -> Planted:
+        """The movement from `begin` (s) on."""
+        backwards = mirrored(self.rise.steps(person, self.seat), 1.0)
+        course = Course.of(at_rest(person), timed(backwards, begin, self.duration))
+        end = begin + self.duration
+        phases = (Phase(begin, "sitting down"), Phase(end, "seated"))
+        return Planted(person, course, begin, end, phases, STANDING, SEATED)

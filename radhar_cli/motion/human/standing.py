@@ -1,0 +1,21 @@
+"""S1: people who stand; all that moves are they themselves (idle.py)."""
+
+from dataclasses import dataclass
+from math import inf
+
+from radhar_cli.motion.human.minimum_jerk import Course
+from radhar_cli.motion.human.part import Phase
+from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.planted import Planted, at_rest
+
+
+@dataclass(frozen=True)
+class Stand:
+    """Standing for some time, s."""
+
+    duration: float = inf
+
+    def part(self, person: Person, begin: float, horizon: float = 0.0) -> Planted:
+        """The movement from `begin` (s) on."""
+        course = Course.of(at_rest(person), ())
+        return Planted(person, course, begin, begin + self.duration, (Phase(begin, "standing"),))

@@ -1,0 +1,142 @@
+"""Steps to another stance: a shuffle of some centimetres, or a turn on the spot.
+
+The body goes to the new place by minimum jerk, the feet follow in turn; each step goes to where the
+stance is a little later, the last two to where it ends.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from radhar_cli.arrays import Float
+from radhar_cli.motion.human.arms import swung
+from radhar_cli.motion.human.idle import IdleState
+from radhar_cli.motion.human.minimum_jerk import Course, Step
+from radhar_cli.motion.human.part import STANDING, Phase, Place
+from radhar_cli.motion.human.pelvis import hip_joints, swayed, swayed_hip
+from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.pose import SIDES, Axes, Pose, axes
+from radhar_cli.motion.human.two_link import two_link
+
+RIGHT, LEFT = 0, 1
+HERE = Place()
+
+
+@dataclass(frozen=True)
+class StepTo:
+    """To another stance within `duration` s.
+
+    Attributes:
+        place: of the new stance, seen from the old one.
+        steps: how many, at least 2.
+        lift: of a stepping foot, m.
+        name: what this is called among the phases.
+    """
+
+    duration: float = 0.9
+    place: Place = HERE
+    steps: int = 2
+    lift: float = 0.03
+    name: str = "stepping"
+
+    def __post_init__(self) -> None:
+        if self.steps < 2:
+            raise ValueError(f"a stance is reached within at least 2 steps, not {self.steps}")
+
+    def part(self, person: Person, begin: float, horizon: float = 0.0) -> "Stepping":
+        """The movement from `begin` (s) on."""
+        return Stepping(person, self, begin)
+
+
+@dataclass(frozen=True)
+class Stepping:
+    """Steps of a person; see `part.Part`."""
+
+    person: Person
+    step: StepTo
+    begin: float
+
+    before = STANDING
+    after = STANDING
+
+    @property
+    def end(self) -> float:
+        """When both feet stand in the new stance, s."""
+        return self.begin + self.step.duration
+
+    @property
+    def place(self) -> Place:
+        """Where the new stance is."""
+        return self.step.place
+
+    @property
+    def phases(self) -> tuple[Phase, ...]:
+        """Stepping, then standing."""
+        return (Phase(self.begin, self.step.name), Phase(self.end, "standing"))
+
+    @cached_property
+    def course(self) -> Course:
+        """Share of the way that the body has gone, and of each step."""
+        slot = self.step.duration / self.step.steps
+        channels = [f"step {n}" for n in range(self.step.steps)]
+        steps = [Step("body", 1.0, self.begin, self.step.duration)]
+        steps += [
+            Step(channel, 1.0, self.begin + n * slot, slot) for n, channel in enumerate(channels)
+        ]
+        return Course.of(dict.fromkeys(("body", *channels), 0.0), steps)
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Both ends of every step, s."""
+        return self.course.breakpoints
+
+    def _ankles(self, shares: Float) -> Float:
+        """Ankles [3, 2, M], each step's share of its way [N, M]."""
+        place, count = self.step.place, self.step.steps
+        first = LEFT if place.turn > 0 or (place.turn == 0 and place.left > 0) else RIGHT
+        ankles = np.zeros((3, 2, shares.shape[1]))
+        ankles[1], ankles[2] = self.person.hip * SIDES, self.person.ankle
+        at = [self._stance(foot, 0.0) for foot in (RIGHT, LEFT)]
+        for n, share in enumerate(shares):
+            foot = (first + n) % 2
+            to = self._stance(foot, min(1.0, (n + 1) / (count - 1)))
+            ankles[:2, foot] += (to - at[foot])[:, None] * share
+            ankles[2, foot] += 4 * self.step.lift * share * (1 - share)
+            at[foot] = to
+        return ankles
+
+    def _stance(self, foot: int, share: float) -> Float:
+        """x and y of a foot in the stance at a share of the way."""
+        place, beside = self.step.place, self.person.hip * SIDES[foot, 0]
+        turn = share * place.turn
+        return np.array(
+            [
+                share * place.ahead - beside * np.sin(turn),
+                share * place.left + beside * np.cos(turn),
+            ]
+        )
+
+    def pose(self, t: Float, idle: IdleState) -> Pose:
+        """The body at times t [M] (s)."""
+        body, place = self.person, self.step.place
+        share, *steps = self.course(t)
+        turn = share * place.turn
+        ankles = self._ankles(np.stack(steps))
+        aside = hip_joints(body, turn, np.zeros(t.size))
+        sway = swayed(body.rest_height - body.ankle, idle.lean, idle.legs_roll)
+        way = share * np.array([[place.ahead], [place.left]])
+        hip = swayed_hip(body, body.tallest, way, aside, ankles, body.softness, turned(sway, turn))
+        joints = hip[:, None] + aside
+        ahead = np.stack([np.cos(turn), np.sin(turn), np.zeros(t.size)])
+        knees = two_link(joints, ankles, body.leg, body.leg, ahead[:, None])
+        upright = axes(idle.pitch, idle.yaw, idle.roll)
+        trunk = Axes(*(turned(axis, turn) for axis in vars(upright).values()))
+        upper, fore = swung(trunk, idle.shoulders, body.elbow + idle.elbows)
+        return Pose(hip, trunk, joints, knees, ankles, upper, fore, idle.breath)
+
+
+def turned(v: Float, angle: Float) -> Float:
+    """Vectors [3, M] turned to the left by angles [M], rad."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    return np.stack([cos * v[0] - sin * v[1], sin * v[0] + cos * v[1], v[2]])

@@ -1,0 +1,360 @@
+"""S8: walking on planted feet, with or without a start from rest and a stop.
+
+Feet stand where the body will be above them, the pelvis surges over them at a height that its legs
+can reach, trunk and arms follow Boulic and Thalmann's curves.
+"""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import inf, isinf, pi, radians
+
+import numpy as np
+
+from radhar_cli.arrays import Float
+from radhar_cli.motion.human import boulic_thalmann as curves
+from radhar_cli.motion.human.footsteps import Footfalls, FootTrack
+from radhar_cli.motion.human.idle import IdleState, Waves
+from radhar_cli.motion.human.minimum_jerk import (
+    Course,
+    Step,
+    minimum_jerk,
+    minimum_jerk_integral,
+)
+from radhar_cli.motion.human.part import STANDING, Phase, Place
+from radhar_cli.motion.human.pelvis import hip_height, hip_joints, swayed_hip
+from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.planted import (
+    ELBOWS,
+    SHOULDERS,
+    Planted,
+    arms_down,
+    at_rest,
+    legs,
+)
+from radhar_cli.motion.human.pose import Pose, axes
+from radhar_cli.motion.human.two_link import AHEAD, two_link
+
+START_PHASE = 0.5  # of the stride: the right foot goes first
+EARLIEST_SWING = 0.3
+
+
+@dataclass(frozen=True)
+class Gait:
+    """How somebody walks. Phases are fractions of a stride from right heel strike on.
+
+    Attributes:
+        speed: m/s.
+        period_scale: of the stride's duration after Boulic and Thalmann.
+        phase: of a steady walk at t = 0.
+        arm_swing: of the arms' amplitude.
+        trunk_pitch: rad ahead.
+        half_width: of the stance, fraction of the stature.
+        surge: speed of the hip's surge over the speed.
+        sidewards: of the hip from side to side, m.
+        sink: of the standing height while walking, fraction of the stature.
+        softness: of the pelvis's height (`Person.softness`) while walking, 1/m.
+        touch_down, heel_off: phases between which the foot lies flat.
+        below: phase at which the body is above the foothold.
+        roll: of the foot about its ball until toe-off, rad.
+        lift: of the swinging foot, m.
+        ramp: in which a walk gains and loses its speed, fraction of a stride.
+        asymmetry: of left over right step lengths, fraction of a step.
+        ragged: relative deviation of the speed over time.
+        jitter: by how much the phase is ahead after each stride, fractions of a stride.
+        widths: further half width of each stride, m.
+    """
+
+    speed: float
+    period_scale: float = 1.0
+    phase: float = 0.0
+    arm_swing: float = 1.0
+    trunk_pitch: float = radians(3)
+    half_width: float = 0.0315
+    surge: float = 0.11
+    sidewards: float = 0.018
+    sink: float = 0.008
+    softness: float = 80.0
+    touch_down: float = 0.10
+    heel_off: float = 0.42
+    below: float = 0.27
+    roll: float = radians(52)
+    lift: float = 0.070
+    ramp: float = 0.6
+    asymmetry: float = 0.0
+    ragged: Waves = field(default_factory=Waves)
+    jitter: tuple[float, ...] = ()
+    widths: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not self.speed > 0:
+            raise ValueError(f"who walks has a speed above 0 m/s, not {self.speed:g} m/s")
+
+
+@dataclass(frozen=True)
+class Walk:
+    """Walking for `duration` s (to the beginning of the last steps), from rest or steadily."""
+
+    gait: Gait
+    duration: float = inf
+    from_rest: bool = True
+
+    def part(self, person: Person, begin: float, horizon: float = 0.0) -> "Walking":
+        """The movement from `begin` (s) on, with steps until `horizon` (s)."""
+        return Walking(person, self.gait, begin, begin + self.duration, self.from_rest, horizon)
+
+
+@dataclass(frozen=True)
+class Walking:
+    """A walk; see `part.Part`.
+
+    Attributes:
+        begin: from rest on, or from where x and the stride are counted, s.
+        stop: when the speed begins to fall, s; infinity for never.
+        from_rest: whether the walk begins from rest.
+        horizon: until when there are steps, s.
+        planted: movements on planted feet that have not ended when the walk begins, or begin
+            before it ends.
+    """
+
+    person: Person
+    gait: Gait
+    begin: float
+    stop: float
+    from_rest: bool
+    horizon: float
+    planted: tuple[Planted, ...] = ()
+
+    before = STANDING
+    after = STANDING
+
+    @cached_property
+    def relative_speed(self) -> float:
+        """Rv = v/h, 1/s."""
+        return self.gait.speed / self.person.tallest
+
+    @cached_property
+    def stride(self) -> float:
+        """Duration of a stride, s."""
+        return curves.cycle_duration(self.relative_speed) * self.gait.period_scale
+
+    @cached_property
+    def ramp(self) -> float:
+        """Duration of gaining speed, and of losing it, s."""
+        return self.gait.ramp * self.stride
+
+    @property
+    def stops(self) -> bool:
+        """Whether the walk ends."""
+        return not isinf(self.stop)
+
+    def drive(self, t: Float) -> Float:
+        """g [M]: 0 at rest, 1 when walking."""
+        g: Float = np.ones(t.size)
+        if self.from_rest:
+            g = minimum_jerk((t - self.begin) / self.ramp)
+        if self.stops:
+            g *= 1 - minimum_jerk((t - self.stop) / self.ramp)
+        return g
+
+    def _unsteady(self, t: Float, g: Float) -> Float:
+        """How far a ragged walker is ahead of the mean path [M], m."""
+        ragged = self.gait.ragged
+        ahead = ragged.integral(t) - (0.0 if self.from_rest else ragged.integral(np.zeros(1)))
+        return self.gait.speed * g * ahead
+
+    def path(self, t: Float) -> Float:
+        """X(t) [M], m: where the body is above its feet on average."""
+        v, ramp = self.gait.speed, self.ramp
+        if self.from_rest:
+            x = v * ramp * minimum_jerk_integral((t - self.begin) / ramp)
+        else:
+            x = v * (t - self.begin)
+        if self.stops:
+            x -= v * ramp * minimum_jerk_integral((t - self.stop) / ramp)
+        if self.gait.ragged.amplitudes:
+            x += self._unsteady(t, self.drive(t))
+        return x
+
+    def phase(self, t: Float) -> Float:
+        """u(t) [M]: of the stride; a ragged walker changes stride and cadence alike."""
+        u = (START_PHASE if self.from_rest else self.gait.phase) + (t - self.begin) / self.stride
+        if self.gait.ragged.amplitudes:
+            u += self._unsteady(t, self.drive(t)) / (2 * self.gait.speed * self.stride)
+        if self._jitter is not None:
+            u += self._jitter(t)[0]
+        return u
+
+    @cached_property
+    def _jitter(self) -> Course | None:
+        """Phase gained, by minimum jerk from stride to stride."""
+        if not self.gait.jitter:
+            return None
+        gains = np.diff(self.gait.jitter, prepend=0.0)
+        steps = (
+            Step("phase", float(gain), self.begin + k * self.stride, self.stride)
+            for k, gain in enumerate(gains)
+        )
+        return Course.of({"phase": 0.0}, steps)
+
+    def _when(self, u: Float) -> Float:
+        """Times [N] (s) of phases u [N]."""
+        t = self.begin + (u - self.phase(np.full(1, self.begin))) * self.stride
+        if self.gait.ragged.amplitudes or self.gait.jitter:
+            for _ in range(60):  # a contraction by the walk's raggedness, some hundredths
+                late = self.phase(t) - u
+                t = t - late * self.stride
+                if np.abs(late).max(initial=0.0) < 1e-14:
+                    break
+        return t
+
+    @cached_property
+    def end(self) -> float:
+        """When both feet have come to rest, s."""
+        if not self.stops:
+            return inf
+        last = max(float(track.falls.down[-1]) for track in self._feet)
+        return max(last, self.stop + self.ramp)
+
+    @cached_property
+    def place(self) -> Place:
+        """Where the feet come to rest."""
+        if not self.stops:
+            return Place()
+        return Place(float(self.path(np.array([self.stop + 2 * self.ramp]))[0]))
+
+    @property
+    def phases(self) -> tuple[Phase, ...]:
+        """Walking, then standing."""
+        walking = Phase(self.begin, "walking")
+        return (walking, Phase(self.end, "standing")) if self.stops else (walking,)
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Events of both feet, ends of the ramps, and of strides where these differ, s."""
+        ends = [track.breakpoints for track in self._feet]
+        if self.from_rest:
+            ends.append(np.array([self.begin, self.begin + self.ramp]))
+        if self.stops:
+            ends.append(np.array([self.stop, self.stop + self.ramp]))
+        if self._jitter is not None:
+            ends.append(np.array(self._jitter.breakpoints))
+        return tuple(np.concatenate(ends).tolist())
+
+    @cached_property
+    def _feet(self) -> tuple[FootTrack, FootTrack]:
+        """Right and left."""
+        gait = self.gait
+        return (
+            FootTrack(self.person, self._footfalls(0.0, -1.0), gait.roll, gait.lift),
+            FootTrack(self.person, self._footfalls(0.5, 1.0), gait.roll, gait.lift),
+        )
+
+    def _footfalls(self, later: float, side: float) -> Footfalls:
+        """Every swing of a foot whose stride is `later` than the right one's."""
+        gait, margin = self.gait, 2 * self.stride
+        first = EARLIEST_SWING if self.from_rest else self._phase_at(self.begin - margin)
+        until = self.stop + self.ramp if self.stops else max(self.horizon, self.begin) + margin
+        last = self._phase_at(until)
+        heel_off = later + gait.heel_off
+        k = np.arange(np.ceil(first - heel_off), np.ceil(last - heel_off))
+        off = k + heel_off
+        leaves = np.clip(curves.support(self.stride / gait.period_scale), 0.58, 0.66)
+        toe = k + later + leaves
+        if self.from_rest:
+            off = np.maximum(off, START_PHASE)
+            toe = np.maximum(toe, off + 0.12)
+        usual = side * gait.half_width * self.person.stature
+        rest = side * self.person.hip
+        footholds = self.path(self._when(np.append(k, k[-1] + 1) + later + gait.below))
+        footholds += side * gait.asymmetry * gait.speed * self.stride / 4
+        sides = np.full(k.size + 1, usual)
+        widths = side * np.array(gait.widths[: sides.size])
+        sides[: widths.size] += widths
+        if self.from_rest:
+            footholds[0], sides[0] = 0.0, rest
+        if self.stops:
+            footholds[-1], sides[-1] = self.place.ahead, rest
+        return Footfalls(
+            off=self._when(off),
+            toe=self._when(toe),
+            down=self._when(k + later + 1 + gait.touch_down),
+            before=footholds[:-1],
+            after=footholds[1:],
+            from_side=sides[:-1],
+            to_side=sides[1:],
+            size=np.minimum(1.0, np.diff(footholds) / (gait.speed * self.stride)),
+        )
+
+    def _phase_at(self, t: float) -> float:
+        return float(self.phase(np.array([t]))[0])
+
+    @cached_property
+    def _curves(self) -> Float:
+        """Rows [9, 17] in the harmonics of the stride: what `pose` names."""
+        gait, rv = self.gait, self.relative_speed
+        surge = gait.surge * gait.speed * self.stride / (4 * pi)
+        arm, bend = curves.shoulder(rv, gait.arm_swing), curves.elbow(rv)
+        bend[0] -= self.person.elbow
+        return np.stack(
+            [
+                curves.harmonic(2, surge, 0.04 + 1 / 8),
+                curves.harmonic(1, -gait.sidewards, 0.03 + 1 / 4),
+                curves.pelvis_yaw(rv),
+                curves.pelvis_roll(rv),
+                -curves.thorax_yaw(rv),
+                arm,
+                curves.half_a_stride_later(arm),
+                bend,
+                curves.half_a_stride_later(bend),
+            ]
+        )
+
+    def _overlapping(self, t: Float) -> dict[str, Float]:
+        """Channels [M] of a planted posture: at rest, but for movements that overlap the walk."""
+        rest = at_rest(self.person)
+        now = {channel: np.full(t.size, value) for channel, value in rest.items()}
+        for movement in self.planted:
+            for channel, value in zip(movement.course.channels, movement.course(t), strict=True):
+                now[channel] += value - rest[channel]
+            if movement.begin > self.begin:
+                now["hands_ahead"] += self.place.ahead
+        return now
+
+    def pose(self, t: Float, idle: IdleState) -> Pose:
+        """The body at times t [M] (s)."""
+        body, g = self.person, self.drive(t)
+        rows = self._curves @ curves.basis(self.phase(t))
+        rows *= g
+        (surge, side, yaw, roll, twist), arms = rows[:5], rows[5:].reshape(2, 2, t.size)
+        aside = hip_joints(body, yaw, roll)
+        ankles = np.stack([track(t) for track in self._feet], axis=1)
+        way = np.stack([self.path(t) + surge, side])
+        standing = body.tallest - self.gait.sink * body.stature * g
+        softness = body.softness + (self.gait.softness - body.softness) * g
+        pitch, lean = self.gait.trunk_pitch * g, np.zeros(t.size)
+        arms[1] += body.elbow
+        hands: tuple[Float, Float, Float] = (np.zeros(t.size),) * 3
+        if self.from_rest or self.stops:
+            still = 1 - g
+            other = self._overlapping(t)
+            own = still * other["standing"]
+            _, sway = legs(
+                body, other["shank"], other["thigh"], own * idle.lean, own * idle.legs_roll
+            )
+            sway[2] -= body.rest_height - body.ankle
+            hip = swayed_hip(body, standing, way, aside, ankles, softness, sway)
+            own = still * other["upright"]
+            pitch += other["trunk"] + own * idle.pitch
+            twist += own * idle.yaw
+            lean = own * idle.roll
+            arms += own * np.stack([idle.shoulders, idle.elbows])
+            arms[0] += np.stack([other[channel] for channel in SHOULDERS])
+            arms[1] += np.stack([other[channel] for channel in ELBOWS]) - body.elbow
+            hands = other["hands"], other["hands_ahead"], other["hands_beside"]
+        else:
+            hip = np.stack([*way, hip_height(body, standing, way, aside, ankles, softness)])
+        trunk = axes(pitch, twist, lean)
+        upper, fore = arms_down(body, hip, trunk, (arms[0], arms[1]), *hands)
+        joints = hip[:, None] + aside
+        knees = two_link(joints, ankles, body.leg, body.leg, AHEAD)
+        return Pose(hip, trunk, joints, knees, ankles, upper, fore, idle.breath)

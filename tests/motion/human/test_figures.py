@@ -1,0 +1,231 @@
+"""Speeds, heights and durations against the literature and the prototype's figures."""
+
+from dataclasses import replace
+from math import radians
+
+import numpy as np
+import pytest
+
+from radhar_cli.motion.human import boulic_thalmann as curves
+from radhar_cli.motion.human.falling import FallBackward, FallForward
+from radhar_cli.motion.human.falling_sideways import FallSideways
+from radhar_cli.motion.human.getting_up import GetUp
+from radhar_cli.motion.human.grabbing import Grab
+from radhar_cli.motion.human.idle import Breath, Idle, Sway, Waves
+from radhar_cli.motion.human.kicking import Kick
+from radhar_cli.motion.human.minimum_jerk import Course, Step
+from radhar_cli.motion.human.motion import HumanMotion, Movement
+from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.punching import Punch
+from radhar_cli.motion.human.sitting import SitDown, StandUp
+from radhar_cli.motion.human.turning import Turn
+from radhar_cli.motion.human.walking import Gait, Walk
+from radhar_cli.motion.skeleton import JOINTS
+
+DT = 1e-3
+
+
+def joint(name: str) -> int:
+    return JOINTS.index(name)
+
+
+def still(person: Person) -> Idle:
+    none = Waves()
+    return Idle(person, Sway(none, none), Breath(chest=0.0, heart=0.0))
+
+
+def positions(movement: Movement, seconds: float, stature: float = 1.75) -> np.ndarray:
+    person = Person(stature)
+    motion = HumanMotion(person, (movement,), (0.0, 0.0), 0.0, 0.0, seconds, still(person))
+    return motion.positions(np.arange(0, seconds, DT))
+
+
+def speed(p: np.ndarray, name: str) -> float:
+    """Largest speed of a joint, m/s."""
+    return float(np.linalg.norm(np.diff(p[:, joint(name)], axis=1), axis=0).max() / DT)
+
+
+@pytest.mark.parametrize(
+    ("v", "ankle", "rise"), [(0.8, 3.23, 28), (1.2, 3.16, 53), (1.5, 3.12, 76), (2.0, 3.09, 126)]
+)
+def test_gait(v: float, ankle: float, rise: float) -> None:
+    """Ankle speed over walking speed, and the hip's rise (mm) within 6 %: the minimum is softer."""
+    p = positions(Walk(Gait(v), from_rest=False), 4.0)
+    velocity = np.diff(p[0], axis=1) / DT
+    assert velocity[joint("right_ankle")].max() / v == pytest.approx(ankle, abs=0.02)
+    assert velocity[joint("right_ankle")].min() / v > -0.01
+    assert 0.87 < velocity[joint("torso")].min() / v < 0.90
+    assert 1.10 < velocity[joint("torso")].max() / v < 1.13
+    assert 1e3 * np.ptp(p[2, joint("hip")]) == pytest.approx(rise, rel=0.06)
+
+
+def test_knee_angles_of_a_walker() -> None:
+    """Swing 65 to 73 degrees, stance about 20: the contract of the gait."""
+    person = Person(1.75)
+    walk = Walk(Gait(1.2), from_rest=False)
+    motion = HumanMotion(person, (walk,), (0.0, 0.0), 0.0, 0.0, 3.0, still(person))
+    t = np.arange(0, 2, DT)
+    p, hips = motion.positions(t), motion.hip_joints(t)
+    thigh = p[:, joint("right_knee")] - hips[:, 0]
+    shank = p[:, joint("right_ankle")] - p[:, joint("right_knee")]
+    cosine = (thigh * shank).sum(axis=0) / person.leg**2
+    angle = np.degrees(np.arccos(cosine))
+    u = (t / walk.part(person, 0.0, 3.0).stride) % 1
+    assert 65 < angle.max() < 73
+    assert 18 < angle[(u > 0.1) & (u < 0.3)].max() < 24
+    assert angle.min() > 11.4  # never straighter than the reach
+
+
+def test_steps_a_minute() -> None:
+    for v, steps in ((0.8, 83), (1.2, 101), (1.5, 113), (2.0, 131)):
+        stride = Walk(Gait(v)).part(Person(1.75), 0.0, 3.0).stride
+        assert 120 / stride == pytest.approx(steps, abs=1.05)
+
+
+def test_starting_takes_two_steps() -> None:
+    walking = Walk(Gait(1.2)).part(Person(1.75), 0.0, 5.0)
+    first = [track.falls.after[0] - track.falls.before[0] for track in walking._feet]
+    assert first[0] == pytest.approx(0.67, abs=0.02)
+    assert first[1] == pytest.approx(0.67 + 0.72, abs=0.03)
+
+
+def test_stopping_takes_one_to_one_and_a_half_seconds() -> None:
+    for phase in (0.0, 0.3, 0.6, 0.9):
+        walking = Walk(Gait(1.2, phase=phase), 2.0, from_rest=False).part(Person(1.75), 0.0, 5.0)
+        assert 0.95 < walking.end - 2.0 < 1.55
+
+
+@pytest.mark.parametrize(
+    ("movement", "name", "expected"),
+    [
+        (Punch(), "right_hand", 3.2),
+        (Kick(), "right_ankle", 7.2),
+        (Turn(), "right_hand", 0.8),
+        (StandUp(), "head", 1.1),
+        (StandUp(), "hip", 0.9),
+    ],
+)
+def test_peak_speeds(movement: Movement, name: str, expected: float) -> None:
+    assert speed(positions(movement, 4.0), name) == pytest.approx(expected, rel=0.07)
+
+
+@pytest.mark.parametrize("fall", [FallForward(), FallBackward(), FallSideways()])
+def test_falls_are_as_fast_as_real_ones(fall: Movement) -> None:
+    """Choi et al. 2015, mean and two standard deviations: pelvis 2.1 +- 0.6, head 2.9 +- 0.9."""
+    p = positions(fall, 1.5)
+    down = -np.diff(p[2], axis=1).min(axis=1) / DT
+    assert 1.6 < down[joint("hip")] < 2.7
+    assert 2.2 < down[joint("head")] < 4.6
+    assert speed(p, "right_hand") < 2.9 + 2 * 1.6
+    lying = p[2, :, -1]
+    assert lying[[joint("head"), joint("torso"), joint("hip")]].max() < 0.35
+    assert lying.min() > 0.02
+
+
+def test_a_fall_ahead_lies_flat() -> None:
+    assert positions(FallForward(), 1.5)[2, : joint("hip"), -1].max() < 0.35
+    assert positions(FallForward(), 1.5)[2, joint("hip") :, -1].max() < 0.12
+
+
+def test_falls_go_their_way() -> None:
+    for fall, axis, sign in (
+        (FallForward(), 0, 1),
+        (FallBackward(), 0, -1),
+        (FallSideways(), 1, 1),
+        (FallSideways(side=-1.0), 1, -1),
+    ):
+        p = positions(fall, 1.5)
+        assert sign * p[axis, joint("head"), -1] > 1.0
+
+
+def test_a_hand_gets_what_lies_on_the_floor() -> None:
+    p = positions(Grab(), 4.0)
+    bottom = p[:, joint("right_hand"), int(1.4 / DT)]
+    assert bottom[2] == pytest.approx(0.27, abs=0.02)
+    assert bottom[0] == pytest.approx(0.37, abs=0.02)
+
+
+def test_sitting_down_is_standing_up_backwards() -> None:
+    down, up = positions(SitDown(2.0), 2.001), positions(StandUp(2.0), 2.001)
+    np.testing.assert_allclose(down, up[..., ::-1], atol=1e-9)
+
+
+def test_people_get_up_over_hands_and_knees() -> None:
+    """Hands bear on the floor until the hips are above the knees."""
+    p = positions(GetUp(), 3.2)
+    on_all_fours = int(0.36 * 3.0 / DT)
+    assert p[2, joint("right_hand"), on_all_fours] < 0.1
+    assert p[2, joint("hip"), on_all_fours] > 0.45
+    assert p[2, joint("right_knee"), on_all_fours] < 0.2
+    assert p[2, joint("head"), -1] > 1.45
+
+
+def test_arms_swung_as_a_prototype_did_would_get_up_through_the_floor() -> None:
+    """Shoulders from 165 to 70 degrees while the trunk is down: hands 7 cm below the floor."""
+    person, up = Person(1.75), GetUp()
+    course = up.part(person, 0.0).course
+    steps = [
+        Step(channel, to - start, at, length)
+        for channel, start, to, at, length in (
+            ("trunk", radians(88), radians(50), 0.06, 1.35),
+            ("right_shoulder", radians(165), radians(70), 0.0, 1.2),
+        )
+    ]
+    swung = Course.of(course.at(0.0) | {"hands": 0.0, "right_shoulder": radians(165)}, steps)
+    p = np.empty((3, 13, 100))
+    t = np.linspace(0, 1, 100)
+    planted = replace(up.part(person, 0.0), course=swung)
+    planted.pose(t, still(person)(t)).joints(person, p)
+    assert p[2, joint("right_hand")].min() < -0.05
+    assert positions(up, 3.0)[2].min() > 0.02
+
+
+def test_elbow_curve_is_continuous_across_gaits() -> None:
+    for rv in (0.5, 1.3):
+        below, above = curves.elbow(rv - 1e-9), curves.elbow(rv + 1e-9)
+        np.testing.assert_allclose(below, above, atol=1e-6)
+
+
+def test_curves_at_their_points() -> None:
+    """Eight harmonics keep to the published points within 0.1 degrees (thorax: within 0.5)."""
+    u = np.array([0.05, 0.5, 0.9])
+    elbow = np.degrees(curves.elbow(0.9) @ curves.basis(u))
+    np.testing.assert_allclose(elbow, [10, 32, 12.5], atol=0.1)
+    thorax = np.degrees(curves.thorax_yaw(3.0) @ curves.basis(np.array([0.1, 0.4, 0.6, 0.9])))
+    np.testing.assert_allclose(thorax, [4, -4.5, -4, 4.5], atol=0.5)
+
+
+def test_sway_has_the_deviation_asked_for() -> None:
+    t = np.arange(0, 2000, 0.05)
+    waves = Waves.low_pass(0.004, tuple(np.arange(8.0)))
+    assert waves(t).std() == pytest.approx(0.004, rel=0.02)
+    rate = np.gradient(waves.integral(t), t)
+    np.testing.assert_allclose(rate[1:-1], waves(t)[1:-1], atol=1e-4)
+
+
+def test_a_repetition_may_be_faster_or_smaller() -> None:
+    usual = positions(Punch(frequency=0.35), 0.9)
+    varied = positions(Punch(frequency=0.35, paces=(0.8,), sizes=(0.9,)), 0.9)
+    hand = joint("right_hand")
+    assert varied[0, hand].max() < usual[0, hand].max() - 0.01
+    assert np.argmax(varied[0, hand]) < np.argmax(usual[0, hand])
+
+
+@pytest.mark.parametrize("gait", [{"speed": 0.0}, {"speed": -1.0}])
+def test_who_does_not_walk_has_no_gait(gait: dict[str, float]) -> None:
+    with pytest.raises(ValueError, match="speed above 0"):
+        Gait(**gait)
+
+
+def test_rest_pose_is_common() -> None:
+    """At rest everybody stands as `Person` says, whatever comes next."""
+    person = Person(1.8)
+    pose = positions(Grab(), 0.01, 1.8)[..., 0]
+    for movement in (Kick(from_rest=True), Punch(from_rest=True), Turn(from_rest=True)):
+        np.testing.assert_allclose(positions(movement, 0.01, 1.8)[..., 0], pose, atol=1e-12)
+    np.testing.assert_allclose(positions(Walk(Gait(1.0)), 0.01, 1.8)[..., 0], pose, atol=1e-12)
+    assert pose[2, joint("hip")] == pytest.approx(person.rest_height, abs=1e-12)
+    assert np.allclose(
+        pose[1, [joint("right_ankle"), joint("left_ankle")]], [-person.hip, person.hip]
+    )
+    assert radians(5) < person.rest_lean < radians(12)

@@ -1,0 +1,339 @@
+"""What holds for every person and activity: stiff links, planted feet, a floor, no jumps."""
+
+from dataclasses import replace
+from math import inf
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from radhar_cli.motion.human.falling import FallBackward, FallForward
+from radhar_cli.motion.human.falling_sideways import FallSideways
+from radhar_cli.motion.human.getting_up import GetUp
+from radhar_cli.motion.human.grabbing import Grab
+from radhar_cli.motion.human.idle import FIDGETS, SWAY_HZ, Breath, Fidget, Idle, Sway, Waves
+from radhar_cli.motion.human.kicking import Kick
+from radhar_cli.motion.human.motion import HumanMotion, Movement
+from radhar_cli.motion.human.part import Place
+from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.punching import Punch
+from radhar_cli.motion.human.sitting import Seat, SitDown, StandUp
+from radhar_cli.motion.human.standing import Stand
+from radhar_cli.motion.human.stepping import StepTo
+from radhar_cli.motion.human.turning import Turn
+from radhar_cli.motion.human.walking import Gait, Walk
+from radhar_cli.motion.skeleton import JOINTS, PARENTS, links
+
+ANKLES = [JOINTS.index("right_ankle"), JOINTS.index("left_ankle")]
+KNEES = [JOINTS.index("right_knee"), JOINTS.index("left_knee")]
+TORSO = JOINTS.index("torso")
+STIFF = 1e-9  # m
+BREATHING = 1e-4  # m, links that touch the torso: (4.25 mm)^2/(2 x 0.25 m) = 0.04 mm
+PLANTED = 1e-4  # m
+HORIZON = 6.0
+
+STATURES = st.floats(1.5, 2.0)
+SPEEDS = st.floats(0.3, 2.8)
+PHASES = st.lists(st.floats(0, 6.3), min_size=8, max_size=8).map(tuple)
+FIDGETING = st.lists(
+    st.builds(
+        Fidget, st.sampled_from(FIDGETS), st.floats(-0.06, 0.06), st.floats(0, 6), st.floats(0.4, 2)
+    ),
+    max_size=6,
+).map(tuple)
+GAITS = st.builds(
+    Gait,
+    SPEEDS,
+    period_scale=st.floats(0.88, 1.05),
+    phase=st.floats(0, 1),
+    arm_swing=st.floats(0.6, 1.3),
+    trunk_pitch=st.floats(-0.05, 0.15),
+    asymmetry=st.floats(-0.03, 0.03),
+    ragged=st.builds(
+        Waves.low_pass, st.floats(0.0, 0.08), PHASES.map(lambda p: p[:3]), st.just((0.1, 0.25, 0.4))
+    ),
+    jitter=st.lists(st.floats(-0.03, 0.03), max_size=8).map(tuple),
+    widths=st.lists(st.floats(-0.02, 0.03), max_size=8).map(tuple),
+)
+
+
+def walks_of(gait: Gait) -> dict[str, tuple[Movement, ...]]:
+    """The twelve activities, and what else a person can do."""
+    steady, off = Walk(gait, from_rest=False), Walk(gait)
+    stopping = Walk(gait, 1.5, from_rest=False)
+    return {
+        "S1": (Stand(),),
+        "S2": (Punch(),),
+        "S3": (Kick(),),
+        "S4": (Grab(),),
+        "S5": (SitDown(),),
+        "S6": (StandUp(),),
+        "S7": (Turn(),),
+        "S8": (steady,),
+        "S9": (StandUp(), off),
+        "S10": (stopping, SitDown()),
+        "S11": (GetUp(), off),
+        "S12": (stopping, FallForward()),
+        "backwards": (stopping, FallBackward()),
+        "sideways": (FallSideways(),),
+        "rightwards": (stopping, FallSideways(side=-1.0)),
+        "everything": (
+            Punch(0.5, from_rest=True),
+            Kick(0.5, from_rest=True),
+            Turn(1.8, from_rest=True),
+            Walk(gait, 0.8),
+            StepTo(1.8, Place(turn=3.0), steps=5),
+            SitDown(seat=Seat(recline=0.2)),
+            StandUp(seat=Seat(recline=0.2)),
+            Stand(0.3),
+            StepTo(0.9, Place(0.08, -0.05, -0.3)),
+            FallForward(),
+            GetUp(),
+            Grab(),
+        ),
+    }
+
+
+ACTIVITIES = tuple(walks_of(Gait(1.2)))
+
+
+def moving(
+    what: str,
+    stature: float = 1.75,
+    gait: Gait | None = None,
+    idle: Idle | None = None,
+    heading: float = 0.0,
+) -> HumanMotion:
+    person = Person(stature)
+    movements = walks_of(gait or Gait(1.2))[what]
+    begin = 0.0 if what in ("S2", "S3", "S7", "S8", "S10", "S12") else 0.4
+    return HumanMotion(
+        person, movements, (3.0, -0.5), heading, begin, HORIZON, idle or Idle(person)
+    )
+
+
+def recording(motion: HumanMotion, rate: float) -> np.ndarray:
+    last = max((part.end for part, _ in motion.parts if part.end < inf), default=0.0)
+    return np.arange(-0.1, max(HORIZON, last) + 0.2, 1 / rate)
+
+
+def link_errors(motion: HumanMotion, t: np.ndarray) -> dict[str, float]:
+    """Largest deviation of each link from its length; thighs from the hip joints."""
+    p, hips = motion.positions(t), motion.hip_joints(t)
+    errors = {}
+    for joint, (parent, link) in enumerate(zip(PARENTS, links(motion.person.stature), strict=True)):
+        if parent is None:
+            continue
+        start = hips[:, KNEES.index(joint)] if joint in KNEES else p[:, parent]
+        length = np.linalg.norm(p[:, joint] - start, axis=0)
+        errors[JOINTS[joint]] = float(np.abs(length - np.linalg.norm(link)).max())
+    return errors
+
+
+def assert_sound(motion: HumanMotion, t: np.ndarray) -> None:
+    errors = link_errors(motion, t)
+    at_torso = {"head", "hip", "right_shoulder", "left_shoulder"}
+    assert max(errors[name] for name in at_torso) < BREATHING
+    assert max(error for name, error in errors.items() if name not in at_torso) < STIFF
+    assert motion.positions(t)[2].min() > 0
+
+
+@pytest.mark.parametrize("what", ACTIVITIES)
+@given(stature=STATURES, gait=GAITS, ahead=PHASES, aside=PHASES, fidgets=FIDGETING)
+@settings(max_examples=6, deadline=None)
+def test_links_are_stiff_and_nothing_is_below_the_floor(
+    what: str,
+    stature: float,
+    gait: Gait,
+    ahead: tuple[float, ...],
+    aside: tuple[float, ...],
+    fidgets: tuple[Fidget, ...],
+) -> None:
+    sway = Sway(Waves.low_pass(0.005, ahead, SWAY_HZ), Waves.low_pass(0.003, aside, SWAY_HZ))
+    motion = moving(what, stature, gait, Idle(Person(stature), sway, Breath(), fidgets))
+    assert_sound(motion, recording(motion, 60))
+
+
+@pytest.mark.parametrize("what", ACTIVITIES)
+def test_positions_and_velocities_are_continuous(what: str) -> None:
+    """Changes of velocity from sample to sample fall with the sample interval."""
+    motion = moving(what)
+    worst = []
+    for rate in (500, 4000):
+        p = motion.positions(recording(motion, rate))
+        worst.append(np.abs(np.diff(p, n=2, axis=2)).max() * rate)
+    assert worst[1] < worst[0] / 6  # 1/8, and acceleration that the coarse rate does not resolve
+
+
+@pytest.mark.parametrize("what", ["S9", "S10", "S11", "S12", "backwards", "everything"])
+def test_joins_change_neither_position_nor_velocity(what: str) -> None:
+    fidgets = tuple(Fidget(channel, 0.05, 0.1 * k, 0.7) for k, channel in enumerate(FIDGETS))
+    motion = moving(what, idle=Idle(Person(1.75), fidgets=fidgets))
+    dt = 1e-5
+    for part, _ in motion.parts[1:]:
+        p = motion.positions(part.begin + dt * np.array([-1.5, -0.5, 0.5, 1.5]))
+        step = np.diff(p, axis=2)
+        assert np.abs(step[..., 1]).max() < 1.0 * dt  # nobody is fast at rest
+        assert np.abs(np.diff(step, axis=2)).max() < 100 * dt**2
+
+
+@pytest.mark.parametrize("what", ACTIVITIES)
+def test_smooth_between_breakpoints(what: str) -> None:
+    """Where no breakpoint is near, a polynomial of degree 7 fits 0.05 s."""
+    motion = moving(what)
+    kinks = np.array(motion.breakpoints)
+    nodes = 0.025 * np.cos(np.pi * (np.arange(24) + 0.5) / 24)
+    basis = np.polynomial.chebyshev.chebvander(nodes / 0.025, 7)
+    for centre in np.arange(0.2, 5.8, 0.19):
+        if kinks.size and np.abs(kinks - centre).min() < 0.03:
+            continue
+        p = motion.positions(centre + nodes).reshape(-1, nodes.size).T
+        fit = basis @ np.linalg.lstsq(basis, p, rcond=None)[0]
+        assert np.abs(p - fit).max() < 2e-6
+
+
+@given(stature=STATURES, gait=GAITS, from_rest=st.booleans(), duration=st.floats(0.2, 3.0))
+@settings(max_examples=40, deadline=None)
+def test_feet_of_walkers_stand_still_between_touch_down_and_heel_off(
+    stature: float, gait: Gait, from_rest: bool, duration: float
+) -> None:
+    person = Person(stature)
+    motion = HumanMotion(
+        person, (Walk(gait, duration, from_rest),), (0.0, 0.0), 0.0, 0.0, 6.0, Idle(person)
+    )
+    walking = motion.parts[0][0]
+    assert_sound(motion, np.linspace(0, 6, 400))
+    for ankle, track in zip(ANKLES, walking._feet, strict=True):
+        falls = track.falls
+        assert np.all(falls.off < falls.toe)
+        assert np.all(falls.toe < falls.down)
+        for down, off in zip(falls.down, np.append(falls.off[1:], falls.down[-1] + 1), strict=True):
+            foot = motion.positions(np.linspace(down, off, 9))[:, ankle]
+            assert np.ptp(foot, axis=1).max() < PLANTED
+
+
+@given(stature=STATURES, speed=st.floats(0.8, 2.8))
+@settings(max_examples=30, deadline=None)
+def test_ankles_swing_at_three_times_the_walking_speed_and_never_run_back(
+    stature: float, speed: float
+) -> None:
+    motion = moving("S8", stature, Gait(speed))
+    dt = 1e-3
+    v = np.diff(motion.positions(np.arange(0, 3, dt)), axis=2)[0] / dt
+    assert 2.7 < v[ANKLES].max() / speed < 3.5
+    assert v[ANKLES].min() / speed > -0.1
+    assert 0.85 < v[TORSO].min() / speed < v[TORSO].max() / speed < 1.15
+
+
+@given(stature=STATURES, speed=st.floats(0.3, 0.8))
+@settings(max_examples=20, deadline=None)
+def test_ankles_of_slow_walkers(stature: float, speed: float) -> None:
+    motion = moving("S8", stature, Gait(speed))
+    dt = 1e-3
+    v = np.diff(motion.positions(np.arange(0, 4, dt)), axis=2)[0, ANKLES] / dt
+    assert v.max() / speed < 4.6
+    assert v.min() / speed > -0.2
+
+
+@pytest.mark.parametrize("what", ["S1", "S2", "S4", "S5", "S6", "S7", "S11", "S12", "sideways"])
+def test_feet_stay_where_they_are(what: str) -> None:
+    motion = moving(what)
+    t = recording(motion, 100)
+    standing = t > motion.parts[-1][0].begin if what == "S12" else t < motion.parts[0][0].end
+    feet = motion.positions(t[standing])[:, ANKLES]
+    assert np.ptp(feet, axis=2).max() < PLANTED
+
+
+@pytest.mark.parametrize("heading", [0.7, -2.0])
+def test_a_heading_turns_the_motion_about_its_start(heading: float) -> None:
+    t = np.linspace(0, HORIZON, 50)
+    x, y, z = moving("S9").positions(t) - np.array([3.0, -0.5, 0.0])[:, None, None]
+    turned = moving("S9", heading=heading).positions(t)
+    c, s = np.cos(heading), np.sin(heading)
+    np.testing.assert_allclose(turned[0], 3.0 + c * x - s * y, atol=1e-12)
+    np.testing.assert_allclose(turned[1], -0.5 + s * x + c * y, atol=1e-12)
+    np.testing.assert_allclose(turned[2], z, atol=1e-12)
+
+
+def test_positions_depend_on_the_instant_alone() -> None:
+    motion = moving("S10")
+    t = np.linspace(-0.3, 6.3, 2500)
+    shuffled = np.random.default_rng(0).permutation(t.size)
+    together = motion.positions(t)
+    np.testing.assert_allclose(motion.positions(t[shuffled]), together[..., shuffled], atol=1e-12)
+    np.testing.assert_allclose(motion.torso(t), together[:, [TORSO]], atol=1e-12)
+
+
+def test_whoever_does_not_breathe_has_a_stiff_trunk() -> None:
+    person = Person(1.8)
+    motion = moving("S4", 1.8, idle=Idle(person, breath=Breath(chest=0.0, heart=0.0)))
+    assert max(link_errors(motion, np.linspace(0, 6, 200)).values()) < STIFF
+
+
+OVERLAPPING: dict[str, tuple[Movement, ...]] = {
+    "sit to walk": (StandUp(), Walk(Gait(1.2))),
+    "up and walk": (GetUp(), Walk(Gait(1.2))),
+    "walk to sit": (Walk(Gait(1.2), 1.5, from_rest=False), SitDown()),
+    "trip": (Walk(Gait(1.2), 1.5, from_rest=False), FallForward()),
+    "slip": (Walk(Gait(1.2), 1.5, from_rest=False), FallBackward()),
+}
+
+
+@pytest.mark.parametrize("what", OVERLAPPING)
+@given(stature=STATURES, gait=GAITS, overlap=st.floats(0.05, 0.8), ahead=PHASES)
+@settings(max_examples=10, deadline=None)
+def test_transitions_may_overlap(
+    what: str, stature: float, gait: Gait, overlap: float, ahead: tuple[float, ...]
+) -> None:
+    """A walk begins before the body is up, or a fall before the walk has come to rest."""
+    person = Person(stature)
+    movements = tuple(
+        replace(movement, gait=gait) if isinstance(movement, Walk) else movement
+        for movement in OVERLAPPING[what]
+    )
+    idle = Idle(person, Sway(Waves.low_pass(0.005, ahead), Waves.low_pass(0.003, ahead)))
+    motion = HumanMotion(person, movements, (3.0, 0.0), 0.3, 0.2, HORIZON, idle, (0.0, -overlap))
+    assert_sound(motion, recording(motion, 60))
+    (first, _), (second, _) = motion.parts
+    assert first.end - second.begin == pytest.approx(overlap)
+    for instant in (second.begin, first.end):
+        p = motion.positions(instant + 1e-5 * np.array([-1.5, -0.5, 0.5, 1.5]))
+        assert np.abs(np.diff(p, n=2, axis=2)).max() < 500 * 1e-10  # no jump, no kink
+
+
+def test_only_a_walk_overlaps() -> None:
+    person = Person(1.75)
+    motion = HumanMotion(
+        person, (SitDown(), StandUp()), (2.0, 0.0), 0.0, 0.0, 6.0, Idle(person), (0.0, -0.3)
+    )
+    with pytest.raises(ValueError, match="only a walk and a movement on planted feet overlap"):
+        motion.positions(np.zeros(1))
+
+
+def test_movements_join_only_where_one_begins_as_the_other_ends() -> None:
+    person = Person(1.75)
+    motion = HumanMotion(
+        person, (SitDown(), Walk(Gait(1.0))), (2.0, 0.0), 0.0, 0.0, 6.0, Idle(person)
+    )
+    with pytest.raises(ValueError, match="Walk begins standing, but the movement before ends seat"):
+        motion.positions(np.zeros(1))
+
+
+def test_phases_name_what_is_under_way() -> None:
+    phases = moving("S10").phases
+    assert [phase.name for phase in phases] == ["walking", "sitting down", "seated"]
+    starts = [phase.start for phase in phases]
+    assert starts == sorted(starts)
+
+
+@given(gait=GAITS)
+@settings(max_examples=10, deadline=None)
+def test_a_ragged_walk_covers_the_same_distance(gait: Gait) -> None:
+    """What a walker is ahead or behind is made up for by the stop."""
+    person = Person(1.75)
+    walk = Walk(gait, 2.0)
+    regular = replace(gait, ragged=Waves(), jitter=())
+    reached = walk.part(person, 0.0, 5.0).place.ahead
+    assert reached == pytest.approx(2.0 * gait.speed, abs=1e-9)
+    assert reached == pytest.approx(Walk(regular, 2.0).part(person, 0.0, 5.0).place.ahead)

@@ -1,0 +1,75 @@
+"""The twelve activities and sequences of movements."""
+
+from math import inf
+
+import numpy as np
+import pytest
+
+from radhar_cli.motion.human.falling import FallBackward
+from radhar_cli.motion.human.idle import Idle
+from radhar_cli.motion.human.motion import HumanMotion
+from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.repertoire import Repertoire
+from radhar_cli.motion.human.walking import Gait
+from radhar_cli.motion.skeleton import JOINTS, PARENTS
+
+PERSON = Person(1.7)
+REPERTOIRE = Repertoire(Gait(1.1))
+
+
+def motion(movements: tuple, pauses: tuple[float, ...] = ()) -> HumanMotion:  # type: ignore[type-arg]
+    return HumanMotion(PERSON, movements, (2.0, 0.0), 0.0, 0.5, 6.0, Idle(PERSON), pauses)
+
+
+@pytest.mark.parametrize("number", range(1, 13))
+def test_every_activity_moves_as_a_motion_does(number: int) -> None:
+    body = motion(REPERTOIRE.activity(number))
+    p = body.positions(np.linspace(-0.5, 6.5, 701))
+    assert p.shape == (3, 13, 701)
+    assert p.dtype == float
+    assert np.isfinite(p).all()
+    assert body.names == JOINTS
+    assert body.parents == PARENTS
+    assert body.highest_frequency == 4.0
+    assert list(body.breakpoints) == sorted(body.breakpoints)
+    speed = np.linalg.norm(np.diff(p, axis=2), axis=0).max() / 0.01
+    assert 0.005 < speed < 9
+
+
+def test_activities_of_two_parts_end_as_they_should() -> None:
+    ends = {n: motion(REPERTOIRE.activity(n)).phases[-1].name for n in (9, 10, 11, 12)}
+    assert ends == {9: "walking", 10: "seated", 11: "walking", 12: "lying"}
+
+
+def test_a_sequence_waits_at_rest() -> None:
+    names = ("walking", "sitting_down", "standing_up", "kicking", "walking", "falling")
+    movements = REPERTOIRE.sequence(names, (1.0, inf, inf, 1.0, 0.8, inf))
+    body = motion(movements, (0.0, 0.4, 1.5))
+    parts = [part for part, _ in body.parts]
+    assert parts[1].begin - parts[0].end == pytest.approx(0.4)
+    assert parts[2].begin - parts[1].end == pytest.approx(1.5)
+    assert parts[3].begin == parts[2].end
+    seated = np.linspace(parts[1].end, parts[2].begin, 50)
+    assert np.ptp(body.positions(seated)[:, JOINTS.index("hip")], axis=1).max() < 1e-9
+
+
+def test_who_fell_backwards_does_not_get_up_from_the_belly() -> None:
+    movements = Repertoire(Gait(1.0), fall=FallBackward()).sequence(
+        ("falling", "getting_up"), (inf, inf)
+    )
+    with pytest.raises(ValueError, match=r"begins lying prone, but .* ends lying on the back"):
+        motion(movements).positions(np.zeros(1))
+
+
+def test_an_unknown_movement_is_named() -> None:
+    with pytest.raises(ValueError, match="'swimming' is no movement"):
+        REPERTOIRE.sequence(("swimming",), (1.0,))
+
+
+def test_a_turn_is_taken_along_by_what_follows() -> None:
+    """Who walks ahead, turns around and walks as far again is back, facing the other way."""
+    body = motion(REPERTOIRE.sequence(("walking", "turning_around", "walking"), (1.0, inf, 1.0)))
+    end = body.parts[-1][0].end
+    first, last = body.positions(np.array([0.0, end + 0.1])).transpose(2, 0, 1)
+    feet = [JOINTS.index("right_ankle"), JOINTS.index("left_ankle")]
+    np.testing.assert_allclose(last[:, feet], first[:, feet[::-1]], atol=1e-9)

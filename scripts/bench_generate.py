@@ -24,12 +24,11 @@ from radhar_cli.activity import ACTIVITIES
 from radhar_cli.config import MAP_NAMES, Config, load_config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.files import write_whole
-from radhar_cli.dataset.png import encode_png
+from radhar_cli.dataset.png import colour_table, encode_png
 from radhar_cli.dataset.sample import MapImage, synthesise
 from radhar_cli.dataset.shards import encode_shard, write_shard
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.range_profiles import beat_at
-from radhar_cli.figures.colour import colour_table
 from radhar_cli.pipeline.axes import axes_of
 from radhar_cli.pipeline.plan import plan, plan_images, signal_of
 from radhar_cli.pipeline.run import Recording, run

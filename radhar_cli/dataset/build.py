@@ -19,6 +19,7 @@ from radhar_cli.dataset.batch import Batch, png_rows, run_batch, survey_rows
 from radhar_cli.dataset.folder import claim, locked, mark_built, tidy
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.layout import DATASET, MANIFEST, WORK, Rows, png_path
+from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.settled import settled_rows, store_settled
 from radhar_cli.dataset.shards import (
     ForeignShardError,
@@ -31,7 +32,6 @@ from radhar_cli.dataset.shards import (
 from radhar_cli.dataset.split import split_rows
 from radhar_cli.dataset.workers import run_tasks
 from radhar_cli.errors import UnfinishedError
-from radhar_cli.figures.colour import colour_table
 from radhar_cli.pipeline.survey import Drawn, warnings
 
 LARGEST_BATCH = 32

@@ -7,10 +7,9 @@ from radhar_cli.arrays import Levels
 from radhar_cli.config.experiment import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.layout import Rows
-from radhar_cli.dataset.png import encode_png
+from radhar_cli.dataset.png import colour_table, encode_png
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.shards import encode_shard
-from radhar_cli.figures.colour import colour_table
 from radhar_cli.pipeline.plan import plan_images
 from radhar_cli.pipeline.survey import settle
 from radhar_cli.process import prepare_process

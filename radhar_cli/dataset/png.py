@@ -1,14 +1,36 @@
-"""PNG files: levels through a colour table."""
+"""PNG files of levels: the pixels are the levels, the palette is the colour map."""
 
 import io
 
+import numpy as np
 from PIL import Image
+from PIL.PngImagePlugin import PngInfo
 
 from radhar_cli.arrays import Levels
 
+# Tells our files, whose palette indices are levels, from any other file with a palette.
+_MARK = ("Software", "radhar")
+
+
+def colour_table(name: str) -> Levels:
+    """RGB [256, 3] of a Matplotlib colour map, whose name the config has checked."""
+    from matplotlib import colormaps
+
+    rgb = colormaps[name](np.arange(256))[:, :3]
+    return np.floor(rgb * 255 + 0.5).astype(np.uint8)
+
 
 def encode_png(levels: Levels, table: Levels, compress_level: int) -> bytes:
-    """RGB PNG of levels [H, W] through a colour table [256, 3]."""
-    buffer = io.BytesIO()
-    Image.fromarray(table[levels]).save(buffer, "png", compress_level=compress_level)
+    """PNG of levels [H, W] with a colour table [256, 3] as its palette."""
+    picture = Image.fromarray(levels)
+    picture.putpalette(table.tobytes())
+    mark, buffer = PngInfo(), io.BytesIO()
+    mark.add_text(*_MARK)
+    picture.save(buffer, "png", compress_level=compress_level, pnginfo=mark)
     return buffer.getvalue()
+
+
+def stored_levels(picture: Image.Image) -> Levels | None:
+    """Levels [H, W] of a picture that `encode_png` wrote, None of any other."""
+    ours = picture.mode == "P" and picture.info.get(_MARK[0]) == _MARK[1]
+    return np.asarray(picture) if ours else None

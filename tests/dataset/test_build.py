@@ -308,15 +308,17 @@ def test_dataset_contract(config: Config, whole: Path) -> None:
 
 
 def test_pngs_show_the_levels(config: Config, whole: Path) -> None:
-    from radhar_cli.figures.colour import colour_table
+    from radhar_cli.dataset.png import colour_table
 
     table, rows = colour_table("viridis"), Rows.of(config)
     with h5py.File(whole / "dataset.h5") as file:
         for row in range(len(rows)):
             path = whole / png_path("stft", file["split"][row], *rows[row])
             with Image.open(path) as picture:
-                assert picture.mode == "RGB"
-                assert np.array_equal(np.asarray(picture), table[file["maps/stft"][row]])
+                assert picture.mode == "P"
+                assert np.array_equal(np.asarray(picture), file["maps/stft"][row])
+                shown = np.asarray(picture.convert("RGB"))  # as ImageFolder does
+                assert np.array_equal(shown, table[file["maps/stft"][row]])
 
 
 def test_scenes_csv_has_the_numbers_of_the_file(whole: Path) -> None:

@@ -13,6 +13,7 @@ from small import small_config
 from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import load_config
 from radhar_cli.dataset.build import build
+from radhar_cli.dataset.png import colour_table, encode_png
 from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import FolderError
 
@@ -95,11 +96,16 @@ def test_other_versions_compare_within_one_level(whole: Path, tmp_path: Path) ->
 
 def test_changed_and_missing_pngs_are_found(whole: Path, tmp_path: Path) -> None:
     shutil.copytree(whole, tmp_path / "set")
-    first, second = sorted((tmp_path / "set/png/rtm").rglob("*.png"))[:2]
+    first, second, third, fourth = sorted((tmp_path / "set/png/rtm").rglob("*.png"))[:4]
     Image.fromarray(np.zeros((48, 48, 3), np.uint8)).save(first)
     second.unlink()
+    with Image.open(third) as picture:  # the same colours, no levels
+        picture.convert("RGB").save(third)
+    with Image.open(fourth) as picture:
+        levels = np.asarray(picture)
+    fourth.write_bytes(encode_png(levels, colour_table("gray"), 1))
     problems = verify(tmp_path / "set", 0).problems
-    assert len(problems) == 2
+    assert len(problems) == 4
     assert any("cannot be read" in problem for problem in problems)
 
 

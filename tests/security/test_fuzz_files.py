@@ -206,6 +206,7 @@ def test_damage_is_refused_or_does_no_harm(
                 tally[target.name][found] += 1
             else:
                 wrong.append(f"{target.name} {number}: {found}")
-    print(tally)
+                print(wrong[-1], flush=True)
+        print(target.name, tally[target.name], flush=True)
     assert wrong == [], "\n".join(wrong)
     assert all(found["refused"] for found in tally.values())

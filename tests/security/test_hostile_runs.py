@@ -3,7 +3,6 @@
 import json
 import os
 import shutil
-import signal
 import struct
 import zipfile
 from collections.abc import Callable, Iterator
@@ -15,7 +14,7 @@ import torch
 from learning.patterns import trained
 from safetensors import safe_open
 from safetensors.torch import load_file, save_file
-from security.bounded import SECONDS
+from security.bounded import limited
 
 from radhar_cli.cli import program
 from radhar_cli.errors import FolderError, RadharError
@@ -26,12 +25,9 @@ Change = Callable[[dict[str, Any]], object]
 
 
 @pytest.fixture(autouse=True)
-def in_time() -> Iterator[None]:
-    """A test that waits for a pipe ends."""
-    signal.signal(signal.SIGALRM, signal.default_int_handler)
-    signal.alarm(3 * SECONDS)
-    yield
-    signal.alarm(0)
+def in_bounds() -> Iterator[None]:
+    with limited():
+        yield
 
 
 @pytest.fixture

@@ -35,7 +35,6 @@ from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.range_profiles import beat_at
 from radhar_cli.pipeline.plan import plan, plan_images, signal_of
 from radhar_cli.pipeline.run import Recording, run
-from radhar_cli.process import prepare_process
 from radhar_cli.processing import fsst, stft
 from radhar_cli.processing.denoising import savgol
 from radhar_cli.processing.doppler_compensation import compensate
@@ -43,6 +42,7 @@ from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.image import Reduced, levels, reduced, reduced_map
 from radhar_cli.processing.range_compression import range_bins, range_power
 from radhar_cli.scene import Scene, draw_scene
+from radhar_cli.worker_process import prepare_process
 
 ROOT = Path(__file__).resolve().parents[1]
 PAPER = ROOT / "configs/paper/free_space.yaml"
@@ -401,7 +401,7 @@ from time import thread_time
 import numpy as np
 from radhar_cli.echo.direct import DirectEcho
 from radhar_cli.echo.paths import Paths
-from radhar_cli.process import prepare_process
+from radhar_cli.worker_process import prepare_process
 from radhar_cli.radar.waveform import Waveform
 
 class Walker:

@@ -19,7 +19,7 @@ ROOMS = (
     "phasor",
     "untrusted",
     "randomness",
-    "process",
+    "worker_process",
     "motion",
     "activity",
     "config",

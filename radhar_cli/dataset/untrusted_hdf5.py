@@ -34,7 +34,7 @@ _DAMAGED = (
     TypeError,
     ValueError,
 )
-MOST_TEXT = 2**20
+MAX_TEXT = 2**20
 _DEFLATE = h5py.h5z.FILTER_DEFLATE
 
 
@@ -80,8 +80,8 @@ class UntrustedFile:
             value = self._file.attrs[name]
             if isinstance(value, bytes):
                 value = value.decode()
-            if not isinstance(value, str) or len(value) > MOST_TEXT:
-                raise FolderError(f"{where}: should be text of at most {MOST_TEXT} characters")
+            if not isinstance(value, str) or len(value) > MAX_TEXT:
+                raise FolderError(f"{where}: should be text of at most {MAX_TEXT} characters")
             value.encode()  # h5py lets through what is not UTF-8
             return value
 
@@ -104,7 +104,7 @@ class UntrustedFile:
         if name not in self._file.attrs:
             raise FolderError(f"{where}: is missing")
         found = self._file.attrs.get_id(name)
-        if found.shape != () or found.get_storage_size() > MOST_TEXT:
+        if found.shape != () or found.get_storage_size() > MAX_TEXT:
             raise FolderError(f"{where}: should be a single value")
         kind: np.dtype[Any] = found.dtype
         return kind

@@ -28,7 +28,7 @@ from radhar_cli.config import Config
 from radhar_cli.pipeline.plan import plan_images
 from radhar_cli.pipeline.run import run
 from radhar_cli.pipeline.validity import settle
-from radhar_cli.process import prepare_process
+from radhar_cli.worker_process import prepare_process
 from radhar_cli.scene import draw_scene
 
 prepare_process()

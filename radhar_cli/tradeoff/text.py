@@ -62,7 +62,7 @@ def _learned(conditions: Mapping[str, Any]) -> str:
         f"samples a class at {conditions['snr_db']:g} dB SNR, tested on "
         f"{conditions['test_per_class']} a class of exact data from another seed; mean over the "
         "training seeds, Wilson's 95 % interval for the number of test images. Trials share "
-        "scenes and test images, so that differences are better resolved than the intervals suggest."
+        "scenes and test images: differences between them are surer than the intervals."
     )
     if conditions["smoke_run"]:
         text += " **A smoke run: this little data teaches nothing, and the numbers mean nothing.**"

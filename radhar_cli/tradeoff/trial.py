@@ -154,7 +154,7 @@ def score(experiment: Experiment, setup: TrialData, seed: int) -> TestResult:
     settings = _settings(experiment.sizes, seed)
     what = _fingerprint([*setup.data, settings.model_dump(mode="json"), _torch_version()])
     key = f"accuracy {what}"
-    known = experiment.cache.get(key, Score)
+    known = experiment.cache.get(key, TestResult)
     if known is None:
         run = experiment.folder / RUNS / what
         known = _train_and_test(experiment, setup, settings, run)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, TypeAlias
 
 from radhar_cli.activity import Activity
@@ -106,24 +107,79 @@ def scene_numbers(scene: Scene) -> dict[str, float]:
     return {key: one for key, one in numbers(scene.config) if depends_on(scene.activity, key)}
 
 
+def number_at(config: Config, key: str) -> Any:
+    """The number of a dotted key, such as `radar.tx_m.0`; None where its section is null."""
+    place: Any = config
+    for name in _path(key):
+        if place is None:
+            return None
+        place = place[int(name)] if isinstance(place, tuple) else getattr(place, name)
+    return place
+
+
+@lru_cache(maxsize=1024)
+def _path(key: str) -> tuple[str, ...]:
+    return tuple(key.split("."))
+
+
 def depends_on(activity: Activity, key: str) -> bool:
     """Whether scenes of an activity depend on the number of this dotted key."""
     return not key.startswith(REDRAWN) or key in PLACE or key in activity.uses
 
 
-def _fixed(config: Config, activity: Activity, draw: Draw) -> Config:
-    """The config of one scene; numbers that its activity does not depend on are at their middle."""
+class _SameConfig:
+    """A config as a key: equal to itself alone, whatever it holds."""
+
+    def __init__(self, config: Config) -> None:
+        self.config = config
+
+    def __hash__(self) -> int:
+        return id(self.config)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _SameConfig) and self.config is other.config
+
+
+@lru_cache(maxsize=64)
+def _fixed_and_drawn(same: _SameConfig, activity: Activity) -> tuple[Config, dict[str, Any]]:
+    """The config of an activity with all at its middle, and {dotted key: number} to be drawn."""
+    drawn: dict[str, Any] = {}
 
     def fix(key: str, number: Any) -> float:
         one = for_activity(number, activity)
-        return draw(key, one) if depends_on(activity, key) and not is_fixed(one) else nominal(one)
+        if depends_on(activity, key) and not is_fixed(one):
+            drawn[key] = one
+        return nominal(one)
 
+    config = same.config
     sections = {key: _each_number(getattr(config, key), key, fix) for key in SCENE_KEYS}
-    subject = sections["subject"]
+    return config.model_copy(update=sections | {"activities": (activity.slug,)}), drawn
+
+
+def _fixed(config: Config, activity: Activity, draw: Draw) -> Config:
+    """The config of one scene; numbers that its activity does not depend on are at their middle."""
+    fixed, drawn = _fixed_and_drawn(_SameConfig(config), activity)
+    changes: dict[str, dict[str, Any]] = {}
+    for key, number in drawn.items():
+        section, _, rest = key.partition(".")
+        name, _, axis = rest.partition(".")
+        value: Any = draw(key, number)
+        if axis:
+            vector = list(
+                changes.get(section, {}).get(name) or getattr(getattr(fixed, section), name)
+            )
+            vector[int(axis)] = value
+            value = tuple(vector)
+        changes.setdefault(section, {})[name] = value
+    sections: dict[str, Any] = {
+        key: found[""] if "" in found else getattr(fixed, key).model_copy(update=found)
+        for key, found in changes.items()
+    }
+    subject = sections.get("subject", fixed.subject)
     if subject.weight_kg is None:
         weight = {"weight_kg": default_weight(subject.height_m)}
         sections["subject"] = subject.model_copy(update=weight)
-    return config.model_copy(update=sections | {"activities": (activity.slug,)})
+    return fixed.model_copy(update=sections)
 
 
 def _each_number(value: Any, key: str, change: Callable[[str, Any], Any]) -> Any:

@@ -144,7 +144,7 @@ class TestRefusal:
         processing = {"processing": {"mti": mti}}
         right = self.signal(CUBE, **processing)
         found = self.signal({"tolerance_db": -300, "fallback": "cube"}, **processing)
-        assert ref.error_db(found, right) < -220  # the cube cancels before it compresses
+        assert ref.error_db(found, right) < -280  # the cube cancels before it compresses
 
     def test_noise_of_a_fallback_has_the_right_size(self):
         engine = {"tolerance_db": -300, "fallback": "cube"}

@@ -195,12 +195,6 @@ def paths(wall: Wall | None) -> Paths:
     return MotionPaths(STILL, ANTENNAS, FC, wall)(np.array([0.0, 1.0]))
 
 
-def test_paths_through_air_are_paths_in_free_space() -> None:
-    free, air = paths(None), paths(replace(WALL, eps_r=1.0, loss_tangent=0.0))
-    np.testing.assert_allclose(air.delay, free.delay, rtol=1e-12)
-    np.testing.assert_allclose(air.amplitude, free.amplitude, rtol=1e-12)
-
-
 def test_each_leg_of_a_path_crosses_by_itself() -> None:
     free, behind = paths(None), paths(WALL)
     for i, p in enumerate(POINTS.T):

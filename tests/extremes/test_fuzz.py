@@ -48,8 +48,8 @@ def read(document: Document, drawer: Drawer, folder: Path) -> Config:
 def record(config: Config, drawer: Drawer) -> Recording:
     """One sample: drawn, checked and run as a data set does."""
     if drawer.chance(ALL_MAPS):
-        config = config.model_copy(update={"maps": MAP_NAMES})
-        config = Config.model_validate(config.model_dump(mode="json"))
+        document = config.model_dump(mode="json") | {"maps": list(MAP_NAMES)}
+        config = validated(Config, document, "fuzz", {})
     activity = drawer.pick(config.chosen_activities)
     index = int(drawer.rng.integers(config.samples_per_class))
     scene, _ = draw_valid_scene(config, activity, index)

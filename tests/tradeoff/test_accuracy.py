@@ -35,8 +35,8 @@ class Memory:
     def __init__(self) -> None:
         self.text: dict[str, str] = {}
 
-    def get(self, key: str) -> Any | None:
-        return json.loads(self.text[key]) if key in self.text else None
+    def get(self, key: str, kind: type[Any]) -> Any | None:
+        return kind(**json.loads(self.text[key])) if key in self.text else None
 
     def put(self, key: str, value: Any) -> None:
         self.text[key] = json.dumps(value)

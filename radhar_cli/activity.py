@@ -96,6 +96,11 @@ def add_activity(
     return _OWN[slug]
 
 
+def own_activities() -> tuple[Activity, ...]:
+    """The classes that `add_activity` made known."""
+    return tuple(_OWN.values())
+
+
 def activity_named(name: str) -> Activity:
     """Find an activity by slug or label, whatever the case.
 

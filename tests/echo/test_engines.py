@@ -10,7 +10,7 @@ from radhar_cli.pipeline.plan import plan
 from radhar_cli.pipeline.run import run
 from radhar_cli.scene import draw_scene
 
-# The default budget; what the maps show is 50 dB deep.
+# The default tolerance; what the maps show is 50 dB deep.
 DEFAULT_DB = -80
 TIGHT_DB = -110
 
@@ -96,17 +96,17 @@ def test_engines_agree(case, activity):
     "case", ["free space 77 GHz", "through the wall 2 GHz", "eight samples a chirp", "24 GHz 1 kHz"]
 )
 @pytest.mark.parametrize("slug", ["stationary", "walking_to_falling"])
-@pytest.mark.parametrize("budget", [DEFAULT_DB, TIGHT_DB])
-def test_engines_agree_without_mti(case, slug, budget):
-    """Then what stands still counts too, and the budget is that of the whole signal."""
+@pytest.mark.parametrize("tolerance_db", [DEFAULT_DB, TIGHT_DB])
+def test_engines_agree_without_mti(case, slug, tolerance_db):
+    """Then what stands still counts too, and the tolerance is that of the whole signal."""
     activity = next(a for a in ACTIVITIES if a.slug == slug)
-    processing, direct = {"mti": False}, {"kind": "direct", "tolerance_db": budget}
+    processing, direct = {"mti": False}, {"kind": "direct", "tolerance_db": tolerance_db}
     right, found = (
         signal(activity, config_of(case, engine, processing=processing))
         for engine in ({"kind": "cube"}, direct)
     )
     assert np.abs(right).max() > 0
-    assert ref.error_db(found, right) < budget
+    assert ref.error_db(found, right) < tolerance_db
 
 
 @pytest.mark.parametrize("case", ["free space 77 GHz", "through the wall, high PRF"])

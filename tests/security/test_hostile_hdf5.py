@@ -283,8 +283,8 @@ attribute("config_hash", None, "attribute config_hash: is missing", "verify")
 
 
 @hostile("attribute config: should be text of at most 1048576 characters")
-def a_config_of_twenty_megabytes(file: h5py.File, _: Path) -> None:
-    file.attrs["config"] = "[" + "1," * 10**7 + "1]"
+def a_config_of_two_megabytes(file: h5py.File, _: Path) -> None:
+    file.attrs["config"] = "[" + "1," * 10**6 + "1]"
 
 
 @hostile("/scene/.*: is larger than the file")

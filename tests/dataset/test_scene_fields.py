@@ -5,7 +5,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from radhar_cli.activity import activity_named
+from radhar_cli.activity import ACTIVITIES, activity_named
 from radhar_cli.config import Config
 from radhar_cli.dataset.scene_fields import fields, values
 from radhar_cli.scene import depends_on, draw_scene, numbers, scene_numbers

@@ -361,10 +361,18 @@ def circle(data: bytes) -> bytes:
     return data[: place - 8] + bytes(8) + data[place:]
 
 
+def crash(data: bytes) -> bytes:
+    """A file with a text of a kind that there is not: HDF5 itself crashes on it."""
+    place = data.index(b"\x19\x01\x01\x00", data.index(b"h5py_version"))
+    return data[: place + 1] + b"\xff\xfe" + data[place + 3 :]
+
+
 def no_file(place: Path, kind: str, whole: bytes) -> Path:
     path = place / "dataset.h5"
     if kind == "a text without length":
         path.write_bytes(circle(whole))
+    elif kind == "a text without kind":
+        path.write_bytes(crash(whole))
     elif kind == "pipe":
         os.mkfifo(path)
     elif kind == "device":
@@ -385,6 +393,7 @@ NO_FILES = {
     "empty": "is no HDF5 file",
     "text": "is no HDF5 file",
     "magic": "is no HDF5 file",
+    "a text without kind": "attribute h5py_version: should be text",
     "a text without length": "a heap with an object of an impossible size",
 }
 

@@ -153,7 +153,16 @@ def test_every_number_of_a_scene_is_held_to_its_range_in_every_form() -> None:
 
 
 FFTS = ("processing.range_fft_length", "processing.stft_fft_length", "processing.fsst_hop_pulses")
-NULLABLE = ("snr_db", "subject.weight_kg", *FFTS)
+# Null takes what the model of motion has.
+OF_THE_MODEL = (
+    "motion.speed_mps",
+    "timing.seat_duration_s",
+    "timing.rise_duration_s",
+    "timing.walk_start_s",
+    "timing.sit_duration_s",
+    "timing.fall_duration_s",
+)
+NULLABLE = ("snr_db", "subject.weight_kg", *OF_THE_MODEL, *FFTS)
 
 
 def spoilt(key: str, value: Any) -> dict[str, Any]:

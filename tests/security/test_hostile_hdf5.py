@@ -357,8 +357,9 @@ def plain_chunks_in_a_gzip_dataset(file: h5py.File, _: Path) -> None:
 
 def circle(data: bytes) -> bytes:
     """A file whose last text has no length: HDF5 itself reads it without end."""
-    place = data.rindex(__version__.encode())
-    return data[: place - 8] + bytes(8) + data[place:]
+    text = __version__.encode()
+    place = data.index(len(text).to_bytes(8, "little") + text)  # as an object of a heap
+    return data[:place] + bytes(8) + data[place + 8 :]
 
 
 def crash(data: bytes) -> bytes:

@@ -207,8 +207,8 @@ def _root_attributes(file: h5py.File, config: Config, found: list[dict[str, Any]
         {part: named[part] for part in ("keys", "versions", "hash")}, sort_keys=True
     )
     file.attrs["seed"] = config.seed
-    file.attrs["class_names"] = [activity.label for activity in config.classes]
-    file.attrs["class_slugs"] = [activity.slug for activity in config.classes]
+    file.attrs["class_names"] = [activity.label for activity in config.every_class]
+    file.attrs["class_slugs"] = [activity.slug for activity in config.every_class]
     file.attrs["warnings"] = json.dumps(found)
     for library, version in versions().items():
         file.attrs[f"{library}_version"] = version

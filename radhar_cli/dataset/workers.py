@@ -48,7 +48,7 @@ def _with_activities(own: tuple[Activity, ...], function: Callable[..., T], *tas
     """Run a task in a worker that knows the classes its parent knows."""
     for activity in own:
         if activity.motion is not None and activity not in own_activities():
-            add_activity(activity.slug, activity.motion, activity.uses)
+            add_activity(activity.slug, activity.motion, activity.paper)
     return function(*task)
 
 

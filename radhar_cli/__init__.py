@@ -1,19 +1,21 @@
 """radhar: labelled FMCW radar data sets for human activity recognition.
 
-The rooms, in the order in which data flows through them; imports never turn back:
+The packages, in the order in which imports go; docs/architecture.md has the way of the data:
 
-    activity      the twelve activities: label, slug, class number, the parameters each one uses
-    config        strict, frozen pydantic models of the YAML file, one per section
-    randomness    named random streams
-    scenario      (config, class, index) -> one scene: every number drawn
-    body          skeleton, activities (angles over time), pose (angles -> positions)
-    radar         waveform, propagation (delay, amplitude), wall (refraction, Fresnel), noise
+    motion        `Motion`: scatterers over time; the paper's model, the human one, their skeleton
+    activity      the twelve activities, and classes of one's own
+    config        the schema of the YAML file, its checks, and how it is read
+    scene         (config, class, index) -> one scene: a config with nothing left to draw
+    radar         waveform, propagation (delay, amplitude), wall (refraction, Fresnel)
+    processing    cancellers, range compression, compensation, STFT, FSST, entropy, image
     echo          paths -> echo: `cube` (exact reference), `direct` (closed form), range profiles
-    processing    MTI, range compression, compensation, Savitzky-Golay, STFT, FSST, entropy, image
-    pipeline      scene -> maps: which stages a request needs, and their only order
+    receiver      impairments between echo and processing; noise
+    pipeline      scene -> maps: the table of products, the plan of a request, the check of scenes
+    simulation    one scene with its truth, and its files
+    figures       panels, animations, confusion matrices, curves
     dataset       many scenes -> shards -> dataset.h5 and PNG; resume, verify, estimate
-    figures       colour maps, panels, confusion matrices, curves
-    learning      images -> trained networks and reports; the only room with PyTorch
+    learning      images -> trained networks and reports; the only package with PyTorch
+    tradeoff      what accuracy costs
     commands      one file per subcommand of the `radhar` program
 
 Symbols (SI units, radians)::

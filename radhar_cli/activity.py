@@ -181,6 +181,11 @@ def add_activity(
     return _OWN[slug]
 
 
+def own_activities() -> tuple[Activity, ...]:
+    """The classes that `add_activity` made known."""
+    return tuple(_OWN.values())
+
+
 def is_new_slug(slug: str) -> bool:
     """Whether a class of one's own may have this name: none of the twelve's, fit for a folder."""
     return slug not in _BY_NAME and slug.isascii() and slug.isidentifier() and slug == slug.lower()

@@ -2,6 +2,8 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
+from math import nan
 from typing import Any, TypeAlias
 
 from radhar_cli.activity import Activity
@@ -154,6 +156,29 @@ def numbers(config: Config) -> list[tuple[str, Any]]:
     return found
 
 
+def number_at(scene: Scene, key: str) -> float:
+    """The number of a dotted key, such as `radar.tx_m.0`; NaN where the scene has no such number.
+
+    `motion.fall` is its place in FALLS.
+    """
+    place: Any = scene.config
+    for name in _path(key):
+        if place is None:
+            return nan
+        if isinstance(place, tuple):
+            place = place[int(name)]
+        else:
+            place = place[name] if isinstance(place, dict) else getattr(place, name)
+    if place is None or not depends_on(scene.config, scene.activity, key):
+        return nan
+    return float(FALLS.index(place)) if key == FALL else float(place)
+
+
+@lru_cache(maxsize=1024)
+def _path(key: str) -> tuple[str, ...]:
+    return tuple(key.split("."))
+
+
 def scene_numbers(scene: Scene) -> dict[str, float]:
     """{dotted key: number} of all that a scene depends on, in the units of the keys.
 
@@ -176,23 +201,47 @@ def depends_on(config: Config, activity: Activity, key: str) -> bool:
     return not key.startswith(REDRAWN) or key in PLACE or key in activity.uses(model)
 
 
-def _fixed(config: Config, activity: Activity, draw: Draw) -> Config:
-    """The config of one scene; numbers that its activity does not depend on are at their middle."""
+class _SameConfig:
+    """A config as a key: equal to itself alone, whatever it holds."""
+
+    def __init__(self, config: Config) -> None:
+        self.config = config
+
+    def __hash__(self) -> int:
+        return id(self.config)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _SameConfig) and self.config is other.config
+
+
+@lru_cache(maxsize=64)
+def _fixed_and_drawn(same: _SameConfig, activity: Activity) -> tuple[Config, dict[str, Any]]:
+    """The config of an activity with all at its middle, and {dotted key: number} to be drawn."""
+    config, drawn = same.config, dict[str, Any]()
 
     def fix(key: str, number: Any) -> float:
         one = for_activity(number, activity)
-        return (
-            draw(key, one)
-            if depends_on(config, activity, key) and not is_fixed(one)
-            else nominal(one)
-        )
+        if depends_on(config, activity, key) and not is_fixed(one):
+            drawn[key] = one
+        return nominal(one)
 
     sections = {key: _each_number(getattr(config, key), key, fix) for key in SCENE_KEYS}
-    subject = sections["subject"]
+    return config.model_copy(update=sections | {"activities": (activity.slug,)}), drawn
+
+
+def _fixed(config: Config, activity: Activity, draw: Draw) -> Config:
+    """The config of one scene; numbers that its activity does not depend on are at their middle."""
+    fixed, drawn = _fixed_and_drawn(_SameConfig(config), activity)
+    values = {key: draw(key, number) for key, number in drawn.items()}
+    sections: dict[str, Any] = {
+        key: _each_number(getattr(fixed, key), key, lambda name, number: values.get(name, number))
+        for key in {name.partition(".")[0] for name in values}
+    }
+    subject = sections.get("subject", fixed.subject)
     if subject.weight_kg is None:
         weight = {"weight_kg": default_weight(subject.height_m)}
         sections["subject"] = subject.model_copy(update=weight)
-    return config.model_copy(update=sections | {"activities": (activity.slug,)})
+    return fixed.model_copy(update=sections)
 
 
 def _each_number(value: Any, key: str, change: Callable[[str, Any], Any]) -> Any:

@@ -13,6 +13,7 @@ from pydantic import BaseModel
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.config import MAP_NAMES, Config
 from radhar_cli.config.checks import HUMAN_LIMITS
+from radhar_cli.config.schema import PerActivity
 
 Document = dict[str, Any]
 MOST_SECONDS = next(high for key, _, high in HUMAN_LIMITS if key == "duration_s")
@@ -23,11 +24,14 @@ def dotted_keys(model: type[BaseModel] = Config, prefix: str = "") -> Iterator[s
     for name, field in model.model_fields.items():
         kinds = [field.annotation, *getattr(field.annotation, "__args__", ())]
         inner = next((k for k in kinds if isinstance(k, type) and issubclass(k, BaseModel)), None)
-        if inner is None or (inner.__module__.endswith((".number", ".motion")) and prefix):
-            yield prefix + name
-        else:
-            yield prefix + name
+        yield prefix + name
+        if inner is not None and not is_number(inner):
             yield from dotted_keys(inner, f"{prefix}{name}.")
+
+
+def is_number(model: type[BaseModel]) -> bool:
+    """Whether this is a form of a number of a scene, and no section."""
+    return model.__module__.endswith(".number") or issubclass(model, PerActivity)
 
 
 KEYS = tuple(dict.fromkeys(dotted_keys()))
@@ -198,8 +202,8 @@ class Drawer:
             "fsst_threshold",
             lambda: self.pick((0.0, self.log(1e-300, 0.999))),
         )
-        order = int(self.rng.integers(0, 12))
-        frame = order + 1 + order % 2
+        order = int(self.rng.integers(0, 31))
+        frame = order + 1 + order % 2 + 2 * int(self.rng.integers(0, 20))
         self.maybe(processing, 0.3, "savgol", lambda: {"order": order, "frame": frame})
         return processing
 

@@ -9,6 +9,7 @@ import numpy as np
 from PIL import Image
 
 from radhar_cli.arrays import Levels
+from radhar_cli.dataset.png import stored_levels
 from radhar_cli.errors import FolderError
 from radhar_cli.untrusted import regular_size
 
@@ -39,10 +40,36 @@ def read_rgb(path: Path, size: tuple[int, int] | None = None) -> Levels:
         FolderError: it is damaged, too large, or of another size.
     """
     with _opened(path, size) as image:
-        if image.mode.startswith("I;16"):
-            grey = np.asarray(image).astype(np.uint32)
-            return np.repeat(((grey + 128) // 257).astype(np.uint8)[..., None], 3, axis=-1)
-        return np.asarray(image.convert("RGB"))
+        return _rgb(image)
+
+
+def read_gray(path: Path, size: tuple[int, int] | None = None) -> Levels:
+    """Levels [H, W] of an image file: as stored in a PNG of ours, the brightness of any other.
+
+    Args and errors are those of `read_rgb`.
+    """
+    with _opened(path, size) as image:
+        levels = stored_levels(image)
+        return luminance(_rgb(image)) if levels is None else levels
+
+
+def luminance(rgb: Levels) -> Levels:
+    """Brightness [H, W] of RGB [H, W, 3] after ITU-R BT.601.
+
+    One channel after the other: an image may have 67 million pixels.
+    """
+    total = np.full(rgb.shape[:-1], 500, dtype=np.uint32)
+    for channel, weight in enumerate((299, 587, 114)):
+        total += rgb[..., channel] * np.uint32(weight)
+    total //= 1000
+    return total.astype(np.uint8)
+
+
+def _rgb(image: Image.Image) -> Levels:
+    if image.mode.startswith("I;16"):
+        grey = np.asarray(image).astype(np.uint32)
+        return np.repeat(((grey + 128) // 257).astype(np.uint8)[..., None], 3, axis=-1)
+    return np.asarray(image.convert("RGB"))
 
 
 @contextmanager

@@ -7,7 +7,7 @@ import numpy as np
 
 from radhar_cli.arrays import Float
 from radhar_cli.config.schema import Config
-from radhar_cli.scene import FALL, Scene, depends_on, numbers, scene_numbers
+from radhar_cli.scene import FALL, Scene, depends_on, number_at, numbers
 
 _UNITS = {
     "m": ("m", 1.0),
@@ -59,8 +59,7 @@ def fields(config: Config) -> tuple[Field, ...]:
 
 def values(scene: Scene, columns: tuple[Field, ...], error_db: float = nan) -> Float:
     """Numbers [fields] in the units of the config keys, NaN where one does not apply."""
-    known = scene_numbers(scene) | {ERROR.key: error_db}
-    return np.array([known.get(field.key, nan) for field in columns])
+    return np.array([error_db if f is ERROR else number_at(scene, f.key) for f in columns])
 
 
 def _field(key: str) -> Field:

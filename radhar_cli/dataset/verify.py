@@ -9,7 +9,7 @@ import numpy as np
 from radhar_cli.config.identity import config_hash
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.identity import versions
-from radhar_cli.dataset.image_file import read_rgb
+from radhar_cli.dataset.image_file import read_gray, read_rgb
 from radhar_cli.dataset.layout import DATASET, PNG, Rows, png_path
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset
@@ -148,7 +148,9 @@ def _pngs(data: Dataset, folder: Path, report: Report) -> None:
             levels = data.maps[name][row]
             path = png_path(name, split[row], *rows[row])
             try:
-                same = np.array_equal(read_rgb(folder / path), table[levels])
+                same = np.array_equal(read_gray(folder / path), levels) and np.array_equal(
+                    read_rgb(folder / path), table[levels]
+                )
             except FolderError as error:
                 report.problems.append(f"{path}: cannot be read ({error})")
                 continue

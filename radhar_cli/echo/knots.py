@@ -111,8 +111,9 @@ def resolve(source: PathSource, waveform: Waveform, spacing: Spacing) -> Motion:
             moving = moving | knots.moving(first)
             power += knots.power()
             largest = max(largest, float(knots.paths.amplitude.max(initial=0.0)))
-            excess = max(excess, _excess(knots.paths, waveform, spacing))
-        if step == 1 or excess <= 1:
+            if step > 1:
+                excess = max(excess, _excess(knots.paths, waveform, spacing))
+        if excess <= 1:
             return Motion(step, moving, power / waveform.n_pulses, largest, kept)
         step = min(step - 1, int(step / excess))
 

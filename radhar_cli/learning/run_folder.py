@@ -302,9 +302,10 @@ def load_best(folder: Path) -> tuple[About, nn.Module]:
         )
         raise RunError(f"{folder}: holds no {BEST}; {hint}")
     try:
+        size = regular_size(path)
         with path.open("rb") as start:
             header = int.from_bytes(start.read(8), "little")
-        if header > min(MOST_HEADER, regular_size(path)):
+        if header > min(MOST_HEADER, size):
             raise ValueError(f"it claims a header of {header} bytes")
         with safe_open(path, framework="pt") as file:
             return _opened(path, file)

@@ -246,7 +246,14 @@ class _Training:
             check_state(self.optimiser, found["optimiser"])
             self.optimiser.load_state_dict(found["optimiser"])
             torch.set_rng_state(found["random"])
-        except (RuntimeError, ValueError, KeyError, TypeError, IndexError) as error:
+        except (
+            AttributeError,
+            IndexError,
+            KeyError,
+            RuntimeError,
+            TypeError,
+            ValueError,
+        ) as error:
             raise run.RunError(
                 f"{path}: does not fit this run ({run.first_line(error)}); --overwrite starts it "
                 "again"

@@ -24,9 +24,7 @@ class Frames:
         cls, window_fraction: float, overlap_fraction: float, duration: float, prf: float
     ) -> "Frames":
         """L = round(window_fraction T PRF), hop = round((1 - overlap_fraction) L), at least 1."""
-        length = half_up(window_fraction, duration, prf)
-        hop = int((1 - exact(overlap_fraction)) * length + exact(0.5))
-        return frames_of(length, max(hop, 1))
+        return _frames(window_fraction, overlap_fraction, duration, prf)
 
     def count(self, samples: int) -> int:
         """Number of whole frames in a signal."""
@@ -66,7 +64,8 @@ class Frames:
         return np.lib.stride_tricks.sliding_window_view(x, self.length)[:: self.hop]
 
 
-@lru_cache(maxsize=4)
-def frames_of(length: int, hop: int) -> Frames:
-    """`Frames`, whose windows are worked out once for many recordings."""
-    return Frames(length, hop)
+@lru_cache(maxsize=4)  # with their windows, for all recordings of a data set
+def _frames(window_fraction: float, overlap_fraction: float, duration: float, prf: float) -> Frames:
+    length = half_up(window_fraction, duration, prf)
+    hop = int((1 - exact(overlap_fraction)) * length + exact(0.5))
+    return Frames(length, max(hop, 1))

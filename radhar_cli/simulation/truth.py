@@ -28,7 +28,7 @@ class Truth:
         doppler: -f0 dtau/dt [M, I], Hz, the wall's delay included, before aliasing.
         phase_label: number in `phases` of the movement under way [M].
         phases: names of the movements within the activity.
-        hip_joints: where thighs begin, right and left [M, 2, 3], m; None for the hip itself.
+        hip_joints: where thighs begin, right and left [M, 2, 3], m; None where it is the hip.
     """
 
     time: Float

@@ -249,7 +249,7 @@ class TestKnots:
     def test_a_fast_radar_needs_few(self):
         assert self.asked(self.swinging(0.5), RADAR) < 0.1 * RADAR.times.size
 
-    def test_a_tighter_budget_more(self):
+    def test_a_tighter_tolerance_more(self):
         asked = [self.asked(self.swinging(1.0), RADAR, db) for db in (-40, -80, -120)]
         assert asked == sorted(set(asked))
 

@@ -2,6 +2,7 @@
 
 import pickle
 import random
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -15,12 +16,12 @@ from small import small_config
 
 from radhar_cli.config import load_config
 from radhar_cli.dataset.build import build
+from radhar_cli.dataset.image_file import luminance, read_gray, read_rgb
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.images.image_set import (
     ImageSet,
     class_order,
     labels_for,
-    luminance,
     split_named,
 )
 from radhar_cli.learning.images.opening import open_images
@@ -89,10 +90,20 @@ def test_gray_is_the_stored_level(made: Path) -> None:
 
     with h5py.File(made / "dataset.h5") as file:
         levels = file["maps/stft"][3]
-    read = open_images(made, "stft", "gray").pixels.read(3)[..., 1]
-    # Of the 256 levels of viridis a few share their colour with the one below.
-    assert np.abs(read.astype(int) - levels).max() <= 1
-    assert np.mean(read == levels) > 0.97
+    read = open_images(made, "stft", "gray").pixels.read(3)
+    assert np.array_equal(read, np.repeat(levels[..., None], 3, axis=-1))
+
+
+def test_levels_of_our_pngs_need_no_data_set_around_them(made: Path, tmp_path: Path) -> None:
+    """And of nobody else's palette: a screenshot with 16 colours is as bright as it looks."""
+    own = next((made / "png/stft/train/walking").glob("*.png"))
+    right = read_gray(own)
+    shutil.copy(own, tmp_path / "moved.png")
+    assert np.array_equal(read_gray(tmp_path / "moved.png"), right)
+    with Image.open(own) as picture:
+        picture.convert("RGB").quantize(16).save(tmp_path / "few.png")
+    few = tmp_path / "few.png"
+    assert np.array_equal(read_gray(few), luminance(read_rgb(few)))
 
 
 def test_gray_of_a_strange_image_is_its_brightness(tmp_path: Path) -> None:

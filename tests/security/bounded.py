@@ -1,9 +1,12 @@
 """Run commands of the program one after another in one process, each with 20 s and 2 GB."""
 
 import json
+import resource
+import signal
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
@@ -54,6 +57,26 @@ for name, words in cases.items():
     print(name, round(time.monotonic() - began, 2), found[name][0], file=sys.stderr)
 result.write_text(json.dumps(found))
 """
+
+
+@contextmanager
+def limited() -> Iterator[None]:
+    """20 s, then TimeoutError, and 2 GB beyond what this process has mapped now."""
+
+    def stop(*_: object) -> None:
+        raise TimeoutError
+
+    mapped = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+    before = resource.getrlimit(resource.RLIMIT_AS)
+    old = signal.signal(signal.SIGALRM, stop)
+    resource.setrlimit(resource.RLIMIT_AS, (mapped + BYTES, before[1]))
+    signal.alarm(SECONDS)
+    try:
+        yield
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, old)
+        resource.setrlimit(resource.RLIMIT_AS, before)
 
 
 class Answer(NamedTuple):

@@ -63,3 +63,30 @@ def mutate_image(rng: random.Random, data: bytes) -> bytes:
         else:
             data = data[:at] + data[other : other + length] + data[at + length :]
     return data
+
+
+def mutate_file(rng: random.Random, data: bytes) -> bytes:
+    """The bytes with one to four faults: flips, odd numbers, cuts, repetitions, odd words."""
+    changed = bytearray(data)
+    for _ in range(rng.choice((1, 1, 1, 2, 4))):
+        place = rng.randrange(len(changed) + 1)
+        width = rng.choice((1, 2, 4, 8))
+        kind = rng.randrange(7)
+        if kind == 0 and place < len(changed):
+            changed[place] ^= 1 << rng.randrange(8)
+        elif kind == 1:
+            number = rng.choice((0, 1, 255, 2**31 - 1, 2**63 - 1, 2**64 - 1, rng.getrandbits(64)))
+            changed[place : place + width] = number.to_bytes(8, "little")[:width]
+        elif kind == 2:
+            del changed[place:]
+        elif kind == 3:
+            del changed[place : place + rng.randrange(1, 64)]
+        elif kind == 4:
+            changed[place:place] = changed[place : place + rng.randrange(1, 256)]
+        elif kind == 5:
+            odd = (b"null", b"-1", b"1e999", b"NaN", b"[", b'"', b"{}", b"\xff\xfe", b"9" * 400)
+            changed[place : place + width] = rng.choice(odd)
+        else:
+            start = rng.randrange(len(changed) + 1)
+            changed[place : place + width] = changed[start : start + width]
+    return bytes(changed)

@@ -3,17 +3,13 @@
 import io
 import json
 import random
-import resource
-import signal
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 import pytest
 from learning.patterns import stripes
 from PIL import Image
-from security.bounded import BYTES, SECONDS
+from security.bounded import limited
 from security.mutations import mutate_image, mutate_yaml
 
 from radhar_cli.config import config_from_json, load_config, resolved
@@ -27,20 +23,6 @@ CONFIGS = sorted((ROOT / "configs").rglob("*.yaml"))
 ALIASES = "motion:\n  thigh_deg: &a {normal: [30, 5], min: 20}\n  calf_deg: {<<: *a, min: 25}\n"
 # (first case, cases): a fiftieth of them in every run.
 RUNS = [(0, 40), pytest.param(40, 960, marks=pytest.mark.slow)]
-
-
-@contextmanager
-def bounded() -> Iterator[None]:
-    """20 s, and 2 GB beyond what is mapped now."""
-    mapped = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
-    before = resource.getrlimit(resource.RLIMIT_AS)
-    resource.setrlimit(resource.RLIMIT_AS, (mapped + BYTES, before[1]))
-    signal.alarm(SECONDS)  # ends this process, and tells which test ran
-    try:
-        yield
-    finally:
-        signal.alarm(0)
-        resource.setrlimit(resource.RLIMIT_AS, before)
 
 
 def clear(error: RadharError, path: Path) -> None:
@@ -85,7 +67,7 @@ def test_a_damaged_config_is_read_or_refused(tmp_path: Path, first: int, count: 
         path.write_text(mutate_yaml(rng, text), encoding="utf-8")
         training = source.parent.name == "train"
         try:
-            with bounded():
+            with limited():
                 config = load_section(TrainConfig, path) if training else load_config(path)
         except ConfigError as error:
             refused += 1
@@ -108,7 +90,7 @@ def test_a_damaged_image_is_read_or_refused(tmp_path: Path, first: int, count: i
         path = tmp_path / f"x.{name[:3].lower()}"
         path.write_bytes(mutate_image(rng, whole[name]))
         try:
-            with bounded():
+            with limited():
                 size = image_size(path)
                 rgb = read_rgb(path)
         except FolderError as error:

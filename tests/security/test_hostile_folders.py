@@ -13,7 +13,7 @@ from security.made import SET
 
 from radhar_cli.cli import program
 from radhar_cli.config import load_config
-from radhar_cli.dataset import shards
+from radhar_cli.dataset import scene_fields, shards
 from radhar_cli.dataset.folder import locked
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.errors import RadharError
@@ -72,7 +72,7 @@ LINKS = [
     linked(".radhar/identity.json", "identity.json"),
     linked(".radhar/sweep.json", "identity.json"),
     linked(".radhar/shards", "shards"),
-    linked(".radhar/settled", "shards"),
+    linked(".radhar/checks", "shards"),
     linked(".radhar/unfinished"),
     linked(".radhar/measured"),
     linked(".radhar/accuracy"),
@@ -187,15 +187,17 @@ def shard(folder: Path, change: Callable[[h5py.File], None]) -> None:
     """A shard of rows 0 to 5 with the right checksum, whose content a stranger made."""
     path = folder / ".radhar/shards/rows-000000000-000000006.h5"
     path.parent.mkdir(parents=True)
+    config = load_config(folder.parent / "c.yaml")
     with h5py.File(path, "w", userblock_size=shards.USER_BLOCK) as file:
         file.create_dataset("maps/stft", (6, 32, 32), "u1", chunks=(1, 32, 32), compression="gzip")
         file["maps/stft"][:] = 1
         file["entropy/stft"] = np.zeros(6, "f4")
         file["sha256/stft"] = np.zeros(6, "S64")
         file["extent/stft"] = np.zeros((6, 4))
-        file["scene"] = np.zeros((6, 10))
+        file["scene"] = np.zeros((6, len(scene_fields.fields(config))))
+        file["flags"] = np.zeros(6, "u1")
         change(file)
-    whose = identity_hash(identity(load_config(folder.parent / "c.yaml")))
+    whose = identity_hash(identity(config))
     data = path.read_bytes()
     checksum = shards._checksum(whose, 0, 6, memoryview(data)[shards.USER_BLOCK :])
     header = f"radhar shard of {whose}\nrows 0 6\nsha256 {checksum}\n".encode()

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from listener import Listener
+from pydantic import TypeAdapter
 from small import SMALL, small_config
 
 from radhar_cli.errors import ConfigError, FolderError
@@ -35,8 +36,9 @@ class Memory:
     def __init__(self) -> None:
         self.text: dict[str, str] = {}
 
-    def get(self, key: str) -> Any | None:
-        return json.loads(self.text[key]) if key in self.text else None
+    def get(self, key: str, kind: Any = Any) -> Any | None:
+        text = self.text.get(key)
+        return None if text is None else TypeAdapter(kind).validate_json(text)
 
     def put(self, key: str, value: Any) -> None:
         self.text[key] = json.dumps(value)

@@ -8,16 +8,14 @@ from pathlib import Path
 import numpy as np
 
 from radhar_cli.arrays import Levels
-from radhar_cli.dataset.image_file import image_size, read_rgb
+from radhar_cli.dataset.image_file import image_size, read_gray, read_rgb
 from radhar_cli.dataset.layout import CONFIG, PNG
-from radhar_cli.errors import ConfigError, FolderError
+from radhar_cli.errors import FolderError
 from radhar_cli.learning.images.image_set import (
     SPLIT_NAMES,
     ImageSet,
     Resized,
     class_order,
-    colour_codes,
-    luminance,
     repeated,
 )
 
@@ -37,50 +35,21 @@ class FilePixels:
         files: [N].
         kind: "rgb" or "gray".
         size: (H, W) that all of them should have, None for any.
-        table: for "gray", the colour table [256, 3] that ours were drawn with.
     """
 
     files: tuple[Path, ...]
     kind: str
     size: tuple[int, int] | None
-    table: Levels | None
 
     def read(self, row: int) -> Levels:
-        """RGB [H, W, 3] of a row.
+        """RGB [H, W, 3] of a row, or one channel three times.
 
         Raises:
             FolderError: it is damaged, or of another size.
         """
-        return read_image(self.files[row], self.kind, self.size, self.table)
-
-
-def read_image(
-    path: Path, kind: str, size: tuple[int, int] | None, table: Levels | None = None
-) -> Levels:
-    """Read an image file as RGB [H, W, 3].
-
-    Args:
-        path: of the file.
-        kind: "rgb" or "gray", one channel three times.
-        size: (H, W) that it should have, or None.
-        table: the colour table [256, 3] it was drawn with, to find the levels again for "gray".
-
-    Raises:
-        FolderError: it is damaged, or of another size.
-    """
-    rgb = read_rgb(path, size)
-    if kind == "rgb":
-        return rgb
-    levels = _levels(rgb, table) if table is not None else None
-    return repeated(luminance(rgb) if levels is None else levels)
-
-
-def _levels(rgb: Levels, table: Levels) -> Levels | None:
-    """Levels [H, W] of an image that was drawn through a colour table; None if it was not."""
-    level_of = np.zeros(2**24, dtype=np.uint8)
-    level_of[colour_codes(table)[::-1]] = np.arange(255, -1, -1)  # the lowest of a colour stays
-    levels: Levels = level_of[colour_codes(rgb)]
-    return levels if np.array_equal(table[levels], rgb) else None
+        if self.kind == "rgb":
+            return read_rgb(self.files[row], self.size)
+        return repeated(read_gray(self.files[row], self.size))
 
 
 def folder_images(root: Path, map_name: str | None, kind: str, any_size: bool = False) -> ImageSet:
@@ -133,9 +102,7 @@ def folder_images(root: Path, map_name: str | None, kind: str, any_size: bool = 
         names=_names(found),
         scenes=None,
         size=size,
-        pixels=FilePixels(
-            files, kind, None if any_size else size, our_table(root) if kind == "gray" else None
-        ),
+        pixels=FilePixels(files, kind, None if any_size else size),
     )
 
 
@@ -153,8 +120,7 @@ def loose_images(
 ) -> ImageSet:
     """Single files without classes, of a size (H, W) or brought to it."""
     where = files[0].parent
-    table = our_table(where) if kind == "gray" else None
-    pixels = FilePixels(tuple(files), kind, None if resize else size, table)
+    pixels = FilePixels(tuple(files), kind, None if resize else size)
     return ImageSet(
         where=where,
         map=None,
@@ -168,32 +134,12 @@ def loose_images(
     )
 
 
-def our_table(inside: Path) -> Levels | None:
-    """The colour table of the data set that an image lies in, None if it is not one of ours."""
-    from radhar_cli.config import load_config
-    from radhar_cli.dataset.png import colour_table
-
-    found = _our_png_folder(inside)
-    if found is None:
-        return None
-    try:
-        return colour_table(load_config(found[0].parent / CONFIG).image.colour_map)
-    except ConfigError:
-        return None
-
-
 def our_map(inside: Path) -> str | None:
     """The map whose images lie in a folder that `radhar generate` wrote, None elsewhere."""
-    found = _our_png_folder(inside)
-    return found[1] if found else None
-
-
-def _our_png_folder(inside: Path) -> tuple[Path, str] | None:
-    """(png folder, map) of a path inside a data set's images."""
     whole = inside.resolve()
     for folder, below in zip(whole.parents, (whole, *whole.parents), strict=False):
         if folder.name == PNG and (folder.parent / CONFIG).is_file():
-            return folder, below.name
+            return below.name
     return None
 
 

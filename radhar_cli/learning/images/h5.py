@@ -1,4 +1,4 @@
-"""Images of a dataset.h5: levels through the colour table that coloured the PNGs."""
+"""Images of a dataset.h5: levels, or their colours in the PNGs."""
 
 import hashlib
 import os
@@ -10,7 +10,7 @@ import numpy as np
 from radhar_cli.arrays import Levels
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset, open_dataset
-from radhar_cli.learning.images.image_set import ImageSet, class_order, first_of_colour, repeated
+from radhar_cli.learning.images.image_set import ImageSet, class_order, repeated
 
 _WHO_AND_HOW = ("subject.", "motion.", "timing.")
 
@@ -48,7 +48,7 @@ def h5_images(path: Path, map_name: str | None, kind: str) -> ImageSet:
         slug = np.array(data.class_slugs)[data.label]
         classes = class_order(set(slug.tolist()))
         colours = colour_table(data.config.image.colour_map)
-        table = colours if kind == "rgb" else repeated(first_of_colour(colours))
+        table = colours if kind == "rgb" else repeated(np.arange(256, dtype=np.uint8))
         return ImageSet(
             where=path,
             map=name,

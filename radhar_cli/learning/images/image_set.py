@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image
 
 from radhar_cli.activity import ACTIVITIES
@@ -179,35 +178,6 @@ def labels_for(images: ImageSet, known: Sequence[str]) -> Index:
             hint = did_you_mean(name, known, f"the model knows {', '.join(known)}")
             raise FolderError(f"{images.where}: class {name!r} is unknown to the model; {hint}")
     return np.array([list(known).index(name) for name in images.classes])[images.label]
-
-
-def luminance(rgb: Levels) -> Levels:
-    """Brightness [H, W] of RGB [H, W, 3] after ITU-R BT.601."""
-    brightness: Levels = ((_weighted(rgb, 299, 587, 114) + 500) // 1000).astype(np.uint8)
-    return brightness
-
-
-def first_of_colour(table: Levels) -> Levels:
-    """The lowest level [256] that has the same colour as each level of a table [256, 3].
-
-    At eight bits some neighbours share a colour (three pairs of viridis), and a PNG cannot tell
-    them apart; so nobody should.
-    """
-    codes = colour_codes(table)
-    return np.array([np.flatnonzero(codes == code)[0] for code in codes], dtype=np.uint8)
-
-
-def colour_codes(rgb: Levels) -> NDArray[np.uint32]:
-    """24-bit numbers [...] of colours [..., 3]."""
-    return _weighted(rgb, 1 << 16, 1 << 8, 1)
-
-
-def _weighted(rgb: Levels, *weights: int) -> NDArray[np.uint32]:
-    """Weighted sum of the channels, one after the other: an image may have 67 million pixels."""
-    total = np.zeros(rgb.shape[:-1], dtype=np.uint32)
-    for channel, weight in enumerate(weights):
-        total += rgb[..., channel] * np.uint32(weight)
-    return total
 
 
 def repeated(levels: Levels) -> Levels:

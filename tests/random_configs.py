@@ -12,9 +12,11 @@ from pydantic import BaseModel
 
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.config import MAP_NAMES, Config
+from radhar_cli.config.checks import HUMAN_LIMITS
 from radhar_cli.config.schema import PerActivity
 
 Document = dict[str, Any]
+MOST_SECONDS = next(high for key, _, high in HUMAN_LIMITS if key == "duration_s")
 
 
 def dotted_keys(model: type[BaseModel] = Config, prefix: str = "") -> Iterator[str]:
@@ -149,6 +151,8 @@ class Drawer:
         self.maybe(document, 0.7, "motion", self.motion)
         self.maybe(document, 0.6, "timing", lambda: self.timing(document["duration_s"]))
         self.maybe(document, 0.6, "subject", self.subject)
+        if document["duration_s"] <= MOST_SECONDS and self.chance(0.4):
+            self.people(document)
         self.maybe(document, 0.5, "wall", self.wall)
         self.maybe(document, 0.6, "snr_db", lambda: self.number(lambda: self.signed(1e-3, 300)))
         self.maybe(document, 0.2, "snr_db", lambda: None)
@@ -204,7 +208,7 @@ class Drawer:
         return processing
 
     def motion(self) -> Document:
-        motion: Document = {}
+        motion: Document = {"model": "paper"}
         extreme = self.chance(0.5)
         for key in ("range_m", "cross_range_m"):
             far = (lambda: self.signed(1e-3, 1e6)) if extreme else (lambda: self.log(0.5, 20))
@@ -216,6 +220,23 @@ class Drawer:
         for key in ("speed_mps", "gait_hz"):
             self.maybe(motion, 0.1, key, lambda: 0)
         return motion
+
+    def people(self, document: Document) -> None:
+        """Make the document one of people: what they use within what people do."""
+        sections: dict[str, Document] = {"subject": {}, "motion": {"model": "human"}, "timing": {}}
+        for key, low, high in HUMAN_LIMITS:
+            section, _, name = key.rpartition(".")
+            if section:
+                draw = lambda low=low, high=high: float(self.rng.uniform(low, high))  # noqa: E731
+                self.maybe(sections[section], 0.4, name, lambda draw=draw: self.number(draw))
+        fall = self.pick(("sideways", {"choice": ["forward", "backward", "sideways"]}))
+        self.maybe(sections["motion"], 0.4, "fall", lambda: fall)
+        for section, numbers in sections.items():
+            document[section] = document.get(section, {}) | numbers
+        for key, _, _ in HUMAN_LIMITS:  # what was drawn for the paper's model is no people's
+            section, _, name = key.rpartition(".")
+            if section and name not in sections[section]:
+                document[section].pop(name, None)
 
     def timing(self, duration: float) -> Document:
         keys = ("seat_start", "seat_duration", "rise_start", "rise_duration", "walk_start")

@@ -40,6 +40,7 @@ from radhar_cli.config.number import (
     Uniform,
     Vary,
     Vector,
+    support,
     within,
 )
 from radhar_cli.errors import did_you_mean
@@ -248,6 +249,9 @@ class TimingConfig(Section):
     overlap_s: SecondsBy = 0.0
 
 
+SHORTEST_MOVEMENT = 0.3
+
+
 class SequenceConfig(Section):
     """A class of one's own: movements one after the other, joined at rest.
 
@@ -280,6 +284,8 @@ class SequenceConfig(Section):
                     f"should be joined at rest: {name} begins {movement.before}, "
                     f"{self.sequence[n - 1]} ends {state}"
                 )
+            if duration is not None and not support(duration)[0] >= SHORTEST_MOVEMENT:
+                raise _wrong(f"should have durations_s from {SHORTEST_MOVEMENT} s on")
             if movement.seconds is None and duration is None and n < last:
                 raise _wrong(f"should have a duration of {name}, which something follows")
             state = movement.after

@@ -45,7 +45,9 @@ from radhar_cli.scene import Scene
 
 M = TypeVar("M", SitDown, StandUp, GetUp, StepTo, FallForward, FallBackward, FallSideways)
 
-MAX_OVERLAP = 0.8  # s, of two movements
+# How far a walk overlaps another movement at most, over the latter's duration: low down, no legs
+# are long enough for a step.
+MOST_OVERLAP = 0.3
 RAGGED_HZ = (0.1, 0.25, 0.4)
 SHORTEST_STRIDE = 0.5  # s
 SHUFFLE = 0.9  # s
@@ -139,8 +141,10 @@ def _what(scene: Scene) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
         return _shuffling(scene, movements, _begin(scene) + length)
     pause = -_f(timing.overlap_s)
     if slug in ("sitting_to_walking", "falling_to_walking") and timing.walk_start_s is not None:
-        risen = _begin(scene) + _f(timing.rise_duration_s)
-        pause = max(_f(timing.walk_start_s) - risen, -MAX_OVERLAP)
+        risen = _begin(scene) + _f(duration)
+        pause = _f(timing.walk_start_s) - risen
+    if duration is not None:
+        pause = max(pause, -MOST_OVERLAP * _f(duration))
     if isinstance(movements[-1], FallSideways):
         pause = 0.0  # only movements on planted feet overlap a walk
     return movements, (0.0, pause) if len(movements) > 1 else ()
@@ -172,11 +176,11 @@ def _repertoire(scene: Scene, duration: float | None, place: int = 0) -> Reperto
         walk=_f(scene.config.timing.walk_stop_s),
         punch=Punch(
             frequency=scale * _f(motion.punch_hz),
-            paces=tuple(scale * paces),
-            sizes=tuple(np.minimum(sizes, 1.0)),  # an arm gets no longer
+            paces=_some(scale * paces),
+            sizes=_some(np.minimum(sizes, 1.0)),  # an arm gets no longer
         ),
         kick=Kick(
-            frequency=scale * _f(motion.kick_hz), paces=tuple(scale * paces), sizes=tuple(sizes)
+            frequency=scale * _f(motion.kick_hz), paces=_some(scale * paces), sizes=_some(sizes)
         ),
         grab=Grab(
             down=moving * 1.2 / 2.5,
@@ -285,6 +289,8 @@ def _fidgets(scene: Scene) -> Iterable[Fidget]:
     for at in _instants(scene, _f(motion.fidget_hz), "motion.fidget_hz/times", -1.0):
         channel = FIDGETS[rng.integers(len(FIDGETS))]
         to = _f(motion.fidget_size) * FIDGET_SIZES[channel] * np.clip(rng.standard_normal(), -2, 2)
+        if channel.endswith("elbow"):
+            to = abs(to)  # no arm bends backwards
         yield Fidget(channel, float(to), at, float(rng.uniform(0.5, 1.8)))
 
 

@@ -20,7 +20,7 @@ from radhar_cli.config.schema import Config
 from radhar_cli.dataset.assembly import assembled
 from radhar_cli.dataset.batch import Batch, check_rows, png_rows, run_batch
 from radhar_cli.dataset.check_cache import OUTCOME, Outcomes, store_checks, stored_checks
-from radhar_cli.dataset.folder import claim, locked, mark_built, tidy
+from radhar_cli.dataset.folder import claim, clean_up, locked, mark_built
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.layout import DATASET, MANIFEST, WORK, Rows, png_path
 from radhar_cli.dataset.png import colour_table
@@ -127,7 +127,7 @@ class _Build:
         split = split_rows(config)
         if (self.folder / DATASET).exists():
             pngs = self._missing_pngs(split, self.folder / DATASET)
-            tidy(self.folder)
+            clean_up(self.folder)
             return Outcome(self.folder, count, 0, pngs)
         checked = self._check_scenes(count) if count <= MAX_CHECKED_FIRST else None
         said = [] if checked is None else warnings(config, _counts(checked["flags"]))
@@ -139,7 +139,7 @@ class _Build:
             self.progress.advance(count)
             pngs = self._missing_pngs(split, unfinished)
         mark_built(self.folder)
-        tidy(self.folder)
+        clean_up(self.folder)
         return Outcome(self.folder, count, made, pngs, stored)
 
     def _say(self, found: list[dict[str, Any]]) -> None:

@@ -232,7 +232,9 @@ def test_tables_that_are_none_are_refused(name: str, kind: str, run: Path) -> No
         path.mkdir()
     else:
         path.write_bytes(b"epoch,pixels\n\xff,\x00\n" + b'"' + b"x" * 200_000)
-    reader = {"history.csv": read_history, "trained_on.csv": read_trained_on}.get(name, read_metadata)
+    reader = {"history.csv": read_history, "trained_on.csv": read_trained_on}.get(
+        name, read_metadata
+    )
     one_line(lambda: reader(run), name)
 
 

@@ -1,17 +1,66 @@
 """The activities: label, slug, class number and the numbers each one depends on."""
 
 import difflib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from radhar_cli.motion.protocol import Motion
 
+MODELS = ("paper", "human")  # of `motion.model`
+
 _GAIT = ("motion.gait_hz", "motion.thigh_deg", "motion.calf_deg", "motion.arm_deg")
 _WALK = ("motion.speed_mps", *_GAIT)
 _SEAT = ("timing.seat_start_s", "timing.seat_duration_s")
-_RISE = ("timing.rise_start_s", "timing.rise_duration_s", "timing.walk_start_s", "timing.blend_s")
+_RISE = ("timing.rise_start_s", "timing.rise_duration_s", "timing.walk_start_s")
+_STOP = ("timing.walk_stop_s", "timing.overlap_s")
+
+# What each movement of people depends on, besides body, place and the restlessness of everybody.
+_STRIKE = ("motion.cycle_phase", "motion.strike_scale", "motion.tempo_jitter", "motion.size_jitter")
+_SIT = ("motion.seat_height", "motion.lean_deg", "motion.recline_deg")
+_STRIDE = (
+    "motion.speed_mps",
+    "motion.period_scale",
+    "motion.cycle_phase",
+    "motion.arm_swing",
+    "motion.trunk_pitch_deg",
+    "motion.step_width",
+    "motion.step_asymmetry",
+    "motion.ragged_speed",
+    "motion.stride_jitter",
+    "motion.width_jitter_m",
+)
+
+
+class Movement(NamedTuple):
+    """A movement of people: states it begins and ends in, its usual duration (s), its numbers."""
+
+    before: str
+    after: str
+    seconds: float | None  # None goes on until it is told to end
+    uses: tuple[str, ...] = ()
+
+
+# What sequences are made of (`classes:`).
+MOVEMENTS = {
+    "stationary": Movement("standing", "standing", None),
+    "punching": Movement("standing", "standing", None, ("motion.punch_hz", *_STRIKE)),
+    "kicking": Movement("standing", "standing", None, ("motion.kick_hz", *_STRIKE)),
+    "grabbing": Movement("standing", "standing", 2.5, ("motion.bend_deg", "motion.dwell_s")),
+    "sitting_down": Movement("standing", "seated", 2.0, _SIT),
+    "standing_up": Movement("seated", "standing", 1.8, _SIT),
+    "body_rotating": Movement(
+        "standing",
+        "standing",
+        None,
+        ("motion.cycle_phase", "motion.rotation_hz", "motion.turn_deg"),
+    ),
+    "walking": Movement("standing", "standing", None, _STRIDE),
+    "falling": Movement("standing", "lying", 1.1, ("motion.fall",)),
+    "getting_up": Movement("lying", "standing", 3.0),
+    "turning_around": Movement("standing", "standing", 1.8),
+}
 
 
 @dataclass(frozen=True)
@@ -21,14 +70,16 @@ class Activity:
     Attributes:
         number: 1 to 12, the paper's S number; 13 and more for classes of one's own.
         slug: name used in folders and on the command line.
-        uses: dotted config keys of the motion and timing numbers this activity depends on,
-            besides the position and the heading, which all of them use.
-        motion: makes the motion of a Scene; None for the twelve, which `motion:` decides about.
+        paper: dotted config keys of the motion and timing numbers this activity depends on,
+            besides the position and the heading, which all of them use; of the paper's model.
+        human: the same of the human model.
+        motion: makes the motion of a Scene; None for what `motion:` decides about.
     """
 
     number: int
     slug: str
-    uses: tuple[str, ...]
+    paper: tuple[str, ...] = ()
+    human: tuple[str, ...] = ()
     motion: "Callable[..., Motion] | None" = None
 
     @property
@@ -44,29 +95,63 @@ class Activity:
     @property
     def walks(self) -> bool:
         """Whether the torso moves along the motion angle."""
-        return "motion.speed_mps" in self.uses
+        return "motion.speed_mps" in self.paper
+
+    def uses(self, model: str) -> tuple[str, ...]:
+        """The keys that the activity depends on under a model of motion."""
+        return self.human if model == "human" else self.paper
 
 
+def sequence_uses(names: Iterable[str]) -> tuple[str, ...]:
+    """The keys that a sequence of movements depends on."""
+    return tuple(dict.fromkeys(key for name in names for key in MOVEMENTS[name].uses))
+
+
+def _activity(number: int, slug: str, paper: tuple[str, ...], *more: str) -> Activity:
+    """One of the twelve: `more` are movements of S9 to S12, or keys beside the movement's own."""
+    keys = tuple(key for key in more if "." in key)
+    human = sequence_uses([name for name in more if "." not in name] or [slug])
+    return Activity(number, slug, paper, (*human, *(key for key in keys if key not in human)))
+
+
+_SITTING = (*_SIT, *_SEAT)
 ACTIVITIES: tuple[Activity, ...] = (
-    Activity(1, "stationary", ()),
-    Activity(2, "punching", ("motion.gait_hz", "motion.calf_deg", "motion.arm_deg")),
-    Activity(3, "kicking", ("motion.gait_hz", "motion.thigh_deg", "motion.calf_deg")),
-    Activity(4, "grabbing", ("motion.gait_hz",)),
-    Activity(5, "sitting_down", _SEAT),
-    Activity(6, "standing_up", _SEAT),
-    Activity(7, "body_rotating", ("motion.gait_hz", "motion.turn_deg")),
-    Activity(8, "walking", _WALK),
-    Activity(9, "sitting_to_walking", (*_WALK, *_RISE)),
-    Activity(
+    _activity(1, "stationary", (), "stationary", "motion.shuffle_hz"),
+    _activity(2, "punching", ("motion.gait_hz", "motion.calf_deg", "motion.arm_deg")),
+    _activity(3, "kicking", ("motion.gait_hz", "motion.thigh_deg", "motion.calf_deg")),
+    _activity(
+        4,
+        "grabbing",
+        ("motion.gait_hz",),
+        *("grabbing", "timing.grab_start_s", "timing.grab_duration_s", "motion.shuffle_hz"),
+    ),
+    Activity(5, "sitting_down", _SEAT, _SITTING),
+    Activity(6, "standing_up", _SEAT, _SITTING),
+    _activity(7, "body_rotating", ("motion.gait_hz", "motion.turn_deg")),
+    _activity(8, "walking", _WALK),
+    _activity(
+        9,
+        "sitting_to_walking",
+        (*_WALK, *_RISE, "timing.blend_s"),
+        *("standing_up", "walking", *_RISE, "timing.overlap_s"),
+    ),
+    _activity(
         10,
         "walking_to_sitting",
         (*_WALK, "timing.walk_stop_s", "timing.sit_duration_s", "timing.blend_s"),
+        *("walking", "sitting_down", *_STOP, "timing.sit_duration_s"),
     ),
-    Activity(11, "falling_to_walking", (*_WALK, *_RISE)),
-    Activity(
+    _activity(
+        11,
+        "falling_to_walking",
+        (*_WALK, *_RISE, "timing.blend_s"),
+        *("getting_up", "walking", *_RISE, "timing.overlap_s"),
+    ),
+    _activity(
         12,
         "walking_to_falling",
         (*_WALK, "timing.walk_stop_s", "timing.fall_duration_s", "timing.blend_s"),
+        *("walking", "falling", *_STOP, "timing.fall_duration_s"),
     ),
 )
 
@@ -85,15 +170,25 @@ def add_activity(
         slug: lower-case letters, digits and underscores.
         motion: makes the motion of a Scene from the numbers of `Scene.config`. A data set built by
             several processes needs a function that can be pickled.
-        uses: as of `Activity`; other numbers of `motion:` and `timing:` are not drawn.
+        uses: keys of `motion:` and `timing:` beside the place; other numbers are not drawn.
 
     Raises:
         ValueError: the slug is taken or no slug.
     """
-    if slug in _BY_NAME or not slug.isidentifier() or slug != slug.lower():
+    if not is_new_slug(slug):
         raise ValueError(f"{slug!r} should be a new name of lower-case letters, digits and _")
-    _OWN[slug] = Activity(len(ACTIVITIES) + 1, slug, uses, motion)
+    _OWN[slug] = Activity(len(ACTIVITIES) + 1, slug, uses, uses, motion)
     return _OWN[slug]
+
+
+def own_activities() -> tuple[Activity, ...]:
+    """The classes that `add_activity` made known."""
+    return tuple(_OWN.values())
+
+
+def is_new_slug(slug: str) -> bool:
+    """Whether a class of one's own may have this name: none of the twelve's, fit for a folder."""
+    return slug not in _BY_NAME and slug.isascii() and slug.isidentifier() and slug == slug.lower()
 
 
 def activity_named(name: str) -> Activity:

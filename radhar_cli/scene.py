@@ -2,16 +2,27 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
+from math import nan
 from typing import Any, TypeAlias
 
 from radhar_cli.activity import Activity
 from radhar_cli.config.number import Number, is_fixed, nominal, quantile
-from radhar_cli.config.schema import Config, PerActivity, Section, for_activity
+from radhar_cli.config.schema import (
+    FALLS,
+    Config,
+    FallName,
+    Falls,
+    PerActivity,
+    Section,
+    for_activity,
+)
 from radhar_cli.motion.skeleton import default_weight
 from radhar_cli.randomness import PERSON, SCENE, stream
 
 # The keys of a config whose numbers may be drawn, scene by scene.
-SCENE_KEYS = ("duration_s", "radar", "subject", "motion", "timing", "wall", "snr_db")
+SCENE_KEYS = ("duration_s", "radar", "subject", "motion", "timing", "classes", "wall", "snr_db")
+_BODY = ("subject.height_m", "subject.weight_kg")
 # What stays with a person whatever they do: body and gait.
 PERSONAL = (
     "subject.height_m",
@@ -22,11 +33,42 @@ PERSONAL = (
     "motion.calf_deg",
     "motion.arm_deg",
     "motion.turn_deg",
+    "subject.sway_ahead_m",
+    "subject.sway_aside_m",
+    "subject.breathing_hz",
+    "subject.chest_m",
+    "subject.pulse_hz",
+    "subject.heart_m",
+    "motion.period_scale",
+    "motion.arm_swing",
+    "motion.trunk_pitch_deg",
+    "motion.step_width",
+    "motion.step_asymmetry",
+    "motion.strike_scale",
+    "motion.lean_deg",
 )
 # Redrawing a scene outside the model changes what the person does, not the radar or the person.
-REDRAWN = ("motion.", "timing.")
+REDRAWN = ("motion.", "timing.", "classes.")
+FALL = "motion.fall"
 # Numbers of `motion:` that every activity depends on.
 PLACE = ("motion.range_m", "motion.cross_range_m", "motion.angle_deg")
+# Numbers besides `uses` that people always depend on, whatever they do.
+OF_PEOPLE = (
+    *(key for key in PERSONAL if key.startswith("subject.") and key not in _BODY),
+    "motion.fidget_hz",
+    "motion.fidget_size",
+    "motion.idle_from_s",
+)
+# What is not repeated exactly; 0 in nominal scenes.
+UNSTEADY = (
+    "motion.ragged_speed",
+    "motion.stride_jitter",
+    "motion.width_jitter_m",
+    "motion.tempo_jitter",
+    "motion.size_jitter",
+    "motion.fidget_hz",
+    "motion.shuffle_hz",
+)
 
 Draw: TypeAlias = Callable[[str, Number], float]
 
@@ -72,12 +114,25 @@ def draw_scene(config: Config, activity: Activity, index: int, attempt: int = 0)
             rng = stream(config.seed, SCENE, activity.index, index, again, name=key)
         return quantile(number, rng.random())
 
-    return Scene(_fixed(config, activity, draw), activity, index, subject, attempt)
+    fixed = _fixed(config, activity, draw)
+    if isinstance(fixed.motion.fall, Falls):
+        u = stream(config.seed, SCENE, activity.index, index, attempt, name="motion.fall").random()
+        fixed = _with_fall(fixed, fixed.motion.fall.drawn(u))
+    return Scene(fixed, activity, index, subject, attempt)
 
 
 def nominal_scene(config: Config, activity: Activity) -> Scene:
-    """The scene with every number at its middle."""
-    return Scene(_fixed(config, activity, lambda key, number: nominal(number)), activity, 0)
+    """The scene with every number at its middle, and nothing that people do not repeat."""
+    fixed = _fixed(config, activity, lambda key, number: nominal(number))
+    steady = {key.removeprefix("motion."): 0.0 for key in UNSTEADY}
+    fixed = fixed.model_copy(update={"motion": fixed.motion.model_copy(update=steady)})
+    if isinstance(fixed.motion.fall, Falls):
+        fixed = _with_fall(fixed, fixed.motion.fall.drawn(0.5))
+    return Scene(fixed, activity, 0)
+
+
+def _with_fall(config: Config, fall: FallName) -> Config:
+    return config.model_copy(update={"motion": config.motion.model_copy(update={"fall": fall})})
 
 
 def subject_of(config: Config, index: int) -> int | None:
@@ -101,29 +156,92 @@ def numbers(config: Config) -> list[tuple[str, Any]]:
     return found
 
 
+def number_at(scene: Scene, key: str) -> float:
+    """The number of a dotted key, such as `radar.tx_m.0`; NaN where the scene has no such number.
+
+    `motion.fall` is its place in FALLS.
+    """
+    place: Any = scene.config
+    for name in _path(key):
+        if place is None:
+            return nan
+        if isinstance(place, tuple):
+            place = place[int(name)]
+        else:
+            place = place[name] if isinstance(place, dict) else getattr(place, name)
+    if place is None or not depends_on(scene.config, scene.activity, key):
+        return nan
+    return float(FALLS.index(place)) if key == FALL else float(place)
+
+
+@lru_cache(maxsize=1024)
+def _path(key: str) -> tuple[str, ...]:
+    return tuple(key.split("."))
+
+
 def scene_numbers(scene: Scene) -> dict[str, float]:
-    """{dotted key: number} of all that a scene depends on, in the units of the keys."""
-    return {key: one for key, one in numbers(scene.config) if depends_on(scene.activity, key)}
+    """{dotted key: number} of all that a scene depends on, in the units of the keys.
+
+    `motion.fall` is its place in FALLS.
+    """
+    config = scene.config
+    found = {key: one for key, one in numbers(config) if depends_on(config, scene.activity, key)}
+    if depends_on(config, scene.activity, FALL) and not isinstance(config.motion.fall, Falls):
+        found[FALL] = float(FALLS.index(config.motion.fall))
+    return found
 
 
-def depends_on(activity: Activity, key: str) -> bool:
+def depends_on(config: Config, activity: Activity, key: str) -> bool:
     """Whether scenes of an activity depend on the number of this dotted key."""
-    return not key.startswith(REDRAWN) or key in PLACE or key in activity.uses
+    model = config.motion.model
+    if key.startswith("classes."):
+        return key.startswith(f"classes.{activity.slug}.")
+    if key in OF_PEOPLE:
+        return model == "human" and activity.motion is None
+    return not key.startswith(REDRAWN) or key in PLACE or key in activity.uses(model)
+
+
+class _SameConfig:
+    """A config as a key: equal to itself alone, whatever it holds."""
+
+    def __init__(self, config: Config) -> None:
+        self.config = config
+
+    def __hash__(self) -> int:
+        return id(self.config)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _SameConfig) and self.config is other.config
+
+
+@lru_cache(maxsize=64)
+def _fixed_and_drawn(same: _SameConfig, activity: Activity) -> tuple[Config, dict[str, Any]]:
+    """The config of an activity with all at its middle, and {dotted key: number} to be drawn."""
+    config, drawn = same.config, dict[str, Any]()
+
+    def fix(key: str, number: Any) -> float:
+        one = for_activity(number, activity)
+        if depends_on(config, activity, key) and not is_fixed(one):
+            drawn[key] = one
+        return nominal(one)
+
+    sections = {key: _each_number(getattr(config, key), key, fix) for key in SCENE_KEYS}
+    return config.model_copy(update=sections | {"activities": (activity.slug,)}), drawn
 
 
 def _fixed(config: Config, activity: Activity, draw: Draw) -> Config:
     """The config of one scene; numbers that its activity does not depend on are at their middle."""
-
-    def fix(key: str, number: Any) -> float:
-        one = for_activity(number, activity)
-        return draw(key, one) if depends_on(activity, key) and not is_fixed(one) else nominal(one)
-
-    sections = {key: _each_number(getattr(config, key), key, fix) for key in SCENE_KEYS}
-    subject = sections["subject"]
+    fixed, drawn = _fixed_and_drawn(_SameConfig(config), activity)
+    values = {key: draw(key, number) for key, number in drawn.items()}
+    sections: dict[str, Any] = {
+        key: _each_number(getattr(fixed, key), key, lambda name, number: values.get(name, number))
+        for key in {name.partition(".")[0] for name in values}
+    }
+    subject = sections.get("subject", fixed.subject)
     if subject.weight_kg is None:
         weight = {"weight_kg": default_weight(subject.height_m)}
         sections["subject"] = subject.model_copy(update=weight)
-    return config.model_copy(update=sections | {"activities": (activity.slug,)})
+    return fixed.model_copy(update=sections)
 
 
 def _each_number(value: Any, key: str, change: Callable[[str, Any], Any]) -> Any:
@@ -131,7 +249,9 @@ def _each_number(value: Any, key: str, change: Callable[[str, Any], Any]) -> Any
     if value is None or isinstance(value, (bool, str)):
         return value
     if isinstance(value, tuple):
-        return tuple(change(f"{key}.{axis}", number) for axis, number in enumerate(value))
+        return tuple(_each_number(one, f"{key}.{axis}", change) for axis, one in enumerate(value))
+    if isinstance(value, dict):
+        return {name: _each_number(one, f"{key}.{name}", change) for name, one in value.items()}
     if isinstance(value, Section) and not isinstance(value, PerActivity):
         fields = type(value).model_fields
         return value.model_copy(

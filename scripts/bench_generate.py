@@ -16,31 +16,28 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from statistics import median
 from typing import Any
 
 import numpy as np
-from radhar_cli.pipeline.axes import axes_of
 
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.config import MAP_NAMES, Config, load_config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.files import write_whole
+from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.png import colour_table, encode_png
-from radhar_cli.dataset.sample import MapImage, synthesise
+from radhar_cli.dataset.sample import Sample, synthesise
 from radhar_cli.dataset.shards import encode_shard, write_shard
 from radhar_cli.echo.beat import beat_matrix
-from radhar_cli.echo.range_profiles import beat_at
-from radhar_cli.pipeline.plan import plan, plan_images, signal_of
-from radhar_cli.pipeline.run import Recording, run
-from radhar_cli.processing import fsst, stft
-from radhar_cli.processing.denoising import savgol
-from radhar_cli.processing.doppler_compensation import compensate
-from radhar_cli.processing.frames import Frames
-from radhar_cli.processing.image import Reduced, levels, reduced, reduced_map
-from radhar_cli.processing.range_compression import range_bins, range_power
+from radhar_cli.echo.paths import PathSource
+from radhar_cli.echo.range_profiles import beat_at, shown_pulses
+from radhar_cli.pipeline.plan import Plan, Product, plan
+from radhar_cli.pipeline.products import RangeProfiles, plan_images, products
+from radhar_cli.pipeline.run import record, run
+from radhar_cli.processing.range_compression import range_bins
+from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene import Scene, draw_scene
 from radhar_cli.worker_process import prepare_process
 
@@ -71,23 +68,22 @@ def scene(config: Config, number: int) -> Scene:
     return draw_scene(config, ACTIVITIES[number % 12], number // 12)
 
 
-def naive_beat(recording: Recording) -> np.ndarray:
+def naive_beat(paths: PathSource, w: Waveform) -> np.ndarray:
     """s_b[n, m], complex128, one vectorised exponential a scatterer: the formula as it stands."""
-    w = recording.waveform
     n = np.arange(w.n_adc)[:, None]
-    paths = recording.products["paths"](w.times(np.arange(w.n_pulses, dtype=float)))
     beat = np.zeros((w.n_adc, w.n_pulses), dtype=complex)
-    for tau, a in zip(paths.delay, paths.amplitude, strict=True):
+    for tau, a in zip(*paths(w.times(np.arange(w.n_pulses, dtype=float))), strict=True):
         beat += a * np.exp(-2j * np.pi * (w.fc * tau + w.slope * tau * n / w.adc_rate))
     return beat
 
 
-def naive_signal(config: Config, number: int) -> np.ndarray:
+def naive_signal(scene: Scene) -> np.ndarray:
     """x[m] the naive way: whole cube, noise on every sample, MTI, FFT of everything, sum."""
-    recording = run(plan(config, ["signal_power"]), scene(config, number), config)
-    w, beat = recording.waveform, naive_beat(recording)
-    noise = recording.noise("beat").standard_normal((2, *beat.shape)) * np.sqrt(0.5)
-    beat += recording.sigma * (noise[0] + 1j * noise[1])
+    recording = record(scene, ["paths", "waveform", "noise"])
+    w, receiver = recording["waveform"], recording["noise"]
+    beat = naive_beat(recording["paths"], w)
+    noise = receiver.stream("beat").standard_normal((2, *beat.shape)) * np.sqrt(0.5)
+    beat += receiver.sigma * (noise[0] + 1j * noise[1])
     moving = np.diff(beat, axis=1)
     k = np.arange(w.n_fft)[:, None]
     bins = np.fft.ifft(moving, w.n_fft, axis=0) * w.n_fft
@@ -100,45 +96,41 @@ class Sink:
 
     def __init__(self, config: Config, folder: Path) -> None:
         self.config, self.folder = config, folder
+        self.whose = identity_hash(identity(config))
         self.table = colour_table(config.image.colour_map)
-        self.values = scene_fields.values([scene(config, 0)], scene_fields.fields(config))
+        self.values = scene_fields.values(scene(config, 0), scene_fields.fields(config))
 
-    def write(self, samples: list[dict[str, MapImage]]) -> None:
+    def write(self, samples: list[Sample]) -> None:
         for sample in samples:
-            for name, image in sample.items():
+            for name, image in sample.images.items():
                 data = encode_png(image.levels, self.table, self.config.output.png_level)
                 write_whole(self.folder, self.folder / "png" / f"{name}.png", data)
-        values = np.repeat(self.values, len(samples), axis=0)
-        write_shard(self.folder, 0, len(samples), encode_shard(self.config, 0, samples, values))
+        values = np.tile(self.values, (len(samples), 1))
+        flags = np.zeros(len(samples), np.uint8)
+        data = encode_shard(self.config, self.whose, 0, samples, values, flags)
+        write_shard(self.folder, 0, len(samples), data)
 
 
-def image_of(config: Config, recording: Recording, name: str) -> MapImage:
+class Floor:
     """A map's image from ready inputs: slow-time signal, torso track, beat at the pulses shown."""
-    p, size, frames = config.processing, config.image.size_px, recording.frames
-    if name == "rtm":
-        bins = range_bins(recording.products["beat"], recording.waveform)
-        found = reduced_map(range_power(bins), size)
-    else:
-        x = recording.products["signal:plain"]
-        which = signal_of(name)
-        if "compensated" in which:
-            x = compensate(x, recording.products["torso_track"], recording.waveform.f0)
-        if "denoised" in which:
-            x = savgol(x, p.savgol.order, p.savgol.frame)
-        found = doppler_image(config, frames, name, x)
-    grey = levels(found.power, config.image.dynamic_range_db)
-    return MapImage(grey, found.entropy, axes_of(name, recording).extent)
 
+    def __init__(self, config: Config, name: str) -> None:
+        self.name = name
+        self.table = products(config)
+        self.table["range_profiles"] = Product(
+            "range_profiles",
+            ("beat", "waveform", "canceller"),
+            lambda beat, w, canceller: RangeProfiles(
+                range_bins(beat, w), shown_pulses(w.n_pulses - canceller.lost, beat.shape[1])
+            ),
+            "of the beat that is ready",
+        )
+        self.plan: Plan | None = None
 
-def doppler_image(config: Config, frames: Frames, name: str, x: np.ndarray) -> Reduced:
-    single = name.startswith("stft") and config.engine.precision == "auto"
-    spectra = stft.Spectra(x, frames, frames.length, single)
-    blocks = (
-        stft.power_blocks(spectra)
-        if name.startswith("stft")
-        else fsst.power_blocks(spectra, config.processing.fsst_threshold)
-    )
-    return reduced(blocks, spectra.count, config.image.size_px)
+    def sample(self, ready: dict[str, Any]) -> Sample:
+        """The image alone, as a sample."""
+        self.plan = self.plan or plan(self.table, [f"image:{self.name}"], ready)
+        return Sample({self.name: run(self.plan, ready)[f"image:{self.name}"]}, np.nan, False)
 
 
 def rows(rounds: int) -> dict[str, Any]:
@@ -148,40 +140,33 @@ def rows(rounds: int) -> dict[str, Any]:
     exact = load_config(PAPER, ["engine.kind=cube", "snr_db=null"])
     closed = load_config(PAPER, ["snr_db=null"])
     with tempfile.TemporaryDirectory() as place:
-        sink = Sink(config, Path(place))
-        ready = {}
-        for number in range(12):
-            parts = ["signal:plain"]
-            ready[number] = run(plan(config, parts), scene(config, number), config)
+        sink, image = Sink(config, Path(place)), Floor(config, "stft")
+        ready = [
+            record(scene(config, number), ["signal", "waveform"]).products for number in range(12)
+        ]
 
         def floor(turn: int) -> None:
-            samples = []
-            for step in range(SHARD):
-                r = ready[(turn * SHARD + step) % 12]
-                samples.append({"stft": image_of(config, r, "stft")})
-            sink.write(samples)
+            numbers = range(turn * SHARD, (turn + 1) * SHARD)
+            sink.write([image.sample(ready[number % 12]) for number in numbers])
 
         def direct(turn: int) -> None:
             p = plan_images(config)
-            sink.write(
-                [synthesise(scene(config, turn * SHARD + i), config, p) for i in range(SHARD)]
-            )
+            sink.write([synthesise(scene(config, turn * SHARD + i), p) for i in range(SHARD)])
 
         def synthesis(turn: int) -> None:
-            p = plan(config, ["signal:plain"])
+            p = plan(products(config), ["signal"], ["scene"])
             for i in range(SHARD):
-                run(p, scene(config, turn * SHARD + i), config)
+                run(p, {"scene": scene(config, turn * SHARD + i)})
 
         def cube(turn: int) -> None:
             p = plan_images(cube_config)
             for number in (turn, turn + 6):
-                sink.write([synthesise(scene(cube_config, number), cube_config, p)])
+                sink.write([synthesise(scene(cube_config, number), p)])
 
         def naive(turn: int) -> None:
-            r = replace(ready[turn % 12], products={"signal:plain": naive_signal(config, turn)})
-            sink.write(
-                [{"stft": image_of(config, replace(r, products={"signal:plain": x}), "stft")}]
-            )
+            there = ready[turn % 12]
+            signal = there["signal"].with_samples(naive_signal(scene(config, turn % 12)))
+            sink.write([image.sample(there | {"signal": signal})])
 
         found = interleaved(
             {
@@ -199,15 +184,13 @@ def rows(rounds: int) -> dict[str, Any]:
     }
     errors = {"cube_against_naive": 0.0, "direct_after_mti_db": -np.inf}
     for number in range(12):
-        only_x = plan(exact, ["signal:plain"]), plan(closed, ["signal:plain"])
-        reference = run(only_x[0], scene(exact, number), exact)
-        x = reference.products["signal:plain"]
-        y = run(only_x[1], scene(closed, number), closed).products["signal:plain"]
+        reference = record(scene(exact, number), ["signal", "paths", "waveform"])
+        x = reference["signal"].x
+        y = record(scene(closed, number), ["signal"])["signal"].x
         if number in (1, 7):
-            beat = naive_beat(reference)
-            at = np.arange(0, reference.waveform.n_pulses, 97)
-            paths = reference.products["paths"](reference.waveform.times(at.astype(float)))
-            fast = beat_matrix(paths.delay, paths.amplitude, reference.waveform)
+            paths, w = reference["paths"], reference["waveform"]
+            beat, at = naive_beat(paths, w), np.arange(0, w.n_pulses, 97)
+            fast = beat_matrix(*paths(w.times(at.astype(float))), w)
             gap = np.linalg.norm(fast - beat[:, at]) / np.linalg.norm(beat[:, at])
             errors["cube_against_naive"] = max(errors["cube_against_naive"], float(gap))
         if np.any(x):
@@ -232,6 +215,15 @@ def rows(rounds: int) -> dict[str, Any]:
     return {"ms": ms, "ratios": ratios, "errors": errors}
 
 
+def ready_for(scene: Scene, name: str) -> dict[str, Any]:
+    """What a map's own transform starts from."""
+    names = ["signal", "waveform", "canceller", "paths"]
+    found = record(scene, [*names, *(["torso_track"] if "compensated" in name else [])]).products
+    w, canceller, paths = found["waveform"], found["canceller"], found.pop("paths")
+    shown = shown_pulses(w.n_pulses - canceller.lost, scene.config.image.size_px[1])
+    return found | {"beat": beat_at(paths, w, shown, canceller.taps)}
+
+
 def maps(rounds: int) -> dict[str, Any]:
     """What each further map adds, over its own transform, image and write."""
     base = load_config(PAPER)
@@ -243,18 +235,17 @@ def maps(rounds: int) -> dict[str, Any]:
         for name in (name for name in MAP_NAMES if name != "stft"):
             both = load_config(PAPER, [f"maps=[stft, {name}]"])
             alone = load_config(PAPER, [f"maps=[{name}]"])
-            inputs = ["signal:plain", *(["torso_track"] if "compensated" in name else [])]
-            ready = [run(plan(both, inputs), scene(both, i), both) for i in range(12)]
-            for r in ready:
-                r.products["beat"] = beat_at(r.products["paths"], r.waveform, r.shown, mti=True)
+            ready = [ready_for(scene(both, i), name) for i in range(12)]
             sinks = {c: Sink(c, Path(place)) for c in (base, both, alone)}
 
             def whole(config: Config, turn: int, sinks: dict = sinks) -> None:
                 p = plan_images(config)
-                sinks[config].write([synthesise(scene(config, i), config, p) for i in range(12)])
+                sinks[config].write([synthesise(scene(config, i), p) for i in range(12)])
 
-            def own(turn: int, ready=ready, name=name, alone=alone, sinks=sinks) -> None:
-                sinks[alone].write([{name: image_of(alone, r, name)} for r in ready])
+            image = Floor(alone, name)
+
+            def own(turn: int, ready=ready, image=image, sink=sinks[alone]) -> None:
+                sink.write([image.sample(there) for there in ready])
 
             times = interleaved(
                 {

@@ -4,13 +4,13 @@ from typing import Any
 
 import numpy as np
 import reference as ref
-from radhar_cli.pipeline.models import body_of
 
 from radhar_cli.activity import activity_named
 from radhar_cli.config import Config
-from radhar_cli.pipeline.plan import plan
-from radhar_cli.pipeline.run import Recording, run
-from radhar_cli.scene import nominal_scene
+from radhar_cli.pipeline.physics import motion_of
+from radhar_cli.pipeline.run import Recording
+from radhar_cli.pipeline.run import record as record_scene
+from radhar_cli.scene import nominal_scene, scene_numbers
 
 # 20 samples a chirp and 200 pulses: little to compute even in extended precision. The half-band
 # ends at 7.5 m.
@@ -36,14 +36,13 @@ def config_of(engine: str = "cube", radar: dict[str, Any] | None = None, **more:
 
 
 def record(config: Config, *products: str, activity: str = "walking") -> Recording:
-    """Run the nominal scene for some products."""
-    return run(plan(config, products), nominal_scene(config, activity_named(activity)), config)
+    """Make some products of the nominal scene."""
+    return record_scene(nominal_scene(config, activity_named(activity)), products)
 
 
 def signal(config: Config, activity: str = "walking") -> np.ndarray:
     """The slow-time signal x[m]."""
-    x = record(config, "signal:plain", activity=activity).products["signal:plain"]
-    return np.asarray(x)
+    return np.asarray(record(config, "signal", activity=activity)["signal"].x)
 
 
 def radar_of(config: Config) -> ref.Radar:
@@ -64,15 +63,15 @@ def radar_of(config: Config) -> ref.Radar:
 def free_space_paths(config: Config, activity: str = "walking") -> tuple[np.ndarray, np.ndarray]:
     """Delays and amplitudes [13, M] without a wall, geometry and phases in extended precision."""
     scene = nominal_scene(config, activity_named(activity))
-    body, v = body_of(scene), scene.values
-    p = body.positions(radar_of(config).times).astype(np.longdouble)
+    motion, v, t = motion_of(scene), scene_numbers(scene), radar_of(config).times
+    p = motion.positions(t).astype(np.longdouble)
     legs = []
     for antenna in ("tx", "rx"):
         at = np.array([v[f"radar.{antenna}_m.{axis}"] for axis in range(3)])
         legs.append(np.sqrt(((p - at[:, None, None]) ** 2).sum(axis=0)))
     gain = 10 ** (v["radar.antenna_gain_dbi"] / 10)
     wavelength = ref.C / v["radar.carrier_hz"]
-    strength = gain * wavelength * np.sqrt(body.cross_sections[:, None] / (4 * np.pi) ** 3)
+    strength = gain * wavelength * np.sqrt(motion.cross_sections(t) / (4 * np.pi) ** 3)
     return (legs[0] + legs[1]) / np.longdouble(ref.C), strength / (legs[0] * legs[1])
 
 

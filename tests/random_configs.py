@@ -12,8 +12,11 @@ from pydantic import BaseModel
 
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.config import MAP_NAMES, Config
+from radhar_cli.config.checks import HUMAN_LIMITS
+from radhar_cli.config.schema import PerActivity
 
 Document = dict[str, Any]
+MOST_SECONDS = next(high for key, _, high in HUMAN_LIMITS if key == "duration_s")
 
 
 def dotted_keys(model: type[BaseModel] = Config, prefix: str = "") -> Iterator[str]:
@@ -21,11 +24,14 @@ def dotted_keys(model: type[BaseModel] = Config, prefix: str = "") -> Iterator[s
     for name, field in model.model_fields.items():
         kinds = [field.annotation, *getattr(field.annotation, "__args__", ())]
         inner = next((k for k in kinds if isinstance(k, type) and issubclass(k, BaseModel)), None)
-        if inner is None or (inner.__module__.endswith((".number", ".motion")) and prefix):
-            yield prefix + name
-        else:
-            yield prefix + name
+        yield prefix + name
+        if inner is not None and not is_number(inner):
             yield from dotted_keys(inner, f"{prefix}{name}.")
+
+
+def is_number(model: type[BaseModel]) -> bool:
+    """Whether this is a form of a number of a scene, and no section."""
+    return model.__module__.endswith(".number") or issubclass(model, PerActivity)
 
 
 KEYS = tuple(dict.fromkeys(dotted_keys()))
@@ -145,6 +151,8 @@ class Drawer:
         self.maybe(document, 0.7, "motion", self.motion)
         self.maybe(document, 0.6, "timing", lambda: self.timing(document["duration_s"]))
         self.maybe(document, 0.6, "subject", self.subject)
+        if document["duration_s"] <= MOST_SECONDS and self.chance(0.4):
+            self.people(document)
         self.maybe(document, 0.5, "wall", self.wall)
         self.maybe(document, 0.6, "snr_db", lambda: self.number(lambda: self.signed(1e-3, 300)))
         self.maybe(document, 0.2, "snr_db", lambda: None)
@@ -194,13 +202,13 @@ class Drawer:
             "fsst_threshold",
             lambda: self.pick((0.0, self.log(1e-300, 0.999))),
         )
-        order = int(self.rng.integers(0, 12))
-        frame = order + 1 + order % 2
+        order = int(self.rng.integers(0, 31))
+        frame = order + 1 + order % 2 + 2 * int(self.rng.integers(0, 20))
         self.maybe(processing, 0.3, "savgol", lambda: {"order": order, "frame": frame})
         return processing
 
     def motion(self) -> Document:
-        motion: Document = {}
+        motion: Document = {"model": "paper"}
         extreme = self.chance(0.5)
         for key in ("range_m", "cross_range_m"):
             far = (lambda: self.signed(1e-3, 1e6)) if extreme else (lambda: self.log(0.5, 20))
@@ -212,6 +220,23 @@ class Drawer:
         for key in ("speed_mps", "gait_hz"):
             self.maybe(motion, 0.1, key, lambda: 0)
         return motion
+
+    def people(self, document: Document) -> None:
+        """Make the document one of people: what they use within what people do."""
+        sections: dict[str, Document] = {"subject": {}, "motion": {"model": "human"}, "timing": {}}
+        for key, low, high in HUMAN_LIMITS:
+            section, _, name = key.rpartition(".")
+            if section:
+                draw = lambda low=low, high=high: float(self.rng.uniform(low, high))  # noqa: E731
+                self.maybe(sections[section], 0.4, name, lambda draw=draw: self.number(draw))
+        fall = self.pick(("sideways", {"choice": ["forward", "backward", "sideways"]}))
+        self.maybe(sections["motion"], 0.4, "fall", lambda: fall)
+        for section, numbers in sections.items():
+            document[section] = document.get(section, {}) | numbers
+        for key, _, _ in HUMAN_LIMITS:  # what was drawn for the paper's model is no people's
+            section, _, name = key.rpartition(".")
+            if section and name not in sections[section]:
+                document[section].pop(name, None)
 
     def timing(self, duration: float) -> Document:
         keys = ("seat_start", "seat_duration", "rise_start", "rise_duration", "walk_start")

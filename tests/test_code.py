@@ -1,6 +1,7 @@
 """The code itself: lint, types, layers of imports, lightness of the program."""
 
 import ast
+import importlib.util
 import subprocess
 import sys
 from functools import cache
@@ -161,6 +162,16 @@ def test_hdf5_is_opened_for_reading_in_one_place() -> None:
                 assert name in {door, *writers}, name
             if isinstance(node, ast.Call) and ast.unparse(node.func) == "h5py.File":
                 assert name == door or ast.unparse(node.args[1]) == "'w'", name
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "scripts").glob("*.py")), ids=lambda p: p.stem)
+def test_scripts_use_names_that_there_are(path: Path) -> None:
+    spec = importlib.util.spec_from_file_location(f"scripts_{path.stem}", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    assert callable(module.main)
 
 
 def test_ruff() -> None:

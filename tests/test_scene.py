@@ -62,7 +62,9 @@ def changed_keys(one: dict[str, float], other: dict[str, float]) -> set[str]:
 
 def variable_keys(config: Config) -> set[str]:
     return {
-        key for key, number in numbers(config) if depends_on(FALLING, key) and not is_fixed(number)
+        key
+        for key, number in numbers(config)
+        if depends_on(config, FALLING, key) and not is_fixed(number)
     }
 
 
@@ -138,7 +140,7 @@ def test_draws_lie_within_their_support(seed: int, activity: Any, index: int) ->
     for key, number in numbers(config):
         low, high = support(number)
         assert low <= drawn_numbers[key] <= high, key
-        if is_fixed(number) or not depends_on(activity, key):
+        if is_fixed(number) or not depends_on(config, activity, key):
             assert drawn_numbers[key] == nominal(number), key
 
 
@@ -160,13 +162,13 @@ def test_a_scene_holds_what_its_activity_uses() -> None:
     for activity in ACTIVITIES:
         keys = set(scene_numbers(draw_scene(config, activity, 0)))
         assert {k for k in keys if k.startswith("timing.")} == {
-            k for k in activity.uses if k.startswith("timing.")
+            k for k in activity.paper if k.startswith("timing.")
         }
         assert {k for k in keys if k.startswith("motion.")} == {
             "motion.range_m",
             "motion.cross_range_m",
             "motion.angle_deg",
-        } | {k for k in activity.uses if k.startswith("motion.")}
+        } | {k for k in activity.paper if k.startswith("motion.")}
         assert not any(k.startswith("wall.") for k in keys)
     assert {"wall.size_m.0", "wall.eps_r"} <= set(
         scene_numbers(draw_scene(Config(wall={}), WALKING, 0))

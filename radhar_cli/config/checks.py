@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 from radhar_cli.activity import Activity
@@ -29,6 +30,10 @@ def problems(c: Config) -> Iterator[Problem]:
     yield from _waveform_problems(c)
     yield from _signal_problems(c)
     yield from _wall_problems(c)
+    if c.motion.model == "human":
+        yield from _human_problems(c)
+    elif c.classes:
+        yield Problem("classes", list(c.classes), "should be none with motion.model: paper")
     if c.engine.motion_in_chirp and c.engine.kind == "direct":
         yield Problem(
             "engine.motion_in_chirp",
@@ -157,6 +162,86 @@ def _wall_problems(c: Config) -> Iterator[Problem]:
             )
 
 
+def _gets_up_after_a_fall(names: tuple[str, ...]) -> bool:
+    return ("falling", "getting_up") in pairwise(names)
+
+
+# Where the motion of people holds: (key, least, most). Beyond, legs would be too short.
+HUMAN_LIMITS: tuple[tuple[str, float, float], ...] = (
+    ("duration_s", 0.0, 600.0),
+    ("subject.height_m", 1.5, 2.1),
+    ("subject.sway_ahead_m", 0.0, 0.01),
+    ("subject.sway_aside_m", 0.0, 0.01),
+    ("subject.chest_m", 0.0, 0.01),
+    ("subject.heart_m", 0.0, 0.002),
+    ("subject.breathing_hz", 0.0, 2.0),
+    ("subject.pulse_hz", 0.0, 4.0),
+    ("motion.speed_mps", 0.3, 2.8),
+    ("motion.period_scale", 0.85, 1.05),
+    ("motion.cycle_phase", -1.0, 1.0),
+    ("motion.arm_swing", 0.0, 2.0),
+    ("motion.trunk_pitch_deg", -5.0, 15.0),
+    ("motion.step_width", 0.02, 0.1),
+    ("motion.step_asymmetry", -0.05, 0.05),
+    ("motion.ragged_speed", 0.0, 0.06),
+    ("motion.stride_jitter", 0.0, 0.03),
+    ("motion.width_jitter_m", 0.0, 0.02),
+    ("motion.punch_hz", 0.05, 1.1),
+    ("motion.kick_hz", 0.05, 0.6),
+    ("motion.rotation_hz", 0.0, 1.0),
+    ("motion.turn_deg", -90.0, 90.0),
+    ("motion.strike_scale", 0.8, 1.25),
+    ("motion.tempo_jitter", 0.0, 0.2),
+    ("motion.size_jitter", 0.0, 0.15),
+    ("motion.bend_deg", 30.0, 85.0),
+    ("motion.dwell_s", 0.0, 60.0),
+    ("motion.seat_height", 0.24, 0.33),
+    ("motion.lean_deg", 0.0, 60.0),
+    ("motion.recline_deg", -10.0, 45.0),
+    ("motion.fidget_hz", 0.0, 2.0),
+    ("motion.fidget_size", 0.0, 2.0),
+    ("motion.shuffle_hz", 0.0, 0.5),
+    ("timing.seat_duration_s", 1.0, 60.0),
+    ("timing.grab_duration_s", 1.0, 60.0),
+    ("timing.rise_duration_s", 1.0, 60.0),
+    ("timing.sit_duration_s", 1.0, 60.0),
+    ("timing.fall_duration_s", 0.7, 10.0),
+    ("timing.overlap_s", 0.0, 0.8),
+    ("timing.walk_stop_s", 0.5, 600.0),
+    ("timing.walk_start_s", 0.0, 600.0),
+)
+
+
+def _human_problems(c: Config) -> Iterator[Problem]:
+    """Numbers beyond what people do, of the activities that depend on them."""
+    from radhar_cli.config.schema import for_activity
+
+    lying = [slug for slug, one in c.classes.items() if _gets_up_after_a_fall(one.sequence)]
+    if lying and c.motion.fall != "forward":
+        yield Problem(
+            "motion.fall",
+            c.motion.fall,
+            f"should be forward: classes.{lying[0]} gets up from lying on the belly",
+        )
+    for key, low, high in HUMAN_LIMITS:
+        section, _, name = key.rpartition(".")
+        number = getattr(getattr(c, section) if section else c, name)
+        for activity in c.chosen_activities:
+            if section in ("motion", "timing") and key not in activity.human:
+                continue
+            if number is None:
+                continue
+            least, most = support(for_activity(number, activity))
+            if least < low or most > high:
+                yield Problem(
+                    key,
+                    number,
+                    f"should be from {low:g} to {high:g} with motion.model: human "
+                    f"(this one reaches from {least:g} to {most:g})",
+                )
+                break
+
+
 def timing_warnings(c: Config, activities: Iterable[Activity] | None = None) -> list[str]:
     """Say which activities never reach their second phase within the recording."""
     from radhar_cli.config.schema import for_activity
@@ -165,9 +250,10 @@ def timing_warnings(c: Config, activities: Iterable[Activity] | None = None) -> 
     found = []
     for activity in c.chosen_activities if activities is None else activities:
         for key in ("seat_start_s", "walk_start_s", "walk_stop_s"):
-            if f"timing.{key}" not in activity.uses:
+            number = for_activity(getattr(c.timing, key), activity)
+            if f"timing.{key}" not in activity.uses(c.motion.model) or number is None:
                 continue
-            start = nominal(for_activity(getattr(c.timing, key), activity))
+            start = nominal(number)
             if start >= length:
                 found.append(
                     f"{activity.label} {activity.slug}: timing.{key} = {start:g} s is not before "

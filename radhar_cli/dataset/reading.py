@@ -51,7 +51,7 @@ class Dataset:
     def _check(self) -> None:
         config, file, count = self.config, self.file, len(Rows.of(self.config))
         self.fields = scene_fields.fields(config)
-        self.class_slugs = [activity.slug for activity in config.classes]
+        self.class_slugs = [activity.slug for activity in config.every_class]
         names: tuple[str, ...] = config.maps
         images = (count, *config.image.size_px)
         self.maps = {name: file.images(f"maps/{name}", images) for name in names}
@@ -66,7 +66,7 @@ class Dataset:
             {name: file.column(f"{kind}/{name}", dtype, (count, *shape)) for name in names}
             for kind, (dtype, shape) in COLUMNS.items()
         )
-        self.label = _small(file.column("label", np.uint8, (count,)), len(config.classes))
+        self.label = _small(file.column("label", np.uint8, (count,)), len(config.every_class))
         self.split = _small(file.column("split", np.uint8, (count,)), len(SPLITS))
 
     def __len__(self) -> int:

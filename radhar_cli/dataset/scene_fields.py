@@ -7,7 +7,7 @@ import numpy as np
 
 from radhar_cli.arrays import Float
 from radhar_cli.config.schema import Config
-from radhar_cli.scene import Scene, depends_on, numbers, scene_numbers
+from radhar_cli.scene import FALL, Scene, depends_on, number_at, numbers
 
 _UNITS = {
     "m": ("m", 1.0),
@@ -47,8 +47,10 @@ def fields(config: Config) -> tuple[Field, ...]:
     found = [
         key
         for key, _ in numbers(config)
-        if any(depends_on(activity, key) for activity in config.chosen_activities)
+        if any(depends_on(config, activity, key) for activity in config.chosen_activities)
     ]
+    if any(depends_on(config, activity, FALL) for activity in config.chosen_activities):
+        found.append(FALL)
     if "subject.weight_kg" not in found:
         found.insert(found.index("subject.height_m") + 1, "subject.weight_kg")
     measured = (ERROR,) if config.engine.kind == "direct" and set(config.maps) != {"rtm"} else ()
@@ -57,11 +59,13 @@ def fields(config: Config) -> tuple[Field, ...]:
 
 def values(scene: Scene, columns: tuple[Field, ...], error_db: float = nan) -> Float:
     """Numbers [fields] in the units of the config keys, NaN where one does not apply."""
-    known = scene_numbers(scene) | {ERROR.key: error_db}
-    return np.array([known.get(field.key, nan) for field in columns])
+    return np.array([error_db if f is ERROR else number_at(scene, f.key) for f in columns])
 
 
 def _field(key: str) -> Field:
+    if key.startswith("classes."):
+        _, slug, name, place = key.split(".")
+        return Field(key, f"{slug}_{name.removesuffix('s_s')}_{place}", "s", 1.0)
     path, _, axis = key.rpartition(".") if key[-1].isdigit() else (key, "", "")
     section, _, name = path.rpartition(".")
     stem, _, suffix = name.rpartition("_")

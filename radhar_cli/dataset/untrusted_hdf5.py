@@ -6,11 +6,14 @@ shapes and stored bytes are checked before anything is read. Compressed images a
 to the size that they should have: HDF5 would inflate them to any.
 """
 
-import io
+import os
+import struct
+import weakref
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -34,7 +37,9 @@ _DAMAGED = (
     TypeError,
     ValueError,
 )
+_HEAP = b"GCOL\x01"
 MAX_TEXT = 2**20
+MIN_HEAP, MAX_HEAP = 4096, 2**24  # bytes; the first is HDF5's
 _DEFLATE = h5py.h5z.FILTER_DEFLATE
 
 
@@ -44,6 +49,67 @@ def _said(where: str) -> Iterator[None]:
         yield
     except _DAMAGED as error:
         raise FolderError(f"{where}: cannot be read, the file is damaged ({error})") from None
+
+
+class _Watched:
+    """What HDF5 reads from: a file whose global heaps, where texts lie, are checked as they pass.
+
+    In a heap with a free object of no size HDF5 runs in a circle without end.
+    """
+
+    def __init__(self, source: Path | bytes) -> None:
+        self.close: Callable[[], object]
+        if isinstance(source, bytes):
+            self.size, self.close = len(source), lambda: None
+            self._at: Callable[[int, int], bytes] = lambda count, at: source[at : at + count]
+        else:
+            self.size = regular_size(source)
+            number = os.open(source, os.O_RDONLY)
+            self._at = partial(os.pread, number)
+            self.close = weakref.finalize(self, os.close, number)
+        self._place = 0
+
+    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
+        """Choose where to read, from the start or from the end."""
+        self._place = offset + (self.size if whence == os.SEEK_END else 0)
+        return self._place
+
+    def tell(self) -> int:
+        """Where the next byte is read."""
+        return self._place
+
+    def read(self, count: int) -> bytes:
+        """Read so many bytes, or what there is."""
+        before = min(self._place, len(_HEAP) - 1)
+        start = self._place - before
+        data = self._at(before + count, start)
+        found = data.find(_HEAP)
+        while found >= 0:
+            self._check_heap(start + found)
+            found = data.find(_HEAP, found + 1)
+        self._place = start + len(data)
+        return data[before:]
+
+    def readinto(self, buffer: memoryview) -> int:
+        """Fill a buffer."""
+        data = self.read(len(buffer))
+        buffer[: len(data)] = data
+        return len(data)
+
+    def _check_heap(self, place: int) -> None:
+        """Walk a global heap: a header of 16 bytes, objects of 16 bytes and theirs, free space."""
+        size = int.from_bytes(self._at(8, place + 8), "little")
+        if not MIN_HEAP <= size <= self.size - place:
+            return  # HDF5 refuses it, if it is one
+        if size > MAX_HEAP:
+            raise OSError(f"a heap of {size} bytes")
+        heap, at = self._at(size - 16, place + 16), 0
+        while at + 16 <= len(heap):
+            index, _, length = struct.unpack_from("<HHxxxxQ", heap, at)
+            need = 16 + -(-length // 8) * 8 if index else length
+            if need < 8 or at + need > len(heap):
+                raise OSError("a heap with an object of an impossible size")
+            at += need
 
 
 class UntrustedFile:
@@ -62,8 +128,11 @@ class UntrustedFile:
         self.path = path
         self._claimed = 0
         try:
-            self.bytes = regular_size(path) if data is None else len(data)
-            self._file = h5py.File(path if data is None else io.BytesIO(data), "r")
+            self._source = _Watched(path if data is None else data)
+            self.bytes = self._source.size
+            self._file = h5py.File(self._source, "r")
+            if self._file.id.get_create_plist().get_sizes() != (8, 8):
+                raise ValueError("its addresses and lengths should have 8 bytes")
         except _DAMAGED as error:
             raise FolderError(f"{path}: is no HDF5 file, or a truncated one ({error})") from None
 
@@ -76,7 +145,9 @@ class UntrustedFile:
         """A text attribute of the file."""
         where = f"{self.path}: attribute {name}"
         with _said(where):
-            self._scalar(name, where)
+            # Of what is no text, HDF5 may crash on converting it.
+            if h5py.check_string_dtype(self._scalar(name, where)) is None:
+                raise FolderError(f"{where}: should be text")
             value = self._file.attrs[name]
             if isinstance(value, bytes):
                 value = value.decode()
@@ -173,6 +244,7 @@ class UntrustedFile:
     def close(self) -> None:
         """Close the file."""
         self._file.close()
+        self._source.close()
 
     def __enter__(self) -> "UntrustedFile":
         return self

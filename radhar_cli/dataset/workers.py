@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any, TypeVar
 
+from radhar_cli.activity import Activity, add_activity, own_activities
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.worker_process import prepare_process
 
@@ -33,13 +34,22 @@ def run_tasks(
     )
     try:
         with _interrupts_blocked():
-            results = pool(delayed(function)(*task) for task in tasks)
+            own = own_activities()
+            results = pool(delayed(_with_activities)(own, function, *task) for task in tasks)
         yield from results
     except TerminatedWorkerError:
         raise UnfinishedError(
             "a worker process was killed (by hand, or for want of memory); what was finished is "
             "kept, and the same command goes on"
         ) from None
+
+
+def _with_activities(own: tuple[Activity, ...], function: Callable[..., T], *task: Any) -> T:
+    """Run a task in a worker that knows the classes its parent knows."""
+    for activity in own:
+        if activity.motion is not None and activity not in own_activities():
+            add_activity(activity.slug, activity.motion, activity.paper)
+    return function(*task)
 
 
 def warm_up(jobs: int) -> None:

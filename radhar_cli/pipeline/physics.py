@@ -1,5 +1,6 @@
 """Unpack a scene into the objects of the physics: here alone are keys and units of scenes read."""
 
+from dataclasses import fields
 from math import radians
 from typing import Any
 
@@ -9,6 +10,7 @@ from radhar_cli.config.schema import Config
 from radhar_cli.motion.paper.activities import Gait, Timing
 from radhar_cli.motion.paper.body import PaperBody
 from radhar_cli.motion.protocol import Motion
+from radhar_cli.pipeline.people import human_motion
 from radhar_cli.processing.canceller import FIRST_DIFFERENCE, NO_CANCELLER, Canceller
 from radhar_cli.processing.frames import Frames
 from radhar_cli.radar.propagation import Antennas
@@ -80,7 +82,7 @@ def motion_of(scene: Scene) -> Motion:
     """The motion of a scene: the activity's own, or that of the model in `motion:`."""
     if scene.activity.motion is not None:
         return scene.activity.motion(scene)
-    return _paper_body(scene)
+    return human_motion(scene) if scene.config.motion.model == "human" else _paper_body(scene)
 
 
 def _paper_body(scene: Scene) -> PaperBody:
@@ -100,10 +102,7 @@ def _paper_body(scene: Scene) -> PaperBody:
             speed=_fixed(motion.speed_mps),
         ),
         timing=Timing(
-            **{
-                name.removesuffix("_s"): _fixed(getattr(timing, name))
-                for name in type(timing).model_fields
-            }
+            **{field.name: _fixed(getattr(timing, f"{field.name}_s")) for field in fields(Timing)}
         ),
     )
 

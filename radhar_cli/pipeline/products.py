@@ -233,14 +233,14 @@ def _cube(c: Config) -> Iterator[Product]:
     def beat_cube(
         paths: PathSource, w: Waveform, canceller: Canceller, receiver: tuple[Impairment, ...]
     ) -> tuple[Signal, RangeProfiles]:
-        shown = shown_pulses(w.n_pulses - canceller.lost, c.image.size_px[1])
-        x, bins = [], []
+        x, bins = np.empty(w.n_pulses - canceller.lost, dtype=complex), []
+        shown = shown_pulses(x.size, c.image.size_px[1])
         for first, block in _blocks(c, paths, w, canceller, receiver):
-            x.append(half_band_signal(range_compression(block, w)))
+            x[first : first + block.shape[1]] = half_band_signal(range_compression(block, w))
             here = shown[(shown >= first) & (shown < first + block.shape[1])]
             bins.append(range_bins(block[:, here - first], w))
         return (
-            Signal(np.concatenate(x), canceller.delay / w.prf, w.prf, w.f0),
+            Signal(x, canceller.delay / w.prf, w.prf, w.f0),
             RangeProfiles(np.concatenate(bins, axis=1), shown),
         )
 

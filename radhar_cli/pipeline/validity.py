@@ -12,6 +12,7 @@ from radhar_cli.arrays import Float, Index
 from radhar_cli.config.checks import timing_warnings
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import SceneError
+from radhar_cli.motion.human.two_link import OutOfReachError
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.pipeline.motion_paths import through_wall_delay
 from radhar_cli.pipeline.physics import antennas_of, motion_of, wall_of, waveform_of
@@ -90,8 +91,19 @@ class SceneCheck:
 
 
 def check_scene(scene: Scene) -> SceneCheck:
-    """Check one scene on a grid of pulses dense enough for its motion."""
-    motion, antennas = motion_of(scene), antennas_of(scene.config)
+    """Check one scene on a grid of pulses dense enough for its motion.
+
+    Raises:
+        SceneError: no body can do this.
+    """
+    try:
+        return _check(scene, motion_of(scene))
+    except OutOfReachError as error:
+        raise SceneError(f"{scene.name}: {error} (motion.*, timing.*)") from None
+
+
+def _check(scene: Scene, motion: Motion) -> SceneCheck:
+    antennas = antennas_of(scene.config)
     wall, waveform = wall_of(scene.config), waveform_of(scene.config)
     rate = max(GRID_HZ, GRID_PER_CYCLE * motion.highest_frequency)
     step = max(1, int(waveform.prf / rate))

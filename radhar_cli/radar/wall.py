@@ -120,12 +120,9 @@ def _between_planes(
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
             first, second = (low - at) / step, (high - at) / step
         near, far = np.minimum(first, second), np.maximum(first, second)
-        yield _Between(
-            step,
-            parallel & (not low < at < high),
-            np.where(parallel, -np.inf, near),
-            np.where(parallel, np.inf, far),
-        )
+        if parallel.any():
+            near[parallel], far[parallel] = -np.inf, np.inf
+        yield _Between(step, parallel & (not low < at < high), near, far)
 
 
 def extra_delay(chord: Float, wall: Wall) -> Float:

@@ -73,6 +73,10 @@ def _write_truth(file: h5py.File, simulation: Simulation) -> None:
     file["truth/positions"] = truth.positions
     file["truth/positions"].attrs["unit"] = "m"
     file["truth/positions"].attrs["axes"] = ["pulse", "joint", "x y z"]
+    if truth.hip_joints is not None:
+        file["truth/hip_joints"] = truth.hip_joints
+        file["truth/hip_joints"].attrs["unit"] = "m"
+        file["truth/hip_joints"].attrs["axes"] = ["pulse", "right left", "x y z"]
     file["truth/radial_velocity"] = truth.radial_velocity
     file["truth/radial_velocity"].attrs["unit"] = "m/s, positive receding"
     file["truth/doppler"] = truth.doppler

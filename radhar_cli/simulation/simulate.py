@@ -190,11 +190,12 @@ def _activity(asked: str | Activity | None, config: Config) -> Activity:
         raise ConfigError(f"--activity is needed: the config has {len(chosen)} activities")
     if asked is None:
         return chosen[0]
+    own = {one.slug: one for one in config.every_class}
     try:
-        found = activity_named(asked) if isinstance(asked, str) else asked
+        found = own.get(asked) or activity_named(asked) if isinstance(asked, str) else asked
     except ValueError as error:
         raise ConfigError(str(error)) from None
-    return next((one for one in chosen if one.slug == found.slug), found)
+    return own.get(found.slug, found)
 
 
 def _joint(name: str, joints: tuple[str, ...]) -> int:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from radhar_cli.arrays import Float, Levels
+from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.pipeline.motion_paths import point_delay
 from radhar_cli.radar.propagation import Antennas
@@ -27,6 +28,7 @@ class Truth:
         doppler: -f0 dtau/dt [M, I], Hz, the wall's delay included, before aliasing.
         phase_label: number in `phases` of the movement under way [M].
         phases: names of the movements within the activity.
+        hip_joints: where thighs begin, right and left [M, 2, 3], m; None where it is the hip.
     """
 
     time: Float
@@ -35,6 +37,7 @@ class Truth:
     doppler: Float
     phase_label: Levels
     phases: tuple[str, ...]
+    hip_joints: Float | None = None
 
 
 def truth(motion: Motion, antennas: Antennas, wall: Wall | None, waveform: Waveform) -> Truth:
@@ -50,12 +53,18 @@ def truth(motion: Motion, antennas: Antennas, wall: Wall | None, waveform: Wavef
         label[t >= start] = phases.index(name)
     return Truth(
         time=t,
-        positions=np.ascontiguousarray(motion.positions(t).transpose(2, 1, 0)),
+        positions=_by_pulse(motion.positions(t)),
         radial_velocity=SPEED_OF_LIGHT / 2 * rate(None),
         doppler=-waveform.f0 * rate(wall),
         phase_label=label,
         phases=phases,
+        hip_joints=_by_pulse(motion.hip_joints(t)) if isinstance(motion, HumanMotion) else None,
     )
+
+
+def _by_pulse(p: Float) -> Float:
+    """[3, I, M] as [M, I, 3]."""
+    return np.ascontiguousarray(p.transpose(2, 1, 0))
 
 
 def _rate(delay: Callable[[Float], Float], t: Float) -> Float:

@@ -74,6 +74,7 @@ def _images(config: Config) -> list[Setting]:
 def _switches(config: Config) -> list[Setting]:
     fsst, dense = "maps=[fsst]", "processing.fsst_hop_pulses=1"
     found = [
+        _switch(*_other_motion(config)),
         _switch("residual video phase", "radar.residual_video_phase=true"),
         Setting(
             "switch",
@@ -115,7 +116,8 @@ def trials(config: Config) -> list[Trial]:
     for more in ("image.size_px=32", "maps=[fsst]"):
         name = more.partition("=")[2].strip("[]") + (" px" if "size" in more else "")
         found.append(Trial(name, (*DIRECT, more), (*CUBE, more)))
-    switches = {"residual video phase": "radar.residual_video_phase=true"}
+    name, on = _other_motion(config)
+    switches = {"residual video phase": "radar.residual_video_phase=true", name: on}
     if config.wall is not None:
         switches |= {
             "refraction": "wall.rays=refracted",
@@ -127,6 +129,13 @@ def trials(config: Config) -> list[Trial]:
             Trial(f"with {name}", (*DIRECT, on), (*CUBE, on)),
         ]
     return found
+
+
+def _other_motion(config: Config) -> tuple[str, str]:
+    """The model of motion that the config does not have."""
+    if config.motion.model == "human":
+        return "the paper's motion", "motion.model=paper"
+    return "human motion", "motion.model=human"
 
 
 def _switch(name: str, on: str) -> Setting:

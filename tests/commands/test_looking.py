@@ -15,7 +15,7 @@ def test_simulate_writes_everything(tmp_path: Path) -> None:
     done = radhar("simulate", config, "-a", "S12", "--seed", 3, "-o", out, "--overlay", *short)
     assert done.returncode == 0, done.stderr
     names = sorted(p.name for p in out.iterdir())
-    assert names == ["maps.png", "scene.h5", "scene.json", "stickman.gif"]
+    assert names == ["maps.png", "scene.h5", "scene.json", "scene.yaml", "stickman.gif"]
     described = json.loads((out / "scene.json").read_text())
     assert described["seed"] == 3
     looked = radhar("inspect", out)
@@ -30,7 +30,7 @@ def test_simulate_for_scripts(tmp_path: Path) -> None:
         *("--engine", "cube", "--maps", "stft,rtm", "--raw", "--joint", "head", "--nominal"),
     )
     assert done.returncode == 0, done.stderr
-    assert sorted(p.name for p in out.iterdir()) == ["scene.h5", "scene.json"]
+    assert sorted(p.name for p in out.iterdir()) == ["scene.h5", "scene.json", "scene.yaml"]
     described = json.loads((out / "scene.json").read_text())
     assert described["engine"] == "cube"
     assert described["accuracy"] is None

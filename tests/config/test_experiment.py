@@ -19,7 +19,7 @@ from radhar_cli.config import (
     timing_warnings,
 )
 from radhar_cli.config.number import Uniform
-from radhar_cli.config.schema import Section
+from radhar_cli.config.schema import MotionConfig, Section, SequenceConfig, SubjectConfig
 
 
 def test_the_defaults_are_the_papers_free_space_data_set() -> None:
@@ -110,6 +110,15 @@ def changed(section: Section, key: str, value: object) -> Any:
 
 
 WITH_WALL = Config(wall={})
+OF_PEOPLE_ALONE = (
+    *(
+        f"subject.{name}"
+        for name in SubjectConfig.model_fields
+        if name not in ("height_m", "weight_kg")
+    ),
+    *(f"motion.{name}" for name in list(MotionConfig.model_fields)[10:] if name != "fall"),
+    *("timing.grab_start_s", "timing.grab_duration_s", "timing.overlap_s"),
+)
 CHANGES: dict[str, object] = {
     "seed": 2,
     "samples_per_class": 299,
@@ -136,6 +145,10 @@ CHANGES: dict[str, object] = {
     "motion.calf_deg": 45.0,
     "motion.arm_deg": 35.0,
     "motion.turn_deg": 45.0,
+    "motion.model": "human",
+    "motion.fall": "sideways",
+    "classes": {"coming_home": SequenceConfig(sequence=("walking",))},
+    **dict.fromkeys(OF_PEOPLE_ALONE, 0.123),
     "timing.seat_start_s": 0.6,
     "timing.seat_duration_s": 1.0,
     "timing.rise_start_s": 0.6,

@@ -15,7 +15,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from listener import Listener
-from radhar_cli.pipeline.survey import Drawn
 from small import fingerprint, small_config
 
 from radhar_cli.activity import Activity
@@ -23,34 +22,36 @@ from radhar_cli.config import Config, load_config
 from radhar_cli.dataset import batch as batch_module
 from radhar_cli.dataset import verify as verify_module
 from radhar_cli.dataset.build import build
-from radhar_cli.dataset.sample import MapImage
+from radhar_cli.dataset.sample import Sample
 from radhar_cli.dataset.shards import listed_shards, shard_folder
 from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import UnfinishedError
-from radhar_cli.scene import Scene
-
-KINDS = {"wall": False, "half_band": False, "aliasing": False}
-
-
-def stub_settle(config: Config, activity: Activity, index: int) -> Drawn:
-    return Drawn(index % 3, KINDS)
+from radhar_cli.pipeline.validity import Flags
+from radhar_cli.processing.power_map import MapImage
+from radhar_cli.scene import Scene, draw_scene, scene_numbers
 
 
-def stub_synthesise(scene: Scene, config: Config, plan: object) -> dict[str, MapImage]:
+def stub_draw(config: Config, activity: Activity, index: int) -> tuple[Scene, Flags]:
+    return draw_scene(config, activity, index, index % 3), Flags(0)
+
+
+def stub_synthesise(scene: Scene, plan: object) -> Sample:
+    config = scene.config
+
     def image(name: str) -> MapImage:
-        drawn = json.dumps([name, scene.name, scene.values], sort_keys=True)
+        drawn = json.dumps([name, scene.name, scene_numbers(scene)], sort_keys=True)
         rng = np.random.default_rng(list(hashlib.sha256(drawn.encode()).digest()))
         levels = rng.integers(0, 256, config.image.size_px, dtype=np.uint8)
         return MapImage(levels, float(rng.random()), (0.0, 1.0, *rng.random(2)))
 
-    return {name: image(name) for name in config.maps}
+    return Sample({name: image(name) for name in config.maps}, -100.0 - scene.index, False)
 
 
 @pytest.fixture(scope="module", autouse=True)
 def stubs() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         for module in (batch_module, verify_module):
-            patch.setattr(module, "settle", stub_settle)
+            patch.setattr(module, "draw_valid_scene", stub_draw)
             patch.setattr(module, "synthesise", stub_synthesise)
             patch.setattr(module, "plan_images", lambda config: None)
         yield

@@ -15,10 +15,12 @@ from small import SMALL, fingerprint, small_config
 
 from radhar_cli.config import Config, load_config
 from radhar_cli.dataset import batch as batch_module
+from radhar_cli.dataset import build as build_module
 from radhar_cli.dataset import folder as folder_module
 from radhar_cli.dataset.build import Outcome, build
 from radhar_cli.dataset.folder import locked
 from radhar_cli.dataset.layout import Rows, png_path
+from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.shards import listed_shards
 from radhar_cli.dataset.workers import run_tasks, warm_up
 from radhar_cli.errors import FolderError, SceneError, UnfinishedError
@@ -125,8 +127,10 @@ def test_pngs_can_be_added_later_and_lost_ones_come_back(
     }
     lost = folder / next(k for k in right if k.endswith("walking/00001.png"))
     lost.unlink()
-    make(config, folder)
-    assert lost.exists()
+    for other in ("1.png", "0000\N{ARABIC-INDIC DIGIT ONE}.png", "00001.jpg", "99999.png"):
+        (lost.parent / other).write_text("mine")
+    assert make(config, folder).pngs == 3, "the row's images of all maps"
+    assert fingerprint(folder).items() >= {k: right[k] for k in right if k[:3] == "png"}.items()
 
 
 def test_overwrite_starts_again_and_keeps_strangers(
@@ -182,7 +186,7 @@ def test_overwrite_killed_midway_goes_on(
         assert fingerprint(folder) == fingerprint(whole)
 
 
-def test_a_settled_survey_is_not_repeated(
+def test_a_finished_check_of_scenes_is_not_repeated(
     config: Config, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder = tmp_path / "set"
@@ -190,8 +194,27 @@ def test_a_settled_survey_is_not_repeated(
         patch.setattr(batch_module, "synthesise", lambda *_: 1 / 0)
         with pytest.raises(ZeroDivisionError):
             make(config, folder)
-    monkeypatch.setattr(batch_module, "settle", lambda *_: 1 / 0)
+    monkeypatch.setattr(batch_module, "draw_valid_scene", lambda *_: 1 / 0)
     assert make(config, folder).made == 9
+
+
+def test_scenes_of_a_large_data_set_are_checked_by_the_workers(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The same bytes, redraws and warnings as where they are all checked first."""
+    text = SMALL.replace("seed: 7", "seed: 7\nwall: {}\non_invalid: keep")
+    config = load_config(small_config(tmp_path, text), ["motion.range_m={uniform: [1, 3]}"])
+    said = []
+    for name, first in (("first", 9), ("by workers", 8)):
+        monkeypatch.setattr(build_module, "MAX_CHECKED_FIRST", first)
+        notes = Listener()
+        build(config, tmp_path / name, 2, notes, batch_size=2)
+        assert ("checking scenes" in notes.stages) == (name == "first")
+        assert len(notes.said) == len(set(notes.said))
+        said.append(set(notes.said))
+    assert said[0] == said[1]
+    assert any("passes through the wall" in message for message in said[0])
+    assert fingerprint(tmp_path / "first") == fingerprint(tmp_path / "by workers")
 
 
 def test_foreign_folder_file_and_live_folder_are_refused(config: Config, tmp_path: Path) -> None:
@@ -248,12 +271,12 @@ def test_physical_warnings_are_said_once_with_their_number_and_stored(
 def test_scenes_that_fall_back_to_the_cube_are_counted_whoever_made_them(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """-215 dB can be promised for those who walk and not for those who stand and punch."""
-    engine = ["engine={tolerance_db: -215, fallback: cube}", "duration_s=1", "maps=[rtm, stft]"]
-    config = load_config(small_config(tmp_path), engine)
+    """Double precision cannot promise -300 dB of anybody who moves."""
+    engine = ["engine={tolerance_db: -300, fallback: cube}", "duration_s=1", "maps=[rtm, stft]"]
+    config = load_config(small_config(tmp_path), [*engine, "activities=[punching, S1, S8]"])
     notes, original, made = Listener(), batch_module.synthesise, []
     build(config, tmp_path / "whole", 1, notes)
-    assert notes.said[-1] == ("warning: 3 of 9 recordings: computed by the cube (engine.fallback)")
+    assert "warning: 6 of 9 recordings: computed by the cube (engine.fallback)" in notes.said
 
     def stops_after_four(*arguments: object) -> object:
         made.append(arguments)
@@ -269,7 +292,8 @@ def test_scenes_that_fall_back_to_the_cube_are_counted_whoever_made_them(
     assert fingerprint(tmp_path / "set") == fingerprint(tmp_path / "whole")
     with h5py.File(tmp_path / "set/dataset.h5") as file:
         stored = json.loads(file.attrs["warnings"])
-    assert [w["recordings"] for w in stored if w["kind"] == "fallback"] == [3]
+        assert np.isnan(file["scene/error_db"][:]).all(), "the cube errs by nothing, as does rest"
+    assert [w["recordings"] for w in stored if w["kind"] == "fallback"] == [6]
 
 
 def test_a_range_map_alone_never_falls_back(tmp_path: Path) -> None:
@@ -300,6 +324,8 @@ def test_dataset_contract(config: Config, whole: Path) -> None:
         assert np.abs(file["scene/angle"][:]).max() <= np.pi / 6
         assert np.isnan(file["scene/thigh"][:3]).all(), "punching does not swing the thighs"
         assert np.isfinite(file["scene/thigh"][3:]).all()
+        assert file["scene/error_db"].attrs["unit"] == "dB"
+        assert (file["scene/error_db"][:] <= config.engine.tolerance_db).all()
         assert file.attrs["class_slugs"][7] == "walking"
         assert file.attrs["seed"] == 7
         assert json.loads(file.attrs["config"])["samples_per_class"] == 3
@@ -308,8 +334,6 @@ def test_dataset_contract(config: Config, whole: Path) -> None:
 
 
 def test_pngs_show_the_levels(config: Config, whole: Path) -> None:
-    from radhar_cli.dataset.png import colour_table
-
     table, rows = colour_table("viridis"), Rows.of(config)
     with h5py.File(whole / "dataset.h5") as file:
         for row in range(len(rows)):

@@ -5,10 +5,10 @@ from math import pi
 import numpy as np
 import pytest
 
-from radhar_cli.activity import activity_named
+from radhar_cli.activity import ACTIVITIES, activity_named
 from radhar_cli.config import Config
 from radhar_cli.dataset.scene_fields import fields, values
-from radhar_cli.scene import draw_scene, numbers, scene_numbers
+from radhar_cli.scene import depends_on, draw_scene, numbers, scene_numbers
 
 EVERYTHING = Config(wall={})
 
@@ -46,8 +46,12 @@ def test_name_unit_and_factor(key: str, name: str, unit: str, factor: float) -> 
 
 def test_every_number_of_every_activity_has_one_column() -> None:
     columns = fields(EVERYTHING)
-    keys = {key for key, _ in numbers(EVERYTHING)}
-    assert {field.key for field in columns} == keys | {"subject.weight_kg"}
+    keys = {
+        key
+        for key, _ in numbers(EVERYTHING)
+        if any(depends_on(EVERYTHING, activity, key) for activity in ACTIVITIES)
+    }
+    assert {field.key for field in columns} == keys | {"subject.weight_kg", "error_db"}
     assert len({field.name for field in columns}) == len(columns)
 
 
@@ -56,6 +60,17 @@ def test_only_the_chosen_activities_and_parts_have_columns() -> None:
     assert not any(key.startswith(("timing.", "wall.")) for key in keys)
     assert {"snr_db", "motion.speed_mps"}.isdisjoint(keys)
     assert {"subject.weight_kg", "motion.range_m"} <= keys
+
+
+@pytest.mark.parametrize(
+    ("engine", "maps", "there"),
+    [("direct", ("rtm", "stft"), True), ("direct", ("rtm",), False), ("cube", ("stft",), False)],
+)
+def test_the_measured_error_has_a_column_where_the_direct_engine_sums(
+    engine: str, maps: tuple[str, ...], there: bool
+) -> None:
+    columns = fields(Config(engine={"kind": engine}, maps=maps))
+    assert ("error_db" in {field.name for field in columns}) == there
 
 
 def test_degrees_are_the_only_unit_that_is_not_si() -> None:
@@ -69,10 +84,10 @@ def test_the_table_is_in_config_units_with_nan_where_a_number_does_not_apply() -
     config = Config(activities=("S1", "S8"))
     columns = fields(config)
     scenes = [draw_scene(config, activity_named(slug), 3) for slug in ("S1", "S8")]
-    table = values(scenes, columns)
+    table = np.array([values(scene, columns, -100.5) for scene in scenes])
     assert table.shape == (2, len(columns))
     for row, scene in zip(table, scenes, strict=True):
-        known = scene_numbers(scene)
+        known = scene_numbers(scene) | {"error_db": -100.5}
         for value, field in zip(row, columns, strict=True):
             if field.key in known:
                 assert value == known[field.key]
@@ -86,7 +101,7 @@ def test_the_table_is_in_config_units_with_nan_where_a_number_does_not_apply() -
 def test_the_factor_turns_config_units_into_si() -> None:
     config = Config(motion={"angle_deg": 30, "turn_deg": 45}, activities=("S7",))
     columns = fields(config)
-    table = values([draw_scene(config, activity_named("S7"), 0)], columns)[0]
+    table = values(draw_scene(config, activity_named("S7"), 0), columns)
     si = {f.name: value * f.factor for f, value in zip(columns, table, strict=True)}
     assert si["angle"] == pytest.approx(pi / 6)
     assert si["turn"] == pytest.approx(pi / 4)

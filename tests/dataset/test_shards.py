@@ -11,7 +11,7 @@ from small import small_config
 from radhar_cli.config import Config, load_config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.identity import identity, identity_hash
-from radhar_cli.dataset.sample import MapImage
+from radhar_cli.dataset.sample import Sample
 from radhar_cli.dataset.shards import (
     ForeignShardError,
     Shard,
@@ -21,10 +21,10 @@ from radhar_cli.dataset.shards import (
     listed_shards,
     missing_and_repeated,
     require_tiling,
-    shard_of,
     write_shard,
 )
 from radhar_cli.errors import UnfinishedError
+from radhar_cli.processing.power_map import MapImage
 
 
 @pytest.fixture(scope="module")
@@ -35,12 +35,12 @@ def config(tmp_path_factory: pytest.TempPathFactory) -> Config:
 def stub(config: Config, start: int, stop: int) -> bytes:
     """A shard whose level is the row's number everywhere."""
     size = config.image.size_px
-    samples = [
-        {"stft": MapImage(np.full(size, row, np.uint8), float(row), (0.0, 1.0, 2.0, 3.0))}
-        for row in range(start, stop)
-    ]
+    levels = (np.full(size, row, np.uint8) for row in range(start, stop))
+    images = (MapImage(each, float(each[0, 0]), (0.0, 1.0, 2.0, 3.0)) for each in levels)
+    samples = [Sample({"stft": image}, -100.0, False) for image in images]
     values = np.full((stop - start, len(scene_fields.fields(config))), float(start))
-    return encode_shard(config, start, samples, values)
+    flags = np.arange(start, stop, dtype=np.uint8)
+    return encode_shard(config, whose(config), start, samples, values, flags)
 
 
 def whose(config: Config) -> str:
@@ -49,18 +49,19 @@ def whose(config: Config) -> str:
 
 def test_what_was_stored_is_read_and_hdf5(config: Config, tmp_path: Path) -> None:
     write_shard(tmp_path, 4, 7, stub(config, 4, 7))
-    shard = shard_of(tmp_path, 4, 7)
+    shard = Shard(4, 7, tmp_path)
     data, checksum = shard.read(whose(config))
     assert checksum.encode() in data[:512]
     for source in (shard.path, io.BytesIO(data)):
         with h5py.File(source) as file:
             assert file["maps/stft"][:, 0, 0].tolist() == [4, 5, 6]
             assert file["entropy/stft"][:].tolist() == [4, 5, 6]
+            assert file["flags"][:].tolist() == [4, 5, 6]
 
 
 def test_every_changed_or_missing_byte_is_found(config: Config, tmp_path: Path) -> None:
     right = stub(config, 0, 2)
-    shard = shard_of(tmp_path, 0, 2)
+    shard = Shard(0, 2, tmp_path)
     places = {*range(0, 220, 7), *range(220, len(right), 499), len(right) - 1}
     for place in sorted(places):
         wrong = bytearray(right)
@@ -74,7 +75,7 @@ def test_every_changed_or_missing_byte_is_found(config: Config, tmp_path: Path) 
 
 
 def test_why_a_shard_cannot_be_used(config: Config, tmp_path: Path) -> None:
-    shard = shard_of(tmp_path, 0, 2)
+    shard = Shard(0, 2, tmp_path)
     with pytest.raises(ShardError, match="is not there"):
         shard.read(whose(config))
     shard.path.mkdir(parents=True)
@@ -96,15 +97,15 @@ def test_of_two_shards_with_the_same_rows_one_is_gone_on_from(
 ) -> None:
     for start, stop in ((0, 4), (2, 6), (4, 6), (8, 9)):
         write_shard(tmp_path, start, stop, stub(config, start, stop))
-    shard_of(tmp_path, 6, 8).path.write_bytes(b"half")
-    (shard_of(tmp_path, 0, 4).path.parent / "notes.txt").write_text("mine")
+    Shard(6, 8, tmp_path).path.write_bytes(b"half")
+    (Shard(0, 4, tmp_path).path.parent / "notes.txt").write_text("mine")
     sound, unusable = check_shards(listed_shards(tmp_path), whose(config))
     assert [(s.start, s.stop) for s in sound] == [(0, 4), (4, 6), (8, 9)]
     assert [(s.start, s.stop) for s, _ in unusable] == [(6, 8)]
 
 
 def shards(*runs: tuple[int, int]) -> list[Shard]:
-    return [Shard(start, stop, Path(f"{start}")) for start, stop in runs]
+    return [Shard(start, stop, Path("set")) for start, stop in runs]
 
 
 def test_missing_and_repeated_rows() -> None:

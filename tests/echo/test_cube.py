@@ -1,7 +1,6 @@
 """The beat matrix and the blocks in which the cube engine computes it."""
 
 from dataclasses import asdict
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -10,9 +9,10 @@ import reference as ref
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.config.schema import Config
 from radhar_cli.echo import cube
-from radhar_cli.echo.beat import beat_matrix, unit_phasor
-from radhar_cli.pipeline.plan import plan
-from radhar_cli.pipeline.run import run
+from radhar_cli.echo.beat import beat_matrix
+from radhar_cli.phasor import unit_phasor
+from radhar_cli.pipeline.run import record
+from radhar_cli.processing.canceller import Canceller
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene import draw_scene
 
@@ -78,22 +78,19 @@ def test_slow_time_signal_of_a_person_is_the_reference(activity, carrier, wall):
             "engine": {"kind": "cube"},
         }
     )
-    scene = draw_scene(config, ACTIVITIES[activity - 1], 0)
-    recording = run(plan(config, ["signal:plain"]), scene, config)
-    paths = recording.products["paths"](radar.times)
+    recording = record(draw_scene(config, ACTIVITIES[activity - 1], 0), ["signal", "paths"])
+    paths = recording["paths"](radar.times)
     right = ref.mti(ref.slow_time(paths.delay, paths.amplitude, radar))
     # MTI leaves a hundredth of the amplitude or more, and rounding stays what it was.
-    assert ref.error_db(recording.products["signal:plain"], right) < -170
+    assert ref.error_db(recording["signal"].x, right) < -170
 
 
 class TestMotionInChirp:
     """Delays and amplitudes at t_m + n/fs instead of t_m."""
 
     def beat(self, ranges, radar, moving=True, strength=1.0):
-        waveform = Waveform(**asdict(radar))
         source = ref.Points(ranges, strength)
-        blocks = cube.beat_blocks(source, waveform, motion_in_chirp=moving)
-        return np.concatenate([b[:, (1 if first else 0) :] for first, b in blocks], axis=1)
+        return np.hstack([*cube.beat_blocks(source, Waveform(**asdict(radar)), moving)])
 
     @staticmethod
     def closed_form(ranges, radar):
@@ -172,16 +169,15 @@ class TestMotionInChirp:
             "snr_db": None,
             "image": {"size_px": 16},
         }
-        products = [
-            run(plan(config, ["signal:plain", "rtm"]), draw_scene(config, ACTIVITIES[7], 0), config)
+        frozen, moving = (
+            record(draw_scene(config, ACTIVITIES[7], 0), ["signal", "rtm"])
             for config in (
                 Config.model_validate(base | {"engine": {"kind": "cube", "motion_in_chirp": on}})
                 for on in (False, True)
             )
-        ]
-        frozen, moving = (recording.products for recording in products)
-        for name in ("signal:plain", "rtm"):
-            assert -80 < ref.error_db(moving[name], frozen[name]) < -20
+        )
+        assert -80 < ref.error_db(moving["signal"].x, frozen["signal"].x) < -20
+        assert -80 < ref.error_db(moving["rtm"].power, frozen["rtm"].power) < -20
 
     def test_blocks_are_bounded_and_do_not_matter(self, monkeypatch):
         radar = RADARS["odd"]
@@ -200,29 +196,15 @@ class TestBlocks:
     def waveform(self):
         return Waveform(**asdict(RADARS["odd"]))
 
-    def blocks(self, waveform, noisy=False):
-        rng = np.random.default_rng(5) if noisy else None
-        return list(cube.beat_blocks(ref.Points(crowd), waveform, 0.3 if noisy else 0.0, rng))
-
-    def joined(self, waveform, noisy=False):
-        """All pulses, without those that a block repeats."""
-        blocks = self.blocks(waveform, noisy)
-        return np.concatenate([b[:, (1 if first else 0) :] for first, b in blocks], axis=1)
-
     @pytest.mark.parametrize("pulses", [1, 2, 3, 7, 39, 40, 1000])
-    @pytest.mark.parametrize("noisy", [False, True])
-    def test_length_does_not_matter(self, monkeypatch, waveform, pulses, noisy):
-        whole = self.joined(waveform, noisy)
+    def test_length_does_not_matter(self, monkeypatch, waveform, pulses):
+        def joined():
+            return np.hstack([*cube.beat_blocks(ref.Points(crowd), waveform)])
+
+        whole = joined()
         assert whole.shape == (waveform.n_adc, waveform.n_pulses)
         monkeypatch.setattr(cube, "BLOCK_SAMPLES", pulses * waveform.n_adc)
-        assert np.array_equal(self.joined(waveform, noisy), whole)
-
-    def test_neighbours_share_one_pulse(self, monkeypatch, waveform):
-        monkeypatch.setattr(cube, "BLOCK_SAMPLES", 7 * waveform.n_adc)
-        blocks = self.blocks(waveform, noisy=True)
-        assert [first for first, _ in blocks] == [0, 6, 13, 20, 27, 34]
-        for (_, before), (_, after) in pairwise(blocks):
-            assert np.array_equal(before[:, -1], after[:, 0])
+        assert np.array_equal(joined(), whole)
 
     def test_a_block_holds_no_more_than_its_length(self, monkeypatch, waveform):
         """What bounds the memory of a long recording."""
@@ -231,29 +213,29 @@ class TestBlocks:
         list(cube.beat_blocks(source, waveform))
         assert [t.size for t in source.asked] == [7, 7, 7, 7, 7, 5]
 
-    @pytest.mark.parametrize("mti", [True, False])
-    def test_products_of_a_plan_do_not_depend_on_it(self, monkeypatch, mti):
+    @pytest.mark.parametrize("taps", [(1,), (-1, 1), (1, -2, 1)])
+    def test_products_do_not_depend_on_it(self, monkeypatch, taps):
+        """Noise and canceller reach across the blocks."""
         config = Config.model_validate(
             {
                 "duration_s": 0.5,
                 "radar": {"carrier_hz": 24e9, "bandwidth_hz": 1e9, "prf_hz": 300},
-                "processing": {"mti": mti},
                 "image": {"size_px": 37},
-                "maps": ["rtm", "stft"],
                 "engine": {"kind": "cube"},
             }
         )
-        scene = draw_scene(config, ACTIVITIES[1], 0)
-        asked = plan(config, ["rtm", "signal:plain"])
-        whole = run(asked, scene, config).products
-        assert whole["signal:plain"].shape == (150 - mti,)
-        assert whole["rtm"].shape == (200, 37)
+        scene, asked = draw_scene(config, ACTIVITIES[1], 0), ["rtm", "signal"]
+        whole = record(scene, asked, canceller=Canceller(taps))
+        assert whole["signal"].x.shape == (151 - len(taps),)
+        assert whole["rtm"].power.shape == (200, 37)
         for pulses in (2, 10, 149):
             monkeypatch.setattr(cube, "BLOCK_SAMPLES", pulses * 400)
-            parts = run(asked, scene, config).products
-            for name in ("signal:plain", "rtm"):
-                largest = np.abs(whole[name]).max()
-                assert np.abs(parts[name] - whole[name]).max() < 1e-14 * largest
+            parts = record(scene, asked, canceller=Canceller(taps))
+            for found, right in (
+                (parts["signal"].x, whole["signal"].x),
+                (parts["rtm"].power, whole["rtm"].power),
+            ):
+                assert np.abs(found - right).max() < 1e-14 * np.abs(right).max()
 
     def test_signal_power_is_the_mean_over_the_pulses(self, monkeypatch, waveform):
         source = ref.Points(crowd)

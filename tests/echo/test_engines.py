@@ -6,8 +6,7 @@ import reference as ref
 
 from radhar_cli.activity import ACTIVITIES, Activity
 from radhar_cli.config.schema import Config
-from radhar_cli.pipeline.plan import plan
-from radhar_cli.pipeline.run import run
+from radhar_cli.pipeline.run import record
 from radhar_cli.scene import draw_scene
 
 # The default tolerance; what the maps show is 50 dB deep.
@@ -70,8 +69,7 @@ def config_of(case: str, engine: dict, **more: object) -> Config:
 
 
 def signal(activity: Activity, config: Config) -> np.ndarray:
-    recording = run(plan(config, ["signal:plain"]), draw_scene(config, activity, 0), config)
-    return recording.products["signal:plain"]
+    return record(draw_scene(config, activity, 0), ["signal"])["signal"].x
 
 
 @pytest.mark.parametrize(
@@ -116,6 +114,6 @@ def test_engines_agree_on_the_signal_power(case, reference):
     powers = []
     for kind in ("cube", "direct"):
         config = config_of(case, {"kind": kind}, snr_db=20, snr_reference=reference)
-        scene = draw_scene(config, ACTIVITIES[11], 0)
-        powers.append(run(plan(config, ["signal_power"]), scene, config).products["signal_power"])
-    assert powers[1] == pytest.approx(powers[0], rel=1e-6)
+        powers.append(record(draw_scene(config, ACTIVITIES[11], 0), ["signal_power"]))
+    cube, direct = (recording["signal_power"] for recording in powers)
+    assert direct == pytest.approx(cube, rel=1e-6)

@@ -188,11 +188,12 @@ def own_class(monkeypatch: pytest.MonkeyPatch) -> str:
     return add_activity("swinging_ball", swinging).slug
 
 
-def test_a_class_beyond_the_twelve(own_class: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_a_class_beyond_the_twelve(own_class: str, tmp_path: Path, jobs: int) -> None:
     config = Config.model_validate(
         CONFIG.model_dump() | {"activities": [own_class, "walking"], "samples_per_class": 2}
     )
-    build(config, tmp_path, 1, Listener())
+    build(config, tmp_path, jobs, Listener(), batch_size=1)
     with h5py.File(tmp_path / "dataset.h5") as file:
         assert list(file["label"]) == [7, 7, 12, 12]
         slugs = list(file.attrs["class_slugs"])

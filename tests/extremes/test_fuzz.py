@@ -16,10 +16,11 @@ from slow import slow
 from radhar_cli.config import MAP_NAMES, Config, load_config
 from radhar_cli.config.reading import validated
 from radhar_cli.errors import ConfigError, RadharError
-from radhar_cli.pipeline import survey
-from radhar_cli.pipeline.plan import plan, plan_images
+from radhar_cli.pipeline import validity
+from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.run import Recording, run
-from radhar_cli.pipeline.validity import check, settle
+from radhar_cli.pipeline.run import record as record_scene
+from radhar_cli.pipeline.validity import draw_valid_scene, scene_warnings
 from radhar_cli.scene import draw_scene
 
 SEED = 20261121
@@ -45,32 +46,34 @@ def read(document: Document, drawer: Drawer, folder: Path) -> Config:
 
 
 def record(config: Config, drawer: Drawer) -> Recording:
-    """One sample: drawn, settled, surveyed and run as a data set does."""
+    """One sample: drawn, checked and run as a data set does."""
     if drawer.chance(ALL_MAPS):
-        config = config.model_copy(update={"maps": MAP_NAMES})
-        config = Config.model_validate(config.model_dump(mode="json"))
+        document = config.model_dump(mode="json") | {"maps": list(MAP_NAMES)}
+        config = validated(Config, document, "fuzz", {})
     activity = drawer.pick(config.chosen_activities)
     index = int(drawer.rng.integers(config.samples_per_class))
-    attempt = settle(config, activity, index).attempt
-    scene = draw_scene(config, activity, index, attempt)
-    check(scene, config)
+    scene, _ = draw_valid_scene(config, activity, index)
+    scene_warnings(scene)
     if drawer.chance(0.5):
-        return run(plan_images(config), scene, config)
-    kinds = ("", "entropy:", "levels:")
-    return run(plan(config, [kind + name for name in config.maps for kind in kinds]), scene, config)
+        return run(plan_images(config), {"scene": scene})
+    both = [kind + name for name in config.maps for kind in ("", "image:")]
+    return record_scene(scene, [*both, "paths"])
 
 
-def assert_finite(recording: Recording) -> None:
+def assert_finite(recording: Recording, size: tuple[int, int]) -> None:
     products: dict[str, Any] = recording.products
-    for name in recording.config.maps:
-        entropy, levels = products[f"entropy:{name}"], products[f"levels:{name}"]
+    images = [name for name in products if name.startswith("image:")]
+    assert images
+    for image in images:
+        levels, entropy = products[image].levels, products[image].entropy
         assert levels.dtype == np.uint8
-        assert levels.shape == recording.config.image.size_px
+        assert levels.shape == size
         assert np.isfinite(entropy)
         assert entropy >= 0
+        name = image.removeprefix("image:")
         if name not in products:  # an image's plan may hold no whole map
             continue
-        power = products[name]
+        power = products[name].power
         assert power.size
         assert np.isfinite(power).all()
         assert power.min() >= 0
@@ -79,7 +82,7 @@ def assert_finite(recording: Recording) -> None:
         if power.any():
             assert levels.max() == 255
         elif levels.any():
-            assert recording.products["paths"](np.zeros(1)).amplitude.max() < 1e-150
+            assert products["paths"](np.zeros(1)).amplitude.max() < 1e-150
 
 
 def assert_clear(error: RadharError) -> list[str]:
@@ -105,7 +108,7 @@ def names(keys: list[str], broken: str) -> bool:
 def test_maps_or_a_clear_refusal(
     block: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(survey, "MOST_ATTEMPTS", 10)  # `on_invalid: redraw` draws 1000 times
+    monkeypatch.setattr(validity, "MAX_ATTEMPTS", 10)  # `on_invalid: redraw` draws 1000 times
     drawer = Drawer(SEED, block)
     mapped = refused = broken_refused = named = 0
     for _ in range(CONFIGS):
@@ -115,7 +118,8 @@ def test_maps_or_a_clear_refusal(
         else:
             document = drawer.document()
         try:
-            recording = record(read(document, drawer, tmp_path), drawer)
+            config = read(document, drawer, tmp_path)
+            recording = record(config, drawer)
         except RadharError as error:
             keys = assert_clear(error)
             refused += 1
@@ -123,7 +127,7 @@ def test_maps_or_a_clear_refusal(
                 broken_refused += 1
                 named += names(keys, broken)
         else:
-            assert_finite(recording)
+            assert_finite(recording, config.image.size_px)
             mapped += 1
     print(
         f"block {block}: {mapped} of {CONFIGS} configs reached finite maps, {refused} were "
@@ -137,8 +141,8 @@ def test_maps_or_a_clear_refusal(
 
 def cycles(recording: Recording) -> float:
     """Largest phase of a path: what is left of it to a double is 1e-16 of this."""
-    w = recording.waveform
-    delay = recording.products["paths"](w.times(np.arange(w.n_pulses) + 0.0)).delay.max()
+    w = recording["waveform"]
+    delay = recording["paths"](w.times(np.arange(w.n_pulses) + 0.0)).delay.max()
     return float(w.f0 * delay + 0.5 * w.slope * delay**2 * w.residual_video_phase)
 
 
@@ -156,13 +160,13 @@ def test_direct_keeps_its_promise_or_refuses(block: int) -> None:
             for kind in ("cube", "direct"):
                 config = validated(Config, document | {"engine": ENGINES[kind]}, "fuzz", {})
                 scene = draw_scene(config, config.chosen_activities[-1], 0)
-                check(scene, config)
-                found.append(run(plan(config, ["paths", "signal:plain"]), scene, config))
+                scene_warnings(scene)
+                found.append(record_scene(scene, ["paths", "waveform", "signal"]))
         except RadharError as error:
             assert_clear(error)
             refused += 1
             continue
-        right, direct = (recording.products["signal:plain"] for recording in found)
+        right, direct = (recording["signal"].x for recording in found)
         if cycles(found[0]) > MOST_CYCLES:
             rounded += 1
             continue

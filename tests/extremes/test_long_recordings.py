@@ -25,24 +25,21 @@ PROGRAM = (
 import json, sys
 from radhar_cli.activity import activity_named
 from radhar_cli.config import Config
-from radhar_cli.pipeline.plan import plan_images
+from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.run import run
-from radhar_cli.pipeline.validity import settle
+from radhar_cli.pipeline.validity import draw_valid_scene
 from radhar_cli.worker_process import prepare_process
-from radhar_cli.scene import draw_scene
 
 prepare_process()
 config = Config.model_validate(json.loads(sys.argv[1]))
-activity = activity_named("body_rotating")
-settle(config, activity, 0)
-products = run(plan_images(config), draw_scene(config, activity, 0), config).products
+scene, _ = draw_valid_scene(config, activity_named("body_rotating"), 0)
 (name,) = config.maps
-levels = products[f"levels:{name}"]
+image = run(plan_images(config), {"scene": scene})[f"image:{name}"]
 print(json.dumps({
     "peak": peak(),
-    "shape": levels.shape,
-    "levels": [int(levels.min()), int(levels.max())],
-    "entropy": products[f"entropy:{name}"],
+    "shape": image.levels.shape,
+    "levels": [int(image.levels.min()), int(image.levels.max())],
+    "entropy": image.entropy,
 }))
 """
 )

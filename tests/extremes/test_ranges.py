@@ -19,7 +19,6 @@ from extreme_scenes import (
     relative,
     signal,
 )
-from radhar_cli.pipeline.models import body_of
 
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.config import MAP_NAMES, Config
@@ -27,9 +26,9 @@ from radhar_cli.config.reading import validated
 from radhar_cli.echo import cube
 from radhar_cli.errors import ConfigError, SceneError
 from radhar_cli.motion.skeleton import JOINTS, PARENTS, SKELETON
-from radhar_cli.pipeline.plan import plan
-from radhar_cli.pipeline.run import run
-from radhar_cli.pipeline.validity import check
+from radhar_cli.pipeline.physics import motion_of
+from radhar_cli.pipeline.run import record as record_scene
+from radhar_cli.pipeline.validity import scene_warnings
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene import draw_scene, nominal_scene
 
@@ -104,15 +103,14 @@ def test_a_gait_of_0_stands_still() -> None:
 @pytest.mark.parametrize("gain", [-150, -120, 120, 150])
 def test_gains_are_linear(engine: str, gain: float) -> None:
     """G on both antennas: the amplitude is proportional to G, the image does not see it."""
-    products = ("signal:plain", "levels:stft", "levels:fsst")
-    at_0 = record(config_of(engine, {"antenna_gain_dbi": 0}), *products).products
-    here = record(config_of(engine, {"antenna_gain_dbi": gain}), *products).products
-    x = here["signal:plain"] / 10 ** (gain / 10)
-    error = relative(x, at_0["signal:plain"])
+    products = ("signal", "image:stft", "image:fsst")
+    at_0 = record(config_of(engine, {"antenna_gain_dbi": 0}), *products)
+    here = record(config_of(engine, {"antenna_gain_dbi": gain}), *products)
+    error = relative(here["signal"].x / 10 ** (gain / 10), at_0["signal"].x)
     print(f"gain {gain} dBi, {engine}: off a straight line by {error:.1e}")
     assert error < {"direct": 10 ** (DIRECT_DB / 20), "cube": 1e-12}[engine]
     for name in products[1:]:
-        assert np.abs(here[name].astype(int) - at_0[name]).max() <= 1
+        assert np.abs(here[name].levels.astype(int) - at_0[name].levels).max() <= 1
 
 
 def test_rcs_from_1e_12_to_1e12() -> None:
@@ -126,7 +124,7 @@ def test_rcs_from_1e_12_to_1e12() -> None:
     def beat(*rcs: float) -> np.ndarray:
         ranges = np.array([2.0, 3.1])[: len(rcs), None]
         source = ref.Points(lambda t: ranges + 0.3 * t, np.sqrt(np.array(rcs)))
-        return np.concatenate([b for _, b in cube.beat_blocks(source, waveform)], axis=1)
+        return np.hstack([*cube.beat_blocks(source, waveform)])
 
     unit = beat(1.0)
     for rcs in (1e-12, 1e12):
@@ -143,8 +141,8 @@ def test_rcs_from_1e_12_to_1e12() -> None:
 def test_persons_scale(height: float) -> None:
     """Every link keeps its length, h/1.8 of the reference person's, at every time."""
     config = config_of(subject={"height_m": height})
-    body = body_of(nominal_scene(config, ACTIVITIES[7]))
-    p = body.positions(np.linspace(0, 2, 50))
+    motion = motion_of(nominal_scene(config, ACTIVITIES[7]))
+    p = motion.positions(np.linspace(0, 2, 50))
     for joint, parent in enumerate(PARENTS):
         if parent is not None:
             right = np.linalg.norm(SKELETON[joint].link) * height / 1.8
@@ -172,12 +170,12 @@ class TestSnr:
         power = np.mean(np.sum(free_space_paths(clean)[1] ** 2, axis=0))
         variance = float(power) / 10 ** (snr_db / 10)
         gain = np.sum(np.abs(ref.sample_weights(radar_of(clean))) ** 2)
-        recording = record(noisy, "signal_power", "signal:plain")
-        noise = recording.products["signal:plain"] - signal(clean)
+        recording = record(noisy, "noise", "signal")
+        noise = recording["signal"].x - signal(clean)
         measured = np.mean(np.abs(noise) ** 2) / gain
         off_db = 10 * np.log10(measured / variance)
         print(f"SNR {snr_db} dB, {engine}: measured noise off by {off_db:+.2f} dB")
-        assert recording.sigma**2 == pytest.approx(variance, rel=1e-6)
+        assert recording["noise"].sigma ** 2 == pytest.approx(variance, rel=1e-6)
         assert noise.size == self.PULSES
         # 5 standard deviations of the mean of 4000 exponentials
         assert measured == pytest.approx(variance, rel=5 / np.sqrt(self.PULSES))
@@ -185,10 +183,10 @@ class TestSnr:
     @pytest.mark.parametrize("engine", ["cube", "direct"])
     def test_beyond_the_digits_of_a_double(self, engine: str) -> None:
         """At 300 dB the noise is 1e-15 of the signal: defined, drawn, and at rounding's size."""
-        recording = record(self.config(engine, 300), "signal_power", "signal:plain")
-        assert recording.sigma > 0
+        recording = record(self.config(engine, 300), "noise", "signal")
+        assert recording["noise"].sigma > 0
         clean = signal(self.config(engine, None))
-        assert relative(recording.products["signal:plain"], clean) < 1e-13
+        assert relative(recording["signal"].x, clean) < 1e-13
 
     @pytest.mark.parametrize("engine", ["cube", "direct"])
     def test_none_is_none(self, engine: str) -> None:
@@ -221,27 +219,27 @@ class TestFewPulses:
         """M is one pulse more than the window: with MTI exactly one frame is left."""
         config = self.config(engine, 0.99)
         names = [n for n in MAP_NAMES if n != "rtm"]
-        kinds = [f"{kind}:{name}" for name in MAP_NAMES for kind in ("levels", "entropy")]
-        products = record(config, "signal:plain", *MAP_NAMES, *kinds).products
-        x = products["signal:plain"]
+        images = [f"image:{name}" for name in MAP_NAMES]
+        found = record(config, "signal", *MAP_NAMES, *images)
+        x = found["signal"].x
         assert x.size == 99
-        assert all(products[name].shape == (99, 1) for name in names)
+        assert all(found[name].power.shape == (99, 1) for name in names)
         right = ref.stft(x, 99, 1)
-        assert products["stft"] == pytest.approx(right, rel=1e-5, abs=1e-6 * right.max())
+        assert found["stft"].power == pytest.approx(right, rel=1e-5, abs=1e-6 * right.max())
         squeezed = np.fft.fftshift(np.abs(ref.fsst(x, 99, 1, 1e-3)) ** 2, axes=0)
-        assert products["fsst"] == pytest.approx(squeezed, rel=1e-5, abs=1e-6 * squeezed.max())
+        assert found["fsst"].power == pytest.approx(squeezed, rel=1e-5, abs=1e-6 * squeezed.max())
         for name in MAP_NAMES:
-            assert products[f"levels:{name}"].max() == 255
-            assert 0 < products[f"entropy:{name}"] <= np.log2(products[name].size)
+            assert found[f"image:{name}"].levels.max() == 255
+            assert 0 < found[f"image:{name}"].entropy <= np.log2(found[name].power.size)
 
     @pytest.mark.parametrize("engine", ["cube", "direct"])
     def test_a_filter_as_long_as_the_signal_is_one_cubic(self, engine: str) -> None:
         config = self.config(engine, 0.5)
-        products = record(config, "signal:plain", "signal:denoised").products
-        x, t = products["signal:plain"], np.linspace(-1, 1, 99)
+        found = record(config, "signal", "signal_denoised")
+        x, t = found["signal"].x, np.linspace(-1, 1, 99)
         for part in (np.real, np.imag):
             fit = np.polynomial.Polynomial.fit(t, part(x), 3)(t)
-            assert part(products["signal:denoised"]) == pytest.approx(
+            assert part(found["signal_denoised"].x) == pytest.approx(
                 fit, rel=1e-9, abs=1e-10 * np.abs(x).max()
             )
 
@@ -270,14 +268,13 @@ class TestEverythingAliases:
     def test_drawn_durations(self, index: int) -> None:
         found = []
         for engine in ("cube", "direct"):
-            config = self.config(engine)
-            scene = draw_scene(config, ACTIVITIES[7], index)
-            assert any("aliases" in said for said in check(scene, config))
-            names = ["signal:plain", "stft", "fsst", "rtm", "levels:stft", "levels:fsst"]
-            recording = run(plan(config, names), scene, config)
-            assert 8 <= recording.frames.length <= 16
-            assert recording.products["levels:fsst"].max() == 255
-            found.append(recording.products["signal:plain"])
+            scene = draw_scene(self.config(engine), ACTIVITIES[7], index)
+            assert any("aliases" in warning for warning in scene_warnings(scene))
+            asked = ["signal", "frames", "stft", "fsst", "rtm", "image:stft", "image:fsst"]
+            recording = record_scene(scene, asked)
+            assert 8 <= recording["frames"].length <= 16
+            assert recording["image:fsst"].levels.max() == 255
+            found.append(recording["signal"].x)
         error = ref.error_db(found[1], found[0])
         print(f"PRF 20 Hz, {found[0].size} pulses drawn: direct {error:.0f} dB")
         assert error < DIRECT_DB
@@ -288,6 +285,6 @@ def test_closer_than_5_cm_is_refused() -> None:
     motion = {"range_m": 2.0, "angle_deg": 0.0}
     config = config_of(radar=near, motion=motion)
     with pytest.raises(SceneError, match=r"torso comes to 4.9 cm .*\(radar.[tr]x_m\)"):
-        check(nominal_scene(config, ACTIVITIES[7]), config)
+        scene_warnings(nominal_scene(config, ACTIVITIES[7]))
     config = config_of(radar=AT_5_CM, motion=motion)
-    check(nominal_scene(config, ACTIVITIES[7]), config)
+    scene_warnings(nominal_scene(config, ACTIVITIES[7]))

@@ -54,8 +54,8 @@ LIMITS: dict[str, tuple[Any, Any, Any, Any]] = {
     "processing.window_fraction": (4e-4, 0.9999, 3.6e-4, 1),
     "processing.overlap_fraction": (0, 0.9999, -0.1, 1),
     "processing.stft_fft_length": (2000, 128000, 1999, 128001),
-    "processing.savgol.order": (0, 10, -1, 11),
-    "processing.savgol.frame": (7, 317, 5, 319),
+    "processing.savgol.order": (0, 30, -1, 31),
+    "processing.savgol.frame": (7, 19999, 5, 20001),
     "processing.fsst_threshold": (0, 0.999, -0.1, 1),
     "processing.fsst_hop_pulses": (1, 2**24, 0, 2**24 + 1),
     "engine.tolerance_db": (-400, -6, -401, -5),
@@ -85,6 +85,10 @@ def document(key: str, value: Any) -> dict[str, Any]:
     place[last] = value
     if key == "split.train":  # the shares add up to 1
         made["split"]["validation"] = min(max(1 - value, 0), 1)
+    if key == "processing.savgol.order":  # below the frame
+        made["processing"]["savgol"]["frame"] = 33
+    if key == "processing.savgol.frame":  # at most the signal, where a map is of it
+        made["maps"] = ["stft_denoised"]
     if key == "wall.size_m.0":  # a thick wall that has no antenna inside
         made["wall"]["center_m"] = [1e6, 0.0, 1.25]
     if key == "processing.window_fraction" and value == 3.6e-4:
@@ -149,7 +153,16 @@ def test_every_number_of_a_scene_is_held_to_its_range_in_every_form() -> None:
 
 
 FFTS = ("processing.range_fft_length", "processing.stft_fft_length", "processing.fsst_hop_pulses")
-NULLABLE = ("snr_db", "subject.weight_kg", *FFTS)
+# Null takes what the model of motion has.
+OF_THE_MODEL = (
+    "motion.speed_mps",
+    "timing.seat_duration_s",
+    "timing.rise_duration_s",
+    "timing.walk_start_s",
+    "timing.sit_duration_s",
+    "timing.fall_duration_s",
+)
+NULLABLE = ("snr_db", "subject.weight_kg", *OF_THE_MODEL, *FFTS)
 
 
 def spoilt(key: str, value: Any) -> dict[str, Any]:

@@ -11,20 +11,21 @@ from extreme_scenes import config_of, record, relative, signal
 from radhar_cli.config import MAP_NAMES, Config
 from radhar_cli.config.reading import validated
 from radhar_cli.errors import ConfigError
+from radhar_cli.pipeline.run import Recording
 from radhar_cli.radar.wall import Wall, crossing
 
 DIRECT_DB = -60.0
 AIR = {"eps_r": 1, "loss_tangent": 0}
 METAL = {"loss_tangent": 1e12}
-ALL = [f"{kind}{name}" for name in MAP_NAMES for kind in ("", "levels:", "entropy:")]
+ALL = [f"{kind}{name}" for name in MAP_NAMES for kind in ("", "image:")]
 
 engines = pytest.mark.parametrize("engine", ["cube", "direct"])
 
 
-def assert_finite(products: dict[str, Any]) -> None:
+def assert_finite(recording: Recording) -> None:
     for name in MAP_NAMES:
-        assert np.isfinite(products[name]).all()
-        assert np.isfinite(products[f"entropy:{name}"])
+        assert np.isfinite(recording[name].power).all()
+        assert np.isfinite(recording[f"image:{name}"].entropy)
 
 
 def test_a_wall_of_air_is_free_space() -> None:
@@ -41,12 +42,12 @@ def test_a_wall_of_air_is_free_space() -> None:
 def test_metal_lets_nothing_through(engine: str, wall: dict[str, Any]) -> None:
     """The field underflows to an exact zero: no echo, no NaN, no warning."""
     config = config_of(engine, wall=wall)
-    products = record(config, "signal:plain", *ALL).products
-    assert not products["signal:plain"].any()
-    assert_finite(products)
+    found = record(config, "signal", *ALL)
+    assert not found["signal"].x.any()
+    assert_finite(found)
     for name in MAP_NAMES:
-        assert products[f"entropy:{name}"] == 0
-        assert not products[f"levels:{name}"].any()
+        assert found[f"image:{name}"].entropy == 0
+        assert not found[f"image:{name}"].levels.any()
 
 
 @engines
@@ -55,9 +56,9 @@ def test_behind_metal_there_is_only_the_noise_that_the_snr_refers_to(
     engine: str, reference: str, noisy: bool
 ) -> None:
     config = config_of(engine, wall=METAL, snr_db=10.0, snr_reference=reference)
-    products = record(config, *ALL).products
-    assert_finite(products)
-    assert products["stft"].any() == noisy
+    found = record(config, *ALL)
+    assert_finite(found)
+    assert found["stft"].power.any() == noisy
 
 
 @engines
@@ -65,7 +66,7 @@ def test_a_wall_down_to_the_last_denormal(engine: str) -> None:
     """Losses that leave amplitudes of 1e-122 and less: still finite, and the engines agree."""
     for loss_tangent in (1.0, 2.0, 3.0):
         config = config_of(engine, wall={"loss_tangent": loss_tangent}, snr_db=0.0)
-        assert_finite(record(config, *ALL).products)
+        assert_finite(record(config, *ALL))
     quiet = {"wall": {"loss_tangent": 1.0}}
     weak = signal(config_of("cube", **quiet))
     assert 0 < np.abs(weak).max() < 1e-100
@@ -142,7 +143,7 @@ def test_a_person_on_a_face(engine: str, face: float) -> None:
     motion = {"range_m": face, "angle_deg": 0.0}
     for activity in ("stationary", "walking"):
         config = config_of(engine, wall=wall, motion=motion, snr_db=20.0)
-        assert_finite(record(config, *ALL, activity=activity).products)
+        assert_finite(record(config, *ALL, activity=activity))
 
 
 TOUCHING = {
@@ -188,9 +189,9 @@ def test_a_hairs_breadth_from_the_wall(engine: str, where: str, axis: int, towar
         at[axis] = math.nextafter(at[axis], towards) + math.copysign(gap, towards - at[axis])
         radar = {"tx_m": at, "rx_m": [at[0], at[1], at[2]]}
         config = config_of(engine, radar, wall=WALL, motion={"range_m": 3.0, "angle_deg": 0.0})
-        products = record(config, "signal:plain", *ALL).products
-        assert_finite(products)
-        signals.append(products["signal:plain"])
+        found = record(config, "signal", *ALL)
+        assert_finite(found)
+        signals.append(found["signal"].x)
     error = relative(signals[0], signals[1])
     print(f"hair's breadth from the {where}, {engine}: {error:.1e} from a nanometre away")
     assert error < 1e-4

@@ -1,21 +1,27 @@
 """Long recordings and dense FSST maps: the memory is bounded, the result the same."""
 
+import gc
+import json
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
+from weakref import WeakValueDictionary
 
 import numpy as np
 import pytest
 from peak_memory import PEAK
-from radhar_cli.pipeline.axes import axes_of
 
 from radhar_cli.activity import activity_named
 from radhar_cli.config.schema import MAP_NAMES, Config
-from radhar_cli.pipeline import run as run_module
-from radhar_cli.pipeline import survey as survey_module
-from radhar_cli.pipeline.plan import KEPT, plan, plan_images
-from radhar_cli.pipeline.run import Recording, run
+from radhar_cli.echo import cube as cube_module
+from radhar_cli.pipeline import products as products_module
+from radhar_cli.pipeline import validity as validity_module
+from radhar_cli.pipeline.plan import plan
+from radhar_cli.pipeline.products import plan_images, products
+from radhar_cli.pipeline.run import Recording, record, run
 from radhar_cli.processing import frames as frames_module
+from radhar_cli.processing.signal import Signal
 from radhar_cli.scene import Scene, draw_scene
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -25,13 +31,12 @@ SMALL = {
     "maps": MAP_NAMES,
     "image": {"size_px": 32},
 }
+IMAGES = [f"image:{name}" for name in MAP_NAMES]
 FLIPS = 1e-3  # one pixel of 32 x 32
 
 
-def recorded(document: dict, *products: str) -> Recording:
-    config = Config.model_validate(document)
-    asked = plan(config, products) if products else plan_images(config)
-    return run(asked, scene_of(config), config)
+def recorded(document: dict, *names: str) -> Recording:
+    return record(scene_of(Config.model_validate(document)), names)
 
 
 def scene_of(config: Config) -> Scene:
@@ -42,45 +47,54 @@ def scene_of(config: Config) -> Scene:
 @pytest.mark.parametrize("processing", [{}, {"mti": False, "fsst_hop_pulses": 1}])
 def test_blocks_and_chunks_change_nothing(monkeypatch, engine, processing):
     document = SMALL | {"engine": {"kind": engine}, "processing": processing}
-    images, whole = recorded(document).products, recorded(document, *MAP_NAMES).products
+    whole = recorded(document, *MAP_NAMES, *IMAGES)
     monkeypatch.setattr(frames_module, "BLOCK_COEFFICIENTS", 7 * 50)
-    monkeypatch.setattr(run_module, "CHUNK", 37)
-    blocked, parts = recorded(document).products, recorded(document, *MAP_NAMES).products
+    monkeypatch.setattr(products_module, "CHUNK", 37)
+    monkeypatch.setattr(cube_module, "BLOCK_SAMPLES", 37 * adc_samples(document))
+    parts = recorded(document, *MAP_NAMES, *IMAGES)
     for name in MAP_NAMES:
-        assert parts[name].shape == whole[name].shape
-        assert np.abs(parts[name] - whole[name]).max() < 1e-12 * whole[name].max()
-        entropy = images[f"entropy:{name}"]
-        assert blocked[f"entropy:{name}"] == pytest.approx(entropy, rel=1e-6)
-        right, found = (p[f"levels:{name}"].astype(int) for p in (images, blocked))
-        assert np.abs(found - right).max() <= 1
-        assert np.mean(found != right) <= FLIPS
+        right, found = whole[name].power, parts[name].power
+        assert found.shape == right.shape
+        assert np.abs(found - right).max() < 1e-12 * right.max()
+        right, found = whole[f"image:{name}"], parts[f"image:{name}"]
+        assert found.entropy == pytest.approx(right.entropy, rel=1e-6)
+        steps = np.abs(found.levels.astype(int) - right.levels)
+        assert steps.max() <= 1
+        assert np.mean(steps > 0) <= FLIPS
+
+
+def adc_samples(document: dict) -> int:
+    """ADC samples of a chirp."""
+    return recorded(document, "waveform")["waveform"].n_adc
 
 
 def test_what_was_asked_for_is_kept_and_no_more():
-    kept = set(recorded(SMALL).products)
-    images = {f"{kind}:{name}" for kind in ("levels", "entropy") for name in MAP_NAMES}
-    assert kept == images | (set(KEPT) - {"wall"})
-    asked = ("signal:plain", "stft_denoised", "slow_time", "spectrum:denoised")
-    assert set(recorded(SMALL, *asked).products) - set(KEPT) == set(asked)
+    asked = ("signal", "stft_denoised", "slow_time", "image:fsst")
+    assert set(recorded(SMALL, *asked).products) == set(asked)
 
 
-def test_products_are_released_as_soon_as_nobody_reads_them(monkeypatch):
-    """At most two signals and the torso track at once, and one spectrum."""
-    held = []
+@pytest.mark.parametrize("engine", ["direct", "cube"])
+def test_signals_are_released_as_soon_as_nobody_reads_them(engine):
+    """At most two at once when an image is made, and none is left."""
+    alive, held = WeakValueDictionary[int, Signal](), []
 
-    def noted(function):
-        def note(recording, stage):
-            kinds = [name.partition(":")[0] for name in recording.products]
-            held.append((kinds.count("signal"), sum("spectrum" in kind for kind in kinds)))
-            return function(recording, stage)
+    def noted(product):
+        def make(*needs):
+            found = product.make(*needs)
+            alive.update((id(part), part) for part in (found, *needs) if isinstance(part, Signal))
+            held.append(len(alive))
+            return found
 
-        return note
+        return replace(product, make=make)
 
-    stages = {kind: noted(function) for kind, function in run_module.STAGES.items()}
-    monkeypatch.setattr(run_module, "STAGES", stages)
-    recorded(SMALL)
-    assert max(signals for signals, _ in held) == 2
-    assert max(spectra for _, spectra in held) == 1
+    config = Config.model_validate(SMALL | {"engine": {"kind": engine}})
+    table = {name: noted(product) for name, product in products(config).items()}
+    asked = plan_images(config).asked
+    recording = run(plan(table, asked, ["scene"]), {"scene": scene_of(config)})
+    gc.collect()
+    assert max(held) <= 2
+    assert not alive
+    assert set(recording.products) == set(asked)
 
 
 class TestHop:
@@ -91,38 +105,32 @@ class TestHop:
     def test_axes_follow(self, hop, processing):
         document = SMALL | {"processing": processing | {"fsst_hop_pulses": hop}}
         recording = recorded(document, "stft", "fsst", "fsst_compensated")
-        usual = recorded(SMALL | {"processing": processing}, "stft", "fsst")
-        assert np.array_equal(recording.products["stft"], usual.products["stft"])
+        usual = recorded(SMALL | {"processing": processing}, "stft")
+        assert np.array_equal(recording["stft"].power, usual["stft"].power)
         columns = (499 - 50) // hop + 1
         for name in ("fsst", "fsst_compensated"):
-            axes = axes_of(name, recording)
-            assert recording.products[name].shape == (50, columns)
-            assert axes.time == pytest.approx((np.arange(columns) * float(hop) + 25) / 500)
-            assert axes.vertical.size == 50
+            found = recording[name]
+            assert found.power.shape == (50, columns)
+            assert found.columns.values == pytest.approx(
+                (np.arange(columns) * float(hop) + 25) / 500
+            )
+            assert found.rows.values.size == 50
 
     def test_a_dense_map_holds_the_columns_of_the_usual_one(self):
-        usual = recorded(SMALL | {"processing": {"fsst_threshold": 0.0}}, "fsst").products["fsst"]
+        usual = recorded(SMALL | {"processing": {"fsst_threshold": 0.0}}, "fsst")["fsst"]
         processing = {"fsst_hop_pulses": 1, "fsst_threshold": 0.0}
-        dense = recorded(SMALL | {"processing": processing}, "fsst").products["fsst"]
-        assert np.array_equal(dense[:, ::5], usual)
-
-    @pytest.mark.parametrize("more", [{}, {"stft_fft_length": 64}])
-    def test_it_takes_its_own_spectrum_and_the_stft_keeps_its_own(self, more):
-        document = SMALL | {"maps": ["stft", "fsst"], "processing": more | {"fsst_hop_pulses": 2}}
-        stages = [s.name for s in plan_images(Config.model_validate(document)).stages]
-        right = ["padded_spectrum:plain" if more else "spectrum:plain", "fsst_spectrum:plain"]
-        assert [name for name in stages if "spectrum" in name] == right
+        dense = recorded(SMALL | {"processing": processing}, "fsst")["fsst"]
+        assert np.array_equal(dense.power[:, ::5], usual.power)
 
 
-def test_survey_in_parts_finds_the_same(monkeypatch):
+def test_a_scene_checked_in_parts_is_found_the_same(monkeypatch):
     """Near, behind a wall, leaving the half-band: whatever there is to find, and when."""
     for more in ({}, {"wall": {}}, {"motion": {"range_m": 0.6, "angle_deg": 180}}):
-        config = Config.model_validate(SMALL | more | {"duration_s": 4.0})
-        scene = scene_of(config)
-        whole = survey_module.survey(scene, config)
+        scene = scene_of(Config.model_validate(SMALL | more | {"duration_s": 4.0}))
+        whole = validity_module.check_scene(scene)
         with monkeypatch.context() as patch:
-            patch.setattr(survey_module, "GRID_CHUNK", 11)
-            assert survey_module.survey(scene, config) == whole
+            patch.setattr(validity_module, "GRID_CHUNK", 11)
+            assert validity_module.check_scene(scene) == whole
 
 
 _PROGRAM = (
@@ -132,12 +140,12 @@ import sys
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.config.schema import Config
 from radhar_cli.activity import activity_named
-from radhar_cli.pipeline.plan import plan_images
+from radhar_cli.pipeline.products import plan_images
 from radhar_cli.scene import draw_scene
 import numpy as np, json, scipy.fft, scipy.signal, PIL.Image
 config = Config.model_validate(json.loads(sys.argv[1]))
 before = peak()
-synthesise(draw_scene(config, activity_named("punching"), 0), config, plan_images(config))
+synthesise(draw_scene(config, activity_named("punching"), 0), plan_images(config))
 print((peak() - before) / 2**20)
 """
 )
@@ -149,8 +157,6 @@ def test_memory_follows_the_signal_and_not_the_map():
 
     Three signals (paths, noise, sum) and the blocks, knots among them: 200 MiB with room to spare.
     """
-    import json
-
     document = {
         "duration_s": 400.0,
         "maps": ["stft", "fsst"],

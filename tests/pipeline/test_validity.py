@@ -207,7 +207,8 @@ def said(config: Config) -> dict[str, tuple[int, str]]:
         for activity in config.chosen_activities
         for index in range(config.samples_per_class)
     ]
-    return {w["kind"]: (w["recordings"], w["message"]) for w in warnings(config, found)}
+    counts = {flag: sum(flag in flags for flags in found) for flag in Flags}
+    return {w["kind"]: (w["recordings"], w["message"]) for w in warnings(config, counts)}
 
 
 def test_warnings_at_the_papers_free_space_settings() -> None:

@@ -56,7 +56,7 @@ def test_amplitude_is_the_bistatic_radar_equation(
 
 def test_every_scatterer_keeps_its_own_rcs_over_time() -> None:
     r = np.array([[1.0, 2.0, 3.0], [1.0, 2.0, 3.0]])
-    a = amplitude(r, r, np.array([1.0, 4.0]), 1.0, 1.0)
+    a = amplitude(r, r, np.array([[1.0], [4.0]]), 1.0, 1.0)
     assert a.shape == (2, 3)
     np.testing.assert_allclose(a[1], 2 * a[0], rtol=ROUNDING)
     np.testing.assert_allclose(a[0] * r[0] ** 2, a[0, 0], rtol=ROUNDING)

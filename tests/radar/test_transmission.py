@@ -1,31 +1,30 @@
-"""The switches of the wall reach the paths, the torso's track and the survey alike."""
+"""The switches of the wall reach the paths, the torso's track and the check of scenes alike."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from radhar_cli.pipeline.body_paths import BodyPaths
-from radhar_cli.pipeline.models import antennas_of, body_of, wall_of
 
 from radhar_cli.activity import activity_named
 from radhar_cli.config import Config
-from radhar_cli.pipeline.validity import survey
+from radhar_cli.pipeline.motion_paths import MotionPaths
+from radhar_cli.pipeline.run import record
+from radhar_cli.pipeline.validity import Flags, check_scene
 from radhar_cli.radar.wall import Wall
 from radhar_cli.scene import Scene, nominal_scene
 
-BASE = {"radar": {"carrier_hz": 2e9, "bandwidth_hz": 1e9, "prf_hz": 128}, "wall": {}}
 T = np.linspace(0, 4, 50)
 
 
-def scene_and_config(**wall: object) -> tuple[Scene, Config]:
-    config = Config.model_validate(BASE | {"wall": wall, "motion": {"range_m": 2.5}})
-    return nominal_scene(config, activity_named("kicking")), config
+def scene_of(bandwidth: float = 1e9, **wall: object) -> Scene:
+    radar = {"carrier_hz": 2e9, "bandwidth_hz": bandwidth, "prf_hz": 128}
+    document = {"radar": radar, "wall": wall, "motion": {"range_m": 2.5}}
+    return nominal_scene(Config.model_validate(document), activity_named("kicking"))
 
 
-def source(**wall: object) -> BodyPaths:
-    scene, config = scene_and_config(**wall)
-    slab = wall_of(scene, config)
-    return BodyPaths(body_of(scene), antennas_of(scene), 2e9, slab)
+def source(**wall: object) -> MotionPaths:
+    found: MotionPaths = record(scene_of(**wall), ["paths"])["paths"]
+    return found
 
 
 def test_off_by_default() -> None:
@@ -39,7 +38,8 @@ def test_refraction_makes_every_path_shorter_and_the_torsos_with_it() -> None:
     free = replace(straight, wall=None)
     normal = 2 * 0.24 * (np.sqrt(6 - 0.18j).real - 1) / 299_792_458.0
     assert np.all(bent(T).delay > free(T).delay + normal)
-    np.testing.assert_array_equal(bent.torso_delay(T), bent(T).delay[0])
+    track = record(scene_of(rays="refracted"), ["torso_track"])["torso_track"]
+    np.testing.assert_array_equal(track, bent(np.arange(track.size) / 128).delay[0])
 
 
 @pytest.mark.parametrize("polarisation", ["perpendicular", "parallel"])
@@ -50,11 +50,10 @@ def test_fresnel_changes_amplitudes_alone(polarisation: str) -> None:
     assert np.all(ratio < 1 if polarisation == "perpendicular" else ratio > 1)
 
 
-def test_the_survey_looks_along_the_rays_in_use() -> None:
+def test_the_check_of_a_scene_follows_the_rays_in_use() -> None:
     """A half-band between the longest refracted and the longest straight delay."""
     bent, straight = (source(rays=rays)(T).delay.max() for rays in ("refracted", "straight"))
     slope = 10e6 / (bent + straight)  # c tau/2 = c fs/(4 K)
     for rays, leaves in (("refracted", False), ("straight", True)):
-        scene, config = scene_and_config(rays=rays)
-        values = dict(scene.values) | {"radar.bandwidth_hz": slope * 40e-6}
-        assert survey(replace(scene, values=values), config).leaves_half_band == leaves
+        flags = check_scene(scene_of(slope * 40e-6, rays=rays)).flags
+        assert (Flags.HALF_BAND in flags) == leaves

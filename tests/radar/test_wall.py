@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from radhar_cli.pipeline.body_paths import BodyPaths
 
 from radhar_cli.echo.paths import Paths
+from radhar_cli.pipeline.motion_paths import MotionPaths, point_delay
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Crossing, Wall, crossing, extra_delay, field_factor
 
@@ -183,23 +183,16 @@ def test_a_wall_of_air_is_none(chord: float, faces: int) -> None:
 
 POINTS = np.array([[1.0, 1.5, 3.0], [0.0, -0.5, 1.0], [1.2, 1.0, 0.2]])
 STILL = SimpleNamespace(
-    kinks=(),
+    breakpoints=(),
     highest_frequency=0.0,
-    cross_sections=np.array([1.0, 0.5, 0.2]),
+    cross_sections=lambda t: np.array([[1.0], [0.5], [0.2]]),
     positions=lambda t: np.repeat(POINTS[:, :, None], t.size, axis=2),
-    torso=lambda t: np.repeat(POINTS[:, :1, None], t.size, axis=2),
 )
 ANTENNAS = Antennas(tx=(0.4, -0.1, 1.5), rx=(0.4, 0.1, 1.5), gain=4.0, isolation_db=10.0)
 
 
 def paths(wall: Wall | None) -> Paths:
-    return BodyPaths(STILL, ANTENNAS, FC, wall)(np.array([0.0, 1.0]))
-
-
-def test_paths_through_air_are_paths_in_free_space() -> None:
-    free, air = paths(None), paths(replace(WALL, eps_r=1.0, loss_tangent=0.0))
-    np.testing.assert_allclose(air.delay, free.delay, rtol=1e-12)
-    np.testing.assert_allclose(air.amplitude, free.amplitude, rtol=1e-12)
+    return MotionPaths(STILL, ANTENNAS, FC, wall)(np.array([0.0, 1.0]))
 
 
 def test_each_leg_of_a_path_crosses_by_itself() -> None:
@@ -214,13 +207,10 @@ def test_each_leg_of_a_path_crosses_by_itself() -> None:
         np.testing.assert_allclose(behind.amplitude[i], free.amplitude[i] * factor, rtol=1e-12)
 
 
-def test_the_torso_is_late_by_the_wall() -> None:
-    source = BodyPaths(STILL, ANTENNAS, FC, WALL)
-    t = np.array([0.0, 1.0])
-    np.testing.assert_array_equal(source.torso_delay(t), source(t).delay[0])
-    free = BodyPaths(STILL, ANTENNAS, FC, None)
-    np.testing.assert_array_equal(free.torso_delay(t), free(t).delay[0])
-    assert np.all(source.torso_delay(t) > free.torso_delay(t))
+@pytest.mark.parametrize("wall", [None, WALL])
+def test_a_point_is_as_late_as_the_path_by_way_of_it(wall: Wall | None) -> None:
+    p = STILL.positions(np.array([0.0, 1.0]))
+    np.testing.assert_array_equal(point_delay(p, ANTENNAS, wall), paths(wall).delay)
 
 
 @pytest.mark.parametrize(("eps_r", "loss_tangent"), [(1.0, 1e9), (1e30, 1e30), (1e30, 0.0)])

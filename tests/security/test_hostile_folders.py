@@ -72,7 +72,7 @@ LINKS = [
     linked(".radhar/identity.json", "identity.json"),
     linked(".radhar/sweep.json", "identity.json"),
     linked(".radhar/shards", "shards"),
-    linked(".radhar/settled", "shards"),
+    linked(".radhar/checks", "shards"),
     linked(".radhar/unfinished"),
     linked(".radhar/measured"),
     linked(".radhar/accuracy"),
@@ -195,7 +195,7 @@ def shard(folder: Path, change: Callable[[h5py.File], None]) -> None:
         file["sha256/stft"] = np.zeros(6, "S64")
         file["extent/stft"] = np.zeros((6, 4))
         file["scene"] = np.zeros((6, len(scene_fields.fields(config))))
-        file["fell_back"] = np.zeros(6, "u1")
+        file["flags"] = np.zeros(6, "u1")
         change(file)
     whose = identity_hash(identity(config))
     data = path.read_bytes()

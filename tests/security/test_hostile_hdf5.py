@@ -14,6 +14,8 @@ import numpy as np
 import pytest
 from security.bounded import Answer, answers, refused
 
+from radhar_cli import __version__
+
 Change = Callable[[h5py.File, Path], None]
 COMMANDS = ("inspect", "preview", "verify", "eval")
 HOSTILE: dict[str, tuple[Change, str, tuple[str, ...]]] = {}
@@ -281,8 +283,8 @@ attribute("config_hash", None, "attribute config_hash: is missing", "verify")
 
 
 @hostile("attribute config: should be text of at most 1048576 characters")
-def a_config_of_twenty_megabytes(file: h5py.File, _: Path) -> None:
-    file.attrs["config"] = "[" + "1," * 10**7 + "1]"
+def a_config_of_two_megabytes(file: h5py.File, _: Path) -> None:
+    file.attrs["config"] = "[" + "1," * 10**6 + "1]"
 
 
 @hostile("/scene/.*: is larger than the file")
@@ -353,9 +355,26 @@ def plain_chunks_in_a_gzip_dataset(file: h5py.File, _: Path) -> None:
         file["maps/stft"].id.write_direct_chunk((row, 0, 0), levels, 1)
 
 
-def no_file(place: Path, kind: str) -> Path:
+def circle(data: bytes) -> bytes:
+    """A file whose last text has no length: HDF5 itself reads it without end."""
+    text = __version__.encode()
+    place = data.index(len(text).to_bytes(8, "little") + text)  # as an object of a heap
+    return data[:place] + bytes(8) + data[place + 8 :]
+
+
+def crash(data: bytes) -> bytes:
+    """A file with a text of a kind that there is not: HDF5 itself crashes on it."""
+    place = data.index(b"\x19\x01\x01\x00", data.index(b"h5py_version"))
+    return data[: place + 1] + b"\xff\xfe" + data[place + 3 :]
+
+
+def no_file(place: Path, kind: str, whole: bytes) -> Path:
     path = place / "dataset.h5"
-    if kind == "pipe":
+    if kind == "a text without length":
+        path.write_bytes(circle(whole))
+    elif kind == "a text without kind":
+        path.write_bytes(crash(whole))
+    elif kind == "pipe":
         os.mkfifo(path)
     elif kind == "device":
         path.symlink_to("/dev/zero")
@@ -375,6 +394,8 @@ NO_FILES = {
     "empty": "is no HDF5 file",
     "text": "is no HDF5 file",
     "magic": "is no HDF5 file",
+    "a text without kind": "attribute h5py_version: should be text",
+    "a text without length": "a heap with an object of an impossible size",
 }
 
 
@@ -409,15 +430,17 @@ def told(
         ask(case, commands, folder)
     for kind in NO_FILES:
         (place / kind / "set").mkdir(parents=True)
-        no_file(place / kind / "set", kind)
-        ask(kind, COMMANDS, place / kind / "set")
+        no_file(place / kind / "set", kind, (good_set / "dataset.h5").read_bytes())
+        ask(kind, ("inspect", "verify") if " " in kind else COMMANDS, place / kind / "set")
     shutil.copytree(good_set, place / "good/set")
     return answers(place, asked, [command(name, place / "good/set", good_run) for name in COMMANDS])
 
 
 @pytest.mark.parametrize("case", [*HOSTILE, *NO_FILES])
 def test_refused_in_a_line_that_names_file_and_field(told: dict[str, Answer], case: str) -> None:
-    said, commands = HOSTILE[case][1:] if case in HOSTILE else (NO_FILES[case], COMMANDS)
+    said, commands = (
+        HOSTILE[case][1:] if case in HOSTILE else (NO_FILES[case], ("inspect", "verify"))
+    )
     for name in commands:
         answer = told[f"{name} {case}"]
         said_last = answer.err.removeprefix("run: smallnet, 2 classes\n")

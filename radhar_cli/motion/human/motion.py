@@ -10,6 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from radhar_cli.arrays import Float
+from radhar_cli.motion import skeleton
 from radhar_cli.motion.human.idle import Idle
 from radhar_cli.motion.human.part import Part, Phase, Place
 from radhar_cli.motion.human.person import Person
@@ -110,6 +111,12 @@ class HumanMotion:
     def torso(self, t: Float) -> Float:
         """Positions [3, 1, M] (m) of the torso alone."""
         return self._gather(t, 1, lambda pose, p: pose.torso(self.person, p[:, 0]))
+
+    def cross_sections(self, t: Float) -> Float:
+        """RCS [13, 1], m^2: the same from everywhere, at all times."""
+        height, weight = self.person.stature, self.person.weight
+        weight = skeleton.default_weight(height) if weight is None else weight
+        return skeleton.cross_sections(height, weight)[:, None]
 
     def hip_joints(self, t: Float) -> Float:
         """Right and left hip joint [3, 2, M] (m), between which and the knees the thighs are."""

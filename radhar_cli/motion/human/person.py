@@ -23,6 +23,7 @@ class Person:
         straightest: the longest that a leg gets, likewise (a knee of 11.5 degrees).
         softness: k of the soft minimum that sets the pelvis's height, 1/m.
         elbow: flexion at rest, rad.
+        weight: kg; 26 kg/m^2 times the stature squared where it is not given.
 
     Raises:
         ValueError: no stature.
@@ -36,6 +37,7 @@ class Person:
     straightest: float = 0.995
     softness: float = 160.0
     elbow: float = radians(8)
+    weight: float | None = None
 
     def __post_init__(self) -> None:
         if not self.stature > 0:

@@ -7,6 +7,10 @@ from radhar_cli.arrays import Float
 AHEAD = np.array([1.0, 0.0, 0.0])[:, None, None]  # to where knees bend
 
 
+class OutOfReachError(ValueError):
+    """A movement that no such body can make."""
+
+
 def two_link(start: Float, end: Float, first: float, second: float, pole: Float) -> Float:
     """Joint [3, ...] between links of lengths `first` and `second` (m), from `start` to `end`.
 
@@ -19,12 +23,12 @@ def two_link(start: Float, end: Float, first: float, second: float, pole: Float)
         pole: direction to which the joint bends [3, ...]; never along e.
 
     Raises:
-        ValueError: the ends are farther apart than both links.
+        OutOfReachError: the ends are farther apart than both links.
     """
     apart = end - start
     square = np.einsum("i...,i...->...", apart, apart)
     if square.max() > (first + second) ** 2:
-        raise ValueError(
+        raise OutOfReachError(
             f"a limb of {first + second:.3f} m cannot reach {np.sqrt(square.max()):.3f} m"
         )
     along = 0.5 + (first**2 - second**2) / (2 * square)  # a/d

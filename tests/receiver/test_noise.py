@@ -1,22 +1,23 @@
 """Receiver noise: its power, its colour, and that both engines have the same."""
 
 from dataclasses import asdict
+from itertools import combinations
 
 import numpy as np
 import pytest
 import reference as ref
-from radhar_cli.pipeline.models import body_of
-from radhar_cli.radar.noise import circular_gaussian
 from scipy.stats import expon, ks_2samp, kstest
 
 from radhar_cli.activity import activity_named
 from radhar_cli.config.schema import MAP_NAMES, Config
-from radhar_cli.echo import cube
-from radhar_cli.echo.direct import slow_time_noise
-from radhar_cli.pipeline.plan import plan, plan_images
+from radhar_cli.pipeline.physics import motion_of
+from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.run import Recording, run
+from radhar_cli.pipeline.run import record as record_scene
+from radhar_cli.processing.canceller import NO_CANCELLER, Canceller
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.scene import Scene, draw_scene
+from radhar_cli.receiver.noise import WhiteNoise, circular_gaussian, noise_at, noise_variance
+from radhar_cli.scene import Scene, draw_scene, scene_numbers
 
 # 20 samples a chirp and 20 000 pulses: enough for statistics, little to compute.
 RADAR = {"carrier_hz": 24e9, "bandwidth_hz": 1e9, "prf_hz": 5000, "adc_rate_hz": 5e5}
@@ -26,22 +27,31 @@ SIGMAS = 5  # a mean of N numbers of variance v lies within 5 sqrt(v/N), but onc
 engines = pytest.mark.parametrize("engine", ["cube", "direct"])
 
 
-def scene_of(engine: str = "direct", **more: object) -> tuple[Scene, Config]:
+def scene_of(
+    engine: str = "direct", slug: str = "walking", index: int = 0, **more: object
+) -> Scene:
     document = {"radar": RADAR, "engine": {"kind": engine}} | more
-    config = Config.model_validate(document)
-    return draw_scene(config, activity_named("walking"), 0), config
+    return draw_scene(Config.model_validate(document), activity_named(slug), index)
 
 
-def record(product: str, engine: str, **more: object) -> Recording:
-    scene, config = scene_of(engine, **more)
-    return run(plan(config, [product]), scene, config)
+def record(engine: str, *products: str, **more: object) -> Recording:
+    return record_scene(scene_of(engine, **more), products)
+
+
+def sigma_of(engine: str, **more: object) -> float:
+    """Standard deviation of the noise of a raw sample."""
+    return record(engine, "noise", **more)["noise"].sigma
 
 
 def noise_of(product: str, engine: str, **more: object) -> tuple[np.ndarray, float]:
     """What noise adds to a product, and the standard deviation sigma of the raw noise."""
-    noisy = record(product, engine, **more)
-    clean = record(product, engine, **more | {"snr_db": None})
-    return noisy.products[product] - clean.products[product], noisy.sigma
+    noisy = record(engine, product, "noise", **more)
+    clean = record(engine, product, **more | {"snr_db": None})
+    found, right = (
+        one[product].bins if product == "range_profiles" else one[product].x
+        for one in (noisy, clean)
+    )
+    return found - right, noisy["noise"].sigma
 
 
 def correlation(x: np.ndarray, lag: int) -> complex:
@@ -56,17 +66,37 @@ def gain() -> float:
 
 def free_space_power(scene: Scene) -> float:
     """Mean over the pulses of sum_i G^2 lambda^2 sigma_i/((4 pi)^3 R_tx^2 R_rx^2)."""
-    body, v = body_of(scene), scene.values
+    motion, v = motion_of(scene), scene_numbers(scene)
     t = np.arange(round(v["duration_s"] * v["radar.prf_hz"])) / v["radar.prf_hz"]
-    p = body.positions(t)
+    p = motion.positions(t)
     legs2 = [
         sum((p[axis] - v[f"radar.{antenna}_m.{axis}"]) ** 2 for axis in range(3))
         for antenna in ("tx", "rx")
     ]
     gain = 10 ** (v["radar.antenna_gain_dbi"] / 10)
     wavelength = ref.C / v["radar.carrier_hz"]
-    strength = gain**2 * wavelength**2 * body.cross_sections[:, None] / (4 * np.pi) ** 3
+    strength = gain**2 * wavelength**2 * motion.cross_sections(t) / (4 * np.pi) ** 3
     return float(np.mean(np.sum(strength / (legs2[0] * legs2[1]), axis=0)))
+
+
+def test_unit_noise_is_circular_gaussian_and_white():
+    v = circular_gaussian(np.random.default_rng(1), (400, 1000))
+    assert v.shape == (400, 1000)
+    error = SIGMAS / np.sqrt(v.size)  # of a mean of numbers of variance 1
+    assert np.mean(np.abs(v) ** 2) == pytest.approx(1, abs=error)  # |v|^2 has variance 1
+    assert abs(np.mean(v)) < error
+    assert abs(np.mean(v**2)) < 2 * error  # v^2 has variance 2
+    for part in (v.real, v.imag):
+        assert kstest(part.ravel() * np.sqrt(2), "norm").pvalue > 1e-3
+    assert abs(correlation(v, 1)) < error
+    assert abs(correlation(v.T, 1)) < error
+
+
+@pytest.mark.parametrize(
+    ("snr_db", "variance"), [(0, 2.0), (10, 0.2), (30, 0.002), (-10, 20.0), (3, 1.002374)]
+)
+def test_the_variance_is_the_signal_power_over_the_snr(snr_db: float, variance: float) -> None:
+    assert noise_variance(2.0, snr_db) == pytest.approx(variance, rel=1e-6)
 
 
 class TestPower:
@@ -78,53 +108,45 @@ class TestPower:
     def test_free_space_reference(self, engine, snr_db, wall):
         """P_s leaves the wall out, so that a wall costs SNR."""
         more = {"snr_db": snr_db, "wall": wall, "duration_s": 1.0}
-        scene, _ = scene_of(engine, **more)
-        right = free_space_power(scene) / 10 ** (snr_db / 10)
-        sigma = record("signal:plain", engine, **more).sigma
-        assert sigma**2 == pytest.approx(right, rel=1e-6)
+        right = free_space_power(scene_of(engine, **more)) / 10 ** (snr_db / 10)
+        assert sigma_of(engine, **more) ** 2 == pytest.approx(right, rel=1e-6)
 
     @engines
     def test_received_reference(self, engine):
         more = {"snr_db": 10, "wall": {}, "duration_s": 1.0, "snr_reference": "received"}
-        recording = record("signal:plain", engine, **more)
-        t = np.arange(recording.waveform.n_pulses) / RADAR["prf_hz"]
-        paths = recording.products["paths"](t)
-        right = np.mean(np.sum(paths.amplitude**2, axis=0)) / 10
-        assert recording.sigma**2 == pytest.approx(right, rel=1e-6)
+        recording = record(engine, "noise", "paths", "waveform", **more)
+        t = np.arange(recording["waveform"].n_pulses) / RADAR["prf_hz"]
+        right = np.mean(np.sum(recording["paths"](t).amplitude ** 2, axis=0)) / 10
+        assert recording["noise"].sigma ** 2 == pytest.approx(right, rel=1e-6)
         # The paper's wall takes 9.8 dB at 2 GHz and more at 24 GHz, from whoever is behind it.
-        scene, _ = scene_of(engine, **more)
-        assert recording.sigma**2 < 0.5 * free_space_power(scene) / 10
+        assert recording["noise"].sigma ** 2 < 0.5 * free_space_power(scene_of(**more)) / 10
 
     @engines
     def test_received_is_free_space_without_a_wall(self, engine):
         sigmas = [
-            record("signal:plain", engine, snr_reference=reference, duration_s=0.5).sigma
+            sigma_of(engine, snr_reference=reference, duration_s=0.5)
             for reference in ("received", "free_space")
         ]
         assert sigmas[0] == sigmas[1] > 0
 
-    def test_unit_noise_is_circular_gaussian(self):
-        v = circular_gaussian(np.random.default_rng(6), (50, 2000))
-        assert v.shape == (50, 2000)
-        for part in (v.real, v.imag):
-            assert kstest(part.ravel() * np.sqrt(2), "norm").pvalue > 1e-3
-        assert abs(np.mean(v.real * v.imag)) < SIGMAS * 0.5 / np.sqrt(v.size)
+    def test_raw_samples(self):
+        """Per sample sigma^2; white in fast time and slow time, in blocks of any length."""
 
-    def test_raw_samples_of_the_cube(self):
-        """Per sample sigma^2; white in fast time and slow time."""
-        waveform = Waveform(24e9, 1e9, 40e-6, 5e5, 5000, 1.0)
-        source = ref.Points(lambda t: (2 + 0.3 * t)[None])
-        blocks = [
-            np.concatenate([b for _, b in cube.beat_blocks(source, waveform, *noise)], axis=1)
-            for noise in ((0.0, None), (0.7, np.random.default_rng(7)))
-        ]
-        noise = blocks[1] - blocks[0]
-        assert noise.shape == (SAMPLES, 5000)
-        error = SIGMAS / np.sqrt(noise.size)
-        assert np.mean(np.abs(noise) ** 2) == pytest.approx(0.7**2, rel=error)
-        assert np.mean(np.abs(noise) ** 2, axis=1) == pytest.approx(0.49, rel=SIGMAS / np.sqrt(5e3))
-        assert abs(correlation(noise, 1)) < error
-        assert abs(correlation(noise.T, 1)) < error
+        def noise(length):
+            white = WhiteNoise(
+                0.7, Waveform(**asdict(ref.Radar())), lambda name: np.random.default_rng(7)
+            )
+            blocks = [np.zeros((SAMPLES, length), complex)] * (5000 // length)
+            return np.hstack([*white.beat(iter(blocks))])
+
+        whole = noise(5000)
+        assert whole.shape == (SAMPLES, 5000)
+        assert np.array_equal(noise(8), whole)
+        error = SIGMAS / np.sqrt(whole.size)
+        assert np.mean(np.abs(whole) ** 2) == pytest.approx(0.7**2, rel=error)
+        assert np.mean(np.abs(whole) ** 2, axis=1) == pytest.approx(0.49, rel=SIGMAS / np.sqrt(5e3))
+        assert abs(correlation(whole, 1)) < error
+        assert abs(correlation(whole.T, 1)) < error
 
 
 class TestSlowTime:
@@ -134,7 +156,7 @@ class TestSlowTime:
 
     @engines
     def test_before_mti(self, engine):
-        v, sigma = noise_of("signal:plain", engine, processing={"mti": False})
+        v, sigma = noise_of("signal", engine, processing={"mti": False})
         assert v.size == PULSES
         # |v|^2 is exponential: its standard deviation is its mean.
         assert np.mean(np.abs(v) ** 2) == pytest.approx(sigma**2 * gain(), rel=self.error)
@@ -157,14 +179,16 @@ class TestSlowTime:
     )
     def test_gain_of_compression_and_sum(self, radar):
         """sum |D[n]|^2, which is N_ADC N_FFT/2 only where N_FFT is N_ADC."""
-        v = slow_time_noise(np.random.default_rng(8), Waveform(**asdict(radar)))
+        waveform = Waveform(**asdict(radar))
+        white = WhiteNoise(1.0, waveform, lambda name: np.random.default_rng(8))
+        v = white.slow_time(np.zeros(waveform.n_pulses, complex))
         right = np.sum(np.abs(ref.sample_weights(radar)) ** 2)
         assert abs(right / (radar.n_adc * radar.n_fft / 2) - 1) > 2 * self.error
         assert np.mean(np.abs(v) ** 2) == pytest.approx(right, rel=self.error)
 
     @engines
     def test_after_mti(self, engine):
-        x, sigma = noise_of("signal:plain", engine)
+        x, sigma = noise_of("signal", engine)
         assert x.size == PULSES - 1
         error = self.error * np.sqrt(2)  # neighbours are correlated
         assert np.mean(np.abs(x) ** 2) == pytest.approx(2 * sigma**2 * gain(), rel=error)
@@ -176,7 +200,7 @@ class TestSlowTime:
     def test_engines_have_the_same_law(self, mti):
         """Every other sample: after MTI those are independent."""
         both = [
-            noise_of("signal:plain", engine, processing={"mti": mti})[0][::2]
+            noise_of("signal", engine, processing={"mti": mti})[0][::2]
             for engine in ("cube", "direct")
         ]
         for view in (np.real, np.imag, np.abs):
@@ -216,6 +240,20 @@ class TestRangeProfiles:
         found = [correlation(noise, lag) for lag in (1, 2, 3)]
         assert np.abs(np.array(found) - [-0.5, 0, 0]).max() < error
 
+    @pytest.mark.parametrize("taps", [(1, -2, 1), (-1, 0, 1), (1, 1, 1, 1)])
+    def test_outputs_of_any_canceller_that_share_pulses_are_correlated(self, taps):
+        """By sum_k c[k] c[k + lag]/sum c^2; apart, they have its gain alone."""
+        c, rng = Canceller(taps), np.random.default_rng(9)
+        every, apart = (noise_at(rng, SAMPLES, np.arange(5000) * step, c) for step in (1, 4))
+        error = SIGMAS * np.sqrt(3 / every.size)
+        power = np.sum(np.square(taps))
+        right = np.append(np.correlate(taps, taps, "full")[len(taps) :], 0) / power
+        found = [correlation(every, lag) for lag in range(1, len(taps) + 1)]
+        assert found == pytest.approx(right, abs=error)
+        assert abs(correlation(apart, 1)) < error
+        for noise in (every, apart):
+            assert np.mean(np.abs(noise) ** 2) == pytest.approx(power, rel=2 * error)
+
     def test_only_those_pairs(self):
         """M - 1 = 3/2 W: the pairs shown are 1 and 2 pulses apart in turn."""
         noise, _ = self.noise(3000, duration_s=0.9002)
@@ -233,10 +271,11 @@ class TestRangeProfiles:
     @engines
     def test_bins_of_the_range_time_map_are_exponential(self, engine):
         """At -100 dB the map is noise alone, of mean 2 sigma^2 N_ADC."""
-        recording = record("rtm", engine, snr_db=-100, image={"size_px": [16, 1000]})
-        rtm = recording.products["rtm"]
+        more = {"snr_db": -100, "image": {"size_px": [16, 1000]}}
+        recording = record(engine, "rtm", "noise", **more)
+        rtm = recording["rtm"].power
         assert rtm.shape == (SAMPLES // 2, 1000)
-        scale = 2 * recording.sigma**2 * SAMPLES
+        scale = 2 * recording["noise"].sigma ** 2 * SAMPLES
         assert kstest(rtm.ravel(), expon(scale=scale).cdf).pvalue > 1e-3
 
 
@@ -245,7 +284,7 @@ class TestStreams:
 
     @pytest.mark.parametrize(
         ("engine", "product"),
-        [("cube", "signal:plain"), ("direct", "signal:plain"), ("direct", "range_profiles")],
+        [("cube", "signal"), ("direct", "signal"), ("direct", "range_profiles")],
     )
     def test_snr_scales_the_same_noise(self, engine, product):
         loud, loud_sigma = noise_of(product, engine, snr_db=-20, duration_s=0.5)
@@ -253,26 +292,28 @@ class TestStreams:
         assert loud_sigma == pytest.approx(10 * faint_sigma, rel=1e-12)
         assert np.abs(loud - 10 * faint).max() < 1e-9 * np.abs(loud).max()
 
+    def noise(self, slug: str = "walking", index: int = 0) -> WhiteNoise:
+        return record("direct", "noise", slug=slug, index=index, duration_s=0.5)["noise"]
+
     def test_samples_and_classes_have_their_own(self):
-        config = Config.model_validate({"radar": RADAR, "duration_s": 0.5})
-        walking, punching = activity_named("walking"), activity_named("punching")
-        asked = plan(config, ["slow_time_noise"])
-        unit = []
-        for activity, index in ((walking, 0), (walking, 1), (punching, 0)):
-            recording = run(asked, draw_scene(config, activity, index), config)
-            unit.append(recording.products["slow_time_noise"] / recording.sigma)
-        for a, b in ((0, 1), (0, 2), (1, 2)):
-            bound = SIGMAS * gain() / np.sqrt(unit[a].size)
-            assert abs(np.mean(unit[a] * unit[b].conj())) < bound
+        drawn = [
+            noise.slow_time(np.zeros(PULSES, complex)) / noise.sigma
+            for noise in (self.noise(), self.noise(index=1), self.noise("punching"))
+        ]
+        for a, b in combinations(drawn, 2):
+            assert abs(np.mean(a * b.conj())) < SIGMAS * gain() / np.sqrt(PULSES)
 
     def test_purposes_have_their_own(self):
         """The Doppler maps and the range-time map do not share their random numbers."""
-        scene, config = scene_of()
-        products = run(plan(config, ["slow_time_noise", "range_noise"]), scene, config).products
-        drawn = [products["slow_time_noise"], products["range_noise"].T.ravel()]
-        count = min(numbers.size for numbers in drawn)
-        one, other = (numbers[:count] / np.std(numbers) for numbers in drawn)
-        assert abs(np.mean(one * other.conj())) < SIGMAS / np.sqrt(count)
+        noise, bins = self.noise(), SAMPLES // 2
+        count = PULSES // bins
+        drawn = [
+            noise.slow_time(np.zeros(PULSES, complex)),
+            noise.range_bins(np.zeros((bins, count)), np.arange(count), NO_CANCELLER).T.ravel(),
+            next(noise.beat(iter([np.zeros((bins, count))]))).T.ravel(),
+        ]
+        for one, other in combinations([v / np.std(v) for v in drawn], 2):
+            assert abs(np.mean(one * other.conj())) < SIGMAS / np.sqrt(PULSES)
 
     @engines
     def test_adding_a_map_changes_no_byte_of_the_others(self, engine):
@@ -282,11 +323,14 @@ class TestStreams:
             "image": {"size_px": 32},
             "engine": {"kind": engine},
         }
-        everything = Config.model_validate(document | {"maps": MAP_NAMES})
-        scene = draw_scene(everything, activity_named("walking"), 3)
-        together = run(plan_images(everything), scene, everything).products
+
+        def images(names):
+            config = Config.model_validate(document | {"maps": names})
+            scene = draw_scene(config, activity_named("walking"), 3)
+            return run(plan_images(config), {"scene": scene})
+
+        together = images(MAP_NAMES)
         for name in MAP_NAMES:
-            config = Config.model_validate(document | {"maps": [name]})
-            alone = run(plan_images(config), scene, config).products
-            assert np.array_equal(alone[f"levels:{name}"], together[f"levels:{name}"])
-            assert alone[f"entropy:{name}"] == together[f"entropy:{name}"]
+            one, same = images([name])[f"image:{name}"], together[f"image:{name}"]
+            assert np.array_equal(one.levels, same.levels)
+            assert one.entropy == same.entropy

@@ -1,0 +1,371 @@
+"""People as a config asks for them: drawn, repeated exactly, sound whatever is drawn."""
+
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from radhar_cli.activity import ACTIVITIES, MOVEMENTS, activity_named
+from radhar_cli.config import Config, load_config
+from radhar_cli.config.checks import HUMAN_LIMITS
+from radhar_cli.errors import ConfigError
+from radhar_cli.motion.human.motion import HumanMotion
+from radhar_cli.motion.skeleton import JOINTS, PARENTS, links
+from radhar_cli.pipeline.physics import motion_of
+from radhar_cli.pipeline.run import record
+from radhar_cli.pipeline.validity import draw_valid_scene
+from radhar_cli.scene import PERSONAL, UNSTEADY, Scene, draw_scene, nominal_scene, scene_numbers
+from radhar_cli.simulation.scene_file import write_all
+from radhar_cli.simulation.simulate import simulate
+
+ROOT = Path(__file__).resolve().parents[2]
+FREE_SPACE = ROOT / "configs/human/free_space_77GHz.yaml"
+WALL = ROOT / "configs/human/through_wall_2GHz.yaml"
+TWELVE = [activity.slug for activity in ACTIVITIES]
+ANKLES = [JOINTS.index("right_ankle"), JOINTS.index("left_ankle")]
+KNEES = [JOINTS.index("right_knee"), JOINTS.index("left_knee")]
+TORSO = JOINTS.index("torso")
+STIFF = 1e-9  # m
+
+
+def people(motion: dict[str, Any] | None = None, **more: Any) -> Config:
+    return Config.model_validate(
+        {"duration_s": 6.0, "motion": {"model": "human"} | (motion or {})} | more
+    )
+
+
+HOME = {
+    "coming_home": {
+        "sequence": ["walking", "sitting_down", "standing_up"],
+        "durations_s": [{"uniform": [0.8, 1.6]}, None, 1.5],
+        "pauses_s": [0.3, 0, {"uniform": [0.2, 0.9]}],
+    }
+}
+
+
+def moving(scene: Scene) -> HumanMotion:
+    motion = motion_of(scene)
+    assert isinstance(motion, HumanMotion)
+    return motion
+
+
+def assert_a_body(motion: HumanMotion, t: np.ndarray) -> None:
+    """Links keep their lengths, those at the torso up to its breath, and the floor holds."""
+    p, hips = motion.positions(t), motion.hip_joints(t)
+    for joint, (parent, link) in enumerate(zip(PARENTS, links(motion.person.stature), strict=True)):
+        if parent is None:
+            continue
+        start = hips[:, KNEES.index(joint)] if joint in KNEES else p[:, parent]
+        off = np.abs(np.linalg.norm(p[:, joint] - start, axis=0) - np.linalg.norm(link)).max()
+        # Height of a breath 10 mm: (10.5 mm)^2 / (2 x 0.23 m).
+        assert off < (3e-4 if TORSO in (joint, parent) else STIFF), JOINTS[joint]
+    assert p[2].min() > 0
+
+
+@pytest.mark.parametrize("slug", TWELVE)
+@pytest.mark.parametrize("path", [FREE_SPACE, WALL], ids=lambda path: path.stem)
+def test_draws_of_the_configs_are_bodies(slug: str, path: Path) -> None:
+    config = load_config(path)
+    for index in range(6):
+        scene, _ = draw_valid_scene(config, activity_named(slug), index)
+        assert_a_body(moving(scene), np.arange(0, 6, 0.02))
+
+
+def at_the_limits(rng: np.random.Generator) -> Config:
+    """Every number of people anywhere in its range, at its ends as often as not."""
+    document: dict[str, Any] = {"duration_s": 5.0, "seed": int(rng.integers(10**6))}
+    document |= {"subject": {}, "motion": {"model": "human"}, "timing": {}}
+    for key, low, high in HUMAN_LIMITS:
+        section, _, name = key.rpartition(".")
+        if section and name != "walk_start_s":
+            high = 4.0 if section == "timing" and high > 4 else high  # s, of a recording of 5 s
+            at = rng.choice([low, high]) if rng.random() < 0.5 else rng.uniform(low, high)
+            document[section][name] = float(at)
+    document["motion"] |= {
+        "turn_deg": float(rng.uniform(-90, 90)),
+        "fall": str(rng.choice(["forward", "backward", "sideways"])),
+    }
+    return Config.model_validate(document)
+
+
+@pytest.mark.parametrize("block", range(4))
+def test_bodies_up_to_the_limits_of_every_number(block: int) -> None:
+    rng, t = np.random.default_rng([12, block]), np.arange(0, 5, 0.02)
+    for _ in range(4):
+        config = at_the_limits(rng)
+        for activity in ACTIVITIES:
+            assert_a_body(moving(draw_scene(config, activity, 0)), t)
+
+
+@given(stature=st.floats(1.5, 2.0), speed=st.floats(0.3, 2.8))
+@settings(max_examples=10)
+def test_walkers_plant_their_feet(stature: float, speed: float) -> None:
+    """Ankles peak at 3 times the torso's speed and never run back."""
+    config = people(
+        {"speed_mps": speed, "angle_deg": 0}, subject={"height_m": stature}, duration_s=8.0
+    )
+    motion = moving(nominal_scene(config, activity_named("walking")))
+    dt = 1e-3
+    p = motion.positions(np.arange(0, 8, dt))
+    v = np.diff(p, axis=2)[0] / dt
+    slow = speed < 0.8
+    assert 2.7 < v[ANKLES].max() / speed < (4.6 if slow else 3.5)
+    assert v[ANKLES].min() / speed > (-0.2 if slow else -0.1)
+    assert v[TORSO].mean() == pytest.approx(speed, rel=0.05)
+    moved = np.linalg.norm(np.diff(p[:, ANKLES], axis=2), axis=0)
+    assert np.mean(moved < 1e-9, axis=1).min() > 0.25  # of the time a foot is planted
+
+
+@pytest.mark.parametrize("slug", TWELVE)
+def test_nobody_jumps(slug: str) -> None:
+    """The change of velocity from sample to sample falls with the sample interval."""
+    config = load_config(FREE_SPACE)
+    for index in range(3):
+        motion = moving(draw_scene(config, activity_named(slug), index))
+        worst = [
+            np.abs(np.diff(motion.positions(np.arange(0, 6, 1 / rate)), n=2, axis=2)).max() * rate
+            for rate in (1000, 8000)
+        ]
+        assert worst[1] < worst[0] / 6
+
+
+# The contract's peak speeds, m/s, of a nominal person of 1.75 m.
+PEAKS = {
+    "punching": ("right_hand", 2.8, 5.5),
+    "kicking": ("right_ankle", 6.0, 9.0),
+    "sitting_down": ("hip", 0.6, 1.2),
+    "standing_up": ("head", 0.8, 1.5),
+    "body_rotating": ("right_hand", 0.5, 1.2),
+    "walking_to_falling": ("head", 2.0, 4.7),
+}
+
+
+@pytest.mark.parametrize("slug", PEAKS)
+def test_peak_speeds(slug: str) -> None:
+    joint, low, high = PEAKS[slug]
+    config = people({"speed_mps": 1.2}, subject={"height_m": 1.75})
+    p = moving(nominal_scene(config, activity_named(slug))).positions(np.arange(0, 6, 1e-3))
+    speed = np.linalg.norm(np.diff(p[:, JOINTS.index(joint)], axis=1), axis=0).max() / 1e-3
+    assert low < speed < high
+
+
+@pytest.mark.parametrize("slug", TWELVE)
+def test_nominal_people_sway_and_breathe_and_nothing_else_is_random(slug: str) -> None:
+    config = people()
+    scene = nominal_scene(config, activity_named(slug))
+    other = nominal_scene(config.model_copy(update={"seed": 99}), activity_named(slug))
+    t = np.arange(0, 6, 0.01)
+    p = moving(scene).positions(t)
+    np.testing.assert_array_equal(p, moving(other).positions(t))
+    assert not any(scene_numbers(scene).get(key) for key in UNSTEADY)
+    assert moving(scene).idle.fidgets == ()
+    breath = moving(scene).idle(t).breath
+    assert 0.003 < breath.max() < 0.006
+
+
+@pytest.mark.parametrize("slug", ["stationary", "walking", "punching"])
+def test_samples_differ_and_repeat_themselves(slug: str) -> None:
+    config, t = people(), np.arange(0, 6, 0.05)
+    first, second = (draw_scene(config, activity_named(slug), index) for index in (1, 2))
+    p = moving(first).positions(t)
+    np.testing.assert_array_equal(
+        p, moving(draw_scene(config, activity_named(slug), 1)).positions(t)
+    )
+    assert np.abs(p - moving(second).positions(t)).max() > 0.01
+
+
+def test_a_stride_a_punch_and_a_kick_are_never_the_same() -> None:
+    config = people({"tempo_jitter": 0.1, "size_jitter": 0.1, "stride_jitter": 0.03})
+    punch, kick = (
+        moving(draw_scene(config, activity_named(slug), 0)).parts[0][0].course
+        for slug in ("punching", "kicking")
+    )
+    for course in (punch, kick):
+        assert np.unique(np.round(course.lengths, 9)).size > 4
+    gait = moving(draw_scene(config, activity_named("walking"), 0)).parts[0][0].gait
+    assert np.std(gait.jitter[:20]) == pytest.approx(0.03 / 2**0.5, rel=0.5)
+
+
+def test_persons_keep_their_body_and_gait() -> None:
+    config = people(split={"by": "subject", "subjects": 4}, samples_per_class=8)
+    scenes = [draw_scene(config, activity_named("walking"), index) for index in (1, 5)]
+    one, again = (scene_numbers(scene) for scene in scenes)
+    assert {key for key in PERSONAL if key in one and one[key] != again[key]} == set()
+    assert one["motion.idle_from_s"] != again["motion.idle_from_s"]
+
+
+def test_keys_of_the_other_model_are_ignored() -> None:
+    walking, t = activity_named("walking"), np.arange(0, 2, 0.1)
+    for model, keys in {
+        "human": {"gait_hz": 3.0, "thigh_deg": 80},
+        "paper": {"arm_swing": 9.0, "fidget_hz": 900, "fall": "sideways"},
+    }.items():
+        plain = Config(motion={"model": model})
+        more = Config(
+            motion={"model": model, **keys}, timing={"overlap_s": 99 * (model == "paper")}
+        )
+        a, b = (draw_scene(config, walking, 0) for config in (plain, more))
+        assert scene_numbers(a) == scene_numbers(b)
+        np.testing.assert_array_equal(motion_of(a).positions(t), motion_of(b).positions(t))
+        assert not {f"motion.{key}" for key in keys} & set(scene_numbers(a))
+
+
+@pytest.mark.parametrize("slug", ["sitting_to_walking", "falling_to_walking"])
+def test_who_rises_walks_when_risen_unless_told_when(slug: str) -> None:
+    activity = activity_named(slug)
+    (begin, _), *_, (walks, name) = moving(nominal_scene(people(), activity)).phases
+    assert name == "walking"
+    assert walks - begin == pytest.approx(
+        {"sitting_to_walking": 1.8, "falling_to_walking": 3.0}[slug]
+    )
+    late = moving(nominal_scene(people(timing={"walk_start_s": 4.5}), activity)).phases
+    assert late[-1][0] == pytest.approx(4.5)
+    early = moving(nominal_scene(people(timing={"overlap_s": 0.4}), activity)).phases
+    assert early[-1][0] == pytest.approx(walks - 0.4)
+
+
+@pytest.mark.parametrize("fall", ["forward", "backward", "sideways"])
+def test_people_fall_where_they_are_told(fall: str) -> None:
+    config = people({"fall": fall, "speed_mps": 1.2, "angle_deg": 0})
+    scene = nominal_scene(config, activity_named("walking_to_falling"))
+    p = moving(scene).positions(np.array([5.9]))[..., 0]
+    ahead, left, _ = p[:, JOINTS.index("head")] - p[:, ANKLES].mean(axis=1)
+    assert p[2].max() < 0.6
+    where = {"forward": ahead, "backward": -ahead, "sideways": abs(left)}
+    assert where[fall] > 1.0
+    assert scene_numbers(scene)["motion.fall"] == ["forward", "backward", "sideways"].index(fall)
+
+
+def test_directions_of_falls_are_drawn() -> None:
+    config = people({"fall": {"choice": ["forward", "forward", "sideways"]}})
+    falls = [
+        draw_scene(config, activity_named("S12"), index).config.motion.fall for index in range(90)
+    ]
+    assert 40 < falls.count("forward") < 80
+    assert falls.count("sideways") == 90 - falls.count("forward")
+
+
+@pytest.mark.parametrize("nominal", [True, False])
+@pytest.mark.parametrize("slug", ["stationary", "walking_to_falling", "coming_home"])
+def test_a_written_scene_gives_the_same_recording(slug: str, nominal: bool, tmp_path: Path) -> None:
+    radar = {"carrier_hz": 10e9, "bandwidth_hz": 2e8, "prf_hz": 300, "adc_rate_hz": 1e6}
+    config = people({"fall": {"choice": ["sideways", "backward"]}}, classes=HOME, radar=radar)
+    made = simulate(config, slug, index=3 * (not nominal), nominal=nominal, maps=("stft",))
+    write_all(made, tmp_path)
+    again = simulate(
+        load_config(tmp_path / "scene.yaml"), slug, index=made.scene.index, maps=("stft",)
+    )
+    np.testing.assert_array_equal(again.truth.positions, made.truth.positions)
+    np.testing.assert_array_equal(again.signals["raw"].x, made.signals["raw"].x)
+    with h5py.File(tmp_path / "scene.h5") as file:
+        assert file["truth/positions"].shape == (1800, 13, 3)
+        assert file["truth/hip_joints"].shape == (1800, 2, 3)
+
+
+def test_the_paper_has_no_hip_joints() -> None:
+    assert simulate(Config(), "walking", maps=("stft",)).truth.hip_joints is None
+
+
+@pytest.mark.parametrize("slug", TWELVE)
+def test_the_direct_engine_keeps_its_tolerance(slug: str) -> None:
+    scene = draw_scene(load_config(FREE_SPACE), activity_named(slug), 1)
+    found = record(scene, ["accuracy"])["accuracy"]
+    assert found.error_db < scene.config.engine.tolerance_db
+
+
+def test_a_sequence_is_a_class_of_its_own() -> None:
+    config = people(classes=HOME)
+    home = config.chosen_activities[-1]
+    assert (home.slug, home.index) == ("coming_home", 12)
+    scene = draw_scene(config, home, 4)
+    numbers = {k: v for k, v in scene_numbers(scene).items() if k.startswith("classes.")}
+    walked, paused = (numbers[f"classes.coming_home.{k}"] for k in ("durations_s.0", "pauses_s.2"))
+    assert 0.8 < walked < 1.6
+    assert 0.2 < paused < 0.9
+    names = [name for _, name in moving(scene).phases]
+    assert names == ["walking", "sitting down", "seated", "standing up", "standing"]
+    starts = [start for start, _ in moving(scene).phases]
+    assert starts[0] == 0.3
+    assert starts[3] - starts[2] == pytest.approx(paused)
+    assert_a_body(moving(scene), np.arange(0, 6, 0.02))
+
+
+def test_a_sequence_among_chosen_activities_keeps_its_label() -> None:
+    classes = {"waiting": {"sequence": ["stationary"]}, **HOME}
+    config = people(classes=classes, activities=["coming_home", "walking"])
+    assert [(a.slug, a.index) for a in config.chosen_activities] == [
+        ("walking", 7),
+        ("coming_home", 13),
+    ]
+    assert [a.slug for a in config.every_class][12:] == ["waiting", "coming_home"]
+
+
+@pytest.mark.parametrize("name", MOVEMENTS)
+def test_every_movement_can_begin_a_sequence(name: str) -> None:
+    config = people(classes={"own": {"sequence": [name]}}, activities=["own"])
+    motion = moving(draw_scene(config, config.chosen_activities[0], 0))
+    assert np.isfinite(motion.positions(np.arange(0, 6, 0.1))).all()
+
+
+@pytest.mark.parametrize(
+    ("classes", "said"),
+    [
+        ({"own": {"sequence": ["swimming"]}}, "movements are stationary"),
+        ({"own": {"sequence": ["waking", "falling"]}}, "did you mean 'walking'"),
+        ({"own": {"sequence": ["walking", "falling"]}}, "a duration of walking"),
+        (
+            {"own": {"sequence": ["sitting_down", "grabbing"]}},
+            "grabbing begins standing, .* seated",
+        ),
+        ({"own": {"sequence": ["falling"], "pauses_s": [1, 2]}}, "as many"),
+        ({"own": {"sequence": ["walking", "falling"], "durations_s": [0.0, None]}}, "from 0.3"),
+        ({"walking": {"sequence": ["falling"]}}, "new name"),
+        ({"../up": {"sequence": ["falling"]}}, "new name"),
+    ],
+)
+def test_impossible_sequences_are_refused(
+    classes: dict[str, Any], said: str, tmp_path: Path
+) -> None:
+    import yaml
+
+    path = tmp_path / "own.yaml"
+    path.write_text(yaml.safe_dump({"motion": {"model": "human"}, "classes": classes}))
+    with pytest.raises(ConfigError, match=said) as error:
+        load_config(path)
+    assert "classes" in str(error.value)
+
+
+def test_who_gets_up_has_fallen_forward(tmp_path: Path) -> None:
+    path = tmp_path / "own.yaml"
+    path.write_text(
+        "motion: {model: human, fall: backward}\nclasses: {up: {sequence: [falling, getting_up]}}"
+    )
+    with pytest.raises(ConfigError, match=r"motion.fall = \"backward\": should be forward"):
+        load_config(path)
+
+
+def test_the_paper_has_no_sequences(tmp_path: Path) -> None:
+    path = tmp_path / "own.yaml"
+    path.write_text("motion: {model: paper}\nclasses: {own: {sequence: [falling]}}")
+    with pytest.raises(ConfigError, match=r"classes = .*: should be none with motion.model: paper"):
+        load_config(path)
+
+
+@pytest.mark.parametrize(("key", "value"), [("motion.speed_mps", 0), ("subject.height_m", 0.5)])
+def test_numbers_beyond_people_are_refused_where_they_matter(key: str, value: float) -> None:
+    section = key.partition(".")[0]
+    for model, slugs, refused in [
+        ("human", ["walking"], True),
+        ("human", ["punching"], section == "subject"),
+        ("paper", ["walking"], False),
+    ]:
+        path, what = FREE_SPACE, [f"{key}={value}", f"motion.model={model}", f"activities={slugs}"]
+        if refused:
+            with pytest.raises(ConfigError, match=rf"{key} = .*: should be from .* motion.model"):
+                load_config(path, what)
+        else:
+            load_config(path, what)

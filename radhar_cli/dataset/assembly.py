@@ -54,7 +54,7 @@ def assembled(
     Raises:
         UnfinishedError: rows are missing, held twice, or in a shard that cannot be used.
     """
-    count, whose, shards = len(Rows.of(config)), identity_hash(identity(config)), sorted(shards)
+    count, own_hash, shards = len(Rows.of(config)), identity_hash(identity(config)), sorted(shards)
     require_tiling(folder, shards, count)
     unfinished, table, manifest = (unfinished_path(folder) for _ in range(3))
     unfinished.parent.mkdir(parents=True, exist_ok=True)
@@ -65,8 +65,8 @@ def assembled(
             manifest.open("w") as held,
         ):
             _describe_samples(file, config)
-            held.write(f'{{"identity": "{whose}", "rows": {count}, "shards": [\n')
-            flags = _copy_shards(file, config, shards, whose, text, held)
+            held.write(f'{{"identity": "{own_hash}", "rows": {count}, "shards": [\n')
+            flags = _copy_shards(file, config, shards, own_hash, text, held)
             held.write("]}\n")
             found = warnings(config, flags)
             _root_attributes(file, config, found)
@@ -76,7 +76,7 @@ def assembled(
         manifest.replace(folder / WORK / MANIFEST)
         unfinished.replace(folder / DATASET)
     except ShardError as error:
-        require_tiling(folder, check_shards(shards, whose)[0], count)
+        require_tiling(folder, check_shards(shards, own_hash)[0], count)
         raise UnfinishedError(f"{folder}: {error}; the same command goes on") from None
     finally:
         for path in (unfinished, table, manifest):
@@ -87,7 +87,7 @@ def _copy_shards(
     file: h5py.File,
     config: Config,
     shards: Sequence[Shard],
-    whose: str,
+    own_hash: str,
     table: io.TextIOBase,
     manifest: io.TextIOBase,
 ) -> dict[Flags, int]:
@@ -115,7 +115,7 @@ def _copy_shards(
     extents: dict[str, set[tuple[float, ...]]] = {f"extent/{name}": set() for name in config.maps}
     for shard in shards:
         start, stop, rows = shard.start, shard.stop, shard.stop - shard.start
-        data, checksum = shard.read(whose)
+        data, checksum = shard.read(own_hash)
         held = {"start": start, "stop": stop, "bytes": len(data), "sha256": checksum}
         manifest.write(json.dumps(held) + (",\n" if stop < count else "\n"))
         with UntrustedFile(shard.path, data) as part:

@@ -1,7 +1,7 @@
-"""Build a data set: survey, batches in parallel, missing PNGs, assembly. Safe to kill anywhere.
+"""Build a data set: check scenes, run batches in parallel, write PNGs, assemble. Safe to kill.
 
-Whatever is finished has its final name; whatever has a final name is finished. A run that finds
-shards goes on from them; dataset.h5 comes last and stands for a complete folder.
+Files are written under temporary names and renamed when they are complete. A run resumes from the
+shards it finds; dataset.h5 comes last, so that a folder with one is complete.
 """
 
 import errno
@@ -42,7 +42,7 @@ MAX_CHECKED_FIRST = 100_000  # rows; of more, every worker checks its own
 
 
 class Progress(Protocol):
-    """Who is told how far a build is."""
+    """Receives progress and messages of a build."""
 
     def stage(self, name: str, total: int, done: int) -> None:
         """A part of the work begins."""
@@ -92,7 +92,7 @@ def build(
         config: the data set.
         folder: created if need be.
         jobs: processes.
-        progress: who is told.
+        progress: receives progress and messages.
         overwrite: start again.
         batch_size: samples a shard; it changes no byte of the result.
 
@@ -104,11 +104,11 @@ def build(
     """
     table = colour_table(config.image.colour_map) if config.output.png else None
     folder = folder.absolute()
-    whose = identity_hash(identity(config))
+    own_hash = identity_hash(identity(config))
     try:
         with locked(folder):
             claim(folder, config, overwrite)
-            return _Build(config, whose, folder, jobs, progress, table).run(batch_size)
+            return _Build(config, own_hash, folder, jobs, progress, table).run(batch_size)
     except OSError as error:
         raise _disk_error(folder, error) from error
 
@@ -130,12 +130,12 @@ class _Build:
             clean_up(self.folder)
             return Outcome(self.folder, count, 0, pngs)
         checked = self._check_scenes(count) if count <= MAX_CHECKED_FIRST else None
-        said = [] if checked is None else warnings(config, _counts(checked["flags"]))
-        self._say(said)
+        shown = [] if checked is None else warnings(config, _counts(checked["flags"]))
+        self._say(shown)
         shards, made = self._batches(count, checked, split, batch_size)
         self.progress.stage("assembling", count, 0)
         with assembled(config, self.folder, shards) as (unfinished, stored):
-            self._say([warning for warning in stored if warning not in said])
+            self._say([warning for warning in stored if warning not in shown])
             self.progress.advance(count)
             pngs = self._missing_pngs(split, unfinished)
         mark_built(self.folder)

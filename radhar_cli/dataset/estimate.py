@@ -84,8 +84,8 @@ def _time_sample(config: Config, row: int, table: Levels | None) -> tuple[int, i
     sample = synthesise(scene, plan_images(config))
     columns = scene_fields.fields(config)
     values = scene_fields.values(scene, columns, sample.error_db)[None]
-    whose = identity_hash(identity(config))
-    shard = encode_shard(config, whose, row, [sample], values, np.zeros(1, dtype=np.uint8))
+    own_hash = identity_hash(identity(config))
+    shard = encode_shard(config, own_hash, row, [sample], values, np.zeros(1, dtype=np.uint8))
     pngs = 0
     if table is not None:
         level = config.output.png_level

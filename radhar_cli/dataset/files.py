@@ -1,5 +1,4 @@
-"""Reading files that anyone may have written, and writing so that a name never stands for half a
-file and nothing outside of a folder is touched."""
+"""Bounded reading of untrusted files; atomic writing inside an output folder."""
 
 import os
 import uuid
@@ -13,7 +12,7 @@ MAX_TEXT = 2**20
 
 
 def write_whole(folder: Path, path: Path, data: bytes) -> None:
-    """Write a file of an output folder under a name of its own, then rename it into place.
+    """Write a file of an output folder atomically: under a temporary name, then renamed.
 
     Args:
         folder: the output folder; the unfinished file lies in its work folder.
@@ -54,7 +53,7 @@ def refuse_links(folder: Path, path: Path) -> None:
             raise FolderError(f"{part}: is a symbolic link; radhar writes and deletes through none")
 
 
-def refuse_strange_work(folder: Path) -> None:
+def refuse_foreign_work(folder: Path) -> None:
     """Refuse a work folder with anything in it but files and folders, links above all.
 
     Raises:

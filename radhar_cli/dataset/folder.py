@@ -11,8 +11,8 @@ from filelock import FileLock, Timeout
 
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.files import (
+    refuse_foreign_work,
     refuse_links,
-    refuse_strange_work,
     unfinished_path,
     write_whole,
 )
@@ -56,7 +56,7 @@ def locked(folder: Path) -> Iterator[None]:
         (folder / WORK).mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise FolderError(f"{folder}: cannot be made ({error.strerror})") from None
-    refuse_strange_work(folder)
+    refuse_foreign_work(folder)
     lock = FileLock(folder / WORK / "lock")
     try:
         with lock.acquire(timeout=0):
@@ -180,5 +180,5 @@ def _clear(folder: Path, new: dict[str, Any]) -> None:
 
 
 def mark_built(folder: Path) -> None:
-    """Leave a mark that the finished data set here is radhar's, whatever becomes of its file."""
+    """Mark the folder as built by radhar, also for when dataset.h5 is damaged or deleted."""
     (folder / WORK / "built").touch()

@@ -74,14 +74,14 @@ class Dataset:
 
     @property
     def warnings(self) -> list[dict[str, Any]]:
-        """What was said when it was built: {kind, recordings, message}."""
-        said = self.file.json("warnings")
-        right = isinstance(said, list) and all(
-            isinstance(one, dict) and isinstance(one.get("message"), str) for one in said
+        """Warnings of its build: {kind, recordings, message}."""
+        stored = self.file.json("warnings")
+        right = isinstance(stored, list) and all(
+            isinstance(one, dict) and isinstance(one.get("message"), str) for one in stored
         )
         if not right:
             raise FolderError(f"{self.path}: attribute warnings: should be a list of messages")
-        found: list[dict[str, Any]] = said
+        found: list[dict[str, Any]] = stored
         return found
 
     def entropy(self, name: str) -> Float:

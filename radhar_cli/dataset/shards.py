@@ -60,10 +60,10 @@ class Shard(NamedTuple):
         header = _HEADER.fullmatch(data[:USER_BLOCK])
         if header is None:
             raise ShardError("is no shard, or damaged")
-        whose, start, stop, checksum = (part.decode() for part in header.groups())
-        if checksum != _checksum(whose, int(start), int(stop), memoryview(data)[USER_BLOCK:]):
+        owner, start, stop, checksum = (part.decode() for part in header.groups())
+        if checksum != _checksum(owner, int(start), int(stop), memoryview(data)[USER_BLOCK:]):
             raise ShardError("does not match its checksum")
-        if whose != identity_hash:
+        if owner != identity_hash:
             raise ForeignShardError("belongs to another data set")
         if (int(start), int(stop)) != (self.start, self.stop):
             raise ShardError(f"holds rows {start} to {int(stop) - 1}")
@@ -129,8 +129,8 @@ def encode_shard(
     return buffer.getvalue()
 
 
-def _checksum(whose: str, start: int, stop: int, content: memoryview) -> str:
-    digest = hashlib.sha256(f"{whose} {start} {stop}\n".encode())
+def _checksum(owner: str, start: int, stop: int, content: memoryview) -> str:
+    digest = hashlib.sha256(f"{owner} {start} {stop}\n".encode())
     digest.update(content)
     return digest.hexdigest()
 

@@ -44,7 +44,7 @@ _DEFLATE = h5py.h5z.FILTER_DEFLATE
 
 
 @contextmanager
-def _said(where: str) -> Iterator[None]:
+def _refusing_damage(where: str) -> Iterator[None]:
     try:
         yield
     except _DAMAGED as error:
@@ -138,13 +138,13 @@ class UntrustedFile:
 
     def has_attribute(self, name: str) -> bool:
         """Whether the file itself has an attribute of that name."""
-        with _said(f"{self.path}: attribute {name}"):
+        with _refusing_damage(f"{self.path}: attribute {name}"):
             return name in self._file.attrs
 
     def text(self, name: str) -> str:
         """A text attribute of the file."""
         where = f"{self.path}: attribute {name}"
-        with _said(where):
+        with _refusing_damage(where):
             # Of what is no text, HDF5 may crash on converting it.
             if h5py.check_string_dtype(self._scalar(name, where)) is None:
                 raise FolderError(f"{where}: should be text")
@@ -166,7 +166,7 @@ class UntrustedFile:
     def whole_number(self, name: str) -> int:
         """A whole number among the attributes of the file."""
         where = f"{self.path}: attribute {name}"
-        with _said(where):
+        with _refusing_damage(where):
             if self._scalar(name, where).kind not in "iu":
                 raise FolderError(f"{where}: should be a whole number")
             return int(self._file.attrs[name])
@@ -183,7 +183,7 @@ class UntrustedFile:
     def column(self, name: str, dtype: DTypeLike, shape: tuple[int, ...]) -> "Column":
         """Numbers in one piece, all there: no gaps to be filled in, no filters."""
         where, wanted = f"{self.path}: /{name}", np.dtype(dtype)
-        with _said(where):
+        with _refusing_damage(where):
             found = self._dataset(name, where, wanted, shape)
             size = wanted.itemsize * int(np.prod(shape, dtype=object))
             if found.chunks is not None or found.id.get_storage_size() != size:
@@ -196,7 +196,7 @@ class UntrustedFile:
     def images(self, name: str, shape: tuple[int, int, int]) -> "Images":
         """Images uint8 [N, H, W], each in a chunk of its own, plain or gzip."""
         where, one = f"{self.path}: /{name}", (1, *shape[1:])
-        with _said(where):
+        with _refusing_damage(where):
             found = self._dataset(name, where, np.dtype(np.uint8), shape)
             creation = found.id.get_create_plist()
             filters = [creation.get_filter(i)[0] for i in range(creation.get_nfilters())]
@@ -212,7 +212,7 @@ class UntrustedFile:
 
     def shape(self, name: str) -> list[int]:
         """Shape of a dataset of any type, none of which is read."""
-        with _said(f"{self.path}: /{name}"):
+        with _refusing_damage(f"{self.path}: /{name}"):
             return list(self._dataset(name, f"{self.path}: /{name}", None, None).shape)
 
     def _dataset(
@@ -271,7 +271,7 @@ class Column:
         return self.shape[0]
 
     def __getitem__(self, key: Any) -> Any:
-        with _said(self.where):
+        with _refusing_damage(self.where):
             values: NDArray[Any] = self._dataset[()]
         return values.astype(self.dtype, copy=False)[key]
 
@@ -297,7 +297,7 @@ class Images:
         """Filter mask and bytes of a row's chunk as they lie in the file."""
         if not self._sizes:
             self._sizes = self._stored_sizes()
-        with _said(f"{self.where}[{row}]"):
+        with _refusing_damage(f"{self.where}[{row}]"):
             mask, chunk = self._dataset.id.read_direct_chunk((row, 0, 0))
         return mask, chunk
 
@@ -306,7 +306,7 @@ class Images:
         raw = self.shape[1] * self.shape[2]
         most = raw + raw // 1000 + 64 if self._deflated else raw
         sizes: dict[int, int] = {}
-        with _said(self.where):
+        with _refusing_damage(self.where):
             self._dataset.id.chunk_iter(lambda c: sizes.__setitem__(c.chunk_offset[0], c.size))
         for row, size in sizes.items():
             if size > most:

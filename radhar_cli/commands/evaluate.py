@@ -66,7 +66,7 @@ def evaluate(
 
     runs, data = runs_and_data(paths)
     names = read_classes(classes) if classes else {}
-    asked = EvalOptions(
+    options = EvalOptions(
         split_named(split), map_, tsne, filters, in_place_vs_moving, batch, resize, names
     )
     inside = runs[0] if runs[0].is_dir() else runs[0].parent
@@ -74,6 +74,6 @@ def evaluate(
     if out is None:
         refuse_links(inside, folder)
     apart(folder, data)
-    report = evaluate(runs, data, asked, choose_device(known_device(device)), StderrLog())
+    report = evaluate(runs, data, options, choose_device(known_device(device)), StderrLog())
     report.write(folder)
     tell(f"{folder / 'report.html'}: {len(report.figures)} figures; numbers in report.json")

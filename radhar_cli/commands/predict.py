@@ -38,13 +38,13 @@ def predict(
     from radhar_cli.learning.machine import choose_device
     from radhar_cli.learning.prediction import predict
 
-    answers = predict(
+    predictions = predict(
         run, paths, choose_device(known_device(device)), map_, split_named(split), resize
     )
-    for name, chances in answers:
-        ranked = sorted(chances.items(), key=lambda item: -item[1])
+    for name, probabilities in predictions:
+        ranked = sorted(probabilities.items(), key=lambda item: -item[1])
         if json_:
-            tell(json.dumps({"image": name, "class": ranked[0][0], "probabilities": chances}))
+            tell(json.dumps({"image": name, "class": ranked[0][0], "probabilities": probabilities}))
             continue
-        likely = ", ".join(f"{label} {100 * chance:.1f} %" for label, chance in ranked[:top])
+        likely = ", ".join(f"{label} {100 * p:.1f} %" for label, p in ranked[:top])
         tell(f"{name}: {likely}")

@@ -24,7 +24,7 @@ class BarProgress:
     def stage(self, name: str, total: int, done: int) -> None:
         self.close()
         if done and done < total:
-            self.say(f"going on: {done} of {total} {self._unit}s are finished")
+            self.say(f"resuming: {done} of {total} {self._unit}s are finished")
         self._bar = tqdm(
             total=total, initial=done, desc=name, unit=self._unit, disable=None, file=sys.stderr
         )

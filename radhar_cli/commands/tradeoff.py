@@ -19,8 +19,8 @@ Example:
 
   radhar tradeoff configs/paper/free_space.yaml -o out/tradeoff --quick
 
-The same command, run again, goes on where it stopped. Keep the machine quiet meanwhile: errors do
-not mind, times do.
+The same command, run again, resumes. Leave the machine idle meanwhile: a busy one distorts the
+times, not the errors.
 """
 
 
@@ -80,9 +80,9 @@ def _tradeoff(
     progress = BarProgress("step")
     with locked(out):
         claim(out, config, overwrite)
-        ledger = ResultCache(out)
+        cache = ResultCache(out)
         try:
-            rows = run_sweep(scenes, ledger, progress)
+            rows = run_sweep(scenes, cache, progress)
         finally:
             progress.close()
         conditions: dict[str, Any] = {"scenes": len(scenes.names()), "rounds": ROUNDS[quick]}
@@ -90,7 +90,7 @@ def _tradeoff(
         if train:
             # What is measured without it stands, whatever becomes of the training.
             write_report(out, path.stem, command, rows, [], conditions)
-            accuracies, learned = _accuracies(scenes, out, ledger, jobs)
+            accuracies, learned = _accuracies(scenes, out, cache, jobs)
             conditions |= learned
         written = write_report(out, path.stem, command, rows, accuracies, conditions)
     for file in written:
@@ -98,37 +98,37 @@ def _tradeoff(
 
 
 def _accuracies(
-    scenes: "Scenes", out: Path, ledger: "ResultCache", jobs: int | None
+    scenes: "Scenes", out: Path, cache: "ResultCache", jobs: int | None
 ) -> tuple[list["Accuracy"], dict[str, Any]]:
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.dataset.layout import WORK
     from radhar_cli.dataset.workers import cores
     from radhar_cli.tradeoff.accuracy import find_snr, measure
     from radhar_cli.tradeoff.settings import trials
-    from radhar_cli.tradeoff.trial import FULL, QUICK, Bench
+    from radhar_cli.tradeoff.trial import FULL, QUICK, Experiment
 
     progress = BarProgress()
-    effort = QUICK if scenes.quick else FULL
-    bench = Bench(
+    sizes = QUICK if scenes.quick else FULL
+    experiment = Experiment(
         config=scenes.path,
         folder=out / WORK / "accuracy",
-        ledger=ledger,
+        cache=cache,
         progress=progress,
         jobs=jobs or cores(),
-        effort=effort,
+        sizes=sizes,
         overrides=scenes.overrides,
     )
     try:
         # Six samples a class teach nothing at any SNR: no use in looking for one.
-        snr_db = CLEAN_DB if scenes.quick else find_snr(bench)
-        found = measure(bench, trials(scenes.config()), snr_db)
+        snr_db = CLEAN_DB if scenes.quick else find_snr(experiment)
+        found = measure(experiment, trials(scenes.config()), snr_db)
     finally:
         progress.close()
     learned = {
         "snr_db": snr_db,
-        "train_per_class": effort.train_per_class,
-        "test_per_class": effort.test_per_class,
-        "epochs": effort.epochs,
+        "train_per_class": sizes.train_per_class,
+        "test_per_class": sizes.test_per_class,
+        "epochs": sizes.epochs,
         "smoke_run": scenes.quick,
     }
     return found, learned

@@ -60,8 +60,8 @@ class TrainingView:
         if os.environ.get("RANK", "0") != "0":
             return
         folder, best = outcome.folder, outcome.best
-        if outcome.went_on == len(outcome.history):
-            tell(f"{folder} is complete: {outcome.went_on} epochs; nothing to do")
+        if outcome.resumed == len(outcome.history):
+            tell(f"{folder} is complete: {outcome.resumed} epochs; nothing to do")
         tell(f"best epoch {best.epoch}: validation accuracy {100 * best.val_accuracy:.2f} %")
         tell(f"  weights   {folder / run.BEST}")
         tell(f"  curves    {folder / run.CURVES}")

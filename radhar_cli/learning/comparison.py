@@ -13,7 +13,7 @@ from radhar_cli.learning.tables import csv_text
 
 
 def compare(
-    report: Report, runs: Sequence[Run], lines: Mapping[str, Sequence[Point]], asked: EvalOptions
+    report: Report, runs: Sequence[Run], lines: Mapping[str, Sequence[Point]], options: EvalOptions
 ) -> None:
     """What compares runs or data sets."""
     with_history = {run.name: run.history for run in runs if run.history}
@@ -30,7 +30,7 @@ def compare(
         )
         head = ("run", "data", "snr_db", "accuracy", "low_95", "high_95")
         report.tables.append(("robustness.csv", csv_text(head, rows)))
-    if asked.filters:
+    if options.filters:
         filters = {run.name: magnitudes(run.model) for run in runs}
         filters = {name: found for name, found in filters.items() if found}
         report.figure(

@@ -1,4 +1,4 @@
-"""What a trained network says of a set of images, and how fast."""
+"""Predictions of a trained network on a set of images, and their latency."""
 
 import statistics
 import time
@@ -27,14 +27,14 @@ WARM_UP, REPEATS, BATCH_REPEATS = 3, 15, 5
 
 @dataclass(frozen=True)
 class Predictions:
-    """A network's answers.
+    """Predictions for rows of an image set.
 
     Attributes:
         images: the set.
-        rows: [N] rows of the set that were asked.
-        truth: [N] class numbers of the model.
+        rows: [N] rows of the set.
+        truth: [N] true classes, in the model's numbering.
         probabilities: [N, classes].
-        features: [N, F], what the last layer sees.
+        features: [N, F], input of the last layer.
     """
 
     images: ImageSet
@@ -120,7 +120,7 @@ def rows_of(images: ImageSet, split: str) -> tuple[Index, str]:
     return images.rows(split), split
 
 
-def answers(
+def predict_batches(
     model: nn.Module,
     about: RunMetadata,
     images: ImageSet,
@@ -133,7 +133,7 @@ def answers(
     The model is in evaluation mode and on the device; float32, whatever it was trained in.
 
     Raises:
-        RunError: it answers with what is no number.
+        RunError: a logit is not finite.
     """
     reader = Reader(images, images.label, workers=0, pin=False)
     with torch.inference_mode():
@@ -141,8 +141,8 @@ def answers(
             features, logits = features_and_logits(model, about.normalisation(levels.to(device)))
             if not logits.isfinite().all():
                 raise RunError(
-                    f"the network {about.model} trained on {about.data['path']}: its answers are "
-                    "no finite numbers; its weights or its mean and sd are damaged"
+                    f"the network {about.model} trained on {about.data['path']}: its logits are "
+                    "not finite; its weights or its mean and sd are damaged"
                 )
             yield logits.softmax(1).cpu().numpy(), features.cpu().numpy()
 
@@ -155,13 +155,13 @@ def predict(
     device: torch.device,
     batch: int,
 ) -> Predictions:
-    """Ask a model about rows of a labelled set."""
-    found = list(answers(model, about, images, rows, device, batch))
+    """Predictions of a model for rows of a labelled set."""
+    found = list(predict_batches(model, about, images, rows, device, batch))
     return Predictions(
         images=images,
         rows=rows,
         truth=labels_for(images, about.classes)[rows],
-        probabilities=np.concatenate([chances for chances, _ in found]),
+        probabilities=np.concatenate([batch_probabilities for batch_probabilities, _ in found]),
         features=np.concatenate([features for _, features in found]),
     )
 

@@ -8,7 +8,7 @@ import torch
 
 from radhar_cli.arrays import Index
 from radhar_cli.errors import FolderError
-from radhar_cli.learning.evaluation import answers, open_for, rows_of
+from radhar_cli.learning.evaluation import open_for, predict_batches, rows_of
 from radhar_cli.learning.images.folder import image_files, is_image, loose_images
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.opening import is_tree
@@ -45,8 +45,8 @@ def predict(
     for path in paths:
         images, rows, names = _opened(about, path, map_name, split, resize)
         place = 0
-        for chances, _ in answers(model, about, images, rows, device, BATCH):
-            for row in chances.tolist():
+        for probabilities, _ in predict_batches(model, about, images, rows, device, BATCH):
+            for row in probabilities.tolist():
                 yield names[place], dict(zip(about.classes, row, strict=True))
                 place += 1
 

@@ -1,4 +1,4 @@
-"""Several processes that train one network: who they are, and what they tell each other."""
+"""The processes that train one network, and their collective operations."""
 
 import os
 from collections.abc import Callable, Iterator
@@ -46,7 +46,7 @@ def process_group(device: torch.device) -> Iterator[Group]:
 
 
 def distributed(model: nn.Module, device: torch.device, group: Group) -> nn.Module:
-    """The network whose gradients the processes average; the network itself where there is one."""
+    """The network with gradients averaged over the processes; itself where there is one process."""
     if group.size == 1:
         return model
     from torch.nn.parallel import DistributedDataParallel
@@ -56,14 +56,14 @@ def distributed(model: nn.Module, device: torch.device, group: Group) -> nn.Modu
 
 
 def no_sync(network: Any, group: Group, last: bool) -> AbstractContextManager[Any]:
-    """Around all backward passes of a step but the last: only that one exchanges gradients."""
-    waits: AbstractContextManager[Any]
-    waits = nullcontext() if last or group.size == 1 else network.no_sync()
-    return waits
+    """Context of a backward pass: gradients are exchanged in the last one of a step only."""
+    context: AbstractContextManager[Any]
+    context = nullcontext() if last or group.size == 1 else network.no_sync()
+    return context
 
 
 def broadcast_buffers(model: nn.Module, group: Group) -> None:
-    """Give every process the first one's buffers: the averages of batch norm."""
+    """Copy rank 0's buffers, the running averages of batch norm, to every process."""
     if group.size > 1:
         import torch.distributed as dist
 
@@ -85,7 +85,7 @@ def all_reduce_sum(totals: Float, group: Group) -> Float:
 
 
 def barrier(group: Group) -> None:
-    """Wait for the other processes."""
+    """Wait until all processes are here."""
     if group.size > 1:
         import torch.distributed as dist
 
@@ -93,7 +93,7 @@ def barrier(group: Group) -> None:
 
 
 def on_rank_zero(group: Group, work: Callable[[], None]) -> None:
-    """Let the first process do something while the others wait; its error is everybody's.
+    """Run `work` on rank 0 while the others wait; what it raises is raised on every rank.
 
     Raises:
         RadharError: what `work` raised.

@@ -20,16 +20,16 @@ from radhar_cli.learning.run_folder import best_epoch
 from radhar_cli.learning.single_result import (
     EvalOptions,
     Run,
-    check_asked,
-    choose,
+    check_options,
     evaluate_one,
+    open_eval_set,
     open_run,
     seen_message,
 )
 
 
 class Progress(Protocol):
-    """Who is told how far an evaluation is."""
+    """Receives messages of an evaluation."""
 
     def say(self, message: str) -> None:
         """Something the user should read."""
@@ -38,7 +38,7 @@ class Progress(Protocol):
 def evaluate(
     runs: Sequence[Path],
     data: Sequence[Path],
-    asked: EvalOptions,
+    options: EvalOptions,
     device: torch.device,
     progress: Progress,
 ) -> Report:
@@ -49,21 +49,23 @@ def evaluate(
         FolderError: data that does not fit a run.
     """
     opened = [open_run(name, path, device) for name, path in _named(runs).items()]
-    check_asked(opened, asked)
+    check_options(opened, options)
     named_data = _named(data)
-    asks = {  # opened here, so that what does not fit is said before anything is computed
-        (run.name, name): choose(run, path, asked)
+    eval_sets = {  # opened here, so that what does not fit is said before anything is computed
+        (run.name, name): open_eval_set(run, path, options)
         for run in opened
         for name, path in named_data.items()
     }
-    for message in dict.fromkeys(unknown_message(ask.images, asked.names) for ask in asks.values()):
+    for message in dict.fromkeys(
+        unknown_message(eval_set.images, options.names) for eval_set in eval_sets.values()
+    ):
         if message:
             progress.say(f"warning: {message}")
     report = Report(
         {
-            "split": asked.split,
-            "batch": asked.batch,
-            "resize": asked.resize,
+            "split": options.split,
+            "batch": options.batch,
+            "resize": options.resize,
             "device": device.type,
             "machine": platform.machine(),
             "threads": torch.get_num_threads(),
@@ -77,12 +79,12 @@ def evaluate(
         for data_name in named_data:
             one = len(opened) == len(named_data) == 1
             stem = "" if one else f"_{run.name}__{data_name}"
-            answers, numbers = evaluate_one(
-                report, run, data_name, asks[run.name, data_name], stem, asked, device
+            predictions, numbers = evaluate_one(
+                report, run, data_name, eval_sets[run.name, data_name], stem, options, device
             )
             results[data_name] = numbers
             low, high = numbers["accuracy_95"]
-            point = Point(data_name, answers.images.snr_db, numbers["accuracy"], low, high)
+            point = Point(data_name, predictions.images.snr_db, numbers["accuracy"], low, high)
             lines.setdefault(run.name, []).append(point)
             progress.say(
                 f"  {data_name}, {numbers['split']}: {100 * numbers['accuracy']:.2f} % "
@@ -90,13 +92,13 @@ def evaluate(
             )
             if numbers["seen_in_training"]["images"] or numbers["seen_in_training"]["scenes"]:
                 progress.say(f"  warning: {seen_message(numbers)}")
-        first = asks[run.name, next(iter(named_data))]
+        first = eval_sets[run.name, next(iter(named_data))]
         report.numbers["runs"][run.name] = {
             **_about_run(run),
-            "speed": speed(run.folder, first.images, int(first.rows[0]), device, asked.batch),
+            "speed": speed(run.folder, first.images, int(first.rows[0]), device, options.batch),
             "data": results,
         }
-    compare(report, opened, lines, asked)
+    compare(report, opened, lines, options)
     return report
 
 
@@ -106,7 +108,7 @@ def _named(paths: Sequence[Path]) -> dict[str, Path]:
     Raises:
         FolderError: the same path twice.
     """
-    parts = [_telling(path) for path in paths]
+    parts = [_name_parts(path) for path in paths]
     for depth in range(1, max(map(len, parts)) + 1):
         names = ["-".join(p[-depth:]) for p in parts]
         if len(set(names)) == len(names):
@@ -114,8 +116,8 @@ def _named(paths: Sequence[Path]) -> dict[str, Path]:
     raise FolderError(f"{paths[0]}: is given twice")
 
 
-def _telling(path: Path) -> tuple[str, ...]:
-    """Parts of a path that tell it from others: a file of ours is called after its folder."""
+def _name_parts(path: Path) -> tuple[str, ...]:
+    """Parts of a path for its name; dataset.h5 and best.safetensors go by their folder."""
     whole = path.resolve()
     if path.is_file() and path.name in (DATASET, BEST):
         whole = whole.parent

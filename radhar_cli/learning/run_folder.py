@@ -1,4 +1,4 @@
-"""What a training run leaves on disk, and how it is read: never by running what a file says."""
+"""The files of a training run; reading them never runs code that they hold."""
 
 import csv
 import io
@@ -87,7 +87,7 @@ class RunMetadata(Section):
         config: the resolved training config.
         data: path, content hash, images of the training and validation sets.
         versions: of radhar, torch, numpy.
-        work: what of the machine's share decides what is learned: precision, micro batch, number
+        work: what the result depends on of how it was computed: precision, micro batch, number
             of processes.
     """
 
@@ -183,7 +183,7 @@ def claim_run(folder: Path, about: RunMetadata, overwrite: bool) -> None:
 
 
 def differences(old: RunMetadata, new: RunMetadata) -> list[str]:
-    """Lines naming what keeps one run from being the other."""
+    """One line for each setting, version or hash in which two runs differ."""
     pairs = {key: (old.config.get(key), value) for key, value in new.config.items()}
     pairs |= {"data": (old.data.get("hash"), new.data.get("hash"))}
     pairs |= {"classes": (list(old.classes), list(new.classes)), "map": (old.map, new.map)}
@@ -197,7 +197,7 @@ def differences(old: RunMetadata, new: RunMetadata) -> list[str]:
 
 
 def read_metadata(folder: Path) -> RunMetadata:
-    """What the run in a folder is about.
+    """Metadata of the run in a folder.
 
     Raises:
         RunError: there is none, or it is damaged.
@@ -351,7 +351,7 @@ def _opened(path: Path, file: Any) -> tuple[RunMetadata, nn.Module]:
 
 
 def write_last(folder: Path, checkpoint: dict[str, Any]) -> None:
-    """Write last.ckpt, from which a stopped run goes on."""
+    """Write last.ckpt, from which a stopped run resumes."""
     buffer = io.BytesIO()
     torch.save(checkpoint, buffer)
     write_whole(folder, folder / LAST, buffer.getvalue())

@@ -39,7 +39,7 @@ GROUPS = ("in place", "moving")
 
 @dataclass(frozen=True)
 class EvalOptions:
-    """What the user wants besides the numbers."""
+    """Options of `radhar eval`."""
 
     split: str = "val"
     map: str | None = None
@@ -62,25 +62,25 @@ class Run:
 
 @dataclass(frozen=True)
 class EvalSet:
-    """Images of a data set that a run is asked about: their rows, and the name of that split."""
+    """The images of a data set that a run is evaluated on: rows, and the name of the split."""
 
     images: ImageSet
     rows: Index
     split: str
 
 
-def choose(run: Run, path: Path, asked: EvalOptions) -> EvalSet:
+def open_eval_set(run: Run, path: Path, options: EvalOptions) -> EvalSet:
     """Open a data set for a run.
 
     Raises:
         FolderError: it does not fit the run.
     """
-    images = open_for(run.about, path, asked.map, resize=asked.resize, names=asked.names)
-    return EvalSet(images, *rows_of(images, asked.split))
+    images = open_for(run.about, path, options.map, resize=options.resize, names=options.names)
+    return EvalSet(images, *rows_of(images, options.split))
 
 
-def check_asked(runs: Sequence[Run], asked: EvalOptions) -> None:
-    """Refuse what cannot be drawn, before anything is computed.
+def check_options(runs: Sequence[Run], options: EvalOptions) -> None:
+    """Refuse figures that cannot be drawn, before anything is computed.
 
     Raises:
         RunError: classes whose group is unknown, or no filters to draw.
@@ -88,12 +88,12 @@ def check_asked(runs: Sequence[Run], asked: EvalOptions) -> None:
     ours = {activity.slug for activity in ACTIVITIES}
     for run in runs:
         for name in run.about.classes:
-            if asked.in_place_vs_moving and name not in ours:
+            if options.in_place_vs_moving and name not in ours:
                 raise RunError(
                     f"--in-place-vs-moving: {name!r} is none of the twelve activities; its group "
                     "is unknown"
                 )
-    if asked.filters and not any(run.about.model == NAME for run in runs):
+    if options.filters and not any(run.about.model == NAME for run in runs):
         raise RunError("--filters: none of these networks has global filters; fftnet has six")
 
 
@@ -111,15 +111,15 @@ def evaluate_one(
     report: Report,
     run: Run,
     data_name: str,
-    ask: EvalSet,
+    eval_set: EvalSet,
     stem: str,
-    asked: EvalOptions,
+    options: EvalOptions,
     device: torch.device,
 ) -> tuple[Predictions, dict[str, Any]]:
-    images, rows, split = ask.images, ask.rows, ask.split
-    answers = predict(run.model, run.about, images, rows, device, asked.batch)
+    images, rows, split = eval_set.images, eval_set.rows, eval_set.split
+    predictions = predict(run.model, run.about, images, rows, device, options.batch)
     names, title = run.about.classes, f"{run.name} on {data_name}, {split}"
-    numbers = metrics.summary(answers.truth, answers.probabilities, names)
+    numbers = metrics.summary(predictions.truth, predictions.probabilities, names)
     numbers["seen_in_training"] = _seen(run, images, rows)
     numbers |= {"split": split, "map": images.map, "snr_db": images.snr_db}
     numbers |= {"left_out": dict(images.left_out)}
@@ -131,13 +131,13 @@ def evaluate_one(
         confusion_png(counts, names, f"{title}: {right:.2f} % of {rows.size}"),
     )
     report.tables.append((f"confusion{stem}.csv", confusion_csv(counts, names)))
-    report.tables.append((f"predictions{stem}.csv", _predictions_csv(answers, names)))
-    if asked.in_place_vs_moving:
-        _in_place_vs_moving(report, answers, names, stem, title, numbers)
-    bins = metrics.calibration(answers.truth, answers.probabilities)
+    report.tables.append((f"predictions{stem}.csv", _predictions_csv(predictions, names)))
+    if options.in_place_vs_moving:
+        _in_place_vs_moving(report, predictions, names, stem, title, numbers)
+    bins = metrics.calibration(predictions.truth, predictions.probabilities)
     report.figure(
         f"reliability{stem}.png",
-        f"How often predictions of each confidence are right, {title}.",
+        f"Reliability: accuracy by confidence, {title}.",
         reliability_png(
             bins.confidence,
             bins.accuracy,
@@ -145,10 +145,10 @@ def evaluate_one(
             f"{_narrow(title)}\ncalibration error {100 * bins.error:.2f} %",
         ),
     )
-    _mistakes(report, answers, names, stem, title)
-    if asked.tsne:
-        _tsne(report, answers, names, stem, title, numbers)
-    return answers, numbers
+    _mistakes(report, predictions, names, stem, title)
+    if options.tsne:
+        _tsne(report, predictions, names, stem, title, numbers)
+    return predictions, numbers
 
 
 def _seen(run: Run, images: ImageSet, rows: Index) -> dict[str, int]:
@@ -170,14 +170,14 @@ def seen_message(numbers: Mapping[str, Any]) -> str:
     )
 
 
-def _predictions_csv(answers: Predictions, names: Sequence[str]) -> str:
-    sure = answers.probabilities.max(1)
+def _predictions_csv(predictions: Predictions, names: Sequence[str]) -> str:
+    sure = predictions.probabilities.max(1)
     return csv_text(
         ("image", "true", "predicted", "probability"),
         (
-            (answers.images.names[row], names[true], names[guess], f"{chance:.6f}")
-            for row, true, guess, chance in zip(
-                answers.rows, answers.truth, answers.predicted, sure, strict=True
+            (predictions.images.names[row], names[true], names[guess], f"{probability:.6f}")
+            for row, true, guess, probability in zip(
+                predictions.rows, predictions.truth, predictions.predicted, sure, strict=True
             )
         ),
     )
@@ -185,7 +185,7 @@ def _predictions_csv(answers: Predictions, names: Sequence[str]) -> str:
 
 def _in_place_vs_moving(
     report: Report,
-    answers: Predictions,
+    predictions: Predictions,
     names: Sequence[str],
     stem: str,
     title: str,
@@ -194,7 +194,7 @@ def _in_place_vs_moving(
     """The paper's two groups: S1 to S7 against S8 to S12."""
     moving = {activity.slug: activity.walks for activity in ACTIVITIES}
     group = np.array([int(moving[name]) for name in names])
-    counts = confusion_matrix(group[answers.truth], group[answers.predicted], labels=[0, 1])
+    counts = confusion_matrix(group[predictions.truth], group[predictions.predicted], labels=[0, 1])
     numbers["in_place_vs_moving"] = counts.tolist()
     share = 100 * np.trace(counts) / max(1, counts.sum())
     report.figure(
@@ -206,19 +206,19 @@ def _in_place_vs_moving(
 
 
 def _mistakes(
-    report: Report, answers: Predictions, names: Sequence[str], stem: str, title: str
+    report: Report, predictions: Predictions, names: Sequence[str], stem: str, title: str
 ) -> None:
-    """The surest mistakes, or the least sure right answers where there are none."""
-    sure, wrong = answers.probabilities.max(1), answers.predicted != answers.truth
+    """The surest mistakes, or the least sure right predictions where there are none."""
+    sure, wrong = predictions.probabilities.max(1), predictions.predicted != predictions.truth
     order = np.argsort(-sure, kind="stable")
     chosen = order[wrong[order]][:MAX_MISTAKES]
-    what = "The mistakes it is surest of"
+    what = "Most confident mistakes"
     if not chosen.size:
-        chosen, what = order[::-1][: MAX_MISTAKES // 3], "No mistakes; the least sure answers"
-    images = [answers.images.pixels.read(int(answers.rows[i])) for i in chosen]
+        chosen, what = order[::-1][: MAX_MISTAKES // 3], "No mistakes; the least sure predictions"
+    images = [predictions.images.pixels.read(int(predictions.rows[i])) for i in chosen]
     captions = [
-        f"{_plain(names[int(answers.truth[i])])}\n-> "
-        f"{_plain(names[int(answers.predicted[i])])}, {100 * sure[i]:.0f} %"
+        f"{_plain(names[int(predictions.truth[i])])}\n-> "
+        f"{_plain(names[int(predictions.predicted[i])])}, {100 * sure[i]:.0f} %"
         for i in chosen
     ]
     report.figure(
@@ -239,7 +239,7 @@ def _plain(name: str) -> str:
 
 def _tsne(
     report: Report,
-    answers: Predictions,
+    predictions: Predictions,
     names: Sequence[str],
     stem: str,
     title: str,
@@ -247,11 +247,13 @@ def _tsne(
 ) -> None:
     from radhar_cli.learning.embedding import chosen, embed, separation, shrunk
 
-    if answers.rows.size < MIN_EMBEDDED:
+    if predictions.rows.size < MIN_EMBEDDED:
         raise RunError(f"--tsne: needs at least {MIN_EMBEDDED} images; there is one")
-    picked = chosen(answers.rows.size)
-    maps = np.stack([shrunk(answers.images.pixels.read(int(answers.rows[i]))) for i in picked])
-    features, label = answers.features[picked], answers.truth[picked]
+    picked = chosen(predictions.rows.size)
+    maps = np.stack(
+        [shrunk(predictions.images.pixels.read(int(predictions.rows[i]))) for i in picked]
+    )
+    features, label = predictions.features[picked], predictions.truth[picked]
     before, after = separation(maps, label), separation(features, label)
     numbers["silhouette"] = {"maps": before, "features": after}
     panels = {"input maps": embed(maps), "features before the last layer": embed(features)}

@@ -43,7 +43,7 @@ from radhar_cli.learning.schedule import rate
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.randomness import TRAINING, stream
 
-# Where the work is done does not decide what is learned; precision and micro batch do, as chosen.
+# Not part of the identity of a run; precision and micro batch enter as chosen (RunMetadata.work).
 NOT_IDENTITY = ("device", "workers", "threads", "precision", "micro_batch")
 
 
@@ -52,7 +52,7 @@ class TrainingError(RadharError):
 
 
 class Progress(Protocol):
-    """Who is told how far a training run is."""
+    """Receives progress of a training run."""
 
     def say(self, message: str) -> None:
         """Something the user should read."""
@@ -74,12 +74,12 @@ class Outcome:
     Attributes:
         folder: of the run.
         history: its epochs.
-        went_on: epochs that were there before.
+        resumed: epochs that were finished before.
     """
 
     folder: Path
     history: list[Epoch]
-    went_on: int
+    resumed: int
 
     @property
     def best(self) -> Epoch:
@@ -211,14 +211,14 @@ class _Training:
             ) from None
 
     def _run(self) -> Outcome:
-        went_on = self._restore()
+        resumed = self._restore()
         if self.group.is_main:
-            self._announce(went_on)
+            self._announce(resumed)
         network = distributed(self.model, self.plan.device, self.group)
         reader = Reader(
             self.images, self.images.label, self.plan.workers, self.plan.device.type == "cuda"
         )
-        for epoch in range(went_on, self.config.epochs):
+        for epoch in range(resumed, self.config.epochs):
             began = time.perf_counter()
             torch.manual_seed(self._epoch_seed(epoch))
             learned = self._learn(network, reader, epoch)
@@ -229,10 +229,10 @@ class _Training:
                 self.history.append(_row(epoch, 0.0, learned, seen, 0.0))
         if self.group.is_main:
             run.write_history(self.folder, self.history)
-            if went_on < self.config.epochs or not (self.folder / run_files.METRICS).exists():
+            if resumed < self.config.epochs or not (self.folder / run_files.METRICS).exists():
                 self._finish()
         barrier(self.group)
-        return Outcome(self.folder, self.history, went_on)
+        return Outcome(self.folder, self.history, resumed)
 
     @property
     def _train_step(self) -> TrainStep:
@@ -266,10 +266,10 @@ class _Training:
                 f"{path}: does not fit this run ({run.first_line(error)}); --overwrite starts it "
                 "again"
             ) from None
-        on_rank_zero(self.group, self._look_after_best)
+        on_rank_zero(self.group, self._ensure_best)
         return len(self.history)
 
-    def _look_after_best(self) -> None:
+    def _ensure_best(self) -> None:
         """Make sure that the best weights are there; write them again if they are the last ones.
 
         Raises:
@@ -286,10 +286,10 @@ class _Training:
                 ) from None
             run.write_best(self.folder, self.about, best, self.model.state_dict())
 
-    def _announce(self, went_on: int) -> None:
+    def _announce(self, resumed: int) -> None:
         plan, say, size = self.plan, self.progress.say, self.config.batch_size
-        if went_on:
-            say(f"going on: {went_on} of {self.config.epochs} epochs are done")
+        if resumed:
+            say(f"resuming: {resumed} of {self.config.epochs} epochs are done")
         share = -(-size // self.group.size)
         precision = plan.precision_name
         many = f", {self.group.size} processes" if self.group.size > 1 else ""
@@ -316,17 +316,19 @@ class _Training:
             self.progress.epoch(epoch + 1, config.epochs, len(batches))
         mine = [rows[batch[group.rank :: group.size]] for batch in batches]
         network.train()
-        learner = self._train_step
+        train_step = self._train_step
         totals: Float = np.zeros(3)
         for step, (levels, labels) in enumerate(reader(mine)):
             learning_rate = rate(config, epoch, step, len(batches))
             for parameters in self.optimiser.param_groups:
                 parameters["lr"] = learning_rate
-            loss, right = learner.step(network, self.optimiser, levels, labels, batches[step].size)
+            loss, correct = train_step.step(
+                network, self.optimiser, levels, labels, batches[step].size
+            )
             # The sum: where one process fails, all should say so.
             if not math.isfinite(all_reduce_sum(np.array([loss]), group)[0]):
                 raise TrainingError(self._not_finite(f"epoch {epoch + 1}, step {step + 1}", loss))
-            totals += (loss * len(labels), right, len(labels))
+            totals += (loss * len(labels), correct, len(labels))
             if group.is_main:
                 self.progress.step(loss, totals[1] / totals[2])
         totals = all_reduce_sum(totals, group)
@@ -343,8 +345,8 @@ class _Training:
         totals: Float = np.zeros(3)
         with torch.no_grad():
             for levels, labels in reader(pieces(mine, size)):
-                loss, right = self._train_step.loss_and_correct(self.model, levels, labels)
-                totals += (float(loss), right, len(labels))
+                loss, correct = self._train_step.loss_and_correct(self.model, levels, labels)
+                totals += (float(loss), correct, len(labels))
         totals = all_reduce_sum(totals, group)
         if not math.isfinite(totals[0]):
             raise TrainingError(self._not_finite(f"validation of epoch {epoch + 1}", totals[0]))
@@ -391,7 +393,7 @@ class _Training:
 def _metadata(
     config: TrainConfig, images: ImageSet, data: Path, plan: ExecutionPlan, group: Group
 ) -> tuple[RunMetadata, dict[int, str]]:
-    """What the run is about, and the fingerprint of every image it looked at, by row."""
+    """Metadata of the run, and the digest of every image by row."""
     rows = np.concatenate([images.rows("train"), images.rows("val")])
     learned, checked = scan(images, images.rows("train")), scan(images, images.rows("val"))
     digests = (*learned.digests, *checked.digests)
@@ -433,7 +435,7 @@ def _write_trained_on(folder: Path, images: ImageSet, digests: dict[int, str]) -
 
 
 def _unbalanced(images: ImageSet) -> list[str]:
-    """What is odd about a data set but no error."""
+    """Warnings about a data set."""
     checked = set(images.label[images.rows("val")].tolist())
     return [
         f"the class {name!r} has no validation image; the best epoch is chosen without it"

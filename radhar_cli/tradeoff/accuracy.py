@@ -7,7 +7,14 @@ none is, no setting can matter.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from radhar_cli.tradeoff.trial import Bench, SaidOnce, Score, Setup, Trial, score
+from radhar_cli.tradeoff.trial import (
+    DistinctMessages,
+    Experiment,
+    TestResult,
+    Trial,
+    TrialData,
+    score,
+)
 
 # Within -120 dB of the cube, a map of 256 levels cannot tell the direct engine from it.
 REFERENCE = ("engine={kind: direct, tolerance_db: -120, fallback: cube}",)
@@ -36,8 +43,8 @@ class Accuracy:
     images: int
 
 
-def measure(bench: Bench, trials: Sequence[Trial], snr_db: float) -> list[Accuracy]:
-    """Train and test every trial with every seed; what the ledger has is not done again.
+def measure(experiment: Experiment, trials: Sequence[Trial], snr_db: float) -> list[Accuracy]:
+    """Train and test every trial with every seed; cached results are reused.
 
     A data set that several trials ask for is built once, and deleted after the last of them.
 
@@ -47,18 +54,18 @@ def measure(bench: Bench, trials: Sequence[Trial], snr_db: float) -> list[Accura
         FolderError: test images of another size, map or classes than those learned from.
         TrainingError: as `radhar train`.
     """
-    bench = replace(bench, progress=SaidOnce(bench.progress))
-    setups = [Setup.of(bench, trial, snr_db) for trial in trials]
+    experiment = replace(experiment, progress=DistinctMessages(experiment.progress))
+    setups = [TrialData.of(experiment, trial, snr_db) for trial in trials]
     found = []
     for number, setup in enumerate(setups):
-        scores = [score(bench, setup, seed) for seed in bench.effort.seeds]
+        scores = [score(experiment, setup, seed) for seed in experiment.sizes.seeds]
         found.append(_accuracy(setup.trial.name, scores))
-        bench.remove_data(keep={name for later in setups[number + 1 :] for name in later.data})
-    bench.remove_all()
+        experiment.remove_data(keep={name for later in setups[number + 1 :] for name in later.data})
+    experiment.remove_all()
     return found
 
 
-def _accuracy(name: str, scores: Sequence[Score]) -> Accuracy:
+def _accuracy(name: str, scores: Sequence[TestResult]) -> Accuracy:
     from radhar_cli.learning.metrics import wilson
 
     images = scores[0].images
@@ -67,7 +74,7 @@ def _accuracy(name: str, scores: Sequence[Score]) -> Accuracy:
     return Accuracy(name, right / images, low, high, tuple(one.share for one in scores), images)
 
 
-def find_snr(bench: Bench) -> float:
+def find_snr(experiment: Experiment) -> float:
     """SNR (dB) at which training and testing on reference data is right in 70 to 95 % of cases.
 
     Judged by the first seed: 0 dB, then steps of 5 dB; once the band lies between two tries, the
@@ -76,16 +83,16 @@ def find_snr(bench: Bench) -> float:
     Raises:
         as `measure`.
     """
-    bench = replace(bench, progress=SaidOnce(bench.progress))
+    experiment = replace(experiment, progress=DistinctMessages(experiment.progress))
 
     def accuracy_at(snr_db: float) -> float:
-        setup = Setup.of(bench, Trial("reference", REFERENCE, REFERENCE), snr_db)
-        share = score(bench, setup, bench.effort.seeds[0]).share
-        bench.progress.say(f"at {snr_db:g} dB the reference is right in {100 * share:.1f} %")
-        bench.remove_data(keep=setup.data)
+        setup = TrialData.of(experiment, Trial("reference", REFERENCE, REFERENCE), snr_db)
+        share = score(experiment, setup, experiment.sizes.seeds[0]).share
+        experiment.progress.say(f"at {snr_db:g} dB the reference is right in {100 * share:.1f} %")
+        experiment.remove_data(keep=setup.data)
         return share
 
-    return searched(accuracy_at, bench.effort.snr_tries)
+    return searched(accuracy_at, experiment.sizes.snr_tries)
 
 
 def searched(accuracy_at: Callable[[float], float], tries: int) -> float:

@@ -39,7 +39,7 @@ class SceneDifferences:
 
     def of(self, setting: Setting) -> dict[str, Any]:
         """How far the setting's data are from its reference, in numbers that JSON can hold."""
-        found, right = self._sample(setting.shown), self._sample(setting.reference)
+        found, right = self._sample(setting.compared), self._sample(setting.exact)
         row: dict[str, Any] = {"signal_error_db": relative_db(found.signal, right.signal)}
         if found.power.shape == right.power.shape:
             error, worst = map_error_db(found.power, right.power, right.dynamic_range_db)

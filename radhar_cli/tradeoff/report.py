@@ -24,8 +24,8 @@ def record(row: Row) -> dict[str, Any]:
         "group": row.setting.group,
         "setting": row.setting.name,
         "default": row.setting.is_default,
-        "overrides": " ".join(row.setting.timed),
-        "time_over": row.setting.beside_name,
+        "overrides": " ".join(row.setting.overrides),
+        "time_over": row.setting.baseline_name,
         "sample_ms": row.middle("sample_ms"),
         "time_ratio": row.middle("ratio"),
         "time_ratio_low": time and time[0],
@@ -75,7 +75,7 @@ def write_report(
 def _figure(title: str, rows: Sequence[Row], accuracies: Sequence[Accuracy]) -> bytes:
     engines = [row for row in rows if row.setting.group in ENGINES and row.times]
     changes = [
-        Change(row.setting.name, change, row.middle("ratio") or 1.0, row.setting.beside_name)
+        Change(row.setting.name, change, row.middle("ratio") or 1.0, row.setting.baseline_name)
         for row in rows
         if row.setting.group == "switch" and row.times
         for change in [row.usual("signal_error_db")]

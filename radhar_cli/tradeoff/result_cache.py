@@ -1,4 +1,4 @@
-"""What has been measured already, kept in the output folder: the same command goes on from it."""
+"""Results already measured, in the output folder, so that the same command resumes."""
 
 import hashlib
 import json
@@ -16,7 +16,7 @@ T = TypeVar("T")
 
 
 class ResultCache:
-    """JSON values by key, each in a file of its own that is whole or not there."""
+    """JSON values by key, one file each, written atomically."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -25,7 +25,7 @@ class ResultCache:
         """The value, or None if it has not been measured.
 
         Raises:
-            FolderError: what is kept is of another kind.
+            FolderError: the stored value is not of that kind.
         """
         path = self._path(key)
         if not path.exists():
@@ -38,7 +38,7 @@ class ResultCache:
         return value
 
     def put(self, key: str, value: Any) -> None:
-        """Keep a value."""
+        """Store a value."""
         write_whole(self._folder, self._path(key), json.dumps(value).encode())
 
     def _path(self, key: str) -> Path:

@@ -1,4 +1,4 @@
-"""What is swept: every setting, what it is timed with, and the reference its error refers to."""
+"""The settings of the sweep, each with its baseline for time and its exact data for error."""
 
 from dataclasses import dataclass
 
@@ -13,30 +13,30 @@ DIRECT = ("engine.kind=direct", f"engine.tolerance_db={EngineConfig().tolerance_
 
 @dataclass(frozen=True)
 class Setting:
-    """One row of the sweep; overrides are dotted `key=value` pairs.
+    """One row of the sweep. All overrides are dotted `key=value` pairs.
 
     Attributes:
         group: budget, precision, engine, image size, map or switch.
-        name: for people.
-        timed: overrides that its time is measured with.
-        shown: overrides of the data whose error is measured: as timed, or for a switch, without it.
-        reference: overrides of the exact data that the error refers to.
-        beside: overrides that its time is a ratio to, timed on the same scenes in the same moment.
-        beside_name: what that is called.
+        name: as printed.
+        overrides: the setting itself; its time is measured with them.
+        compared: of the data whose error is measured: `overrides`, or for a switch, without it.
+        exact: of the exact data that the error is relative to.
+        baseline: of the run that the time is divided by, on the same scenes, interleaved.
+        baseline_name: as printed.
     """
 
     group: str
     name: str
-    timed: tuple[str, ...]
-    shown: tuple[str, ...]
-    reference: tuple[str, ...]
-    beside: tuple[str, ...] = DIRECT
-    beside_name: str = "the default"
+    overrides: tuple[str, ...]
+    compared: tuple[str, ...]
+    exact: tuple[str, ...]
+    baseline: tuple[str, ...] = DIRECT
+    baseline_name: str = "the default"
 
     @property
     def is_default(self) -> bool:
         """Whether this is what a config without an `engine:` gets."""
-        return self.group == "budget" and self.timed == DIRECT
+        return self.group == "budget" and self.overrides == DIRECT
 
 
 def budget(tolerance_db: float) -> tuple[str, ...]:

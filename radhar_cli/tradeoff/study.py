@@ -67,11 +67,11 @@ class Row:
         return [row["refused"] for row in self.differences.values() if "refused" in row]
 
 
-def run_sweep(scenes: Scenes, ledger: ResultCache, progress: Progress) -> list[Row]:
+def run_sweep(scenes: Scenes, cache: ResultCache, progress: Progress) -> list[Row]:
     """Measure what has not been measured yet; return all rows."""
     rows = [Row(setting) for setting in _possible(scenes, progress)]
-    _differences(scenes, rows, ledger, progress)
-    _times(scenes, rows, ledger, progress)
+    _differences(scenes, rows, cache, progress)
+    _times(scenes, rows, cache, progress)
     return rows
 
 
@@ -80,7 +80,7 @@ def _possible(scenes: Scenes, progress: Progress) -> list[Setting]:
     found = []
     for setting in sweep(scenes.config()):
         try:
-            for overrides in (setting.timed, setting.shown, setting.reference):
+            for overrides in (setting.overrides, setting.compared, setting.exact):
                 scenes.config(overrides)
         except RadharError as error:
             progress.say(f"left out: {setting.group} {setting.name}: {error}")
@@ -90,7 +90,7 @@ def _possible(scenes: Scenes, progress: Progress) -> list[Setting]:
 
 
 def _differences(
-    scenes: Scenes, rows: Sequence[Row], ledger: ResultCache, progress: Progress
+    scenes: Scenes, rows: Sequence[Row], cache: ResultCache, progress: Progress
 ) -> None:
     names = scenes.names()
     progress.stage("errors", len(names) * len(rows), 0)
@@ -99,7 +99,7 @@ def _differences(
         for row in rows:
             key = _key("difference", row.setting, slug)
             row.differences[slug] = _once(
-                ledger, key, partial(_of, scene, row), dict[str, float | str | None]
+                cache, key, partial(_of, scene, row), dict[str, float | str | None]
             )
             progress.advance(1)
 
@@ -111,7 +111,7 @@ def _of(scene: SceneDifferences, row: Row) -> dict[str, Any]:
         return {"refused": str(error)}
 
 
-def _times(scenes: Scenes, rows: Sequence[Row], ledger: ResultCache, progress: Progress) -> None:
+def _times(scenes: Scenes, rows: Sequence[Row], cache: ResultCache, progress: Progress) -> None:
     rounds, names = ROUNDS[scenes.quick], " ".join(scenes.names())
     possible = [row for row in rows if not row.refused]
     progress.stage("times", rounds * len(possible), 0)
@@ -119,22 +119,24 @@ def _times(scenes: Scenes, rows: Sequence[Row], ledger: ResultCache, progress: P
         for row in possible:
             key = _key("time", row.setting, f"{turn} {names}")
             measure = partial(time_setting, scenes, row.setting, turn)
-            row.times.append(Times(*_once(ledger, key, measure, tuple[float, float, float, float])))
+            row.times.append(Times(*_once(cache, key, measure, tuple[float, float, float, float])))
             progress.advance(1)
 
 
-def _once(ledger: ResultCache, key: str, measure: Callable[[], Any], kind: Any) -> Any:
-    found = ledger.get(key, kind)
+def _once(cache: ResultCache, key: str, measure: Callable[[], Any], kind: Any) -> Any:
+    found = cache.get(key, kind)
     if found is None:
         found = measure()
-        ledger.put(key, _without_infinity(found))
-        found = ledger.get(key, kind)
+        cache.put(key, _without_infinity(found))
+        found = cache.get(key, kind)
     return _with_infinity(found)
 
 
 def _key(kind: str, setting: Setting, what: str) -> str:
     parts = [kind, setting.group, setting.name, what]
-    return json.dumps([*parts, setting.timed, setting.shown, setting.reference, setting.beside])
+    return json.dumps(
+        [*parts, setting.overrides, setting.compared, setting.exact, setting.baseline]
+    )
 
 
 def _without_infinity(value: Any) -> Any:

@@ -1,11 +1,10 @@
-"""tradeoff.md: the numbers in words and tables."""
+"""tradeoff.md: conditions and tables."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import inf
 from typing import Any
 
 from radhar_cli.tradeoff.accuracy import Accuracy
-from radhar_cli.tradeoff.advice import advice
 
 Record = Mapping[str, Any]
 Column = tuple[str, Callable[[Record], str]]
@@ -24,7 +23,6 @@ def markdown(
     parts = [
         f"# What accuracy costs: {title}",
         f"`{command}`",
-        "\n".join(f"- {line}" for line in advice(records, accuracies)),
         f"![time against error]({figure})",
         _conditions(conditions),
         "## Engine, budget, precision",
@@ -33,7 +31,7 @@ def markdown(
         "Time is that of the switch on; errors are those of data without it against data with it.",
         _table(_SWITCH, (one for one in records if one["group"] == "switch")),
         "## Image size and kind of map",
-        "Images of another size are brought to the config's before they are compared.",
+        "Images of another size are resized to the config's before they are compared.",
         _table(_IMAGE, (one for one in records if one["group"] in ("image size", "map"))),
     ]
     if accuracies:
@@ -59,16 +57,16 @@ def _conditions(conditions: Mapping[str, Any]) -> str:
 
 
 def _learned(conditions: Mapping[str, Any]) -> str:
-    said = (
+    text = (
         f"smallnet at 64 px, {conditions['epochs']} epochs on {conditions['train_per_class']} "
         f"samples a class at {conditions['snr_db']:g} dB SNR, tested on "
         f"{conditions['test_per_class']} a class of exact data from another seed; mean over the "
         "training seeds, Wilson's 95 % interval for the number of test images. Trials share "
-        "scenes and test images, so that differences are surer than the intervals say."
+        "scenes and test images: differences between them are surer than the intervals."
     )
     if conditions["smoke_run"]:
-        said += " **A smoke run: this little data teaches nothing, and the numbers mean nothing.**"
-    return said
+        text += " **A smoke run: this little data teaches nothing, and the numbers mean nothing.**"
+    return text
 
 
 def _number(name: str, digits: int) -> Callable[[Record], str]:

@@ -22,7 +22,7 @@ class Times(NamedTuple):
     Attributes:
         sample_ms: from scene to levels and entropy, a sample.
         echo_ms: of that, paths and echo.
-        ratio, echo_ratio: the same over those of the setting beside it.
+        ratio, echo_ratio: the same over those of the baseline.
     """
 
     sample_ms: float
@@ -32,13 +32,13 @@ class Times(NamedTuple):
 
 
 def time_setting(scenes: Scenes, setting: Setting, turn: int) -> Times:
-    """Time a setting and the one beside it in turns, scene by scene, for a fraction of a second."""
+    """Time a setting and its baseline in turns, scene by scene, for a fraction of a second."""
     names = scenes.names()
     own, usual = [0.0, 0.0], [0.0, 0.0]
     count = 0
     for step in range(len(names)):
         slug = names[(turn + step) % len(names)]
-        both = [(setting.beside, usual), (setting.timed, own)]
+        both = [(setting.baseline, usual), (setting.overrides, own)]
         for overrides, spent in both if (turn + step) % 2 else reversed(both):
             for part, seconds in enumerate(_seconds(scenes, slug, overrides)):
                 spent[part] += seconds

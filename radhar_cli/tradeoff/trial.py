@@ -1,7 +1,6 @@
 """One trial: a small fixed network learns from data of one setting, is tested on data of another.
 
-A result is known by what decides it (both configs, the training settings, the versions), so that
-what was measured once is not measured again, whoever asks.
+Results are cached by what they depend on: both configs, the training settings, the versions.
 """
 
 import hashlib
@@ -42,8 +41,8 @@ class Trial:
 
 
 @dataclass(frozen=True)
-class Effort:
-    """How much is spent: samples a class, training seeds, epochs, and SNRs tried."""
+class Sizes:
+    """Samples a class, training seeds, epochs, and most SNRs tried."""
 
     train_per_class: int
     test_per_class: int
@@ -52,30 +51,30 @@ class Effort:
     snr_tries: int
 
 
-FULL = Effort(train_per_class=30, test_per_class=25, seeds=(1, 2, 3), epochs=15, snr_tries=8)
-QUICK = Effort(train_per_class=6, test_per_class=5, seeds=(1,), epochs=3, snr_tries=2)
+FULL = Sizes(train_per_class=30, test_per_class=25, seeds=(1, 2, 3), epochs=15, snr_tries=8)
+QUICK = Sizes(train_per_class=6, test_per_class=5, seeds=(1,), epochs=3, snr_tries=2)
 
 
 @dataclass(frozen=True)
-class Bench:
-    """Where trials are measured, and from what.
+class Experiment:
+    """What all trials have in common.
 
     Attributes:
         config: YAML file that scenes are drawn from.
         folder: for data sets and training runs while they are needed.
-        ledger: keeps the results.
-        progress: who is told.
+        cache: of results.
+        progress: receives progress and warnings.
         jobs: processes that build data sets.
-        effort: FULL or QUICK.
+        sizes: FULL or QUICK.
         overrides: of the config, for all trials.
     """
 
     config: Path
     folder: Path
-    ledger: ResultCache
+    cache: ResultCache
     progress: Progress
     jobs: int = 1
-    effort: Effort = FULL
+    sizes: Sizes = FULL
     overrides: tuple[str, ...] = ()
 
     def remove_data(self, keep: Collection[str] = ()) -> None:
@@ -85,13 +84,13 @@ class Bench:
                 shutil.rmtree(folder)
 
     def remove_all(self) -> None:
-        """Delete data sets and training runs; the ledger is elsewhere."""
+        """Delete data sets and training runs; the cache is kept."""
         for part in (DATA, RUNS):
             shutil.rmtree(self.folder / part, ignore_errors=True)
 
 
 @dataclass(frozen=True)
-class Setup:
+class TrialData:
     """A trial and the configs of its data, drawn with two seeds."""
 
     trial: Trial
@@ -99,15 +98,15 @@ class Setup:
     test: Config
 
     @classmethod
-    def of(cls, bench: Bench, trial: Trial, snr_db: float) -> "Setup":
-        """Settle the data of a trial.
+    def of(cls, experiment: Experiment, trial: Trial, snr_db: float) -> "TrialData":
+        """Configs of the data of a trial.
 
         Raises:
             ConfigError: an override that does not fit.
         """
-        base = load_config(bench.config, bench.overrides)
+        base = load_config(experiment.config, experiment.overrides)
         common = (
-            *bench.overrides,
+            *experiment.overrides,
             f"image.size_px={SIZE_PX}",
             f"maps=[{base.maps[0]}]",
             f"snr_db={float(snr_db)!r}",
@@ -120,12 +119,12 @@ class Setup:
                 "split={by: sample, train: 0.8, validation: 0.2}",
                 "output.png=false",
             )
-            return load_config(bench.config, (*common, *own, *fixed))
+            return load_config(experiment.config, (*common, *own, *fixed))
 
         return cls(
             trial,
-            config(trial.train, bench.effort.train_per_class, base.seed),
-            config(trial.test, bench.effort.test_per_class, (base.seed + 1) % 2**63),
+            config(trial.train, experiment.sizes.train_per_class, base.seed),
+            config(trial.test, experiment.sizes.test_per_class, (base.seed + 1) % 2**63),
         )
 
     @property
@@ -135,7 +134,7 @@ class Setup:
 
 
 @dataclass(frozen=True)
-class Score:
+class TestResult:
     """Test images recognised, of how many."""
 
     right: int
@@ -146,32 +145,32 @@ class Score:
         return self.right / self.images
 
 
-def score(bench: Bench, setup: Setup, seed: int) -> Score:
-    """What a network of one training seed scores: from the ledger, or trained and tested.
+def score(experiment: Experiment, setup: TrialData, seed: int) -> TestResult:
+    """What a network of one training seed scores: from the cache, or trained and tested.
 
     Raises:
         as `measure`.
     """
-    settings = _settings(bench.effort, seed)
+    settings = _settings(experiment.sizes, seed)
     what = _fingerprint([*setup.data, settings.model_dump(mode="json"), _torch_version()])
     key = f"accuracy {what}"
-    known = bench.ledger.get(key, Score)
+    known = experiment.cache.get(key, TestResult)
     if known is None:
-        run = bench.folder / RUNS / what
-        known = _train_and_test(bench, setup, settings, run)
-        bench.ledger.put(key, asdict(known))
+        run = experiment.folder / RUNS / what
+        known = _train_and_test(experiment, setup, settings, run)
+        experiment.cache.put(key, asdict(known))
         shutil.rmtree(run)
     return known
 
 
-def _settings(effort: Effort, seed: int) -> "TrainConfig":
+def _settings(sizes: Sizes, seed: int) -> "TrainConfig":
     """The same on every machine; on one thread of the processor, so that numbers repeat."""
     from radhar_cli.learning.settings import ScheduleConfig, TrainConfig
 
     return TrainConfig(
         model="smallnet",
         seed=seed,
-        epochs=effort.epochs,
+        epochs=sizes.epochs,
         batch_size=32,
         learning_rate=3e-3,
         schedule=ScheduleConfig(kind="cosine"),
@@ -181,40 +180,42 @@ def _settings(effort: Effort, seed: int) -> "TrainConfig":
     )
 
 
-def _train_and_test(bench: Bench, setup: Setup, settings: "TrainConfig", run: Path) -> Score:
+def _train_and_test(
+    experiment: Experiment, setup: TrialData, settings: "TrainConfig", run: Path
+) -> TestResult:
     from radhar_cli.learning import training
     from radhar_cli.learning.evaluation import open_for, predict
     from radhar_cli.learning.machine import choose_device
     from radhar_cli.learning.run_folder import load_best
 
-    learned, asked = (bench.folder / DATA / name for name in setup.data)
+    learned, asked = (experiment.folder / DATA / name for name in setup.data)
     for config, folder in ((setup.train, learned), (setup.test, asked)):
-        build(config, folder, bench.jobs, bench.progress)
+        build(config, folder, experiment.jobs, experiment.progress)
     label = f"training {setup.trial.name}, seed {settings.seed}"
-    training.train(settings, learned, run, _Epochs(bench.progress, label))
+    training.train(settings, learned, run, _Epochs(experiment.progress, label))
     about, model = load_best(run)
     images = open_for(about, asked, None)
     device, batch = choose_device(settings.device), settings.batch_size
     answers = predict(model, about, images, images.rows("all"), device, batch)
-    return Score(int((answers.predicted == answers.truth).sum()), len(images))
+    return TestResult(int((answers.predicted == answers.truth).sum()), len(images))
 
 
 @dataclass
 class _Epochs:
-    """Tells a build's listener of a training run; of what that says, warnings are news here."""
+    """Shows a training run as a stage of a build, with its warnings but not its other messages."""
 
     progress: Progress
     label: str
-    begun: bool = False
+    started: bool = False
 
     def say(self, message: str) -> None:
         if message.startswith("warning"):
             self.progress.say(message)
 
     def epoch(self, number: int, epochs: int, steps: int) -> None:
-        if not self.begun:
+        if not self.started:
             self.progress.stage(self.label, epochs, number - 1)
-            self.begun = True
+            self.started = True
 
     def step(self, loss: float, accuracy: float) -> None:
         pass
@@ -224,11 +225,11 @@ class _Epochs:
 
 
 @dataclass(frozen=True)
-class SaidOnce:
-    """Passes on what a build says, but for what another data set has said word for word."""
+class DistinctMessages:
+    """Passes progress on; a message that was shown before is not repeated."""
 
     progress: Progress
-    said: set[str] = field(default_factory=set)
+    shown: set[str] = field(default_factory=set)
 
     def stage(self, name: str, total: int, done: int) -> None:
         self.progress.stage(name, total, done)
@@ -237,8 +238,8 @@ class SaidOnce:
         self.progress.advance(samples)
 
     def say(self, message: str) -> None:
-        if message not in self.said:
-            self.said.add(message)
+        if message not in self.shown:
+            self.shown.add(message)
             self.progress.say(message)
 
 

@@ -57,7 +57,7 @@ def test_train_keeps_the_last_epoch_and_goes_on(
     assert "Traceback" not in said
     again = CliRunner().invoke(program(), [str(word) for word in command])
     assert again.exit_code == 0, again.output
-    assert "going on: 1 of 2 epochs are done" in again.stderr
+    assert "resuming: 1 of 2 epochs are done" in again.stderr
     trained(data, tmp_path / "whole", epochs=2)
     assert same_run(tmp_path / "run", tmp_path / "whole")
 

@@ -140,4 +140,4 @@ def test_two_processes_leave_one_set_of_files_and_go_on(
     assert "processes: 2 there, 1 here" in str(caught.value)
     again = torchrun(*command)
     assert again.returncode == 0, again.stderr[-3000:]
-    assert "going on: 3 of 3 epochs are done" in again.stderr
+    assert "resuming: 3 of 3 epochs are done" in again.stderr

@@ -294,7 +294,7 @@ def test_a_folder_with_a_run_on_other_data_is_refused(run_dir: Path, tmp_path: P
 
 def test_where_the_work_is_done_is_no_difference(data: Path, run_dir: Path) -> None:
     done = trained(data, run_dir, threads=2, workers=1)
-    assert done.went_on == 3
+    assert done.resumed == 3
 
 
 def test_a_folder_with_foreign_files_is_refused(data: Path, tmp_path: Path) -> None:

@@ -119,9 +119,9 @@ def test_stopped_after_an_epoch_and_gone_on_is_the_same(
     assert len(run.read_history(out)) == epoch
     progress = Watched()
     done = trained(data, out, progress)
-    assert done.went_on == epoch
+    assert done.resumed == epoch
     assert len(progress.best) == 3 - epoch
-    assert any("going on" in line for line in progress.said)
+    assert any("resuming" in line for line in progress.said)
     assert same_run(run_dir, out)
 
 
@@ -165,7 +165,7 @@ def test_a_finished_run_is_found_done(data: Path, run_dir: Path) -> None:
     before = (run_dir / run_files.BEST).stat().st_mtime_ns
     progress = Watched()
     done = trained(data, run_dir, progress)
-    assert (done.went_on, progress.losses) == (3, [])
+    assert (done.resumed, progress.losses) == (3, [])
     assert (run_dir / run_files.BEST).stat().st_mtime_ns == before
     assert done.history == run.read_history(run_dir)
 
@@ -330,7 +330,7 @@ def test_a_loss_that_is_not_finite_is_one_clear_line(
         one_clear_line(caught.value, "epoch 2, step 2", "hold the epochs up to 1", "0.001")
         assert len(run.read_history(out)) == 1
         run.load_best(out)
-        assert trained(data, out).went_on == 1
+        assert trained(data, out).resumed == 1
 
 
 def test_a_validation_loss_that_is_not_finite_is_one_clear_line(
@@ -386,7 +386,7 @@ def test_a_tree_without_splits_trains_and_is_cut_alike(tmp_path: Path) -> None:
     done = trained(root, tmp_path / "run", epochs=1, validation_share=0.25)
     about = run.read_metadata(tmp_path / "run")
     assert (about.data["train"], about.data["val"]) == (9, 3)
-    assert trained(root, tmp_path / "run", epochs=1, validation_share=0.25).went_on == 1
+    assert trained(root, tmp_path / "run", epochs=1, validation_share=0.25).resumed == 1
     assert len(done.history) == 1
 
 

@@ -232,23 +232,22 @@ def test_tables_that_are_none_are_refused(name: str, kind: str, run: Path) -> No
         path.mkdir()
     else:
         path.write_bytes(b"epoch,pixels\n\xff,\x00\n" + b'"' + b"x" * 200_000)
-    reader = {"history.csv": read_history, "trained_on.csv": read_trained_on}.get(
-        name, read_metadata
-    )
+    readers = {"history.csv": read_history, "trained_on.csv": read_trained_on}
+    reader = readers.get(name, read_metadata)
     one_line(lambda: reader(run), name)
 
 
 @pytest.mark.parametrize("text", ["{", "[" * 10**5, '{"right": "x", "images": 3}', "[1]", "3"])
-def test_a_ledger_that_is_damaged_is_refused(text: str, tmp_path: Path) -> None:
-    from radhar_cli.tradeoff.trial import Score
+def test_a_result_cache_that_is_damaged_is_refused(text: str, tmp_path: Path) -> None:
+    from radhar_cli.tradeoff.trial import TestResult
 
-    ledger = ResultCache(tmp_path)
-    ledger.put("a", {"right": 1, "images": 3})
-    assert ledger.get("a", Score) == Score(1, 3)
+    cache = ResultCache(tmp_path)
+    cache.put("a", {"right": 1, "images": 3})
+    assert cache.get("a", TestResult) == TestResult(1, 3)
     for kept in (tmp_path / ".radhar/measured").iterdir():
         kept.write_text(text)
     with pytest.raises(FolderError, match=r"measured.* is damaged"):
-        ledger.get("a", Score)
+        cache.get("a", TestResult)
 
 
 def test_a_sweep_with_a_damaged_name_is_refused(tmp_path: Path, good_set: Path) -> None:

@@ -19,7 +19,7 @@ from radhar_cli.errors import ConfigError, FolderError
 from radhar_cli.learning import training
 from radhar_cli.tradeoff import trial as trial_module
 from radhar_cli.tradeoff.accuracy import BAND, REFERENCE, Accuracy, find_snr, measure, searched
-from radhar_cli.tradeoff.trial import QUICK, Bench, Setup, Trial
+from radhar_cli.tradeoff.trial import QUICK, Experiment, Trial, TrialData
 
 EFFORT = dataclasses.replace(QUICK, seeds=(1, 2))
 CUBE = ("engine.kind=cube",)
@@ -31,7 +31,7 @@ TRIALS = (
 
 
 class Memory:
-    """A ledger that keeps what a file would."""
+    """A cache that keeps what a file would."""
 
     def __init__(self) -> None:
         self.text: dict[str, str] = {}
@@ -44,12 +44,12 @@ class Memory:
         self.text[key] = json.dumps(value)
 
 
-def bench(folder: Path, **more: Any) -> Bench:
+def experiment(folder: Path, **more: Any) -> Experiment:
     folder.mkdir(exist_ok=True)
-    return Bench(
+    return Experiment(
         config=small_config(folder),
         folder=folder / "work",
-        **{"ledger": Memory(), "progress": Listener(), "effort": EFFORT, **more},
+        **{"cache": Memory(), "progress": Listener(), "sizes": EFFORT, **more},
     )
 
 
@@ -86,13 +86,13 @@ def counts(monkeypatch: pytest.MonkeyPatch) -> Iterator[Counts]:
 @pytest.fixture(scope="module")
 def measured(tmp_path_factory: pytest.TempPathFactory) -> list[Accuracy]:
     """The trials in one uninterrupted go."""
-    return measure(bench(tmp_path_factory.mktemp("whole")), TRIALS, 30.0)
+    return measure(experiment(tmp_path_factory.mktemp("whole")), TRIALS, 30.0)
 
 
 def test_what_several_trials_share_is_done_once_and_nothing_is_left(
     counts: Counts, tmp_path: Path, measured: list[Accuracy]
 ) -> None:
-    mine = bench(tmp_path)
+    mine = experiment(tmp_path)
     found = measure(mine, TRIALS, 30.0)
     assert len(counts.built) == 3, "coarse, reference, and one test set"
     assert len(counts.trained) == 4, "two settings, two seeds"
@@ -107,11 +107,11 @@ def test_what_several_trials_share_is_done_once_and_nothing_is_left(
 def test_going_on_after_an_interruption_repeats_nothing(
     counts: Counts, tmp_path: Path, measured: list[Accuracy]
 ) -> None:
-    mine = bench(tmp_path)
+    mine = experiment(tmp_path)
     counts.stop_at = 2
     with pytest.raises(KeyboardInterrupt):
         measure(mine, TRIALS, 30.0)
-    assert len(mine.ledger.text) == 1
+    assert len(mine.cache.text) == 1
     assert measure(mine, TRIALS, 30.0) == measured
     assert len(counts.trained) == 4 + 1, "the one that was interrupted, again"
     assert len(counts.built) == 3
@@ -128,7 +128,7 @@ def test_numbers_fit_together(measured: list[Accuracy]) -> None:
 
 
 def test_training_and_test_scenes_differ_in_their_seed_alone(tmp_path: Path) -> None:
-    setup = Setup.of(bench(tmp_path), TRIALS[2], 12.5)
+    setup = TrialData.of(experiment(tmp_path), TRIALS[2], 12.5)
     assert (setup.train.seed, setup.test.seed) == (7, 8)
     assert (setup.train.samples_per_class, setup.test.samples_per_class) == (6, 5)
     same = {"seed": 0, "samples_per_class": 1}
@@ -140,8 +140,8 @@ def test_training_and_test_scenes_differ_in_their_seed_alone(tmp_path: Path) -> 
 
 def test_a_trial_wins_over_what_is_common(tmp_path: Path) -> None:
     own = ("image.size_px=32", "maps=[stft]", "snr_db=3")
-    mine = bench(tmp_path, overrides=("duration_s=2.0", "image.size_px=80"))
-    setup = Setup.of(mine, Trial("own", own, CUBE), 30.0)
+    mine = experiment(tmp_path, overrides=("duration_s=2.0", "image.size_px=80"))
+    setup = TrialData.of(mine, Trial("own", own, CUBE), 30.0)
     assert setup.train.image.size_px == (32, 32)
     assert (setup.train.maps, setup.train.snr_db) == (("stft",), 3)
     assert setup.test.image.size_px == (64, 64)
@@ -151,40 +151,40 @@ def test_a_trial_wins_over_what_is_common(tmp_path: Path) -> None:
 
 def test_a_config_by_subjects_is_cut_by_samples(tmp_path: Path) -> None:
     """Six samples cannot be ten people's, and every training set needs validation images."""
-    mine = bench(tmp_path)
+    mine = experiment(tmp_path)
     by_subject = SMALL.replace(
         "split: {train: 0.67, validation: 0.33}",
         "split: {by: subject, subjects: 3, train: 1.0, validation: 0.0}",
     )
     assert by_subject != SMALL
     mine.config.write_text(by_subject)
-    assert Setup.of(mine, TRIALS[0], 30.0).train.split.by == "sample"
+    assert TrialData.of(mine, TRIALS[0], 30.0).train.split.by == "sample"
 
 
 def test_a_wrong_override_is_said_before_anything_is_done(counts: Counts, tmp_path: Path) -> None:
     wrong = Trial("wrong", ("engine.tolerance=-20",), REFERENCE)
     with pytest.raises(ConfigError, match="tolerance_db"):
-        measure(bench(tmp_path), [TRIALS[0], wrong], 30.0)
+        measure(experiment(tmp_path), [TRIALS[0], wrong], 30.0)
     assert not counts.built
 
 
 def test_tests_of_another_size_are_refused(tmp_path: Path) -> None:
     other = Trial("other size", (), ("image.size_px=32",))
     with pytest.raises(FolderError, match="32 x 32 px; the model was trained on 64 x 64"):
-        measure(bench(tmp_path, effort=dataclasses.replace(QUICK, epochs=1)), [other], 30.0)
+        measure(experiment(tmp_path, sizes=dataclasses.replace(QUICK, epochs=1)), [other], 30.0)
 
 
 def test_a_warning_of_several_data_sets_is_said_once(tmp_path: Path) -> None:
     """Two training sets of the same scenes, whose Doppler aliases at this PRF."""
-    effort = dataclasses.replace(QUICK, epochs=1)
-    mine = bench(tmp_path, effort=effort, overrides=("radar.prf_hz=100",))
+    sizes = dataclasses.replace(QUICK, epochs=1)
+    mine = experiment(tmp_path, sizes=sizes, overrides=("radar.prf_hz=100",))
     measure(mine, [TRIALS[0], TRIALS[2]], 30.0)
     aliased = [message for message in mine.progress.said if "aliases" in message]
     assert [message.split()[3] for message in aliased] == ["18", "15"], "training, test"
 
 
 def test_snr_is_found_by_trials_that_are_kept(counts: Counts, tmp_path: Path) -> None:
-    mine = bench(tmp_path, effort=dataclasses.replace(QUICK, snr_tries=1))
+    mine = experiment(tmp_path, sizes=dataclasses.replace(QUICK, snr_tries=1))
     snr_db = find_snr(mine)
     assert find_snr(mine) == snr_db
     assert len(counts.trained) == 1

@@ -16,8 +16,6 @@ from radhar_cli.errors import FolderError
 from radhar_cli.figures.frontier import CostPoint, frontier
 from radhar_cli.scene import scene_numbers
 from radhar_cli.tradeoff import study
-from radhar_cli.tradeoff.accuracy import Accuracy
-from radhar_cli.tradeoff.advice import advice
 from radhar_cli.tradeoff.result_cache import ResultCache
 from radhar_cli.tradeoff.scenes import Scenes
 from radhar_cli.tradeoff.settings import sweep, trials
@@ -173,11 +171,11 @@ class TestCommand:
         assert "thesis.tex" in str(refused)
 
 
-class TestLedger:
+class TestResultCache:
     def test_keeps_what_it_was_given(self, tmp_path):
-        ledger = ResultCache(tmp_path)
-        assert ledger.get("a") is None
-        ledger.put("a", {"b": [1, None, "c"]})
+        cache = ResultCache(tmp_path)
+        assert cache.get("a") is None
+        cache.put("a", {"b": [1, None, "c"]})
         assert ResultCache(tmp_path).get("a") == {"b": [1, None, "c"]}
         assert ResultCache(tmp_path).get("b") is None
 
@@ -190,7 +188,12 @@ class TestSettings:
         for more in ((), ("wall={}",)):
             scenes = self.scenes(config, *more)
             for setting in sweep(scenes.config()):
-                for overrides in (setting.timed, setting.shown, setting.reference, setting.beside):
+                for overrides in (
+                    setting.overrides,
+                    setting.compared,
+                    setting.exact,
+                    setting.baseline,
+                ):
                     assert scenes.config(overrides)
 
     def test_one_that_the_config_forbids_is_left_out_and_named(self, config):
@@ -211,7 +214,7 @@ class TestSettings:
         scenes = self.scenes(config)
         usual = scene_numbers(scenes.draw("walking", scenes.config()))
         for setting in sweep(scenes.config()):
-            scene = scenes.draw("walking", scenes.config(setting.timed))
+            scene = scenes.draw("walking", scenes.config(setting.overrides))
             if setting.name != "human motion":
                 assert scene_numbers(scene) == usual
 
@@ -229,76 +232,6 @@ class TestFrontier:
             self.point("good", 2, -60),
         ]
         assert [p.name for p in frontier(points)] == ["fast and bad", "good", "exact"]
-
-
-class TestAdvice:
-    def record(self, group, name, **more):
-        usual = {
-            "group": group,
-            "setting": name,
-            "default": False,
-            "time_ratio": 1.0,
-            "time_ratio_low": 0.99,
-            "time_ratio_high": 1.01,
-            "echo_ratio": 1.0,
-            "time_over": "the default",
-            "sample_ms": 10.0,
-            "signal_error_db": -90.0,
-            "signal_error_median_db": -95.0,
-            "pixels_changed": 0.0,
-            "ssim": 1.0,
-        }
-        return usual | more
-
-    def test_differences_within_the_noise_are_not_told(self):
-        quiet = self.record("budget", "-60 dB", default=True, pixels_changed=0.2)
-        busy = quiet | {"time_ratio": 1.25, "time_ratio_high": 1.3}
-        fine = self.record("budget", "-80 dB", time_ratio=1.2)
-        assert "1.20 of the default's time" in "\n".join(advice([quiet, fine], []))
-        said = "\n".join(advice([busy, fine], []))
-        assert "as far as could be measured" in said
-        assert "off by 30 %" in said
-
-    def test_what_no_budget_can_change(self):
-        """A range-time map alone; a person who stands still."""
-        same = self.record("budget", "-60 dB", default=True, signal_error_db=None)
-        said = "\n".join(advice([same], []))
-        assert "any budget will do" in said
-        assert "Nothing moves" in said
-
-    def test_names_the_loosest_budget_whose_images_are_the_same(self):
-        records = [
-            self.record("budget", "-20 dB", pixels_changed=0.2),
-            self.record("budget", "-40 dB", pixels_changed=0.0005),
-            self.record("budget", "-60 dB", default=True),
-        ]
-        said = "\n".join(advice(records, []))
-        assert "For images, -40 dB is enough" in said
-        assert "The default, -60 dB" in said
-
-    @pytest.mark.parametrize(
-        ("change", "verdict"), [(-1.0, "switch it on"), (-25.0, "phases"), (-55.0, "leave it off")]
-    )
-    def test_a_switch_is_judged_by_what_it_changes(self, change, verdict):
-        row = self.record("switch", "refracted rays", signal_error_median_db=change)
-        assert verdict in "\n".join(advice([row], []))
-
-    def accuracy(self, name, mean):
-        return Accuracy(name, mean, mean - 0.04, mean + 0.04, (mean, mean, mean), 300)
-
-    def test_a_budget_that_a_network_notices_is_named(self):
-        fine = [self.accuracy("-20 dB", 0.85), self.accuracy("cube", 0.86)]
-        assert "notices no budget: 85.0 % to 86.0 %" in "\n".join(advice([], fine))
-        bad = [self.accuracy("-20 dB", 0.70), self.accuracy("cube", 0.86)]
-        assert "-20 dB (70.0 %) against 86.0 % (cube)" in "\n".join(advice([], bad))
-
-    @pytest.mark.parametrize(("mean", "verdict"), [(0.5, "costs"), (0.85, "no sure loss")])
-    def test_physics_left_out_of_the_training(self, mean, verdict):
-        both = [
-            self.accuracy("without refraction, tested with it", mean),
-            self.accuracy("with refraction", 0.86),
-        ]
-        assert verdict in "\n".join(advice([], both))
 
 
 @pytest.mark.usefixtures("few")

@@ -138,7 +138,7 @@ class ImageSet:
         )
 
     def cut(self, share: float, seed: int) -> "ImageSet":
-        """The same images, cut class by class into train and validation where nobody has cut.
+        """The same images, split class by class into train and validation if they have no split.
 
         Raises:
             FolderError: a class of one image, which cannot be cut.

@@ -1,4 +1,4 @@
-"""One look at every pixel: fingerprints, the levels' mean and spread, and damage found early."""
+"""One pass over all pixels: digests, mean and deviation of the levels, and early errors."""
 
 import hashlib
 import json
@@ -14,10 +14,10 @@ from radhar_cli.learning.images.image_set import ImageSet
 
 @dataclass(frozen=True)
 class Scan:
-    """What one look at every pixel of a set tells.
+    """Digests and histogram of some images.
 
     Attributes:
-        digests: [rows] fingerprint of each image's pixels.
+        digests: [rows] digest of each image's pixels.
         histogram: [3, 256] how often each level occurs in each channel.
     """
 
@@ -43,7 +43,7 @@ def _moment(counts: NDArray[np.int64], power: int) -> float:
 
 
 def scan(images: ImageSet, rows: Sequence[int] | Index) -> Scan:
-    """Read some images once: fingerprints and levels; a damaged one is found here.
+    """Read some images once: digests and histogram; a damaged one is found here.
 
     Raises:
         FolderError: an image cannot be read.

@@ -9,6 +9,7 @@ import pytest
 
 from radhar_cli.config import Config
 from radhar_cli.config.reading import validated
+from radhar_cli.config.schema import MODEL_DEFAULTS
 from radhar_cli.errors import ConfigError
 
 # key: (least, most) that is taken, then (too little, too much); None where there is no such side.
@@ -78,7 +79,7 @@ def document(key: str, value: Any) -> dict[str, Any]:
         vector[int(last)] = value
         *names, last = names
         value = vector
-    made: dict[str, Any] = {}
+    made: dict[str, Any] = {"motion": {"model": "paper"}}
     place = made
     for name in names:
         place = place.setdefault(name, {})
@@ -153,7 +154,10 @@ def test_every_number_of_a_scene_is_held_to_its_range_in_every_form() -> None:
 
 
 FFTS = ("processing.range_fft_length", "processing.stft_fft_length", "processing.fsst_hop_pulses")
-NULLABLE = ("snr_db", "subject.weight_kg", *FFTS)
+BY_MODEL = [
+    f"{section}.{name}" for section, values in MODEL_DEFAULTS["paper"].items() for name in values
+]
+NULLABLE = ("snr_db", "subject.weight_kg", *FFTS, *BY_MODEL)
 
 
 def spoilt(key: str, value: Any) -> dict[str, Any]:

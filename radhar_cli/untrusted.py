@@ -10,7 +10,7 @@ from typing import Any
 from radhar_cli.errors import FolderError
 
 DEEPEST = 32
-LARGEST_JSON = 2**20  # characters
+MAX_JSON = 2**20  # characters
 
 
 def regular_size(path: str | os.PathLike[str]) -> int:
@@ -48,7 +48,7 @@ def read_json(path: Path) -> Any:
         FolderError: it is missing, damaged, or beyond the bounds of `parse_json`.
     """
     try:
-        return parse_json(read_text(path, LARGEST_JSON))
+        return parse_json(read_text(path, MAX_JSON))
     except (OSError, ValueError) as error:
         told = getattr(error, "strerror", None) or error
         raise FolderError(f"{path}: is damaged, or not radhar's ({told})") from None
@@ -60,8 +60,8 @@ def parse_json(text: str) -> Any:
     Raises:
         ValueError: it is not JSON, too long, or nested too deeply.
     """
-    if len(text) > LARGEST_JSON:
-        raise ValueError(f"it has {len(text)} characters; should have at most {LARGEST_JSON}")
+    if len(text) > MAX_JSON:
+        raise ValueError(f"it has {len(text)} characters; should have at most {MAX_JSON}")
     try:
         value = json.loads(text)
         deep = _depth(value) > DEEPEST

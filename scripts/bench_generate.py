@@ -36,10 +36,10 @@ from radhar_cli.echo.range_profiles import beat_at, shown_pulses
 from radhar_cli.pipeline.plan import Plan, Product, plan
 from radhar_cli.pipeline.products import RangeProfiles, plan_images, products
 from radhar_cli.pipeline.run import record, run
-from radhar_cli.process import prepare_process
 from radhar_cli.processing.range_compression import range_bins
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene import Scene, draw_scene
+from radhar_cli.worker_process import prepare_process
 
 ROOT = Path(__file__).resolve().parents[1]
 PAPER = ROOT / "configs/paper/free_space.yaml"
@@ -392,7 +392,7 @@ from time import thread_time
 import numpy as np
 from radhar_cli.echo.direct import DirectEcho
 from radhar_cli.echo.paths import Paths
-from radhar_cli.process import prepare_process
+from radhar_cli.worker_process import prepare_process
 from radhar_cli.radar.waveform import Waveform
 
 class Walker:

@@ -20,7 +20,7 @@ from radhar_cli.config import MAP_NAMES, load_config
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.validity import draw_valid_scene
-from radhar_cli.process import prepare_process
+from radhar_cli.worker_process import prepare_process
 
 ROOT = Path(__file__).resolve().parents[1]
 PAPER = ROOT / "configs/paper/free_space.yaml"

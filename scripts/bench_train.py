@@ -14,8 +14,6 @@ import sys
 VARIANTS = {
     "as radhar train does it": (),
     "full complex FFT instead of rfft2": ("complex",),
-    "weights not channels last": ("plain",),
-    "glibc's own memory thresholds": ("thresholds",),
     "the other precision": ("precision",),
 }
 STEPS = 4
@@ -28,8 +26,6 @@ from radhar_cli.learning.models.build import build_model
 from radhar_cli.learning.models.fftnet import GlobalFilter
 px, batch, steps, *without = sys.argv[1:]
 px, batch, steps = int(px), int(batch), int(steps)
-if "thresholds" not in without:
-    machine.keep_memory()
 if "complex" in without:
     def full(self, x):
         k = torch.view_as_complex(self.weight)
@@ -41,10 +37,8 @@ if "precision" in without:
     precision = torch.float32 if precision == torch.bfloat16 else torch.bfloat16
 torch.manual_seed(0)
 model = build_model("fftnet", 12, (px, px)).to(device)
-if "plain" not in without:
-    machine.convolutions_channels_last(model)
 optimiser = torch.optim.Adam(model.parameters(), 1e-3)
-x = torch.randn(batch, 3, px, px, device=device).contiguous(memory_format=torch.channels_last)
+x = torch.randn(batch, 3, px, px, device=device)
 y = torch.randint(12, (batch,), device=device)
 times = []
 for _ in range(steps):

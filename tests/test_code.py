@@ -20,7 +20,7 @@ ROOMS = (
     "phasor",
     "untrusted",
     "randomness",
-    "process",
+    "worker_process",
     "motion",
     "activity",
     "config",

@@ -49,7 +49,7 @@ def evaluate(
     Several runs or data sets give the comparison: train at one SNR, test at all.
     """
     from radhar_cli.commands.learning_options import (
-        Speaker,
+        StderrLog,
         apart,
         known_device,
         needs_torch,
@@ -60,19 +60,20 @@ def evaluate(
     from radhar_cli.dataset.files import refuse_links
     from radhar_cli.learning.images.classes import read_classes
     from radhar_cli.learning.images.image_set import split_named
-    from radhar_cli.learning.machine import choose_device, keep_memory
+    from radhar_cli.learning.machine import choose_device
     from radhar_cli.learning.report import evaluate
-    from radhar_cli.learning.single_result import Asked
+    from radhar_cli.learning.single_result import EvalOptions
 
     runs, data = runs_and_data(paths)
     names = read_classes(classes) if classes else {}
-    asked = Asked(split_named(split), map_, tsne, filters, in_place_vs_moving, batch, resize, names)
+    asked = EvalOptions(
+        split_named(split), map_, tsne, filters, in_place_vs_moving, batch, resize, names
+    )
     inside = runs[0] if runs[0].is_dir() else runs[0].parent
     folder = out or inside / "eval"
     if out is None:
         refuse_links(inside, folder)
     apart(folder, data)
-    keep_memory()
-    report = evaluate(runs, data, asked, choose_device(known_device(device)), Speaker())
+    report = evaluate(runs, data, asked, choose_device(known_device(device)), StderrLog())
     report.write(folder)
     tell(f"{folder / 'report.html'}: {len(report.figures)} figures; numbers in report.json")

@@ -78,7 +78,7 @@ def runs_and_data(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:
     return runs, data
 
 
-class Speaker:
+class StderrLog:
     """Tells the user on the error stream."""
 
     def say(self, message: str) -> None:

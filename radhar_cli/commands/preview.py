@@ -7,7 +7,7 @@ import typer
 
 from radhar_cli.commands.tell import tell
 
-MOST_CLASSES = 40
+MAX_CLASSES = 40
 
 
 def preview(
@@ -57,7 +57,7 @@ def _draw_tree(root: Path, map_name: str | None, per_class: int, out: Path | Non
     whole = root.resolve()
     path = out or whole.parent / f"preview_{whole.name}.png"
     title = f"{whole.name}: {len(images)} images of {len(images.classes)} classes"
-    if len(images.classes) > MOST_CLASSES:
-        title += f", the first {MOST_CLASSES} shown"
-    draw_image_sheet(first_of_each(images, per_class, MOST_CLASSES), title, path)
+    if len(images.classes) > MAX_CLASSES:
+        title += f", the first {MAX_CLASSES} shown"
+    draw_image_sheet(first_of_each(images, per_class, MAX_CLASSES), title, path)
     return path

@@ -9,7 +9,7 @@ from rich.text import Text
 from radhar_cli.untrusted import shown
 
 BARS = " ▁▂▃▄▅▆▇█"
-MOST_SIZES = 5
+MAX_SIZES = 5
 
 
 def print_summary(summary: dict[str, Any]) -> None:
@@ -63,8 +63,8 @@ def _tree(console: Console, s: dict[str, Any]) -> None:
         f" {s['samples']} images of {len(s['classes'])} classes, {s['bytes'] / 2**20:.1f} MiB",
     )
     sizes = [f"{one['images']} of {one['size'][0]} x {one['size'][1]} px" for one in s["sizes"]]
-    more = f", and {len(sizes) - MOST_SIZES} more sizes" if len(sizes) > MOST_SIZES else ""
-    console.print(f"sizes {', '.join(sizes[:MOST_SIZES])}{more}")
+    more = f", and {len(sizes) - MAX_SIZES} more sizes" if len(sizes) > MAX_SIZES else ""
+    console.print(f"sizes {', '.join(sizes[:MAX_SIZES])}{more}")
     table = Table(title="images by class")
     table.add_column("class")
     for part in next(iter(s["classes"].values())):

@@ -10,7 +10,7 @@ from radhar_cli.commands.tell import tell
 
 if TYPE_CHECKING:
     from radhar_cli.tradeoff.accuracy import Accuracy
-    from radhar_cli.tradeoff.ledger import Ledger
+    from radhar_cli.tradeoff.result_cache import ResultCache
     from radhar_cli.tradeoff.scenes import Scenes
 
 CLEAN_DB = 30.0
@@ -61,12 +61,12 @@ def _tradeoff(
 ) -> None:
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.dataset.folder import locked
-    from radhar_cli.process import prepare_process
     from radhar_cli.tradeoff.folder import claim
-    from radhar_cli.tradeoff.ledger import Ledger
     from radhar_cli.tradeoff.report import write_report
+    from radhar_cli.tradeoff.result_cache import ResultCache
     from radhar_cli.tradeoff.scenes import Scenes
     from radhar_cli.tradeoff.study import ROUNDS, run_sweep
+    from radhar_cli.worker_process import prepare_process
 
     scenes = Scenes(path, tuple(overrides), quick)
     config = scenes.config()
@@ -80,7 +80,7 @@ def _tradeoff(
     progress = BarProgress("step")
     with locked(out):
         claim(out, config, overwrite)
-        ledger = Ledger(out)
+        ledger = ResultCache(out)
         try:
             rows = run_sweep(scenes, ledger, progress)
         finally:
@@ -98,7 +98,7 @@ def _tradeoff(
 
 
 def _accuracies(
-    scenes: "Scenes", out: Path, ledger: "Ledger", jobs: int | None
+    scenes: "Scenes", out: Path, ledger: "ResultCache", jobs: int | None
 ) -> tuple[list["Accuracy"], dict[str, Any]]:
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.dataset.layout import WORK

@@ -19,7 +19,7 @@ from radhar_cli.untrusted import parse_json, read_text, shown
 S = TypeVar("S", bound=Section)
 
 _UNION_TAGS = {"number", "uniform", "normal", "choice", "vary", "same", "per_activity"}
-MOST_MISTAKES = 20
+MAX_MISTAKES = 20
 LONGEST_VALUE, LONGEST_ADVICE = 120, 500  # characters of them that a message shows
 
 
@@ -88,9 +88,9 @@ def validated(kind: type[S], document: Any, where: str, lines: Lines) -> S:
     except ValidationError as error:
         told = dict.fromkeys(
             _place(where, problem.key, lines) + _what(problem)
-            for problem in islice(_found(kind, error, document), MOST_MISTAKES)
+            for problem in islice(_found(kind, error, document), MAX_MISTAKES)
         )
-        more = error.error_count() - MOST_MISTAKES
+        more = error.error_count() - MAX_MISTAKES
         messages = [*told, f"{where}: and {more} more"] if more > 0 else [*told]
         raise ConfigError("\n".join(messages)) from None
 

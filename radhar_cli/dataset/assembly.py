@@ -56,39 +56,48 @@ def assembled(
     """
     count, whose, shards = len(Rows.of(config)), identity_hash(identity(config)), sorted(shards)
     require_tiling(folder, shards, count)
-    unfinished, table = unfinished_path(folder), unfinished_path(folder)
+    unfinished, table, manifest = (unfinished_path(folder) for _ in range(3))
     unfinished.parent.mkdir(parents=True, exist_ok=True)
     try:
-        with h5py.File(unfinished, "w") as file, table.open("w", newline="") as text:
+        with (
+            h5py.File(unfinished, "w") as file,
+            table.open("w", newline="") as text,
+            manifest.open("w") as held,
+        ):
             _describe_samples(file, config)
-            flags, held = _copy_shards(file, config, shards, whose, text)
-            _describe_maps(file, config)
+            held.write(f'{{"identity": "{whose}", "rows": {count}, "shards": [\n')
+            flags = _copy_shards(file, config, shards, whose, text, held)
+            held.write("]}\n")
             found = warnings(config, flags)
             _root_attributes(file, config, found)
         yield unfinished, found
         table.replace(folder / SCENES)
         write_whole(folder, folder / CONFIG, (CONFIG_HEADING + as_yaml(config)).encode())
-        manifest = {"identity": whose, "rows": count, "shards": held}
-        write_whole(folder, folder / WORK / MANIFEST, json.dumps(manifest).encode())
+        manifest.replace(folder / WORK / MANIFEST)
         unfinished.replace(folder / DATASET)
     except ShardError as error:
         require_tiling(folder, check_shards(shards, whose)[0], count)
         raise UnfinishedError(f"{folder}: {error}; the same command goes on") from None
     finally:
-        unfinished.unlink(missing_ok=True)
-        table.unlink(missing_ok=True)
+        for path in (unfinished, table, manifest):
+            path.unlink(missing_ok=True)
 
 
 def _copy_shards(
-    file: h5py.File, config: Config, shards: Sequence[Shard], whose: str, table: io.TextIOBase
-) -> tuple[dict[Flags, int], list[dict[str, Any]]]:
-    """Copy maps and columns, each shard read and checked once.
+    file: h5py.File,
+    config: Config,
+    shards: Sequence[Shard],
+    whose: str,
+    table: io.TextIOBase,
+    manifest: io.TextIOBase,
+) -> dict[Flags, int]:
+    """Copy maps and columns, each shard read and checked once, and write down what each held.
 
     Chunks are stored in runs of RUN rows, map after map: the file's layout does not depend on how
     shards cut the rows, and who reads one map reads long stretches.
 
     Returns:
-        How many rows have each flag, and what each shard held.
+        How many rows have each flag.
     """
     count, stored = shards[-1].stop, 0
     maps = file.create_group("maps")
@@ -103,11 +112,12 @@ def _copy_shards(
     scene = [file[f"scene/{field.name}"] for field in fields]
     rows_csv = _CsvRows(config, table)
     flags = dict.fromkeys(Flags, 0)
-    held: list[dict[str, Any]] = []
+    extents: dict[str, set[tuple[float, ...]]] = {f"extent/{name}": set() for name in config.maps}
     for shard in shards:
         start, stop, rows = shard.start, shard.stop, shard.stop - shard.start
         data, checksum = shard.read(whose)
-        held.append({"start": start, "stop": stop, "bytes": len(data), "sha256": checksum})
+        held = {"start": start, "stop": stop, "bytes": len(data), "sha256": checksum}
+        manifest.write(json.dumps(held) + (",\n" if stop < count else "\n"))
         with UntrustedFile(shard.path, data) as part:
             values = part.column("scene", np.float64, (rows, len(fields)))[:]
             here = part.column("flags", np.uint8, (rows,))[:]
@@ -115,7 +125,10 @@ def _copy_shards(
                 source = part.images(f"maps/{name}", (rows, *config.image.size_px))
                 chunks[name] += [source.stored(row) for row in range(rows)]
             for column, (target, shape) in columns.items():
-                target[start:stop] = part.column(column, target.dtype, (rows, *shape))[:]
+                found = part.column(column, target.dtype, (rows, *shape))[:]
+                target[start:stop] = found
+                if column in extents and len(extents[column]) < 2:
+                    extents[column].update(map(tuple, found.tolist()))
         for number, (field, target) in enumerate(zip(fields, scene, strict=True)):
             target[start:stop] = values[:, number] * field.factor
         rows_csv.write(start, values)
@@ -127,7 +140,9 @@ def _copy_shards(
                     image.write_direct_chunk((row, 0, 0), chunk, mask)
                 del chunks[name][:RUN]
             stored += RUN
-    return flags, held
+    for name in config.maps:
+        _describe_map(file, config, name, extents[f"extent/{name}"])
+    return flags
 
 
 def _describe_samples(file: h5py.File, config: Config) -> None:
@@ -142,44 +157,45 @@ def _describe_samples(file: h5py.File, config: Config) -> None:
     file["split"].attrs["meaning"] = ", ".join(f"{i} {name}" for i, name in enumerate(SPLITS))
     keys = file.create_dataset("sample_key", (count, 2), np.int64)
     keys.attrs["columns"] = ["class", "index"]
+    subjects = config.split.subjects
+    if subjects is not None:
+        file.create_dataset("scene/subject", (count,), np.int64).attrs["unit"] = "1"
     indices = np.arange(rows.per_class)
     for number, activity in enumerate(rows.activities):
         here = slice(number * rows.per_class, (number + 1) * rows.per_class)
         keys[here, 0], keys[here, 1] = activity.index, indices
+        if subjects is not None:
+            file["scene/subject"][here] = indices % subjects
     for field in scene_fields.fields(config):
         dataset = file.create_dataset(f"scene/{field.name}", (count,), np.float64)
         dataset.attrs["unit"] = field.unit
         dataset.attrs["config_key"] = field.key
-    if config.split.subjects is not None:
-        one_class = indices % config.split.subjects
-        subjects = np.tile(one_class, len(rows.activities))
-        file["scene/subject"] = subjects.astype(np.int64)
-        file["scene/subject"].attrs["unit"] = "1"
 
 
-def _describe_maps(file: h5py.File, config: Config) -> None:
-    for name in config.maps:
-        extent = file[f"extent/{name}"][:]
-        same = bool((extent == extent[0]).all())
-        start, stop, low, high = extent[0] if same else [np.nan] * 4
-        vertical = ("range", "m") if name == "rtm" else ("Doppler frequency", "Hz")
-        attributes = file[f"maps/{name}"].attrs
-        attributes["axes"] = ["sample", f"{vertical[0]} (row 0 is the highest)", "time"]
-        attributes["row_quantity"], attributes["row_unit"] = vertical
-        attributes["row_top"], attributes["row_bottom"] = high, low
-        attributes["column_quantity"], attributes["column_unit"] = "slow time", "s"
-        attributes["column_left"], attributes["column_right"] = start, stop
-        attributes["dynamic_range_db"] = config.image.dynamic_range_db
-        attributes["levels"] = LEVELS_TEXT
-        if not same:
-            attributes["edges"] = "differ from sample to sample: see /extent"
-        file[f"extent/{name}"].attrs["columns"] = [
-            "time left (s)",
-            "time right (s)",
-            f"{vertical[0]} bottom ({vertical[1]})",
-            f"{vertical[0]} top ({vertical[1]})",
-        ]
-        file[f"entropy/{name}"].attrs["unit"] = "bit"
+def _describe_map(
+    file: h5py.File, config: Config, name: str, extents: set[tuple[float, ...]]
+) -> None:
+    """Attributes of a map of these extents; of more than one, two are enough."""
+    same = len(extents) == 1
+    start, stop, low, high = next(iter(extents)) if same else [np.nan] * 4
+    vertical = ("range", "m") if name == "rtm" else ("Doppler frequency", "Hz")
+    attributes = file[f"maps/{name}"].attrs
+    attributes["axes"] = ["sample", f"{vertical[0]} (row 0 is the highest)", "time"]
+    attributes["row_quantity"], attributes["row_unit"] = vertical
+    attributes["row_top"], attributes["row_bottom"] = high, low
+    attributes["column_quantity"], attributes["column_unit"] = "slow time", "s"
+    attributes["column_left"], attributes["column_right"] = start, stop
+    attributes["dynamic_range_db"] = config.image.dynamic_range_db
+    attributes["levels"] = LEVELS_TEXT
+    if not same:
+        attributes["edges"] = "differ from sample to sample: see /extent"
+    file[f"extent/{name}"].attrs["columns"] = [
+        "time left (s)",
+        "time right (s)",
+        f"{vertical[0]} bottom ({vertical[1]})",
+        f"{vertical[0]} top ({vertical[1]})",
+    ]
+    file[f"entropy/{name}"].attrs["unit"] = "bit"
 
 
 def _root_attributes(file: h5py.File, config: Config, found: list[dict[str, Any]]) -> None:

@@ -20,8 +20,8 @@ from radhar_cli.dataset.shards import encode_shard, write_shard
 from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.validity import Flags, draw_valid_scene
-from radhar_cli.process import prepare_process
 from radhar_cli.scene import Scene, draw_scene
+from radhar_cli.worker_process import prepare_process
 
 
 @dataclass(frozen=True)

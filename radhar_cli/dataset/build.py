@@ -14,12 +14,13 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from radhar_cli.arrays import Levels
+from radhar_cli.activity import Activity
+from radhar_cli.arrays import Bool, Index, Levels
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.assembly import assembled
 from radhar_cli.dataset.batch import Batch, check_rows, png_rows, run_batch
 from radhar_cli.dataset.check_cache import OUTCOME, Outcomes, store_checks, stored_checks
-from radhar_cli.dataset.folder import claim, locked, mark_built, tidy
+from radhar_cli.dataset.folder import claim, clean_up, locked, mark_built
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.layout import DATASET, MANIFEST, WORK, Rows, png_path
 from radhar_cli.dataset.png import colour_table
@@ -98,7 +99,8 @@ def build(
     Raises:
         FolderError: the folder is in use or holds something else.
         UnfinishedError: it cannot be written, or a worker was killed; finished samples are kept.
-        SceneError: a scene outside the model; nothing was computed.
+        SceneError: a scene outside the model; nothing was computed of a data set of at most
+            MAX_CHECKED_FIRST rows.
     """
     table = colour_table(config.image.colour_map) if config.output.png else None
     folder = folder.absolute()
@@ -125,7 +127,7 @@ class _Build:
         split = split_rows(config)
         if (self.folder / DATASET).exists():
             pngs = self._missing_pngs(split, self.folder / DATASET)
-            tidy(self.folder)
+            clean_up(self.folder)
             return Outcome(self.folder, count, 0, pngs)
         checked = self._check_scenes(count) if count <= MAX_CHECKED_FIRST else None
         said = [] if checked is None else warnings(config, _counts(checked["flags"]))
@@ -137,7 +139,7 @@ class _Build:
             self.progress.advance(count)
             pngs = self._missing_pngs(split, unfinished)
         mark_built(self.folder)
-        tidy(self.folder)
+        clean_up(self.folder)
         return Outcome(self.folder, count, made, pngs, stored)
 
     def _say(self, found: list[dict[str, Any]]) -> None:
@@ -213,44 +215,47 @@ class _Build:
         if self.table is None:
             return 0
         missing = self._rows_without_png(split)
-        if not missing:
+        if not missing.size:
             return 0
-        self.progress.stage("png", len(missing), 0)
+        self.progress.stage("png", missing.size, 0)
         tasks = (
             (
                 self.config,
                 self.folder,
                 source,
-                [(row, int(split[row])) for row in missing[first : first + MAX_BATCH]],
+                [(row, int(split[row])) for row in missing[first : first + MAX_BATCH].tolist()],
                 self.table,
                 os.getpid(),
             )
-            for first in range(0, len(missing), MAX_BATCH)
+            for first in range(0, missing.size, MAX_BATCH)
         )
-        jobs = self.jobs if len(missing) > MAX_BATCH else 1
+        jobs = self.jobs if missing.size > MAX_BATCH else 1
         for written in run_tasks(png_rows, tasks, jobs):
             self.progress.advance(written)
-        return len(missing) * len(self.config.maps)
+        return missing.size * len(self.config.maps)
 
-    def _rows_without_png(self, split: Levels) -> list[int]:
-        """Rows of which an image is missing; the names of one class are held at a time."""
+    def _rows_without_png(self, split: Levels) -> Index:
+        """Rows of which an image is missing."""
         rows = Rows.of(self.config)
-        missing = []
+        missing = np.zeros(len(rows), dtype=bool)
         for first in range(0, len(rows), rows.per_class):
-            listed: dict[Path, set[str]] = {}
-            for row in range(first, first + rows.per_class):
-                for name in self.config.maps:
-                    path = png_path(name, int(split[row]), *rows[row])
-                    if path.parent not in listed:
-                        listed[path.parent] = _names(self.folder / path.parent)
-                    if path.name not in listed[path.parent]:
-                        missing.append(row)
-                        break
-        return missing
+            activity, one_class = rows[first][0], slice(first, first + rows.per_class)
+            for name in self.config.maps:
+                missing[one_class] |= ~self._stored_pngs(name, activity, split[one_class])
+        return np.flatnonzero(missing)
 
-
-def _names(folder: Path) -> set[str]:
-    return {found.name for found in os.scandir(folder)} if folder.is_dir() else set()
+    def _stored_pngs(self, name: str, activity: Activity, split: Levels) -> Bool:
+        """Whether there is a PNG of each sample [per_class] of a class, of one map."""
+        there = np.zeros(split.size, dtype=bool)
+        for number in np.unique(split).tolist():
+            folder = self.folder / png_path(name, number, activity, 0).parent
+            for found in os.scandir(folder) if folder.is_dir() else ():
+                stem = found.name.removesuffix(".png")
+                index = int(stem) if stem.isdecimal() else split.size
+                path = png_path(name, number, activity, index)
+                if index < split.size and split[index] == number and path.name == found.name:
+                    there[index] = True
+        return there
 
 
 def _counts(flags: Levels) -> dict[Flags, int]:

@@ -15,7 +15,7 @@ from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.shards import encode_shard
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.validity import draw_valid_scene
-from radhar_cli.process import prepare_process
+from radhar_cli.worker_process import prepare_process
 
 PROBES = 24
 PROBE_SECONDS = 8.0

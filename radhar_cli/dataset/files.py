@@ -9,7 +9,7 @@ from radhar_cli.dataset.layout import WORK
 from radhar_cli.errors import FolderError
 from radhar_cli.untrusted import regular_size
 
-MOST_TEXT = 2**20
+MAX_TEXT = 2**20
 
 
 def write_whole(folder: Path, path: Path, data: bytes) -> None:
@@ -71,7 +71,7 @@ def refuse_strange_work(folder: Path) -> None:
                 )
 
 
-def read_bytes(path: Path, most: int = MOST_TEXT) -> bytes:
+def read_bytes(path: Path, most: int = MAX_TEXT) -> bytes:
     """The bytes of a regular file.
 
     Raises:

@@ -26,7 +26,7 @@ from radhar_cli.dataset.layout import (
     PNG,
     SCENES,
     WORK,
-    begun,
+    is_incomplete,
 )
 from radhar_cli.errors import FolderError
 from radhar_cli.untrusted import read_json
@@ -78,10 +78,10 @@ def claim(folder: Path, config: Config, overwrite: bool) -> None:
         _clear(folder, new)
     old = stored_identity(folder)
     if old is None:
-        strangers = sorted(p.name for p in folder.iterdir() if p.name != WORK)
-        if strangers:
+        foreign_files = sorted(p.name for p in folder.iterdir() if p.name != WORK)
+        if foreign_files:
             raise FolderError(
-                f"{folder}: holds {', '.join(strangers[:5])} but no radhar data set; "
+                f"{folder}: holds {', '.join(foreign_files[:5])} but no radhar data set; "
                 "choose an empty folder"
             )
         _name(folder, new)
@@ -133,7 +133,7 @@ def checked_identity(found: Any, path: Path) -> dict[str, Any]:
     return identity_there
 
 
-def tidy(folder: Path) -> None:
+def clean_up(folder: Path) -> None:
     """Remove what only an unfinished build needs."""
     _remove_batches(folder)
     shutil.rmtree(folder / WORK / "unfinished", ignore_errors=True)
@@ -151,7 +151,7 @@ def _remove_batches(folder: Path) -> None:
 
 def _ours(folder: Path) -> bool:
     """Whether radhar built, or began to build, what a folder holds; a damaged file may be ours."""
-    ours = begun(folder) or (folder / WORK / "built").exists()
+    ours = is_incomplete(folder) or (folder / WORK / "built").exists()
     if ours or not (folder / DATASET).exists():
         return ours
     try:

@@ -15,8 +15,8 @@ from radhar_cli.untrusted import regular_size
 
 # No format that runs a program: EPS, whatever its file is called, would start Ghostscript.
 FORMATS = ("PNG", "JPEG", "BMP", "TIFF", "WEBP")
-LONGEST_SIDE = 8192  # of an image that a config may ask for
-LARGEST_FILE = 4 * LONGEST_SIDE**2  # bytes
+MAX_SIDE = 8192  # of an image that a config may ask for
+MAX_FILE = 4 * MAX_SIDE**2  # bytes
 
 
 def image_size(path: Path) -> tuple[int, int]:
@@ -78,8 +78,8 @@ def _opened(path: Path, size: tuple[int, int] | None) -> Iterator[Image.Image]:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            if regular_size(path) > LARGEST_FILE:
-                raise FolderError(f"{path}: should be an image of at most {LARGEST_FILE} bytes")
+            if regular_size(path) > MAX_FILE:
+                raise FolderError(f"{path}: should be an image of at most {MAX_FILE} bytes")
             with Image.open(path, formats=FORMATS) as image:
                 wrong = _wrong(image, size)
                 if wrong is not None:
@@ -99,8 +99,8 @@ def _wrong(image: Image.Image, size: tuple[int, int] | None) -> str | None:
             f"is {height} x {width} px; should be {size[0]} x {size[1]} "
             "(eval and predict bring it there with --resize)"
         )
-    if not 1 <= min(height, width) <= max(height, width) <= LONGEST_SIDE:
-        most = f"{LONGEST_SIDE} x {LONGEST_SIDE}"
+    if not 1 <= min(height, width) <= max(height, width) <= MAX_SIDE:
+        most = f"{MAX_SIDE} x {MAX_SIDE}"
         return f"is {height} x {width} px; should be from 1 x 1 to {most}"
     if getattr(image, "is_animated", False):
         return "holds several pictures; should hold one"

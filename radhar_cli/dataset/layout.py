@@ -24,7 +24,7 @@ COLUMNS: dict[str, tuple[str, tuple[int, ...]]] = {
 SPLIT_FOLDERS = ("train", "val", "test")
 
 
-def begun(folder: Path) -> bool:
+def is_incomplete(folder: Path) -> bool:
     """Whether a build in this folder was begun and not finished."""
     return any((folder / WORK / name).exists() for name in (IDENTITY, "shards", CHECKS))
 

@@ -10,11 +10,11 @@ from radhar_cli.arrays import Float, Levels
 from radhar_cli.config.reading import validated
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
-from radhar_cli.dataset.layout import COLUMNS, DATASET, SPLITS, Rows, begun
+from radhar_cli.dataset.layout import COLUMNS, DATASET, SPLITS, Rows, is_incomplete
 from radhar_cli.dataset.untrusted_hdf5 import Column, UntrustedFile
 from radhar_cli.errors import ConfigError, FolderError, did_you_mean
 
-MOST_ENTROPY_BITS = 64.0
+MAX_ENTROPY_BITS = 64.0
 
 
 class Dataset:
@@ -88,8 +88,8 @@ class Dataset:
         """Entropies [N] of a map's power, bits."""
         column = self._entropy[name]
         bits: Float = column[:].astype(float)
-        if not ((bits >= 0) & (bits <= MOST_ENTROPY_BITS)).all():
-            raise FolderError(f"{column.where}: should be 0 to {MOST_ENTROPY_BITS:g} bits")
+        if not ((bits >= 0) & (bits <= MAX_ENTROPY_BITS)).all():
+            raise FolderError(f"{column.where}: should be 0 to {MAX_ENTROPY_BITS:g} bits")
         return bits
 
     def extent(self, name: str) -> tuple[float, float, float, float] | None:
@@ -158,7 +158,7 @@ def open_dataset(path: str | Path) -> Dataset:
     path = Path(path)
     file = path / DATASET if path.is_dir() else path
     if not file.exists():
-        unfinished = path.is_dir() and begun(path)
+        unfinished = path.is_dir() and is_incomplete(path)
         hint = (
             "its build is unfinished; run `radhar generate` again" if unfinished else "no such file"
         )

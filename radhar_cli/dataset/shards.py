@@ -7,7 +7,7 @@ a checksum of that and of all that follows. Nothing of a shard is used before th
 import hashlib
 import io
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -140,13 +140,11 @@ def write_shard(folder: Path, start: int, stop: int, data: bytes) -> None:
     write_whole(folder, Shard(start, stop, folder).path, data)
 
 
-def listed_shards(folder: Path) -> Iterator[Shard]:
+def listed_shards(folder: Path) -> list[Shard]:
     """Files that have the name of a shard, in row order."""
     place = shard_folder(folder)
-    for path in sorted(place.iterdir()) if place.is_dir() else ():
-        match = _NAME.fullmatch(path.name)
-        if match:
-            yield Shard(int(match[1]), int(match[2]), folder)
+    names = (_NAME.fullmatch(path.name) for path in (place.iterdir() if place.is_dir() else ()))
+    return sorted(Shard(int(name[1]), int(name[2]), folder) for name in names if name)
 
 
 def check_shards(

@@ -18,7 +18,7 @@ from radhar_cli.dataset.untrusted_hdf5 import Column, UntrustedFile
 from radhar_cli.errors import FolderError
 
 HISTOGRAM_BINS = 12
-LARGEST_VALUE = 1e30
+MAX_VALUE = 1e30
 SCENE_FILE = "scene.h5"
 
 
@@ -117,8 +117,8 @@ def _known(column: Column) -> np.ndarray[Any, Any]:
     """The numbers of a scene field, without the NaN of samples that it does not apply to."""
     values: np.ndarray[Any, Any] = column[:]
     values = values[~np.isnan(values)]
-    if (np.abs(values) > LARGEST_VALUE).any():
-        raise FolderError(f"{column.where}: should be at most {LARGEST_VALUE:g}")
+    if (np.abs(values) > MAX_VALUE).any():
+        raise FolderError(f"{column.where}: should be at most {MAX_VALUE:g}")
     return values
 
 

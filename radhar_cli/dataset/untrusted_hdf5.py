@@ -38,8 +38,8 @@ _DAMAGED = (
     ValueError,
 )
 _HEAP = b"GCOL\x01"
-MOST_TEXT = 2**20
-SMALLEST_HEAP, MOST_HEAP = 4096, 2**24  # bytes; the first is HDF5's
+MAX_TEXT = 2**20
+MIN_HEAP, MAX_HEAP = 4096, 2**24  # bytes; the first is HDF5's
 _DEFLATE = h5py.h5z.FILTER_DEFLATE
 
 
@@ -99,9 +99,9 @@ class _Watched:
     def _check_heap(self, place: int) -> None:
         """Walk a global heap: a header of 16 bytes, objects of 16 bytes and theirs, free space."""
         size = int.from_bytes(self._at(8, place + 8), "little")
-        if not SMALLEST_HEAP <= size <= self.size - place:
+        if not MIN_HEAP <= size <= self.size - place:
             return  # HDF5 refuses it, if it is one
-        if size > MOST_HEAP:
+        if size > MAX_HEAP:
             raise OSError(f"a heap of {size} bytes")
         heap, at = self._at(size - 16, place + 16), 0
         while at + 16 <= len(heap):
@@ -145,12 +145,14 @@ class UntrustedFile:
         """A text attribute of the file."""
         where = f"{self.path}: attribute {name}"
         with _said(where):
-            self._scalar(name, where)
+            # Of what is no text, HDF5 may crash on converting it.
+            if h5py.check_string_dtype(self._scalar(name, where)) is None:
+                raise FolderError(f"{where}: should be text")
             value = self._file.attrs[name]
             if isinstance(value, bytes):
                 value = value.decode()
-            if not isinstance(value, str) or len(value) > MOST_TEXT:
-                raise FolderError(f"{where}: should be text of at most {MOST_TEXT} characters")
+            if not isinstance(value, str) or len(value) > MAX_TEXT:
+                raise FolderError(f"{where}: should be text of at most {MAX_TEXT} characters")
             value.encode()  # h5py lets through what is not UTF-8
             return value
 
@@ -173,7 +175,7 @@ class UntrustedFile:
         if name not in self._file.attrs:
             raise FolderError(f"{where}: is missing")
         found = self._file.attrs.get_id(name)
-        if found.shape != () or found.get_storage_size() > MOST_TEXT:
+        if found.shape != () or found.get_storage_size() > MAX_TEXT:
             raise FolderError(f"{where}: should be a single value")
         kind: np.dtype[Any] = found.dtype
         return kind

@@ -18,7 +18,7 @@ from radhar_cli.dataset.split import split_rows
 from radhar_cli.errors import FolderError
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.validity import draw_valid_scene
-from radhar_cli.process import prepare_process
+from radhar_cli.worker_process import prepare_process
 
 
 @dataclass

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from radhar_cli.activity import Activity, add_activity, own_activities
 from radhar_cli.errors import UnfinishedError
-from radhar_cli.process import prepare_process
+from radhar_cli.worker_process import prepare_process
 
 T = TypeVar("T")
 
@@ -80,7 +80,7 @@ def _interrupts_blocked() -> Iterator[None]:
 
 
 def _start_trackers() -> None:
-    """Start the processes that tidy up after a killed pool: first, and quiet about doing so.
+    """Start the processes that clean up after a killed pool: first, and quiet about doing so.
 
     Started later, they would unblock the signals again before the workers are there.
     """

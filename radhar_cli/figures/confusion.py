@@ -8,18 +8,18 @@ from numpy.typing import NDArray
 
 from radhar_cli.figures.page import page, png_bytes
 
-MOST_NUMBERED = 32  # classes; of more than that colours alone are drawn
+MAX_NUMBERED = 32  # classes; of more than that colours alone are drawn
 
 
 def confusion_png(counts: NDArray[np.int64], names: Sequence[str], title: str) -> bytes:
     """Draw counts [true class, predicted class]; colour and percentage are shares of a row."""
     shares = row_shares(counts)
-    side = 2.6 + 0.62 * min(len(names), MOST_NUMBERED)
+    side = 2.6 + 0.62 * min(len(names), MAX_NUMBERED)
     figure = page(side + 1.0, side)
     axes = figure.subplots()
     drawn = axes.imshow(100 * shares, cmap="Blues", vmin=0, vmax=100)
     for (row, column), count in np.ndenumerate(counts):
-        if count and len(names) <= MOST_NUMBERED:
+        if count and len(names) <= MAX_NUMBERED:
             axes.text(
                 column,
                 row,

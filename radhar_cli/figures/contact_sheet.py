@@ -10,7 +10,7 @@ from radhar_cli.arrays import Levels
 from radhar_cli.config.schema import Config
 from radhar_cli.figures.page import page
 
-MOST_SIDE = 1024  # a panel shows far fewer pixels
+MAX_SIDE = 1024  # a panel shows far fewer pixels
 
 
 class Images(Protocol):
@@ -35,7 +35,7 @@ def draw_contact_sheet(data: Images, name: str, per_class: int, path: Path) -> N
     figure = page(1.5 * columns + 1.6, 1.4 * len(present) + 0.7)
     panels = figure.subplots(len(present), columns, squeeze=False)
     image, images, extent = data.config.image, data.maps[name], data.extent(name)
-    every = tuple(slice(None, None, -(-side // MOST_SIDE)) for side in image.size_px)
+    every = tuple(slice(None, None, -(-side // MAX_SIDE)) for side in image.size_px)
     for row, label in zip(panels, present, strict=True):
         chosen = np.flatnonzero(labels == label)[:columns]
         for panel in row:

@@ -13,7 +13,7 @@ from radhar_cli.errors import FolderError
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.randomness import TRAINING, stream
 
-LEAST_PER_PROCESS = 2
+MIN_PER_PROCESS = 2
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ def epoch_batches(count: int, size: int, seed: int, epoch: int, processes: int) 
     """
     order = stream(seed, TRAINING, epoch, name="order").permutation(count)
     starts = list(range(0, count, size))
-    if len(starts) > 1 and count - starts[-1] < LEAST_PER_PROCESS * processes:
+    if len(starts) > 1 and count - starts[-1] < MIN_PER_PROCESS * processes:
         starts.pop()
     return [order[start:stop] for start, stop in zip(starts, [*starts[1:], count], strict=True)]
 

@@ -8,12 +8,12 @@ from radhar_cli.figures.robustness import Point, robustness_png
 from radhar_cli.learning.filter_weights import magnitudes, table
 from radhar_cli.learning.report_files import Report
 from radhar_cli.learning.run_folder import best_epoch
-from radhar_cli.learning.single_result import Asked, Run
+from radhar_cli.learning.single_result import EvalOptions, Run
 from radhar_cli.learning.tables import csv_text
 
 
 def compare(
-    report: Report, runs: Sequence[Run], lines: Mapping[str, Sequence[Point]], asked: Asked
+    report: Report, runs: Sequence[Run], lines: Mapping[str, Sequence[Point]], asked: EvalOptions
 ) -> None:
     """What compares runs or data sets."""
     with_history = {run.name: run.history for run in runs if run.history}

@@ -7,7 +7,7 @@ from sklearn.metrics import silhouette_score
 
 from radhar_cli.arrays import Float, Index, Levels
 
-MOST_POINTS = 2000
+MAX_POINTS = 2000
 FIRST_COMPONENTS = 50
 PERPLEXITY = 30.0
 SIDE = 64
@@ -15,7 +15,7 @@ SIDE = 64
 
 def chosen(count: int) -> Index:
     """At most 2,000 of `count` rows, evenly spread."""
-    return np.unique(np.linspace(0, count - 1, min(count, MOST_POINTS)).astype(int))
+    return np.unique(np.linspace(0, count - 1, min(count, MAX_POINTS)).astype(int))
 
 
 def shrunk(rgb: Levels) -> Float:

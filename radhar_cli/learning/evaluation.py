@@ -19,7 +19,7 @@ from radhar_cli.learning.images.image_set import ImageSet, labels_for
 from radhar_cli.learning.images.opening import is_h5, open_images
 from radhar_cli.learning.images.scan import content_hash, scan
 from radhar_cli.learning.models.build import features_and_logits
-from radhar_cli.learning.run_folder import About, RunError, load_best
+from radhar_cli.learning.run_folder import RunError, RunMetadata, load_best
 from radhar_cli.learning.settings import TrainConfig
 
 WARM_UP, REPEATS, BATCH_REPEATS = 3, 15, 5
@@ -51,7 +51,7 @@ class Predictions:
 
 
 def open_for(
-    about: About,
+    about: RunMetadata,
     path: Path,
     map_name: str | None,
     labelled: bool = True,
@@ -85,7 +85,7 @@ def open_for(
     return images
 
 
-def _map_there(about: About, path: Path) -> str | None:
+def _map_there(about: RunMetadata, path: Path) -> str | None:
     """The model's map if a data set has several; a tree of images has its own and no other.
 
     Raises:
@@ -103,14 +103,14 @@ def _map_there(about: About, path: Path) -> str | None:
         return about.map
 
 
-def _cut_as_in_training(about: About, images: ImageSet) -> ImageSet:
+def _cut_as_in_training(about: RunMetadata, images: ImageSet) -> ImageSet:
     try:
         settings = TrainConfig.model_validate(about.config)
         cut = images.cut(settings.validation_share, settings.seed)
     except FolderError:
         return images
     rows = np.concatenate([cut.rows("train"), cut.rows("val")])
-    same = content_hash(cut, rows, scan(cut, rows).prints) == about.data["hash"]
+    same = content_hash(cut, rows, scan(cut, rows).digests) == about.data["hash"]
     return cut if same else images
 
 
@@ -121,7 +121,12 @@ def rows_of(images: ImageSet, split: str) -> tuple[Index, str]:
 
 
 def answers(
-    model: nn.Module, about: About, images: ImageSet, rows: Index, device: torch.device, batch: int
+    model: nn.Module,
+    about: RunMetadata,
+    images: ImageSet,
+    rows: Index,
+    device: torch.device,
+    batch: int,
 ) -> Iterator[tuple[Float, Float]]:
     """Yield (probabilities [B, classes], features [B, F]) of rows of a set, batch by batch.
 
@@ -143,7 +148,12 @@ def answers(
 
 
 def predict(
-    model: nn.Module, about: About, images: ImageSet, rows: Index, device: torch.device, batch: int
+    model: nn.Module,
+    about: RunMetadata,
+    images: ImageSet,
+    rows: Index,
+    device: torch.device,
+    batch: int,
 ) -> Predictions:
     """Ask a model about rows of a labelled set."""
     found = list(answers(model, about, images, rows, device, batch))

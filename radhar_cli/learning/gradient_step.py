@@ -8,10 +8,10 @@ from torch import Tensor, nn
 from torch.nn.functional import cross_entropy
 
 from radhar_cli.learning.batches import Normalisation
+from radhar_cli.learning.execution_plan import ExecutionPlan
 from radhar_cli.learning.machine import autocast
-from radhar_cli.learning.processes import Group, gradients_stay
+from radhar_cli.learning.process_group import Group, no_sync
 from radhar_cli.learning.settings import TrainConfig
-from radhar_cli.learning.work import Work
 
 _ADAM = {"step", "exp_avg", "exp_avg_sq"}
 
@@ -58,32 +58,34 @@ def check_state(optimiser: torch.optim.Optimizer, stored: dict[str, Any]) -> Non
                 raise ValueError(f"the optimiser's {name} of weight {number} does not fit it")
 
 
-def logits_of(network: nn.Module, levels: Tensor, prepare: Normalisation, work: Work) -> Tensor:
+def logits_of(
+    network: nn.Module, levels: Tensor, prepare: Normalisation, plan: ExecutionPlan
+) -> Tensor:
     """Levels uint8 [B, 3, H, W] to logits float32 [B, classes]."""
-    x = prepare(levels.to(work.device, non_blocking=True))
-    with autocast(work.device, work.precision):
-        logits: Tensor = network(x.contiguous(memory_format=torch.channels_last))
+    x = prepare(levels.to(plan.device, non_blocking=True))
+    with autocast(plan.device, plan.precision):
+        logits: Tensor = network(x)
     return logits.float()
 
 
 @dataclass(frozen=True)
-class Learner:
-    """What every step of a run has in common."""
+class TrainStep:
+    """Forward pass, loss, gradient and update, as every step of a run does them."""
 
     config: TrainConfig
     prepare: Normalisation
-    work: Work
+    plan: ExecutionPlan
     group: Group
 
-    def loss_and_right(
+    def loss_and_correct(
         self, network: nn.Module, levels: Tensor, labels: Tensor
     ) -> tuple[Tensor, int]:
-        """Summed label-smoothed cross-entropy of some images, and how many are classed rightly.
+        """Sum of the label-smoothed cross-entropy, and number of correctly classified images.
 
         The target of class k is y_k (1 - zeta) + zeta/K (paper, equation of label smoothing).
         """
-        wanted = labels.to(self.work.device)
-        logits = logits_of(network, levels, self.prepare, self.work)
+        wanted = labels.to(self.plan.device)
+        logits = logits_of(network, levels, self.prepare, self.plan)
         smoothing = self.config.label_smoothing
         loss = cross_entropy(logits, wanted, label_smoothing=smoothing, reduction="sum")
         return loss, int((logits.argmax(1) == wanted).sum())
@@ -106,19 +108,19 @@ class Learner:
             whole: images of the batch, over all processes.
 
         Returns:
-            The mean loss of the share, and how many of it were right.
+            The mean loss of the share, and how many of it are classified correctly.
         """
         optimiser.zero_grad(set_to_none=True)
-        loss_sum, right = 0.0, 0
-        parts = self.work.parts(len(labels))
+        loss_sum, correct = 0.0, 0
+        parts = self.plan.parts(len(labels))
         for number, part in enumerate(parts):
-            with gradients_stay(network, self.group, last=number == len(parts) - 1):
-                loss, hits = self.loss_and_right(network, levels[part], labels[part])
+            with no_sync(network, self.group, last=number == len(parts) - 1):
+                loss, part_correct = self.loss_and_correct(network, levels[part], labels[part])
                 # Processes average their gradients: the sum over all, divided by the whole batch.
                 torch.autograd.backward(loss * (self.group.size / whole))
             loss_sum += float(loss.detach())
-            right += hits
+            correct += part_correct
         if self.config.gradient_clip_norm is not None:
             nn.utils.clip_grad_norm_(network.parameters(), self.config.gradient_clip_norm)
         optimiser.step()
-        return loss_sum / len(labels), right
+        return loss_sum / len(labels), correct

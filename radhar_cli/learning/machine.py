@@ -1,20 +1,10 @@
-"""What a machine offers: device, precision, memory."""
+"""What a machine offers: device and precision."""
 
 import os
 
 import torch
-from torch import nn
 
-from radhar_cli import process
 from radhar_cli.errors import MachineError
-
-_MEMORY_SHARE = 0.5
-_STEP_OVER_SAVED = 1.6
-
-
-def keep_memory() -> None:
-    """Keep the memory of large tensors from step to step."""
-    process.keep_memory(2**30, 2**31 - 1)
 
 
 def repeatable(device: torch.device) -> None:
@@ -67,26 +57,6 @@ def autocast(device: torch.device, precision: torch.dtype) -> torch.autocast:
     return torch.autocast(device.type, precision if lower else torch.bfloat16, enabled=lower)
 
 
-def convolutions_channels_last(model: nn.Module) -> None:
-    """Lay out the convolutions' weights channels last, which they are fastest with.
-
-    Theirs alone: four-dimensional weights of other layers mean something else.
-    """
-    for layer in model.modules():
-        if isinstance(layer, nn.Conv2d):
-            layer.weight.data = layer.weight.data.contiguous(memory_format=torch.channels_last)
-
-
-def memory_bytes(device: torch.device) -> int:
-    """The whole memory of a device: a choice made from it does not change from day to day."""
-    if device.type == "cuda":
-        return int(torch.cuda.get_device_properties(device).total_memory)
-    return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-
-
-def largest_batch(saved_per_image: int, device: torch.device, processes: int) -> int:
-    """Images that fit in half the memory, shared by the processes on this machine."""
-    shares = processes if device.type != "cuda" else 1
-    return max(
-        1, int(_MEMORY_SHARE * memory_bytes(device) / shares / (_STEP_OVER_SAVED * saved_per_image))
-    )
+def out_of_memory(error: RuntimeError) -> bool:
+    """Whether PyTorch could not allocate a tensor; on the CPU only the message says so."""
+    return isinstance(error, torch.OutOfMemoryError) or "DefaultCPUAllocator" in str(error)

@@ -12,53 +12,18 @@ from radhar_cli.arrays import Float, Index
 CALIBRATION_BINS = 15
 
 
-def wilson(right: int, count: int, confidence: float = 0.95) -> tuple[float, float]:
-    """Wilson's interval of a proportion of `right` among `count`; (0, 1) of none."""
+def wilson(correct: int, count: int, confidence: float = 0.95) -> tuple[float, float]:
+    """Wilson's interval of the proportion correct/count; (0, 1) where count is 0."""
     if count == 0:
         return 0.0, 1.0
     from scipy.stats import binomtest
 
-    interval = binomtest(right, count).proportion_ci(confidence, method="wilson")
+    interval = binomtest(correct, count).proportion_ci(confidence, method="wilson")
     return float(interval.low), float(interval.high)
-
-
-def confusion(truth: Index, predicted: Index, classes: int) -> NDArray[np.int64]:
-    """Counts [true class, predicted class]."""
-    flat = np.bincount(truth * classes + predicted, minlength=classes * classes)
-    return flat.reshape(classes, classes).astype(np.int64)
-
-
-@dataclass(frozen=True)
-class PerClass:
-    """Precision, recall and F1 [classes], each 0 where it is undefined, and images a class."""
-
-    precision: Float
-    recall: Float
-    f1: Float
-    support: NDArray[np.int64]
-
-
-def per_class(counts: NDArray[np.int64]) -> PerClass:
-    """Precision, recall and F1 of every class of a confusion matrix."""
-    right = np.diag(counts).astype(float)
-    called, there = counts.sum(0), counts.sum(1)
-    return PerClass(
-        precision=_ratio(right, called),
-        recall=_ratio(right, there),
-        f1=_ratio(2 * right, called + there),
-        support=there,
-    )
 
 
 def _ratio(above: Float, below: NDArray[np.int64]) -> Float:
     return np.divide(above, below, out=np.zeros_like(above), where=below > 0)
-
-
-def macro_f1(counts: NDArray[np.int64]) -> float:
-    """Mean F1 of the classes that occur, as truth or as prediction."""
-    found = per_class(counts)
-    occurs = (counts.sum(0) + counts.sum(1)) > 0
-    return float(found.f1[occurs].mean()) if occurs.any() else 0.0
 
 
 @dataclass(frozen=True)
@@ -83,38 +48,45 @@ def calibration(truth: Index, probabilities: Float) -> Calibration:
         truth: [N].
         probabilities: [N, classes].
     """
-    sure, right = probabilities.max(1), probabilities.argmax(1) == truth
-    bins = np.clip(np.ceil(sure * CALIBRATION_BINS).astype(int) - 1, 0, CALIBRATION_BINS - 1)
+    confidence, correct = probabilities.max(1), probabilities.argmax(1) == truth
+    bins = np.clip(np.ceil(confidence * CALIBRATION_BINS).astype(int) - 1, 0, CALIBRATION_BINS - 1)
     count = np.bincount(bins, minlength=CALIBRATION_BINS)
-    mean_sure = _ratio(np.bincount(bins, sure, CALIBRATION_BINS).astype(float), count)
-    mean_right = _ratio(np.bincount(bins, right, CALIBRATION_BINS).astype(float), count)
-    gap = float((count * np.abs(mean_right - mean_sure)).sum() / max(1, truth.size))
-    return Calibration(mean_sure, mean_right, count.astype(np.int64), gap)
+    mean_confidence = _ratio(np.bincount(bins, confidence, CALIBRATION_BINS).astype(float), count)
+    accuracy = _ratio(np.bincount(bins, correct, CALIBRATION_BINS).astype(float), count)
+    gap = float((count * np.abs(accuracy - mean_confidence)).sum() / max(1, truth.size))
+    return Calibration(mean_confidence, accuracy, count.astype(np.int64), gap)
 
 
 def summary(truth: Index, probabilities: Float, classes: Sequence[str]) -> dict[str, Any]:
-    """All of it as plain values for report.json."""
-    predicted = probabilities.argmax(1)
-    counts = confusion(truth, predicted, len(classes))
-    right, found = int(np.trace(counts)), per_class(counts)
-    low, high = wilson(right, truth.size)
-    present = found.support > 0
+    """Everything of report.json: accuracy, macro F1, calibration, per class, confusion matrix.
+
+    `confusion` is counts [true class, predicted class]. Precision, recall and F1 are 0 where they
+    are 0/0; macro F1 is the mean over classes that occur as truth or as prediction.
+    """
+    from sklearn.metrics import confusion_matrix, precision_recall_fscore_support
+
+    predicted, labels = probabilities.argmax(1), np.arange(len(classes))
+    counts = confusion_matrix(truth, predicted, labels=labels)
+    precision, recall, f1, images = precision_recall_fscore_support(
+        truth, predicted, labels=labels, zero_division=0
+    )
+    correct, occurs = int(np.trace(counts)), counts.sum(0) + counts.sum(1) > 0
     return {
         "images": int(truth.size),
-        "right": right,
-        "accuracy": right / truth.size,
-        "accuracy_95": [low, high],
-        "macro_f1": macro_f1(counts),
+        "right": correct,
+        "accuracy": correct / truth.size,
+        "accuracy_95": list(wilson(correct, truth.size)),
+        "macro_f1": float(f1[occurs].mean()),
         "calibration_error": calibration(truth, probabilities).error,
         "classes": {
             name: {
-                "precision": float(found.precision[i]),
-                "recall": float(found.recall[i]),
-                "f1": float(found.f1[i]),
-                "images": int(found.support[i]),
+                "precision": float(precision[i]),
+                "recall": float(recall[i]),
+                "f1": float(f1[i]),
+                "images": int(images[i]),
             }
             for i, name in enumerate(classes)
-            if present[i] or counts[:, i].any()
+            if occurs[i]
         },
         "confusion": counts.tolist(),
     }

@@ -12,7 +12,7 @@ from torch.nn.functional import interpolate
 
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.batches import Normalisation
-from radhar_cli.learning.run_folder import About, RunError, first_line, load_best
+from radhar_cli.learning.run_folder import RunError, RunMetadata, first_line, load_best
 
 TOLERANCE = 1e-4
 
@@ -95,7 +95,7 @@ def export(run: Path, path: Path) -> float:
     return worst
 
 
-def _pixels(images: int, about: About) -> Tensor:
+def _pixels(images: int, about: RunMetadata) -> Tensor:
     """Smooth random images, uint8 [images, 3, H, W], with the mean and spread of the training data.
 
     White noise would not do: far from what it was trained on, the network's products of branches

@@ -13,7 +13,7 @@ from radhar_cli.learning.images.folder import image_files, is_image, loose_image
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.opening import is_tree
 from radhar_cli.learning.run_files import is_run
-from radhar_cli.learning.run_folder import About, load_best
+from radhar_cli.learning.run_folder import RunMetadata, load_best
 
 BATCH = 32
 
@@ -52,7 +52,7 @@ def predict(
 
 
 def _opened(
-    about: About, path: Path, map_name: str | None, split: str, resize: bool
+    about: RunMetadata, path: Path, map_name: str | None, split: str, resize: bool
 ) -> tuple[ImageSet, Index, list[str]]:
     """Images, which of them, and what to call them."""
     if not path.exists():

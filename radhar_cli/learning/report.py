@@ -18,7 +18,7 @@ from radhar_cli.learning.report_files import Report
 from radhar_cli.learning.run_files import BEST
 from radhar_cli.learning.run_folder import best_epoch
 from radhar_cli.learning.single_result import (
-    Asked,
+    EvalOptions,
     Run,
     check_asked,
     choose,
@@ -38,7 +38,7 @@ class Progress(Protocol):
 def evaluate(
     runs: Sequence[Path],
     data: Sequence[Path],
-    asked: Asked,
+    asked: EvalOptions,
     device: torch.device,
     progress: Progress,
 ) -> Report:

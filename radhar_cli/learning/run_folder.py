@@ -46,9 +46,9 @@ _DAMAGED = (
 )
 
 
-MOST_CLASSES = 10_000
-MOST_HEADER = 2**24  # bytes
-MOST_TABLE = 2**28
+MAX_CLASSES = 10_000
+MAX_HEADER = 2**24  # bytes
+MAX_TABLE = 2**28
 Name = Annotated[str, Field(min_length=1, max_length=255)]
 Side = Annotated[int, Field(ge=1, le=2**14)]
 Spread = Annotated[float, Field(gt=0)]
@@ -77,7 +77,7 @@ class LearnedFrom(TypedDict):
     val: Annotated[int, Field(ge=0)]
 
 
-class About(Section):
+class RunMetadata(Section):
     """What a model was trained for and on; stored with its weights.
 
     Attributes:
@@ -92,7 +92,7 @@ class About(Section):
     """
 
     model: Name
-    classes: Annotated[tuple[Name, ...], Field(min_length=1, max_length=MOST_CLASSES)]
+    classes: Annotated[tuple[Name, ...], Field(min_length=1, max_length=MAX_CLASSES)]
     size: tuple[Side, Side]
     map: Annotated[Name, Field(pattern=r"^[^/\\]*[^/\\.][^/\\]*$")] | None
     input: Literal["rgb", "gray"]
@@ -154,7 +154,7 @@ def best_epoch(history: Sequence[Epoch]) -> Epoch:
     return best
 
 
-def claim_run(folder: Path, about: About, overwrite: bool) -> None:
+def claim_run(folder: Path, about: RunMetadata, overwrite: bool) -> None:
     """Make a locked folder this run's, or refuse.
 
     Raises:
@@ -165,15 +165,15 @@ def claim_run(folder: Path, about: About, overwrite: bool) -> None:
         for name in reversed(ALL):
             (folder / name).unlink(missing_ok=True)
     if not (folder / ABOUT).exists():
-        strangers = sorted(p.name for p in folder.iterdir() if p.name != WORK)
-        if strangers and not ours:
+        foreign_files = sorted(p.name for p in folder.iterdir() if p.name != WORK)
+        if foreign_files and not ours:
             raise RunError(
-                f"{folder}: holds {', '.join(strangers[:5])} but no training run; choose an empty "
-                "folder"
+                f"{folder}: holds {', '.join(foreign_files[:5])} but no training run; choose an "
+                "empty folder"
             )
         write_whole(folder, folder / ABOUT, (about.model_dump_json(indent=2) + "\n").encode())
         return
-    found = differences(read_about(folder), about)
+    found = differences(read_metadata(folder), about)
     if found:
         raise RunError(
             f"{folder}: holds another run; it differs in\n  "
@@ -182,7 +182,7 @@ def claim_run(folder: Path, about: About, overwrite: bool) -> None:
         )
 
 
-def differences(old: About, new: About) -> list[str]:
+def differences(old: RunMetadata, new: RunMetadata) -> list[str]:
     """Lines naming what keeps one run from being the other."""
     pairs = {key: (old.config.get(key), value) for key, value in new.config.items()}
     pairs |= {"data": (old.data.get("hash"), new.data.get("hash"))}
@@ -196,7 +196,7 @@ def differences(old: About, new: About) -> list[str]:
     ]
 
 
-def read_about(folder: Path) -> About:
+def read_metadata(folder: Path) -> RunMetadata:
     """What the run in a folder is about.
 
     Raises:
@@ -204,7 +204,7 @@ def read_about(folder: Path) -> About:
     """
     path = folder / ABOUT
     try:
-        return About.model_validate_json(read_bytes(path))
+        return RunMetadata.model_validate_json(read_bytes(path))
     except FileNotFoundError:
         raise RunError(f"{folder}: holds no training run ({ABOUT} is missing)") from None
     except ValidationError as error:
@@ -217,10 +217,10 @@ def _first(error: ValidationError) -> str:
 
 
 def write_trained_on(
-    folder: Path, names: Sequence[str], prints: Sequence[str], scenes: Sequence[str]
+    folder: Path, names: Sequence[str], digests: Sequence[str], scenes: Sequence[str]
 ) -> None:
     """Write which images and which scenes a run learns from."""
-    text = csv_text(("image", "pixels", "scene"), zip(names, prints, scenes, strict=True))
+    text = csv_text(("image", "pixels", "scene"), zip(names, digests, scenes, strict=True))
     write_whole(folder, folder / TRAINED_ON, text.encode("utf-8", "surrogateescape"))
 
 
@@ -238,7 +238,7 @@ def read_trained_on(folder: Path) -> tuple[set[str], set[str]]:
 
 
 def _text(path: Path) -> str:
-    return read_bytes(path, MOST_TABLE).decode("utf-8", "surrogateescape")
+    return read_bytes(path, MAX_TABLE).decode("utf-8", "surrogateescape")
 
 
 def write_history(folder: Path, history: Sequence[Epoch]) -> None:
@@ -277,14 +277,16 @@ def checked_history(history: list[Epoch]) -> list[Epoch]:
     return history
 
 
-def write_best(folder: Path, about: About, epoch: Epoch, weights: Mapping[str, Tensor]) -> None:
+def write_best(
+    folder: Path, about: RunMetadata, epoch: Epoch, weights: Mapping[str, Tensor]
+) -> None:
     """Write best.safetensors: weights, and beside them all that is needed to use them."""
     metadata = {"radhar": about.model_dump_json(), "epoch": str(epoch.epoch)}
     tensors = {name: tensor.detach().cpu().contiguous() for name, tensor in weights.items()}
     write_whole(folder, folder / BEST, safetensors_bytes(tensors, metadata))
 
 
-def load_best(folder: Path) -> tuple[About, nn.Module]:
+def load_best(folder: Path) -> tuple[RunMetadata, nn.Module]:
     """The best epoch's model, in evaluation mode on the CPU.
 
     Args:
@@ -305,7 +307,7 @@ def load_best(folder: Path) -> tuple[About, nn.Module]:
         size = regular_size(path)
         with path.open("rb") as start:
             header = int.from_bytes(start.read(8), "little")
-        if header > min(MOST_HEADER, size):
+        if header > min(MAX_HEADER, size):
             raise ValueError(f"it claims a header of {header} bytes")
         with safe_open(path, framework="pt") as file:
             return _opened(path, file)
@@ -313,13 +315,13 @@ def load_best(folder: Path) -> tuple[About, nn.Module]:
         raise RunError(f"{path}: is no safetensors file, or a truncated one ({error})") from None
 
 
-def _opened(path: Path, file: Any) -> tuple[About, nn.Module]:
+def _opened(path: Path, file: Any) -> tuple[RunMetadata, nn.Module]:
     """Read weights only after names, types and shapes are those of the network described."""
     metadata = file.metadata() or {}
     if "radhar" not in metadata:
         raise RunError(f"{path}: was not written by `radhar train`")
     try:
-        about = About.model_validate_json(metadata["radhar"])
+        about = RunMetadata.model_validate_json(metadata["radhar"])
         with torch.device("meta"):
             wanted = build_model(about.model, len(about.classes), about.size).state_dict()
         stored = {name: file.get_slice(name) for name in file.keys()}  # noqa: SIM118

@@ -10,19 +10,19 @@ from torch import nn
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.figures.curves import curves_png
 from radhar_cli.learning import run_files
+from radhar_cli.learning.execution_plan import ExecutionPlan
 from radhar_cli.learning.metrics import wilson
 from radhar_cli.learning.models.build import cost
-from radhar_cli.learning.processes import Group
-from radhar_cli.learning.run_folder import About, Epoch, best_epoch
-from radhar_cli.learning.work import Work
+from radhar_cli.learning.process_group import Group
+from radhar_cli.learning.run_folder import Epoch, RunMetadata, best_epoch
 
 
 def write_run_summary(
     folder: Path,
-    about: About,
+    about: RunMetadata,
     history: Sequence[Epoch],
     model: nn.Module,
-    work: Work,
+    plan: ExecutionPlan,
     group: Group,
 ) -> None:
     """Write metrics.json, summary.txt and curves.png of a finished run."""
@@ -46,12 +46,12 @@ def write_run_summary(
         "data": about.data,
         "config": about.config,
         "versions": about.versions,
-        "device": work.device.type,
-        "precision": work.described,
+        "device": plan.device.type,
+        "precision": plan.precision_name,
         "threads": torch.get_num_threads(),
         "processes": group.size,
-        "micro_batch": work.micro_batch,
-        "gradient_accumulation": len(work.parts(share)),
+        "micro_batch": plan.micro_batch,
+        "gradient_accumulation": len(plan.parts(share)),
     }
     series = {folder.name or str(folder): history}
     write_whole(folder, folder / run_files.CURVES, curves_png(series, {folder.name: best.epoch}))

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import torch
+from sklearn.metrics import confusion_matrix
 from torch import nn
 
 from radhar_cli.activity import ACTIVITIES
@@ -22,22 +23,22 @@ from radhar_cli.learning.images.scan import scan
 from radhar_cli.learning.models.fftnet import NAME
 from radhar_cli.learning.report_files import Report
 from radhar_cli.learning.run_folder import (
-    About,
     Epoch,
     RunError,
+    RunMetadata,
     load_best,
     read_history,
     read_trained_on,
 )
 from radhar_cli.learning.tables import confusion_csv, csv_text
 
-MOST_MISTAKES = 12
-LEAST_EMBEDDED = 2
+MAX_MISTAKES = 12
+MIN_EMBEDDED = 2
 GROUPS = ("in place", "moving")
 
 
 @dataclass(frozen=True)
-class Asked:
+class EvalOptions:
     """What the user wants besides the numbers."""
 
     split: str = "val"
@@ -54,13 +55,13 @@ class Asked:
 class Run:
     name: str
     folder: Path
-    about: About
+    about: RunMetadata
     model: nn.Module
     history: list[Epoch]
 
 
 @dataclass(frozen=True)
-class Chosen:
+class EvalSet:
     """Images of a data set that a run is asked about: their rows, and the name of that split."""
 
     images: ImageSet
@@ -68,17 +69,17 @@ class Chosen:
     split: str
 
 
-def choose(run: Run, path: Path, asked: Asked) -> Chosen:
+def choose(run: Run, path: Path, asked: EvalOptions) -> EvalSet:
     """Open a data set for a run.
 
     Raises:
         FolderError: it does not fit the run.
     """
     images = open_for(run.about, path, asked.map, resize=asked.resize, names=asked.names)
-    return Chosen(images, *rows_of(images, asked.split))
+    return EvalSet(images, *rows_of(images, asked.split))
 
 
-def check_asked(runs: Sequence[Run], asked: Asked) -> None:
+def check_asked(runs: Sequence[Run], asked: EvalOptions) -> None:
     """Refuse what cannot be drawn, before anything is computed.
 
     Raises:
@@ -110,9 +111,9 @@ def evaluate_one(
     report: Report,
     run: Run,
     data_name: str,
-    ask: Chosen,
+    ask: EvalSet,
     stem: str,
-    asked: Asked,
+    asked: EvalOptions,
     device: torch.device,
 ) -> tuple[Predictions, dict[str, Any]]:
     images, rows, split = ask.images, ask.rows, ask.split
@@ -154,9 +155,9 @@ def _seen(run: Run, images: ImageSet, rows: Index) -> dict[str, int]:
     """How many of the evaluated images, and of the scenes behind them, were trained on."""
     folder = run.folder if run.folder.is_dir() else run.folder.parent
     pixels, scenes = read_trained_on(folder)
-    prints = scan(images, rows).prints if pixels else ()
+    digests = scan(images, rows).digests if pixels else ()
     return {
-        "images": sum(p in pixels for p in prints),
+        "images": sum(p in pixels for p in digests),
         "scenes": sum(images.scenes[row] in scenes for row in rows) if images.scenes else 0,
     }
 
@@ -193,7 +194,7 @@ def _in_place_vs_moving(
     """The paper's two groups: S1 to S7 against S8 to S12."""
     moving = {activity.slug: activity.walks for activity in ACTIVITIES}
     group = np.array([int(moving[name]) for name in names])
-    counts = metrics.confusion(group[answers.truth], group[answers.predicted], 2)
+    counts = confusion_matrix(group[answers.truth], group[answers.predicted], labels=[0, 1])
     numbers["in_place_vs_moving"] = counts.tolist()
     share = 100 * np.trace(counts) / max(1, counts.sum())
     report.figure(
@@ -210,10 +211,10 @@ def _mistakes(
     """The surest mistakes, or the least sure right answers where there are none."""
     sure, wrong = answers.probabilities.max(1), answers.predicted != answers.truth
     order = np.argsort(-sure, kind="stable")
-    chosen = order[wrong[order]][:MOST_MISTAKES]
+    chosen = order[wrong[order]][:MAX_MISTAKES]
     what = "The mistakes it is surest of"
     if not chosen.size:
-        chosen, what = order[::-1][: MOST_MISTAKES // 3], "No mistakes; the least sure answers"
+        chosen, what = order[::-1][: MAX_MISTAKES // 3], "No mistakes; the least sure answers"
     images = [answers.images.pixels.read(int(answers.rows[i])) for i in chosen]
     captions = [
         f"{_plain(names[int(answers.truth[i])])}\n-> "
@@ -246,8 +247,8 @@ def _tsne(
 ) -> None:
     from radhar_cli.learning.embedding import chosen, embed, separation, shrunk
 
-    if answers.rows.size < LEAST_EMBEDDED:
-        raise RunError(f"--tsne: needs at least {LEAST_EMBEDDED} images; there is one")
+    if answers.rows.size < MIN_EMBEDDED:
+        raise RunError(f"--tsne: needs at least {MIN_EMBEDDED} images; there is one")
     picked = chosen(answers.rows.size)
     maps = np.stack([shrunk(answers.images.pixels.read(int(answers.rows[i]))) for i in picked])
     features, label = answers.features[picked], answers.truth[picked]

@@ -19,33 +19,28 @@ from radhar_cli.dataset.folder import locked
 from radhar_cli.errors import ConfigError, FolderError, RadharError
 from radhar_cli.learning import run_files
 from radhar_cli.learning import run_folder as run
-from radhar_cli.learning.batches import LEAST_PER_PROCESS, Reader, epoch_batches, pieces
-from radhar_cli.learning.gradient_step import Learner, check_state, optimiser_for
+from radhar_cli.learning.batches import MIN_PER_PROCESS, Reader, epoch_batches, pieces
+from radhar_cli.learning.execution_plan import ExecutionPlan, choose_execution_plan
+from radhar_cli.learning.gradient_step import TrainStep, check_state, optimiser_for
 from radhar_cli.learning.images.classes import renamed
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.scan import content_hash, scan
-from radhar_cli.learning.machine import (
-    choose_device,
-    convolutions_channels_last,
-    keep_memory,
-    repeatable,
-)
+from radhar_cli.learning.machine import choose_device, out_of_memory, repeatable
 from radhar_cli.learning.models.build import build_model
-from radhar_cli.learning.processes import (
+from radhar_cli.learning.process_group import (
     Group,
+    all_reduce_sum,
+    barrier,
+    broadcast_buffers,
     distributed,
-    first_does,
-    joined,
-    share_buffers,
-    summed,
-    together,
+    on_rank_zero,
+    process_group,
 )
-from radhar_cli.learning.run_folder import About, Epoch, best_epoch
+from radhar_cli.learning.run_folder import Epoch, RunMetadata, best_epoch
 from radhar_cli.learning.run_summary import write_run_summary
 from radhar_cli.learning.schedule import rate
 from radhar_cli.learning.settings import TrainConfig
-from radhar_cli.learning.work import Work, choose_work
 from radhar_cli.randomness import TRAINING, stream
 
 # Where the work is done does not decide what is learned; precision and micro batch do, as chosen.
@@ -111,13 +106,12 @@ def train(
         ModelError, MachineError: a network or a device that cannot be had.
         TrainingError: the loss is not finite; earlier checkpoints are kept.
     """
-    keep_memory()
     if config.threads != "auto":
         torch.set_num_threads(config.threads)
     device = choose_device(config.device)
     repeatable(device)
     images = checked_images(config, data, names)
-    with joined(device) as group, locked(folder) if group.leads else nullcontext():
+    with process_group(device) as group, locked(folder) if group.is_main else nullcontext():
         return _Training.prepared(
             config, images, data, folder, device, group, progress, overwrite
         ).run()
@@ -147,9 +141,9 @@ def checked_images(
 class _Training:
     config: TrainConfig
     images: ImageSet
-    about: About
+    about: RunMetadata
     folder: Path
-    work: Work
+    plan: ExecutionPlan
     group: Group
     progress: Progress
     model: nn.Module
@@ -168,7 +162,7 @@ class _Training:
         progress: Progress,
         overwrite: bool,
     ) -> "_Training":
-        least = LEAST_PER_PROCESS * group.size
+        least = MIN_PER_PROCESS * group.size
         if config.batch_size < least:
             raise ConfigError(
                 f"batch_size = {config.batch_size}: should be at least {least} for {group.size} "
@@ -176,25 +170,25 @@ class _Training:
             )
         torch.manual_seed(config.seed)
         model = build_model(config.model, len(images.classes), images.size)
-        work = choose_work(config, model, images.size, device, group)
-        if group.leads:
+        plan = choose_execution_plan(config, device)
+        if group.is_main:
             progress.say(f"reading {len(images)} images of {len(images.classes)} classes")
             for warning in _unbalanced(images):
                 progress.say(f"warning: {warning}")
-        about, prints = _about(config, images, data, work, group)
+        about, digests = _metadata(config, images, data, plan, group)
 
         def claim() -> None:
             run.claim_run(folder, about, overwrite)
-            _write_trained_on(folder, images, prints)
+            _write_trained_on(folder, images, digests)
 
-        first_does(group, claim)
-        convolutions_channels_last(model.to(device))
+        on_rank_zero(group, claim)
+        model.to(device)
         return cls(
             config=config,
             images=images,
             about=about,
             folder=folder,
-            work=work,
+            plan=plan,
             group=group,
             progress=progress,
             model=model,
@@ -203,32 +197,46 @@ class _Training:
         )
 
     def run(self) -> Outcome:
+        try:
+            return self._run()
+        except RuntimeError as error:
+            if not out_of_memory(error):
+                raise
+            share = -(-self.config.batch_size // self.group.size)
+            micro_batch = min(self.plan.micro_batch, share)
+            raise TrainingError(
+                f"micro_batch = {micro_batch}: out of memory on {self.plan.device.type}; "
+                f"--set micro_batch={max(2, micro_batch // 2)} needs about half "
+                f"({run.first_line(error)})"
+            ) from None
+
+    def _run(self) -> Outcome:
         went_on = self._restore()
-        if self.group.leads:
+        if self.group.is_main:
             self._announce(went_on)
-        network = distributed(self.model, self.work.device, self.group)
+        network = distributed(self.model, self.plan.device, self.group)
         reader = Reader(
-            self.images, self.images.label, self.work.workers, self.work.device.type == "cuda"
+            self.images, self.images.label, self.plan.workers, self.plan.device.type == "cuda"
         )
         for epoch in range(went_on, self.config.epochs):
             began = time.perf_counter()
             torch.manual_seed(self._epoch_seed(epoch))
             learned = self._learn(network, reader, epoch)
             seen = self._validate(reader, epoch)
-            if self.group.leads:
+            if self.group.is_main:
                 self._keep(epoch, learned, seen, time.perf_counter() - began)
             else:
                 self.history.append(_row(epoch, 0.0, learned, seen, 0.0))
-        if self.group.leads:
+        if self.group.is_main:
             run.write_history(self.folder, self.history)
             if went_on < self.config.epochs or not (self.folder / run_files.METRICS).exists():
                 self._finish()
-        together(self.group)
+        barrier(self.group)
         return Outcome(self.folder, self.history, went_on)
 
     @property
-    def _learner(self) -> Learner:
-        return Learner(self.config, self.about.normalisation, self.work, self.group)
+    def _train_step(self) -> TrainStep:
+        return TrainStep(self.config, self.about.normalisation, self.plan, self.group)
 
     def _restore(self) -> int:
         found = run.read_last(self.folder)
@@ -236,7 +244,7 @@ class _Training:
             return 0
         path = self.folder / run_files.LAST
         try:
-            other = run.differences(About.model_validate_json(found["about"]), self.about)
+            other = run.differences(RunMetadata.model_validate_json(found["about"]), self.about)
             if other:
                 raise run.RunError(f"{path}: is another run's; it differs in {other[0]}")
             self.history = run.checked_history([Epoch(**row) for row in found["history"]])
@@ -258,7 +266,7 @@ class _Training:
                 f"{path}: does not fit this run ({run.first_line(error)}); --overwrite starts it "
                 "again"
             ) from None
-        first_does(self.group, self._look_after_best)
+        on_rank_zero(self.group, self._look_after_best)
         return len(self.history)
 
     def _look_after_best(self) -> None:
@@ -279,18 +287,18 @@ class _Training:
             run.write_best(self.folder, self.about, best, self.model.state_dict())
 
     def _announce(self, went_on: int) -> None:
-        work, say, size = self.work, self.progress.say, self.config.batch_size
+        plan, say, size = self.plan, self.progress.say, self.config.batch_size
         if went_on:
             say(f"going on: {went_on} of {self.config.epochs} epochs are done")
         share = -(-size // self.group.size)
-        precision = work.described
+        precision = plan.precision_name
         many = f", {self.group.size} processes" if self.group.size > 1 else ""
-        say(f"on {work.device.type}{many}, {precision}, {torch.get_num_threads()} threads")
-        parts = len(work.parts(share))
+        say(f"on {plan.device.type}{many}, {precision}, {torch.get_num_threads()} threads")
+        parts = len(plan.parts(share))
         if parts > 1:
             say(
                 f"a batch of {size} goes in {parts} parts a process, of at most "
-                f"{work.micro_batch}: gradients are summed, but batch norm sees one part at a "
+                f"{plan.micro_batch}: gradients are summed, but batch norm sees one part at a "
                 f"time, so this is not the same as a batch of {size}"
             )
 
@@ -304,11 +312,11 @@ class _Training:
         rows = self.images.rows("train")
         config, group = self.config, self.group
         batches = epoch_batches(rows.size, config.batch_size, config.seed, epoch, group.size)
-        if group.leads:
+        if group.is_main:
             self.progress.epoch(epoch + 1, config.epochs, len(batches))
         mine = [rows[batch[group.rank :: group.size]] for batch in batches]
         network.train()
-        learner = self._learner
+        learner = self._train_step
         totals: Float = np.zeros(3)
         for step, (levels, labels) in enumerate(reader(mine)):
             learning_rate = rate(config, epoch, step, len(batches))
@@ -316,28 +324,28 @@ class _Training:
                 parameters["lr"] = learning_rate
             loss, right = learner.step(network, self.optimiser, levels, labels, batches[step].size)
             # The sum: where one process fails, all should say so.
-            if not math.isfinite(summed(np.array([loss]), group)[0]):
+            if not math.isfinite(all_reduce_sum(np.array([loss]), group)[0]):
                 raise TrainingError(self._not_finite(f"epoch {epoch + 1}, step {step + 1}", loss))
             totals += (loss * len(labels), right, len(labels))
-            if group.leads:
+            if group.is_main:
                 self.progress.step(loss, totals[1] / totals[2])
-        totals = summed(totals, group)
+        totals = all_reduce_sum(totals, group)
         return totals[0] / totals[2], totals[1] / totals[2]
 
     def _validate(self, reader: Reader, epoch: int) -> tuple[float, float]:
         """Mean loss and accuracy over the validation images, shared by the processes."""
         group = self.group
-        share_buffers(self.model, group)
+        broadcast_buffers(self.model, group)
         rows = self.images.rows("val")
         mine = rows[group.rank :: group.size]
-        size = min(self.config.batch_size, self.work.micro_batch)
+        size = min(self.config.batch_size, self.plan.micro_batch)
         self.model.eval()
         totals: Float = np.zeros(3)
         with torch.no_grad():
             for levels, labels in reader(pieces(mine, size)):
-                loss, right = self._learner.loss_and_right(self.model, levels, labels)
+                loss, right = self._train_step.loss_and_correct(self.model, levels, labels)
                 totals += (float(loss), right, len(labels))
-        totals = summed(totals, group)
+        totals = all_reduce_sum(totals, group)
         if not math.isfinite(totals[0]):
             raise TrainingError(self._not_finite(f"validation of epoch {epoch + 1}", totals[0]))
         return totals[0] / totals[2], totals[1] / totals[2]
@@ -377,19 +385,19 @@ class _Training:
         self.progress.epoch_done(row, best)
 
     def _finish(self) -> None:
-        write_run_summary(self.folder, self.about, self.history, self.model, self.work, self.group)
+        write_run_summary(self.folder, self.about, self.history, self.model, self.plan, self.group)
 
 
-def _about(
-    config: TrainConfig, images: ImageSet, data: Path, work: Work, group: Group
-) -> tuple[About, dict[int, str]]:
+def _metadata(
+    config: TrainConfig, images: ImageSet, data: Path, plan: ExecutionPlan, group: Group
+) -> tuple[RunMetadata, dict[int, str]]:
     """What the run is about, and the fingerprint of every image it looked at, by row."""
     rows = np.concatenate([images.rows("train"), images.rows("val")])
     learned, checked = scan(images, images.rows("train")), scan(images, images.rows("val"))
-    prints = (*learned.prints, *checked.prints)
+    digests = (*learned.digests, *checked.digests)
     mean, sd = learned.mean, learned.sd
     kept = {k: v for k, v in resolved(config).items() if k not in NOT_IDENTITY}
-    about = About(
+    about = RunMetadata(
         model=config.model,
         classes=images.classes,
         size=images.size,
@@ -400,26 +408,26 @@ def _about(
         config=kept,
         data={
             "path": str(data),
-            "hash": content_hash(images, rows, prints),
-            "train": len(learned.prints),
-            "val": len(checked.prints),
+            "hash": content_hash(images, rows, digests),
+            "train": len(learned.digests),
+            "val": len(checked.digests),
         },
         work={
-            "precision": work.described,
-            "micro_batch": work.micro_batch,
+            "precision": plan.precision_name,
+            "micro_batch": plan.micro_batch,
             "processes": group.size,
         },
         versions={"radhar": __version__, "torch": torch.__version__, "numpy": np.__version__},
     )
-    return about, dict(zip(rows.tolist(), prints, strict=True))
+    return about, dict(zip(rows.tolist(), digests, strict=True))
 
 
-def _write_trained_on(folder: Path, images: ImageSet, prints: dict[int, str]) -> None:
+def _write_trained_on(folder: Path, images: ImageSet, digests: dict[int, str]) -> None:
     rows = images.rows("train").tolist()
     run.write_trained_on(
         folder,
         [images.names[row] for row in rows],
-        [prints[row] for row in rows],
+        [digests[row] for row in rows],
         [images.scenes[row] if images.scenes else "" for row in rows],
     )
 

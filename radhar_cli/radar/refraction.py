@@ -23,7 +23,7 @@ from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 MISSES_BY = 8 * np.finfo(float).eps
 # Newton gains a factor of 3/2 in t a step, or more, until it converges quadratically. Slowest is
 # rho = d/sqrt(n^2 - 1) as a + b vanishes: 19 steps for 1e-9 m, 24 for 1e-12 m; 3 are usual.
-MOST_STEPS = 64
+MAX_STEPS = 64
 
 
 class Bent(NamedTuple):
@@ -103,7 +103,7 @@ def outside_tangent(outside: Float, depth: Float, offset: Float, n: float) -> Fl
     """
     t: Float = offset / (outside + depth / n)
     open_ = np.arange(t.size)
-    for _ in range(MOST_STEPS):
+    for _ in range(MAX_STEPS):
         a, d, rho, x = outside[open_], depth[open_], offset[open_], t[open_]
         q = _q(x, n)
         short = rho - (a * x + d * x / q)

@@ -13,7 +13,7 @@ MATTERS_DB, SLIGHT_DB = -10.0, -40.0
 # Of a time, as a share.
 QUIET = 0.1
 # Fewer training seeds are a smoke run.
-LEAST_SEEDS = 3
+MIN_SEEDS = 3
 
 
 def advice(records: Sequence[Mapping[str, Any]], accuracies: Sequence[Accuracy]) -> list[str]:
@@ -136,7 +136,7 @@ def _about_budgets(accuracies: Sequence[Accuracy]) -> list[str]:
     """Whether a network notices the engine's error."""
     engines = [a for a in accuracies if a.name.endswith(" dB") or a.name == "cube"]
     exact = next((a for a in engines if a.name == "cube"), None)
-    if exact is None or len(exact.seeds) < LEAST_SEEDS:
+    if exact is None or len(exact.seeds) < MIN_SEEDS:
         return []
     low, high = BAND
     if not low <= exact.mean <= high:
@@ -162,7 +162,7 @@ def _about_physics(accuracies: Sequence[Accuracy]) -> list[str]:
     for name, proper in named.items():
         switch = name.removeprefix("with ")
         without = named.get(f"without {switch}, tested with it")
-        if switch == name or without is None or len(proper.seeds) < LEAST_SEEDS:
+        if switch == name or without is None or len(proper.seeds) < MIN_SEEDS:
             continue
         costs = "costs" if without.high < proper.low else "shows no sure loss:"
         said.append(

@@ -25,10 +25,11 @@ def claim(folder: Path, config: Config, overwrite: bool) -> None:
     old = checked_identity(read_json(path), path) if path.exists() else None
     new = {"keys": identity(config)["keys"], "versions": identity(config)["versions"]}
     if old is None:
-        strangers = sorted(p.name for p in folder.iterdir() if p.name != WORK)
-        if strangers:
+        foreign_files = sorted(p.name for p in folder.iterdir() if p.name != WORK)
+        if foreign_files:
             raise FolderError(
-                f"{folder}: holds {', '.join(strangers[:5])} but no sweep; choose an empty folder"
+                f"{folder}: holds {', '.join(foreign_files[:5])} but no sweep; choose an empty "
+                "folder"
             )
     elif overwrite:
         for part in ("measured", "accuracy"):

@@ -11,7 +11,7 @@ from typing import Any
 from radhar_cli.dataset.build import Progress
 from radhar_cli.errors import RadharError
 from radhar_cli.tradeoff.differences import SceneDifferences
-from radhar_cli.tradeoff.ledger import Ledger
+from radhar_cli.tradeoff.result_cache import ResultCache
 from radhar_cli.tradeoff.scenes import Scenes
 from radhar_cli.tradeoff.settings import Setting, sweep
 from radhar_cli.tradeoff.timing import Times, time_setting
@@ -67,7 +67,7 @@ class Row:
         return [row["refused"] for row in self.differences.values() if "refused" in row]
 
 
-def run_sweep(scenes: Scenes, ledger: Ledger, progress: Progress) -> list[Row]:
+def run_sweep(scenes: Scenes, ledger: ResultCache, progress: Progress) -> list[Row]:
     """Measure what has not been measured yet; return all rows."""
     rows = [Row(setting) for setting in _possible(scenes, progress)]
     _differences(scenes, rows, ledger, progress)
@@ -89,7 +89,9 @@ def _possible(scenes: Scenes, progress: Progress) -> list[Setting]:
     return found
 
 
-def _differences(scenes: Scenes, rows: Sequence[Row], ledger: Ledger, progress: Progress) -> None:
+def _differences(
+    scenes: Scenes, rows: Sequence[Row], ledger: ResultCache, progress: Progress
+) -> None:
     names = scenes.names()
     progress.stage("errors", len(names) * len(rows), 0)
     for slug in names:
@@ -109,7 +111,7 @@ def _of(scene: SceneDifferences, row: Row) -> dict[str, Any]:
         return {"refused": str(error)}
 
 
-def _times(scenes: Scenes, rows: Sequence[Row], ledger: Ledger, progress: Progress) -> None:
+def _times(scenes: Scenes, rows: Sequence[Row], ledger: ResultCache, progress: Progress) -> None:
     rounds, names = ROUNDS[scenes.quick], " ".join(scenes.names())
     possible = [row for row in rows if not row.refused]
     progress.stage("times", rounds * len(possible), 0)
@@ -121,7 +123,7 @@ def _times(scenes: Scenes, rows: Sequence[Row], ledger: Ledger, progress: Progre
             progress.advance(1)
 
 
-def _once(ledger: Ledger, key: str, measure: Callable[[], Any], kind: Any) -> Any:
+def _once(ledger: ResultCache, key: str, measure: Callable[[], Any], kind: Any) -> Any:
     found = ledger.get(key, kind)
     if found is None:
         found = measure()

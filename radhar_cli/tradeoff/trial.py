@@ -16,7 +16,7 @@ from radhar_cli.config import load_config
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.build import Progress, build
 from radhar_cli.dataset.identity import identity
-from radhar_cli.tradeoff.ledger import Ledger
+from radhar_cli.tradeoff.result_cache import ResultCache
 
 if TYPE_CHECKING:
     from radhar_cli.learning.run_folder import Epoch
@@ -72,7 +72,7 @@ class Bench:
 
     config: Path
     folder: Path
-    ledger: Ledger
+    ledger: ResultCache
     progress: Progress
     jobs: int = 1
     effort: Effort = FULL

@@ -127,8 +127,10 @@ def test_pngs_can_be_added_later_and_lost_ones_come_back(
     }
     lost = folder / next(k for k in right if k.endswith("walking/00001.png"))
     lost.unlink()
-    make(config, folder)
-    assert lost.exists()
+    for other in ("1.png", "0000\N{ARABIC-INDIC DIGIT ONE}.png", "00001.jpg", "99999.png"):
+        (lost.parent / other).write_text("mine")
+    assert make(config, folder).pngs == 3, "the row's images of all maps"
+    assert fingerprint(folder).items() >= {k: right[k] for k in right if k[:3] == "png"}.items()
 
 
 def test_overwrite_starts_again_and_keeps_strangers(

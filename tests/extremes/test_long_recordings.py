@@ -28,7 +28,7 @@ from radhar_cli.config import Config
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.run import run
 from radhar_cli.pipeline.validity import draw_valid_scene
-from radhar_cli.process import prepare_process
+from radhar_cli.worker_process import prepare_process
 
 prepare_process()
 config = Config.model_validate(json.loads(sys.argv[1]))

@@ -9,7 +9,6 @@ import pytest
 
 from radhar_cli.config import Config
 from radhar_cli.config.reading import validated
-from radhar_cli.config.schema import MODEL_DEFAULTS
 from radhar_cli.errors import ConfigError
 
 # key: (least, most) that is taken, then (too little, too much); None where there is no such side.
@@ -154,10 +153,16 @@ def test_every_number_of_a_scene_is_held_to_its_range_in_every_form() -> None:
 
 
 FFTS = ("processing.range_fft_length", "processing.stft_fft_length", "processing.fsst_hop_pulses")
-BY_MODEL = [
-    f"{section}.{name}" for section, values in MODEL_DEFAULTS["paper"].items() for name in values
-]
-NULLABLE = ("snr_db", "subject.weight_kg", *FFTS, *BY_MODEL)
+# Null takes what the model of motion has.
+OF_THE_MODEL = (
+    "motion.speed_mps",
+    "timing.seat_duration_s",
+    "timing.rise_duration_s",
+    "timing.walk_start_s",
+    "timing.sit_duration_s",
+    "timing.fall_duration_s",
+)
+NULLABLE = ("snr_db", "subject.weight_kg", *OF_THE_MODEL, *FFTS)
 
 
 def spoilt(key: str, value: Any) -> dict[str, Any]:

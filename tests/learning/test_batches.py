@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import settings as examples
 from hypothesis import strategies as st
 
-from radhar_cli.learning.batches import LEAST_PER_PROCESS, Normalisation, Reader, epoch_batches
+from radhar_cli.learning.batches import MIN_PER_PROCESS, Normalisation, Reader, epoch_batches
 from radhar_cli.learning.images.opening import open_images
 
 
@@ -23,7 +23,7 @@ def test_every_image_exactly_once(count: int, size: int, processes: int, epoch: 
     batches = epoch_batches(count, size, 3, epoch, processes)
     assert sorted(np.concatenate(batches).tolist()) == list(range(count))
     assert all(batch.size == size for batch in batches[:-1])
-    assert 0 < batches[-1].size < size + LEAST_PER_PROCESS * processes
+    assert 0 < batches[-1].size < size + MIN_PER_PROCESS * processes
 
 
 @examples(max_examples=300)
@@ -32,7 +32,7 @@ def test_no_process_gets_less_than_two_images_of_a_batch(
     count: int, size: int, processes: int
 ) -> None:
     """Where there are enough images and the batch is large enough for it."""
-    if min(count, size) < LEAST_PER_PROCESS * processes:
+    if min(count, size) < MIN_PER_PROCESS * processes:
         return
     for batch in epoch_batches(count, size, 3, 0, processes):
         shares = [batch[rank::processes].size for rank in range(processes)]

@@ -24,8 +24,8 @@ import numpy as np, torch, torch.distributed as dist
 sys.path[:0] = [sys.argv[1], str(Path(sys.argv[1]).parent)]
 from learning.patterns import Watched, settings
 from radhar_cli.learning.batches import Reader
-from radhar_cli.learning.gradient_step import Learner
-from radhar_cli.learning.processes import Group, distributed, joined
+from radhar_cli.learning.gradient_step import TrainStep
+from radhar_cli.learning.process_group import Group, distributed, process_group
 from radhar_cli.learning.training import _Training, checked_images, train
 
 data, out, answer = map(Path, sys.argv[2:])
@@ -38,11 +38,11 @@ def gradients(model):
 def worst(ours, theirs):
     return max(float((a - b).norm() / (b.norm() + 1e-7)) for a, b in zip(ours, theirs))
 
-with joined(cpu) as group:
+with process_group(cpu) as group:
     for name, micro_batch, count in (("whole", 8, 8), ("parts", 2, 8), ("uneven", 8, 7)):
         config = settings(batch_size=8, micro_batch=micro_batch, optimiser="sgd")
         place = out / name
-        if group.leads:
+        if group.is_main:
             place.mkdir(parents=True)
         dist.barrier()
         images = checked_images(config, data)
@@ -56,15 +56,16 @@ with joined(cpu) as group:
         alone = copy.copy(work)
         alone.group, alone.model = Group(), copy.deepcopy(fresh)
         alone.optimiser = torch.optim.SGD(alone.model.parameters(), 1e-3)
-        work._learner.step(network.eval(), work.optimiser, levels[mine], labels[mine], count)
-        alone._learner.step(alone.model.eval(), alone.optimiser, levels, labels, count)
+        work._train_step.step(network.eval(), work.optimiser, levels[mine], labels[mine], count)
+        alone._train_step.step(alone.model.eval(), alone.optimiser, levels, labels, count)
         errors[f"{name} evaluation"] = worst(gradients(work.model), gradients(alone.model))
         if name == "whole":  # with batch norm at work: the average of the processes' own
             work.model.load_state_dict(fresh.state_dict())
             alone.model.load_state_dict(fresh.state_dict())
-            work._learner.step(network.train(), work.optimiser, levels[mine], labels[mine], count)
+            step = work._train_step.step
+            step(network.train(), work.optimiser, levels[mine], labels[mine], count)
             share = levels[mine], labels[mine], len(labels[mine])
-            alone._learner.step(alone.model.train(), alone.optimiser, *share)
+            alone._train_step.step(alone.model.train(), alone.optimiser, *share)
             average = gradients(alone.model)
             for gradient in average:
                 dist.all_reduce(gradient)
@@ -74,11 +75,11 @@ with joined(cpu) as group:
     def look(self, network, optimiser, levels, labels, whole):
         seen.append([whole, [hash(image.numpy().tobytes()) for image in levels]])
         return 0.0, 0
-    Learner.step = look
+    TrainStep.step = look
     work._learn(network, Reader(work.images, work.images.label, 0, False), 0)
     everyone = [None] * group.size
     dist.all_gather_object(everyone, seen)
-    if group.leads:
+    if group.is_main:
         answer.write_text(json.dumps({"errors": errors, "seen": everyone}))
     dist.barrier()
 """
@@ -132,7 +133,7 @@ def test_two_processes_leave_one_set_of_files_and_go_on(
     assert [row.epoch for row in history] == [1, 2, 3]
     for row in history:  # shared between the processes, and every image counted once
         assert 6 * row.val_accuracy == pytest.approx(round(6 * row.val_accuracy), abs=1e-9)
-    assert run.load_best(out)[0].config == run.read_about(out).config
+    assert run.load_best(out)[0].config == run.read_metadata(out).config
     assert list(last_weights(out)) == list(build_model("smallnet", 3, (32, 32)).state_dict())
     with pytest.raises(RunError) as caught:
         trained(data, out)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from radhar_cli.learning.embedding import MOST_POINTS, chosen, embed, separation, shrunk
+from radhar_cli.learning.embedding import MAX_POINTS, chosen, embed, separation, shrunk
 
 
 @given(st.integers(1, 10_000))
@@ -13,7 +13,7 @@ def test_chosen_rows_are_distinct_spread_and_few(count: int) -> None:
     rows = chosen(count)
     assert rows[0] == 0
     assert rows[-1] == count - 1
-    assert rows.size == min(count, MOST_POINTS) or count == 1
+    assert rows.size == min(count, MAX_POINTS) or count == 1
     assert (np.diff(rows) > 0).all()
 
 

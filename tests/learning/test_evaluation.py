@@ -24,7 +24,7 @@ from radhar_cli.learning.report import evaluate
 from radhar_cli.learning.report_files import Report
 from radhar_cli.learning.run_files import BEST, TRAINED_ON
 from radhar_cli.learning.run_folder import load_best
-from radhar_cli.learning.single_result import Asked
+from radhar_cli.learning.single_result import EvalOptions
 
 CPU = torch.device("cpu")
 
@@ -53,7 +53,7 @@ def asked(
     ears = Ears()
     places = learned[1] if data is None else data
     places = places if isinstance(places, list) else [places]
-    return evaluate([learned[0]], places, Asked(**more), CPU, ears), ears
+    return evaluate([learned[0]], places, EvalOptions(**more), CPU, ears), ears
 
 
 def only(report: Report) -> dict[str, Any]:
@@ -156,7 +156,7 @@ def test_several_runs_overlay_their_curves(
     monkeypatch.setattr(
         module, "curves_png", lambda series, best: drawn.append(list(series)) or draw(series, best)
     )
-    report = evaluate([learned[0], run_dir], [learned[1]], Asked(), CPU, Ears())
+    report = evaluate([learned[0], run_dir], [learned[1]], EvalOptions(), CPU, Ears())
     assert drawn == [["good", "plain"]]
     assert list(report.numbers["runs"]) == ["good", "plain"]
     assert not any(name == "robustness.png" for name, _, _ in report.figures)
@@ -166,7 +166,7 @@ def test_weights_alone_are_evaluated_without_curves(
     learned: tuple[Path, Path], tmp_path: Path
 ) -> None:
     shutil.copy(learned[0] / BEST, tmp_path / "model.safetensors")
-    report = evaluate([tmp_path / "model.safetensors"], [learned[1]], Asked(), CPU, Ears())
+    report = evaluate([tmp_path / "model.safetensors"], [learned[1]], EvalOptions(), CPU, Ears())
     assert only(report)["accuracy"] == 1.0
     assert not any(name == "curves.png" for name, _, _ in report.figures)
 
@@ -334,19 +334,19 @@ def test_hdf5_and_png_train_and_evaluate_the_same(tmp_path: Path) -> None:
     on_both = []
     for data in (stored, files):
         ears = Ears()
-        report = evaluate([tmp_path / "run"], [data], Asked(), CPU, ears)
+        report = evaluate([tmp_path / "run"], [data], EvalOptions(), CPU, ears)
         on_both.append(only(report))
     for key in ("accuracy", "confusion", "calibration_error"):
         assert on_both[0][key] == on_both[1][key]
     assert on_both[0]["snr_db"] == 20.0
     seen = [
-        only(evaluate([tmp_path / "run"], [data], Asked(split="train"), CPU, Ears()))
+        only(evaluate([tmp_path / "run"], [data], EvalOptions(split="train"), CPU, Ears()))
         for data in (stored, files)
     ]
     assert seen[0]["seen_in_training"] == {"images": 4, "scenes": 4}
     assert seen[1]["seen_in_training"] == {"images": 4, "scenes": 0}
     with pytest.raises(FolderError, match="has no map 'stfft'"):
-        evaluate([tmp_path / "run"], [stored], Asked(map="stfft"), CPU, Ears())
+        evaluate([tmp_path / "run"], [stored], EvalOptions(map="stfft"), CPU, Ears())
 
 
 def test_a_map_that_is_not_in_the_folder_is_not_passed_over(tmp_path: Path) -> None:

@@ -20,7 +20,7 @@ from radhar_cli.errors import ConfigError, FolderError, RadharError
 from radhar_cli.learning.images.classes import read_classes, renamed
 from radhar_cli.learning.images.image_set import Resized
 from radhar_cli.learning.images.opening import open_images
-from radhar_cli.learning.run_folder import read_about
+from radhar_cli.learning.run_folder import read_metadata
 
 
 class Planted:
@@ -155,7 +155,7 @@ def test_train_learns_the_names_of_the_file_and_goes_on(tmp_path: Path) -> None:
     command += ["--set", "epochs=1", "--set", "batch_size=8", "--set", "threads=1"]
     first = radhar(*command)
     assert first.exit_code == 0, first.output
-    assert read_about(tmp_path / "mine").classes == ("punching", "walking")
+    assert read_metadata(tmp_path / "mine").classes == ("punching", "walking")
     assert "nothing to do" in radhar(*command).stdout
     other = radhar(*[word for word in command if word not in ("--classes", file)])
     assert isinstance(other.exception, RadharError)

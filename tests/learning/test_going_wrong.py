@@ -31,7 +31,7 @@ from radhar_cli.learning.prediction import predict
 from radhar_cli.learning.report import evaluate
 from radhar_cli.learning.report_files import Report
 from radhar_cli.learning.run_folder import RunError
-from radhar_cli.learning.single_result import Asked
+from radhar_cli.learning.single_result import EvalOptions
 
 CPU = torch.device("cpu")
 
@@ -140,7 +140,7 @@ def test_what_can_be_derived_is_written_again(data: Path, run_dir: Path, copy: P
 def test_eval_finds_the_cut_of_training_again(tmp_path: Path) -> None:
     root = tree(tmp_path / "t", parts={"": 5})
     trained(root, tmp_path / "run", epochs=1)
-    about = run.read_about(tmp_path / "run")
+    about = run.read_metadata(tmp_path / "run")
     images = open_for(about, root, None)
     rows, split = rows_of(images, "val")
     assert (split, rows.size) == ("val", about.data["val"])
@@ -167,13 +167,13 @@ def test_a_model_that_knows_no_map_asks_for_one(tmp_path: Path) -> None:
     ours = tmp_path / "ours"
     build(load_config(config), ours, jobs=1, progress=Quiet())
     trained(ours / "png/stft", tmp_path / "run", epochs=1)
-    about = run.read_about(tmp_path / "run")
+    about = run.read_metadata(tmp_path / "run")
     assert about.map == "stft", "the folder's name says so"
     assert open_for(about, ours, None).map == "stft"
     foreign = shutil.copytree(ours / "png/stft", tmp_path / "foreign")
     trained(foreign, tmp_path / "other", epochs=1)
     with pytest.raises(FolderError) as caught:
-        open_for(run.read_about(tmp_path / "other"), ours, None)
+        open_for(run.read_metadata(tmp_path / "other"), ours, None)
     one_clear_line(caught.value, "rtm, stft", "--map")
     with pytest.raises(FolderError, match="has no map 'stft'"):
         open_images(foreign, "stft", "rgb")
@@ -236,7 +236,7 @@ def test_names_with_commas_stay_in_their_column(tmp_path: Path) -> None:
 
     root = tree(tmp_path / "t", ("one, two", 'a "b"'), {"train": 2, "val": 1})
     trained(root, tmp_path / "run", epochs=1)
-    report = evaluate([tmp_path / "run"], [root], Asked(), CPU, Ears())
+    report = evaluate([tmp_path / "run"], [root], EvalOptions(), CPU, Ears())
     report.write(tmp_path / "out")
     with (tmp_path / "out/confusion.csv").open(newline="") as file:
         rows = list(csv.reader(file))
@@ -261,7 +261,7 @@ def test_what_cannot_be_drawn_is_refused_before_anything_is_computed(tmp_path: P
     root = tree(tmp_path / "t", ("a", "b"), {"train": 2, "val": 1})
     trained(root, tmp_path / "run", epochs=1)
     with pytest.raises(RunError, match="'a' is none of the twelve activities"):
-        evaluate([tmp_path / "run"], [root], Asked(in_place_vs_moving=True), CPU, Ears())
+        evaluate([tmp_path / "run"], [root], EvalOptions(in_place_vs_moving=True), CPU, Ears())
 
 
 def test_auto_or_a_number_is_one_message() -> None:

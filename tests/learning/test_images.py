@@ -79,7 +79,7 @@ def test_hdf5_and_png_are_the_same_images_in_the_same_order(
             assert np.array_equal(pixels(stored, ours), pixels(files, theirs))
         for images in (stored, files):
             rows = np.concatenate([images.rows("train"), images.rows("val")])
-            hashes.add(content_hash(images, rows, scan(images, rows).prints))
+            hashes.add(content_hash(images, rows, scan(images, rows).digests))
     assert len(hashes) == 1
     channels = pixels(stored, stored.rows("train"))
     assert (channels[..., 0] == channels[..., 1]).all() == (kind == "gray")
@@ -118,15 +118,15 @@ def test_gray_of_a_strange_image_is_its_brightness(tmp_path: Path) -> None:
 def test_hash_sees_pixels_labels_classes_and_splits(made: Path) -> None:
     images = open_images(made, "stft", "rgb")
     rows = images.rows("train")
-    prints = scan(images, rows).prints
-    right = content_hash(images, rows, prints)
+    digests = scan(images, rows).digests
+    right = content_hash(images, rows, digests)
     from dataclasses import replace
 
-    assert content_hash(images, rows, prints) == right
-    assert content_hash(images, rows, prints[::-1]) != right
-    assert content_hash(replace(images, label=images.label[::-1].copy()), rows, prints) != right
-    assert content_hash(replace(images, classes=("a", "b", "c")), rows, prints) != right
-    assert content_hash(replace(images, split=1 - images.split), rows, prints) != right
+    assert content_hash(images, rows, digests) == right
+    assert content_hash(images, rows, digests[::-1]) != right
+    assert content_hash(replace(images, label=images.label[::-1].copy()), rows, digests) != right
+    assert content_hash(replace(images, classes=("a", "b", "c")), rows, digests) != right
+    assert content_hash(replace(images, split=1 - images.split), rows, digests) != right
 
 
 def test_first_map_is_read_if_none_is_named_and_a_wrong_one_is_suggested(made: Path) -> None:
@@ -211,7 +211,7 @@ def test_scan_gives_mean_and_spread_of_every_channel(tmp_path: Path) -> None:
     np.testing.assert_allclose(found.mean, levels.mean((0, 1, 2)), rtol=1e-12)
     np.testing.assert_allclose(found.sd, levels.std((0, 1, 2)), rtol=1e-9)
     assert len(set(found.mean)) == 3
-    assert len(set(found.prints)) == rows.size
+    assert len(set(found.digests)) == rows.size
 
 
 def test_constant_channel_has_unit_spread(tmp_path: Path) -> None:

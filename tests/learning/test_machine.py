@@ -2,19 +2,14 @@
 
 import pytest
 import torch
-from hypothesis import given
-from hypothesis import strategies as st
 
 from radhar_cli.errors import MachineError
 from radhar_cli.learning.machine import (
     autocast,
     choose_device,
     choose_precision,
-    convolutions_channels_last,
-    largest_batch,
-    memory_bytes,
 )
-from radhar_cli.learning.processes import Group, joined
+from radhar_cli.learning.process_group import Group, process_group
 
 CPU = torch.device("cpu")
 
@@ -41,26 +36,10 @@ def test_float32_is_computed_in_float32() -> None:
             assert (torch.ones(2, 2) @ torch.ones(2, 2)).dtype == precision
 
 
-@given(saved=st.integers(1, 2**36), processes=st.integers(1, 64))
-def test_a_batch_fits_in_half_the_memory(saved: int, processes: int) -> None:
-    found = largest_batch(saved, CPU, processes)
-    assert found >= 1
-    if found > 1:
-        assert found * saved * processes <= memory_bytes(CPU) / 2
-
-
-def test_layout_does_not_change_the_answer() -> None:
-    layer, x = torch.nn.Conv2d(3, 4, 3), torch.randn(1, 3, 8, 8)
-    before = layer(x)
-    convolutions_channels_last(layer)
-    assert layer.weight.is_contiguous(memory_format=torch.channels_last)
-    torch.testing.assert_close(layer(x), before)
-
-
 def test_alone_without_torchrun(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("WORLD_SIZE", "TORCHELASTIC_RUN_ID"):
         monkeypatch.delenv(name, raising=False)
-    with joined(CPU) as group:
+    with process_group(CPU) as group:
         assert group == Group(0, 1, 1)
-        assert group.leads
-    assert not Group(1, 2).leads
+        assert group.is_main
+    assert not Group(1, 2).is_main

@@ -84,7 +84,7 @@ def test_best_weights_are_those_of_the_best_epoch(run_dir: Path) -> None:
     assert epoch == best_epoch(run.read_history(run_dir)).epoch
     about, model = run.load_best(run_dir)
     assert not model.training
-    assert about == run.read_about(run_dir)
+    assert about == run.read_metadata(run_dir)
 
 
 def test_weights_alone_are_enough(run_dir: Path, tmp_path: Path) -> None:
@@ -335,12 +335,12 @@ def test_overwrite_removes_our_files_alone(data: Path, copy: Path) -> None:
     }, "the curves, metrics and summary of the old run are gone"
     assert (copy / "notes.txt").read_text() == "mine"
     assert len(run.read_history(copy)) == 1
-    assert run.read_about(copy).config["seed"] == 2
+    assert run.read_metadata(copy).config["seed"] == 2
     assert len(last_weights(copy)) == len(best_weights(copy))
 
 
 def test_missing_run_is_said(tmp_path: Path) -> None:
-    for read in (run.load_best, run.read_about, run.read_history):
+    for read in (run.load_best, run.read_metadata, run.read_history):
         with pytest.raises(RunError) as caught:
             read(tmp_path)
         one_clear_line(caught.value, tmp_path)

@@ -33,12 +33,12 @@ from torch import nn
 
 from radhar_cli.learning import gradient_step, run_files, training
 from radhar_cli.learning import run_folder as run
+from radhar_cli.learning.execution_plan import ExecutionPlan
 from radhar_cli.learning.gradient_step import optimiser_for
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.scan import scan
-from radhar_cli.learning.processes import Group
+from radhar_cli.learning.process_group import Group
 from radhar_cli.learning.training import TrainingError, _Training, checked_images
-from radhar_cli.learning.work import Work
 
 CPU = torch.device("cpu")
 
@@ -88,7 +88,7 @@ def test_files_of_a_run(run_dir: Path, data: Path) -> None:
 
 
 def test_normalisation_is_of_the_training_images_alone(run_dir: Path, data: Path) -> None:
-    images, about = open_images(data, None, "rgb"), run.read_about(run_dir)
+    images, about = open_images(data, None, "rgb"), run.read_metadata(run_dir)
     found = scan(images, images.rows("train"))
     assert about.mean == found.mean
     assert about.sd == found.sd
@@ -214,7 +214,7 @@ def test_step_reports_the_smoothed_loss_and_what_is_right(data: Path, tmp_path: 
     logits = network(work.about.normalisation(levels))
     wanted = nn.functional.one_hot(labels, 3) * 0.8 + 0.2 / 3
     expected = -(wanted * logits.detach().log_softmax(1)).sum(1).mean()
-    loss, right = work._learner.step(work.model.train(), work.optimiser, levels, labels, 6)
+    loss, right = work._train_step.step(work.model.train(), work.optimiser, levels, labels, 6)
     assert loss == pytest.approx(float(expected), rel=1e-5)
     assert right == int((logits.argmax(1) == labels).sum())
 
@@ -226,7 +226,7 @@ def test_parts_of_a_batch_sum_to_its_gradient(data: Path, tmp_path: Path, micro_
     parts = prepared(data, tmp_path / "parts", micro_batch=micro_batch)
     levels, labels = first_batch(whole)
     losses = [
-        work._learner.step(work.model.eval(), work.optimiser, levels, labels, 6)
+        work._train_step.step(work.model.eval(), work.optimiser, levels, labels, 6)
         for work in (whole, parts)
     ]
     assert losses[0] == pytest.approx(losses[1], rel=1e-5)
@@ -237,9 +237,9 @@ def test_parts_of_a_batch_sum_to_its_gradient(data: Path, tmp_path: Path, micro_
 def test_a_step_starts_from_no_gradient(data: Path, tmp_path: Path) -> None:
     work = prepared(data, tmp_path / "run", learning_rate=1e-12, optimiser="sgd")
     levels, labels = first_batch(work)
-    work._learner.step(work.model.eval(), work.optimiser, levels, labels, 6)
+    work._train_step.step(work.model.eval(), work.optimiser, levels, labels, 6)
     once = gradients(work.model)
-    work._learner.step(work.model.eval(), work.optimiser, levels, labels, 6)
+    work._train_step.step(work.model.eval(), work.optimiser, levels, labels, 6)
     for one, other in zip(once, gradients(work.model), strict=True):
         torch.testing.assert_close(one, other, rtol=1e-4, atol=1e-7)
 
@@ -264,7 +264,7 @@ def test_clipping_limits_the_gradient(data: Path, tmp_path: Path) -> None:
     moved = []
     for work in (free, held):
         before = [p.detach().clone() for p in work.model.parameters()]
-        work._learner.step(work.model.train(), work.optimiser, levels, labels, 6)
+        work._train_step.step(work.model.train(), work.optimiser, levels, labels, 6)
         steps = [p.detach() - b for p, b in zip(work.model.parameters(), before, strict=True)]
         moved.append(float(torch.linalg.vector_norm(torch.cat([s.flatten() for s in steps]))))
     assert moved[0] > 2e-5
@@ -373,7 +373,7 @@ def test_a_batch_of_one_image_is_refused(key: str) -> None:
 
 @given(images=st.integers(2, 500), micro_batch=st.integers(2, 500))
 def test_parts_are_nearly_equal_and_fit(images: int, micro_batch: int) -> None:
-    parts = Work(CPU, torch.float32, micro_batch, 0).parts(images)
+    parts = ExecutionPlan(CPU, torch.float32, micro_batch, 0).parts(images)
     sizes = [part.stop - part.start for part in parts]
     assert [row for part in parts for row in range(images)[part]] == list(range(images))
     assert min(sizes) >= 2
@@ -384,7 +384,7 @@ def test_parts_are_nearly_equal_and_fit(images: int, micro_batch: int) -> None:
 def test_a_tree_without_splits_trains_and_is_cut_alike(tmp_path: Path) -> None:
     root = tree(tmp_path / "t", parts={"": 4})
     done = trained(root, tmp_path / "run", epochs=1, validation_share=0.25)
-    about = run.read_about(tmp_path / "run")
+    about = run.read_metadata(tmp_path / "run")
     assert (about.data["train"], about.data["val"]) == (9, 3)
     assert trained(root, tmp_path / "run", epochs=1, validation_share=0.25).went_on == 1
     assert len(done.history) == 1
@@ -392,7 +392,7 @@ def test_a_tree_without_splits_trains_and_is_cut_alike(tmp_path: Path) -> None:
 
 def test_gray_and_bfloat16_train(data: Path, tmp_path: Path) -> None:
     trained(data, tmp_path / "run", epochs=1, input="gray", precision="bfloat16")
-    about = run.read_about(tmp_path / "run")
+    about = run.read_metadata(tmp_path / "run")
     assert about.input == "gray"
     assert about.mean[0] == about.mean[1] == about.mean[2]
     assert all(w.dtype != torch.bfloat16 for w in best_weights(tmp_path / "run").values())

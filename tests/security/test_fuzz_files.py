@@ -32,7 +32,7 @@ from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import RadharError, UnfinishedError
 from radhar_cli.learning.evaluation import open_for
 from radhar_cli.learning.evaluation import predict as ask
-from radhar_cli.learning.run_folder import load_best, read_about, read_history, read_trained_on
+from radhar_cli.learning.run_folder import load_best, read_history, read_metadata, read_trained_on
 from radhar_cli.simulation.scene_file import write_all
 from radhar_cli.simulation.simulate import simulate
 
@@ -110,7 +110,7 @@ def targets(
         np.testing.assert_allclose(found.sum(1), 1, atol=1e-5)
         read_history(folder)
         read_trained_on(folder)
-        read_about(folder)
+        read_metadata(folder)
 
     def go_on_training(folder: Path) -> None:
         outcome = trained(good_set, folder, epochs=2, model="smallnet")

@@ -14,7 +14,7 @@ from security.mutations import mutate_image, mutate_yaml
 
 from radhar_cli.config import config_from_json, load_config, resolved
 from radhar_cli.config.reading import load_section
-from radhar_cli.dataset.image_file import LONGEST_SIDE, image_size, read_rgb
+from radhar_cli.dataset.image_file import MAX_SIDE, image_size, read_rgb
 from radhar_cli.errors import ConfigError, FolderError, RadharError
 from radhar_cli.learning.settings import TrainConfig
 
@@ -99,5 +99,5 @@ def test_a_damaged_image_is_read_or_refused(tmp_path: Path, first: int, count: i
             continue
         assert rgb.dtype == np.uint8
         assert rgb.shape == (*size, 3)
-        assert max(size) <= LONGEST_SIDE
+        assert max(size) <= MAX_SIDE
     assert 0.2 * count < refused < count

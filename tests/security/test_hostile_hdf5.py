@@ -357,14 +357,23 @@ def plain_chunks_in_a_gzip_dataset(file: h5py.File, _: Path) -> None:
 
 def circle(data: bytes) -> bytes:
     """A file whose last text has no length: HDF5 itself reads it without end."""
-    place = data.rindex(__version__.encode())
-    return data[: place - 8] + bytes(8) + data[place:]
+    text = __version__.encode()
+    place = data.index(len(text).to_bytes(8, "little") + text)  # as an object of a heap
+    return data[:place] + bytes(8) + data[place + 8 :]
+
+
+def crash(data: bytes) -> bytes:
+    """A file with a text of a kind that there is not: HDF5 itself crashes on it."""
+    place = data.index(b"\x19\x01\x01\x00", data.index(b"h5py_version"))
+    return data[: place + 1] + b"\xff\xfe" + data[place + 3 :]
 
 
 def no_file(place: Path, kind: str, whole: bytes) -> Path:
     path = place / "dataset.h5"
     if kind == "a text without length":
         path.write_bytes(circle(whole))
+    elif kind == "a text without kind":
+        path.write_bytes(crash(whole))
     elif kind == "pipe":
         os.mkfifo(path)
     elif kind == "device":
@@ -385,6 +394,7 @@ NO_FILES = {
     "empty": "is no HDF5 file",
     "text": "is no HDF5 file",
     "magic": "is no HDF5 file",
+    "a text without kind": "attribute h5py_version: should be text",
     "a text without length": "a heap with an object of an impossible size",
 }
 

@@ -13,7 +13,7 @@ from PIL import Image
 from security.bounded import Answer, answers, refused
 from security.test_hostile_yaml import HOSTILE
 
-from radhar_cli.dataset.image_file import LONGEST_SIDE, image_size, read_rgb
+from radhar_cli.dataset.image_file import MAX_SIDE, image_size, read_rgb
 from radhar_cli.errors import FolderError
 
 PICTURE = Image.fromarray(stripes(0, np.random.default_rng(0)))
@@ -222,8 +222,8 @@ def test_a_hostile_tree_is_refused(given: dict[str, Answer], tmp_path: Path) -> 
 
 def test_the_size_is_known_before_the_pixels(tmp_path: Path) -> None:
     path = tmp_path / "x.png"
-    path.write_bytes(png(LONGEST_SIDE, LONGEST_SIDE, rows=0))
-    assert image_size(path) == (LONGEST_SIDE, LONGEST_SIDE)
+    path.write_bytes(png(MAX_SIDE, MAX_SIDE, rows=0))
+    assert image_size(path) == (MAX_SIDE, MAX_SIDE)
     with pytest.raises(FolderError, match="truncated"):
         read_rgb(path)
     with pytest.raises(FolderError, match=r"is 8192 x 8192 px; should be 32 x 32"):

@@ -18,8 +18,8 @@ from security.bounded import limited
 
 from radhar_cli.cli import program
 from radhar_cli.errors import FolderError, RadharError
-from radhar_cli.learning.run_folder import load_best, read_about, read_history, read_trained_on
-from radhar_cli.tradeoff.ledger import Ledger
+from radhar_cli.learning.run_folder import load_best, read_history, read_metadata, read_trained_on
+from radhar_cli.tradeoff.result_cache import ResultCache
 
 Change = Callable[[dict[str, Any]], object]
 
@@ -78,7 +78,7 @@ def test_a_description_that_cannot_be_is_refused(case: str, run: Path) -> None:
     about = json.loads((run / "run.json").read_text())
     change(about)
     (run / "run.json").write_text(json.dumps(about))
-    one_line(lambda: read_about(run), "run.json", said)
+    one_line(lambda: read_metadata(run), "run.json", said)
     path = run / "best.safetensors"
     with safe_open(path, "pt") as file:
         metadata = file.metadata()
@@ -89,7 +89,7 @@ def test_a_description_that_cannot_be_is_refused(case: str, run: Path) -> None:
 @pytest.mark.parametrize("text", ["", "[" * 10**5, "[]", "3", "\xff", "{" * 10, " " * 2**21])
 def test_a_description_that_is_none_is_refused(text: str, run: Path) -> None:
     (run / "run.json").write_bytes(text.encode("latin-1"))
-    one_line(lambda: read_about(run), "run.json")
+    one_line(lambda: read_metadata(run), "run.json")
 
 
 def weights(change: Callable[[dict[str, torch.Tensor]], object]) -> Callable[[Path], None]:
@@ -232,7 +232,9 @@ def test_tables_that_are_none_are_refused(name: str, kind: str, run: Path) -> No
         path.mkdir()
     else:
         path.write_bytes(b"epoch,pixels\n\xff,\x00\n" + b'"' + b"x" * 200_000)
-    reader = {"history.csv": read_history, "trained_on.csv": read_trained_on}.get(name, read_about)
+    reader = {"history.csv": read_history, "trained_on.csv": read_trained_on}.get(
+        name, read_metadata
+    )
     one_line(lambda: reader(run), name)
 
 
@@ -240,7 +242,7 @@ def test_tables_that_are_none_are_refused(name: str, kind: str, run: Path) -> No
 def test_a_ledger_that_is_damaged_is_refused(text: str, tmp_path: Path) -> None:
     from radhar_cli.tradeoff.trial import Score
 
-    ledger = Ledger(tmp_path)
+    ledger = ResultCache(tmp_path)
     ledger.put("a", {"right": 1, "images": 3})
     assert ledger.get("a", Score) == Score(1, 3)
     for kept in (tmp_path / ".radhar/measured").iterdir():

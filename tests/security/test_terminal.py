@@ -2,7 +2,7 @@
 
 import pytest
 
-from radhar_cli.commands.learning_options import Speaker
+from radhar_cli.commands.learning_options import StderrLog
 from radhar_cli.commands.summary_view import print_summary
 from radhar_cli.commands.tell import tell
 from radhar_cli.commands.terminal import BarProgress
@@ -17,7 +17,7 @@ def test_what_steers_a_terminal_is_escaped_and_what_is_text_stays() -> None:
     assert shown("Größe 漢字 █ ▁ µ λ²") == "Größe 漢字 █ ▁ µ λ²"
 
 
-@pytest.mark.parametrize("say", [tell, Speaker().say, BarProgress().say])
+@pytest.mark.parametrize("say", [tell, StderrLog().say, BarProgress().say])
 def test_messages_are_escaped(say: object, capsys: pytest.CaptureFixture[str]) -> None:
     say(HOSTILE)  # type: ignore[operator]
     printed = capsys.readouterr()

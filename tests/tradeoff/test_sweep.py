@@ -18,7 +18,7 @@ from radhar_cli.scene import scene_numbers
 from radhar_cli.tradeoff import study
 from radhar_cli.tradeoff.accuracy import Accuracy
 from radhar_cli.tradeoff.advice import advice
-from radhar_cli.tradeoff.ledger import Ledger
+from radhar_cli.tradeoff.result_cache import ResultCache
 from radhar_cli.tradeoff.scenes import Scenes
 from radhar_cli.tradeoff.settings import sweep, trials
 
@@ -176,11 +176,11 @@ class TestCommand:
 
 class TestLedger:
     def test_keeps_what_it_was_given(self, tmp_path):
-        ledger = Ledger(tmp_path)
+        ledger = ResultCache(tmp_path)
         assert ledger.get("a") is None
         ledger.put("a", {"b": [1, None, "c"]})
-        assert Ledger(tmp_path).get("a") == {"b": [1, None, "c"]}
-        assert Ledger(tmp_path).get("b") is None
+        assert ResultCache(tmp_path).get("a") == {"b": [1, None, "c"]}
+        assert ResultCache(tmp_path).get("b") is None
 
 
 class TestSettings:

@@ -23,7 +23,7 @@ _WANTED = (
     "should be dataset.h5, a folder that `radhar generate` wrote, or a tree <class>/<image>.png or "
     "<train|val|test>/<class>/<image>.png"
 )
-MOST_CLASSES = 128  # a confusion matrix of them can still be drawn
+MAX_CLASSES = 128  # a confusion matrix of them can still be drawn
 SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp"}
 
 
@@ -88,8 +88,8 @@ def folder_images(root: Path, map_name: str | None, kind: str, any_size: bool = 
     if empty:
         raise FolderError(f"{root}: the class {sorted(empty)[0]!r} has no image")
     classes = class_order({name for _, name, _ in found})
-    if len(classes) > MOST_CLASSES:
-        raise FolderError(f"{root}: has {len(classes)} classes; should have at most {MOST_CLASSES}")
+    if len(classes) > MAX_CLASSES:
+        raise FolderError(f"{root}: has {len(classes)} classes; should have at most {MAX_CLASSES}")
     found.sort(key=lambda item: (item[0], classes.index(item[1]), item[2].name))
     files = tuple(file for _, _, file in found)
     size = image_size(files[0])

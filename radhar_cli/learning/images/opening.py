@@ -3,7 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
-from radhar_cli.dataset.layout import DATASET, begun
+from radhar_cli.dataset.layout import DATASET, is_incomplete
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.images.folder import folder_images
 from radhar_cli.learning.images.h5 import h5_images
@@ -45,7 +45,7 @@ def open_images(
 
 def is_tree(path: Path) -> bool:
     """Whether a path can only be a tree of images: a folder without a data set, built or begun."""
-    return path.is_dir() and not is_h5(path) and not begun(path)
+    return path.is_dir() and not is_h5(path) and not is_incomplete(path)
 
 
 def is_h5(path: Path) -> bool:

@@ -17,11 +17,11 @@ class Scan:
     """What one look at every pixel of a set tells.
 
     Attributes:
-        prints: [rows] fingerprint of each image's pixels.
+        digests: [rows] fingerprint of each image's pixels.
         histogram: [3, 256] how often each level occurs in each channel.
     """
 
-    prints: tuple[str, ...]
+    digests: tuple[str, ...]
     histogram: NDArray[np.int64]
 
     @property
@@ -48,17 +48,17 @@ def scan(images: ImageSet, rows: Sequence[int] | Index) -> Scan:
     Raises:
         FolderError: an image cannot be read.
     """
-    prints, histogram = [], np.zeros((3, 256), dtype=np.int64)
+    digests, histogram = [], np.zeros((3, 256), dtype=np.int64)
     for row in rows:
         rgb = images.pixels.read(int(row))
-        prints.append(hashlib.blake2b(rgb.tobytes(), digest_size=8).hexdigest())
+        digests.append(hashlib.blake2b(rgb.tobytes(), digest_size=8).hexdigest())
         for channel in range(3):
             histogram[channel] += np.bincount(rgb[..., channel].reshape(-1), minlength=256)
-    return Scan(tuple(prints), histogram)
+    return Scan(tuple(digests), histogram)
 
 
-def content_hash(images: ImageSet, rows: Index, prints: Sequence[str]) -> str:
+def content_hash(images: ImageSet, rows: Index, digests: Sequence[str]) -> str:
     """SHA-256 of what a training run depends on: classes, labels, splits, pixels."""
     split = None if images.split is None else images.split[rows].tolist()
-    text = json.dumps([images.classes, images.label[rows].tolist(), split, list(prints)])
+    text = json.dumps([images.classes, images.label[rows].tolist(), split, list(digests)])
     return hashlib.sha256(text.encode()).hexdigest()

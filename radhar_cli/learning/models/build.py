@@ -50,10 +50,10 @@ def build_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
             )
         return FFTNet(classes, height, width)
     if name == smallnet.NAME:
-        if min(size) < smallnet.LEAST_SIDE:
+        if min(size) < smallnet.MIN_SIDE:
             raise ModelError(
                 f"model smallnet: images are {height} x {width} px; both sides should have at "
-                f"least {smallnet.LEAST_SIDE}"
+                f"least {smallnet.MIN_SIDE}"
             )
         return smallnet.SmallNet(classes)
     return zoo_model(name, classes, size)

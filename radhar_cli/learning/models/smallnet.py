@@ -7,7 +7,7 @@ from torch import Tensor, nn
 
 NAME = "smallnet"
 WIDTHS = (16, 32, 64, 128)
-LEAST_SIDE = 2 ** len(WIDTHS)
+MIN_SIDE = 2 ** len(WIDTHS)
 
 
 def block(inputs: int, outputs: int) -> nn.Sequential:

@@ -30,10 +30,10 @@ def prepare_process() -> None:
 
     os.environ.update(dict.fromkeys(_THREADS, "1"))
     threadpool_limits(limits=1)
-    keep_memory(_KEPT, 2 * _KEPT)
+    tune_malloc(_KEPT, 2 * _KEPT)
 
 
-def keep_memory(mapped_above: int, trimmed_above: int) -> None:
+def tune_malloc(mapped_above: int, trimmed_above: int) -> None:
     """Stop glibc from returning memory after each array, unless the user has told it what to do.
 
     Fresh pages, mapped, zeroed and faulted in for every temporary array, would take most of a

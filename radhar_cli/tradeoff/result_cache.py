@@ -15,7 +15,7 @@ from radhar_cli.untrusted import read_json
 T = TypeVar("T")
 
 
-class Ledger:
+class ResultCache:
     """JSON values by key, each in a file of its own that is whole or not there."""
 
     def __init__(self, folder: Path) -> None:

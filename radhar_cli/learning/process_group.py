@@ -22,13 +22,13 @@ class Group:
     local_size: int = 1
 
     @property
-    def leads(self) -> bool:
+    def is_main(self) -> bool:
         """Whether this process writes the files and talks to the user."""
         return self.rank == 0
 
 
 @contextmanager
-def joined(device: torch.device) -> Iterator[Group]:
+def process_group(device: torch.device) -> Iterator[Group]:
     """Join the processes that torchrun started; alone without it."""
     if "TORCHELASTIC_RUN_ID" not in os.environ and "WORLD_SIZE" not in os.environ:
         yield Group()
@@ -55,14 +55,14 @@ def distributed(model: nn.Module, device: torch.device, group: Group) -> nn.Modu
     return DistributedDataParallel(model, device_ids=ids)
 
 
-def gradients_stay(network: Any, group: Group, last: bool) -> AbstractContextManager[Any]:
+def no_sync(network: Any, group: Group, last: bool) -> AbstractContextManager[Any]:
     """Around all backward passes of a step but the last: only that one exchanges gradients."""
     waits: AbstractContextManager[Any]
     waits = nullcontext() if last or group.size == 1 else network.no_sync()
     return waits
 
 
-def share_buffers(model: nn.Module, group: Group) -> None:
+def broadcast_buffers(model: nn.Module, group: Group) -> None:
     """Give every process the first one's buffers: the averages of batch norm."""
     if group.size > 1:
         import torch.distributed as dist
@@ -71,7 +71,7 @@ def share_buffers(model: nn.Module, group: Group) -> None:
             dist.broadcast(buffer, 0)
 
 
-def summed(totals: Float, group: Group) -> Float:
+def all_reduce_sum(totals: Float, group: Group) -> Float:
     """Sum an array over the processes."""
     if group.size == 1:
         return totals
@@ -84,7 +84,7 @@ def summed(totals: Float, group: Group) -> Float:
     return added
 
 
-def together(group: Group) -> None:
+def barrier(group: Group) -> None:
     """Wait for the other processes."""
     if group.size > 1:
         import torch.distributed as dist
@@ -92,14 +92,14 @@ def together(group: Group) -> None:
         dist.barrier()
 
 
-def first_does(group: Group, work: Callable[[], None]) -> None:
+def on_rank_zero(group: Group, work: Callable[[], None]) -> None:
     """Let the first process do something while the others wait; its error is everybody's.
 
     Raises:
         RadharError: what `work` raised.
     """
     failed: list[RadharError | None] = [None]
-    if group.leads:
+    if group.is_main:
         try:
             work()
         except RadharError as error:

@@ -1,0 +1,84 @@
+"""A data set of many rows: every worker checks its own scenes, and the master holds little.
+
+Every shard is a copy of one but for its rows, so that what is left is the master's work.
+"""
+
+import tracemalloc
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from listener import Listener
+from small import small_config
+
+from radhar_cli.config import load_config
+from radhar_cli.dataset import build as build_module
+from radhar_cli.dataset import scene_fields, shards
+from radhar_cli.dataset.batch import Batch
+from radhar_cli.dataset.build import build
+from radhar_cli.dataset.sample import Sample
+from radhar_cli.pipeline.validity import Flags
+from radhar_cli.processing.power_map import MapImage
+
+ROWS, FEW, SIZE = 150_000, 3_000, 16
+BYTES_A_ROW = 16
+
+
+def stub_shard(batch: Batch, made: dict[int, bytes]) -> int:
+    """Write the shard of a batch; return its number of samples."""
+    count = batch.stop - batch.start
+    if count not in made:
+        image = MapImage(np.zeros((SIZE, SIZE), np.uint8), 0.0, (0.0, 1.0, -1.0, 1.0))
+        samples = [Sample({"stft": image}, -100.0, False)] * count
+        values = np.zeros((count, len(scene_fields.fields(batch.config))))
+        flags = np.full(count, Flags.ALIASING, np.uint8)
+        made[count] = shards.encode_shard(batch.config, "0" * 64, 0, samples, values, flags)
+    content = made[count][shards.USER_BLOCK :]
+    whose, start, stop = batch.identity_hash, batch.start, batch.stop
+    checksum = shards._checksum(whose, start, stop, memoryview(content))
+    header = f"radhar shard of {whose}\nrows {start} {stop}\nsha256 {checksum}\n".encode()
+    data = header.ljust(shards.USER_BLOCK, b"\0") + content
+    shards.write_shard(batch.folder, start, stop, data)
+    return count
+
+
+def built(rows: int, folder: Path, monkeypatch: pytest.MonkeyPatch) -> int:
+    """Build that many rows of stubs; return the most memory that Python held, bytes."""
+    folder.mkdir()
+    changes = ["maps=[stft]", f"image.size_px={SIZE}", f"samples_per_class={rows // 3}"]
+    by_person = "split={by: subject, subjects: 10, train: 0.8, validation: 0.2}"
+    config = load_config(small_config(folder), [*changes, by_person, "output.png=false"])
+    made: dict[int, bytes] = {}
+
+    def stub(batch: Batch) -> int:
+        assert batch.checked is None, "its scenes are the worker's to check"
+        return stub_shard(batch, made)
+
+    monkeypatch.setattr(build_module, "run_batch", stub)
+    notes = Listener()
+    tracemalloc.start()
+    try:
+        build(config, folder / "set", 1, notes)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert "checking scenes" not in notes.stages
+    assert any(f"{rows} of {rows} recordings" in message for message in notes.said)
+    return peak
+
+
+@pytest.mark.slow
+def test_the_master_of_150_000_rows_holds_a_few_bytes_a_row(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert FEW < build_module.MAX_CHECKED_FIRST < ROWS
+    large = built(ROWS, tmp_path / "large", monkeypatch)
+    monkeypatch.setattr(build_module, "MAX_CHECKED_FIRST", 0)
+    small = built(FEW, tmp_path / "small", monkeypatch)
+    print(f"{(large - small) / (ROWS - FEW):.1f} bytes a row")
+    assert large - small < BYTES_A_ROW * (ROWS - FEW)
+    with h5py.File(tmp_path / "large/set/dataset.h5") as file:
+        assert file["maps/stft"].id.get_num_chunks() == ROWS
+    with (tmp_path / "large/set/scenes.csv").open() as table:
+        assert sum(1 for _ in table) == ROWS + 1

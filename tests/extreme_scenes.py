@@ -32,6 +32,7 @@ ENGINES = {"cube": {"kind": "cube"}, "direct": {"kind": "direct", "tolerance_db"
 def config_of(engine: str = "cube", radar: dict[str, Any] | None = None, **more: Any) -> Config:
     """The scene above with other sections; `radar` changes single keys."""
     document = SCENE | {"radar": RADAR | (radar or {}), "engine": ENGINES[engine]} | more
+    document["motion"] = {"model": "paper"} | document["motion"]
     return Config.model_validate(document)
 
 

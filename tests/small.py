@@ -9,6 +9,7 @@ samples_per_class: 3
 activities: [punching, walking, S12]
 duration_s: 4.0
 radar: {carrier_hz: 10e9, bandwidth_hz: 1e9, prf_hz: 500}
+motion: {model: paper}
 snr_db: {choice: [30, 10]}
 maps: [rtm, stft, fsst_compensated]
 image: {size_px: 48}

@@ -12,7 +12,9 @@ from radhar_cli.activity import ACTIVITIES, activity_named
 from radhar_cli.config import Config
 from radhar_cli.config.number import is_fixed, nominal, support
 from radhar_cli.scene import (
+    OF_PEOPLE,
     PERSONAL,
+    PLACE,
     depends_on,
     draw_scene,
     nominal_scene,
@@ -35,6 +37,7 @@ DRAWN: dict[str, Any] = {
     },
     "subject": {"height_m": {"uniform": [1.5, 1.9]}, "weight_kg": {"normal": [80, 5]}},
     "motion": {
+        "model": "paper",
         "range_m": {"uniform": [2, 3]},
         "cross_range_m": {"uniform": [-1, 1]},
         "angle_deg": {"uniform": [-30, 30]},
@@ -157,18 +160,18 @@ def test_draws_follow_their_distribution() -> None:
     assert abs(together[0, 1]) < 5 / np.sqrt(1000)
 
 
-def test_a_scene_holds_what_its_activity_uses() -> None:
-    config = Config()
+@pytest.mark.parametrize("model", ["paper", "human"])
+def test_a_scene_holds_what_its_activity_uses(model: str) -> None:
+    config = Config(motion={"model": model}, timing={"walk_start_s": 2.0})
+    everybody = (*PLACE, *(key for key in OF_PEOPLE if model == "human"))
     for activity in ACTIVITIES:
         keys = set(scene_numbers(draw_scene(config, activity, 0)))
         assert {k for k in keys if k.startswith("timing.")} == {
-            k for k in activity.paper if k.startswith("timing.")
+            k for k in activity.uses(model) if k.startswith("timing.")
         }
         assert {k for k in keys if k.startswith("motion.")} == {
-            "motion.range_m",
-            "motion.cross_range_m",
-            "motion.angle_deg",
-        } | {k for k in activity.paper if k.startswith("motion.")}
+            k for k in (*everybody, *activity.uses(model)) if k.startswith("motion.")
+        }
         assert not any(k.startswith("wall.") for k in keys)
     assert {"wall.size_m.0", "wall.eps_r"} <= set(
         scene_numbers(draw_scene(Config(wall={}), WALKING, 0))

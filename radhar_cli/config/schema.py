@@ -188,7 +188,7 @@ class MotionConfig(Section):
     model's. What the other model alone knows is ignored. docs/motion.md describes both.
     """
 
-    model: Literal["paper", "human"] = "paper"
+    model: Literal["human", "paper"] = "human"
     range_m: CoordinateBy = Uniform(uniform=(1.0, 3.0))
     cross_range_m: CoordinateBy = 0.0
     angle_deg: AngleBy = Uniform(uniform=(-30.0, 30.0))

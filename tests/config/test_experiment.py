@@ -64,9 +64,9 @@ POSSIBLE: list[dict[str, Any]] = [
     {"processing": {"stft_fft_length": 2000}},
     {"wall": {}, "radar": {"tx_m": (0.8799, 0.0, 1.0)}},
     {"wall": {"eps_r": 1, "loss_tangent": 0}, "radar": {"tx_m": (0.4, 0.0, 2.6)}},
-    {"motion": {"speed_mps": 0, "gait_hz": 0, "range_m": -1}},
+    {"motion": {"model": "paper", "speed_mps": 0, "gait_hz": 0, "range_m": -1}},
     {"engine": {"kind": "cube", "motion_in_chirp": True}},
-    {"timing": {"blend_s": 0, "rise_duration_s": 0}},
+    {"motion": {"model": "paper"}, "timing": {"blend_s": 0, "rise_duration_s": 0}},
 ]
 
 
@@ -76,7 +76,9 @@ def test_what_is_just_possible(values: dict[str, Any]) -> None:
 
 
 def test_sections_are_frozen() -> None:
-    config = Config(wall={}, subject={"height_m": {"uniform": [1.5, 1.9]}})
+    config = Config(
+        motion={"model": "paper"}, wall={}, subject={"height_m": {"uniform": [1.5, 1.9]}}
+    )
     frozen = [config, *_sections(config), config.subject.height_m]
     assert len(frozen) == 13
     for section in frozen:
@@ -109,7 +111,7 @@ def changed(section: Section, key: str, value: object) -> Any:
     return section.model_copy(update={first: inner})
 
 
-WITH_WALL = Config(wall={})
+WITH_WALL = Config(motion={"model": "paper"}, wall={})
 OF_PEOPLE_ALONE = (
     *(
         f"subject.{name}"
@@ -212,9 +214,12 @@ def test_the_identity_tells_a_wall_from_none() -> None:
 
 
 def test_the_identity_ignores_how_a_config_is_written() -> None:
-    terse = Config(activities=("S8",), motion={"range_m": 2})
+    terse = Config(activities=("S8",), motion={"model": "paper", "range_m": 2})
     wordy = Config(
-        motion={"speed_mps": 1.5, "range_m": 2.0}, activities=("walking",), seed=1, wall=None
+        motion={"speed_mps": 1.5, "range_m": 2.0, "model": "paper"},
+        activities=("walking",),
+        seed=1,
+        wall=None,
     )
     assert config_hash(terse) == config_hash(wordy)
 
@@ -236,7 +241,7 @@ def test_a_resolved_config_is_the_config(
 ) -> None:
     config = Config(
         subject={"height_m": height},
-        motion={"range_m": {"per_activity": {"default": default, **by_activity}}},
+        motion={"model": "paper", "range_m": {"per_activity": {"default": default, **by_activity}}},
         wall=wall,
     )
     again = config_from_json(json.dumps(resolved(config)), "dataset.h5")

@@ -385,7 +385,9 @@ BROKEN = [
         "at least the 400 ADC samples",
     ),
     Broken("duration_s: 2e-4\nmaps: [rtm]", 1, "duration_s", "0.0002", "at least 2 pulses"),
-    Broken("duration_s: 1e6", 1, "duration_s", "1000000.0", "16777216 pulses"),
+    Broken(
+        "duration_s: 1e6\nmotion: {model: paper}", 1, "duration_s", "1000000.0", "16777216 pulses"
+    ),
     Broken("duration_s: 0.0148", 1, "duration_s", "0.0148", "at least 8 pulses (it has 7)"),
     Broken(
         "duration_s: 0.01\nprocessing:\n  window_fraction: 0.99",
@@ -530,7 +532,7 @@ activities: [S12, walking]
 duration_s: {choice: [3.5, 4]}
 radar: {tx_m: [0.1, {uniform: [-0.2, -0.1]}, 1.5], prf_hz: 1000}
 subject: {height_m: {normal: [1.7, 0.1], min: 1.5}, weight_kg: {vary: [80, 0.1]}}
-motion: {range_m: {per_activity: {default: {uniform: [2, 3]}, S8: 1}}}
+motion: {model: paper, range_m: {per_activity: {default: {uniform: [2, 3]}, S8: 1}}}
 timing: {blend_s: {per_activity: {default: 0.3, S12: 0}}}
 wall: {loss_tangent: {uniform: [0.01, 0.05]}}
 snr_db: null

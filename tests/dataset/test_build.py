@@ -245,7 +245,8 @@ def test_scene_too_close_to_an_antenna_stops_before_any_echo(
 
     monkeypatch.setattr(batch_module, "synthesise", never)
     near = load_config(
-        small_config(tmp_path), ["radar.tx_m=[1.5, 0, 1.5]", "motion={range_m: 1.5, angle_deg: 0}"]
+        small_config(tmp_path),
+        ["radar.tx_m=[1.5, 0, 1.5]", "motion={model: paper, range_m: 1.5, angle_deg: 0}"],
     )
     with pytest.raises(SceneError, match=r"sample .*/\d+: .* comes to .* cm from the transmitter"):
         make(near, tmp_path / "set")

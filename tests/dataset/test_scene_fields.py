@@ -10,7 +10,7 @@ from radhar_cli.config import Config
 from radhar_cli.dataset.scene_fields import fields, values
 from radhar_cli.scene import depends_on, draw_scene, numbers, scene_numbers
 
-EVERYTHING = Config(wall={})
+EVERYTHING = Config(motion={"model": "paper"}, wall={})
 
 
 @pytest.mark.parametrize(
@@ -81,7 +81,7 @@ def test_degrees_are_the_only_unit_that_is_not_si() -> None:
 
 
 def test_the_table_is_in_config_units_with_nan_where_a_number_does_not_apply() -> None:
-    config = Config(activities=("S1", "S8"))
+    config = Config(activities=("S1", "S8"), motion={"model": "paper"})
     columns = fields(config)
     scenes = [draw_scene(config, activity_named(slug), 3) for slug in ("S1", "S8")]
     table = np.array([values(scene, columns, -100.5) for scene in scenes])

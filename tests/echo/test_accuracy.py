@@ -48,6 +48,7 @@ def random_config(rng: np.random.Generator) -> dict:
             "window_fraction": 0.5,
         },
         "motion": {
+            "model": "paper",
             "range_m": {"uniform": [0.8, 8]},
             "angle_deg": {"uniform": [-180, 180]},
             "gait_hz": {"uniform": [0.3, 3]},
@@ -115,7 +116,13 @@ def test_without_mti_it_is_that_of_the_whole_signal():
         within(drawn, ACTIVITIES[number % 12], tolerance_db)
 
 
-CONFIG = {"snr_db": None, "duration_s": 0.5, "radar": {"prf_hz": 2000}, "maps": ["stft"]}
+CONFIG = {
+    "snr_db": None,
+    "duration_s": 0.5,
+    "radar": {"prf_hz": 2000},
+    "maps": ["stft"],
+    "motion": {"model": "paper"},
+}
 
 
 class TestRefusal:

@@ -72,6 +72,7 @@ def test_slow_time_signal_of_a_person_is_the_reference(activity, carrier, wall):
             "duration_s": radar.duration,
             "radar": {"carrier_hz": carrier, "bandwidth_hz": 1e9, "adc_rate_hz": 1e6, "prf_hz": 300}
             | {"chirp_s": radar.chirp},
+            "motion": {"model": "paper"},
             "timing": {"walk_stop_s": 0.2},
             "wall": wall,
             "snr_db": None,
@@ -221,6 +222,7 @@ class TestBlocks:
                 "duration_s": 0.5,
                 "radar": {"carrier_hz": 24e9, "bandwidth_hz": 1e9, "prf_hz": 300},
                 "image": {"size_px": 37},
+                "motion": {"model": "paper"},
                 "engine": {"kind": "cube"},
             }
         )

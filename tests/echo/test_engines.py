@@ -65,7 +65,9 @@ PAIRS = [
 
 
 def config_of(case: str, engine: dict, **more: object) -> Config:
-    return Config.model_validate({"snr_db": None} | CASES[case] | {"engine": engine} | more)
+    document = {"snr_db": None} | CASES[case] | {"engine": engine} | more
+    document["motion"] = {"model": "paper"} | document.get("motion", {})
+    return Config.model_validate(document)
 
 
 def signal(activity: Activity, config: Config) -> np.ndarray:

@@ -31,7 +31,7 @@ CONFIG = Config.model_validate(
         "radar": RADAR,
         "snr_db": None,
         "duration_s": 2.0,
-        "motion": {"range_m": 2.0, "angle_deg": 0.0},
+        "motion": {"model": "paper", "range_m": 2.0, "angle_deg": 0.0},
         "image": {"size_px": 32},
     }
 )

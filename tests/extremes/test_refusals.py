@@ -78,7 +78,7 @@ def document(key: str, value: Any) -> dict[str, Any]:
         vector[int(last)] = value
         *names, last = names
         value = vector
-    made: dict[str, Any] = {}
+    made: dict[str, Any] = {"motion": {"model": "paper"}}
     place = made
     for name in names:
         place = place.setdefault(name, {})

@@ -81,7 +81,7 @@ def only_the_torso(monkeypatch):
 # A torso at the height of the antennas that walks radially: its distance is x less 0.4 m.
 RADIAL = {
     "subject": {"height_m": 1.8},
-    "motion": {"range_m": 3.4, "angle_deg": 0, "speed_mps": 1.0},
+    "motion": {"model": "paper", "range_m": 3.4, "angle_deg": 0, "speed_mps": 1.0},
 }
 
 
@@ -102,7 +102,13 @@ def test_range_axis_shows_the_distance_at_the_column_time():
 def test_time_axis_is_the_centre_of_the_frames(name, with_mti):
     """A walker who passes abeam: the Doppler crosses zero there, and the map within a column."""
     radar = FAST | {"tx_m": [0, 0, 1.2], "rx_m": [0, 0, 1.2]}
-    motion = {"range_m": 2.0, "cross_range_m": -2.0, "angle_deg": 90, "speed_mps": 1.0}
+    motion = {
+        "model": "paper",
+        "range_m": 2.0,
+        "cross_range_m": -2.0,
+        "angle_deg": 90,
+        "speed_mps": 1.0,
+    }
     recording = record(
         radar,
         (name,),

@@ -267,7 +267,10 @@ def test_a_written_scene_gives_the_same_recording(slug: str, nominal: bool, tmp_
 
 
 def test_the_paper_has_no_hip_joints() -> None:
-    assert simulate(Config(), "walking", maps=("stft",)).truth.hip_joints is None
+    assert (
+        simulate(Config(motion={"model": "paper"}), "walking", maps=("stft",)).truth.hip_joints
+        is None
+    )
 
 
 @pytest.mark.parametrize("slug", TWELVE)

@@ -99,6 +99,7 @@ def config_of(maps: str, more: dict) -> Config:
         "radar": {"carrier_hz": 2e9, "bandwidth_hz": 1e9, "prf_hz": PULSES},
         "image": {"size_px": [16, WIDTH]},
         "maps": maps.split(),
+        "motion": {"model": "paper"},
     }
     return Config.model_validate(document | more)
 

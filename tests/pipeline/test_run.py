@@ -18,7 +18,7 @@ scenarios = pytest.mark.parametrize(
     "scenario", [FREE_SPACE, THROUGH_WALL], ids=["free space", "through the wall"]
 )
 # The paper's walker: from 1 m, 1.5 m/s for 4 s, straight away. Its wall is at 1 m as well.
-AWAY = {"range_m": 1.0, "angle_deg": 0}
+AWAY = {"model": "paper", "range_m": 1.0, "angle_deg": 0}
 
 
 def record(scenario: dict, *products: str, slug: str = "walking", **more: object) -> Recording:
@@ -146,6 +146,7 @@ def test_a_motionless_scene_without_noise_is_black(engine):
     config = Config.model_validate(
         {"snr_db": None, "maps": MAP_NAMES, "image": {"size_px": 16}, "engine": {"kind": engine}}
         | {"radar": {"carrier_hz": 24e9, "bandwidth_hz": 1e9, "prf_hz": 500}}
+        | {"motion": {"model": "paper"}}
     )
     scene = draw_scene(config, activity_named("stationary"), 0)
     images = run(plan_images(config), {"scene": scene})

@@ -31,6 +31,7 @@ WALKING = activity_named("walking")
 PERSON: dict[str, Any] = {
     "subject": {"height_m": 1.8},
     "motion": {
+        "model": "paper",
         "range_m": {"per_activity": {"default": 2, "S8": 1, "S9": 1, "S10": 1, "S11": 1, "S12": 1}},
         "angle_deg": 0,
         "thigh_deg": 30,

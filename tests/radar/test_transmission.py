@@ -18,7 +18,7 @@ T = np.linspace(0, 4, 50)
 
 def scene_of(bandwidth: float = 1e9, **wall: object) -> Scene:
     radar = {"carrier_hz": 2e9, "bandwidth_hz": bandwidth, "prf_hz": 128}
-    document = {"radar": radar, "wall": wall, "motion": {"range_m": 2.5}}
+    document = {"radar": radar, "wall": wall, "motion": {"model": "paper", "range_m": 2.5}}
     return nominal_scene(Config.model_validate(document), activity_named("kicking"))
 
 

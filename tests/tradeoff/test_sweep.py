@@ -21,6 +21,7 @@ from radhar_cli.tradeoff.scenes import Scenes
 from radhar_cli.tradeoff.settings import sweep, trials
 
 CONFIG = """
+motion: {model: paper}
 activities: [stationary, punching, walking]
 duration_s: 1.0
 radar: {carrier_hz: 10e9, bandwidth_hz: 1e9, prf_hz: 1000, adc_rate_hz: 1e6}

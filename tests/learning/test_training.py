@@ -255,6 +255,15 @@ def test_accumulation_is_said_and_recorded(data: Path, tmp_path: Path) -> None:
     assert "in 3 part(s)" in (tmp_path / "run" / run_files.SUMMARY).read_text()
 
 
+def test_out_of_memory_names_a_smaller_micro_batch(
+    data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """An allocation of 2**60 bytes, which PyTorch refuses at once."""
+    monkeypatch.setattr(gradient_step, "cross_entropy", lambda *_, **__: torch.empty(2**58))
+    with pytest.raises(TrainingError, match=r"micro_batch = 6: out of memory on cpu; .*=3"):
+        trained(data, tmp_path / "run", batch_size=6)
+
+
 def test_clipping_limits_the_gradient(data: Path, tmp_path: Path) -> None:
     free = prepared(data, tmp_path / "free", optimiser="sgd", weight_decay=0.0)
     held = prepared(

@@ -392,6 +392,6 @@ def test_the_limits_of_people(key: str, low: float, high: float) -> None:
     for value in (low or 1.0 * (key == "duration_s"), high):
         validated(Config, document(key, value), "here", {})
     beyond = [high * 1.01, *([low * 0.99 if low > 0 else low * 1.01] if low else [])]
-    for value in [*beyond, {"uniform": [low or 0.5, high * 1.01]}]:
+    for value in [*beyond, {"uniform": [high / 2, high * 1.01]}]:
         with pytest.raises(ConfigError, match=rf"^here: {key} = .*: should be from "):
             validated(Config, document(key, value), "here", {})

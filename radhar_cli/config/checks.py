@@ -227,7 +227,8 @@ def _human_problems(c: Config) -> Iterator[Problem]:
         section, _, name = key.rpartition(".")
         number = getattr(getattr(c, section) if section else c, name)
         for activity in c.chosen_activities:
-            if section in ("motion", "timing") and key not in activity.human:
+            used = key in activity.human or key.startswith("motion.fidget_")
+            if section in ("motion", "timing") and not used:
                 continue
             if number is None:
                 continue

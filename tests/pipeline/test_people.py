@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from radhar_cli.activity import ACTIVITIES, MOVEMENTS, activity_named
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.checks import HUMAN_LIMITS
+from radhar_cli.config.reading import validated
 from radhar_cli.errors import ConfigError
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.skeleton import JOINTS, PARENTS, links
@@ -372,3 +373,25 @@ def test_numbers_beyond_people_are_refused_where_they_matter(key: str, value: fl
                 load_config(path, what)
         else:
             load_config(path, what)
+
+
+def document(key: str, value: float) -> dict[str, Any]:
+    section, _, name = key.rpartition(".")
+    base: dict[str, Any] = {
+        "duration_s": 5.0,
+        "radar": {"prf_hz": 500},
+        "motion": {"model": "human"},
+    }
+    if not section:
+        return base | {name: value}
+    return base | {section: base.get(section, {}) | {name: value}}
+
+
+@pytest.mark.parametrize(("key", "low", "high"), HUMAN_LIMITS)
+def test_the_limits_of_people(key: str, low: float, high: float) -> None:
+    for value in (low or 1.0 * (key == "duration_s"), high):
+        validated(Config, document(key, value), "here", {})
+    beyond = [high * 1.01, *([low * 0.99 if low > 0 else low * 1.01] if low else [])]
+    for value in [*beyond, {"uniform": [high / 2, high * 1.01]}]:
+        with pytest.raises(ConfigError, match=rf"^here: {key} = .*: should be from "):
+            validated(Config, document(key, value), "here", {})

@@ -2,7 +2,8 @@
 
     python scripts/draw_gallery.py [-o docs]
 
-Scenes: configs/paper/figures_free_space.yaml and figures_through_wall.yaml.
+Scenes: configs/human/free_space_77GHz.yaml and through_wall_2GHz.yaml, one a class, facing the radar;
+configs/paper/figures_free_space.yaml and figures_through_wall.yaml.
 """
 
 import argparse
@@ -23,12 +24,32 @@ from radhar_cli.dataset.layout import DATASET
 from radhar_cli.figures.maps_panel import TITLES
 
 ROOT = Path(__file__).resolve().parents[1]
-SCENARIOS = {"free_space": "free space, 77 GHz", "through_wall": "through a wall, 2 GHz"}
+SCENARIOS = {
+    "people": "people in free space, 77 GHz",
+    "people_wall": "people through a wall, 2 GHz",
+    "free_space": "the paper's motion in free space, 77 GHz",
+    "through_wall": "the paper's motion through a wall, 2 GHz",
+}
+ONE_EACH = (
+    "samples_per_class=1",
+    "split={train: 1, validation: 0}",
+    f"maps=[{', '.join(MAP_NAMES)}]",
+    "motion.angle_deg=180",
+    "motion.cross_range_m=0",
+    "image.size_px=256",
+)
+CONFIGS = {
+    "people": ("human/free_space_77GHz.yaml", ONE_EACH),
+    "people_wall": ("human/through_wall_2GHz.yaml", ONE_EACH),
+    "free_space": ("paper/figures_free_space.yaml", ()),
+    "through_wall": ("paper/figures_through_wall.yaml", ()),
+}
+IN_KHZ = ("people", "free_space")
 OVERVIEW = (
-    ("free_space", "rtm", "77 GHz\nrange (m)"),
-    ("free_space", "stft", "77 GHz\nDoppler (kHz)"),
-    ("free_space", "fsst_compensated", "77 GHz, FSST,\ncompensated (kHz)"),
-    ("through_wall", "stft", "2 GHz, wall\nDoppler (Hz)"),
+    ("people", "rtm", "people, 77 GHz\nrange (m)"),
+    ("people", "stft", "people, 77 GHz\nDoppler (kHz)"),
+    ("people_wall", "stft", "people, 2 GHz,\nwall (Hz)"),
+    ("free_space", "stft", "paper's motion,\n77 GHz (kHz)"),
 )
 WORDS = {
     1: (
@@ -80,10 +101,10 @@ WORDS = {
 def draw(place: Path, rows: tuple[tuple[str, str, str], ...], height: float, out: Path) -> None:
     """Write a figure with a row for every (scenario, map, label) and a column for every class."""
     figure, axes = plt.subplots(
-        len(rows), 12, figsize=(19, height), sharex=True, sharey="row", layout="constrained"
+        len(rows), 12, figsize=(19, height), sharex="row", sharey="row", layout="constrained"
     )
     for row, (scenario, name, label) in zip(axes, rows, strict=True):
-        unit = 1e3 if scenario == "free_space" and name != "rtm" else 1.0
+        unit = 1e3 if scenario in IN_KHZ and name != "rtm" else 1.0
         with h5py.File(place / scenario / DATASET) as file:
             left, right, low, high = file[f"extent/{name}"][0]
             extent = (left, right, low / unit, high / unit)
@@ -91,7 +112,7 @@ def draw(place: Path, rows: tuple[tuple[str, str, str], ...], height: float, out
                 panel.imshow(levels, extent=extent, aspect="auto", cmap="viridis")
                 panel.tick_params(labelsize=7)
         if name == "rtm":
-            row[0].set_ylim(0, 7.4)
+            row[0].set_ylim(0, 11 if scenario.startswith("people") else 7.4)
         row[0].set_ylabel(label, fontsize=8)
     for panel, activity in zip(axes[0], ACTIVITIES, strict=True):
         panel.set_title(f"{activity.label} {activity.slug.replace('_', ' ')}", fontsize=9)
@@ -105,7 +126,7 @@ def draw(place: Path, rows: tuple[tuple[str, str, str], ...], height: float, out
 
 
 def gallery_rows(scenario: str) -> tuple[tuple[str, str, str], ...]:
-    unit = "kHz" if scenario == "free_space" else "Hz"
+    unit = "kHz" if scenario in IN_KHZ else "Hz"
     labels = {name: f"{TITLES[name]}\n({unit})".replace(", ", ",\n") for name in MAP_NAMES}
     labels["rtm"] = "range (m)"
     return tuple((scenario, name, labels[name]) for name in MAP_NAMES)
@@ -114,9 +135,10 @@ def gallery_rows(scenario: str) -> tuple[tuple[str, str, str], ...]:
 INTRODUCTION = """
 # Gallery
 
-All nine maps of all twelve classes, the scenes of the paper's two figures: a person of 1.8 m at 2
-m (S1 to S7) or 1 m (S8 to S12), SNR 30 dB, 50 dB from dark to bright. Drawn and written by
-`python scripts/draw_gallery.py`.
+All nine maps of all twelve classes, 50 dB from dark to bright, drawn and written by
+`python scripts/draw_gallery.py`. First people as they move (`motion.model: human`,
+[motion.md](motion.md)), one of each class of the human configs, facing the radar; then the paper's
+motion in the scenes of its two figures: a person of 1.8 m at 2 m (S1 to S7) or 1 m (S8 to S12).
 """
 END = """
 Denoising (rows 3, 5, 7, 9) is a low-pass at 0.32 of PRF/2: it takes the fast limbs with it. The
@@ -131,7 +153,7 @@ def words() -> str:
     for scenario, title in SCENARIOS.items():
         lines += [f"## {title[0].upper()}{title[1:]}", ""]
         lines += [f"![{title}](gallery_{scenario}.png)", ""]
-    lines += ["## What each class shows", ""]
+    lines += ["## What each class shows, with the paper's motion", ""]
     for activity in ACTIVITIES:
         name = f"**{activity.label} {activity.slug.replace('_', ' ')}.**"
         lines.append(
@@ -150,7 +172,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         place = Path(name)
         for scenario in SCENARIOS:
-            config = load_config(ROOT / f"configs/paper/figures_{scenario}.yaml")
+            path, overrides = CONFIGS[scenario]
+            config = load_config(ROOT / "configs" / path, overrides)
             build(config, place / scenario, 1, BarProgress())
         draw(place, OVERVIEW, 7.2, out / "overview.png")
         for scenario in SCENARIOS:

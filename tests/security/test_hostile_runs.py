@@ -165,7 +165,7 @@ def test_answers_that_are_no_numbers_are_not_passed_on(run: Path, good_set: Path
     huge = weights(lambda w: [t.fill_(3e38) for t in w.values() if t.is_floating_point()])
     huge(run / "best.safetensors")
     words = ["predict", str(run), str(good_set)]
-    one_line(lambda: program()(words, standalone_mode=False), "no finite numbers")
+    one_line(lambda: program()(words, standalone_mode=False), "logits are not finite")
 
 
 def checkpoint(change: Change) -> Callable[[Path], None]:

@@ -356,10 +356,10 @@ def plain_chunks_in_a_gzip_dataset(file: h5py.File, _: Path) -> None:
 
 
 def circle(data: bytes) -> bytes:
-    """A file whose last text has no length: HDF5 itself reads it without end."""
+    """A file with a free object of no size for a text: HDF5 itself reads it without end."""
     text = __version__.encode()
-    place = data.index(len(text).to_bytes(8, "little") + text)  # as an object of a heap
-    return data[:place] + bytes(8) + data[place + 8 :]
+    place = data.index(len(text).to_bytes(8, "little") + text)  # half way in an object's header
+    return data[: place - 8] + bytes(16) + data[place + 8 :]
 
 
 def crash(data: bytes) -> bytes:

@@ -2,7 +2,7 @@
 
     python scripts/draw_gallery.py [-o docs]
 
-Scenes: configs/human/free_space_77GHz.yaml and through_wall_2GHz.yaml, one a class, facing the radar;
+Scenes: configs/human/free_space_77GHz.yaml and through_wall_2GHz.yaml, one a class; then
 configs/paper/figures_free_space.yaml and figures_through_wall.yaml.
 """
 

@@ -392,8 +392,11 @@ from time import thread_time
 import numpy as np
 from radhar_cli.echo.direct import DirectEcho
 from radhar_cli.echo.paths import Paths
-from radhar_cli.worker_process import prepare_process
 from radhar_cli.radar.waveform import Waveform
+try:
+    from radhar_cli.worker_process import prepare_process
+except ImportError:  # an older tree
+    from radhar_cli.process import prepare_process
 
 class Walker:
     # Points on four swinging limbs of two links each and on a trunk, seen from the origin.

@@ -58,5 +58,7 @@ def print_outcome(config: Config, outcome: Outcome) -> None:
     if config.output.png:
         tell(f"  images      {folder / PNG}/<map>/<train|val|test>/<class>/<index>.png")
     if outcome.made < outcome.samples:
-        tell(f"  this run    made {outcome.made} samples, wrote {outcome.pngs} PNGs later on")
+        tell(
+            f"  this run    made {outcome.made} samples, and {outcome.pngs} PNGs that were missing"
+        )
     tell(f"  check it    radhar verify {folder}")

@@ -138,6 +138,8 @@ def _as_config(scene: Scene) -> str:
 def write_all(simulation: Simulation, folder: Path) -> list[Path]:
     """Write scene.h5, scene.json and scene.yaml into a folder; return their paths.
 
+    Figures of an earlier scene are removed.
+
     Raises:
         UnfinishedError: the folder cannot be written.
     """
@@ -146,6 +148,8 @@ def write_all(simulation: Simulation, folder: Path) -> list[Path]:
         write_scene(simulation, folder / SCENE_FILE)
         (folder / SCENE_JSON).write_text(json.dumps(describe(simulation), indent=2) + "\n")
         (folder / SCENE_YAML).write_text(_as_config(simulation.scene))
+        for drawn in (MAPS, ANIMATION):  # of an earlier scene
+            (folder / drawn).unlink(missing_ok=True)
     except OSError as error:
         raise UnfinishedError(
             f"{error.filename or folder}: {error.strerror or error}; nothing else was written"

@@ -206,6 +206,13 @@ def test_python_interface(tmp_path: Path) -> None:
         radhar.nothing  # noqa: B018
 
 
+def test_figures_of_an_earlier_scene_do_not_stay(tmp_path: Path, walking: Simulation) -> None:
+    for name in ("maps.png", "stickman.gif"):
+        (tmp_path / name).write_bytes(b"of another scene")
+    write_all(walking, tmp_path)
+    assert sorted(p.suffix for p in tmp_path.iterdir()) == [".h5", ".json", ".yaml"]
+
+
 def test_a_scene_is_written_and_simulated_again(tmp_path: Path) -> None:
     config = load_config("configs/smoke.yaml", ["maps=[rtm, stft]"])
     drawn = simulate(config, "kicking", index=3, maps=("rtm", "stft"))

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from radhar_cli.motion.protocol import Motion
 
-MODELS = ("paper", "human")  # of `motion.model`
-
 _GAIT = ("motion.gait_hz", "motion.thigh_deg", "motion.calf_deg", "motion.arm_deg")
 _WALK = ("motion.speed_mps", *_GAIT)
 _SEAT = ("timing.seat_start_s", "timing.seat_duration_s")

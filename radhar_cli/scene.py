@@ -184,11 +184,10 @@ def scene_numbers(scene: Scene) -> dict[str, float]:
 
     `motion.fall` is its place in FALLS.
     """
-    config = scene.config
-    found = {key: one for key, one in numbers(config) if depends_on(config, scene.activity, key)}
-    if depends_on(config, scene.activity, FALL) and not isinstance(config.motion.fall, Falls):
-        found[FALL] = float(FALLS.index(config.motion.fall))
-    return found
+    keys = (*(key for key, _ in numbers(scene.config)), FALL)
+    return {
+        key: number_at(scene, key) for key in keys if depends_on(scene.config, scene.activity, key)
+    }
 
 
 def depends_on(config: Config, activity: Activity, key: str) -> bool:

@@ -1,7 +1,7 @@
 """The activities: label, slug, class number and the numbers each one depends on."""
 
 import difflib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -15,7 +15,8 @@ _RISE = ("timing.rise_start_s", "timing.rise_duration_s", "timing.walk_start_s")
 _STOP = ("timing.walk_stop_s", "timing.overlap_s")
 
 # What each movement of people depends on, besides body, place and the restlessness of everybody.
-_STRIKE = ("motion.cycle_phase", "motion.strike_scale", "motion.tempo_jitter", "motion.size_jitter")
+_UNEVEN = ("motion.tempo_jitter", "motion.size_jitter")
+_STRIKE = ("motion.cycle_phase", "motion.strike_scale", *_UNEVEN)
 _SIT = ("motion.seat_height", "motion.lean_deg", "motion.recline_deg")
 _STRIDE = (
     "motion.speed_mps",
@@ -28,6 +29,8 @@ _STRIDE = (
     "motion.ragged_speed",
     "motion.stride_jitter",
     "motion.width_jitter_m",
+    "motion.lane_m",
+    "motion.lane_start",
 )
 
 
@@ -45,17 +48,19 @@ MOVEMENTS = {
     "stationary": Movement("standing", "standing", None),
     "punching": Movement("standing", "standing", None, ("motion.punch_hz", *_STRIKE)),
     "kicking": Movement("standing", "standing", None, ("motion.kick_hz", *_STRIKE)),
-    "grabbing": Movement("standing", "standing", 2.5, ("motion.bend_deg", "motion.dwell_s")),
+    "grabbing": Movement(
+        "standing", "standing", 2.5, ("motion.bend_deg", "motion.dwell_s", "motion.squat")
+    ),
     "sitting_down": Movement("standing", "seated", 2.0, _SIT),
     "standing_up": Movement("seated", "standing", 1.8, _SIT),
     "body_rotating": Movement(
         "standing",
         "standing",
         None,
-        ("motion.cycle_phase", "motion.rotation_hz", "motion.turn_deg"),
+        ("motion.rotation_hz", "motion.turn_deg", "motion.cycle_phase", *_UNEVEN),
     ),
     "walking": Movement("standing", "standing", None, _STRIDE),
-    "falling": Movement("standing", "lying", 1.1, ("motion.fall",)),
+    "falling": Movement("standing", "lying", 1.1, ("motion.fall", "motion.kneel_s")),
     "getting_up": Movement("lying", "standing", 3.0),
     "turning_around": Movement("standing", "standing", 1.8),
 }
@@ -112,7 +117,8 @@ def _activity(number: int, slug: str, paper: tuple[str, ...], *more: str) -> Act
     return Activity(number, slug, paper, (*human, *(key for key in keys if key not in human)))
 
 
-_SITTING = (*_SIT, *_SEAT)
+_AROUND = ("motion.step_m", "motion.settle_size")
+_SITTING = (*_SIT, *_SEAT, *_AROUND)
 ACTIVITIES: tuple[Activity, ...] = (
     _activity(1, "stationary", (), "stationary", "motion.shuffle_hz"),
     _activity(2, "punching", ("motion.gait_hz", "motion.calf_deg", "motion.arm_deg")),
@@ -122,8 +128,9 @@ ACTIVITIES: tuple[Activity, ...] = (
         "grabbing",
         ("motion.gait_hz",),
         *("grabbing", "timing.grab_start_s", "timing.grab_duration_s", "motion.shuffle_hz"),
+        *_AROUND,
     ),
-    Activity(5, "sitting_down", _SEAT, _SITTING),
+    Activity(5, "sitting_down", _SEAT, (*_SITTING, "motion.look_deg")),
     Activity(6, "standing_up", _SEAT, _SITTING),
     _activity(7, "body_rotating", ("motion.gait_hz", "motion.turn_deg")),
     _activity(8, "walking", _WALK),
@@ -153,7 +160,16 @@ ACTIVITIES: tuple[Activity, ...] = (
     ),
 )
 
-_BY_NAME = {name: a for a in ACTIVITIES for name in (a.slug, a.label.lower())}
+DEFAULT = "default"  # in `per_activity`: what holds for activities that it does not name
+SURE = 0.75  # similarity from which on a misspelt name is guessed
+
+
+def _by_name(activities: Iterable[Activity]) -> dict[str, Activity]:
+    return {name: a for a in activities for name in (a.slug, a.label.lower())}
+
+
+_BY_NAME = _by_name(ACTIVITIES)
+TWELVE = {name: a.slug for name, a in _BY_NAME.items()}  # slug of each slug and label
 _OWN: dict[str, Activity] = {}
 
 
@@ -186,23 +202,30 @@ def own_activities() -> tuple[Activity, ...]:
 
 def is_new_slug(slug: str) -> bool:
     """Whether a class of one's own may have this name: none of the twelve's, fit for a folder."""
-    return slug not in _BY_NAME and slug.isascii() and slug.isidentifier() and slug == slug.lower()
+    taken = slug in _BY_NAME or slug == DEFAULT
+    return not taken and slug.isascii() and slug.isidentifier() and slug == slug.lower()
 
 
-def activity_named(name: str) -> Activity:
+def activity_named(name: str, classes: Mapping[str, Activity] | None = None) -> Activity:
     """Find an activity by slug or label, whatever the case.
 
+    Args:
+        name: of the activity.
+        classes: {slug: activity} of a config's own classes.
+
     Raises:
-        ValueError: no such activity; the message suggests the nearest name.
+        ValueError: no such activity; the message suggests the nearest name, or lists them all.
     """
-    known = _BY_NAME | _OWN
-    found = known.get(name.strip().lower())
-    if found is not None:
-        return found
-    near = difflib.get_close_matches(name.lower(), list(known), n=1)
+    known = _BY_NAME | _OWN | _by_name((classes or {}).values())
+    wanted = name.strip().lower()
+    if wanted in known:
+        return known[wanted]
+    slugs = list(dict.fromkeys(a.slug for a in known.values()))
+    longer = [slug for slug in slugs if len(wanted) > 2 and slug.startswith(wanted)]
+    near = longer[:1] or difflib.get_close_matches(wanted, known, n=1, cutoff=SURE)
     hint = (
-        f"did you mean {near[0].upper() if near[0][1:].isdigit() else near[0]!r}?"
+        f"did you mean {near[0].upper() if near[0] not in slugs else near[0]!r}?"
         if near
-        else "the slugs are " + ", ".join(a.slug for a in (*ACTIVITIES, *_OWN.values()))
+        else "the slugs are " + ", ".join(slugs)
     )
     raise ValueError(f"{name!r} is no activity; {hint}")

@@ -17,14 +17,20 @@ def program() -> "typer.Typer":
     import typer
 
     from radhar_cli.commands import (
+        adapt,
         config,
         evaluate,
         export,
+        fit,
         generate,
+        import_,
         inspect,
+        merge,
         models,
+        motion,
         predict,
         preview,
+        process,
         simulate,
         tradeoff,
         train,
@@ -40,10 +46,16 @@ def program() -> "typer.Typer":
     )
     app.callback()(version.options)
     app.command()(generate.generate)
+    app.command()(merge.merge)
     app.command()(simulate.simulate)
+    app.command("import")(import_.import_)
+    app.command()(process.process)
+    app.command()(fit.fit)
+    app.command()(motion.motion)
     app.command()(verify.verify)
     app.command()(train.train)
     app.command("eval")(evaluate.evaluate)
+    app.command()(adapt.adapt)
     app.command()(predict.predict)
     app.command()(models.models)
     app.command()(export.export)
@@ -56,9 +68,11 @@ def program() -> "typer.Typer":
 
 def main() -> None:
     """Run the program; our errors end with their message and status."""
+    from radhar_cli.commands.generate import shard_named
+
     signal.signal(signal.SIGTERM, _terminate)
     try:
-        program()(prog_name="radhar")
+        program()(shard_named(sys.argv[1:]), prog_name="radhar")
     except RadharError as error:
         if os.environ.get("RANK", "0") == "0":  # under torchrun all fail alike; one should speak
             print(f"radhar: {shown(error)}", file=sys.stderr)

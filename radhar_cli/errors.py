@@ -26,6 +26,10 @@ class SceneError(RadharError):
     """A drawn scene outside the model; names sample, joint, time and distance."""
 
 
+class MotionFileError(RadharError):
+    """A motion file that cannot be used; names file, line and what is missing or odd."""
+
+
 class FolderError(RadharError):
     """An output folder that cannot be used or continued."""
 
@@ -42,3 +46,7 @@ class ModelError(RadharError):
 
 class MachineError(RadharError):
     """A device that this machine does not have, or a package that is not installed."""
+
+
+class CaptureError(RadharError):
+    """A capture that cannot be read; names file, field, value and what would fit."""

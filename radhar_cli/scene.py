@@ -1,13 +1,13 @@
 """(config, class, index) -> one scene: a config with nothing left to draw."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from math import nan
 from typing import Any, TypeAlias
 
 from radhar_cli.activity import Activity
-from radhar_cli.config.number import Number, is_fixed, nominal, quantile
+from radhar_cli.config.number import Number, is_fixed, nominal, quantile, support
 from radhar_cli.config.schema import (
     FALLS,
     Config,
@@ -21,7 +21,19 @@ from radhar_cli.motion.skeleton import default_weight
 from radhar_cli.randomness import PERSON, SCENE, stream
 
 # The keys of a config whose numbers may be drawn, scene by scene.
-SCENE_KEYS = ("duration_s", "radar", "subject", "motion", "timing", "classes", "wall", "snr_db")
+SCENE_KEYS = (
+    "duration_s",
+    "radar",
+    "subject",
+    "motion",
+    "timing",
+    "classes",
+    "wall",
+    "room",
+    "snr_db",
+    "receiver",
+    "image.cfar",
+)
 _BODY = ("subject.height_m", "subject.weight_kg")
 # What stays with a person whatever they do: body and gait.
 PERSONAL = (
@@ -52,6 +64,15 @@ REDRAWN = ("motion.", "timing.", "classes.")
 FALL = "motion.fall"
 # Numbers of `motion:` that every activity depends on.
 PLACE = ("motion.range_m", "motion.cross_range_m", "motion.angle_deg")
+# What a walk may overlap, by at most MOST_OVERLAP of its duration, as low down no legs are long
+# enough for a step; falls to the side not at all, as their feet are not planted.
+OVERLAPPED = {
+    "sitting_to_walking": "rise_duration_s",
+    "walking_to_sitting": "sit_duration_s",
+    "falling_to_walking": "rise_duration_s",
+    "walking_to_falling": "fall_duration_s",
+}
+MOST_OVERLAP = 0.3
 # Numbers besides `uses` that people always depend on, whatever they do.
 OF_PEOPLE = (
     *(key for key in PERSONAL if key.startswith("subject.") and key not in _BODY),
@@ -68,6 +89,10 @@ UNSTEADY = (
     "motion.size_jitter",
     "motion.fidget_hz",
     "motion.shuffle_hz",
+    "motion.step_m",
+    "motion.look_deg",
+    "motion.settle_size",
+    "motion.kneel_s",
 )
 
 Draw: TypeAlias = Callable[[str, Number], float]
@@ -118,7 +143,11 @@ def draw_scene(config: Config, activity: Activity, index: int, attempt: int = 0)
     if isinstance(fixed.motion.fall, Falls):
         u = stream(config.seed, SCENE, activity.index, index, attempt, name="motion.fall").random()
         fixed = _with_fall(fixed, fixed.motion.fall.drawn(u))
-    return Scene(fixed, activity, index, subject, attempt)
+    if config.files_of(activity) is not None:
+        name = f"classes.{activity.slug}.file"
+        u = stream(config.seed, SCENE, activity.index, index, attempt, name=name).random()
+        fixed = _with_file(fixed, activity, u, subject)
+    return Scene(_with_possible_overlap(fixed, activity), activity, index, subject, attempt)
 
 
 def nominal_scene(config: Config, activity: Activity) -> Scene:
@@ -128,7 +157,39 @@ def nominal_scene(config: Config, activity: Activity) -> Scene:
     fixed = fixed.model_copy(update={"motion": fixed.motion.model_copy(update=steady)})
     if isinstance(fixed.motion.fall, Falls):
         fixed = _with_fall(fixed, fixed.motion.fall.drawn(0.5))
-    return Scene(fixed, activity, 0)
+    fixed = _with_file(fixed, activity, 0.5, None)
+    return Scene(_with_possible_overlap(fixed, activity), activity, 0)
+
+
+def _with_possible_overlap(config: Config, activity: Activity) -> Config:
+    """The config with no more overlap of S9 to S12's movements than legs are long enough for."""
+    timing: Any = config.timing
+    key = OVERLAPPED.get(activity.slug)
+    if key is None or config.motion.model != "human":
+        return config
+    sideways = activity.slug == "walking_to_falling" and config.motion.fall == "sideways"
+    most = 0.0 if sideways else MOST_OVERLAP * getattr(timing, key)
+    capped = {"overlap_s": min(timing.overlap_s, most)}
+    if key == "rise_duration_s" and timing.walk_start_s is not None:
+        earliest = timing.rise_start_s + timing.rise_duration_s - most
+        capped["walk_start_s"] = max(timing.walk_start_s, earliest)
+    return config.model_copy(update={"timing": timing.model_copy(update=capped)})
+
+
+def _with_file(config: Config, activity: Activity, u: float, subject: int | None) -> Config:
+    """The config with the file of its activity that stands at a fraction u of the draws.
+
+    Named persons have files of their own, as long as there are enough: then training and validation
+    share none.
+    """
+    one = config.files_of(activity)
+    if one is None or one.file is not None:
+        return config
+    files = range(len(one.files))
+    if subject is not None:
+        files = files[subject :: config.split.subjects] or files
+    drawn = one.model_copy(update={"file": files[min(int(u * len(files)), len(files) - 1)]})
+    return config.model_copy(update={"classes": {**config.classes, activity.slug: drawn}})
 
 
 def _with_fall(config: Config, fall: FallName) -> Config:
@@ -152,7 +213,7 @@ def numbers(config: Config) -> list[tuple[str, Any]]:
         return number
 
     for key in SCENE_KEYS:
-        _each_number(getattr(config, key), key, note)
+        _each_number(_part(config, key), key, note)
     return found
 
 
@@ -174,6 +235,13 @@ def number_at(scene: Scene, key: str) -> float:
     return float(FALLS.index(place)) if key == FALL else float(place)
 
 
+def file_keys(config: Config) -> tuple[str, ...]:
+    """Keys of the number of the file that a scene uses, of each class of files."""
+    return tuple(
+        f"classes.{slug}.file" for slug, one in config.classes.items() if hasattr(one, "files")
+    )
+
+
 @lru_cache(maxsize=1024)
 def _path(key: str) -> tuple[str, ...]:
     return tuple(key.split("."))
@@ -184,7 +252,7 @@ def scene_numbers(scene: Scene) -> dict[str, float]:
 
     `motion.fall` is its place in FALLS.
     """
-    keys = (*(key for key, _ in numbers(scene.config)), FALL)
+    keys = (*(key for key, _ in numbers(scene.config)), FALL, *file_keys(scene.config))
     return {
         key: number_at(scene, key) for key in keys if depends_on(scene.config, scene.activity, key)
     }
@@ -193,10 +261,15 @@ def scene_numbers(scene: Scene) -> dict[str, float]:
 def depends_on(config: Config, activity: Activity, key: str) -> bool:
     """Whether scenes of an activity depend on the number of this dotted key."""
     model = config.motion.model
+    if key.startswith("receiver.noise_"):
+        return support(config.receiver.noise_corner_hz)[1] > 0
+    if key.startswith("image.cfar."):
+        return config.image.kind == "cfar" and config.image.cfar.uses(key.rpartition(".")[2])
     if key.startswith("classes."):
         return key.startswith(f"classes.{activity.slug}.")
     if key in OF_PEOPLE:
-        return model == "human" and activity.motion is None
+        from_model = activity.motion is None and config.files_of(activity) is None
+        return model == "human" and from_model
     return not key.startswith(REDRAWN) or key in PLACE or key in activity.uses(model)
 
 
@@ -224,8 +297,8 @@ def _fixed_and_drawn(same: _SameConfig, activity: Activity) -> tuple[Config, dic
             drawn[key] = one
         return nominal(one)
 
-    sections = {key: _each_number(getattr(config, key), key, fix) for key in SCENE_KEYS}
-    return config.model_copy(update=sections | {"activities": (activity.slug,)}), drawn
+    sections = {key: _each_number(_part(config, key), key, fix) for key in SCENE_KEYS}
+    return _with_parts(config, sections | {"activities": (activity.slug,)}), drawn
 
 
 def _fixed(config: Config, activity: Activity, draw: Draw) -> Config:
@@ -233,26 +306,45 @@ def _fixed(config: Config, activity: Activity, draw: Draw) -> Config:
     fixed, drawn = _fixed_and_drawn(_SameConfig(config), activity)
     values = {key: draw(key, number) for key, number in drawn.items()}
     sections: dict[str, Any] = {
-        key: _each_number(getattr(fixed, key), key, lambda name, number: values.get(name, number))
-        for key in {name.partition(".")[0] for name in values}
+        key: _each_number(_part(fixed, key), key, lambda name, number: values.get(name, number))
+        for key in SCENE_KEYS
+        if any(name == key or name.startswith(f"{key}.") for name in values)
     }
     subject = sections.get("subject", fixed.subject)
     if subject.weight_kg is None:
         weight = {"weight_kg": default_weight(subject.height_m)}
         sections["subject"] = subject.model_copy(update=weight)
-    return fixed.model_copy(update=sections)
+    return _with_parts(fixed, sections)
+
+
+def _part(config: Section, key: str) -> Any:
+    """What stands under a dotted key of sections."""
+    place: Any = config
+    for name in key.split("."):
+        place = getattr(place, name)
+    return place
+
+
+def _with_parts(config: Config, parts: Mapping[str, Any]) -> Config:
+    """The config with other values under dotted keys of sections."""
+    update = dict[str, Any]()
+    for key, value in parts.items():
+        name, _, rest = key.partition(".")
+        section = update.get(name, getattr(config, name))
+        update[name] = section.model_copy(update={rest: value}) if rest else value
+    return config.model_copy(update=update)
 
 
 def _each_number(value: Any, key: str, change: Callable[[str, Any], Any]) -> Any:
     """A value of a config with change(dotted key, number) in place of every number."""
-    if value is None or isinstance(value, (bool, str)):
+    if value is None or isinstance(value, (int, str)):  # whole numbers are no quantities
         return value
     if isinstance(value, tuple):
         return tuple(_each_number(one, f"{key}.{axis}", change) for axis, one in enumerate(value))
     if isinstance(value, dict):
         return {name: _each_number(one, f"{key}.{name}", change) for name, one in value.items()}
     if isinstance(value, Section) and not isinstance(value, PerActivity):
-        fields = type(value).model_fields
+        fields = getattr(value, "NUMBERS", type(value).model_fields)
         return value.model_copy(
             update={
                 name: _each_number(getattr(value, name), f"{key}.{name}", change) for name in fields

@@ -4,13 +4,34 @@ import errno
 import json
 import os
 import stat
+from abc import ABC, abstractmethod
 from pathlib import Path
-from typing import Any
+from types import TracebackType
+from typing import Any, Self
 
 from radhar_cli.errors import FolderError
 
 DEEPEST = 32
 MAX_JSON = 2**20  # characters
+
+
+class Closing(ABC):
+    """A file that `with` closes."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Close the file."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
 
 
 def regular_size(path: str | os.PathLike[str]) -> int:

@@ -80,7 +80,7 @@ def exact_signal(config: Config, activity: str = "walking") -> np.ndarray:
     """x[m] in free space by the naive formulas of `reference`, in extended precision."""
     delay, amplitude = free_space_paths(config, activity)
     y = ref.slow_time(delay, amplitude, radar_of(config))
-    return np.diff(y) if config.processing.mti else y
+    return np.diff(y) if config.processing.clutter == "difference" else y
 
 
 def relative(found: np.ndarray, right: np.ndarray) -> float:

@@ -138,7 +138,7 @@ class Drawer:
             "samples_per_class": int(self.rng.integers(1, 50)),
             "radar": radar,
             "image": {"size_px": self.pick((16, 32, [16, 24], [31, 17]))},
-            "processing": self.processing(pulses, samples),
+            "processing": self.processing(pulses, samples, radar["prf_hz"]),
             "engine": {"kind": self.pick(("direct", "cube"))},
         }
         engine = document["engine"]
@@ -153,6 +153,7 @@ class Drawer:
         self.maybe(document, 0.6, "subject", self.subject)
         if document["duration_s"] <= MOST_SECONDS and self.chance(0.4):
             self.people(document)
+        self.maybe(document, 0.3, "body", self.body)
         self.maybe(document, 0.5, "wall", self.wall)
         self.maybe(document, 0.6, "snr_db", lambda: self.number(lambda: self.signed(1e-3, 300)))
         self.maybe(document, 0.2, "snr_db", lambda: None)
@@ -161,9 +162,32 @@ class Drawer:
         self.maybe(document, 0.5, "maps", self.maps)
         self.maybe(document["image"], 0.4, "dynamic_range_db", lambda: self.log(1e-300, 300))
         self.maybe(document["image"], 0.1, "colour_map", lambda: self.pick(("gray", "turbo")))
+        self.maybe(document["image"], 0.2, "cfar", self.cfar)
+        if "cfar" in document["image"]:
+            document["image"]["kind"] = "cfar"
         self.maybe(document, 0.1, "output", lambda: {"png": False, "hdf5_level": 9})
         self.maybe(document, 0.1, "split", lambda: {"by": "subject", "subjects": 1, "test": 0.0})
         return document
+
+    def cfar(self) -> Document:
+        """Windows that fit into the smallest image there is, 16 pixels."""
+        guard = [int(n) for n in self.rng.integers(0, 4, 2)]
+        cfar: Document = {
+            "guard": guard,
+            "training": [int(self.rng.integers(1, 8 - max(guard)))] * 2,
+        }
+        draw = self.pick(
+            (
+                ("pfa", lambda: self.log(1e-12, 0.999)),
+                ("factor", lambda: self.log(1e-3, 1e12)),
+                ("threshold_db", lambda: self.signed(1e-3, 300)),
+            )
+        )
+        cfar[draw[0]] = self.number(draw[1])
+        self.maybe(cfar, 0.5, "floor_db", lambda: self.number(lambda: self.log(1e-3, 200)))
+        self.maybe(cfar, 0.5, "on", lambda: "power")
+        self.maybe(cfar, 0.5, "edges", lambda: "shrink")
+        return cfar
 
     def maps(self) -> list[str]:
         return [name for name in MAP_NAMES if self.chance(0.4)] or ["fsst"]
@@ -186,8 +210,10 @@ class Drawer:
         self.maybe(radar, 0.3, "residual_video_phase", lambda: self.chance(0.5))
         return radar
 
-    def processing(self, pulses: int, samples: int) -> Document:
-        processing: Document = {"window_fraction": float(self.rng.uniform(9 / pulses, 0.96))}
+    def processing(self, pulses: int, samples: int, prf: float) -> Document:
+        share = float(self.rng.uniform(9 / pulses, 0.96))
+        processing: Document = {"window_fraction": share}
+        self.maybe(processing, 0.2, "window_s", lambda: share * pulses / prf)
         self.maybe(processing, 0.5, "overlap_fraction", lambda: float(self.rng.uniform(0, 0.999)))
         self.maybe(processing, 0.3, "mti", lambda: self.chance(0.5))
         self.maybe(
@@ -254,6 +280,12 @@ class Drawer:
         self.maybe(subject, 0.7, "height_m", lambda: self.number(lambda: self.log(0.1, 10)))
         self.maybe(subject, 0.5, "weight_kg", lambda: self.number(lambda: self.log(1e-3, 1e6)))
         return subject
+
+    def body(self) -> Document:
+        body: Document = {"scatterers": self.pick(("points", "segments"))}
+        self.maybe(body, 0.7, "points_per_segment", lambda: int(self.rng.integers(1, 25)))
+        self.maybe(body, 0.5, "shadowing", lambda: self.chance(0.5))
+        return body
 
     def wall(self) -> Document:
         wall: Document = {}

@@ -17,9 +17,11 @@ ROOMS = (
     "arrays",
     "errors",
     "rounding",
+    "light",
     "phasor",
     "untrusted",
     "randomness",
+    "progress",
     "worker_process",
     "motion",
     "activity",
@@ -33,6 +35,7 @@ ROOMS = (
     "simulation",
     "figures",
     "dataset",
+    "capture",
     "learning",
     "tradeoff",
     "commands",
@@ -81,10 +84,12 @@ def test_imports_never_turn_back() -> None:
 
 LIBRARIES: dict[str, set[str]] = {
     "typer": {"commands", "cli"},
-    "h5py": {"dataset", "simulation"},
+    "h5py": {"dataset", "simulation", "capture"},
     "tqdm": {"commands"},
     "joblib": {"dataset"},
+    "distributed": {"dataset"},
     "yaml": {"config", "dataset", "commands"},
+    "sigmf": {"capture"},
     "torch": {"learning"},
     "timm": {"learning"},
     "sklearn": {"learning"},
@@ -118,6 +123,16 @@ def test_help_needs_no_heavy_import() -> None:
 ONE_PLACE = [
     ("yaml", {"config/yaml_reader.py"}, {"safe_dump", "YAMLError", "MarkedYAMLError"}),
     ("Image", {"dataset/image_file.py"}, {"fromarray"}),
+    (
+        "zipfile",
+        {
+            "motion/files/npz.py",
+            "learning/run_folder.py",
+            "capture/array_files.py",
+            "capture/images.py",
+        },
+        {"ZIP_STORED", "BadZipFile"},
+    ),
     ("typer", {"commands/tell.py"}, {"Argument", "Option", "Exit", "Typer"}),
 ]
 
@@ -144,6 +159,14 @@ def test_files_from_elsewhere_are_opened_in_one_place(
             assert used <= {f"{library}.{name}" for name in harmless}, path
 
 
+ARRAYS = {"np.load", "np.memmap", "np.fromfile", "loadmat"}
+
+
+def test_arrays_from_elsewhere_are_opened_where_they_are_checked() -> None:
+    users = {str(p.relative_to(PACKAGE)) for p in files() if ARRAYS & calls(p)}
+    assert users == {f"capture/{name}.py" for name in ("array_files", "images", "sigmf_file")}
+
+
 def test_one_place_prints() -> None:
     assert {p.name for p in files() if "print" in calls(p)} == {"cli.py"}
     writes = {p.name for p in files() if {"tqdm.write", "console.print"} & calls(p)}
@@ -152,7 +175,10 @@ def test_one_place_prints() -> None:
 
 def test_hdf5_is_opened_for_reading_in_one_place() -> None:
     door = "dataset/untrusted_hdf5.py"
-    writers = {"dataset/assembly.py", "dataset/shards.py", "simulation/scene_file.py"}
+    writers = {
+        *("dataset/assembly.py", "dataset/shards.py", "simulation/scene_file.py"),
+        *("capture/recording.py", "capture/maps_file.py"),
+    }
     for path in files():
         name = str(path.relative_to(PACKAGE))
         if "h5py" in imports(path):

@@ -1,10 +1,16 @@
 """`radhar generate --dry-run`: the plan, and what it will cost."""
 
+from radhar_cli.activity import Activity
 from radhar_cli.commands.tell import tell
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.estimate import estimate
 from radhar_cli.dataset.layout import Rows
+from radhar_cli.dataset.split import split_rows, split_warnings
+from radhar_cli.pipeline.bodies import segment_paths
+from radhar_cli.pipeline.physics import antennas_of, motion_of, waveform_of
 from radhar_cli.pipeline.products import plan_images
+from radhar_cli.pipeline.run import record
+from radhar_cli.scene import nominal_scene
 
 
 def print_plan(config: Config, jobs: int) -> None:
@@ -17,9 +23,17 @@ def print_plan(config: Config, jobs: int) -> None:
     for product in plan.products:
         readers = ", ".join(plan.consumers(product.name)) or "the data set"
         tell(f"  {product.name:<{width}}  {product.does}  [for {readers}]")
+    if config.body.scatterers == "segments":
+        tell("points a segment, in nominal scenes:")
+        for activity in config.chosen_activities:
+            tell(f"  {activity.label:<3} {_points(config, activity)}")
+    if config.processing.doppler == "gate":
+        tell("range bins of the gate, in nominal scenes:")
+        for activity in config.chosen_activities:
+            tell(f"  {activity.label:<3} {_bins(config, activity)}")
     found = estimate(config, jobs)
     tell(
-        f"samples     {found.samples} = {len(rows.activities)} classes x {rows.per_class}, "
+        f"samples     {found.samples} = {rows.counted}, "
         f"{len(config.maps)} map{'s' if len(config.maps) > 1 else ''} each"
     )
     images = f" + png {_size(found.png_bytes)}" if config.output.png else ""
@@ -28,7 +42,35 @@ def print_plan(config: Config, jobs: int) -> None:
         f"time        about {_duration(found.seconds)} with {jobs} job{'s' if jobs > 1 else ''} "
         f"({found.seconds_per_sample * 1e3:.1f} ms a sample, {found.probes} samples timed just now)"
     )
+    for message in split_warnings(config, split_rows(config)):
+        tell(f"warning: {message}")
     tell("nothing was written")
+
+
+def _points(config: Config, activity: Activity) -> str:
+    """How many points the whole body has, and each of its segments."""
+    scene = nominal_scene(config, activity)
+    one, waveform = scene.config, waveform_of(scene.config)
+    found = segment_paths(scene, motion_of(scene), antennas_of(one), None, waveform)
+    if found is None:
+        return "none: no joints of a person"
+    most = dict[str, int]()  # of the two sides
+    for segment, points in zip(found.body.segments, found.points, strict=True):
+        name = segment.name.removeprefix("right_").removeprefix("left_").replace("_", " ")
+        most[name] = max(most.get(name, 0), points.share.size)
+    total = sum(points.share.size for points in found.points)
+    return f"{total:3d}: {', '.join(f'{name} {count}' for name, count in most.items())}"
+
+
+def _bins(config: Config, activity: Activity) -> str:
+    """How many bins the gate has, and how much of them frames show."""
+    asked = ["gate", "frames", "waveform"]
+    made = record(nominal_scene(config, activity), asked).products
+    gate, pulses = made["gate"], made["waveform"].n_pulses
+    low, high = gate.needed(made["frames"], pulses, 0)
+    every = gate.bins.stop - gate.bins.start
+    share = (high - low).clip(0).sum() / (every * pulses)
+    return f"{gate.count} a frame, {every} in all; frames show {100 * share:.0f} % of their samples"
 
 
 def _size(count: int) -> str:

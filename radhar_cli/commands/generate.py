@@ -1,12 +1,21 @@
 """`radhar generate`: a YAML file becomes a labelled data set."""
 
+import os
+from contextlib import nullcontext
+from itertools import pairwise
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from radhar_cli.commands.options import Overrides, Tolerance, resumable, with_tolerance
+from radhar_cli.commands.tell import tell
+from radhar_cli.errors import ConfigError
 
+if TYPE_CHECKING:
+    from radhar_cli.config import Config
+
+ARRAY = "slurm"  # the part that the environment names
 EXAMPLE = """
 Example:
 
@@ -30,12 +39,56 @@ def generate(
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Print the plan and an estimate; write nothing.")
     ] = False,
+    shard: Annotated[
+        str | None,
+        typer.Option(
+            metavar="[K/N]",
+            help="Make part K of N, for `radhar merge`; without K/N the part of this task of a "
+            "SLURM array.",
+        ),
+    ] = None,
+    cluster: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="Run on the workers of a dask scheduler, tcp://host:8786, or `local`.",
+        ),
+    ] = None,
+    recordings: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="MANIFEST",
+            help="Instead of scenes: CSV or YAML of recordings (file, label, person, start, stop), "
+            "or a tree of class folders, or an .npz of masks.",
+        ),
+    ] = None,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Start again in a folder that holds a data set.")
     ] = False,
 ) -> None:
     with resumable(f"what is finished in {out}"):
-        _generate(config, out, with_tolerance(set_, tolerance), jobs, batch, dry_run, overwrite)
+        overrides = with_tolerance(set_, tolerance)
+        _generate(
+            config,
+            out,
+            overrides,
+            jobs,
+            batch,
+            dry_run,
+            overwrite,
+            recordings,
+            shard,
+            cluster,
+        )
+
+
+def shard_named(arguments: list[str]) -> list[str]:
+    """The arguments with a value after each --shard; typer lets nobody leave a value out."""
+    named = list(arguments)
+    for place, (one, following) in reversed([*enumerate(pairwise([*arguments, "-"]))]):
+        if one == "--shard" and not following[:1].isdigit():
+            named.insert(place + 1, ARRAY)
+    return named
 
 
 def _generate(
@@ -46,26 +99,75 @@ def _generate(
     batch: int | None,
     dry_run: bool,
     overwrite: bool,
+    manifest: Path | None,
+    shard: str | None,
+    cluster: str | None,
 ) -> None:
     from radhar_cli.config import load_config
-    from radhar_cli.dataset.workers import cores
+    from radhar_cli.dataset.workers import cores, on_cluster
 
     config = load_config(path, overrides)
     jobs = jobs or cores()
+    if manifest is not None:
+        if shard is not None or cluster is not None:
+            raise ConfigError("--recordings: are read here, without --shard and --cluster")
+        _of_recordings(config, manifest, out, jobs, batch, dry_run, overwrite)
+        return
+    if config.recordings is not None:
+        raise ConfigError(f"{path}: recordings: --recordings MANIFEST should say where they lie")
     if dry_run:
         from radhar_cli.commands.dry_run import print_plan
 
         print_plan(config, jobs)
         return
-    from radhar_cli.commands.terminal import BarProgress, print_outcome
-    from radhar_cli.dataset.build import build
+    from radhar_cli.commands.terminal import BarProgress, print_outcome, print_part
+    from radhar_cli.dataset.build import build, build_part
+    from radhar_cli.dataset.parts import Part
 
     progress = BarProgress()
     try:
-        outcome = build(config, out, jobs, progress, overwrite, batch)
+        with nullcontext(jobs) if cluster is None else on_cluster(cluster, jobs) as jobs:
+            if shard is None:
+                outcome = build(config, out, jobs, progress, overwrite, batch)
+            else:
+                part = Part.of_array_task(os.environ) if shard == ARRAY else Part.parse(shard)
+                outcome = build_part(config, out, part, jobs, progress, overwrite, batch)
     finally:
         progress.close()
-    print_outcome(config, outcome)
+    if shard is None:
+        print_outcome(config, outcome)
+    else:
+        print_part(outcome, out, str(part))
+
+
+def _of_recordings(
+    config: "Config",
+    manifest: Path,
+    out: Path,
+    jobs: int,
+    batch: int | None,
+    dry_run: bool,
+    overwrite: bool,
+) -> None:
+    from radhar_cli.capture.windows import WindowMaker, warnings_of, with_recordings
+    from radhar_cli.commands.terminal import BarProgress, print_outcome
+    from radhar_cli.dataset.build import build
+    from radhar_cli.dataset.layout import Rows
+
+    measured = with_recordings(config, manifest)
+    for warning in warnings_of(measured):
+        tell(f"warning: {warning}", err=True)
+    if dry_run:
+        tell(f"samples     {len(Rows.of(measured))} = {Rows.of(measured).counted}")
+        tell("nothing was written")
+        return
+    folder = manifest if manifest.is_dir() else manifest.parent
+    progress, maker = BarProgress(), WindowMaker(folder.absolute())
+    try:
+        outcome = build(measured, out, jobs, progress, overwrite, batch, maker)
+    finally:
+        progress.close()
+    print_outcome(measured, outcome)
 
 
 generate.__doc__ = "Build a labelled data set from a config file.\n" + EXAMPLE

@@ -1,4 +1,4 @@
-"""`radhar inspect`: what is in a data set, a half-built folder, a scene, or a tree of images."""
+"""`radhar inspect`: what is in a data set, a scene, a recording, or a tree of images."""
 
 from pathlib import Path
 from typing import Annotated
@@ -12,7 +12,7 @@ def inspect(
     path: Annotated[Path, typer.Argument(help="What radhar wrote, or a tree of class folders.")],
     json_: Annotated[bool, typer.Option("--json", help="Print JSON, for scripts.")] = False,
 ) -> None:
-    """Summarise a data set, a half-built folder, a scene, or anyone's tree of images.
+    """Summarise a data set, a half-built folder, a scene, a recording, or anyone's tree of images.
 
     Example:
 
@@ -20,12 +20,17 @@ def inspect(
     """
     import json
 
+    from radhar_cli.capture.overview import summarise_recording
+    from radhar_cli.capture.recording import is_recording
     from radhar_cli.dataset.summary import summarise
     from radhar_cli.learning.images.opening import is_tree
     from radhar_cli.learning.images.overview import summarise_tree
 
-    foreign = is_tree(path) and not (path / "scene.h5").exists()
-    summary = summarise_tree(path) if foreign else summarise(path)
+    if path.is_file() and is_recording(path):
+        summary = summarise_recording(path)
+    else:
+        foreign = is_tree(path) and not (path / "scene.h5").exists()
+        summary = summarise_tree(path) if foreign else summarise(path)
     if json_:
         tell(json.dumps(summary, indent=2))
         return

@@ -14,6 +14,13 @@ Overrides: TypeAlias = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Change one dotted key; may repeat."),
 ]
+Activity: TypeAlias = Annotated[
+    str | None,
+    typer.Option("--activity", "-a", help="Slug or label; not needed if the config has one."),
+]
+Nominal: TypeAlias = Annotated[
+    bool, typer.Option("--nominal", help="Take mid-points instead of drawing.")
+]
 Tolerance: TypeAlias = Annotated[
     float | None,
     typer.Option(metavar="DB", help="Tolerance of the direct engine, instead of the config's."),
@@ -41,5 +48,5 @@ def _say_kept(how: str, kept: str) -> None:
 
 def with_tolerance(overrides: list[str] | None, tolerance: float | None) -> list[str]:
     """The overrides, and --tolerance as one of them."""
-    named = [] if tolerance is None else [f"engine.tolerance_db={tolerance!r}"]
+    named = [] if tolerance is None else [f"--tolerance engine.tolerance_db={tolerance!r}"]
     return [*(overrides or []), *named]

@@ -5,8 +5,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from radhar_cli.commands.options import Overrides, Tolerance, with_tolerance
+from radhar_cli.commands.options import Activity, Nominal, Overrides, Tolerance, with_tolerance
 from radhar_cli.commands.tell import tell
+
+RECORDING = "recording.h5"
+RECORDINGS = (RECORDING, "recording.sigmf-meta", "recording.sigmf-data")
+FROM_FILE = "from_file"  # the class of `--motion` without `--activity`
 
 if TYPE_CHECKING:
     from radhar_cli.simulation.simulate import Simulation
@@ -15,26 +19,25 @@ if TYPE_CHECKING:
 def simulate(
     config: Annotated[Path, typer.Argument(help="YAML file whose ranges are drawn from.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the results.")],
-    activity: Annotated[
-        str | None,
-        typer.Option("--activity", "-a", help="Slug or label; not needed if the config has one."),
-    ] = None,
+    activity: Activity = None,
     index: Annotated[
         int, typer.Option(min=0, help="Which sample of its class, as in /sample_key.")
     ] = 0,
     seed: Annotated[
         int | None, typer.Option(min=0, max=2**63 - 1, help="Instead of the config's.")
     ] = None,
-    nominal: Annotated[
-        bool, typer.Option("--nominal", help="Take mid-points instead of drawing.")
-    ] = False,
+    nominal: Nominal = False,
+    motion: Annotated[
+        Path | None,
+        typer.Option("--motion", help="A motion file (.bvh, .amc, .npz) to look at."),
+    ] = None,
     set_: Overrides = None,
     tolerance: Tolerance = None,
     engine: Annotated[
         str | None, typer.Option(help="cube or direct, instead of the config's.")
     ] = None,
     maps: Annotated[
-        str | None, typer.Option(help="Comma-separated maps; all nine if not given.")
+        str | None, typer.Option(help="Comma-separated maps; all there are if not given.")
     ] = None,
     joint: Annotated[
         str | None, typer.Option(help="Keep this scatterer alone, such as right_ankle.")
@@ -43,8 +46,12 @@ def simulate(
         bool, typer.Option("--overlay", help="Draw every joint's true Doppler over the maps.")
     ] = False,
     raw: Annotated[
-        bool, typer.Option("--raw", help="Store the beat matrix, static returns included.")
+        bool,
+        typer.Option("--raw", help="Write recording.h5: the beat matrix, static returns included."),
     ] = False,
+    to: Annotated[
+        str | None, typer.Option("--to", help="sigmf: write that with --raw, not recording.h5.")
+    ] = None,
     figures: Annotated[
         bool, typer.Option("--figures/--no-figures", help="Draw maps.png and the animation.")
     ] = True,
@@ -55,18 +62,30 @@ def simulate(
 
       radhar simulate configs/paper/free_space.yaml --activity walking --seed 7 -o out/walk
     """
+    from radhar_cli.commands.import_ import wants_sigmf
     from radhar_cli.config import load_config
     from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.folder import refuse_file
+    from radhar_cli.errors import RadharError
     from radhar_cli.simulation import scene_file
     from radhar_cli.simulation.simulate import map_names
     from radhar_cli.simulation.simulate import simulate as simulate_scene
 
-    overrides = [*with_tolerance(set_, tolerance), *([f"engine.kind={engine}"] if engine else [])]
+    overrides = [
+        *with_tolerance(set_, tolerance),
+        *([f"--engine engine.kind={engine}"] if engine else []),
+    ]
+    if motion is not None:
+        activity = activity or FROM_FILE
+        overrides = [*_looking_at(motion, activity), *overrides]
     loaded = load_config(config, overrides)
-    chosen = map_names(None if maps is None else maps.split(","))
+    sigmf = wants_sigmf(to)
+    if sigmf and not raw:
+        raise RadharError("--to sigmf: should stand with --raw, whose recording it writes")
+    chosen = None if maps is None else map_names(maps.split(","))
     refuse_file(out)
-    for name in scene_file.FILES:
+    scene_file.refuse_foreign(out)
+    for name in (*scene_file.FILES, *RECORDINGS):
         refuse_links(out, out / name)
     simulation = simulate_scene(
         loaded,
@@ -78,16 +97,62 @@ def simulate(
         maps=chosen,
         raw=raw,
     )
+    samples = loaded.samples_of(simulation.activity)
+    if index >= samples and not nominal:
+        tell(
+            f"warning: --index {index}: a data set of this config has the samples 0 to "
+            f"{samples - 1} of {simulation.activity.slug}; this one is drawn alike, from a stream "
+            "of its own",
+            err=True,
+        )
     for warning in simulation.warnings:
         tell(f"warning: {warning}", err=True)
 
     written = scene_file.write_all(simulation, out)
+    for name in RECORDINGS:  # of an earlier scene
+        (out / name).unlink(missing_ok=True)
+    if raw:
+        written += _record(simulation, out / RECORDING, sigmf)
     if figures:
         written += _draw(simulation, out, overlay)
     took = sum(simulation.seconds.values())
     tell(f"{simulation.activity.label} {simulation.activity.slug}: synthesised in {took:.2f} s")
+    found = scene_file.describe(simulation)["motion_file"]
+    if found is not None:
+        tell(
+            f"  motion: {found['path']}, {found['begin_s']:.2f} to {found['end_s']:.2f} s of its "
+            f"{found['lasts_s']:.2f} s; by its legs a person of {found['stature_m']:.2f} m"
+        )
     for path in written:
         tell(f"  {path}")
+
+
+def _record(simulation: "Simulation", path: Path, sigmf: bool) -> list[Path]:
+    from radhar_cli.capture.importing import write_simulated
+    from radhar_cli.capture.recording import Label, Recording
+
+    assert simulation.beat is not None
+    label = Label(label=simulation.activity.slug)
+    write_simulated(path, simulation.beat, simulation.waveform, label)
+    if not sigmf:
+        return [path]
+    from radhar_cli.capture.sigmf_file import write_sigmf
+
+    try:
+        with Recording(path) as recording:
+            return write_sigmf(recording, path.with_suffix(""))
+    finally:
+        path.unlink(missing_ok=True)
+
+
+def _looking_at(motion: Path, slug: str) -> list[str]:
+    """Overrides by which a class has this one file: from its beginning, at its speed, as it is."""
+    import json
+
+    path = json.dumps(str(motion.absolute()))
+    one = f"classes.{slug}"
+    as_it_is = [f"{one}.start=0", f"{one}.playback_speed=1", f"{one}.mirror=0"]
+    return [f"{one}.files=[{path}]", f"activities=[{slug}]", *as_it_is]
 
 
 def _draw(simulation: "Simulation", out: Path, overlay: bool) -> list[Path]:
@@ -99,7 +164,7 @@ def _draw(simulation: "Simulation", out: Path, overlay: bool) -> list[Path]:
     from radhar_cli.simulation.scene_file import ANIMATION, MAPS
 
     maps = out / MAPS
-    maps_panel.draw_maps(simulation, maps, overlay)
+    maps_panel.draw_maps(maps_panel.of_simulation(simulation, overlay), maps)
     animation = out / ANIMATION
     frames = stickman.frame_count(simulation)
     with tqdm(

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from rich import box
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -20,6 +21,7 @@ def print_summary(summary: dict[str, Any]) -> None:
         "unfinished data set": _unfinished,
         "scene": _scene,
         "tree of images": _tree,
+        "recording": _recording,
     }[summary["kind"]](console, _plain(summary))
 
 
@@ -35,26 +37,56 @@ def _plain(value: Any) -> Any:
 def _data_set(console: Console, s: dict[str, Any]) -> None:
     console.print(Text(s["path"], "bold"), f" {s['samples']} samples, {s['bytes'] / 2**20:.1f} MiB")
     console.print(f"seed {s['seed']}   config {s['config_hash'][:12]}   " + _versions(s))
-    table = Table(title="samples, and mean entropy of the power maps (bit)")
-    table.add_column("class")
+    samples = _table("samples", "class")
     for part in ("train", "validation", "test"):
-        table.add_column(part, justify="right")
-    for name, shape in s["maps"].items():
-        table.add_column(f"{name}\n{shape[0]} x {shape[1]}", justify="right")
+        samples.add_column(part, justify="right")
     for slug, parts in s["classes"].items():
-        entropies = [f"{values[slug]['mean']:.2f}" for values in s["entropy_bits"].values()]
-        table.add_row(slug, *map(str, parts.values()), *entropies)
-    console.print(table)
+        samples.add_row(slug, *map(str, parts.values()))
+    console.print(samples)
+    for number, (name, shape) in enumerate(s["maps"].items(), 1):
+        console.print(f"map {number}   {name}, {shape[0]} x {shape[1]} px")
+    entropy = _table("mean entropy of the power maps (bit)", "class")
+    for number in range(1, 1 + len(s["maps"])):
+        entropy.add_column(f"{number}", justify="right", no_wrap=True)
+    for slug in s["classes"]:
+        means = (f"{values[slug]['mean']:.1f}" for values in s["entropy_bits"].values())
+        entropy.add_row(slug, *means)
+    console.print(entropy)
     if s["drawn"]:
-        drawn = Table(title="drawn parameters")
-        for column in ("parameter", "unit", "min", "mean", "max", "samples", "histogram"):
-            drawn.add_column(column, justify="left" if column in ("parameter", "unit") else "right")
+        drawn = _table("drawn parameters", "parameter", "unit")
+        for column in ("min", "mean", "max", "samples", "histogram"):
+            drawn.add_column(column, justify="right", no_wrap=True)
         for name, h in s["drawn"].items():
             numbers = [f"{h[key]:.4g}" for key in ("min", "mean", "max")]
             drawn.add_row(name, h["unit"], *numbers, str(h["samples"]), _bars(h["counts"]))
         console.print(drawn)
     for warning in s["warnings"]:
         console.print(Text("warning", "yellow"), warning["message"])
+
+
+def _recording(console: Console, s: dict[str, Any]) -> None:
+    console.print(
+        Text(s["path"], "bold"),
+        f" {s['duration_s']:.4g} s in {s['segments']} stretches, {s['bytes'] / 2**20:.1f} MiB",
+    )
+    table = _table("recording", "key")
+    table.add_column("value", justify="right")
+    for key, value in s.items():
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            table.add_row(key, f"{value:.6g}" if isinstance(value, float) else str(value))
+    console.print(table)
+    for one in s["labels"]:
+        console.print(f"label {one['label']}, person {one['person'] or 'not said'}")
+    for line in s["source"]["found"]:
+        console.print(Text("found", "yellow"), line)
+
+
+def _table(title: str, *names: str) -> Table:
+    """An empty table that nine maps and long names leave narrower than 80 characters."""
+    table = Table(title=title, box=box.SIMPLE_HEAD, pad_edge=False)
+    for name in names:
+        table.add_column(name, overflow="fold")
+    return table
 
 
 def _tree(console: Console, s: dict[str, Any]) -> None:
@@ -65,8 +97,7 @@ def _tree(console: Console, s: dict[str, Any]) -> None:
     sizes = [f"{one['images']} of {one['size'][0]} x {one['size'][1]} px" for one in s["sizes"]]
     more = f", and {len(sizes) - MAX_SIZES} more sizes" if len(sizes) > MAX_SIZES else ""
     console.print(f"sizes {', '.join(sizes[:MAX_SIZES])}{more}")
-    table = Table(title="images by class")
-    table.add_column("class")
+    table = _table("images by class", "class")
     for part in next(iter(s["classes"].values())):
         table.add_column(part, justify="right")
     for name, counts in s["classes"].items():
@@ -105,14 +136,13 @@ def _scene(console: Console, s: dict[str, Any]) -> None:
         f" {s['activity']['label']} {s['activity']['slug']}"
         f"{joint}, {s['engine']} engine, seed {s['seed']}",
     )
-    table = Table(title="maps")
-    for column in ("map", "size", "entropy (bit)"):
-        table.add_column(column, justify="left" if column == "map" else "right")
+    table = _table("maps", "map")
+    for column in ("size", "entropy (bit)"):
+        table.add_column(column, justify="right")
     for name, shape in s["maps"].items():
         table.add_row(name, f"{shape[0]} x {shape[1]}", f"{s['entropy_bits'][name]:.2f}")
     console.print(table)
-    parameters = Table(title="parameters")
-    parameters.add_column("key")
+    parameters = _table("parameters", "key")
     parameters.add_column("value", justify="right")
     for key, value in {**s["parameters"], **s["derived"]}.items():
         parameters.add_row(key, f"{value:.6g}")

@@ -2,6 +2,7 @@
 
 import sys
 from collections import Counter
+from pathlib import Path
 from typing import Any
 
 from tqdm import tqdm
@@ -29,9 +30,9 @@ class BarProgress:
             total=total, initial=done, desc=name, unit=self._unit, disable=None, file=sys.stderr
         )
 
-    def advance(self, samples: int) -> None:
+    def advance(self, count: int) -> None:
         if self._bar is not None:
-            self._bar.update(samples)
+            self._bar.update(count)
 
     def say(self, message: str) -> None:
         tqdm.write(shown(message), file=sys.stderr)
@@ -52,7 +53,7 @@ def print_outcome(config: Config, outcome: Outcome) -> None:
     rows, split = Rows.of(config), Counter(int(part) for part in split_rows(config))
     size = (folder / DATASET).stat().st_size / 2**20
     tell(f"{folder / DATASET}: {outcome.samples} samples, {size:.1f} MiB")
-    tell(f"  classes     {len(rows.activities)} with {rows.per_class} samples each")
+    tell(f"  classes     {rows.counted}")
     tell("  split       " + ", ".join(f"{n} {SPLITS[part]}" for part, n in sorted(split.items())))
     tell(f"  maps        {', '.join(config.maps)}")
     if config.output.png:
@@ -62,3 +63,11 @@ def print_outcome(config: Config, outcome: Outcome) -> None:
             f"  this run    made {outcome.made} samples, and {outcome.pngs} PNGs that were missing"
         )
     tell(f"  check it    radhar verify {folder}")
+
+
+def print_part(outcome: Outcome, out: Path, part: str) -> None:
+    """Say what a part holds and what to do with it."""
+    tell(
+        f"{outcome.folder}: part {part} is complete: {outcome.samples} samples, {outcome.made} new"
+    )
+    tell(f"  when all parts are: radhar merge {out}")

@@ -60,8 +60,8 @@ def _tradeoff(
     overwrite: bool,
 ) -> None:
     from radhar_cli.commands.terminal import BarProgress
-    from radhar_cli.dataset.folder import locked
-    from radhar_cli.tradeoff.folder import claim
+    from radhar_cli.dataset.folder import folder_lock
+    from radhar_cli.tradeoff.folder import reserve
     from radhar_cli.tradeoff.report import write_report
     from radhar_cli.tradeoff.result_cache import ResultCache
     from radhar_cli.tradeoff.scenes import Scenes
@@ -78,8 +78,8 @@ def _tradeoff(
     )
     prepare_process()
     progress = BarProgress("step")
-    with locked(out):
-        claim(out, config, overwrite)
+    with folder_lock(out):
+        reserve(out, config, overwrite)
         cache = ResultCache(out)
         try:
             rows = run_sweep(scenes, cache, progress)

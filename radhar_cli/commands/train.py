@@ -13,6 +13,8 @@ Example:
 
   radhar train datasets/quickstart -o runs/quickstart --set epochs=5
 
+  radhar train datasets/measured -o runs/tuned --init runs/simulated --set learning_rate=1e-4
+
 Several processes, or several GPUs: torchrun --nproc-per-node 2 -m radhar_cli train ...
 The same command, run again, goes on after the last finished epoch.
 """
@@ -20,9 +22,10 @@ The same command, run again, goes on after the last finished epoch.
 
 def train(
     data: Annotated[
-        Path,
+        list[Path],
         typer.Argument(
-            help="dataset.h5, a folder that generate wrote, or a tree of class folders."
+            help="dataset.h5, a folder that generate wrote, or a tree of class folders; several "
+            "are learned from as one (data_weights, sampling)."
         ),
     ],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder of the run.")],
@@ -35,6 +38,10 @@ def train(
     ] = None,
     model: Annotated[
         str | None, typer.Option(help="fftnet, smallnet, or a name of timm's; see radhar models.")
+    ] = None,
+    init: Annotated[
+        Path | None,
+        typer.Option(help="A run whose best weights are started from, to go on with other data."),
     ] = None,
     classes: Classes = None,
     overwrite: Annotated[
@@ -51,14 +58,17 @@ def train(
     from radhar_cli.learning.settings import TrainConfig
 
     named = {"map": map_, "model": model}
-    overrides = [*(set_ or []), *(f"{key}={value}" for key, value in named.items() if value)]
+    overrides = [
+        *(set_ or []),
+        *(f"--{key} {key}={value}" for key, value in named.items() if value),
+    ]
     settings = load_section(TrainConfig, config, overrides)
-    apart(out, [data])
+    apart(out, [*data, *([init] if init else [])])
     names = read_classes(classes) if classes else {}
     view = TrainingView()
     with resumable(f"the last finished epoch in {out}"):
         try:
-            outcome = training.train(settings, data, out, view, overwrite, names)
+            outcome = training.train(settings, data, out, view, overwrite, names, init)
         finally:
             view.close()
     view.print_outcome(outcome)

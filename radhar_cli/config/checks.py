@@ -6,8 +6,9 @@ from collections.abc import Iterable, Iterator
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
-from radhar_cli.activity import Activity
+from radhar_cli.activity import ACTIVITIES, DEFAULT, Activity, activity_named, own_activities
 from radhar_cli.config.number import nominal, support
+from radhar_cli.light import SPEED_OF_LIGHT
 from radhar_cli.rounding import half_up
 
 if TYPE_CHECKING:
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
 MIN_WINDOW = 8
 MAX_PULSES = 2**24
 MAX_PADDING = 64
+MAX_BIN_SAMPLES = 2**27  # of range bins that are held at once, 16 bytes each
+MIN_CUTOFF = 1e-4  # of PRF/2; below, float64 rounds a filter of order 10 away
 
 
 class Problem(NamedTuple):
@@ -27,13 +30,19 @@ class Problem(NamedTuple):
 
 
 def problems(c: Config) -> Iterator[Problem]:
+    if not c.chosen_activities:
+        yield Problem("classes", {}, "should have files of each class with motion.model: file")
+        return
+    yield from _unknown_activities(c)
     yield from _waveform_problems(c)
     yield from _signal_problems(c)
+    yield from _clutter_problems(c)
+    yield from _gate_problems(c)
     yield from _wall_problems(c)
+    yield from _image_problems(c)
     if c.motion.model == "human":
         yield from _human_problems(c)
-    elif c.classes:
-        yield Problem("classes", list(c.classes), "should be none with motion.model: paper")
+    yield from _class_problems(c)
     if c.engine.motion_in_chirp and c.engine.kind == "direct":
         yield Problem(
             "engine.motion_in_chirp",
@@ -42,13 +51,51 @@ def problems(c: Config) -> Iterator[Problem]:
             "engine.kind: cube can have it",
         )
     split = c.split
-    if split.subjects is not None and split.subjects > c.samples_per_class:
+    fewest = min(c.chosen_activities, key=c.samples_of)
+    if split.subjects is not None and split.subjects > c.samples_of(fewest):
+        whose = "" if isinstance(c.samples_per_class, int) else f" of {fewest.slug}"
         yield Problem(
             "split.subjects",
             split.subjects,
-            f"should be at most samples_per_class = {c.samples_per_class}: "
+            f"should be at most samples_per_class = {c.samples_of(fewest)}{whose}: "
             "every person performs every activity",
         )
+
+
+def _class_problems(c: Config) -> Iterator[Problem]:
+    """Classes that the model of motion cannot make."""
+    model = c.motion.model
+    for slug, one in c.classes.items():
+        if model != "human" and hasattr(one, "sequence"):
+            right = f"should have files with motion.model: {model}; sequences are of people (human)"
+            yield Problem(f"classes.{slug}", list(one.sequence), right)
+    if model != "file":
+        return
+    for activity in c.chosen_activities:
+        if activity.motion is None and activity.slug not in c.classes:
+            right = "should have files of it under classes, or motion.model: human makes it"
+            yield Problem("activities", activity.slug, right)
+
+
+def _unknown_activities(c: Config) -> Iterator[Problem]:
+    """Names under `per_activity` that are no activity, of one's own neither."""
+    from radhar_cli.config.schema import PerActivity, class_activities
+
+    own = class_activities(c.classes)
+    names = {DEFAULT, *(a.slug for a in (*ACTIVITIES, *own.values(), *own_activities()))}
+    values: dict[str, object] = {"samples_per_class": c.samples_per_class}
+    for name in ("motion", "timing"):
+        section = getattr(c, name)
+        values |= {f"{name}.{key}": getattr(section, key) for key in type(section).model_fields}
+    for key, value in values.items():
+        for slug, number in value.per_activity.items() if isinstance(value, PerActivity) else ():
+            if slug in names:
+                continue
+            try:
+                advice = f"should be called {activity_named(slug, own).slug}"
+            except ValueError as error:
+                advice = str(error)
+            yield Problem(f"{key}.per_activity.{slug}", number, advice)
 
 
 def _waveform_problems(c: Config) -> Iterator[Problem]:
@@ -93,7 +140,7 @@ def _signal_problems(c: Config) -> Iterator[Problem]:
     processing = c.processing
     duration, prf = support(c.duration_s), support(c.radar.prf_hz)
     pulses = half_up(duration[0], prf[0])
-    window = half_up(processing.window_fraction, duration[0], prf[0])
+    window = _window(c, duration[0], prf[0])
     most = half_up(duration[1], prf[1])
     if most > MAX_PULSES:
         yield Problem(
@@ -107,18 +154,20 @@ def _signal_problems(c: Config) -> Iterator[Problem]:
         yield Problem(
             "duration_s", c.duration_s, f"should hold at least 2 pulses (it holds {pulses})"
         )
+    shares = processing.window_s is None
     if doppler and window < MIN_WINDOW:
+        of = f"{processing.window_fraction:g} * duration_s" if shares else "window_s"
         yield Problem(
-            "duration_s",
-            c.duration_s,
-            f"should make the window of {processing.window_fraction:g} * duration_s * prf_hz at "
-            f"least {MIN_WINDOW} pulses (it has {window}): radar.prf_hz may be {prf[0]:g}",
+            "duration_s" if shares else "processing.window_s",
+            c.duration_s if shares else processing.window_s,
+            f"should make the window of {of} * prf_hz at least {MIN_WINDOW} pulses "
+            f"(it has {window}): radar.prf_hz may be {prf[0]:g}",
         )
-    kept = pulses - 1 if processing.mti else pulses
+    kept = pulses - 1 if processing.clutter == "difference" else pulses
     if doppler and window > kept:
         yield Problem(
-            "processing.window_fraction",
-            processing.window_fraction,
+            "processing.window_fraction" if shares else "processing.window_s",
+            processing.window_fraction if shares else processing.window_s,
             f"should make the window at most the {kept} pulses there are (it has {window})",
         )
     if any("denoised" in name for name in doppler) and processing.savgol.frame > kept:
@@ -127,7 +176,7 @@ def _signal_problems(c: Config) -> Iterator[Problem]:
             processing.savgol.frame,
             f"should be at most the {kept} pulses there are",
         )
-    longest = half_up(processing.window_fraction, duration[1], prf[1])
+    longest = _window(c, duration[1], prf[1])
     if processing.stft_fft_length is not None and processing.stft_fft_length < longest:
         yield Problem(
             "processing.stft_fft_length",
@@ -141,6 +190,98 @@ def _signal_problems(c: Config) -> Iterator[Problem]:
             processing.stft_fft_length,
             f"should be null or at most {MAX_PADDING} times the window of {window} pulses",
         )
+
+
+def _window(c: Config, duration: float, prf: float) -> int:
+    """Pulses in the window of a recording (s, pulses per s)."""
+    if c.processing.window_s is not None:
+        return half_up(c.processing.window_s, prf)
+    return half_up(c.processing.window_fraction, duration, prf)
+
+
+def _clutter_problems(c: Config) -> Iterator[Problem]:
+    processing, highpass = c.processing, c.processing.highpass
+    if processing.clutter == "highpass":
+        prf = support(c.radar.prf_hz)
+        f0 = _mid_chirp(c)
+        for key, given, to_hz in (
+            ("cutoff_hz", highpass.cutoff_hz, (1.0, 1.0)),
+            ("cutoff_mps", highpass.cutoff_mps, tuple(2 * f / SPEED_OF_LIGHT for f in f0)),
+            ("cutoff_fraction", highpass.cutoff_fraction, None),
+        ):
+            if given is None:
+                continue
+            least, most = (
+                (given, given)
+                if to_hz is None
+                else (2 * given * to_hz[0] / prf[1], 2 * given * to_hz[1] / prf[0])
+            )
+            if most >= 1 or least < MIN_CUTOFF:
+                yield Problem(
+                    f"processing.highpass.{key}",
+                    given,
+                    f"should be from {MIN_CUTOFF:g} times PRF/2 to below PRF/2 in every scene "
+                    f"(it is {least:g} to {most:g} times PRF/2)",
+                )
+    if "rtm" in c.maps and processing.clutter in ("mean", "highpass"):
+        bins = (processing.range_fft_length or _most_samples(c) + 1) // 2
+        yield from _too_many(c, bins, "processing.clutter", processing.clutter, "the rtm")
+
+
+def _gate_problems(c: Config) -> Iterator[Problem]:
+    processing = c.processing
+    if processing.doppler != "gate":
+        return
+    fsst = [name for name in c.maps if name.startswith("fsst")]
+    if fsst:
+        yield Problem(
+            "maps",
+            fsst,
+            "should be stft maps and rtm with processing.doppler: gate, which adds up powers of "
+            "bins: the fsst moves coefficients by their phase",
+        )
+    within = processing.gate_m
+    rate, chirp = support(c.radar.adc_rate_hz), support(c.radar.chirp_s)
+    bandwidth = support(c.radar.bandwidth_hz)
+    half_band = SPEED_OF_LIGHT * rate[0] * chirp[0] / (4 * bandwidth[1])  # c fs/(4 K), the least
+    if isinstance(within, tuple):
+        if within[1] >= half_band:
+            yield Problem(
+                "processing.gate_m",
+                list(within),
+                f"should end before the range half-band does, at {half_band:.4g} m",
+            )
+    elif 2 * within >= half_band:
+        yield Problem(
+            "processing.gate_m",
+            within,
+            "should reach so far to both sides that the gate is narrower than the range "
+            f"half-band of {half_band:.4g} m",
+        )
+    bins = (processing.range_fft_length or _most_samples(c) + 1) // 2
+    yield from _too_many(c, bins, "processing.doppler", "gate", "the gate")
+
+
+def _too_many(c: Config, bins: int, key: str, value: object, what: str) -> Iterator[Problem]:
+    """A request for which range bins of all pulses have to be held."""
+    pulses = half_up(support(c.duration_s)[1], support(c.radar.prf_hz)[1])
+    if bins * pulses > MAX_BIN_SAMPLES:
+        yield Problem(
+            key,
+            value,
+            f"should not go with {pulses} pulses of {bins} range bins: for {what} they are held "
+            f"at once, {MAX_BIN_SAMPLES} samples at most",
+        )
+
+
+def _mid_chirp(c: Config) -> tuple[float, float]:
+    """Least and largest fc + B/2, Hz."""
+    carrier, bandwidth = support(c.radar.carrier_hz), support(c.radar.bandwidth_hz)
+    return carrier[0] + bandwidth[0] / 2, carrier[1] + bandwidth[1] / 2
+
+
+def _most_samples(c: Config) -> int:
+    return half_up(support(c.radar.adc_rate_hz)[1], support(c.radar.chirp_s)[1])
 
 
 def _wall_problems(c: Config) -> Iterator[Problem]:
@@ -160,6 +301,62 @@ def _wall_problems(c: Config) -> Iterator[Problem]:
                 "should be outside the wall, whose faces count as inside "
                 f"(wall.center_m = {list(c.wall.center_m)}, wall.size_m = {list(c.wall.size_m)})",
             )
+
+
+def _flickers(c: Config) -> bool:
+    return support(c.receiver.noise_corner_hz)[1] > 0
+
+
+def _image_problems(c: Config) -> Iterator[Problem]:
+    for key, extra in (("lines", c.receiver.lines), ("noise_corner_hz", _flickers(c))):
+        if extra and c.snr_db is None:
+            yield Problem(
+                "snr_db", None, f"should be a number: receiver.{key} is relative to the noise"
+            )
+    cfar, size = c.image.cfar, c.image.size_px
+    reach = [2 * (g + t) + 1 for g, t in zip(cfar.guard, cfar.training, strict=True)]
+    if c.image.kind == "cfar" and not any(cfar.training):
+        yield Problem("image.cfar.training", list(cfar.training), "should be 1 or more of a side")
+    if c.image.kind == "cfar" and any(r > px for r, px in zip(reach, size, strict=True)):
+        yield Problem(
+            "image.cfar.training",
+            list(cfar.training),
+            f"should fit into the image of {size[0]} x {size[1]} pixels: with the guard cells "
+            f"{list(cfar.guard)} on each side it takes {reach[0]} x {reach[1]}",
+        )
+    limits = c.image.doppler_limits_mps
+    if limits is None or set(c.maps) == {"rtm"}:
+        return
+    prf, duration = support(c.radar.prf_hz), support(c.duration_s)
+    fastest = SPEED_OF_LIGHT * prf[0] / (4 * _doppler_carrier(c, 1))
+    if max(-limits[0], limits[1]) > fastest * (1 + 1e-9):
+        yield Problem(
+            "image.doppler_limits_mps",
+            list(limits),
+            f"should be within the unambiguous band, -{fastest:.6g} to {fastest:.6g} m/s "
+            f"(c prf_hz / 4 f0: radar.prf_hz may be {prf[0]:g})",
+        )
+    window = _window(c, duration[0], prf[0])
+    step = SPEED_OF_LIGHT * prf[0] / (2 * _doppler_carrier(c, 0) * max(window, 1))
+    if limits[1] - limits[0] < 2 * step:
+        yield Problem(
+            "image.doppler_limits_mps",
+            list(limits),
+            f"should hold at least 2 Doppler bins (one has {step:.3g} m/s)",
+        )
+
+
+def _doppler_carrier(c: Config, end: int) -> float:
+    """Lowest (0) or highest (1) frequency at which the Doppler is read, Hz."""
+    centred = c.processing.range_reference == "centre"
+    samples = [
+        (half_up(rate, chirp), rate * chirp)
+        for rate in support(c.radar.adc_rate_hz)
+        for chirp in support(c.radar.chirp_s)
+    ]
+    shares = sorted(count / 2 / exact for count, exact in samples)
+    share = shares[-end] if centred else 0.0
+    return support(c.radar.carrier_hz)[end] + share * support(c.radar.bandwidth_hz)[end]
 
 
 def _gets_up_after_a_fall(names: tuple[str, ...]) -> bool:
@@ -186,6 +383,8 @@ HUMAN_LIMITS: tuple[tuple[str, float, float], ...] = (
     ("motion.ragged_speed", 0.0, 0.06),
     ("motion.stride_jitter", 0.0, 0.03),
     ("motion.width_jitter_m", 0.0, 0.02),
+    ("motion.lane_m", 0.0, 1000.0),
+    ("motion.lane_start", 0.0, 1.0),
     ("motion.punch_hz", 0.05, 1.1),
     ("motion.kick_hz", 0.05, 0.6),
     ("motion.rotation_hz", 0.0, 1.0),
@@ -198,6 +397,11 @@ HUMAN_LIMITS: tuple[tuple[str, float, float], ...] = (
     ("motion.seat_height", 0.24, 0.33),
     ("motion.lean_deg", 0.0, 60.0),
     ("motion.recline_deg", -10.0, 45.0),
+    ("motion.squat", -1.0, 1.0),
+    ("motion.step_m", 0.0, 0.5),
+    ("motion.look_deg", -60.0, 60.0),
+    ("motion.settle_size", 0.0, 3.0),
+    ("motion.kneel_s", 0.0, 3.0),
     ("motion.fidget_hz", 0.0, 2.0),
     ("motion.fidget_size", 0.0, 2.0),
     ("motion.shuffle_hz", 0.0, 0.5),
@@ -216,7 +420,8 @@ def _human_problems(c: Config) -> Iterator[Problem]:
     """Numbers beyond what people do, of the activities that depend on them."""
     from radhar_cli.config.schema import for_activity
 
-    lying = [slug for slug, one in c.classes.items() if _gets_up_after_a_fall(one.sequence)]
+    sequences = {slug: getattr(one, "sequence", ()) for slug, one in c.classes.items()}
+    lying = [slug for slug, names in sequences.items() if _gets_up_after_a_fall(names)]
     if lying and c.motion.fall != "forward":
         yield Problem(
             "motion.fall",

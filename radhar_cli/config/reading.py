@@ -3,14 +3,15 @@
 import difflib
 import json
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import islice
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeAlias, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
 from radhar_cli.config.checks import Problem
+from radhar_cli.config.motion_files import with_files
 from radhar_cli.config.schema import Config, Section
 from radhar_cli.config.yaml_reader import LARGEST, Lines, parse_yaml
 from radhar_cli.errors import ConfigError
@@ -18,7 +19,11 @@ from radhar_cli.untrusted import parse_json, read_text, shown
 
 S = TypeVar("S", bound=Section)
 
-_UNION_TAGS = {"number", "uniform", "normal", "choice", "vary", "same", "per_activity"}
+_UNION_TAGS = {
+    *("number", "uniform", "normal", "choice", "vary", "same", "per_activity"),
+    *("movements", "recordings"),
+}
+Options: TypeAlias = dict[str, str]
 MAX_MISTAKES = 20
 LONGEST_VALUE, LONGEST_ADVICE = 120, 500  # characters of them that a message shows
 
@@ -30,20 +35,39 @@ def load_config(path: str | Path, overrides: Iterable[str] = ()) -> Config:
         ConfigError: unreadable file, bad YAML, or a value out of place; the message names the
             file, the line, the key, the value and what would be right.
     """
-    return load_section(Config, Path(path), overrides)
+    config, lines, options = _load(Config, Path(path), overrides)
+
+    def refuse(key: str, value: object, right: str) -> ConfigError:
+        return ConfigError(
+            _place(str(path), key, lines, options) + _what(Problem(key, value, right))
+        )
+
+    return with_files(config, Path(path).parent, refuse)
 
 
 def load_section(kind: type[S], path: Path | None, overrides: Iterable[str] = ()) -> S:
     """Read a file that holds one `kind` of config, or its defaults, and apply overrides.
 
+    An override may name the option that it stands for: `--tolerance engine.tolerance_db=-60`.
+
     Raises:
-        ConfigError: as `load_config`.
+        ConfigError: as `load_config`; of an overridden key it names the option.
     """
+    return _load(kind, path, overrides)[0]
+
+
+def _load(kind: type[S], path: Path | None, overrides: Iterable[str]) -> tuple[S, Lines, Options]:
+    """The config, the lines of its keys, and the options that gave some of them."""
     document, lines = _document(path) if path else ({}, {})
+    options: Options = {}
     for override in overrides:
-        _override(document, override)
-        lines = {k: v for k, v in lines.items() if not _within(k, override.split("=")[0].strip())}
-    return validated(kind, document, str(path) if path else "--set", lines)
+        option, _, text = (
+            override.partition(" ") if override.startswith("--") else ("", "", override)
+        )
+        key = _override(document, text)
+        lines = {k: v for k, v in lines.items() if not _within(k, key)}
+        options[key] = option or f"--set {key}"
+    return validated(kind, document, str(path) if path else "--set", lines, options), lines, options
 
 
 def _document(path: Path) -> tuple[dict[str, Any], Lines]:
@@ -81,13 +105,23 @@ def config_from_json(text: str, where: str) -> Config:
     return validated(Config, document, where, {})
 
 
-def validated(kind: type[S], document: Any, where: str, lines: Lines) -> S:
-    """Turn a parsed document into a config, or raise a ConfigError with one line per mistake."""
+def validated(
+    kind: type[S], document: Any, where: str, lines: Lines, options: Mapping[str, str] = {}
+) -> S:
+    """Turn a parsed document into a config, or raise a ConfigError with one line per mistake.
+
+    Args:
+        kind: of config.
+        document: as it was parsed.
+        where: its file.
+        lines: {dotted key: line} of what stands in the file.
+        options: {dotted key: option} of what an option of the command line says instead.
+    """
     try:
         return kind.model_validate(document)
     except ValidationError as error:
         told = dict.fromkeys(
-            _place(where, problem.key, lines) + _what(problem)
+            _place(where, problem.key, lines, options) + _what(problem)
             for problem in islice(_found(kind, error, document), MAX_MISTAKES)
         )
         more = error.error_count() - MAX_MISTAKES
@@ -95,7 +129,19 @@ def validated(kind: type[S], document: Any, where: str, lines: Lines) -> S:
         raise ConfigError("\n".join(messages)) from None
 
 
-def _override(document: dict[str, Any], override: str) -> None:
+def with_overrides(document: dict[str, Any], overrides: Iterable[str]) -> dict[str, Any]:
+    """The document, changed by ``key.sub=value`` texts.
+
+    Raises:
+        ConfigError: a text is none, or its value no YAML.
+    """
+    for override in overrides:
+        _override(document, override)
+    return document
+
+
+def _override(document: dict[str, Any], override: str) -> str:
+    """Apply `key=value`; return the key."""
     key, equals, text = override.partition("=")
     names = key.strip().split(".")
     if not equals or not all(names):
@@ -107,6 +153,7 @@ def _override(document: dict[str, Any], override: str) -> None:
         inner = place.get(name)
         place[name] = place = inner if isinstance(inner, dict) else {}
     place[names[-1]], _ = parse_yaml(text, f"--set {key.strip()}")
+    return key.strip()
 
 
 def _within(key: str, parent: str) -> bool:
@@ -183,13 +230,20 @@ def _unknown(kind: type[BaseModel], names: list[int | str]) -> str:
     return "is an unknown key" + (f"; known here: {', '.join(known)}" if known else "")
 
 
-def _place(where: str, key: str, lines: Lines) -> str:
+def _place(where: str, key: str, lines: Lines, options: Mapping[str, str]) -> str:
+    """Where a value stands: the option that says it, or file and line; and its key."""
+    within = [option for name, option in options.items() if _within(name, key)]
+    of_options = [option for name, option in options.items() if _within(key, name)]
+    of_options = of_options or (within if key not in lines else [])
+    if of_options:
+        told = of_options[-1]
+        return told if told.endswith(f" {key}") else f"{told}: {_short(shown(key))}"
     line = lines.get(key)
     parent = key
     while line is None and "." in parent:
         parent = parent.rpartition(".")[0]
         line = lines.get(parent)
-    key = _short(shown(key).replace("\n", "\\n"))
+    key = _short(shown(key).replace("\n", "\\n")) + (f" ({', '.join(within)})" if within else "")
     return f"{where}:{line}: {key}" if line else f"{where}: {key}"
 
 

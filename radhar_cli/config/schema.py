@@ -5,7 +5,9 @@ Units stand in the keys. Every number of a scene (`SCENE_KEYS`) may be fixed or 
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Annotated, Any, Generic, Literal, TypeAlias, TypeVar
+from math import floor
+from pathlib import PurePosixPath
+from typing import Annotated, Any, ClassVar, Generic, Literal, TypeAlias, TypeVar
 
 from pydantic import (
     BaseModel,
@@ -21,7 +23,9 @@ from pydantic_core import PydanticCustomError
 
 from radhar_cli.activity import (
     ACTIVITIES,
+    DEFAULT,
     MOVEMENTS,
+    TWELVE,
     Activity,
     activity_named,
     is_new_slug,
@@ -31,12 +35,14 @@ from radhar_cli.config.checks import problems
 from radhar_cli.config.number import (
     Angle,
     AtLeastOne,
+    Choice,
     Coordinate,
     Decibel,
     Normal,
     NotNegative,
     Number,
     Positive,
+    Real,
     Uniform,
     Vary,
     Vector,
@@ -44,6 +50,8 @@ from radhar_cli.config.number import (
     within,
 )
 from radhar_cli.errors import did_you_mean
+from radhar_cli.motion.files.names import WANTED
+from radhar_cli.motion.files.reading import SUFFIXES
 
 Flag: TypeAlias = Annotated[bool, Field(strict=True)]
 
@@ -75,7 +83,10 @@ T = TypeVar("T")
 
 
 class PerActivity(Section, Generic[T]):
-    """``{per_activity: {default: 2.0, walking: 1.0, S9: 1.0}}``: a number by activity."""
+    """``{per_activity: {default: 2.0, walking: 1.0, S9: 1.0}}``: a number by activity.
+
+    Names that are none of the twelve's are a config's own classes, which `Config` knows.
+    """
 
     per_activity: dict[str, T]
 
@@ -84,14 +95,11 @@ class PerActivity(Section, Generic[T]):
     def _by_slug(cls, value: dict[str, T]) -> dict[str, T]:
         numbers: dict[str, T] = {}
         for name, number in value.items():
-            try:
-                slug = name if name == "default" else activity_named(name).slug
-            except ValueError as error:
-                raise PydanticCustomError("activity", "{what}", {"what": str(error)}) from None
+            slug = TWELVE.get(name.strip().lower(), name)
             if slug in numbers:
                 raise PydanticCustomError("activity", "should name {slug} once", {"slug": slug})
             numbers[slug] = number
-        if "default" not in numbers:
+        if DEFAULT not in numbers:
             raise PydanticCustomError(
                 "activity", "should have a 'default' beside the activities it names"
             )
@@ -129,12 +137,18 @@ CoordinateBy: TypeAlias = Annotated[
 ]
 
 
-def for_activity(value: Number | PerActivity[Number], activity: Activity) -> Number:
+def for_activity(value: T | PerActivity[T], activity: Activity) -> T:
     """Return the number that holds for one activity."""
     if isinstance(value, PerActivity):
-        return value.per_activity.get(activity.slug, value.per_activity["default"])
+        numbers: dict[str, T] = value.per_activity
+        return numbers[activity.slug if activity.slug in numbers else DEFAULT]
     return value
 
+
+Samples = Annotated[int, Field(ge=1, le=10_000_000, strict=True)]
+SamplesBy: TypeAlias = Annotated[
+    Annotated[Samples, Tag("same")] | Annotated[PerActivity[Samples], Tag("per_activity")], _Either
+]
 
 # Under `motion.model: human` numbers have narrower limits yet: checks.HUMAN_LIMITS.
 Metres = Annotated[NotNegative, within(0, 1, "m")]
@@ -184,14 +198,17 @@ class Falls(Section):
 class MotionConfig(Section):
     """Where people stand, where they head and how they move.
 
-    range_m to speed_mps: both models. gait_hz to turn_deg: the paper's. turn_deg on: the human
-    model's. What the other model alone knows is ignored. docs/motion.md describes both.
+    range_m to angle_deg: all. speed_mps: not of files. gait_hz to turn_deg: the paper's. turn_deg
+    on: the human model's. What another model alone knows is ignored; what is null takes the value
+    of the model (MODEL_DEFAULTS, docs/motion.md). folder: from which the paths of files go; it does
+    not belong to what a config says.
     """
 
-    model: Literal["human", "paper"] = "human"
-    range_m: CoordinateBy = Uniform(uniform=(1.0, 3.0))
+    model: Literal["human", "paper", "file"] = "human"
+    folder: Annotated[str | None, Field(exclude=True, max_length=1000)] = None
+    range_m: CoordinateBy | None = None
     cross_range_m: CoordinateBy = 0.0
-    angle_deg: AngleBy = Uniform(uniform=(-30.0, 30.0))
+    angle_deg: AngleBy | None = None
     speed_mps: SpeedBy | None = None
     gait_hz: FrequencyBy = 1.0
     thigh_deg: AngleBy = Vary(vary=(30.0, 0.2))
@@ -208,6 +225,8 @@ class MotionConfig(Section):
     ragged_speed: RatioBy = Uniform(uniform=(0.0, 0.06))
     stride_jitter: RatioBy = Uniform(uniform=(0.0, 0.03))
     width_jitter_m: RatioBy = Uniform(uniform=(0.0, 0.02))
+    lane_m: CoordinateBy = 0.0
+    lane_start: RatioBy = Uniform(uniform=(0.0, 1.0))
     punch_hz: FrequencyBy = Vary(vary=(0.7, 0.15))
     kick_hz: FrequencyBy = Vary(vary=(0.45, 0.1))
     strike_scale: RatioBy = Normal(normal=(1.0, 0.12), min=0.8, max=1.25)
@@ -216,8 +235,13 @@ class MotionConfig(Section):
     bend_deg: AngleBy = Normal(normal=(72.0, 5.0), min=60.0, max=85.0)
     dwell_s: SecondsBy = Uniform(uniform=(0.2, 0.6))
     seat_height: RatioBy = Normal(normal=(0.285, 0.015), min=0.25, max=0.32)
-    lean_deg: AngleBy = Normal(normal=(42.0, 6.0), min=25.0, max=58.0)
+    lean_deg: AngleBy = Normal(normal=(42.0, 8.0), min=25.0, max=58.0)
     recline_deg: AngleBy = 0.0
+    squat: SignedBy = Uniform(uniform=(-1.0, 1.0))
+    step_m: RatioBy = Uniform(uniform=(0.0, 0.5))
+    look_deg: AngleBy = Uniform(uniform=(-40.0, 40.0))
+    settle_size: RatioBy = Uniform(uniform=(0.0, 3.0))
+    kneel_s: SecondsBy = Uniform(uniform=(0.0, 0.6))
     fall: FallName | Falls = "forward"
     fidget_hz: FrequencyBy = Uniform(uniform=(0.0, 0.4))
     fidget_size: RatioBy = Uniform(uniform=(0.5, 1.5))
@@ -230,7 +254,7 @@ class TimingConfig(Section):
 
     seat_*: S5 and S6. grab_*: S4. rise_*, walk_start_s: S9 and S11. walk_stop_s: S10 and S12, then
     sit_duration_s (S10) or fall_duration_s (S12). What is null takes the value of the model
-    (`defaults.py`). blend_s, of the paper: length of the raised-cosine ramps that switch the gait
+    (MODEL_DEFAULTS). blend_s, of the paper: length of the raised-cosine ramps that switch the gait
     on and off; 0 is the paper's hard switch. overlap_s, of people: how long before the first
     movement of S9 to S12 has come to rest the second begins, unless walk_start_s says when.
     """
@@ -238,7 +262,7 @@ class TimingConfig(Section):
     seat_start_s: SecondsBy = 0.5
     seat_duration_s: SecondsBy | None = None
     grab_start_s: SecondsBy = 0.5
-    grab_duration_s: SecondsBy = Normal(normal=(2.5, 0.3), min=1.9, max=3.4)
+    grab_duration_s: SecondsBy = Normal(normal=(2.5, 0.5), min=1.6, max=3.6)
     rise_start_s: SecondsBy = 0.5
     rise_duration_s: SecondsBy | None = None
     walk_start_s: SecondsBy | None = None
@@ -250,6 +274,9 @@ class TimingConfig(Section):
 
 
 SHORTEST_MOVEMENT = 0.3
+
+
+FileSecond = Annotated[float, Field(ge=0, le=1e5, strict=True)]
 
 
 class SequenceConfig(Section):
@@ -278,7 +305,8 @@ class SequenceConfig(Section):
         for n, (name, duration) in enumerate(zip(self.sequence, self.durations_s, strict=True)):
             movement = MOVEMENTS.get(name)
             if movement is None:
-                raise _wrong(did_you_mean(name, MOVEMENTS, f"movements are {', '.join(MOVEMENTS)}"))
+                hint = did_you_mean(name, MOVEMENTS, f"movements are {', '.join(MOVEMENTS)}")
+                raise _wrong(f"{name!r} is no movement; {hint}")
             if state not in (None, movement.before):
                 raise _wrong(
                     f"should be joined at rest: {name} begins {movement.before}, "
@@ -290,6 +318,98 @@ class SequenceConfig(Section):
                 raise _wrong(f"should have a duration of {name}, which something follows")
             state = movement.after
         return self
+
+
+MAX_FILES = 1500  # of all classes
+LONGEST_PATH = 240
+Share01 = Annotated[Number, within(0, 1)]
+
+
+class FilesConfig(Section):
+    """A class whose motion is recorded: BVH, AMC or npz files; a list of them is enough.
+
+    Attributes:
+        files: {path: SHA-256}, from the config's folder on; a list of paths and patterns when it is
+            written.
+        skeleton: the ASF of AMC files, where it is not beside them.
+        joints: {our joint: the file's}, where the tables of names do not know it.
+        up: axis of the files that points up; null is found.
+        unit_m: of the files; null is found.
+        rate_hz: frames per second, instead of the files'.
+        section_s: what of each file is used, from and to; null is all.
+        low_pass_hz: zero-phase low-pass of the positions; null is none.
+        past_end: what happens where a file is shorter than the recording.
+        file: number of the one file that is used; null is drawn.
+        start: where in the section a recording begins, 0 at the earliest, 1 at the latest.
+        playback_speed: seconds of the file a second.
+        mirror: 1 exchanges left and right.
+    """
+
+    files: dict[str, str]
+    skeleton: Annotated[str, Field(max_length=LONGEST_PATH)] | None = None
+    joints: dict[str, Annotated[str, Field(min_length=1, max_length=100)]] = {}
+    up: Literal["x", "y", "z", "-x", "-y", "-z"] | None = None
+    unit_m: Annotated[float, Field(ge=1e-6, le=1e3, strict=True)] | None = None
+    rate_hz: Annotated[float, Field(ge=1, le=1e4, strict=True)] | None = None
+    section_s: tuple[FileSecond, FileSecond] | None = None
+    low_pass_hz: Annotated[float, Field(ge=0.1, le=1e3, strict=True)] | None = 8.0
+    past_end: Literal["velocity", "rest"] = "velocity"
+    file: Annotated[int, Field(ge=0, strict=True)] | None = None
+    start: Share01 = Uniform(uniform=(0.0, 1.0))
+    playback_speed: Annotated[Number, within(0.25, 4)] = Uniform(uniform=(0.9, 1.1))
+    mirror: Share01 = Choice(choice=(0, 1))
+
+    NUMBERS: ClassVar = ("start", "playback_speed", "mirror")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _list(cls, value: Any) -> Any:
+        return {"files": value} if isinstance(value, (list, tuple)) else value
+
+    @field_validator("files", mode="before")
+    @classmethod
+    def _paths(cls, value: Any) -> Any:
+        if isinstance(value, (list, tuple)) and all(isinstance(one, str) for one in value):
+            return dict.fromkeys(value, "")
+        return value
+
+    @field_validator("files")
+    @classmethod
+    def _known(cls, value: dict[str, str]) -> dict[str, str]:
+        for path in value:
+            if not path.lower().endswith(SUFFIXES) or len(path) > LONGEST_PATH or "\0" in path:
+                raise _wrong(f"should be paths of {', '.join(SUFFIXES)} files, not {path!r}")
+        if not 0 < len(value) <= MAX_FILES:
+            raise _wrong(f"should have 1 to {MAX_FILES} files")
+        return value
+
+    @field_validator("joints")
+    @classmethod
+    def _ours(cls, value: dict[str, str]) -> dict[str, str]:
+        for name in value:
+            if name not in WANTED:
+                raise _wrong(did_you_mean(name, WANTED, f"joints are {', '.join(WANTED)}"))
+        return value
+
+    @model_validator(mode="after")
+    def _one_of_them(self) -> "FilesConfig":
+        if self.file is not None and self.file >= len(self.files):
+            raise _wrong(f"should have a file below {len(self.files)}, the number of files")
+        if self.section_s is not None and not self.section_s[0] < self.section_s[1]:
+            raise _wrong("should have a section_s that begins before it ends")
+        return self
+
+
+def _class_kind(value: Any) -> str:
+    if isinstance(value, dict):
+        return "recordings" if "files" in value else "movements"
+    return "recordings" if isinstance(value, (FilesConfig, list, tuple)) else "movements"
+
+
+ClassConfig: TypeAlias = Annotated[
+    Annotated[SequenceConfig, Tag("movements")] | Annotated[FilesConfig, Tag("recordings")],
+    Discriminator(_class_kind),
+]
 
 
 def _wrong(what: str) -> PydanticCustomError:
@@ -313,6 +433,66 @@ class WallConfig(Section):
     fresnel: Literal["normal", "perpendicular", "parallel"] = "normal"
 
 
+class BodyConfig(Section):
+    """What of a person scatters: the joints as points, or the segments between them.
+
+    `segments` are ellipsoids of `points_per_segment` points at most; how many a recording needs
+    follows from its speeds, window and wavelength. docs/bodies.md has what that brings and costs.
+    """
+
+    scatterers: Literal["points", "segments"] = "points"
+    points_per_segment: Annotated[int, Field(ge=1, le=1000, strict=True)] = 20
+    shadowing: Flag = True
+
+
+class ReflectorConfig(Section):
+    """Something that stands in the room, with a residual motion along the line of sight."""
+
+    position_m: Vector = (
+        Uniform(uniform=(1.0, 6.0)),
+        Uniform(uniform=(-3.0, 3.0)),
+        Uniform(uniform=(0.0, 2.5)),
+    )
+    rcs_dbsm: Annotated[Number, within(-120, 120, "dBsm")] = Uniform(uniform=(-10.0, 10.0))
+    residual_m: Annotated[NotNegative, within(0, 0.01, "m")] = Uniform(uniform=(5e-5, 5e-4))
+    highest_hz: Annotated[Positive, within(1e-3, 100, "Hz")] = 10.0
+
+
+MAX_REFLECTORS = 32
+
+
+class RoomConfig(Section):
+    """What stands in the room: a list, or a number of reflectors that are all drawn alike."""
+
+    reflectors: Annotated[tuple[ReflectorConfig, ...], Field(max_length=MAX_REFLECTORS)] = ()
+
+    @field_validator("reflectors", mode="before")
+    @classmethod
+    def _so_many(cls, value: Any) -> Any:
+        if not isinstance(value, int) or isinstance(value, bool):
+            return value
+        if not 0 <= value <= MAX_REFLECTORS:
+            raise PydanticCustomError(
+                "number", "should be a list, or a number from 0 to {most}", {"most": MAX_REFLECTORS}
+            )
+        return (ReflectorConfig(),) * value
+
+
+class LineConfig(Section):
+    """Interference at a fixed Doppler; its level is over the white noise, of a raw sample."""
+
+    doppler_hz: Annotated[Number, within(-1e7, 1e7, "Hz")]
+    level_db: Decibel = -10.0
+
+
+class ReceiverConfig(Section):
+    """Noise that grows towards zero Doppler, and interference lines; both over the white noise."""
+
+    noise_corner_hz: Annotated[NotNegative, within(0, 1e7, "Hz")] = 0.0
+    noise_slope_db: Annotated[NotNegative, within(1, 20, "dB per decade")] = 10.0
+    lines: Annotated[tuple[LineConfig, ...], Field(max_length=16)] = ()
+
+
 class SavgolConfig(Section):
     """The Savitzky-Golay filter of the denoised maps."""
 
@@ -328,30 +508,152 @@ class SavgolConfig(Section):
         return self
 
 
-class ProcessingConfig(Section):
-    """MTI, range compression, windows and thresholds."""
+class HighpassConfig(Section):
+    """The Butterworth filter of `clutter: highpass`; its cut-off is given once, in any unit."""
 
-    mti: Flag = True
+    order: Annotated[int, Field(ge=1, le=10, strict=True)] = 4
+    cutoff_hz: Annotated[float, Field(gt=0, le=1e7, strict=True)] | None = None
+    cutoff_mps: Annotated[float, Field(gt=0, le=1e4, strict=True)] | None = None
+    cutoff_fraction: Annotated[float, Field(gt=0, lt=1, strict=True)] | None = None
+    zero_phase: Flag = False
+    remove_mean: Flag = True
+
+    @model_validator(mode="after")
+    def _one_cutoff(self) -> "HighpassConfig":
+        given = [self.cutoff_hz, self.cutoff_mps, self.cutoff_fraction]
+        if sum(one is not None for one in given) > 1:
+            raise PydanticCustomError(
+                "cutoff", "should have one of cutoff_hz, cutoff_mps and cutoff_fraction"
+            )
+        if given == [None, None, None]:
+            object.__setattr__(self, "cutoff_fraction", 0.0075)
+        return self
+
+
+class ProcessingConfig(Section):
+    """Clutter, range compression, gate, windows and thresholds.
+
+    `mti` is another spelling of `clutter`: true is `difference`, false is `none`. `window_s` goes
+    before `window_fraction`.
+    """
+
+    clutter: Literal["difference", "mean", "highpass", "none"] = "difference"
+    mti: Annotated[Flag | None, Field(exclude=True)] = None
+    highpass: HighpassConfig = HighpassConfig()
+    doppler: Literal["half_band", "gate"] = "half_band"
+    gate_m: float | tuple[float, float] = 1.0
+    gate_sum: Literal["power", "magnitude"] = "power"
     range_fft_length: Annotated[int, Field(ge=2, multiple_of=2, strict=True)] | None = None
     range_reference: Literal["centre", "start"] = "centre"
     window_fraction: Annotated[float, Field(gt=0, lt=1, strict=True)] = 0.1
+    window_s: Annotated[float, Field(gt=0, le=1e7, strict=True)] | None = None
     overlap_fraction: Annotated[float, Field(ge=0, lt=1, strict=True)] = 0.9
     stft_fft_length: Annotated[int, Field(ge=8, strict=True)] | None = None
     savgol: SavgolConfig = SavgolConfig()
     fsst_hop_pulses: Annotated[int, Field(ge=1, le=2**24, strict=True)] | None = None
     fsst_threshold: Annotated[float, Field(ge=0, lt=1, strict=True)] = 1e-3
 
+    @field_validator("gate_m", mode="before")
+    @classmethod
+    def _distance_or_interval(cls, value: Any) -> Any:
+        numbers = value if isinstance(value, (list, tuple)) and len(value) == 2 else [value]
+        good = all(type(one) in (int, float) and 0 <= one <= 1e7 for one in numbers)
+        if not good or sorted(numbers) != list(numbers) or numbers == [0]:
+            raise PydanticCustomError(
+                "gate",
+                "should be how far (m) the gate reaches to both sides of the torso, above 0, "
+                "or [from, to], ranges with from <= to; 1e7 at most",
+            )
+        return value
+
+    @model_validator(mode="after")
+    def _one_spelling(self) -> "ProcessingConfig":
+        if self.mti is not None:
+            meant = "difference" if self.mti else "none"
+            if "clutter" in self.model_fields_set and self.clutter != meant:
+                raise PydanticCustomError(
+                    "mti",
+                    "should not have mti: {mti}, which means clutter: {meant}, "
+                    "beside clutter: {clutter}",
+                    {"mti": str(self.mti).lower(), "meant": meant, "clutter": self.clutter},
+                )
+            object.__setattr__(self, "clutter", meant)
+            object.__setattr__(self, "mti", None)
+        return self
+
 
 DEFAULT_COLOUR_MAP = "viridis"
 Pixels = Annotated[int, Field(ge=2, le=8192, strict=True)]
 
 
+Cells = Annotated[int, Field(ge=0, le=4096, strict=True)]
+ExceedingRate = Annotated[Positive, within(1e-12, 0.999)]
+
+
+class CfarConfig(Section):
+    """Cell-averaging CFAR of `image.kind: cfar`; cells are pixels, (rows, columns) on each side.
+
+    Exactly one of pfa, factor and threshold_db is the threshold; pfa is 0.31 where none is given.
+    With `on: decibel` the map's median is put at floor_db, as a factor of decibels needs a zero.
+    """
+
+    guard: tuple[Cells, Cells] = (10, 2)
+    training: tuple[Cells, Cells] = (50, 10)
+    pfa: ExceedingRate | None = None
+    factor: Annotated[Positive, within(1e-3, 1e12)] | None = None
+    threshold_db: Decibel | None = None
+    on: Literal["power", "decibel"] = "decibel"
+    floor_db: Annotated[Decibel, within(0, 200, "dB")] = Uniform(uniform=(10.0, 30.0))
+    edges: Literal["wrap", "shrink"] = "wrap"
+
+    @model_validator(mode="after")
+    def _one_threshold(self) -> "CfarConfig":
+        given = [key for key in ("pfa", "factor", "threshold_db") if getattr(self, key) is not None]
+        if len(given) > 1:
+            raise PydanticCustomError(
+                "threshold",
+                "should have one of pfa, factor and threshold_db; set the others to null (it has "
+                "{given})",
+                {"given": " and ".join(given)},
+            )
+        if not given:
+            object.__setattr__(self, "pfa", 0.31)
+        return self
+
+    def uses(self, key: str) -> bool:
+        """Whether masks depend on the number of that key."""
+        if key == "floor_db":
+            return self.on == "decibel" and self.threshold_db is None
+        return True
+
+
 class ImageConfig(Section):
-    """Size (height, width; one number means square), dynamic range and colour map."""
+    """Size (height, width; one number means square), what pixels show, colour map, Doppler limits.
+
+    Doppler limits are speeds, positive approaching: one number v is [-v, v].
+    """
 
     size_px: tuple[Pixels, Pixels] = (256, 256)
+    kind: Literal["decibel", "cfar"] = "decibel"
     dynamic_range_db: Annotated[float, Field(gt=0, le=300, strict=True)] = 50.0
+    cfar: CfarConfig = CfarConfig()
     colour_map: str = DEFAULT_COLOUR_MAP
+    doppler_limits_mps: tuple[Real, Real] | None = None
+
+    @field_validator("doppler_limits_mps", mode="before")
+    @classmethod
+    def _both_sides(cls, value: Any) -> Any:
+        number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        return (-value, value) if number else value
+
+    @field_validator("doppler_limits_mps")
+    @classmethod
+    def _ordered(cls, value: tuple[float, float] | None) -> tuple[float, float] | None:
+        if value is not None and not value[0] < value[1]:
+            raise PydanticCustomError(
+                "limits", "should be a speed above 0, or [low, high] with low < high"
+            )
+        return value
 
     @field_validator("size_px", mode="before")
     @classmethod
@@ -424,11 +726,18 @@ Level = Annotated[int, Field(ge=0, le=9, strict=True)]
 
 
 class OutputConfig(Section):
-    """PNG tree or not, and the compression levels (0 none, 1 fast, 9 small)."""
+    """PNG tree or not, compression levels (0 none, 1 fast, 9 small), and what else is stored.
+
+    `column_labels` of every column; `power` the decibels behind every image, unclipped; `slow_time`
+    the complex signal.
+    """
 
     png: Flag = True
+    column_labels: Flag = False
     png_level: Level = 1
     hdf5_level: Level = 1
+    power: Literal["float16"] | None = None
+    slow_time: Flag = False
 
 
 MapName = Literal[
@@ -445,9 +754,37 @@ MapName = Literal[
 MAP_NAMES: tuple[MapName, ...] = MapName.__args__  # type: ignore[attr-defined]
 
 
+def possible_maps(processing: ProcessingConfig) -> tuple[MapName, ...]:
+    """The maps that there can be: no FSST of a gate, whose bins are summed without their phase."""
+    gated = processing.doppler == "gate"
+    return tuple(name for name in MAP_NAMES if not (gated and name.startswith("fsst")))
+
+
+# Who walks begins far away, as 4 s of it are 5 m, and passes the radar 2 m beside it; classes of
+# one's own may walk. All within the half-band of 7.5 m that the default radar has.
+_NEAR = (a.slug for a in ACTIVITIES if not a.walks)
+_HUMAN_RANGE = PerActivity[Coordinate](
+    per_activity={
+        DEFAULT: Uniform(uniform=(6.0, 6.8)),
+        **dict.fromkeys(_NEAR, Uniform(uniform=(2.0, 4.0))),
+    }
+)
+_FACING = Uniform(uniform=(150.0, 210.0))
+_HUMAN_ANGLE = PerActivity[Angle](
+    per_activity={
+        DEFAULT: _FACING,
+        "walking": Uniform(uniform=(205.0, 240.0)),
+    }
+)
+
 MODEL_DEFAULTS: dict[str, dict[str, dict[str, Any]]] = {
+    "file": {"motion": {"range_m": Uniform(uniform=(2.0, 4.0)), "angle_deg": _FACING}},
     "paper": {
-        "motion": {"speed_mps": 1.5},
+        "motion": {
+            "range_m": Uniform(uniform=(1.0, 3.0)),
+            "angle_deg": Uniform(uniform=(-30.0, 30.0)),
+            "speed_mps": 1.5,
+        },
         "timing": {
             "seat_duration_s": 2.0,
             "rise_duration_s": 1.5,
@@ -457,12 +794,16 @@ MODEL_DEFAULTS: dict[str, dict[str, dict[str, Any]]] = {
         },
     },
     "human": {
-        "motion": {"speed_mps": Normal(normal=(1.3, 0.18), min=0.7, max=2.0)},
+        "motion": {
+            "range_m": _HUMAN_RANGE,
+            "angle_deg": _HUMAN_ANGLE,
+            "speed_mps": Normal(normal=(1.3, 0.18), min=0.7, max=2.0),
+        },
         "timing": {
             "seat_duration_s": PerActivity[Seconds](
                 per_activity={
-                    "default": Normal(normal=(2.0, 0.25), min=1.3, max=3.0),
-                    "standing_up": Normal(normal=(1.8, 0.25), min=1.2, max=3.0),
+                    "default": Normal(normal=(2.0, 0.4), min=1.3, max=3.0),
+                    "standing_up": Normal(normal=(1.8, 0.4), min=1.2, max=3.0),
                 }
             ),
             "rise_duration_s": PerActivity[Seconds](
@@ -472,26 +813,103 @@ MODEL_DEFAULTS: dict[str, dict[str, dict[str, Any]]] = {
                 }
             ),
             "sit_duration_s": Normal(normal=(2.0, 0.25), min=1.3, max=3.0),
-            "fall_duration_s": Normal(normal=(1.1, 0.15), min=0.9, max=1.5),
+            "fall_duration_s": Normal(normal=(1.1, 0.4), min=0.9, max=2.0),
         },
     },
 }
+
+
+MOST_WINDOWS = 1_000_000
+SLUG = r"[a-z][a-z0-9_]{0,62}"
+
+
+class RecordedPart(Section):
+    """Part of a recording in which one person does one thing.
+
+    The file is named from the manifest's folder, or below.
+    """
+
+    file: Annotated[str, Field(max_length=500)]
+    label: Annotated[str, Field(pattern=f"^{SLUG}$")]
+    person: Annotated[str, Field(max_length=100)] | None = None
+    start_s: Annotated[float, Field(ge=0, le=1e7, strict=True)]
+    stop_s: Annotated[float, Field(ge=0, le=1e7, strict=True)]
+
+    @field_validator("file")
+    @classmethod
+    def _below(cls, value: str) -> str:
+        place = PurePosixPath(value)
+        if place.is_absolute() or ".." in place.parts or "\\" in value or not place.name:
+            raise _wrong("should be a path below the manifest's folder")
+        return value
+
+
+class RecordingsConfig(Section):
+    """A data set of measured data: windows of recordings instead of scenes.
+
+    Attributes:
+        window_s, hop_s: length of a sample, and from one to the next.
+        receiver: one of them, or None for the sum of all maps' powers.
+        parts: of the manifest, in its order.
+        sha256: of each file, which the data set's bytes depend on.
+        rows: of images that exist already: lowest and highest edge, Hz (m of a range-time map).
+        packed: whether the columns of masks are bits.
+    """
+
+    window_s: Annotated[float, Field(gt=0, le=1e6, strict=True)] = 4.0
+    hop_s: Annotated[float, Field(gt=0, le=1e6, strict=True)] = 4.0
+    receiver: Annotated[int, Field(ge=0, le=2**16, strict=True)] | None = None
+    parts: Annotated[tuple[RecordedPart, ...], Field(max_length=10_000)] = ()
+    sha256: dict[str, str] = {}
+    rows: tuple[float, float] | None = None
+    packed: Flag = False
+
+    @model_validator(mode="after")
+    def _bounded(self) -> "RecordingsConfig":
+        if (total := sum(map(self.count, self.parts))) > MOST_WINDOWS:
+            raise _wrong(f"should have at most {MOST_WINDOWS} windows; hop_s makes {total}")
+        return self
+
+    def count(self, part: RecordedPart) -> int:
+        """How many windows a part holds."""
+        room = part.stop_s - part.start_s - self.window_s
+        return floor(room / self.hop_s + 1e-9) + 1 if room >= -1e-9 else 0
+
+    def starts(self, part: RecordedPart) -> list[float]:
+        """When the windows of a part begin, s."""
+        return [part.start_s + n * self.hop_s for n in range(self.count(part))]
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """{label: windows}, of those that have any."""
+        found: dict[str, int] = {}
+        for part in self.parts:
+            found[part.label] = found.get(part.label, 0) + self.count(part)
+        return {label: count for label, count in found.items() if count}
+
+    @property
+    def persons(self) -> tuple[str, ...]:
+        """Everybody who is named, in alphabetical order."""
+        return tuple(sorted({part.person for part in self.parts if part.person is not None}))
 
 
 class Config(Section):
     """A data set: what to draw, what to compute, how to store it."""
 
     seed: Annotated[int, Field(ge=0, lt=2**63, strict=True)] = 1
-    samples_per_class: Annotated[int, Field(ge=1, le=10_000_000, strict=True)] = 300
-    classes: dict[str, SequenceConfig] = {}
+    samples_per_class: SamplesBy = 300
+    classes: Annotated[dict[str, ClassConfig], Field(max_length=200)] = {}  # labels are uint8
     activities: Literal["all"] | tuple[str, ...] = "all"
     duration_s: Annotated[Positive, within(1e-9, 1e7, "s")] = 4.0
     radar: RadarConfig = RadarConfig()
     subject: SubjectConfig = SubjectConfig()
     motion: MotionConfig = MotionConfig()
     timing: TimingConfig = TimingConfig()
+    body: BodyConfig = BodyConfig()
     wall: WallConfig | None = None
+    room: RoomConfig = RoomConfig()
     snr_db: Decibel | None = 30.0
+    receiver: ReceiverConfig = ReceiverConfig()
     snr_reference: Literal["free_space", "received"] = "free_space"
     on_invalid: Literal["keep", "redraw", "error"] = "keep"
     processing: ProcessingConfig = ProcessingConfig()
@@ -500,23 +918,30 @@ class Config(Section):
     split: SplitConfig = SplitConfig()
     engine: EngineConfig = EngineConfig()
     output: OutputConfig = OutputConfig()
+    recordings: RecordingsConfig | None = None
 
     @field_validator("classes")
     @classmethod
-    def _new_names(cls, value: dict[str, SequenceConfig]) -> dict[str, SequenceConfig]:
-        for slug in value:
-            if not is_new_slug(slug):
+    def _names(cls, value: dict[str, ClassConfig]) -> dict[str, ClassConfig]:
+        twelve = {activity.slug for activity in ACTIVITIES}
+        for slug, one in value.items():
+            if not (is_new_slug(slug) or (isinstance(one, FilesConfig) and slug in twelve)):
                 raise _wrong(f"should have a new name of a-z, 0-9 and _ instead of {slug!r}")
+        if (
+            sum(len(one.files) for one in value.values() if isinstance(one, FilesConfig))
+            > MAX_FILES
+        ):
+            raise _wrong(f"should have at most {MAX_FILES} files in all")
         return value
 
     @field_validator("activities", mode="before")
     @classmethod
     def _slugs(cls, value: object, info: ValidationInfo) -> object:
-        if not isinstance(value, (list, tuple)):
-            return value
-        own = sequences(info.data.get("classes", {}))
+        if not isinstance(value, (list, tuple)) or "classes" not in info.data:
+            return value  # a mistake in `classes` is told once
+        own = class_activities(info.data["classes"])
         try:
-            chosen = [own.get(str(name)) or activity_named(str(name)) for name in value]
+            chosen = [activity_named(str(name), own) for name in value]
         except ValueError as error:
             raise PydanticCustomError("activity", "{what}", {"what": str(error)}) from None
         if not chosen or len({a.slug for a in chosen}) != len(chosen):
@@ -550,29 +975,63 @@ class Config(Section):
             raise PydanticCustomError("across", "{problems}", {"problems": found})
         return self
 
+    def samples_of(self, activity: Activity) -> int:
+        """How many samples of an activity there are."""
+        if self.recorded is not None:
+            return self.recorded.counts.get(activity.slug, 0)
+        return for_activity(self.samples_per_class, activity)
+
+    @property
+    def recorded(self) -> RecordingsConfig | None:
+        """The windows of recordings that this is a data set of; None of scenes."""
+        return self.recordings if self.recordings is not None and self.recordings.counts else None
+
     @property
     def every_class(self) -> tuple[Activity, ...]:
         """Every class by its label: the twelve, those of `classes`, then added ones."""
-        known = {a.slug: a for a in (*ACTIVITIES, *sequences(self.classes).values())}
+        known = {a.slug: a for a in ACTIVITIES} | class_activities(self.classes)
         return (*(known | {a.slug: a for a in self.chosen_activities}).values(),)
 
     @property
     def chosen_activities(self) -> tuple[Activity, ...]:
-        """The activities to build: S1 to S12, then one's own, numbered from 13 in their order."""
-        own = sequences(self.classes)
+        """The activities to build: S1 to S12, then one's own, numbered from 13 in their order.
+
+        All of them are those of `classes` alone with `motion.model: file`.
+        """
+        own = class_activities(self.classes)
+        if self.recorded is not None:
+            known = {a.slug: a for a in (*ACTIVITIES, *own.values())}
+            new = sorted(self.recorded.counts.keys() - known.keys())
+            after = 1 + max(a.number for a in known.values())
+            known |= {slug: Activity(after + n, slug) for n, slug in enumerate(new)}
+            return tuple(a for slug, a in known.items() if slug in self.recorded.counts)
         if self.activities == "all":
-            return (*ACTIVITIES, *own.values())
-        chosen = [own.get(slug) or activity_named(slug) for slug in self.activities]
+            twelve = {} if self.motion.model == "file" else {a.slug: a for a in ACTIVITIES}
+            return (*sorted((twelve | own).values(), key=lambda a: a.number),)
+        chosen = [activity_named(slug, own) for slug in self.activities]
         added = [a for a in chosen if a.motion is not None]
+        after = 1 + max(a.number for a in (*ACTIVITIES, *own.values()))
         return (
             *(a for a in chosen if a.motion is None),
-            *(replace(a, number=len(ACTIVITIES) + len(own) + 1 + n) for n, a in enumerate(added)),
+            *(replace(a, number=after + n) for n, a in enumerate(added)),
         )
 
+    def files_of(self, activity: Activity) -> FilesConfig | None:
+        """The files of an activity, None where a model makes its motion."""
+        one = self.classes.get(activity.slug)
+        return one if isinstance(one, FilesConfig) else None
 
-def sequences(classes: Mapping[str, SequenceConfig]) -> dict[str, Activity]:
-    """{slug: activity} of the sequences of a config, S13 and so on."""
-    return {
-        slug: Activity(len(ACTIVITIES) + 1 + n, slug, human=sequence_uses(one.sequence))
-        for n, (slug, one) in enumerate(classes.items())
-    }
+
+def class_activities(classes: Mapping[str, ClassConfig]) -> dict[str, Activity]:
+    """{slug: activity} of a config's classes: S13 and so on, or one of the twelve from files."""
+    found: dict[str, Activity] = {}
+    twelve = {activity.slug: activity for activity in ACTIVITIES}
+    number = len(ACTIVITIES)
+    for slug, one in classes.items():
+        if slug in twelve:
+            found[slug] = replace(twelve[slug], paper=(), human=())
+            continue
+        number += 1
+        uses = sequence_uses(one.sequence) if isinstance(one, SequenceConfig) else ()
+        found[slug] = Activity(number, slug, human=uses)
+    return found

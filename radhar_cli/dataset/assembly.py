@@ -7,7 +7,7 @@ rows but the list of shards: columns go into the file as shards are read.
 import csv
 import io
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -19,10 +19,32 @@ from radhar_cli.arrays import Float
 from radhar_cli.config.identity import as_yaml, config_hash, resolved
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
+from radhar_cli.dataset.column_labels import label_names
 from radhar_cli.dataset.files import unfinished_path, write_whole
 from radhar_cli.dataset.identity import identity, identity_hash, versions
-from radhar_cli.dataset.layout import COLUMNS, CONFIG, DATASET, MANIFEST, SCENES, SPLITS, WORK, Rows
-from radhar_cli.dataset.shards import Shard, ShardError, check_shards, image_dataset, require_tiling
+from radhar_cli.dataset.layout import (
+    COLUMN_LABEL,
+    CONFIG,
+    DATASET,
+    MANIFEST,
+    SCENES,
+    SPLITS,
+    WORK,
+    Rows,
+    chunked,
+    columns,
+    row_bytes,
+)
+from radhar_cli.dataset.recorded import persons
+from radhar_cli.dataset.shards import (
+    Runs,
+    Shard,
+    ShardError,
+    check_shards,
+    chunked_dataset,
+    go_on,
+    require_tiling,
+)
 from radhar_cli.dataset.split import split_rows
 from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.errors import UnfinishedError
@@ -30,8 +52,12 @@ from radhar_cli.pipeline.validity import Flags, warnings
 from radhar_cli.scene import subject_of
 
 SCHEMA_VERSION = 2
-RUN = 128
+RUN, RUN_BYTES = 128, 2**28
 CONFIG_HEADING = "# The resolved config of this data set, every default filled in.\n"
+CFAR_TEXT = (
+    "255 where a pixel exceeds its threshold over the mean of the training cells around it, else 0 "
+    "(image.cfar in the config)"
+)
 LEVELS_TEXT = (
     "level = floor(255 (dB / dynamic_range_db + 1) + 1/2), dB = 10 log10(power / largest power), "
     "clipped to [-dynamic_range_db, 0]; level 0 everywhere for an all-zero map"
@@ -40,7 +66,11 @@ LEVELS_TEXT = (
 
 @contextmanager
 def assembled(
-    config: Config, folder: Path, shards: Sequence[Shard]
+    config: Config,
+    folder: Path,
+    shards: Sequence[Shard],
+    remedy: Callable[[Runs], str] = go_on,
+    virtual: bool = False,
 ) -> Iterator[tuple[Path, list[dict[str, Any]]]]:
     """Put a data set together; yield the path of its whole file, which becomes dataset.h5 after.
 
@@ -50,12 +80,15 @@ def assembled(
         config: the data set's.
         folder: the output folder.
         shards: that hold every row once.
+        remedy: what to do about rows that are missing.
+        virtual: refer to the large datasets of the shards, which lie below the folder, instead of
+            copying them.
 
     Raises:
         UnfinishedError: rows are missing, held twice, or in a shard that cannot be used.
     """
     count, own_hash, shards = len(Rows.of(config)), identity_hash(identity(config)), sorted(shards)
-    require_tiling(folder, shards, count)
+    require_tiling(folder, shards, count, remedy)
     unfinished, table, manifest = (unfinished_path(folder) for _ in range(3))
     unfinished.parent.mkdir(parents=True, exist_ok=True)
     try:
@@ -66,7 +99,9 @@ def assembled(
         ):
             _describe_samples(file, config)
             held.write(f'{{"identity": "{own_hash}", "rows": {count}, "shards": [\n')
-            flags = _copy_shards(file, config, shards, own_hash, text, held)
+            if virtual:
+                _refer_to_shards(file, config, folder, shards)
+            flags = _copy_shards(file, config, shards, own_hash, text, held, virtual)
             held.write("]}\n")
             found = warnings(config, flags)
             _root_attributes(file, config, found)
@@ -76,7 +111,7 @@ def assembled(
         manifest.replace(folder / WORK / MANIFEST)
         unfinished.replace(folder / DATASET)
     except ShardError as error:
-        require_tiling(folder, check_shards(shards, own_hash)[0], count)
+        require_tiling(folder, check_shards(shards, own_hash)[0], count, remedy)
         raise UnfinishedError(f"{folder}: {error}; the same command goes on") from None
     finally:
         for path in (unfinished, table, manifest):
@@ -90,24 +125,29 @@ def _copy_shards(
     own_hash: str,
     table: io.TextIOBase,
     manifest: io.TextIOBase,
+    virtual: bool,
 ) -> dict[Flags, int]:
     """Copy maps and columns, each shard read and checked once, and write down what each held.
 
-    Chunks are stored in runs of RUN rows, map after map: the file's layout does not depend on how
-    shards cut the rows, and who reads one map reads long stretches.
+    Virtual maps stay where they are.
+
+    Chunks are stored in runs of RUN rows, or of RUN_BYTES, dataset after dataset: the file's layout
+    does not depend on how shards cut the rows, and who reads one map reads long stretches.
 
     Returns:
         How many rows have each flag.
     """
     count, stored = shards[-1].stop, 0
-    maps = file.create_group("maps")
-    targets = {name: image_dataset(maps, name, count, config).id for name in config.maps}
-    columns = {
-        f"{kind}/{name}": (file.create_dataset(f"{kind}/{name}", (count, *shape), dtype), shape)
-        for name in config.maps
-        for kind, (dtype, shape) in COLUMNS.items()
+    run, large = (
+        max(1, min(RUN, RUN_BYTES // row_bytes(config))),
+        {} if virtual else chunked(config),
+    )
+    targets = {name: chunked_dataset(file, name, count, config).id for name in large}
+    small = {
+        name: (file.create_dataset(name, (count, *shape), dtype), shape)
+        for name, (dtype, shape) in columns(config).items()
     }
-    chunks: dict[str, list[tuple[int, bytes]]] = {name: [] for name in config.maps}
+    chunks: dict[str, list[tuple[int, bytes]]] = {name: [] for name in large}
     fields = scene_fields.fields(config)
     scene = [file[f"scene/{field.name}"] for field in fields]
     rows_csv = _CsvRows(config, table)
@@ -121,10 +161,10 @@ def _copy_shards(
         with UntrustedFile(shard.path, data) as part:
             values = part.column("scene", np.float64, (rows, len(fields)))[:]
             here = part.column("flags", np.uint8, (rows,))[:]
-            for name in config.maps:
-                source = part.images(f"maps/{name}", (rows, *config.image.size_px))
+            for name, (dtype, shape) in large.items():
+                source = part.chunks(name, dtype, (rows, *shape))
                 chunks[name] += [source.stored(row) for row in range(rows)]
-            for column, (target, shape) in columns.items():
+            for column, (target, shape) in small.items():
                 found = part.column(column, target.dtype, (rows, *shape))[:]
                 target[start:stop] = found
                 if column in extents and len(extents[column]) < 2:
@@ -134,21 +174,36 @@ def _copy_shards(
         rows_csv.write(start, values)
         for flag in flags:
             flags[flag] += int(np.count_nonzero(here & flag))
-        while stop - stored >= RUN or stored < stop == count:
-            for name, image in targets.items():
-                for row, (mask, chunk) in enumerate(chunks[name][:RUN], stored):
-                    image.write_direct_chunk((row, 0, 0), chunk, mask)
-                del chunks[name][:RUN]
-            stored += RUN
+        while stop - stored >= run or stored < stop == count:
+            for name, target in targets.items():
+                corner = (0,) * len(large[name][1])
+                for row, (mask, chunk) in enumerate(chunks[name][:run], stored):
+                    target.write_direct_chunk((row, *corner), chunk, mask)
+                del chunks[name][:run]
+            stored += run
     for name in config.maps:
         _describe_map(file, config, name, extents[f"extent/{name}"])
+    if config.output.slow_time:
+        _describe_slow_time(file["slow_time"].attrs)
     return flags
+
+
+def _refer_to_shards(
+    file: h5py.File, config: Config, folder: Path, shards: Sequence[Shard]
+) -> None:
+    """Make each large dataset a virtual one whose parts are those of the shards."""
+    for name, (dtype, shape) in chunked(config).items():
+        layout = h5py.VirtualLayout((shards[-1].stop, *shape), dtype)
+        for start, stop, place in shards:
+            path = Shard(start, stop, place).path.relative_to(folder).as_posix()
+            layout[start:stop] = h5py.VirtualSource(path, name, (stop - start, *shape), dtype)
+        file.create_virtual_dataset(name, layout)
 
 
 def _describe_samples(file: h5py.File, config: Config) -> None:
     rows = Rows.of(config)
     count = len(rows)
-    labels = np.repeat(np.array([a.index for a in rows.activities], np.uint8), rows.per_class)
+    labels = np.repeat(np.array([a.index for a in rows.activities], np.uint8), rows.counts)
     file["label"] = labels
     file["label"].attrs["meaning"] = (
         "0..11 for S1..S12, whatever subset was built; own classes after"
@@ -160,12 +215,13 @@ def _describe_samples(file: h5py.File, config: Config) -> None:
     subjects = config.split.subjects
     if subjects is not None:
         file.create_dataset("scene/subject", (count,), np.int64).attrs["unit"] = "1"
-    indices = np.arange(rows.per_class)
-    for number, activity in enumerate(rows.activities):
-        here = slice(number * rows.per_class, (number + 1) * rows.per_class)
+    for activity, here in rows.classes():
+        indices = np.arange(here.stop - here.start)
         keys[here, 0], keys[here, 1] = activity.index, indices
-        if subjects is not None:
+        if subjects is not None and config.recorded is None:
             file["scene/subject"][here] = indices % subjects
+    if subjects is not None and config.recorded is not None:
+        file["scene/subject"][:] = persons(config)
     for field in scene_fields.fields(config):
         dataset = file.create_dataset(f"scene/{field.name}", (count,), np.float64)
         dataset.attrs["unit"] = field.unit
@@ -185,8 +241,10 @@ def _describe_map(
     attributes["row_top"], attributes["row_bottom"] = high, low
     attributes["column_quantity"], attributes["column_unit"] = "slow time", "s"
     attributes["column_left"], attributes["column_right"] = start, stop
-    attributes["dynamic_range_db"] = config.image.dynamic_range_db
-    attributes["levels"] = LEVELS_TEXT
+    attributes["kind"] = config.image.kind
+    if config.image.kind == "decibel":
+        attributes["dynamic_range_db"] = config.image.dynamic_range_db
+    attributes["levels"] = LEVELS_TEXT if config.image.kind == "decibel" else CFAR_TEXT
     if not same:
         attributes["edges"] = "differ from sample to sample: see /extent"
     file[f"extent/{name}"].attrs["columns"] = [
@@ -196,6 +254,22 @@ def _describe_map(
         f"{vertical[0]} top ({vertical[1]})",
     ]
     file[f"entropy/{name}"].attrs["unit"] = "bit"
+    if config.output.power is not None:
+        file[f"power/{name}"].attrs["unit"] = f"dB below /largest_db/{name}"
+        file[f"power/{name}"].attrs["meaning"] = "resized power, not clipped; rows as in /maps"
+        file[f"largest_db/{name}"].attrs["unit"] = "dB for unit transmit power"
+    if config.output.column_labels:
+        labels = file[f"{COLUMN_LABEL}/{name}"].attrs
+        labels["names"] = label_names(config)
+        labels["meaning"] = "number in names of what is under way at the middle of each column"
+
+
+def _describe_slow_time(attributes: h5py.AttributeManager) -> None:
+    attributes["axes"] = ["sample", "pulse"]
+    attributes["meaning"] = (
+        "x[m] after receiver and canceller, for unit transmit power; NaN after the last pulse of "
+        "a recording that is shorter than others"
+    )
 
 
 def _root_attributes(file: h5py.File, config: Config, found: list[dict[str, Any]]) -> None:
@@ -219,6 +293,8 @@ class _CsvRows:
 
     def __init__(self, config: Config, table: io.TextIOBase) -> None:
         self._config, self._rows, self._split = config, Rows.of(config), split_rows(config)
+        named = config.recorded is not None and config.split.subjects is not None
+        self._persons = persons(config) if named else None
         self._writer = csv.writer(table, lineterminator="\n")
         columns = (field.column for field in scene_fields.fields(config))
         self._writer.writerow(["label", "class", "slug", "index", "split", "subject", *columns])
@@ -227,7 +303,7 @@ class _CsvRows:
         """Write the rows from `start` on, of values [rows, fields]."""
         for row, numbers in enumerate(values.tolist(), start):
             activity, index = self._rows[row]
-            subject = subject_of(self._config, index)
+            subject = self._persons[row] if self._persons else subject_of(self._config, index)
             self._writer.writerow(
                 [activity.index, activity.label, activity.slug, index, SPLITS[self._split[row]]]
                 + ["" if subject is None else subject]

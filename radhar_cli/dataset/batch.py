@@ -1,6 +1,7 @@
 """What a worker does: synthesise consecutive rows, write their PNGs, then their shard."""
 
 import os
+import platform
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -13,11 +14,14 @@ from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.check_cache import OUTCOME, Outcomes
 from radhar_cli.dataset.files import write_whole
-from radhar_cli.dataset.layout import Rows, png_path
+from radhar_cli.dataset.identity import identity, identity_hash, versions
+from radhar_cli.dataset.layout import IDENTITY, WORK, Rows
 from radhar_cli.dataset.png import encode_png
-from radhar_cli.dataset.sample import synthesise
+from radhar_cli.dataset.sample import Made, Maker, synthesise
 from radhar_cli.dataset.shards import encode_shard, write_shard
 from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
+from radhar_cli.dataset.workers import NO_PARENT
+from radhar_cli.errors import MachineError
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.validity import Flags, draw_valid_scene
 from radhar_cli.scene import Scene, draw_scene
@@ -36,7 +40,8 @@ class Batch:
         checked: outcome of the check of each row, or None where the worker is to check.
         split: split number of each row.
         table: colour table [256, 3], or None without PNGs.
-        parent_pid: process that asked; a worker that outlives it stops.
+        parent_pid: process that asked; a worker that outlives it stops. NO_PARENT: on a cluster.
+        maker: makes the rows where they are no scenes.
     """
 
     config: Config
@@ -48,6 +53,7 @@ class Batch:
     split: Levels
     table: Levels | None
     parent_pid: int
+    maker: Maker | None = None
 
     def scenes(self) -> Iterator[tuple[Scene, int]]:
         """Each row's scene and Flags."""
@@ -62,6 +68,8 @@ class Batch:
 
 def leave_if_orphaned(parent_pid: int) -> None:
     """End a worker whose parent was killed: nobody waits for it, and a new run may be at work."""
+    if parent_pid == NO_PARENT:
+        return
     if os.getpid() != parent_pid and os.getppid() != parent_pid and sys.platform != "win32":
         os._exit(1)
 
@@ -77,24 +85,56 @@ def run_batch(batch: Batch) -> int:
 
 def _run_batch(batch: Batch) -> int:
     prepare_process()
-    config, count = batch.config, batch.stop - batch.start
-    plan, columns = plan_images(config), scene_fields.fields(config)
+    if batch.parent_pid == NO_PARENT:
+        _check_machine(batch)
+    config, count, rows = batch.config, batch.stop - batch.start, Rows.of(batch.config)
     samples = []
-    values, flags = np.empty((count, len(columns))), np.empty(count, dtype=np.uint8)
-    for number, (scene, found) in enumerate(batch.scenes()):
-        leave_if_orphaned(batch.parent_pid)
-        sample = synthesise(scene, plan)
+    values = np.empty((count, len(scene_fields.fields(config))))
+    flags = np.empty(count, dtype=np.uint8)
+    for number, (made, found) in enumerate(_made(batch)):
+        sample = made.sample
         if batch.table is not None:
             for name, image in sample.images.items():
                 data = encode_png(image.levels, batch.table, config.output.png_level)
-                path = png_path(name, int(batch.split[number]), scene.activity, scene.index)
+                path = rows.png_path(name, int(batch.split[number]), batch.start + number)
                 write_whole(batch.folder, batch.folder / path, data)
         samples.append(sample)
-        values[number] = scene_fields.values(scene, columns, sample.error_db)
+        values[number] = made.values
         flags[number] = found | (Flags.FALLBACK if sample.fell_back else 0)
     data = encode_shard(config, batch.identity_hash, batch.start, samples, values, flags)
     write_shard(batch.folder, batch.start, batch.stop, data)
     return count
+
+
+def _check_machine(batch: Batch) -> None:
+    """Refuse a machine that would make other bytes, or make them elsewhere.
+
+    Raises:
+        MachineError: names the machine.
+    """
+    if identity_hash(identity(batch.config)) != batch.identity_hash:
+        here = ", ".join(f"{library} {version}" for library, version in versions().items())
+        raise MachineError(
+            f"the worker on {platform.node()} has other versions, {here}; should have those of "
+            "`radhar version` here"
+        )
+    if not (batch.folder / WORK / IDENTITY).exists():
+        raise MachineError(f"the worker on {platform.node()} does not see {batch.folder}")
+
+
+def _made(batch: Batch) -> Iterator[tuple[Made, int]]:
+    """Each row, and its Flags."""
+    config = batch.config
+    if batch.maker is not None:
+        for row in range(batch.start, batch.stop):
+            leave_if_orphaned(batch.parent_pid)
+            yield batch.maker(config, row), 0
+        return
+    plan, columns = plan_images(config), scene_fields.fields(config)
+    for scene, found in batch.scenes():
+        leave_if_orphaned(batch.parent_pid)
+        sample = synthesise(scene, plan)
+        yield Made(sample, scene_fields.values(scene, columns, sample.error_db)), found
 
 
 def check_rows(config: Config, start: int, stop: int, parent_pid: int) -> tuple[int, Outcomes]:
@@ -120,11 +160,11 @@ def png_rows(
     """Write the PNGs of (row, split) pairs from a data set's HDF5 file."""
     order = Rows.of(config)
     shape = (len(order), *config.image.size_px)
-    with UntrustedFile(source) as file:
-        images = {name: file.images(f"maps/{name}", shape) for name in config.maps}
+    with UntrustedFile(source, virtual=True) as file:
+        images = {name: file.chunks(f"maps/{name}", np.uint8, shape) for name in config.maps}
         for row, split in rows:
             leave_if_orphaned(parent_pid)
             for name in config.maps:
                 data = encode_png(images[name][row], table, config.output.png_level)
-                write_whole(folder, folder / png_path(name, split, *order[row]), data)
+                write_whole(folder, folder / order.png_path(name, split, row), data)
     return len(rows)

@@ -5,25 +5,26 @@ shards it finds; dataset.h5 comes last, so that a folder with one is complete.
 """
 
 import errno
-import os
 import uuid
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
-from radhar_cli.activity import Activity
-from radhar_cli.arrays import Bool, Index, Levels
+from radhar_cli.arrays import Levels
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.assembly import assembled
-from radhar_cli.dataset.batch import Batch, check_rows, png_rows, run_batch
+from radhar_cli.dataset.batch import Batch, check_rows, run_batch
 from radhar_cli.dataset.check_cache import OUTCOME, Outcomes, store_checks, stored_checks
-from radhar_cli.dataset.folder import claim, clean_up, locked, mark_built
+from radhar_cli.dataset.folder import clean_up, folder_lock, mark_built, reserve
 from radhar_cli.dataset.identity import identity, identity_hash
-from radhar_cli.dataset.layout import DATASET, MANIFEST, WORK, Rows, png_path
+from radhar_cli.dataset.layout import DATASET, MANIFEST, WORK, Rows, row_bytes
+from radhar_cli.dataset.parts import Part, refuse_other_cuts, write_part_manifest
 from radhar_cli.dataset.png import colour_table
+from radhar_cli.dataset.png_files import write_missing_pngs
+from radhar_cli.dataset.sample import Maker
 from radhar_cli.dataset.shards import (
     ForeignShardError,
     Shard,
@@ -31,27 +32,15 @@ from radhar_cli.dataset.shards import (
     listed_shards,
     missing_and_repeated,
 )
-from radhar_cli.dataset.split import split_rows
-from radhar_cli.dataset.workers import run_tasks
-from radhar_cli.errors import UnfinishedError
+from radhar_cli.dataset.split import split_rows, split_warnings
+from radhar_cli.dataset.workers import parent_pid, run_tasks
+from radhar_cli.errors import FolderError, UnfinishedError
 from radhar_cli.pipeline.validity import Flags, warnings
+from radhar_cli.progress import Progress
 
-MAX_BATCH = 32
+MAX_BATCH, BATCH_BYTES = 32, 2**28
 CHECK_BATCH = 64
 MAX_CHECKED_FIRST = 100_000  # rows; of more, every worker checks its own
-
-
-class Progress(Protocol):
-    """Receives progress and messages of a build."""
-
-    def stage(self, name: str, total: int, done: int) -> None:
-        """A part of the work begins."""
-
-    def advance(self, samples: int) -> None:
-        """Some samples of it are finished."""
-
-    def say(self, message: str) -> None:
-        """Something the user should read."""
 
 
 @dataclass(frozen=True)
@@ -85,6 +74,7 @@ def build(
     progress: Progress,
     overwrite: bool = False,
     batch_size: int | None = None,
+    maker: Maker | None = None,
 ) -> Outcome:
     """Build `config` into `folder`, or go on with it, or find it complete.
 
@@ -95,6 +85,7 @@ def build(
         progress: receives progress and messages.
         overwrite: start again.
         batch_size: samples a shard; it changes no byte of the result.
+        maker: makes the rows of a data set that is not simulated.
 
     Raises:
         FolderError: the folder is in use or holds something else.
@@ -102,97 +93,149 @@ def build(
         SceneError: a scene outside the model; nothing was computed of a data set of at most
             MAX_CHECKED_FIRST rows.
     """
-    table = colour_table(config.image.colour_map) if config.output.png else None
-    folder = folder.absolute()
-    own_hash = identity_hash(identity(config))
+
+    def work(folder: Path) -> Outcome:
+        reserve(folder, config, overwrite)
+        return _Build(config, folder, jobs, progress, maker).whole(batch_size)
+
+    return _locked(folder.absolute(), work)
+
+
+def build_part(
+    config: Config,
+    out: Path,
+    part: Part,
+    jobs: int,
+    progress: Progress,
+    overwrite: bool = False,
+    batch_size: int | None = None,
+) -> Outcome:
+    """Build one part of `config` in its folder below `out`, or go on with it, or find it complete.
+
+    Arguments and errors are those of `build`.
+    """
+    count = len(Rows.of(config))
+    if part.of > count:
+        raise FolderError(f"--shard {part}: there are {count} samples; should be at most K/{count}")
+    refuse_other_cuts(out, part)
+
+    def work(folder: Path) -> Outcome:
+        reserve(folder, config, overwrite, str(part))
+        return _Build(config, folder, jobs, progress).part(part, batch_size)
+
+    return _locked(part.folder(out.absolute()), work)
+
+
+def _locked(folder: Path, work: Callable[[Path], Outcome]) -> Outcome:
     try:
-        with locked(folder):
-            claim(folder, config, overwrite)
-            return _Build(config, own_hash, folder, jobs, progress, table).run(batch_size)
+        with folder_lock(folder):
+            return work(folder)
     except OSError as error:
-        raise _disk_error(folder, error) from error
+        raise disk_error(folder, error) from error
 
 
 @dataclass
 class _Build:
     config: Config
-    identity_hash: str
     folder: Path
     jobs: int
     progress: Progress
-    table: Levels | None
+    maker: Maker | None = None
 
-    def run(self, batch_size: int | None) -> Outcome:
+    def __post_init__(self) -> None:
+        self.identity_hash = identity_hash(identity(self.config))
+        self.split = split_rows(self.config)
+
+    def whole(self, batch_size: int | None) -> Outcome:
         config, count = self.config, len(Rows.of(self.config))
-        split = split_rows(config)
         if (self.folder / DATASET).exists():
-            pngs = self._missing_pngs(split, self.folder / DATASET)
+            pngs = self._missing_pngs(self.folder / DATASET)
             clean_up(self.folder)
             return Outcome(self.folder, count, 0, pngs)
-        checked = self._check_scenes(count) if count <= MAX_CHECKED_FIRST else None
-        shown = [] if checked is None else warnings(config, _counts(checked["flags"]))
-        self._say(shown)
-        shards, made = self._batches(count, checked, split, batch_size)
+        for message in split_warnings(config, self.split):
+            self.progress.say(f"warning: {message}")
+        shards, made, shown = self._shards(range(count), batch_size)
         self.progress.stage("assembling", count, 0)
         with assembled(config, self.folder, shards) as (unfinished, stored):
-            self._say([warning for warning in stored if warning not in shown])
+            say_warnings(self.progress, [warning for warning in stored if warning not in shown])
             self.progress.advance(count)
-            pngs = self._missing_pngs(split, unfinished)
+            pngs = self._missing_pngs(unfinished)
         mark_built(self.folder)
         clean_up(self.folder)
         return Outcome(self.folder, count, made, pngs, stored)
 
-    def _say(self, found: list[dict[str, Any]]) -> None:
-        for warning in found:
-            self.progress.say(f"warning: {warning['message']}")
+    def part(self, part: Part, batch_size: int | None) -> Outcome:
+        """Make the shards of a part; they stay, for others to put together."""
+        rows = part.rows(len(self.split))
+        shards, made, shown = self._shards(rows, batch_size)
+        write_part_manifest(self.folder, part, rows, self.identity_hash, shards)
+        return Outcome(self.folder, len(rows), made, 0, shown)
 
-    def _check_scenes(self, count: int) -> Outcomes:
-        """Check every scene, but for those that an earlier run checked: outcomes [count]."""
-        outcomes = np.empty(count, dtype=OUTCOME)
-        starts = []
-        for start in range(0, count, CHECK_BATCH):
-            part = outcomes[start : start + CHECK_BATCH]
-            kept = stored_checks(self.folder, self.identity_hash, start, part.size)
+    def _missing_pngs(self, source: Path) -> int:
+        return write_missing_pngs(
+            self.config, self.folder, self.split, source, self.jobs, self.progress
+        )
+
+    def _shards(
+        self, rows: range, batch_size: int | None
+    ) -> tuple[list[Shard], int, list[dict[str, Any]]]:
+        """Shards of the rows, how many rows this run made, and the warnings that were said."""
+        few = self.maker is None and len(rows) <= MAX_CHECKED_FIRST
+        checked = self._check_scenes(rows) if few else None
+        shown = [] if checked is None else warnings(self.config, _counts(checked["flags"]))
+        say_warnings(self.progress, shown)
+        return *self._batches(rows, checked, batch_size), shown
+
+    def _check_scenes(self, rows: range) -> Outcomes:
+        """Check every scene, but for those that an earlier run checked: an outcome a row."""
+        outcomes = np.empty(len(rows), dtype=OUTCOME)
+        tasks = []
+        for start in range(0, len(rows), CHECK_BATCH):
+            some, part = rows[start : start + CHECK_BATCH], outcomes[start : start + CHECK_BATCH]
+            kept = stored_checks(self.folder, self.identity_hash, some.start, len(some))
             if kept is None:
-                starts.append(start)
+                tasks.append((self.config, some.start, some.stop, parent_pid()))
             else:
                 part[:] = kept
-        left = sum(min(CHECK_BATCH, count - start) for start in starts)
-        self.progress.stage("checking scenes", count, count - left)
-        tasks = [(self.config, s, min(s + CHECK_BATCH, count), os.getpid()) for s in starts]
+        left = sum(stop - start for _, start, stop, _ in tasks)
+        self.progress.stage("checking scenes", len(rows), len(rows) - left)
         jobs = self.jobs if len(tasks) > 2 * self.jobs else 1
         for start, found in run_tasks(check_rows, tasks, jobs):
             store_checks(self.folder, self.identity_hash, start, found)
-            outcomes[start : start + found.size] = found
+            outcomes[start - rows.start :][: found.size] = found
             self.progress.advance(found.size)
         return outcomes
 
     def _batches(
-        self, count: int, checked: Outcomes | None, split: Levels, batch_size: int | None
+        self, rows: range, checked: Outcomes | None, batch_size: int | None
     ) -> tuple[list[Shard], int]:
         """Make the rows that no sound shard holds; return the shards of all rows, and how many."""
-        shards = self._sound_shards()
-        gaps, _ = missing_and_repeated(shards, count)
+        shards, config = self._sound_shards(rows), self.config
+        gaps, _ = missing_and_repeated(shards, rows.stop, rows.start)
         left = sum(stop - start for start, stop in gaps)
-        self.progress.stage("samples", count, count - left)
-        size = batch_size or max(1, min(MAX_BATCH, -(-left // (4 * self.jobs))))
+        self.progress.stage("samples", len(rows), len(rows) - left)
+        most = min(MAX_BATCH, BATCH_BYTES // row_bytes(config))
+        size = batch_size or max(1, min(most, -(-left // (4 * self.jobs))))
+        table = colour_table(config.image.colour_map) if config.output.png else None
 
         def batches() -> Iterator[tuple[Batch]]:
             for gap_start, gap_stop in gaps:
                 for start in range(gap_start, gap_stop, size):
                     stop = min(start + size, gap_stop)
                     shards.append(Shard(start, stop, self.folder))
+                    own = slice(start - rows.start, stop - rows.start)
                     yield (
                         Batch(
-                            self.config,
+                            config,
                             self.identity_hash,
                             self.folder,
                             start,
                             stop,
-                            None if checked is None else checked[start:stop],
-                            split[start:stop],
-                            self.table,
-                            os.getpid(),
+                            None if checked is None else checked[own],
+                            self.split[start:stop],
+                            table,
+                            parent_pid(),
+                            self.maker,
                         ),
                     )
 
@@ -200,69 +243,35 @@ class _Build:
             self.progress.advance(samples)
         return shards, left
 
-    def _sound_shards(self) -> list[Shard]:
-        """Shards to go on from. A damaged one is made again, a foreign one moved out of the way."""
+    def _sound_shards(self, rows: range) -> list[Shard]:
+        """Shards to go on from, of these rows.
+
+        A damaged one is made again, a foreign one moved out of the way.
+        """
         (self.folder / WORK / MANIFEST).unlink(missing_ok=True)
-        sound, unusable = check_shards(listed_shards(self.folder), self.identity_hash)
+        listed = [
+            s for s in listed_shards(self.folder) if rows.start <= s.start < s.stop <= rows.stop
+        ]
+        sound, unusable = check_shards(listed, self.identity_hash)
         for shard, error in unusable:
             self.progress.say(f"{shard.path}: {error}; its rows are made again")
             if isinstance(error, ForeignShardError):
                 shard.path.rename(shard.path.with_suffix(f".foreign-{uuid.uuid4().hex}"))
         return sound
 
-    def _missing_pngs(self, split: Levels, source: Path) -> int:
-        """Write PNGs that are not there: asked for later, deleted, or lost with a killed run."""
-        if self.table is None:
-            return 0
-        missing = self._rows_without_png(split)
-        if not missing.size:
-            return 0
-        self.progress.stage("png", missing.size, 0)
-        tasks = (
-            (
-                self.config,
-                self.folder,
-                source,
-                [(row, int(split[row])) for row in missing[first : first + MAX_BATCH].tolist()],
-                self.table,
-                os.getpid(),
-            )
-            for first in range(0, missing.size, MAX_BATCH)
-        )
-        jobs = self.jobs if missing.size > MAX_BATCH else 1
-        for written in run_tasks(png_rows, tasks, jobs):
-            self.progress.advance(written)
-        return missing.size * len(self.config.maps)
 
-    def _rows_without_png(self, split: Levels) -> Index:
-        """Rows of which an image is missing."""
-        rows = Rows.of(self.config)
-        missing = np.zeros(len(rows), dtype=bool)
-        for first in range(0, len(rows), rows.per_class):
-            activity, one_class = rows[first][0], slice(first, first + rows.per_class)
-            for name in self.config.maps:
-                missing[one_class] |= ~self._stored_pngs(name, activity, split[one_class])
-        return np.flatnonzero(missing)
-
-    def _stored_pngs(self, name: str, activity: Activity, split: Levels) -> Bool:
-        """Whether there is a PNG of each sample [per_class] of a class, of one map."""
-        there = np.zeros(split.size, dtype=bool)
-        for number in np.unique(split).tolist():
-            folder = self.folder / png_path(name, number, activity, 0).parent
-            for found in os.scandir(folder) if folder.is_dir() else ():
-                stem = found.name.removesuffix(".png")
-                index = int(stem) if stem.isdecimal() else split.size
-                path = png_path(name, number, activity, index)
-                if index < split.size and split[index] == number and path.name == found.name:
-                    there[index] = True
-        return there
+def say_warnings(progress: Progress, found: list[dict[str, Any]]) -> None:
+    """Say physical warnings."""
+    for warning in found:
+        progress.say(f"warning: {warning['message']}")
 
 
 def _counts(flags: Levels) -> dict[Flags, int]:
     return {flag: int(np.count_nonzero(flags & flag)) for flag in Flags}
 
 
-def _disk_error(folder: Path, error: OSError) -> UnfinishedError:
+def disk_error(folder: Path, error: OSError) -> UnfinishedError:
+    """What to tell of a failed disk."""
     where = error.filename or folder
     if error.errno == errno.ENOSPC or "No space left" in str(error):
         why = "no space left on the disk"

@@ -25,6 +25,7 @@ from radhar_cli.dataset.layout import (
     DATASET,
     IDENTITY,
     MANIFEST,
+    PARTS,
     PNG,
     SCENES,
     WORK,
@@ -45,7 +46,7 @@ def refuse_file(folder: Path) -> None:
 
 
 @contextmanager
-def locked(folder: Path) -> Iterator[None]:
+def folder_lock(folder: Path) -> Iterator[None]:
     """Hold an output folder; a second run on it is refused. A dead run's lock is free at once.
 
     Raises:
@@ -69,18 +70,36 @@ def locked(folder: Path) -> Iterator[None]:
         ) from None
 
 
-def claim(folder: Path, config: Config, overwrite: bool) -> None:
-    """Make a locked folder this config's, or refuse.
+def reserve(
+    folder: Path,
+    config: Config,
+    overwrite: bool,
+    part: str | None = None,
+    beside: tuple[str, ...] = (),
+) -> None:
+    """Make a folder, whose lock is held, this config's, or refuse.
+
+    Args:
+        folder: the output folder, or a part's.
+        config: of the data set.
+        overwrite: start again.
+        part: which one this is, K/N.
+        beside: names that a folder without a data set may hold already.
 
     Raises:
         FolderError: it holds something else; the message names the keys that differ.
     """
-    new = identity(config)
+    new = identity(config) | ({} if part is None else {"part": part})
     if overwrite:
         _clear(folder, new)
     old = stored_identity(folder)
     if old is None:
-        foreign_files = sorted(p.name for p in folder.iterdir() if p.name != WORK)
+        foreign_files = sorted(p.name for p in folder.iterdir() if p.name not in (WORK, *beside))
+        if PARTS in foreign_files:
+            raise FolderError(
+                f"{folder}: holds parts of a data set; `radhar merge {folder}` puts them together, "
+                "--shard K/N makes one"
+            )
         if foreign_files:
             raise FolderError(
                 f"{folder}: holds {', '.join(foreign_files[:5])} but no radhar data set; "
@@ -99,7 +118,8 @@ def claim(folder: Path, config: Config, overwrite: bool) -> None:
 
 
 def _name(folder: Path, named: dict[str, Any]) -> None:
-    write_whole(folder, folder / WORK / IDENTITY, json.dumps(named, sort_keys=True).encode())
+    # In the order of the config, which `merge` writes into dataset.h5.
+    write_whole(folder, folder / WORK / IDENTITY, json.dumps(named).encode())
 
 
 def stored_identity(folder: Path) -> dict[str, Any] | None:

@@ -1,10 +1,19 @@
 """Which sample stands in which row, and what its files are called."""
 
+from bisect import bisect_right
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import accumulate, pairwise
+from math import prod
 from pathlib import Path
+from typing import TypeAlias
+
+import numpy as np
 
 from radhar_cli.activity import Activity
 from radhar_cli.config.schema import Config
+from radhar_cli.pipeline.physics import most_samples
 
 DATASET = "dataset.h5"
 CONFIG = "config.yaml"
@@ -14,14 +23,45 @@ WORK = ".radhar"
 IDENTITY = "identity.json"
 MANIFEST = "manifest.json"
 CHECKS = "checks"
+PARTS = "parts"
+COLUMN_LABEL = "column_label"
 SPLITS = ("train", "validation", "test")
-# Beside the maps, for each of them: type and shape of a sample's part.
-COLUMNS: dict[str, tuple[str, tuple[int, ...]]] = {
-    "entropy": ("f4", ()),
-    "sha256": ("S64", ()),
-    "extent": ("f8", (4,)),
-}
+# Type and shape of a sample's part of a dataset.
+Parts: TypeAlias = dict[str, tuple[str, tuple[int, ...]]]
 SPLIT_FOLDERS = ("train", "val", "test")
+
+
+def chunked(config: Config) -> Parts:
+    """The large datasets, one sample a chunk; each has its checksums at `checksum_of`."""
+    size = config.image.size_px
+    parts: Parts = {f"maps/{name}": ("u1", size) for name in config.maps}
+    if config.output.power is not None:
+        parts |= {f"power/{name}": ("<f2", size) for name in config.maps}
+    if config.output.slow_time:
+        parts["slow_time"] = ("<c8", (most_samples(config),))
+    return parts
+
+
+def checksum_of(name: str) -> str:
+    """Where the checksums of a large dataset lie."""
+    return f"sha256/{name.removeprefix('maps/')}"
+
+
+def columns(config: Config) -> Parts:
+    """The small datasets that a shard has beside the large ones and the scenes."""
+    parts: Parts = {checksum_of(name): ("S64", ()) for name in chunked(config)}
+    for name in config.maps:
+        parts |= {f"entropy/{name}": ("f4", ()), f"extent/{name}": ("f8", (4,))}
+        if config.output.power is not None:
+            parts[f"largest_db/{name}"] = ("f8", ())
+        if config.output.column_labels:
+            parts[f"{COLUMN_LABEL}/{name}"] = ("u1", (config.image.size_px[1],))
+    return parts
+
+
+def row_bytes(config: Config) -> int:
+    """Bytes of the large datasets of one sample, before compression."""
+    return sum(np.dtype(t).itemsize * prod(shape) for t, shape in chunked(config).values())
 
 
 def is_incomplete(folder: Path) -> bool:
@@ -34,21 +74,52 @@ class Rows:
     """The fixed, class-major order of a data set's samples."""
 
     activities: tuple[Activity, ...]
-    per_class: int
+    counts: tuple[int, ...]
 
     @classmethod
     def of(cls, config: Config) -> "Rows":
-        return cls(config.chosen_activities, config.samples_per_class)
+        activities = config.chosen_activities
+        if config.recorded is not None:
+            counts = config.recorded.counts
+            return cls(activities, tuple(counts[a.slug] for a in activities))
+        return cls(activities, tuple(map(config.samples_of, activities)))
+
+    @cached_property
+    def starts(self) -> tuple[int, ...]:
+        """First row of each class, and the number of all rows."""
+        return (0, *accumulate(self.counts))
 
     def __len__(self) -> int:
-        return len(self.activities) * self.per_class
+        return self.starts[-1]
 
     def __getitem__(self, row: int) -> tuple[Activity, int]:
         """(activity, index within its class) of a row."""
-        which, index = divmod(row, self.per_class)
-        return self.activities[which], index
+        which = bisect_right(self.starts, row) - 1
+        return self.activities[which], row - self.starts[which]
 
+    def name(self, row: int) -> str:
+        """A row's index within its class in digits, as many for all of a class: names sort."""
+        activity, index = self[row]
+        count = self.counts[self.activities.index(activity)]
+        return f"{index:0{max(5, len(str(count - 1)))}d}"
 
-def png_path(map_name: str, split: int, activity: Activity, index: int) -> Path:
-    """Path of a PNG inside the output folder, the layout that torchvision's ImageFolder reads."""
-    return Path(PNG, map_name, SPLIT_FOLDERS[split], activity.slug, f"{index:05d}.png")
+    def png_path(self, map_name: str, split: int, row: int) -> Path:
+        """Path of a PNG inside the output folder, the layout that ImageFolder reads."""
+        slug = self[row][0].slug
+        return Path(PNG, map_name, SPLIT_FOLDERS[split], slug, f"{self.name(row)}.png")
+
+    def classes(self) -> Iterator[tuple[Activity, slice]]:
+        """Each class and its rows."""
+        for activity, rows in zip(self.activities, pairwise(self.starts), strict=True):
+            yield activity, slice(*rows)
+
+    @property
+    def counted(self) -> str:
+        """Classes and their samples, in words."""
+        each: dict[int, list[str]] = {count: [] for count in self.counts}
+        for activity, count in zip(self.activities, self.counts, strict=True):
+            each[count].append(activity.slug)
+        usual, *others = sorted(each, key=lambda count: -len(each[count]))
+        more = "".join(f", {', '.join(each[count])} x {count}" for count in others)
+        classes = len(self.activities) if not others else len(each[usual])
+        return f"{classes} class{'es' if classes > 1 else ''} x {usual}{more}"

@@ -1,7 +1,6 @@
 """Open a finished data set: lazy arrays and what is known of them."""
 
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 import numpy as np
@@ -10,14 +9,24 @@ from radhar_cli.arrays import Float, Levels
 from radhar_cli.config.reading import validated
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
-from radhar_cli.dataset.layout import COLUMNS, DATASET, SPLITS, Rows, is_incomplete
+from radhar_cli.dataset.layout import (
+    COLUMN_LABEL,
+    DATASET,
+    SPLITS,
+    Rows,
+    checksum_of,
+    chunked,
+    columns,
+    is_incomplete,
+)
 from radhar_cli.dataset.untrusted_hdf5 import Column, UntrustedFile
 from radhar_cli.errors import ConfigError, FolderError, did_you_mean
+from radhar_cli.untrusted import Closing
 
 MAX_ENTROPY_BITS = 64.0
 
 
-class Dataset:
+class Dataset(Closing):
     """A data set opened for reading; it may be anyone's.
 
     Names, shapes and types of everything in it follow from its config and are checked here.
@@ -30,7 +39,10 @@ class Dataset:
         sample_key: int64 [N, 2], (class, index).
         scene: {field: [N]}, SI units.
         fields: what the fields of `scene` are.
-        sha256: {map name: [N]}.
+        large: {name: [N, ...]}, all datasets with a sample a chunk, the maps among them.
+        sha256: {name of a large dataset: [N]}.
+        column_label: {map name: uint8 [N, W]}, numbers in `column_labels.label_names`; empty where
+            they were not asked for.
         class_slugs: slug of every label.
 
     Raises:
@@ -39,7 +51,7 @@ class Dataset:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.file = UntrustedFile(path)
+        self.file = UntrustedFile(path, virtual=True)
         self.splits = SPLITS
         try:
             self.config = stored_config(self.file.json("config"), str(path))
@@ -53,8 +65,11 @@ class Dataset:
         self.fields = scene_fields.fields(config)
         self.class_slugs = [activity.slug for activity in config.every_class]
         names: tuple[str, ...] = config.maps
-        images = (count, *config.image.size_px)
-        self.maps = {name: file.images(f"maps/{name}", images) for name in names}
+        self.large = {
+            name: file.chunks(name, dtype, (count, *shape))
+            for name, (dtype, shape) in chunked(config).items()
+        }
+        self.maps = {name: self.large[f"maps/{name}"] for name in names}
         self.sample_key = file.column("sample_key", np.int64, (count, 2))
         self.scene = {
             field.name: file.column(f"scene/{field.name}", np.float64, (count,))
@@ -62,10 +77,15 @@ class Dataset:
         }
         if config.split.subjects is not None:
             self.scene["subject"] = file.column("scene/subject", np.int64, (count,))
-        self._entropy, self.sha256, self._extent = (
-            {name: file.column(f"{kind}/{name}", dtype, (count, *shape)) for name in names}
-            for kind, (dtype, shape) in COLUMNS.items()
-        )
+        small = {
+            name: file.column(name, dtype, (count, *shape))
+            for name, (dtype, shape) in columns(config).items()
+        }
+        self.sha256 = {name: small[checksum_of(name)] for name in self.large}
+        self._entropy = {name: small[f"entropy/{name}"] for name in names}
+        self._extent = {name: small[f"extent/{name}"] for name in names}
+        labelled = names if config.output.column_labels else ()
+        self.column_label = {name: small[f"{COLUMN_LABEL}/{name}"] for name in labelled}
         self.label = _small(file.column("label", np.uint8, (count,)), len(config.every_class))
         self.split = _small(file.column("split", np.uint8, (count,)), len(SPLITS))
 
@@ -117,17 +137,6 @@ class Dataset:
     def close(self) -> None:
         """Close the file."""
         self.file.close()
-
-    def __enter__(self) -> "Dataset":
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self.close()
 
 
 def _small(column: Column, below: int) -> Levels:

@@ -1,8 +1,15 @@
 """One sample of a data set: the image of every map, and how exact they are."""
 
+from collections.abc import Callable
 from math import isfinite, nan
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
+import numpy as np
+from numpy.typing import NDArray
+
+from radhar_cli.arrays import Complex, Float, Levels
+from radhar_cli.config.schema import Config
+from radhar_cli.dataset.column_labels import column_labels
 from radhar_cli.pipeline.plan import Plan
 from radhar_cli.pipeline.products import EchoAccuracy, Fallback
 from radhar_cli.pipeline.run import run
@@ -17,18 +24,58 @@ class Sample(NamedTuple):
         images: {map name: image}, in the order of the config.
         error_db: measured error of the direct engine; NaN where it made nothing that could err.
         fell_back: the cube made the signal, as the direct engine could not (`engine.fallback`).
+        column_labels: {map name: [width]}, where asked for (`output.column_labels`).
+        slow_time: x[m] after the canceller, where it is stored (`output.slow_time`).
     """
 
     images: dict[str, MapImage]
     error_db: float
     fell_back: bool
+    column_labels: dict[str, Levels]
+    slow_time: Complex | None = None
+
+    def chunk(self, name: str, shape: tuple[int, ...]) -> NDArray[Any]:
+        """What a large dataset (`layout.chunked`) holds of this sample, in its shape."""
+        kind, _, map_name = name.partition("/")
+        if kind == "maps":
+            return self.images[map_name].levels
+        if kind == "power":
+            decibels = self.images[map_name].decibels
+            assert decibels is not None
+            return decibels
+        assert self.slow_time is not None
+        padded = np.full(shape, complex(nan, nan), np.complex64)
+        padded[: self.slow_time.size] = self.slow_time
+        return padded
+
+
+class Made(NamedTuple):
+    """A sample that is no scene's.
+
+    Attributes:
+        sample: its images.
+        values: of `scene_fields.fields` [fields].
+    """
+
+    sample: Sample
+    values: Float
+
+
+# Makes a row of a data set that is not simulated; what it holds can be pickled.
+Maker: TypeAlias = Callable[[Config, int], Made]
 
 
 def synthesise(scene: Scene, plan: Plan) -> Sample:
     """Run the plan of a data set on one scene."""
     recording = run(plan, {"scene": scene})
     images: dict[str, MapImage] = {name: recording[f"image:{name}"] for name in scene.config.maps}
+    labels: dict[str, Levels] = {}
+    if scene.config.output.column_labels:
+        motion = recording["motions"][0]
+        labels = {name: column_labels(scene, motion, image) for name, image in images.items()}
     accuracy: EchoAccuracy | None = recording.products.get("accuracy")
+    slow_time = recording["signal"].x if scene.config.output.slow_time else None
     if accuracy is None or isinstance(accuracy, Fallback):
-        return Sample(images, nan, isinstance(accuracy, Fallback))
-    return Sample(images, accuracy.error_db if isfinite(accuracy.error_db) else nan, False)
+        return Sample(images, nan, isinstance(accuracy, Fallback), labels, slow_time)
+    error_db = accuracy.error_db if isfinite(accuracy.error_db) else nan
+    return Sample(images, error_db, False, labels, slow_time)

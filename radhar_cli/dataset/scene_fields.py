@@ -7,7 +7,7 @@ import numpy as np
 
 from radhar_cli.arrays import Float
 from radhar_cli.config.schema import Config
-from radhar_cli.scene import FALL, Scene, depends_on, number_at, numbers
+from radhar_cli.scene import FALL, Scene, depends_on, file_keys, number_at, numbers
 
 _UNITS = {
     "m": ("m", 1.0),
@@ -18,6 +18,7 @@ _UNITS = {
     "deg": ("rad", pi / 180),
     "db": ("dB", 1.0),
     "dbi": ("dBi", 1.0),
+    "dbsm": ("dBsm", 1.0),
 }
 
 
@@ -35,8 +36,20 @@ class Field(NamedTuple):
         return self.key
 
 
+# Sections whose columns are named after them.
+PREFIXES = {"wall": "wall", "image.cfar": "cfar"}
+# And those of lists, with the number in the list.
+LISTS = {"room.reflectors": "reflector", "receiver.lines": "line"}
 # The one number of a scene that is measured, not drawn.
 ERROR = Field("error_db", "error_db", "dB", 1.0)
+
+
+# Of a window of a recording: which part of the manifest, from when on, how sure the track is.
+RECORDED = (
+    Field("recordings.part", "part", "1", 1.0),
+    Field("recordings.start_s", "start", "s", 1.0),
+    Field("recordings.confidence", "confidence", "1", 1.0),
+)
 
 
 def fields(config: Config) -> tuple[Field, ...]:
@@ -44,13 +57,18 @@ def fields(config: Config) -> tuple[Field, ...]:
 
     Last comes the measured error of the direct engine, where it is at work.
     """
+    if config.recorded is not None:
+        return RECORDED
     found = [
         key
         for key, _ in numbers(config)
         if any(depends_on(config, activity, key) for activity in config.chosen_activities)
     ]
-    if any(depends_on(config, activity, FALL) for activity in config.chosen_activities):
-        found.append(FALL)
+    found += [
+        key
+        for key in (FALL, *file_keys(config))
+        if any(depends_on(config, activity, key) for activity in config.chosen_activities)
+    ]
     if "subject.weight_kg" not in found:
         found.insert(found.index("subject.height_m") + 1, "subject.weight_kg")
     measured = (ERROR,) if config.engine.kind == "direct" and set(config.maps) != {"rtm"} else ()
@@ -64,8 +82,10 @@ def values(scene: Scene, columns: tuple[Field, ...], error_db: float = nan) -> F
 
 def _field(key: str) -> Field:
     if key.startswith("classes."):
-        _, slug, name, place = key.split(".")
-        return Field(key, f"{slug}_{name.removesuffix('s_s')}_{place}", "s", 1.0)
+        _, slug, name, *place = key.split(".")
+        if not place:  # of files
+            return Field(key, f"{slug}_{name}", "1", 1.0)
+        return Field(key, f"{slug}_{name.removesuffix('s_s')}_{place[0]}", "s", 1.0)
     path, _, axis = key.rpartition(".") if key[-1].isdigit() else (key, "", "")
     section, _, name = path.rpartition(".")
     stem, _, suffix = name.rpartition("_")
@@ -75,5 +95,12 @@ def _field(key: str) -> Field:
         unit, factor = _UNITS[suffix]
     if name == "snr_db":
         stem = "snr"
-    parts = [*(["wall"] if section == "wall" else []), stem, *(["xyz"[int(axis)]] if axis else [])]
+    listed, _, number = section.rpartition(".")
+    if listed in LISTS:
+        stem = f"{LISTS[listed]}_{number}_{stem}"
+    parts = [
+        *([PREFIXES[section]] if section in PREFIXES else []),
+        stem,
+        *(["xyz"[int(axis)]] if axis else []),
+    ]
     return Field(key, "_".join(parts), unit, factor)

@@ -7,9 +7,9 @@ a checksum of that and of all that follows. Nothing of a shard is used before th
 import hashlib
 import io
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import h5py
 import numpy as np
@@ -17,7 +17,7 @@ import numpy as np
 from radhar_cli.arrays import Float, Levels
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.files import write_whole
-from radhar_cli.dataset.layout import WORK
+from radhar_cli.dataset.layout import COLUMN_LABEL, WORK, checksum_of, chunked
 from radhar_cli.dataset.sample import Sample
 from radhar_cli.errors import UnfinishedError
 
@@ -69,21 +69,29 @@ class Shard(NamedTuple):
             raise ShardError(f"holds rows {start} to {int(stop) - 1}")
         return data, checksum
 
+    def checksum(self) -> str:
+        """The checksum that a shard, which was read or written before, says that it has."""
+        with self.path.open("rb") as file:
+            header = _HEADER.fullmatch(file.read(USER_BLOCK))
+        if header is None:
+            raise UnfinishedError(f"{self.path}: was changed meanwhile; the same command goes on")
+        return header[4].decode()
+
 
 def shard_folder(folder: Path) -> Path:
     """Where the shards of an output folder lie."""
     return folder / WORK / "shards"
 
 
-def image_dataset(group: h5py.Group, name: str, count: int, config: Config) -> h5py.Dataset:
-    """Create an empty uint8 dataset [count, H, W], one sample a chunk, compressed."""
-    size = config.image.size_px
+def chunked_dataset(file: h5py.File, name: str, count: int, config: Config) -> h5py.Dataset:
+    """Create an empty large dataset [count, ...], one sample a chunk, compressed."""
+    dtype, shape = chunked(config)[name]
     level = config.output.hdf5_level
-    return group.create_dataset(
+    return file.create_dataset(
         name,
-        shape=(count, *size),
-        dtype=np.uint8,
-        chunks=(1, *size),
+        shape=(count, *shape),
+        dtype=dtype,
+        chunks=(1, *shape),
         compression="gzip" if level else None,
         compression_opts=level or None,
     )
@@ -109,14 +117,21 @@ def encode_shard(
     """
     buffer = io.BytesIO()
     with h5py.File(buffer, "w", libver="latest", userblock_size=USER_BLOCK) as file:
+        for name, (_, shape) in chunked(config).items():
+            target, checksums = chunked_dataset(file, name, len(samples), config), []
+            for row, sample in enumerate(samples):
+                chunk = sample.chunk(name, shape)
+                target[row] = chunk
+                checksums.append(hashlib.sha256(chunk.tobytes()).hexdigest())
+            file[checksum_of(name)] = np.array(checksums, dtype="S64")
         for name in config.maps:
             images = [sample.images[name] for sample in samples]
-            levels = image_dataset(file.require_group("maps"), name, len(images), config)
-            for row, image in enumerate(images):
-                levels[row] = image.levels
             file[f"entropy/{name}"] = np.array([i.entropy for i in images], dtype=np.float32)
-            file[f"sha256/{name}"] = np.array([i.sha256 for i in images], dtype="S64")
             file[f"extent/{name}"] = np.array([i.extent for i in images], dtype=float)
+            if config.output.power is not None:
+                file[f"largest_db/{name}"] = np.array([i.largest_db for i in images])
+            if config.output.column_labels:
+                file[f"{COLUMN_LABEL}/{name}"] = np.stack([s.column_labels[name] for s in samples])
         file["scene"] = scene_values
         file["flags"] = flags
     stop = start + len(samples)
@@ -167,11 +182,14 @@ def check_shards(
     return sound, unusable
 
 
+Runs: TypeAlias = Sequence[tuple[int, int]]  # first row, past-last row
+
+
 def missing_and_repeated(
-    shards: Sequence[Shard], count: int
+    shards: Sequence[Shard], count: int, first: int = 0
 ) -> tuple[list[tuple[int, int]], list[tuple[int, int]]]:
-    """Runs (first row, past-last row) of 0 .. count - 1 that no shard holds, and that two hold."""
-    missing, repeated, row = [], [], 0
+    """Runs (first row, past-last row) of first .. count - 1 that no shard or two shards hold."""
+    missing, repeated, row = [], [], first
     for shard in sorted(shards):
         if shard.start > row:
             missing.append((row, shard.start))
@@ -183,21 +201,34 @@ def missing_and_repeated(
     return missing, repeated
 
 
-def require_tiling(folder: Path, shards: Sequence[Shard], count: int) -> None:
+def go_on(missing: Runs) -> str:
+    """What to do about rows that a build lacks."""
+    return "the rest is kept, and the same command goes on"
+
+
+def require_tiling(
+    folder: Path, shards: Sequence[Shard], count: int, remedy: Callable[[Runs], str] = go_on
+) -> None:
     """Refuse shards that do not hold each of `count` rows once.
 
+    Args:
+        folder: the output folder.
+        shards: of the data set.
+        count: rows.
+        remedy: what to do about rows.
+
     Raises:
-        UnfinishedError: names the rows.
+        UnfinishedError: names the rows and the remedy.
     """
     missing, repeated = missing_and_repeated(shards, count)
     for runs, fault in ((missing, "missing from"), (repeated, "more than once in")):
         if runs:
             raise UnfinishedError(
                 f"{folder}: rows {_rows(runs)} ({sum(b - a for a, b in runs)} of {count}) are "
-                f"{fault} the finished shards; the rest is kept, and the same command goes on"
+                f"{fault} the finished shards; {remedy(runs)}"
             )
 
 
-def _rows(runs: Sequence[tuple[int, int]]) -> str:
+def _rows(runs: Runs) -> str:
     named = [f"{a}-{b - 1}" if b - a > 1 else f"{a}" for a, b in runs[:RUNS_NAMED]]
     return ", ".join(named) + (", ..." if len(runs) > RUNS_NAMED else "")

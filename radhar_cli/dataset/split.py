@@ -4,7 +4,8 @@ import numpy as np
 
 from radhar_cli.arrays import Levels
 from radhar_cli.config.schema import Config, SplitConfig
-from radhar_cli.dataset.layout import Rows
+from radhar_cli.dataset.layout import SPLITS, Rows
+from radhar_cli.dataset.recorded import persons
 from radhar_cli.randomness import SPLIT, stream
 from radhar_cli.rounding import half_up
 from radhar_cli.scene import subject_of
@@ -23,15 +24,34 @@ def split_rows(config: Config) -> Levels:
     if split.subjects is not None:
         rng = stream(config.seed, SPLIT, name="subjects")
         by_person = _cut(split, split.subjects, rng)
-        persons = [subject_of(config, index) for index in range(config.samples_per_class)]
-        one_class = by_person[np.array(persons, dtype=int)]
-        return np.tile(one_class, len(rows.activities))
+        if config.recorded is not None:
+            numbers: Levels = by_person[np.array(persons(config), dtype=int)]
+            return numbers
+        everyone = [subject_of(config, index) for index in range(max(rows.counts))]
+        largest_class = by_person[np.array(everyone, dtype=int)]
+        return np.concatenate([largest_class[:count] for count in rows.counts])
     return np.concatenate(
         [
-            _cut(split, rows.per_class, stream(config.seed, SPLIT, a.index, name="samples"))
-            for a in rows.activities
+            _cut(split, count, stream(config.seed, SPLIT, activity.index, name="samples"))
+            for activity, count in zip(rows.activities, rows.counts, strict=True)
         ]
     )
+
+
+def split_warnings(config: Config, split: Levels) -> list[str]:
+    """Say which classes have no sample in a part that is to have a share of them."""
+    rows, found = Rows.of(config), []
+    for number, part in enumerate(SPLITS):
+        share = getattr(config.split, part)
+        without = [a.slug for a, here in rows.classes() if not (split[here] == number).any()]
+        if share and without:
+            whose = "any class" if len(without) == len(rows.activities) else ", ".join(without)
+            key = "samples_per_class" if config.split.subjects is None else "split.subjects"
+            found.append(
+                f"split.{part} = {share:g}, but there is no {part} sample of {whose}: "
+                f"{key} is too small"
+            )
+    return found
 
 
 def _cut(split: SplitConfig, count: int, rng: np.random.Generator) -> Levels:

@@ -32,6 +32,7 @@ class _Scene(BaseModel):
 
     activity: _Activity
     seed: int
+    motion_file: dict[str, Any] | None
     joint: str | None
     engine: str
     accuracy: dict[str, Any] | None

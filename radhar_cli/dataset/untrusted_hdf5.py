@@ -1,8 +1,10 @@
 """HDF5 files that anyone may have written: the one place that opens them.
 
 Only what is asked for by name is looked at; the rest of the file does not matter. Each link on the
-way is a hard one and each dataset lies in the file itself, so nothing leads to another file. Types,
-shapes and stored bytes are checked before anything is read. Compressed images are inflated here, up
+way is a hard one and each dataset lies in the file itself, so nothing leads to another file, but
+for virtual datasets whose sources lie in the folder of the file or below: HDF5 is never asked for
+their samples, the sources are opened here by the same rules. Types, shapes and stored bytes are
+checked before anything is read. Compressed images are inflated here, up
 to the size that they should have: HDF5 would inflate them to any.
 """
 
@@ -10,21 +12,22 @@ import os
 import struct
 import weakref
 import zlib
+from bisect import bisect_right
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass, field
+from contextlib import contextmanager, suppress
+from dataclasses import KW_ONLY, dataclass, field
 from functools import partial
-from pathlib import Path
-from types import TracebackType
-from typing import Any
+from itertools import islice
+from math import prod
+from pathlib import Path, PurePosixPath
+from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from radhar_cli.arrays import Levels
 from radhar_cli.errors import FolderError
-from radhar_cli.untrusted import parse_json, regular_size
+from radhar_cli.untrusted import Closing, parse_json, regular_size
 
 # What h5py raises on a file whose structure is damaged.
 _DAMAGED = (
@@ -39,8 +42,10 @@ _DAMAGED = (
 )
 _HEAP = b"GCOL\x01"
 MAX_TEXT = 2**20
+MAX_SOURCES = 64  # files of a virtual data set that are open at a time
 MIN_HEAP, MAX_HEAP = 4096, 2**24  # bytes; the first is HDF5's
-_DEFLATE = h5py.h5z.FILTER_DEFLATE
+MAX_CHUNK = 2**27  # bytes of samples that are stored together
+_DEFLATE, _SHUFFLE = h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE
 
 
 @contextmanager
@@ -112,21 +117,23 @@ class _Watched:
             at += need
 
 
-class UntrustedFile:
+class UntrustedFile(Closing):
     """An HDF5 file, opened for reading.
 
     Args:
         path: of the file.
         data: its bytes, where they have been read already.
+        virtual: samples may lie in other files of its folder (`radhar merge --virtual`).
 
     Raises:
         FolderError: it is no regular file, or no HDF5 file. So do all methods, for whatever is not
             as it should be; the message names file and field.
     """
 
-    def __init__(self, path: Path, data: bytes | None = None) -> None:
+    def __init__(self, path: Path, data: bytes | None = None, virtual: bool = False) -> None:
         self.path = path
         self._claimed = 0
+        self._sources = _Sources() if virtual else None
         try:
             self._source = _Watched(path if data is None else data)
             self.bytes = self._source.size
@@ -193,12 +200,26 @@ class UntrustedFile:
             raise FolderError(f"{where}: is larger than the file; it is damaged or truncated")
         return Column(where, found, wanted, shape)
 
-    def images(self, name: str, shape: tuple[int, int, int]) -> "Images":
-        """Images uint8 [N, H, W], each in a chunk of its own, plain or gzip."""
-        where, one = f"{self.path}: /{name}", (1, *shape[1:])
+    def chunks(self, name: str, dtype: DTypeLike, shape: tuple[int, ...]) -> "Chunks":
+        """Samples [N, ...], each in a chunk of its own, plain or gzip."""
+        where, one, wanted = f"{self.path}: /{name}", (1, *shape[1:]), np.dtype(dtype)
         with _refusing_damage(where):
-            found = self._dataset(name, where, np.dtype(np.uint8), shape)
+            found = self._dataset(name, where, wanted, shape, self._sources is not None)
+            if found.dtype != wanted:
+                raise FolderError(f"{where}: is of the type {found.dtype.str}; not {wanted.str}")
             creation = found.id.get_create_plist()
+            if self._sources is not None and creation.get_layout() == h5py.h5d.VIRTUAL:
+                parts = list(_parts(creation, where, name, shape, self.path.parent))
+                return VirtualChunks(
+                    where,
+                    found,
+                    wanted,
+                    shape,
+                    _deflated=False,
+                    name=name,
+                    parts=parts,
+                    sources=self._sources,
+                )
             filters = [creation.get_filter(i)[0] for i in range(creation.get_nfilters())]
             if found.chunks != one:
                 raise FolderError(f"{where}: has chunks of {found.chunks}; should be {one}")
@@ -206,9 +227,49 @@ class UntrustedFile:
                 raise FolderError(f"{where}: is stored through filters {filters}; should be gzip")
             if found.id.get_num_chunks() != shape[0]:
                 raise FolderError(
-                    f"{where}: holds {found.id.get_num_chunks()} images; should hold {shape[0]}"
+                    f"{where}: holds {found.id.get_num_chunks()} samples; should hold {shape[0]}"
                 )
-        return Images(where, found, shape, bool(filters))
+        return Chunks(where, found, wanted, shape, bool(filters))
+
+    def samples(self, name: str) -> "Samples":
+        """Real or complex numbers of any shape, plain or gzip, read in pieces."""
+        where = f"{self.path}: /{name}"
+        with _refusing_damage(where):
+            found = self._dataset(name, where, None, None)
+            number, parts = _numbers(found.dtype, where)
+            creation = found.id.get_create_plist()
+            filters = [creation.get_filter(i)[0] for i in range(creation.get_nfilters())]
+            size = found.dtype.itemsize * int(np.prod(found.shape, dtype=object))
+            if not found.shape or size == 0:
+                raise FolderError(f"{where}: has the shape {found.shape}; should hold numbers")
+            if filters not in ([], [_DEFLATE], [_SHUFFLE, _DEFLATE]):
+                raise FolderError(f"{where}: is stored through filters {filters}; should be gzip")
+            chunk = found.chunks
+            if chunk is None and found.id.get_storage_size() != size:
+                raise FolderError(f"{where}: should be stored in {size} bytes; it is truncated")
+            if chunk is not None:
+                one = found.dtype.itemsize * int(np.prod(chunk, dtype=object))
+                if one > MAX_CHUNK:
+                    raise FolderError(f"{where}: has chunks of {one} bytes; at most {MAX_CHUNK}")
+                if found.id.get_num_chunks() != _grid(found.shape, chunk):
+                    raise FolderError(f"{where}: lacks pieces; it is unfinished or damaged")
+            if not filters and size > self.bytes:
+                raise FolderError(f"{where}: is larger than the file; it is damaged or truncated")
+        return Samples(where, found, found.shape, number, parts, _SHUFFLE in filters, bool(filters))
+
+    def numeric_names(self) -> list[str]:
+        """Names of the datasets of numbers at the top of the file, at most 1000."""
+        names = []
+        with _refusing_damage(str(self.path)):
+            for name in islice(self._file, 1000):
+                if self._file.id.links.get_info(name.encode()).type != h5py.h5l.TYPE_HARD:
+                    continue
+                found = self._file[name]
+                if isinstance(found, h5py.Dataset) and found.shape:
+                    with suppress(FolderError):
+                        _numbers(found.dtype, name)
+                        names.append(name)
+        return names
 
     def shape(self, name: str) -> list[int]:
         """Shape of a dataset of any type, none of which is read."""
@@ -221,6 +282,7 @@ class UntrustedFile:
         where: str,
         dtype: np.dtype[Any] | None,
         shape: tuple[int, ...] | None,
+        virtual: bool = False,
     ) -> h5py.Dataset:
         found: Any = self._file
         for part in name.split("/"):
@@ -232,30 +294,23 @@ class UntrustedFile:
             found = found[part]
         if not isinstance(found, h5py.Dataset):
             raise FolderError(f"{where}: should be a dataset")
+        # First of all: to know the shape of a virtual dataset HDF5 may open its sources.
+        creation = found.id.get_create_plist()
+        elsewhere = creation.get_layout() == h5py.h5d.VIRTUAL and not virtual
+        if elsewhere or creation.get_external_count():
+            raise FolderError(f"{where}: lies in another file; should be stored in this file")
         if shape is not None and found.shape != shape:
             raise FolderError(f"{where}: has the shape {found.shape}; should have {shape}")
         if dtype is not None and found.dtype.newbyteorder("=") != dtype:
             raise FolderError(f"{where}: is of the type {found.dtype}; should be {dtype}")
-        creation = found.id.get_create_plist()
-        if creation.get_layout() == h5py.h5d.VIRTUAL or creation.get_external_count():
-            raise FolderError(f"{where}: lies in another file; should be stored in this file")
         return found
 
     def close(self) -> None:
         """Close the file."""
+        if self._sources is not None:
+            self._sources.close()
         self._file.close()
         self._source.close()
-
-    def __enter__(self) -> "UntrustedFile":
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self.close()
 
 
 @dataclass(frozen=True)
@@ -270,6 +325,12 @@ class Column:
     def __len__(self) -> int:
         return self.shape[0]
 
+    def rows(self, start: int, stop: int) -> NDArray[Any]:
+        """Rows start .. stop - 1; no others are read."""
+        with _refusing_damage(self.where):
+            values: NDArray[Any] = self._dataset[start:stop]
+        return values.astype(self.dtype, copy=False)
+
     def __getitem__(self, key: Any) -> Any:
         with _refusing_damage(self.where):
             values: NDArray[Any] = self._dataset[()]
@@ -277,33 +338,39 @@ class Column:
 
 
 @dataclass
-class Images:
-    """Images uint8 [N, H, W] that were checked and are read when they are indexed."""
+class Chunks:
+    """Samples [N, ...] that were checked and are read when they are indexed."""
 
     where: str
     _dataset: h5py.Dataset
-    shape: tuple[int, int, int]
+    dtype: np.dtype[Any]
+    shape: tuple[int, ...]
     _deflated: bool
     _sizes: dict[int, int] = field(default_factory=dict, repr=False)
 
     def __len__(self) -> int:
         return self.shape[0]
 
-    def __getitem__(self, key: Any) -> Levels:
+    def __getitem__(self, key: Any) -> NDArray[Any]:
         rows = np.arange(len(self))[key]
-        return self._image(int(rows)) if rows.ndim == 0 else np.stack([*map(self._image, rows)])
+        return self._sample(int(rows)) if rows.ndim == 0 else np.stack([*map(self._sample, rows)])
+
+    @property
+    def _bytes(self) -> int:
+        """Of a sample, inflated."""
+        return self.dtype.itemsize * prod(self.shape[1:])
 
     def stored(self, row: int) -> tuple[int, bytes]:
         """Filter mask and bytes of a row's chunk as they lie in the file."""
         if not self._sizes:
             self._sizes = self._stored_sizes()
         with _refusing_damage(f"{self.where}[{row}]"):
-            mask, chunk = self._dataset.id.read_direct_chunk((row, 0, 0))
+            mask, chunk = self._dataset.id.read_direct_chunk((row, *(0,) * (len(self.shape) - 1)))
         return mask, chunk
 
     def _stored_sizes(self) -> dict[int, int]:
         """Stored bytes of every row; deflate makes nothing longer by more than a thousandth."""
-        raw = self.shape[1] * self.shape[2]
+        raw = self._bytes
         most = raw + raw // 1000 + 64 if self._deflated else raw
         sizes: dict[int, int] = {}
         with _refusing_damage(self.where):
@@ -312,11 +379,11 @@ class Images:
             if size > most:
                 raise FolderError(f"{self.where}[{row}]: is stored in {size} bytes, too many")
         if sizes.keys() != set(range(len(self))):
-            raise FolderError(f"{self.where}: lacks images; it is damaged")
+            raise FolderError(f"{self.where}: lacks samples; it is damaged")
         return sizes
 
-    def _image(self, row: int) -> Levels:
-        raw = self.shape[1] * self.shape[2]
+    def _sample(self, row: int) -> NDArray[Any]:
+        raw = self._bytes
         mask, chunk = self.stored(row)
         if self._deflated and not mask & 1:
             with _inflating(f"{self.where}[{row}]"):
@@ -326,7 +393,192 @@ class Images:
                     raise zlib.error("too long or truncated")
         if len(chunk) != raw:
             raise FolderError(f"{self.where}[{row}]: is {len(chunk)} bytes; should be {raw}")
-        return np.frombuffer(chunk, np.uint8).reshape(self.shape[1:]).copy()
+        return np.frombuffer(chunk, self.dtype).reshape(self.shape[1:]).copy()
+
+
+class _Part(NamedTuple):
+    """Rows start .. stop - 1 of a virtual dataset, all of the same dataset in another file."""
+
+    start: int
+    stop: int
+    path: Path
+
+
+@dataclass
+class VirtualChunks(Chunks):
+    """Samples [N, ...] that lie in other files, checked as those are opened."""
+
+    _: KW_ONLY
+    name: str
+    parts: list[_Part]
+    sources: "_Sources"
+
+    def stored(self, row: int) -> tuple[int, bytes]:
+        """Filter mask and bytes of a row's chunk as they lie in the other file."""
+        part, chunks = self._at(row)
+        return chunks.stored(row - part.start)
+
+    def _sample(self, row: int) -> NDArray[Any]:
+        part, chunks = self._at(row)
+        return chunks[row - part.start]
+
+    def _at(self, row: int) -> tuple[_Part, Chunks]:
+        part = self.parts[bisect_right(self.parts, row, key=lambda part: part.start) - 1]
+        shape = (part.stop - part.start, *self.shape[1:])
+        return part, self.sources.chunks(part.path, self.name, self.dtype, shape)
+
+
+class _Sources:
+    """Files that virtual datasets refer to; the last few stay open."""
+
+    def __init__(self) -> None:
+        self._open: dict[Path, tuple[UntrustedFile, dict[str, Chunks]]] = {}
+
+    def chunks(self, path: Path, name: str, dtype: DTypeLike, shape: tuple[int, ...]) -> Chunks:
+        """A dataset of a file."""
+        if path not in self._open and len(self._open) >= MAX_SOURCES:
+            self._open.pop(next(iter(self._open)))[0].close()
+        if path not in self._open:
+            self._open[path] = UntrustedFile(path), {}
+        file, known = self._open[path] = self._open.pop(path)  # to the end
+        if name not in known:
+            known[name] = file.chunks(name, dtype, shape)
+        return known[name]
+
+    def close(self) -> None:
+        """Close them."""
+        for file, _ in self._open.values():
+            file.close()
+        self._open.clear()
+
+
+def _parts(
+    creation: h5py.h5p.PropDCID, where: str, name: str, shape: tuple[int, ...], folder: Path
+) -> Iterator[_Part]:
+    """What a virtual dataset is made of: whole datasets of its own name, one after the other."""
+    count, row = creation.get_virtual_count(), 0
+    if count > shape[0]:
+        raise FolderError(f"{where}: refers to {count} parts, more than samples")
+    resolved = folder.resolve()
+    for number in range(count):
+        source = creation.get_virtual_filename(number)
+        start, stop = _rows(creation.get_virtual_vspace(number), where, shape)
+        path = folder / source
+        if (
+            PurePosixPath(source).is_absolute()
+            or {"..", "%"} & {*PurePosixPath(source).parts, *source}
+            or path.resolve() != resolved / source
+        ):
+            raise FolderError(
+                f"{where}: lies in another file, {source}; should be one below {folder}, no link"
+            )
+        if creation.get_virtual_srcspace(number).get_select_type() != h5py.h5s.SEL_ALL:
+            raise FolderError(f"{where}: refers to a piece of {source}; should be all of it")
+        if start != row:
+            raise FolderError(f"{where}: refers to rows from {start} on; should be from {row} on")
+        if creation.get_virtual_dsetname(number).lstrip("/") != name:
+            raise FolderError(f"{where}: refers to another dataset of {source}; should be {name}")
+        row = stop
+        yield _Part(start, stop, path)
+    if row != shape[0]:
+        raise FolderError(f"{where}: refers to {row} samples; should be {shape[0]}")
+
+
+def _rows(space: h5py.h5s.SpaceID, where: str, shape: tuple[int, ...]) -> tuple[int, int]:
+    """First row and past-last row of a selection, which should be whole rows without gaps."""
+    (start, *low), (last, *high) = space.get_select_bounds()
+    whole = low == [0] * len(shape[1:]) and high == [size - 1 for size in shape[1:]]
+    if not whole or space.get_select_npoints() != (last + 1 - start) * prod(shape[1:]):
+        raise FolderError(f"{where}: refers to pieces of samples; should be whole ones")
+    return int(start), int(last) + 1
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Numbers that were checked and are read in pieces.
+
+    Attributes:
+        where: file and dataset, for messages.
+        shape: of the dataset.
+        number: type of the numbers.
+        parts: 2 of complex numbers, 1 of real ones.
+    """
+
+    where: str
+    _dataset: h5py.Dataset
+    shape: tuple[int, ...]
+    number: np.dtype[Any]
+    parts: int
+    _shuffled: bool
+    _deflated: bool
+
+    @property
+    def chunk(self) -> tuple[int, ...]:
+        """Shape of what is stored together."""
+        return self._dataset.chunks or (1,) * len(self.shape)
+
+    def read(self, key: tuple[slice, ...]) -> NDArray[Any]:
+        """A block [..., part] of the numbers; slices have a start and a stop within the shape."""
+        with _refusing_damage(self.where):
+            if not self._deflated:
+                return self._in_parts(self._dataset[key])
+            out = np.empty([one.stop - one.start for one in key], self._dataset.dtype)
+            first = [s.start // c for s, c in zip(key, self.chunk, strict=True)]
+            counts = [-(-s.stop // c) - f for s, c, f in zip(key, self.chunk, first, strict=True)]
+            for place in np.ndindex(*counts):
+                corner = [(f + p) * c for f, p, c in zip(first, place, self.chunk, strict=True)]
+                inside, outside = [], []
+                for start, side, wanted in zip(corner, self.chunk, key, strict=True):
+                    low, high = max(start, wanted.start), min(start + side, wanted.stop)
+                    inside.append(slice(low - start, high - start))
+                    outside.append(slice(low - wanted.start, high - wanted.start))
+                out[tuple(outside)] = self._inflated(tuple(corner))[tuple(inside)]
+            return self._in_parts(out)
+
+    def _inflated(self, corner: tuple[int, ...]) -> NDArray[Any]:
+        dtype = self._dataset.dtype
+        raw = dtype.itemsize * int(np.prod(self.chunk))
+        if self._dataset.id.get_chunk_info_by_coord(corner).size > raw + raw // 1000 + 64:
+            raise FolderError(f"{self.where}: a piece is stored in too many bytes")
+        mask, data = self._dataset.id.read_direct_chunk(corner)
+        if not mask & (2 if self._shuffled else 1):
+            with _inflating(f"{self.where}[{corner}]"):
+                data = zlib.decompressobj().decompress(data, raw + 1)
+        if len(data) != raw:
+            raise FolderError(f"{self.where}: a piece is {len(data)} bytes; should be {raw}")
+        flat = np.frombuffer(data, np.uint8)
+        if self._shuffled and not mask & 1:
+            flat = flat.reshape(dtype.itemsize, -1).T.ravel()
+        whole: NDArray[Any] = flat.view(dtype).reshape(self.chunk)
+        return whole
+
+    def _in_parts(self, values: NDArray[Any]) -> NDArray[Any]:
+        """[...] as [..., part], two of complex and compound numbers."""
+        values = np.ascontiguousarray(values)
+        flat = values.view(self.number.newbyteorder(_order(values.dtype)))
+        return flat.astype(self.number, copy=False).reshape(*values.shape, self.parts)
+
+
+def _order(dtype: np.dtype[Any]) -> Any:
+    first = dtype if dtype.names is None else dtype[0]
+    return first.byteorder if first.byteorder in "<>" else "="
+
+
+def _numbers(dtype: np.dtype[Any], where: str) -> tuple[np.dtype[Any], int]:
+    """(type of the numbers, parts) of a dataset's type, which may be complex or a pair."""
+    if dtype.kind in "iuf" and dtype.itemsize <= 8:
+        return dtype.newbyteorder("="), 1
+    if dtype.kind == "c" and dtype.itemsize <= 16:
+        return np.dtype(f"f{dtype.itemsize // 2}"), 2
+    if dtype.names is not None and len(dtype.names) == 2:
+        first, second = dtype[0], dtype[1]
+        if first == second and first.kind in "iuf" and dtype.itemsize == 2 * first.itemsize <= 16:
+            return first.newbyteorder("="), 2
+    raise FolderError(f"{where}: is of the type {dtype}; should be real or complex numbers")
+
+
+def _grid(shape: tuple[int, ...], chunk: tuple[int, ...]) -> int:
+    return int(np.prod([-(-n // c) for n, c in zip(shape, chunk, strict=True)], dtype=object))
 
 
 @contextmanager

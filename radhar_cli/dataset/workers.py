@@ -4,13 +4,17 @@ import os
 import signal
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Any, TypeVar
 
 from radhar_cli.activity import Activity, add_activity, own_activities
+from radhar_cli.dataset.cluster import Cluster, connected
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.worker_process import prepare_process
 
 T = TypeVar("T")
+NO_PARENT = 0  # of workers on other machines, which end with their scheduler
+_CLUSTER: ContextVar[Cluster | None] = ContextVar("cluster", default=None)
 
 
 def run_tasks(
@@ -19,8 +23,13 @@ def run_tasks(
     """Yield function(*task) for every task, in any order, with `jobs` processes.
 
     Tasks are taken from the iterable only as fast as they are finished. With one job everything
-    runs here.
+    runs here; within `on_cluster` all runs there.
     """
+    cluster = _CLUSTER.get()
+    if cluster is not None:
+        own = own_activities()
+        yield from cluster.run(_with_activities, ((own, function, *task) for task in tasks))
+        return
     if jobs == 1:
         prepare_process()
         for task in tasks:
@@ -50,6 +59,27 @@ def _with_activities(own: tuple[Activity, ...], function: Callable[..., T], *tas
         if activity.motion is not None and activity not in own_activities():
             add_activity(activity.slug, activity.motion, activity.paper)
     return function(*task)
+
+
+@contextmanager
+def on_cluster(address: str, jobs: int) -> Iterator[int]:
+    """Have a dask cluster run the tasks meanwhile; its number of cores.
+
+    Args:
+        address: of the scheduler, or `local`.
+        jobs: processes of `local`.
+    """
+    with connected(address, jobs) as cluster:
+        token = _CLUSTER.set(cluster)
+        try:
+            yield cluster.cores
+        finally:
+            _CLUSTER.reset(token)
+
+
+def parent_pid() -> int:
+    """The process without which workers should stop; NO_PARENT on a cluster."""
+    return os.getpid() if _CLUSTER.get() is None else NO_PARENT
 
 
 def warm_up(jobs: int) -> None:

@@ -17,15 +17,16 @@ from radhar_cli.echo.half_band_sum import MAX_CELLS, weights
 from radhar_cli.echo.knots import Spacing
 from radhar_cli.echo.paths import Paths
 from radhar_cli.echo.range_profiles import beat_at
+from radhar_cli.processing.canceller import NO_CANCELLER, Canceller, Fir
 from radhar_cli.radar.waveform import Waveform
 
 # Six-point interpolation errs by the sixth power of the spacing; this one made -114 dB or less of
 # every activity at 77 GHz.
 SPACING_DB = -140.0
-PER_SECOND, PER_CYCLE, AMPLITUDE_CHANGE, PHASE_CHANGE = 400.0, 200.0, 0.05, 0.05
+PER_SECOND, PER_CYCLE, AMPLITUDE_CHANGE, PHASE_CHANGE = 400.0, 200.0, 0.1, 0.05
 # Cubic Hermite cells err by the fourth power of their width: -48 dB at 4 a fast-time sample.
 TABLE_DB = -48.0
-SINGLE_DB = -130.0
+SINGLE_DB = -115.0  # what the recurrence leaves of float32
 # Settings aim below the tolerance, and are taken if the measured error is below it by SPARE.
 MARGIN_DB, SPARE_DB, REFINE_DB, FINEST_DB = 25.0, 10.0, 30.0, -220.0
 PROBES = 48
@@ -37,7 +38,7 @@ class Settings(NamedTuple):
     Attributes:
         spacing: of the knots.
         table_oversampling: points of the table of G per fast-time sample.
-        single: whether sines and cosines are single precision.
+        single: whether phasors between knots are single precision.
     """
 
     spacing: Spacing
@@ -76,46 +77,61 @@ def measured_db(
     y: Complex,
     source: Callable[[Float], Paths],
     waveform: Waveform,
-    canceller: tuple[float, ...],
+    canceller: Canceller,
     unit: float,
 ) -> float:
     """Relative L2 error (dB) of a slow-time signal after a canceller, estimated at some pulses.
 
     Half of the pulses are spread evenly, half by the power of the signal, so that a jump which
     holds most of it, as of a limb that crosses a wall's face, is among them. The estimate of
-    sum |e|^2 divides each |e|^2 by the density of the pulses; sum |x|^2 is known.
+    sum |e|^2 divides each |e|^2 by the density of the pulses; sum |x|^2 is known. e is the error
+    after the canceller where few pulses show that; before it otherwise, and bounds what is left.
 
     Args:
         y: before the canceller [M], in units of `unit`.
-        source: of the same paths.
+        source: of the paths that it is the sum of.
         waveform: the radar.
-        canceller: c of x[m] = sum_j c[j] y[m + j].
+        canceller: by which y becomes x.
         unit: of the amplitudes.
     """
-    power = _power(y, canceller)
-    total = float(power.sum())
+    shown = canceller if isinstance(canceller, Fir) else NO_CANCELLER
+    probes, density, total = probed_pulses(_power(y, canceller))
     if total == 0:
         return -inf
-    power *= 0.5 / total
-    power += 0.5 / power.size
-    place = (np.arange(PROBES) + np.arange(PROBES) * 0.6180339887498949 % 1) / PROBES
-    pulses = np.searchsorted(np.cumsum(power), place).clip(max=power.size - 1)
-    probes, times = np.unique(pulses, return_counts=True)
-    error = _exact(source, waveform, probes, canceller) / unit - sum(
-        c * y[probes + lag] for lag, c in enumerate(canceller)
+    error = _exact(source, waveform, probes, shown.taps) / unit - sum(
+        c * y[probes + lag] for lag, c in enumerate(shown.taps)
     )
-    squares = (error.real**2 + error.imag**2) * times / power[probes]
-    relative = float(squares.sum()) / PROBES / total
+    return relative_db(error.real**2 + error.imag**2, density, total)
+
+
+def probed_pulses(power: Float) -> tuple[Index, Float, float]:
+    """(pulses, how often one is expected among them, the sum of the power) for |x|^2 [M]."""
+    total = float(power.sum())
+    if total == 0:
+        return np.empty(0, np.intp), np.empty(0), 0.0
+    share = power * (0.5 / total) + 0.5 / power.size
+    place = (np.arange(PROBES) + np.arange(PROBES) * 0.6180339887498949 % 1) / PROBES
+    pulses = np.searchsorted(np.cumsum(share), place).clip(max=power.size - 1)
+    probes, times = np.unique(pulses, return_counts=True)
+    return probes, share[probes] * PROBES / times, total
+
+
+def relative_db(squares: Float, density: Float, total: float) -> float:
+    """Squared errors at some pulses, as an error of all relative to their power, in dB."""
+    relative = float((squares / density).sum()) / total
     return 10 * log10(relative) if relative > 0 else -inf
 
 
-def _power(y: Complex, canceller: tuple[float, ...]) -> Float:
-    """|x|^2 [M - taps + 1], a block at a time."""
-    reach = len(canceller) - 1
-    power = np.empty(max(y.size - reach, 0))
+def _power(y: Complex, canceller: Canceller) -> Float:
+    """|x|^2, after a `Fir` a block at a time."""
+    if not isinstance(canceller, Fir):
+        x = canceller(y)
+        power: Float = x.real**2 + x.imag**2
+        return power
+    power = np.empty(max(y.size - canceller.lost, 0))
     for start in range(0, power.size, BLOCK_SAMPLES):
         part = power[start : start + BLOCK_SAMPLES]
-        x = sum(c * y[start + lag : start + lag + part.size] for lag, c in enumerate(canceller))
+        x = canceller(y[start : start + part.size + canceller.lost])
         part[:] = x.real**2 + x.imag**2
     return power
 

@@ -21,7 +21,7 @@ def start_phase(delay: Float, waveform: Waveform, frequency: float) -> Float:
 
 def powers(w: Complex, count: int) -> Complex:
     """w^0 .. w^(count - 1) [count, ...] of unit phasors w [...], by doubling."""
-    out = np.empty((count, *w.shape), dtype=complex)
+    out = np.empty((count, *w.shape), dtype=w.dtype)
     out[0] = 1
     done, factor = 1, w
     while done < count:

@@ -1,17 +1,17 @@
 """The closed form: y[m] = sum_i A_i exp(-j 2 pi f0 tau_i) G(K tau_i/fs), without a beat matrix.
 
-Paths are computed at knots and interpolated to the pulses, G is read from a table, phasors may be
-single precision, as the tolerance has it (accuracy.py, docs/engines.md). Paths that do not move
-are left out where the canceller removes them.
+Paths are computed at knots and interpolated to the pulses, G is read from a table, phasors follow
+from one another by multiplication, maybe in single precision, as the tolerance has it (accuracy.py,
+docs/engines.md). Paths that do not move are left out where the canceller removes them.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import frexp
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from radhar_cli.arrays import Bool, Complex, Float, Index
 from radhar_cli.echo.accuracy import (
@@ -29,18 +29,20 @@ from radhar_cli.echo.half_band_sum import half_band_table
 from radhar_cli.echo.interpolation import (
     AFTER,
     BEFORE,
-    REACH,
+    TAPS,
     lagrange_weights,
     stencils,
 )
-from radhar_cli.echo.knots import Knots, Motion, resolve
+from radhar_cli.echo.knots import Knots, Motion, only, resolve
 from radhar_cli.echo.paths import Paths, PathSource
+from radhar_cli.echo.phase_recurrence import phasors_between_knots
+from radhar_cli.phasor import unit_phasor
+from radhar_cli.processing.canceller import FIRST_DIFFERENCE, Canceller
 from radhar_cli.radar.waveform import Waveform
 
-BLOCK = 2**16  # values at work at once: they stay in the cache
-BLOCK_SEGMENTS = 256
-
-Real = NDArray[np.floating]
+BLOCK = 2**17  # values at work at once: they stay in the cache
+# Of the phase between knots in single precision: a cubic errs less than its rounding.
+SINGLE_DEGREE = 3
 
 
 class Accuracy(NamedTuple):
@@ -49,7 +51,7 @@ class Accuracy(NamedTuple):
     Attributes:
         step: pulses from knot to knot; 1 where paths are taken at every pulse.
         table_oversampling: points of the table of G per fast-time sample.
-        single: whether sines and cosines are single precision.
+        single: whether phasors between knots are single precision.
         error_db: measured relative L2 error after the canceller.
     """
 
@@ -68,14 +70,14 @@ class DirectEcho:
         waveform: the radar.
         tolerance_db: largest relative L2 error after the canceller.
         double: keep to double precision whatever the tolerance.
-        canceller: c of x[m] = sum_j c[j] y[m + j], in which the signal will be seen.
+        canceller: after which the signal will be seen.
     """
 
     source: PathSource
     waveform: Waveform
     tolerance_db: float
     double: bool = False
-    canceller: tuple[float, ...] = (-1.0, 1.0)
+    canceller: Canceller = FIRST_DIFFERENCE
 
     def signal_power(self) -> float:
         """P_s = mean over the pulses of sum_i A_i^2."""
@@ -94,8 +96,8 @@ class DirectEcho:
             chosen = chosen._replace(single=chosen.single and motion.step > 1)
             unit = 2.0 ** frexp(motion.largest)[1]
             y = self._sum(chosen, motion, unit)
-            exact = motion.at_pulses(self.source, self.waveform)
-            error = measured_db(y, exact, self.waveform, self.canceller, unit)
+            exact = only(self._kept(motion), motion.at_pulses(self.source, self.waveform))
+            error = self._error(y, exact, unit)
             best = min(best, error)
             if error <= self.tolerance_db - SPARE_DB:
                 y *= unit
@@ -118,9 +120,16 @@ class DirectEcho:
         chosen = settings(aim_db, self.waveform, self.source.highest_frequency)
         return chosen._replace(single=chosen.single and not self.double)
 
+    def _error(self, y: Complex, exact: Callable[[Float], Paths], unit: float) -> float:
+        return measured_db(y, exact, self.waveform, self.canceller, unit)
+
+    def _kept(self, motion: Motion) -> Bool:
+        kept: Bool = motion.moving | (not self.canceller.removes_static)
+        return kept
+
     def _sum(self, chosen: Settings, motion: Motion, unit: float) -> Complex:
         y = np.zeros(self.waveform.n_pulses, dtype=complex)
-        kept: Bool = motion.moving | (sum(self.canceller) != 0)
+        kept = self._kept(motion)
         if kept.any():
             for knots in motion.knots(self.source, self.waveform):
                 first, last = knots.pulses
@@ -131,75 +140,58 @@ class DirectEcho:
         self, chosen: Settings, knots: Knots, kept: Bool, unit: float, y: Complex
     ) -> None:
         """Add the sum of the paths at the pulses of these knots to y, some paths at a time."""
-        real = np.float32 if chosen.single else np.float64
-        parts = y.view(float).reshape(-1, 2).T  # Re and Im of y
         moving = np.flatnonzero(kept)
         count = max(1, BLOCK // knots.paths.delay.shape[1])
         for start in range(0, moving.size, count):
             some = moving[start : start + count]
-            terms = self._terms(knots.paths, some, unit, chosen.table_oversampling)
+            terms = self._terms(knots.paths, some, unit, chosen)
             if knots.step == 1:
-                parts += _phasor_sum(terms[0], *terms[1:])
+                y += _phasor_sum(*terms)
                 continue
-            dense = _interpolated_sum(terms, knots.shift, knots.step, real)
+            dense = _interpolated_sum(*terms, knots.shift, knots.step)
             if knots.exact_pulses.size:
-                exact = self._terms(knots.exact, some, unit, chosen.table_oversampling)
-                dense[:, knots.exact_pulses - knots.pulses[0]] = _phasor_sum(exact[0], *exact[1:])
-            parts += dense[:, : y.size]
+                exact = self._terms(knots.exact, some, unit, chosen)
+                dense[knots.exact_pulses - knots.pulses[0]] = _phasor_sum(*exact)
+            y += dense[: y.size]
 
-    def _terms(self, paths: Paths, some: Index, unit: float, oversampling: int) -> Float:
-        """Phase 2 pi f0 tau, Re and Im of A G over the unit: [3, I, M] of some paths."""
+    def _terms(
+        self, paths: Paths, some: Index, unit: float, chosen: Settings
+    ) -> tuple[Float, Complex]:
+        """Phases f0 tau (cycles) and A G over the unit, [M, I] of some paths."""
         w = self.waveform
-        delay, amplitude = (part[some] for part in paths)
-        g = half_band_table(w, oversampling)(w.slope / w.adc_rate * delay)
-        amplitude /= unit
-        terms = np.empty((3, *delay.shape))
-        np.multiply(start_phase(delay, w, w.f0), 2 * np.pi, out=terms[0])
-        np.multiply(g.real, amplitude, out=terms[1])
-        np.multiply(g.imag, amplitude, out=terms[2])
-        return terms
+        delay, amplitude = (np.ascontiguousarray(part[some].T) for part in paths)
+        table = half_band_table(w, chosen.table_oversampling, chosen.single)
+        envelope = table(w.slope / w.adc_rate * delay)
+        envelope *= (amplitude / unit).astype(envelope.real.dtype)
+        return start_phase(delay, w, w.f0), envelope
 
 
-def _interpolated_sum(terms: Float, shift: Index, step: int, real: type[np.floating]) -> Float:
-    """Re and Im of sum_i (re + j im) exp(-j phase) at the pulses [2, segments * step].
-
-    Phases are interpolated as differences from the segment's first knot: they keep their digits
-    in float32.
+def _interpolated_sum(cycles: Float, envelope: Complex, shift: Index, step: int) -> Complex:
+    """sum_i envelope exp(-j 2 pi cycles) at the pulses [segments * step].
 
     Args:
-        terms: phase, re, im at the knots [3, I, BEFORE + segments + AFTER].
+        cycles: phases at the knots [BEFORE + segments + AFTER, I].
+        envelope: at the knots, in the precision that phasors shall have.
         shift: of the stencils [segments].
         step: pulses from knot to knot.
-        real: precision of the phasors.
     """
-    weights = lagrange_weights(step).T.astype(real)  # [step, TAPS]
-    to_phase = weights.copy()
-    to_phase[:, REACH] = 1
-    total = np.zeros((2, step, shift.size))
-    envelope = terms[1:].astype(real)
-    for start in range(0, shift.size, BLOCK_SEGMENTS):
-        within = shift[start : start + BLOCK_SEGMENTS]
+    degree = SINGLE_DEGREE if envelope.dtype == np.complex64 else TAPS - 1
+    weights = lagrange_weights(step).T.astype(envelope.dtype)[:, :, None]  # [step, TAPS, 1]
+    total = np.empty((shift.size, step), dtype=complex)
+    count = max(1, BLOCK // (step * cycles.shape[1]))
+    for start in range(0, shift.size, count):
+        within = shift[start : start + count]
         reach = slice(start, start + within.size + BEFORE + AFTER)
-        count = max(1, BLOCK // (step * within.size))
-        for path in range(0, terms.shape[1], count):
-            some = slice(path, path + count)
-            phase = stencils(terms[0, some, reach], within)  # [i, TAPS, segments]
-            anchor = phase[:, REACH].copy()
-            phase -= anchor[:, None]
-            phase[:, REACH] = np.mod(anchor, 2 * np.pi)
-            angle = to_phase @ phase.astype(real)  # [i, step, segments]
-            re, im = weights @ stencils(envelope[:, some, reach], within)
-            total[..., start : start + within.size] += _phasor_sum(angle, re, im)
-    return total.swapaxes(1, 2).reshape(2, -1)
+        turning = phasors_between_knots(
+            stencils(cycles[reach], within), step, degree, envelope.dtype
+        )
+        taps = stencils(envelope[reach], within).transpose(1, 2, 0)
+        sums = turning.transpose(1, 0, 2) @ taps  # [segments, step, TAPS]
+        total[start : start + count] = (sums.transpose(1, 0, 2) @ weights)[..., 0].T
+    return total.ravel()
 
 
-def _phasor_sum(angle: Real, re: Real, im: Real) -> Real:
-    """Re and Im of sum_i (re + j im) exp(-j angle) [2, ...], of [I, ...]; angles are spent."""
-    shape = (len(angle), -1)
-    cos, sin = np.cos(angle).reshape(shape), np.sin(angle, out=angle).reshape(shape)
-    a, b = re.reshape(shape), im.reshape(shape)
-    total = np.empty((2, *angle.shape[1:]), dtype=angle.dtype)
-    x, y = total.reshape(2, -1)
-    np.add(np.einsum("im,im->m", a, cos), np.einsum("im,im->m", b, sin), out=x)
-    np.subtract(np.einsum("im,im->m", b, cos), np.einsum("im,im->m", a, sin), out=y)
+def _phasor_sum(cycles: Float, envelope: Complex) -> Complex:
+    """sum_i envelope exp(-j 2 pi cycles) [M], of [M, I]."""
+    total: Complex = np.einsum("mi,mi->m", unit_phasor(cycles), envelope)
     return total

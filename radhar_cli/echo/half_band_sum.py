@@ -56,14 +56,18 @@ class HalfBandTable:
         waveform: the radar.
         oversampling: table points per fast-time sample; the root-mean-square relative error is
             about -48, -71, -95, -118 dB for 4, 8, 16, 32.
+        single: whether values are complex64; places in the table are float64.
     """
 
     waveform: Waveform
     oversampling: int
+    single: bool = False
     _powers: tuple[Complex, ...] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "_powers", self._tabulate())
+        dtype = np.complex64 if self.single else np.complex128
+        powers = tuple(part.astype(dtype) for part in self._tabulate())
+        object.__setattr__(self, "_powers", powers)
 
     def _tabulate(self) -> tuple[Complex, ...]:
         """Coefficients of the cubic in each cell, lowest power first, an array for each."""
@@ -89,17 +93,17 @@ class HalfBandTable:
         size = self._powers[0].size
         place = (u - turns) * size
         cell = np.minimum(place.astype(np.intp), size - 1)
-        part = place - cell
+        part = (place - cell).astype(self._powers[0].real.dtype)
         value: Complex = self._powers[3].take(cell, mode="clip")  # which is faster than "raise"
         for coefficients in self._powers[2::-1]:
             value *= part
             value += coefficients.take(cell, mode="clip")
         if self.waveform.n0 % 1:
-            value *= 1 - 2 * np.mod(turns, 2)
+            value *= (1 - 2 * np.mod(turns, 2)).astype(part.dtype)
         return value
 
 
 @lru_cache(maxsize=4)
-def half_band_table(waveform: Waveform, oversampling: int) -> HalfBandTable:
+def half_band_table(waveform: Waveform, oversampling: int, single: bool = False) -> HalfBandTable:
     """Return the table of a radar, computed once."""
-    return HalfBandTable(waveform, oversampling)
+    return HalfBandTable(waveform, oversampling, single)

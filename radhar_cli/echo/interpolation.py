@@ -5,13 +5,13 @@ shifted to knots on its own side.
 """
 
 from functools import lru_cache
+from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from radhar_cli.arrays import Float, Index
+from radhar_cli.arrays import Complex, Float, Index
 
-Real = NDArray[np.floating]
+Values = TypeVar("Values", Float, Complex)
 
 TAPS = 6
 REACH = TAPS // 2 - 1
@@ -66,32 +66,32 @@ def shifted_weights(shift: int) -> Float:
     return lagrange_basis(NODES + shift, NODES).T
 
 
-def stencils(knots: Real, shift: Index) -> Real:
-    """Values [..., TAPS, segments] at the knots -2 .. 3 of every segment.
+def stencils(knots: Values, shift: Index) -> Values:
+    """Values [TAPS, segments, ...] at the knots -2 .. 3 of every segment.
 
     Where the stencil is shifted, they are those of the polynomial through the shifted stencil.
     Segments marked EXACT are left without a meaning.
 
     Args:
-        knots: [..., BEFORE + segments + AFTER].
+        knots: [BEFORE + segments + AFTER, ...].
         shift: from `shifts` [segments].
     """
     first = BEFORE - REACH
-    found = np.empty((*knots.shape[:-1], TAPS, shift.size), dtype=knots.dtype)
+    found = np.empty_like(knots, shape=(TAPS, shift.size, *knots.shape[1:]))
     for tap in range(TAPS):
-        found[..., tap, :] = knots[..., first + tap : first + tap + shift.size]
+        found[tap] = knots[first + tap : first + tap + shift.size]
     moved = np.flatnonzero((shift != 0) & (shift != EXACT))
     for segment, some in zip(moved.tolist(), shift[moved].tolist(), strict=True):
         place = first + segment + some
-        found[..., segment] = knots[..., place : place + TAPS] @ shifted_weights(some).T
+        found[:, segment] = shifted_weights(some) @ knots[place : place + TAPS]
     return found
 
 
 def upsample(knots: Float, step: int, shift: Index) -> Float:
-    """Interpolate knots [..., BEFORE + segments + AFTER] to pulses [..., segments * step].
+    """Interpolate knots [BEFORE + segments + AFTER, ...] to pulses [segments * step, ...].
 
     A component of frequency f errs by at most 5/1024 (2 pi f h)^6 of itself, h the knot interval;
     by 1.4 and 4.2 times that where the stencil is shifted by 1 and 2.
     """
-    dense: Float = lagrange_weights(step).T @ stencils(knots, shift)  # [..., step, segments]
-    return dense.swapaxes(-1, -2).reshape(*knots.shape[:-1], -1)
+    dense = np.tensordot(lagrange_weights(step).T, stencils(knots, shift), 1)
+    return dense.swapaxes(0, 1).reshape(-1, *knots.shape[1:])

@@ -14,6 +14,7 @@ from radhar_cli.radar.waveform import Waveform
 CHUNK_KNOTS = 32768
 MIN_KNOTS = 64  # in a recording
 GLANCE, MIN_GLANCE = 4, 512  # a look at every fourth knot, where there are many
+FEW_PULSES = 1024  # which all cost less than to find out how few of them would do
 POWER_PER_SECOND, POWER_PER_CYCLE, POWER_CHANGE = 40.0, 20.0, 0.1
 MIN_STEP = 3  # fewer pulses from knot to knot are not worth interpolating
 
@@ -121,6 +122,8 @@ def resolve(source: PathSource, waveform: Waveform, spacing: Spacing) -> Motion:
 def mean_power(source: PathSource, waveform: Waveform) -> float:
     """P_s = mean over the pulses of sum_i A_i^2, from as few knots as show the amplitudes."""
     per_second = max(POWER_PER_SECOND, POWER_PER_CYCLE * source.highest_frequency)
+    if waveform.n_pulses <= FEW_PULSES:
+        per_second = inf
     return resolve(source, waveform, Spacing(per_second, POWER_CHANGE, inf)).power
 
 
@@ -175,6 +178,11 @@ def all_knots(source: PathSource, waveform: Waveform, step: int) -> Iterator[Kno
 def columns(paths: Paths, some: slice | Index) -> Paths:
     """The paths at some of their times."""
     return Paths(paths.delay[:, some], paths.amplitude[:, some])
+
+
+def only(kept: Bool, source: Callable[[Float], Paths]) -> Callable[[Float], Paths]:
+    """A source of some of the paths."""
+    return lambda t: Paths(*(part[kept] for part in source(t)))
 
 
 def _differ(paths: Paths, since: Paths) -> Bool:

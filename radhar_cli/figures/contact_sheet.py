@@ -56,9 +56,9 @@ def draw_contact_sheet(data: Images, name: str, per_class: int, path: Path) -> N
     unit = "range (m)" if name == "rtm" else "Doppler frequency (Hz)"
     figure.supxlabel("time (s)", fontsize=8)
     figure.supylabel(unit, fontsize=8)
-    figure.suptitle(
-        f"{name}: grey level, {image.dynamic_range_db:g} dB from dark to bright", fontsize=9
-    )
+    power = f"power, {image.dynamic_range_db:g} dB down from the largest of each map"
+    shown = "cells that the CFAR sets" if image.kind == "cfar" else power
+    figure.suptitle(f"{name}: {shown}", fontsize=9)
     figure.savefig(path, dpi=110)
 
 

@@ -1,6 +1,7 @@
 """maps.png: the maps of one scene, all nine or some, on one page."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
@@ -8,9 +9,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
 
+from radhar_cli.config.schema import ImageConfig
 from radhar_cli.figures.page import page
 from radhar_cli.pipeline.motion_paths import point_delay
 from radhar_cli.processing.image import decibels
+from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 from radhar_cli.simulation.simulate import Simulation
 
@@ -28,9 +31,47 @@ TITLES: Mapping[str, str] = {
 ONE_ROW = 4
 
 
-def draw_map(axes: Axes, name: str, simulation: Simulation, overlay: bool) -> AxesImage:
-    """Draw one map with its axes, its entropy, and if asked the true Doppler of every joint."""
-    image, power_map = simulation.config.image, simulation.maps[name]
+@dataclass(frozen=True)
+class Shown:
+    """What a page of maps shows, simulated or measured.
+
+    Attributes:
+        maps: {map name: PowerMap}.
+        image: dynamic range and colours.
+        f0: frequency at which the Doppler is read, Hz.
+        farthest: what the range-time map shows, m.
+        title: one line above.
+        over: draws more over a map: (axes, map name, Hz or m of a unit of the axis).
+    """
+
+    maps: Mapping[str, PowerMap]
+    image: ImageConfig
+    f0: float
+    farthest: float
+    title: str
+    over: Callable[[Axes, str, float], None] | None = None
+
+
+def of_simulation(simulation: Simulation, overlay: bool) -> Shown:
+    """The maps of a scene, and if asked the true Doppler of every joint."""
+
+    def draw_truth(axes: Axes, name: str, unit: float) -> None:
+        if name != "rtm":
+            _draw_truth(axes, name, simulation, unit)
+
+    return Shown(
+        simulation.maps,
+        simulation.config.image,
+        simulation.waveform.f0,
+        1.3 * _farthest(simulation) + 0.5,
+        title(simulation),
+        draw_truth if overlay else None,
+    )
+
+
+def draw_map(axes: Axes, name: str, shown: Shown) -> AxesImage:
+    """Draw one map with its axes and its entropy."""
+    image, power_map = shown.image, shown.maps[name]
     is_range = power_map.rows.name == "range"
     unit = 1.0 if is_range or power_map.rows.values.max() < 2000 else 1e3
     left, right, low, high = power_map.extent
@@ -50,16 +91,18 @@ def draw_map(axes: Axes, name: str, simulation: Simulation, overlay: bool) -> Ax
     axes.tick_params(labelsize=7)
     if is_range:
         axes.set_ylabel("range (m)", fontsize=8)
-        axes.set_ylim(0, min(high, 1.3 * _farthest(simulation) + 0.5))
+        axes.set_ylim(0, min(high, shown.farthest))
+        if shown.over is not None:
+            shown.over(axes, name, unit)
         return drawn
     axes.set_ylabel("Doppler (kHz)" if unit > 1 else "Doppler (Hz)", fontsize=8)
-    speed = SPEED_OF_LIGHT / (2 * simulation.waveform.f0) * unit
+    speed = SPEED_OF_LIGHT / (2 * shown.f0) * unit
     scale = (partial(np.multiply, speed), partial(np.multiply, 1 / speed))
     second = axes.secondary_yaxis("right", functions=scale)
     second.set_ylabel("approaching (m/s)", fontsize=8)
     second.tick_params(labelsize=7)
-    if overlay:
-        _draw_truth(axes, name, simulation, unit)
+    if shown.over is not None:
+        shown.over(axes, name, unit)
     return drawn
 
 
@@ -111,21 +154,21 @@ def places(names: Collection[str]) -> dict[str, tuple[slice, int]]:
     return found
 
 
-def draw_maps(simulation: Simulation, path: Path, overlay: bool) -> None:
+def draw_maps(shown: Shown, path: Path) -> None:
     """Write maps.png: the maps that were computed, one colour bar in dB."""
-    layout = places(simulation.maps)
+    layout = places(shown.maps)
     rows = max((where.stop for where, _ in layout.values()), default=1)
     columns = 1 + max((column for _, column in layout.values()), default=0)
-    figure = page(max(11.0, 3.6 * columns + 1), 4.1 * rows)
+    figure = page(max(11.0, 3.7 * columns + 1), 4.1 * rows, apart=0.12)
     grid = figure.add_gridspec(rows, columns)
     drawn, panels = None, []
     for name, where in layout.items():
         panels.append(figure.add_subplot(grid[where]))
-        drawn = draw_map(panels[-1], name, simulation, overlay)
+        drawn = draw_map(panels[-1], name, shown)
     if drawn is not None:
         bar = figure.colorbar(drawn, ax=panels, shrink=0.8, pad=0.01)
         bar.set_label("power (dB below the largest of each map)", fontsize=9)
-    figure.suptitle(title(simulation), fontsize=11)
+    figure.suptitle(shown.title, fontsize=11)
     figure.savefig(path, dpi=90)
 
 

@@ -5,13 +5,15 @@ import io
 from matplotlib import rcParams
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 rcParams["text.parse_math"] = False  # a class may be called $a$
 
 
-def page(width: float, height: float) -> Figure:
-    """An empty figure of that size in inches."""
-    figure = Figure(figsize=(width, height), layout="constrained")
+def page(width: float, height: float, apart: float = 0.04) -> Figure:
+    """An empty figure of that size in inches, with panels `apart` inches from each other."""
+    layout = ConstrainedLayoutEngine(w_pad=apart)
+    figure = Figure(figsize=(width, height), layout=layout)
     FigureCanvasAgg(figure)
     return figure
 

@@ -1,24 +1,23 @@
 """stickman.gif: the thirteen joints in 3-D, beside a Doppler-time map with a moving cursor."""
 
 from collections.abc import Callable
-from itertools import product
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from PIL import Image
 
 from radhar_cli.arrays import Float
-from radhar_cli.figures.maps_panel import draw_map, title
+from radhar_cli.figures.maps_panel import draw_map, of_simulation, title
 from radhar_cli.simulation.simulate import Simulation
 from radhar_cli.simulation.truth import WHOLE
 
 FRAMES_PER_SECOND = 20
 SHOWN_BESIDE = ("stft", "fsst", "stft_compensated", "rtm")
-WIDEST = 1.5
 
 
 def frame_count(simulation: Simulation) -> int:
@@ -36,7 +35,7 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Callable[[int], o
         path: ends in .gif.
         advance: called with 1 after every frame.
     """
-    figure = Figure(figsize=(11, 5), dpi=80)
+    figure = Figure(figsize=(13, 4.6), dpi=80)
     canvas: Any = FigureCanvasAgg(figure)
     figure.suptitle(title(simulation), fontsize=9)
     stage = _Stage(figure, simulation)
@@ -70,90 +69,128 @@ def _cursor(figure: Figure, simulation: Simulation) -> list[Line2D]:
     shown = [name for name in SHOWN_BESIDE if name in simulation.maps] or list(simulation.maps)
     if not shown:
         return []
-    axes = figure.add_axes((0.69, 0.12, 0.255, 0.76))
-    draw_map(axes, shown[0], simulation, overlay=False)
+    axes = figure.add_axes((0.73, 0.14, 0.22, 0.7))
+    draw_map(axes, shown[0], of_simulation(simulation, overlay=False))
     return [axes.axvline(0, color="white", linewidth=1)]
 
 
 class _Stage:
-    """The room: floor grid, antennas, wall, and the body at one time."""
+    """The body from the side and as the radar sees it, followed; and its way through the room."""
 
     def __init__(self, figure: Figure, simulation: Simulation) -> None:
         self.truth, self.parents = simulation.truth, simulation.motion.parents
-        new_axes: Any = figure.add_axes
-        self.axes = new_axes((-0.02, 0.0, 0.53, 0.94), projection="3d")
-        antennas, wall = simulation.antennas, simulation.wall
-        for position in (antennas.tx, antennas.rx):
-            self.axes.scatter(*position, marker="^", color="black", s=30)
-        middle = np.mean([antennas.tx, antennas.rx], axis=0)
-        self.axes.text(*middle, "TX, RX  ", fontsize=7, ha="right")
-        if wall is not None:
-            self._draw_wall(wall.bounds)
-        points = [self.truth.positions.reshape(-1, 3), np.array([antennas.tx, antennas.rx])]
-        self._frame(np.concatenate(points), wall is not None)
-        self.links: list[Any] = [
-            self.axes.plot([0], [0], [0], color="0.35", linewidth=2)[0]
-            for parent in self.parents
-            if parent is not None
-        ]
-        self.joints: Any = self.axes.scatter(
-            *self.truth.positions[0].T,
-            c=simulation.motion.cross_sections(self.truth.time[:1])[:, 0],
-            cmap="plasma",
-            s=32,
-            depthshade=False,
-            edgecolors="black",
-            linewidths=0.4,
-        )
-        bar = figure.colorbar(self.joints, cax=figure.add_axes((0.575, 0.25, 0.01, 0.5)))
-        bar.set_label("RCS (m²)", fontsize=8)
-        bar.ax.tick_params(labelsize=7)
-        self.clock = self.axes.text2D(0.5, 0.97, "", transform=self.axes.transAxes, ha="center")
+        p = self.truth.positions
+        self.middle = p.mean(axis=1)
+        radar = np.array([simulation.antennas.tx, simulation.antennas.rx])
+        room = {"antennas": radar, "wall": None if simulation.wall is None else _box(simulation)}
+        half = max(1.2, float(np.abs(p - self.middle[:, None])[..., :2].max()) + 0.15)
+        top, low = max(2.1, float(p[..., 2].max()) + 0.15), min(-0.1, float(p[..., 2].min()))
+        views = {"from the side": (0, 1.0, 0.02), "from the radar": (1, -1.0, 0.265)}
+        self.views = []
+        for name, (axis, sign, left) in views.items():
+            axes = figure.add_axes((left, 0.1, 0.235, 0.76))
+            axes.set(xlim=(-half, half), ylim=(low, top), aspect="equal", anchor="S")
+            axes.set_title(name, fontsize=9)
+            axes.set_axis_off()
+            colours = simulation.motion.cross_sections(self.truth.time[:1])[:, 0]
+            self.views.append(_View(axes, axis, sign, half, self.parents, colours, room))
+        self.clock = figure.text(0.265, 0.05, "", ha="center", fontsize=9, animated=True)
+        bar = figure.colorbar(self.views[0].joints, cax=figure.add_axes((0.625, 0.15, 0.008, 0.3)))
+        bar.set_label("RCS (m²)", fontsize=7)
+        bar.ax.tick_params(labelsize=6)
+        self.here = _plan(figure, self.middle, room)
 
     @property
     def artists(self) -> list[Any]:
         """What changes from frame to frame."""
-        return [*self.links, self.joints, self.clock]
-
-    def _draw_wall(self, bounds: tuple[tuple[float, float], ...]) -> None:
-        x, y, z = bounds
-        y = (max(y[0], -WIDEST), min(y[1], WIDEST))  # a wide wall would make the body small
-        corners = list(product(x, y, z))
-        for a, b in product(corners, corners):
-            if a < b and sum(p != q for p, q in zip(a, b, strict=True)) == 1:
-                self.axes.plot(*zip(a, b, strict=True), color="firebrick", linewidth=0.8)
-
-    def _frame(self, points: Float, walled: bool) -> None:
-        low, high = points.min(axis=0), points.max(axis=0)
-        half = max(WIDEST if walled else 0.8, float(np.abs(points[:, 1]).max()) + 0.2)
-        low = np.array([min(low[0], 0), -half, min(low[2], 0)])
-        high = np.array([high[0] + 0.2, half, max(high[2], 2)])
-        limits = (self.axes.set_xlim, self.axes.set_ylim, self.axes.set_zlim)
-        for set_limits, a, b in zip(limits, low, high, strict=True):
-            set_limits(a, b)
-        self.axes.set_box_aspect(high - low, zoom=1.15)
-        grid: dict[str, Any] = {"color": "0.75", "linewidth": 0.5}
-        for x in np.arange(np.ceil(low[0]), high[0], 0.5):
-            self.axes.plot([x, x], [low[1], high[1]], [0, 0], **grid)
-        for y in np.arange(np.ceil(low[1] * 2) / 2, high[1], 0.5):
-            self.axes.plot([low[0], high[0]], [y, y], [0, 0], **grid)
-        self.axes.set_yticks(np.arange(np.ceil(low[1]), high[1]))
-        self.axes.set_zticks(np.arange(np.ceil(low[2]), high[2] + 0.1))
-        self.axes.set_xlabel("range x (m)", fontsize=8)
-        self.axes.set_ylabel("y (m)", fontsize=8)
-        self.axes.set_zlabel("z (m)", fontsize=8)
-        self.axes.tick_params(labelsize=7, pad=0)
-        self.axes.view_init(elev=12, azim=-65)
+        return [one for view in self.views for one in view.artists] + [self.clock, self.here]
 
     def show(self, t: float) -> None:
         """Put the body where it is at time t."""
         pulse = int(np.searchsorted(self.truth.time, t).clip(max=self.truth.time.size - 1))
-        p = self.truth.positions[pulse]
-        pairs = [(parent, joint) for joint, parent in enumerate(self.parents) if parent is not None]
-        for line, (parent, joint) in zip(self.links, pairs, strict=True):
-            line.set_data_3d(*np.stack([p[parent], p[joint]], axis=1))
-        self.joints._offsets3d = tuple(p.T)  # Matplotlib has no public setter for 3-D offsets
-        self.joints.do_3d_projection()
+        hips = None if self.truth.hip_joints is None else self.truth.hip_joints[pulse]
+        for view in self.views:
+            view.show(self.truth.positions[pulse], hips, self.middle[pulse])
+        self.here.set_data([-self.middle[pulse, 1]], [self.middle[pulse, 0]])
         under_way = self.truth.phases[self.truth.phase_label[pulse]]
         what = "" if under_way == WHOLE else f"   {under_way}"
         self.clock.set_text(f"t = {t:.2f} s{what}")
+
+
+class _View:
+    """The body in a plane of the room: range and height, or cross-range and height."""
+
+    def __init__(
+        self,
+        axes: Axes,
+        axis: int,
+        sign: float,
+        half: float,
+        parents: tuple[int | None, ...],
+        colours: Float,
+        room: dict[str, Any],
+    ) -> None:
+        self.axis, self.sign, self.half = axis, sign, half
+        self.pairs = [(parent, one) for one, parent in enumerate(parents) if parent is not None]
+        self.antennas, self.wall = room["antennas"], room["wall"]
+        axes.axhline(0, color="0.6", linewidth=1)
+        (self.floor,) = axes.plot([], [], color="0.6", linewidth=1)
+        (self.radar,) = axes.plot([], [], "^", color="black", markersize=5)
+        (self.slab,) = axes.plot([], [], color="firebrick", linewidth=1)
+        (self.links,) = axes.plot([], [], color="0.35", linewidth=2)
+        self.joints = axes.scatter(
+            0 * colours, colours, c=colours, cmap="plasma", s=30, edgecolors="black", linewidths=0.4
+        )
+        self.joints.set_zorder(3)
+        self.artists: list[Any] = [self.floor, self.radar, self.slab, self.links, self.joints]
+
+    def show(self, p: Float, hips: Float | None, middle: Float) -> None:
+        """Joints [I, 3] and hip joints [2, 3], where there are, seen from `middle` [3]."""
+
+        def across(points: Float) -> Float:
+            seen: Float = self.sign * (points[..., self.axis] - middle[self.axis])
+            return seen
+
+        starts = np.array([p[parent] for parent, _ in self.pairs])
+        ends = np.array([p[one] for _, one in self.pairs])
+        if hips is not None:  # thighs hang on the hip joints, which the hip point carries
+            for hip, knee in zip(hips, (9, 11), strict=True):
+                starts[[one for _, one in self.pairs].index(knee)] = hip
+        gap = np.full_like(starts, np.nan)
+        lines = np.stack([starts, ends, gap], axis=1).reshape(-1, 3)
+        self.links.set_data(across(lines), lines[:, 2])
+        self.joints.set_offsets(np.stack([across(p), p[:, 2]], axis=1))
+        marks = 0.5 * np.arange(np.ceil(-self.half * 2), self.half * 2 + 1)
+        marks = np.repeat(marks - self.sign * middle[self.axis] % 0.5, 3)
+        self.floor.set_data(marks, np.tile([0.0, -0.05, np.nan], marks.size // 3))
+        self.radar.set_data(across(self.antennas), self.antennas[:, 2])
+        if self.wall is not None and self.axis == 0:
+            self.slab.set_data(across(self.wall), self.wall[:, 2])
+
+
+def _box(simulation: Simulation) -> Float:
+    """Outline of the wall from the side, closed, and its extent along y: corners [5, 3]."""
+    assert simulation.wall is not None
+    (x0, x1), (y0, y1), (z0, z1) = simulation.wall.bounds
+    return np.array([[x0, y0, z0], [x1, y1, z0], [x1, y1, z1], [x0, y0, z1], [x0, y0, z0]])
+
+
+def _plan(figure: Figure, way: Float, room: dict[str, Any]) -> Line2D:
+    """Draw the room from above, range upwards; return the mark of where the body is."""
+    axes = figure.add_axes((0.535, 0.15, 0.08, 0.66))
+    radar, wall = room["antennas"], room["wall"]
+    axes.plot(-radar[:, 1], radar[:, 0], "^", color="black", markersize=4)
+    axes.plot(-way[:, 1], way[:, 0], color="0.6", linewidth=1)
+    across = np.abs(np.concatenate([way[:, 1], radar[:, 1]])).max() + 0.4
+    if wall is not None:
+        (x0, y0, _), (x1, y1, _) = wall[0], wall[1]
+        y0, y1 = max(y0, -across), min(y1, across)
+        axes.fill([-y0, -y1, -y1, -y0], [x0, x0, x1, x1], color="firebrick", linewidth=0)
+    (here,) = axes.plot([], [], "o", color="tab:blue", markersize=6)
+    ends = np.concatenate([way[:, 0], radar[:, 0]])
+    axes.set(xlim=(-across, across), ylim=(min(0.0, ends.min() - 0.2), ends.max() + 0.3))
+    axes.set_title("from above", fontsize=9)
+    axes.set_ylabel("range x (m)", fontsize=8, labelpad=1)
+    axes.set_xlabel("-y (m)", fontsize=8)
+    axes.tick_params(labelsize=7, pad=1)
+    return here

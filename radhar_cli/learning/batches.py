@@ -8,12 +8,14 @@ import torch
 from torch import Tensor
 from torch.utils.data import DataLoader, Dataset, Sampler
 
-from radhar_cli.arrays import Index
+from radhar_cli.arrays import Float, Index
 from radhar_cli.errors import FolderError
-from radhar_cli.learning.images.image_set import ImageSet
+from radhar_cli.learning.augmentation import Augmentation
+from radhar_cli.learning.images.image_set import ImageSet, repeated
 from radhar_cli.randomness import TRAINING, stream
 
 MIN_PER_PROCESS = 2
+AS_STORED = -1
 
 
 @dataclass(frozen=True)
@@ -31,13 +33,25 @@ class Normalisation:
         return (levels.float() / 255 - mean) / sd
 
 
-def epoch_batches(count: int, size: int, seed: int, epoch: int, processes: int) -> list[Index]:
-    """Shuffled batches of one epoch; every image once.
+def epoch_order(weights: Float, seed: int, epoch: int) -> Index:
+    """Shuffled numbers of the images of one epoch: number i as often as weights[i] on average.
+
+    A weight of 1 is once; of 2.3 twice, and a third time in three epochs of ten.
+    """
+    rng = stream(seed, TRAINING, epoch, name="order")
+    if (weights == 1).all():
+        return rng.permutation(weights.size)
+    times = np.floor(weights + rng.random(weights.size)).astype(np.intp)
+    return rng.permutation(np.repeat(np.arange(weights.size), times))
+
+
+def epoch_batches(order: Index, size: int, processes: int) -> list[Index]:
+    """The batches of one epoch, of images in their order.
 
     What is left over at the end is a smaller batch, or joins the last one where a process would
     get fewer than two images of it (batch norm needs two).
     """
-    order = stream(seed, TRAINING, epoch, name="order").permutation(count)
+    count = order.size
     starts = list(range(0, count, size))
     if len(starts) > 1 and count - starts[-1] < MIN_PER_PROCESS * processes:
         starts.pop()
@@ -47,19 +61,22 @@ def epoch_batches(count: int, size: int, seed: int, epoch: int, processes: int) 
 class _Rows(Dataset[tuple[Tensor, int]]):
     """Rows of an image set, read as they are asked for; `labels` in the model's numbering."""
 
-    def __init__(self, images: ImageSet, labels: Index) -> None:
-        self.images, self.labels = images, labels
+    def __init__(self, images: ImageSet, labels: Index, change: Augmentation | None) -> None:
+        self.images, self.labels, self.change = images, labels, change
 
-    def __getitem__(self, row: int) -> tuple[Tensor, int]:
+    def __getitem__(self, place: tuple[int, int]) -> tuple[Tensor, int]:
+        row, epoch = place
         rgb = self.images.pixels.read(row)
+        if self.change is not None and epoch >= 0:
+            rgb = repeated(self.change(rgb[..., 0], row, epoch))
         return torch.from_numpy(np.ascontiguousarray(rgb.transpose(2, 0, 1))), int(self.labels[row])
 
 
-class _Batches(Sampler[list[int]]):
+class _Batches(Sampler[list[tuple[int, int]]]):
     def __init__(self) -> None:
-        self.batches: list[list[int]] = []
+        self.batches: list[list[tuple[int, int]]] = []
 
-    def __iter__(self) -> Iterator[list[int]]:
+    def __iter__(self) -> Iterator[list[tuple[int, int]]]:
         return iter(self.batches)
 
     def __len__(self) -> int:
@@ -72,10 +89,17 @@ class Reader:
     Every worker opens the file for itself and is kept until the end.
     """
 
-    def __init__(self, images: ImageSet, labels: Index, workers: int, pin: bool) -> None:
+    def __init__(
+        self,
+        images: ImageSet,
+        labels: Index,
+        workers: int,
+        pin: bool,
+        change: Augmentation | None = None,
+    ) -> None:
         self._sampler = _Batches()
         self._loader = DataLoader(
-            _Rows(images, labels),
+            _Rows(images, labels, change),
             batch_sampler=self._sampler,
             num_workers=workers,
             persistent_workers=workers > 0,
@@ -84,9 +108,14 @@ class Reader:
             generator=torch.Generator().manual_seed(0),
         )
 
-    def __call__(self, batches: Sequence[Index]) -> Iterator[tuple[Tensor, Tensor]]:
-        """Yield (uint8 [B, 3, H, W], labels [B]) for every batch of row numbers."""
-        self._sampler.batches = [[int(row) for row in batch] for batch in batches]
+    def __call__(
+        self, batches: Sequence[Index], epoch: int = AS_STORED
+    ) -> Iterator[tuple[Tensor, Tensor]]:
+        """Yield (uint8 [B, 3, H, W], labels [B]) for every batch of row numbers.
+
+        With an epoch, images are changed as it has them; AS_STORED leaves them.
+        """
+        self._sampler.batches = [[(int(row), epoch) for row in batch] for batch in batches]
         try:
             yield from self._loader
         except FolderError as error:  # a worker's comes wrapped in its traceback

@@ -51,7 +51,7 @@ class Predictions:
 
 
 def open_for(
-    about: RunMetadata,
+    metadata: RunMetadata,
     path: Path,
     map_name: str | None,
     labelled: bool = True,
@@ -71,46 +71,46 @@ def open_for(
     Raises:
         FolderError: no class or another size than the model's, or a map that must be named.
     """
-    size = about.size if resize else None
-    images = open_images(path, map_name or _map_there(about, path), about.input, size)
-    if images.size != about.size:
+    size = metadata.size if resize else None
+    images = open_images(path, map_name or _map_there(metadata, path), metadata.input, size)
+    if images.size != metadata.size:
         raise FolderError(
             f"{path}: images are {images.size[0]} x {images.size[1]} px; the model was trained on "
-            f"{about.size[0]} x {about.size[1]} px; --resize brings them to that"
+            f"{metadata.size[0]} x {metadata.size[1]} px; --resize brings them to that"
         )
     if labelled:
-        images = known_to(images.renamed(names or {}), about.classes)
+        images = known_to(images.renamed(names or {}), metadata.classes)
         if images.split is None:
-            return _cut_as_in_training(about, images)
+            return _cut_as_in_training(metadata, images)
     return images
 
 
-def _map_there(about: RunMetadata, path: Path) -> str | None:
+def _map_there(metadata: RunMetadata, path: Path) -> str | None:
     """The model's map if a data set has several; a tree of images has its own and no other.
 
     Raises:
         FolderError: the model does not know its map, and there are several.
     """
     if not is_h5(path):
-        inside = about.map is not None and (path / about.map).is_dir()
-        return about.map if inside else None
+        inside = metadata.map is not None and (path / metadata.map).is_dir()
+        return metadata.map if inside else None
     with open_dataset(path) as data:
-        if about.map is None and len(data.maps) > 1:
+        if metadata.map is None and len(data.maps) > 1:
             raise FolderError(
                 f"{path}: has the maps {', '.join(data.maps)}, and the model was trained on images "
                 "that did not say which they were; name one with --map"
             )
-        return about.map
+        return metadata.map
 
 
-def _cut_as_in_training(about: RunMetadata, images: ImageSet) -> ImageSet:
+def _cut_as_in_training(metadata: RunMetadata, images: ImageSet) -> ImageSet:
     try:
-        settings = TrainConfig.model_validate(about.config)
+        settings = TrainConfig.model_validate(metadata.config)
         cut = images.cut(settings.validation_share, settings.seed)
     except FolderError:
         return images
     rows = np.concatenate([cut.rows("train"), cut.rows("val")])
-    same = content_hash(cut, rows, scan(cut, rows).digests) == about.data["hash"]
+    same = content_hash(cut, rows, scan(cut, rows).digests) == metadata.data["hash"]
     return cut if same else images
 
 
@@ -122,7 +122,7 @@ def rows_of(images: ImageSet, split: str) -> tuple[Index, str]:
 
 def predict_batches(
     model: nn.Module,
-    about: RunMetadata,
+    metadata: RunMetadata,
     images: ImageSet,
     rows: Index,
     device: torch.device,
@@ -138,29 +138,29 @@ def predict_batches(
     reader = Reader(images, images.label, workers=0, pin=False)
     with torch.inference_mode():
         for levels, _ in reader(pieces(rows, batch)):
-            features, logits = features_and_logits(model, about.normalisation(levels.to(device)))
+            features, logits = features_and_logits(model, metadata.normalisation(levels.to(device)))
             if not logits.isfinite().all():
                 raise RunError(
-                    f"the network {about.model} trained on {about.data['path']}: its logits are "
-                    "not finite; its weights or its mean and sd are damaged"
+                    f"the network {metadata.model} trained on {metadata.data['path']}: its logits "
+                    "are not finite; its weights or its mean and sd are damaged"
                 )
             yield logits.softmax(1).cpu().numpy(), features.cpu().numpy()
 
 
 def predict(
     model: nn.Module,
-    about: RunMetadata,
+    metadata: RunMetadata,
     images: ImageSet,
     rows: Index,
     device: torch.device,
     batch: int,
 ) -> Predictions:
     """Predictions of a model for rows of a labelled set."""
-    found = list(predict_batches(model, about, images, rows, device, batch))
+    found = list(predict_batches(model, metadata, images, rows, device, batch))
     return Predictions(
         images=images,
         rows=rows,
-        truth=labels_for(images, about.classes)[rows],
+        truth=labels_for(images, metadata.classes)[rows],
         probabilities=np.concatenate([batch_probabilities for batch_probabilities, _ in found]),
         features=np.concatenate([features for _, features in found]),
     )
@@ -182,13 +182,13 @@ def speed(
     one = torch.from_numpy(images.pixels.read(row).transpose(2, 0, 1).copy())[None]
     many = one.expand(batch, -1, -1, -1)
     began = time.perf_counter()
-    about, model = load_best(run)
+    metadata, model = load_best(run)
     model.to(device)
     loaded = time.perf_counter()
 
     def ask(levels: torch.Tensor) -> float:
         start = time.perf_counter()
-        model(about.normalisation(levels.to(device))).softmax(1).cpu()
+        model(metadata.normalisation(levels.to(device))).softmax(1).cpu()
         return time.perf_counter() - start
 
     with torch.inference_mode():

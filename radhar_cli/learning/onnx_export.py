@@ -44,9 +44,9 @@ def export(run: Path, path: Path) -> float:
     import onnx
     import onnxruntime
 
-    about, network = load_best(run)
-    model = _FromPixels(network, about.normalisation).eval()
-    pixels = _pixels(2, about)
+    metadata, network = load_best(run)
+    model = _FromPixels(network, metadata.normalisation).eval()
+    pixels = _pixels(2, metadata)
     try:
         with warnings.catch_warnings(), torch.no_grad():
             warnings.simplefilter("ignore")
@@ -61,19 +61,19 @@ def export(run: Path, path: Path) -> float:
             )
     except torch.onnx.errors.OnnxExporterError as error:
         raise RunError(
-            f"{run}: PyTorch cannot write {about.model} as ONNX ({first_line(error)})"
+            f"{run}: PyTorch cannot write {metadata.model} as ONNX ({first_line(error)})"
         ) from None
     written = program.model_proto
     onnx.helper.set_model_props(
         written,
-        {"classes": json.dumps(about.classes), "model": about.model, "input": about.input},
+        {"classes": json.dumps(metadata.classes), "model": metadata.model, "input": metadata.input},
     )
     onnx.checker.check_model(written)
     content = written.SerializeToString()
     session = onnxruntime.InferenceSession(content, providers=["CPUExecutionProvider"])
     worst = 0.0
     for images in (1, 3):
-        trial = _pixels(images, about)
+        trial = _pixels(images, metadata)
         with torch.inference_mode():
             expected = model(trial).numpy()
         found = session.run(["logits"], {"pixels": trial.numpy()})[0]
@@ -95,7 +95,7 @@ def export(run: Path, path: Path) -> float:
     return worst
 
 
-def _pixels(images: int, about: RunMetadata) -> Tensor:
+def _pixels(images: int, metadata: RunMetadata) -> Tensor:
     """Smooth random images, uint8 [images, 3, H, W], with the mean and spread of the training data.
 
     White noise would not do: far from what it was trained on, the network's products of branches
@@ -103,6 +103,6 @@ def _pixels(images: int, about: RunMetadata) -> Tensor:
     """
     generator = torch.Generator().manual_seed(0)
     coarse = torch.randn(images, 1, 8, 8, generator=generator)
-    smooth = interpolate(coarse, size=about.size, mode="bilinear", align_corners=False)
-    mean, sd = (torch.tensor(numbers).view(1, 3, 1, 1) for numbers in (about.mean, about.sd))
+    smooth = interpolate(coarse, size=metadata.size, mode="bilinear", align_corners=False)
+    mean, sd = (torch.tensor(numbers).view(1, 3, 1, 1) for numbers in (metadata.mean, metadata.sd))
     return (255 * (mean + sd * smooth)).clamp(0, 255).to(torch.uint8)

@@ -40,19 +40,19 @@ def predict(
         RunError: no such run.
         FolderError: an image that cannot be read, or of another size.
     """
-    about, model = load_best(run)
+    metadata, model = load_best(run)
     model.to(device)
     for path in paths:
-        images, rows, names = _opened(about, path, map_name, split, resize)
+        images, rows, names = _opened(metadata, path, map_name, split, resize)
         place = 0
-        for probabilities, _ in predict_batches(model, about, images, rows, device, BATCH):
+        for probabilities, _ in predict_batches(model, metadata, images, rows, device, BATCH):
             for row in probabilities.tolist():
-                yield names[place], dict(zip(about.classes, row, strict=True))
+                yield names[place], dict(zip(metadata.classes, row, strict=True))
                 place += 1
 
 
 def _opened(
-    about: RunMetadata, path: Path, map_name: str | None, split: str, resize: bool
+    metadata: RunMetadata, path: Path, map_name: str | None, split: str, resize: bool
 ) -> tuple[ImageSet, Index, list[str]]:
     """Images, which of them, and what to call them."""
     if not path.exists():
@@ -64,10 +64,10 @@ def _opened(
         files = image_files(path, path)
     if files:
         return (
-            loose_images(files, about.size, about.input, resize),
+            loose_images(files, metadata.size, metadata.input, resize),
             np.arange(len(files)),
             list(map(str, files)),
         )
-    images = open_for(about, path, map_name, labelled=False, resize=resize)
+    images = open_for(metadata, path, map_name, labelled=False, resize=resize)
     rows, _ = rows_of(images, split)
     return images, rows, [f"{path}: {images.names[row]}" for row in rows]

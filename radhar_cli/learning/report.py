@@ -3,7 +3,7 @@
 import platform
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import torch
 
@@ -26,13 +26,7 @@ from radhar_cli.learning.single_result import (
     open_run,
     seen_message,
 )
-
-
-class Progress(Protocol):
-    """Receives messages of an evaluation."""
-
-    def say(self, message: str) -> None:
-        """Something the user should read."""
+from radhar_cli.progress import Messages
 
 
 def evaluate(
@@ -40,7 +34,7 @@ def evaluate(
     data: Sequence[Path],
     options: EvalOptions,
     device: torch.device,
-    progress: Progress,
+    progress: Messages,
 ) -> Report:
     """Evaluate every run on every data set.
 
@@ -74,7 +68,7 @@ def evaluate(
     )
     lines: dict[str, list[Point]] = {}
     for run in opened:
-        progress.say(f"{run.name}: {run.about.model}, {len(run.about.classes)} classes")
+        progress.say(f"{run.name}: {run.metadata.model}, {len(run.metadata.classes)} classes")
         results = {}
         for data_name in named_data:
             one = len(opened) == len(named_data) == 1
@@ -125,14 +119,14 @@ def _name_parts(path: Path) -> tuple[str, ...]:
 
 
 def _about_run(run: Run) -> dict[str, Any]:
-    price = cost(run.about.model, len(run.about.classes), run.about.size)
+    price = cost(run.metadata.model, len(run.metadata.classes), run.metadata.size)
     return {
-        "model": run.about.model,
+        "model": run.metadata.model,
         "parameters": price.parameters,
         "multiply_adds": price.multiply_adds,
-        "size_px": list(run.about.size),
-        "map": run.about.map,
-        "trained_on": run.about.data,
+        "size_px": list(run.metadata.size),
+        "map": run.metadata.map,
+        "trained_on": run.metadata.data,
         "epochs": len(run.history),
         "best_epoch": best_epoch(run.history).epoch if run.history else None,
     }

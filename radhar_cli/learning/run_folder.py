@@ -154,8 +154,8 @@ def best_epoch(history: Sequence[Epoch]) -> Epoch:
     return best
 
 
-def claim_run(folder: Path, about: RunMetadata, overwrite: bool) -> None:
-    """Make a locked folder this run's, or refuse.
+def reserve_run(folder: Path, metadata: RunMetadata, overwrite: bool) -> None:
+    """Make a folder, whose lock is held, this run's, or refuse.
 
     Raises:
         RunError: it holds something else; the message names what differs.
@@ -171,9 +171,9 @@ def claim_run(folder: Path, about: RunMetadata, overwrite: bool) -> None:
                 f"{folder}: holds {', '.join(foreign_files[:5])} but no training run; choose an "
                 "empty folder"
             )
-        write_whole(folder, folder / ABOUT, (about.model_dump_json(indent=2) + "\n").encode())
+        write_whole(folder, folder / ABOUT, (metadata.model_dump_json(indent=2) + "\n").encode())
         return
-    found = differences(read_metadata(folder), about)
+    found = differences(read_metadata(folder), metadata)
     if found:
         raise RunError(
             f"{folder}: holds another run; it differs in\n  "
@@ -278,12 +278,12 @@ def checked_history(history: list[Epoch]) -> list[Epoch]:
 
 
 def write_best(
-    folder: Path, about: RunMetadata, epoch: Epoch, weights: Mapping[str, Tensor]
+    folder: Path, metadata: RunMetadata, epoch: Epoch, weights: Mapping[str, Tensor]
 ) -> None:
     """Write best.safetensors: weights, and beside them all that is needed to use them."""
-    metadata = {"radhar": about.model_dump_json(), "epoch": str(epoch.epoch)}
+    header = {"radhar": metadata.model_dump_json(), "epoch": str(epoch.epoch)}
     tensors = {name: tensor.detach().cpu().contiguous() for name, tensor in weights.items()}
-    write_whole(folder, folder / BEST, safetensors_bytes(tensors, metadata))
+    write_whole(folder, folder / BEST, safetensors_bytes(tensors, header))
 
 
 def load_best(folder: Path) -> tuple[RunMetadata, nn.Module]:
@@ -317,13 +317,13 @@ def load_best(folder: Path) -> tuple[RunMetadata, nn.Module]:
 
 def _opened(path: Path, file: Any) -> tuple[RunMetadata, nn.Module]:
     """Read weights only after names, types and shapes are those of the network described."""
-    metadata = file.metadata() or {}
-    if "radhar" not in metadata:
+    header = file.metadata() or {}
+    if "radhar" not in header:
         raise RunError(f"{path}: was not written by `radhar train`")
     try:
-        about = RunMetadata.model_validate_json(metadata["radhar"])
+        metadata = RunMetadata.model_validate_json(header["radhar"])
         with torch.device("meta"):
-            wanted = build_model(about.model, len(about.classes), about.size).state_dict()
+            wanted = build_model(metadata.model, len(metadata.classes), metadata.size).state_dict()
         stored = {name: file.get_slice(name) for name in file.keys()}  # noqa: SIM118
         for name in wanted.keys() | stored.keys():
             if name not in stored or name not in wanted:
@@ -336,7 +336,7 @@ def _opened(path: Path, file: Any) -> tuple[RunMetadata, nn.Module]:
         for name, tensor in weights.items():
             if not tensor.isfinite().all():
                 raise RuntimeError(f"{name} holds what is no finite number")
-        model = build_model(about.model, len(about.classes), about.size)
+        model = build_model(metadata.model, len(metadata.classes), metadata.size)
         model.load_state_dict(weights)
     except ValidationError as error:
         raise RunError(f"{path}: its description is damaged ({_first(error)})") from None
@@ -347,7 +347,7 @@ def _opened(path: Path, file: Any) -> tuple[RunMetadata, nn.Module]:
         raise RunError(
             f"{path}: its weights do not fit its description ({lines[-1].strip()})"
         ) from None
-    return about, model.eval()
+    return metadata, model.eval()
 
 
 def write_last(folder: Path, checkpoint: dict[str, Any]) -> None:
@@ -371,7 +371,7 @@ def read_last(folder: Path) -> dict[str, Any] | None:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             found: dict[str, Any] = torch.load(path, map_location="cpu", weights_only=True)
-        return {key: found[key] for key in ("model", "optimiser", "history", "random", "about")}
+        return {key: found[key] for key in ("model", "optimiser", "history", "random", "metadata")}
     except _DAMAGED as error:
         raise RunError(
             f"{path}: is damaged, or no checkpoint of radhar's ({first_line(error)}); {BEST} is "

@@ -19,19 +19,19 @@ from radhar_cli.learning.run_folder import Epoch, RunMetadata, best_epoch
 
 def write_run_summary(
     folder: Path,
-    about: RunMetadata,
+    metadata: RunMetadata,
     history: Sequence[Epoch],
     model: nn.Module,
     plan: ExecutionPlan,
     group: Group,
 ) -> None:
     """Write metrics.json, summary.txt and curves.png of a finished run."""
-    best, count = best_epoch(history), int(about.data["val"])
+    best, count = best_epoch(history), int(metadata.data["val"])
     low, high = wilson(round(best.val_accuracy * count), count)
-    price = cost(about.model, len(about.classes), about.size)
-    share = -(-int(about.config["batch_size"]) // group.size)
+    price = cost(metadata.model, len(metadata.classes), metadata.size)
+    share = -(-int(metadata.config["batch_size"]) // group.size)
     metrics = {
-        "model": about.model,
+        "model": metadata.model,
         "best_epoch": best.epoch,
         "val_accuracy": best.val_accuracy,
         "val_accuracy_95": [low, high],
@@ -40,12 +40,12 @@ def write_run_summary(
         "parameters": price.parameters,
         "multiply_adds": price.multiply_adds,
         "seconds": round(sum(epoch.seconds for epoch in history), 1),
-        "classes": list(about.classes),
-        "size_px": list(about.size),
-        "map": about.map,
-        "data": about.data,
-        "config": about.config,
-        "versions": about.versions,
+        "classes": list(metadata.classes),
+        "size_px": list(metadata.size),
+        "map": metadata.map,
+        "data": metadata.data,
+        "config": metadata.config,
+        "versions": metadata.versions,
         "device": plan.device.type,
         "precision": plan.precision_name,
         "threads": torch.get_num_threads(),
@@ -56,17 +56,17 @@ def write_run_summary(
     series = {folder.name or str(folder): history}
     write_whole(folder, folder / run_files.CURVES, curves_png(series, {folder.name: best.epoch}))
     lines = [
-        f"{about.model} on {about.data['path']}"
-        + (f", map {about.map}" if about.map else "")
-        + f", {about.size[0]} x {about.size[1]} px, {len(about.classes)} classes",
-        f"{about.data['train']} training and {count} validation images",
+        f"{metadata.model} on {metadata.data['path']}"
+        + (f", map {metadata.map}" if metadata.map else "")
+        + f", {metadata.size[0]} x {metadata.size[1]} px, {len(metadata.classes)} classes",
+        f"{metadata.data['train']} training and {count} validation images",
         f"best epoch {best.epoch} of {len(history)}: validation accuracy "
         f"{100 * best.val_accuracy:.2f} % (95 % interval {100 * low:.2f} to {100 * high:.2f} %), "
         f"loss {best.val_loss:.4f}",
         f"{price.parameters:,} parameters, {price.multiply_adds / 1e9:.3f} G multiply-adds",
         f"{metrics['seconds']} s on {metrics['device']}, {metrics['precision']}, "
         f"{metrics['threads']} threads, {group.size} process(es), batch "
-        f"{about.config['batch_size']} in {metrics['gradient_accumulation']} part(s)",
+        f"{metadata.config['batch_size']} in {metrics['gradient_accumulation']} part(s)",
         "",
         *_layer_table(model),
     ]

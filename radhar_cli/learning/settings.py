@@ -23,6 +23,7 @@ def _auto_or(least: int) -> BeforeValidator:
 Auto = Literal["auto"] | int
 Count = Annotated[int, Field(ge=1, le=1_000_000, strict=True)]
 Rate = Annotated[float, Field(gt=0, le=1e3, strict=True)]
+Weight = Annotated[float, Field(ge=0, le=1000, strict=True)]
 Share = Annotated[float, Field(gt=0, lt=1, strict=True)]
 
 
@@ -36,6 +37,30 @@ class ScheduleConfig(Section):
     kind: Literal["step", "cosine", "constant"] = "step"
     every_epochs: Count = 10
     factor: Annotated[float, Field(gt=0, le=1, strict=True)] = 0.1
+
+
+Fraction = Annotated[float, Field(ge=0, le=1, strict=True)]
+
+
+class AugmentConfig(Section):
+    """How far training images are changed, anew in every epoch; all 0 changes nothing.
+
+    Shifts are fractions of the image, either way; stretch and scale e^-x to e^x; contrast 1 - x to
+    1 + x about the brightest level, as another SNR has it; noise the largest share of pixels that
+    take the level of another place; morphology the probability of a dilation or an erosion by one
+    pixel; bands the most that are blanked, each at most `band_width` of the image.
+    """
+
+    time_shift: Fraction = 0.0
+    time_stretch: Fraction = 0.0
+    doppler_shift: Fraction = 0.0
+    doppler_scale: Fraction = 0.0
+    contrast: Fraction = 0.0
+    noise: Fraction = 0.0
+    morphology: Fraction = 0.0
+    time_bands: Annotated[int, Field(ge=0, le=16, strict=True)] = 0
+    doppler_bands: Annotated[int, Field(ge=0, le=16, strict=True)] = 0
+    band_width: Fraction = 0.1
 
 
 class TrainConfig(Section):
@@ -56,6 +81,9 @@ class TrainConfig(Section):
     warmup_epochs: Annotated[float, Field(ge=0, le=1e6, strict=True)] = 0.0
     gradient_clip_norm: Rate | None = None
     validation_share: Share = 0.2
+    data_weights: tuple[Weight, ...] | None = None
+    sampling: Literal["all", "balanced"] = "all"
+    augment: AugmentConfig = AugmentConfig()
     device: Literal["auto", "cpu", "cuda", "mps"] = "auto"
     precision: Literal["auto", "float32", "bfloat16"] = "auto"
     workers: Annotated[Auto, _auto_or(0)] = "auto"
@@ -65,4 +93,8 @@ class TrainConfig(Section):
     def _fits(self) -> "TrainConfig":
         if self.warmup_epochs > self.epochs:
             raise PydanticCustomError("warmup", "should have warmup_epochs of at most epochs")
+        if self.augment != AugmentConfig() and self.input != "gray":
+            raise PydanticCustomError(
+                "gray", "should have input: gray for augment, which changes grey levels"
+            )
         return self

@@ -55,7 +55,7 @@ class EvalOptions:
 class Run:
     name: str
     folder: Path
-    about: RunMetadata
+    metadata: RunMetadata
     model: nn.Module
     history: list[Epoch]
 
@@ -75,7 +75,7 @@ def open_eval_set(run: Run, path: Path, options: EvalOptions) -> EvalSet:
     Raises:
         FolderError: it does not fit the run.
     """
-    images = open_for(run.about, path, options.map, resize=options.resize, names=options.names)
+    images = open_for(run.metadata, path, options.map, resize=options.resize, names=options.names)
     return EvalSet(images, *rows_of(images, options.split))
 
 
@@ -87,24 +87,24 @@ def check_options(runs: Sequence[Run], options: EvalOptions) -> None:
     """
     ours = {activity.slug for activity in ACTIVITIES}
     for run in runs:
-        for name in run.about.classes:
+        for name in run.metadata.classes:
             if options.in_place_vs_moving and name not in ours:
                 raise RunError(
                     f"--in-place-vs-moving: {name!r} is none of the twelve activities; its group "
                     "is unknown"
                 )
-    if options.filters and not any(run.about.model == NAME for run in runs):
+    if options.filters and not any(run.metadata.model == NAME for run in runs):
         raise RunError("--filters: none of these networks has global filters; fftnet has six")
 
 
 def open_run(name: str, path: Path, device: torch.device) -> Run:
-    about, model = load_best(path)
+    metadata, model = load_best(path)
     folder = path if path.is_dir() else path.parent
     try:
         history = read_history(folder)
     except RunError:
         history = []  # weights alone, copied from elsewhere
-    return Run(name, path, about, model.to(device), history)
+    return Run(name, path, metadata, model.to(device), history)
 
 
 def evaluate_one(
@@ -117,8 +117,8 @@ def evaluate_one(
     device: torch.device,
 ) -> tuple[Predictions, dict[str, Any]]:
     images, rows, split = eval_set.images, eval_set.rows, eval_set.split
-    predictions = predict(run.model, run.about, images, rows, device, options.batch)
-    names, title = run.about.classes, f"{run.name} on {data_name}, {split}"
+    predictions = predict(run.model, run.metadata, images, rows, device, options.batch)
+    names, title = run.metadata.classes, f"{run.name} on {data_name}, {split}"
     numbers = metrics.summary(predictions.truth, predictions.probabilities, names)
     numbers["seen_in_training"] = _seen(run, images, rows)
     numbers |= {"split": split, "map": images.map, "snr_db": images.snr_db}

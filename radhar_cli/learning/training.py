@@ -2,7 +2,7 @@
 
 import math
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -15,15 +15,23 @@ from torch import nn
 from radhar_cli import __version__
 from radhar_cli.arrays import Float
 from radhar_cli.config.identity import resolved
-from radhar_cli.dataset.folder import locked
+from radhar_cli.dataset.folder import folder_lock
 from radhar_cli.errors import ConfigError, FolderError, RadharError
 from radhar_cli.learning import run_files
 from radhar_cli.learning import run_folder as run
-from radhar_cli.learning.batches import MIN_PER_PROCESS, Reader, epoch_batches, pieces
+from radhar_cli.learning.augmentation import Augmentation
+from radhar_cli.learning.batches import (
+    MIN_PER_PROCESS,
+    Reader,
+    epoch_batches,
+    epoch_order,
+    pieces,
+)
 from radhar_cli.learning.execution_plan import ExecutionPlan, choose_execution_plan
 from radhar_cli.learning.gradient_step import TrainStep, check_state, optimiser_for
 from radhar_cli.learning.images.classes import renamed
 from radhar_cli.learning.images.image_set import ImageSet
+from radhar_cli.learning.images.joined import joined, sampling_weights
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.scan import content_hash, scan
 from radhar_cli.learning.machine import choose_device, out_of_memory, repeatable
@@ -40,7 +48,9 @@ from radhar_cli.learning.process_group import (
 from radhar_cli.learning.run_folder import Epoch, RunMetadata, best_epoch
 from radhar_cli.learning.run_summary import write_run_summary
 from radhar_cli.learning.schedule import rate
-from radhar_cli.learning.settings import TrainConfig
+from radhar_cli.learning.settings import AugmentConfig, TrainConfig
+from radhar_cli.learning.starting_point import StartingPoint, start_from
+from radhar_cli.progress import Messages
 from radhar_cli.randomness import TRAINING, stream
 
 # Not part of the identity of a run; precision and micro batch enter as chosen (RunMetadata.work).
@@ -51,11 +61,8 @@ class TrainingError(RadharError):
     """A run that cannot go on; what the last epoch left is kept."""
 
 
-class Progress(Protocol):
-    """Receives progress of a training run."""
-
-    def say(self, message: str) -> None:
-        """Something the user should read."""
+class TrainingProgress(Messages, Protocol):
+    """Receives messages, and how far a training run is."""
 
     def epoch(self, number: int, epochs: int, steps: int) -> None:
         """An epoch begins."""
@@ -89,16 +96,26 @@ class Outcome:
 
 def train(
     config: TrainConfig,
-    data: Path,
+    data: Path | Sequence[Path],
     folder: Path,
-    progress: Progress,
+    progress: TrainingProgress,
     overwrite: bool = False,
     names: Mapping[str, str | None] | None = None,
+    start: Path | None = None,
 ) -> Outcome:
     """Train `config` on `data` in `folder`, go on with it, or find it done.
 
-    Under torchrun every process calls this; the first one writes. `names` are those that the
-    classes get, None to leave one out.
+    Under torchrun every process calls this; the first one writes.
+
+    Args:
+        config: what is learned, and how.
+        data: a data set, or several that are learned from as one.
+        folder: of the run.
+        progress: receives progress.
+        overwrite: start again in a folder that holds a run.
+        names: those that the classes get, None to leave one out.
+        start: a run whose best weights and normalisation are started from; the last layer too if
+            the classes are the same.
 
     Raises:
         FolderError: data that cannot be used.
@@ -111,22 +128,33 @@ def train(
     device = choose_device(config.device)
     repeatable(device)
     images = checked_images(config, data, names)
-    with process_group(device) as group, locked(folder) if group.is_main else nullcontext():
+    with process_group(device) as group, folder_lock(folder) if group.is_main else nullcontext():
         return _Training.prepared(
-            config, images, data, folder, device, group, progress, overwrite
+            config, images, folder, device, group, progress, overwrite, start
         ).run()
 
 
 def checked_images(
-    config: TrainConfig, path: Path, names: Mapping[str, str | None] | None = None
+    config: TrainConfig, data: Path | Sequence[Path], names: Mapping[str, str | None] | None = None
 ) -> ImageSet:
-    """Open a data set and make sure that it can be learned from.
+    """Open a data set, or several as one, and make sure that it can be learned from.
 
     Raises:
         FolderError: fewer than two classes, a class without training images, no validation images.
     """
-    images = renamed(open_images(path, config.map, config.input), names or {})
-    images = images.cut(config.validation_share, config.seed)
+    paths = [data] if isinstance(data, Path) else list(data)
+    if config.data_weights is not None and len(config.data_weights) != len(paths):
+        raise ConfigError(
+            f"data_weights = {list(config.data_weights)}: should have a weight for each of the "
+            f"{len(paths)} data sets"
+        )
+    sets = [
+        renamed(open_images(path, config.map, config.input), names or {}).cut(
+            config.validation_share, config.seed
+        )
+        for path in paths
+    ]
+    images, path = joined(sets), " and ".join(map(str, paths))
     if len(images.classes) < 2:
         raise FolderError(f"{path}: has the class {images.classes[0]!r} alone; should have two")
     learned = set(images.label[images.rows("train")].tolist())
@@ -141,11 +169,11 @@ def checked_images(
 class _Training:
     config: TrainConfig
     images: ImageSet
-    about: RunMetadata
+    metadata: RunMetadata
     folder: Path
     plan: ExecutionPlan
     group: Group
-    progress: Progress
+    progress: TrainingProgress
     model: nn.Module
     optimiser: torch.optim.Optimizer
     history: list[Epoch]
@@ -155,12 +183,12 @@ class _Training:
         cls,
         config: TrainConfig,
         images: ImageSet,
-        data: Path,
         folder: Path,
         device: torch.device,
         group: Group,
-        progress: Progress,
-        overwrite: bool,
+        progress: TrainingProgress,
+        overwrite: bool = False,
+        start: Path | None = None,
     ) -> "_Training":
         least = MIN_PER_PROCESS * group.size
         if config.batch_size < least:
@@ -170,23 +198,26 @@ class _Training:
             )
         torch.manual_seed(config.seed)
         model = build_model(config.model, len(images.classes), images.size)
+        started = None if start is None else start_from(start, model, config, images)
         plan = choose_execution_plan(config, device)
         if group.is_main:
             progress.say(f"reading {len(images)} images of {len(images.classes)} classes")
             for warning in _unbalanced(images):
                 progress.say(f"warning: {warning}")
-        about, digests = _metadata(config, images, data, plan, group)
+            for note in started.notes if started else ():
+                progress.say(note)
+        metadata, digests = _metadata(config, images, plan, group, started)
 
-        def claim() -> None:
-            run.claim_run(folder, about, overwrite)
+        def reserve() -> None:
+            run.reserve_run(folder, metadata, overwrite)
             _write_trained_on(folder, images, digests)
 
-        on_rank_zero(group, claim)
+        on_rank_zero(group, reserve)
         model.to(device)
         return cls(
             config=config,
             images=images,
-            about=about,
+            metadata=metadata,
             folder=folder,
             plan=plan,
             group=group,
@@ -215,9 +246,13 @@ class _Training:
         if self.group.is_main:
             self._announce(resumed)
         network = distributed(self.model, self.plan.device, self.group)
-        reader = Reader(
-            self.images, self.images.label, self.plan.workers, self.plan.device.type == "cuda"
+        change = (
+            Augmentation(self.config.augment, self.config.seed)
+            if self.config.augment != AugmentConfig()
+            else None
         )
+        pin = self.plan.device.type == "cuda"
+        reader = Reader(self.images, self.images.label, self.plan.workers, pin, change)
         for epoch in range(resumed, self.config.epochs):
             began = time.perf_counter()
             torch.manual_seed(self._epoch_seed(epoch))
@@ -236,7 +271,7 @@ class _Training:
 
     @property
     def _train_step(self) -> TrainStep:
-        return TrainStep(self.config, self.about.normalisation, self.plan, self.group)
+        return TrainStep(self.config, self.metadata.normalisation, self.plan, self.group)
 
     def _restore(self) -> int:
         found = run.read_last(self.folder)
@@ -244,7 +279,9 @@ class _Training:
             return 0
         path = self.folder / run_files.LAST
         try:
-            other = run.differences(RunMetadata.model_validate_json(found["about"]), self.about)
+            other = run.differences(
+                RunMetadata.model_validate_json(found["metadata"]), self.metadata
+            )
             if other:
                 raise run.RunError(f"{path}: is another run's; it differs in {other[0]}")
             self.history = run.checked_history([Epoch(**row) for row in found["history"]])
@@ -284,7 +321,7 @@ class _Training:
                     f"{error}; the weights of epoch {best.epoch} cannot be had again; --overwrite "
                     "starts the run again"
                 ) from None
-            run.write_best(self.folder, self.about, best, self.model.state_dict())
+            run.write_best(self.folder, self.metadata, best, self.model.state_dict())
 
     def _announce(self, resumed: int) -> None:
         plan, say, size = self.plan, self.progress.say, self.config.batch_size
@@ -311,14 +348,18 @@ class _Training:
         """One epoch of steps; returns mean loss and accuracy of what was seen on the way."""
         rows = self.images.rows("train")
         config, group = self.config, self.group
-        batches = epoch_batches(rows.size, config.batch_size, config.seed, epoch, group.size)
+        weights = sampling_weights(
+            self.images, rows, config.data_weights, config.sampling == "balanced"
+        )
+        order = epoch_order(weights, config.seed, epoch)
+        batches = epoch_batches(order, config.batch_size, group.size)
         if group.is_main:
             self.progress.epoch(epoch + 1, config.epochs, len(batches))
         mine = [rows[batch[group.rank :: group.size]] for batch in batches]
         network.train()
         train_step = self._train_step
         totals: Float = np.zeros(3)
-        for step, (levels, labels) in enumerate(reader(mine)):
+        for step, (levels, labels) in enumerate(reader(mine, epoch)):
             learning_rate = rate(config, epoch, step, len(batches))
             for parameters in self.optimiser.param_groups:
                 parameters["lr"] = learning_rate
@@ -372,11 +413,11 @@ class _Training:
         best = best_epoch(self.history) is row
         weights = self.model.state_dict()
         if best:
-            run.write_best(self.folder, self.about, row, weights)
+            run.write_best(self.folder, self.metadata, row, weights)
         run.write_last(
             self.folder,
             {
-                "about": self.about.model_dump_json(),
+                "metadata": self.metadata.model_dump_json(),
                 "model": weights,
                 "optimiser": self.optimiser.state_dict(),
                 "history": [asdict(r) for r in self.history],
@@ -387,19 +428,27 @@ class _Training:
         self.progress.epoch_done(row, best)
 
     def _finish(self) -> None:
-        write_run_summary(self.folder, self.about, self.history, self.model, self.plan, self.group)
+        write_run_summary(
+            self.folder, self.metadata, self.history, self.model, self.plan, self.group
+        )
 
 
 def _metadata(
-    config: TrainConfig, images: ImageSet, data: Path, plan: ExecutionPlan, group: Group
+    config: TrainConfig,
+    images: ImageSet,
+    plan: ExecutionPlan,
+    group: Group,
+    started: StartingPoint | None,
 ) -> tuple[RunMetadata, dict[int, str]]:
     """Metadata of the run, and the digest of every image by row."""
     rows = np.concatenate([images.rows("train"), images.rows("val")])
     learned, checked = scan(images, images.rows("train")), scan(images, images.rows("val"))
     digests = (*learned.digests, *checked.digests)
     mean, sd = learned.mean, learned.sd
+    if started is not None:
+        mean, sd = started.normalisation.mean, started.normalisation.sd
     kept = {k: v for k, v in resolved(config).items() if k not in NOT_IDENTITY}
-    about = RunMetadata(
+    metadata = RunMetadata(
         model=config.model,
         classes=images.classes,
         size=images.size,
@@ -409,7 +458,7 @@ def _metadata(
         sd=(sd[0], sd[1], sd[2]),
         config=kept,
         data={
-            "path": str(data),
+            "path": str(images.where),
             "hash": content_hash(images, rows, digests),
             "train": len(learned.digests),
             "val": len(checked.digests),
@@ -418,10 +467,11 @@ def _metadata(
             "precision": plan.precision_name,
             "micro_batch": plan.micro_batch,
             "processes": group.size,
+            **({"start": started.sha256} if started else {}),
         },
         versions={"radhar": __version__, "torch": torch.__version__, "numpy": np.__version__},
     )
-    return about, dict(zip(rows.tolist(), digests, strict=True))
+    return metadata, dict(zip(rows.tolist(), digests, strict=True))
 
 
 def _write_trained_on(folder: Path, images: ImageSet, digests: dict[int, str]) -> None:

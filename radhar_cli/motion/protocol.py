@@ -14,7 +14,8 @@ class Motion(Protocol):
         parents: number of the scatterer that each one hangs on, None for a root; for drawings.
         breakpoints: instants (s) at which a position, or a derivative that matters, jumps.
         highest_frequency: fundamental of the fastest movement, Hz.
-        phases: (start in s, name) of the movements within it, in their order; may be empty.
+        phases: (start in s, name) of the movements within it, in their order; may be empty. Names
+            of `motion.phases.PHASES` where they fit.
     """
 
     @property

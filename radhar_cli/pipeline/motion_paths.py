@@ -7,6 +7,7 @@ import numpy as np
 from radhar_cli.arrays import Float
 from radhar_cli.echo.paths import Paths, PathSource
 from radhar_cli.motion.protocol import Motion
+from radhar_cli.motion.reflectors import Reflectors
 from radhar_cli.radar.propagation import Antennas, amplitude, bistatic_delay, leg
 from radhar_cli.radar.transmission import transmission, wall_delay
 from radhar_cli.radar.wall import Wall
@@ -24,7 +25,7 @@ class MotionPaths:
         wall: the slab between, or None.
     """
 
-    motion: Motion
+    motion: Motion | Reflectors
     antennas: Antennas
     fc: float
     wall: Wall | None

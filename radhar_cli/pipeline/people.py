@@ -13,7 +13,7 @@ import numpy as np
 
 from radhar_cli.activity import MOVEMENTS
 from radhar_cli.arrays import Float
-from radhar_cli.config.schema import MotionConfig, SubjectConfig
+from radhar_cli.config.schema import MotionConfig, SequenceConfig, SubjectConfig
 from radhar_cli.motion.human.falling import FallBackward, FallForward
 from radhar_cli.motion.human.falling_sideways import FallSideways
 from radhar_cli.motion.human.getting_up import GetUp
@@ -30,6 +30,7 @@ from radhar_cli.motion.human.idle import (
     spread_phases,
 )
 from radhar_cli.motion.human.kicking import Kick
+from radhar_cli.motion.human.lane import Lane
 from radhar_cli.motion.human.motion import HumanMotion, Movement
 from radhar_cli.motion.human.part import Place
 from radhar_cli.motion.human.person import Person
@@ -45,12 +46,21 @@ from radhar_cli.scene import Scene
 
 M = TypeVar("M", SitDown, StandUp, GetUp, StepTo, FallForward, FallBackward, FallSideways)
 
-# How far a walk overlaps another movement at most, over the latter's duration: low down, no legs
-# are long enough for a step.
-MOST_OVERLAP = 0.3
 RAGGED_HZ = (0.1, 0.25, 0.4)
 SHORTEST_STRIDE = 0.5  # s
 SHUFFLE = 0.9  # s
+STEP_S, STEP_LIFT = 0.7, 0.06  # s, m
+# How many of the steps before and after go ahead, the others backwards; None for no step. People
+# feel for the chair, and leave it.
+STEPS = {"sitting_down": (0.0, None), "standing_up": (None, 1.0), "grabbing": (0.8, 0.4)}
+SETTLING = 4  # fidgets after such a movement
+# Gestures at a settling of size 1: channel, rad, whether after the movement's end or its beginning,
+# from when on and for how long, s. Who stands up rocks back first; what was picked up is looked at.
+GESTURES = {
+    "sitting_down": (),
+    "standing_up": (("pitch", -0.05, False, -0.6, 0.5), ("pitch", 0.0, False, -0.1, 0.5)),
+    "grabbing": (("right_elbow", 0.4, True, -1.1, 0.8), ("right_elbow", 0.0, True, 0.4, 0.8)),
+}
 # Standard deviation of a fidget of size 1, m or rad; and of a shuffle, m and rad.
 FIDGET_SIZES = {
     "shift": 0.025,
@@ -80,7 +90,7 @@ def human_motion(scene: Scene) -> HumanMotion:
         heading=radians(_f(motion.angle_deg)),
         begin=_begin(scene),
         horizon=_f(config.duration_s),
-        idle=_idle(scene, person),
+        idle=_idle(scene, person, movements),
         pauses=pauses,
     )
 
@@ -136,23 +146,42 @@ def _what(scene: Scene) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
     movements = can.activity(scene.activity.number)
     if slug == "stationary":
         return _shuffling(scene, (Stand(0.0),), 0.0)
-    if slug == "grabbing":
-        length = can.grab.down + can.grab.dwell + can.grab.up
-        return _shuffling(scene, movements, _begin(scene) + length)
+    if slug in STEPS:
+        movements = _stepping(scene, movements)
+        rest = _ends(movements, _begin(scene)) if slug == "grabbing" else inf
+        return _shuffling(scene, movements, rest)
     pause = -_f(timing.overlap_s)
     if slug in ("sitting_to_walking", "falling_to_walking") and timing.walk_start_s is not None:
         risen = _begin(scene) + _f(duration)
         pause = _f(timing.walk_start_s) - risen
-    if duration is not None:
-        pause = max(pause, -MOST_OVERLAP * _f(duration))
-    if isinstance(movements[-1], FallSideways):
-        pause = 0.0  # only movements on planted feet overlap a walk
     return movements, (0.0, pause) if len(movements) > 1 else ()
+
+
+def _stepping(scene: Scene, movements: tuple[Movement, ...]) -> tuple[Movement, ...]:
+    """Movements and the steps before and after them, `motion.step_m` long."""
+    length, rng = _f(scene.config.motion.step_m), _draws(scene, "motion.step_m/ways")
+    if not length:
+        return movements
+    steps: list[tuple[Movement, ...]] = []
+    for ahead in STEPS[scene.activity.slug]:
+        way, left = 1 if rng.random() < (ahead or 0.0) else -1, np.clip(rng.normal(), -2, 2)
+        place = Place(way * length, float(SHUFFLE_SIZES.left * left))
+        one = StepTo(STEP_S + 0.5 * length, place, lift=STEP_LIFT)
+        steps.append(() if ahead is None else (one,))
+    return (*steps[0], *movements, *steps[1])
+
+
+def _ends(movements: Iterable[Movement], begin: float) -> float:
+    """When movements that follow each other from `begin` (s) on have come to rest, s."""
+    for movement in movements:
+        begin = movement.part(Person(1.7), begin, begin).end
+    return begin
 
 
 def _sequence(scene: Scene) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
     """The movements of a class of `classes:`."""
     one = scene.config.classes[scene.activity.slug]
+    assert isinstance(one, SequenceConfig)
     movements: list[Movement] = []
     for place, (name, given) in enumerate(zip(one.sequence, one.durations_s, strict=True)):
         usual = MOVEMENTS[name].seconds
@@ -188,10 +217,16 @@ def _repertoire(scene: Scene, duration: float | None, place: int = 0) -> Reperto
             up=moving * 1.3 / 2.5,
             thigh=radians(-62) * bend / 72,
             trunk=radians(bend),
+            squat=_f(motion.squat),
         ),
         sit_down=_lasting(duration, SitDown(seat=seat, rise=rise)),
         stand_up=_lasting(duration, StandUp(seat=seat, rise=rise)),
-        turn=Turn(frequency=_f(motion.rotation_hz), angle=radians(_f(motion.turn_deg))),
+        turn=Turn(
+            frequency=_f(motion.rotation_hz),
+            angle=radians(_f(motion.turn_deg)),
+            paces=_some(paces),
+            sizes=_some(sizes),
+        ),
         fall=_fall(scene, duration),
         get_up=_lasting(duration, GetUp()),
         turn_around=_lasting(duration, AROUND),
@@ -205,7 +240,7 @@ def _lasting(duration: float | None, movement: M) -> M:
 
 def _fall(scene: Scene, duration: float | None) -> FallForward | FallBackward | FallSideways:
     if scene.config.motion.fall == "forward":
-        return _lasting(duration, FallForward())
+        return _lasting(duration, FallForward(kneel=_f(scene.config.motion.kneel_s)))
     if scene.config.motion.fall == "backward":
         return _lasting(duration, FallBackward())
     left = _draws(scene, "motion.fall/side").random() < 0.5
@@ -230,7 +265,18 @@ def _gait(scene: Scene, place: int) -> Gait:
         ragged=_waves(motion, _f(motion.ragged_speed), RAGGED_HZ, 0.7),
         jitter=_some(np.clip(jitter, -0.03, 0.03)),
         widths=_some(np.clip(_f(motion.width_jitter_m) * widths, -0.02, 0.03)),
+        lane=_lane(scene, place),
     )
+
+
+def _lane(scene: Scene, place: int) -> Lane | None:
+    """How far people walk before they turn round, of which a part may lie behind them."""
+    motion = scene.config.motion
+    if not (length := _f(motion.lane_m)):
+        return None
+    left = _draws(scene, f"motion.lane_m/side/{place}").random() < 0.5
+    first = (1 - _f(motion.lane_start)) * length
+    return Lane(length, first, side=1.0 if left else -1.0)
 
 
 def _some(numbers: Float) -> tuple[float, ...]:
@@ -254,7 +300,7 @@ def _waves(motion: MotionConfig, deviation: float, rates: Iterable[float], first
     return Waves.low_pass(deviation, tuple(phases % (2 * pi)), f) if deviation else Waves()
 
 
-def _idle(scene: Scene, person: Person) -> Idle:
+def _idle(scene: Scene, person: Person, movements: tuple[Movement, ...]) -> Idle:
     subject: SubjectConfig = scene.config.subject
     motion = scene.config.motion
     since = _f(motion.idle_from_s)
@@ -271,7 +317,7 @@ def _idle(scene: Scene, person: Person) -> Idle:
         pulse=pulse,
         pulse_phase=2 * pi * (pulse * since % 1),
     )
-    return Idle(person, sway, breath, tuple(_fidgets(scene)))
+    return Idle(person, sway, breath, (*_fidgets(scene), *_settling(scene, movements)))
 
 
 def _instants(scene: Scene, rate: float, name: str, start: float) -> list[float]:
@@ -287,17 +333,44 @@ def _fidgets(scene: Scene) -> Iterable[Fidget]:
     motion = scene.config.motion
     rng = _draws(scene, "motion.fidget_size")
     for at in _instants(scene, _f(motion.fidget_hz), "motion.fidget_hz/times", -1.0):
-        channel = FIDGETS[rng.integers(len(FIDGETS))]
-        to = _f(motion.fidget_size) * FIDGET_SIZES[channel] * np.clip(rng.standard_normal(), -2, 2)
-        if channel.endswith("elbow"):
-            to = abs(to)  # no arm bends backwards
-        yield Fidget(channel, float(to), at, float(rng.uniform(0.5, 1.8)))
+        yield _fidget(rng, _f(motion.fidget_size), at, (0.5, 1.8))
+
+
+def _settling(scene: Scene, movements: tuple[Movement, ...]) -> Iterable[Fidget]:
+    """Small movements around the end of S4 to S6, and of who looks behind before sitting down."""
+    motion, slug = scene.config.motion, scene.activity.slug
+    if slug not in STEPS:
+        return
+    begin = _begin(scene)
+    if slug == "sitting_down" and (look := radians(_f(motion.look_deg))):
+        yield Fidget("yaw", look, begin - 0.3, 0.7)
+        yield Fidget("yaw", 0.0, begin + 0.7, 0.9)
+    if size := _f(motion.settle_size):
+        rng = _draws(scene, "motion.settle_size/fidgets")
+        count = next(n for n, one in enumerate(movements, 1) if not isinstance(one, StepTo))
+        end = _ends(movements[:count], begin)
+        for channel, to, after, start, length in GESTURES[slug]:
+            yield Fidget(channel, size * to, (end if after else begin) + start, length)
+        for at in sorted(end + rng.uniform(-0.8, 1.2, SETTLING)):
+            yield _fidget(rng, size, float(at), (0.4, 1.0))
+
+
+def _fidget(
+    rng: np.random.Generator, size: float, at: float, lengths: tuple[float, float]
+) -> Fidget:
+    channel = FIDGETS[rng.integers(len(FIDGETS))]
+    to = size * FIDGET_SIZES[channel] * np.clip(rng.standard_normal(), -2, 2)
+    if channel.endswith("elbow"):
+        to = abs(to)  # no arm bends backwards
+    return Fidget(channel, float(to), at, float(rng.uniform(*lengths)))
 
 
 def _shuffling(
     scene: Scene, movements: tuple[Movement, ...], rest: float
 ) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
     """Movements that end standing at `rest` (s), and after them steps to other stances."""
+    if rest == inf:
+        return movements, ()
     rng, more, pauses = _draws(scene, "motion.shuffle_hz/places"), [], []
     for at in _instants(scene, _f(scene.config.motion.shuffle_hz), "motion.shuffle_hz/times", rest):
         place = Place(*(np.array(SHUFFLE_SIZES) * np.clip(rng.standard_normal(3), -2, 2)).tolist())

@@ -2,21 +2,40 @@
 
 from dataclasses import fields
 from math import radians
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
+from radhar_cli.arrays import Float
+from radhar_cli.config.number import support
 from radhar_cli.config.schema import Config
 from radhar_cli.motion.paper.activities import Gait, Timing
 from radhar_cli.motion.paper.body import PaperBody
-from radhar_cli.motion.protocol import Motion
+from radhar_cli.motion.protocol import Motion, Only
+from radhar_cli.motion.reflectors import TONES, Reflectors
+from radhar_cli.motion.segments import found_segments, landmarks_of, thickness
+from radhar_cli.pipeline.motion_files import file_motion
 from radhar_cli.pipeline.people import human_motion
-from radhar_cli.processing.canceller import FIRST_DIFFERENCE, NO_CANCELLER, Canceller
+from radhar_cli.pipeline.segment_paths import Body
+from radhar_cli.processing.canceller import (
+    FIRST_DIFFERENCE,
+    NO_CANCELLER,
+    Canceller,
+    HighPass,
+    MeanRemoval,
+)
+from radhar_cli.processing.cfar import CellAveraging
 from radhar_cli.processing.frames import Frames
+from radhar_cli.processing.gate import Gate, around, interval
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.randomness import NOISE, stream
+from radhar_cli.receiver.flicker import FlickerNoise
+from radhar_cli.receiver.impairment import Impairment
+from radhar_cli.receiver.interference import Line
+from radhar_cli.receiver.noise import WhiteNoise
+from radhar_cli.rounding import half_up
 from radhar_cli.scene import Scene
 
 
@@ -79,10 +98,52 @@ def wall_of(config: Config) -> Wall | None:
 
 
 def motion_of(scene: Scene) -> Motion:
-    """The motion of a scene: the activity's own, or that of the model in `motion:`."""
+    """The motion of a scene: the activity's own, from its files, or of the model in `motion:`."""
     if scene.activity.motion is not None:
         return scene.activity.motion(scene)
+    if scene.config.files_of(scene.activity) is not None:
+        return file_motion(scene)
     return human_motion(scene) if scene.config.motion.model == "human" else _paper_body(scene)
+
+
+def body_of(scene: Scene, motion: Motion) -> Body:
+    """The person of a scene who moves like this, with such segments as the joints have."""
+    whole = motion.motion if isinstance(motion, Only) else motion
+    subject = scene.config.subject
+    stature, weight = _fixed(subject.height_m), _fixed(subject.weight_kg)
+    return Body(whole, found_segments(landmarks_of(whole)), stature, thickness(stature, weight))
+
+
+def reflectors_of(scene: Scene) -> Reflectors | None:
+    """What stands in the room of a scene, if anything does."""
+    config, each = scene.config, scene.config.room.reflectors
+    if not each:
+        return None
+    antennas = antennas_of(config)
+    rng = noise_stream(scene, "room.reflectors")
+    return Reflectors(
+        places=np.array([_vector(one.position_m) for one in each]),
+        rcs=10 ** (np.array([_fixed(one.rcs_dbsm) for one in each]) / 10),
+        sd=np.array([_fixed(one.residual_m) for one in each]),
+        fastest=np.array([_fixed(one.highest_hz) for one in each]),
+        fractions=rng.random((len(each), TONES)),
+        phases=rng.random((len(each), TONES)),
+        towards=(np.array(antennas.tx) + np.array(antennas.rx)) / 2,
+    )
+
+
+def impairments_of(scene: Scene, noise: WhiteNoise) -> tuple[Impairment, ...]:
+    """What a receiver adds to white noise."""
+    receiver, found = scene.config.receiver, list[Impairment]()
+    given = (noise.waveform, noise.stream)
+    corner = _fixed(receiver.noise_corner_hz)
+    if corner > 0:
+        slope = _fixed(receiver.noise_slope_db)
+        found.append(FlickerNoise(noise.sigma, *given, corner, slope))
+    for number, line in enumerate(receiver.lines):
+        amplitude = noise.sigma * 10 ** (_fixed(line.level_db) / 20)
+        found.append(Line(amplitude, _fixed(line.doppler_hz), *given, f"line {number}"))
+    return tuple(found)
 
 
 def _paper_body(scene: Scene) -> PaperBody:
@@ -107,15 +168,74 @@ def _paper_body(scene: Scene) -> PaperBody:
     )
 
 
-def canceller_of(config: Config) -> Canceller:
-    """The canceller of a config."""
-    return FIRST_DIFFERENCE if config.processing.mti else NO_CANCELLER
+def canceller_of(config: Config, prf: float, f0: float) -> Canceller:
+    """The canceller of a config, for pulses per second and the frequency of the Doppler (Hz)."""
+    given = config.processing.highpass
+    match config.processing.clutter:
+        case "difference":
+            return FIRST_DIFFERENCE
+        case "mean":
+            return MeanRemoval()
+        case "none":
+            return NO_CANCELLER
+    if given.cutoff_fraction is not None:
+        cutoff = given.cutoff_fraction
+    elif given.cutoff_hz is not None:
+        cutoff = 2 * given.cutoff_hz / prf
+    else:
+        assert given.cutoff_mps is not None
+        cutoff = 4 * given.cutoff_mps * f0 / SPEED_OF_LIGHT / prf
+    return HighPass(given.order, cutoff, given.zero_phase, given.remove_mean)
+
+
+def gate_of(config: Config, ranges: Float, torso: Float | None) -> Gate:
+    """The gate of a config.
+
+    Args:
+        config: of a scene, or of the processing of a recording.
+        ranges: of the range bins, m.
+        torso: range of the torso in the middle of every frame [frames], m; None of a gate that
+            does not follow it.
+    """
+    within = config.processing.gate_m
+    if isinstance(within, tuple):
+        return interval(*within, ranges)
+    assert torso is not None
+    return around(torso, within, ranges)
+
+
+def most_samples(config: Config) -> int:
+    """Length of the longest slow-time signal after the canceller that a config draws."""
+    pulses = half_up(support(config.duration_s)[1], support(config.radar.prf_hz)[1])
+    return pulses - 1 if config.processing.clutter == "difference" else pulses
+
+
+def cfar_of(config: Config) -> CellAveraging:
+    """The CFAR of a scene's config."""
+    cfar = config.image.cfar
+    kinds: tuple[tuple[Any, Literal["pfa", "factor", "db"]], ...] = (
+        (cfar.pfa, "pfa"),
+        (cfar.factor, "factor"),
+        (cfar.threshold_db, "db"),
+    )
+    value, threshold = next((number, kind) for number, kind in kinds if number is not None)
+    return CellAveraging(
+        guard=cfar.guard,
+        training=cfar.training,
+        threshold=threshold,
+        value=_fixed(value),
+        decibel=cfar.on == "decibel",
+        floor_db=_fixed(cfar.floor_db),
+        wrap=cfar.edges == "wrap",
+    )
 
 
 def frames_of(config: Config, duration: float, prf: float) -> Frames:
-    """The frames of the STFT, whose window is a share of the recording (s, pulses per s)."""
-    share, overlap = config.processing.window_fraction, config.processing.overlap_fraction
-    return Frames.of(share, overlap, duration, prf)
+    """The frames of the STFT in a recording (s, pulses per s)."""
+    processing = config.processing
+    if processing.window_s is not None:
+        return Frames.of(processing.window_s, processing.overlap_fraction, 1.0, prf)
+    return Frames.of(processing.window_fraction, processing.overlap_fraction, duration, prf)
 
 
 def fsst_frames_of(config: Config, duration: float, prf: float) -> Frames:

@@ -2,13 +2,15 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from time import perf_counter
+from time import process_time
 from typing import Any
 
 from radhar_cli.config.schema import Config
-from radhar_cli.pipeline.physics import frames_of, fsst_frames_of
+from radhar_cli.pipeline.physics import canceller_of, cfar_of, frames_of, fsst_frames_of
 from radhar_cli.pipeline.plan import Plan, Product, plan
 from radhar_cli.pipeline.products import products
+from radhar_cli.processing.range_compression import half_band_signal
+from radhar_cli.processing.range_signals import RangeSignals
 from radhar_cli.processing.signal import Signal
 from radhar_cli.scene import Scene
 
@@ -19,7 +21,7 @@ class Recording:
 
     Attributes:
         products: {name: product}, those asked for.
-        seconds: {name: time it took}.
+        seconds: {name: processor time it took}.
     """
 
     products: dict[str, Any] = field(default_factory=dict)
@@ -33,9 +35,9 @@ def run(steps: Plan, given: Mapping[str, Any]) -> Recording:
     """Make the products of a plan from those that are given."""
     there, recording = dict(given), Recording()
     for product in steps.products:
-        start = perf_counter()
+        start = process_time()
         there[product.name] = product.make(*(there[need] for need in product.needs))
-        recording.seconds[product.name] = perf_counter() - start
+        recording.seconds[product.name] = process_time() - start
         for name in steps.released_after[product.name]:
             del there[name]
     recording.products = {name: there[name] for name in steps.asked}
@@ -58,25 +60,35 @@ def record(
 
 
 def process(
-    signal: Signal,
+    signal: Signal | RangeSignals,
     config: Config,
     asked: Iterable[str],
     more: Iterable[Product] = (),
     **given: Any,
 ) -> Recording:
-    """Make products of a signal after the canceller that somebody recorded.
+    """Make products of a signal after the canceller, or range bins before it, that were recorded.
 
-    As `record`, without a scene. Compensated maps need `torso_track=`, its delay [M] in s.
+    As `record`, without a scene. Compensated maps need `torso_track=`, its delay [M] in s, and so
+    does a gate that follows the torso.
 
     Raises:
         KeyError: a product would need a scene.
     """
-    duration = signal.x.size / signal.prf
-    frames = {
+    duration = signal.x.shape[-1] / signal.prf
+    given = {
         "frames": frames_of(config, duration, signal.prf),
         "fsst_frames": fsst_frames_of(config, duration, signal.prf),
+        "canceller": canceller_of(config, signal.prf, signal.f0),
+        **given,
     }
-    return _made(config, asked, more, {"signal": signal, **frames, **given})
+    if config.image.kind == "cfar":
+        given.setdefault("cfar", cfar_of(config))
+    if isinstance(signal, Signal):
+        return _made(config, asked, more, {"signal": signal, **given})
+    after = signal.cancelled(given["canceller"])
+    half_band = Signal(half_band_signal(after.x), after.t0, after.prf, after.f0)
+    bins = {"signal": half_band, "range_signals": after, "range_axis": signal.ranges}
+    return _made(config, asked, more, {**bins, **given})
 
 
 def _made(

@@ -12,22 +12,33 @@ from radhar_cli.arrays import Float, Index
 from radhar_cli.config.checks import timing_warnings
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import SceneError
+from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.motion.human.two_link import OutOfReachError
 from radhar_cli.motion.protocol import Motion
-from radhar_cli.pipeline.motion_paths import through_wall_delay
-from radhar_cli.pipeline.physics import antennas_of, motion_of, wall_of, waveform_of
+from radhar_cli.pipeline.motion_paths import point_delay, through_wall_delay
+from radhar_cli.pipeline.physics import (
+    antennas_of,
+    body_of,
+    motion_of,
+    reflectors_of,
+    wall_of,
+    waveform_of,
+)
+from radhar_cli.pipeline.segment_paths import Body
 from radhar_cli.radar.propagation import Antennas, bistatic_delay, leg
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.scene import Scene, draw_scene
 
 MIN_DISTANCE_M = 0.05
+REACH_M = 1.0  # no segment reaches farther from its joints
 GRID_HZ = 50.0
 GRID_PER_CYCLE = 40
 ANTENNA_KEYS = {"transmitter": "radar.tx_m", "receiver": "radar.rx_m"}
 MAX_ATTEMPTS = 1000
 CHUNK = 65536
 GRID_CHUNK = 16384
+FLOOR_MARGIN_M = 1e-3  # rounding, and the paper's ankles in the floor
 
 
 class Flags(IntFlag):
@@ -37,6 +48,9 @@ class Flags(IntFlag):
     HALF_BAND = 2
     ALIASING = 4
     FALLBACK = 8
+    FLOOR = 16
+    GATE = 32
+    RUNS_OUT = 64
 
 
 _WORDING = {
@@ -44,6 +58,10 @@ _WORDING = {
     Flags.HALF_BAND: "a scatterer leaves the range half-band and its echo the kept bins",
     Flags.ALIASING: "a joint moves faster than the Doppler PRF/2 and aliases",
     Flags.FALLBACK: "computed by the cube (engine.fallback)",
+    Flags.FLOOR: "a scatterer goes below the floor",
+    Flags.GATE: "the torso leaves the ranges of processing.gate_m",
+    Flags.RUNS_OUT: "the motion file ends before the recording while a joint moves; "
+    "joints go on at their last velocities (past_end: rest slows down instead; duration_s)",
 }
 
 
@@ -63,7 +81,7 @@ class SceneCheck:
     Attributes:
         closest: nearest passage, exact wherever it is below 5 cm.
         flags: WALL, a scatterer is inside the wall; HALF_BAND, a delay lies beyond the kept range
-            bins; ALIASING, a Doppler lies beyond PRF/2.
+            bins; ALIASING, a Doppler lies beyond PRF/2; FLOOR, a height is below 0.
     """
 
     closest: Approach
@@ -108,25 +126,45 @@ def _check(scene: Scene, motion: Motion) -> SceneCheck:
     rate = max(GRID_HZ, GRID_PER_CYCLE * motion.highest_frequency)
     step = max(1, int(waveform.prf / rate))
     pulses = np.append(np.arange(0, waveform.n_pulses - 1, step), waveform.n_pulses - 1)
+    body = body_of(scene, motion) if scene.config.body.scatterers == "segments" else None
     blocks = [  # consecutive ones share a pulse, so that no step between two is missed
-        _check_block(motion, antennas, wall, waveform, pulses[first : first + GRID_CHUNK + 1])
+        _check_block(motion, body, antennas, wall, waveform, pulses[first : first + GRID_CHUNK + 1])
         for first in range(0, pulses.size - 1, GRID_CHUNK)
     ]
-    flags = Flags(0)
+    runs_out = isinstance(motion, FileMotion) and motion.runs_out
+    flags = Flags.RUNS_OUT if runs_out else Flags(0)
     for block in blocks:
         flags |= block.flags
-    return SceneCheck(min(block.closest for block in blocks), flags)
+    processing = scene.config.processing
+    if processing.doppler == "gate" and isinstance(processing.gate_m, tuple):
+        low, high = processing.gate_m
+        torso = point_delay(motion.torso(waveform.times(pulses.astype(float))), antennas, wall)
+        distance = torso * (SPEED_OF_LIGHT / 2)
+        if distance.min() < low or distance.max() > high:
+            flags |= Flags.GATE
+    closest = min(block.closest for block in blocks)
+    room = reflectors_of(scene)
+    if room is not None:  # what is nearly still needs to be looked at once
+        p, start = room.positions(np.zeros(1)), np.zeros(1)
+        names, legs = room.names, (leg(p, antennas.tx), leg(p, antennas.rx))
+        closest = min(closest, _nearest(names, start, *legs))
+    return SceneCheck(closest, flags)
 
 
 def _check_block(
-    motion: Motion, antennas: Antennas, wall: Wall | None, waveform: Waveform, pulses: Index
+    motion: Motion,
+    body: Body | None,
+    antennas: Antennas,
+    wall: Wall | None,
+    waveform: Waveform,
+    pulses: Index,
 ) -> SceneCheck:
     """`check_scene` at some pulses of the grid."""
     t = waveform.times(pulses.astype(float))
     p = motion.positions(t)
     r_tx, r_rx = leg(p, antennas.tx), leg(p, antennas.rx)
     tau = bistatic_delay(r_tx, r_rx)
-    flags = Flags(0)
+    flags = Flags.FLOOR if p[2].min() < -FLOOR_MARGIN_M else Flags(0)
     if wall is not None:
         tau += through_wall_delay(p, antennas, wall)
         if wall.contains(p).any():
@@ -136,8 +174,11 @@ def _check_block(
     doppler = np.abs(np.diff(tau, axis=1)).max(axis=0, initial=0.0) / np.maximum(np.diff(t), 1e-300)
     if doppler.max(initial=0.0) * waveform.f0 > waveform.prf / 2:
         flags |= Flags.ALIASING
-    near = _nearest(motion, t, r_tx, r_rx)
-    return SceneCheck(_closest(motion, antennas, waveform, p, pulses, near), flags)
+    near = _nearest(motion.names, t, r_tx, r_rx)
+    near = _closest(motion, antennas, waveform, p, pulses, near)
+    if body is not None and body.segments and near.distance < REACH_M * body.thickness:
+        near = min(near, _nearest_segment(body, antennas, t))
+    return SceneCheck(near, flags)
 
 
 def _closest(
@@ -157,15 +198,25 @@ def _closest(
     for start in range(pulses[0], pulses[-1] + 1, CHUNK):
         t = waveform.times(np.arange(start, min(start + CHUNK, pulses[-1] + 1), dtype=float))
         p = motion.positions(t)
-        near = min(near, _nearest(motion, t, leg(p, antennas.tx), leg(p, antennas.rx)))
+        near = min(near, _nearest(motion.names, t, leg(p, antennas.tx), leg(p, antennas.rx)))
     return near
 
 
-def _nearest(motion: Motion, t: Float, r_tx: Float, r_rx: Float) -> Approach:
+def _nearest(names: tuple[str, ...], t: Float, r_tx: Float, r_rx: Float) -> Approach:
     candidates = []
     for name, r in (("transmitter", r_tx), ("receiver", r_rx)):
         joint, at = divmod(int(np.argmin(r)), t.size)
-        candidates.append(Approach(float(r[joint, at]), motion.names[joint], name, float(t[at])))
+        candidates.append(Approach(float(r[joint, at]), names[joint], name, float(t[at])))
+    return min(candidates)
+
+
+def _nearest_segment(body: Body, antennas: Antennas, t: Float) -> Approach:
+    candidates = []
+    for name, antenna in (("transmitter", antennas.tx), ("receiver", antennas.rx)):
+        way = body.clearance(antenna, t)
+        segment, at = divmod(int(np.argmin(way)), t.size)
+        found = max(float(way[segment, at]), 0.0)
+        candidates.append(Approach(found, body.segments[segment].name, name, float(t[at])))
     return min(candidates)
 
 
@@ -213,7 +264,7 @@ def warnings(config: Config, counts: Mapping[Flags, int]) -> list[dict[str, Any]
         config: of the run.
         counts: how many of its recordings have each flag.
     """
-    recordings = len(config.chosen_activities) * config.samples_per_class
+    recordings = sum(map(config.samples_of, config.chosen_activities))
     found: list[dict[str, Any]] = [
         {
             "kind": str(flag.name).lower(),
@@ -224,6 +275,7 @@ def warnings(config: Config, counts: Mapping[Flags, int]) -> list[dict[str, Any]
         if n
     ]
     return found + [
-        {"kind": "timing", "recordings": config.samples_per_class, "message": message}
-        for message in timing_warnings(config)
+        {"kind": "timing", "recordings": config.samples_of(activity), "message": message}
+        for activity in config.chosen_activities
+        for message in timing_warnings(config, (activity,))
     ]

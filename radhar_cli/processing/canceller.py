@@ -1,5 +1,10 @@
-"""Cancellers of what stands still: moving target indication (paper, first equation of "RTM")."""
+"""Cancellers of what stands still: moving target indication (paper, first equation of "RTM").
 
+A canceller is anything linear along slow time. It commutes with range compression and with the sum
+over bins, so that it may be applied to whichever of them is at hand.
+"""
+
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,9 +12,36 @@ import numpy as np
 from radhar_cli.arrays import Complex
 
 
+class Canceller(ABC):
+    """Takes a signal [..., M] to one [..., M - lost], the last axis being the pulses.
+
+    Where it is not a `Fir`, an output depends on the whole recording, no pulse is lost, and its
+    gain is at most 1: sum |y|^2 <= sum |s|^2. An error before it then bounds the error after it.
+    """
+
+    @property
+    def lost(self) -> int:
+        """Pulses by which the output is shorter than the input."""
+        return 0
+
+    @property
+    def delay(self) -> float:
+        """Pulse intervals by which an output lies after its first pulse."""
+        return self.lost / 2
+
+    @property
+    @abstractmethod
+    def removes_static(self) -> bool:
+        """Whether nothing at all is left of a constant."""
+
+    @abstractmethod
+    def __call__(self, s: Complex) -> Complex:
+        """[..., M] -> [..., M - lost]."""
+
+
 @dataclass(frozen=True)
-class Canceller:
-    """y[..., m] = sum_k taps[k] s[..., m + k], the last axis being the pulses.
+class Fir(Canceller):
+    """y[..., m] = sum_k taps[k] s[..., m + k].
 
     Attributes:
         taps: earliest pulse first; (-1, 1) is the first difference, (1, -2, 1) the three-pulse
@@ -20,16 +52,13 @@ class Canceller:
 
     @property
     def lost(self) -> int:
-        """Pulses by which the output is shorter than the input."""
         return len(self.taps) - 1
 
     @property
-    def delay(self) -> float:
-        """Pulse intervals by which an output lies after its first pulse: the middle of the taps."""
-        return self.lost / 2
+    def removes_static(self) -> bool:
+        return sum(self.taps) == 0
 
     def __call__(self, s: Complex) -> Complex:
-        """[..., M] -> [..., M - lost]."""
         if self.taps == (1,):
             return s
         if self.taps == (-1, 1):
@@ -41,5 +70,50 @@ class Canceller:
         return y
 
 
-FIRST_DIFFERENCE = Canceller((-1, 1))
-NO_CANCELLER = Canceller((1,))
+FIRST_DIFFERENCE = Fir((-1, 1))
+NO_CANCELLER = Fir((1,))
+
+
+@dataclass(frozen=True)
+class MeanRemoval(Canceller):
+    """y = s less its mean over the recording: the background."""
+
+    @property
+    def removes_static(self) -> bool:
+        return True
+
+    def __call__(self, s: Complex) -> Complex:
+        y: Complex = s - s[..., :1]  # which leaves exactly nothing of a constant
+        y -= y.mean(axis=-1, keepdims=True)
+        return y
+
+
+@dataclass(frozen=True)
+class HighPass(Canceller):
+    """A Butterworth high-pass that starts from rest.
+
+    Attributes:
+        order: of the filter; both ways it has the effect of twice that.
+        cutoff: where |H|^2 = 1/2, as a fraction of PRF/2.
+        zero_phase: filter forwards and then backwards: the response is |H|^2, without delay.
+        remove_mean: first take out the mean of the recording. Without it what stands still is
+            switched on at the first pulse and rings, as it does in MATLAB's `filter`.
+    """
+
+    order: int
+    cutoff: float
+    zero_phase: bool = False
+    remove_mean: bool = True
+
+    @property
+    def removes_static(self) -> bool:
+        return self.remove_mean
+
+    def __call__(self, s: Complex) -> Complex:
+        from scipy.signal import butter, sosfilt  # slow to import
+
+        sections = butter(self.order, self.cutoff, "highpass", output="sos")
+        y: Complex = sosfilt(sections, MeanRemoval()(s) if self.remove_mean else s)
+        if self.zero_phase:
+            y = sosfilt(sections, y[..., ::-1])[..., ::-1]
+        return y

@@ -8,11 +8,9 @@ def compensate(x: Complex, torso_delay: Float, f0: float) -> Complex:
     """Multiply x[m] by exp(+j 2 pi f0 (tau[m'] - tau[0])), m' the later pulse of an MTI pair.
 
     Args:
-        x: slow-time signal [M - 1] after MTI, or [M] without it.
+        x: slow-time signals [..., M - 1] after MTI, or [..., M] without it.
         torso_delay: delay track tau [M], s, whoever measured it.
         f0: frequency at which the Doppler is read, Hz.
     """
-    later = torso_delay[torso_delay.size - x.size :]
-    turn = unit_phasor(f0 * (torso_delay[0] - later))
-    turn *= x
-    return turn
+    later = torso_delay[torso_delay.size - x.shape[-1] :]
+    return unit_phasor(f0 * (torso_delay[0] - later)) * x

@@ -1,5 +1,7 @@
 """Entropy of a power map, in bits."""
 
+from math import log
+
 import numpy as np
 
 from radhar_cli.arrays import Float
@@ -18,10 +20,10 @@ class EntropySum:
         """Take in a block of any shape; contiguous ones are not copied."""
         p = power.ravel(order="K")
         self.total += float(p.sum())
-        bits = np.maximum(p, np.finfo(p.dtype).tiny)
-        np.log2(bits, out=bits)
-        bits *= p
-        self._dot += float(bits.sum())
+        nats = np.maximum(p, np.finfo(p.dtype).tiny)
+        np.log(nats, out=nats)  # of the logarithms the one that NumPy has vectorised everywhere
+        nats *= p
+        self._dot += float(nats.sum()) / log(2)
 
     @property
     def bits(self) -> float:

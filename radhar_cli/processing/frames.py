@@ -23,7 +23,10 @@ class Frames:
     def of(
         cls, window_fraction: float, overlap_fraction: float, duration: float, prf: float
     ) -> "Frames":
-        """L = round(window_fraction T PRF), hop = round((1 - overlap_fraction) L), at least 1."""
+        """L = round(window_fraction T PRF), hop = round((1 - overlap_fraction) L), at least 1.
+
+        A window of so many seconds is that share of a recording of 1 s.
+        """
         return _frames(window_fraction, overlap_fraction, duration, prf)
 
     def count(self, samples: int) -> int:

@@ -1,13 +1,14 @@
 """Power map -> grey levels: resize the linear power, then decibels (docs/model.md, Image)."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache
-from math import ceil, floor
+from math import ceil, floor, log, log10
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Float, Levels
+from radhar_cli.arrays import Float, Half, Levels
+from radhar_cli.processing.cfar import FAINTEST_DB
 from radhar_cli.processing.entropy import EntropySum, largest_power
 
 BAND = 64  # rows or columns of a map that are weighed at once, and as many as overlap
@@ -17,16 +18,21 @@ class Reduced(NamedTuple):
     """What a data set needs of a power map.
 
     Attributes:
-        power: resized [height, width] in float32, row 0 the highest frequency or the farthest
-            range, in the scale of the map.
+        cells: the map, or a function of it, resized [height, width] in float32, row 0 the highest
+            frequency or the farthest range, in the scale of the map.
         entropy: of the map, bits.
     """
 
-    power: Float
+    cells: Float
     entropy: float
 
 
-def reduced(blocks: Iterable[Float], columns: int, size: tuple[int, int]) -> Reduced:
+def reduced(
+    blocks: Iterable[Float],
+    columns: int,
+    size: tuple[int, int],
+    of: Callable[[Float], Float] | None = None,
+) -> Reduced:
     """Resize a power map that comes in blocks of columns, and sum up its entropy.
 
     Resizing is Pillow's BILINEAR with antialiasing, a weighted sum over rows and then columns.
@@ -36,30 +42,50 @@ def reduced(blocks: Iterable[Float], columns: int, size: tuple[int, int]) -> Red
             near 1.
         columns: of all blocks together.
         size: (height, width), pixels.
+        of: what is resized instead of the power itself, such as its decibels.
 
     Raises:
         ValueError: the map has an infinity or a NaN.
     """
     height, width = size
-    power, entropy, first = np.zeros(size, np.float32), EntropySum(), 0
+    cells, entropy, first = np.zeros(size, np.float32), EntropySum(), 0
     for block in blocks:
         entropy.add(block)
+        block = block if of is None else of(block)
         low = np.zeros((len(block), height), block.dtype)
         for rows, pixels, weights in _bands(0, block.shape[1], block.shape[1], height, low.dtype):
             low[:, pixels] += block[:, rows] @ weights
         for some, pixels, weights in _bands(first, len(block), columns, width, low.dtype):
-            power[:, pixels] += low[some].T @ weights
+            cells[:, pixels] += low[some].T @ weights
         first += len(block)
     if not np.isfinite(entropy.total):
         raise ValueError(f"the power map should be finite; it adds up to {entropy.total}")
-    return Reduced(power[::-1], entropy.bits)
+    return Reduced(cells[::-1], entropy.bits)
 
 
-def reduced_map(power: Float, size: tuple[int, int]) -> Reduced:
+def reduced_map(
+    power: Float, size: tuple[int, int], of: Callable[[Float], Float] | None = None
+) -> Reduced:
     """`reduced` of a whole map [frequency or range, time] of any scale."""
-    # A power of two brings any map into the range of float32 without changing a digit.
-    exponent = int(np.frexp(largest_power(power))[1])
-    return reduced([np.ldexp(power.T, -exponent)], power.shape[1], size)
+    scaled = np.ldexp(power.T, -binary_exponent(power))
+    return reduced([scaled], power.shape[1], size, of)
+
+
+def binary_exponent(power: Float) -> int:
+    """Of the power of two that brings a map near 1, into the range of float32."""
+    return int(np.frexp(largest_power(power))[1])
+
+
+def unclipped(power: Float, exponent: int) -> tuple[Half, float]:
+    """Decibels [height, width] of resized power below its largest, and that largest (dB).
+
+    Args:
+        power: in units of 2^exponent.
+        exponent: of the unit.
+    """
+    level = decibels(power.astype(float), -FAINTEST_DB)
+    largest = max(largest_power(power), 10 ** (FAINTEST_DB / 10))
+    return level.astype(np.float16), 10 * (log10(largest) + exponent * log10(2))
 
 
 def levels(power: Float, dynamic_range_db: float) -> Levels:
@@ -81,9 +107,11 @@ def decibels(power: Float, dynamic_range_db: float) -> Float:
     if largest == 0:
         return np.full_like(power, -dynamic_range_db)
     level = power / largest
-    np.maximum(level, 10 ** (-dynamic_range_db / 10), out=level)
-    np.log10(level, out=level)
-    level *= 10
+    below = level < 10 ** (-dynamic_range_db / 10)  # float32 may round that to 1
+    level[below] = 1
+    np.log(level, out=level)
+    level *= 10 / log(10)
+    level[below] = -dynamic_range_db
     return level
 
 

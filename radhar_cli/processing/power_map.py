@@ -2,8 +2,9 @@
 
 import hashlib
 from dataclasses import dataclass
+from math import nan
 
-from radhar_cli.arrays import Float, Levels
+from radhar_cli.arrays import Float, Half, Levels
 from radhar_cli.processing.entropy import entropy_bits
 
 
@@ -60,11 +61,16 @@ class MapImage:
         levels: grey levels [height, width], row 0 at the top.
         entropy: of the power map, bits.
         extent: outer edges of the map (columns from, columns to, rows from, rows to).
+        decibels: of the resized power below its largest, float16 [height, width], or None where
+            nobody asked for them.
+        largest_db: that largest power, dB for unit transmit power.
     """
 
     levels: Levels
     entropy: float
     extent: tuple[float, float, float, float]
+    decibels: Half | None = None
+    largest_db: float = nan
 
     @property
     def sha256(self) -> str:

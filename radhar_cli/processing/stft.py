@@ -12,6 +12,35 @@ from radhar_cli.arrays import Complex, Float
 from radhar_cli.processing.frames import Frames
 
 
+def exponent_of(x: Complex) -> int:
+    """Binary exponent of the largest real or imaginary part of x."""
+    parts = x.real, x.imag
+    largest = max(abs(float(f(part))) for part in parts for f in (np.min, np.max))
+    # 2^-exponent must be a double itself; denormal signals keep their digits at 2^1022.
+    return max(int(np.frexp(largest)[1]), -1022)
+
+
+def transform(x: Complex, frames: Frames, window: Float, bins: int, single: bool) -> Complex:
+    """X[l, k] = sum_n x[l hop + n] g[n] exp(-j 2 pi k (n - L//2)/N) [frames of x, N].
+
+    Args:
+        x: [M].
+        frames: window length L and hop.
+        window: g [L].
+        bins: N, at least L.
+        single: whether to compute in complex64.
+    """
+    dtype: Any = np.complex64 if single else np.complex128
+    cut = frames.cut(x.astype(dtype))
+    g = window.astype(cut.real.dtype)
+    middle = frames.length // 2
+    # Sample L//2 comes first: that refers the phase to it.
+    framed = np.zeros((len(cut), bins), dtype)
+    np.multiply(cut[:, middle:], g[middle:], out=framed[:, : g.size - middle])
+    np.multiply(cut[:, :middle], g[:middle], out=framed[:, bins - middle :])
+    return np.asarray(scipy.fft.fft(framed, axis=1, overwrite_x=True))
+
+
 @dataclass(frozen=True, eq=False)
 class Spectra:
     """X[l, k] = sum_n x[l hop + n] g[n] exp(-j 2 pi k (n - L//2)/N), in blocks of frames.
@@ -35,10 +64,7 @@ class Spectra:
     @cached_property
     def exponent(self) -> int:
         """Binary exponent of the largest real or imaginary part of x."""
-        parts = self.x.real, self.x.imag
-        largest = max(abs(float(f(part))) for part in parts for f in (np.min, np.max))
-        # 2^-exponent must be a double itself; denormal signals keep their digits at 2^1022.
-        return max(int(np.frexp(largest)[1]), -1022)
+        return exponent_of(self.x)
 
     @property
     def count(self) -> int:
@@ -53,15 +79,7 @@ class Spectra:
     def transform(self, block: slice, window: Float) -> Complex:
         """The sum above with another window [L], over a slice of frames."""
         part: Complex = self.x[self.frames.span(block)] * 2.0**-self.exponent
-        dtype: Any = np.complex64 if self.single else np.complex128
-        cut = self.frames.cut(part.astype(dtype))
-        g = window.astype(cut.real.dtype)
-        middle = self.frames.length // 2
-        # Sample L//2 comes first: that refers the phase to it.
-        framed = np.zeros((len(cut), self.bins), dtype)
-        np.multiply(cut[:, middle:], g[middle:], out=framed[:, : g.size - middle])
-        np.multiply(cut[:, :middle], g[:middle], out=framed[:, self.bins - middle :])
-        return np.asarray(scipy.fft.fft(framed, axis=1, overwrite_x=True))
+        return transform(part, self.frames, window, self.bins, self.single)
 
     @cached_property
     def _only(self) -> Complex:

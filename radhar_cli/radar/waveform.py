@@ -6,9 +6,8 @@ from functools import cached_property
 import numpy as np
 
 from radhar_cli.arrays import Float
+from radhar_cli.light import SPEED_OF_LIGHT as SPEED_OF_LIGHT
 from radhar_cli.rounding import half_up
-
-SPEED_OF_LIGHT = 299_792_458.0
 
 
 @dataclass(frozen=True)

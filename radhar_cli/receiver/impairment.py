@@ -1,9 +1,9 @@
 """The interface of what happens to an echo between the antenna and the processing."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from radhar_cli.arrays import Complex, Index
-from radhar_cli.processing.canceller import Canceller
+from radhar_cli.processing.canceller import Fir
 
 
 class Impairment:
@@ -17,7 +17,7 @@ class Impairment:
         """Of the slow-time signal [M] before the canceller, which it leaves as it is."""
         return y
 
-    def range_bins(self, bins: Complex, pulses: Index, canceller: Canceller) -> Complex:
+    def range_bins(self, bins: Complex, pulses: Index, canceller: Fir) -> Complex:
         """Of range bins [N_FFT/2, len(pulses)] after the canceller.
 
         Args:
@@ -27,3 +27,17 @@ class Impairment:
         """
         del pulses, canceller
         return bins
+
+    def range_signals(
+        self, x: Complex, bins: slice, spans: Sequence[slice] | None = None
+    ) -> Complex:
+        """Of range bins [K, M] of all pulses before the canceller, referred to mid-chirp.
+
+        Args:
+            x: the bins.
+            bins: which of the N_FFT/2 these are.
+            spans: pulses of each bin that count; what the others become does not matter. None is
+                all.
+        """
+        del bins, spans
+        return x

@@ -1,13 +1,13 @@
 """Receiver noise: circular white Gaussian (paper, last equations of "Radar Echo Model")."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from radhar_cli.arrays import Complex, Index
 from radhar_cli.echo.half_band_sum import noise_gain
-from radhar_cli.processing.canceller import Canceller
+from radhar_cli.processing.canceller import Fir
 from radhar_cli.processing.range_compression import range_bins
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.receiver.impairment import Impairment
@@ -52,7 +52,7 @@ class WhiteNoise(Impairment):
         v += y
         return v
 
-    def range_bins(self, bins: Complex, pulses: Index, canceller: Canceller) -> Complex:
+    def range_bins(self, bins: Complex, pulses: Index, canceller: Fir) -> Complex:
         """Noise of the kept bins. Unpadded, a transform of white noise is white: they are drawn."""
         rng, w = self.stream("range_profiles"), self.waveform
         if w.n_fft == w.n_adc:
@@ -62,8 +62,36 @@ class WhiteNoise(Impairment):
         noisy: Complex = bins + noise
         return noisy
 
+    def range_signals(
+        self, x: Complex, bins: slice, spans: Sequence[slice] | None = None
+    ) -> Complex:
+        """White in slow time, and over the bins too unless the FFT is padded."""
+        rng, w = self.stream("range_signals"), self.waveform
+        if w.n_fft == w.n_adc:
+            v = np.zeros(x.shape, complex)
+            for row, span in enumerate(spans or [slice(None)] * len(x)):
+                part = circular_gaussian(rng, x[row, span].shape)
+                part *= self.sigma * np.sqrt(w.n_adc)
+                np.add(part, x[row, span], out=v[row, span])
+            return v
+        colour = self.sigma * compressed_colour(w, np.arange(w.n_bins)[bins])
+        v = colour @ circular_gaussian(rng, (colour.shape[1], x.shape[1]))
+        v += x
+        return v
 
-def noise_at(rng: np.random.Generator, length: int, pulses: Index, canceller: Canceller) -> Complex:
+
+def compressed_colour(waveform: Waveform, k: Index) -> Complex:
+    """L [K, at most N_ADC] with L L^H the covariance of bins k for unit white noise per sample.
+
+    C[k, k'] = sum_n exp(j 2 pi (k - k')(n - n0)/N_FFT) = F F^H; with F^H = Q R it is R^H R.
+    """
+    n = np.arange(waveform.n_adc) - waveform.n_adc / 2
+    f = np.exp(2j * np.pi * np.mod(np.outer(k, n) / waveform.n_fft, 1))
+    colour: Complex = np.linalg.qr(f.conj().T).R.conj().T
+    return colour
+
+
+def noise_at(rng: np.random.Generator, length: int, pulses: Index, canceller: Fir) -> Complex:
     """White unit noise [length, M] after a canceller, at `pulses` [length, len(pulses)].
 
     Where no two outputs share a pulse they are white of variance sum taps^2, and drawn as such;

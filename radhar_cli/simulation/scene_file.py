@@ -10,7 +10,10 @@ import numpy as np
 
 from radhar_cli import __version__
 from radhar_cli.config.identity import as_yaml, resolved
-from radhar_cli.errors import UnfinishedError
+from radhar_cli.config.motion_files import alone
+from radhar_cli.config.schema import Config
+from radhar_cli.errors import FolderError, UnfinishedError
+from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.scene import Scene, scene_numbers
 from radhar_cli.simulation.simulate import Simulation
@@ -23,28 +26,40 @@ UNFINISHED = "scene.unfinished"
 FILES = (SCENE_FILE, SCENE_JSON, SCENE_YAML, MAPS, ANIMATION, UNFINISHED)
 
 
+def refuse_foreign(folder: Path) -> None:
+    """Refuse a folder that holds something, but no scene.
+
+    Raises:
+        FolderError: names some of it.
+    """
+    held = sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
+    if held and not set(held) & set(FILES):
+        raise FolderError(
+            f"{folder}: holds {', '.join(held[:5])} but no scene of radhar's; "
+            "choose an empty folder"
+        )
+
+
 def write_scene(simulation: Simulation, path: Path) -> None:
     """Write scene.h5 under another name, then rename it into place."""
     unfinished = path.with_name(UNFINISHED)
     try:
         with h5py.File(unfinished, "w") as file:
             for name, power_map in simulation.maps.items():
-                _write_map(file, name, power_map)
+                write_map(file, name, power_map)
             for name, signal in simulation.signals.items():
                 file[f"slow_time/{name}"] = signal.x
             _write_truth(file, simulation)
-            if simulation.beat is not None:
-                file.create_dataset("echo/beat", data=simulation.beat, compression="gzip")
-                file["echo/beat"].attrs["axes"] = ["fast-time sample", "pulse"]
             file.attrs["scene"] = json.dumps(describe(simulation))
-            file.attrs["config"] = json.dumps(resolved(simulation.config))
+            file.attrs["config"] = json.dumps(resolved(_alone(simulation.scene)))
             file.attrs["radhar_version"] = __version__
         unfinished.replace(path)
     finally:
         unfinished.unlink(missing_ok=True)
 
 
-def _write_map(file: h5py.File, name: str, power_map: PowerMap) -> None:
+def write_map(file: h5py.File, name: str, power_map: PowerMap) -> None:
+    """Write /maps/<name> with its axes."""
     dataset = file.create_dataset(
         f"maps/{name}", data=_float32(power_map.power), compression="gzip"
     )
@@ -92,6 +107,7 @@ def describe(simulation: Simulation) -> dict[str, Any]:
     return {
         "activity": {"label": scene.activity.label, "slug": scene.activity.slug},
         "seed": scene.config.seed,
+        "motion_file": _motion_file(simulation),
         "joint": simulation.joint,
         "engine": _engine(simulation),
         "accuracy": _accuracy(simulation),
@@ -108,6 +124,20 @@ def describe(simulation: Simulation) -> dict[str, Any]:
         "warnings": simulation.warnings,
         "entropy_bits": {name: one.entropy for name, one in simulation.maps.items()},
         "seconds": simulation.seconds,
+    }
+
+
+def _motion_file(simulation: Simulation) -> dict[str, Any] | None:
+    """Which part of which file was the motion; null where a model made it."""
+    motion = simulation.motion
+    if not isinstance(motion, FileMotion):
+        return None
+    return {
+        "path": motion.clip.where,
+        "begin_s": motion.begin,
+        "end_s": motion.begin + motion.speed * motion.seconds,
+        "lasts_s": motion.clip.seconds,
+        "stature_m": motion.clip.stature,
     }
 
 
@@ -132,7 +162,12 @@ def _accuracy(simulation: Simulation) -> dict[str, Any] | None:
 
 def _as_config(scene: Scene) -> str:
     command = f"radhar simulate {SCENE_YAML} -o OUT --index {scene.index}"
-    return f"# One scene, nothing left to draw: {command}\n{as_yaml(scene.config)}"
+    return f"# One scene, nothing left to draw: {command}\n{as_yaml(_alone(scene))}"
+
+
+def _alone(scene: Scene) -> Config:
+    """The scene's config with the motion file that it uses by its whole path."""
+    return alone(scene.config, scene.activity.slug)
 
 
 def write_all(simulation: Simulation, folder: Path) -> list[Path]:

@@ -6,7 +6,7 @@ import numpy as np
 
 from radhar_cli.activity import Activity, activity_named
 from radhar_cli.arrays import Complex
-from radhar_cli.config.schema import MAP_NAMES, Config, MapName
+from radhar_cli.config.schema import MAP_NAMES, Config, MapName, possible_maps
 from radhar_cli.echo import cube
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.direct import Accuracy
@@ -78,7 +78,7 @@ def simulate(
     index: int = 0,
     nominal: bool = False,
     joint: str | None = None,
-    maps: tuple[MapName, ...] = MAP_NAMES,
+    maps: tuple[MapName, ...] | None = None,
     raw: bool = False,
 ) -> Simulation:
     """Simulate one sample of one activity.
@@ -90,15 +90,22 @@ def simulate(
         index: number of the sample within its class.
         nominal: take the middle of every range instead of drawing.
         joint: keep this scatterer alone.
-        maps: which of the nine to compute.
+        maps: which to compute; None is all that `processing.doppler` allows, of the nine.
         raw: compute the raw beat matrix too, static returns included.
 
     Raises:
-        ConfigError: unknown activity or joint.
+        ConfigError: unknown activity or joint, or a map that there cannot be.
         SceneError: a scatterer comes within 5 cm of an antenna, or with `raw` the near face of the
             wall within 5 cm of the antennas' midpoint.
     """
-    activity = _activity(activity, config)
+    activity = activity_of(activity, config)
+    possible = possible_maps(config.processing)
+    maps = possible if maps is None else maps
+    if not set(maps) <= set(possible):
+        raise ConfigError(
+            "there is no fsst with processing.doppler: gate, whose bins are summed without their "
+            f"phase; maps are {', '.join(possible)}"
+        )
     config = config.model_copy(update={"maps": maps, **({} if seed is None else {"seed": seed})})
     scene = nominal_scene(config, activity) if nominal else draw_scene(config, activity, index)
     warnings = scene_warnings(scene)
@@ -128,13 +135,13 @@ def simulate(
     )
 
 
-def map_names(chosen: list[str] | None) -> tuple[MapName, ...]:
-    """The maps of these names, in our order; all nine for None.
+def map_names(chosen: list[str]) -> tuple[MapName, ...]:
+    """The maps of these names, in our order.
 
     Raises:
         ConfigError: one is unknown.
     """
-    names = [name.strip() for name in chosen] if chosen is not None else list(MAP_NAMES)
+    names = [name.strip() for name in chosen]
     for name in names:
         if name not in MAP_NAMES:
             hint = did_you_mean(name, MAP_NAMES, "there are " + ", ".join(MAP_NAMES))
@@ -183,8 +190,12 @@ RAW_ECHO = Product(
 )
 
 
-def _activity(asked: str | Activity | None, config: Config) -> Activity:
-    """The activity, with its number in this config where it is a class of one's own."""
+def activity_of(asked: str | Activity | None, config: Config) -> Activity:
+    """The activity, with its number in this config where it is a class of one's own.
+
+    Raises:
+        ConfigError: there is none of that name, or none is named and the config has several.
+    """
     chosen = config.chosen_activities
     if asked is None and len(chosen) > 1:
         raise ConfigError(f"--activity is needed: the config has {len(chosen)} activities")
@@ -192,7 +203,7 @@ def _activity(asked: str | Activity | None, config: Config) -> Activity:
         return chosen[0]
     own = {one.slug: one for one in config.every_class}
     try:
-        found = own.get(asked) or activity_named(asked) if isinstance(asked, str) else asked
+        found = activity_named(asked, own) if isinstance(asked, str) else asked
     except ValueError as error:
         raise ConfigError(str(error)) from None
     return own.get(found.slug, found)

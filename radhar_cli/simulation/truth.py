@@ -6,7 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from radhar_cli.arrays import Float, Levels
+from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.motion.human.motion import HumanMotion
+from radhar_cli.motion.phases import phase_numbers
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.pipeline.motion_paths import point_delay
 from radhar_cli.radar.propagation import Antennas
@@ -48,17 +50,15 @@ def truth(motion: Motion, antennas: Antennas, wall: Wall | None, waveform: Wavef
         return _rate(lambda at: point_delay(motion.positions(at), antennas, slab), t)
 
     phases = tuple(dict.fromkeys((WHOLE, *(name for _, name in motion.phases))))
-    label = np.zeros(t.size, dtype=np.uint8)
-    for start, name in motion.phases:
-        label[t >= start] = phases.index(name)
+    with_hip_joints = (HumanMotion, FileMotion)
     return Truth(
         time=t,
         positions=_by_pulse(motion.positions(t)),
         radial_velocity=SPEED_OF_LIGHT / 2 * rate(None),
         doppler=-waveform.f0 * rate(wall),
-        phase_label=label,
+        phase_label=phase_numbers(motion.phases, t, phases, other=0),
         phases=phases,
-        hip_joints=_by_pulse(motion.hip_joints(t)) if isinstance(motion, HumanMotion) else None,
+        hip_joints=_by_pulse(motion.hip_joints(t)) if isinstance(motion, with_hip_joints) else None,
     )
 
 

@@ -15,8 +15,8 @@ from radhar_cli.untrusted import read_json
 NAME = "sweep.json"
 
 
-def claim(folder: Path, config: Config, overwrite: bool) -> None:
-    """Make a locked folder this config's sweep, or refuse.
+def reserve(folder: Path, config: Config, overwrite: bool) -> None:
+    """Make a folder, whose lock is held, this config's sweep, or refuse.
 
     Raises:
         FolderError: it holds something else, or the sweep of another config.

@@ -79,7 +79,7 @@ def _figure(title: str, rows: Sequence[Row], accuracies: Sequence[Accuracy]) -> 
         for row in rows
         if row.setting.group == "switch" and row.times
         for change in [row.usual("signal_error_db")]
-        if change is not None and "FSST" not in row.setting.name
+        if change is not None and row.setting.of_signal
     ]
     return tradeoff_png(
         title,

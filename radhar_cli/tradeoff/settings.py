@@ -1,5 +1,6 @@
 """The settings of the sweep, each with its baseline for time and its exact data for error."""
 
+import json
 from dataclasses import dataclass
 
 from radhar_cli.config.schema import MAP_NAMES, Config, EngineConfig
@@ -7,6 +8,8 @@ from radhar_cli.tradeoff.trial import Trial
 
 BUDGETS = (-20, -30, -40, -50, -60, -70, -80, -100, -120)
 SIZES = (64, 128, 256, 512)
+SEGMENTS = ("body.scatterers=segments", "body.shadowing=true")
+WITHOUT_SHADOWS = ("body.scatterers=segments", "body.shadowing=false")
 CUBE = ("engine.kind=cube",)
 DIRECT = ("engine.kind=direct", f"engine.tolerance_db={EngineConfig().tolerance_db:g}")
 
@@ -23,6 +26,7 @@ class Setting:
         exact: of the exact data that the error is relative to.
         baseline: of the run that the time is divided by, on the same scenes, interleaved.
         baseline_name: as printed.
+        of_signal: whether it changes the signal, not a map alone.
     """
 
     group: str
@@ -32,6 +36,7 @@ class Setting:
     exact: tuple[str, ...]
     baseline: tuple[str, ...] = DIRECT
     baseline_name: str = "the default"
+    of_signal: bool = True
 
     @property
     def is_default(self) -> bool:
@@ -75,6 +80,9 @@ def _switches(config: Config) -> list[Setting]:
     fsst, dense = "maps=[fsst]", "processing.fsst_hop_pulses=1"
     found = [
         _switch(*_other_motion(config)),
+        _switch(*_other_scatterers(config)),
+        _over("shadowing", SEGMENTS, WITHOUT_SHADOWS, "segments without shadowing"),
+        _gate(),
         _switch("residual video phase", "radar.residual_video_phase=true"),
         Setting(
             "switch",
@@ -85,15 +93,7 @@ def _switches(config: Config) -> list[Setting]:
             CUBE,
             "the cube",
         ),
-        Setting(
-            "switch",
-            "FSST at every sample",
-            (*DIRECT, fsst, dense),
-            (*DIRECT, fsst),
-            (*CUBE, fsst, dense),
-            (*DIRECT, fsst),
-            "the FSST at the STFT's hop",
-        ),
+        _over("FSST at every sample", (fsst, dense), (fsst,), "the FSST at the STFT's hop", False),
     ]
     if config.wall is not None:
         found += [
@@ -116,28 +116,57 @@ def trials(config: Config) -> list[Trial]:
     for more in ("image.size_px=32", "maps=[fsst]"):
         name = more.partition("=")[2].strip("[]") + (" px" if "size" in more else "")
         found.append(Trial(name, (*DIRECT, more), (*CUBE, more)))
-    name, on = _other_motion(config)
-    switches = {"residual video phase": "radar.residual_video_phase=true", name: on}
+    switches: dict[str, tuple[str, ...]] = {
+        "residual video phase": ("radar.residual_video_phase=true",)
+    }
+    if not config.classes:  # the paper has no sequences
+        name, *on = _other_motion(config)
+        switches[name] = tuple(on)
     if config.wall is not None:
         switches |= {
-            "refraction": "wall.rays=refracted",
-            "Fresnel by angle": "wall.fresnel=perpendicular",
+            "refraction": ("wall.rays=refracted",),
+            "Fresnel by angle": ("wall.fresnel=perpendicular",),
         }
-    for name, on in switches.items():
+    for name, overrides in switches.items():
         found += [
-            Trial(f"without {name}, tested with it", DIRECT, (*CUBE, on)),
-            Trial(f"with {name}", (*DIRECT, on), (*CUBE, on)),
+            Trial(f"without {name}, tested with it", DIRECT, (*CUBE, *overrides)),
+            Trial(f"with {name}", (*DIRECT, *overrides), (*CUBE, *overrides)),
         ]
     return found
 
 
-def _other_motion(config: Config) -> tuple[str, str]:
-    """The model of motion that the config does not have."""
-    if config.motion.model == "human":
-        return "the paper's motion", "motion.model=paper"
-    return "human motion", "motion.model=human"
+def _other_motion(config: Config) -> tuple[str, ...]:
+    """Name and overrides of the other model of motion, at the config's places and headings."""
+    other = "paper" if config.motion.model == "human" else "human"
+    kept = config.motion.model_dump(mode="json", include={"range_m", "angle_deg"})
+    name = f"motion: {other} instead of {config.motion.model}"
+    return name, f"motion.model={other}", *(f"motion.{key}={json.dumps(kept[key])}" for key in kept)
 
 
-def _switch(name: str, on: str) -> Setting:
+def _other_scatterers(config: Config) -> tuple[str, ...]:
+    """Name and overrides of the other model of what scatters."""
+    own = config.body.scatterers
+    other = "points" if own == "segments" else "segments"
+    return f"scatterers: {other} instead of {own}", f"body.scatterers={other}"
+
+
+def _gate() -> Setting:
+    """Sums of powers over a gate of range bins; maps of the STFT alone have it."""
+    on, off = (
+        ("maps=[stft]", "processing.doppler=gate"),
+        ("maps=[stft]", "processing.doppler=half_band"),
+    )
+    return _over("doppler: gate instead of half_band", on, off, "the half_band's STFT", False)
+
+
+def _over(
+    name: str, on: tuple[str, ...], off: tuple[str, ...], off_name: str, of_signal: bool = True
+) -> Setting:
+    """A switch that is compared with something other than the default."""
+    without, exact = (*DIRECT, *off), (*CUBE, *on)
+    return Setting("switch", name, (*DIRECT, *on), without, exact, without, off_name, of_signal)
+
+
+def _switch(name: str, *on: str) -> Setting:
     """Physics that is off by default: what it costs, and what is missed without it."""
-    return Setting("switch", name, (*DIRECT, on), DIRECT, (*CUBE, on))
+    return Setting("switch", name, (*DIRECT, *on), DIRECT, (*CUBE, *on))

@@ -8,8 +8,8 @@ from math import inf
 from statistics import median, quantiles
 from typing import Any
 
-from radhar_cli.dataset.build import Progress
 from radhar_cli.errors import RadharError
+from radhar_cli.progress import Progress
 from radhar_cli.tradeoff.differences import SceneDifferences
 from radhar_cli.tradeoff.result_cache import ResultCache
 from radhar_cli.tradeoff.scenes import Scenes

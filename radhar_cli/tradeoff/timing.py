@@ -1,6 +1,6 @@
 """Time per sample, as a ratio to another setting's on the same scenes at the same time."""
 
-from time import perf_counter
+from time import process_time
 from typing import NamedTuple
 
 from radhar_cli.pipeline.products import plan_images
@@ -12,7 +12,7 @@ from radhar_cli.tradeoff.settings import Setting
 SECONDS = 0.6
 ECHO = (
     *("motions", "paths", "direct", "echo", "signal_power", "slow_time", "signal"),
-    *("beat_cube", "range_profiles"),
+    *("beat_cube", "range_profiles", "gate", "gated_echo", "range_signals"),
 )
 
 
@@ -51,7 +51,7 @@ def time_setting(scenes: Scenes, setting: Setting, turn: int) -> Times:
 def _seconds(scenes: Scenes, slug: str, overrides: tuple[str, ...]) -> tuple[float, float]:
     config = scenes.config(overrides)
     scene, plan = scenes.draw(slug, config), plan_images(config)
-    start = perf_counter()
+    start = process_time()
     recording = run(plan, {"scene": scene})
-    whole = perf_counter() - start
+    whole = process_time() - start
     return whole, sum(t for name, t in recording.seconds.items() if name in ECHO)

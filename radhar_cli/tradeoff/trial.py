@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING
 
 from radhar_cli.config import load_config
 from radhar_cli.config.schema import Config
-from radhar_cli.dataset.build import Progress, build
+from radhar_cli.dataset.build import build
 from radhar_cli.dataset.identity import identity
+from radhar_cli.progress import Progress
 from radhar_cli.tradeoff.result_cache import ResultCache
 
 if TYPE_CHECKING:
@@ -193,10 +194,10 @@ def _train_and_test(
         build(config, folder, experiment.jobs, experiment.progress)
     label = f"training {setup.trial.name}, seed {settings.seed}"
     training.train(settings, learned, run, _Epochs(experiment.progress, label))
-    about, model = load_best(run)
-    images = open_for(about, asked, None)
+    metadata, model = load_best(run)
+    images = open_for(metadata, asked, None)
     device, batch = choose_device(settings.device), settings.batch_size
-    answers = predict(model, about, images, images.rows("all"), device, batch)
+    answers = predict(model, metadata, images, images.rows("all"), device, batch)
     return TestResult(int((answers.predicted == answers.truth).sum()), len(images))
 
 
@@ -234,8 +235,8 @@ class DistinctMessages:
     def stage(self, name: str, total: int, done: int) -> None:
         self.progress.stage(name, total, done)
 
-    def advance(self, samples: int) -> None:
-        self.progress.advance(samples)
+    def advance(self, count: int) -> None:
+        self.progress.advance(count)
 
     def say(self, message: str) -> None:
         if message not in self.shown:

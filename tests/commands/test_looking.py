@@ -5,7 +5,9 @@ from pathlib import Path
 
 import pytest
 from command_line import ROOT, process, radhar
-from small import small_config
+from small import SMALL, small_config
+
+from radhar_cli.config.schema import MAP_NAMES
 
 
 def test_simulate_writes_everything(tmp_path: Path) -> None:
@@ -30,7 +32,8 @@ def test_simulate_for_scripts(tmp_path: Path) -> None:
         *("--engine", "cube", "--maps", "stft,rtm", "--raw", "--joint", "head", "--nominal"),
     )
     assert done.returncode == 0, done.stderr
-    assert sorted(p.name for p in out.iterdir()) == ["scene.h5", "scene.json", "scene.yaml"]
+    files = {"recording.h5", "scene.h5", "scene.json", "scene.yaml"}
+    assert {p.name for p in out.iterdir()} == files
     described = json.loads((out / "scene.json").read_text())
     assert described["engine"] == "cube"
     assert described["accuracy"] is None
@@ -104,3 +107,38 @@ def test_readme_lines_run(tmp_path: Path) -> None:
     done = process("-c", "import matplotlib; matplotlib.use('Agg')\n" + code)
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "w.png").exists()
+
+
+def test_simulate_refuses_a_folder_of_other_things(tmp_path: Path) -> None:
+    config, out = small_config(tmp_path), tmp_path / "out"
+    once = ("simulate", config, "-a", "S8", "--no-figures", "--maps", "rtm", "-o")
+    refused = radhar(*once, tmp_path)
+    assert refused.returncode == 2
+    assert "holds small.yaml but no scene of radhar's; choose an empty folder" in refused.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["small.yaml"]
+    assert radhar(*once, out).returncode == 0
+    (out / "notes.txt").touch()
+    assert radhar(*once, out).returncode == 0, "a folder with a scene may be used again"
+
+
+def test_an_index_that_no_data_set_has_is_warned_of(tmp_path: Path) -> None:
+    what = ("simulate", small_config(tmp_path), "-a", "S8", "--no-figures", "--maps", "rtm")
+    done = radhar(*what, "-o", tmp_path / "a", "--index", 3)
+    assert done.returncode == 0
+    assert "--index 3: a data set of this config has the samples 0 to 2 of walking" in done.stderr
+    assert "--index" not in radhar(*what, "-o", tmp_path / "b", "--index", 2).stderr
+
+
+def test_inspect_fits_a_terminal_of_80_columns(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    names = ", ".join(MAP_NAMES)
+    config = small_config(tmp_path, SMALL.replace("rtm, stft, fsst_compensated", names))
+    made = radhar("generate", config, "-o", tmp_path / "set", "--set", "output.png=false")
+    assert made.returncode == 0, made.stderr
+    lines = radhar("inspect", tmp_path / "set").stdout.splitlines()
+    assert max(map(len, lines)) <= 80
+    assert not any("…" in line for line in lines), "nothing is cut off"
+    (height,) = (line for line in lines if line.split()[:2] == ["height", "m"])
+    assert len(height.split()) >= 7, "numbers and histogram stand in one line"

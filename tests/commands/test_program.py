@@ -1,6 +1,7 @@
 """The program as a user meets it: end to end in a temporary folder."""
 
 import json
+import re
 from pathlib import Path
 
 import h5py
@@ -56,6 +57,21 @@ def test_dry_run_prints_the_plan_and_writes_nothing(tmp_path: Path) -> None:
     assert sorted(p.name for p in tmp_path.iterdir()) == ["small.yaml"]
 
 
+def test_dry_run_counts_points_and_range_bins(tmp_path: Path) -> None:
+    own = ("body.scatterers=segments", "processing.doppler=gate", "processing.gate_m=0.5")
+    more = (*own, "maps=[stft]", "activities=[walking]")
+    changes = [part for one in more for part in ("--set", one)]
+    config = small_config(tmp_path)
+    done = radhar("generate", config, "-o", tmp_path / "set", "--dry-run", *changes)
+    assert done.returncode == 0, done.stderr
+    assert re.search(r"S8 +\d+: trunk \d+, head \d+", done.stdout)
+    bins = re.search(r"S8 +(\d+) a frame, (\d+) in all; frames show (\d+) %", done.stdout)
+    assert bins is not None
+    shown, every, share = (int(number) for number in bins.groups())
+    assert shown <= every
+    assert 100 * shown / every - 1 <= share <= 100
+
+
 @pytest.mark.parametrize("path", [*CONFIGS, *TRAINING], ids=lambda p: f"{p.parent.name}-{p.stem}")
 def test_shipped_configs_resolve_and_show_round_trips(path: Path, tmp_path: Path) -> None:
     kind = ["--train"] if path in TRAINING else []
@@ -106,7 +122,7 @@ def test_wrong_use_is_status_2(tmp_path: Path) -> None:
 def test_every_help_has_an_example() -> None:
     for command in (
         *("generate", "simulate", "verify", "preview", "inspect", "config show", "config schema"),
-        *("train", "eval", "models", "export", "predict", "tradeoff"),
+        *("train", "eval", "models", "export", "predict", "tradeoff", "import", "process", "fit"),
     ):
         done = radhar(*command.split(), "--help")
         assert done.returncode == 0
@@ -114,10 +130,10 @@ def test_every_help_has_an_example() -> None:
 
 
 def test_second_run_on_a_live_folder_is_refused(tmp_path: Path) -> None:
-    from radhar_cli.dataset.folder import locked
+    from radhar_cli.dataset.folder import folder_lock
 
     config = small_config(tmp_path)
-    with locked(tmp_path / "set"):
+    with folder_lock(tmp_path / "set"):
         done = radhar("generate", config, "-o", tmp_path / "set")
     assert done.returncode == 2
     assert "another run is writing here" in done.stderr

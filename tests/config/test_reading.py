@@ -225,6 +225,37 @@ BROKEN = [
     Broken("radar:\n  tx_m: [0, 1, a]", 2, "radar.tx_m.2", '"a"', "should be a number"),
     Broken("radar:\n  tx_m: [0, 1]", 2, "radar.tx_m.2", "[0, 1]", "required"),
     Broken("processing:\n  mti: maybe", 2, "processing.mti", '"maybe"', "boolean"),
+    Broken(
+        "processing:\n  mti: true\n  clutter: mean",
+        1,
+        "processing",
+        '{"mti": true, "clutter": "mean"}',
+        "mti: true, which means clutter: difference, beside clutter: mean",
+    ),
+    Broken(
+        "processing: {clutter: mti}",
+        1,
+        "processing.clutter",
+        '"mti"',
+        "'difference', 'mean', 'highpass' or 'none'",
+    ),
+    *(
+        Broken(
+            f"processing: {{doppler: gate, gate_m: {wrong}}}",
+            1,
+            "processing.gate_m",
+            wrong,
+            "above 0, or [from, to]",
+        )
+        for wrong in ("[1, 2, 3]", "[2, 1]", "0", "-1", '"wide"', "null", "[true, 2]", "[-1, 2]")
+    ),
+    Broken(
+        "processing: {highpass: {cutoff_hz: 3, cutoff_mps: 1}}",
+        1,
+        "processing.highpass",
+        '{"cutoff_hz": 3, "cutoff_mps": 1}',
+        "one of cutoff_hz, cutoff_mps and cutoff_fraction",
+    ),
     Broken("snr_reference: wall", 1, "snr_reference", '"wall"', "'free_space' or 'received'"),
     Broken("on_invalid: drop", 1, "on_invalid", '"drop"', "'keep', 'redraw' or 'error'"),
     Broken("engine:\n  kind: fast", 2, "engine.kind", '"fast"', "'direct' or 'cube'"),
@@ -302,9 +333,54 @@ BROKEN = [
     Broken(
         "motion:\n  gait_hz: {per_activity: {default: 1, jogging: 2}}",
         2,
-        "motion.gait_hz.per_activity",
-        '{"default": 1, "jogging": 2}',
-        "is no activity",
+        "motion.gait_hz.per_activity.jogging",
+        "2.0",
+        "'jogging' is no activity; the slugs are stationary",
+    ),
+    Broken(
+        "seed: 1\nsamples_per_class: {per_activity: {default: 3, sitting: 2}}",
+        2,
+        "samples_per_class.per_activity.sitting",
+        "2",
+        "did you mean 'sitting_down'?",
+    ),
+    Broken(
+        "samples_per_class: {per_activity: {default: 3, S8: 0}}",
+        1,
+        "samples_per_class.per_activity.S8",
+        "0",
+        "greater than or equal to 1",
+    ),
+    Broken(
+        "classes: {home: {sequence: [walking]}}\n"
+        "timing: {walk_stop_s: {per_activity: {default: 3, hone: 2}}}",
+        2,
+        "timing.walk_stop_s.per_activity.hone",
+        "2.0",
+        "did you mean 'home'?",
+    ),
+    Broken(
+        "classes: {home: {sequence: [walking]}}\n"
+        "samples_per_class: {per_activity: {default: 3, Home: 2}}",
+        2,
+        "samples_per_class.per_activity.Home",
+        "2",
+        "should be called home",
+    ),
+    Broken(  # one mistake, though `home` is then no class that `activities` could name
+        "classes: {home: {sequence: [waking]}}\nactivities: [home]\n"
+        "motion: {range_m: {per_activity: {default: 3, home: 5}}}",
+        1,
+        "classes.home",
+        '{"sequence": ["waking"]}',
+        "'waking' is no movement; did you mean 'walking'?",
+    ),
+    Broken(
+        "split: {by: subject, subjects: 3}\nsamples_per_class: {per_activity: {default: 3, S8: 2}}",
+        1,
+        "split.subjects",
+        "3",
+        "at most samples_per_class = 2 of walking",
     ),
     Broken(
         "motion:\n  gait_hz: {per_activity: {default: 1, S8: 1, walking: 2}}",
@@ -396,6 +472,22 @@ BROKEN = [
         "0.99",
         "at most the 49 pulses there are (it has 50)",
     ),
+    Broken(
+        "duration_s: 0.01\nprocessing:\n  window_s: 0.0099",
+        3,
+        "processing.window_s",
+        "0.0099",
+        "at most the 49 pulses there are (it has 50)",
+    ),
+    Broken(
+        "processing: {window_s: 0.001}",
+        1,
+        "processing.window_s",
+        "0.001",
+        "window of window_s * prf_hz at least 8 pulses (it has 5)",
+    ),
+    Broken("body: {scatterers: point}", 1, "body.scatterers", '"point"', "'points' or 'segments'"),
+    Broken("body: {points_per_segment: 0}", 1, "body.points_per_segment", "0", "or equal to 1"),
     Broken(
         "duration_s: 0.02\nmaps: [stft_denoised]\nprocessing:\n  savgol: {order: 3, frame: 101}",
         4,
@@ -552,3 +644,30 @@ def test_the_stored_config_is_the_same_config(tmp_path: Path, text: str) -> None
 def test_a_stored_config_that_is_broken_names_its_file(stored: str) -> None:
     with pytest.raises(ConfigError, match=r"^dataset\.h5: "):
         config_from_json(stored, "dataset.h5")
+
+
+@pytest.mark.parametrize(
+    ("override", "place"),
+    [
+        ("radar.prf_hz=-1", "--set radar.prf_hz = -1: "),
+        ("radar={prf_hz: -1}", "--set radar: radar.prf_hz = -1: "),
+        ("--tolerance engine.tolerance_db=3", "--tolerance: engine.tolerance_db = 3: "),
+        ("rada.x=1", '--set rada.x: rada = {"x": 1}: '),
+    ],
+)
+def test_a_mistake_of_an_option_is_told_of_the_option(
+    tmp_path: Path, override: str, place: str
+) -> None:
+    path = tmp_path / "scene.yaml"
+    path.write_text("seed: 1\nradar: {prf_hz: 100}\nengine: {tolerance_db: -60}\n")
+    with pytest.raises(ConfigError) as caught:
+        load_config(path, ["seed=2", override])
+    assert str(caught.value).startswith(place)
+
+
+def test_a_mistake_of_file_and_option_together_is_told_of_both(tmp_path: Path) -> None:
+    path = tmp_path / "scene.yaml"
+    path.write_text("seed: 1\nsplit: {train: 0.5, validation: 0.5}\n")
+    with pytest.raises(ConfigError) as caught:
+        load_config(path, ["split.train=0.9"])
+    assert str(caught.value).startswith(f"{path}:2: split (--set split.train) = ")

@@ -44,7 +44,7 @@ def stub_synthesise(scene: Scene, plan: object) -> Sample:
         levels = rng.integers(0, 256, config.image.size_px, dtype=np.uint8)
         return MapImage(levels, float(rng.random()), (0.0, 1.0, *rng.random(2)))
 
-    return Sample({name: image(name) for name in config.maps}, -100.0 - scene.index, False)
+    return Sample({name: image(name) for name in config.maps}, -100.0 - scene.index, False, {})
 
 
 @pytest.fixture(scope="module", autouse=True)

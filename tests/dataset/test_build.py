@@ -18,8 +18,8 @@ from radhar_cli.dataset import batch as batch_module
 from radhar_cli.dataset import build as build_module
 from radhar_cli.dataset import folder as folder_module
 from radhar_cli.dataset.build import Outcome, build
-from radhar_cli.dataset.folder import locked
-from radhar_cli.dataset.layout import Rows, png_path
+from radhar_cli.dataset.folder import folder_lock
+from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.shards import listed_shards
 from radhar_cli.dataset.workers import run_tasks, warm_up
@@ -224,7 +224,7 @@ def test_foreign_folder_file_and_live_folder_are_refused(config: Config, tmp_pat
     with pytest.raises(FolderError, match="is a file"):
         make(config, tmp_path / "thesis.tex")
     with (
-        locked(tmp_path / "live"),
+        folder_lock(tmp_path / "live"),
         pytest.raises(FolderError, match="another run is writing here"),
     ):
         make(config, tmp_path / "live")
@@ -334,11 +334,18 @@ def test_dataset_contract(config: Config, whole: Path) -> None:
             assert key in file.attrs
 
 
+@pytest.mark.parametrize(("count", "last"), [(3, "00002"), (10**5, "99999"), (10**5 + 1, "100000")])
+def test_names_of_a_class_sort_however_many(config: Config, count: int, last: str) -> None:
+    rows = Rows(config.chosen_activities[:2], (5, count))
+    assert (rows.name(4), rows.name(4 + count)) == ("00004", last)
+    assert rows.png_path("rtm", 0, 5).stem == "0".zfill(len(last))
+
+
 def test_pngs_show_the_levels(config: Config, whole: Path) -> None:
     table, rows = colour_table("viridis"), Rows.of(config)
     with h5py.File(whole / "dataset.h5") as file:
         for row in range(len(rows)):
-            path = whole / png_path("stft", file["split"][row], *rows[row])
+            path = whole / rows.png_path("stft", file["split"][row], row)
             with Image.open(path) as picture:
                 assert picture.mode == "P"
                 assert np.array_equal(np.asarray(picture), file["maps/stft"][row])

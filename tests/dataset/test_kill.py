@@ -31,11 +31,12 @@ def command(folder: Path, *more: str) -> list[str]:
 
 
 def files(folder: Path) -> int:
-    return sum(path.is_file() for path in folder.rglob("*"))
+    """Files below the folder; os.walk passes over what the run removes meanwhile."""
+    return sum(len(names) for _, _, names in os.walk(folder))
 
 
 def shards(folder: Path) -> int:
-    return len(list(folder.glob(".radhar/shards/*")))
+    return files(folder / ".radhar/shards")
 
 
 def start(folder: Path, *more: str) -> subprocess.Popen[str]:

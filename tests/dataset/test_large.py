@@ -30,7 +30,7 @@ def stub_shard(batch: Batch, made: dict[int, bytes]) -> int:
     count = batch.stop - batch.start
     if count not in made:
         image = MapImage(np.zeros((SIZE, SIZE), np.uint8), 0.0, (0.0, 1.0, -1.0, 1.0))
-        samples = [Sample({"stft": image}, -100.0, False)] * count
+        samples = [Sample({"stft": image}, -100.0, False, {})] * count
         values = np.zeros((count, len(scene_fields.fields(batch.config))))
         flags = np.full(count, Flags.ALIASING, np.uint8)
         made[count] = shards.encode_shard(batch.config, "0" * 64, 0, samples, values, flags)

@@ -37,7 +37,7 @@ def stub(config: Config, start: int, stop: int) -> bytes:
     size = config.image.size_px
     levels = (np.full(size, row, np.uint8) for row in range(start, stop))
     images = (MapImage(each, float(each[0, 0]), (0.0, 1.0, 2.0, 3.0)) for each in levels)
-    samples = [Sample({"stft": image}, -100.0, False) for image in images]
+    samples = [Sample({"stft": image}, -100.0, False, {}) for image in images]
     values = np.full((stop - start, len(scene_fields.fields(config))), float(start))
     flags = np.arange(start, stop, dtype=np.uint8)
     return encode_shard(config, whose(config), start, samples, values, flags)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from radhar_cli.config import Config
 from radhar_cli.dataset.layout import Rows
-from radhar_cli.dataset.split import TEST, TRAIN, VALIDATION, split_rows
+from radhar_cli.dataset.split import TEST, TRAIN, VALIDATION, split_rows, split_warnings
 from radhar_cli.scene import subject_of
 
 
@@ -121,3 +121,39 @@ def test_by_subject_the_persons_are_shuffled() -> None:
 @pytest.mark.parametrize("split", [{}, {"by": "subject", "subjects": 7}])
 def test_a_split_is_the_same_every_time(split: dict[str, Any]) -> None:
     np.testing.assert_array_equal(split_of(20, **split), split_of(20, **split))
+
+
+COUNTS = {"per_activity": {"default": 4, "walking": 10, "home": 1}}
+HOME = {"home": {"sequence": ["walking"]}}
+
+
+def test_classes_of_different_sizes_are_cut_one_by_one() -> None:
+    config = Config(samples_per_class=COUNTS, classes=HOME, activities=["S1", "S8", "home"])
+    rows, split = Rows.of(config), split_rows(config)
+    assert rows.counts == (4, 10, 1)
+    assert [rows[row][1] for row in range(15)] == [*range(4), *range(10), 0]
+    cut = [np.bincount(split[here], minlength=3).tolist() for _, here in rows.classes()]
+    assert cut == [[3, 1, 0], [8, 2, 0], [1, 0, 0]]
+    np.testing.assert_array_equal(split[4:14], split_of(10, activities=("S8",))[0])
+    (warning,) = split_warnings(config, split)
+    assert warning == (
+        "split.validation = 0.2, but there is no validation sample of home: "
+        "samples_per_class is too small"
+    )
+
+
+def test_persons_keep_their_side_in_classes_of_different_sizes() -> None:
+    persons = {"by": "subject", "subjects": 4, "train": 0.5, "validation": 0.5}
+    counts = {"per_activity": {"default": 4, "walking": 10}}
+    config = Config(samples_per_class=counts, activities=["S1", "S8"], split=persons)
+    split = split_rows(config)
+    sides = [{int(split[4 + index]) for index in range(person, 10, 4)} for person in range(4)]
+    assert sides == [{int(side)} for side in split[:4]]
+
+
+def test_a_part_that_stays_empty_is_warned_of() -> None:
+    config = Config(samples_per_class=2)
+    (warning,) = split_warnings(config, split_rows(config))
+    assert "no validation sample of any class" in warning
+    for whole in (Config(samples_per_class=5), Config(split={"train": 1.0, "validation": 0.0})):
+        assert split_warnings(whole, split_rows(whole)) == []

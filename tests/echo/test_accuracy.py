@@ -15,10 +15,11 @@ from radhar_cli.motion.protocol import Only
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.pipeline.physics import motion_of
 from radhar_cli.pipeline.run import record
+from radhar_cli.processing.canceller import FIRST_DIFFERENCE, Fir
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene import draw_scene
 
-SAID_DB = 8.0  # the error is an estimate from some dozens of pulses
+SAID_DB = 13.0  # the error is an estimate from some dozens of pulses; docs/engines.md
 CUBE = {"kind": "cube"}
 
 
@@ -79,7 +80,7 @@ def within(drawn: dict, activity: Activity, tolerance_db: float) -> float | None
     scene = draw_scene(Config.model_validate(drawn | {"engine": CUBE}), activity, 0)
     cube = record(scene, ["signal", "paths", "waveform", "canceller"])
     right, waveform, canceller = cube["signal"].x, cube["waveform"], cube["canceller"]
-    direct = DirectEcho(cube["paths"], waveform, tolerance_db, canceller=canceller.taps)
+    direct = DirectEcho(cube["paths"], waveform, tolerance_db, canceller=canceller)
     try:
         y, accuracy = direct.slow_time()
     except AccuracyError:
@@ -206,12 +207,12 @@ def test_float64_holds_less_of_a_signal_of_which_the_mti_leaves_less():
         with pytest.raises(AccuracyError) as refusal:
             walk(-390.0, prf=prf).slow_time()
         limits.append(refusal.value.limit_db)
-    assert 10 < limits[1] - limits[0] < 30
+    assert 10 < limits[1] - limits[0] < 35
 
 
 @pytest.mark.parametrize("canceller", [(1.0, -2.0, 1.0), (-1.0, 0.0, 1.0), (-1.0, 0.5)])
 def test_the_tolerance_is_that_after_any_canceller(canceller):
-    echo = replace(walk(-100.0), canceller=canceller)
+    echo = replace(walk(-100.0), canceller=Fir(canceller))
     y, accuracy = echo.slow_time()
     w = echo.waveform
     paths = WALK(np.arange(w.n_pulses) / w.prf)
@@ -234,7 +235,7 @@ class TestEstimate:
         return echo.slow_time()[0], echo.waveform
 
     def measured(self, y, waveform):
-        return measured_db(y, WALK, waveform, (-1.0, 1.0), 1.0)
+        return measured_db(y, WALK, waveform, FIRST_DIFFERENCE, 1.0)
 
     def test_noise_everywhere(self, exact):
         y, waveform = exact

@@ -12,7 +12,7 @@ from radhar_cli.echo import cube
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.phasor import unit_phasor
 from radhar_cli.pipeline.run import record
-from radhar_cli.processing.canceller import Canceller
+from radhar_cli.processing.canceller import Fir
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene import draw_scene
 
@@ -227,12 +227,12 @@ class TestBlocks:
             }
         )
         scene, asked = draw_scene(config, ACTIVITIES[1], 0), ["rtm", "signal"]
-        whole = record(scene, asked, canceller=Canceller(taps))
+        whole = record(scene, asked, canceller=Fir(taps))
         assert whole["signal"].x.shape == (151 - len(taps),)
         assert whole["rtm"].power.shape == (200, 37)
         for pulses in (2, 10, 149):
             monkeypatch.setattr(cube, "BLOCK_SAMPLES", pulses * 400)
-            parts = record(scene, asked, canceller=Canceller(taps))
+            parts = record(scene, asked, canceller=Fir(taps))
             for found, right in (
                 (parts["signal"].x, whole["signal"].x),
                 (parts["rtm"].power, whole["rtm"].power),

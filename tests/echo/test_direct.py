@@ -12,6 +12,7 @@ from radhar_cli.echo import direct, knots
 from radhar_cli.echo.accuracy import PROBES
 from radhar_cli.echo.direct import DirectEcho
 from radhar_cli.echo.interpolation import AFTER, BEFORE
+from radhar_cli.processing.canceller import NO_CANCELLER
 from radhar_cli.radar.waveform import Waveform
 
 DEFAULT, TIGHT = -60.0, -110.0  # tolerances, dB
@@ -140,7 +141,9 @@ class TestStaticPaths:
     def test_without_mti_they_count(self):
         source = self.with_static(5.0)
         paths = source(RADAR.times)
-        y = DirectEcho(source, Waveform(**asdict(RADAR)), TIGHT, canceller=(1.0,)).slow_time()[0]
+        y = DirectEcho(
+            source, Waveform(**asdict(RADAR)), TIGHT, canceller=NO_CANCELLER
+        ).slow_time()[0]
         assert ref.error_db(y, ref.slow_time(paths.delay, paths.amplitude, RADAR)) < TIGHT
 
     @pytest.mark.parametrize("tolerance", [DEFAULT, TIGHT, -400.0])
@@ -305,7 +308,6 @@ def test_block_lengths_do_not_matter(monkeypatch, size):
     rough = ref.Points(walk, smooth=False)
     whole = [after_mti(s, RADAR, -150.0) for s in (source, rough)]
     monkeypatch.setattr(direct, "BLOCK", size)
-    monkeypatch.setattr(direct, "BLOCK_SEGMENTS", size)
     parts = [after_mti(s, RADAR, -150.0) for s in (source, rough)]
     for part, right in zip(parts, whole, strict=True):
         assert ref.error_db(part, right) < -200

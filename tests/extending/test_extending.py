@@ -17,7 +17,7 @@ from radhar_cli.dataset.build import build
 from radhar_cli.pipeline.physics import antennas_of, motion_of, waveform_of
 from radhar_cli.pipeline.plan import Product
 from radhar_cli.pipeline.run import process, record
-from radhar_cli.processing.canceller import Canceller
+from radhar_cli.processing.canceller import Fir
 from radhar_cli.processing.power_map import Axis, PowerMap
 from radhar_cli.processing.range_compression import range_bins
 from radhar_cli.processing.signal import Signal
@@ -153,7 +153,7 @@ class DcOffset(Impairment):
 def test_an_impairment_between_echo_and_processing(engine: str) -> None:
     """A DC offset is a line at zero Doppler, which the canceller removes."""
     offset = Product("receiver", (), lambda: (DcOffset(1.0),), "a DC offset")
-    none = Canceller((1,))
+    none = Fir((1,))
     with_engine = CONFIG.engine.model_copy(update={"kind": engine})
     scene = walking(engine=with_engine)
     clean = record(scene, ["stft"])["stft"]
@@ -175,7 +175,7 @@ def test_a_recorded_signal_in_place_of_a_simulated_one() -> None:
 def test_another_canceller() -> None:
     """Three pulses instead of two: 4 sin^2 instead of 2 sin, squared, at every Doppler."""
     scene = walking()
-    three = record(scene, ["signal"], canceller=Canceller((1, -2, 1)))["signal"]
+    three = record(scene, ["signal"], canceller=Fir((1, -2, 1)))["signal"]
     two = record(scene, ["signal"])["signal"]
     assert three.x.size == two.x.size - 1
     assert three.t0 == pytest.approx(1 / 500)

@@ -57,7 +57,7 @@ def squeezed(x: np.ndarray, threshold: float = 1e-3) -> np.ndarray:
 
 
 def levels(power: np.ndarray, size: tuple[int, int], dynamic_range_db: float) -> np.ndarray:
-    return image.levels(image.reduced_map(power, size).power, dynamic_range_db)
+    return image.levels(image.reduced_map(power, size).cells, dynamic_range_db)
 
 
 # Linear functions of a slow-time signal [M] or a beat matrix [N_ADC, M].

@@ -52,6 +52,8 @@ LIMITS: dict[str, tuple[Any, Any, Any, Any]] = {
     "snr_db": (-300, 300, -301, 301),
     "processing.range_fft_length": (400, 25600, 398, 25602),
     "processing.window_fraction": (4e-4, 0.9999, 3.6e-4, 1),
+    "processing.window_s": (0.0016, 3.9998, 0.0014, 4.0),
+    "body.points_per_segment": (1, 1000, 0, 1001),
     "processing.overlap_fraction": (0, 0.9999, -0.1, 1),
     "processing.stft_fft_length": (2000, 128000, 1999, 128001),
     "processing.savgol.order": (0, 30, -1, 31),
@@ -155,6 +157,8 @@ def test_every_number_of_a_scene_is_held_to_its_range_in_every_form() -> None:
 FFTS = ("processing.range_fft_length", "processing.stft_fft_length", "processing.fsst_hop_pulses")
 # Null takes what the model of motion has.
 OF_THE_MODEL = (
+    "motion.range_m",
+    "motion.angle_deg",
     "motion.speed_mps",
     "timing.seat_duration_s",
     "timing.rise_duration_s",
@@ -162,7 +166,7 @@ OF_THE_MODEL = (
     "timing.sit_duration_s",
     "timing.fall_duration_s",
 )
-NULLABLE = ("snr_db", "subject.weight_kg", *OF_THE_MODEL, *FFTS)
+NULLABLE = ("processing.window_s", "snr_db", "subject.weight_kg", *OF_THE_MODEL, *FFTS)
 
 
 def spoilt(key: str, value: Any) -> dict[str, Any]:

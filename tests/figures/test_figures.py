@@ -14,7 +14,7 @@ from radhar_cli.dataset.build import build
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.figures.contact_sheet import draw_contact_sheet
-from radhar_cli.figures.maps_panel import TITLES, decibels, draw_maps, places
+from radhar_cli.figures.maps_panel import TITLES, decibels, draw_maps, of_simulation, places
 from radhar_cli.figures.stickman import draw_stickman, frame_count
 from radhar_cli.simulation.simulate import simulate
 
@@ -39,7 +39,7 @@ def test_maps_are_drawn(
     activity: str, overrides: list[str], joint: str | None, maps: tuple[str, ...], tmp_path: Path
 ) -> None:
     simulation = simulate(load_config(WALL, overrides), activity, joint=joint, maps=maps)
-    draw_maps(simulation, tmp_path / "maps.png", overlay=True)
+    draw_maps(of_simulation(simulation, overlay=True), tmp_path / "maps.png")
     assert colours(tmp_path / "maps.png") > 200
 
 
@@ -84,7 +84,9 @@ def test_contact_sheet_shows_every_class(tmp_path: Path) -> None:
 
 def test_decibels_of_an_all_zero_map_are_the_floor() -> None:
     assert (decibels(np.zeros((3, 4)), 50.0) == -50).all()
-    assert decibels(np.array([[1.0, 0.1, 0.0]]), 50.0).tolist() == [[0, -10, -50]]
+    found = decibels(np.array([[1.0, 0.1, 0.0]]), 50.0)
+    assert found == pytest.approx(np.array([[0, -10, -50]]), rel=1e-15, abs=0)
+    assert found[0, 2] == -50
 
 
 def test_colour_table_is_256_colours() -> None:

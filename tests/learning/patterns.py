@@ -116,16 +116,16 @@ def plant(out: Path, data: Path, margin: float = 5.0) -> None:
     logits = W (f - mean f), W by least squares: whatever the layers before it have learned, they
     tell a few images apart.
     """
-    about, model = run.load_best(out)
-    images = open_for(about, data, None)
-    found = predict(model, about, images, images.rows("all"), torch.device("cpu"), 8)
+    metadata, model = run.load_best(out)
+    images = open_for(metadata, data, None)
+    found = predict(model, metadata, images, images.rows("all"), torch.device("cpu"), 8)
     middle = found.features.mean(axis=0)
-    wanted = margin * (np.eye(len(about.classes))[found.truth] - 1 / len(about.classes))
+    wanted = margin * (np.eye(len(metadata.classes))[found.truth] - 1 / len(metadata.classes))
     weight = (np.linalg.pinv(found.features - middle) @ wanted).T
     head: Any = model.head
     head.weight.data = torch.tensor(weight, dtype=torch.float32)
     head.bias.data = torch.tensor(-weight @ middle, dtype=torch.float32)
-    run.write_best(out, about, run.best_epoch(run.read_history(out)), model.state_dict())
+    run.write_best(out, metadata, run.best_epoch(run.read_history(out)), model.state_dict())
 
 
 def best_weights(out: Path) -> dict[str, torch.Tensor]:

@@ -8,7 +8,13 @@ from hypothesis import given
 from hypothesis import settings as examples
 from hypothesis import strategies as st
 
-from radhar_cli.learning.batches import MIN_PER_PROCESS, Normalisation, Reader, epoch_batches
+from radhar_cli.learning.batches import (
+    MIN_PER_PROCESS,
+    Normalisation,
+    Reader,
+    epoch_batches,
+    epoch_order,
+)
 from radhar_cli.learning.images.opening import open_images
 
 
@@ -20,7 +26,7 @@ from radhar_cli.learning.images.opening import open_images
     epoch=st.integers(0, 5),
 )
 def test_every_image_exactly_once(count: int, size: int, processes: int, epoch: int) -> None:
-    batches = epoch_batches(count, size, 3, epoch, processes)
+    batches = epoch_batches(epoch_order(np.ones(count), 3, epoch), size, processes)
     assert sorted(np.concatenate(batches).tolist()) == list(range(count))
     assert all(batch.size == size for batch in batches[:-1])
     assert 0 < batches[-1].size < size + MIN_PER_PROCESS * processes
@@ -34,7 +40,7 @@ def test_no_process_gets_less_than_two_images_of_a_batch(
     """Where there are enough images and the batch is large enough for it."""
     if min(count, size) < MIN_PER_PROCESS * processes:
         return
-    for batch in epoch_batches(count, size, 3, 0, processes):
+    for batch in epoch_batches(epoch_order(np.ones(count), 3, 0), size, processes):
         shares = [batch[rank::processes].size for rank in range(processes)]
         assert min(shares) >= 2
         assert sum(shares) == batch.size
@@ -42,7 +48,8 @@ def test_no_process_gets_less_than_two_images_of_a_batch(
 
 def test_order_depends_on_seed_and_epoch_alone() -> None:
     def order(seed: int, epoch: int, processes: int = 1) -> list[int]:
-        found: list[int] = np.concatenate(epoch_batches(40, 8, seed, epoch, processes)).tolist()
+        batches = epoch_batches(epoch_order(np.ones(40), seed, epoch), 8, processes)
+        found: list[int] = np.concatenate(batches).tolist()
         return found
 
     assert order(1, 0) == order(1, 0) == order(1, 0, 4)
@@ -52,8 +59,20 @@ def test_order_depends_on_seed_and_epoch_alone() -> None:
 
 
 def test_full_batches_are_the_same_for_any_number_of_processes() -> None:
-    one, two = epoch_batches(18, 6, 1, 0, 1), epoch_batches(18, 6, 1, 0, 2)
+    order = epoch_order(np.ones(18), 1, 0)
+    one, two = epoch_batches(order, 6, 1), epoch_batches(order, 6, 2)
     assert [b.tolist() for b in one] == [b.tolist() for b in two]
+
+
+def test_a_weight_is_how_often_an_epoch_shows_an_image() -> None:
+    weights = np.array([0.0, 0.25, 1.0, 2.5])
+    shown = np.zeros(4)
+    for epoch in range(400):
+        times = np.bincount(epoch_order(weights, 1, epoch), minlength=4)
+        assert (np.floor(weights) <= times).all()
+        assert (times <= np.ceil(weights)).all()
+        shown += times
+    assert np.abs(shown / 400 - weights).max() < 0.1
 
 
 def test_levels_become_zero_mean_and_unit_spread_channel_by_channel() -> None:

@@ -46,7 +46,7 @@ with process_group(cpu) as group:
             place.mkdir(parents=True)
         dist.barrier()
         images = checked_images(config, data)
-        work = _Training.prepared(config, images, data, place, cpu, group, Watched(), False)
+        work = _Training.prepared(config, images, place, cpu, group, Watched())
         rows = work.images.rows("train")[:count][::-1]
         levels = np.stack([work.images.pixels.read(int(r)).transpose(2, 0, 1) for r in rows])
         levels, labels = torch.from_numpy(levels), torch.from_numpy(work.images.label[rows].copy())

@@ -172,10 +172,10 @@ def test_weights_alone_are_evaluated_without_curves(
 
 
 def test_batches_do_not_change_the_answers(learned: tuple[Path, Path]) -> None:
-    about, model = load_best(learned[0])
-    images = open_for(about, learned[1], None)
+    metadata, model = load_best(learned[0])
+    images = open_for(metadata, learned[1], None)
     rows = images.rows("val")[::-1].copy()
-    one, many = (predict(model, about, images, rows, CPU, batch) for batch in (1, 5))
+    one, many = (predict(model, metadata, images, rows, CPU, batch) for batch in (1, 5))
     np.testing.assert_allclose(one.probabilities, many.probabilities, atol=1e-5)
     np.testing.assert_allclose(many.probabilities.sum(1), 1, atol=1e-6)
     assert np.array_equal(one.truth, images.label[rows])
@@ -183,9 +183,9 @@ def test_batches_do_not_change_the_answers(learned: tuple[Path, Path]) -> None:
 
 
 def test_features_and_last_layer_make_the_probabilities(learned: tuple[Path, Path]) -> None:
-    about, model = load_best(learned[0])
-    images = open_for(about, learned[1], None)
-    found = predict(model, about, images, images.rows("val"), CPU, 4)
+    metadata, model = load_best(learned[0])
+    images = open_for(metadata, learned[1], None)
+    found = predict(model, metadata, images, images.rows("val"), CPU, 4)
     head = model.head
     logits = found.features @ head.weight.detach().numpy().T + head.bias.detach().numpy()
     odds = np.exp(logits - logits.max(1, keepdims=True))
@@ -250,8 +250,8 @@ def test_tsne_of_few_images_is_no_traceback(
 
 
 def test_speed_times_what_the_paper_times(learned: tuple[Path, Path]) -> None:
-    about, _ = load_best(learned[0])
-    found = speed(learned[0], open_for(about, learned[1], None), 0, CPU, 3)
+    metadata, _ = load_best(learned[0])
+    found = speed(learned[0], open_for(metadata, learned[1], None), 0, CPU, 3)
     assert set(found) == {
         *("load_s", "image_s", "load_and_image_s"),
         *("batch", "images_per_s", "images_per_s_with_loading"),
@@ -297,13 +297,13 @@ def test_onnx_runtime_agrees(learned: tuple[Path, Path], tmp_path: Path) -> None
     stored = {p.key: p.value for p in onnx.load(path).metadata_props}
     assert json.loads(stored["classes"]) == ["punching", "kicking", "walking"]
     session = onnxruntime.InferenceSession(path, providers=["CPUExecutionProvider"])
-    about, model = load_best(learned[0])
-    images = open_for(about, learned[1], None)
+    metadata, model = load_best(learned[0])
+    images = open_for(metadata, learned[1], None)
     rows = images.rows("val")
     levels = np.stack([images.pixels.read(int(r)).transpose(2, 0, 1) for r in rows])
     (logits,) = session.run(["logits"], {"pixels": levels})
     with torch.no_grad():
-        expected = model(about.normalisation(torch.from_numpy(levels))).numpy()
+        expected = model(metadata.normalisation(torch.from_numpy(levels))).numpy()
     np.testing.assert_allclose(logits, expected, atol=1e-4, rtol=1e-4)
     assert np.array_equal(logits.argmax(1), images.label[rows])
 

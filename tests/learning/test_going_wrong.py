@@ -140,12 +140,12 @@ def test_what_can_be_derived_is_written_again(data: Path, run_dir: Path, copy: P
 def test_eval_finds_the_cut_of_training_again(tmp_path: Path) -> None:
     root = tree(tmp_path / "t", parts={"": 5})
     trained(root, tmp_path / "run", epochs=1)
-    about = run.read_metadata(tmp_path / "run")
-    images = open_for(about, root, None)
+    metadata = run.read_metadata(tmp_path / "run")
+    images = open_for(metadata, root, None)
     rows, split = rows_of(images, "val")
-    assert (split, rows.size) == ("val", about.data["val"])
+    assert (split, rows.size) == ("val", metadata.data["val"])
     (root / "walking/000.png").unlink()
-    rows, split = rows_of(open_for(about, root, None), "val")
+    rows, split = rows_of(open_for(metadata, root, None), "val")
     assert (split, rows.size) == ("all", 14), "another set: what it is is said"
 
 
@@ -167,9 +167,9 @@ def test_a_model_that_knows_no_map_asks_for_one(tmp_path: Path) -> None:
     ours = tmp_path / "ours"
     build(load_config(config), ours, jobs=1, progress=Quiet())
     trained(ours / "png/stft", tmp_path / "run", epochs=1)
-    about = run.read_metadata(tmp_path / "run")
-    assert about.map == "stft", "the folder's name says so"
-    assert open_for(about, ours, None).map == "stft"
+    metadata = run.read_metadata(tmp_path / "run")
+    assert metadata.map == "stft", "the folder's name says so"
+    assert open_for(metadata, ours, None).map == "stft"
     foreign = shutil.copytree(ours / "png/stft", tmp_path / "foreign")
     trained(foreign, tmp_path / "other", epochs=1)
     with pytest.raises(FolderError) as caught:

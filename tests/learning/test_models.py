@@ -48,8 +48,8 @@ def test_rivals_build_and_take_a_step(zoo: None, name: str) -> None:
 
 def test_a_rival_trains_and_is_read_back(zoo: None, data: Path, tmp_path: Path) -> None:
     done = trained(data, tmp_path / "run", epochs=1, model="mobilenetv2_100")
-    about, _ = run.load_best(tmp_path / "run")
-    assert about.model == "mobilenetv2_100"
+    metadata, _ = run.load_best(tmp_path / "run")
+    assert metadata.model == "mobilenetv2_100"
     assert len(done.history) == 1
 
 
@@ -102,8 +102,8 @@ def test_smallnet_learns_and_is_read_back(data: Path, tmp_path: Path) -> None:
     """The loss of stripes in three directions falls by more than rounding could undo."""
     history = trained(data, tmp_path / "run", epochs=6, model="smallnet").history
     assert history[-1].train_loss < 0.8 * history[0].train_loss
-    about, model = run.load_best(tmp_path / "run")
-    assert about.model == "smallnet"
+    metadata, model = run.load_best(tmp_path / "run")
+    assert metadata.model == "smallnet"
     assert parameter_count(model) == cost("smallnet", 3, (SIZE, SIZE)).parameters
 
 

@@ -82,15 +82,15 @@ def test_best_weights_are_those_of_the_best_epoch(run_dir: Path) -> None:
     with safe_open(run_dir / run_files.BEST, "pt") as file:
         epoch = int(file.metadata()["epoch"])
     assert epoch == best_epoch(run.read_history(run_dir)).epoch
-    about, model = run.load_best(run_dir)
+    metadata, model = run.load_best(run_dir)
     assert not model.training
-    assert about == run.read_metadata(run_dir)
+    assert metadata == run.read_metadata(run_dir)
 
 
 def test_weights_alone_are_enough(run_dir: Path, tmp_path: Path) -> None:
     shutil.copy(run_dir / run_files.BEST, tmp_path / "model.safetensors")
-    about, model = run.load_best(tmp_path / "model.safetensors")
-    assert about.classes == ("punching", "kicking", "walking")
+    metadata, model = run.load_best(tmp_path / "model.safetensors")
+    assert metadata.classes == ("punching", "kicking", "walking")
     assert same(
         dict(sorted(model.state_dict().items())),
         dict(sorted(best_weights(run_dir).items())),
@@ -116,9 +116,9 @@ def _rewrite(path: Path, change: Callable[[dict[str, Any], dict[str, Any]], None
 
     with safe_open(path, "pt") as file:
         metadata = dict(file.metadata())
-    weights, about = load_file(path), json.loads(metadata["radhar"])
-    change(weights, about)
-    save_file(weights, path, {**metadata, "radhar": json.dumps(about)})
+    weights, found = load_file(path), json.loads(metadata["radhar"])
+    change(weights, found)
+    save_file(weights, path, {**metadata, "radhar": json.dumps(found)})
 
 
 def wrong_shape(path: Path) -> None:
@@ -180,7 +180,7 @@ class Evil:
 
 def evil_zip(path: Path, mark: Path) -> None:
     torch.save(
-        {"model": Evil(mark), "optimiser": {}, "history": [], "random": 0, "about": ""}, path
+        {"model": Evil(mark), "optimiser": {}, "history": [], "random": 0, "metadata": ""}, path
     )
 
 

@@ -48,12 +48,10 @@ def prepared(data: Path, out: Path, **changes: Any) -> _Training:
     return _Training.prepared(
         settings(**changes),
         checked_images(settings(**changes), data),
-        data,
         out,
         CPU,
         Group(),
         Watched(),
-        False,
     )
 
 
@@ -88,11 +86,11 @@ def test_files_of_a_run(run_dir: Path, data: Path) -> None:
 
 
 def test_normalisation_is_of_the_training_images_alone(run_dir: Path, data: Path) -> None:
-    images, about = open_images(data, None, "rgb"), run.read_metadata(run_dir)
+    images, metadata = open_images(data, None, "rgb"), run.read_metadata(run_dir)
     found = scan(images, images.rows("train"))
-    assert about.mean == found.mean
-    assert about.sd == found.sd
-    assert about.mean != scan(images, images.rows("all")).mean
+    assert metadata.mean == found.mean
+    assert metadata.sd == found.sd
+    assert metadata.mean != scan(images, images.rows("all")).mean
 
 
 def test_same_seed_same_weights_another_seed_others(
@@ -191,12 +189,12 @@ def test_only_a_better_epoch_replaces_the_best(
 
 def test_validation_is_that_of_the_stored_weights(data: Path, run_dir: Path) -> None:
     """Loss with label smoothing and accuracy of the last epoch, worked out anew."""
-    about, model = run.load_best(run_dir)
+    metadata, model = run.load_best(run_dir)
     model.load_state_dict(last_weights(run_dir))
     images = open_images(data, None, "rgb")
     rows = images.rows("val")
     levels = np.stack([images.pixels.read(int(row)) for row in rows]) / 255
-    x = ((levels - about.mean) / about.sd).transpose(0, 3, 1, 2)
+    x = ((levels - metadata.mean) / metadata.sd).transpose(0, 3, 1, 2)
     with torch.no_grad():
         logits = model(torch.tensor(x, dtype=torch.float32)).double()
     truth = torch.from_numpy(images.label[rows])
@@ -211,7 +209,7 @@ def test_step_reports_the_smoothed_loss_and_what_is_right(data: Path, tmp_path: 
     work = prepared(data, tmp_path / "run", label_smoothing=0.2)
     levels, labels = first_batch(work)
     network = copy.deepcopy(work.model).train()
-    logits = network(work.about.normalisation(levels))
+    logits = network(work.metadata.normalisation(levels))
     wanted = nn.functional.one_hot(labels, 3) * 0.8 + 0.2 / 3
     expected = -(wanted * logits.detach().log_softmax(1)).sum(1).mean()
     loss, right = work._train_step.step(work.model.train(), work.optimiser, levels, labels, 6)
@@ -393,17 +391,17 @@ def test_parts_are_nearly_equal_and_fit(images: int, micro_batch: int) -> None:
 def test_a_tree_without_splits_trains_and_is_cut_alike(tmp_path: Path) -> None:
     root = tree(tmp_path / "t", parts={"": 4})
     done = trained(root, tmp_path / "run", epochs=1, validation_share=0.25)
-    about = run.read_metadata(tmp_path / "run")
-    assert (about.data["train"], about.data["val"]) == (9, 3)
+    metadata = run.read_metadata(tmp_path / "run")
+    assert (metadata.data["train"], metadata.data["val"]) == (9, 3)
     assert trained(root, tmp_path / "run", epochs=1, validation_share=0.25).resumed == 1
     assert len(done.history) == 1
 
 
 def test_gray_and_bfloat16_train(data: Path, tmp_path: Path) -> None:
     trained(data, tmp_path / "run", epochs=1, input="gray", precision="bfloat16")
-    about = run.read_metadata(tmp_path / "run")
-    assert about.input == "gray"
-    assert about.mean[0] == about.mean[1] == about.mean[2]
+    metadata = run.read_metadata(tmp_path / "run")
+    assert metadata.input == "gray"
+    assert metadata.mean[0] == metadata.mean[1] == metadata.mean[2]
     assert all(w.dtype != torch.bfloat16 for w in best_weights(tmp_path / "run").values())
 
 

@@ -18,7 +18,7 @@ from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.skeleton import JOINTS, PARENTS, links
 from radhar_cli.pipeline.physics import motion_of
 from radhar_cli.pipeline.run import record
-from radhar_cli.pipeline.validity import draw_valid_scene
+from radhar_cli.pipeline.validity import Flags, check_scene, draw_valid_scene
 from radhar_cli.scene import PERSONAL, UNSTEADY, Scene, draw_scene, nominal_scene, scene_numbers
 from radhar_cli.simulation.scene_file import write_all
 from radhar_cli.simulation.simulate import simulate
@@ -168,6 +168,72 @@ def test_nominal_people_sway_and_breathe_and_nothing_else_is_random(slug: str) -
     assert 0.003 < breath.max() < 0.006
 
 
+@pytest.mark.parametrize(
+    ("slug", "before", "after"),
+    [("sitting_down", -0.3, -0.3), ("standing_up", 0.0, 0.3), ("grabbing", None, None)],
+)
+def test_people_step_to_the_chair_and_away_from_it(
+    slug: str, before: float | None, after: float | None
+) -> None:
+    """Backwards before they sit down, ahead after they have stood up, around what they pick up."""
+    config = people({"step_m": 0.3, "shuffle_hz": 0.0, "angle_deg": 0})
+    ways = set()
+    for index in range(8):
+        scene = draw_scene(config, activity_named(slug), index)
+        motion = moving(scene)
+        names = [name for _, name in motion.phases]
+        assert names.count("stepping") == (2 if slug == "grabbing" else 1)
+        at = np.array([0.0, motion.parts[-1][0].begin, motion.parts[-1][0].end])
+        ankles = motion.positions(at)[:, ANKLES].mean(axis=1)
+        ways |= {round(float(x), 9) for x in ankles[0, 1:] - ankles[0, 0]}
+        assert np.abs(ankles[1] - ankles[1, 0]).max() < 0.13
+    if before is None:
+        assert {0.3, -0.3} <= ways <= {-0.6, -0.3, 0.0, 0.3, 0.6}
+    else:
+        assert ways == {before, after}
+    nominal = moving(nominal_scene(config, activity_named(slug)))
+    assert "stepping" not in [name for _, name in nominal.phases]
+
+
+def test_people_look_behind_and_settle_when_they_sit_down() -> None:
+    quiet = {"step_m": 0.0, "fidget_hz": 0.0, "look_deg": 0.0, "settle_size": 0.0}
+    sitting = activity_named("sitting_down")
+    for more, channels in (
+        ({}, set()),
+        ({"look_deg": 30.0}, {"yaw"}),
+        ({"settle_size": 2.0}, None),
+    ):
+        motion = moving(draw_scene(people(quiet | more), sitting, 2))
+        fidgets = motion.idle.fidgets
+        assert channels is None or {fidget.channel for fidget in fidgets} == channels
+        if channels is None:
+            at = [fidget.at - motion.parts[-1][0].end for fidget in fidgets]
+            assert len(at) == 4
+            assert -0.9 < min(at) < max(at) < 1.3
+
+
+def test_walkers_turn_round_where_the_lane_ends() -> None:
+    config = people(
+        {"lane_m": 2.0, "lane_start": 0.5, "speed_mps": 1.2, "angle_deg": 0, "range_m": 5.0},
+        duration_s=9.0,
+    )
+    motion = moving(nominal_scene(config, activity_named("walking")))
+    x, y, _ = motion.torso(np.arange(0, 9, 0.01))[:, 0] - np.array([[5.0], [0.0], [0.0]])
+    assert 1.3 < x.max() < 1.8  # half of the lane was behind, and the arc is 0.55 m deep
+    assert -1.8 < x.min() < -1.3
+    assert 0.5 < np.ptp(y) < 0.8
+    straight = moving(nominal_scene(people({"speed_mps": 1.2}), activity_named("walking")))
+    assert straight.parts[0][0].gait.lane is None
+
+
+def test_a_fall_over_the_knees_takes_longer() -> None:
+    ends = [
+        moving(draw_scene(people({"kneel_s": kneel}), activity_named("S12"), 0)).phases[-1][0]
+        for kneel in (0.0, 0.5)
+    ]
+    assert ends[1] - ends[0] == pytest.approx(0.5)
+
+
 @pytest.mark.parametrize("slug", ["stationary", "walking", "punching"])
 def test_samples_differ_and_repeat_themselves(slug: str) -> None:
     config, t = people(), np.arange(0, 6, 0.05)
@@ -218,7 +284,7 @@ def test_keys_of_the_other_model_are_ignored() -> None:
 @pytest.mark.parametrize("slug", ["sitting_to_walking", "falling_to_walking"])
 def test_who_rises_walks_when_risen_unless_told_when(slug: str) -> None:
     activity = activity_named(slug)
-    (begin, _), *_, (walks, name) = moving(nominal_scene(people(), activity)).phases
+    _, (begin, _), *_, (walks, name) = moving(nominal_scene(people(), activity)).phases
     assert name == "walking"
     assert walks - begin == pytest.approx(
         {"sitting_to_walking": 1.8, "falling_to_walking": 3.0}[slug]
@@ -291,10 +357,10 @@ def test_a_sequence_is_a_class_of_its_own() -> None:
     assert 0.8 < walked < 1.6
     assert 0.2 < paused < 0.9
     names = [name for _, name in moving(scene).phases]
-    assert names == ["walking", "sitting down", "seated", "standing up", "standing"]
+    assert names == ["standing", "walking", "sitting down", "seated", "standing up", "standing"]
     starts = [start for start, _ in moving(scene).phases]
-    assert starts[0] == 0.3
-    assert starts[3] - starts[2] == pytest.approx(paused)
+    assert starts[1] == 0.3
+    assert starts[4] - starts[3] == pytest.approx(paused)
     assert_a_body(moving(scene), np.arange(0, 6, 0.02))
 
 
@@ -355,7 +421,7 @@ def test_who_gets_up_has_fallen_forward(tmp_path: Path) -> None:
 def test_the_paper_has_no_sequences(tmp_path: Path) -> None:
     path = tmp_path / "own.yaml"
     path.write_text("motion: {model: paper}\nclasses: {own: {sequence: [falling]}}")
-    with pytest.raises(ConfigError, match=r"classes = .*: should be none with motion.model: paper"):
+    with pytest.raises(ConfigError, match=r"classes\.own = .*: should have files with motion"):
         load_config(path)
 
 
@@ -395,3 +461,56 @@ def test_the_limits_of_people(key: str, low: float, high: float) -> None:
     for value in [*beyond, {"uniform": [high / 2, high * 1.01]}]:
         with pytest.raises(ConfigError, match=rf"^here: {key} = .*: should be from "):
             validated(Config, document(key, value), "here", {})
+
+
+@pytest.mark.parametrize(
+    "name", ["human/free_space_77GHz.yaml", "human/through_wall_2GHz.yaml", "quickstart.yaml"]
+)
+def test_nobody_of_the_usual_kind_leaves_the_model_or_aliases(name: str) -> None:
+    config = load_config(ROOT / "configs" / name)
+    for activity in config.chosen_activities:
+        assert not check_scene(nominal_scene(config, activity)).flags, activity.slug
+
+
+@pytest.mark.parametrize("wall", [None, {}])
+def test_people_face_the_radar_by_default_and_keep_clear_of_it(wall: object) -> None:
+    config = Config(wall=wall)
+    for activity in config.chosen_activities:
+        found = check_scene(nominal_scene(config, activity))
+        assert found.flags & ~Flags.ALIASING == 0, activity.slug
+        assert found.closest.distance > 1, activity.slug
+        angles = [draw_scene(config, activity, n).config.motion.angle_deg for n in range(20)]
+        assert all(150 <= angle <= 240 for angle in angles)
+    away = nominal_scene(Config(motion={"model": "paper"}), activity_named("walking"))
+    assert (away.config.motion.angle_deg, away.config.motion.range_m) == (0, 2)
+
+
+@pytest.mark.parametrize(
+    ("label", "asked", "most"),
+    [
+        ("S9", {"rise_duration_s": 1.5}, 0.45),
+        ("S10", {"sit_duration_s": 2.0}, 0.6),
+        ("S11", {"rise_duration_s": 2.0}, 0.6),
+        ("S12", {"fall_duration_s": 1.0}, 0.3),
+    ],
+)
+def test_the_number_of_an_overlap_is_the_overlap_that_there_is(
+    label: str, asked: dict[str, float], most: float
+) -> None:
+    activity = activity_named(label)
+    for overlap in (0.2, 0.8):
+        scene = nominal_scene(people(timing={"overlap_s": overlap} | asked), activity)
+        held = scene_numbers(scene)["timing.overlap_s"]
+        assert held == pytest.approx(min(overlap, most))
+        (first, _), (second, _) = moving(scene).parts
+        assert first.end - second.begin == pytest.approx(held)
+    if label == "S12":
+        sideways = people({"fall": "sideways"}, timing={"overlap_s": 0.8})
+        assert scene_numbers(nominal_scene(sideways, activity))["timing.overlap_s"] == 0
+
+
+def test_who_rises_does_not_walk_off_earlier_than_legs_allow() -> None:
+    timing = {"rise_start_s": 0.5, "rise_duration_s": 2.0, "walk_start_s": 0.6}
+    scene = nominal_scene(people(timing=timing), activity_named("S9"))
+    assert scene_numbers(scene)["timing.walk_start_s"] == pytest.approx(0.5 + 0.7 * 2.0)
+    assert moving(scene).parts[1][0].begin == pytest.approx(1.9)

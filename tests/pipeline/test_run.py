@@ -173,6 +173,7 @@ def test_settings_reach_their_stage():
         ({"range_fft_length": 1000}, {"rtm"} | doppler),
         ({"range_reference": "start"}, doppler),
         ({"window_fraction": 0.2}, doppler),
+        ({"window_s": 0.3}, doppler),
         ({"overlap_fraction": 0.5}, doppler),
         ({"stft_fft_length": 200}, doppler - {"fsst"}),
         ({"savgol": {"order": 3, "frame": 11}}, {"stft_denoised"}),

@@ -213,9 +213,13 @@ def said(config: Config) -> dict[str, tuple[int, str]]:
 
 
 def test_warnings_at_the_papers_free_space_settings() -> None:
-    """The five walks alias: ankles reach 6.2 m/s, the radar 4.7. From x = 1 m none gets too far."""
+    """The five walks alias: ankles reach 6.2 m/s, the radar 4.7. From x = 1 m none gets too far.
+
+    The paper's falls turn about the torso, feet and head 0.2 m below the floor.
+    """
     found = said(Config(**FREE_SPACE, samples_per_class=1))
-    assert found.keys() == {"aliasing"}
+    assert found.keys() == {"aliasing", "floor"}
+    assert found["floor"] == (2, "2 of 12 recordings: a scatterer goes below the floor")
     assert found["aliasing"][0] == 5
     assert "5 of 12 recordings" in found["aliasing"][1]
 
@@ -223,12 +227,16 @@ def test_warnings_at_the_papers_free_space_settings() -> None:
 def test_warnings_at_the_papers_through_the_wall_settings() -> None:
     """S8 to S12 start inside the wall; they and the kick alias."""
     found = said(Config(**THROUGH_WALL, samples_per_class=1))
-    assert {kind: count for kind, (count, _) in found.items()} == {"wall": 5, "aliasing": 6}
+    assert {kind: count for kind, (count, _) in found.items()} == {
+        "wall": 5,
+        "aliasing": 6,
+        "floor": 2,
+    }
     assert "5 of 12 recordings: the body passes through the wall" in found["wall"][1]
 
 
 def test_warnings_of_the_papers_randomised_walkers() -> None:
-    config = Config(activities=("S8",), samples_per_class=20)
+    config = Config(activities=("S8",), samples_per_class=20, motion={"model": "paper"})
     scenes = [draw_scene(config, WALKING, index) for index in range(20)]
     half_band = C * 10e6 / (4 * 1e14)
     leaving = sum(bool(brute_delay(scene).max() * C / 2 >= half_band) for scene in scenes)
@@ -350,3 +358,21 @@ def test_the_gravest_reason_is_given(distance: float, wall: bool, band: bool, wh
     flags = Flags.ALIASING | (Flags.HALF_BAND * band) | (Flags.WALL * wall)
     invalid = SceneCheck(closest, Flags(flags)).invalid
     assert (invalid is None) if why is None else (invalid is not None and why in invalid)
+
+
+@pytest.mark.parametrize(
+    ("gate_m", "leaves"),
+    [([0.0, 7.0], False), ([0.0, 3.0], True), ([3.0, 7.0], True), (1.0, False)],
+)
+def test_a_torso_that_leaves_a_fixed_gate_is_told(gate_m, leaves):
+    """From 2 m, 1.5 m/s away for 3 s; a gate around the torso goes with it."""
+    motion = {"model": "paper", "range_m": 2.0, "angle_deg": 0.0, "speed_mps": 1.5}
+    config = Config.model_validate(
+        {
+            "duration_s": 3.0,
+            "motion": motion,
+            "processing": {"doppler": "gate", "gate_m": gate_m},
+        }
+    )
+    said = module.scene_warnings(draw_scene(config, activity_named("walking"), 0))
+    assert any("the torso leaves the ranges of processing.gate_m" in one for one in said) == leaves

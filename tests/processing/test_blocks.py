@@ -58,7 +58,7 @@ def test_blocks_are_the_whole(kind, length, hop, count, rest, block, threshold, 
     assert np.array_equal(np.concatenate(blocks), whole)
     found, right = reduced(blocks, count, size), reduced([whole], count, size)
     assert found.entropy == pytest.approx(entropy_bits(whole), rel=ENTROPY, abs=ENTROPY)
-    one, other = (levels(r.power, RANGE_DB).astype(int) for r in (found, right))
+    one, other = (levels(r.cells, RANGE_DB).astype(int) for r in (found, right))
     assert np.abs(one - other).max() <= 1
     assert np.sum(one != other) <= max(1, FLIPS * one.size)
 
@@ -72,7 +72,7 @@ def test_float32_is_enough_for_images_of_the_stft(length, hop):
         for single in (False, True)
     )
     assert single.entropy == pytest.approx(exact.entropy, abs=1e-4)
-    off = np.abs(levels(single.power, RANGE_DB) - levels(exact.power, RANGE_DB).astype(int))
+    off = np.abs(levels(single.cells, RANGE_DB) - levels(exact.cells, RANGE_DB).astype(int))
     assert off.max() <= 1
     assert np.mean(off > 0) <= FLIPS
 
@@ -104,7 +104,7 @@ def test_a_silent_signal_is_a_map_of_zeros(kind, single):
     blocks = power_blocks(kind, np.zeros(100, complex), Frames(20, 2), single=single)
     found = reduced(blocks, 41, (8, 8))
     assert found.entropy == 0
-    assert not levels(found.power, RANGE_DB).any()
+    assert not levels(found.cells, RANGE_DB).any()
 
 
 @pytest.mark.parametrize("broken", [np.nan, np.inf])
@@ -121,7 +121,7 @@ def test_few_pixels_flip(shape, size):
     power = np.random.default_rng(0).exponential(size=shape) * np.geomspace(1e-5, 1, shape[1])
     found = reduced((power.T[i : i + 7] for i in range(0, shape[1], 7)), shape[1], size)
     right = reduced_map(power, size)
-    assert np.mean(levels(found.power, RANGE_DB) != levels(right.power, RANGE_DB)) <= FLIPS
+    assert np.mean(levels(found.cells, RANGE_DB) != levels(right.cells, RANGE_DB)) <= FLIPS
 
 
 @pytest.mark.parametrize(("threshold", "passes"), [(1e-3, 2), (0.0, 1)])

@@ -12,7 +12,7 @@ RANGE_DB = 50.0
 
 def levels(power: np.ndarray, size: tuple[int, int], dynamic_range_db: float) -> np.ndarray:
     """Levels [H, W] of a whole map."""
-    return image.levels(image.reduced_map(power, size).power, dynamic_range_db)
+    return image.levels(image.reduced_map(power, size).cells, dynamic_range_db)
 
 
 def random_map(shape: tuple[int, int]) -> np.ndarray:
@@ -124,15 +124,15 @@ def test_resizing_is_pillows(shape, size):
     picture = Image.fromarray(power[::-1].astype(np.float32))
     right = np.asarray(picture.resize(size[::-1], Image.Resampling.BILINEAR))
     for dtype, rounding in ((np.float64, 2e-7), (np.float32, 1e-6)):
-        found = reduced([power.T.astype(dtype)], shape[1], size).power
+        found = reduced([power.T.astype(dtype)], shape[1], size).cells
         assert np.abs(found / right - 1).max() < rounding
 
 
 def test_bands_do_not_matter(monkeypatch):
     power = np.random.default_rng(0).exponential(size=(700, 300))
-    right = reduced([power.T], 300, (64, 64)).power
+    right = reduced([power.T], 300, (64, 64)).cells
     monkeypatch.setattr(image, "BAND", 5)
-    assert reduced([power.T], 300, (64, 64)).power == pytest.approx(right, rel=1e-6)
+    assert reduced([power.T], 300, (64, 64)).cells == pytest.approx(right, rel=1e-6)
 
 
 def test_decibels_below_the_largest():

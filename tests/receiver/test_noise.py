@@ -14,7 +14,7 @@ from radhar_cli.pipeline.physics import motion_of
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.run import Recording, run
 from radhar_cli.pipeline.run import record as record_scene
-from radhar_cli.processing.canceller import NO_CANCELLER, Canceller
+from radhar_cli.processing.canceller import NO_CANCELLER, Fir
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.receiver.noise import WhiteNoise, circular_gaussian, noise_at, noise_variance
 from radhar_cli.scene import Scene, draw_scene, scene_numbers
@@ -243,7 +243,7 @@ class TestRangeProfiles:
     @pytest.mark.parametrize("taps", [(1, -2, 1), (-1, 0, 1), (1, 1, 1, 1)])
     def test_outputs_of_any_canceller_that_share_pulses_are_correlated(self, taps):
         """By sum_k c[k] c[k + lag]/sum c^2; apart, they have its gain alone."""
-        c, rng = Canceller(taps), np.random.default_rng(9)
+        c, rng = Fir(taps), np.random.default_rng(9)
         every, apart = (noise_at(rng, SAMPLES, np.arange(5000) * step, c) for step in (1, 4))
         error = SIGMAS * np.sqrt(3 / every.size)
         power = np.sum(np.square(taps))

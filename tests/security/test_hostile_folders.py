@@ -14,7 +14,7 @@ from security.made import SET
 from radhar_cli.cli import program
 from radhar_cli.config import load_config
 from radhar_cli.dataset import scene_fields, shards
-from radhar_cli.dataset.folder import locked
+from radhar_cli.dataset.folder import folder_lock
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.errors import RadharError
 
@@ -92,7 +92,7 @@ def test_a_work_folder_that_leads_elsewhere_is_refused(
     folder.mkdir()
     plant(folder, outside)
     before = sorted(folder.rglob("*"))
-    with pytest.raises(RadharError, match=r"\.radhar.*link"), locked(folder):
+    with pytest.raises(RadharError, match=r"\.radhar.*link"), folder_lock(folder):
         pass
     assert untouched(outside)
     assert sorted(folder.rglob("*")) == before

@@ -150,12 +150,12 @@ def spread(file: h5py.File, per_class: int, **how: Any) -> None:
         file.create_dataset(name, shape, dtype, chunks=chunks)
 
 
-@hostile(r"/maps/stft: holds 0 images; should hold 2000000000|samples_per_class = 1000000000")
+@hostile(r"/maps/stft: holds 0 samples; should hold 2000000000|samples_per_class = 1000000000")
 def a_billion_rows(file: h5py.File, _: Path) -> None:
     spread(file, 10**9, chunks=True)
 
 
-@hostile(r"/maps/stft: holds 0 images; should hold 20000000")
+@hostile(r"/maps/stft: holds 0 samples; should hold 20000000")
 def many_rows_that_are_not_there(file: h5py.File, _: Path) -> None:
     spread(file, 10**7, chunks=None)
 
@@ -199,7 +199,7 @@ for name, content, said in (
 
 PIXELS = {"shape": (6, 32, 32), "dtype": np.uint8}
 ONE = {**PIXELS, "data": np.zeros((6, 32, 32), np.uint8), "chunks": (1, 32, 32)}
-replaced("maps/stft", "holds 0 images", **PIXELS, chunks=(1, 32, 32))
+replaced("maps/stft", "holds 0 samples", **PIXELS, chunks=(1, 32, 32))
 replaced("maps/stft", r"has chunks of \(6, 32, 32\)", **{**ONE, "chunks": (6, 32, 32)})
 replaced("maps/stft", r"has chunks of None", **PIXELS, data=np.zeros((6, 32, 32), np.uint8))
 replaced("maps/stft", r"through filters \[32000\]", **ONE, compression="lzf")

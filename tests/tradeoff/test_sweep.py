@@ -31,6 +31,7 @@ image: {size_px: 48}
 TRIED = (
     *("-40 dB", "-60 dB", "-80 dB", "-100 dB", "-120 dB", "cube", "double", "64 px", "fsst"),
     *("residual video phase", "FSST at every sample", "refracted rays"),
+    *("scatterers: segments instead of points", "shadowing", "doppler: gate instead of half_band"),
 )
 FEW = ("-40 dB", "-80 dB", "cube")
 
@@ -121,6 +122,20 @@ class TestCommand:
         assert dense["ssim"] < 0.999
         assert dense["time_over"] == "the FSST at the STFT's hop"
         assert "refracted rays" not in rows  # no wall, no rays through it
+
+    def test_bodies_and_gates_show_what_they_change(self, done):
+        rows = rows_of(done[1])
+        body = rows["scatterers: segments instead of points"]
+        assert body["signal_error_db"] > -10
+        assert body["ssim"] < 0.95
+        shadows = rows["shadowing"]
+        assert -60 < shadows["signal_error_db"] < body["signal_error_db"]
+        assert shadows["time_over"] == "segments without shadowing"
+        gate = rows["doppler: gate instead of half_band"]
+        assert gate["signal_error_db"] < -60  # the half-band's sum stays what it is
+        assert gate["map_error_db"] > 0.1
+        assert gate["echo_ratio"] > 0
+        assert all(row["refused"] == 0 for row in (body, shadows, gate))
 
     def test_again_measures_nothing(self, done, monkeypatch):
         config, out = done
@@ -216,8 +231,40 @@ class TestSettings:
         usual = scene_numbers(scenes.draw("walking", scenes.config()))
         for setting in sweep(scenes.config()):
             scene = scenes.draw("walking", scenes.config(setting.overrides))
-            if setting.name != "human motion":
+            if not setting.name.startswith("motion: "):
                 assert scene_numbers(scene) == usual
+
+    def test_the_other_motion_begins_at_the_same_place(self, config):
+        scenes = self.scenes(config, "motion.range_m={uniform: [4, 5]}")
+        (row,) = (s for s in sweep(scenes.config()) if s.name == "motion: human instead of paper")
+        one, other = (
+            scene_numbers(scenes.draw("walking", scenes.config(overrides)))
+            for overrides in ((), row.overrides)
+        )
+        assert "motion.arm_swing" in other.keys() - one.keys()
+        for key in ("motion.range_m", "motion.angle_deg", "subject.height_m"):
+            assert one[key] == other[key]
+
+    def test_the_other_body_is_the_one_that_the_config_has_not(self, config):
+        scenes = self.scenes(config, "body.scatterers=segments")
+        names = [setting.name for setting in sweep(scenes.config())]
+        assert "scatterers: points instead of segments" in names
+        assert "shadowing" in names
+
+    def test_a_gate_is_compared_where_other_maps_forbid_it(self, config):
+        scenes = self.scenes(config, "maps=[stft, fsst]")
+        names = [setting.name for setting in study._possible(scenes, Listener())]
+        assert "doppler: gate instead of half_band" in names
+
+    def test_sequences_have_no_trial_under_the_papers_motion(self, config):
+        own = "classes={home: {sequence: [walking]}}"
+        human = self.scenes(config, "motion.model=human").config()
+        with_own = self.scenes(config, "motion.model=human", own).config()
+        names = [{trial.name for trial in trials(each)} for each in (human, with_own)]
+        assert names[0] - names[1] == {
+            "with motion: paper instead of human",
+            "without motion: paper instead of human, tested with it",
+        }
 
 
 class TestFrontier:

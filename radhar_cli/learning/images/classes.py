@@ -25,7 +25,7 @@ def read_classes(path: Path) -> dict[str, str | None]:
 
 
 def renamed(images: ImageSet, names: Mapping[str, str | None]) -> ImageSet:
-    """The images under the names of a file that is about them.
+    """The images under the names that `--classes FILE` gives them.
 
     Raises:
         FolderError: the file names a class that is not there, or leaves none.

@@ -8,11 +8,12 @@ from pathlib import Path
 import numpy as np
 
 from radhar_cli.arrays import Levels
+from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.learning.images.image_set import ImageSet, class_order, repeated
 
-_WHO_AND_HOW = ("subject.", "motion.", "timing.")
+_WHO_AND_HOW = ("subject.", "motion.", "timing.", "recordings.part", "recordings.start_s")
 
 
 @dataclass
@@ -44,7 +45,7 @@ class H5Pixels:
 def h5_images(path: Path, map_name: str | None, kind: str) -> ImageSet:
     """Open one map of a dataset.h5, or of the folder it lies in, as images."""
     with open_dataset(path) as data:
-        name = data.map_name(map_name)
+        name, rows = data.map_name(map_name), Rows.of(data.config)
         slug = np.array(data.class_slugs)[data.label]
         classes = class_order(set(slug.tolist()))
         colours = colour_table(data.config.image.colour_map)
@@ -55,9 +56,7 @@ def h5_images(path: Path, map_name: str | None, kind: str) -> ImageSet:
             classes=classes,
             label=np.array([classes.index(s) for s in slug], dtype=np.intp),
             split=data.split,
-            names=tuple(
-                f"{s}/{index:05d}" for s, (_, index) in zip(slug, data.sample_key[:], strict=True)
-            ),
+            names=tuple(f"{s}/{rows.name(row)}" for row, s in enumerate(slug)),
             scenes=_scenes(data, slug.tolist()),
             size=data.config.image.size_px,
             pixels=H5Pixels(data.path, name, table),

@@ -73,6 +73,7 @@ class ImageSet:
         pixels: reads them.
         snr_db: of all of them, None where they differ or the source does not say.
         left_out: {class: images of it that the source has and this set does not}.
+        source: [N] which of several joined sets each came from.
     """
 
     where: Path
@@ -86,6 +87,11 @@ class ImageSet:
     pixels: Pixels
     snr_db: float | None = None
     left_out: Mapping[str, int] = field(default_factory=dict)
+    source: Index = field(default_factory=lambda: np.zeros(0, np.intp))
+
+    def __post_init__(self) -> None:
+        if not self.source.size:
+            object.__setattr__(self, "source", np.zeros(len(self.label), np.intp))
 
     def __len__(self) -> int:
         return len(self.label)
@@ -131,6 +137,7 @@ class ImageSet:
             names=tuple(self.names[row] for row in rows),
             scenes=None if self.scenes is None else tuple(self.scenes[row] for row in rows),
             pixels=SomeRows(self.pixels, rows),
+            source=self.source[rows],
             left_out={
                 **self.left_out,
                 **{name: n for name, n in zip(self.classes, lost, strict=True) if n},

@@ -55,33 +55,31 @@ class FallForward:
     Attributes:
         buckle: by how much the thighs give way at first, rad.
         arms: flexion of the shoulders as the hands look for the floor, rad.
+        kneel: how long the trunk stays over the knees before it falls too, s.
     """
 
     duration: float = 1.1
     prone: Prone = field(default_factory=Prone)
     buckle: float = radians(26)
     arms: float = radians(80)
+    kneel: float = 0.0
 
     def part(self, person: Person, begin: float, horizon: float = 0.0) -> Planted:
         """The movement from `begin` (s) on."""
         rest, prone = at_rest(person), self.prone.posture(person)
         change = {channel: prone[channel] - rest[channel] for channel in rest}
         rest |= {channel: prone[channel] for channel in ("hands_ahead", "hands_beside")}
+        kneel = self.kneel / self.duration
         steps = [
             Step("shank", change["shank"], 0.0, 0.78, late=True),
-            Step("thigh", change["thigh"], 0.08, 0.92, late=True),
+            Step("thigh", change["thigh"], kneel + 0.08, 0.92, late=True),
             Step("thigh", -self.buckle, 0.0, 0.50),
-            Step("thigh", self.buckle, 0.42, 0.58),
-            Step("trunk", change["trunk"], 0.10, 1.0, late=True),
-            *both(SHOULDERS, self.arms, 0.05, 0.7),
-            Step("hands", 1.0, 0.25, 0.65),
-            Step("standing", -1.0, 0.0, 0.5),
-            Step("upright", -1.0, 0.0, 1.0),
+            Step("thigh", self.buckle, kneel + 0.42, 0.58),
+            Step("trunk", change["trunk"], kneel + 0.10, 1.0, late=True),
+            *both(SHOULDERS, self.arms, kneel + 0.05, 0.7),
+            Step("hands", 1.0, kneel + 0.25, 0.65),
         ]
-        course = Course.of(rest, timed(steps, begin, self.duration))
-        end = begin + 1.1 * self.duration
-        phases = (Phase(begin, "falling"), Phase(end, "lying"))
-        return Planted(person, course, begin, end, phases, STANDING, PRONE)
+        return _falling(person, begin, self.duration, rest, steps, PRONE, self.kneel)
 
 
 @dataclass(frozen=True)
@@ -127,10 +125,22 @@ class FallBackward:
             *both(SHOULDERS, self.arms, 0.10, 0.50),
             *both(SHOULDERS, change["right_shoulder"] - self.arms, 0.55, 0.55),
             *both(ELBOWS, change["right_elbow"], 0.10, 0.90),
-            Step("standing", -1.0, 0.0, 0.5),
-            Step("upright", -1.0, 0.0, 1.0),
         ]
-        course = Course.of(rest, timed(steps, begin, self.duration))
-        end = begin + 1.1 * self.duration
-        phases = (Phase(begin, "falling"), Phase(end, "lying"))
-        return Planted(person, course, begin, end, phases, STANDING, SUPINE)
+        return _falling(person, begin, self.duration, rest, steps, SUPINE)
+
+
+def _falling(
+    person: Person,
+    begin: float,
+    duration: float,
+    rest: dict[str, float],
+    steps: list[Step],
+    after: str,
+    kneel: float = 0.0,
+) -> Planted:
+    """A fall of some steps, in units of the duration, in which the sway comes to its end."""
+    steps += [Step("standing", -1.0, 0.0, 0.5), Step("upright", -1.0, 0.0, 1.0)]
+    course = Course.of(rest, timed(steps, begin, duration))
+    end = begin + 1.1 * duration + kneel
+    phases = (Phase(begin, "falling"), Phase(end, "lying"))
+    return Planted(person, course, begin, end, phases, STANDING, after)

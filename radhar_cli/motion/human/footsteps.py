@@ -17,7 +17,6 @@ from radhar_cli.motion.human.person import Person
 
 DEGREE = 8
 LIFT_SHAPE = np.array([0, 0, 0, 1, -5, 10, -10, 5, -1]) / (0.375**3 * 0.625**5)  # peak 1 at 3/8
-MINIMUM_JERK = np.array([0.0, 0, 0, 10, -15, 6])
 
 
 class Footfalls(NamedTuple):
@@ -25,8 +24,8 @@ class Footfalls(NamedTuple):
 
     Attributes:
         off, toe, down: heel-off, toe-off and touch-down, s.
-        before, after: x of the footholds.
-        from_side, to_side: y of the footholds.
+        before, after: x and y of the footholds [2, N].
+        heading: to where the foot points before the swing, rad from the x axis.
         size: length of the step over the walker's usual one, at most 1.
     """
 
@@ -35,8 +34,7 @@ class Footfalls(NamedTuple):
     down: Float
     before: Float
     after: Float
-    from_side: Float
-    to_side: Float
+    heading: Float
     size: Float
 
 
@@ -63,27 +61,33 @@ class FootTrack:
 
     def __call__(self, t: Float) -> Float:
         """Ankle [3, M] at times t [M] (s)."""
-        x, y, z, beta = self._polynomials(t).T
+        x, y, z, beta, heading = self._polynomials(t).T
         cos, sin = np.cos(beta), np.sin(beta)
         ball, high = self.person.toes, self.person.ankle
-        return np.stack([x + ball * (1 - cos) + high * sin, y, z + ball * sin + high * cos])
+        ahead = ball * (1 - cos) + high * sin
+        if self.falls.heading.any():
+            x, y = x + np.cos(heading) * ahead, y + np.sin(heading) * ahead
+        else:
+            x = x + ahead
+        return np.stack([x, y, z + ball * sin + high * cos])
 
     @cached_property
     def _polynomials(self) -> PPoly:
-        """x, y and z - z_a of an unrolled foot, and beta [M, 4], in seconds from each event."""
+        """x, y, z - z_a of an unrolled foot, beta, heading [M, 5], in seconds from each event."""
         f, n = self.falls, self.falls.off.size
-        c = np.zeros((DEGREE + 1, 3 * n + 1, 4))  # lowest power first
+        c = np.zeros((DEGREE + 1, 3 * n + 1, 5))  # lowest power first
         planted, rolling, swinging = c[:, 0::3], c[:, 1::3], c[:, 2::3]
-        planted[0, :, 0] = np.append(f.before[:1], f.after)
-        planted[0, :, 1] = np.append(f.from_side[:1], f.to_side)
-        rolling[0, :, 0], rolling[0, :, 1] = f.before, f.from_side
+        planted[0, :, :2] = np.concatenate([f.before[:, :1], f.after], axis=1).T
+        rolling[0, :, :2] = f.before.T
+        rolling[0, :, 4] = f.heading
         rolling[3, :, 3] = self.roll * f.size / (f.toe - f.off) ** 3
         length = f.down - f.toe
-        for axis, toe_off in ((0, self._toe_off()[0]), (2, self._toe_off()[1])):
-            target = f.after if axis == 0 else np.zeros(n)
-            swinging[:6, :, axis] = to_rest(*toe_off, target, length)
-        swinging[:6, :, 1] = np.outer(MINIMUM_JERK, f.to_side - f.from_side)
-        swinging[0, :, 1] = f.from_side
+        ahead, up = self._toe_off()
+        for axis, way in enumerate((np.cos(f.heading), np.sin(f.heading))):
+            gone, velocity, acceleration = (way * value for value in ahead)
+            gone = gone + f.before[axis]
+            swinging[:6, :, axis] = to_rest(gone, velocity, acceleration, f.after[axis], length)
+        swinging[:6, :, 2] = to_rest(*up, np.zeros(n), length)
         swinging[:, :, 2] += np.outer(LIFT_SHAPE, self.lift * f.size)
         swinging /= (length ** np.arange(DEGREE + 1)[:, None])[..., None]
         events = np.stack([f.off, f.toe, f.down], axis=1).ravel()
@@ -91,14 +95,14 @@ class FootTrack:
         return PPoly.construct_fast(np.ascontiguousarray(c[::-1]), ends)
 
     def _toe_off(self) -> tuple[tuple[Float, Float, Float], tuple[Float, Float, Float]]:
-        """Position, velocity and acceleration at toe-off, of x and of z - z_a."""
+        """Way, velocity and acceleration at toe-off, ahead and of z - z_a."""
         f, ball, high = self.falls, self.person.toes, self.person.ankle
         beta = self.roll * f.size
         rate = 3 * beta / (f.toe - f.off)
         growth = 2 * rate / (f.toe - f.off)
         cos, sin = np.cos(beta), np.sin(beta)
         forth, up = ball * sin + high * cos, ball * cos - high * sin  # d/dbeta of x and z
-        x = f.before + ball * (1 - cos) + high * sin
+        x = ball * (1 - cos) + high * sin
         z = ball * sin + high * (cos - 1)
         return (
             (x, forth * rate, up * rate**2 + forth * growth),

@@ -8,6 +8,11 @@ from radhar_cli.motion.human.part import Phase
 from radhar_cli.motion.human.person import Person
 from radhar_cli.motion.human.planted import Planted, at_rest
 
+# Further angles of shanks, thighs, trunk and reach of who squats, and of who stoops, over the
+# trunk's.
+SQUAT = 0.19, -0.25, -0.30, 0.35
+STOOP = -0.33, 0.66, 0.25, 0.0
+
 
 @dataclass(frozen=True)
 class Grab:
@@ -16,6 +21,7 @@ class Grab:
     Attributes:
         reach: of the right arm ahead of the vertical.
         other_arm: what the left arm does of what the right one does.
+        squat: from -1, over straight legs, to 1, deep in the knees.
     """
 
     down: float = 1.2
@@ -26,17 +32,23 @@ class Grab:
     trunk: float = radians(72)
     reach: float = radians(12)
     other_arm: float = 0.55
+    squat: float = 0.0
 
     def part(self, person: Person, begin: float, horizon: float = 0.0) -> Planted:
         """The movement from `begin` (s) on."""
         rest = at_rest(person)
-        arm = self.trunk + self.reach  # flexion is relative to the trunk
+        shank, thigh, trunk, reach = (
+            abs(self.squat) * further * self.trunk
+            for further in (SQUAT if self.squat > 0 else STOOP)
+        )
+        trunk += self.trunk
+        arm = trunk + self.reach + reach  # flexion is relative to the trunk
         bent = {
-            "shank": self.shank,
-            "thigh": self.thigh,
-            "trunk": self.trunk,
+            "shank": self.shank + shank,
+            "thigh": self.thigh + thigh,
+            "trunk": trunk,
             "right_shoulder": arm,
-            "left_shoulder": self.other_arm * arm,
+            "left_shoulder": self.other_arm * arm + 0.5 * reach,
         }
         rising = begin + self.down + self.dwell
         steps = [

@@ -198,6 +198,8 @@ class Idle:
         for channel, to, at, length in sorted(self.fidgets, key=lambda fidget: fidget.at):
             if channel not in now:
                 raise ValueError(f"people do not fidget with {channel!r}, but with {FIDGETS}")
+            if channel.endswith("elbow") and to < -self.person.elbow:
+                raise ValueError(f"no elbow bends backwards, by {-to:g} rad from its rest")
             steps.append(Step(channel, to - now[channel], at, length))
             now[channel] = to
         return Course.of(dict.fromkeys(FIDGETS, 0.0), steps)

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import acos, inf, isinf, radians
+from math import acos, inf, radians
 
 import numpy as np
 
@@ -10,11 +10,10 @@ from radhar_cli.arrays import Float
 from radhar_cli.motion.human.arms import swung
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
-from radhar_cli.motion.human.part import STANDING, Phase, Place
 from radhar_cli.motion.human.pelvis import swayed
 from radhar_cli.motion.human.person import Person
 from radhar_cli.motion.human.pose import SIDES, Pose, axes
-from radhar_cli.motion.human.repetitions import repetitions
+from radhar_cli.motion.human.repetitions import Striking, repetitions
 from radhar_cli.motion.human.two_link import AHEAD, two_link
 
 
@@ -70,31 +69,17 @@ class Kick:
         ]
 
 
-@dataclass(frozen=True)
-class Kicking:
+class Kicking(Striking[Kick]):
     """Kicks of a person; see `part.Part`."""
 
-    person: Person
-    kick: Kick
-    begin: float
-    horizon: float
-
-    after = STANDING
-    place = Place()
-
-    @property
-    def before(self) -> str:
-        """Standing, or in stance."""
-        return STANDING if self.kick.from_rest else "in stance"
+    stance = "in stance"
+    name = "kicking"
 
     @cached_property
-    def _steps(self) -> list[Step]:
-        kick = self.kick
-        ready = self.begin + kick.first + (kick.entry if kick.from_rest else 0.0)
-        until = min(self.horizon + 1.0, ready + kick.duration)
-        steps = []
+    def _blows(self) -> list[Step]:
+        kick, steps = self.strikes, []
         for start, pace, size in repetitions(
-            ready, 1 / kick.frequency, until, kick.paces, kick.sizes
+            self._first, 1 / kick.frequency, self._until, kick.paces, kick.sizes
         ):
             free = [Step("free", 1 / size, 0.0, 0.25), Step("free", -1 / size, 1.05, 0.25)]
             steps += [
@@ -108,43 +93,16 @@ class Kicking:
         return steps
 
     @cached_property
-    def _leaves(self) -> float:
-        """When the stance is left, s."""
-        if isinf(self.kick.duration):
-            return inf
-        return max((s.start + s.length for s in self._steps), default=self.begin)
-
-    @property
-    def end(self) -> float:
-        """When the body is at rest again, s."""
-        return self._leaves + self.kick.entry
-
-    @property
-    def phases(self) -> tuple[Phase, ...]:
-        """Kicking, then standing."""
-        kicking = Phase(self.begin, "kicking")
-        return (kicking,) if isinf(self.end) else (kicking, Phase(self.end, "standing"))
-
-    @cached_property
     def course(self) -> Course:
         """Angles of the right leg beyond the stance, of the trunk, and of both legs standing."""
-        kick, rest = self.kick, self.person.rest_lean
-        steps, stance = list(self._steps), {"bend": acos(kick.bend) - rest, "trunk": kick.lean}
+        kick, rest = self.strikes, self.person.rest_lean
+        steps, stance = list(self._blows), {"bend": acos(kick.bend) - rest, "trunk": kick.lean}
         initial = dict.fromkeys(("thigh", "knee", "trunk", "free", "bend"), 0.0)
         initial["bend"] = rest
         for channel, change in stance.items():
-            if kick.from_rest:
-                steps.append(Step(channel, change, self.begin, kick.entry))
-            else:
-                initial[channel] += change
-            if not isinf(self._leaves):
-                steps.append(Step(channel, -change, self._leaves, kick.entry))
+            initial[channel] += 0.0 if kick.from_rest else change
+            steps += self._taken(channel, change)
         return Course.of(initial, steps)
-
-    @property
-    def breakpoints(self) -> tuple[float, ...]:
-        """Both ends of every step, s."""
-        return self.course.breakpoints
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
         """The body at times t [M] (s)."""

@@ -12,7 +12,7 @@ import numpy as np
 from radhar_cli.arrays import Float
 from radhar_cli.motion import skeleton
 from radhar_cli.motion.human.idle import Idle
-from radhar_cli.motion.human.part import Part, Phase, Place
+from radhar_cli.motion.human.part import LYING, SEATED, STANDING, Part, Phase, Place
 from radhar_cli.motion.human.person import Person
 from radhar_cli.motion.human.planted import Planted
 from radhar_cli.motion.human.pose import Pose
@@ -57,6 +57,7 @@ class HumanMotion:
 
     names = JOINTS
     parents = PARENTS
+    landmarks = (*JOINTS, "right_hip", "left_hip")
     highest_frequency = 4.0
 
     @cached_property
@@ -94,19 +95,32 @@ class HumanMotion:
 
     @property
     def phases(self) -> tuple[Phase, ...]:
-        """What is under way, and from when on."""
+        """What is under way, and from when on; first the state before any movement."""
         parts = [part for part, _ in self.parts]
         ends = [part.begin for part in parts[1:]] + [inf]
-        return tuple(
-            phase
-            for part, end in zip(parts, ends, strict=True)
-            for phase in part.phases
-            if phase.start < end
+        state = parts[0].before.partition(" ")[0]  # "lying prone" is lying
+        return (
+            Phase(-inf, state if state in (STANDING, SEATED, LYING) else parts[0].phases[0].name),
+            *(
+                phase
+                for part, end in zip(parts, ends, strict=True)
+                for phase in part.phases
+                if phase.start < end
+            ),
         )
 
     def positions(self, t: Float) -> Float:
         """Positions [3, 13, M] (m) of the joints at times t [M] (s)."""
         return self._gather(t, len(JOINTS), lambda pose, p: pose.joints(self.person, p))
+
+    def landmark_positions(self, t: Float) -> Float:
+        """Positions [3, 15, M] (m) of the joints and of the hip joints."""
+
+        def fill(pose: Pose, p: Float) -> None:
+            pose.joints(self.person, p)
+            p[:, len(JOINTS) :] = pose.hip_joints
+
+        return self._gather(t, len(self.landmarks), fill)
 
     def torso(self, t: Float) -> Float:
         """Positions [3, 1, M] (m) of the torso alone."""

@@ -56,6 +56,20 @@ class Pose:
     forearms: Float
     breath: Float | float = 0.0
 
+    def at(self, x: Float, y: Float, heading: Float | None) -> "Pose":
+        """The pose turned to a heading [M] (rad), if there is one, and moved by x, y [M] (m)."""
+        vectors = vars(self) | vars(self.trunk)
+        if heading is not None:
+            vectors = {
+                name: turned(v, heading) if isinstance(v, np.ndarray) and v.ndim > 1 else v
+                for name, v in vectors.items()
+            }
+        for name in ("hip", "hip_joints", "knees", "ankles"):
+            vectors[name][0] += x
+            vectors[name][1] += y
+        trunk = Axes(*(vectors.pop(name) for name in vars(self.trunk)))
+        return Pose(**(vectors | {"trunk": trunk}))
+
     def torso(self, person: Person, p: Float) -> None:
         """Fill in the position p [3, M] of the torso."""
         np.multiply(self.trunk.up, person.trunk, out=p)
@@ -80,3 +94,9 @@ def shoulder_points(person: Person, hip: Float, trunk: Axes) -> Float:
     neck = hip + (person.trunk + person.shoulder) * trunk.up
     points: Float = neck[:, None] + person.shoulder * (SIDES * trunk.left[:, None])
     return points
+
+
+def turned(v: Float, angle: Float) -> Float:
+    """Vectors [3, ..., M] turned to the left by angles [M], rad."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    return np.stack([cos * v[0] - sin * v[1], sin * v[0] + cos * v[1], v[2]])

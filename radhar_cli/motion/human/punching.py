@@ -6,7 +6,7 @@ turn into the punch.
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf, isinf, radians
+from math import inf, radians
 
 import numpy as np
 
@@ -14,11 +14,10 @@ from radhar_cli.arrays import Float
 from radhar_cli.motion.human.arms import OUTWARDS, directed, hanging
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
-from radhar_cli.motion.human.part import STANDING, Phase, Place
 from radhar_cli.motion.human.pelvis import hip_joints, swayed, swayed_hip
 from radhar_cli.motion.human.person import Person
 from radhar_cli.motion.human.pose import SIDES, Pose, axes
-from radhar_cli.motion.human.repetitions import repetitions
+from radhar_cli.motion.human.repetitions import Striking, repetitions
 from radhar_cli.motion.human.two_link import AHEAD, two_link
 
 REFERENCE_STATURE = 1.75  # of the lengths below
@@ -72,30 +71,18 @@ class Punch:
         return Punching(person, self, begin, horizon)
 
 
-@dataclass(frozen=True)
-class Punching:
+class Punching(Striking[Punch]):
     """Punches of a person; see `part.Part`."""
 
-    person: Person
-    punch: Punch
-    begin: float
-    horizon: float
-
-    after = STANDING
-    place = Place()
-
-    @property
-    def before(self) -> str:
-        """Standing, or in guard."""
-        return STANDING if self.punch.from_rest else "in guard"
+    stance = "in guard"
+    name = "punching"
 
     @cached_property
-    def _steps(self) -> list[Step]:
-        punch = self.punch
-        ready = self.begin + punch.first + (punch.entry if punch.from_rest else 0.0)
-        until = min(self.horizon + 1.0, ready + punch.duration)
-        steps = []
-        each = repetitions(ready, 0.5 / punch.frequency, until, punch.paces, punch.sizes)
+    def _blows(self) -> list[Step]:
+        punch, steps = self.strikes, []
+        each = repetitions(
+            self._first, 0.5 / punch.frequency, self._until, punch.paces, punch.sizes
+        )
         for n, (start, pace, size) in enumerate(each):
             hand = ("right", "left")[n % 2]
             steps.append(Step(hand, size, start, pace * punch.out))
@@ -103,43 +90,16 @@ class Punching:
         return steps
 
     @cached_property
-    def _leaves(self) -> float:
-        """When the guard is left, s."""
-        if isinf(self.punch.duration):
-            return inf
-        return max((s.start + s.length for s in self._steps), default=self.begin)
-
-    @property
-    def end(self) -> float:
-        """When the body is at rest again, s."""
-        return self._leaves + self.punch.entry
-
-    @property
-    def phases(self) -> tuple[Phase, ...]:
-        """Punching, then standing."""
-        punching = Phase(self.begin, "punching")
-        return (punching,) if isinf(self.end) else (punching, Phase(self.end, "standing"))
-
-    @cached_property
     def course(self) -> Course:
         """How far the hands are out, the feet in their stance, and the guard taken."""
-        steps, taken = list(self._steps), 0.0 if self.punch.from_rest else 1.0
+        steps, taken = list(self._blows), 0.0 if self.strikes.from_rest else 1.0
         for channel, (start, length) in ENTRY.items():
-            at, takes = self.punch.entry * start, self.punch.entry * length
-            if self.punch.from_rest:
-                steps.append(Step(channel, 1.0, self.begin + at, takes))
-            if not isinf(self._leaves):
-                steps.append(Step(channel, -1.0, self._leaves + at, takes))
+            steps += self._taken(channel, 1.0, start, length)
         return Course.of({"right": 0.0, "left": 0.0, **dict.fromkeys(ENTRY, taken)}, steps)
-
-    @property
-    def breakpoints(self) -> tuple[float, ...]:
-        """Both ends of every step, s."""
-        return self.course.breakpoints
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
         """The body at times t [M] (s)."""
-        body, punch = self.person, self.punch
+        body, punch = self.person, self.strikes
         scale = body.stature / REFERENCE_STATURE
         right, left, *feet, guard = self.course(t)
         ankles = self._ankles(np.stack(feet))
@@ -168,7 +128,7 @@ class Punching:
     def _ankles(self, feet: Float) -> Float:
         """Ankles [3, 2, M], each foot's share [2, M] of the way from rest to its stance."""
         scale = self.person.stature / REFERENCE_STATURE
-        ahead, beside = scale * self.punch.stance[0], scale * self.punch.stance[1]
+        ahead, beside = scale * self.strikes.stance[0], scale * self.strikes.stance[1]
         y = SIDES * (self.person.hip + (beside - self.person.hip) * feet)
-        lift = 4 * self.punch.lift * feet * (1 - feet)
+        lift = 4 * self.strikes.lift * feet * (1 - feet)
         return np.stack([SIDES * ahead * feet, y, self.person.ankle + lift])

@@ -4,7 +4,7 @@ Angles lean ahead to bring the body over the feet, then legs and trunk extend. M
 through a posture on the way: Yamasaki et al., 2014.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import acos, cos, radians
 
 from radhar_cli.motion.human.minimum_jerk import Course, Step, mirrored
@@ -93,16 +93,27 @@ class StandUp:
 
 @dataclass(frozen=True)
 class SitDown:
-    """From standing to a seat within `duration` s."""
+    """From standing to a seat within `duration` s, then back against the chair if it reclines.
+
+    Attributes:
+        recline: the trunk leans back from that share of the duration on, for so long in s.
+    """
 
     duration: float = 2.0
     seat: Seat = field(default_factory=Seat)
     rise: Rise = field(default_factory=Rise)
+    recline: tuple[float, float] = (0.7, 1.0)
 
     def part(self, person: Person, begin: float, horizon: float = 0.0) -> Planted:
         """The movement from `begin` (s) on."""
-        backwards = mirrored(self.rise.steps(person, self.seat), 1.0)
-        course = Course.of(at_rest(person), timed(backwards, begin, self.duration))
+        upright = replace(self.seat, recline=0.0)
+        backwards = timed(mirrored(self.rise.steps(person, upright), 1.0), begin, self.duration)
         end = begin + self.duration
+        if self.seat.recline:
+            share, length = self.recline
+            leans = begin + share * self.duration
+            backwards.append(Step("trunk", -self.seat.recline, leans, length))
+            end = max(end, leans + length)
+        course = Course.of(at_rest(person), backwards)
         phases = (Phase(begin, "sitting down"), Phase(end, "seated"))
         return Planted(person, course, begin, end, phases, STANDING, SEATED)

@@ -16,7 +16,7 @@ from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import STANDING, Phase, Place
 from radhar_cli.motion.human.pelvis import hip_joints, swayed, swayed_hip
 from radhar_cli.motion.human.person import Person
-from radhar_cli.motion.human.pose import SIDES, Axes, Pose, axes
+from radhar_cli.motion.human.pose import SIDES, Axes, Pose, axes, turned
 from radhar_cli.motion.human.two_link import two_link
 
 RIGHT, LEFT = 0, 1
@@ -134,9 +134,3 @@ class Stepping:
         trunk = Axes(*(turned(axis, turn) for axis in vars(upright).values()))
         upper, fore = swung(trunk, idle.shoulders, body.elbow + idle.elbows)
         return Pose(hip, trunk, joints, knees, ankles, upper, fore, idle.breath)
-
-
-def turned(v: Float, angle: Float) -> Float:
-    """Vectors [3, M] turned to the left by angles [M], rad."""
-    cos, sin = np.cos(angle), np.sin(angle)
-    return np.stack([cos * v[0] - sin * v[1], sin * v[0] + cos * v[1], v[2]])

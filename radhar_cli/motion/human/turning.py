@@ -2,14 +2,14 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import inf, isinf, pi, radians
+from math import ceil, inf, isinf, pi, radians
 
 import numpy as np
 
 from radhar_cli.arrays import Float
 from radhar_cli.motion.human.arms import swung
 from radhar_cli.motion.human.idle import IdleState
-from radhar_cli.motion.human.minimum_jerk import Course, Step
+from radhar_cli.motion.human.minimum_jerk import Course, Step, minimum_jerk_integral
 from radhar_cli.motion.human.part import STANDING, Phase, Place
 from radhar_cli.motion.human.pelvis import hip_joints, swayed, swayed_hip
 from radhar_cli.motion.human.person import Person
@@ -29,6 +29,7 @@ class Turn:
         lag: phase by which they follow the shoulders.
         entry: time in which the turning begins, and ends, s.
         from_rest: whether it begins from rest.
+        paces, sizes: time and angle of each turn to both sides, over the usual ones.
     """
 
     duration: float = inf
@@ -39,10 +40,12 @@ class Turn:
     lag: float = radians(20)
     entry: float = 0.8
     from_rest: bool = False
+    paces: tuple[float, ...] = ()
+    sizes: tuple[float, ...] = ()
 
     def part(self, person: Person, begin: float, horizon: float = 0.0) -> "Turning":
-        """The movement from `begin` (s) on."""
-        return Turning(person, self, begin)
+        """The movement from `begin` (s) on, its turns different until `horizon` (s)."""
+        return Turning(person, self, begin, horizon)
 
 
 @dataclass(frozen=True)
@@ -52,6 +55,7 @@ class Turning:
     person: Person
     turn: Turn
     begin: float
+    horizon: float
 
     after = STANDING
     place = Place()
@@ -74,23 +78,47 @@ class Turning:
 
     @cached_property
     def course(self) -> Course:
-        """How much of its amplitude the turning has."""
-        entry, steps = self.turn.entry, []
+        """How much of its amplitude the turning has, and each turn over the usual one."""
+        entry, sizes, steps = self.turn.entry, self.turn.sizes, []
         if self.turn.from_rest:
             steps.append(Step("drive", 1.0, self.begin, entry))
         if not isinf(self.end):
             steps.append(Step("drive", -1.0, self.end - entry, entry))
-        return Course.of({"drive": 0.0 if self.turn.from_rest else 1.0}, steps)
+        for start, one, after in zip(self._starts, sizes, sizes[1:], strict=False):
+            steps.append(Step("size", after - one, start, 1 / self.turn.frequency))
+        drive = 0.0 if self.turn.from_rest else 1.0
+        return Course.of({"drive": drive, "size": sizes[0] if sizes else 1.0}, steps)
+
+    @cached_property
+    def _starts(self) -> Float:
+        """When turns to both sides begin, as long as one differs from the next, s."""
+        f = self.turn.frequency
+        count = max(len(self.turn.paces), len(self.turn.sizes)) - 1
+        within = ceil(f * (min(self.horizon, self.end) - self.begin))
+        starts: Float = self.begin + np.arange(max(0, min(count, within))) / (f or 1.0)
+        return starts
+
+    def _cycles(self, t: Float) -> Float:
+        """Turns since the beginning [M]: from each to the next the frequency changes smoothly."""
+        f, paces, starts = self.turn.frequency, self.turn.paces, self._starts[:, None]
+        rates = f / np.array((*paces[: starts.size + 1],) or (1.0,))
+        cycles: Float = rates[0] * (t - self.begin)
+        if paces and f:
+            gains = np.diff(rates) / f
+            cycles = cycles + gains @ minimum_jerk_integral(f * (t - starts[: gains.size]))
+        return cycles
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Both ends of the entry and of the exit, s."""
-        return self.course.breakpoints
+        """Both ends of the entry, of the exit and of every turn, s."""
+        turns = tuple(self._starts.tolist())
+        ends = tuple(start + 1 / self.turn.frequency for start in turns)
+        return (*self.course.breakpoints, *turns, *ends)
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
         """The body at times t [M] (s)."""
-        body, turn, drive = self.person, self.turn, self.course(t)[0]
-        phase = 2 * pi * turn.frequency * (t - self.begin)
+        body, turn, (drive, size) = self.person, self.turn, self.course(t)
+        phase, drive = 2 * pi * self._cycles(t), drive * size
         yaw = drive * turn.angle * np.sin(phase)
         aside = hip_joints(body, turn.pelvis * yaw, np.zeros(t.size))
         ankles = np.stack([np.zeros((2, 1)), body.hip * SIDES, np.full((2, 1), body.ankle)])

@@ -14,6 +14,7 @@ from radhar_cli.arrays import Float
 from radhar_cli.motion.human import boulic_thalmann as curves
 from radhar_cli.motion.human.footsteps import Footfalls, FootTrack
 from radhar_cli.motion.human.idle import IdleState, Waves
+from radhar_cli.motion.human.lane import Lane, along
 from radhar_cli.motion.human.minimum_jerk import (
     Course,
     Step,
@@ -31,7 +32,7 @@ from radhar_cli.motion.human.planted import (
     at_rest,
     legs,
 )
-from radhar_cli.motion.human.pose import Pose, axes
+from radhar_cli.motion.human.pose import Pose, axes, turned
 from radhar_cli.motion.human.two_link import AHEAD, two_link
 
 START_PHASE = 0.5  # of the stride: the right foot goes first
@@ -62,6 +63,7 @@ class Gait:
         ragged: relative deviation of the speed over time.
         jitter: by how much the phase is ahead after each stride, fractions of a stride.
         widths: further half width of each stride, m.
+        lane: where the walker turns round; None for never.
     """
 
     speed: float
@@ -76,7 +78,7 @@ class Gait:
     softness: float = 80.0
     touch_down: float = 0.10
     heel_off: float = 0.42
-    below: float = 0.27
+    below: float = 0.25
     roll: float = radians(52)
     lift: float = 0.070
     ramp: float = 0.6
@@ -84,6 +86,7 @@ class Gait:
     ragged: Waves = field(default_factory=Waves)
     jitter: tuple[float, ...] = ()
     widths: tuple[float, ...] = ()
+    lane: Lane | None = None
 
     def __post_init__(self) -> None:
         if not self.speed > 0:
@@ -173,13 +176,73 @@ class Walking:
             x -= v * ramp * minimum_jerk_integral((t - self.stop) / ramp)
         if self.gait.ragged.amplitudes:
             x += self._unsteady(t, self.drive(t))
+        if self._slower.size:
+            x -= self._lost(t)
         return x
+
+    def _where(self, s: Float) -> tuple[Float, Float, Float | None]:
+        """x and y (m), and the heading (rad) unless it is 0, of a walker who has gone s [M] (m)."""
+        if not self._turns.size:
+            return s, np.zeros_like(s), None
+        assert self.gait.lane is not None
+        return along(s, self._turns, self._arc, self.gait.lane.side)
+
+    @cached_property
+    def _arc(self) -> float:
+        """Length of a half turn, m; of who walks fast a wide one."""
+        lane = self.gait.lane
+        return 0.0 if lane is None else pi * lane.radius * max(1.0, self.gait.speed / 1.4)
+
+    @cached_property
+    def _turns(self) -> Float:
+        """Where half turns begin [K], m of the way."""
+        lane, v, begins = self.gait.lane, self.gait.speed, [0.0][:0]
+        if lane is None:
+            return np.array(begins)
+        least = v * self.ramp  # to slow down, or to gain speed
+        at = max(lane.first, least if self.from_rest else 0.0)
+        # Way of who does not slow down: a turn begins in it when the walker is slow.
+        lost = lane.slow / (1 - lane.slow) * self._arc
+        until, whole = max(self.horizon, self.begin) + self.stride, 0.0
+        if self.stops:  # no walk ends in a turn
+            until, whole = self.stop - self.ramp, self._arc + lost
+        while (at + len(begins) * lost + whole) / v < until - self.begin:
+            begins.append(at)
+            at += self._arc + max(lane.length, least)
+        return np.array(begins)
+
+    @cached_property
+    def _slower(self) -> Float:
+        """From when to when the walker goes slower in each turn [2, K], s."""
+        lane, v = self.gait.lane, self.gait.speed
+        if lane is None or not self._turns.size:
+            return np.empty((2, 0))
+        takes = self._arc / (v * (1 - lane.slow))
+        lost = np.arange(self._turns.size) * lane.slow * v * takes
+        on = self.begin + (self._turns + lost) / v - self.ramp / 2
+        return np.stack([on, on + takes])
+
+    def _lost(self, t: Float) -> Float:
+        """Way [M] (m) that a walker has lost in turns."""
+        assert self.gait.lane is not None
+        on, off = minimum_jerk_integral((t - self._slower[..., None]) / self.ramp)
+        lost: Float = self.gait.lane.slow * self.gait.speed * self.ramp * (on - off).sum(axis=0)
+        return lost
+
+    def _passes(self, s: Float) -> Float:
+        """Times [N] (s) at which the walker has gone s [N] (m)."""
+        t = self.begin + s / self.gait.speed
+        for _ in range(60):
+            t = t - (self.path(t) - s) / self.gait.speed
+        return t
 
     def phase(self, t: Float) -> Float:
         """u(t) [M]: of the stride; a ragged walker changes stride and cadence alike."""
         u = (START_PHASE if self.from_rest else self.gait.phase) + (t - self.begin) / self.stride
         if self.gait.ragged.amplitudes:
             u += self._unsteady(t, self.drive(t)) / (2 * self.gait.speed * self.stride)
+        if self._slower.size:
+            u -= self._lost(t) / (2 * self.gait.speed * self.stride)
         if self._jitter is not None:
             u += self._jitter(t)[0]
         return u
@@ -199,8 +262,8 @@ class Walking:
     def _when(self, u: Float) -> Float:
         """Times [N] (s) of phases u [N]."""
         t = self.begin + (u - self.phase(np.full(1, self.begin))) * self.stride
-        if self.gait.ragged.amplitudes or self.gait.jitter:
-            for _ in range(60):  # a contraction by the walk's raggedness, some hundredths
+        if self.gait.ragged.amplitudes or self.gait.jitter or self._slower.size:
+            for _ in range(60):  # a contraction, by some hundredths; in turns by a quarter
                 late = self.phase(t) - u
                 t = t - late * self.stride
                 if np.abs(late).max(initial=0.0) < 1e-14:
@@ -220,7 +283,13 @@ class Walking:
         """Where the feet come to rest."""
         if not self.stops:
             return Place()
-        return Place(float(self.path(np.array([self.stop + 2 * self.ramp]))[0]))
+        x, y, heading = self._where(np.array([self._way]))
+        return Place(float(x[0]), float(y[0]), 0.0 if heading is None else float(heading[0]))
+
+    @cached_property
+    def _way(self) -> float:
+        """All the way to where the feet come to rest, m."""
+        return float(self.path(np.array([self.stop + 2 * self.ramp]))[0])
 
     @property
     def phases(self) -> tuple[Phase, ...]:
@@ -238,51 +307,69 @@ class Walking:
             ends.append(np.array([self.stop, self.stop + self.ramp]))
         if self._jitter is not None:
             ends.append(np.array(self._jitter.breakpoints))
+        if self._turns.size:
+            ends += [self._slower.ravel(), self._slower.ravel() + self.ramp]
+            ends += [self._passes(self._turns), self._passes(self._turns + self._arc)]
         return tuple(np.concatenate(ends).tolist())
 
     @cached_property
     def _feet(self) -> tuple[FootTrack, FootTrack]:
-        """Right and left."""
-        gait = self.gait
-        return (
-            FootTrack(self.person, self._footfalls(0.0, -1.0), gait.roll, gait.lift),
-            FootTrack(self.person, self._footfalls(0.5, 1.0), gait.roll, gait.lift),
+        """Right and left, whose stride is half a stride later."""
+        gait, events = self.gait, [self._events(later) for later in (0.0, 0.5)]
+        # All instants at once: each look at the phase costs as much for few as for many.
+        times = self._when(np.concatenate([u.ravel() for u in events]))
+        both = np.split(times, [events[0].size])
+        right, left = (
+            FootTrack(self.person, self._footfalls(at.reshape(4, -1), side), gait.roll, gait.lift)
+            for at, side in zip(both, (-1.0, 1.0), strict=True)
         )
+        return right, left
 
-    def _footfalls(self, later: float, side: float) -> Footfalls:
-        """Every swing of a foot whose stride is `later` than the right one's."""
+    def _events(self, later: float) -> Float:
+        """Phases [4, N + 1] of heel-off, toe-off, touch-down and of the body above the foothold.
+
+        Of a foot whose stride is `later` than the right one's; the last column ends the last swing.
+        """
         gait, margin = self.gait, 2 * self.stride
         first = EARLIEST_SWING if self.from_rest else self._phase_at(self.begin - margin)
         until = self.stop + self.ramp if self.stops else max(self.horizon, self.begin) + margin
         last = self._phase_at(until)
         heel_off = later + gait.heel_off
-        k = np.arange(np.ceil(first - heel_off), np.ceil(last - heel_off))
+        k = np.arange(np.ceil(first - heel_off), np.ceil(last - heel_off) + 1)
         off = k + heel_off
         leaves = np.clip(curves.support(self.stride / gait.period_scale), 0.58, 0.66)
         toe = k + later + leaves
         if self.from_rest:
             off = np.maximum(off, START_PHASE)
             toe = np.maximum(toe, off + 0.12)
+        return np.stack([off, toe, k + later + 1 + gait.touch_down, k + later + gait.below])
+
+    def _footfalls(self, times: Float, side: float) -> Footfalls:
+        """Swings of a foot on one side, of which `_events` happen at `times` [4, N + 1] (s)."""
+        gait = self.gait
+        off, toe, down, above = times
         usual = side * gait.half_width * self.person.stature
         rest = side * self.person.hip
-        footholds = self.path(self._when(np.append(k, k[-1] + 1) + later + gait.below))
-        footholds += side * gait.asymmetry * gait.speed * self.stride / 4
-        sides = np.full(k.size + 1, usual)
+        way = self.path(above) + side * gait.asymmetry * gait.speed * self.stride / 4
+        sides = np.full(above.size, usual)
         widths = side * np.array(gait.widths[: sides.size])
         sides[: widths.size] += widths
         if self.from_rest:
-            footholds[0], sides[0] = 0.0, rest
+            way[0], sides[0] = 0.0, rest
         if self.stops:
-            footholds[-1], sides[-1] = self.place.ahead, rest
+            way[-1], sides[-1] = self._way, rest
+        x, y, heading = self._where(way)
+        if heading is None:
+            heading = np.zeros_like(way)
+        footholds = np.stack([x - sides * np.sin(heading), y + sides * np.cos(heading)])
         return Footfalls(
-            off=self._when(off),
-            toe=self._when(toe),
-            down=self._when(k + later + 1 + gait.touch_down),
-            before=footholds[:-1],
-            after=footholds[1:],
-            from_side=sides[:-1],
-            to_side=sides[1:],
-            size=np.minimum(1.0, np.diff(footholds) / (gait.speed * self.stride)),
+            off=off[:-1],
+            toe=toe[:-1],
+            down=down[:-1],
+            before=footholds[:, :-1],
+            after=footholds[:, 1:],
+            heading=heading[:-1],
+            size=np.minimum(1.0, np.diff(way) / (gait.speed * self.stride)),
         )
 
     def _phase_at(self, t: float) -> float:
@@ -309,26 +396,33 @@ class Walking:
             ]
         )
 
-    def _overlapping(self, t: Float) -> dict[str, Float]:
-        """Channels [M] of a planted posture: at rest, but for movements that overlap the walk."""
+    def _overlapping(self, t: Float, way: Float) -> dict[str, Float]:
+        """Channels [M] of a planted posture: at rest, but for movements that overlap the walk.
+
+        Seen from the walker who has gone `way` [M] (m).
+        """
         rest = at_rest(self.person)
         now = {channel: np.full(t.size, value) for channel, value in rest.items()}
         for movement in self.planted:
             for channel, value in zip(movement.course.channels, movement.course(t), strict=True):
                 now[channel] += value - rest[channel]
-            if movement.begin > self.begin:
-                now["hands_ahead"] += self.place.ahead
+            now["hands_ahead"] += (self._way if movement.begin > self.begin else 0.0) - way
         return now
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
-        """The body at times t [M] (s)."""
-        body, g = self.person, self.drive(t)
+        """The body at times t [M] (s); worked out as seen by the walker, then put in its place."""
+        body, g, gone = self.person, self.drive(t), self.path(t)
+        x, y, heading = self._where(gone)
         rows = self._curves @ curves.basis(self.phase(t))
         rows *= g
         (surge, side, yaw, roll, twist), arms = rows[:5], rows[5:].reshape(2, 2, t.size)
         aside = hip_joints(body, yaw, roll)
         ankles = np.stack([track(t) for track in self._feet], axis=1)
-        way = np.stack([self.path(t) + surge, side])
+        ankles[0] -= x
+        ankles[1] -= y
+        if heading is not None:
+            ankles = turned(ankles, -heading)
+        way = np.stack([surge, side])
         standing = body.tallest - self.gait.sink * body.stature * g
         softness = body.softness + (self.gait.softness - body.softness) * g
         pitch, lean = self.gait.trunk_pitch * g, np.zeros(t.size)
@@ -336,7 +430,7 @@ class Walking:
         hands: tuple[Float, Float, Float] = (np.zeros(t.size),) * 3
         if self.from_rest or self.stops:
             still = 1 - g
-            other = self._overlapping(t)
+            other = self._overlapping(t, gone)
             own = still * other["standing"]
             _, sway = legs(
                 body, other["shank"], other["thigh"], own * idle.lean, own * idle.legs_roll
@@ -357,4 +451,5 @@ class Walking:
         upper, fore = arms_down(body, hip, trunk, (arms[0], arms[1]), *hands)
         joints = hip[:, None] + aside
         knees = two_link(joints, ankles, body.leg, body.leg, AHEAD)
-        return Pose(hip, trunk, joints, knees, ankles, upper, fore, idle.breath)
+        pose = Pose(hip, trunk, joints, knees, ankles, upper, fore, idle.breath)
+        return pose.at(x, y, heading)

@@ -193,13 +193,13 @@ class PaperActivity:
     Attributes:
         posture: what it asks of the body at times t [M] (s).
         ramps: (start, duration) in s of its raised-cosine ramps.
-        phases: (start in s, name) of the movements within it.
+        phases: (start in s, name) of the movements within it (`motion.phases.PHASES`).
         swings: whether limbs swing at the gait frequency.
     """
 
     posture: Callable[[Float, Gait, Timing], Posture]
+    phases: Phases
     ramps: Instants = lambda timing: ()
-    phases: Phases = lambda timing: ()
     swings: bool = False
 
     def breakpoints(self, timing: Timing) -> tuple[float, ...]:
@@ -211,6 +211,18 @@ class PaperActivity:
         """Fundamental (Hz) of the fastest motion: the gait or the shortest ramp."""
         ramps = [0.5 / length for _, length in self.ramps(timing) if length > 0]
         return max([0.0, *ramps, *([gait.frequency] if self.swings else [])])
+
+
+def _always(name: str) -> Phases:
+    return lambda timing: ((-inf, name),)
+
+
+def _seat_phases(before: str, moving: str, after: str) -> Phases:
+    return lambda timing: (
+        (-inf, before),
+        (timing.seat_start, moving),
+        (timing.seat_start + timing.seat_duration, after),
+    )
 
 
 def _seat_ramp(timing: Timing) -> tuple[tuple[float, float], ...]:
@@ -251,30 +263,34 @@ def _fall(timing: Timing) -> float:
 
 
 PAPER_ACTIVITIES: dict[str, PaperActivity] = {
-    "stationary": PaperActivity(_stationary),
-    "punching": PaperActivity(_punching, swings=True),
-    "kicking": PaperActivity(_kicking, swings=True),
-    "grabbing": PaperActivity(_grabbing, swings=True),
-    "sitting_down": PaperActivity(_sitting_down, _seat_ramp),
-    "standing_up": PaperActivity(_standing_up, _seat_ramp),
-    "body_rotating": PaperActivity(_body_rotating, swings=True),
-    "walking": PaperActivity(_walking, swings=True),
+    "stationary": PaperActivity(_stationary, _always("standing")),
+    "punching": PaperActivity(_punching, _always("punching"), swings=True),
+    "kicking": PaperActivity(_kicking, _always("kicking"), swings=True),
+    "grabbing": PaperActivity(_grabbing, _always("picking up"), swings=True),
+    "sitting_down": PaperActivity(
+        _sitting_down, _seat_phases("standing", "sitting down", "seated"), _seat_ramp
+    ),
+    "standing_up": PaperActivity(
+        _standing_up, _seat_phases("seated", "standing up", "standing"), _seat_ramp
+    ),
+    "body_rotating": PaperActivity(_body_rotating, _always("turning"), swings=True),
+    "walking": PaperActivity(_walking, _always("walking"), swings=True),
     "sitting_to_walking": PaperActivity(
-        _sitting_to_walking, _rise_ramps, _rise_phases("seated", "standing up"), swings=True
+        _sitting_to_walking, _rise_phases("seated", "standing up"), _rise_ramps, swings=True
     ),
     "walking_to_sitting": PaperActivity(
         _walking_to_sitting,
-        _stop_ramps(_sit),
         _stop_phases(_sit, "sitting down", "seated"),
+        _stop_ramps(_sit),
         swings=True,
     ),
     "falling_to_walking": PaperActivity(
-        _falling_to_walking, _rise_ramps, _rise_phases("lying", "getting up"), swings=True
+        _falling_to_walking, _rise_phases("lying", "getting up"), _rise_ramps, swings=True
     ),
     "walking_to_falling": PaperActivity(
         _walking_to_falling,
-        _stop_ramps(_fall),
         _stop_phases(_fall, "falling", "lying"),
+        _stop_ramps(_fall),
         swings=True,
     ),
 }

@@ -11,7 +11,7 @@ from radhar_cli.motion.human.falling import FallBackward, FallForward
 from radhar_cli.motion.human.falling_sideways import FallSideways
 from radhar_cli.motion.human.getting_up import GetUp
 from radhar_cli.motion.human.grabbing import Grab
-from radhar_cli.motion.human.idle import Breath, Idle, Sway, Waves
+from radhar_cli.motion.human.idle import Breath, Fidget, Idle, Sway, Waves
 from radhar_cli.motion.human.kicking import Kick
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.motion import HumanMotion, Movement
@@ -46,11 +46,11 @@ def speed(p: np.ndarray, name: str) -> float:
 
 
 @pytest.mark.parametrize(
-    ("v", "ankle", "rise"), [(0.8, 3.23, 28), (1.2, 3.16, 53), (1.5, 3.12, 76), (2.0, 3.09, 126)]
+    ("v", "ankle", "rise"), [(0.8, 3.25, 25), (1.2, 3.18, 42), (1.5, 3.15, 56), (2.0, 3.13, 92)]
 )
 def test_gait(v: float, ankle: float, rise: float) -> None:
-    """Ankle speed over walking speed, and the hip's rise (mm) within 6 %: the minimum is softer."""
-    p = positions(Walk(Gait(v), from_rest=False), 4.0)
+    """Ankle speed over walking speed, and the hip's rise (mm) within 6 % (CMU: 56, 64 at 1.6)."""
+    p = positions(Walk(Gait(v, period_scale=0.94), from_rest=False), 4.0)
     velocity = np.diff(p[0], axis=1) / DT
     assert velocity[joint("right_ankle")].max() / v == pytest.approx(ankle, abs=0.02)
     assert velocity[joint("right_ankle")].min() / v > -0.01
@@ -84,9 +84,9 @@ def test_steps_a_minute() -> None:
 
 def test_starting_takes_two_steps() -> None:
     walking = Walk(Gait(1.2)).part(Person(1.75), 0.0, 5.0)
-    first = [track.falls.after[0] - track.falls.before[0] for track in walking._feet]
-    assert first[0] == pytest.approx(0.67, abs=0.02)
-    assert first[1] == pytest.approx(0.67 + 0.72, abs=0.03)
+    first = [track.falls.after[0, 0] - track.falls.before[0, 0] for track in walking._feet]
+    assert first[0] == pytest.approx(0.64, abs=0.02)
+    assert first[1] == pytest.approx(0.64 + 0.72, abs=0.03)
 
 
 def test_stopping_takes_one_to_one_and_a_half_seconds() -> None:
@@ -209,6 +209,25 @@ def test_a_repetition_may_be_faster_or_smaller() -> None:
     hand = joint("right_hand")
     assert varied[0, hand].max() < usual[0, hand].max() - 0.01
     assert np.argmax(varied[0, hand]) < np.argmax(usual[0, hand])
+
+
+def test_no_turn_of_the_trunk_is_the_last_one_again() -> None:
+    """Each to both sides of its own angle and time; from one to the next both change smoothly."""
+    usual = positions(Turn(), 12.0)
+    varied = positions(Turn(paces=(1.0, 1.3, 0.8, 1.1), sizes=(1.0, 0.7, 1.1, 0.9)), 12.0)
+    across = usual[0, joint("right_shoulder")], varied[0, joint("right_shoulder")]
+    peaks = [np.abs(y[s : s + 2000]).max() for y in across for s in range(0, 10000, 2200)]
+    assert np.ptp(peaks[:5]) < 2e-3
+    assert np.ptp(peaks[5:]) > 0.02
+    np.testing.assert_array_equal(usual[..., 0], varied[..., 0])
+    jumps = [np.abs(np.diff(p, n=2, axis=2)).max() / DT**2 for p in (usual, varied)]
+    assert jumps[1] < 2.5 * jumps[0]
+
+
+def test_no_elbow_bends_backwards() -> None:
+    idle = Idle(Person(1.75), fidgets=(Fidget("left_elbow", -0.3, 0.0, 1.0),))
+    with pytest.raises(ValueError, match="no elbow bends backwards"):
+        _ = idle(np.zeros(1)).lean
 
 
 @pytest.mark.parametrize("gait", [{"speed": 0.0}, {"speed": -1.0}])

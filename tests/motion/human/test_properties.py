@@ -14,6 +14,7 @@ from radhar_cli.motion.human.getting_up import GetUp
 from radhar_cli.motion.human.grabbing import Grab
 from radhar_cli.motion.human.idle import FIDGETS, SWAY_HZ, Breath, Fidget, Idle, Sway, Waves
 from radhar_cli.motion.human.kicking import Kick
+from radhar_cli.motion.human.lane import Lane, along
 from radhar_cli.motion.human.motion import HumanMotion, Movement
 from radhar_cli.motion.human.part import Place
 from radhar_cli.motion.human.person import Person
@@ -69,14 +70,19 @@ def walks_of(gait: Gait) -> dict[str, tuple[Movement, ...]]:
         "S4": (Grab(),),
         "S5": (SitDown(),),
         "S6": (StandUp(),),
-        "S7": (Turn(),),
+        "S7": (Turn(paces=(1.0, 1.3, 0.7, 1.4), sizes=(1.1, 0.6, 1.15)),),
         "S8": (steady,),
+        "to and fro": (Walk(replace(gait, lane=Lane(1.5, 0.5)), from_rest=False),),
+        "round and sit": (Walk(replace(gait, lane=Lane(1.0, 0.3, side=-1.0)), 6.0), SitDown()),
         "S9": (StandUp(), off),
         "S10": (stopping, SitDown()),
         "S11": (GetUp(), off),
         "S12": (stopping, FallForward()),
         "backwards": (stopping, FallBackward()),
         "sideways": (FallSideways(),),
+        "squat": (StepTo(0.9, Place(0.4)), Grab(squat=1.0), StepTo(0.9, Place(-0.4, 0.05))),
+        "stoop": (Grab(squat=-1.0),),
+        "over the knees": (stopping, FallForward(kneel=0.6)),
         "rightwards": (stopping, FallSideways(side=-1.0)),
         "everything": (
             Punch(0.5, from_rest=True),
@@ -213,6 +219,40 @@ def test_feet_of_walkers_stand_still_between_touch_down_and_heel_off(
             assert np.ptp(foot, axis=1).max() < PLANTED
 
 
+@given(
+    begins=st.lists(st.floats(2.0, 5.0), max_size=4).map(np.cumsum),
+    arc=st.floats(1.0, 1.9),
+    side=st.sampled_from([-1.0, 1.0]),
+)
+@settings(max_examples=30, deadline=None)
+def test_a_lane_is_walked_at_its_own_pace(begins: np.ndarray, arc: float, side: float) -> None:
+    """As far as the way says, in the direction of the heading; back where it began in 2 turns."""
+    s = np.linspace(0, 25, 20001)
+    x, y, heading = along(s, begins, arc, side)
+    middle = 0.5 * (heading[1:] + heading[:-1])
+    step = s[1]
+    np.testing.assert_allclose(np.diff(x), step * np.cos(middle), atol=1e-7)
+    np.testing.assert_allclose(np.diff(y), step * np.sin(middle), atol=1e-7)
+    assert heading[-1] == pytest.approx(side * np.pi * begins.size, abs=1e-12)
+    if begins.size % 2 == 0:
+        assert y[-1] == pytest.approx(0.0, abs=1e-9)
+
+
+@given(stature=STATURES, speed=SPEEDS)
+@settings(max_examples=20, deadline=None)
+def test_walkers_slow_down_to_turn_round_on_planted_feet(stature: float, speed: float) -> None:
+    lane = Lane(3.0, 0.5, side=-1.0)
+    motion = moving("S8", stature, Gait(speed, lane=lane))
+    dt = 1e-3
+    p = motion.positions(np.arange(0, 6, dt))
+    v = np.linalg.norm(np.diff(p[:, TORSO], axis=1), axis=0) / dt
+    assert v.max() < 1.5 * speed
+    assert speed < 0.5 or v.min() < 0.7 * speed
+    ankle = np.linalg.norm(np.diff(p[:, ANKLES], axis=2), axis=0) / dt
+    assert np.mean(ankle < 1e-6, axis=1).min() > 0.25
+    assert ankle.max() / speed < 4.8
+
+
 @given(stature=STATURES, speed=st.floats(0.8, 2.8))
 @settings(max_examples=30, deadline=None)
 def test_ankles_swing_at_three_times_the_walking_speed_and_never_run_back(
@@ -322,7 +362,7 @@ def test_movements_join_only_where_one_begins_as_the_other_ends() -> None:
 
 def test_phases_name_what_is_under_way() -> None:
     phases = moving("S10").phases
-    assert [phase.name for phase in phases] == ["walking", "sitting down", "seated"]
+    assert [phase.name for phase in phases] == ["standing", "walking", "sitting down", "seated"]
     starts = [phase.start for phase in phases]
     assert starts == sorted(starts)
 

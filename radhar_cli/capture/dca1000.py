@@ -1,0 +1,215 @@
+"""Raw samples of TI's capture card DCA1000, as it writes them after its own reordering.
+
+Words of 16 bits, little endian (TI application report SWRA581, "Mmwave Radar Device ADC Raw Data
+Capture", sections on DCA1000, and rawDataReader.m of mmWave Studio):
+
+    2 lanes (xWR16xx, 18xx, 68xx): I I Q Q, two samples; 4 lanes (xWR12xx, 14xx, 22xx): I I I I
+    Q Q Q Q. Real samples stand one after the other.
+    Channels not interleaved: all samples of the first receiver, then of the next. Interleaved: a
+    sample of every receiver, then the next; with 4 lanes always of four, zeros where one is off.
+    Then the next chirp, of the next transmitter where they take turns.
+
+The card splits a capture into files of 1 GiB anywhere, and fills lost packets with zeros.
+"""
+
+import os
+import re
+from collections.abc import Sequence
+from math import ceil, floor
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from radhar_cli.capture.settings import CaptureSettings
+from radhar_cli.capture.source import Parts, Source
+from radhar_cli.errors import CaptureError
+from radhar_cli.untrusted import regular_size
+
+WORD = np.dtype("<u2")
+PROBED_WORDS = 2**20
+SHORTEST_CHIRP = 32  # words
+REPEATS, ALIKE = 0.6, 0.7  # correlation from which something repeats; share of it to be right
+_NUMBERED = re.compile(r"(.*_)(\d+)(\.bin)", re.IGNORECASE)
+
+
+class Words:
+    """Files of words as one: where one ends in the middle of a chirp, the next goes on."""
+
+    def __init__(self, files: Sequence[Path]) -> None:
+        self.files = tuple(files)
+        sizes = [_size(path) for path in files]
+        self._starts = np.concatenate([[0], np.cumsum(sizes)])
+        self.count = int(self._starts[-1]) // WORD.itemsize
+
+    def __getitem__(self, key: slice) -> NDArray[np.uint16]:
+        """Words from key.start to key.stop."""
+        start, stop = key.start * WORD.itemsize, key.stop * WORD.itemsize
+        data = bytearray(stop - start)
+        view = memoryview(data)
+        for number, path in enumerate(self.files):
+            low, high = int(self._starts[number]), int(self._starts[number + 1])
+            first, last = max(start, low), min(stop, high)
+            if first < last:
+                _read_into(path, first - low, view[first - start : last - start])
+        return np.frombuffer(data, WORD)
+
+
+def _size(path: Path) -> int:
+    try:
+        size = regular_size(path)
+    except OSError as error:
+        raise CaptureError(f"{path}: {error.strerror}") from None
+    if size == 0:
+        raise CaptureError(f"{path}: holds 0 bytes; should hold samples of 16 bits")
+    return size
+
+
+def _read_into(path: Path, offset: int, view: memoryview) -> None:
+    with path.open("rb", buffering=0) as file:
+        file.seek(offset, os.SEEK_SET)
+        done = 0
+        while done < len(view):
+            more = file.readinto(view[done:])
+            if not more:
+                raise CaptureError(f"{path}: ended while it was read")
+            done += more
+
+
+def whole_capture(paths: Sequence[Path]) -> tuple[Path, ...]:
+    """All files of a capture: `..._Raw_0.bin` is followed by `..._Raw_1.bin` and so on.
+
+    Raises:
+        CaptureError: one in between is missing.
+    """
+    found = _NUMBERED.fullmatch(paths[0].name)
+    if len(paths) > 1 or found is None:
+        return tuple(paths)
+    stem, _, suffix = found.groups()
+    numbers = {
+        int(match[2]): other
+        for other in paths[0].parent.iterdir()
+        if (match := _NUMBERED.fullmatch(other.name)) and (match[1], match[3]) == (stem, suffix)
+    }
+    if int(found[2]) != 0:
+        return tuple(paths)
+    missing = [n for n in range(max(numbers)) if n not in numbers]
+    if missing:
+        raise CaptureError(
+            f"{paths[0].parent / f'{stem}{missing[0]}{suffix}'}: is missing; the capture goes on "
+            f"in {numbers[max(numbers)].name}"
+        )
+    return tuple(numbers[n] for n in range(max(numbers) + 1))
+
+
+def open_dca1000(paths: Sequence[Path], settings: CaptureSettings, header: str) -> Source:
+    """Open a capture.
+
+    Args:
+        paths: its files, or the first of those that are numbered.
+        settings: its header.
+        header: what the header was read from, for messages.
+
+    Raises:
+        CaptureError: the header lacks something, or does not fit the files.
+    """
+    files = whole_capture(paths)
+    for key in ("samples", "receivers"):
+        if getattr(settings, key) is None:
+            raise CaptureError(
+                f"{header}: {key}: is missing; --radar FILE or --set {key}=N says it"
+            )
+    settings = settings.model_copy(
+        update={
+            "lanes": settings.lanes or (4 if settings.interleaved else 2),
+            "interleaved": bool(settings.interleaved),
+        }
+    )
+    words = Words(files)
+    unit, notes = settings.words_of_a_pulse, list[str]()
+    _check_length(words, settings, header)
+    pulses, rest = divmod(words.count, unit)
+    if pulses == 0:
+        raise CaptureError(
+            f"{files[0]}: holds {words.count * 2} bytes; a pulse by {header} takes {unit * 2}"
+        )
+    if len(files) > 1:
+        notes.append(f"{len(files)} files: {', '.join(path.name for path in files)}")
+    if rest:
+        notes.append(f"the last {rest * 2} bytes are no whole pulse and are left out")
+
+    def read(first: int, stop: int) -> Parts:
+        return decode(words[first * unit : stop * unit], settings)
+
+    return Source(
+        files,
+        settings.transmitters * (settings.receivers or 1),
+        settings.samples,
+        pulses,
+        np.dtype(np.int16),
+        1 + settings.complex,
+        read,
+        notes=tuple(notes),
+    )
+
+
+def decode(words: NDArray[np.uint16], s: CaptureSettings) -> Parts:
+    """Samples int16 [transmitter and receiver, sample, pulse, part] of whole pulses of words."""
+    parts, lanes = 1 + s.complex, s.lanes or 2
+    assert s.samples is not None
+    assert s.receivers is not None
+    samples = words.view("<i2")
+    if s.complex:
+        samples = samples.reshape(-1, 2, lanes).swapaxes(1, 2)
+    order = (s.samples, s.stored_receivers) if s.interleaved else (s.stored_receivers, s.samples)
+    samples = samples.reshape(-1, s.transmitters, *order, parts)
+    # [pulse, transmitter, receiver, sample, part]
+    samples = samples.swapaxes(2, 3) if s.interleaved else samples
+    if s.stored_receivers != s.receivers:
+        chosen = s.receiver_lanes or tuple(range(s.receivers))
+        samples = samples[:, :, list(chosen)]
+    samples = samples.transpose(1, 2, 3, 0, 4)
+    return samples.reshape(-1, s.samples, samples.shape[3], parts)
+
+
+def _check_length(words: Words, s: CaptureSettings, header: str) -> None:
+    """Refuse a header whose chirps are not those of the file.
+
+    What stands still sends the same echo in every chirp: words repeat at the length of a chirp.
+    """
+    assert s.samples is not None
+    start = max((words.count - PROBED_WORDS) // 2, 0)
+    probe = words[start : min(start + PROBED_WORDS, words.count)]
+    correlation = repetition(probe)
+    own = s.words_of_a_pulse
+    if own >= correlation.size:
+        return
+    best = float(correlation.max())
+    if best < REPEATS or correlation[own] >= ALIKE * best:
+        return
+    # What repeats may be one receiver's chirp, a chirp of all, or a turn of the transmitters.
+    lag = int(np.flatnonzero(correlation >= 0.95 * best)[0])
+    per_sample = (1 + s.complex, (1 + s.complex) * s.stored_receivers, own // s.samples)
+    fitting = {lag // words_each for words_each in per_sample if lag % words_each == 0}
+    nearest = min(fitting or {0}, key=lambda n: abs(np.log(max(n, 1e-3) / (s.samples or 1))))
+    fits = f"samples: {nearest}" if fitting else f"chirps of {lag} words"
+    raise CaptureError(
+        f"{header}: samples = {s.samples}, receivers = {s.receivers}, transmitters = "
+        f"{s.transmitters}: {words.files[0]} does not repeat after a pulse of {own} words; "
+        f"{fits} would fit"
+    )
+
+
+def repetition(words: NDArray[np.uint16]) -> NDArray[np.float64]:
+    """Correlation of words, as signed numbers, with those a lag later [lags]; 0 below 32."""
+    x = words.view("<i2").astype(float)
+    x -= x.mean()
+    length = 2 ** ceil(np.log2(max(2 * x.size, 2)))
+    spectrum = np.abs(np.fft.rfft(x, length)) ** 2
+    lags = floor(x.size / 2)
+    correlation = np.fft.irfft(spectrum, length)[:lags]
+    if lags <= SHORTEST_CHIRP or correlation[0] <= 0:
+        return np.zeros(0)
+    found = correlation / correlation[0] * x.size / (x.size - np.arange(lags))
+    found[:SHORTEST_CHIRP] = 0
+    return np.asarray(found)

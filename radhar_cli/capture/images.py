@@ -1,0 +1,144 @@
+"""Images that exist already as samples: a tree of class folders, or an .npz of images or masks.
+
+An .npz has one array of images [N, H, W] (uint8 or bool; masks of 0 and 1 become 0 and 255),
+`label` [N], numbers into `classes` or texts, and if wanted `person` [N].
+"""
+
+import hashlib
+import zipfile
+from functools import lru_cache
+from pathlib import Path, PurePosixPath
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from radhar_cli.arrays import Levels
+from radhar_cli.capture.array_files import check_npz, refusing
+from radhar_cli.dataset.image_file import image_size, read_gray
+from radhar_cli.errors import CaptureError
+from radhar_cli.untrusted import regular_size
+
+SUFFIXES = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp")
+LARGEST_NPZ = 2**29  # bytes of its images, which are held
+
+
+class Listed(NamedTuple):
+    """Images of a tree or an .npz.
+
+    Attributes:
+        parts: {file, label, person} of each.
+        sha256: {name: of all of them}.
+        size: (H, W) of the first.
+    """
+
+    parts: list[dict[str, Any]]
+    sha256: dict[str, str]
+    size: tuple[int, int]
+
+
+def are_images(path: Path) -> bool:
+    """Whether a path is a tree of images, or an .npz."""
+    return path.is_dir() or path.suffix.lower() == ".npz"
+
+
+def is_image(file: str) -> bool:
+    """Whether a part's file is an image, or one of an .npz, `masks.npz/12`."""
+    place = PurePosixPath(file)
+    return place.suffix.lower() in SUFFIXES or place.parent.suffix.lower() == ".npz"
+
+
+def listed(path: Path, packed: bool) -> Listed:
+    """The images of a tree of class folders, or of an .npz.
+
+    Raises:
+        CaptureError, FolderError: there are none, or they cannot be read.
+    """
+    return _of_npz(path, packed) if path.is_file() else _of_tree(path)
+
+
+def _of_tree(path: Path) -> Listed:
+    files = [
+        file
+        for folder in sorted(one for one in path.iterdir() if one.is_dir())
+        for file in sorted(folder.iterdir())
+        if file.suffix.lower() in SUFFIXES
+    ]
+    if not files:
+        raise CaptureError(f"{path}: should hold a folder of images for each class")
+    total = hashlib.sha256()
+    for file in files:
+        with file.open("rb") as data:
+            total.update(hashlib.file_digest(data, "sha256").digest())
+    parts = [
+        {"file": f"{file.parent.name}/{file.name}", "label": file.parent.name, "person": None}
+        for file in files
+    ]
+    return Listed(parts, {path.name: total.hexdigest()}, image_size(files[0]))
+
+
+def _of_npz(path: Path, packed: bool) -> Listed:
+    images, label, person = _loaded(path, packed, path.stat().st_mtime_ns)
+    with path.open("rb") as file:
+        total = hashlib.file_digest(file, "sha256").hexdigest()
+    parts = [
+        {
+            "file": f"{path.name}/{number}",
+            "label": str(label[number]),
+            "person": None if person is None else str(person[number]),
+        }
+        for number in range(len(images))
+    ]
+    return Listed(parts, {path.name: total}, (images.shape[1], images.shape[2]))
+
+
+@lru_cache(maxsize=2)
+def _loaded(
+    path: Path, packed: bool, changed: int
+) -> tuple[Levels, NDArray[Any], NDArray[Any] | None]:
+    """(images [N, H, W], label [N], person [N] or None) of an .npz; packed columns are unpacked."""
+    del changed
+    regular_size(path)
+    with refusing(str(path)), zipfile.ZipFile(path) as archive:
+        shapes = check_npz(archive)
+        wide = [name for name, (shape, kind) in shapes.items() if len(shape) == 3 and kind in "ub"]
+        if len(wide) != 1 or "label" not in shapes:
+            raise ValueError("should hold one array of images [N, H, W], uint8 or bool, and label")
+        if int(np.prod(shapes[wide[0]][0], dtype=object)) > LARGEST_NPZ:
+            raise ValueError(f"holds more than {LARGEST_NPZ} bytes of images")
+        with np.load(path, allow_pickle=False) as arrays:
+            values, label = arrays[wide[0]], arrays["label"].ravel()
+            classes = arrays["classes"].ravel() if "classes" in shapes else None
+            person = arrays["person"].ravel() if "person" in shapes else None
+        if values.dtype not in (np.uint8, np.bool_):
+            raise ValueError(f"{wide[0]} is of {values.dtype}; should be uint8 or bool")
+        images = np.unpackbits(values.view(np.uint8), axis=2) if packed else values.view(np.uint8)
+        if images.max(initial=0) <= 1:
+            images = images * np.uint8(255)
+        if label.dtype.kind in "iu":
+            if classes is None or not ((label >= 0) & (label < classes.size)).all():
+                raise ValueError("label should be numbers into classes, or texts")
+            label = classes[label]
+        if label.dtype.kind != "U" or len(label) != len(images):
+            raise ValueError(f"label should name the class of each of {len(images)} images")
+        if person is not None and len(person) != len(images):
+            raise ValueError(f"person should name who is in each of {len(images)} images")
+    return images, label, person
+
+
+def read_image(folder: Path, file: str, size: tuple[int, int], packed: bool) -> Levels:
+    """Levels [H, W] of a part's file.
+
+    Raises:
+        CaptureError, FolderError: it cannot be read, or has another size.
+    """
+    place = PurePosixPath(file)
+    if place.parent.suffix.lower() != ".npz":
+        return read_gray(folder / file, size)
+    path = folder / place.parent
+    images = _loaded(path, packed, path.stat().st_mtime_ns)[0]
+    number = int(place.name) if place.name.isdecimal() else len(images)
+    if number >= len(images) or images.shape[1:] != size:
+        raise CaptureError(f"{path}: image {place.name}: is missing, or not {size[0]} x {size[1]}")
+    one: Levels = images[number]
+    return one

@@ -1,0 +1,331 @@
+"""A capture of any format becomes a recording."""
+
+import tempfile
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from radhar_cli.arrays import Complex, Float
+from radhar_cli.capture import findings
+from radhar_cli.capture.array_files import open_arrays
+from radhar_cli.capture.dca1000 import open_dca1000
+from radhar_cli.capture.recording import (
+    MAX_PULSE,
+    Label,
+    RecordingInfo,
+    Segments,
+    SourceNote,
+    write_recording,
+)
+from radhar_cli.capture.settings import CaptureSettings
+from radhar_cli.capture.source import Parts, Source
+from radhar_cli.capture.ti_header import read_header
+from radhar_cli.config.reading import load_mapping, validated, with_overrides
+from radhar_cli.errors import CaptureError
+from radhar_cli.radar.waveform import Waveform
+
+TI_HEADERS = (".json", ".cfg")
+SIGMF = (".sigmf-meta", ".sigmf-data")
+GAP = 0.5  # of a pulse interval: what is longer between frames is a gap
+JITTER = 0.1  # of a pulse interval, beyond which it is told
+
+
+@dataclass(frozen=True)
+class Imported:
+    """What became of a capture.
+
+    Attributes:
+        info: of the recording.
+        found: what was found and decided, in words.
+    """
+
+    info: RecordingInfo
+    found: list[str]
+
+
+def read_settings(header: Path | None, overrides: Sequence[str]) -> CaptureSettings:
+    """Settings from a header (TI's JSON or .cfg, or YAML with our keys) and `--set`.
+
+    Raises:
+        CaptureError, ConfigError: names file, field, value and what would be right.
+    """
+    document: dict[str, Any] = {}
+    if header is not None:
+        ti = header.suffix.lower() in TI_HEADERS
+        document = read_header(header) if ti else load_mapping(header)
+    where = str(header) if header else "--set"
+    return validated(CaptureSettings, with_overrides(document, overrides), where, {})
+
+
+def import_capture(
+    paths: Sequence[Path], out: Path, settings: CaptureSettings, header: str = "--set"
+) -> Imported:
+    """Read a capture in pieces and write it as a recording file.
+
+    Args:
+        paths: its files, or the first of those that are numbered.
+        out: the recording to write.
+        settings: its header.
+        header: where the header came from, for messages.
+
+    Raises:
+        CaptureError, FolderError: the capture cannot be read, or does not fit its header.
+        UnfinishedError: the recording cannot be written.
+    """
+    out.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=f".{out.name}.", dir=out.parent) as scratch:
+        source, settings = _opened(paths, settings, header, Path(scratch))
+        return _written(source, out, settings, header)
+
+
+def _opened(
+    paths: Sequence[Path], settings: CaptureSettings, header: str, scratch: Path
+) -> tuple[Source, CaptureSettings]:
+    suffix = paths[0].suffix.lower()
+    if suffix == ".bin":
+        source = open_dca1000(paths, settings, header)
+    elif len(paths) > 1:
+        raise CaptureError(f"{paths[1]}: only .bin captures are split into several files")
+    elif suffix in SIGMF:
+        from radhar_cli.capture.sigmf_file import open_sigmf
+
+        source = open_sigmf(paths[0], settings)
+    else:
+        source = open_arrays(paths[0], settings, scratch)
+    if 16 * source.receivers * (source.samples or 1) > MAX_PULSE:
+        raise CaptureError(
+            f"{source.name}: a pulse of {source.receivers} receivers and {source.samples} samples "
+            f"should take at most {MAX_PULSE} bytes, 16 of a sample"
+        )
+    said = {key: value for key, value in source.settings.items() if getattr(settings, key) is None}
+    document = settings.model_dump(exclude_none=True) | said
+    return source, validated(CaptureSettings, document, source.name, {})
+
+
+def _written(source: Source, out: Path, s: CaptureSettings, header: str) -> Imported:
+    found = [*source.notes]
+    probed = findings.probe(source)
+    offset = _offset(probed, s, found)
+    probed = [findings.without_offset(piece, offset, s.adc_bits) for piece in probed]
+    if s.iq == "qi" and source.parts == 2:
+        found.append("Q before I, as the header says")
+        probed = [piece[..., ::-1] for piece in probed]
+    turned = _turned(probed, source, s, found)
+    segments = _segments(source, s, header, found)
+    info = _info(source, s, segments, header, found)
+    dtype = source.dtype
+    number = np.dtype("f4") if dtype == np.float16 else probed[0].dtype
+    damage = findings.Damage(findings.full_scale(dtype, offset, s.adc_bits))
+
+    def pieces() -> Iterator[tuple[int, Parts]]:
+        for first, stop in source.pieces():
+            raw = source.read(first, stop)
+            values = findings.without_offset(raw, offset, s.adc_bits)
+            damage.add(raw, values)
+            if source.parts == 2 and (s.iq == "qi" or turned):
+                values = _reordered(values, s.iq == "qi", turned)
+            yield first, values
+
+    told: list[str] = []
+
+    def finished() -> tuple[NDArray[np.uint8], list[str]]:
+        flags = np.concatenate(damage.flags)
+        told.extend(_damage(damage, flags))
+        return flags, told
+
+    info = write_recording(out, info, number, source.parts, pieces(), segments, finished)
+    return Imported(info, [*found, *told])
+
+
+def _offset(probed: list[Parts], s: CaptureSettings, found: list[str]) -> int:
+    offset = findings.offset_of(probed)
+    kind = probed[0].dtype.kind
+    if s.coding is not None and kind in "iu":
+        told = "signed" if offset == 0 else "offset"
+        if told != s.coding and kind == "i":
+            found.append(f"samples look {told}; read as {s.coding}, as asked")
+        return 0 if s.coding == "signed" else (offset or 1 << (s.adc_bits - 1))
+    if offset:
+        found.append(f"offset binary: {offset} is taken off every sample (coding=signed to keep)")
+    elif kind in "iu":
+        found.append("two's complement")
+    return offset
+
+
+def _turned(probed: list[Parts], source: Source, s: CaptureSettings, found: list[str]) -> bool:
+    """Whether samples have to be conjugated for radhar's sign of the beat."""
+    if source.parts == 1 or source.samples is None:
+        if s.beat is not None and source.parts == 2:
+            return s.beat == "positive"
+        return False
+    share = findings.positive_share(probed)
+    percent = f"{100 * share.moving:.0f} % of what moves, {100 * share.still:.0f} % of all"
+    told = f"{percent} lies at positive beat frequencies"
+    sign = s.beat or share.sign
+    if s.beat is not None:
+        found.append(f"beat {s.beat}, as asked ({told})")
+    elif sign is None:
+        sign = "positive" if source.files[0].suffix.lower() == ".bin" else "negative"
+        found.append(
+            f"{told}: that does not tell the sign of the beat; taken as {sign} (beat=... says it)"
+        )
+    else:
+        found.append(f"beat {sign}: {told}")
+    if sign == "positive":
+        found.append("samples are conjugated, for radhar's beat is negative")
+    return sign == "positive"
+
+
+def _reordered(values: Parts, swapped: bool, turned: bool) -> Parts:
+    """I before Q, conjugated where asked; -32768 becomes 32767."""
+    out = values[..., ::-1].copy() if swapped else values.copy()
+    if turned:
+        q = out[..., 1]
+        if q.dtype == np.int16:
+            np.maximum(q, -32767, out=q)
+        np.negative(q, out=q)
+    return out
+
+
+def _segments(source: Source, s: CaptureSettings, header: str, found: list[str]) -> Segments:
+    if source.times is not None:
+        return _timed(source, source.times, s, found)
+    if s.prf_hz is None:
+        raise CaptureError(f"{header}: prf_hz is missing; --set prf_hz=..., or times=NAME")
+    whole = Segments(np.zeros(1), np.zeros(1, np.int64), source.pulses, s.prf_hz)
+    if s.frame_pulses is None and s.frame_s is None:
+        return whole
+    for key in ("frame_pulses", "frame_s"):
+        if getattr(s, key) is None:
+            raise CaptureError(f"{header}: {key} is missing beside the other of frames")
+    assert s.frame_pulses is not None
+    assert s.frame_s is not None
+    if s.frame_pulses / s.prf_hz > s.frame_s * (1 + 1e-6):
+        raise CaptureError(
+            f"{header}: frame_s = {s.frame_s:g}: should be at least {s.frame_pulses / s.prf_hz:g}, "
+            f"{s.frame_pulses} pulses at {s.prf_hz:g} Hz"
+        )
+    gap = s.frame_s - s.frame_pulses / s.prf_hz
+    if gap * s.prf_hz <= GAP:
+        prf = s.frame_pulses / s.frame_s
+        found.append(f"frames without gaps: slow time is uniform, {prf:.6g} pulses/s")
+        return Segments(whole.start, whole.first, source.pulses, prf)
+    first = np.arange(0, source.pulses, s.frame_pulses)
+    found.append(
+        f"slow time is not uniform: {first.size} frames of {s.frame_pulses} pulses "
+        f"({s.frame_pulses / s.prf_hz * 1e3:.4g} ms) every {s.frame_s * 1e3:.4g} ms, "
+        f"{gap * 1e3:.4g} ms of each without a pulse"
+    )
+    return Segments(np.arange(first.size) * s.frame_s, first, source.pulses, s.prf_hz)
+
+
+def _timed(source: Source, times: Float, s: CaptureSettings, found: list[str]) -> Segments:
+    """Segments from the times of the pulses."""
+    if times.size != source.pulses:
+        raise CaptureError(f"{source.name}: {times.size} times; should be {source.pulses}, a pulse")
+    if times.size < 2 or not np.isfinite(times).all() or not (np.diff(times) > 0).all():
+        raise CaptureError(f"{source.name}: times should rise from pulse to pulse")
+    step = np.diff(times)
+    interval = float(np.median(step))
+    gaps = step > 1.5 * interval
+    jitter = float(np.abs(step[~gaps] - interval).max()) / interval
+    first = np.concatenate([[0], np.flatnonzero(gaps) + 1]).astype(np.int64)
+    prf = s.prf_hz or 1 / interval
+    if s.prf_hz is not None and abs(s.prf_hz * interval - 1) > JITTER:
+        raise CaptureError(
+            f"{source.name}: prf_hz = {s.prf_hz:g}: the times have {1 / interval:.6g} pulses/s"
+        )
+    if jitter > JITTER:
+        found.append(f"pulses are up to {100 * jitter:.0f} % of their interval early or late")
+    if first.size > 1:
+        found.append(f"slow time is not uniform: {first.size} stretches with gaps between")
+    # Within a stretch pulses count as evenly spaced; the mean rate keeps them from drifting apart.
+    lengths = np.diff(first, append=times.size)
+    if s.prf_hz is None and (inside := int((lengths - 1).sum())):
+        prf = inside / float(step[~gaps].sum())
+    return Segments(times[first] - times[0], first, source.pulses, prf)
+
+
+def _info(
+    source: Source, s: CaptureSettings, segments: Segments, header: str, found: list[str]
+) -> RecordingInfo:
+    needed = ["carrier_hz"] + (["bandwidth_hz", "adc_rate_hz"] if source.samples else [])
+    for key in needed:
+        if getattr(s, key) is None:
+            raise CaptureError(
+                f"{header}: {key} is missing; --radar FILE or --set {key}=... says it"
+            )
+    if s.transmitters > 1:
+        found.append(
+            f"{s.transmitters} transmitters in turn: {segments.prf:.6g} pulses/s of each, "
+            f"{source.receivers} virtual receivers"
+        )
+    per_turn = source.receivers // s.transmitters
+    chirp = 1 / (segments.prf * s.transmitters)
+    label = None if s.label is None else Label(label=s.label, person=s.person)
+    name = source.files[0].suffix.lower().lstrip(".")
+    return RecordingInfo(
+        carrier_hz=s.carrier_hz or 0,
+        prf_hz=segments.prf,
+        bandwidth_hz=s.bandwidth_hz if source.samples else None,
+        adc_rate_hz=s.adc_rate_hz if source.samples else None,
+        samples=source.samples,
+        receivers=source.receivers,
+        pulses=source.pulses,
+        segments=len(segments),
+        receiver_delay_s=[n // per_turn * chirp for n in range(source.receivers)],
+        start_time=s.start_time,
+        labels=[] if label is None else [label],
+        source=SourceNote(format=name, files=[path.name for path in source.files], found=found[:]),
+    )
+
+
+def write_simulated(
+    out: Path,
+    beat: Complex,
+    waveform: Waveform,
+    label: Label,
+    found: Sequence[str] = (),
+) -> RecordingInfo:
+    """Write a simulated beat matrix [N_ADC, M] as a recording.
+
+    Raises:
+        UnfinishedError: it cannot be written.
+    """
+    samples, pulses = beat.shape
+    info = RecordingInfo(
+        carrier_hz=waveform.fc,
+        prf_hz=waveform.prf,
+        bandwidth_hz=waveform.slope * samples / waveform.adc_rate,
+        adc_rate_hz=waveform.adc_rate,
+        samples=samples,
+        receivers=1,
+        pulses=pulses,
+        receiver_delay_s=[0.0],
+        labels=[label],
+        source=SourceNote(format="simulated", found=[*found]),
+    )
+    values = np.ascontiguousarray(beat).view(float).reshape(1, samples, pulses, 2)
+    segments = Segments(np.zeros(1), np.zeros(1, np.int64), pulses, waveform.prf)
+    return write_recording(out, info, values.dtype, 2, [(0, values)], segments)
+
+
+def _damage(damage: findings.Damage, flags: NDArray[np.uint8]) -> list[str]:
+    told = []
+    lost = int(np.count_nonzero(flags & findings.LOST))
+    if lost:
+        told.append(
+            f"{lost} of {flags.size} pulses ({100 * lost / flags.size:.2g} %) lack samples, lost "
+            "on the way and filled with zeros; they are flagged"
+        )
+    if damage.clipped > findings.RARE:
+        pulses = int(np.count_nonzero(flags & findings.CLIPPED))
+        told.append(
+            f"{damage.clipped} samples in {pulses} of {flags.size} pulses are at full scale: the "
+            "receiver was saturated; they are flagged"
+        )
+    return told

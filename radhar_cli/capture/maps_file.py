@@ -1,0 +1,75 @@
+"""maps.h5 and maps.png of a recording: what `radhar process` writes."""
+
+import json
+from pathlib import Path
+
+import h5py
+import numpy as np
+from matplotlib.axes import Axes
+
+from radhar_cli import __version__
+from radhar_cli.capture.chain import Maps
+from radhar_cli.capture.recording import RecordingInfo
+from radhar_cli.config.identity import resolved
+from radhar_cli.config.schema import Config
+from radhar_cli.errors import UnfinishedError
+from radhar_cli.figures.maps_panel import Shown, draw_maps
+from radhar_cli.processing.torso_track import TorsoTrack
+from radhar_cli.simulation.scene_file import write_map
+
+MAPS_FILE, FIGURE, UNFINISHED = "maps.h5", "maps.png", "maps.unfinished"
+FILES = (MAPS_FILE, FIGURE, UNFINISHED)
+SURE = 0.5  # confidence from which the track is drawn as found
+TRACK_UNITS = {
+    "time": "s",
+    "range": "m",
+    "velocity": "m/s, radial, receding",
+    "confidence": "1; 0 in frames that were bridged",
+}
+
+
+def write_maps(maps: Maps, config: Config, info: RecordingInfo, folder: Path) -> list[Path]:
+    """Write maps.h5 into a folder; return its path.
+
+    Raises:
+        UnfinishedError: the folder cannot be written.
+    """
+    path, unfinished = folder / MAPS_FILE, folder / UNFINISHED
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with h5py.File(unfinished, "w") as file:
+            for name, power_map in maps.maps.items():
+                write_map(file, name, power_map)
+            if maps.track is not None:
+                for name, unit in TRACK_UNITS.items():
+                    file[f"track/{name}"] = getattr(maps.track, name)
+                    file[f"track/{name}"].attrs["unit"] = unit
+            file.attrs["recording"] = json.dumps(info.model_dump())
+            file.attrs["config"] = json.dumps(resolved(config))
+            file.attrs["notes"] = json.dumps(maps.notes)
+            file.attrs["radhar_version"] = __version__
+        unfinished.replace(path)
+    except OSError as error:
+        raise UnfinishedError(f"{error.filename or folder}: {error.strerror or error}") from None
+    finally:
+        unfinished.unlink(missing_ok=True)
+    return [path]
+
+
+def draw(maps: Maps, config: Config, title: str, path: Path) -> None:
+    """Write maps.png: every map, the torso's track over the range-time map and its Doppler."""
+    track = maps.track
+    last = max((one.rows.values[-1] for name, one in maps.maps.items() if name == "rtm"), default=1)
+    far = last if track is None else 1.3 * float(track.range.max()) + 0.5
+
+    def over(axes: Axes, name: str, unit: float) -> None:
+        if track is not None and name == "rtm":
+            _draw_track(axes, track)
+
+    draw_maps(Shown(maps.maps, config.image, maps.f0, float(far), title, over), path)
+
+
+def _draw_track(axes: Axes, track: TorsoTrack) -> None:
+    found = np.where(track.confidence >= SURE, track.range, np.nan)
+    axes.plot(track.time, track.range, "w:", linewidth=0.8, scalex=False, scaley=False)
+    axes.plot(track.time, found, "w-", linewidth=1.0, scalex=False, scaley=False)

@@ -1,0 +1,321 @@
+"""The recording file: what one radar received of one scene, whoever recorded it (docs/measured.md).
+
+Beat signals follow radhar's sign: a target at range R lies at exp(-j 2 pi (fc tau + K tau t)).
+"""
+
+import json
+from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
+from typing import Annotated, Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from radhar_cli import __version__
+from radhar_cli.arrays import Complex, Float
+from radhar_cli.capture.findings import CLIPPED, LOST
+from radhar_cli.capture.source import Parts
+from radhar_cli.dataset.untrusted_hdf5 import Samples, UntrustedFile
+from radhar_cli.errors import CaptureError, FolderError, UnfinishedError
+from radhar_cli.radar.waveform import Waveform
+from radhar_cli.untrusted import Closing
+
+KIND, SCHEMA_VERSION = "radhar recording", 1
+CHUNK_BYTES = 2**20
+MAX_PULSE = 2**28  # bytes of a pulse in complex128
+NUMBERS = ("i2", "f4", "f8")
+
+Hertz = Annotated[float, Field(gt=0, le=1e15)]
+Text = Annotated[str, Field(max_length=1000)]
+Whole = Annotated[int, Field(ge=1, le=2**40)]
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class Label(_Part):
+    """What somebody did, from start to stop in s; None is the whole recording."""
+
+    label: Text
+    person: Text | None = None
+    start_s: float | None = None
+    stop_s: float | None = None
+
+
+class SourceNote(_Part):
+    """Where a recording came from: format, files, and what was found in them."""
+
+    format: Text
+    files: Annotated[list[Text], Field(max_length=1000)] = []
+    found: Annotated[list[Text], Field(max_length=1000)] = []
+
+
+class RecordingInfo(_Part):
+    """The attribute `recording` of a recording file.
+
+    Attributes:
+        carrier_hz: at the first sample of a chirp; of slow time, where the Doppler is read.
+        prf_hz: pulses per second of one receiver within a segment.
+        bandwidth_hz, adc_rate_hz, samples: of a chirp; None of slow time.
+        receivers, pulses: shape of the samples.
+        segments: stretches of pulses without a gap.
+        receiver_delay_s: how much later each receiver's pulses are, of transmitters in turn.
+        start_time: of the first pulse, ISO 8601.
+        labels, source: see there.
+    """
+
+    carrier_hz: Hertz
+    prf_hz: Hertz
+    bandwidth_hz: Hertz | None = None
+    adc_rate_hz: Hertz | None = None
+    samples: Annotated[int, Field(ge=2, le=2**24)] | None = None
+    receivers: Annotated[int, Field(ge=1, le=2**16)]
+    pulses: Whole
+    segments: Whole = 1
+    receiver_delay_s: Annotated[list[float], Field(max_length=2**16)]
+    start_time: Text | None = None
+    labels: Annotated[list[Label], Field(max_length=10_000)] = []
+    source: SourceNote
+
+    def waveform(self, fft_length: int | None = None, centred: bool = True) -> Waveform:
+        """The chirps; `duration` is that of the pulses without the gaps.
+
+        Raises:
+            CaptureError: it is slow time.
+        """
+        if self.samples is None or self.adc_rate_hz is None or self.bandwidth_hz is None:
+            raise CaptureError("the recording is slow time; it has no ranges")
+        return Waveform(
+            fc=self.carrier_hz,
+            bandwidth=self.bandwidth_hz,
+            chirp=self.samples / self.adc_rate_hz,
+            adc_rate=self.adc_rate_hz,
+            prf=self.prf_hz,
+            duration=self.pulses / self.prf_hz,
+            fft_length=fft_length,
+            centred=centred,
+        )
+
+
+class Segments:
+    """Stretches of pulses without a gap.
+
+    Attributes:
+        start: of each, s [S].
+        first: number of its first pulse [S].
+        pulses: of all.
+        prf: within each, Hz.
+    """
+
+    def __init__(self, start: Float, first: NDArray[np.int64], pulses: int, prf: float) -> None:
+        self.start, self.first, self.pulses, self.prf = start, first, pulses, prf
+
+    def __len__(self) -> int:
+        return self.first.size
+
+    @property
+    def lengths(self) -> NDArray[np.int64]:
+        """Pulses of each."""
+        return np.diff(self.first, append=self.pulses)
+
+    @property
+    def duration(self) -> float:
+        """From the first pulse to the end of the last, s."""
+        return float(self.start[-1] - self.start[0] + self.lengths[-1] / self.prf)
+
+    def times(self, pulses: NDArray[Any]) -> Float:
+        """Times (s) of pulse numbers [...]."""
+        at = np.searchsorted(self.first, pulses, side="right") - 1
+        return np.asarray(self.start[at] + (pulses - self.first[at]) / self.prf)
+
+
+def write_recording(
+    path: Path,
+    info: RecordingInfo,
+    number: np.dtype[Any],
+    parts: int,
+    pieces: Iterable[tuple[int, Parts]],
+    segments: Segments,
+    finished: Any = None,
+) -> RecordingInfo:
+    """Write a recording under another name, then rename it into place.
+
+    Args:
+        path: of the file.
+        info: its description.
+        number: type of the numbers, one of NUMBERS.
+        parts: 2 of complex numbers, 1 of real ones.
+        pieces: (first pulse, numbers [receiver, sample, pulse, part]).
+        segments: of the pulses.
+        finished: called without arguments after the last piece; returns flags uint8 [pulse] and
+            further findings, in words. None: no flags.
+
+    Raises:
+        UnfinishedError: it cannot be written.
+    """
+    unfinished = path.with_name(f"{path.name}.unfinished")
+    samples = info.samples or 1
+    shape: tuple[int, ...] = (info.receivers, samples, info.pulses)
+    dtype = _stored(number, parts)
+    length = max(CHUNK_BYTES // (samples * dtype.itemsize), 1)
+    chunks: tuple[int, ...] = (1, samples, min(length, info.pulses))
+    if info.samples is None:
+        shape, chunks = shape[::2], chunks[::2]
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with h5py.File(unfinished, "w") as file:
+            name = "slow_time" if info.samples is None else "beat"
+            data = file.create_dataset(name, shape, dtype, chunks=chunks)
+            data.attrs["axes"] = ["receiver", "fast time", "pulse"][:: 2 if len(shape) == 2 else 1]
+            for first, values in pieces:
+                block = np.ascontiguousarray(values, dtype=number).view(dtype)[..., 0]
+                stop = first + block.shape[2]
+                if info.samples is None:
+                    data[:, first:stop] = block[:, 0]
+                else:
+                    data[:, :, first:stop] = block
+            flags, found = finished() if finished else (np.zeros(info.pulses, np.uint8), [])
+            file["flags"] = flags
+            file["flags"].attrs["meaning"] = [f"{LOST}: samples lost", f"{CLIPPED}: clipped"]
+            file["segment_start"] = segments.start.astype("f8")
+            file["segment_start"].attrs["unit"] = "s"
+            file["segment_first"] = segments.first.astype("i8")
+            source = info.source.model_copy(update={"found": [*info.source.found, *found]})
+            info = info.model_copy(update={"source": source, "segments": len(segments)})
+            file.attrs["kind"] = KIND
+            file.attrs["schema_version"] = SCHEMA_VERSION
+            file.attrs["recording"] = json.dumps(info.model_dump())
+            file.attrs["radhar_version"] = __version__
+        unfinished.replace(path)
+    except OSError as error:
+        raise UnfinishedError(
+            f"{error.filename or path}: {error.strerror or error}; nothing was written"
+        ) from None
+    finally:
+        with suppress(OSError):
+            unfinished.unlink(missing_ok=True)
+    return info
+
+
+def _stored(number: np.dtype[Any], parts: int) -> np.dtype[Any]:
+    if parts == 1:
+        return number
+    return np.dtype({"f4": "c8", "f8": "c16"}.get(number.str[1:]) or [("r", "<i2"), ("i", "<i2")])
+
+
+def is_recording(path: Path) -> bool:
+    """Whether a file says that it is a recording."""
+    try:
+        with UntrustedFile(path) as file:
+            return file.has_attribute("kind") and file.text("kind") == KIND
+    except FolderError:
+        return False
+
+
+class Recording(Closing):
+    """A recording file that anyone may have written, opened for reading.
+
+    Attributes:
+        info: its description.
+        segments: of the pulses.
+        flags: uint8 [pulse]: 1 samples lost, 2 clipped.
+
+    Raises:
+        FolderError: it is none, or damaged; names file and field.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._file = UntrustedFile(path)
+        try:
+            if not self._file.has_attribute("kind") or self._file.text("kind") != KIND:
+                raise FolderError(f"{path}: is no recording; `radhar import` makes one of it")
+            version = self._file.whole_number("schema_version")
+            if version != SCHEMA_VERSION:
+                raise FolderError(f"{path}: schema_version = {version}: should be {SCHEMA_VERSION}")
+            self.info = info = _info(self._file.json("recording"), path)
+            name = "slow_time" if info.samples is None else "beat"
+            self._samples = self._file.samples(name)
+            shape = (info.receivers, info.samples or 1, info.pulses)
+            _refuse_other_shape(self._samples, shape if info.samples else shape[::2])
+            self.flags: NDArray[np.uint8] = self._file.column("flags", "u1", (info.pulses,))[:]
+            self.segments = self._read_segments()
+        except BaseException:
+            self._file.close()
+            raise
+
+    def _read_segments(self) -> Segments:
+        shape = (self.info.segments,)
+        start = self._file.column("segment_start", "f8", shape)[:]
+        first = self._file.column("segment_first", "i8", shape)[:]
+        lengths = np.diff(first, append=self.info.pulses)
+        if (
+            first[0] != 0
+            or not np.isfinite(start).all()
+            or (lengths < 1).any()
+            or (np.diff(start) <= 0).any()
+        ):
+            raise FolderError(f"{self.path}: /segment_first: segments should follow one another")
+        return Segments(start, first, self.info.pulses, self.info.prf_hz)
+
+    @property
+    def is_complex(self) -> bool:
+        """Whether samples are complex."""
+        return self._samples.parts == 2
+
+    @property
+    def number(self) -> np.dtype[Any]:
+        """Type of the numbers."""
+        return self._samples.number
+
+    def parts(self, first: int, stop: int) -> Parts:
+        """Numbers [receiver, sample, stop - first, part] as stored; one sample of slow time."""
+        receivers, samples = slice(0, self.info.receivers), self.info.samples
+        if samples is None:
+            return self._samples.read((receivers, slice(first, stop)))[:, None]
+        return self._samples.read((receivers, slice(0, samples), slice(first, stop)))
+
+    def beat(self, first: int, stop: int) -> Complex:
+        """Complex samples [receiver, sample, stop - first]."""
+        values = self.parts(first, stop)
+        out = np.zeros(values.shape[:3], dtype=complex)
+        out.real = values[..., 0]
+        if values.shape[3] == 2:
+            out.imag = values[..., 1]
+        return out
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+
+def _info(document: Any, path: Path) -> RecordingInfo:
+    try:
+        info = RecordingInfo.model_validate(document)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        key = ".".join(map(str, first["loc"]))
+        raise FolderError(f"{path}: attribute recording: {key}: {first['msg']}") from None
+    chirp = (info.samples, info.bandwidth_hz, info.adc_rate_hz)
+    if len(info.receiver_delay_s) != info.receivers or (None in chirp and any(chirp)):
+        raise FolderError(
+            f"{path}: attribute recording: should have samples, bandwidth_hz and adc_rate_hz "
+            "together, and a delay of every receiver"
+        )
+    if 16 * info.receivers * (info.samples or 1) > MAX_PULSE:
+        raise FolderError(
+            f"{path}: attribute recording: a pulse of {info.receivers} receivers and "
+            f"{info.samples} samples should take at most {MAX_PULSE} bytes"
+        )
+    return info
+
+
+def _refuse_other_shape(samples: Samples, shape: tuple[int, ...]) -> None:
+    if samples.shape != shape:
+        raise FolderError(f"{samples.where}: has the shape {samples.shape}; should have {shape}")
+    if samples.number.str[1:] not in NUMBERS:
+        raise FolderError(f"{samples.where}: is of {samples.number}; should be one of {NUMBERS}")

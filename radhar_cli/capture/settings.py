@@ -1,0 +1,88 @@
+"""What one has to know of a capture to read it: its header, or what is given by hand."""
+
+from math import prod
+from typing import Annotated, Literal, TypeAlias
+
+from pydantic import Field, field_validator
+from pydantic_core import PydanticCustomError
+
+from radhar_cli.config.schema import Section
+
+Count: TypeAlias = Annotated[int, Field(ge=1, le=2**24, strict=True)]
+Above: TypeAlias = Annotated[float, Field(gt=0, le=1e15, strict=True)]
+Text: TypeAlias = Annotated[str, Field(max_length=1000)]
+AxisName: TypeAlias = Literal["receiver", "transmitter", "sample", "frame", "pulse", "iq"]
+USUAL_AXES: dict[int, tuple[AxisName, ...]] = {
+    1: ("pulse",),
+    2: ("sample", "pulse"),
+    3: ("receiver", "sample", "pulse"),
+    4: ("frame", "pulse", "receiver", "sample"),
+}
+
+
+class CaptureSettings(Section):
+    """The header of a capture; None is unknown, and asked for where it is needed.
+
+    Attributes:
+        carrier_hz: at the first sample of a chirp; of slow time, where the Doppler is read.
+        bandwidth_hz: swept while the samples are taken.
+        adc_rate_hz: samples per second within a chirp.
+        prf_hz: pulses per second of one transmitter: 1/(transmitters times chirp interval).
+        samples: of a chirp, N_ADC.
+        receivers, transmitters: antennas; transmitters take turns (TDM-MIMO).
+        frame_pulses: pulses of one transmitter in a frame; None where slow time has no frames.
+        frame_s: from the start of a frame to that of the next.
+        lanes, interleaved, receiver_lanes: of TI's LVDS stream; see dca1000.py.
+        iq: which part comes first.
+        complex: whether samples have two parts.
+        adc_bits: of a sample.
+        coding: of whole numbers, two's complement or offset binary; found where None.
+        beat: which half of the spectrum holds targets: `negative` is radhar's exp(-j 2 pi K tau t),
+            `positive` TI's; found where None.
+        dataset, times: names of the samples, and of the pulses' times (s), within the file.
+        axes: of an array, outermost first, as the program that wrote it counts them.
+        start_time: ISO 8601.
+        label, person: of the whole recording.
+    """
+
+    carrier_hz: Above | None = None
+    bandwidth_hz: Above | None = None
+    adc_rate_hz: Above | None = None
+    prf_hz: Above | None = None
+    samples: Annotated[int, Field(ge=2, le=2**24, strict=True)] | None = None
+    receivers: Annotated[int, Field(ge=1, le=64, strict=True)] | None = None
+    transmitters: Annotated[int, Field(ge=1, le=512, strict=True)] = 1
+    frame_pulses: Count | None = None
+    frame_s: Above | None = None
+    lanes: Literal[2, 4] | None = None
+    interleaved: Annotated[bool, Field(strict=True)] | None = None
+    receiver_lanes: tuple[Annotated[int, Field(ge=0, le=3, strict=True)], ...] | None = None
+    iq: Literal["iq", "qi"] = "iq"
+    complex: Annotated[bool, Field(strict=True)] = True
+    adc_bits: Literal[12, 14, 16] = 16
+    coding: Literal["signed", "offset"] | None = None
+    beat: Literal["negative", "positive"] | None = None
+    dataset: Text | None = None
+    times: Text | None = None
+    axes: tuple[AxisName, ...] | None = None
+    start_time: Text | None = None
+    label: Text | None = None
+    person: Text | None = None
+
+    @field_validator("axes")
+    @classmethod
+    def _each_once(cls, value: tuple[AxisName, ...] | None) -> tuple[AxisName, ...] | None:
+        if value is not None and (len(set(value)) != len(value) or "pulse" not in value):
+            raise PydanticCustomError("axes", "should name each axis once, and pulse among them")
+        return value
+
+    @property
+    def words_of_a_pulse(self) -> int:
+        """Words of 16 bits in which one pulse of every transmitter lies in TI's stream."""
+        sizes = self.transmitters, self.stored_receivers, self.samples or 1, 1 + self.complex
+        return prod(sizes)
+
+    @property
+    def stored_receivers(self) -> int:
+        """Receivers in TI's stream: with four interleaved lanes all of them, used or not."""
+        return 4 if self.interleaved and self.lanes == 4 else self.receivers or 1

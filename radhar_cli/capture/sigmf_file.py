@@ -1,0 +1,240 @@
+"""SigMF, the open format of recordings of radio signals, in and out (sigmf.org, version 1.2).
+
+A recording of ours is one stream of channels (receivers), chirp after chirp, at the rate within a
+chirp. What SigMF has no word for, such as the PRF, stands in keys of the extension `radhar`, which
+every other reader may ignore. Segments are captures, labels annotations.
+"""
+
+import hashlib
+import json
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from radhar_cli import __version__
+from radhar_cli.capture.array_files import MAX_RECEIVERS
+from radhar_cli.capture.recording import Recording
+from radhar_cli.capture.settings import CaptureSettings
+from radhar_cli.capture.source import PIECE_BYTES, Parts, Source
+from radhar_cli.config.reading import validated
+from radhar_cli.errors import CaptureError, MachineError, UnfinishedError
+from radhar_cli.untrusted import read_json, regular_size
+
+META, DATA = ".sigmf-meta", ".sigmf-data"
+SPECIFICATION = "1.2.6"
+EXTENSION = "radhar"
+MAX_CAPTURES = 10_000
+
+
+def _validated(metadata: dict[str, Any], where: str) -> None:
+    try:
+        from sigmf.validate import validate
+    except ImportError:
+        raise MachineError(
+            "SigMF needs sigmf, which is not installed: pip install 'radhar[capture]'"
+        ) from None
+    try:
+        validate(metadata)
+    except Exception as error:  # jsonschema's, and whatever else it meets
+        first = str(error).partition("\n")[0]
+        raise CaptureError(f"{where}: is not valid SigMF ({first})") from None
+
+
+def open_sigmf(path: Path, settings: CaptureSettings) -> Source:
+    """Open a SigMF recording by its .sigmf-meta or .sigmf-data file.
+
+    Raises:
+        CaptureError: it is not valid, or lacks what `settings` does not say either.
+        FolderError: the metadata are damaged.
+    """
+    meta, data = path.with_suffix(META), path.with_suffix(DATA)
+    document = read_json(meta)
+    _validated(document, str(meta))
+    about, captures = document["global"], document["captures"]
+    if len(captures) > MAX_CAPTURES:
+        raise CaptureError(f"{meta}: captures: has {len(captures)}; at most {MAX_CAPTURES}")
+    for key in ("core:dataset", "core:metadata_only", "core:trailing_bytes"):
+        if about.get(key):
+            raise CaptureError(f"{meta}: {key} = {about[key]!r}: should be data in {data.name}")
+    if any(one.get("core:header_bytes") for one in captures):
+        raise CaptureError(f"{meta}: core:header_bytes: should be 0; headers are not read")
+    dtype, parts = _datatype(about["core:datatype"], str(meta))
+    said = _said(about, captures, settings)
+    validated(CaptureSettings, said, str(meta), {})
+    samples, channels = said.get("samples") or settings.samples, about.get("core:num_channels", 1)
+    if channels > MAX_RECEIVERS:
+        raise CaptureError(
+            f"{meta}: core:num_channels = {channels}: should be at most {MAX_RECEIVERS}"
+        )
+    try:
+        size = regular_size(data)
+    except OSError as error:
+        raise CaptureError(f"{data}: {error.strerror}") from None
+    pulse = channels * (samples or 1) * parts
+    pulses, rest = divmod(size, pulse * dtype.itemsize)
+    if pulses == 0:
+        raise CaptureError(
+            f"{data}: holds {size} bytes; a pulse by {meta.name} takes {pulse * dtype.itemsize}"
+        )
+    _check_sum(about.get("core:sha512"), data)
+    number = dtype.newbyteorder("=")
+
+    def read(first: int, stop: int) -> Parts:
+        offset, count = first * pulse * dtype.itemsize, (stop - first) * pulse
+        values = np.fromfile(data, dtype, count, offset=offset).astype(number, copy=False)
+        return values.reshape(stop - first, samples or 1, channels, parts).transpose(2, 1, 0, 3)
+
+    notes = [f"the last {rest} bytes are no whole pulse and are left out"] if rest else []
+    starts = about.get(f"{EXTENSION}:segment_start_s")
+    times = None
+    if starts is not None and "prf_hz" in said:
+        first = [one["core:sample_start"] // (samples or 1) for one in captures]
+        times = _times(starts, first, pulses, said["prf_hz"], str(meta))
+    return Source(
+        (data, meta), channels, samples, pulses, number, parts, read, times, settings=said,
+        notes=tuple(notes),
+    )  # fmt: skip
+
+
+def _datatype(text: str, where: str) -> tuple[np.dtype[Any], int]:
+    from sigmf.sigmffile import dtype_info
+
+    found = dtype_info(text)
+    if found["component_dtype"].kind not in "iuf":
+        raise CaptureError(f"{where}: core:datatype = {text}: should be real or complex numbers")
+    return np.dtype(found["component_dtype"]), 1 + found["is_complex"]
+
+
+def _said(
+    about: dict[str, Any], captures: list[dict[str, Any]], settings: CaptureSettings
+) -> dict[str, Any]:
+    """Settings that the metadata hold."""
+    said: dict[str, Any] = {}
+    for key in ("carrier_hz", "bandwidth_hz", "prf_hz", "samples", "beat"):
+        if f"{EXTENSION}:{key}" in about:
+            said[key] = about[f"{EXTENSION}:{key}"]
+    if captures and "core:frequency" in captures[0]:
+        said.setdefault("carrier_hz", captures[0]["core:frequency"])
+    if captures and "core:datetime" in captures[0]:
+        said["start_time"] = captures[0]["core:datetime"]
+    if "core:sample_rate" in about:
+        slow = not (said.get("samples") or settings.samples)
+        said.setdefault("prf_hz" if slow else "adc_rate_hz", about["core:sample_rate"])
+    return said
+
+
+def _times(
+    starts: Any, first: list[int], pulses: int, prf: float, where: str
+) -> NDArray[np.float64]:
+    """Times of the pulses, from when segments start and which pulse is their first."""
+    good = isinstance(starts, list) and len(starts) == len(first) and first[0] == 0
+    try:
+        if not good or first[-1] >= pulses:
+            raise ValueError
+        start = np.array([float(one) for one in starts])
+    except (ValueError, TypeError, OverflowError):
+        raise CaptureError(
+            f"{where}: {EXTENSION}:segment_start_s: should have a time for each of captures"
+        ) from None
+    at = np.searchsorted(first, np.arange(pulses), side="right") - 1
+    return np.asarray(start[at] + (np.arange(pulses) - np.array(first)[at]) / prf)
+
+
+def _check_sum(wanted: str | None, data: Path) -> None:
+    if wanted is None:
+        return
+    with data.open("rb") as file:
+        found = hashlib.file_digest(file, "sha512").hexdigest()
+    if found != wanted.lower():
+        raise CaptureError(f"{data}: core:sha512: the file is not the one that was described")
+
+
+def write_sigmf(recording: Recording, out: Path) -> list[Path]:
+    """Write a recording as out.sigmf-meta and out.sigmf-data; return their paths.
+
+    Raises:
+        UnfinishedError: they cannot be written.
+    """
+    meta, data = out.with_suffix(META), out.with_suffix(DATA)
+    unfinished = data.with_name(f"{data.name}.unfinished")
+    info = recording.info
+    digest = hashlib.sha512()
+    pulse = info.receivers * (info.samples or 1) * 2 * recording.number.itemsize
+    step = max(PIECE_BYTES // pulse, 1)
+    try:
+        out.parent.mkdir(parents=True, exist_ok=True)
+        with unfinished.open("wb") as file:
+            for first in range(0, info.pulses, step):
+                values = recording.parts(first, min(first + step, info.pulses))
+                ordered = np.ascontiguousarray(values.transpose(2, 1, 0, 3))
+                block = ordered.astype(recording.number.newbyteorder("<")).tobytes()
+                digest.update(block)
+                file.write(block)
+        document = _metadata(recording, digest.hexdigest())
+        _validated(document, str(meta))
+        unfinished.replace(data)
+        meta.write_text(json.dumps(document, indent=2) + "\n")
+    except OSError as error:
+        raise UnfinishedError(f"{error.filename or out}: {error.strerror or error}") from None
+    finally:
+        with suppress(OSError):
+            unfinished.unlink(missing_ok=True)
+    return [meta, data]
+
+
+def _metadata(recording: Recording, sha512: str) -> dict[str, Any]:
+    info, segments = recording.info, recording.segments
+    samples = info.samples or 1
+    kind = "c" if recording.is_complex else "r"
+    number = recording.number
+    radhar = {
+        "carrier_hz": info.carrier_hz,
+        "bandwidth_hz": info.bandwidth_hz,
+        "prf_hz": info.prf_hz,
+        "samples": info.samples,
+        "beat": "negative" if recording.is_complex and info.samples else None,
+        "segment_start_s": segments.start.tolist() if len(segments) > 1 else None,
+        "receiver_delay_s": info.receiver_delay_s if any(info.receiver_delay_s) else None,
+    }
+    captures: list[dict[str, Any]] = [
+        {"core:sample_start": int(first) * samples, "core:frequency": info.carrier_hz}
+        for first in segments.first
+    ]
+    if info.start_time is not None:
+        captures[0]["core:datetime"] = info.start_time
+    return {
+        "global": {
+            "core:datatype": f"{kind}{number.kind}{8 * number.itemsize}_le",
+            "core:sample_rate": info.adc_rate_hz or info.prf_hz,
+            "core:version": SPECIFICATION,
+            "core:num_channels": info.receivers,
+            "core:sha512": sha512,
+            "core:recorder": f"radhar {__version__}",
+            "core:extensions": [{"name": EXTENSION, "version": "1.0.0", "optional": True}],
+            **{f"{EXTENSION}:{key}": value for key, value in radhar.items() if value is not None},
+        },
+        "captures": captures,
+        "annotations": _annotations(recording, samples),
+    }
+
+
+def _annotations(recording: Recording, samples: int) -> list[dict[str, Any]]:
+    info, segments = recording.info, recording.segments
+    times = segments.times(np.arange(info.pulses))
+    found = []
+    for one in info.labels:
+        first = 0 if one.start_s is None else int(np.searchsorted(times, one.start_s))
+        stop = info.pulses if one.stop_s is None else int(np.searchsorted(times, one.stop_s))
+        comment = {} if one.person is None else {"core:comment": f"person {one.person}"}
+        found.append(
+            {
+                "core:sample_start": first * samples,
+                "core:sample_count": max(stop - first, 1) * samples,
+                "core:label": one.label,
+                **comment,
+            }
+        )
+    return sorted(found, key=lambda one: one["core:sample_start"])

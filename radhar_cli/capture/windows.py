@@ -1,0 +1,251 @@
+"""A data set of measured data: windows of the recordings that a manifest lists."""
+
+import csv
+import hashlib
+import io
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import nan
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from radhar_cli.activity import TWELVE
+from radhar_cli.capture.chain import maps_of
+from radhar_cli.capture.images import are_images, is_image, listed, read_image
+from radhar_cli.capture.recording import Recording, RecordingInfo
+from radhar_cli.config.identity import resolved
+from radhar_cli.config.reading import validated
+from radhar_cli.config.schema import Config, RecordingsConfig
+from radhar_cli.config.yaml_reader import parse_yaml
+from radhar_cli.dataset.recorded import windows
+from radhar_cli.dataset.sample import Made, Sample
+from radhar_cli.errors import ConfigError, did_you_mean
+from radhar_cli.pipeline.products import image_of
+from radhar_cli.processing.entropy import entropy_bits
+from radhar_cli.processing.power_map import MapImage
+from radhar_cli.untrusted import read_text
+
+LARGEST_MANIFEST = 2**20  # bytes
+LARGEST_CONFIG = 2**19  # characters of the resolved config: two of it lie beside the data set
+COLUMNS = ("file", "label", "person", "start", "stop")
+
+
+def read_manifest(path: Path) -> list[dict[str, Any]]:
+    """Rows of a manifest: CSV with a heading, or a YAML list of mappings.
+
+    Columns: file (below the manifest's folder), label, and if wanted person, start and stop (s).
+
+    Raises:
+        ConfigError: it cannot be read, or has another column; names file, row, column and value.
+    """
+    try:
+        text = read_text(path, LARGEST_MANIFEST)
+    except (OSError, UnicodeDecodeError) as error:
+        told = getattr(error, "strerror", None) or error
+        raise ConfigError(f"{path}: cannot be read as text ({told})") from None
+    if path.suffix.lower() in (".yaml", ".yml"):
+        rows = parse_yaml(text, str(path))[0]
+        if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+            raise ConfigError(f"{path}: should be a list of {{file: ..., label: ...}}")
+    else:
+        try:
+            rows = [*csv.DictReader(io.StringIO(text), strict=True)]
+        except csv.Error as error:
+            raise ConfigError(f"{path}: is no CSV ({error})") from None
+    found = [_row(row, f"{path}: row {number}") for number, row in enumerate(rows, 1)]
+    if not found:
+        raise ConfigError(f"{path}: lists nothing; should have columns {', '.join(COLUMNS)}")
+    return found
+
+
+def _row(row: dict[Any, Any], where: str) -> dict[str, Any]:
+    given = {key: value for key, value in row.items() if value not in (None, "")}
+    for key in given:
+        if key not in COLUMNS:
+            hint = did_you_mean(str(key), COLUMNS, f"columns are {', '.join(COLUMNS)}")
+            raise ConfigError(f"{where}: {key!r} is no column; {hint}")
+    for key in ("file", "label"):
+        if key not in given:
+            raise ConfigError(f"{where}: {key} is missing")
+    for key in ("start", "stop"):
+        try:
+            given[key] = float(given[key]) if key in given else None
+        except (TypeError, ValueError):
+            raise ConfigError(f"{where}: {key} = {given[key]!r}: should be seconds") from None
+    person = given.get("person")
+    return {
+        "file": str(given["file"]),
+        "label": _slug(str(given["label"])),
+        "person": None if person is None else str(person),
+        "start_s": given["start"],
+        "stop_s": given["stop"],
+    }
+
+
+def _slug(label: str) -> str:
+    name = label.strip().lower().replace(" ", "_").replace("-", "_")
+    return TWELVE.get(name, name)
+
+
+def with_recordings(config: Config, manifest: Path) -> Config:
+    """The config of a data set of the manifest's recordings, which are opened for their length.
+
+    Raises:
+        ConfigError: the manifest, or what it asks for, is not as it should be.
+        FolderError: a recording is none.
+    """
+    if are_images(manifest):
+        return _with_images(config, manifest)
+    parts, sums = read_manifest(manifest), dict[str, str]()
+    lengths: dict[str, float] = {}
+    document = resolved(config)
+    given = document.get("recordings") or {}
+    checked = [{**part, "start_s": part["start_s"] or 0.0, "stop_s": 0.0} for part in parts]
+    # Names are checked before any file is opened.
+    validated(RecordingsConfig, {**given, "parts": checked}, str(manifest), {})
+    for part in parts:
+        name = part["file"]
+        if name not in lengths:
+            path = manifest.parent / name
+            with Recording(path) as recording:
+                lengths[name] = round(recording.segments.duration, 9)
+                if len(lengths) == 1:
+                    document["radar"] |= _radar(recording.info)
+            with path.open("rb") as file:
+                sums[name] = hashlib.file_digest(file, "sha256").hexdigest()
+        start, stop = part["start_s"] or 0.0, part["stop_s"]
+        stop = lengths[name] if stop is None else stop
+        if not 0 <= start < stop <= lengths[name] + 1e-6:
+            raise ConfigError(
+                f"{manifest}: {name}: from {start:g} to {stop:g} s: should lie within its "
+                f"{lengths[name]:.6g} s"
+            )
+        part["start_s"], part["stop_s"] = start, stop
+    document["recordings"] = {**given, "parts": parts, "sha256": sums}
+    return _whole(config, document, manifest)
+
+
+def _with_images(config: Config, path: Path) -> Config:
+    """The config of a data set of images that exist already; each lasts recordings.window_s."""
+    given = config.recordings or RecordingsConfig()
+    if len(config.maps) != 1 or given.rows is None or not given.rows[0] < given.rows[1]:
+        raise ConfigError(
+            f"{path}: of images, maps should name the one map that they show, and "
+            "recordings.rows=[low, high] the edges of its rows (Hz, or m)"
+        )
+    found, document = listed(path, given.packed), resolved(config)
+    window = {"start_s": 0.0, "stop_s": given.window_s}
+    parts = [{**part, "label": _slug(part["label"]), **window} for part in found.parts]
+    document["recordings"] |= {"parts": parts, "sha256": found.sha256}
+    document["image"] |= {"size_px": list(found.size)}
+    return _whole(config, document, path)
+
+
+def _whole(config: Config, document: dict[str, Any], manifest: Path) -> Config:
+    parts, window = document["recordings"]["parts"], document["recordings"].get("window_s", 4.0)
+    document |= {"duration_s": window, "snr_db": None}
+    document["split"] = _split(config, parts, manifest)
+    if len(json.dumps(document)) > LARGEST_CONFIG:
+        raise ConfigError(f"{manifest}: has {len(parts)} rows, too many for one data set")
+    made = validated(Config, document, str(manifest), {})
+    _refuse_what_cannot_be(made, manifest)
+    return made
+
+
+def _radar(info: RecordingInfo) -> dict[str, float]:
+    """Keys of `radar:` that a recording says."""
+    known = {"carrier_hz": info.carrier_hz, "prf_hz": info.prf_hz}
+    if info.samples is not None and info.adc_rate_hz is not None and info.bandwidth_hz is not None:
+        known |= {
+            "bandwidth_hz": info.bandwidth_hz,
+            "adc_rate_hz": info.adc_rate_hz,
+            "chirp_s": info.samples / info.adc_rate_hz,
+        }
+    return known
+
+
+def _split(config: Config, parts: Sequence[dict[str, Any]], manifest: Path) -> dict[str, Any]:
+    split: dict[str, Any] = config.split.model_dump()
+    if config.split.by == "subject":
+        nobody = [number for number, part in enumerate(parts, 1) if part["person"] is None]
+        if nobody:
+            raise ConfigError(
+                f"{manifest}: row {nobody[0]}: person is missing, which split.by: subject needs"
+            )
+        split["subjects"] = len({part["person"] for part in parts})
+    return split
+
+
+def _refuse_what_cannot_be(config: Config, manifest: Path) -> None:
+    if config.recorded is None:
+        assert config.recordings is not None
+        window = config.recordings.window_s
+        raise ConfigError(f"{manifest}: no part is as long as recordings.window_s = {window:g}")
+    if config.output.column_labels:
+        raise ConfigError("output.column_labels: should be false; recordings have no phases")
+    if config.output.slow_time:
+        raise ConfigError("output.slow_time: should be false; recordings hold it themselves")
+    if config.output.power is not None and is_image(config.recorded.parts[0].file):
+        raise ConfigError("output.power: should be null; images have no power behind them")
+    numbers = config.image.cfar
+    for key in ("pfa", "factor", "threshold_db"):
+        value = getattr(numbers, key)
+        if config.image.kind == "cfar" and value is not None and not isinstance(value, float | int):
+            raise ConfigError(f"image.cfar.{key}: should be one number; nothing is drawn here")
+
+
+def warnings_of(config: Config) -> list[str]:
+    """What a user should know of a data set of recordings, in words."""
+    recorded, found = config.recorded, []
+    assert recorded is not None
+    short = sum(not recorded.count(part) for part in recorded.parts)
+    if short and not is_image(recorded.parts[0].file):
+        found.append(f"{short} parts are shorter than the window of {recorded.window_s:g} s")
+    if config.split.by == "sample" and recorded.hop_s < recorded.window_s:
+        found.append(
+            "windows of one recording may lie in several parts of the split; split.by: subject "
+            "keeps persons apart"
+        )
+    return found
+
+
+@dataclass(frozen=True)
+class WindowMaker:
+    """Makes the rows of a data set of recordings.
+
+    Attributes:
+        folder: of the manifest, absolute.
+    """
+
+    folder: Path
+
+    def __call__(self, config: Config, row: int) -> Made:
+        """Sample and values of a row."""
+        recorded = config.recorded
+        assert recorded is not None
+        number, part, start = windows(config)[row]
+        if is_image(part.file):
+            return Made(self._image(config, part.file), np.array([number, start, nan]))
+        with Recording(self.folder / part.file) as recording:
+            found = maps_of(
+                recording, config, config.maps, start, start + recorded.window_s, recorded.receiver
+            )
+        images: dict[str, MapImage] = {}
+        for name in config.maps:
+            one = found.maps[name]
+            columns = replace(one.columns, values=one.columns.values - start)
+            images[name] = image_of(config, replace(one, columns=columns))
+        sure = nan if found.track is None else float(found.track.confidence.mean())
+        return Made(Sample(images, nan, False, {}), np.array([number, start, sure]))
+
+    def _image(self, config: Config, file: str) -> Sample:
+        recorded = config.recorded
+        assert recorded is not None
+        assert recorded.rows is not None
+        levels = read_image(self.folder, file, config.image.size_px, recorded.packed)
+        extent = (0.0, recorded.window_s, *recorded.rows)
+        image = MapImage(levels, entropy_bits(levels.astype(float)), extent)
+        return Sample({config.maps[0]: image}, nan, False, {})

@@ -1,0 +1,55 @@
+"""`radhar adapt`: a trained network is fitted to unlabelled images of another radar."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from radhar_cli.commands.learning_options import Resize
+from radhar_cli.commands.tell import tell
+
+
+def adapt(
+    run: Annotated[Path, typer.Argument(help="Folder that train wrote.")],
+    data: Annotated[
+        Path, typer.Argument(help="A data set or a tree of images; classes are not looked at.")
+    ],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder of the adapted run.")],
+    map_: Annotated[
+        str | None, typer.Option("--map", help="Another map than the one it was trained on.")
+    ] = None,
+    split: Annotated[str, typer.Option(help="train, val, test or all.")] = "all",
+    resize: Resize = False,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace a run that the folder holds.")
+    ] = False,
+    device: Annotated[str, typer.Option(help="auto, cpu, cuda or mps.")] = "auto",
+) -> None:
+    """Give a copy of a run the batch-norm statistics of unlabelled images.
+
+    Example:
+
+      radhar adapt runs/simulated datasets/measured -o runs/adapted
+
+    For a network that learned from simulated maps and is to work on a radar's. The images should
+    show the classes about as often as those it will be asked about.
+    """
+    from radhar_cli.commands.learning_options import apart, known_device, needs_torch
+
+    needs_torch()
+    from radhar_cli.learning import adaptation
+    from radhar_cli.learning.images.image_set import split_named
+    from radhar_cli.learning.machine import choose_device
+
+    apart(out, [data])
+    adaptation.adapt(
+        run,
+        data,
+        out,
+        choose_device(known_device(device)),
+        map_,
+        split_named(split),
+        resize,
+        overwrite,
+    )
+    tell(f"{out}: {run} with the batch norm of {data}")

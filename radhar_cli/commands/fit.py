@@ -1,0 +1,42 @@
+"""`radhar fit`: a config to simulate by, read off recordings."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from radhar_cli.commands.tell import tell
+
+
+def fit(
+    recordings: Annotated[list[Path], typer.Argument(help="Recordings of one radar.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Config to write.")],
+) -> None:
+    """Read waveform, SNR and ranges off recordings into a config to simulate by.
+
+    Example:
+
+      radhar fit walk.h5 fall.h5 -o measured.yaml
+
+    A figure of measured beside fitted lies next to the config, as .png.
+    """
+    import json
+
+    from radhar_cli.capture.fitting import draw
+    from radhar_cli.capture.fitting import fit as read_off
+    from radhar_cli.errors import FolderError
+
+    if out.is_dir():
+        raise FolderError(f"{out}: is a folder; -o should name a file, such as measured.yaml")
+    if out.resolve() in {path.resolve() for path in recordings}:
+        raise FolderError(f"{out}: is one of the recordings; -o should name another file")
+    found = read_off(recordings)
+    for key, value in found.numbers().items():
+        tell(f"  {key:<16} {value:.4g}")
+    text = f"# Read off {len(recordings)} recordings, {len(found.parts)} parts of them.\n"
+    lines = [f"{key}: {json.dumps(value)}" for key, value in found.document.items()]
+    out.parent.mkdir(parents=True, exist_ok=True)
+    out.write_text(text + "\n".join(lines) + "\n")
+    draw(found, out.with_suffix(".png"))
+    for path in (out, out.with_suffix(".png")):
+        tell(f"  {path}")

@@ -1,0 +1,101 @@
+"""`radhar import`: a capture of a real radar becomes a recording."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from radhar_cli.commands.tell import tell
+
+
+def import_(
+    captures: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="CAPTURE...",
+            help=".bin of a DCA1000 (the first of several will do), .npy, .npz, .mat, HDF5, SigMF.",
+        ),
+    ],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Recording to write, such as walk.h5.")],
+    radar: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE", help="Header: mmWave Studio's JSON, a .cfg, or YAML of our keys."
+        ),
+    ] = None,
+    set_: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set", metavar="KEY=VALUE", help="A key of the header, or another value; may repeat."
+        ),
+    ] = None,
+    label: Annotated[str | None, typer.Option(help="What is done in it.")] = None,
+    person: Annotated[str | None, typer.Option(help="Who does it.")] = None,
+    to: Annotated[
+        str | None, typer.Option("--to", help="sigmf: write that instead of a recording file.")
+    ] = None,
+) -> None:
+    """Read a capture of a real radar into a recording file.
+
+    Example:
+
+      radhar import adc_data_Raw_0.bin --radar setup.mmwave.json --label walking -o walk.h5
+
+    What is found in the samples (offset binary, sign of the beat, gaps, losses, saturation) is
+    said, and can be overruled: --set coding=signed, --set beat=positive. All keys: docs/measured.md
+    """
+    import json
+
+    from radhar_cli.capture.importing import import_capture, read_settings
+    from radhar_cli.capture.recording import Recording
+    from radhar_cli.errors import FolderError
+
+    sigmf = wants_sigmf(to)
+    named = {"label": label, "person": person}
+    overrides = [f"{key}={json.dumps(value)}" for key, value in named.items() if value is not None]
+    settings = read_settings(radar, [*(set_ or []), *overrides])
+    if out.is_dir():
+        raise FolderError(f"{out}: is a folder; -o should name a file, such as walk.h5")
+    if out.resolve() in {path.resolve() for path in captures}:
+        raise FolderError(f"{out}: is the capture itself; -o should name another file")
+    header = str(radar) if radar else "--set"
+    written = out.with_suffix(".radhar-import.h5") if sigmf else out
+    try:
+        imported = import_capture(captures, written, settings, header)
+        for line in imported.found:
+            tell(f"  {line}")
+        info = imported.info
+        shape = f"{info.receivers} receivers, {info.samples or 'no'} samples a chirp, "
+        tell(
+            f"{info.pulses} pulses at {info.prf_hz:.6g} Hz: {shape}{info.carrier_hz / 1e9:.6g} GHz"
+        )
+        if sigmf:
+            from radhar_cli.capture.sigmf_file import write_sigmf
+
+            with Recording(written) as recording:
+                paths = write_sigmf(recording, out)
+        else:
+            paths = [out]
+    finally:
+        if sigmf:
+            written.unlink(missing_ok=True)
+    for path in paths:
+        tell(f"  {path}")
+
+
+def wants_sigmf(to: str | None) -> bool:
+    """Whether `--to` asks for SigMF.
+
+    Raises:
+        RadharError: it asks for something else, or sigmf is not installed.
+    """
+    from radhar_cli.errors import RadharError
+
+    if to is None:
+        return False
+    if to != "sigmf":
+        raise RadharError(f"--to {to}: should be sigmf; without --to a recording file is written")
+    from radhar_cli.commands.learning_options import needs
+
+    needs("capture", ("sigmf",))
+    return True

@@ -1,0 +1,42 @@
+"""`radhar merge`: parts that `generate --shard` made become one data set."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from radhar_cli.commands.options import resumable
+
+
+def merge(
+    out: Annotated[Path, typer.Argument(help="Folder of the data set.")],
+    parts: Annotated[
+        list[Path] | None,
+        typer.Argument(help="Folders of parts, or that hold some; those below OUT if not given."),
+    ] = None,
+    virtual: Annotated[
+        bool, typer.Option("--virtual", help="Refer to the parts below OUT; copy no samples.")
+    ] = False,
+    jobs: Annotated[
+        int | None, typer.Option("--jobs", "-j", min=1, help="Processes, for PNGs no part has.")
+    ] = None,
+) -> None:
+    """Put the parts of a data set together. They are read and stay as they are.
+
+    Says which rows are missing, and with which --shard to make them. Exit status 1 then.
+
+    Example:
+
+      radhar merge datasets/large
+    """
+    from radhar_cli.commands.terminal import BarProgress, print_outcome
+    from radhar_cli.dataset.merge import merge as merge_parts
+    from radhar_cli.dataset.workers import cores
+
+    progress = BarProgress()
+    with resumable("every part"):
+        try:
+            config, outcome = merge_parts(out, parts or [], jobs or cores(), progress, virtual)
+        finally:
+            progress.close()
+    print_outcome(config, outcome)

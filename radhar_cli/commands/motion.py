@@ -1,0 +1,40 @@
+"""`radhar motion`: how somebody moves in one scene, as a BVH file."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from radhar_cli.commands.options import Activity, Nominal, Overrides
+from radhar_cli.commands.tell import tell
+
+
+def motion(
+    config: Annotated[Path, typer.Argument(help="YAML file whose ranges are drawn from.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="The .bvh file to write.")],
+    activity: Activity = None,
+    index: Annotated[int, typer.Option(min=0, help="Which sample of its class.")] = 0,
+    nominal: Nominal = False,
+    rate: Annotated[float, typer.Option(min=1, max=10_000, help="Frames per second.")] = 120.0,
+    set_: Overrides = None,
+) -> None:
+    """Write the motion of one scene as BVH, for Blender and others: y up, cm, Mixamo's names.
+
+    Example:
+
+      radhar motion configs/human/free_space_77GHz.yaml --activity walking -o walk.bvh
+    """
+    from radhar_cli.config import load_config
+    from radhar_cli.errors import ConfigError, UnfinishedError
+    from radhar_cli.simulation.motion_file import scene_bvh
+
+    if out.suffix.lower() != ".bvh":
+        raise ConfigError(f"{out}: should end in .bvh")
+    text, frames = scene_bvh(
+        load_config(config, set_ or []), activity, index=index, nominal=nominal, rate=rate
+    )
+    try:
+        out.write_text(text)
+    except OSError as error:
+        raise UnfinishedError(f"{out}: {error.strerror}; nothing was written") from None
+    tell(f"{out}: {frames} frames, {rate:g} a second")

@@ -1,0 +1,69 @@
+"""`radhar process`: the maps of a recording, by the stages of a config."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from radhar_cli.commands.options import Overrides
+from radhar_cli.commands.tell import tell
+
+
+def process(
+    recording: Annotated[Path, typer.Argument(help="File that import or simulate --raw wrote.")],
+    config: Annotated[
+        Path, typer.Option(help="YAML file whose processing, image and maps are used.")
+    ],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the results.")],
+    set_: Overrides = None,
+    maps: Annotated[
+        str | None, typer.Option(help="Comma-separated maps, not the config's.")
+    ] = None,
+    start: Annotated[float | None, typer.Option(min=0, help="From here on, s.")] = None,
+    stop: Annotated[float | None, typer.Option(min=0, help="Up to here, s.")] = None,
+    receiver: Annotated[
+        int | None, typer.Option(min=0, help="This one alone; else all powers are added up.")
+    ] = None,
+    figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw maps.png.")] = True,
+) -> None:
+    """Make maps of a recording: maps.h5 and maps.png, the torso's track among them.
+
+    Example:
+
+      radhar process walk.h5 --config configs/paper/free_space.yaml --maps rtm,stft -o out/walk
+    """
+    from radhar_cli.capture import maps_file
+    from radhar_cli.capture.chain import maps_of
+    from radhar_cli.capture.recording import Recording
+    from radhar_cli.config import load_config
+    from radhar_cli.dataset.files import refuse_links
+    from radhar_cli.dataset.folder import refuse_file
+    from radhar_cli.simulation.simulate import map_names
+
+    loaded = load_config(config, set_ or [])
+    names = loaded.maps if maps is None else map_names(maps.split(","))
+    refuse_file(out)
+    for name in maps_file.FILES:
+        refuse_links(out, out / name)
+    with Recording(recording) as opened:
+        info, gaps = opened.info, len(opened.segments) - 1
+        found = maps_of(opened, loaded, names, start, stop, receiver)
+    if gaps:
+        tell(f"{gaps} gaps: handled stretch by stretch")
+    for note in found.notes:
+        tell(f"warning: {note}", err=True)
+    written = maps_file.write_maps(found, loaded, info, out)
+    if figures:
+        labels = ", ".join(one.label for one in info.labels) or "no label"
+        title = f"{recording.name}   |   {labels}   |   {info.carrier_hz / 1e9:g} GHz"
+        title += f", PRF {info.prf_hz:.6g} Hz"
+        maps_file.draw(found, loaded, title, out / maps_file.FIGURE)
+        written.append(out / maps_file.FIGURE)
+    if found.track is not None:
+        track = found.track
+        tell(
+            f"torso from {track.range.min():.2f} to {track.range.max():.2f} m, up to "
+            f"{abs(track.velocity).max():.2f} m/s, confidence {track.confidence.mean():.2f}"
+        )
+    for path in written:
+        tell(f"  {path}")

@@ -1,0 +1,107 @@
+"""The files of classes: patterns become paths with checksums, found from the config's folder on."""
+
+from collections.abc import Callable, Iterator
+from glob import has_magic, iglob
+from itertools import islice
+from pathlib import Path
+
+from radhar_cli.config.schema import LONGEST_PATH, MAX_FILES, Config, FilesConfig
+from radhar_cli.errors import ConfigError, FolderError, MotionFileError
+from radhar_cli.motion.files.reading import read_motion
+
+Refuse = Callable[[str, object, str], ConfigError]
+
+
+def with_files(config: Config, folder: Path, refuse: Refuse) -> Config:
+    """The config with every file found and its SHA-256 beside it.
+
+    A checksum that stands in the config already must be the file's.
+
+    Args:
+        config: whose `classes` may name files.
+        folder: that of the config file.
+        refuse: makes an error of (key, value, what would be right).
+
+    Raises:
+        ConfigError: no such file, too many, another checksum; names key and value.
+        MotionFileError: a file that cannot be read.
+    """
+    classes = {slug: one for slug, one in config.classes.items() if isinstance(one, FilesConfig)}
+    if not classes:
+        return config
+    root = (folder / (config.motion.folder or "")).resolve()
+    found = {slug: _found(slug, one, root, refuse) for slug, one in classes.items()}
+    count = sum(len(one.files) for one in found.values())
+    if count > MAX_FILES:
+        raise refuse("classes", f"{count} files", f"should have at most {MAX_FILES} files in all")
+    motion = config.motion.model_copy(update={"folder": str(root)})
+    return config.model_copy(update={"motion": motion, "classes": {**config.classes, **found}})
+
+
+def _found(slug: str, one: FilesConfig, root: Path, refuse: Refuse) -> FilesConfig:
+    key = f"classes.{slug}.files"
+    skeleton = None if one.skeleton is None else root / one.skeleton
+    files: dict[str, str] = {}
+    for path, known in sorted(_expanded(one, root, key, refuse)):
+        try:
+            checksum = read_motion(root / path, skeleton).checksum
+        except MotionFileError as error:
+            raise refuse(key, path, str(error)) from None
+        if known not in ("", checksum):
+            raise refuse(key, path, f"should have the SHA-256 {known}; the file is another now")
+        files[path] = checksum
+    if one.file is not None and one.file >= len(files):
+        raise refuse(f"classes.{slug}.file", one.file, f"should be below the {len(files)} files")
+    return one.model_copy(update={"files": files})
+
+
+def _expanded(one: FilesConfig, root: Path, key: str, refuse: Refuse) -> Iterator[tuple[str, str]]:
+    """(path, known checksum or "") of every file."""
+    for written, known in one.files.items():
+        if known or not has_magic(written) or (root / written).is_file():
+            yield written, known
+            continue
+        paths = sorted(islice(iglob(written, root_dir=root), MAX_FILES + 1))  # noqa: PTH207 - also absolute ones
+        if not paths:
+            raise refuse(key, written, f"should name files; there are none like it in {root}")
+        if len(paths) > MAX_FILES:
+            raise refuse(key, written, f"should name at most {MAX_FILES} files")
+        for path in paths:
+            if len(path) > LONGEST_PATH:
+                raise refuse(key, path, f"should have at most {LONGEST_PATH} characters")
+            yield path, ""
+
+
+def with_folder(config: Config, folder: Path) -> Config:
+    """A stored config whose files are looked for in a folder, and nowhere else.
+
+    Raises:
+        FolderError: a class names a file outside of it.
+    """
+    root = folder.resolve()
+    for slug, one in config.classes.items():
+        if not isinstance(one, FilesConfig):
+            continue
+        for path in (*one.files, *([one.skeleton] if one.skeleton else [])):
+            if not (root / path).resolve().is_relative_to(root):
+                raise FolderError(
+                    f"--motion {folder}: the class {slug!r} names {path}, which lies outside; "
+                    "should be a folder that all files of the data set lie in"
+                )
+    motion = config.motion.model_copy(update={"folder": str(root)})
+    return config.model_copy(update={"motion": motion})
+
+
+def alone(config: Config, slug: str) -> Config:
+    """A scene's config with the one file that it uses, by its whole path; others keep one each."""
+    classes = {}
+    for name, one in config.classes.items():
+        if isinstance(one, FilesConfig):
+            number = (one.file or 0) if name == slug else 0
+            path, checksum = [*one.files.items()][number]
+            whole = str(Path(config.motion.folder or "", path))
+            skeleton = one.skeleton and str(Path(config.motion.folder or "", one.skeleton))
+            update = {"files": {whole: checksum}, "file": 0, "skeleton": skeleton}
+            one = one.model_copy(update=update)
+        classes[name] = one
+    return config.model_copy(update={"classes": classes})

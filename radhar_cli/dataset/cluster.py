@@ -1,0 +1,85 @@
+"""Run tasks on the workers of a dask cluster, on other machines or on this one."""
+
+import logging
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from itertools import islice
+from typing import Any, TypeVar
+
+from radhar_cli.errors import MachineError, UnfinishedError
+
+T = TypeVar("T")
+LOCAL = "local"
+TASKS_A_CORE = 2
+
+
+class Cluster:
+    """A connected dask cluster."""
+
+    def __init__(self, client: Any) -> None:
+        self._client = client
+
+    @property
+    def cores(self) -> int:
+        """Threads of all workers that are there now."""
+        return max(1, int(sum(self._client.ncores().values())))
+
+    def run(self, function: Callable[..., T], tasks: Iterable[tuple[Any, ...]]) -> Iterator[T]:
+        """Yield function(*task) for every task, in any order; what a lost worker had is run again.
+
+        Raises:
+            UnfinishedError: the scheduler is gone, or one task lost several workers.
+        """
+        from distributed import as_completed
+        from distributed.client import FutureCancelledError
+        from distributed.scheduler import KilledWorker
+
+        left, running = iter(tasks), as_completed()
+
+        def fill() -> None:
+            for task in islice(left, max(0, TASKS_A_CORE * self.cores - running.count())):
+                running.add(self._client.submit(function, *task, pure=False))
+
+        try:
+            fill()
+            for done in running:
+                yield done.result()
+                fill()
+        except KilledWorker:
+            fault = "several workers were lost with the same task, for want of memory perhaps"
+        except (FutureCancelledError, OSError) as error:
+            if isinstance(error, OSError) and self._client.status == "running":
+                raise  # the task's own
+            fault = "the scheduler is gone"
+        else:
+            return
+        raise UnfinishedError(
+            f"dask: {fault}; what was finished is kept, and the same command goes on"
+        )
+
+
+@contextmanager
+def connected(address: str, jobs: int) -> Iterator[Cluster]:
+    """Connect to a dask scheduler, or start workers on this machine.
+
+    Args:
+        address: of the scheduler, such as tcp://host:8786, or `local`.
+        jobs: processes of `local`.
+
+    Raises:
+        MachineError: nobody answers, or dask is not installed.
+    """
+    try:
+        from distributed import Client
+    except ImportError:
+        raise MachineError("--cluster: needs dask; `pip install 'radhar[cluster]'`") from None
+    # They log tracebacks of lost connections.
+    for name in ("distributed", "distributed.client", "tornado", "asyncio"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)
+    own = {"n_workers": jobs, "threads_per_worker": 1, "dashboard_address": None}
+    try:
+        client = Client(**own) if address == LOCAL else Client(address, timeout=10)
+    except (OSError, ValueError) as error:
+        raise MachineError(f"--cluster {address}: no dask scheduler answers ({error})") from None
+    with client:
+        yield Cluster(client)

@@ -1,0 +1,28 @@
+"""What is done at the time of each column of an image (`output.column_labels`)."""
+
+import numpy as np
+
+from radhar_cli.arrays import Levels
+from radhar_cli.config.schema import Config
+from radhar_cli.motion.phases import PHASES, phase_numbers
+from radhar_cli.motion.protocol import Motion
+from radhar_cli.processing.power_map import MapImage
+from radhar_cli.scene import Scene
+
+
+def label_names(config: Config) -> tuple[str, ...]:
+    """What the numbers mean: PHASES, then every class beyond the twelve by its slug."""
+    return (*PHASES, *(activity.slug for activity in config.every_class if activity.number > 12))
+
+
+def column_labels(scene: Scene, motion: Motion, image: MapImage) -> Levels:
+    """Number in `label_names` [width] of what is under way at the middle of each column.
+
+    A motion that names no phases, or others than PHASES, is labelled with its class.
+    """
+    left, right, *_ = image.extent
+    width = image.levels.shape[1]
+    t = left + (np.arange(width) + 0.5) * (right - left) / width
+    names = label_names(scene.config)
+    slug = scene.activity.slug
+    return phase_numbers(motion.phases, t, names, names.index(slug) if slug in names else 0)

@@ -1,0 +1,147 @@
+"""Put parts of a data set, made apart from each other, together."""
+
+import os
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from radhar_cli.config.schema import Config
+from radhar_cli.dataset.assembly import assembled
+from radhar_cli.dataset.build import Outcome, disk_error, say_warnings
+from radhar_cli.dataset.files import refuse_foreign_work, refuse_links
+from radhar_cli.dataset.folder import clean_up, folder_lock, mark_built, reserve, stored_identity
+from radhar_cli.dataset.identity import differences, identity
+from radhar_cli.dataset.layout import PARTS, Rows
+from radhar_cli.dataset.parts import Part, rows_by_part
+from radhar_cli.dataset.png_files import take_over_pngs, write_missing_pngs
+from radhar_cli.dataset.reading import stored_config
+from radhar_cli.dataset.shards import Runs, Shard, listed_shards, require_tiling
+from radhar_cli.dataset.split import split_rows, split_warnings
+from radhar_cli.errors import FolderError
+from radhar_cli.progress import Progress
+
+
+class _Place(NamedTuple):
+    part: Part
+    folder: Path
+    identity: dict[str, Any]
+
+
+def merge(
+    out: Path, folders: Sequence[Path], jobs: int, progress: Progress, virtual: bool = False
+) -> tuple[Config, Outcome]:
+    """Make the data set in `out` of its parts, which are only read.
+
+    Args:
+        out: the output folder.
+        folders: of parts, or that hold parts; those below `out` where none are named.
+        jobs: processes, for PNGs that no part has.
+        progress: receives progress and messages.
+        virtual: dataset.h5 refers to the parts, all below `out`, instead of copying them.
+
+    Raises:
+        FolderError: parts differ, or are none.
+        UnfinishedError: rows are missing or damaged; names them and the parts to run again.
+    """
+    out = out.absolute()
+    places = _places(folders or [out])
+    config = _config(places)
+    count, of = len(Rows.of(config)), places[0].part.of
+
+    def run_again(runs: Runs) -> str:
+        again = ", ".join(f"--shard {part}" for part in rows_by_part(runs, of, count))
+        return f"make them with `radhar generate` and {again}, then merge again"
+
+    shards = _shards(places, count)
+    if virtual:
+        for place in places:
+            _refuse_outside(out, place.folder)
+    require_tiling(out, shards, count, run_again)
+    split = split_rows(config)
+    for message in split_warnings(config, split):
+        progress.say(f"warning: {message}")
+    try:
+        with folder_lock(out):
+            reserve(out, config, overwrite=False, beside=(PARTS,))
+            progress.stage("merging", count, 0)
+            with assembled(config, out, shards, run_again, virtual) as (unfinished, stored):
+                say_warnings(progress, stored)
+                if config.output.png:
+                    parts = [(place.part.rows(count), place.folder) for place in places]
+                    take_over_pngs(config, out, split, parts)
+                progress.advance(count)
+                pngs = write_missing_pngs(config, out, split, unfinished, jobs, progress)
+            mark_built(out)
+            clean_up(out)
+    except OSError as error:
+        raise disk_error(out, error) from error
+    return config, Outcome(out, count, count, pngs, stored)
+
+
+def _places(folders: Iterable[Path]) -> list[_Place]:
+    """The parts in these folders, in order."""
+    found = []
+    for folder in folders:
+        folder = Path(os.path.abspath(folder))  # noqa: PTH100 - without ..; links stay
+        inner = folder / PARTS
+        for part in sorted(inner.iterdir()) if inner.is_dir() else [folder]:
+            refuse_foreign_work(part)
+            named = stored_identity(part)
+            if named is not None and isinstance(named.get("part"), str):
+                found.append(_Place(Part.parse(named["part"], f"{part}: part"), part, named))
+            elif not inner.is_dir():
+                raise FolderError(f"{part}: is no part that `radhar generate --shard` made")
+    if not found:
+        raise FolderError(
+            f"{', '.join(map(str, folders))}: no part of a data set; "
+            "`radhar generate CONFIG -o OUT --shard K/N` makes one"
+        )
+    return sorted(found, key=lambda place: place.part)
+
+
+def _config(places: Sequence[_Place]) -> Config:
+    """The config that all parts have."""
+    first = places[0]
+    for place in places[1:]:
+        found = differences(first.identity, place.identity)
+        if place.part.of != first.part.of:
+            found = [f"parts: {first.part.of} there, {place.part.of} here"]
+        if found:
+            raise FolderError(
+                f"{place.folder}: is no part of what {first.folder} belongs to; it differs in\n  "
+                + "\n  ".join(found)
+            )
+    config = stored_config(first.identity.get("config"), str(first.folder))
+    found = differences(first.identity, identity(config))
+    if found:
+        raise FolderError(
+            f"{first.folder}: merge with what made the parts; this differs in\n  "
+            + "\n  ".join(found)
+        )
+    return config
+
+
+def _shards(places: Sequence[_Place], count: int) -> list[Shard]:
+    """The shards of all parts in row order; of those that share rows, the first."""
+    listed = []
+    for place in places:
+        rows = place.part.rows(count)
+        listed += [
+            shard
+            for shard in listed_shards(place.folder)
+            if rows.start <= shard.start < shard.stop <= rows.stop
+        ]
+    shards: list[Shard] = []
+    for shard in sorted(listed):
+        if not shards or shard.start >= shards[-1].stop:
+            shards.append(shard)
+    return shards
+
+
+def _refuse_outside(out: Path, folder: Path) -> None:
+    if not folder.is_relative_to(out) or "%" in str(folder.relative_to(out)):
+        raise FolderError(
+            f"{folder}: --virtual refers to parts below {out}, without % in their names; merge "
+            "without it to copy"
+        )
+    refuse_links(out, folder)

@@ -1,0 +1,113 @@
+"""The PNG files of a data set: which are missing, and making or taking over those."""
+
+import os
+import shutil
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+
+from radhar_cli.arrays import Bool, Index, Levels
+from radhar_cli.config.schema import Config
+from radhar_cli.dataset.batch import png_rows
+from radhar_cli.dataset.files import refuse_links, unfinished_path
+from radhar_cli.dataset.layout import Rows
+from radhar_cli.dataset.png import colour_table
+from radhar_cli.dataset.workers import parent_pid, run_tasks
+from radhar_cli.progress import Progress
+
+ROWS = 32  # of which the PNGs are one task
+
+
+def write_missing_pngs(
+    config: Config, folder: Path, split: Levels, source: Path, jobs: int, progress: Progress
+) -> int:
+    """Write PNGs that are not there: asked for later, deleted, or lost with a killed run.
+
+    Args:
+        config: the data set's.
+        folder: the output folder.
+        split: split number of each row.
+        source: HDF5 file to make them from.
+        jobs: processes.
+        progress: receives progress.
+
+    Returns:
+        Number of PNGs written; none where the config asks for none.
+    """
+    missing = rows_without_png(config, folder, split) if config.output.png else np.empty(0, int)
+    if not missing.size:
+        return 0
+    progress.stage("png", missing.size, 0)
+    table = colour_table(config.image.colour_map)
+    tasks = (
+        (
+            config,
+            folder,
+            source,
+            [(row, int(split[row])) for row in missing[first : first + ROWS].tolist()],
+            table,
+            parent_pid(),
+        )
+        for first in range(0, missing.size, ROWS)
+    )
+    for written in run_tasks(png_rows, tasks, jobs if missing.size > ROWS else 1):
+        progress.advance(written)
+    return missing.size * len(config.maps)
+
+
+def take_over_pngs(
+    config: Config, folder: Path, split: Levels, places: Iterable[tuple[range, Path]]
+) -> None:
+    """Link, or where that cannot be copy, the PNGs that are missing.
+
+    Args:
+        config: the data set's.
+        folder: the output folder.
+        split: split number of each row.
+        places: rows and the folder that may have their PNGs.
+    """
+    order, unfinished = Rows.of(config), unfinished_path(folder)
+    missing = rows_without_png(config, folder, split)
+    unfinished.parent.mkdir(parents=True, exist_ok=True)
+    for rows, place in places:
+        for row in missing[(missing >= rows.start) & (missing < rows.stop)].tolist():
+            for name in config.maps:
+                path = order.png_path(name, int(split[row]), row)
+                refuse_links(folder, folder / path)
+                refuse_links(place, place / path)
+                if (folder / path).exists() or not (place / path).is_file():
+                    continue
+                (folder / path).parent.mkdir(parents=True, exist_ok=True)
+                try:
+                    os.link(place / path, unfinished)
+                except OSError:  # another file system
+                    shutil.copyfile(place / path, unfinished)
+                unfinished.replace(folder / path)
+
+
+def rows_without_png(config: Config, folder: Path, split: Levels) -> Index:
+    """Rows of which an image is missing."""
+    rows = Rows.of(config)
+    missing = np.zeros(len(rows), dtype=bool)
+    for _, one_class in rows.classes():
+        for name in config.maps:
+            missing[one_class] |= ~_stored_pngs(
+                folder, name, rows, one_class.start, split[one_class]
+            )
+    return np.flatnonzero(missing)
+
+
+def _stored_pngs(out: Path, name: str, rows: Rows, first: int, split: Levels) -> Bool:
+    """Whether there is a PNG of each sample of the class from row `first` on, of one map."""
+    there = np.zeros(split.size, dtype=bool)
+    for number in np.unique(split).tolist():
+        folder = out / rows.png_path(name, number, first).parent
+        for found in os.scandir(folder) if folder.is_dir() else ():
+            stem = found.name.removesuffix(".png")
+            index = int(stem) if stem.isdecimal() else split.size
+            if index >= split.size or split[index] != number:
+                continue
+            if found.name == rows.png_path(name, number, first + index).name:
+                there[index] = True
+    return there

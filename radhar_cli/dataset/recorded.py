@@ -1,0 +1,44 @@
+"""Samples that are windows of recordings, in the order of a data set's rows."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from radhar_cli.config.schema import Config, RecordedPart
+
+
+class RecordedWindow(NamedTuple):
+    """One sample.
+
+    Attributes:
+        number: of its part in the manifest.
+        part: the part.
+        start: s, from the start of the recording.
+    """
+
+    number: int
+    part: RecordedPart
+    start: float
+
+
+def windows(config: Config) -> list[RecordedWindow]:
+    """The windows of a data set of recordings: class by class, each in the manifest's order."""
+    recorded = config.recorded
+    assert recorded is not None
+    return [one for a in config.chosen_activities for one in _of_class(config, a.slug)]
+
+
+def _of_class(config: Config, slug: str) -> Iterator[RecordedWindow]:
+    recorded = config.recorded
+    assert recorded is not None
+    for number, part in enumerate(recorded.parts):
+        if part.label == slug:
+            for start in recorded.starts(part):
+                yield RecordedWindow(number, part, start)
+
+
+def persons(config: Config) -> list[int]:
+    """Number of the person in every row, as `recordings.persons` has them; -1 of nobody named."""
+    recorded = config.recorded
+    assert recorded is not None
+    named = {name: number for number, name in enumerate(recorded.persons)}
+    return [-1 if w.part.person is None else named[w.part.person] for w in windows(config)]

@@ -1,0 +1,80 @@
+"""exp(-j 2 pi phase) at the pulses between knots, where phases are polynomials of low degree.
+
+A polynomial of degree d follows from its differences by additions alone: p(m + 1) = p(m) + Dp(m),
+Dp(m + 1) = Dp(m) + D2p(m), and so on up to D^d p, which is constant. Phasors multiply where phases
+add, so that every further pulse takes d complex multiplications instead of a sine and a cosine.
+"""
+
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from radhar_cli.arrays import Complex, Float
+from radhar_cli.echo.interpolation import NODES, REACH, TAPS, lagrange_basis
+from radhar_cli.phasor import unit_phasor
+
+# A rounding of D2p, 1e-7 in single precision, grows with the square of the pulses since the start.
+LONGEST_RUN = 20
+
+
+class Runs(NamedTuple):
+    """A segment in equal runs of pulses, each with a polynomial of its own.
+
+    Attributes:
+        length: pulses of a run; the last may go beyond the segment.
+        differences: p, Dp, ... D^d p at the first pulse of each run, of the phases at the knots
+            -2 .. 3 of the segment [runs, d + 1, TAPS].
+    """
+
+    length: int
+    differences: Float
+
+
+@lru_cache(maxsize=128)
+def runs(step: int, degree: int) -> Runs:
+    """Runs of a segment of `step` pulses; polynomials through d + 1 Chebyshev points of each.
+
+    Of degree TAPS - 1 they are the polynomial through the knots itself.
+    """
+    count = -(-step // LONGEST_RUN)
+    length = -(-step // count)
+    order = np.arange(min(degree, length - 1) + 1)
+    if order.size < length:
+        middle = (length - 1) / 2
+        at = middle - middle * np.cos(np.pi * (order + 0.5) / order.size)
+    else:
+        at = order.astype(float)
+    to_pulses = lagrange_basis(at, order.astype(float)).T
+    first = length * np.arange(count)[:, None]
+    to_points = lagrange_basis(NODES, ((first + at) / step).ravel()).T
+    to_points = to_points.reshape(count, order.size, TAPS)
+    values = to_pulses @ to_points
+    return Runs(
+        length, np.stack([np.diff(values, k, axis=1)[:, 0] for k in range(order.size)], axis=1)
+    )
+
+
+def phasors_between_knots(cycles: Float, step: int, degree: int, dtype: Any) -> Complex:
+    """exp(-j 2 pi phase) at the pulses of all segments [step, segments, I].
+
+    Args:
+        cycles: phases at the knots -2 .. 3 of every segment [TAPS, segments, I].
+        step: pulses from knot to knot.
+        degree: d, of the polynomials.
+        dtype: of the result.
+    """
+    length, differences = runs(step, degree)
+    shape = (*differences.shape[:2], *cycles.shape[1:])
+    anchor = cycles[REACH]
+    turns = differences.reshape(-1, TAPS) @ (cycles - anchor).reshape(TAPS, -1)
+    turns = turns.reshape(shape)
+    turns[:, 0] += anchor
+    factors = unit_phasor(turns, dtype)
+    found = np.empty((len(factors), length, *shape[2:]), dtype)
+    found[:, 0] = factors[:, 0]
+    for pulse in range(1, length):
+        np.multiply(found[:, pulse - 1], factors[:, 1], out=found[:, pulse])
+        for order in range(1, shape[1] - 1):
+            np.multiply(factors[:, order], factors[:, order + 1], out=factors[:, order])
+    return found.reshape(-1, *shape[2:])[:step]

@@ -1,0 +1,76 @@
+"""Several sets of images as one."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from radhar_cli.arrays import Float, Index, Levels
+from radhar_cli.errors import FolderError
+from radhar_cli.learning.images.image_set import ImageSet, Pixels, class_order
+
+
+@dataclass(frozen=True)
+class JoinedPixels:
+    """Rows of several pixels, one after the other; `first` [parts] is each one's first row."""
+
+    parts: tuple[Pixels, ...]
+    first: Index
+
+    def read(self, row: int) -> Levels:
+        part = int(np.searchsorted(self.first, row, side="right")) - 1
+        return self.parts[part].read(row - int(self.first[part]))
+
+
+def joined(sets: Sequence[ImageSet]) -> ImageSet:
+    """One set of all images, classes matched by name.
+
+    Raises:
+        FolderError: they differ in size, or some are split and others not.
+    """
+    if len(sets) == 1:
+        return sets[0]
+    for one, other in pairwise(sets):
+        if one.size != other.size:
+            raise FolderError(
+                f"{other.where}: images are {other.size[0]} x {other.size[1]} px, those of "
+                f"{one.where} {one.size[0]} x {one.size[1]} px; should be of one size"
+            )
+    classes = class_order({name for one in sets for name in one.classes})
+    numbers = [np.array([classes.index(name) for name in one.classes]) for one in sets]
+    count = np.array([len(one) for one in sets])
+    scenes = [one.scenes or ("",) * len(one) for one in sets]
+    return replace(
+        sets[0],
+        classes=classes,
+        label=np.concatenate([n[one.label] for n, one in zip(numbers, sets, strict=True)]),
+        split=np.concatenate([one.split for one in sets if one.split is not None]),
+        names=tuple(name for one in sets for name in one.names),
+        scenes=tuple(scene for each in scenes for scene in each),
+        pixels=JoinedPixels(tuple(one.pixels for one in sets), np.cumsum(count) - count),
+        snr_db=sets[0].snr_db if len({one.snr_db for one in sets}) == 1 else None,
+        left_out={name: n for one in sets for name, n in one.left_out.items()},
+        source=np.repeat(np.arange(len(sets)), count),
+    )
+
+
+def sampling_weights(
+    images: ImageSet, rows: Index, of_sets: Sequence[float] | None, balanced: bool
+) -> Float:
+    """How often an epoch shows each of some rows, on average [rows].
+
+    Args:
+        images: the set.
+        rows: of it.
+        of_sets: weight of every joined set; 1 each if None.
+        balanced: every class as often as the others, the epoch's length unchanged.
+    """
+    weights = np.ones(rows.size)
+    if of_sets is not None:
+        weights = np.array(of_sets, dtype=float)[images.source[rows]]
+    if balanced:
+        label = images.label[rows]
+        mass = np.bincount(label, weights, len(images.classes))
+        weights = weights * (mass.sum() / np.count_nonzero(mass) / np.maximum(mass, 1e-9))[label]
+    return weights

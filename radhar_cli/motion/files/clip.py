@@ -1,0 +1,179 @@
+"""A recording as the thirteen joints of a person of 1 m: scaled, upright, on the floor, smooth."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import atan, pi, sqrt, tan
+
+import numpy as np
+
+from radhar_cli.arrays import Float
+from radhar_cli.motion.files.names import HIP_JOINTS, joint_numbers
+from radhar_cli.motion.files.recording import RATES, Recording, wrong
+from radhar_cli.motion.skeleton import JOINTS
+
+LEG = 0.491  # thigh and shank over the stature (Winter, after Drillis and Contini)
+ANKLE = 0.039  # height of the ankle over the stature
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inches": 0.0254, "CMU's 0.0564 m": 0.0254 / 0.45}
+STATURES = (0.9, 2.3)  # m, of people
+FASTEST = 30.0  # m/s, of any joint
+FEWEST = 12  # frames
+UPRIGHT = 0.8  # least cosine of the angle to the vertical that tells which way is up
+# Two passes of an order of 2 are 3 dB down, each 1.5 dB, at 0.802 of the corner of one.
+ORDER, TWO_PASSES = 2, (sqrt(2) - 1) ** 0.25
+
+_HEAD, _ANKLES = JOINTS.index("head"), [JOINTS.index(f"{s}_ankle") for s in ("right", "left")]
+_KNEES = [JOINTS.index(f"{s}_knee") for s in ("right", "left")]
+_HIP = JOINTS.index("hip")
+# Axes of a file, by which of them is up, that are ahead, to the left and up: all right-handed.
+_AXES = {
+    "x": ((1, 1), (2, 1), (0, 1)),
+    "y": ((2, 1), (0, 1), (1, 1)),
+    "z": ((0, 1), (1, 1), (2, 1)),
+    "-x": ((1, 1), (2, -1), (0, -1)),
+    "-y": ((2, 1), (0, -1), (1, -1)),
+    "-z": ((0, 1), (1, -1), (2, -1)),
+}
+
+
+@dataclass(frozen=True)
+class Clip:
+    """The thirteen joints, then right and left hip joint, over the frames of a file.
+
+    Attributes:
+        where: what messages call it.
+        positions: [frames, 15, 3], over the stature; z is up, the lowest ankle at 0.039.
+        rate: frames per second.
+        hip_joints: whether the file has them; else they are at the hip.
+        stature: of the recorded person by the legs, m; NaN where the unit is not known.
+    """
+
+    where: str
+    positions: Float
+    rate: float
+    hip_joints: bool
+    stature: float
+
+    @property
+    def seconds(self) -> float:
+        """From the first to the last frame."""
+        return (len(self.positions) - 1) / self.rate
+
+
+def clip_of(
+    file: Recording,
+    joints: Mapping[str, str] | None = None,
+    up: str | None = None,
+    unit: float | None = None,
+    rate: float | None = None,
+    low_pass: float | None = 8.0,
+) -> Clip:
+    """Read the frames of a recording and bring them into our form.
+
+    Args:
+        file: the recording.
+        joints: {our name: the file's} where names alone do not tell.
+        up: axis of the file that points up, such as "y" or "-y"; found where it is None.
+        unit: of the file, m; found where it is None.
+        rate: frames per second, instead of the file's.
+        low_pass: Butterworth, both ways, 3 dB down here, Hz; None leaves the frames as they are,
+            and so do fewer than 2.5 frames a period of it.
+
+    Raises:
+        MotionFileError: names file and line or frame, and what is missing or odd.
+    """
+    numbers = joint_numbers(file, joints or {})
+    own_hips = all(number is not None for number in numbers[-len(HIP_JOINTS) :])
+    hip = numbers[_HIP]
+    hips = numbers[len(JOINTS) :] if own_hips else [hip] * len(HIP_JOINTS)
+    wanted = [number for number in (*numbers[: len(JOINTS)], *hips) if number is not None]
+    p = file.positions(wanted)
+    if len(p) < FEWEST:
+        raise wrong(file.where, f"has {len(p)} frames; should have {FEWEST} or more")
+    rate = rate or file.rate
+    if rate is None or not RATES[0] <= rate <= RATES[1]:
+        raise wrong(file.where, "should have a frame rate of 1 to 10000 Hz: rate_hz")
+    legs = np.linalg.norm(p[:, len(JOINTS) :] - p[:, _KNEES], axis=2)
+    legs += np.linalg.norm(p[:, _KNEES] - p[:, _ANKLES], axis=2)
+    units = float(np.median(legs)) / LEG  # the stature in units of the file
+    stature = _stature(units, unit or file.unit, file.where)
+    _refuse_jumps(file, p, rate, (stature if stature == stature else 1.75) / units)
+    up = up or _up(file, wanted, p)
+    p = np.stack([sign * p[..., axis] for axis, sign in _AXES[up]], axis=-1)
+    p = _smooth(p, rate, low_pass) / units
+    p[..., 2] += ANKLE - p[:, _ANKLES, 2].min()
+    return Clip(file.where, p, rate, own_hips, stature)
+
+
+def _stature(units: float, unit: float | None, where: str) -> float:
+    low, high = STATURES
+    if not 1e-9 < units < 1e9:
+        raise wrong(where, f"has legs of {units * LEG:.3g} units")
+    if unit is not None:
+        stature = units * unit
+        if not low <= stature <= high:
+            kind = "giant" if stature > high else "dwarf"
+            raise wrong(
+                where,
+                f"has legs of {units * LEG:.4g} units of {unit:.4g} m, those of a {kind} of "
+                f"{stature:.3g} m; should be {low} to {high} m: unit_m",
+            )
+        return stature
+    for one in UNITS.values():
+        if low <= units * one <= high:
+            return units * one
+    raise wrong(
+        where,
+        f"has legs of {units * LEG:.4g} units, which make a person of {low} to {high} m in none of "
+        f"{', '.join(UNITS)}; unit_m should say what a unit is",
+    )
+
+
+def _refuse_jumps(file: Recording, p: Float, rate: float, metres: float) -> None:
+    fastest = np.zeros(len(p) - 1)
+    for joint in range(len(JOINTS)):
+        step = np.diff(p[:, joint], axis=0)
+        np.maximum(fastest, np.sqrt(np.einsum("fa,fa->f", step, step)), out=fastest)
+    fast = np.flatnonzero(fastest * metres * rate > FASTEST)
+    if fast.size:
+        frame = int(fast[0]) + 1
+        steps = np.linalg.norm(p[frame, : len(JOINTS)] - p[frame - 1, : len(JOINTS)], axis=1)
+        joint = int(steps.argmax())
+        raise wrong(
+            file.place(frame),
+            f"{JOINTS[joint]} jumps {steps[joint] * metres:.3g} m from one frame to the next "
+            f"({steps[joint] * metres * rate:.3g} m/s); should move {FASTEST:g} m/s at most",
+        )
+
+
+def _up(file: Recording, wanted: list[int], p: Float) -> str:
+    """Which axis points up: the person stands in the rest pose, and most of the time."""
+    moving = np.median(p[:, _HEAD] - p[:, _ANKLES].mean(axis=1), axis=0)
+    guesses = [_axis_along(moving)]
+    if file.rest is not None:
+        rest = file.rest[wanted]
+        guesses.append(_axis_along(rest[_HEAD] - rest[_ANKLES].mean(axis=0)))
+    known = {guess for guess in guesses if guess is not None}
+    if len(known) != 1:
+        told = " or ".join(sorted(known)) or "no axis"
+        raise wrong(file.where, f"does not tell which axis points up ({told}); up: y would say so")
+    return known.pop()
+
+
+def _axis_along(vector: Float) -> str | None:
+    size, axis = float(np.linalg.norm(vector)), int(np.abs(vector).argmax())
+    if not abs(vector[axis]) > UPRIGHT * size:
+        return None
+    return ("-" if vector[axis] < 0 else "") + "xyz"[axis]
+
+
+def _smooth(p: Float, rate: float, low_pass: float | None) -> Float:
+    """Zero-phase Butterworth low-pass of positions [frames, joints, 3], joint by joint."""
+    if low_pass is None or 2.5 * low_pass > rate:
+        return p
+    from scipy.signal import butter, sosfiltfilt
+
+    corner = rate / pi * atan(tan(pi * low_pass / rate) / TWO_PASSES)  # bilinear transform
+    sections = butter(ORDER, corner, fs=rate, output="sos")
+    for joint in range(p.shape[1]):
+        p[:, joint] = sosfiltfilt(sections, p[:, joint], axis=0)
+    return p

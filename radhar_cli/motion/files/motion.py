@@ -1,0 +1,196 @@
+"""A clip that somebody moves by: stature, place, heading, speed, section, mirror image."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from math import atan2, ceil, cos, floor, hypot, sin
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from radhar_cli.arrays import Float
+from radhar_cli.motion import skeleton
+from radhar_cli.motion.files.clip import Clip
+from radhar_cli.motion.human.minimum_jerk import minimum_jerk_integral
+from radhar_cli.motion.skeleton import JOINTS, PARENTS, TORSO
+
+if TYPE_CHECKING:
+    from scipy.interpolate import BSpline
+
+DEGREE = 5
+MARGIN = 0.25  # s beyond the recording, which echo engines may ask for
+MORE = 8  # frames
+TRAVEL = 0.5  # m; who goes less far is turned by where they face
+SLOWING = 0.5  # s, in which a motion that ends comes to rest
+NOTICED = 0.3  # m/s; slower joints may drift on after the end
+_OTHER = {"right": "left", "left": "right"}
+_SWAPPED = [  # number of each joint on the other side; hip joints last
+    *(JOINTS.index("_".join(_OTHER.get(w, w) for w in name.split("_"))) for name in JOINTS),
+    len(JOINTS) + 1,
+    len(JOINTS),
+]
+_RIGHT = [JOINTS.index("right_shoulder"), len(JOINTS)]
+_LEFT = [JOINTS.index("left_shoulder"), len(JOINTS) + 1]
+_ANKLES = [JOINTS.index("right_ankle"), JOINTS.index("left_ankle")]
+
+
+@dataclass(frozen=True)
+class FileMotion:
+    """The `Motion` of a clip.
+
+    Attributes:
+        clip: of a person of 1 m.
+        stature: m.
+        weight: kg.
+        start: x and y of the floor point between the ankles at 0 s, m.
+        heading: to where the person goes, rad from the x axis; who travels less than 0.5 m faces
+            there at 0 s.
+        seconds: of the recording.
+        begin: second of the clip at 0 s.
+        end: second of the clip beyond which nothing of it is used.
+        speed: seconds of the clip a second.
+        mirrored: left and right are exchanged.
+        rests: beyond the end people come to rest; else every joint goes on at its last velocity.
+    """
+
+    clip: Clip
+    stature: float
+    weight: float
+    start: tuple[float, float]
+    heading: float
+    seconds: float
+    begin: float = 0.0
+    end: float | None = None
+    speed: float = 1.0
+    mirrored: bool = False
+    rests: bool = False
+
+    names = JOINTS
+    parents = PARENTS
+    phases: tuple[tuple[float, str], ...] = ()
+    landmarks = (*JOINTS, "right_hip", "left_hip")
+
+    @property
+    def highest_frequency(self) -> float:
+        """Half of the 8 Hz that the low-pass leaves, Hz, at the speed of the playback."""
+        return 4.0 * max(1.0, self.speed)
+
+    @cached_property
+    def _last(self) -> float:
+        """Last second of the clip that is used."""
+        seconds = self.clip.seconds
+        return seconds if self.end is None else min(self.end, seconds)
+
+    @property
+    def _ends_within(self) -> bool:
+        return self.begin + self.speed * self.seconds > self._last
+
+    @cached_property
+    def breakpoints(self) -> tuple[float, ...]:
+        """When the clip begins and ends, s: the acceleration jumps there."""
+        ends = [-self.begin / self.speed]
+        if not (self.rests and self._ends_within):
+            ends.append((self._last - self.begin) / self.speed)
+        else:
+            ends += [(self._last - self.begin + d) / self.speed for d in (-self._ease, self._ease)]
+        return tuple(end for end in ends if -1 < end < self.seconds + 1)
+
+    @property
+    def runs_out(self) -> bool:
+        """Whether the clip ends in the recording while a joint moves and does not come to rest."""
+        if self.rests or not self._ends_within:
+            return False
+        velocity = self._spline(self._last, nu=1).reshape(-1, 3)[: len(JOINTS)]
+        return bool(np.linalg.norm(velocity, axis=1).max() * self.speed > NOTICED)
+
+    @property
+    def _ease(self) -> float:
+        """Half of the seconds over which playback slows down."""
+        return min(SLOWING, self._last - self.begin) * max(1.0, self.speed) / 2
+
+    def positions(self, t: Float) -> Float:
+        """Positions [3, 13, M] (m) of the joints at times t [M] (s)."""
+        return self._at(t, slice(0, len(JOINTS)))
+
+    def torso(self, t: Float) -> Float:
+        """Positions [3, 1, M] (m) of the torso alone."""
+        return self._at(t, slice(TORSO, TORSO + 1))
+
+    def hip_joints(self, t: Float) -> Float:
+        """Right and left hip joint [3, 2, M] (m); the hip where the file has none."""
+        return self._at(t, slice(len(JOINTS), len(JOINTS) + 2))
+
+    def cross_sections(self, t: Float) -> Float:
+        """RCS [13, 1], m^2: the same from everywhere, at all times."""
+        return skeleton.cross_sections(self.stature, self.weight)[:, None]
+
+    def landmark_positions(self, t: Float) -> Float:
+        """Positions [3, 15, M] (m) of joints and hip joints, between which limbs lie."""
+        return self._at(t, slice(0, len(self.landmarks)))
+
+    def _at(self, t: Float, joints: slice) -> Float:
+        spline = self._splines(joints)
+        u = self.begin + self.speed * t
+        if self.rests and self._ends_within:
+            # Playback slows down from 1 to 0 by a minimum-jerk step and stops at the end.
+            width = 2 * self._ease
+            u = u - width * minimum_jerk_integral((u - self._last + self._ease) / width)
+        low, high = float(spline.t[0]), min(self._last, float(spline.t[-1]))
+        inside = np.clip(u, low, high)
+        p: Float = spline(inside)
+        beyond = u - inside
+        for at, where in ((low, beyond < 0), (high, beyond > 0)):
+            if where.any():
+                p[where] += beyond[where, None] * spline(at, nu=1)
+        return p.reshape(t.size, -1, 3).transpose(2, 1, 0)
+
+    @cached_property
+    def _splines(self) -> "Callable[[slice], BSpline]":
+        from scipy.interpolate import BSpline
+
+        whole, made = self._spline, dict[tuple[int, int], BSpline]()
+
+        def some(joints: slice) -> BSpline:
+            key = (joints.start, joints.stop)
+            if key not in made:
+                columns = whole.c[:, 3 * joints.start : 3 * joints.stop]
+                made[key] = BSpline(whole.t, np.ascontiguousarray(columns), whole.k)
+            return made[key]
+
+        return some
+
+    @cached_property
+    def _spline(self) -> "BSpline":
+        """Quintic spline of all joints [3 * 15] in the room, over seconds of the clip."""
+        from scipy.interpolate import make_interp_spline
+
+        clip, first = self.clip, floor(self.begin * self.clip.rate)
+        margin = MORE + ceil(MARGIN * self.speed * clip.rate)
+        last = ceil(min(self.begin + self.speed * self.seconds, self._last) * clip.rate)
+        count = len(clip.positions)
+        frames = slice(max(0, min(first, count) - margin), last + margin + 1)
+        ends = clip.positions[min(first, count - 1)], clip.positions[min(last, count - 1)]
+        p = self._placed(clip.positions[frames], *ends)
+        t = np.arange(frames.start, frames.start + len(p)) / clip.rate
+        return make_interp_spline(t, p.reshape(len(p), -1), k=DEGREE)
+
+    def _placed(self, p: Float, first: Float, last: Float) -> Float:
+        """Positions [frames, 15, 3] of the clip where the person is in the room, m."""
+        p, first, last = (self.stature * one for one in (p, first, last))
+        ahead = (last - first)[JOINTS.index("hip"), :2]
+        if hypot(*ahead) <= TRAVEL:
+            left = (first[_LEFT] - first[_RIGHT])[:, :2].sum(axis=0)
+            ahead = np.array([left[1], -left[0]])
+        turned = -atan2(ahead[1], ahead[0])
+        p = p - np.append(first[_ANKLES, :2].mean(axis=0), 0.0)
+        p = p @ _about_z(turned).T
+        if self.mirrored:
+            p = p[:, _SWAPPED] * np.array([1.0, -1.0, 1.0])
+        placed: Float = p @ _about_z(self.heading).T + np.array([*self.start, 0.0])
+        return placed
+
+
+def _about_z(angle: float) -> Float:
+    c, s = cos(angle), sin(angle)
+    matrix: Float = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    return matrix

@@ -1,0 +1,100 @@
+"""Which of a file's joints are the thirteen: names of CMU, Mixamo, Blender, mocapbank, Kinect, ...
+
+In BVH and npz a joint is where its bone begins (Mixamo's `RightArm` is the shoulder); in ASF it is
+where its bone ends (`rclavicle` ends at the shoulder). "RightShoulder" is the clavicle in Mixamo
+and the joint in mocapbank: arms come first.
+"""
+
+import re
+from collections.abc import Mapping, Sequence
+
+from radhar_cli.errors import did_you_mean
+from radhar_cli.motion.files.recording import Recording, wrong
+from radhar_cli.motion.skeleton import JOINTS
+
+HIP_JOINTS = ("right_hip_joint", "left_hip_joint")
+WANTED = (*JOINTS, *HIP_JOINTS)
+
+# Words of each joint, the better first, without side, prefix, case and punctuation.
+_BEGINS: dict[str, tuple[str, ...]] = {
+    "torso": (
+        *("thorax", "spine2", "spine1", "chest2", "upperchest", "chest", "spinechest"),
+        *("spinemid", "spine003", "spine002", "spine001", "spine", "torso"),
+    ),
+    "head": ("head",),
+    "hip": ("hips", "hip", "pelvis", "root", "spinebase", "hipcenter", "hipscenter"),
+    "shoulder": ("upperarm", "uparm", "humerus", "arm", "shldr", "shoulder"),
+    "elbow": ("forearm", "lowerarm", "lowarm", "radius", "elbow"),
+    "hand": ("wrist", "hand"),
+    "hip_joint": ("upleg", "upperleg", "thigh", "femur", "hip", "hipjoint"),
+    "knee": ("knee", "shin", "calf", "lowerleg", "lowleg", "tibia", "leg"),
+    "ankle": ("ankle", "foot"),
+}
+_ENDS: dict[str, tuple[str, ...]] = {
+    "torso": ("thorax", "upperback"),
+    "head": ("head",),
+    "hip": ("root",),
+    "shoulder": ("clavicle",),
+    "elbow": ("humerus",),
+    "hand": ("wrist", "radius"),
+    "hip_joint": ("hipjoint",),
+    "knee": ("femur",),
+    "ankle": ("tibia",),
+}
+_PREFIX = re.compile(r"^(?:.*:|bip\d+|mixamorig\d*)")
+
+
+def joint_numbers(file: Recording, own: Mapping[str, str]) -> list[int | None]:
+    """Numbers in the file of the thirteen joints, then of the hip joints, None where it has none.
+
+    Args:
+        file: whose names are read.
+        own: {our name: the file's}, before the tables.
+
+    Raises:
+        MotionFileError: one of the thirteen is not there.
+    """
+    numbers = {_plain(name): n for n, name in reversed([*enumerate(file.names)])}
+    table = _ENDS if file.bones else _BEGINS
+    found: dict[str, int | None] = {}
+    for joint in WANTED:
+        if joint in own:
+            if own[joint] not in file.names:
+                hint = did_you_mean(own[joint], file.names, f"it has {_listed(file.names)}")
+                raise wrong(file.where, f"has no joint {own[joint]!r} (joints.{joint}); {hint}")
+            found[joint] = file.names.index(own[joint])
+            continue
+        words = _written(joint, table)
+        found[joint] = next((numbers[word] for word in words if word in numbers), None)
+    for side, joint in zip(("right", "left"), HIP_JOINTS, strict=True):
+        knee = found[f"{side}_knee"]
+        parent = None if knee is None or joint in own else file.parents[knee]
+        if parent is not None:
+            found[joint] = parent
+    missing = [joint for joint in JOINTS if found[joint] is None]
+    if missing:
+        raise wrong(
+            file.where,
+            f"has no joint that is {' or '.join(missing[:3])} by its name; it has "
+            f"{_listed(file.names)}; joints: {{{missing[0]}: NAME}} says which one it is",
+        )
+    return [found[joint] for joint in WANTED]
+
+
+def _written(joint: str, table: Mapping[str, tuple[str, ...]]) -> list[str]:
+    """Every plain name that a joint may have."""
+    side, _, part = joint.partition("_")
+    if part not in table:
+        return list(table[joint])
+    forms = (side + "{}", "{}" + side, side[0] + "{}", "{}" + side[0])
+    return [form.format(word) for word in table[part] for form in forms]
+
+
+def _plain(name: str) -> str:
+    """Lower case, without prefix and punctuation: `mixamorig:RightArm` is `rightarm`."""
+    return re.sub(r"[^a-z0-9]", "", _PREFIX.sub("", name.lower()))
+
+
+def _listed(names: Sequence[str]) -> str:
+    shown = ", ".join(name[:30] for name in names[:40])
+    return f"{shown}, ..." if len(names) > 40 else shown

@@ -1,0 +1,87 @@
+"""What every reader of motion files gives: names, who hangs on whom, positions of some joints."""
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+
+from radhar_cli.arrays import Float
+from radhar_cli.errors import MotionFileError
+
+MAX_BYTES = 2**28  # of a file
+MAX_JOINTS = 1000
+MAX_FRAMES = 500_000  # 69 min at 120 Hz
+LONGEST_NAME = 100
+RATES = (1.0, 10_000.0)  # frames per second
+
+
+class Recording(Protocol):
+    """Joints over frames, as a file has them: its own units and axes.
+
+    Attributes:
+        where: what messages call the file.
+        names: of the J joints.
+        parents: number of the joint that each hangs on, None for a root.
+        rest: positions [J, 3] of the skeleton without rotations; None where the file has none.
+        rate: frames per second; None where the file does not say.
+        unit: length of a file unit, m; None where the file does not say.
+        bones: names are of bones, and the joint is the bone's end (ASF).
+    """
+
+    @property
+    def where(self) -> str: ...
+    @property
+    def names(self) -> tuple[str, ...]: ...
+    @property
+    def parents(self) -> tuple[int | None, ...]: ...
+    @property
+    def rest(self) -> Float | None: ...
+    @property
+    def rate(self) -> float | None: ...
+    @property
+    def unit(self) -> float | None: ...
+    @property
+    def bones(self) -> bool: ...
+
+    def positions(self, joints: Sequence[int]) -> Float:
+        """Positions [frames, len(joints), 3] of some joints.
+
+        Raises:
+            MotionFileError: names the file, the line and what is wrong there.
+        """
+        ...
+
+    def place(self, frame: int) -> str:
+        """File and line, or frame, for messages."""
+        ...
+
+
+def wrong(where: str, what: str) -> MotionFileError:
+    """The error to raise: `where` is a file, or a file and a line."""
+    return MotionFileError(f"{where}: {what}")
+
+
+def with_ancestors(joints: Sequence[int], parents: Sequence[int | None]) -> list[int]:
+    """The joints and all that they hang on, parents first."""
+    found: set[int] = set()
+    for joint in joints:
+        at: int | None = joint
+        while at is not None and at not in found:
+            found.add(at)
+            at = parents[at]
+    return sorted(found)
+
+
+def turn(axes: Float, axis: int, degrees: Float) -> None:
+    """Turn local axes [3, 3, M] (columns) about their own x, y or z (0, 1, 2), in place."""
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    first = c * axes[:, i] + s * axes[:, j]
+    axes[:, j] = c * axes[:, j] - s * axes[:, i]
+    axes[:, i] = first
+
+
+def applied(axes: Float, vector: Float) -> Float:
+    """R v [3, M] of axes R [3, 3, M] and vectors v [3, 1 or M]."""
+    product: Float = np.einsum("rcm,cm->rm", axes, np.broadcast_to(vector, (3, axes.shape[2])))
+    return product

@@ -1,0 +1,72 @@
+"""Walking to and fro: straight on for a while, then half a turn along an arc, and so on.
+
+In an arc of length a the heading turns by pi S(x) within 0 <= x <= 1, x the share of the arc, so
+the walker is at a (int cos(pi S), int sin(pi S)) from its beginning; after it ahead by nothing.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.polynomial import Chebyshev
+
+from radhar_cli.arrays import Float
+from radhar_cli.motion.human.minimum_jerk import minimum_jerk
+
+DEGREE = 40  # of the integrals, which then hold to 1e-15
+
+
+@dataclass(frozen=True)
+class Lane:
+    """Where half turns are.
+
+    Attributes:
+        length: of the straight way between them, m.
+        first: of that before the first one, m.
+        radius: of the turns on average, m.
+        side: 1 to the left, -1 to the right, as all of them.
+        slow: by how much a walker slows down in them, fraction of the speed.
+    """
+
+    length: float
+    first: float = 0.0
+    radius: float = 0.5
+    side: float = 1.0
+    slow: float = 0.45
+
+
+@lru_cache(maxsize=1)
+def _arc() -> tuple[Chebyshev, Chebyshev]:
+    """Integrals of cos and sin of pi S(x) from 0 to x."""
+    forth, across = (
+        Chebyshev.interpolate(
+            lambda x, f=f: f(np.pi * minimum_jerk(x)),  # type: ignore[misc]
+            DEGREE,
+            domain=[0, 1],
+        ).integ(lbnd=0)
+        for f in (np.cos, np.sin)
+    )
+    return forth, across
+
+
+def along(s: Float, begins: Float, arc: float, side: float) -> tuple[Float, Float, Float]:
+    """x, y (m) and heading (rad) [M] of a walker who has gone s [M] (m).
+
+    Args:
+        s: way gone, m.
+        begins: where on it half turns begin [K], m, farther apart than one is long.
+        arc: length of a turn, m.
+        side: 1 to the left, -1 to the right.
+    """
+    forth, across = _arc()
+    x, y, heading = s.copy(), np.zeros_like(s), np.zeros_like(s)
+    there = 1.0  # 1 on the way there, -1 on the way back
+    for begin in begins:
+        turned = s > begin
+        share = np.minimum((s[turned] - begin) / arc, 1.0)
+        beyond = np.maximum(s[turned] - begin - arc, 0.0)
+        x[turned] += there * (arc * forth(share) - (s[turned] - begin) - beyond)
+        y[turned] += there * side * arc * across(share)
+        heading[turned] += side * np.pi * minimum_jerk(share)
+        there = -there
+    return x, y, heading

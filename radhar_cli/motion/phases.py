@@ -1,0 +1,43 @@
+"""Names of what a body does within an activity, and their numbers over time."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from radhar_cli.arrays import Float, Levels
+
+# What the twelve activities and sequences of movements consist of. Data sets store these numbers:
+# new names go to the end.
+PHASES = (
+    "standing",
+    "seated",
+    "lying",
+    "walking",
+    "punching",
+    "kicking",
+    "picking up",
+    "turning",
+    "sitting down",
+    "standing up",
+    "falling",
+    "getting up",
+    "turning around",
+    "stepping",
+)
+
+
+def phase_numbers(
+    phases: Sequence[tuple[float, str]], t: Float, names: Sequence[str], other: int
+) -> Levels:
+    """Number in `names` of the phase under way at times t [M] (s), `other` where it has none.
+
+    Args:
+        phases: (start in s, name), in their order.
+        t: s.
+        names: at most 256.
+        other: number before the first phase, and of a phase whose name is not among `names`.
+    """
+    numbers = np.full(t.size, other, dtype=np.uint8)
+    for start, name in phases:
+        numbers[t >= start] = names.index(name) if name in names else other
+    return numbers

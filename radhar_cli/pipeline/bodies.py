@@ -1,0 +1,96 @@
+"""A scene and a motion -> paths, from joints or from segments as `body:` has it."""
+
+import numpy as np
+
+from radhar_cli.echo.paths import PathSource
+from radhar_cli.motion.protocol import Motion, Only
+from radhar_cli.motion.reflectors import Reflectors
+from radhar_cli.motion.segments import covered, found_segments, landmarks_of
+from radhar_cli.pipeline.motion_paths import MotionPaths, SumOfPaths
+from radhar_cli.pipeline.physics import body_of, frames_of
+from radhar_cli.pipeline.segment_paths import SegmentPaths, draw_points, point_counts
+from radhar_cli.radar.propagation import Antennas
+from radhar_cli.radar.wall import Wall
+from radhar_cli.radar.waveform import Waveform
+from radhar_cli.randomness import PERSON, SCENE, stream
+from radhar_cli.scene import Scene
+
+
+def paths_of(
+    scene: Scene,
+    motions: tuple[Motion, ...],
+    antennas: Antennas,
+    wall: Wall | None,
+    waveform: Waveform,
+    room: Reflectors | None = None,
+) -> PathSource:
+    """The paths of everything in a scene: of what moves, and of what stands in the room."""
+    sources: list[PathSource] = []
+    for number, motion in enumerate(motions):
+        rest: Motion | None = motion
+        if scene.config.body.scatterers == "segments":
+            segments = segment_paths(scene, motion, antennas, wall, waveform, number)
+            sources += [segments] if segments else []
+            rest = _without_segments(motion)
+        if rest is not None:
+            sources.append(MotionPaths(rest, antennas, waveform.fc, wall))
+    if room is not None:
+        sources.append(MotionPaths(room, antennas, waveform.fc, wall))
+    return sources[0] if len(sources) == 1 else SumOfPaths(tuple(sources))
+
+
+def segment_paths(
+    scene: Scene,
+    motion: Motion,
+    antennas: Antennas,
+    wall: Wall | None,
+    waveform: Waveform,
+    number: int = 0,
+) -> SegmentPaths | None:
+    """The paths of a motion's segments, or None where its joints have none.
+
+    Args:
+        scene: whose body and processing settings hold.
+        motion: whole, or `Only` some joints of one.
+        antennas, wall, waveform: what it is seen with.
+        number: of the motion among several.
+    """
+    body = body_of(scene, motion)
+    kept = [n for joint in motion.names for n in covered(joint, body.segments)]
+    if not kept:
+        return None
+    config = scene.config
+    window = frames_of(config, waveform.duration, waveform.prf).length / waveform.prf
+    counts = point_counts(
+        body,
+        antennas,
+        waveform.wavelength,
+        window,
+        waveform.duration,
+        config.body.points_per_segment,
+    )
+    points = tuple(
+        draw_points(count, _stream(scene, f"body/{number}/{one.name}"))
+        for one, count in zip(body.segments, counts, strict=True)
+    )
+    shadowing = config.body.shadowing
+    return SegmentPaths(
+        body, points, antennas, waveform.fc, wall, shadowing, tuple(sorted(set(kept)))
+    )
+
+
+def _without_segments(motion: Motion) -> Motion | None:
+    """The joints that no segment stands for, which go on being points."""
+    whole = motion.motion if isinstance(motion, Only) else motion
+    segments = found_segments(landmarks_of(whole))
+    alone = tuple(whole.names.index(name) for name in motion.names if not covered(name, segments))
+    if len(alone) == len(whole.names):
+        return motion
+    return Only(whole, alone) if alone else None
+
+
+def _stream(scene: Scene, name: str) -> np.random.Generator:
+    seed, subject = scene.config.seed, scene.subject
+    if subject is not None:
+        return stream(seed, PERSON, subject, name=name)
+    return stream(seed, SCENE, scene.activity.index, scene.index, name=name)

@@ -1,0 +1,342 @@
+"""A body of ellipsoids and antennas -> paths, several a segment.
+
+A segment's cross section, and the point of it that is nearest, follow from the aspect at each
+instant (`radar/ellipsoid.py`). Its echo comes from n points along it, each with a fixed place and
+a fixed share of the power, so that it fills the band between the Dopplers of its ends.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import ceil
+from typing import NamedTuple
+
+import numpy as np
+
+from radhar_cli.arrays import Bool, Float
+from radhar_cli.echo.paths import Paths
+from radhar_cli.motion.protocol import Motion
+from radhar_cli.motion.segments import Placed, Segment, cross, place, soft_unit
+from radhar_cli.radar.ellipsoid import View, cross_section, shadow, square_height
+from radhar_cli.radar.propagation import Antennas, amplitude
+from radhar_cli.radar.transmission import transmission
+from radhar_cli.radar.wall import Wall
+from radhar_cli.radar.waveform import SPEED_OF_LIGHT
+
+REFLECTANCE = 0.5  # |Gamma|^2 of skin and clothes
+SCATTER = 0.02  # standard deviation across a segment, m; cut at twice that
+JITTER = 0.7  # along it, of the distance from point to point
+RATE_STEP_S = 1e-3
+RATES_PER_SECOND, MOST_RATES = 25.0, 8192
+BLOCK = 512  # instants at once: what a block needs stays in the cache
+TINY = np.finfo(float).tiny
+
+
+class Points(NamedTuple):
+    """The n points of a segment.
+
+    Attributes:
+        along: from the middle, -1/2 to 1/2 of the length [n].
+        across: in two directions [2, n], m.
+        share: of the amplitude [n]; squares add up to 1.
+    """
+
+    along: Float
+    across: Float
+    share: Float
+
+    @property
+    def coefficients(self) -> Float:
+        """[n, 6]: what makes |w + x d + y e + z f|^2 of |w|^2, w d, w e, w f, |d|^2, |e|^2 = |f|^2.
+
+        w is the way to the middle of a segment, d that along it, e and f are across.
+        """
+        x, (y, z) = self.along, self.across
+        return np.stack([np.ones_like(x), 2 * x, 2 * y, 2 * z, x * x, y * y + z * z], axis=1)
+
+
+def draw_points(count: int, rng: np.random.Generator) -> Points:
+    """Points one to each n-th of a segment, with exponential powers; a single one in its middle."""
+    if count == 1:
+        return Points(np.zeros(1), np.zeros((2, 1)), np.ones(1))
+    jitter, power = JITTER * (rng.random(count) - 0.5), rng.exponential(size=count)
+    across = SCATTER * rng.standard_normal((2, count)).clip(-2, 2)
+    along = (np.arange(count) + 0.5 + jitter) / count - 0.5
+    return Points(along, across, np.sqrt(power / power.sum()))
+
+
+@dataclass(frozen=True)
+class Body:
+    """Whose segments they are.
+
+    Attributes:
+        motion: how the joints move.
+        segments: those that its joints have.
+        stature: of the person, m.
+        thickness: of the segments, over the usual one.
+    """
+
+    motion: Motion
+    segments: tuple[Segment, ...]
+    stature: float
+    thickness: float
+
+    @cached_property
+    def radii(self) -> Float:
+        """Semi-axes across [S, 1], m."""
+        return self.thickness * np.array([[one.radius] for one in self.segments])
+
+    @cached_property
+    def flatness(self) -> Float:
+        """Of the segments [S, 1]."""
+        return np.array([[one.flatness] for one in self.segments])
+
+    def at(self, t: Float) -> Placed:
+        """The segments at times t [M] (s)."""
+        return place(self.motion, self.segments, self.stature, t)
+
+    def clearance(self, antenna: tuple[float, float, float], t: Float) -> Float:
+        """Way [S, M] (m) from an antenna to the nearest point of each segment, below 0 in it."""
+        frames = Frames.of(self.at(t))
+        seen = frames.seen_from(antenna)
+        aside = seen.ways[:, 2] / seen.distance
+        view = View(seen.ways[:, 1] / (seen.distance * frames.length), aside, np.ones(1))
+        height = square_height(view, self.radii, 0.5 * frames.length, self.flatness)
+        clear: Float = seen.distance - np.sqrt(height)
+        return clear
+
+
+def point_counts(
+    body: Body, antennas: Antennas, wavelength: float, window: float, duration: float, most: int
+) -> tuple[int, ...]:
+    """n = min(ceil(2 dv T_w/lambda), most), 1 or more, of each segment.
+
+    dv is the largest difference of the radial speeds of the segment's ends: n points are less than
+    a Doppler cell of the window apart, so that no gaps show between their lines.
+
+    Args:
+        body: whose segments.
+        antennas: what speeds are radial to.
+        wavelength: m.
+        window: T_w of the time-frequency maps, s.
+        duration: of the recording, s.
+        most: at most this many a segment.
+    """
+    count = int(np.clip(RATES_PER_SECOND * duration, 64, MOST_RATES))
+    t = np.linspace(0, duration, count)
+    placed = body.at(np.concatenate([t, t + RATE_STEP_S]))
+    apart = np.zeros((len(body.segments), count))
+    for antenna in (antennas.tx, antennas.rx):
+        start, end = (_distance(p, antenna) for p in (placed.start, placed.end))
+        longer = end - start
+        apart += 0.5 * (longer[:, count:] - longer[:, :count]) / RATE_STEP_S
+    cells = 2 * np.abs(apart).max(axis=1) * window / wavelength
+    return tuple(min(max(ceil(one), 1), most) for one in cells.tolist())
+
+
+@dataclass(frozen=True)
+class SegmentPaths:
+    """A source of paths: `PathSource` for a body of segments seen through air or a wall.
+
+    Attributes:
+        body: whose segments.
+        points: of each segment.
+        antennas: where the legs start and end.
+        fc: carrier, Hz.
+        wall: the slab between, or None.
+        shadowing: whether trunk and thighs hide what is behind them.
+        kept: numbers of the segments whose paths are wanted; the others hide these all the same.
+    """
+
+    body: Body
+    points: tuple[Points, ...]
+    antennas: Antennas
+    fc: float
+    wall: Wall | None
+    shadowing: bool
+    kept: tuple[int, ...]
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Instants (s) at which positions are not smooth."""
+        return self.body.motion.breakpoints
+
+    @property
+    def highest_frequency(self) -> float:
+        """Fundamental of the fastest motion, Hz."""
+        return self.body.motion.highest_frequency
+
+    @property
+    def smooth(self) -> bool:
+        """Paths kink where a leg passes an edge of the wall."""
+        return self.wall is None
+
+    @cached_property
+    def _coefficients(self) -> list[Float]:
+        return [points.coefficients for points in self.points]
+
+    def __call__(self, t: Float) -> Paths:
+        """Paths of the points at times t [M] (s), segment by segment."""
+        placed = self.body.at(t)
+        # What stands still does so to the last digit only if it is computed once.
+        still = np.logical_and.reduce([_constant(part) for part in placed])
+        count = sum(self.points[s].share.size for s in self.kept)
+        delay, strength = np.empty((2, count, t.size))
+        for first in range(0, t.size, BLOCK):
+            some = slice(first, first + BLOCK)
+            self._fill(
+                Frames.of(Placed(*(part[..., some] for part in placed))),
+                still,
+                delay[:, some],
+                strength[:, some],
+            )
+        return Paths(delay, strength)
+
+    def _fill(self, frames: "Frames", still: Bool, delay: Float, strength: Float) -> None:
+        """Fill in delays and amplitudes [I, block] of all points.
+
+        Args:
+            frames: of the segments.
+            still: which of them do not move at any time asked for [S].
+            delay, strength: to be filled in.
+        """
+        tx, rx = (frames.seen_from(antenna) for antenna in (self.antennas.tx, self.antennas.rx))
+        # The sum of the unit vectors of both legs.
+        view = View(
+            (tx.ways[:, 1] / tx.distance + rx.ways[:, 1] / rx.distance) / frames.length,
+            tx.ways[:, 2] / tx.distance + rx.ways[:, 2] / rx.distance,
+            2 + 2 * _dot(tx.way, rx.way) / (tx.distance * rx.distance),
+        )
+        half, radii, flatness = 0.5 * frames.length, self.body.radii, self.body.flatness
+        height = square_height(view, radii, half, flatness) / view.square
+        sigma = cross_section(height, radii, half, REFLECTANCE)
+        wavelength = SPEED_OF_LIGHT / self.fc
+        a = amplitude(tx.distance, rx.distance, sigma, self.antennas.gain, wavelength)
+        if self.shadowing:
+            a *= self._light(frames, 0.5 * (tx.way + rx.way), wavelength)
+        # The n-th part of a segment is an ellipsoid of its own, with its own nearest point.
+        parts = np.array([[points.share.size] for points in self.points])
+        nearer = np.sqrt(square_height(view, radii, half / parts, flatness)) / SPEED_OF_LIGHT
+        ways = np.stack([tx.ways, rx.ways]) / SPEED_OF_LIGHT**2
+        first = 0
+        for s in self.kept:
+            points = self.points[s]
+            some = slice(first, first + points.share.size)
+            first = some.stop
+            seconds = self._coefficients[s] @ (ways[:, s, :, :1] if still[s] else ways[:, s])
+            np.sqrt(np.maximum(seconds, 0, out=seconds), out=seconds)
+            np.subtract(seconds[0] + seconds[1], nearer[s], out=delay[some])
+            np.multiply(points.share[:, None], a[s], out=strength[some])
+            if self.wall is not None:
+                self._through_wall(frames.positions(s, points), delay[some], strength[some])
+
+    def _through_wall(self, p: Float, delay: Float, strength: Float) -> None:
+        assert self.wall is not None
+        for antenna in (self.antennas.tx, self.antennas.rx):
+            through = transmission(p, antenna, self.wall, self.fc)
+            delay += through.delay
+            strength *= through.factor
+
+    def _light(self, frames: "Frames", way: Float, wavelength: float) -> Float:
+        """Field left [S, M] by the segments that hide others, seen from between the antennas.
+
+        Args:
+            frames: of the segments.
+            way: from there to their centres [3, S, M], m.
+            wavelength: m.
+        """
+        distance, left = np.sqrt(_dot(way, way)), np.ones(way.shape[1:])
+        for o, one in enumerate(self.body.segments):
+            if not one.occludes:
+                continue
+            axis, radius = frames.axis[:, o, None], self.body.radii[o]
+            stretch = (2 / frames.length[o]) ** 2 - 1 / radius**2
+            # Lengths in which the occluder is a ball of radius 1.
+            apart = frames.centre[:, o, None] - frames.centre
+            ray, gap = _dot(way, axis), _dot(apart, axis)
+            long = distance * distance / radius**2 + ray * ray * stretch
+            near = _dot(apart, way) / radius**2 + ray * gap * stretch
+            clearance = _dot(apart, apart) / radius**2 + gap * gap * stretch - near * near / long
+            dimmed = shadow(clearance, distance - distance[o], radius, wavelength)
+            dimmed[o] = 1
+            left *= dimmed
+        return left
+
+
+class Frames(NamedTuple):
+    """Segments as frames of reference.
+
+    Attributes:
+        centre, way: middle, and way from start to end [3, S, M], m.
+        length: [S, M], m.
+        axis: unit vector along [3, S, M].
+        left, up: at right angles to it and to each other, as long as each other [3, S, M].
+    """
+
+    centre: Float
+    way: Float
+    length: Float
+    axis: Float
+    left: Float
+    up: Float
+
+    @classmethod
+    def of(cls, placed: Placed) -> "Frames":
+        way = placed.end - placed.start
+        length = np.sqrt(_dot(way, way))
+        axis = way / np.maximum(length, TINY)
+        left = soft_unit(placed.beside - _dot(placed.beside, axis) * axis)
+        centre = placed.start + 0.5 * way
+        return cls(centre, way, np.maximum(length, TINY), axis, left, cross(axis, left))
+
+    def seen_from(self, antenna: tuple[float, float, float]) -> "_Seen":
+        """Where the segments are from an antenna's place."""
+        way = self.centre - np.array(antenna)[:, None, None]
+        square = _dot(way, way)
+        ways = np.empty((square.shape[0], 6, square.shape[1]))
+        ways[:, 0] = square
+        for row, other in enumerate((self.way, self.left, self.up), 1):
+            ways[:, row] = _dot(way, other)
+        ways[:, 4] = self.length * self.length
+        ways[:, 5] = _dot(self.left, self.left)
+        return _Seen(way, np.sqrt(np.maximum(square, TINY)), ways)
+
+    def positions(self, s: int, points: Points) -> Float:
+        """Positions [3, n, M] (m) of the points of segment s."""
+        y, z = points.across[:, :, None]
+        p: Float = self.centre[:, s, None] + points.along[:, None] * self.way[:, s, None]
+        p += y * self.left[:, s, None]
+        p += z * self.up[:, s, None]
+        return p
+
+
+class _Seen(NamedTuple):
+    """Segments seen from an antenna.
+
+    Attributes:
+        way: to their centres [3, S, M], m.
+        distance: of these [S, M], m.
+        ways: products that the squared distances of points are made of [S, 6, M], m^2:
+            `Points.coefficients`.
+    """
+
+    way: Float
+    distance: Float
+    ways: Float
+
+
+def _constant(p: Float) -> Bool:
+    """Which of S [3, S, M] are the same at all M."""
+    same: Bool = (p == p[..., :1]).all(axis=(0, 2))
+    return same
+
+
+def _dot(a: Float, b: Float) -> Float:
+    product: Float = a[0] * b[0]
+    product += a[1] * b[1]
+    product += a[2] * b[2]
+    return product
+
+
+def _distance(p: Float, antenna: tuple[float, float, float]) -> Float:
+    way = p - np.array(antenna)[:, None, None]
+    return np.sqrt(_dot(way, way))

@@ -1,0 +1,75 @@
+"""Interference at fixed Doppler frequencies: lines from end to end of a map."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from radhar_cli.arrays import Complex, Float, Index
+from radhar_cli.echo.half_band_sum import weights
+from radhar_cli.phasor import unit_phasor
+from radhar_cli.processing.canceller import Fir
+from radhar_cli.processing.range_compression import range_bins, range_compression
+from radhar_cli.radar.waveform import Waveform
+from radhar_cli.receiver.impairment import Impairment
+
+
+@dataclass(frozen=True)
+class Line(Impairment):
+    """i[n, m] = a c[n] exp(j 2 pi f m/PRF), |c[n]| = 1 of random phase, the same in all pulses.
+
+    So a line, such as a power supply's, lies at all ranges, in each bin with another strength.
+
+    Attributes:
+        amplitude: a, of a raw sample.
+        frequency: f, Hz; beyond PRF/2 it aliases.
+        waveform: the radar.
+        stream: makes the random stream of a name.
+        name: of the line.
+    """
+
+    amplitude: float
+    frequency: float
+    waveform: Waveform
+    stream: Callable[[str], np.random.Generator]
+    name: str
+
+    @cached_property
+    def code(self) -> Complex:
+        """a c[n] [N_ADC]."""
+        turns: Float = self.stream(self.name).random(self.waveform.n_adc)
+        code: Complex = self.amplitude * np.exp(2j * np.pi * turns)
+        return code
+
+    def tone(self, pulses: Index) -> Complex:
+        """exp(j 2 pi f m/PRF) of pulse numbers."""
+        tone: Complex = unit_phasor(-np.mod(pulses * (self.frequency / self.waveform.prf), 1))
+        return tone
+
+    def beat(self, blocks: Iterator[Complex]) -> Iterator[Complex]:
+        """Of a beat matrix in blocks."""
+        first = 0
+        for block in blocks:
+            pulses = np.arange(first, first + block.shape[1])
+            yield block + np.outer(self.code, self.tone(pulses))
+            first += block.shape[1]
+
+    def slow_time(self, y: Complex) -> Complex:
+        """What compression and the sum over bins make of it."""
+        noisy: Complex = y + (weights(self.waveform) @ self.code) * self.tone(np.arange(y.size))
+        return noisy
+
+    def range_bins(self, bins: Complex, pulses: Index, canceller: Fir) -> Complex:
+        """Of some pulses, after the canceller."""
+        tone = canceller(self.tone(pulses[:, None] + np.arange(canceller.lost + 1)))[:, 0]
+        found: Complex = bins + range_bins(self.code[:, None], self.waveform) * tone
+        return found
+
+    def range_signals(
+        self, x: Complex, bins: slice, spans: Sequence[slice] | None = None
+    ) -> Complex:
+        """Of range bins of all pulses."""
+        compressed = range_compression(self.code[:, None], replace(self.waveform, centred=True))
+        found: Complex = x + compressed[bins] * self.tone(np.arange(x.shape[1]))
+        return found

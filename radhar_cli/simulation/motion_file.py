@@ -1,0 +1,58 @@
+"""The motion of a scene as a file."""
+
+import numpy as np
+
+from radhar_cli.activity import Activity
+from radhar_cli.arrays import Float
+from radhar_cli.config.schema import Config
+from radhar_cli.errors import ConfigError
+from radhar_cli.motion.files.motion import FileMotion
+from radhar_cli.motion.files.recording import MAX_FRAMES
+from radhar_cli.motion.files.writing import bvh_text
+from radhar_cli.motion.human.motion import HumanMotion
+from radhar_cli.motion.protocol import Motion
+from radhar_cli.motion.skeleton import JOINTS
+from radhar_cli.pipeline.physics import motion_of
+from radhar_cli.scene import draw_scene, nominal_scene
+from radhar_cli.simulation.simulate import activity_of
+
+_HIP = JOINTS.index("hip")
+
+
+def sampled(motion: Motion, t: Float) -> Float:
+    """Positions [frames, 15, 3] (m) at times t: thirteen joints, then right and left hip joint.
+
+    Where a motion knows no hip joints they are at the hip.
+
+    Raises:
+        ConfigError: the motion has other joints.
+    """
+    if motion.names != JOINTS:
+        raise ConfigError("only motions of the thirteen joints can be written as BVH")
+    p = motion.positions(t)
+    hips = p[:, [_HIP, _HIP]]
+    if isinstance(motion, (HumanMotion, FileMotion)):
+        hips = motion.hip_joints(t)
+    return np.concatenate([p, hips], axis=1).transpose(2, 1, 0)
+
+
+def scene_bvh(
+    config: Config,
+    activity: str | Activity | None,
+    *,
+    index: int = 0,
+    nominal: bool = False,
+    rate: float = 120.0,
+) -> tuple[str, int]:
+    """The BVH file of one scene's motion, and its number of frames.
+
+    Raises:
+        ConfigError: unknown activity, too many frames, or a motion of other joints.
+    """
+    one = activity_of(activity, config)
+    scene = nominal_scene(config, one) if nominal else draw_scene(config, one, index)
+    assert isinstance(scene.config.duration_s, (int, float))
+    frames = round(scene.config.duration_s * rate) + 1
+    if frames > MAX_FRAMES:
+        raise ConfigError(f"{frames} frames; should be at most {MAX_FRAMES}: --rate, duration_s")
+    return bvh_text(sampled(motion_of(scene), np.arange(frames) / rate), rate), frames

@@ -1,0 +1,194 @@
+"""Compare measured Doppler-time maps of walkers with simulated ones: a table and a figure.
+
+    python scripts/compare_measured.py MAPS.npz -o OUT
+
+MAPS.npz holds maps `view_*` [rows, columns] in dB, row 0 the fastest approach, zero Doppler in row
+128, 0.047 m/s a row, 2.5 s long: four views of a walker of the data set MMRGait, as published with
+JoeyBGOfficial/Low-Cost-Accurate-Radar-Based-Human-Motion-Direction-Determination. They are compared
+with walkers of a config (the measured radar's by default) as segments, as points, and with the
+paper's motion. Writes OUT/comparison.md, .json and .png.
+"""
+
+import argparse
+import json
+from pathlib import Path
+from typing import NamedTuple
+
+import matplotlib
+import matplotlib.pyplot as plt
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import median_filter, uniform_filter
+
+from radhar_cli.config import load_config
+from radhar_cli.config.schema import Config
+from radhar_cli.radar.waveform import SPEED_OF_LIGHT
+from radhar_cli.simulation.simulate import simulate
+
+ROOT = Path(__file__).resolve().parents[1]
+CONFIG = ROOT / "configs" / "measured" / "mmrgait_77GHz.yaml"
+ZERO_ROW, ROW_MPS, SECONDS = 128, 12 / 256, 2.5
+NOISE_MPS, ZERO_MPS, NEAR_MPS = 5.2, 0.15, 0.15
+SHOWN_MPS = (-3.0, 6.0)
+KINDS = {
+    "human, segments": [],
+    "human, points": ["body.scatterers=points"],
+    "paper": ["motion.model=paper", "body.scatterers=points", "motion.speed_mps=1.1"],
+}
+
+Float = NDArray[np.float64]
+
+
+class Map(NamedTuple):
+    """Power [rows, columns] over approaching speeds [rows] (m/s, descending) and times [columns]
+    (s)."""
+
+    power: Float
+    speed: Float
+    time: Float
+
+
+def measured(path: Path) -> dict[str, Map]:
+    """The views of an npz."""
+    with np.load(path) as file:
+        views = {name: file[name].astype(float) for name in sorted(file) if name[:5] == "view_"}
+    return {
+        name: Map(
+            10 ** (view / 10),
+            (ZERO_ROW - np.arange(view.shape[0])) * ROW_MPS,
+            np.linspace(0, SECONDS, view.shape[1]),
+        )
+        for name, view in views.items()
+    }
+
+
+def simulated(config: Config, seed: int) -> Map:
+    """The STFT of a walker."""
+    found = simulate(config, "walking", seed, maps=("stft",))
+    one = found.maps["stft"]
+    speed = one.rows.values * SPEED_OF_LIGHT / (2 * found.waveform.f0)
+    shown = speed > -ZERO_ROW / 2 * ROW_MPS  # as much as is measured
+    return Map(one.power[shown][::-1], speed[shown][::-1], one.columns.values)
+
+
+def statistics(one: Map) -> dict[str, float]:
+    """What a radar engineer looks at in the map of a walker, in the units of the names."""
+    v, noise = one.speed, one.power[one.speed > NOISE_MPS]
+    floor = float(noise.mean())
+    clean = one.power - floor  # cells of noise alone add up to nothing
+    clean[np.abs(v) <= ZERO_MPS] = 0
+    torso = torso_line(one)
+    total = clean.sum()
+    columns = clean.sum(axis=0)
+    near = np.abs(v[:, None] - torso) <= NEAR_MPS
+    fast = v[:, None] > 1.8 * torso
+    mean = (v[:, None] * clean).sum(axis=0) / columns
+    spread = np.sqrt(np.maximum(((v[:, None] - mean) ** 2 * clean).sum(axis=0) / columns, 0))
+    smooth = uniform_filter(one.power, 3)
+    threshold = max(2 * np.median(noise), floor + 5 * noise.std())
+    occupied, band = smooth > threshold, (v >= 0.2) & (v <= 4.5)
+    envelope = v[np.argmax(occupied & (v < NOISE_MPS)[:, None], axis=0)]
+    limb = np.percentile(np.where(fast, clean, 0).max(axis=0), 75)
+    zero = one.power[np.abs(v) <= ZERO_MPS].max(axis=0)
+    low, high = np.percentile(torso, [5, 95])
+    return {
+        "peak over floor, dB": decibel(clean.max() / floor),
+        "sd of the noise, dB": float(np.std(10 * np.log10(np.maximum(noise, 1e-30)))),
+        "limb below torso, dB": decibel(np.median(clean.max(axis=0)) / max(limb, 1e-30)),
+        "energy above 1.8 x torso, %": 100 * float(clean[fast].sum() / total),
+        "receding energy, %": 100 * float(clean[v < -ZERO_MPS].sum() / total),
+        "envelope (95 %) over torso": float(np.percentile(envelope, 95) / np.median(torso)),
+        "envelope, median, m/s": float(np.median(envelope)),
+        "sd of Doppler in a column, m/s": float(np.median(spread)),
+        "energy near the torso line, %": 100 * float(clean[near].sum() / total),
+        "occupied cells, %": 100 * float(occupied[band].mean()),
+        "torso ripple, m/s": float(high - low),
+        "zero line over floor, dB": decibel(np.median(zero) / floor),
+    }
+
+
+def torso_line(one: Map) -> Float:
+    """Speed of the torso [columns], m/s: where the mean of five rows is largest, smoothed."""
+    moving = np.where(np.abs(one.speed)[:, None] <= ZERO_MPS, 0, one.power)
+    return median_filter(one.speed[uniform_filter(moving, (5, 1)).argmax(axis=0)], 9)
+
+
+def decibel(ratio: float) -> float:
+    return 10 * float(np.log10(max(ratio, 1e-30)))
+
+
+def spread(rows: list[dict[str, float]]) -> dict[str, tuple[float, float, float]]:
+    """{statistic: mean, least, most}."""
+    return {
+        name: (
+            float(np.mean(values)),
+            min(values),
+            max(values),
+        )
+        for name in rows[0]
+        for values in [[row[name] for row in rows]]
+    }
+
+
+def table(columns: dict[str, dict[str, tuple[float, float, float]]]) -> str:
+    """Markdown: mean (least..most) of every statistic."""
+    lines = [
+        "| mean (least..most) | " + " | ".join(columns) + " |",
+        "|---" * (len(columns) + 1) + "|",
+    ]
+    for name in next(iter(columns.values())):
+        cells = ["{:.3g} ({:.3g}..{:.3g})".format(*column[name]) for column in columns.values()]
+        lines.append(f"| {name} | " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def draw(rows: dict[str, list[Map]], path: Path) -> None:
+    """A column for each kind, two maps each, from their floors to their peaks."""
+    figure, axes = plt.subplots(
+        2, len(rows), figsize=(4 * len(rows), 7), sharey=True, layout="constrained", squeeze=False
+    )
+    for column, (kind, maps) in enumerate(rows.items()):
+        for one, panel in zip(maps, axes[:, column], strict=False):
+            level = 10 * np.log10(np.maximum(one.power, 1e-30))
+            floor = float(np.median(level[one.speed > NOISE_MPS]))
+            extent = (one.time[0], one.time[-1], one.speed[-1], one.speed[0])
+            panel.imshow(
+                level, extent=extent, aspect="auto", vmin=floor - 3, vmax=np.percentile(level, 99.9)
+            )
+            panel.set_ylim(SHOWN_MPS)
+            panel.set_xlabel("time (s)")
+        axes[0, column].set_title(kind)
+    axes[0, 0].set_ylabel("approaching speed (m/s)")
+    figure.savefig(path, dpi=90)
+    plt.close(figure)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("maps", type=Path, help="npz of measured maps")
+    parser.add_argument("-o", "--out", type=Path, required=True)
+    parser.add_argument("--config", type=Path, default=CONFIG)
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
+    parser.add_argument("--seeds", type=int, default=8)
+    asked = parser.parse_args()
+    matplotlib.use("Agg")
+    views = measured(asked.maps)
+    shown: dict[str, list[Map]] = {"measured": list(views.values())}
+    found = {name: statistics(view) for name, view in views.items()}
+    columns = {"measured": spread(list(found.values()))}
+    for kind, overrides in KINDS.items():
+        config = load_config(asked.config, [*asked.set, *overrides])
+        shown[kind] = [simulated(config, seed) for seed in range(1, asked.seeds + 1)]
+        columns[kind] = spread([statistics(one) for one in shown[kind]])
+    asked.out.mkdir(parents=True, exist_ok=True)
+    (asked.out / "comparison.md").write_text(table(columns))
+    everything = {"views": found} | columns
+    (asked.out / "comparison.json").write_text(json.dumps(everything, indent=2) + "\n")
+    draw(shown, asked.out / "comparison.png")
+    print(table(columns))
+
+
+if __name__ == "__main__":
+    main()

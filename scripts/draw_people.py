@@ -1,0 +1,118 @@
+"""Draw how people move: docs/people.gif, all twelve activities at true speed, and their frames.
+
+    python scripts/draw_people.py [-o docs] [--index 1]
+
+Each cell shows the body from its side and, below, from where it faces at first; its right side is
+red. Scenes: configs/human/free_space_77GHz.yaml, facing the radar. docs/people_frames.png has a row
+of frames for each activity.
+"""
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+from PIL import Image, ImageDraw
+
+from radhar_cli.activity import ACTIVITIES
+from radhar_cli.arrays import Float
+from radhar_cli.config import Config, load_config
+from radhar_cli.motion.human.motion import HumanMotion
+from radhar_cli.motion.skeleton import JOINTS, PARENTS
+from radhar_cli.pipeline.physics import motion_of
+from radhar_cli.scene import draw_scene
+
+ROOT = Path(__file__).resolve().parents[1]
+OVERRIDES = (
+    "motion.angle_deg=180",
+    "motion.lane_m={per_activity: {default: 0, S8: 3}}",
+    "on_invalid=keep",
+)
+CELL, VIEW, PIXELS_PER_METRE = 150, 120, 52
+FRAMES_PER_SECOND, FRAMES = 10, 13
+COLOURS = {"right": (200, 60, 60), "left": (60, 60, 200)}
+
+
+def stick_figure(p: Float, hips: Float, name: str) -> Image.Image:
+    """Joints [3, 13] and hip joints [3, 2] in m, x ahead: from the side, and from ahead below."""
+    picture = Image.new("RGB", (CELL, 2 * VIEW), "white")
+    draw = ImageDraw.Draw(picture)
+    centre = p.mean(axis=1)
+    for view, (axis, sign) in enumerate(((0, 1.0), (1, 1.0))):
+        floor = VIEW * (view + 1) - 8
+
+        def place(q: Float, axis: int = axis, sign: float = sign, floor: int = floor) -> Float:
+            across = CELL / 2 + sign * (q[axis] - centre[axis]) * PIXELS_PER_METRE
+            return np.stack([across, floor - q[2] * PIXELS_PER_METRE], axis=-1)
+
+        draw.line([(0, floor), (CELL, floor)], fill=(190, 190, 190))
+        points, sockets = place(p), place(hips)
+        for joint, parent in enumerate(PARENTS):
+            if parent is None:
+                continue
+            side = JOINTS[joint].partition("_")[0]
+            start = points[parent]
+            if JOINTS[joint].endswith("knee"):
+                start = sockets[int(side == "left")]
+            ends = [*start.tolist(), *points[joint].tolist()]
+            draw.line(ends, fill=COLOURS.get(side, (0, 0, 0)), width=2)
+        x, y = points[JOINTS.index("head")].tolist()
+        draw.ellipse([x - 5, y - 5, x + 5, y + 5], outline=(0, 0, 0))
+    draw.text((3, 2), name, fill=(0, 0, 0))
+    return picture
+
+
+def frames(motion: HumanMotion, times: Float, name: str) -> list[Image.Image]:
+    """The figure at some times (s), x as it faces at first."""
+    p, hips = motion.positions(times), motion.hip_joints(times)
+    cos, sin = np.cos(motion.heading), np.sin(motion.heading)
+    turn = np.array([[cos, sin, 0], [-sin, cos, 0], [0, 0, 1]])
+    p, hips = (np.einsum("ab,bjm->ajm", turn, q) for q in (p, hips))
+    return [
+        stick_figure(p[..., k], hips[..., k], f"{name}  {t:.1f} s") for k, t in enumerate(times)
+    ]
+
+
+def draw_people(config: Config, index: int, out: Path) -> None:
+    """Write people.gif and people_frames.png."""
+    seconds = 6.0
+    film = np.arange(0, seconds, 1 / FRAMES_PER_SECOND)
+    stills = np.linspace(0.2, seconds - 0.1, FRAMES)
+    moving, rows = [], []
+    for activity in ACTIVITIES:
+        motion = motion_of(draw_scene(config, activity, index))
+        assert isinstance(motion, HumanMotion)
+        moving.append(frames(motion, film, activity.label))
+        rows.append(frames(motion, stills, activity.slug.replace("_", " ")))
+    grid = [
+        _tiled([[moving[6 * row + n][k] for n in range(6)] for row in range(2)])
+        for k in range(film.size)
+    ]
+    grid[0].save(
+        out / "people.gif",
+        save_all=True,
+        append_images=grid[1:],
+        duration=1000 // FRAMES_PER_SECOND,
+        loop=0,
+    )
+    _tiled(rows).save(out / "people_frames.png", optimize=True)
+
+
+def _tiled(cells: list[list[Image.Image]]) -> Image.Image:
+    """Pictures of one size in rows, of 16 colours."""
+    whole = np.concatenate([np.concatenate([np.asarray(c) for c in row], axis=1) for row in cells])
+    return Image.fromarray(whole).quantize(16, dither=Image.Dither.NONE)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("-o", "--out", type=Path, default=ROOT / "docs")
+    parser.add_argument("--index", type=int, default=1, help="number of the sample in its class")
+    given = parser.parse_args()
+    config = load_config(ROOT / "configs/human/free_space_77GHz.yaml", OVERRIDES)
+    draw_people(config, given.index, given.out)
+
+
+if __name__ == "__main__":
+    main()

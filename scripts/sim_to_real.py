@@ -1,0 +1,337 @@
+"""Train on simulated maps alone, and test on measured ones.
+
+    python scripts/sim_to_real.py MASKS.npz -o OUT [--quick]
+
+MASKS.npz: `masks` [K, H, W/8], uint8, bits of H x W Doppler-time masks, row 0 the highest Doppler;
+`label` [K] into `classes`. Rows reach over +-500 Hz, columns over 5 s, of walking over 10 s.
+Such masks were made by github.com/Hong-01/EE4675-Human-Activity-Classification-using-Radar of
+"Radar signatures of human activities" (University of Glasgow, CC BY 4.0).
+
+Simulated people come from configs/measured/glasgow_5p8GHz.yaml, settings of the training from
+configs/train/measured.yaml. The network is on disk, and its digest printed, before MASKS.npz is
+opened. Without --quick: three seeds, what each piece of the simulation brings, and accuracy with a
+few labelled maps of each class. Every step is a `radhar` command; the same line goes on where it
+was stopped.
+"""
+
+import argparse
+import hashlib
+import subprocess
+import sys
+import zipfile
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+from PIL import Image
+
+from radhar_cli.arrays import Bool, Index, Levels
+from radhar_cli.dataset.reading import open_dataset
+from radhar_cli.learning.evaluation import open_for, predict
+from radhar_cli.learning.metrics import wilson
+from radhar_cli.learning.run_folder import load_best
+
+ROOT = Path(__file__).resolve().parents[1]
+SIMULATED = ROOT / "configs/measured/glasgow_5p8GHz.yaml"
+TRAINING = ROOT / "configs/train/measured.yaml"
+CLASSES = {  # names in measured data: ours
+    "walking": "walking",
+    "sitting_down": "sitting_down",
+    "standing_up": "standing_up",
+    "picking_up": "grabbing",
+    "grabbing": "grabbing",
+    "falling": "walking_to_falling",
+    "walking_to_falling": "walking_to_falling",
+}
+SLUGS = tuple(dict.fromkeys(CLASSES.values()))
+LONG = "walking"  # its maps last twice as long as those of the others
+SIDE, BAND_HZ, SHOWN_HZ, LINE_HZ = 64, 500.0, 160.0, 24.0
+PAPERS_MOTION = "motion.model=paper"
+WITHOUT = {  # what is left out: keys of the simulation
+    "human motion": (PAPERS_MOTION, "classes={}"),
+    "segments": ("body.scatterers=points",),
+    "gate": ("processing.doppler=half_band",),
+    "CFAR on decibels": ("image.cfar={on: power, edges: shrink}",),
+    "room": ("room.reflectors=0",),
+    "noise that is drawn": ("snr_db=30",),
+}
+NO_AUGMENTATION = "augment={}"
+SEEDS = (1, 2, 3)
+SHOTS, REPEATS, SHOWN_TIMES = (1, 5, 20, 100), 5, 600
+TUNING = ("epochs=10", "learning_rate=0.0005", "warmup_epochs=1")
+MAX_MAPS, MAX_SIDE, MAX_BYTES = 100_000, 2048, 2**31
+
+
+class MasksError(Exception):
+    """A file of measured masks that cannot be used."""
+
+
+def network_image(mask: Bool, slug: str) -> Levels:
+    """A mask [H, W] as the network sees it [SIDE, SIDE]: the first 5 s, within SHOWN_HZ.
+
+    What lies within LINE_HZ is left out: how thick the line at zero is depends on the room and on
+    SNR more than on who moves. Simulated and measured masks go the same way.
+    """
+    height, width = mask.shape
+    reach, line = (round(height / 2 * hz / BAND_HZ) for hz in (SHOWN_HZ, LINE_HZ))
+    mask = mask.copy()
+    mask[height // 2 - line : height // 2 + line] = False
+    shown = mask[height // 2 - reach : height // 2 + reach, : width // 2 if slug == LONG else width]
+    levels = Image.fromarray(shown.astype(np.uint8) * 255)
+    return np.asarray(levels.resize((SIDE, SIDE), Image.Resampling.BOX))
+
+
+def read_masks(path: Path) -> tuple[Bool, list[str]]:
+    """Masks [K, H, W], and the class of each by our names, of the classes that we have.
+
+    Raises:
+        MasksError: names the file, the array, and what is wrong with it.
+    """
+    try:
+        with zipfile.ZipFile(path) as file:
+            size = sum(part.file_size for part in file.infolist())
+        if size > MAX_BYTES:
+            raise MasksError(f"{path}: holds {size} bytes; should have at most {MAX_BYTES}")
+        with np.load(path, allow_pickle=False) as file:
+            missing = {"masks", "label", "classes"} - set(file.files)
+            if missing:
+                raise MasksError(f"{path}: has no array {sorted(missing)[0]!r}")
+            masks, label, classes = (np.asarray(file[n]) for n in ("masks", "label", "classes"))
+    except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
+        raise MasksError(f"{path}: is no .npz of plain arrays ({error})") from None
+    if masks.dtype != np.uint8 or masks.ndim != 3:
+        raise MasksError(
+            f"{path}: masks is {masks.dtype} {masks.shape}; should be uint8 [K, H, W/8]"
+        )
+    count, height, width = masks.shape
+    if not (count <= MAX_MAPS and SIDE <= height <= MAX_SIDE and SIDE <= 8 * width <= MAX_SIDE):
+        raise MasksError(
+            f"{path}: masks is {masks.shape}; should be at most {MAX_MAPS} of {SIDE} to "
+            f"{MAX_SIDE} px"
+        )
+    if label.shape != (count,) or label.dtype.kind not in "iu":
+        raise MasksError(
+            f"{path}: label is {label.dtype} {label.shape}; should be {count} integers"
+        )
+    if classes.ndim != 1 or classes.dtype.kind not in "US" or not classes.size:
+        raise MasksError(f"{path}: classes is {classes.dtype} {classes.shape}; should be names")
+    if count and not 0 <= label.min() <= label.max() < classes.size:
+        raise MasksError(f"{path}: label reaches beyond the {classes.size} classes")
+    names = [n.decode("ascii", "replace") if isinstance(n, bytes) else str(n) for n in classes]
+    slugs = [CLASSES.get(name.strip().lower().replace(" ", "_")) for name in names]
+    rows = [row for row in range(count) if slugs[label[row]] is not None]
+    if not rows:
+        raise MasksError(f"{path}: has no map of {', '.join(CLASSES)}; its classes are {names}")
+    found: Bool = np.unpackbits(masks[rows], axis=2).astype(bool)
+    return found, [str(slugs[label[row]]) for row in rows]
+
+
+def write_image(levels: Levels, path: Path) -> None:
+    """Write a PNG, and its folder if need be."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    Image.fromarray(levels).save(path)
+
+
+def radhar(*arguments: object) -> None:
+    """Run a command of radhar's; what it says goes to the error stream."""
+    command = [sys.executable, "-m", "radhar_cli", *map(str, arguments)]
+    if status := subprocess.run(command, stdout=sys.stderr, cwd=ROOT).returncode:
+        sys.exit(status)
+
+
+def simulated(out: Path, per_class: int, jobs: int, more: Sequence[str] = ()) -> Path:
+    """A tree of simulated images for the network, in `out`; most falls from standing."""
+    if (out / "done").exists():
+        return out / "images"
+    in_place = ",".join(SLUGS[1:-1])
+    standing = 0 if PAPERS_MOTION in more else 3 * per_class // 4  # the paper has no such falls
+    for name, count, sets in (
+        ("walking", per_class, ["activities=[walking]", "duration_s=10"]),
+        ("in_place", per_class, [f"activities=[{in_place}]"]),
+        ("falling_walking", per_class - standing, ["activities=[walking_to_falling]"]),
+        ("falling_standing", standing, ["activities=[falling]"]),
+    ):
+        if not count:
+            continue
+        sets += [f"samples_per_class={count}", *more]
+        radhar("generate", SIMULATED, "-o", out / name, "--jobs", jobs, *_sets(sets))
+        with open_dataset(out / name) as data:
+            masks, split = data.maps["stft"], data.split[:]
+            for row, label in enumerate(data.label):
+                slug = CLASSES[data.class_slugs[label]]
+                part = "val" if split[row] else "train"
+                image = network_image(masks[row] > 0, slug)
+                write_image(image, out / "images" / part / slug / f"{name}_{row:05d}.png")
+    (out / "done").touch()
+    return out / "images"
+
+
+def _sets(sets: Iterable[str]) -> list[str]:
+    return [part for one in sets for part in ("--set", one)]
+
+
+def trained(data: Path, run: Path, seed: int, more: Sequence[str] = ()) -> Path:
+    """A network that has learned from a tree of images."""
+    radhar("train", data, "-o", run, "--config", TRAINING, *_sets((f"seed={seed}", *more)))
+    return run
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Measured images in a tree, and the class of each."""
+
+    folder: Path
+
+    @classmethod
+    def written(cls, masks: Bool, slugs: Sequence[str], folder: Path) -> "Measured":
+        """Write them."""
+        for row, (mask, slug) in enumerate(zip(masks, slugs, strict=True)):
+            write_image(network_image(mask, slug), folder / slug / f"{row:05d}.png")
+        return cls(folder)
+
+    @property
+    def slugs(self) -> list[str]:
+        """Classes of which there are maps."""
+        return sorted(path.name for path in self.folder.iterdir())
+
+    def correct(self, run: Path, split: str = "all") -> "Correct":
+        """How a run does on them."""
+        metadata, model = load_best(run)
+        images = open_for(metadata, self.folder, None)
+        found = predict(model, metadata, images, images.rows(split), torch.device("cpu"), batch=128)
+        return Correct(found.truth, found.predicted, metadata.classes)
+
+
+@dataclass(frozen=True)
+class Correct:
+    """True and predicted classes [N]."""
+
+    truth: Index
+    predicted: Index
+    classes: tuple[str, ...]
+
+    @property
+    def confusion(self) -> str:
+        """A table: rows are true classes."""
+        lines = [f"{'':20s}" + "".join(f"{name[:12]:>14s}" for name in self.classes)]
+        for number, name in enumerate(self.classes):
+            counts = np.bincount(self.predicted[self.truth == number], minlength=len(self.classes))
+            lines.append(f"{name:20s}" + "".join(f"{count:14d}" for count in counts))
+        return "\n".join(lines)
+
+
+def accuracy_line(what: str, some: Sequence[Correct]) -> str:
+    """Accuracy over all of some runs, with Wilson's interval of 95 % for the maps of one."""
+    share = float(np.mean([(one.truth == one.predicted).mean() for one in some]))
+    count = some[0].truth.size
+    low, high = wilson(round(share * count), count)
+    each = (
+        ""
+        if len(some) == 1
+        else " (" + ", ".join(f"{(one.truth == one.predicted).mean():.3f}" for one in some) + ")"
+    )
+    return f"{what}: {share:.3f} ({low:.3f} to {high:.3f}), n = {count}{each}"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("masks", type=Path, help="measured masks, .npz")
+    parser.add_argument("-o", "--out", type=Path, required=True, help="folder of all that is made")
+    parser.add_argument("--quick", action="store_true", help="one seed, nothing else")
+    parser.add_argument("--per-class", type=int, default=300, help="simulated maps of each class")
+    parser.add_argument("--jobs", type=int, default=2, help="processes that generate")
+    given = parser.parse_args()
+    if not given.masks.is_file():
+        sys.exit(f"sim_to_real: {given.masks}: no such file")
+    out: Path = given.out.resolve()
+    images = simulated(out / "simulated", given.per_class, given.jobs)
+    seeds = SEEDS[:1] if given.quick else SEEDS
+    runs = [trained(images, out / f"runs/seed_{seed}", seed) for seed in seeds]
+    for run in runs:
+        digest = hashlib.sha256((run / "best.safetensors").read_bytes()).hexdigest()
+        print(f"{run.name}: best.safetensors has SHA-256 {digest}", flush=True)
+    try:
+        masks, slugs = read_masks(given.masks)
+    except MasksError as error:
+        sys.exit(f"sim_to_real: {error}")
+    measured = Measured.written(masks, slugs, out / "measured")
+    if not given.quick:
+        ablation(measured, images, out / "without", given)
+        curve(measured, images, runs[0], out / "shots")
+    report(measured, runs, out)
+
+
+def ablation(measured: Measured, images: Path, out: Path, given: argparse.Namespace) -> None:
+    """Print what three seeds reach without each piece of the simulation, one at a time."""
+    for what, more in {**WITHOUT, "augmentation": (NO_AUGMENTATION,)}.items():
+        folder = out / what.replace(" ", "_")
+        same = more == (NO_AUGMENTATION,)
+        data = images if same else simulated(folder, given.per_class, given.jobs, more)
+        runs = [
+            trained(data, folder / f"seed_{seed}", seed, more if same else ()) for seed in SEEDS
+        ]
+        for kind, tested in (
+            ("as it is", runs),
+            ("adapted", [adapted(run, measured, folder / "adapted" / run.name) for run in runs]),
+        ):
+            correct = [measured.correct(run) for run in tested]
+            print(accuracy_line(f"without {what}, {kind}, three seeds", correct), flush=True)
+
+
+def curve(measured: Measured, images: Path, run: Path, out: Path) -> None:
+    """Print accuracy with k labelled maps a class: fine-tuned, and from nothing.
+
+    Tuning goes on with simulated maps mixed in, about as many as labelled ones are shown.
+    """
+    files = {slug: sorted((measured.folder / slug).iterdir()) for slug in measured.slugs}
+    mass = len(list((images / "train").rglob("*.png")))
+    for k in (k for k in SHOTS if 2 * k <= min(map(len, files.values()))):
+        found: dict[str, list[Correct]] = {"fine-tuned": [], "from nothing": []}
+        for repeat in range(REPEATS):
+            rng, here = np.random.default_rng([k, repeat]), out / f"{k}_{repeat}"
+            for slug, some in files.items():
+                chosen = set(rng.choice(len(some), k, replace=False).tolist())
+                for number, file in enumerate(some):
+                    for part in ("train", "val") if number in chosen else ("test",):
+                        to = here / "images" / part / slug / file.name
+                        to.parent.mkdir(parents=True, exist_ok=True)
+                        to.write_bytes(file.read_bytes())
+            weights = f"data_weights=[{SHOWN_TIMES / (k * len(files))},{SHOWN_TIMES / mass}]"
+            shots, more = here / "images", (f"seed={repeat + 1}", weights, *TUNING)
+            tuned, scratch = here / "tuned", here / "scratch"
+            start = ("--init", run, "--config", TRAINING, *_sets(more))
+            radhar("train", shots, images, "-o", tuned, *start)
+            trained(
+                shots, scratch, repeat + 1, (f"data_weights=[{SHOWN_TIMES / (k * len(files))}]",)
+            )
+            for kind, one in (("fine-tuned", tuned), ("from nothing", scratch)):
+                found[kind].append(Measured(shots).correct(one, "test"))
+        for kind, correct in found.items():
+            print(accuracy_line(f"{k} labelled a class, {kind}", correct), flush=True)
+
+
+def adapted(run: Path, measured: Measured, out: Path) -> Path:
+    """The run with the batch norm of measured maps."""
+    radhar("adapt", run, measured.folder, "-o", out, "--overwrite")
+    return out
+
+
+def report(measured: Measured, runs: Sequence[Path], out: Path) -> None:
+    """Print what the runs make of measured maps, as they are and adapted; the first is the one."""
+    fitted = [adapted(run, measured, out / "adapted" / run.name) for run in runs]
+    found = {"as it is": runs, "adapted": fitted}
+    correct = {kind: [measured.correct(run) for run in some] for kind, some in found.items()}
+    for kind, some in correct.items():
+        print(f"\n{runs[0].name}, {kind}; rows are true classes\n{some[0].confusion}")
+        if len(runs) > 1:
+            print(accuracy_line(f"{kind}, three seeds", some))
+    print(accuracy_line("accuracy with unlabelled measured maps", correct["adapted"][:1]))
+    print(accuracy_line("accuracy on measured", correct["as it is"][:1]), flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,226 @@
+"""The stages of a simulation, without the simulator: a recording comes back as its scene's maps."""
+
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from capture.dca1000_file import Radar, body, echo, words, write_studio
+from command_line import radhar
+
+from radhar_cli.arrays import Complex
+from radhar_cli.capture.chain import Maps, maps_of
+from radhar_cli.capture.importing import import_capture, read_settings, write_simulated
+from radhar_cli.capture.recording import Label, Recording, Segments
+from radhar_cli.config import load_config
+from radhar_cli.config.schema import Config, possible_maps
+from radhar_cli.errors import CaptureError
+from radhar_cli.processing.image import decibels
+from radhar_cli.processing.power_map import PowerMap
+from radhar_cli.processing.range_compression import half_band_signal, range_compression
+from radhar_cli.simulation.simulate import simulate
+
+SCENE = """
+activities: [walking]
+duration_s: 2
+radar: {carrier_hz: 24e9, bandwidth_hz: 1e9, prf_hz: 1000, adc_rate_hz: 2.5e6, chirp_s: 40e-6}
+motion: {range_m: 2, angle_deg: 0}
+engine: {kind: cube}
+"""
+RADAR, FRAMES = Radar(samples=128, rate_ksps=5000, loops=64), 50
+
+
+def config_of(folder: Path, *overrides: str, text: str = SCENE) -> Config:
+    (folder / "scene.yaml").write_text(text)
+    return load_config(folder / "scene.yaml", overrides)
+
+
+def processed(path: Path, config: Config, *names: str, **options: object) -> Maps:
+    with Recording(path) as recording:
+        return maps_of(recording, config, names, **options)  # type: ignore[arg-type]
+
+
+def apart(one: PowerMap, other: PowerMap, depth: float = 40.0) -> float:
+    """Mean difference of two maps in dB, down to so far below the largest."""
+    return float(np.abs(decibels(one.power, depth) - decibels(other.power, depth)).mean())
+
+
+@pytest.mark.parametrize(
+    "overrides",
+    [
+        [],
+        ["processing.clutter=mean"],
+        ["processing.clutter=highpass"],
+        ["processing.range_reference=start"],
+        ["processing.range_fft_length=128"],
+        ["processing.doppler=gate"],
+    ],
+    ids=lambda o: "-".join(o) or "paper",
+)
+def test_a_simulated_recording_gives_the_maps_of_its_scene(
+    tmp_path: Path, overrides: list[str]
+) -> None:
+    """But for rounding; compensation and gate go by the track that was found, not by the truth."""
+    config = config_of(tmp_path, *overrides)
+    scene = simulate(config, seed=3, raw=True)
+    assert scene.beat is not None
+    write_simulated(tmp_path / "r.h5", scene.beat, scene.waveform, Label(label="walking"))
+    names = possible_maps(config.processing)
+    found = processed(tmp_path / "r.h5", config, *names).maps
+    for name in names:
+        one, other = found[name], scene.maps[name]
+        assert np.allclose(one.rows.values, other.rows.values)
+        assert np.allclose(one.columns.values, other.columns.values)
+        if "compensated" not in name:
+            assert apart(one, other) < (0.1 if "gate" in str(overrides) else 1e-6), name
+
+
+def stft_of_frames(beat: Complex, times: np.ndarray, length: int) -> PowerMap:
+    """The paper's chain written anew: difference, compression, sum, one Hann window a frame."""
+    from radhar_cli.processing.power_map import Axis
+
+    x = half_band_signal(range_compression(beat, RADAR.waveform))
+    frames = np.diff(x.reshape(FRAMES, RADAR.loops), axis=1)[:, :length]
+    window = np.sin(np.pi * (np.arange(length) + 0.5) / length) ** 2
+    power = np.abs(np.fft.fftshift(np.fft.fft(frames * window, axis=1), axes=1)) ** 2
+    prf = RADAR.waveform.prf
+    rows = np.fft.fftshift(np.fft.fftfreq(length, 1 / prf))
+    starts = times.reshape(FRAMES, -1)[:, 0] + length / 2 / prf
+    return PowerMap(power.T, Axis("frequency", "Hz", rows), Axis("time", "s", starts))
+
+
+@pytest.mark.parametrize(("lanes", "order"), [(2, 1), (4, 0)])
+def test_a_capture_of_the_card_comes_back_as_the_maps_of_its_scene(
+    tmp_path: Path, lanes: int, order: int
+) -> None:
+    """TDM-MIMO, frames with gaps, TI's sign, whole numbers: import, process, and it is the scene.
+
+    What differs is the converter's rounding, 1/4 to 1/2 step of 8000.
+    """
+    config = config_of(
+        tmp_path, "duration_s=2", "motion.range_m=3", "motion.angle_deg=180", "motion.model=paper"
+    )
+    beat = echo(RADAR, body(config), FRAMES)
+    words(beat, 2, lanes, not order).tofile(tmp_path / "adc_data_Raw_0.bin")
+    header = write_studio(
+        tmp_path / "r.mmwave.json",
+        RADAR,
+        laneEn="0x3" if lanes == 2 else "0xF",
+        chInterleave=order,
+    )
+    out = tmp_path / "r.h5"
+    done = radhar("import", tmp_path / "adc_data_Raw_0.bin", "--radar", header, "-o", out)
+    assert done.returncode == 0, done.stderr
+    for receiver in range(4):
+        found = processed(out, config, "stft", "rtm", receiver=receiver)
+        wanted = stft_of_frames(beat[receiver], RADAR.times(FRAMES), RADAR.loops - 1)
+        one = found.maps["stft"]
+        assert np.allclose(one.rows.values, wanted.rows.values)
+        assert np.allclose(one.columns.values, wanted.columns.values)
+        assert apart(one, wanted) < 0.05
+        assert any("windows have the 63 pulses" in note for note in found.notes)
+    together = processed(out, config, "stft").maps["stft"].power
+    each = [processed(out, config, "stft", receiver=n).maps["stft"].power for n in range(4)]
+    assert np.allclose(together, sum(each))
+    # The walker comes from 3 m at 1.5 m/s, seen across gaps.
+    track = processed(out, config, "rtm").track
+    assert track is not None
+    t = np.linspace(0.1, 1.9, 50)
+    place = body(config).torso(t)[:, 0] - np.array([[0.0], [0.05], [1.2]])
+    assert np.sqrt(np.mean((track.ranges(t) - np.linalg.norm(place, axis=0)) ** 2)) < 0.15
+    assert track.confidence.mean() > 0.8
+
+
+def test_lost_pulses_leave_no_flash(tmp_path: Path) -> None:
+    """Ten lost pulses are a bright line over all of the Doppler, unless they are filled in."""
+    config = config_of(tmp_path, "snr_db=30")
+    scene = simulate(config, seed=3, raw=True)
+    assert scene.beat is not None
+    beat = scene.beat.copy()
+    beat[:, 900:910] = 0
+    parts = np.ascontiguousarray(beat).view(float).reshape(1, *beat.shape, 2)
+    np.save(tmp_path / "x.npy", parts)
+    w = scene.waveform
+    keys = [f"carrier_hz={w.fc}", f"bandwidth_hz={w.bandwidth}", f"adc_rate_hz={w.adc_rate}"]
+    keys += [f"prf_hz={w.prf}", "axes=[receiver, sample, pulse, iq]"]
+    told = import_capture([tmp_path / "x.npy"], tmp_path / "x.h5", read_settings(None, keys))
+    assert any("10 of 2000 pulses" in line for line in told.found)
+    found = processed(tmp_path / "x.h5", config, "stft").maps["stft"]
+    assert apart(found, scene.maps["stft"]) < 0.5
+    with h5py.File(tmp_path / "x.h5", "r+") as file:
+        file["flags"][:] = 0
+    kept = processed(tmp_path / "x.h5", config, "stft").maps["stft"]
+    assert apart(kept, scene.maps["stft"]) > 2
+
+
+def test_slow_time_alone_has_its_doppler(tmp_path: Path) -> None:
+    config = config_of(tmp_path, "processing.clutter=none")
+    np.save(tmp_path / "x.npy", np.exp(2j * np.pi * 120 / 1000 * np.arange(3000)))
+    keys = ["carrier_hz=24e9", "prf_hz=1000"]
+    import_capture([tmp_path / "x.npy"], tmp_path / "x.h5", read_settings(None, keys))
+    found = processed(tmp_path / "x.h5", config, "stft", start=1.0, stop=2.5).maps["stft"]
+    peak = found.rows.values[found.power.sum(axis=1).argmax()]
+    assert peak == pytest.approx(120, abs=5)
+    assert 1.0 < found.columns.values[0] < found.columns.values[-1] < 2.5
+    for name in ("rtm", "stft_compensated"):
+        with pytest.raises(CaptureError, match="slow time without ranges"):
+            processed(tmp_path / "x.h5", config, name)
+
+
+def test_too_much_at_once_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    config = config_of(tmp_path)
+    scene = simulate(config, seed=3, raw=True, maps=("stft",))
+    assert scene.beat is not None
+    write_simulated(tmp_path / "r.h5", scene.beat, scene.waveform, Label(label="walking"))
+    size = 16 * 50 * scene.beat.shape[1]
+    monkeypatch.setattr("radhar_cli.capture.chain.MAX_BYTES", size // 4)
+    with pytest.raises(CaptureError, match=r"should choose at most 0\.5 s"):
+        processed(tmp_path / "r.h5", config, "stft")
+    assert processed(tmp_path / "r.h5", config, "stft", stop=0.45).maps["stft"].power.any()
+
+
+def test_segments_of_a_part_keep_their_times() -> None:
+    from radhar_cli.capture.chain import _within
+
+    segments = Segments(np.array([0.0, 1.0, 2.0]), np.array([0, 100, 200]), 300, 1000.0)
+    part = _within(segments, 150, 250)
+    assert part.first.tolist() == [0, 50]
+    assert part.start.tolist() == [1.05, 2.0]
+    assert np.array_equal(part.times(np.arange(100)), segments.times(np.arange(150, 250)))
+
+
+WRONG = [
+    (["--start", "9"], "there are 0 pulses"),
+    (["--receiver", "3"], "receiver 3: should be below 1"),
+    (["--maps", "stff"], "is no map"),
+]
+
+
+@pytest.mark.parametrize(("more", "said"), WRONG)
+def test_wrong_use_is_one_line(tmp_path: Path, more: list[str], said: str) -> None:
+    config = config_of(tmp_path)
+    scene = simulate(config, seed=3, raw=True, maps=("stft",))
+    assert scene.beat is not None
+    write_simulated(tmp_path / "r.h5", scene.beat, scene.waveform, Label(label="walking"))
+    command = ("process", tmp_path / "r.h5", "--config", tmp_path / "scene.yaml")
+    done = radhar(*command, *more, "-o", tmp_path / "out")
+    assert done.returncode == 2
+    assert said in done.stderr
+    assert "Traceback" not in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_program_writes_maps_track_and_figure(tmp_path: Path) -> None:
+    config = config_of(tmp_path)
+    scene = simulate(config, seed=3, raw=True, maps=("stft",))
+    assert scene.beat is not None
+    write_simulated(tmp_path / "r.h5", scene.beat, scene.waveform, Label(label="walking"))
+    command = ("process", tmp_path / "r.h5", "--config", tmp_path / "scene.yaml")
+    done = radhar(*command, "--maps", "rtm,stft", "-o", tmp_path / "out")
+    assert done.returncode == 0, done.stderr
+    assert "torso from" in done.stdout
+    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == ["maps.h5", "maps.png"]
+    with h5py.File(tmp_path / "out/maps.h5") as file:
+        assert sorted(file["maps"]) == ["rtm", "stft"]
+        assert file["track/range"].shape == file["track/confidence"].shape
+        assert "m/s" in file["track/velocity"].attrs["unit"]

@@ -1,0 +1,82 @@
+"""`radhar motion` and `radhar simulate --motion`: our motions out, anyone's in."""
+
+from pathlib import Path
+
+import h5py
+import numpy as np
+from command_line import radhar
+from recorded import frames, write_amc, write_npz
+
+from radhar_cli.motion.files.clip import clip_of
+from radhar_cli.motion.files.reading import read_motion
+
+SMALL = """
+duration_s: 1.5
+radar: {carrier_hz: 10e9, bandwidth_hz: 1e9, prf_hz: 200}
+motion: {range_m: 3, angle_deg: 0}
+subject: {height_m: 1.75, chest_m: 0, heart_m: 0}
+classes: {wave: {files: [theirs.npz], joints: {head: Kopf}}}
+"""
+
+
+def test_a_motion_goes_out_and_comes_back(tmp_path: Path) -> None:
+    path, bvh = tmp_path / "x.yaml", tmp_path / "kick.bvh"
+    names = [n if n != "head" else "Kopf" for n in clip_names()]
+    write_npz(tmp_path / "theirs.npz", frames("punching", 2.0, 60.0), 60.0, names)
+    path.write_text(SMALL)
+    common = [path, "--activity", "kicking", "--nominal"]
+    done = radhar("motion", *common, "-o", bvh, "--rate", 200)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert f"{bvh}: 301 frames, 200 a second" in done.stdout
+    scale = clip_of(read_motion(bvh).recording()).stature
+    shown = ["--no-figures", "--maps", "stft", "-o"]
+    radhar("simulate", *common, *shown, tmp_path / "a")
+    done = radhar(
+        *("simulate", path, "--motion", bvh, "--nominal", *shown, tmp_path / "b"),
+        *("--set", f"subject.height_m={scale}", "--set", "classes.from_file.low_pass_hz=null"),
+    )
+    assert done.returncode == 0, done.stderr
+    assert "by its legs a person of 1.78 m" in done.stdout
+    with h5py.File(tmp_path / "a/scene.h5") as a, h5py.File(tmp_path / "b/scene.h5") as b:
+        p, q = a["truth/positions"][:], b["truth/positions"][:]
+    shift = (p - q).mean(axis=(0, 1))
+    found = np.abs(p - q - shift)[..., 2].max()
+    assert found < 1e-3
+
+
+def clip_names() -> list[str]:
+    from radhar_cli.motion.files.names import WANTED
+
+    return [*WANTED]
+
+
+def test_a_look_may_use_what_the_config_says_of_a_class(tmp_path: Path) -> None:
+    path = tmp_path / "x.yaml"
+    names = [n if n != "head" else "Kopf" for n in clip_names()]
+    write_npz(tmp_path / "theirs.npz", frames("punching", 2.0, 60.0), 60.0, names)
+    path.write_text(SMALL)
+    look = ["simulate", path, "--motion", tmp_path / "theirs.npz", "--no-figures", "--maps", "stft"]
+    done = radhar(*look, "-o", tmp_path / "a")
+    assert done.returncode == 2
+    assert "has no joint that is head by its name" in done.stderr
+    done = radhar(*look, "-o", tmp_path / "a", "--activity", "wave")
+    assert done.returncode == 0, done.stderr
+
+
+def test_what_cannot_be_done_is_one_line(tmp_path: Path) -> None:
+    path = tmp_path / "x.yaml"
+    path.write_text("duration_s: 1\n")
+    broken = write_amc(tmp_path / "x.amc", frames(seconds=0.5))
+    broken.with_suffix(".asf").unlink()
+    for words, message in (
+        (["motion", path, "-a", "walking", "-o", tmp_path / "x.fbx"], "should end in .bvh"),
+        (["motion", path, "-a", "flying", "-o", tmp_path / "x.bvh"], "is no activity"),
+        (["motion", path, "-o", tmp_path / "x.bvh"], "--activity is needed"),
+        (["motion", path, "-a", "S8", "-o", tmp_path / "no/x.bvh"], "No such file"),
+        (["simulate", path, "-o", tmp_path / "o", "--motion", broken], "needs its skeleton"),
+        (["simulate", path, "-o", tmp_path / "o", "--motion", tmp_path / "y.bvh"], "y.bvh"),
+    ):
+        done = radhar(*words)
+        assert done.returncode in (1, 2)
+        assert message in done.stderr, done.stderr
+        assert done.stderr.count("\n") == 1

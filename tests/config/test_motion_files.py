@@ -1,0 +1,159 @@
+"""`classes` with files: found from the config's folder, in order, with checksums."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+from recorded import frames, write_bvh, write_npz
+
+from radhar_cli.activity import activity_named
+from radhar_cli.config import Config, config_from_json, load_config, resolved
+from radhar_cli.config.identity import config_hash, flat
+from radhar_cli.errors import ConfigError, MotionFileError
+from radhar_cli.pipeline.motion_files import file_motion
+from radhar_cli.scene import draw_scene, nominal_scene
+
+TEXT = """
+duration_s: 0.5
+motion: {model: file}
+classes:
+  walking: [walk/*.bvh]
+  my_class: [b.npz, walk/0.bvh]
+"""
+
+
+@pytest.fixture
+def place(tmp_path: Path) -> Path:
+    p = frames(seconds=0.5)
+    for name in ("2", "0", "1"):
+        write_bvh(tmp_path / f"walk/{name}.bvh", p[int(name) :])
+    write_npz(tmp_path / "b.npz", p)
+    (tmp_path / "x.yaml").write_text(TEXT)
+    return tmp_path
+
+
+def files(config: Config, slug: str) -> list[str]:
+    return [*config.model_dump()["classes"][slug]["files"]]
+
+
+def test_patterns_become_sorted_paths_with_checksums(place: Path) -> None:
+    config = load_config(place / "x.yaml")
+    assert files(config, "walking") == ["walk/0.bvh", "walk/1.bvh", "walk/2.bvh"]
+    assert files(config, "my_class") == ["b.npz", "walk/0.bvh"]
+    assert [(a.label, a.slug) for a in config.chosen_activities] == [
+        ("S8", "walking"),
+        ("S13", "my_class"),
+    ]
+    keys = flat(config)
+    assert len(keys["classes.walking.files.walk/0.bvh"]) == 64
+    assert not any("folder" in key for key in keys)
+
+
+def test_where_files_lie_is_no_part_of_what_a_config_says(place: Path) -> None:
+    here = load_config(place / "x.yaml")
+    shutil.copytree(place, place / "elsewhere")
+    assert resolved(load_config(place / "elsewhere/x.yaml")) == resolved(here)
+    (place / "elsewhere/x.yaml").rename(place / "y.yaml")
+    named = load_config(place / "y.yaml", ["motion.folder=elsewhere"])
+    assert resolved(named) == resolved(here)
+    assert config_hash(named) == config_hash(here)
+    stored = config_from_json(json.dumps(resolved(here)), "x")
+    assert resolved(stored) == resolved(here)
+    scene = nominal_scene(stored, stored.chosen_activities[0])
+    with pytest.raises(MotionFileError, match=r"walk/1\.bvh: where the files .*motion\.folder"):
+        file_motion(scene)
+
+
+def test_another_file_of_the_same_name_is_another_data_set(place: Path) -> None:
+    config = load_config(place / "x.yaml")
+    scene = nominal_scene(config, config.chosen_activities[0])
+    file_motion(scene)
+    known = config.model_dump()["classes"]["walking"]["files"]
+    (place / "walk/1.bvh").write_bytes((place / "walk/2.bvh").read_bytes())
+    assert flat(load_config(place / "x.yaml")) != flat(config)
+    text = f"classes: {{walking: {{files: {json.dumps(known)}}}}}\n"
+    (place / "known.yaml").write_text(text)
+    with pytest.raises(ConfigError, match=r"known\.yaml:1: classes\.walking\.files.*walk/1\.bvh"):
+        load_config(place / "known.yaml")
+    mine = config.chosen_activities[1]
+    scenes = (draw_scene(config, mine, index) for index in range(50))
+    changed = next(s for s in scenes if s.config.model_dump()["classes"]["my_class"]["file"] == 1)
+    text_of = place / "walk/0.bvh"
+    text_of.write_text(text_of.read_text() + "\n")
+    with pytest.raises(MotionFileError, match=r"0\.bvh: is not the file it was"):
+        file_motion(changed)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("classes: {wave: [no/*.bvh]}", "classes.wave.files = .*there are none like it in"),
+        ("classes: {wave: [no.bvh]}", r"classes\.wave\.files = .*no\.bvh: cannot be read"),
+        ("classes: {wave: [x.yaml]}", r"should be paths of \.bvh, \.amc, \.npz files"),
+        ("classes: {wave: [../../../etc/passwd]}", "should be paths of"),
+        ("classes: {wave: []}", "should have 1 to 1500 files"),
+        ("classes: {wave: {files: [b.npz], joints: {knee: x}}}", "did you mean"),
+        ("classes: {wave: {files: [b.npz], up: w}}", "classes.wave.up"),
+        ("classes: {wave: {files: [b.npz], start: 2}}", "should be from 0 to 1"),
+        ("classes: {wave: {files: [b.npz], section_s: [2, 1]}}", "begins before it ends"),
+        ("classes: {wave: {files: [b.npz], file: 1}}", "should have a file below 1"),
+        ("classes: {wave: {files: [b.npz], speed: 2}}", "classes.wave.speed.*unknown key"),
+        ("classes: {Wave: [b.npz]}", "should have a new name of a-z"),
+        ("classes: {walking: {sequence: [walking]}}", "should have a new name of a-z"),
+        ("motion: {model: file}", "should have files of each class"),
+        ("motion: {model: file}\nactivities: [walking]", "should have files of it under classes"),
+        (
+            "motion: {model: file}\nclasses: {w: [b.npz], home: {sequence: [walking]}}",
+            "classes.home.*should have files with motion.model: file",
+        ),
+        (
+            "motion: {model: paper}\nclasses: {home: {sequence: [walking]}}",
+            "classes.home.*should have files with motion.model: paper",
+        ),
+    ],
+)
+def test_a_wrong_class_is_one_clear_line(text: str, message: str, place: Path) -> None:
+    path = place / "wrong.yaml"
+    path.write_text(text)
+    with pytest.raises(ConfigError, match=message) as refused:
+        load_config(path)
+    assert str(refused.value).startswith(str(path))
+    assert "\n" not in str(refused.value)
+
+
+def test_files_beside_any_model(place: Path) -> None:
+    """All of the twelve and the files' classes with a model; with `file`, those of the files."""
+    for model, count in (("human", 13), ("paper", 13), ("file", 2)):
+        config = load_config(place / "x.yaml", [f"motion.model={model}"])
+        assert len(config.chosen_activities) == count
+    human = load_config(place / "x.yaml", ["motion.model=human"])
+    numbers = {a.slug: a for a in human.chosen_activities}
+    assert numbers["walking"].index == activity_named("walking").index
+    assert numbers["walking"].human == ()
+    assert numbers["my_class"].index == 12
+
+
+def test_every_number_of_a_file_class_is_drawn_and_fixed(place: Path) -> None:
+    config = load_config(place / "x.yaml")
+    walking = config.chosen_activities[0]
+    scenes = [draw_scene(config, walking, index) for index in range(30)]
+    drawn = [scene.config.model_dump()["classes"]["walking"] for scene in scenes]
+    assert {one["file"] for one in drawn} == {0, 1, 2}
+    assert {one["mirror"] for one in drawn} == {0, 1}
+    assert len({one["start"] for one in drawn}) == 30
+    assert all(0.9 <= one["playback_speed"] <= 1.1 for one in drawn)
+    nominal = nominal_scene(config, walking).config.model_dump()["classes"]["walking"]
+    assert (nominal["file"], nominal["mirror"], nominal["playback_speed"]) == (1, 0, 1.0)
+
+
+def test_persons_do_not_share_files(place: Path) -> None:
+    """Where there are enough of them: nothing of a file is learned from and tested on."""
+    text = TEXT + "samples_per_class: 8\nsplit: {by: subject, subjects: 2, train: 0.5,"
+    (place / "x.yaml").write_text(text + " validation: 0.5}\n")
+    config = load_config(place / "x.yaml")
+    used: dict[int | None, set[int]] = {0: set(), 1: set()}
+    for index in range(40):
+        scene = draw_scene(config, config.chosen_activities[0], index)
+        used[scene.subject].add(scene.config.model_dump()["classes"]["walking"]["file"])
+    assert used == {0: {0, 2}, 1: {1}}

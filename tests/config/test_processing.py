@@ -1,0 +1,96 @@
+"""Clutter and gate: two spellings, one meaning; what cannot be is refused in words."""
+
+import pytest
+from pydantic import ValidationError
+
+from radhar_cli.config import Config
+from radhar_cli.config.identity import as_yaml, config_hash, resolved
+
+
+def refused(**document: object) -> list[tuple[str, str]]:
+    with pytest.raises(ValidationError) as error:
+        Config.model_validate(document)
+    return [(p.key, p.right) for p in error.value.errors()[0]["ctx"]["problems"]]
+
+
+@pytest.mark.parametrize(("mti", "clutter"), [(True, "difference"), (False, "none")])
+def test_mti_is_another_spelling(mti, clutter):
+    spellings = [
+        Config.model_validate({"processing": processing})
+        for processing in ({"mti": mti}, {"clutter": clutter}, {"mti": mti, "clutter": clutter})
+    ]
+    assert {one.processing.clutter for one in spellings} == {clutter}
+    assert len({config_hash(one) for one in spellings}) == 1
+    assert spellings[0] == spellings[1] == spellings[2]
+    assert "mti" not in as_yaml(spellings[0])
+    assert Config.model_validate(resolved(spellings[0])) == spellings[0]
+
+
+@pytest.mark.parametrize("mti", [True, False])
+def test_mti_alone_says_what_the_default_would_not(mti):
+    assert Config(processing={"mti": mti}).processing.clutter == ("difference" if mti else "none")
+
+
+@pytest.mark.parametrize(
+    ("given", "right"),
+    [
+        ({}, (None, None, 0.0075)),
+        ({"cutoff_hz": 3}, (3, None, None)),
+        ({"cutoff_mps": 0.2}, (None, 0.2, None)),
+    ],
+)
+def test_the_cut_off_is_given_once(given, right):
+    config = Config.model_validate({"processing": {"clutter": "highpass", "highpass": given}})
+    found = config.processing.highpass
+    assert (found.cutoff_hz, found.cutoff_mps, found.cutoff_fraction) == right
+    assert Config.model_validate(resolved(config)) == config
+
+
+@pytest.mark.parametrize(
+    ("highpass", "key"),
+    [
+        ({"cutoff_hz": 2500.0}, "cutoff_hz"),
+        ({"cutoff_mps": 5.0}, "cutoff_mps"),
+        ({"cutoff_hz": 0.1}, "cutoff_hz"),
+        ({"cutoff_fraction": 1e-5}, "cutoff_fraction"),
+    ],
+)
+def test_a_cut_off_is_below_half_the_prf_and_above_what_float64_holds(highpass, key):
+    """At 77 GHz and 5 kHz, PRF/2 is 4.74 m/s."""
+    ((found, right),) = refused(processing={"clutter": "highpass", "highpass": highpass})
+    assert found == f"processing.highpass.{key}"
+    assert "below PRF/2 in every scene" in right
+    assert Config(processing={"clutter": "mean", "highpass": highpass})  # which is not used
+
+
+def test_the_slowest_prf_that_may_be_drawn_counts():
+    processing = {"clutter": "highpass", "highpass": {"cutoff_hz": 300.0}}
+    assert Config(processing=processing)
+    ((key, _),) = refused(radar={"prf_hz": {"uniform": [500, 5000]}}, processing=processing)
+    assert key == "processing.highpass.cutoff_hz"
+
+
+def test_a_gate_has_no_fsst():
+    ((key, right),) = refused(processing={"doppler": "gate"}, maps=["stft", "fsst_denoised"])
+    assert key == "maps"
+    assert "by their phase" in right
+
+
+@pytest.mark.parametrize("gate_m", [4.0, [6.0, 8.0], [9.0, 10.0]])
+def test_a_gate_lies_within_the_half_band(gate_m):
+    """Of 7.49 m by default."""
+    ((key, right),) = refused(processing={"doppler": "gate", "gate_m": gate_m})
+    assert key == "processing.gate_m"
+    assert "7.495 m" in right
+    assert Config(processing={"gate_m": gate_m})  # which is not used
+
+
+@pytest.mark.parametrize(
+    ("processing", "maps"), [({"doppler": "gate"}, "stft"), ({"clutter": "mean"}, "rtm")]
+)
+def test_recordings_whose_bins_no_memory_holds_are_refused(processing, maps):
+    ((key, right),) = refused(
+        processing=processing, maps=[maps], duration_s=500.0, motion={"model": "paper"}
+    )
+    assert key == f"processing.{next(iter(processing))}"
+    assert "held at once" in right

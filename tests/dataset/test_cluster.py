@@ -1,0 +1,106 @@
+"""A dask cluster makes the same bytes, and its losses are survived or named."""
+
+import os
+import re
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from command_line import ROOT
+from listener import Listener
+from small import fingerprint, small_config
+
+from radhar_cli.config import load_config
+from radhar_cli.dataset.build import build
+from radhar_cli.dataset.shards import listed_shards
+
+pytest.importorskip("distributed")
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+CHANGES = ["maps=[rtm, stft]", "image.size_px=16", "samples_per_class=6"]
+Process = subprocess.Popen[str]
+
+
+def dask(place: Path, *arguments: str) -> Process:
+    """A dask program in a folder of its own."""
+    place.mkdir()
+    return subprocess.Popen(
+        [sys.executable, "-m", "distributed.cli." + arguments[0], *arguments[1:]],
+        cwd=place,
+        # The processor's settings too: workers should round as the build they are compared with.
+        env={**os.environ, "PYTHONPATH": str(ROOT), "PATH": "", "OMP_NUM_THREADS": "1"},
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+@pytest.fixture
+def cluster(tmp_path: Path) -> Iterator[tuple[str, list[Process]]]:
+    """Address, and the processes: a scheduler and two workers."""
+    started = [
+        dask(
+            tmp_path / "s", "dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard"
+        )
+    ]
+    try:
+        assert started[0].stderr is not None
+        found = (re.search(r"Scheduler at:\s*(tcp://\S+)", line) for line in started[0].stderr)
+        address = next(match[1] for match in found if match)
+        options = ("--nthreads", "1", "--no-nanny", "--no-dashboard")
+        started += [dask(tmp_path / w, "dask_worker", address, *options) for w in ("a", "b")]
+        yield address, started
+    finally:
+        for one in started:
+            one.kill()
+            one.communicate()
+
+
+def generate(address: str, folder: Path) -> Process:
+    """Build in a folder, named from its parent, on a cluster."""
+    changes = [x for change in CHANGES for x in ("--set", change)]
+    return subprocess.Popen(
+        [
+            *(sys.executable, "-m", "radhar_cli", "generate", "small.yaml", "-o", folder.name),
+            *("--batch", "1", "--cluster", address, *changes),
+        ],
+        cwd=folder.parent,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+
+
+def test_a_killed_worker_is_survived_and_a_killed_scheduler_is_named(
+    cluster: tuple[str, list[Process]], tmp_path: Path
+) -> None:
+    address, (scheduler, first, _) = cluster
+    config = load_config(small_config(tmp_path), CHANGES)
+    build(config, tmp_path / "whole", 1, Listener())
+
+    def kill_after(run: Process, shards: int, victim: Process) -> str:
+        while run.poll() is None and len(listed_shards(tmp_path / "set")) < shards:
+            time.sleep(0.001)
+        assert run.poll() is None
+        victim.kill()
+        said, _ = run.communicate(timeout=100)
+        return said
+
+    lost = generate(address, tmp_path / "set")
+    said = kill_after(lost, 3, first)
+    assert (lost.returncode, said) == (0, said), said
+    assert fingerprint(tmp_path / "set") == fingerprint(tmp_path / "whole")
+    assert not list((tmp_path / "a").glob("*.h5"))
+
+    (tmp_path / "set").rename(tmp_path / "first")
+    stopped = generate(address, tmp_path / "set")
+    said = kill_after(stopped, 3, scheduler)
+    assert (stopped.returncode, "the scheduler is gone" in said) == (1, True), said
+    assert "Traceback" not in said, said
+    refused = generate(address, tmp_path / "set")
+    said, _ = refused.communicate(timeout=100)
+    assert (refused.returncode, "no dask scheduler answers" in said) == (2, True), said
+    made = build(config, tmp_path / "set", 1, Listener()).made
+    assert 0 < made < 18
+    assert fingerprint(tmp_path / "set") == fingerprint(tmp_path / "whole")

@@ -1,0 +1,190 @@
+"""Parts made apart become the data set that one build makes; nothing is put together with gaps."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from command_line import radhar
+from listener import Listener
+from small import fingerprint, small_config
+
+from radhar_cli.config import Config, load_config
+from radhar_cli.dataset.build import build, build_part
+from radhar_cli.dataset.merge import merge
+from radhar_cli.dataset.parts import Part
+from radhar_cli.dataset.reading import open_dataset
+from radhar_cli.dataset.shards import listed_shards
+from radhar_cli.dataset.verify import verify
+from radhar_cli.errors import FolderError, UnfinishedError
+
+CHANGES = [
+    "maps=[rtm, stft]",
+    "image.size_px=16",
+    "motion.speed_mps={per_activity: {walking: 1.4, default: 1.5}}",  # no alphabetical order
+]
+
+
+@pytest.fixture(scope="module")
+def config(tmp_path_factory: pytest.TempPathFactory) -> Config:
+    return load_config(small_config(tmp_path_factory.mktemp("config")), CHANGES)
+
+
+@pytest.fixture(scope="module")
+def whole(config: Config, tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """Fingerprint of the data set made in one piece."""
+    folder = tmp_path_factory.mktemp("whole") / "set"
+    build(config, folder, 1, Listener())
+    return fingerprint(folder)
+
+
+@pytest.fixture(scope="module")
+def made(config: Config, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """All four parts of a data set, for tests to copy."""
+    out = tmp_path_factory.mktemp("parts") / "set"
+    for number in (3, 1, 4, 2):
+        build_part(config, out, Part(4, number), 1, Listener(), batch_size=1 + number % 2)
+    return out
+
+
+@pytest.fixture
+def out(made: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copytree(made, tmp_path / "set"))
+
+
+def merged(out: Path) -> dict[str, str]:
+    """Fingerprint of a merged data set, its parts aside."""
+    return {k: v for k, v in fingerprint(out).items() if not k.startswith("parts/")}
+
+
+def test_parts_in_one_place_or_two_are_the_build_in_one_piece(
+    out: Path, whole: dict[str, str], tmp_path: Path
+) -> None:
+    elsewhere = tmp_path / "elsewhere"
+    (out / "parts/2-of-4").rename(elsewhere)
+    merge(out, [out, elsewhere], 1, Listener())
+    assert merged(out) == whole
+    shutil.rmtree(out / "parts")
+    assert verify(out, 1).problems == []
+
+
+def test_a_virtual_data_set_reads_the_same_and_refuses_to_lose_a_part(
+    out: Path, whole: dict[str, str]
+) -> None:
+    merge(out, [], 1, Listener(), virtual=True)
+    found = merged(out)
+    assert found.pop("dataset.h5") != whole["dataset.h5"]
+    assert found == {name: sha for name, sha in whole.items() if name != "dataset.h5"}
+    assert verify(out, 2).problems == []
+    with h5py.File(out / "dataset.h5") as file, open_dataset(out) as ours:
+        assert file["maps/stft"].is_virtual
+        np.testing.assert_array_equal(file["maps/stft"][:], ours.maps["stft"][:])
+    merge(out, [], 1, Listener())
+    assert merged(out) == whole
+    merge(out, [], 1, Listener(), virtual=True)
+    listed_shards(out / "parts/3-of-4")[0].path.unlink()
+    with open_dataset(out) as ours, pytest.raises(FolderError, match="parts/3-of-4"):
+        ours.maps["stft"][:]
+
+
+def test_gaps_and_damage_name_the_parts_to_run_again(
+    config: Config, out: Path, whole: dict[str, str]
+) -> None:
+    shutil.rmtree(out / "parts/3-of-4")
+    shard = listed_shards(out / "parts/1-of-4")[-1].path
+    content = shard.read_bytes()
+    shard.write_bytes(content[:-1] + bytes([content[-1] ^ 1]))
+    with pytest.raises(UnfinishedError, match=r"rows 4-5 \(2 of 9\).* make .* --shard 3/4, then"):
+        merge(out, [], 1, Listener())
+    build_part(config, out, Part(4, 3), 1, Listener())
+    with pytest.raises(UnfinishedError, match=r"rows 0-1 \(2 of 9\).* make .* --shard 1/4, then"):
+        merge(out, [], 1, Listener())
+    assert not (out / "dataset.h5").exists()
+    assert build_part(config, out, Part(4, 1), 1, Listener()).made == 2
+    merge(out, [], 1, Listener())
+    assert merged(out) == whole
+
+
+def test_parts_of_something_else_are_refused(config: Config, out: Path, tmp_path: Path) -> None:
+    other = config.model_copy(update={"seed": 8})
+    with pytest.raises(FolderError, match="holds parts of 4; this would be part 1/3"):
+        build_part(config, out, Part(3, 1), 1, Listener())
+    with pytest.raises(FolderError, match="should be at most K/9"):
+        build_part(config, tmp_path / "ten", Part(10, 1), 1, Listener())
+    with pytest.raises(FolderError, match="differs in\n  seed: 7 there, 8 here"):
+        build_part(other, out, Part(4, 1), 1, Listener())
+    with pytest.raises(FolderError, match="radhar merge"):
+        build(config, out, 1, Listener())
+    build_part(other, tmp_path / "other", Part(4, 2), 1, Listener())
+    with pytest.raises(FolderError, match="seed: 7 there, 8 here"):
+        merge(out, [out, tmp_path / "other"], 1, Listener())
+    with pytest.raises(FolderError, match="--virtual refers to parts below"):
+        merge(tmp_path / "new", [out], 1, Listener(), virtual=True)
+    with pytest.raises(FolderError, match="is no part that"):
+        merge(tmp_path / "nothing", [], 1, Listener())
+
+
+def test_the_manifest_of_a_part_has_rows_bytes_and_checksums(out: Path) -> None:
+    folder = out / "parts/2-of-4"
+    manifest = json.loads((folder / ".radhar/manifest.json").read_text())
+    assert (manifest["part"], manifest["rows"]) == ("2/4", 2)
+    for held, shard in zip(manifest["shards"], listed_shards(folder), strict=True):
+        data, checksum = shard.read(manifest["identity"])
+        expected = {"start": shard.start, "stop": shard.stop, "bytes": len(data)}
+        assert held == {**expected, "sha256": checksum}
+
+
+def test_parts_hold_each_row_once() -> None:
+    for count, of in ((9, 4), (10, 10), (1000, 7)):
+        rows = [row for number in range(1, of + 1) for row in Part(of, number).rows(count)]
+        assert rows == list(range(count))
+
+
+def test_the_task_of_an_array_names_the_part(monkeypatch: pytest.MonkeyPatch) -> None:
+    def part(task: int, first: int, last: int, count: int) -> str:
+        names = ("ID", "MIN", "MAX", "COUNT")
+        values = zip(names, (task, first, last, count), strict=True)
+        return str(Part.of_array_task({f"SLURM_ARRAY_TASK_{k}": str(v) for k, v in values}))
+
+    assert (part(0, 0, 7, 8), part(103, 101, 104, 4)) == ("1/8", "3/4")
+    with pytest.raises(FolderError, match="without gaps"):
+        part(7, 3, 7, 2)
+    with pytest.raises(FolderError, match="SLURM_ARRAY_TASK_ID"):
+        Part.of_array_task({})
+    for wrong in ("0/3", "4/3", "1", "a/b", "1/3/5"):
+        with pytest.raises(FolderError, match="should be K/N"):
+            Part.parse(wrong)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+def test_the_program_makes_killed_parts_of_an_array_whole(
+    whole: dict[str, str], tmp_path: Path
+) -> None:
+    path, out = small_config(tmp_path), tmp_path / "set"
+    arguments = ["generate", path, "-o", out, *(x for c in CHANGES for x in ("--set", c))]
+    arguments = [*map(str, arguments), "--batch", "1", "--jobs", "1", "--shard"]
+    array = {f"SLURM_ARRAY_TASK_{k}": v for k, v in (("MIN", "5"), ("MAX", "6"), ("COUNT", "2"))}
+    run = subprocess.Popen(
+        [sys.executable, "-m", "radhar_cli", *arguments],
+        env={**os.environ, **array, "SLURM_ARRAY_TASK_ID": "6"},
+        stdout=subprocess.DEVNULL,
+    )
+    part = out / "parts/2-of-2"
+    while run.poll() is None and not listed_shards(part):
+        time.sleep(0.001)
+    run.send_signal(signal.SIGKILL)
+    run.wait()
+    assert 0 < len(listed_shards(part)) < 5
+    failed = radhar("merge", out)
+    assert (failed.returncode, "--shard 1/2, --shard 2/2" in failed.stderr) == (1, True)
+    for shard in ("1/2", "2/2"):
+        assert radhar(*arguments, shard).returncode == 0
+    assert radhar("merge", out).returncode == 0
+    assert merged(out) == whole

@@ -1,0 +1,163 @@
+"""A data set with two of the twelve and two classes of one's own, from files and from the model."""
+
+import shutil
+from collections import OrderedDict
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_line import radhar
+from listener import Listener
+from recorded import frames, write_amc, write_bvh, write_npz
+from small import fingerprint
+
+from radhar_cli.config import load_config
+from radhar_cli.config.motion_files import with_folder
+from radhar_cli.config.schema import Config
+from radhar_cli.dataset.build import build
+from radhar_cli.dataset.reading import open_dataset
+from radhar_cli.dataset.verify import verify
+from radhar_cli.errors import FolderError, MotionFileError
+from radhar_cli.pipeline import motion_files
+
+CONFIG = """
+seed: 5
+samples_per_class: 6
+duration_s: 1.5
+radar: {carrier_hz: 10e9, bandwidth_hz: 1e9, prf_hz: 500}
+motion: {model: human, range_m: {uniform: [4, 5]}, angle_deg: 180}
+activities: [walking, kicking, wave, rise]
+classes:
+  rise: {files: [rise.amc], section_s: [0.2, 2.5], past_end: rest}
+  walking: [walks/*.bvh]
+  wave: [wave.npz]
+maps: [stft]
+image: {size_px: 32}
+split: {train: 0.67, validation: 0.33}
+"""
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The config, its files, and the data set `out` built from them."""
+    folder = tmp_path_factory.mktemp("files")
+    walk = frames("walking", 2.5, 60.0)
+    for number in range(3):
+        write_bvh(folder / f"walks/{number}.bvh", walk[5 * number :], 60.0)
+    write_npz(folder / "wave.npz", frames("punching", 2.5, 60.0), 60.0)
+    write_amc(folder / "rise.amc", frames("standing_up", 2.0))
+    (folder / "set.yaml").write_text(CONFIG)
+    build(load_config(folder / "set.yaml"), folder / "out", 1, Listener())
+    return folder
+
+
+def test_labels_columns_and_folders_follow(place: Path) -> None:
+    with open_dataset(place / "out") as data:
+        assert [data.class_slugs[label] for label in data.label[::6]] == [
+            *("kicking", "walking", "rise", "wave")
+        ]
+        assert data.label[::6].tolist() == [2, 7, 12, 13]
+        files = data.scene["walking_file"][:]
+        assert set(files[6:12]) <= {0, 1, 2}
+        assert np.isnan(np.delete(files, range(6, 12))).all()
+        assert np.isnan(data.scene["kick"][6:]).all()
+        assert data.maps["stft"][:].std(axis=(1, 2)).min() > 5
+    assert sorted(p.name for p in (place / "out/png/stft/train").iterdir()) == [
+        *("kicking", "rise", "walking", "wave")
+    ]
+
+
+def test_bytes_depend_on_the_files_and_not_on_where_they_lie(
+    place: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shutil.copytree(place, tmp_path / "moved", ignore=shutil.ignore_patterns("out"))
+    moved = load_config(tmp_path / "moved/set.yaml")
+    build(moved, tmp_path / "again", 2, Listener(), batch_size=5)
+    assert fingerprint(tmp_path / "again") == fingerprint(place / "out")
+    walk = tmp_path / "moved/walks/1.bvh"
+    walk.write_text(walk.read_text().replace("Frames", " Frames"))
+    with pytest.raises(FolderError, match=r"differs in\n.*classes\.walking\.files\.walks/1\.bvh"):
+        build(load_config(tmp_path / "moved/set.yaml"), tmp_path / "again", 1, Listener())
+    monkeypatch.setattr(motion_files, "_clips", OrderedDict())  # as in a process that begins
+    with pytest.raises(MotionFileError, match="is not the file it was"):
+        build(moved.model_copy(update={"seed": 6}), tmp_path / "third", 1, Listener())
+
+
+def test_verify_opens_no_file_that_a_data_set_names(place: Path) -> None:
+    report = verify(place / "out", 24)
+    assert (report.problems, report.resynthesised, report.unmade) == ([], 6, 18)
+    report = verify(place / "out", 24, place)
+    assert (report.problems, report.resynthesised, report.unmade) == ([], 24, 0)
+    done = radhar("verify", place / "out", "--samples", 4)
+    assert "--motion FOLDER would make them anew" in done.stdout
+
+
+def test_a_written_scene_is_the_same_recording(place: Path, tmp_path: Path) -> None:
+    import h5py
+
+    common = ["--no-figures", "--maps", "stft", "-o"]
+    first = radhar(
+        *("simulate", place / "set.yaml", "--activity", "walking", "--index", 4, *common),
+        tmp_path / "a",
+    )
+    assert "motion: walks/" in first.stdout
+    radhar("simulate", tmp_path / "a/scene.yaml", "--index", 4, *common, tmp_path / "b")
+    with h5py.File(tmp_path / "a/scene.h5") as a, h5py.File(tmp_path / "b/scene.h5") as b:
+        assert np.array_equal(a["slow_time/raw"], b["slow_time/raw"])
+        assert a["truth/positions"].shape == (750, 13, 3)
+        assert a["truth/hip_joints"].shape == (750, 2, 3)
+    with open_dataset(place / "out") as data:
+        file = int(data.scene["walking_file"][6 + 4])
+    assert f"walks/{file}.bvh" in (tmp_path / "a/scene.yaml").read_text()
+    done = radhar("inspect", tmp_path / "a")
+    assert done.returncode == 0, done.stderr
+
+
+def test_a_short_file_is_warned_of(place: Path, tmp_path: Path) -> None:
+    config = load_config(
+        place / "set.yaml",
+        ["duration_s=3", "activities=[walking]", "samples_per_class=2", "output.png=false"],
+    )
+    listener = Listener()
+    build(config, tmp_path / "long", 1, listener)
+    assert any("2 of 2 recordings: the motion file ends before" in said for said in listener.said)
+
+
+def test_it_is_learned_from_and_evaluated(place: Path, tmp_path: Path) -> None:
+    pytest.importorskip("torch")
+    trained = radhar(
+        *("train", place / "out", "-o", tmp_path / "run", "--model", "smallnet"),
+        *("--set", "epochs=2", "--set", "batch_size=8"),
+    )
+    assert trained.returncode == 0, trained.stderr
+    done = radhar("eval", tmp_path / "run", place / "out")
+    assert done.returncode == 0, done.stderr
+    for command in (("preview", place / "out"), ("inspect", place / "out")):
+        shown = radhar(*command)
+        assert shown.returncode == 0, shown.stderr
+    shutil.rmtree(place / "out/preview_stft.png", ignore_errors=True)
+
+
+def test_two_classes_of_ones_own_alone(place: Path, tmp_path: Path) -> None:
+    """With `motion.model: file` the classes are those of the files, two of them here."""
+    config = load_config(
+        place / "set.yaml",
+        [
+            *("motion.model=file", "activities=all", "classes={a: [walks/*.bvh], b: [wave.npz]}"),
+            "samples_per_class=3",
+        ],
+    )
+    build(config, tmp_path / "two", 1, Listener())
+    assert verify(tmp_path / "two", 6, place).problems == []
+    pytest.importorskip("torch")
+    run = radhar("train", tmp_path / "two", "-o", tmp_path / "run", "--model", "smallnet",
+                 "--set", "epochs=1", "--set", "batch_size=4")  # fmt: skip
+    assert run.returncode == 0, run.stderr
+    assert radhar("eval", tmp_path / "run", tmp_path / "two").returncode == 0
+
+
+@pytest.mark.parametrize("path", ["/etc/walk.bvh", "../elsewhere/walk.bvh", "a/../../walk.bvh"])
+def test_a_folder_given_to_verify_is_not_left(path: str, tmp_path: Path) -> None:
+    config = Config(classes={"wave": {"files": {path: "0" * 64}}}, activities=("wave",))
+    with pytest.raises(FolderError, match=r"names .* which lies outside"):
+        with_folder(config, tmp_path)

@@ -1,0 +1,77 @@
+"""Batch norm of unlabelled images."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from learning.patterns import same, trained, tree
+from PIL import Image
+from torch import nn
+
+from radhar_cli.errors import ConfigError
+from radhar_cli.learning.adaptation import adapt
+from radhar_cli.learning.evaluation import open_for, predict
+from radhar_cli.learning.run_folder import RunError, load_best
+
+CPU = torch.device("cpu")
+
+
+def accuracy(run: Path, data: Path) -> float:
+    metadata, model = load_best(run)
+    images = open_for(metadata, data, None)
+    found = predict(model, metadata, images, np.arange(len(images)), CPU, 32)
+    return float((found.predicted == found.truth).mean())
+
+
+def another_radar(data: Path) -> Path:
+    """Darkens all images of a tree and takes most of their contrast."""
+    for path in data.rglob("*.png"):
+        levels = np.asarray(Image.open(path)).astype(float)
+        Image.fromarray((levels * 0.25).astype(np.uint8)).save(path)
+    return data
+
+
+@pytest.fixture(scope="module")
+def learned(data: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    run = tmp_path_factory.mktemp("learned") / "run"
+    trained(data, run, epochs=8)
+    return run
+
+
+def test_other_contrast_is_learned_without_labels(learned: Path, tmp_path: Path) -> None:
+    measured = another_radar(tree(tmp_path / "measured", seed=5))
+    adapt(learned, measured, tmp_path / "adapted", CPU)
+    assert accuracy(learned, measured) < 0.7
+    assert accuracy(tmp_path / "adapted", measured) > 0.9
+
+
+def test_statistics_alone_change_and_labels_do_not_matter(learned: Path, tmp_path: Path) -> None:
+    tree(tmp_path / "one", seed=5)
+    (tmp_path / "one/walking").rename(tmp_path / "one/unknown")  # a class of nobody's
+    metadata = adapt(learned, tmp_path / "one", tmp_path / "adapted", CPU)
+    assert "adapted_to" in metadata.work
+    (_, before), (_, after) = load_best(learned), load_best(tmp_path / "adapted")
+    norms = {n for n, layer in before.named_modules() if isinstance(layer, nn.BatchNorm2d)}
+    for name, tensor in before.state_dict().items():
+        same = torch.equal(tensor, after.state_dict()[name])
+        layer, _, part = name.rpartition(".")
+        assert same != (layer in norms and part.startswith(("running", "num_batches"))), name
+
+
+def test_the_same_again_gives_the_same_weights(learned: Path, tmp_path: Path) -> None:
+    measured = tree(tmp_path / "measured", seed=5)
+    for name in ("one", "two"):
+        adapt(learned, measured, tmp_path / name, CPU)
+    # Not the files' bytes: safetensors writes its metadata in any order.
+    (about, one), (again, two) = (load_best(tmp_path / name) for name in ("one", "two"))
+    assert about == again
+    assert same(one.state_dict(), two.state_dict())
+
+
+def test_what_cannot_be_adapted_is_told(learned: Path, data: Path, tmp_path: Path) -> None:
+    few = tree(tmp_path / "few", classes=("walking",))
+    with pytest.raises(ConfigError, match="has 8 images; should have at least 16"):
+        adapt(learned, few, tmp_path / "no", CPU)
+    with pytest.raises(RunError, match="is the run itself"):
+        adapt(learned, data, learned, CPU)

@@ -1,0 +1,170 @@
+"""A clip becomes somebody in a room: axes, size, floor, low-pass, heading, ends."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from recorded import frames, write_bvh, write_npz
+
+from radhar_cli.arrays import Float
+from radhar_cli.errors import MotionFileError
+from radhar_cli.motion.files.clip import ANKLE, LEG, Clip, clip_of
+from radhar_cli.motion.files.motion import FileMotion
+from radhar_cli.motion.files.names import WANTED
+from radhar_cli.motion.files.npz import Npz
+from radhar_cli.motion.files.reading import read_motion
+from radhar_cli.motion.skeleton import JOINTS
+
+ANKLES = [JOINTS.index("right_ankle"), JOINTS.index("left_ankle")]
+HIP, HEAD = JOINTS.index("hip"), JOINTS.index("head")
+
+
+def clip(positions: Float, rate: float = 120.0, **how: object) -> Clip:
+    return clip_of(Npz("x.npz", WANTED, rate, positions), **how)  # type: ignore[arg-type]
+
+
+def mover(one: Clip, **how: object) -> FileMotion:
+    numbers = {"stature": one.stature, "weight": 80.0, "start": (0.0, 0.0), "heading": 0.0}
+    return FileMotion(one, **{**numbers, "seconds": one.seconds, **how})  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("up", ["x", "y", "z", "-x", "-y", "-z"])
+def test_any_axis_may_be_up_and_any_unit_will_do(up: str) -> None:
+    """The same motion in six frames of axes and in cm is the same clip; the axis is found."""
+    p = frames(seconds=1.0)
+    right = clip(p)
+    axis, sign = "xyz".index(up[-1]), -1 if up[0] == "-" else 1
+    q = np.empty_like(p)
+    # Ahead, left, up go to axes that keep the frame right-handed.
+    q[..., axis] = sign * p[..., 2]
+    q[..., (axis + 1) % 3], q[..., (axis + 2) % 3] = p[..., 0], sign * p[..., 1]
+    found = clip(100 * q)
+    a, b = (mover(one).positions(np.linspace(0, 1, 9)) for one in (right, found))
+    np.testing.assert_allclose(a, b, atol=1e-9)
+    assert found.stature == pytest.approx(right.stature)
+    assert clip(100 * q, up=up).positions[:, 0, 2].mean() > 0
+
+
+def test_a_person_who_lies_all_the_time_is_asked_about(tmp_path: Path) -> None:
+    p = frames("stationary", 1.0)
+    lying = p[..., [2, 1, 0]] * np.array([1, 1, -1])
+    file = read_motion(write_bvh(tmp_path / "x.bvh", lying)).recording("x.bvh")
+    with pytest.raises(MotionFileError, match=r"which axis points up \(y or z\); up: y would"):
+        clip_of(file)
+    heights = clip_of(file, up="y").positions[..., 2]
+    assert np.ptp(heights) < 0.6
+
+
+def test_legs_give_the_stature_and_ankles_the_floor() -> None:
+    """Contract: (thigh + shank)/0.491, lowest ankle at 0.039 of the stature."""
+    one = clip(frames())
+    p = one.positions
+    legs = np.linalg.norm(p[:, 13] - p[:, 9], axis=1) + np.linalg.norm(p[:, 9] - p[:, 10], axis=1)
+    assert np.median(legs) == pytest.approx(LEG, abs=1e-4)
+    assert p[:, ANKLES, 2].min() == pytest.approx(ANKLE)
+    assert one.stature == pytest.approx(2 * 0.45 * 1.75 / 1.8 / LEG, abs=1e-3)
+    tall = mover(one, stature=2.0).positions(np.array([0.5]))[:, :, 0]
+    small = mover(one, stature=1.6).positions(np.array([0.5]))[:, :, 0]
+    np.testing.assert_allclose(tall - tall[:, :1], 1.25 * (small - small[:, :1]), atol=1e-9)
+
+
+@pytest.mark.parametrize("rate", [60.0, 120.0])
+def test_the_low_pass_is_8_hz_and_moves_nothing_in_time(rate: float) -> None:
+    t, p = np.arange(round(6 * rate)) / rate, np.tile(frames(seconds=0.5)[:1], (1, 1, 1))
+    rest, middle = np.repeat(p, t.size, axis=0), slice(round(2 * rate), round(4 * rate))
+    for hertz, gain in ((1.0, 1.0), (8.0, 0.5**0.5), (25.0, 0.011)):
+        moving = rest.copy()
+        wave = 0.01 * np.sin(2 * np.pi * hertz * t)
+        moving[:, 0, 0] += wave
+        one = clip(moving, rate)
+        found = (one.positions[:, 0, 0] - one.positions[:, HIP, 0]) * one.stature
+        found = found - found.mean()
+        measured = np.dot(found[middle], wave[middle]) / np.dot(wave[middle], wave[middle])
+        assert measured == pytest.approx(gain, abs=0.015), hertz
+    assert np.ptp(clip(moving, rate, low_pass=None).positions[:, 0, 0]) > 0.01
+
+
+def test_who_travels_goes_ahead_and_who_does_not_faces_there() -> None:
+    there = np.array([0.7, -0.2, 3.0])
+    for activity, turn in (("walking", 0.4), ("walking", 2.5), ("punching", 0.4)):
+        p = frames(activity)
+        c, s = np.cos(turn), np.sin(turn)
+        turned = p @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]) + there
+        q = mover(clip(turned), start=(2.0, 0.5), heading=np.pi / 2).positions(np.array([0.0, 2.9]))
+        np.testing.assert_allclose(q[:2, ANKLES, 0].mean(axis=1), [2.0, 0.5], atol=1e-9)
+        if activity == "walking":
+            along = (q[:, HIP, 1] - q[:, HIP, 0])[:2]
+            assert along[1] > 3
+            assert abs(along[0]) < 0.02 * along[1]
+        else:
+            left = (
+                q[:2, JOINTS.index("left_shoulder"), 0] - q[:2, JOINTS.index("right_shoulder"), 0]
+            )
+            assert left[0] < 0
+            assert abs(left[1]) < 0.5 * abs(left[0])
+
+
+def test_a_mirror_image_swaps_sides_and_speed_scales_time() -> None:
+    one = clip(frames("kicking"))
+    t = np.linspace(0, 1.4, 50)
+    plain, mirrored = mover(one).positions(t), mover(one, mirrored=True).positions(t)
+    swapped = [JOINTS.index(n.replace("right", "L").replace("left", "right").replace("L", "left"))
+               for n in JOINTS]  # fmt: skip
+    np.testing.assert_allclose(mirrored, plain[:, swapped] * [[[1]], [[-1]], [[1]]], atol=1e-9)
+    fast = mover(one, speed=2.0, seconds=1.4).positions(t)
+    np.testing.assert_allclose(fast, mover(one).positions(2 * t), atol=1e-9)
+    later = mover(one, begin=0.5, seconds=1.0).positions(t[:10])
+    shifted = mover(one).positions(t[:10] + 0.5)
+    np.testing.assert_allclose(np.diff(later), np.diff(shifted), atol=1e-6)
+
+
+def test_past_its_end_a_motion_goes_on_or_comes_to_rest() -> None:
+    one = clip(frames("walking", 2.0))
+    t = np.linspace(0, 4, 4001)
+    on = mover(one, seconds=4.0)
+    assert on.runs_out
+    v = np.diff(on.positions(t), axis=2) * 1000
+    np.testing.assert_allclose(v[..., 2001:], np.repeat(v[..., -1:], 1999, axis=2), atol=1e-6)
+    assert np.abs(v[..., 1990] - v[..., 2010]).max() < 1.0  # no jump in the velocity
+    assert on.breakpoints == (-0.0, pytest.approx(2.0))
+    rests = mover(one, seconds=4.0, rests=True)
+    assert not rests.runs_out
+    p = rests.positions(t)
+    np.testing.assert_allclose(p[..., 2251:], np.repeat(p[..., -1:], 1750, axis=2), atol=1e-9)
+    assert np.abs(np.diff(p, 2, axis=2)).max() * 1e6 < 120  # m/s^2: no jolt
+    early = t < 1.7
+    np.testing.assert_allclose(p[..., early], on.positions(t)[..., early], atol=1e-9)
+    still = mover(clip(frames("stationary", 2.0)), seconds=4.0)
+    assert not still.runs_out
+
+
+@pytest.mark.parametrize("rate", [30.0, 60.0, 120.0])
+def test_a_walk_comes_back_smooth_and_right(rate: float) -> None:
+    """Velocities are continuous, and those of the walk to some cm/s."""
+    p = frames("walking", 4.0, rate)
+    fine, one = frames("walking", 4.0, 1000.0), clip(p, rate)
+    found = mover(one).positions(np.arange(1000, 3001) / 1000)
+    right = fine[1000:3001, :13].transpose(2, 1, 0)
+    error = np.gradient(found - right, 1e-3, axis=2)[:, ANKLES]
+    assert np.sqrt((error**2).sum(axis=0).mean()) < (0.1 if rate == 30 else 0.03)
+    jumps = np.abs(np.diff(found, 3, axis=2)).max() * 1e9
+    assert jumps < 5e4
+
+
+def test_the_torso_is_the_torso() -> None:
+    motion, t = mover(clip(frames())), np.linspace(-0.2, 3.2, 400)
+    np.testing.assert_allclose(motion.torso(t), motion.positions(t)[:, :1], atol=1e-12)
+    marks = motion.landmark_positions(t)
+    np.testing.assert_allclose(marks[:, 13:], motion.hip_joints(t), atol=1e-12)
+    np.testing.assert_allclose(marks[:, :13], motion.positions(t), atol=1e-12)
+    assert motion.cross_sections(t).shape == (13, 1)
+
+
+def test_a_rig_without_hip_joints_has_them_at_the_hip(tmp_path: Path) -> None:
+    p = frames(seconds=1.0)
+    one = clip_of(read_motion(write_npz(tmp_path / "x.npz", p[:, :13], names=JOINTS)).recording())
+    motion, t = mover(one), np.array([0.3])
+    np.testing.assert_allclose(motion.hip_joints(t)[:, 0], motion.positions(t)[:, HIP], atol=1e-12)
+    assert not one.hip_joints
+    assert replace(one, rate=60.0).seconds == 2 * one.seconds

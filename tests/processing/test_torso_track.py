@@ -1,0 +1,135 @@
+"""The torso in range-Doppler maps: its way, through gaps, past ambiguous velocities and limbs."""
+
+import numpy as np
+import pytest
+
+from radhar_cli.arrays import Complex, Float
+from radhar_cli.echo.beat import beat_matrix
+from radhar_cli.processing.range_compression import range_bins
+from radhar_cli.processing.torso_track import (
+    RangeDoppler,
+    TorsoTrack,
+    find_torso,
+    hann_in_range,
+    peaks,
+    range_doppler,
+    velocities,
+)
+from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
+
+WAVEFORM = Waveform(fc=24e9, bandwidth=1e9, chirp=40e-6, adc_rate=5e6, prf=1000.0, duration=4.0)
+LENGTH, HOP = 160, 80
+
+
+def bins_of(
+    ranges: Float, amplitude: Float, w: Waveform = WAVEFORM, noise: float = 0.1, seed: int = 0
+) -> Complex:
+    """Range bins [1, K, M] of points at ranges [I, M] with amplitudes [I, M]."""
+    delay = 2 * ranges / SPEED_OF_LIGHT
+    beat = beat_matrix(delay, amplitude, w)
+    rng = np.random.default_rng(seed)
+    pairs = rng.standard_normal((2, *beat.shape))
+    return range_bins(beat + noise * (pairs[0] + 1j * pairs[1]), w)[None]
+
+
+def track(bins: Complex, w: Waveform = WAVEFORM) -> TorsoTrack | None:
+    window = np.hanning(LENGTH + 2)[1:-1]
+    frames = [
+        range_doppler(hann_in_range(bins[..., at : at + LENGTH]), window, (at + LENGTH / 2) / w.prf)
+        for at in range(0, bins.shape[2] - LENGTH + 1, HOP)
+    ]
+    return find_torso(frames, w.range_axis(), velocities(LENGTH, w.prf, w.f0))
+
+
+def times(w: Waveform = WAVEFORM) -> Float:
+    return np.arange(w.n_pulses) / w.prf
+
+
+def rms(found: TorsoTrack, t: Float, true: Float) -> float:
+    return float(np.sqrt(np.mean((found.ranges(t) - true) ** 2)))
+
+
+@pytest.mark.parametrize("speed", [-1.5, -0.4, 0.7, 2.0])
+def test_a_point_is_followed(speed: float) -> None:
+    t = times()
+    r = 6 + speed * (t - 2)
+    found = track(bins_of(r[None], np.ones((1, t.size))))
+    assert found is not None
+    assert rms(found, t, r) < 0.03, "a fifth of a range bin"
+    assert np.abs(found.velocity - speed).max() < 0.08, "two cells of velocity"
+    assert found.confidence.mean() > 0.9
+    assert np.allclose(found.delays(t), 2 * found.ranges(t) / SPEED_OF_LIGHT)
+
+
+def test_limbs_do_not_lead_it_away() -> None:
+    """A limb that swings by 0.3 m at 2 Hz is faster than a torso turns, though as bright."""
+    t = times()
+    torso = 3 + 1.2 * t
+    limb = torso + 0.3 * np.sin(2 * np.pi * 2 * t)
+    found = track(bins_of(np.stack([torso, limb]), np.ones((2, t.size))))
+    assert found is not None
+    assert rms(found, t, torso) < 0.08
+
+
+def test_gaps_are_bridged_and_not_sure_of() -> None:
+    t = times()
+    r = 5 + np.sin(0.8 * t)
+    there = ((t < 1.5) | (t > 2.2)).astype(float)
+    found = track(bins_of(r[None], there[None]))
+    assert found is not None
+    assert rms(found, t, r) < 0.15
+    hidden = (found.time > 1.6) & (found.time < 2.1)
+    assert (found.confidence[hidden] == 0).all()
+    assert found.confidence[~hidden].mean() > 0.6
+
+
+def test_ambiguous_velocities_are_told_apart_by_the_range() -> None:
+    """At 250 Hz and 24 GHz the Doppler of 1.5 m/s is that of -0.06 m/s."""
+    w = Waveform(fc=24e9, bandwidth=1e9, chirp=40e-6, adc_rate=5e6, prf=250.0, duration=12.0)
+    t = times(w)
+    r = 2 + 0.9 * t
+    found = track(bins_of(r[None], np.ones((1, t.size)), w), w)
+    assert found is not None
+    assert w.highest_speed < 0.9
+    assert np.abs(found.velocity[2:-2] - 0.9).max() < 0.1
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_nothing_is_found_in_noise(seed: int) -> None:
+    t = times()
+    assert track(bins_of(np.full((1, t.size), 3.0), np.zeros((1, t.size)), seed=seed)) is None
+
+
+def test_empty_and_silent_frames_do_no_harm() -> None:
+    zero = RangeDoppler(np.zeros((8, 16)), 0.0)
+    assert find_torso([], np.arange(8.0), np.arange(16.0)) is None
+    assert find_torso([zero, zero], np.arange(8.0), np.linspace(-1, 1, 16)) is None
+
+
+def test_a_peak_lies_between_its_bins() -> None:
+    """The parabola finds a range to a tenth of a bin."""
+    w = WAVEFORM
+    for off in (0.0, 0.3, 0.5, 0.8):
+        r = np.full((1, LENGTH), (20 + off) * w.range_step)
+        r += np.arange(LENGTH) / w.prf * 0.8
+        bins = hann_in_range(bins_of(r, np.ones((1, LENGTH)), w, 0.0))
+        power = range_doppler(bins, np.hanning(LENGTH), 0.0).power
+        found = peaks(power, w.range_axis(), velocities(LENGTH, w.prf, w.f0))
+        middle = r[0, LENGTH // 2]
+        assert found.range[0] == pytest.approx(middle, abs=0.1 * w.range_step)
+        assert found.velocity[0] == pytest.approx(0.8, abs=0.04)
+
+
+def test_who_leaves_is_not_found_elsewhere() -> None:
+    """Something faint that sways in place, 4 m from where the person was last, is no person."""
+    t = times()
+    r = 9 + 1.4 * t
+    gone = (t < 2.5).astype(float)
+    ghost = 8 + 0.02 * np.sin(2 * np.pi * 0.7 * t)
+    later = 0.05 * (t > 2.7)
+    found = track(bins_of(np.stack([r, ghost]), np.stack([gone, later]), noise=0.02))
+    assert found is not None
+    before = t < 2.4
+    assert np.abs(found.ranges(t[before]) - r[before]).max() < 0.1
+    assert np.abs(found.velocity).max() < 3
+    assert (found.confidence[found.time > 2.8] == 0).all()

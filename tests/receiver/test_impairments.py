@@ -1,0 +1,162 @@
+"""Coloured noise and interference lines: their spectrum, and that every form of the echo agrees."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from radhar_cli.activity import activity_named
+from radhar_cli.config.schema import Config
+from radhar_cli.pipeline.run import record
+from radhar_cli.processing.canceller import FIRST_DIFFERENCE, NO_CANCELLER
+from radhar_cli.processing.range_compression import (
+    half_band_signal,
+    range_bins,
+    range_compression,
+)
+from radhar_cli.radar.waveform import Waveform
+from radhar_cli.randomness import NOISE, stream
+from radhar_cli.receiver.flicker import FlickerNoise
+from radhar_cli.receiver.interference import Line
+from radhar_cli.scene import Scene, draw_scene, scene_numbers
+
+PRF, SAMPLES = 1000.0, 16
+
+
+def waveform(pulses: int, fft_length: int | None = None) -> Waveform:
+    return Waveform(24e9, 1e9, 32e-6, SAMPLES / 32e-6, PRF, pulses / PRF, fft_length)
+
+
+def named(name: str) -> np.random.Generator:
+    return stream(7, NOISE, 0, 0, name=name)
+
+
+def flicker(pulses: int, corner: float, slope: float = 10.0, **more: int) -> FlickerNoise:
+    return FlickerNoise(1.0, waveform(pulses, **more), named, corner, slope)
+
+
+def spectrum(x: np.ndarray, band: tuple[float, float]) -> float:
+    """Mean power of the samples' spectrum between two frequencies, 1 for white noise of power 1."""
+    power = np.mean(np.abs(np.fft.fft(x, axis=-1)) ** 2, axis=0) / x.shape[-1]
+    f = np.abs(np.fft.fftfreq(x.shape[-1], 1 / PRF))
+    return float(np.mean(power[(f >= band[0]) & (f < band[1])]))
+
+
+@pytest.mark.parametrize("slope", [5.0, 10.0, 20.0])
+def test_the_spectrum_of_coloured_noise(slope):
+    """The model's own spectrum is the one asked for, from 1/T to PRF/2, within 1 dB."""
+    noise = flicker(4000, 20.0, slope)
+    pole, sd = noise.processes
+    f = np.geomspace(1 / 4.0, PRF / 3, 50)[:, None]
+    turn = np.exp(-2j * np.pi * f / PRF)
+    found = np.sum(sd**2 * (1 - pole**2) / np.abs(1 - pole * turn) ** 2, axis=1)
+    right = (20.0 / f[:, 0]) ** (slope / 10)
+    strong = right > 0.05  # below that it vanishes in the white noise, of power 1
+    assert np.abs(10 * np.log10(found / right))[strong].max() < 1.0
+
+
+def test_every_form_has_that_spectrum():
+    """As strong as white noise at the corner, 10 dB stronger at a tenth of it: 5 sd of the mean."""
+    noise, pulses = flicker(4000, 50.0), 4000
+    bins = np.zeros((8, pulses), complex)
+    forms = {
+        "range_signals": noise.range_signals(bins, slice(0, 8)) / np.sqrt(SAMPLES),
+        "range_bins": noise.range_bins(bins, np.arange(pulses), NO_CANCELLER) / np.sqrt(SAMPLES),
+        "beat": np.concatenate(list(noise.beat(iter([np.zeros((SAMPLES, pulses), complex)])))),
+    }
+    for name, x in forms.items():
+        for band, right in (((45.0, 55.0), 1.0), ((4.5, 5.5), 10.0), ((300.0, 400.0), 0.145)):
+            count = len(x) * 2 * 4 * (band[1] - band[0])
+            assert spectrum(x, band) == pytest.approx(right, rel=0.15 + 5 / np.sqrt(count)), name
+
+
+def test_the_sum_over_the_bins_amplifies_coloured_noise_as_it_does_white():
+    noise, w = flicker(200, 50.0), waveform(200)
+    variance = np.sum(noise.processes[1] ** 2)
+    trials = [
+        FlickerNoise(1.0, w, lambda name, n=n: stream(n, NOISE, name=name), 50.0, 10.0)
+        for n in range(300)
+    ]
+    direct = np.mean([np.abs(one.slow_time(np.zeros(200, complex))) ** 2 for one in trials])
+    empty = np.zeros((SAMPLES, 200), complex)
+    cube = np.mean(
+        [
+            np.abs(half_band_signal(range_compression(next(one.beat(iter([empty]))), w))) ** 2
+            for one in trials
+        ]
+    )
+    assert direct == pytest.approx(cube, rel=0.2)
+    assert direct / variance == pytest.approx(cube / variance, rel=0.2)
+
+
+@given(st.lists(st.integers(1, 40), min_size=1, max_size=6))
+@settings(max_examples=20, deadline=None)
+def test_blocks_of_any_length_give_the_same(lengths):
+    total = sum(lengths)
+    for impairment in (
+        flicker(total + 2, 30.0),
+        Line(0.3, 123.0, waveform(total), named, "line 0"),
+    ):
+        empty = np.zeros((SAMPLES, total), complex)
+        (whole,) = impairment.beat(iter([empty]))
+        cuts = np.split(empty, np.cumsum(lengths)[:-1], axis=1)
+        assert np.concatenate(list(impairment.beat(iter(cuts))), axis=1) == pytest.approx(whole)
+
+
+@pytest.mark.parametrize("fft_length", [None, 64])
+@pytest.mark.parametrize("canceller", [NO_CANCELLER, FIRST_DIFFERENCE])
+def test_a_line_is_the_same_in_every_form(canceller, fft_length):
+    w = waveform(120, fft_length)
+    line = Line(0.3, 123.0, w, named, "line 0")
+    (beat,) = line.beat(iter([np.zeros((SAMPLES, 120), complex)]))
+    assert np.abs(beat) == pytest.approx(np.full(beat.shape, 0.3))
+    compressed = range_compression(beat, w)
+    assert line.slow_time(np.zeros(120, complex)) == pytest.approx(half_band_signal(compressed))
+    kept = slice(2, 6)
+    found = line.range_signals(np.zeros((4, 120), complex), kept)
+    assert found == pytest.approx(compressed[kept])
+    pulses = np.array([0, 7, 50, 118])
+    bins = line.range_bins(np.zeros((w.n_bins, 4), complex), pulses, canceller)
+    assert bins == pytest.approx(range_bins(canceller(beat)[:, pulses], w))
+
+
+RADAR = {"carrier_hz": 24e9, "bandwidth_hz": 1e9, "prf_hz": 1000, "adc_rate_hz": 5e5}
+LINES = [{"doppler_hz": -100, "level_db": 0}, {"doppler_hz": {"uniform": [200, 300]}}]
+
+
+def scene_of(index: int = 0, **more: object) -> Scene:
+    document = {"radar": RADAR, "processing": {"clutter": "none"}} | more
+    return draw_scene(Config.model_validate(document), activity_named("stationary"), index)
+
+
+@pytest.mark.parametrize("engine", ["direct", "cube"])
+def test_lines_lie_at_their_doppler(engine):
+    """Approaching is positive; each sample has its own draw, which is a number of the scene."""
+    scene = scene_of(receiver={"lines": LINES}, engine={"kind": engine}, snr_db=-20)
+    drawn = scene_numbers(scene)["receiver.lines.1.doppler_hz"]
+    assert 200 <= drawn <= 300
+    assert (
+        drawn
+        != scene_numbers(scene_of(1, receiver={"lines": LINES}))["receiver.lines.1.doppler_hz"]
+    )
+    stft = record(scene, ["stft"])["stft"]
+    profile, f = stft.power.mean(axis=1), stft.rows.values
+    far = np.abs(f) > 50
+    strongest = f[far][np.argsort(profile[far])[::-1]]
+    assert abs(strongest[0] + 100) <= 5
+    assert abs(strongest[np.abs(strongest + 100) > 20][0] - drawn) <= 5
+
+
+def test_the_white_noise_is_what_it_is_without_them():
+    plain, more = (
+        record(scene_of(receiver=receiver), ["noise", "signal"])
+        for receiver in ({}, {"noise_corner_hz": 10, "lines": LINES})
+    )
+    assert plain["noise"].sigma == more["noise"].sigma
+    assert not np.array_equal(plain["signal"].x, more["signal"].x)
+    again = record(scene_of(receiver={"noise_corner_hz": 10, "lines": LINES}), ["signal"])
+    assert np.array_equal(again["signal"].x, more["signal"].x)
+
+
+def test_they_are_off_by_default_and_no_numbers_of_a_scene_then():
+    assert not [key for key in scene_numbers(scene_of()) if key.startswith(("receiver", "room"))]

@@ -1,0 +1,147 @@
+"""Motion files of anyone's: damage, bombs, pipes and lies are refused at once, in one line."""
+
+import io
+import os
+import random
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from recorded import frames, write_amc, write_bvh, write_npz
+from security.bounded import answers, limited, refused
+from security.mutations import mutate_file
+
+from radhar_cli.errors import MotionFileError, RadharError
+from radhar_cli.motion.files.clip import clip_of
+from radhar_cli.motion.files.reading import read_motion
+from radhar_cli.motion.files.recording import MAX_BYTES
+
+HEAD = b"HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition Zposition\n"
+
+
+def npy(shape: tuple[int, ...], dtype: str = "<f8", content: bytes = b"") -> bytes:
+    """An array that says to be of a shape."""
+    head = str({"descr": dtype, "fortran_order": False, "shape": shape}).encode()
+    head += b" " * (-(len(head) + 11) % 64) + b"\n"
+    return b"\x93NUMPY\x01\x00" + len(head).to_bytes(2, "little") + head + content
+
+
+def archive(**members: bytes) -> bytes:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as file:
+        for name, data in members.items():
+            file.writestr(f"{name}.npy", data)
+    return buffer.getvalue()
+
+
+NAMES = npy((2,), "<U4", "Hips".encode("utf-32-le") + "Head".encode("utf-32-le"))
+RATE = npy((), content=np.float64(30).tobytes())
+HOSTILE: dict[str, tuple[str, Callable[[], bytes]]] = {
+    "a zip bomb": (
+        "x.npz",
+        lambda: archive(names=NAMES, rate=RATE, positions=npy((9, 2, 3)) + bytes(MAX_BYTES)),
+    ),
+    "a claim of petabytes": (
+        "x.npz",
+        lambda: archive(names=NAMES, rate=RATE, positions=npy((10**15, 2, 3))),
+    ),
+    "a negative shape": (
+        "x.npz",
+        lambda: archive(names=NAMES, rate=RATE, positions=npy((-9, 2, 3), content=bytes(99))),
+    ),
+    "objects": ("x.npz", lambda: archive(names=NAMES, rate=RATE, positions=npy((3,), "|O"))),
+    "names without end": (
+        "x.npz",
+        lambda: archive(names=npy((1,), "<U200000", bytes(800_000)), rate=RATE, positions=RATE),
+    ),
+    "no zip": ("x.npz", lambda: b"PK\x03\x04" + bytes(100)),
+    "a tree without end": ("x.bvh", lambda: HEAD + b"JOINT a\n{\n" * 100_000),
+    "deep braces": ("x.bvh", lambda: HEAD + b"{" * 1_000_000),
+    "one endless line": ("x.bvh", lambda: b" " * 10_000_000),
+    "a long name": ("x.bvh", lambda: b"HIERARCHY\nROOT " + b"x" * 900_000),
+    "a steering name": ("x.bvh", lambda: b"HIERARCHY\n\x1b[2J\n"),
+    "frames without end": (
+        "x.bvh",
+        lambda: HEAD + b"}\nMOTION\nFrames: 99999999999999999\nFrame Time: 0.01\n",
+    ),
+    "a frame time of nothing": (
+        "x.bvh",
+        lambda: HEAD + b"}\nMOTION\nFrames: 1\nFrame Time: 1e-999\n0 0 0\n",
+    ),
+    "a line of many numbers": (
+        "x.bvh",
+        lambda: HEAD + b"}\nMOTION\nFrames: 1\nFrame Time: 0.01\n" + b"0 " * 5_000_000,
+    ),
+    "nulls": ("x.bvh", lambda: bytes(1000)),
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_hostile_files_are_refused(name: str, tmp_path: Path) -> None:
+    file, data = HOSTILE[name]
+    (tmp_path / file).write_bytes(data())
+    with limited(), pytest.raises(MotionFileError) as error:
+        clip_of(read_motion(tmp_path / file).recording())
+    assert str(error.value).startswith(str(tmp_path / file))
+    assert len(str(error.value)) < 2000
+    assert "\n" not in str(error.value)
+
+
+def test_no_pipe_no_device_and_nothing_too_large(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "x.bvh")
+    (tmp_path / "zero.bvh").symlink_to("/dev/zero")
+    with (tmp_path / "large.bvh").open("wb") as file:
+        file.truncate(MAX_BYTES + 1)
+    for name, message in (("x", "FIFO"), ("zero", "device"), ("large", "should be at most")):
+        with limited(), pytest.raises(MotionFileError, match=message):
+            read_motion(tmp_path / f"{name}.bvh")
+
+
+def test_the_program_refuses_them_in_words(tmp_path: Path) -> None:
+    for name, (file, data) in HOSTILE.items():
+        folder = tmp_path / name.replace(" ", "_")
+        folder.mkdir()
+        (folder / file).write_bytes(data())
+        (folder / "x.yaml").write_text(f"duration_s: 1\nclasses: {{wave: [{file}]}}\n")
+    words = ["--activity", "wave", "-o", tmp_path / "out"]
+    cases = {
+        name: ["simulate", tmp_path / name.replace(" ", "_") / "x.yaml", *words] for name in HOSTILE
+    }
+    for answer in answers(tmp_path, cases).values():
+        assert "\n" not in refused(answer)
+
+
+# (first case, cases): a tenth of them in every run.
+@pytest.mark.parametrize(
+    ("first", "count"), [(0, 40), pytest.param(40, 400, marks=pytest.mark.slow)]
+)
+def test_damage_is_refused_or_does_no_harm(tmp_path: Path, first: int, count: int) -> None:
+    p = frames(seconds=0.3)
+    whole = {
+        "x.bvh": write_bvh(tmp_path / "x.bvh", p).read_bytes(),
+        "x.npz": write_npz(tmp_path / "x.npz", p).read_bytes(),
+        "x.amc": write_amc(tmp_path / "x.amc", p).read_bytes(),
+        "x.asf": (tmp_path / "x.asf").read_bytes(),
+    }
+    found = {"refused": 0, "read": 0}
+    for case in range(first, first + count):
+        rng = random.Random(case)
+        name = rng.choice(sorted(whole))
+        (tmp_path / name).write_bytes(mutate_file(rng, whole[name]))
+        try:
+            with limited():
+                used = tmp_path / name.replace(".asf", ".amc")
+                clip = clip_of(read_motion(used).recording("x"))
+        except RadharError as error:
+            found["refused"] += 1
+            long = str(error)
+        else:
+            assert np.isfinite(clip.positions).all()
+            found["read"] += 1
+            long = ""
+        assert "\n" not in long
+        assert len(long) < 2000
+        (tmp_path / name).write_bytes(whole[name])
+    assert min(found.values()) > 0, found

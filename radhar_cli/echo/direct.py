@@ -192,10 +192,10 @@ def _interpolated_sum(cycles: Float, envelope: Complex, shift: Index, step: int)
     for start in range(0, shift.size, count):
         within = shift[start : start + count]
         reach = slice(start, start + within.size + BEFORE + AFTER)
-        turning = phasors_between_knots(
-            stencils(cycles[:, reach].T, within), step, degree, envelope.dtype
+        phases, taps = (
+            stencils(np.ascontiguousarray(part[:, reach].T), within) for part in (cycles, envelope)
         )
-        taps = stencils(envelope[:, reach].T, within)
+        turning = phasors_between_knots(phases, step, degree, envelope.dtype)
         at_nodes = to_nodes @ taps.reshape(TAPS, -1).view(to_nodes.dtype)
         at_nodes = at_nodes.view(taps.dtype).reshape(-1, *taps.shape[1:])
         sums = turning.transpose(1, 0, 2) @ at_nodes.transpose(1, 2, 0)  # [segments, step, nodes]

@@ -10,8 +10,9 @@ from radhar_cli.arrays import Complex, Float
 def unit_phasor(cycles: Float, dtype: Any = np.complex128) -> Complex:
     """exp(-j 2 pi cycles), the whole turns removed first, in the precision of dtype."""
     out: Complex = np.empty(cycles.shape, dtype)
-    angle = (cycles - np.rint(cycles)).astype(out.real.dtype)
+    angle = (cycles - np.rint(cycles)).astype(out.real.dtype, copy=False)
     angle *= -2 * np.pi
-    np.cos(angle, out=out.real)
-    np.sin(angle, out=out.imag)
+    # Sines straight into every other number take twice as long.
+    out.real = np.cos(angle)
+    out.imag = np.sin(angle, out=angle)
     return out

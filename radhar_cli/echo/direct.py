@@ -7,7 +7,7 @@ docs/engines.md). Paths that do not move are left out where the canceller remove
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from math import frexp
 from typing import NamedTuple
 
@@ -29,18 +29,21 @@ from radhar_cli.echo.half_band_sum import half_band_table
 from radhar_cli.echo.interpolation import (
     AFTER,
     BEFORE,
+    NODES,
     TAPS,
-    lagrange_weights,
+    lagrange_basis,
     stencils,
 )
 from radhar_cli.echo.knots import Knots, Motion, only, resolve
 from radhar_cli.echo.paths import Paths, PathSource
-from radhar_cli.echo.phase_recurrence import phasors_between_knots
+from radhar_cli.echo.phase_recurrence import nodes, phasors_between_knots
 from radhar_cli.phasor import unit_phasor
 from radhar_cli.processing.canceller import FIRST_DIFFERENCE, Canceller
 from radhar_cli.radar.waveform import Waveform
 
-BLOCK = 2**17  # values at work at once: they stay in the cache
+# Values at work at once, which stay in the cache: at knots and at pulses; of phasors, of which some
+# twenty follow from each; and at knots from which those follow.
+BLOCK, PHASORS, CHUNK = 2**15, 2**13, 2**20
 # Of the phase between knots in single precision: a cubic errs less than its rounding.
 SINGLE_DEGREE = 3
 
@@ -141,7 +144,7 @@ class DirectEcho:
     ) -> None:
         """Add the sum of the paths at the pulses of these knots to y, some paths at a time."""
         moving = np.flatnonzero(kept)
-        count = max(1, BLOCK // knots.paths.delay.shape[1])
+        count = max(1, (BLOCK if knots.step == 1 else CHUNK) // knots.paths.delay.shape[1])
         for start in range(0, moving.size, count):
             some = moving[start : start + count]
             terms = self._terms(knots.paths, some, unit, chosen)
@@ -157,41 +160,59 @@ class DirectEcho:
     def _terms(
         self, paths: Paths, some: Index, unit: float, chosen: Settings
     ) -> tuple[Float, Complex]:
-        """Phases f0 tau (cycles) and A G over the unit, [M, I] of some paths."""
-        w = self.waveform
-        delay, amplitude = (np.ascontiguousarray(part[some].T) for part in paths)
+        """Phases f0 tau (cycles) and A G over the unit, [I, M] of some paths."""
+        w, shape = self.waveform, (some.size, paths.delay.shape[1])
         table = half_band_table(w, chosen.table_oversampling, chosen.single)
-        envelope = table(w.slope / w.adc_rate * delay)
-        envelope *= (amplitude / unit).astype(envelope.real.dtype)
-        return start_phase(delay, w, w.f0), envelope
+        cycles = np.empty(shape)
+        envelope = np.empty(shape, np.complex64 if chosen.single else np.complex128)
+        rows = max(1, BLOCK // max(shape[1], 1))
+        for start in range(0, some.size, rows):
+            block = slice(start, start + rows)
+            delay, amplitude = (part[some[block]] for part in paths)
+            cycles[block] = start_phase(delay, w, w.f0)
+            g = table(w.slope / w.adc_rate * delay)
+            np.multiply(g, (amplitude / unit).astype(g.real.dtype), out=envelope[block])
+        return cycles, envelope
 
 
 def _interpolated_sum(cycles: Float, envelope: Complex, shift: Index, step: int) -> Complex:
     """sum_i envelope exp(-j 2 pi cycles) at the pulses [segments * step].
 
     Args:
-        cycles: phases at the knots [BEFORE + segments + AFTER, I].
+        cycles: phases at the knots [I, BEFORE + segments + AFTER].
         envelope: at the knots, in the precision that phasors shall have.
         shift: of the stencils [segments].
         step: pulses from knot to knot.
     """
     degree = SINGLE_DEGREE if envelope.dtype == np.complex64 else TAPS - 1
-    weights = lagrange_weights(step).T.astype(envelope.dtype)[:, :, None]  # [step, TAPS, 1]
+    to_nodes, weights = _weights(step, degree)
+    to_nodes, weights = to_nodes.astype(envelope.real.dtype), weights.astype(envelope.dtype)
     total = np.empty((shift.size, step), dtype=complex)
-    count = max(1, BLOCK // (step * cycles.shape[1]))
+    count = max(1, PHASORS // len(cycles))
     for start in range(0, shift.size, count):
         within = shift[start : start + count]
         reach = slice(start, start + within.size + BEFORE + AFTER)
-        turning = phasors_between_knots(
-            stencils(cycles[reach], within), step, degree, envelope.dtype
+        phases, taps = (
+            stencils(np.ascontiguousarray(part[:, reach].T), within) for part in (cycles, envelope)
         )
-        taps = stencils(envelope[reach], within).transpose(1, 2, 0)
-        sums = turning.transpose(1, 0, 2) @ taps  # [segments, step, TAPS]
+        turning = phasors_between_knots(phases, step, degree, envelope.dtype)
+        at_nodes = to_nodes @ taps.reshape(TAPS, -1).view(to_nodes.dtype)
+        at_nodes = at_nodes.view(taps.dtype).reshape(-1, *taps.shape[1:])
+        sums = turning.transpose(1, 0, 2) @ at_nodes.transpose(1, 2, 0)  # [segments, step, nodes]
         total[start : start + count] = (sums.transpose(1, 0, 2) @ weights)[..., 0].T
     return total.ravel()
 
 
+@lru_cache(maxsize=128)
+def _weights(step: int, degree: int) -> tuple[Float, Float]:
+    """From the knots -2 .. 3 of a segment to nodes [nodes, TAPS]; from these to its pulses
+    [step, nodes, 1]."""
+    at = nodes(degree, step)
+    to_pulses = lagrange_basis(at, np.arange(float(step))).T[:, :, None]
+    return lagrange_basis(NODES, at / step).T, to_pulses
+
+
 def _phasor_sum(cycles: Float, envelope: Complex) -> Complex:
-    """sum_i envelope exp(-j 2 pi cycles) [M], of [M, I]."""
-    total: Complex = np.einsum("mi,mi->m", unit_phasor(cycles), envelope)
+    """sum_i envelope exp(-j 2 pi cycles) [M], of [I, M], in the envelope's precision."""
+    total: Complex = np.einsum("im,im->m", unit_phasor(cycles, envelope.dtype), envelope)
     return total

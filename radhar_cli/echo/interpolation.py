@@ -83,7 +83,8 @@ def stencils(knots: Values, shift: Index) -> Values:
     moved = np.flatnonzero((shift != 0) & (shift != EXACT))
     for segment, some in zip(moved.tolist(), shift[moved].tolist(), strict=True):
         place = first + segment + some
-        found[:, segment] = shifted_weights(some) @ knots[place : place + TAPS]
+        weights = shifted_weights(some).astype(knots.real.dtype, copy=False)
+        found[:, segment] = weights @ knots[place : place + TAPS]
     return found
 
 

@@ -18,6 +18,17 @@ from radhar_cli.phasor import unit_phasor
 LONGEST_RUN = 20
 
 
+def nodes(degree: int, length: int) -> Float:
+    """Where to take a polynomial of `degree` over pulses 0 .. length - 1: Chebyshev points, or all
+    pulses where they are no more."""
+    count = min(degree + 1, length)
+    if count == length:
+        return np.arange(float(length))
+    middle = (length - 1) / 2
+    at: Float = middle - middle * np.cos(np.pi * (np.arange(count) + 0.5) / count)
+    return at
+
+
 class Runs(NamedTuple):
     """A segment in equal runs of pulses, each with a polynomial of its own.
 
@@ -39,12 +50,8 @@ def runs(step: int, degree: int) -> Runs:
     """
     count = -(-step // LONGEST_RUN)
     length = -(-step // count)
-    order = np.arange(min(degree, length - 1) + 1)
-    if order.size < length:
-        middle = (length - 1) / 2
-        at = middle - middle * np.cos(np.pi * (order + 0.5) / order.size)
-    else:
-        at = order.astype(float)
+    at = nodes(degree, length)
+    order = np.arange(at.size)
     to_pulses = lagrange_basis(at, order.astype(float)).T
     first = length * np.arange(count)[:, None]
     to_points = lagrange_basis(NODES, ((first + at) / step).ravel()).T

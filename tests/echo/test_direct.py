@@ -307,7 +307,8 @@ def test_block_lengths_do_not_matter(monkeypatch, size):
     source = ref.Points(lambda t: walk(t) - 6 * np.maximum(t - 0.2, 0) ** 2, breakpoints=(0.2,))
     rough = ref.Points(walk, smooth=False)
     whole = [after_mti(s, RADAR, -150.0) for s in (source, rough)]
-    monkeypatch.setattr(direct, "BLOCK", size)
+    for values in ("BLOCK", "PHASORS", "CHUNK"):
+        monkeypatch.setattr(direct, values, size)
     parts = [after_mti(s, RADAR, -150.0) for s in (source, rough)]
     for part, right in zip(parts, whole, strict=True):
         assert ref.error_db(part, right) < -200

@@ -119,6 +119,12 @@ def test_help_needs_no_heavy_import() -> None:
     assert run(sys.executable, "-c", code).stdout.strip() == "[]"
 
 
+def test_reading_a_data_set_needs_no_physics() -> None:
+    code = "import sys, radhar_cli.dataset.reading, radhar_cli.commands.terminal;"
+    code += "print([m for m in ('scipy', 'matplotlib', 'PIL', 'joblib') if m in sys.modules])"
+    assert run(sys.executable, "-c", code).stdout.strip() == "[]"
+
+
 # Each kind of file from elsewhere is opened in one place, and one place writes to the terminal.
 ONE_PLACE = [
     ("yaml", {"config/yaml_reader.py"}, {"safe_dump", "YAMLError", "MarkedYAMLError"}),

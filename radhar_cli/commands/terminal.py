@@ -3,16 +3,18 @@
 import sys
 from collections import Counter
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tqdm import tqdm
 
 from radhar_cli.commands.tell import tell
 from radhar_cli.config.schema import Config
-from radhar_cli.dataset.build import Outcome
 from radhar_cli.dataset.layout import DATASET, PNG, SPLITS, Rows
 from radhar_cli.dataset.split import split_rows
 from radhar_cli.untrusted import shown
+
+if TYPE_CHECKING:
+    from radhar_cli.dataset.build import Outcome
 
 
 class BarProgress:
@@ -44,7 +46,7 @@ class BarProgress:
             self._bar = None
 
 
-def print_outcome(config: Config, outcome: Outcome) -> None:
+def print_outcome(config: Config, outcome: "Outcome") -> None:
     """Say what lies where."""
     folder = outcome.folder
     if outcome.already_complete:
@@ -65,7 +67,7 @@ def print_outcome(config: Config, outcome: Outcome) -> None:
     tell(f"  check it    radhar verify {folder}")
 
 
-def print_part(outcome: Outcome, out: Path, part: str) -> None:
+def print_part(outcome: "Outcome", out: Path, part: str) -> None:
     """Say what a part holds and what to do with it."""
     tell(
         f"{outcome.folder}: part {part} is complete: {outcome.samples} samples, {outcome.made} new"

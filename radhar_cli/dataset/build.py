@@ -38,7 +38,9 @@ from radhar_cli.errors import FolderError, UnfinishedError
 from radhar_cli.pipeline.validity import Flags, warnings
 from radhar_cli.progress import Progress
 
-MAX_BATCH, BATCH_BYTES = 32, 2**28
+# Samples a batch: few at first; of many rows more, as each shard costs some ms of the assembly, but
+# no more than 1/64 of a worker's share, as much as a kill may lose.
+BATCH, MAX_BATCH, SHARE, BATCH_BYTES = 32, 1024, 64, 2**28
 CHECK_BATCH = 64
 MAX_CHECKED_FIRST = 100_000  # rows; of more, every worker checks its own
 
@@ -214,8 +216,7 @@ class _Build:
         gaps, _ = missing_and_repeated(shards, rows.stop, rows.start)
         left = sum(stop - start for start, stop in gaps)
         self.progress.stage("samples", len(rows), len(rows) - left)
-        most = min(MAX_BATCH, BATCH_BYTES // row_bytes(config))
-        size = batch_size or max(1, min(most, -(-left // (4 * self.jobs))))
+        size = batch_size or _batch_size(left, self.jobs, row_bytes(config))
         table = colour_table(config.image.colour_map) if config.output.png else None
 
         def batches() -> Iterator[tuple[Batch]]:
@@ -258,6 +259,12 @@ class _Build:
             if isinstance(error, ForeignShardError):
                 shard.path.rename(shard.path.with_suffix(f".foreign-{uuid.uuid4().hex}"))
         return sound
+
+
+def _batch_size(left: int, jobs: int, one: int) -> int:
+    """Samples a batch, of `left` samples of `one` bytes each for `jobs` processes."""
+    most = min(max(BATCH, left // (SHARE * jobs)), MAX_BATCH, BATCH_BYTES // one)
+    return max(1, min(most, -(-left // (4 * jobs))))
 
 
 def say_warnings(progress: Progress, found: list[dict[str, Any]]) -> None:

@@ -13,7 +13,6 @@ import numpy as np
 
 from radhar_cli.activity import Activity
 from radhar_cli.config.schema import Config
-from radhar_cli.pipeline.physics import most_samples
 
 DATASET = "dataset.h5"
 CONFIG = "config.yaml"
@@ -38,6 +37,8 @@ def chunked(config: Config) -> Parts:
     if config.output.power is not None:
         parts |= {f"power/{name}": ("<f2", size) for name in config.maps}
     if config.output.slow_time:
+        from radhar_cli.pipeline.physics import most_samples  # slow to import
+
         parts["slow_time"] = ("<c8", (most_samples(config),))
     return parts
 

@@ -9,7 +9,6 @@ from functools import lru_cache
 from typing import Literal
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
 
 from radhar_cli.arrays import Bool, Float, Levels
 
@@ -104,6 +103,8 @@ def _training_cells(
 
 def _box_sum(cells: Float, reach: tuple[int, ...], wrap: bool) -> Float:
     """Sum over the cells up to `reach` (rows, columns) away [rows, columns]."""
+    from scipy.ndimage import uniform_filter1d  # slow to import
+
     for axis, far in enumerate(reach):
         size = 2 * far + 1
         cells = uniform_filter1d(cells, size, axis, mode="wrap" if wrap else "constant") * size

@@ -19,6 +19,7 @@ from small import fingerprint, small_config
 
 from radhar_cli.activity import Activity
 from radhar_cli.config import Config, load_config
+from radhar_cli.dataset import assembly as assembly_module
 from radhar_cli.dataset import batch as batch_module
 from radhar_cli.dataset import verify as verify_module
 from radhar_cli.dataset.build import build
@@ -165,8 +166,11 @@ def test_manifest_counts_what_was_put_together(config: Config, tmp_path: Path) -
         assert shard["bytes"] == len(data)
 
 
-def test_chunks_lie_the_same_however_shards_cut_the_rows(config: Config, tmp_path: Path) -> None:
-    """With more rows than a run of chunks, on both sides of its border."""
+def test_chunks_lie_the_same_however_shards_cut_the_rows(
+    config: Config, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With more rows than a run of chunks or of columns, on both sides of their borders."""
+    monkeypatch.setattr(assembly_module, "COLUMN_RUN", 20)
     many = config.model_copy(
         update={
             "samples_per_class": 50,

@@ -51,6 +51,17 @@ def test_jobs_and_batch_size_change_no_byte(
     assert fingerprint(tmp_path / "set") == fingerprint(whole)
 
 
+def test_batches_share_few_rows_evenly_and_grow_with_many() -> None:
+    def size(left: int, jobs: int, one: int = 10**4) -> int:
+        return build_module._batch_size(left, jobs, one)
+
+    assert [size(left, 2) for left in (1, 9, 100, 3600)] == [1, 2, 13, 32]
+    assert [size(10**5, jobs) for jobs in (1, 16, 64)] == [1024, 97, 32]
+    assert size(10**7, 16) == 1024
+    assert size(10**7, 16, one=2**22) == 64
+    assert size(10**7, 16, one=2**30) == 1
+
+
 def test_a_relative_folder_is_built_whatever_the_working_directory_of_the_workers(
     config: Config, whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -7,40 +7,18 @@ import tracemalloc
 from pathlib import Path
 
 import h5py
-import numpy as np
 import pytest
+from bench_large import stub_shard
 from listener import Listener
 from small import small_config
 
 from radhar_cli.config import load_config
 from radhar_cli.dataset import build as build_module
-from radhar_cli.dataset import scene_fields, shards
 from radhar_cli.dataset.batch import Batch
 from radhar_cli.dataset.build import build
-from radhar_cli.dataset.sample import Sample
-from radhar_cli.pipeline.validity import Flags
-from radhar_cli.processing.power_map import MapImage
 
-ROWS, FEW, SIZE = 150_000, 3_000, 16
+ROWS, FEW, SIZE, BATCH = 150_000, 9_000, 16, 32
 BYTES_A_ROW = 16
-
-
-def stub_shard(batch: Batch, made: dict[int, bytes]) -> int:
-    """Write the shard of a batch; return its number of samples."""
-    count = batch.stop - batch.start
-    if count not in made:
-        image = MapImage(np.zeros((SIZE, SIZE), np.uint8), 0.0, (0.0, 1.0, -1.0, 1.0))
-        samples = [Sample({"stft": image}, -100.0, False, {})] * count
-        values = np.zeros((count, len(scene_fields.fields(batch.config))))
-        flags = np.full(count, Flags.ALIASING, np.uint8)
-        made[count] = shards.encode_shard(batch.config, "0" * 64, 0, samples, values, flags)
-    content = made[count][shards.USER_BLOCK :]
-    whose, start, stop = batch.identity_hash, batch.start, batch.stop
-    checksum = shards._checksum(whose, start, stop, memoryview(content))
-    header = f"radhar shard of {whose}\nrows {start} {stop}\nsha256 {checksum}\n".encode()
-    data = header.ljust(shards.USER_BLOCK, b"\0") + content
-    shards.write_shard(batch.folder, start, stop, data)
-    return count
 
 
 def built(rows: int, folder: Path, monkeypatch: pytest.MonkeyPatch) -> int:
@@ -53,13 +31,13 @@ def built(rows: int, folder: Path, monkeypatch: pytest.MonkeyPatch) -> int:
 
     def stub(batch: Batch) -> int:
         assert batch.checked is None, "its scenes are the worker's to check"
-        return stub_shard(batch, made)
+        return stub_shard(batch, SIZE, made)
 
     monkeypatch.setattr(build_module, "run_batch", stub)
     notes = Listener()
     tracemalloc.start()
     try:
-        build(config, folder / "set", 1, notes)
+        build(config, folder / "set", 1, notes, batch_size=BATCH)
         peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()

@@ -9,7 +9,6 @@ from functools import cache
 from math import pi, radians, sqrt
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from radhar_cli.arrays import Float
 
@@ -108,6 +107,8 @@ def _roll_shape() -> Float:
 
 
 def _periodic(points: Points) -> Float:
+    from scipy.interpolate import PchipInterpolator  # slow to import
+
     x, y = np.array(points).T
     around = PchipInterpolator(np.concatenate([x - 1, x, x + 1]), np.tile(y, 3))
     u = np.arange(_SAMPLES) / _SAMPLES

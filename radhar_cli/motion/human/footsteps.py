@@ -7,13 +7,15 @@ of that moment and end at rest, with a lift on top: everything is twice continuo
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.interpolate import PPoly
 
 from radhar_cli.arrays import Float
 from radhar_cli.motion.human.person import Person
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
 
 DEGREE = 8
 LIFT_SHAPE = np.array([0, 0, 0, 1, -5, 10, -10, 5, -1]) / (0.375**3 * 0.625**5)  # peak 1 at 3/8
@@ -72,8 +74,10 @@ class FootTrack:
         return np.stack([x, y, z + ball * sin + high * cos])
 
     @cached_property
-    def _polynomials(self) -> PPoly:
+    def _polynomials(self) -> "PPoly":
         """x, y, z - z_a of an unrolled foot, beta, heading [M, 5], in seconds from each event."""
+        from scipy.interpolate import PPoly  # slow to import
+
         f, n = self.falls, self.falls.off.size
         c = np.zeros((DEGREE + 1, 3 * n + 1, 5))  # lowest power first
         planted, rolling, swinging = c[:, 0::3], c[:, 1::3], c[:, 2::3]

@@ -31,6 +31,10 @@ class Dataset(Closing):
 
     Names, shapes and types of everything in it follow from its config and are checked here.
 
+    Args:
+        path: of dataset.h5, or of what is going to be it.
+        folder: the output folder then.
+
     Attributes:
         path: of dataset.h5.
         config: its own.
@@ -49,9 +53,9 @@ class Dataset(Closing):
         FolderError: it is no data set of ours, or a damaged one; the message names file and field.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, folder: Path | None = None) -> None:
         self.path = path
-        self.file = UntrustedFile(path, virtual=True)
+        self.file = UntrustedFile(path, virtual=True, folder=folder)
         self.splits = SPLITS
         try:
             self.config = stored_config(self.file.json("config"), str(path))

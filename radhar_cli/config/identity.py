@@ -6,7 +6,7 @@ from typing import Any
 
 from radhar_cli.config.schema import Config, Section
 
-NOT_IDENTITY = ("output.png",)
+NOT_IDENTITY = ("output.png", "output.license")
 
 
 def resolved(config: Section) -> dict[str, Any]:

@@ -236,6 +236,8 @@ def _cautions(data: Dataset) -> str:
         said.append(
             "simulated data: a network that is accurate on them need not be so on a real radar"
         )
+    else:
+        said.append("config.yaml names files and persons as the manifest of the recordings does")
     return "\n".join(f"- {' '.join(message.split())}" for message in said) or "- nothing was found"
 
 

@@ -33,9 +33,15 @@ def write_hub_files(source: Path, folder: Path, png: bool) -> None:
             refuse_links(folder, folder / name)
         if not (folder / GALLERY).exists():
             write_whole(folder, folder / GALLERY, gallery_png(data))
-        text, path = folder_card(data, png).encode(), folder / CARD
-        if not path.exists() or (png and path.read_bytes() == folder_card(data, False).encode()):
-            write_whole(folder, path, text)
+        path = folder / CARD
+        if not path.exists() or (png and _is_without_images(data, path)):
+            write_whole(folder, path, folder_card(data, png).encode())
+
+
+def _is_without_images(data: Dataset, path: Path) -> bool:
+    """Whether a card is what `write_hub_files` wrote for a folder without images."""
+    text = path.read_bytes()
+    return b"\nconfigs:" not in text and text == folder_card(data, False).encode()
 
 
 def folder_card(data: Dataset, png: bool) -> str:

@@ -19,6 +19,7 @@ def program() -> "typer.Typer":
     from radhar_cli.commands import (
         adapt,
         config,
+        convert,
         evaluate,
         export,
         fit,
@@ -47,6 +48,7 @@ def program() -> "typer.Typer":
     app.callback()(version.options)
     app.command()(generate.generate)
     app.command()(merge.merge)
+    app.command()(convert.convert)
     app.command()(simulate.simulate)
     app.command("import")(import_.import_)
     app.command()(process.process)

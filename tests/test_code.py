@@ -88,6 +88,7 @@ LIBRARIES: dict[str, set[str]] = {
     "tqdm": {"commands"},
     "joblib": {"dataset"},
     "distributed": {"dataset"},
+    "pyarrow": {"dataset"},
     "yaml": {"config", "dataset", "commands"},
     "sigmf": {"capture"},
     "torch": {"learning"},
@@ -182,7 +183,8 @@ def test_one_place_prints() -> None:
 def test_hdf5_is_opened_for_reading_in_one_place() -> None:
     door = "dataset/untrusted_hdf5.py"
     writers = {
-        *("dataset/assembly.py", "dataset/shards.py", "simulation/scene_file.py"),
+        *("dataset/assembly.py", "dataset/shards.py", "dataset/formats/mat.py"),
+        "simulation/scene_file.py",
         *("capture/recording.py", "capture/maps_file.py"),
     }
     for path in files():

@@ -6,7 +6,7 @@ from typing import Any
 
 from radhar_cli.config.schema import Config, Section
 
-NOT_IDENTITY = ("output.png",)
+NOT_IDENTITY = ("output.png", "output.license")
 
 
 def resolved(config: Section) -> dict[str, Any]:
@@ -26,7 +26,8 @@ def as_yaml(config: Section) -> str:
 def flat(config: Config) -> dict[str, Any]:
     """Return {dotted key: value} of every key that decides bytes.
 
-    Whether PNGs are written at all is not among them, so that they can be added later.
+    Whether PNGs are written at all is not among them, so that they can be added later; nor is the
+    licence.
     """
 
     def walk(value: Any, key: str) -> list[tuple[str, Any]]:

@@ -729,7 +729,7 @@ class OutputConfig(Section):
     """PNG tree or not, compression levels (0 none, 1 fast, 9 small), and what else is stored.
 
     `column_labels` of every column; `power` the decibels behind every image, unclipped; `slow_time`
-    the complex signal.
+    the complex signal; `license` is what the data card says, as the Hugging Face Hub calls it.
     """
 
     png: Flag = True
@@ -738,6 +738,7 @@ class OutputConfig(Section):
     hdf5_level: Level = 1
     power: Literal["float16"] | None = None
     slow_time: Flag = False
+    license: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9.+-]{0,60}$")] | None = None
 
 
 MapName = Literal[

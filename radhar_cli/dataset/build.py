@@ -19,6 +19,7 @@ from radhar_cli.dataset.assembly import assembled
 from radhar_cli.dataset.batch import Batch, check_rows, run_batch
 from radhar_cli.dataset.check_cache import OUTCOME, Outcomes, store_checks, stored_checks
 from radhar_cli.dataset.folder import clean_up, folder_lock, mark_built, reserve
+from radhar_cli.dataset.hub import write_hub_files
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.layout import DATASET, MANIFEST, WORK, Rows, row_bytes
 from radhar_cli.dataset.parts import Part, refuse_other_cuts, write_part_manifest
@@ -152,6 +153,7 @@ class _Build:
         config, count = self.config, len(Rows.of(self.config))
         if (self.folder / DATASET).exists():
             pngs = self._missing_pngs(self.folder / DATASET)
+            write_hub_files(self.folder / DATASET, self.folder, config.output.png)
             clean_up(self.folder)
             return Outcome(self.folder, count, 0, pngs)
         for message in split_warnings(config, self.split):
@@ -162,6 +164,7 @@ class _Build:
             say_warnings(self.progress, [warning for warning in stored if warning not in shown])
             self.progress.advance(count)
             pngs = self._missing_pngs(unfinished)
+            write_hub_files(unfinished, self.folder, config.output.png)
         mark_built(self.folder)
         clean_up(self.folder)
         return Outcome(self.folder, count, made, pngs, stored)

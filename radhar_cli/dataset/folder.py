@@ -20,9 +20,11 @@ from radhar_cli.dataset.files import (
 )
 from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.dataset.layout import (
+    CARD,
     CHECKS,
     CONFIG,
     DATASET,
+    GALLERY,
     IDENTITY,
     MANIFEST,
     PARTS,
@@ -196,8 +198,8 @@ def _clear(folder: Path, new: dict[str, Any]) -> None:
         put_aside = unfinished_path(folder)
         put_aside.parent.mkdir(parents=True, exist_ok=True)
         (folder / PNG).rename(put_aside)
-    for path in (folder / SCENES, folder / CONFIG, folder / WORK / MANIFEST):
-        path.unlink(missing_ok=True)
+    for name in (SCENES, CONFIG, CARD, GALLERY, f"{WORK}/{MANIFEST}"):
+        (folder / name).unlink(missing_ok=True)
     _remove_batches(folder)
     _name(folder, new)
     (folder / DATASET).unlink(missing_ok=True)

@@ -18,12 +18,16 @@ DATASET = "dataset.h5"
 CONFIG = "config.yaml"
 SCENES = "scenes.csv"
 PNG = "png"
+METADATA = "metadata.csv"
+CARD = "README.md"
+GALLERY = "gallery.png"
 WORK = ".radhar"
 IDENTITY = "identity.json"
 MANIFEST = "manifest.json"
 CHECKS = "checks"
 PARTS = "parts"
 COLUMN_LABEL = "column_label"
+PNGS_A_FOLDER = 10_000
 SPLITS = ("train", "validation", "test")
 # Type and shape of a sample's part of a dataset.
 Parts: TypeAlias = dict[str, tuple[str, tuple[int, ...]]]
@@ -70,6 +74,11 @@ def is_incomplete(folder: Path) -> bool:
     return any((folder / WORK / name).exists() for name in (IDENTITY, "shards", CHECKS))
 
 
+def png_folder(map_name: str, split: int) -> Path:
+    """Where the class folders and metadata.csv of a map and split lie inside the output folder."""
+    return Path(PNG, map_name, SPLIT_FOLDERS[split])
+
+
 @dataclass(frozen=True)
 class Rows:
     """The fixed, class-major order of a data set's samples."""
@@ -106,8 +115,17 @@ class Rows:
 
     def png_path(self, map_name: str, split: int, row: int) -> Path:
         """Path of a PNG inside the output folder, the layout that ImageFolder reads."""
-        slug = self[row][0].slug
-        return Path(PNG, map_name, SPLIT_FOLDERS[split], slug, f"{self.name(row)}.png")
+        return png_folder(map_name, split) / self.file_name(row)
+
+    def file_name(self, row: int) -> str:
+        """Path of a row's PNG below the folder of its map and split.
+
+        Large classes have a folder for every PNGS_A_FOLDER indices.
+        """
+        activity, index = self[row]
+        count = self.counts[self.activities.index(activity)]
+        inner = f"{index // PNGS_A_FOLDER:04d}/" if count > PNGS_A_FOLDER else ""
+        return f"{activity.slug}/{inner}{self.name(row)}.png"
 
     def classes(self) -> Iterator[tuple[Activity, slice]]:
         """Each class and its rows."""

@@ -10,6 +10,7 @@ from radhar_cli.dataset.assembly import assembled
 from radhar_cli.dataset.build import Outcome, disk_error, say_warnings
 from radhar_cli.dataset.files import refuse_foreign_work, refuse_links
 from radhar_cli.dataset.folder import clean_up, folder_lock, mark_built, reserve, stored_identity
+from radhar_cli.dataset.hub import write_hub_files
 from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.dataset.layout import PARTS, Rows
 from radhar_cli.dataset.parts import Part, rows_by_part
@@ -71,6 +72,7 @@ def merge(
                     take_over_pngs(config, out, split, parts)
                 progress.advance(count)
                 pngs = write_missing_pngs(config, out, split, unfinished, jobs, progress)
+                write_hub_files(unfinished, out, config.output.png)
             mark_built(out)
             clean_up(out)
     except OSError as error:

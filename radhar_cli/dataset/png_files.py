@@ -3,12 +3,14 @@
 import os
 import shutil
 from collections.abc import Iterable
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 
 from radhar_cli.arrays import Bool, Index, Levels
 from radhar_cli.config.schema import Config
+from radhar_cli.dataset import layout
 from radhar_cli.dataset.batch import png_rows
 from radhar_cli.dataset.files import refuse_links, unfinished_path
 from radhar_cli.dataset.layout import Rows
@@ -101,13 +103,15 @@ def rows_without_png(config: Config, folder: Path, split: Levels) -> Index:
 def _stored_pngs(out: Path, name: str, rows: Rows, first: int, split: Levels) -> Bool:
     """Whether there is a PNG of each sample of the class from row `first` on, of one map."""
     there = np.zeros(split.size, dtype=bool)
-    for number in np.unique(split).tolist():
-        folder = out / rows.png_path(name, number, first).parent
+    starts = range(first, first + split.size, layout.PNGS_A_FOLDER)
+    for number, start in product(np.unique(split).tolist(), starts):
+        folder = out / rows.png_path(name, number, start).parent
         for found in os.scandir(folder) if folder.is_dir() else ():
             stem = found.name.removesuffix(".png")
             index = int(stem) if stem.isdecimal() else split.size
             if index >= split.size or split[index] != number:
                 continue
-            if found.name == rows.png_path(name, number, first + index).name:
+            path = rows.png_path(name, number, first + index)
+            if found.name == path.name and folder == out / path.parent:
                 there[index] = True
     return there

@@ -24,12 +24,17 @@ from radhar_cli.errors import ConfigError, FolderError, did_you_mean
 from radhar_cli.untrusted import Closing
 
 MAX_ENTROPY_BITS = 64.0
+BLOCK = 65_536  # rows of a column that are looked at together
 
 
 class Dataset(Closing):
     """A data set opened for reading; it may be anyone's.
 
     Names, shapes and types of everything in it follow from its config and are checked here.
+
+    Args:
+        path: of dataset.h5, or of what is going to be it.
+        folder: the output folder then.
 
     Attributes:
         path: of dataset.h5.
@@ -49,9 +54,9 @@ class Dataset(Closing):
         FolderError: it is no data set of ours, or a damaged one; the message names file and field.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, folder: Path | None = None) -> None:
         self.path = path
-        self.file = UntrustedFile(path, virtual=True)
+        self.file = UntrustedFile(path, virtual=True, folder=folder)
         self.splits = SPLITS
         try:
             self.config = stored_config(self.file.json("config"), str(path))
@@ -115,11 +120,15 @@ class Dataset(Closing):
     def extent(self, name: str) -> tuple[float, float, float, float] | None:
         """Edges (time left, right in s; bottom, top in Hz or m) that all images of a map share."""
         column = self._extent[name]
-        edges = column[:]
-        left, right, bottom, top = map(float, edges[0])
-        if not (np.isfinite(edges).all() and left < right and bottom < top):
-            raise FolderError(f"{column.where}: should be left < right, bottom < top")
-        return (left, right, bottom, top) if (edges == edges[0]).all() else None
+        first, same = column.rows(0, 1), True
+        for start in range(0, len(column), BLOCK):
+            edges = column.rows(start, start + BLOCK)
+            left, right, bottom, top = edges.T
+            if not (np.isfinite(edges).all() and left[0] < right[0] and bottom[0] < top[0]):
+                raise FolderError(f"{column.where}: should be left < right, bottom < top")
+            same &= bool((edges == first).all())
+        left, right, bottom, top = map(float, first[0])
+        return (left, right, bottom, top) if same else None
 
     def map_name(self, name: str | None) -> str:
         """The map of that name, or the first.

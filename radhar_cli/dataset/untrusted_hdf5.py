@@ -124,14 +124,21 @@ class UntrustedFile(Closing):
         path: of the file.
         data: its bytes, where they have been read already.
         virtual: samples may lie in other files of its folder (`radhar merge --virtual`).
+        folder: its folder, where it is going to be another than that of `path`.
 
     Raises:
         FolderError: it is no regular file, or no HDF5 file. So do all methods, for whatever is not
             as it should be; the message names file and field.
     """
 
-    def __init__(self, path: Path, data: bytes | None = None, virtual: bool = False) -> None:
-        self.path = path
+    def __init__(
+        self,
+        path: Path,
+        data: bytes | None = None,
+        virtual: bool = False,
+        folder: Path | None = None,
+    ) -> None:
+        self.path, self._folder = path, folder or path.parent
         self._claimed = 0
         self._sources = _Sources() if virtual else None
         try:
@@ -211,7 +218,7 @@ class UntrustedFile(Closing):
                 raise FolderError(f"{where}: is of the type {found.dtype.str}; not {wanted.str}")
             creation = found.id.get_create_plist()
             if self._sources is not None and creation.get_layout() == h5py.h5d.VIRTUAL:
-                parts = list(_parts(creation, where, name, shape, self.path.parent))
+                parts = list(_parts(creation, where, name, shape, self._folder))
                 return VirtualChunks(
                     where,
                     found,
@@ -348,7 +355,7 @@ class Chunks:
     dtype: np.dtype[Any]
     shape: tuple[int, ...]
     _deflated: bool
-    _sizes: dict[int, int] = field(default_factory=dict, repr=False)
+    _sizes: NDArray[np.uint32] | None = field(default=None, repr=False)
 
     def __len__(self) -> int:
         return self.shape[0]
@@ -364,23 +371,28 @@ class Chunks:
 
     def stored(self, row: int) -> tuple[int, bytes]:
         """Filter mask and bytes of a row's chunk as they lie in the file."""
-        if not self._sizes:
+        if self._sizes is None:
             self._sizes = self._stored_sizes()
         with _refusing_damage(f"{self.where}[{row}]"):
             mask, chunk = self._dataset.id.read_direct_chunk((row, *(0,) * (len(self.shape) - 1)))
         return mask, chunk
 
-    def _stored_sizes(self) -> dict[int, int]:
+    def _stored_sizes(self) -> NDArray[np.uint32]:
         """Stored bytes of every row; deflate makes nothing longer by more than a thousandth."""
         raw = self._bytes
         most = raw + raw // 1000 + 64 if self._deflated else raw
-        sizes: dict[int, int] = {}
+        sizes = np.zeros(len(self), np.uint32)
+
+        def note(chunk: Any) -> None:
+            if chunk.chunk_offset[0] < len(sizes):
+                sizes[chunk.chunk_offset[0]] = min(chunk.size, 2**32 - 1)
+
         with _refusing_damage(self.where):
-            self._dataset.id.chunk_iter(lambda c: sizes.__setitem__(c.chunk_offset[0], c.size))
-        for row, size in sizes.items():
-            if size > most:
-                raise FolderError(f"{self.where}[{row}]: is stored in {size} bytes, too many")
-        if sizes.keys() != set(range(len(self))):
+            self._dataset.id.chunk_iter(note)
+        if (sizes > most).any():
+            row = int(np.argmax(sizes > most))
+            raise FolderError(f"{self.where}[{row}]: is stored in {sizes[row]} bytes, too many")
+        if not sizes.all():
             raise FolderError(f"{self.where}: lacks samples; it is damaged")
         return sizes
 

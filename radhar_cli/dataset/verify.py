@@ -12,6 +12,7 @@ from radhar_cli.config.identity import config_hash
 from radhar_cli.config.motion_files import with_folder
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.column_labels import label_names
+from radhar_cli.dataset.hub import wrong_hub_files
 from radhar_cli.dataset.identity import versions
 from radhar_cli.dataset.image_file import read_gray, read_rgb
 from radhar_cli.dataset.layout import COLUMN_LABEL, DATASET, PNG, Rows
@@ -80,6 +81,7 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Report:
                 _resynthesise(data, samples, report, motion)
             if (path.parent / PNG).is_dir():
                 _pngs(data, path.parent, report)
+            report.problems += wrong_hub_files(data, path.parent)
         return report
 
 

@@ -238,6 +238,7 @@ CHANGES: dict[str, object] = {
     "output.hdf5_level": 9,
     "output.power": "float16",
     "output.slow_time": True,
+    "output.license": "cc-by-4.0",
     "recordings": RecordingsConfig(window_s=2.0),
 }
 
@@ -249,7 +250,7 @@ def test_the_table_of_changes_knows_every_key() -> None:
 @pytest.mark.parametrize("key", list(CHANGES))
 def test_the_identity_is_every_key_that_decides_bytes(key: str) -> None:
     same = config_hash(changed(WITH_WALL, key, CHANGES[key])) == config_hash(WITH_WALL)
-    assert same == (key == "output.png")
+    assert same == (key in ("output.png", "output.license"))
 
 
 def test_the_identity_tells_a_wall_from_none() -> None:

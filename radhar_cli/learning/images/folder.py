@@ -110,9 +110,14 @@ def _names(found: Sequence[tuple[int, str, Path]]) -> tuple[str, ...]:
     """<class>/<image> of (split, class, file), with the ending where only that tells two apart."""
     alike = Counter((split, name, file.stem) for split, name, file in found)
     return tuple(
-        f"{name}/{file.stem if alike[split, name, file.stem] == 1 else file.name}"
+        f"{name}/{file.stem if alike[split, name, file.stem] == 1 else _below(name, file)}"
         for split, name, file in found
     )
+
+
+def _below(name: str, file: Path) -> str:
+    """The file's path below its class folder."""
+    return file.name if file.parent.name == name else f"{file.parent.name}/{file.name}"
 
 
 def loose_images(
@@ -157,12 +162,14 @@ def _folders(root: Path, inside: Path) -> list[str]:
 
 
 def image_files(folder: Path, inside: Path) -> list[Path]:
-    """Image files of a folder, in the order of their names.
+    """Image files of a class folder and of numbered folders in it, in the order of their names.
 
     Raises:
         FolderError: a link that leads out of `inside`.
     """
-    return sorted(p for p in _visible(folder, inside) if is_image(p))
+    numbered = (p for p in _visible(folder, inside) if p.name.isdecimal() and p.is_dir())
+    places = (folder, *sorted(numbered))
+    return sorted(p for place in places for p in _visible(place, inside) if is_image(p))
 
 
 def _visible(folder: Path, inside: Path) -> Iterator[Path]:

@@ -1,0 +1,43 @@
+"""`radhar convert`: a data set in a format that other tools read."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from radhar_cli.commands.tell import tell
+
+
+def convert(
+    dataset: Annotated[Path, typer.Argument(help="Folder that `generate` wrote, or dataset.h5.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder to make.")],
+    to: Annotated[
+        str, typer.Option(metavar="FORMAT", help="webdataset, parquet, npy or mat (MATLAB 7.3).")
+    ],
+) -> None:
+    """Write a data set as WebDataset tar files, Parquet, .npy arrays or a MATLAB file.
+
+    Example:
+
+      radhar convert datasets/quickstart -o shared/quickstart --to parquet
+
+    Labels, splits and the numbers drawn go with it, and a data card. The folder appears when it is
+    whole. Parquet needs `pip install 'radhar[formats]'`.
+    """
+    from radhar_cli.commands.learning_options import needs
+    from radhar_cli.commands.terminal import BarProgress
+    from radhar_cli.dataset.formats.convert import FORMATS
+    from radhar_cli.dataset.formats.convert import convert as write
+    from radhar_cli.errors import RadharError, did_you_mean
+
+    if to not in FORMATS:
+        hint = did_you_mean(to, FORMATS, f"should be one of {', '.join(FORMATS)}")
+        raise RadharError(f"--to {to}: is no format; {hint}")
+    if to == "parquet":
+        needs("formats", ("pyarrow",))
+    progress = BarProgress()
+    try:
+        samples = write(dataset, out, to, progress)
+    finally:
+        progress.close()
+    tell(f"{out}: {samples} samples as {to}; {out / 'README.md'} says how to read them")

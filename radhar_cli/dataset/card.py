@@ -1,0 +1,264 @@
+"""The data card, README.md: what strangers, and the Hugging Face Hub, should know of a data set."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import yaml
+
+from radhar_cli.config.schema import Config
+from radhar_cli.dataset.layout import GALLERY, SPLITS, Rows, png_folder
+from radhar_cli.dataset.reading import BLOCK, Dataset
+from radhar_cli.dataset.scene_fields import ERROR
+from radhar_cli.dataset.table import number_names
+
+# {configuration: {split: files}}
+Files = Mapping[str, Mapping[str, str]]
+
+_KINDS = {
+    "rtm": "range over time",
+    "stft": "Doppler over time, by a short-time Fourier transform",
+    "fsst": "Doppler over time, by the synchrosqueezed short-time Fourier transform",
+}
+_MEASURED = "measured: error of the simulated signal"
+_STEPS = {"compensated": "the torso's bulk Doppler taken off", "denoised": "denoised"}
+_SIZES = ((10**3, "n<1K"), (10**4, "1K<n<10K"), (10**5, "10K<n<100K"), (10**6, "100K<n<1M"),
+          (10**7, "1M<n<10M"), (10**8, "10M<n<100M"))  # fmt: skip
+BIBTEX = """\
+@article{gao2025radharsimulator,
+  title = {RadHARSimulator V1: Model-Based FMCW Radar Human Activity Recognition Simulator},
+  author = {Gao, Weicheng},
+  year = {2025},
+  journal = {arXiv preprint}
+}
+
+@software{radhar,
+  title = {radhar: labelled FMCW radar data sets for human activity recognition},
+  author = {{The radhar authors}},
+  version = {VERSION}
+}
+"""
+
+
+def png_files(data: Dataset) -> Files:
+    """The configurations of a folder with PNGs: one a map."""
+    present = _splits(data)
+    return {
+        name: {SPLITS[n]: f"{png_folder(name, n).as_posix()}/**" for n in present}
+        for name in data.config.maps
+    }
+
+
+def _splits(data: Dataset) -> list[int]:
+    return [number for number in range(len(SPLITS)) if (data.split == number).any()]
+
+
+def features(config: Config) -> list[dict[str, Any]]:
+    """Columns of a configuration, as `datasets` writes them down."""
+    names = {str(a.index): a.slug for a in config.every_class}
+    numbers = [
+        {"name": name, "dtype": "int64" if name == "subject" else "float64"}
+        for name in number_names(config)
+    ]
+    return [
+        {"name": "image", "dtype": "image"},
+        {"name": "label", "dtype": {"class_label": {"names": names}}},
+        {"name": "index", "dtype": "int64"},
+        *numbers,
+    ]
+
+
+def configurations(config: Config, files: Files, described: bool) -> list[dict[str, Any]]:
+    """`configs` of the front matter, with the columns of each where they are described."""
+    return [
+        {
+            "config_name": name,
+            "data_files": [{"split": split, "path": path} for split, path in parts.items()],
+            **({"features": features(config)} if described else {}),
+        }
+        for name, parts in files.items()
+    ]
+
+
+def card(data: Dataset, files: Files, reading: str, described: bool = True) -> str:
+    """The text of README.md.
+
+    Args:
+        data: the data set.
+        files: what `load_dataset` is to read; nothing where that cannot read the format.
+        reading: Markdown, how to read what lies beside the card.
+        described: whether the columns of the files are those of `features`.
+    """
+    config, count = data.config, len(data)
+    measured = config.recorded is not None
+    front = {
+        "license": config.output.license or "unknown",
+        "task_categories": ["image-classification"],
+        "tags": ["radar", "fmcw", "micro-doppler", "human-activity-recognition", "radhar"]
+        + ([] if measured else ["synthetic"]),
+        "size_categories": [next((name for most, name in _SIZES if count < most), "n>100M")],
+        **({"configs": configurations(config, files, described)} if files else {}),
+    }
+    title = f"{'Measured' if measured else 'Simulated'} radar maps of human activities"
+    parts = [
+        f"---\n{yaml.safe_dump(front, sort_keys=False, default_flow_style=None, width=100)}---",
+        f"# {title}",
+        _summary(data),
+        f"![Some samples of each class]({GALLERY})",
+        "## Reading it",
+        reading,
+        "## Maps",
+        _maps(data),
+        "## Classes and split",
+        _classes(data),
+        "## Numbers of a sample",
+        _numbers(data),
+        "## What to know before using it",
+        _cautions(data),
+        "## How it was made",
+        _making(data),
+        "## Licence and citation",
+        _licence(config),
+        f"```bibtex\n{BIBTEX.replace('VERSION', data.file.text('radhar_version'))}```",
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+def table(head: Sequence[str], lines: Sequence[Sequence[object]]) -> str:
+    """A Markdown table."""
+    rows = [head, ["---"] * len(head), *lines]
+    return "\n".join(f"| {' | '.join(map(str, row))} |" for row in rows)
+
+
+def _summary(data: Dataset) -> str:
+    config, (height, width) = data.config, data.config.image.size_px
+    classes, maps = len(config.chosen_activities), len(config.maps)
+    what = (
+        f"{len(data):,} samples of {classes} classes, {maps} map{'s' * (maps > 1)} of each, "
+        f"{height} x {width} pixels: "
+    )
+    if config.recorded is not None:
+        return (
+            f"{what}what a radar recorded of people, cut into windows of "
+            f"{config.recorded.window_s:g} s."
+        )
+    walled = "through a wall" if config.wall is not None else "in free space"
+    return (
+        f"{what}what an FMCW radar sees of one moving person {walled}, simulated from a model of "
+        "the body, the waves and the receiver. Nobody was recorded. Every number of a scene (who "
+        "moves, where, how fast, how much noise) was drawn, and stands beside its image."
+    )
+
+
+def _maps(data: Dataset) -> str:
+    lines = []
+    for name in data.config.maps:
+        first, *steps = name.split("_")
+        says = ", ".join([_KINDS[first], *(_STEPS[step] for step in steps)])
+        edges, unit = data.extent(name), "m" if name == "rtm" else "Hz"
+        if edges is None:
+            lines.append([f"`{name}`", says, "/extent", "/extent"])
+            continue
+        left, right, bottom, top = edges
+        lines.append(
+            [f"`{name}`", says, f"{bottom:.6g} to {top:.6g} {unit}", f"{left:.4g} to {right:.4g} s"]
+        )
+    image = data.config.image
+    level = (
+        f"255 is the largest power of the image, 0 is {image.dynamic_range_db:g} dB below it or "
+        "less, linear in dB between"
+        if image.kind == "decibel"
+        else "255 where the cell exceeds its CFAR threshold, else 0"
+    )
+    edges_differ = (
+        ""
+        if all(data.extent(name) for name in data.config.maps)
+        else (" Where edges differ from sample to sample they are in /extent of dataset.h5.")
+    )
+    return (
+        table(["map", "power", "rows, bottom to top", "columns, left to right"], lines)
+        + f"\n\nA pixel is a grey level: {level}. What comes nearer has positive Doppler."
+        + edges_differ
+    )
+
+
+def _classes(data: Dataset) -> str:
+    present = _splits(data)
+    lines = []
+    for activity, rows in Rows.of(data.config).classes():
+        counts = np.bincount(data.split[rows], minlength=len(SPLITS))
+        lines.append([activity.index, f"`{activity.slug}`", *(counts[n] for n in present)])
+    by = "sample: every sample was drawn on its own"
+    if data.config.split.subjects is not None:
+        by = f"person: nobody of {data.config.split.subjects} is in two of its parts"
+    return table(["label", "class", *(SPLITS[n] for n in present)], lines) + f"\n\nSplit by {by}."
+
+
+def _numbers(data: Dataset) -> str:
+    """What was drawn, from where to where, and what all samples share."""
+    keys = {field.name: (field.unit, f"`{field.key}`") for field in data.fields}
+    keys |= {"subject": ("1", "number of the person"), ERROR.name: (ERROR.unit, _MEASURED)}
+    drawn, shared = [], []
+    for name in number_names(data.config):
+        (low, high), (unit, key) = _reach(data, name), keys[name]
+        if low < high:
+            drawn.append([f"`{name}`", f"{low:.6g}", f"{high:.6g}", _unit(unit), key])
+        elif low == high:
+            shared.append([f"`{name}`", f"{low:.6g}", _unit(unit), key])
+    parts = [
+        "Columns beside the label, in SI units; empty where a number does not apply to the "
+        "activity. `index` counts the samples of a class: label and index name a sample in every "
+        "form of this data set.",
+        table(["column", "smallest", "largest", "unit", "drawn by (config.yaml)"], drawn),
+        "The same in all samples that it applies to:",
+        table(["column", "value", "unit", "config.yaml"], shared),
+    ]
+    return "\n\n".join(parts if shared else parts[:2])
+
+
+def _unit(unit: str) -> str:
+    return "" if unit == "1" else unit
+
+
+def _reach(data: Dataset, name: str) -> tuple[float, float]:
+    """Smallest and largest of a column's numbers; (inf, -inf) of none."""
+    low, high = np.inf, -np.inf
+    for start in range(0, len(data), BLOCK):
+        values = data.scene[name].rows(start, start + BLOCK).astype(float)
+        values = values[~np.isnan(values)]
+        low, high = values.min(initial=low), values.max(initial=high)
+    return float(low), float(high)
+
+
+def _cautions(data: Dataset) -> str:
+    said = [str(warning["message"]) for warning in data.warnings]
+    if data.config.recorded is None:
+        said.append(
+            "simulated data: a network that is accurate on them need not be so on a real radar"
+        )
+    else:
+        said.append("config.yaml names files and persons as the manifest of the recordings does")
+    return "\n".join(f"- {' '.join(message.split())}" for message in said) or "- nothing was found"
+
+
+def _making(data: Dataset) -> str:
+    config = data.config
+    made = ", ".join(
+        f"{library} {data.file.text(f'{library}_version')}"
+        for library in ("radhar", "numpy", "scipy", "h5py", "pillow")
+    )
+    if config.recorded is not None:
+        return f"`radhar generate --recordings`, seed {config.seed}; {made}."
+    return (
+        f"`radhar generate config.yaml -o OUT`, seed {config.seed}, makes the same bytes again "
+        f"with {made}. Motion: `{config.motion.model}`; echo: `{config.engine.kind}` engine."
+    )
+
+
+def _licence(config: Config) -> str:
+    if config.output.license is None:
+        return (
+            "No licence was chosen: whoever publishes this data set puts one at `license:` in the "
+            "first lines of this file. Please cite:"
+        )
+    return f"Licence: {config.output.license}. Please cite:"

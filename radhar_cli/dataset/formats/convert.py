@@ -1,0 +1,40 @@
+"""A data set in a format that other tools read; the new folder appears when it is whole."""
+
+import tempfile
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+from typing import TypeAlias
+
+from radhar_cli.dataset.reading import Dataset, open_dataset
+from radhar_cli.errors import FolderError
+from radhar_cli.progress import Progress
+
+FORMATS = ("webdataset", "parquet", "npy", "mat")
+Writer: TypeAlias = Callable[[Dataset, Path, Progress], None]
+
+
+def convert(path: Path, out: Path, to: str, progress: Progress) -> int:
+    """Write a data set in another format; return its number of samples.
+
+    Args:
+        path: folder that `generate` wrote, or dataset.h5.
+        out: folder to make.
+        to: one of FORMATS.
+        progress: receives progress.
+
+    Raises:
+        FolderError: the data set cannot be read or is damaged, or there is something at `out`.
+    """
+    if out.exists() or out.is_symlink():
+        raise FolderError(f"{out}: is there already; -o should name a new folder")
+    write: Writer = import_module(f"radhar_cli.dataset.formats.{to}").write
+    with open_dataset(path) as data:
+        out.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix=f".{out.name}.", dir=out.parent) as scratch:
+            unfinished = Path(scratch, "set")
+            unfinished.mkdir()
+            progress.stage(to, len(data), 0)
+            write(data, unfinished, progress)
+            unfinished.rename(out)
+        return len(data)

@@ -1,0 +1,83 @@
+"""Parquet files with the images in them, a folder a map, as the Hugging Face Hub keeps them."""
+
+import json
+from itertools import islice
+from math import prod
+from pathlib import Path
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from radhar_cli.config.schema import Config
+from radhar_cli.dataset.formats.checked import Samples, describe, files_of_split, present_splits
+from radhar_cli.dataset.layout import Rows
+from radhar_cli.dataset.reading import Dataset
+from radhar_cli.dataset.table import Entry, number_names
+from radhar_cli.progress import Progress
+
+GROUP, GROUP_BYTES = 256, 2**26  # samples that are written together, and their pixels
+
+
+def write(data: Dataset, folder: Path, progress: Progress) -> None:
+    """Write <map>/<split>-<number>-of-<files>.parquet."""
+    schema, samples = schema_of(data.config), Samples(data)
+    group = max(1, min(GROUP, GROUP_BYTES // prod(data.config.image.size_px)))
+    for name in data.config.maps:
+        (folder / name).mkdir()
+        for split, part in present_splits(data):
+            for number, (files, here) in enumerate(files_of_split(data, split, 1)):
+                path = folder / name / f"{part}-{number:05d}-of-{files:05d}.parquet"
+                with pq.ParquetWriter(path, schema, use_dictionary=False) as file:
+                    while some := list(islice(here, group)):
+                        file.write_table(_table(data, name, some, samples, schema))
+                        progress.advance(len(some) if name == data.config.maps[0] else 0)
+    parts = [part for _, part in present_splits(data)]
+    files_of = {n: {part: f"{n}/{part}-*.parquet" for part in parts} for n in data.maps}
+    describe(data, folder, files_of, _reading(data), described=True)
+
+
+def schema_of(config: Config) -> pa.Schema:
+    """Columns, and what `datasets` makes of them."""
+    names = number_names(config)
+    kinds = {name: "int64" if name == "subject" else "float64" for name in names}
+    image = pa.struct([("bytes", pa.binary()), ("path", pa.string())])
+    numbers = [(name, pa.type_for_alias(kind)) for name, kind in kinds.items()]
+    features = {
+        "image": {"_type": "Image"},
+        "label": {"names": [a.slug for a in config.every_class], "_type": "ClassLabel"},
+        **{n: {"dtype": k, "_type": "Value"} for n, k in {"index": "int64", **kinds}.items()},
+    }
+    columns = [("image", image), ("label", pa.int64()), ("index", pa.int64()), *numbers]
+    said = json.dumps({"info": {"features": features}})
+    return pa.schema(columns, metadata={"huggingface": said})
+
+
+def _table(
+    data: Dataset, name: str, here: list[Entry], samples: Samples, schema: pa.Schema
+) -> pa.Table:
+    rows, numbers = Rows.of(data.config), zip(*(entry.values for entry in here), strict=True)
+    images = [
+        {"bytes": samples.png(name, entry.row), "path": rows.file_name(entry.row)} for entry in here
+    ]
+    columns = [
+        images,
+        [entry.number for entry in here],
+        [entry.place for entry in here],
+        *([None if v != v else v for v in values] for values in numbers),
+    ]
+    arrays = [pa.array(c, f.type) for c, f in zip(columns, schema, strict=True)]
+    return pa.Table.from_arrays(arrays, schema=schema)
+
+
+def _reading(data: Dataset) -> str:
+    name = data.config.maps[0]
+    return f"""\
+```python
+from datasets import load_dataset
+
+data = load_dataset("FOLDER OR NAME ON THE HUB", "{name}")  # one configuration a map
+sample = data["train"][0]     # image, label, index and the numbers of the sample
+sample["image"]               # numpy.asarray(...): grey levels; .convert("RGB"): colours
+```
+
+Samples stand in turn, one of each class. `image.bytes` of a row is a PNG file."""

@@ -1,0 +1,59 @@
+"""WebDataset: tar files of samples, each with a PNG a map, its class and what was drawn."""
+
+import io
+import json
+import tarfile
+from pathlib import Path
+from typing import Any
+
+from radhar_cli.dataset.formats.checked import Samples, describe, files_of_split, present_splits
+from radhar_cli.dataset.layout import Rows
+from radhar_cli.dataset.reading import Dataset
+from radhar_cli.dataset.table import Entry, number_names
+from radhar_cli.progress import Progress
+
+
+def write(data: Dataset, folder: Path, progress: Progress) -> None:
+    """Write <split>-<number>.tar with <class>-<index>.<map>.png, .cls and .json of each sample."""
+    samples, rows, names = Samples(data), Rows.of(data.config), number_names(data.config)
+    for split, part in present_splits(data):
+        for number, (_, here) in enumerate(files_of_split(data, split, len(data.maps))):
+            path = folder / f"{part}-{number:06d}.tar"
+            with tarfile.open(path, "w", format=tarfile.USTAR_FORMAT) as tar:
+                for entry in here:
+                    key = f"{entry.label}-{rows.name(entry.row)}"
+                    for name in data.config.maps:
+                        _add(tar, f"{key}.{name}.png", samples.png(name, entry.row))
+                    _add(tar, f"{key}.cls", str(entry.number).encode())
+                    _add(tar, f"{key}.json", json.dumps(said(entry, names)).encode())
+                    progress.advance(1)
+    files = {"default": {part: f"{part}-*.tar" for _, part in present_splits(data)}}
+    describe(data, folder, files, _reading(data), described=False)
+
+
+def said(entry: Entry, names: list[str]) -> dict[str, Any]:
+    """The line of the table of a sample; what does not apply to its activity is null."""
+    numbers = {k: None if v != v else v for k, v in zip(names, entry.values, strict=True)}
+    return {"label": entry.label, "index": entry.place, **numbers}
+
+
+def _add(tar: tarfile.TarFile, name: str, data: bytes) -> None:
+    """Add a file without owner and time: the same data set makes the same bytes."""
+    about = tarfile.TarInfo(name)
+    about.size = len(data)
+    tar.addfile(about, io.BytesIO(data))
+
+
+def _reading(data: Dataset) -> str:
+    name = data.config.maps[0]
+    return f"""\
+```python
+import webdataset
+
+train = webdataset.WebDataset("train-000000.tar", shardshuffle=False).decode("pil")
+sample = next(iter(train))    # "{name}.png" and other maps, "cls", "json"
+```
+
+`cls` is the label, `json` has label, index and the numbers of the sample. Samples stand in turn,
+one of each class. `datasets.load_dataset("FOLDER OR NAME ON THE HUB")` reads the same files; the
+pixels of the PNG files are grey levels, their palette has the colours."""

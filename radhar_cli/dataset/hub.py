@@ -1,0 +1,106 @@
+"""The output folder as a data set of the Hugging Face Hub: data card, picture, metadata.csv."""
+
+from pathlib import Path
+
+from radhar_cli.config.yaml_reader import parse_yaml
+from radhar_cli.dataset.card import card, configurations, png_files
+from radhar_cli.dataset.files import refuse_links, write_whole
+from radhar_cli.dataset.gallery import gallery_png
+from radhar_cli.dataset.image_file import image_size
+from radhar_cli.dataset.layout import CARD, GALLERY, PNG
+from radhar_cli.dataset.metadata_csv import write_metadata, wrong_metadata
+from radhar_cli.dataset.reading import Dataset
+from radhar_cli.errors import ConfigError, FolderError
+from radhar_cli.untrusted import read_text
+
+MAX_CARD = 2**20
+
+
+def write_hub_files(source: Path, folder: Path, png: bool) -> None:
+    """Write what is missing of the card, its picture and the metadata of the images.
+
+    A card that was written before the folder had images, and not changed since, is written anew.
+
+    Args:
+        source: dataset.h5, or what is going to be it.
+        folder: the output folder.
+        png: whether the folder has images.
+    """
+    with Dataset(source, folder) as data:
+        if png:
+            write_metadata(data, folder)
+        for name in (GALLERY, CARD):
+            refuse_links(folder, folder / name)
+        if not (folder / GALLERY).exists():
+            write_whole(folder, folder / GALLERY, gallery_png(data))
+        path = folder / CARD
+        if not path.exists() or (png and _is_without_images(data, path)):
+            write_whole(folder, path, folder_card(data, png).encode())
+
+
+def _is_without_images(data: Dataset, path: Path) -> bool:
+    """Whether a card is what `write_hub_files` wrote for a folder without images."""
+    text = path.read_bytes()
+    return b"\nconfigs:" not in text and text == folder_card(data, False).encode()
+
+
+def folder_card(data: Dataset, png: bool) -> str:
+    """The data card of an output folder."""
+    name = data.config.maps[0]
+    h5 = (
+        "`dataset.h5` holds everything for h5py and MATLAB: `/maps/<map>` (uint8), `/label`, "
+        "`/split`, `/scene/<column>`."
+    )
+    if not png:
+        return card(
+            data,
+            {},
+            f"{h5} `radhar convert . -o OUT --to parquet` makes a data set of it that "
+            "`datasets.load_dataset` reads.",
+        )
+    return card(
+        data,
+        png_files(data),
+        f"""\
+```python
+from datasets import load_dataset
+
+data = load_dataset("FOLDER OR NAME ON THE HUB", "{name}")  # one configuration a map
+sample = data["train"][0]     # image, label, index and the numbers of the sample
+sample["image"]               # numpy.asarray(...): grey levels; .convert("RGB"): colours
+```
+
+The same images lie in class folders for torchvision's `ImageFolder("png/{name}/train")`, which
+numbers the classes by the alphabet. {h5}""",
+    )
+
+
+def wrong_hub_files(data: Dataset, folder: Path) -> list[str]:
+    """What is wrong with the card, its picture and the metadata, a line each.
+
+    A card's text, its licence and more are its owner's to change; what `load_dataset` goes by is
+    not. A folder without card and picture is no worse for it.
+    """
+    problems = wrong_metadata(data, folder) if (folder / PNG).is_dir() else []
+    try:
+        if (folder / GALLERY).exists():
+            image_size(folder / GALLERY)
+        if (folder / CARD).exists():
+            problems += _wrong_card(data, folder)
+    except FolderError as error:
+        problems.append(str(error))
+    return problems
+
+
+def _wrong_card(data: Dataset, folder: Path) -> list[str]:
+    try:
+        _, front, _ = f"{read_text(folder / CARD, MAX_CARD)}\n---\n---\n".split("---\n", 2)
+        document, _ = parse_yaml(front, CARD)
+    except (OSError, UnicodeDecodeError, ConfigError) as error:
+        return [f"{CARD}: cannot be read ({getattr(error, 'strerror', None) or error})"]
+    found = document.get("configs") if isinstance(document, dict) else None
+    if found is None or found == configurations(data.config, png_files(data), True):
+        return []
+    return [
+        f"{CARD}: its configs are not the maps here; where there is no card `generate` writes one"
+    ]

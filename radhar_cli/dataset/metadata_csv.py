@@ -1,0 +1,78 @@
+"""metadata.csv beside the images of a map and split: what `load_dataset` reads of each image."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+
+from radhar_cli.dataset.files import refuse_links, unfinished_path
+from radhar_cli.dataset.layout import METADATA, SPLITS, Rows, png_folder
+from radhar_cli.dataset.reading import Dataset
+from radhar_cli.dataset.table import entries, number_names
+from radhar_cli.untrusted import regular_size
+
+
+def lines(data: Dataset) -> Iterator[tuple[int | None, bytes]]:
+    """(split, line) of the files of all splits; the first line belongs to each of them."""
+    rows = Rows.of(data.config)
+    yield None, _line(["file_name", "label", "index", *number_names(data.config)])
+    for entry in entries(data):
+        numbers = ("" if value != value else repr(value) for value in entry.values)
+        cells = [rows.file_name(entry.row), entry.label, str(entry.place), *numbers]
+        yield entry.split, _line(cells)
+
+
+def _line(cells: Sequence[str]) -> bytes:
+    return (",".join(cells) + "\n").encode()
+
+
+def paths(data: Dataset) -> list[tuple[int, Path]]:
+    """(split, path inside the output folder) of every file that there should be."""
+    present = [number for number in range(len(SPLITS)) if (data.split == number).any()]
+    return [(n, png_folder(name, n) / METADATA) for name in data.config.maps for n in present]
+
+
+def write_metadata(data: Dataset, folder: Path) -> None:
+    """Write the files that are not there, all of them line by line."""
+    missing = [(split, path) for split, path in paths(data) if not (folder / path).exists()]
+    if not missing:
+        return
+    unfinished = [unfinished_path(folder) for _ in missing]
+    unfinished[0].parent.mkdir(parents=True, exist_ok=True)
+    try:
+        with ExitStack() as stack:
+            files = [stack.enter_context(path.open("wb")) for path in unfinished]
+            for split, line in lines(data):
+                for (wanted, _), file in zip(missing, files, strict=True):
+                    if split in (None, wanted):
+                        file.write(line)
+        for source, (_, path) in zip(unfinished, missing, strict=True):
+            refuse_links(folder, (folder / path).parent)
+            (folder / path).parent.mkdir(parents=True, exist_ok=True)
+            source.replace(folder / path)
+    finally:
+        for path in unfinished:
+            path.unlink(missing_ok=True)
+
+
+def wrong_metadata(data: Dataset, folder: Path) -> list[str]:
+    """What is wrong with the files, a line each, but for maps that have no folder."""
+    found: dict[Path, str] = {}
+    with ExitStack() as stack:
+        files = []
+        for split, path in paths(data):
+            if not (folder / path).parent.parent.is_dir():
+                continue
+            try:
+                regular_size(folder / path)
+                files.append((split, path, stack.enter_context((folder / path).open("rb"))))
+            except OSError as error:
+                found[path] = f"cannot be read ({error.strerror})"
+        for number, (whose, line) in enumerate(lines(data)):
+            for split, path, file in files:
+                if whose in (None, split) and path not in found and file.read(len(line)) != line:
+                    what = line.partition(b",")[0].decode() if number else "its first line"
+                    found[path] = f"does not say of {what} what dataset.h5 does"
+        for _, path, file in files:
+            if path not in found and file.read(1):
+                found[path] = "goes on after the last sample"
+    return [f"{path}: {fault}" for path, fault in found.items()]

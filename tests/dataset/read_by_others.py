@@ -1,0 +1,76 @@
+"""Read what radhar wrote with `datasets`, `webdataset` and torchvision; print what they saw.
+
+A program of its own: the three take seconds to import.
+"""
+
+import hashlib
+import json
+import sys
+from pathlib import Path
+
+import datasets
+import numpy as np
+import webdataset
+from torchvision.datasets import ImageFolder
+
+
+def digest(levels: object) -> str:
+    return hashlib.sha256(np.asarray(levels).tobytes()).hexdigest()
+
+
+def hub(folder: Path, name: str | None) -> dict[str, object]:
+    """What load_dataset makes of a folder."""
+    found = datasets.load_dataset(str(folder), name)
+    parts = {}
+    for split, rows in found.items():
+        assert list(rows.features)[:3] == ["image", "label", "index"]
+        parts[split] = [
+            {
+                **row,
+                "image": digest(row["image"]),
+                "label": rows.features["label"].int2str(row["label"]),
+            }
+            for row in rows
+        ]
+    return {"parts": parts, "labels": rows.features["label"].names}
+
+
+def tars(folder: Path) -> dict[str, object]:
+    """What webdataset reads."""
+    parts = {}
+    for split in ("train", "validation", "test"):
+        files = sorted(map(str, folder.glob(f"{split}-*.tar")))
+        made = webdataset.WebDataset(files, shardshuffle=False, empty_check=False).decode("pil")
+        parts[split] = [
+            {
+                "key": one["__key__"],
+                "cls": one["cls"],
+                "json": one["json"],
+                "stft": digest(one["stft.png"]),
+            }
+            for one in made
+        ]
+    return parts
+
+
+def tree(folder: Path) -> list[tuple[str, str]]:
+    """(file, class) of what ImageFolder reads."""
+    found = ImageFolder(str(folder))
+    return [(str(Path(p).relative_to(folder)), found.classes[n]) for p, n in found.samples]
+
+
+if __name__ == "__main__":
+    datasets.disable_progress_bars()
+    place = Path(sys.argv[1])
+    in_tars = datasets.load_dataset(str(place / "webdataset"))
+    print(
+        json.dumps(
+            {
+                "folder": {name: hub(place / "set", name) for name in ("rtm", "stft")},
+                "parquet": {name: hub(place / "parquet", name) for name in ("rtm", "stft")},
+                "tars": tars(place / "webdataset"),
+                "hub_tars": {split: rows["cls"][:] for split, rows in in_tars.items()},
+                "tree": tree(place / "set/png/stft/train"),
+            }
+        )
+    )

@@ -1,0 +1,235 @@
+"""A data set in other formats, read with the libraries that they are made for."""
+
+import hashlib
+import json
+import os
+import subprocess
+import sys
+import tarfile
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+import yaml
+from command_line import OPERATORS, ROOT, radhar
+from listener import Listener
+from PIL import Image
+from scipy.io.matlab import matfile_version
+from small import fingerprint, small_config
+
+from radhar_cli.config import load_config
+from radhar_cli.dataset import layout
+from radhar_cli.dataset.build import build
+from radhar_cli.dataset.formats import checked, parquet
+from radhar_cli.dataset.formats.convert import FORMATS, convert
+
+READER = Path(__file__).with_name("read_by_others.py")
+CONFIG = """
+seed: 3
+samples_per_class: {per_activity: {default: 5, home: 7}}
+classes: {home: {sequence: [grabbing, walking]}}
+activities: [punching, home]
+duration_s: 3.0
+radar: {carrier_hz: 10e9, bandwidth_hz: 1e9, prf_hz: 500}
+motion: {range_m: 5}
+snr_db: {choice: [30, 10]}
+on_invalid: redraw
+maps: [rtm, stft]
+image: {size_px: [12, 16]}
+split: {by: subject, subjects: 5, train: 0.6, validation: 0.2, test: 0.2}
+output: {power: float16, slow_time: true, column_labels: true}
+"""
+SPLITS = ("train", "validation", "test")
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A data set with small folders, and every format of it in several small files."""
+    place = tmp_path_factory.mktemp("formats")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(layout, "PNGS_A_FOLDER", 5)
+        patch.setattr(checked, "FILE_BYTES", 2 * 3 * 12 * 16)
+        patch.setattr(parquet, "GROUP", 2)
+        build(load_config(small_config(place, CONFIG)), place / "set", 1, Listener())
+        for name in FORMATS:
+            assert convert(place / "set", place / name, name, Listener()) == 12
+    return place
+
+
+@pytest.fixture
+def h5(place: Path) -> Any:
+    with h5py.File(place / "set/dataset.h5") as file:
+        yield file
+
+
+def line(h5: h5py.File, row: int) -> dict[str, Any]:
+    """What every table should say of a row."""
+    number, index = h5["sample_key"][row].tolist()
+    scene = {name: values[row].item() for name, values in h5["scene"].items()}
+    said = {name: None if value != value else value for name, value in scene.items()}
+    return {"label": h5.attrs["class_slugs"][number], "index": index, **said}
+
+
+def digest(levels: Any) -> str:
+    return hashlib.sha256(np.asarray(levels).tobytes()).hexdigest()
+
+
+def rows_of(h5: h5py.File, split: str) -> list[int]:
+    """Rows of a split in the order of the tables: classes take turns."""
+    key = h5["sample_key"][:]
+    rows = np.flatnonzero(h5["split"][:] == SPLITS.index(split)).tolist()
+    return sorted(rows, key=lambda row: (key[row, 1], row))
+
+
+def test_their_own_libraries_read_what_we_wrote(place: Path, h5: h5py.File, tmp_path: Path) -> None:
+    paths = os.pathsep.join([str(OPERATORS), str(ROOT)])
+    done = subprocess.run(
+        [sys.executable, READER, place],
+        capture_output=True,
+        text=True,
+        env={**os.environ, "PYTHONPATH": paths, "HF_HOME": str(tmp_path), "HF_HUB_OFFLINE": "1"},
+    )
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    for form in ("folder", "parquet"):
+        for name in ("rtm", "stft"):
+            there = found[form][name]
+            assert there["labels"] == list(h5.attrs["class_slugs"])
+            for split in SPLITS:
+                right = [
+                    {"image": digest(h5[f"maps/{name}"][row]), **line(h5, row)}
+                    for row in rows_of(h5, split)
+                ]
+                assert there["parts"][split] == right
+    for split in SPLITS:
+        for row, one in zip(rows_of(h5, split), found["tars"][split], strict=True):
+            assert one["json"] == line(h5, row)
+            assert one["cls"] == h5["label"][row]
+            assert one["key"] == f"{one['json']['label']}-{one['json']['index']:05d}"
+            path = next((place / "set/png/stft").rglob(f"{one['key'].replace('-', '/**/')}.png"))
+            with Image.open(path) as image:
+                assert one["stft"] == digest(image.convert("RGB"))
+        assert found["hub_tars"][split] == [int(h5["label"][row]) for row in rows_of(h5, split)]
+    train = place / "set/png/stft/train"
+    files = sorted(path.relative_to(train) for path in train.rglob("*.png"))
+    assert sorted(found["tree"]) == [[str(path), path.parts[0]] for path in files]
+    assert any("home/0001/" in path for path, _ in found["tree"])
+
+
+def test_files_are_cut_and_groups_are_small(place: Path, h5: h5py.File) -> None:
+    count = int((h5["split"][:] == 0).sum())
+    names = sorted(path.name for path in (place / "parquet/stft").glob("train-*"))
+    files = -(-count // 6)
+    assert names == [f"train-{n:05d}-of-{files:05d}.parquet" for n in range(files)]
+    held = [pq.ParquetFile(place / "parquet/stft" / name) for name in names]
+    assert [one.metadata.num_rows for one in held] == [6] * (count // 6) + [count % 6] * (
+        count % 6 > 0
+    )
+    assert held[0].metadata.row_group(0).num_rows == 2
+    assert len([*(place / "webdataset").glob("train-*.tar")]) == -(-count // 3)
+
+
+def test_parquet_holds_the_png_files(place: Path, h5: h5py.File) -> None:
+    for path in sorted((place / "parquet/rtm").iterdir()):
+        for one in pq.read_table(path).to_pylist():
+            image, split = one["image"], path.name.split("-")[0].replace("validation", "val")
+            assert image["bytes"] == (place / "set/png/rtm" / split / image["path"]).read_bytes()
+
+
+def test_tars_say_nothing_of_who_and_when(place: Path) -> None:
+    with tarfile.open(place / "webdataset/train-000000.tar") as tar:
+        assert {(one.mtime, one.uid, one.uname, one.mode) for one in tar} == {(0, 0, "", 0o644)}
+
+
+def _same(found: Any, right: Any) -> None:
+    assert found.dtype == right.dtype
+    assert found.tobytes() == np.ascontiguousarray(right).tobytes(), "NaN included"
+
+
+LARGE = ("maps/rtm", "maps/stft", "power/rtm", "power/stft", "slow_time")
+SMALL = ("label", "split", "sample_key", "column_label/stft", "scene/range", "scene/subject")
+
+
+def test_npy_has_every_array(place: Path, h5: h5py.File) -> None:
+    for name in (*LARGE, *SMALL, *(f"scene/{name}" for name in h5["scene"])):
+        _same(np.load(place / f"npy/{name}.npy", mmap_mode="r"), h5[name][:])
+    slugs = np.load(place / "npy/class_slugs.npy")
+    assert slugs.tolist() == list(h5.attrs["class_slugs"])
+
+
+def test_matlab_has_every_array_with_its_axes_turned(place: Path, h5: h5py.File) -> None:
+    path = place / "mat/dataset.mat"
+    assert matfile_version(path) == (2, 0)
+    assert path.read_bytes()[124:128] == b"\x00\x02IM"
+    with h5py.File(path) as file:
+        for name in ("maps/rtm", "maps/stft", *SMALL, *(f"scene/{name}" for name in h5["scene"])):
+            right = h5[name][:]
+            turned = file[name][:].reshape(right.shape[:1] + right.shape[:0:-1])
+            _same(np.moveaxis(turned.T, -1, 0), right)
+        matlab = {name: file[name].attrs["MATLAB_class"] for name in (*LARGE, *SMALL, "maps")}
+        assert matlab["maps"] == b"struct"
+        assert {matlab[f"maps/{name}"] for name in ("rtm", "stft")} == {b"uint8"}
+        assert (matlab["scene/range"], matlab["sample_key"]) == (b"double", b"int64")
+        power = np.moveaxis(file["power/stft"][:].T, -1, 0)
+        _same(power, h5["power/stft"][:].astype("f4"))
+        assert matlab["power/stft"] == matlab["slow_time"] == b"single"
+        assert file["slow_time"].dtype.names == ("real", "imag")
+        _same(file["slow_time"][:].view("c8"), h5["slow_time"][:])
+        cells = [file[one][:, 0].astype(np.uint8).tobytes() for one in file["class_slugs"][0]]
+        assert [cell.decode() for cell in cells] == list(h5.attrs["class_slugs"])
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_every_format_has_a_card_and_the_same_bytes_again(
+    place: Path, tmp_path: Path, name: str
+) -> None:
+    convert(place / "set/dataset.h5", tmp_path / "a", name, Listener())
+    convert(place / "set", tmp_path / "deep/b", name, Listener())
+    assert fingerprint(tmp_path / "a") == fingerprint(tmp_path / "deep/b")
+    assert {path.name for path in tmp_path.iterdir()} == {"a", "deep"}
+    card = (tmp_path / "a/README.md").read_text()
+    front = yaml.safe_load(card.split("---\n")[1])
+    assert "12 samples of 2 classes" in card
+    for one in front.get("configs", []):
+        for part in one["data_files"]:
+            assert [*(tmp_path / "a").glob(part["path"])]
+    assert (tmp_path / "a/gallery.png").read_bytes() == (place / "set/gallery.png").read_bytes()
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_damage_is_not_passed_on(place: Path, tmp_path: Path, name: str) -> None:
+    damaged = tmp_path / "dataset.h5"
+    damaged.write_bytes((place / "set/dataset.h5").read_bytes())
+    with h5py.File(damaged, "r+") as file:
+        file["maps/stft"][7, 3, 3] ^= 1
+    done = radhar("convert", damaged, "-o", tmp_path / "out", "--to", name)
+    assert done.returncode == 2
+    assert done.stderr.splitlines()[-1].endswith("/maps/stft[7]: does not match its checksum")
+    assert [path.name for path in tmp_path.iterdir()] == ["dataset.h5"], "nothing half written"
+
+
+def test_what_cannot_be_is_refused_in_a_line(place: Path, tmp_path: Path) -> None:
+    for arguments, said in (
+        ((place / "set", "-o", place / "npy", "--to", "npy"), "npy: is there already"),
+        ((place / "set", "-o", tmp_path / "x", "--to", "parket"), "did you mean 'parquet'?"),
+        ((place / "no", "-o", tmp_path / "x", "--to", "npy"), "no such file"),
+        ((place / "set/png", "-o", tmp_path / "x", "--to", "npy"), "no such file"),
+        ((place / "set/config.yaml", "-o", tmp_path / "x", "--to", "mat"), "is no HDF5 file"),
+    ):
+        done = radhar("convert", *arguments)
+        assert (done.returncode, len(done.stderr.splitlines())) == (2, 1), done.stderr
+        assert said in done.stderr
+    assert not [*tmp_path.iterdir()]
+
+
+def test_a_label_of_another_row_is_refused(place: Path, tmp_path: Path) -> None:
+    damaged = tmp_path / "dataset.h5"
+    damaged.write_bytes((place / "set/dataset.h5").read_bytes())
+    with h5py.File(damaged, "r+") as file:
+        file["label"][0] = 4
+    done = radhar("convert", damaged, "-o", tmp_path / "out", "--to", "webdataset")
+    assert done.returncode == 2
+    assert "/label[0]: is 4; should be 1, punching" in done.stderr

@@ -60,6 +60,6 @@ def __getattr__(name: str) -> object:
     try:
         return getattr(import_module(_INTERFACE[name]), name)
     except ModuleNotFoundError as error:
-        if error.name != "torch":
+        if (error.name or "").partition(".")[0] != "torch":
             raise
         raise ImportError(f"radhar.{name} needs PyTorch: pip install 'radhar[train]'") from None

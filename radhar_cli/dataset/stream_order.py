@@ -47,13 +47,21 @@ class StreamOrder:
         nth = turn * int(self._shares[label]) + int(times[place])
         return self._rows.activities[label], self._index(label, nth)
 
-    def labels(self, start: int, stop: int) -> Index:
-        """Classes of the samples start .. stop - 1, as places in the config's own list of them."""
-        size = int(self._shares.sum())
-        rounds = range(start // size, -(-stop // size))
-        found = [self._round(turn)[0] for turn in rounds]
-        first = start - rounds.start * size
-        return np.concatenate(found)[first : first + stop - start]
+    def number(self, activity: Activity, index: int) -> int | None:
+        """Number of a sample in the stream; None where it is left out."""
+        label = self._rows.activities.index(activity)
+        nth = self._nth(label, index)
+        if nth is None:
+            return None
+        turn, before = divmod(nth, int(self._shares[label]))
+        which, times = self._round(turn)
+        place = np.flatnonzero((which == label) & (times == before))[0]
+        return turn * which.size + int(place)
+
+    @property
+    def activities(self) -> tuple[Activity, ...]:
+        """The classes of the stream."""
+        return self._rows.activities
 
     @cached_property
     def _rows(self) -> Rows:
@@ -87,6 +95,21 @@ class StreamOrder:
         train = self._trained_with[label]
         beyond = nth - train.size
         return int(train[nth]) if beyond < 0 else self._rows.counts[label] + beyond
+
+    def _nth(self, label: int, index: int) -> int | None:
+        """The inverse of `_index`."""
+        if self.split == "all":
+            return index
+        if self.config.split.subjects is not None:
+            again, person = divmod(index, self.config.split.subjects)
+            at = int(np.searchsorted(self._persons, person))
+            there = at < self._persons.size and self._persons[at] == person
+            return again * self._persons.size + at if there else None
+        train, beyond = self._trained_with[label], index - self._rows.counts[label]
+        if beyond >= 0:
+            return train.size + beyond
+        at = int(np.searchsorted(train, index))
+        return at if at < train.size and train[at] == index else None
 
     @cached_property
     def _persons(self) -> Index:

@@ -69,7 +69,7 @@ class Samples(Dataset[dict[str, Any]]):
         return len(self._numbers)
 
     def __getitem__(self, row: int) -> dict[str, Any]:
-        _prepare_worker()
+        prepare_worker()
         return self._recipe(*self._rows[int(self._numbers[row])])
 
 
@@ -131,7 +131,7 @@ class Stream(IterableDataset[dict[str, Any]]):
         self.identity = identity_hash(identity(self.config))
 
     def __iter__(self) -> Iterator[dict[str, Any]]:
-        _prepare_worker()
+        prepare_worker()
         worker = get_worker_info()
         rank, ranks = self._shard or _rank()
         batch, step = (worker.id, worker.num_workers) if worker is not None else (0, 1)
@@ -155,6 +155,7 @@ def _rank() -> tuple[int, int]:
     return int(os.environ.get("RANK", 0)), int(os.environ.get("WORLD_SIZE", 1))
 
 
-def _prepare_worker() -> None:
+def prepare_worker() -> None:
+    """Prepare this process for synthesis if it is a worker of a DataLoader; else leave it."""
     if get_worker_info() is not None:
         prepare_process()

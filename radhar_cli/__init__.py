@@ -45,6 +45,9 @@ _INTERFACE = {
     "load_config": "radhar_cli.config",
     "simulate": "radhar_cli.simulation.simulate",
     "open_dataset": "radhar_cli.dataset.reading",
+    "sample": "radhar_cli.dataset.on_demand",
+    "Samples": "radhar_cli.learning.stream",
+    "Stream": "radhar_cli.learning.stream",
 }
 
 
@@ -54,4 +57,9 @@ def __getattr__(name: str) -> object:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from importlib import import_module
 
-    return getattr(import_module(_INTERFACE[name]), name)
+    try:
+        return getattr(import_module(_INTERFACE[name]), name)
+    except ModuleNotFoundError as error:
+        if (error.name or "").partition(".")[0] != "torch":
+            raise
+        raise ImportError(f"radhar.{name} needs PyTorch: pip install 'radhar[train]'") from None

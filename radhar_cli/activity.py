@@ -200,6 +200,13 @@ def own_activities() -> tuple[Activity, ...]:
     return tuple(_OWN.values())
 
 
+def know_activities(own: Iterable[Activity]) -> None:
+    """Make the classes of one's own known that another process knows."""
+    for activity in own:
+        if activity.motion is not None and activity not in own_activities():
+            add_activity(activity.slug, activity.motion, activity.paper)
+
+
 def is_new_slug(slug: str) -> bool:
     """Whether a class of one's own may have this name: none of the twelve's, fit for a folder."""
     taken = slug in _BY_NAME or slug == DEFAULT

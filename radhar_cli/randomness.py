@@ -14,6 +14,7 @@ SCENE = 2
 NOISE = 3
 SPLIT = 4
 TRAINING = 5
+ORDER = 6
 
 
 def stream(seed: int, purpose: int, *key: int, name: str) -> np.random.Generator:
@@ -21,7 +22,7 @@ def stream(seed: int, purpose: int, *key: int, name: str) -> np.random.Generator
 
     Args:
         seed: the data set's seed, at least 0.
-        purpose: PERSON, SCENE, NOISE, SPLIT or TRAINING.
+        purpose: PERSON, SCENE, NOISE, SPLIT, TRAINING or ORDER.
         key: what the stream belongs to, for example (class, index).
         name: the field or the noise, for example ``motion.range_m``.
     """

@@ -273,7 +273,7 @@ def depends_on(config: Config, activity: Activity, key: str) -> bool:
     return not key.startswith(REDRAWN) or key in PLACE or key in activity.uses(model)
 
 
-class _SameConfig:
+class SameConfig:
     """A config as a key: equal to itself alone, whatever it holds."""
 
     def __init__(self, config: Config) -> None:
@@ -283,11 +283,11 @@ class _SameConfig:
         return id(self.config)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, _SameConfig) and self.config is other.config
+        return isinstance(other, SameConfig) and self.config is other.config
 
 
 @lru_cache(maxsize=64)
-def _fixed_and_drawn(same: _SameConfig, activity: Activity) -> tuple[Config, dict[str, Any]]:
+def _fixed_and_drawn(same: SameConfig, activity: Activity) -> tuple[Config, dict[str, Any]]:
     """The config of an activity with all at its middle, and {dotted key: number} to be drawn."""
     config, drawn = same.config, dict[str, Any]()
 
@@ -303,7 +303,7 @@ def _fixed_and_drawn(same: _SameConfig, activity: Activity) -> tuple[Config, dic
 
 def _fixed(config: Config, activity: Activity, draw: Draw) -> Config:
     """The config of one scene; numbers that its activity does not depend on are at their middle."""
-    fixed, drawn = _fixed_and_drawn(_SameConfig(config), activity)
+    fixed, drawn = _fixed_and_drawn(SameConfig(config), activity)
     values = {key: draw(key, number) for key, number in drawn.items()}
     sections: dict[str, Any] = {
         key: _each_number(_part(fixed, key), key, lambda name, number: values.get(name, number))

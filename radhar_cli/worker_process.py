@@ -3,7 +3,10 @@
 import ctypes
 import os
 import platform
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
+from typing import Any
 
 _M_TRIM_THRESHOLD = -1
 _M_MMAP_THRESHOLD = -3
@@ -31,6 +34,23 @@ def prepare_process() -> None:
     os.environ.update(dict.fromkeys(_THREADS, "1"))
     threadpool_limits(limits=1)
     tune_malloc(_KEPT, 2 * _KEPT)
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Hold linear algebra to one thread meanwhile, in a process that does other things too."""
+    if prepare_process.cache_info().currsize:
+        yield
+        return
+    with _loaded_libraries().limit(limits=1, user_api="blas"):
+        yield
+
+
+@cache
+def _loaded_libraries() -> Any:
+    from threadpoolctl import ThreadpoolController
+
+    return ThreadpoolController()
 
 
 def tune_malloc(mapped_above: int, trimmed_above: int) -> None:

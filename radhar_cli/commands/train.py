@@ -7,6 +7,7 @@ import typer
 
 from radhar_cli.commands.learning_options import Classes
 from radhar_cli.commands.options import Overrides, resumable
+from radhar_cli.errors import FolderError
 
 EXAMPLE = """
 Example:
@@ -15,20 +16,29 @@ Example:
 
   radhar train datasets/measured -o runs/tuned --init runs/simulated --set learning_rate=1e-4
 
+  radhar train --stream configs/quickstart.yaml -o runs/endless    # every image new, none stored
+
 Several processes, or several GPUs: torchrun --nproc-per-node 2 -m radhar_cli train ...
 The same command, run again, goes on after the last finished epoch.
 """
 
 
 def train(
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder of the run.")],
     data: Annotated[
-        list[Path],
+        list[Path] | None,
         typer.Argument(
             help="dataset.h5, a folder that generate wrote, or a tree of class folders; several "
-            "are learned from as one (data_weights, sampling)."
+            "are learned from as one (data_weights, sampling). With --stream: to validate on."
         ),
-    ],
-    out: Annotated[Path, typer.Option("-o", "--out", help="Folder of the run.")],
+    ] = None,
+    stream: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="CONFIG",
+            help="Learn from samples of this config that are synthesised meanwhile, each once.",
+        ),
+    ] = None,
     config: Annotated[
         Path | None, typer.Option(help="YAML file; the paper's settings if not given.")
     ] = None,
@@ -52,7 +62,7 @@ def train(
 
     needs_torch()
     from radhar_cli.commands.training_view import TrainingView
-    from radhar_cli.config.reading import load_section
+    from radhar_cli.config.reading import load_config, load_section
     from radhar_cli.learning import training
     from radhar_cli.learning.images.classes import read_classes
     from radhar_cli.learning.settings import TrainConfig
@@ -63,12 +73,16 @@ def train(
         *(f"--{key} {key}={value}" for key, value in named.items() if value),
     ]
     settings = load_section(TrainConfig, config, overrides)
+    data = data or []
+    if not data and stream is None:
+        raise FolderError("DATA is missing; should name a data set, or --stream a config")
     apart(out, [*data, *([init] if init else [])])
     names = read_classes(classes) if classes else {}
     view = TrainingView()
     with resumable(f"the last finished epoch in {out}"):
         try:
-            outcome = training.train(settings, data, out, view, overwrite, names, init)
+            samples = load_config(stream) if stream else None
+            outcome = training.train(settings, data, out, view, overwrite, names, init, samples)
         finally:
             view.close()
     view.print_outcome(outcome)

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Any, TypeVar
 
-from radhar_cli.activity import Activity, add_activity, own_activities
+from radhar_cli.activity import Activity, know_activities, own_activities
 from radhar_cli.dataset.cluster import Cluster, connected
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.worker_process import prepare_process
@@ -55,9 +55,7 @@ def run_tasks(
 
 def _with_activities(own: tuple[Activity, ...], function: Callable[..., T], *task: Any) -> T:
     """Run a task in a worker that knows the classes its parent knows."""
-    for activity in own:
-        if activity.motion is not None and activity not in own_activities():
-            add_activity(activity.slug, activity.motion, activity.paper)
+    know_activities(own)
     return function(*task)
 
 

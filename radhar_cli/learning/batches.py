@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Protocol, SupportsInt
 
 import numpy as np
 import torch
@@ -9,9 +10,9 @@ from torch import Tensor
 from torch.utils.data import DataLoader, Dataset, Sampler
 
 from radhar_cli.arrays import Float, Index
-from radhar_cli.errors import FolderError
+from radhar_cli.errors import FolderError, SceneError
 from radhar_cli.learning.augmentation import Augmentation
-from radhar_cli.learning.images.image_set import ImageSet, repeated
+from radhar_cli.learning.images.image_set import Pixels, repeated
 from radhar_cli.randomness import TRAINING, stream
 
 MIN_PER_PROCESS = 2
@@ -58,10 +59,24 @@ def epoch_batches(order: Index, size: int, processes: int) -> list[Index]:
     return [order[start:stop] for start, stop in zip(starts, [*starts[1:], count], strict=True)]
 
 
+class Readable(Protocol):
+    """An image set, or what else has pixels to read."""
+
+    @property
+    def pixels(self) -> Pixels:
+        """Where they come from."""
+
+
+class Labels(Protocol):
+    """Label of every row."""
+
+    def __getitem__(self, row: int) -> SupportsInt: ...
+
+
 class _Rows(Dataset[tuple[Tensor, int]]):
     """Rows of an image set, read as they are asked for; `labels` in the model's numbering."""
 
-    def __init__(self, images: ImageSet, labels: Index, change: Augmentation | None) -> None:
+    def __init__(self, images: Readable, labels: Labels, change: Augmentation | None) -> None:
         self.images, self.labels, self.change = images, labels, change
 
     def __getitem__(self, place: tuple[int, int]) -> tuple[Tensor, int]:
@@ -91,8 +106,8 @@ class Reader:
 
     def __init__(
         self,
-        images: ImageSet,
-        labels: Index,
+        images: Readable,
+        labels: Labels,
         workers: int,
         pin: bool,
         change: Augmentation | None = None,
@@ -118,8 +133,9 @@ class Reader:
         self._sampler.batches = [[(int(row), epoch) for row in batch] for batch in batches]
         try:
             yield from self._loader
-        except FolderError as error:  # a worker's comes wrapped in its traceback
-            raise FolderError(str(error).strip().rpartition("FolderError: ")[2]) from None
+        except (FolderError, SceneError) as error:  # a worker's comes wrapped in its traceback
+            kind = type(error)
+            raise kind(str(error).strip().rpartition(f"{kind.__name__}: ")[2]) from None
 
 
 def pieces(rows: Index, size: int) -> list[Index]:

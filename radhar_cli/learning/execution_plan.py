@@ -1,5 +1,6 @@
 """How a run is executed on this machine: device, precision, micro batch, reading processes."""
 
+import os
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -38,17 +39,31 @@ class ExecutionPlan:
         return str(self.precision).removeprefix("torch.")
 
 
-def choose_execution_plan(config: TrainConfig, device: torch.device) -> ExecutionPlan:
-    """Fill in what the config leaves to `auto`; `micro_batch: auto` is the whole batch at once."""
+def choose_execution_plan(
+    config: TrainConfig, device: torch.device, synthesises: bool = False
+) -> ExecutionPlan:
+    """Fill in what the config leaves to `auto`; `micro_batch: auto` is the whole batch at once.
+
+    Args:
+        config: of the run.
+        device: that computes.
+        synthesises: the images are made while training.
+    """
     micro_batch = config.batch_size if config.micro_batch == "auto" else config.micro_batch
     precision = choose_precision(config.precision, device)
-    return ExecutionPlan(device, precision, micro_batch, _workers(config, device))
+    workers = _workers(config, device, synthesises)
+    return ExecutionPlan(device, precision, micro_batch, workers)
 
 
-def _workers(config: TrainConfig, device: torch.device) -> int:
-    """On the CPU the cores are busy with the network, and reading is a few per cent of a step."""
+def _workers(config: TrainConfig, device: torch.device, synthesises: bool) -> int:
+    """On the CPU the cores are busy with the network, and reading is a few per cent of a step.
+
+    Synthesis takes longer than a step: every core is to do it.
+    """
     if config.workers != "auto":
         return config.workers
     from radhar_cli.dataset.workers import cores
 
+    if synthesises:
+        return max(1, cores() // int(os.environ.get("LOCAL_WORLD_SIZE", 1)))
     return min(CUDA_WORKERS, cores()) if device.type == "cuda" else 0

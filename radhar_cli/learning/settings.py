@@ -63,6 +63,17 @@ class AugmentConfig(Section):
     band_width: Fraction = 0.1
 
 
+class StreamConfig(Section):
+    """Of `radhar train --stream`: what an epoch is, and what validates it.
+
+    An epoch has as many samples as the config's data set would train with, if no number is given;
+    without a data set to validate on, at most `validation_per_class` of its validation samples do.
+    """
+
+    samples_per_epoch: Annotated[Count, Field(ge=2)] | None = None
+    validation_per_class: Count = 100
+
+
 class TrainConfig(Section):
     """One training run; the defaults are the paper's Table II."""
 
@@ -84,6 +95,7 @@ class TrainConfig(Section):
     data_weights: tuple[Weight, ...] | None = None
     sampling: Literal["all", "balanced"] = "all"
     augment: AugmentConfig = AugmentConfig()
+    stream: StreamConfig = StreamConfig()
     device: Literal["auto", "cpu", "cuda", "mps"] = "auto"
     precision: Literal["auto", "float32", "bfloat16"] = "auto"
     workers: Annotated[Auto, _auto_or(0)] = "auto"

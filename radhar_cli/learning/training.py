@@ -13,8 +13,9 @@ import torch
 from torch import nn
 
 from radhar_cli import __version__
-from radhar_cli.arrays import Float
+from radhar_cli.arrays import Float, Index
 from radhar_cli.config.identity import resolved
+from radhar_cli.config.schema import Config
 from radhar_cli.dataset.folder import folder_lock
 from radhar_cli.errors import ConfigError, FolderError, RadharError
 from radhar_cli.learning import run_files
@@ -34,6 +35,12 @@ from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.joined import joined, sampling_weights
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.scan import content_hash, scan
+from radhar_cli.learning.images.synthesised import (
+    TrainingStream,
+    stream_and_validation,
+    stream_data,
+    streamed_scenes,
+)
 from radhar_cli.learning.machine import choose_device, out_of_memory, repeatable
 from radhar_cli.learning.models.build import build_model
 from radhar_cli.learning.process_group import (
@@ -45,7 +52,7 @@ from radhar_cli.learning.process_group import (
     on_rank_zero,
     process_group,
 )
-from radhar_cli.learning.run_folder import Epoch, RunMetadata, best_epoch
+from radhar_cli.learning.run_folder import Epoch, LearnedFrom, RunMetadata, best_epoch
 from radhar_cli.learning.run_summary import write_run_summary
 from radhar_cli.learning.schedule import rate
 from radhar_cli.learning.settings import AugmentConfig, TrainConfig
@@ -102,6 +109,7 @@ def train(
     overwrite: bool = False,
     names: Mapping[str, str | None] | None = None,
     start: Path | None = None,
+    stream: Config | None = None,
 ) -> Outcome:
     """Train `config` on `data` in `folder`, go on with it, or find it done.
 
@@ -109,16 +117,19 @@ def train(
 
     Args:
         config: what is learned, and how.
-        data: a data set, or several that are learned from as one.
+        data: a data set, or several that are learned from as one; with a stream, what is validated
+            on, or nothing.
         folder: of the run.
         progress: receives progress.
         overwrite: start again in a folder that holds a run.
         names: those that the classes get, None to leave one out.
         start: a run whose best weights and normalisation are started from; the last layer too if
             the classes are the same.
+        stream: config of samples that are synthesised while they are learned from, each once.
 
     Raises:
         FolderError: data that cannot be used.
+        ConfigError, SceneError: a stream that cannot be used.
         RunError: a folder that holds something else, or a damaged checkpoint.
         ModelError, MachineError: a network or a device that cannot be had.
         TrainingError: the loss is not finite; earlier checkpoints are kept.
@@ -127,10 +138,16 @@ def train(
         torch.set_num_threads(config.threads)
     device = choose_device(config.device)
     repeatable(device)
-    images = checked_images(config, data, names)
+    learned = None
+    if stream is None:
+        images = checked_images(config, data, names)
+    else:
+        paths = [data] if isinstance(data, Path) else list(data)
+        workers = choose_execution_plan(config, device, synthesises=True).workers
+        learned, images = stream_and_validation(config, stream, paths, names or {}, workers)
     with process_group(device) as group, folder_lock(folder) if group.is_main else nullcontext():
         return _Training.prepared(
-            config, images, folder, device, group, progress, overwrite, start
+            config, images, folder, device, group, progress, overwrite, start, learned
         ).run()
 
 
@@ -177,6 +194,7 @@ class _Training:
     model: nn.Module
     optimiser: torch.optim.Optimizer
     history: list[Epoch]
+    stream: TrainingStream | None = None
 
     @classmethod
     def prepared(
@@ -189,6 +207,7 @@ class _Training:
         progress: TrainingProgress,
         overwrite: bool = False,
         start: Path | None = None,
+        stream: TrainingStream | None = None,
     ) -> "_Training":
         least = MIN_PER_PROCESS * group.size
         if config.batch_size < least:
@@ -199,14 +218,24 @@ class _Training:
         torch.manual_seed(config.seed)
         model = build_model(config.model, len(images.classes), images.size)
         started = None if start is None else start_from(start, model, config, images)
-        plan = choose_execution_plan(config, device)
+        plan = choose_execution_plan(config, device, synthesises=stream is not None)
         if group.is_main:
-            progress.say(f"reading {len(images)} images of {len(images.classes)} classes")
+            many = f"{len(images)} images of {len(images.classes)} classes"
+            if stream is not None:
+                many = f"{images.rows('val').size} validation images; {stream.per_epoch} samples "
+                many += f"an epoch are synthesised by {plan.workers or 'no'} workers"
+            progress.say(f"reading {many}")
             for warning in _unbalanced(images):
                 progress.say(f"warning: {warning}")
             for note in started.notes if started else ():
                 progress.say(note)
-        metadata, digests = _metadata(config, images, plan, group, started)
+        metadata, digests = _metadata(config, images, plan, group, started, stream)
+        seen = streamed_scenes(metadata.data, images, images.rows("val"))
+        if seen and group.is_main:
+            progress.say(
+                f"warning: {seen} of the validation images show the person and motion of samples "
+                "of the stream; validate on data of another seed"
+            )
 
         def reserve() -> None:
             run.reserve_run(folder, metadata, overwrite)
@@ -225,6 +254,7 @@ class _Training:
             model=model,
             optimiser=optimiser_for(config, model),
             history=[],
+            stream=stream,
         )
 
     def run(self) -> Outcome:
@@ -252,11 +282,17 @@ class _Training:
             else None
         )
         pin = self.plan.device.type == "cuda"
-        reader = Reader(self.images, self.images.label, self.plan.workers, pin, change)
+        if self.stream is None:
+            reader = learner = Reader(
+                self.images, self.images.label, self.plan.workers, pin, change
+            )
+        else:
+            reader = Reader(self.images, self.images.label, 0, pin)
+            learner = Reader(self.stream, self.stream.label, self.plan.workers, pin, change)
         for epoch in range(resumed, self.config.epochs):
             began = time.perf_counter()
             torch.manual_seed(self._epoch_seed(epoch))
-            learned = self._learn(network, reader, epoch)
+            learned = self._learn(network, learner, epoch)
             seen = self._validate(reader, epoch)
             if self.group.is_main:
                 self._keep(epoch, learned, seen, time.perf_counter() - began)
@@ -344,18 +380,23 @@ class _Training:
         rng = stream(self.config.seed, TRAINING, epoch, self.group.rank, name="layers")
         return int(rng.integers(2**63))
 
+    def _epoch_rows(self, epoch: int) -> Index:
+        """Rows of the training images of an epoch, in the order in which they are shown."""
+        if self.stream is not None:
+            return self.stream.rows(epoch)
+        rows, config = self.images.rows("train"), self.config
+        balanced = config.sampling == "balanced"
+        weights = sampling_weights(self.images, rows, config.data_weights, balanced)
+        return rows[epoch_order(weights, config.seed, epoch)]
+
     def _learn(self, network: nn.Module, reader: Reader, epoch: int) -> tuple[float, float]:
         """One epoch of steps; returns mean loss and accuracy of what was seen on the way."""
-        rows = self.images.rows("train")
         config, group = self.config, self.group
-        weights = sampling_weights(
-            self.images, rows, config.data_weights, config.sampling == "balanced"
-        )
-        order = epoch_order(weights, config.seed, epoch)
-        batches = epoch_batches(order, config.batch_size, group.size)
+        rows = self._epoch_rows(epoch)
+        batches = epoch_batches(rows, config.batch_size, group.size)
         if group.is_main:
             self.progress.epoch(epoch + 1, config.epochs, len(batches))
-        mine = [rows[batch[group.rank :: group.size]] for batch in batches]
+        mine = [batch[group.rank :: group.size] for batch in batches]
         network.train()
         train_step = self._train_step
         totals: Float = np.zeros(3)
@@ -439,12 +480,24 @@ def _metadata(
     plan: ExecutionPlan,
     group: Group,
     started: StartingPoint | None,
+    stream: TrainingStream | None,
 ) -> tuple[RunMetadata, dict[int, str]]:
-    """Metadata of the run, and the digest of every image by row."""
-    rows = np.concatenate([images.rows("train"), images.rows("val")])
-    learned, checked = scan(images, images.rows("train")), scan(images, images.rows("val"))
-    digests = (*learned.digests, *checked.digests)
-    mean, sd = learned.mean, learned.sd
+    """Metadata of the run, and the digest of every stored training image by row."""
+    rows = images.rows("train") if stream is None else np.zeros(0, np.intp)
+    validating = images.rows("val")
+    learned, checked = scan(images, rows), scan(images, validating)
+    seen = np.concatenate([rows, validating])
+    data: LearnedFrom = {
+        "path": str(images.where),
+        "hash": content_hash(images, seen, (*learned.digests, *checked.digests)),
+        "train": rows.size,
+        "val": validating.size,
+    }
+    look = learned
+    if stream is not None:
+        look = stream.first
+        data |= stream_data(stream, data, config.epochs)
+    mean, sd = look.mean, look.sd
     if started is not None:
         mean, sd = started.normalisation.mean, started.normalisation.sd
     kept = {k: v for k, v in resolved(config).items() if k not in NOT_IDENTITY}
@@ -457,12 +510,7 @@ def _metadata(
         mean=(mean[0], mean[1], mean[2]),
         sd=(sd[0], sd[1], sd[2]),
         config=kept,
-        data={
-            "path": str(images.where),
-            "hash": content_hash(images, rows, digests),
-            "train": len(learned.digests),
-            "val": len(checked.digests),
-        },
+        data=data,
         work={
             "precision": plan.precision_name,
             "micro_batch": plan.micro_batch,
@@ -471,16 +519,15 @@ def _metadata(
         },
         versions={"radhar": __version__, "torch": torch.__version__, "numpy": np.__version__},
     )
-    return metadata, dict(zip(rows.tolist(), digests, strict=True))
+    return metadata, dict(zip(rows.tolist(), learned.digests, strict=True))
 
 
 def _write_trained_on(folder: Path, images: ImageSet, digests: dict[int, str]) -> None:
-    rows = images.rows("train").tolist()
     run.write_trained_on(
         folder,
-        [images.names[row] for row in rows],
-        [digests[row] for row in rows],
-        [images.scenes[row] if images.scenes else "" for row in rows],
+        [images.names[row] for row in digests],
+        [*digests.values()],
+        [images.scenes[row] if images.scenes else "" for row in digests],
     )
 
 

@@ -108,22 +108,27 @@ def signal_of(map_name: str) -> str:
     return f"signal_{suffix}" if suffix else "signal"
 
 
-def plan_images(config: Config) -> Plan:
-    """The plan of a data set: the image of every map, those of one signal together."""
+def plan_images(config: Config, entropy: bool = True) -> Plan:
+    """The plan of a data set: the image of every map, those of one signal together.
+
+    Args:
+        config: of the data set.
+        entropy: whether the maps' entropies are asked for.
+    """
     maps = sorted(config.maps, key=lambda name: SIGNALS.index(signal_of(name)))
     asked = [f"image:{name}" for name in maps]
-    if config.engine.kind == "direct" and set(maps) != {"rtm"}:
+    if config.engine.kind == "direct" and set(maps) - {"rtm"}:
         asked.append("accuracy")
     if config.output.slow_time:
         asked.append("signal")
     if config.output.column_labels:
         asked.append("motions")
-    return plan(products(config), asked, ["scene"])
+    return plan(products(config, entropy), asked, ["scene"])
 
 
-def products(config: Config) -> dict[str, Product]:
-    """Every product there could be under a config, by name."""
-    rows = (*_physics(config), *_echo(config), *_signals(config), *_maps(config))
+def products(config: Config, entropy: bool = True) -> dict[str, Product]:
+    """Every product there could be under a config, by name; images with or without entropy."""
+    rows = (*_physics(config), *_echo(config), *_signals(config), *_maps(config, entropy))
     if _gated(config):
         rows = (*rows, *_gate(config))
     return {row.name: row for row in rows}
@@ -491,7 +496,7 @@ def _gate(c: Config) -> Iterator[Product]:
         )
 
 
-def _maps(c: Config) -> Iterator[Product]:
+def _maps(c: Config, entropy: bool) -> Iterator[Product]:
     size, masks = c.image.size_px, ("cfar",) if c.image.kind == "cfar" else ()
 
     def rtm(profiles: RangeProfiles, w: Waveform, canceller: Canceller) -> PowerMap:
@@ -499,20 +504,20 @@ def _maps(c: Config) -> Iterator[Product]:
         return PowerMap(range_power(profiles.bins), Axis("range", "m", w.range_axis()), time)
 
     def rtm_image(found: PowerMap, cfar: CellAveraging | None = None) -> MapImage:
-        small = partial(reduced_map, found.power, size)
+        small = partial(reduced_map, found.power, size, entropy=entropy)
         return _image(c, cfar, small, found.extent, binary_exponent(found.power))
 
     needs = ("range_profiles", "waveform", "canceller")
     yield Product("rtm", needs, rtm, "power of the range profiles")
     if masks:
         yield Product("cfar", ("scene",), lambda s: cfar_of(s.config), "threshold of the masks")
-    yield Product("image:rtm", ("rtm", *masks), rtm_image, f"its {_shape(c)} and entropy")
+    yield Product("image:rtm", ("rtm", *masks), rtm_image, f"its {_shape(c, entropy)}")
     yield Product("frames", ("waveform",), lambda w: frames_of(c, w.duration, w.prf), "of the STFT")
     yield Product(
         "fsst_frames", ("waveform",), lambda w: fsst_frames_of(c, w.duration, w.prf), "of the FSST"
     )
     for signal in SIGNALS:
-        yield from _doppler_maps(c, signal)
+        yield from _doppler_maps(c, signal, entropy)
 
 
 class DopplerPower(NamedTuple):
@@ -528,7 +533,7 @@ class DopplerPower(NamedTuple):
     columns: Axis
 
 
-def _doppler_maps(c: Config, signal: str) -> Iterator[Product]:
+def _doppler_maps(c: Config, signal: str, entropy: bool) -> Iterator[Product]:
     """STFT and FSST of a signal, whole in float64, and their images.
 
     Images of the STFT come from float32. Those of the FSST do not: a coefficient that lies within
@@ -558,16 +563,17 @@ def _doppler_maps(c: Config, signal: str) -> Iterator[Product]:
         yield Product(
             f"image:{name}{suffix}",
             (*masks, *needs),
-            partial(_doppler_mask if masks else _doppler_image, c, power, is_single),
-            f"power of the {does}{', in float32' * is_single}; its {_shape(c)} and entropy",
+            partial(_doppler_mask if masks else _doppler_image, c, power, is_single, entropy),
+            f"power of the {does}{', in float32' * is_single}; its {_shape(c, entropy)}",
         )
 
 
 MakePower: TypeAlias = Callable[..., DopplerPower]
 
 
-def _shape(c: Config) -> str:
-    return "CFAR mask" if c.image.kind == "cfar" else "image"
+def _shape(c: Config, entropy: bool) -> str:
+    shape = "CFAR mask" if c.image.kind == "cfar" else "image"
+    return f"{shape} and entropy" if entropy else shape
 
 
 def image_of(config: Config, found: PowerMap) -> MapImage:
@@ -637,20 +643,25 @@ def _doppler_map(make: MakePower, *given: Any) -> PowerMap:
 
 
 def _doppler_mask(
-    c: Config, make: MakePower, single: bool, cfar: CellAveraging, *given: Any
+    c: Config, make: MakePower, single: bool, entropy: bool, cfar: CellAveraging, *given: Any
 ) -> MapImage:
-    return _doppler_image(c, make, single, *given, cfar=cfar)
+    return _doppler_image(c, make, single, entropy, *given, cfar=cfar)
 
 
 def _doppler_image(
-    c: Config, make: MakePower, single: bool, *given: Any, cfar: CellAveraging | None = None
+    c: Config,
+    make: MakePower,
+    single: bool,
+    entropy: bool,
+    *given: Any,
+    cfar: CellAveraging | None = None,
 ) -> MapImage:
     found = make(single, *given)
     again = (make(single, *given).blocks for _ in repeat(None))
     passes = chain([found.blocks], again)
 
     def small(of: Callable[[Float], Float] | None) -> Reduced:
-        return reduced(next(passes), found.columns.values.size, c.image.size_px, of)
+        return reduced(next(passes), found.columns.values.size, c.image.size_px, of, entropy)
 
     extent = (*found.columns.edges, *found.rows.edges)
     return _image(c, cfar, small, extent, 2 * found.exponent)

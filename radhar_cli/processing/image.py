@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache
-from math import ceil, floor, log, log10
+from math import ceil, floor, log, log10, nan
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,7 +20,7 @@ class Reduced(NamedTuple):
     Attributes:
         cells: the map, or a function of it, resized [height, width] in float32, row 0 the highest
             frequency or the farthest range, in the scale of the map.
-        entropy: of the map, bits.
+        entropy: of the map, bits; NaN where it was not asked for.
     """
 
     cells: Float
@@ -32,6 +32,7 @@ def reduced(
     columns: int,
     size: tuple[int, int],
     of: Callable[[Float], Float] | None = None,
+    entropy: bool = True,
 ) -> Reduced:
     """Resize a power map that comes in blocks of columns, and sum up its entropy.
 
@@ -43,14 +44,16 @@ def reduced(
         columns: of all blocks together.
         size: (height, width), pixels.
         of: what is resized instead of the power itself, such as its decibels.
+        entropy: whether it is asked for.
 
     Raises:
         ValueError: the map has an infinity or a NaN.
     """
     height, width = size
-    cells, entropy, first = np.zeros(size, np.float32), EntropySum(), 0
+    cells, summed, first = np.zeros(size, np.float32), EntropySum(), 0
     for block in blocks:
-        entropy.add(block)
+        if entropy:
+            summed.add(block)
         block = block if of is None else of(block)
         low = np.zeros((len(block), height), block.dtype)
         for rows, pixels, weights in _bands(0, block.shape[1], block.shape[1], height, low.dtype):
@@ -58,17 +61,21 @@ def reduced(
         for some, pixels, weights in _bands(first, len(block), columns, width, low.dtype):
             cells[:, pixels] += low[some].T @ weights
         first += len(block)
-    if not np.isfinite(entropy.total):
-        raise ValueError(f"the power map should be finite; it adds up to {entropy.total}")
-    return Reduced(cells[::-1], entropy.bits)
+    total = summed.total if entropy else float(cells.sum())
+    if not np.isfinite(total):
+        raise ValueError(f"the power map should be finite; it adds up to {total}")
+    return Reduced(cells[::-1], summed.bits if entropy else nan)
 
 
 def reduced_map(
-    power: Float, size: tuple[int, int], of: Callable[[Float], Float] | None = None
+    power: Float,
+    size: tuple[int, int],
+    of: Callable[[Float], Float] | None = None,
+    entropy: bool = True,
 ) -> Reduced:
     """`reduced` of a whole map [frequency or range, time] of any scale."""
     scaled = np.ldexp(power.T, -binary_exponent(power))
-    return reduced([scaled], power.shape[1], size, of)
+    return reduced([scaled], power.shape[1], size, of, entropy)
 
 
 def binary_exponent(power: Float) -> int:

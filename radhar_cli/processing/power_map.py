@@ -59,7 +59,7 @@ class MapImage:
 
     Attributes:
         levels: grey levels [height, width], row 0 at the top.
-        entropy: of the power map, bits.
+        entropy: of the power map, bits; NaN where nobody asked for it.
         extent: outer edges of the map (columns from, columns to, rows from, rows to).
         decibels: of the resized power below its largest, float16 [height, width], or None where
             nobody asked for them.

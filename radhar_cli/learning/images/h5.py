@@ -2,15 +2,17 @@
 
 import hashlib
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
-from radhar_cli.arrays import Levels
+from radhar_cli.arrays import Float, Levels
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset, open_dataset
+from radhar_cli.dataset.scene_fields import Field
 from radhar_cli.learning.images.image_set import ImageSet, class_order, repeated
 
 _WHO_AND_HOW = ("subject.", "motion.", "timing.", "recordings.part", "recordings.start_s")
@@ -70,10 +72,17 @@ def _one_number(value: object) -> float | None:
 
 def _scenes(data: Dataset, slugs: list[str]) -> tuple[str, ...]:
     """A fingerprint of who moved and how; radar, wall and noise do not enter."""
-    names = sorted(field.name for field in data.fields if field.key.startswith(_WHO_AND_HOW))
-    columns = [data.scene[name][:] for name in names]
+    columns = [data.scene[field.name][:] for field in who_and_how(data.fields)]
     table = np.stack(columns, axis=1) if columns else np.zeros((len(slugs), 0))
-    return tuple(
-        hashlib.blake2b(slug.encode() + row.tobytes(), digest_size=8).hexdigest()
-        for slug, row in zip(slugs, table, strict=True)
-    )
+    return tuple(fingerprint(slug, row) for slug, row in zip(slugs, table, strict=True))
+
+
+def who_and_how(fields: Iterable[Field]) -> list[Field]:
+    """The fields that say who moved and how, in the order in which a fingerprint has them."""
+    mine = (field for field in fields if field.key.startswith(_WHO_AND_HOW))
+    return sorted(mine, key=lambda field: field.name)
+
+
+def fingerprint(slug: str, values: Float) -> str:
+    """Of a scene of a class, from the values of `who_and_how` in SI units."""
+    return hashlib.blake2b(slug.encode() + values.tobytes(), digest_size=8).hexdigest()

@@ -1,0 +1,218 @@
+"""A sample on demand is the one of the data set, bit for bit, and nothing else is computed."""
+
+import pickle
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from command_line import process
+from listener import Listener
+from small import SMALL, small_config
+
+import radhar_cli as radhar
+from radhar_cli.config import load_config
+from radhar_cli.config.schema import Config
+from radhar_cli.dataset import on_demand
+from radhar_cli.dataset.build import build
+from radhar_cli.dataset.on_demand import Recipe, field_names, sample
+from radhar_cli.dataset.reading import Dataset, open_dataset
+from radhar_cli.errors import ConfigError, SceneError
+from radhar_cli.pipeline.plan import Plan
+from radhar_cli.pipeline.products import plan_images
+from radhar_cli.pipeline.run import run
+
+EVERYTHING = """
+on_invalid: redraw
+output: {png: false, power: float16, slow_time: true, column_labels: true}
+"""
+PERSONS = "\nsplit: {train: 0.5, validation: 0.5, by: subject, subjects: 2}\n"
+
+
+@pytest.fixture(scope="module")
+def config(tmp_path_factory: pytest.TempPathFactory) -> Config:
+    text = SMALL.replace("split: {train: 0.67, validation: 0.33}", "") + EVERYTHING + PERSONS
+    return load_config(small_config(tmp_path_factory.mktemp("config"), text))
+
+
+@pytest.fixture(scope="module")
+def built(config: Config, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("built")
+    build(config, folder, 1, Listener())
+    return folder
+
+
+def stored(data: Dataset, row: int, name: str) -> Any:
+    """What dataset.h5 has in a row, by the name of the dataset."""
+    kind, _, rest = name.partition("/")
+    if kind == "scene":
+        return data.scene[rest][row]
+    if name in data.large:
+        return data.large[name][row]
+    column = {
+        "entropy": lambda: data._entropy[rest],
+        "extent": lambda: data._extent[rest],
+        "column_label": lambda: data.column_label[rest],
+    }
+    if kind in column:
+        return column[kind]()[:][row]
+    return {"label": data.label, "sample_key": data.sample_key}[kind][row]
+
+
+def test_every_field_of_every_sample_is_that_of_the_data_set(config: Config, built: Path) -> None:
+    names = [name for name in field_names(config) if not name.startswith("largest_db/")]
+    with open_dataset(built) as data:
+        assert {"maps/rtm", "power/stft", "slow_time", "entropy/rtm", "scene/snr"} <= {*names}
+        for row in range(len(data)):
+            number, index = data.sample_key[row]
+            made = sample(config, data.class_slugs[number], int(index), names)
+            for name in names:
+                there, here = stored(data, row, name), np.asarray(made[name])
+                assert here.tobytes() == np.asarray(there, here.dtype).tobytes(), (row, name)
+                if name in data.large:
+                    assert made[name].dtype == there.dtype
+                    assert made[name].flags.c_contiguous
+
+
+@pytest.mark.parametrize(
+    "fields", [["maps/stft"], ["maps/fsst_compensated", "slow_time"], ["entropy/stft"]]
+)
+def test_a_field_does_not_depend_on_what_else_is_asked_for(
+    config: Config, fields: list[str]
+) -> None:
+    whole, alone = sample(config, "S12", 1, field_names(config)), sample(config, "S12", 1, fields)
+    assert list(alone) == ["label", "sample_key", *fields]
+    for name in alone:
+        assert np.array_equal(alone[name], whole[name], equal_nan=name == "slow_time")
+
+
+@pytest.mark.parametrize(
+    ("fields", "runs", "not_runs"),
+    [
+        (["maps/rtm"], {"image:rtm"}, {"echo", "signal", "image:stft", "accuracy"}),
+        (["maps/stft"], {"image:stft"}, {"rtm", "torso_track", "image:fsst_compensated"}),
+        (["slow_time"], {"signal"}, {"image:stft", "rtm", "frames"}),
+        (["scene/height"], set(), {"paths", "echo", "signal", "waveform"}),
+    ],
+)
+def test_nothing_is_synthesised_that_is_not_asked_for(
+    config: Config,
+    fields: list[str],
+    runs: set[str],
+    not_runs: set[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    ran: set[str] = set()
+
+    def watched(steps: Any, given: Any) -> Any:
+        found = run(steps, given)
+        ran.update(found.seconds)
+        return found
+
+    monkeypatch.setattr("radhar_cli.dataset.sample.run", watched)
+    sample(config, "walking", 0, fields)
+    assert runs <= ran
+    assert not not_runs & ran
+
+
+def test_entropy_is_summed_up_only_where_it_is_asked_for(
+    config: Config, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object) -> None:
+        raise AssertionError("an entropy")
+
+    monkeypatch.setattr("radhar_cli.processing.entropy.EntropySum.add", refuse)
+    sample(config, "walking", 0, ["maps/rtm", "maps/stft"])
+    with pytest.raises(AssertionError, match="an entropy"):
+        sample(config, "walking", 0, ["maps/rtm", "entropy/rtm"])
+
+
+def test_seed_and_index_name_a_sample_beyond_the_data_set_too(config: Config) -> None:
+    def levels(seed: int | None, index: int, more: Sequence[str] = ()) -> bytes:
+        made = sample(config, "walking", index, ["maps/stft", *more], seed)
+        return bytes(made["maps/stft"].tobytes())
+
+    other = config.model_copy(update={"seed": 99, "samples_per_class": 5000})
+    assert levels(99, 4000) == sample(other, "walking", 4000)["maps/stft"].tobytes()
+    assert len({levels(None, 0), levels(99, 0), levels(None, 4000), levels(99, 4000)}) == 4
+
+
+def test_a_recipe_may_be_handed_to_another_process(config: Config) -> None:
+    recipe = Recipe.of(config, ["maps/stft"])
+    activity = config.chosen_activities[1]
+    first = recipe(activity, 2)["maps/stft"]
+    again = pickle.loads(pickle.dumps(recipe))
+    assert again == recipe
+    assert np.array_equal(again(activity, 2)["maps/stft"], first)
+
+
+def test_the_plan_is_made_once_for_one_config(
+    config: Config, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = []
+
+    def counted(config: Config, entropy: bool) -> Plan:
+        made.append(entropy)
+        return plan_images(config, entropy)
+
+    monkeypatch.setattr(on_demand, "plan_images", counted)
+    own = config.model_copy(update={"seed": 3})
+    for index in range(3):
+        sample(own, "walking", index, ["maps/rtm"])
+    assert made == [False]
+
+
+def test_mistakes_are_one_clear_line(config: Config) -> None:
+    plain = config.model_copy(
+        update={"output": config.output.model_copy(update={"power": None, "slow_time": False})}
+    )
+    for fields, words in (
+        (["maps/sfft"], "did you mean 'maps/stft'"),
+        (["power/stft"], "output.power: float16 makes it"),
+        (["slow_time"], "output.slow_time: true makes it"),
+        (["maps/fsst"], "is not in this data set"),
+        (["split"], "is not in this data set"),
+    ):
+        with pytest.raises(ConfigError, match=words):
+            sample(plain, "walking", 0, fields)
+    with pytest.raises(ConfigError, match="index = -1: should be at least 0"):
+        sample(config, "walking", -1)
+    with pytest.raises(ConfigError, match="'wlking' is no activity"):
+        sample(config, "wlking")
+    with pytest.raises(TypeError):
+        sample(config, "walking", 1.5)  # type: ignore[arg-type]
+
+
+def test_scenes_outside_the_model_are_refused_or_drawn_again_as_in_a_build(
+    config: Config,
+) -> None:
+    def within(on_invalid: str) -> Config:
+        motion = config.motion.model_copy(update={"range_m": 200.0})
+        return config.model_copy(update={"on_invalid": on_invalid, "motion": motion})
+
+    with pytest.raises(SceneError, match="no scene inside the model"):
+        sample(within("redraw"), "walking", 0, ["scene/height"])
+    with pytest.raises(SceneError, match="on_invalid: error"):
+        sample(within("error"), "walking", 0, ["scene/height"])
+
+
+def test_it_needs_no_torch_and_the_package_stays_light() -> None:
+    done = process(
+        "-c",
+        "import sys, radhar_cli as radhar\n"
+        "assert not {'numpy', 'torch'} & set(sys.modules)\n"
+        "radhar.sample(radhar.load_config('configs/smoke.yaml'), 'walking')\n"
+        "print('torch' in sys.modules)\n",
+    )
+    assert done.stdout.strip() == "False", done.stderr
+    assert radhar.sample is sample
+
+
+def test_without_torch_a_stream_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "torch", None)
+    monkeypatch.delitem(sys.modules, "radhar_cli.learning.stream", raising=False)
+    monkeypatch.delitem(sys.modules, "torch.utils.data", raising=False)
+    with pytest.raises(ImportError, match=r"pip install 'radhar\[train\]'"):
+        radhar.Stream  # noqa: B018 - the import is what fails

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.tell import report, tell
 
 
 def import_(
@@ -79,6 +79,15 @@ def import_(
     finally:
         if sigmf:
             written.unlink(missing_ok=True)
+    report(
+        files=paths,
+        found=imported.found,
+        receivers=info.receivers,
+        samples_per_chirp=info.samples,
+        pulses=info.pulses,
+        prf_hz=info.prf_hz,
+        carrier_hz=info.carrier_hz,
+    )
     for path in paths:
         tell(f"  {path}")
 

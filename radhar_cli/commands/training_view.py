@@ -1,44 +1,28 @@
 """What `train` prints while it works and when it is done."""
 
 import os
-import sys
-from typing import Any
+from dataclasses import asdict
 
-from tqdm import tqdm
-
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.bars import Bars
+from radhar_cli.commands.tell import report, tell
 from radhar_cli.learning import run_files as run
 from radhar_cli.learning.run_folder import Epoch
 from radhar_cli.learning.training import Outcome
-from radhar_cli.untrusted import shown
 
 
-class TrainingView:
+class TrainingView(Bars):
     """A bar per epoch on a terminal; a line per epoch everywhere."""
 
     def __init__(self) -> None:
-        self._bar: tqdm[Any] | None = None
+        super().__init__()
         self._epochs = 0
 
-    def say(self, message: str) -> None:
-        tqdm.write(shown(message), file=sys.stderr)
-
     def epoch(self, number: int, epochs: int, steps: int) -> None:
-        self.close()
         self._epochs = epochs
-        self._bar = tqdm(
-            total=steps,
-            desc=f"epoch {number}/{epochs}",
-            unit="step",
-            disable=None,
-            leave=False,
-            file=sys.stderr,
-        )
+        self.open(f"epoch {number}/{epochs}", steps, "step", leave=False)
 
     def step(self, loss: float, accuracy: float) -> None:
-        if self._bar is not None:
-            self._bar.set_postfix_str(f"loss {loss:.3f}, right {100 * accuracy:.1f} %", False)
-            self._bar.update()
+        self.advance(1, f"loss {loss:.3f}, right {100 * accuracy:.1f} %")
 
     def epoch_done(self, row: Epoch, best: bool) -> None:
         self.close()
@@ -49,17 +33,18 @@ class TrainingView:
             + ("  best so far" if best else "")
         )
 
-    def close(self) -> None:
-        """Take the bar away."""
-        if self._bar is not None:
-            self._bar.close()
-            self._bar = None
-
     def print_outcome(self, outcome: Outcome) -> None:
         """Say what came out and where it lies; the first process alone speaks."""
         if os.environ.get("RANK", "0") != "0":
             return
         folder, best = outcome.folder, outcome.best
+        report(
+            folder=folder,
+            epochs=len(outcome.history),
+            resumed=outcome.resumed,
+            best=asdict(best),
+            weights=folder / run.BEST,
+        )
         if outcome.resumed == len(outcome.history):
             tell(f"{folder} is complete: {outcome.resumed} epochs; nothing to do")
         tell(f"best epoch {best.epoch}: validation accuracy {100 * best.val_accuracy:.2f} %")

@@ -15,6 +15,10 @@ Document: TypeAlias = dict[str, Any]
 Places: TypeAlias = dict[str, str]  # {dotted key: file:line}
 
 BASE = "base"
+BASE_SCHEMA = {
+    "description": "A file that says what this one leaves out; its path from this one's folder on.",
+    "type": ["string", "null"],
+}
 SUFFIXES = (".yaml", ".yml", ".json")
 MOST_FILES = 8  # that stand on each other
 _ONE_VALUE = {*FORMS, "sequence", "files"}  # what has such a key is replaced as a whole

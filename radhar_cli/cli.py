@@ -11,6 +11,11 @@ from radhar_cli.untrusted import shown
 if TYPE_CHECKING:
     import typer
 
+STATUSES = (
+    "Exit status: 0 done; 1 something differs or is missing, or the machine failed the run; 2 what "
+    "was given cannot be used; 130 after Ctrl-C, 143 after SIGTERM: what is finished is kept."
+)
+
 
 def program() -> "typer.Typer":
     """The program and its commands."""
@@ -41,6 +46,7 @@ def program() -> "typer.Typer":
 
     app = typer.Typer(
         help="Labelled FMCW radar data sets for human activity recognition, from a YAML file.",
+        epilog=STATUSES,
         no_args_is_help=True,
         pretty_exceptions_enable=False,
         rich_markup_mode=None,
@@ -64,8 +70,21 @@ def program() -> "typer.Typer":
     app.command()(tradeoff.tradeoff)
     app.command()(preview.preview)
     app.command()(inspect.inspect)
-    app.add_typer(config.app, name="config", no_args_is_help=True)
+    app.add_typer(config.group(), name="config", no_args_is_help=True)
+    _with_output_options(app)
     return app
+
+
+def _with_output_options(app: "typer.Typer") -> None:
+    """Give --json and --quiet to every command."""
+    from radhar_cli.commands.tell import with_output_options
+
+    for command in app.registered_commands:
+        assert command.callback is not None
+        command.callback = with_output_options(command.callback)
+    for group in app.registered_groups:
+        assert group.typer_instance is not None
+        _with_output_options(group.typer_instance)
 
 
 def main() -> None:

@@ -94,6 +94,7 @@ LIBRARIES: dict[str, set[str]] = {
     "torch": {"learning"},
     "timm": {"learning"},
     "sklearn": {"learning"},
+    "tensorboard": {"learning"},
     "skimage": {"tradeoff"},
 }
 
@@ -177,7 +178,7 @@ def test_arrays_from_elsewhere_are_opened_where_they_are_checked() -> None:
 def test_one_place_prints() -> None:
     assert {p.name for p in files() if "print" in calls(p)} == {"cli.py"}
     writes = {p.name for p in files() if {"tqdm.write", "console.print"} & calls(p)}
-    assert writes == {"terminal.py", "training_view.py", "summary_view.py"}
+    assert writes == {"bars.py", "summary_view.py"}
 
 
 def test_hdf5_is_opened_for_reading_in_one_place() -> None:

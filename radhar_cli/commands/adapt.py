@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from radhar_cli.commands.learning_options import Resize
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.tell import report, tell
 
 
 def adapt(
@@ -52,4 +52,5 @@ def adapt(
         resize,
         overwrite,
     )
+    report(folder=out, run=run, data=data)
     tell(f"{out}: {run} with the batch norm of {data}")

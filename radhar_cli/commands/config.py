@@ -1,4 +1,4 @@
-"""`radhar config`: the resolved config, and the schema of the file."""
+"""`radhar config`: start a config, show it resolved, compare two, and the schema of the file."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from radhar_cli.commands.options import Overrides
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.tell import report, tell
 
 if TYPE_CHECKING:
     from radhar_cli.config import Config
@@ -14,35 +14,93 @@ if TYPE_CHECKING:
 
 Training = Annotated[bool, typer.Option("--train", help="The file of train, not of generate.")]
 
-app = typer.Typer(
-    help="""Show a resolved config, or the JSON Schema of the file.
+
+def group() -> typer.Typer:
+    """The subcommands."""
+    app = typer.Typer(
+        help="""Start a config, show it resolved, compare two, or print the schema of the file.
+
+        Example:
+
+          radhar config show configs/quickstart.yaml
+        """
+    )
+    for command in (init, show, diff, schema):
+        app.command()(command)
+    return app
+
+
+def init(
+    out: Annotated[Path, typer.Argument(help="YAML file to write.")],
+    train: Training = False,
+) -> None:
+    """Write a config to start from: every key with its default and a line that says what it is.
 
     Example:
 
-      radhar config show configs/quickstart.yaml
+      radhar config init mine.yaml
     """
-)
+    from radhar_cli.config.starting_file import as_commented_yaml
+    from radhar_cli.errors import FolderError
+
+    text = as_commented_yaml(_kind(train))
+    try:
+        with out.open("x", encoding="utf-8") as file:
+            file.write(text)
+    except FileExistsError:
+        raise FolderError(f"{out}: exists already; should be a new file") from None
+    report(file=out)
+    tell(f"{out}: all keys with their defaults; leave out what should stay as it is")
+    tell(f"  then        radhar {'train DATA --config' if train else 'generate'} {out} -o OUT")
 
 
-@app.command()
 def show(
     config: Annotated[Path, typer.Argument(help="YAML file.")],
     set_: Overrides = None,
     train: Training = False,
 ) -> None:
-    """Print the config with every default filled in, as YAML.
+    """Print the config with every default and its bases filled in, as YAML.
 
     Example:
 
       radhar config show configs/quickstart.yaml --set snr_db=10
     """
-    from radhar_cli.config.identity import as_yaml
+    from radhar_cli.config.identity import as_yaml, resolved
     from radhar_cli.config.reading import load_section
 
-    tell(as_yaml(load_section(_kind(train), config, set_ or [])), nl=False)
+    found = load_section(_kind(train), config, set_ or [])
+    report(**resolved(found))
+    tell(as_yaml(found), nl=False)
 
 
-@app.command()
+def diff(
+    one: Annotated[Path, typer.Argument(metavar="A", help="YAML file.")],
+    other: Annotated[Path, typer.Argument(metavar="B", help="YAML file.")],
+    train: Training = False,
+) -> None:
+    """Print in which keys two configs differ, every default and base filled in.
+
+    Exit status 0 if they say the same, 1 if they differ.
+
+    Example:
+
+      radhar config diff configs/quickstart.yaml mine.yaml
+    """
+    import json
+
+    from radhar_cli.config.identity import differences
+    from radhar_cli.config.reading import load_section
+
+    found = differences(*(load_section(_kind(train), path) for path in (one, other)))
+    report(different=found)
+    width = max(map(len, found), default=0)
+    for key, values in found.items():
+        here, there = map(json.dumps, values)
+        tell(f"{key:<{width}}  {here} -> {there}")
+    if found:
+        raise typer.Exit(1)
+
+
 def schema(train: Training = False) -> None:
     """Print the JSON Schema of the config file, for editors.
 
@@ -52,7 +110,12 @@ def schema(train: Training = False) -> None:
     """
     import json
 
-    tell(json.dumps(_kind(train).model_json_schema(), indent=2))
+    from radhar_cli.config.documents import BASE, BASE_SCHEMA
+
+    found = _kind(train).model_json_schema()
+    found["properties"][BASE] = BASE_SCHEMA
+    report(**found)
+    tell(json.dumps(found, indent=2))
 
 
 def _kind(train: bool) -> "type[Config] | type[TrainConfig]":

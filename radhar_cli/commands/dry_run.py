@@ -1,7 +1,8 @@
 """`radhar generate --dry-run`: the plan, and what it will cost."""
 
 from radhar_cli.activity import Activity
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.tell import report, tell
+from radhar_cli.commands.terminal import class_counts
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.estimate import estimate
 from radhar_cli.dataset.layout import Rows
@@ -42,7 +43,16 @@ def print_plan(config: Config, jobs: int) -> None:
         f"time        about {_duration(found.seconds)} with {jobs} job{'s' if jobs > 1 else ''} "
         f"({found.seconds_per_sample * 1e3:.1f} ms a sample, {found.probes} samples timed just now)"
     )
-    for message in split_warnings(config, split_rows(config)):
+    warnings = split_warnings(config, split_rows(config))
+    report(
+        stages=[product.name for product in plan.products],
+        classes=class_counts(rows),
+        maps=config.maps,
+        jobs=jobs,
+        warnings=warnings,
+        **vars(found),
+    )
+    for message in warnings:
         tell(f"warning: {message}")
     tell("nothing was written")
 

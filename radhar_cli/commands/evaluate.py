@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from radhar_cli.commands.learning_options import Classes, Resize
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.tell import report, tell
 
 
 def evaluate(
@@ -74,6 +74,11 @@ def evaluate(
     if out is None:
         refuse_links(inside, folder)
     apart(folder, data)
-    report = evaluate(runs, data, options, choose_device(known_device(device)), StderrLog())
-    report.write(folder)
-    tell(f"{folder / 'report.html'}: {len(report.figures)} figures; numbers in report.json")
+    found = evaluate(runs, data, options, choose_device(known_device(device)), StderrLog())
+    found.write(folder)
+    accuracies = {
+        run: {data: numbers["accuracy"] for data, numbers in about["data"].items()}
+        for run, about in found.numbers["runs"].items()
+    }
+    report(page=folder / "report.html", numbers=folder / "report.json", accuracy=accuracies)
+    tell(f"{folder / 'report.html'}: {len(found.figures)} figures; numbers in report.json")

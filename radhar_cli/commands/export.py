@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.tell import report, tell
 
 
 def export(
@@ -28,8 +28,9 @@ def export(
     if out.is_dir():
         raise FolderError(f"{out}: is a folder; -o should name a file, such as model.onnx")
     worst = export(run, out)
-    size = out.stat().st_size / 2**20
+    size = out.stat().st_size
+    report(file=out, bytes=size, largest_difference=float(worst), allowed=TOLERANCE)
     tell(
-        f"{out}: {size:.1f} MiB; ONNX Runtime agrees with PyTorch to {worst:.1e} (allowed "
+        f"{out}: {size / 2**20:.1f} MiB; ONNX Runtime agrees with PyTorch to {worst:.1e} (allowed "
         f"{TOLERANCE:g})"
     )

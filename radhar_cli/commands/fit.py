@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from radhar_cli.commands.options import Replace, refuse_to_replace
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.tell import report, tell
 
 
 def fit(
@@ -39,5 +39,6 @@ def fit(
     out.parent.mkdir(parents=True, exist_ok=True)
     out.write_text(text + "\n".join(lines) + "\n")
     draw(found, out.with_suffix(".png"))
+    report(files=[out, out.with_suffix(".png")], numbers=found.numbers(), parts=len(found.parts))
     for path in (out, out.with_suffix(".png")):
         tell(f"  {path}")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from radhar_cli.commands.options import Overrides, Tolerance, resumable, with_tolerance
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.tell import report, tell
 from radhar_cli.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -150,7 +150,7 @@ def _of_recordings(
     overwrite: bool,
 ) -> None:
     from radhar_cli.capture.windows import WindowMaker, warnings_of, with_recordings
-    from radhar_cli.commands.terminal import BarProgress, print_outcome
+    from radhar_cli.commands.terminal import BarProgress, class_counts, print_outcome
     from radhar_cli.dataset.build import build
     from radhar_cli.dataset.layout import Rows
 
@@ -158,7 +158,12 @@ def _of_recordings(
     for warning in warnings_of(measured):
         tell(f"warning: {warning}", err=True)
     if dry_run:
-        tell(f"samples     {len(Rows.of(measured))} = {Rows.of(measured).counted}")
+        rows = Rows.of(measured)
+        counts = {a.slug: n for a, n in zip(rows.activities, rows.counts, strict=True)}
+        report(samples=len(rows), classes=counts)
+        rows = Rows.of(measured)
+        report(samples=len(rows), classes=class_counts(rows), maps=measured.maps)
+        tell(f"samples     {len(rows)} = {rows.counted}")
         tell("nothing was written")
         return
     folder = manifest if manifest.is_dir() else manifest.parent

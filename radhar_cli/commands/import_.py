@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from radhar_cli.commands.options import Replace, refuse_to_replace
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.tell import report, tell
 
 
 def import_(
@@ -82,6 +82,15 @@ def import_(
     finally:
         if sigmf:
             written.unlink(missing_ok=True)
+    report(
+        files=paths,
+        found=imported.found,
+        receivers=info.receivers,
+        samples_per_chirp=info.samples,
+        pulses=info.pulses,
+        prf_hz=info.prf_hz,
+        carrier_hz=info.carrier_hz,
+    )
     for path in paths:
         tell(f"  {path}")
 

@@ -5,12 +5,11 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.tell import report, talks
 
 
 def inspect(
     path: Annotated[Path, typer.Argument(help="What radhar wrote, or a tree of class folders.")],
-    json_: Annotated[bool, typer.Option("--json", help="Print JSON, for scripts.")] = False,
 ) -> None:
     """Summarise a data set, a half-built folder, a scene, a recording, or anyone's tree of images.
 
@@ -18,8 +17,6 @@ def inspect(
 
       radhar inspect datasets/quickstart
     """
-    import json
-
     from radhar_cli.capture.overview import summarise_recording
     from radhar_cli.capture.recording import is_recording
     from radhar_cli.dataset.summary import summarise
@@ -31,9 +28,8 @@ def inspect(
     else:
         foreign = is_tree(path) and not (path / "scene.h5").exists()
         summary = summarise_tree(path) if foreign else summarise(path)
-    if json_:
-        tell(json.dumps(summary, indent=2))
-        return
-    from radhar_cli.commands.summary_view import print_summary
+    report(**summary)
+    if talks():
+        from radhar_cli.commands.summary_view import print_summary
 
-    print_summary(summary)
+        print_summary(summary)

@@ -6,7 +6,7 @@ from typing import Annotated, TypeAlias
 
 import typer
 
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.tell import tell, wanted
 from radhar_cli.errors import FolderError, MachineError, RadharError, did_you_mean
 
 DEVICES = ("auto", "cpu", "cuda", "mps")
@@ -82,7 +82,8 @@ class StderrLog:
     """Tells the user on the error stream."""
 
     def say(self, message: str) -> None:
-        tell(message, err=True)
+        if wanted(message):
+            tell(message, err=True)
 
 
 def apart(out: Path, data: Sequence[Path]) -> None:

@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.tell import report, tell
 
 
 def models(
@@ -40,4 +40,11 @@ def models(
             tell(f"the paper's rivals ({', '.join(RIVALS)}) cannot be built: {error}")
             break
         work = f"{price.multiply_adds / 1e9:.3f} G"
+        report(
+            model=name,
+            parameters=price.parameters,
+            multiply_adds=price.multiply_adds,
+            size_px=size,
+            classes=classes,
+        )
         tell(f"{name:<24} {price.parameters:>12,} {work:>14}")

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from radhar_cli.commands.options import Activity, Nominal, Overrides, Replace, refuse_to_replace
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.tell import report, tell
 
 
 def motion(
@@ -39,4 +39,5 @@ def motion(
         out.write_text(text)
     except OSError as error:
         raise UnfinishedError(f"{out}: {error.strerror}; nothing was written") from None
+    report(file=out, frames=frames, rate_hz=rate)
     tell(f"{out}: {frames} frames, {rate:g} a second")

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from radhar_cli.commands.learning_options import Resize
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.tell import report, tell
 
 
 def predict(
@@ -20,7 +20,6 @@ def predict(
     ] = None,
     split: Annotated[str, typer.Option(help="Of a data set: train, val, test or all.")] = "all",
     resize: Resize = False,
-    json_: Annotated[bool, typer.Option("--json", help="Print JSON lines, all classes.")] = False,
     device: Annotated[str, typer.Option(help="auto, cpu, cuda or mps.")] = "auto",
 ) -> None:
     """Print the class of every image and its probabilities.
@@ -32,8 +31,6 @@ def predict(
     from radhar_cli.commands.learning_options import known_device, needs_torch
 
     needs_torch()
-    import json
-
     from radhar_cli.learning.images.image_set import split_named
     from radhar_cli.learning.machine import choose_device
     from radhar_cli.learning.prediction import predict
@@ -43,8 +40,6 @@ def predict(
     )
     for name, probabilities in predictions:
         ranked = sorted(probabilities.items(), key=lambda item: -item[1])
-        if json_:
-            tell(json.dumps({"image": name, "class": ranked[0][0], "probabilities": probabilities}))
-            continue
+        report(**{"image": name, "class": ranked[0][0], "probabilities": probabilities})
         likely = ", ".join(f"{label} {100 * p:.1f} %" for label, p in ranked[:top])
         tell(f"{name}: {likely}")

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.tell import report, tell
 
 MAX_CLASSES = 40
 
@@ -37,13 +37,18 @@ def preview(
     from radhar_cli.learning.images.opening import is_tree
 
     if is_tree(dataset):
-        tell(str(_draw_tree(dataset, map_, per_class, out)))
+        _tell(_draw_tree(dataset, map_, per_class, out))
         return
     with open_dataset(dataset) as data:
         name = data.map_name(map_)
         path = out or data.path.parent / f"preview_{name}.png"
         refuse_links(path.parent, path)
         draw_contact_sheet(data, name, per_class, path)
+    _tell(path)
+
+
+def _tell(path: Path) -> None:
+    report(file=path)
     tell(str(path))
 
 

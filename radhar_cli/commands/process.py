@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from radhar_cli.commands.options import Overrides
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.tell import report, tell
 
 
 def process(
@@ -65,5 +65,6 @@ def process(
             f"torso from {track.range.min():.2f} to {track.range.max():.2f} m, up to "
             f"{abs(track.velocity).max():.2f} m/s, confidence {track.confidence.mean():.2f}"
         )
+    report(files=written, gaps=gaps, warnings=found.notes, maps=names)
     for path in written:
         tell(f"  {path}")

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from radhar_cli.commands.options import Activity, Nominal, Overrides, Tolerance, with_tolerance
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.tell import report, tell
 
 RECORDING = "recording.h5"
 RECORDINGS = (RECORDING, "recording.sigmf-meta", "recording.sigmf-data")
@@ -116,6 +116,13 @@ def simulate(
     if figures:
         written += _draw(simulation, out, overlay)
     took = sum(simulation.seconds.values())
+    report(
+        activity=simulation.activity.slug,
+        label=simulation.activity.label,
+        seconds=took,
+        warnings=simulation.warnings,
+        files=written,
+    )
     tell(f"{simulation.activity.label} {simulation.activity.slug}: synthesised in {took:.2f} s")
     found = scene_file.describe(simulation)["motion_file"]
     if found is not None:
@@ -156,19 +163,17 @@ def _looking_at(motion: Path, slug: str) -> list[str]:
 
 
 def _draw(simulation: "Simulation", out: Path, overlay: bool) -> list[Path]:
-    import sys
-
-    from tqdm import tqdm
-
+    from radhar_cli.commands.bars import Bars
     from radhar_cli.figures import maps_panel, stickman
     from radhar_cli.simulation.scene_file import ANIMATION, MAPS
 
     maps = out / MAPS
     maps_panel.draw_maps(maps_panel.of_simulation(simulation, overlay), maps)
     animation = out / ANIMATION
-    frames = stickman.frame_count(simulation)
-    with tqdm(
-        total=frames, desc=animation.name, unit="frame", disable=None, file=sys.stderr
-    ) as bar:
-        stickman.draw_stickman(simulation, animation, bar.update)
+    bars = Bars()
+    bars.open(animation.name, stickman.frame_count(simulation), "frame")
+    try:
+        stickman.draw_stickman(simulation, animation, bars.advance)
+    finally:
+        bars.close()
     return [maps, animation]

@@ -1,10 +1,101 @@
-"""What commands say; nothing else in them writes to the terminal, but for bars and tables."""
+"""What commands say, and their --json and --quiet; nothing else in them writes to the terminal.
+
+A command tells people lines (`tell`) and programs values (`report`); the program gives the two
+options to every command (`with_output_options`).
+"""
+
+import inspect
+import json
+import math
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import wraps
+from pathlib import Path
+from typing import Annotated, Any
 
 import typer
 
 from radhar_cli.untrusted import shown
 
+Json = Annotated[
+    bool, typer.Option("--json", help="Print values as JSON, for programs, and nothing else.")
+]
+Quiet = Annotated[
+    bool, typer.Option("--quiet", "-q", help="Say nothing but warnings and what is wrong.")
+]
+
+
+@dataclass
+class _Output:
+    json: bool = False
+    quiet: bool = False
+
+
+_output = _Output()
+
+
+def talks() -> bool:
+    """Whether lines for people go to the output."""
+    return not (_output.json or _output.quiet)
+
+
+def is_quiet() -> bool:
+    """Whether no progress is shown."""
+    return _output.quiet
+
 
 def tell(message: object, *, err: bool = False, nl: bool = True) -> None:
-    """Print a line; what in it could steer a terminal is escaped."""
-    typer.echo(shown(message), err=err, nl=nl)
+    """Print a line for people; what in it could steer a terminal is escaped."""
+    if err or talks():
+        typer.echo(shown(message), err=err, nl=nl)
+
+
+def wanted(message: str) -> bool:
+    """Whether a message of long work is shown: warnings always."""
+    return not _output.quiet or message.lstrip().startswith("warning")
+
+
+def report(**values: object) -> None:
+    """With --json, print an object of values on a line; docs/output.md lists all keys."""
+    if _output.json:
+        typer.echo(json.dumps(_plain(values), allow_nan=False))
+
+
+def _plain(value: object) -> object:
+    """Of JSON's types; numbers that are not finite are null."""
+    if isinstance(value, dict):
+        return {str(key): _plain(inner) for key, inner in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(inner) for inner in value]
+    if isinstance(value, Path):
+        return str(value)
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def with_output_options(command: Callable[..., None]) -> Callable[..., None]:
+    """The command with --json and --quiet."""
+
+    @wraps(command)
+    def run(*, json_: bool, quiet: bool, **arguments: Any) -> None:
+        with _as_asked(json_, quiet):
+            command(**arguments)
+
+    signature = inspect.signature(command)
+    options = [
+        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=False, annotation=kind)
+        for name, kind in (("json_", Json), ("quiet", Quiet))
+    ]
+    run.__signature__ = signature.replace(  # type: ignore[attr-defined]
+        parameters=[*signature.parameters.values(), *options]
+    )
+    return run
+
+
+@contextmanager
+def _as_asked(json_: bool, quiet: bool) -> Iterator[None]:
+    _output.json, _output.quiet = json_, quiet
+    try:
+        yield
+    finally:
+        _output.json = _output.quiet = False

@@ -1,60 +1,58 @@
 """What `generate` prints while it works and when it is done."""
 
-import sys
 from collections import Counter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from tqdm import tqdm
-
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.bars import Bars
+from radhar_cli.commands.tell import report, tell
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.layout import DATASET, PNG, SPLITS, Rows
 from radhar_cli.dataset.split import split_rows
-from radhar_cli.untrusted import shown
 
 if TYPE_CHECKING:
     from radhar_cli.dataset.build import Outcome
 
 
-class BarProgress:
-    """A tqdm bar per stage on a terminal; messages alone elsewhere."""
+class BarProgress(Bars):
+    """A bar per stage on a terminal; messages alone elsewhere."""
 
     def __init__(self, unit: str = "sample") -> None:
+        super().__init__()
         self._unit = unit
-        self._bar: tqdm[Any] | None = None
 
     def stage(self, name: str, total: int, done: int) -> None:
-        self.close()
         if done and done < total:
+            self.close()
             self.say(f"resuming: {done} of {total} {self._unit}s are finished")
-        self._bar = tqdm(
-            total=total, initial=done, desc=name, unit=self._unit, disable=None, file=sys.stderr
-        )
+        self.open(name, total, self._unit, done)
 
-    def advance(self, count: int) -> None:
-        if self._bar is not None:
-            self._bar.update(count)
 
-    def say(self, message: str) -> None:
-        tqdm.write(shown(message), file=sys.stderr)
-
-    def close(self) -> None:
-        """Take the bar away."""
-        if self._bar is not None:
-            self._bar.close()
-            self._bar = None
+def class_counts(rows: Rows) -> dict[str, int]:
+    """{class: samples}."""
+    return {one.slug: count for one, count in zip(rows.activities, rows.counts, strict=True)}
 
 
 def print_outcome(config: Config, outcome: "Outcome") -> None:
     """Say what lies where."""
     folder = outcome.folder
+    rows, split = Rows.of(config), Counter(int(part) for part in split_rows(config))
+    size = (folder / DATASET).stat().st_size
+    report(
+        dataset=folder / DATASET,
+        bytes=size,
+        samples=outcome.samples,
+        made=outcome.made,
+        pngs=outcome.pngs,
+        classes=class_counts(rows),
+        split={SPLITS[part]: count for part, count in sorted(split.items())},
+        maps=config.maps,
+        warnings=[warning["message"] for warning in outcome.warnings],
+    )
     if outcome.already_complete:
         tell(f"{folder} is complete: {outcome.samples} samples; nothing to do")
         return
-    rows, split = Rows.of(config), Counter(int(part) for part in split_rows(config))
-    size = (folder / DATASET).stat().st_size / 2**20
-    tell(f"{folder / DATASET}: {outcome.samples} samples, {size:.1f} MiB")
+    tell(f"{folder / DATASET}: {outcome.samples} samples, {size / 2**20:.1f} MiB")
     tell(f"  classes     {rows.counted}")
     tell("  split       " + ", ".join(f"{n} {SPLITS[part]}" for part, n in sorted(split.items())))
     tell(f"  maps        {', '.join(config.maps)}")
@@ -69,6 +67,7 @@ def print_outcome(config: Config, outcome: "Outcome") -> None:
 
 def print_part(outcome: "Outcome", out: Path, part: str) -> None:
     """Say what a part holds and what to do with it."""
+    report(folder=outcome.folder, part=part, samples=outcome.samples, made=outcome.made)
     tell(
         f"{outcome.folder}: part {part} is complete: {outcome.samples} samples, {outcome.made} new"
     )

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from radhar_cli.commands.options import Overrides, resumable
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.tell import report, tell
 
 if TYPE_CHECKING:
     from radhar_cli.tradeoff.accuracy import Accuracy
@@ -93,6 +93,7 @@ def _tradeoff(
             accuracies, learned = _accuracies(scenes, out, cache, jobs)
             conditions |= learned
         written = write_report(out, path.stem, command, rows, accuracies, conditions)
+    report(files=written)
     for file in written:
         tell(f"  {file}")
 

@@ -54,13 +54,22 @@ def train(
         typer.Option(help="A run whose best weights are started from, to go on with other data."),
     ] = None,
     classes: Classes = None,
+    tensorboard: Annotated[
+        bool, typer.Option("--tensorboard", help="Also write event files into RUN/tensorboard.")
+    ] = False,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Start again in a folder that holds a run.")
     ] = False,
 ) -> None:
-    from radhar_cli.commands.learning_options import apart, needs_torch
+    from radhar_cli.commands.learning_options import apart, needs, needs_torch
 
     needs_torch()
+    events = None
+    if tensorboard:
+        needs("tensorboard", ("tensorboard",))
+        from radhar_cli.learning.event_files import EventFiles
+
+        events = EventFiles(out)
     from radhar_cli.commands.training_view import TrainingView
     from radhar_cli.config.reading import load_config, load_section
     from radhar_cli.learning import training
@@ -78,7 +87,7 @@ def train(
         raise FolderError("DATA is missing; should name a data set, or --stream a config")
     apart(out, [*data, *([init] if init else [])])
     names = read_classes(classes) if classes else {}
-    view = TrainingView()
+    view = TrainingView(events)
     with resumable(f"the last finished epoch in {out}"):
         try:
             samples = load_config(stream) if stream else None

@@ -1,44 +1,37 @@
 """What `train` prints while it works and when it is done."""
 
 import os
-import sys
-from typing import Any
+from dataclasses import asdict
+from typing import TYPE_CHECKING
 
-from tqdm import tqdm
-
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.bars import Bars
+from radhar_cli.commands.tell import report, tell
 from radhar_cli.learning import run_files as run
 from radhar_cli.learning.run_folder import Epoch
 from radhar_cli.learning.training import Outcome
-from radhar_cli.untrusted import shown
+
+if TYPE_CHECKING:
+    from radhar_cli.learning.event_files import EventFiles
 
 
-class TrainingView:
-    """A bar per epoch on a terminal; a line per epoch everywhere."""
+class TrainingView(Bars):
+    """A bar per epoch on a terminal; a line per epoch everywhere.
 
-    def __init__(self) -> None:
-        self._bar: tqdm[Any] | None = None
+    Args:
+        events: kept up with the epochs, where asked for.
+    """
+
+    def __init__(self, events: "EventFiles | None" = None) -> None:
+        super().__init__()
         self._epochs = 0
-
-    def say(self, message: str) -> None:
-        tqdm.write(shown(message), file=sys.stderr)
+        self._events = events
 
     def epoch(self, number: int, epochs: int, steps: int) -> None:
-        self.close()
         self._epochs = epochs
-        self._bar = tqdm(
-            total=steps,
-            desc=f"epoch {number}/{epochs}",
-            unit="step",
-            disable=None,
-            leave=False,
-            file=sys.stderr,
-        )
+        self.open(f"epoch {number}/{epochs}", steps, "step", leave=False)
 
     def step(self, loss: float, accuracy: float) -> None:
-        if self._bar is not None:
-            self._bar.set_postfix_str(f"loss {loss:.3f}, right {100 * accuracy:.1f} %", False)
-            self._bar.update()
+        self.advance(1, f"loss {loss:.3f}, right {100 * accuracy:.1f} %")
 
     def epoch_done(self, row: Epoch, best: bool) -> None:
         self.close()
@@ -48,18 +41,24 @@ class TrainingView:
             f"{row.val_loss:.4f}  rate {row.learning_rate:.2e}  {row.seconds:.0f} s"
             + ("  best so far" if best else "")
         )
-
-    def close(self) -> None:
-        """Take the bar away."""
-        if self._bar is not None:
-            self._bar.close()
-            self._bar = None
+        if self._events is not None:
+            self._events.update()
 
     def print_outcome(self, outcome: Outcome) -> None:
         """Say what came out and where it lies; the first process alone speaks."""
         if os.environ.get("RANK", "0") != "0":
             return
+        if self._events is not None:
+            self._events.update()  # of a run that was complete before
+            self._events.close()
         folder, best = outcome.folder, outcome.best
+        report(
+            folder=folder,
+            epochs=len(outcome.history),
+            resumed=outcome.resumed,
+            best=asdict(best),
+            weights=folder / run.BEST,
+        )
         if outcome.resumed == len(outcome.history):
             tell(f"{folder} is complete: {outcome.resumed} epochs; nothing to do")
         tell(f"best epoch {best.epoch}: validation accuracy {100 * best.val_accuracy:.2f} %")

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.tell import report, tell
 
 if TYPE_CHECKING:
     from radhar_cli.dataset.verify import Report
@@ -29,26 +29,27 @@ def verify(
     """
     from radhar_cli.dataset.verify import verify as verify_folder
 
-    report = verify_folder(out, samples, motion)
-    if report.other_versions:
+    found = verify_folder(out, samples, motion)
+    report(**vars(found))
+    if found.other_versions:
         tell("built with other versions, compared within one grey level:")
-        for line in report.other_versions:
+        for line in found.other_versions:
             tell(f"  {line}")
-    for problem in report.problems[:20]:
+    for problem in found.problems[:20]:
         tell(f"WRONG {problem}")
-    if len(report.problems) > 20:
-        tell(f"... and {len(report.problems) - 20} more")
-    if report.problems:
+    if len(found.problems) > 20:
+        tell(f"... and {len(found.problems) - 20} more")
+    if found.problems:
         raise typer.Exit(1)
     tell(
-        f"{out}: {report.samples} samples; checksums, labels and counts right; "
-        + (_anew(report) if report.resynthesised else "none made anew")
-        + (f"; {report.pngs} PNG files show the same" if report.pngs else "")
+        f"{out}: {found.samples} samples; checksums, labels and counts right; "
+        + (_anew(found) if found.resynthesised else "none made anew")
+        + (f"; {found.pngs} PNG files show the same" if found.pngs else "")
     )
-    if report.unmade:
-        tell(f"{report.unmade} samples move by files: --motion FOLDER would make them anew too")
+    if found.unmade:
+        tell(f"{found.unmade} samples move by files: --motion FOLDER would make them anew too")
 
 
-def _anew(report: "Report") -> str:
-    within = f"within {report.worst_level} grey level" if report.other_versions else "byte for byte"
-    return f"{report.resynthesised} synthesised anew and equal {within}"
+def _anew(found: "Report") -> str:
+    within = f"within {found.worst_level} grey level" if found.other_versions else "byte for byte"
+    return f"{found.resynthesised} synthesised anew and equal {within}"

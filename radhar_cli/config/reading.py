@@ -11,11 +11,12 @@ from typing import Any, TypeAlias, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from radhar_cli.config.checks import Problem
+from radhar_cli.config.documents import BASE, Places, read_document, read_on_bases
 from radhar_cli.config.motion_files import with_files
 from radhar_cli.config.schema import Config, Section
-from radhar_cli.config.yaml_reader import LARGEST, Lines, parse_yaml
+from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.errors import ConfigError
-from radhar_cli.untrusted import parse_json, read_text, shown
+from radhar_cli.untrusted import parse_json, shown
 
 S = TypeVar("S", bound=Section)
 
@@ -33,13 +34,14 @@ def load_config(path: str | Path, overrides: Iterable[str] = ()) -> Config:
 
     Raises:
         ConfigError: unreadable file, bad YAML, or a value out of place; the message names the
-            file, the line, the key, the value and what would be right.
+            file (that or one under it, `base`), the line, the key, the value and what would be
+            right.
     """
-    config, lines, options = _load(Config, Path(path), overrides)
+    config, places, options = _load(Config, Path(path), overrides)
 
     def refuse(key: str, value: object, right: str) -> ConfigError:
         return ConfigError(
-            _place(str(path), key, lines, options) + _what(Problem(key, value, right))
+            _place(str(path), key, places, options) + _what(Problem(key, value, right))
         )
 
     return with_files(config, Path(path).parent, refuse)
@@ -56,35 +58,23 @@ def load_section(kind: type[S], path: Path | None, overrides: Iterable[str] = ()
     return _load(kind, path, overrides)[0]
 
 
-def _load(kind: type[S], path: Path | None, overrides: Iterable[str]) -> tuple[S, Lines, Options]:
-    """The config, the lines of its keys, and the options that gave some of them."""
-    document, lines = _document(path) if path else ({}, {})
+def _load(kind: type[S], path: Path | None, overrides: Iterable[str]) -> tuple[S, Places, Options]:
+    """The config, the places of its keys, and the options that gave some of them."""
+    told = [
+        override.partition(" ") if override.startswith("--") else ("", "", override)
+        for override in overrides
+    ]
+    bases = [text for _, _, text in told if text.partition("=")[0].strip() == BASE]
+    document, places = read_on_bases(path, with_overrides({}, bases))
     options: Options = {}
-    for override in overrides:
-        option, _, text = (
-            override.partition(" ") if override.startswith("--") else ("", "", override)
-        )
+    for option, _, text in told:
+        if text in bases:
+            continue
         key = _override(document, text)
-        lines = {k: v for k, v in lines.items() if not _within(k, key)}
+        places = {k: v for k, v in places.items() if not _within(k, key)}
         options[key] = option or f"--set {key}"
-    return validated(kind, document, str(path) if path else "--set", lines, options), lines, options
-
-
-def _document(path: Path) -> tuple[dict[str, Any], Lines]:
-    try:
-        text = read_text(path, LARGEST)
-    except FileNotFoundError:
-        raise ConfigError(f"{path}: no such file") from None
-    except OSError as error:
-        raise ConfigError(f"{path}: cannot be read as text ({error.strerror})") from None
-    except UnicodeDecodeError as error:
-        raise ConfigError(f"{path}: cannot be read as text ({error})") from None
-    document, lines = parse_yaml(text, str(path))
-    if document is None:
-        document = {}
-    if not isinstance(document, dict):
-        raise ConfigError(f"{path}: should be a mapping of keys such as 'seed: 1'")
-    return document, lines
+    where = str(path) if path else "--set"
+    return validated(kind, document, where, places, options), places, options
 
 
 def load_mapping(path: Path) -> dict[str, Any]:
@@ -93,7 +83,7 @@ def load_mapping(path: Path) -> dict[str, Any]:
     Raises:
         ConfigError: unreadable file, or bad YAML.
     """
-    return _document(path)[0]
+    return read_document(path)[0]
 
 
 def config_from_json(text: str, where: str) -> Config:
@@ -106,7 +96,7 @@ def config_from_json(text: str, where: str) -> Config:
 
 
 def validated(
-    kind: type[S], document: Any, where: str, lines: Lines, options: Mapping[str, str] = {}
+    kind: type[S], document: Any, where: str, places: Places, options: Mapping[str, str] = {}
 ) -> S:
     """Turn a parsed document into a config, or raise a ConfigError with one line per mistake.
 
@@ -114,14 +104,14 @@ def validated(
         kind: of config.
         document: as it was parsed.
         where: its file.
-        lines: {dotted key: line} of what stands in the file.
+        places: {dotted key: file:line} of what stands in it, or in a file under it.
         options: {dotted key: option} of what an option of the command line says instead.
     """
     try:
         return kind.model_validate(document)
     except ValidationError as error:
         told = dict.fromkeys(
-            _place(where, problem.key, lines, options) + _what(problem)
+            _place(where, problem.key, places, options) + _what(problem)
             for problem in islice(_found(kind, error, document), MAX_MISTAKES)
         )
         more = error.error_count() - MAX_MISTAKES
@@ -232,21 +222,21 @@ def _unknown(kind: type[BaseModel], names: list[int | str]) -> str:
     return "is an unknown key" + (f"; known here: {', '.join(known)}" if known else "")
 
 
-def _place(where: str, key: str, lines: Lines, options: Mapping[str, str]) -> str:
+def _place(where: str, key: str, places: Places, options: Mapping[str, str]) -> str:
     """Where a value stands: the option that says it, or file and line; and its key."""
     within = [option for name, option in options.items() if _within(name, key)]
     of_options = [option for name, option in options.items() if _within(key, name)]
-    of_options = of_options or (within if key not in lines else [])
+    of_options = of_options or (within if key not in places else [])
     if of_options:
         told = of_options[-1]
         return told if told.endswith(f" {key}") else f"{told}: {_short(shown(key))}"
-    line = lines.get(key)
+    place = places.get(key)
     parent = key
-    while line is None and "." in parent:
+    while place is None and "." in parent:
         parent = parent.rpartition(".")[0]
-        line = lines.get(parent)
+        place = places.get(parent)
     key = _short(shown(key).replace("\n", "\\n")) + (f" ({', '.join(within)})" if within else "")
-    return f"{where}:{line}: {key}" if line else f"{where}: {key}"
+    return f"{place or where}: {key}"
 
 
 def _what(problem: Problem) -> str:

@@ -60,7 +60,11 @@ class Section(BaseModel):
     """Base of all config models."""
 
     model_config = ConfigDict(
-        extra="forbid", frozen=True, validate_default=True, allow_inf_nan=False
+        extra="forbid",
+        frozen=True,
+        validate_default=True,
+        allow_inf_nan=False,
+        use_attribute_docstrings=True,
     )
 
 
@@ -68,15 +72,25 @@ class RadarConfig(Section):
     """Waveform, antenna positions and gains; every number may be drawn."""
 
     carrier_hz: Annotated[Positive, within(1e6, 1e13, "Hz")] = 77e9
+    """At the start of the chirp."""
     bandwidth_hz: Annotated[Positive, within(1e3, 1e12, "Hz")] = 4e9
+    """Swept by a chirp."""
     prf_hz: Annotated[Positive, within(1e-3, 1e7, "Hz")] = 5000.0
+    """Chirps per second."""
     adc_rate_hz: Annotated[Positive, within(1e-3, 1e13, "Hz")] = 10e6
+    """Samples per second within a chirp."""
     chirp_s: Annotated[Positive, within(1e-12, 1e4, "s")] = 40e-6
+    """Shorter than 1/prf_hz."""
     tx_m: Vector = (0.4, -0.1, 1.5)
+    """Transmitter: range, cross-range, height."""
     rx_m: Vector = (0.4, 0.1, 1.5)
+    """Receiver: range, cross-range, height."""
     antenna_gain_dbi: Annotated[Decibel, within(-150, 150, "dBi")] = 6.0
+    """Of each antenna."""
     antenna_isolation_db: Decibel = 10.0
+    """Only a raw echo shows the leakage."""
     residual_video_phase: Flag = False
+    """Keep the term pi K tau^2."""
 
 
 T = TypeVar("T")
@@ -171,13 +185,21 @@ class SubjectConfig(Section):
     """
 
     height_m: Annotated[Positive, within(0.1, 10, "m")] = Uniform(uniform=(1.5, 1.9))
+    """Stature."""
     weight_kg: Annotated[Positive, within(1e-3, 1e6, "kg")] | None = None
+    """null is 26 kg/m^2 times the height squared."""
     sway_ahead_m: Metres = Uniform(uniform=(0.002, 0.006))
+    """Standard deviation of the sway of who stands."""
     sway_aside_m: Metres = Uniform(uniform=(0.0015, 0.0035))
+    """The same to the side."""
     breathing_hz: Rate = Normal(normal=(0.25, 0.04), min=0.15, max=0.4)
+    """Rate of breathing."""
     chest_m: Metres = Uniform(uniform=(0.002, 0.006))
+    """Amplitude of breathing."""
     pulse_hz: Rate = Normal(normal=(1.15, 0.12), min=0.8, max=1.8)
+    """Rate of the pulse."""
     heart_m: Metres = Uniform(uniform=(0.0001, 0.0004))
+    """Amplitude of the pulse."""
 
 
 FallName = Literal["forward", "backward", "sideways"]
@@ -205,48 +227,91 @@ class MotionConfig(Section):
     """
 
     model: Literal["human", "paper", "file"] = "human"
+    """People, the paper's, or of files, which every class has."""
     folder: Annotated[str | None, Field(exclude=True, max_length=1000)] = None
+    """From which the paths of motion files go; no part of what a data set is."""
     range_m: CoordinateBy | None = None
+    """Where people are: the torso (paper), the feet at first (human); null is the model's."""
     cross_range_m: CoordinateBy = 0.0
+    """The same across."""
     angle_deg: AngleBy | None = None
+    """Heading; 0 faces away from the radar, 180 faces it; null is the model's."""
     speed_mps: SpeedBy | None = None
+    """Of walking; null is the model's."""
     gait_hz: FrequencyBy = 1.0
+    """paper: strides per second."""
     thigh_deg: AngleBy = Vary(vary=(30.0, 0.2))
+    """paper: amplitude."""
     calf_deg: AngleBy = Vary(vary=(45.0, 0.2))
+    """paper: amplitude."""
     arm_deg: AngleBy = Vary(vary=(35.0, 0.2))
+    """paper: amplitude."""
     turn_deg: AngleBy = Vary(vary=(45.0, 0.2))
+    """How far S7 turns to each side."""
     rotation_hz: FrequencyBy = Vary(vary=(0.45, 0.2))
+    """human: turns to both sides per second."""
     period_scale: RatioBy = Normal(normal=(0.95, 0.04), min=0.85, max=1.05)
+    """Stride time over Boulic and Thalmann's."""
     cycle_phase: SignedBy = Uniform(uniform=(-0.5, 0.5))
+    """Where in their cycle steady walks, punches, kicks and turns are at 0 s."""
     arm_swing: RatioBy = Uniform(uniform=(0.6, 1.3))
+    """Over Boulic and Thalmann's."""
     trunk_pitch_deg: AngleBy = Normal(normal=(3.0, 2.0), min=-2.0, max=8.0)
+    """Ahead, of who walks."""
     step_width: RatioBy = Normal(normal=(0.063, 0.011), min=0.03, max=0.1)
+    """Between the feet of who walks, over the stature."""
     step_asymmetry: SignedBy = Normal(normal=(0.0, 0.02), min=-0.05, max=0.05)
+    """Of left over right steps."""
     ragged_speed: RatioBy = Uniform(uniform=(0.0, 0.06))
+    """sd of the speed over time, over the speed."""
     stride_jitter: RatioBy = Uniform(uniform=(0.0, 0.03))
+    """sd of the time from stride to stride."""
     width_jitter_m: RatioBy = Uniform(uniform=(0.0, 0.02))
+    """sd of half the width from stride to stride."""
     lane_m: CoordinateBy = 0.0
+    """Walkers turn round after that way and every time again; 0 never."""
     lane_start: RatioBy = Uniform(uniform=(0.0, 1.0))
+    """Share of the first way that lies behind them."""
     punch_hz: FrequencyBy = Vary(vary=(0.7, 0.15))
+    """A right and a left punch."""
     kick_hz: FrequencyBy = Vary(vary=(0.45, 0.1))
+    """A kick."""
     strike_scale: RatioBy = Normal(normal=(1.0, 0.12), min=0.8, max=1.25)
+    """Duration of a punch or kick over the usual one."""
     tempo_jitter: RatioBy = Uniform(uniform=(0.0, 0.1))
+    """sd of the time from one punch or kick to the next."""
     size_jitter: RatioBy = Uniform(uniform=(0.0, 0.1))
+    """sd of the size from one punch or kick to the next."""
     bend_deg: AngleBy = Normal(normal=(72.0, 5.0), min=60.0, max=85.0)
+    """S4: pitch of the trunk."""
     dwell_s: SecondsBy = Uniform(uniform=(0.2, 0.6))
+    """S4: time at the floor."""
     seat_height: RatioBy = Normal(normal=(0.285, 0.015), min=0.25, max=0.32)
+    """Of the hip over the stature."""
     lean_deg: AngleBy = Normal(normal=(42.0, 8.0), min=25.0, max=58.0)
+    """Trunk ahead while rising."""
     recline_deg: AngleBy = 0.0
+    """Trunk backwards in the seat."""
     squat: SignedBy = Uniform(uniform=(-1.0, 1.0))
+    """S4: from over straight legs (-1) to deep in the knees (1)."""
     step_m: RatioBy = Uniform(uniform=(0.0, 0.5))
+    """Steps back before sitting down (S5), ahead after standing up (S6), around picking up (S4)."""
     look_deg: AngleBy = Uniform(uniform=(-40.0, 40.0))
+    """S5: turn of the trunk to look behind."""
     settle_size: RatioBy = Uniform(uniform=(0.0, 3.0))
+    """S4 to S6: size of the fidgets around the end."""
     kneel_s: SecondsBy = Uniform(uniform=(0.0, 0.6))
+    """A fall ahead stays over the knees for so long."""
     fall: FallName | Falls = "forward"
+    """Direction, or drawn: {choice: [forward, forward, sideways]}."""
     fidget_hz: FrequencyBy = Uniform(uniform=(0.0, 0.4))
+    """How often who stands or sits moves a little."""
     fidget_size: RatioBy = Uniform(uniform=(0.5, 1.5))
+    """How large that is."""
     shuffle_hz: FrequencyBy = Uniform(uniform=(0.0, 0.2))
+    """Steps of some centimetres, S1 and after S4."""
     idle_from_s: SecondsBy = Uniform(uniform=(0.0, 1000.0))
+    """How long sway, breath, pulse and ragged speed have been going on."""
 
 
 class TimingConfig(Section):
@@ -260,17 +325,29 @@ class TimingConfig(Section):
     """
 
     seat_start_s: SecondsBy = 0.5
+    """S5, S6."""
     seat_duration_s: SecondsBy | None = None
+    """S5, S6; null is the model's."""
     grab_start_s: SecondsBy = 0.5
+    """S4."""
     grab_duration_s: SecondsBy = Normal(normal=(2.5, 0.5), min=1.6, max=3.6)
+    """S4, down and up together."""
     rise_start_s: SecondsBy = 0.5
+    """S9, S11."""
     rise_duration_s: SecondsBy | None = None
+    """S9, S11; null is the model's."""
     walk_start_s: SecondsBy | None = None
+    """S9, S11; null is the model's: of people, when risen."""
     walk_stop_s: SecondsBy = 2.0
+    """S10, S12."""
     sit_duration_s: SecondsBy | None = None
+    """S10; null is the model's."""
     fall_duration_s: SecondsBy | None = None
+    """S12; null is the model's."""
     blend_s: SecondsBy = 0.3
+    """paper: the gait fades in and out over this; 0 is a hard switch."""
     overlap_s: SecondsBy = 0.0
+    """How long before S9 to S12's first movement has come to rest the second begins."""
 
 
 SHORTEST_MOVEMENT = 0.3
@@ -280,17 +357,14 @@ FileSecond = Annotated[float, Field(ge=0, le=1e5, strict=True)]
 
 
 class SequenceConfig(Section):
-    """A class of one's own: movements one after the other, joined at rest.
-
-    Attributes:
-        sequence: names of movements (`radhar_cli.activity.MOVEMENTS`).
-        durations_s: of each; null is the usual one, of the last one until the recording ends.
-        pauses_s: at rest before each; not given, none.
-    """
+    """A class of one's own: movements one after the other, joined at rest."""
 
     sequence: Annotated[tuple[str, ...], Field(min_length=1, max_length=64)]
+    """Names of movements (`radhar_cli.activity.MOVEMENTS`)."""
     durations_s: tuple[Seconds | None, ...] = ()
+    """Of each; null is the usual one, of the last one until the recording ends."""
     pauses_s: tuple[Seconds, ...] = ()
+    """At rest before each; not given, none."""
 
     @model_validator(mode="after")
     def _joined(self) -> "SequenceConfig":
@@ -326,38 +400,34 @@ Share01 = Annotated[Number, within(0, 1)]
 
 
 class FilesConfig(Section):
-    """A class whose motion is recorded: BVH, AMC or npz files; a list of them is enough.
-
-    Attributes:
-        files: {path: SHA-256}, from the config's folder on; a list of paths and patterns when it is
-            written.
-        skeleton: the ASF of AMC files, where it is not beside them.
-        joints: {our joint: the file's}, where the tables of names do not know it.
-        up: axis of the files that points up; null is found.
-        unit_m: of the files; null is found.
-        rate_hz: frames per second, instead of the files'.
-        section_s: what of each file is used, from and to; null is all.
-        low_pass_hz: zero-phase low-pass of the positions; null is none.
-        past_end: what happens where a file is shorter than the recording.
-        file: number of the one file that is used; null is drawn.
-        start: where in the section a recording begins, 0 at the earliest, 1 at the latest.
-        playback_speed: seconds of the file a second.
-        mirror: 1 exchanges left and right.
-    """
+    """A class whose motion is recorded: BVH, AMC or npz files; a list of them is enough."""
 
     files: dict[str, str]
+    """{path: SHA-256}; a list of paths and patterns when it is written."""
     skeleton: Annotated[str, Field(max_length=LONGEST_PATH)] | None = None
+    """The ASF of AMC files, where it is not beside them."""
     joints: dict[str, Annotated[str, Field(min_length=1, max_length=100)]] = {}
+    """{our joint: the file's}, where the tables of names do not know it."""
     up: Literal["x", "y", "z", "-x", "-y", "-z"] | None = None
+    """Axis of the files that points up; null is found."""
     unit_m: Annotated[float, Field(ge=1e-6, le=1e3, strict=True)] | None = None
+    """Of the files; null is found."""
     rate_hz: Annotated[float, Field(ge=1, le=1e4, strict=True)] | None = None
+    """Frames per second, instead of the files'."""
     section_s: tuple[FileSecond, FileSecond] | None = None
+    """What of each file is used, from and to; null is all."""
     low_pass_hz: Annotated[float, Field(ge=0.1, le=1e3, strict=True)] | None = 8.0
+    """Zero-phase low-pass of the positions; null is none."""
     past_end: Literal["velocity", "rest"] = "velocity"
+    """What happens where a file is shorter than the recording."""
     file: Annotated[int, Field(ge=0, strict=True)] | None = None
+    """Number of the one file that is used; null is drawn."""
     start: Share01 = Uniform(uniform=(0.0, 1.0))
+    """Where in the section a recording begins, 0 at the earliest, 1 at the latest."""
     playback_speed: Annotated[Number, within(0.25, 4)] = Uniform(uniform=(0.9, 1.1))
+    """Seconds of the file a second."""
     mirror: Share01 = Choice(choice=(0, 1))
+    """1 exchanges left and right."""
 
     NUMBERS: ClassVar = ("start", "playback_speed", "mirror")
 
@@ -426,11 +496,17 @@ class WallConfig(Section):
     """
 
     center_m: Vector = (1.0, 0.0, 1.25)
+    """Range, cross-range, height of its middle."""
     size_m: tuple[Size, Size, Size] = (0.24, 5.0, 2.5)
+    """Along the same."""
     eps_r: Annotated[AtLeastOne, within(1, 1e6)] = 6.0
+    """Relative permittivity."""
     loss_tangent: Annotated[NotNegative, within(0, 1e12)] = 0.03
+    """Of the material."""
     rays: Literal["straight", "refracted"] = "straight"
+    """Through the wall; refracted is by Snell's law."""
     fresnel: Literal["normal", "perpendicular", "parallel"] = "normal"
+    """Loss of the faces: at normal incidence, or the ray's with the field so to its plane."""
 
 
 class BodyConfig(Section):
@@ -441,8 +517,11 @@ class BodyConfig(Section):
     """
 
     scatterers: Literal["points", "segments"] = "points"
+    """The 13 joints, or ellipsoids between them."""
     points_per_segment: Annotated[int, Field(ge=1, le=1000, strict=True)] = 20
+    """Of segments: at most."""
     shadowing: Flag = True
+    """Of segments: trunk and thighs hide what is behind them."""
 
 
 class ReflectorConfig(Section):
@@ -453,9 +532,13 @@ class ReflectorConfig(Section):
         Uniform(uniform=(-3.0, 3.0)),
         Uniform(uniform=(0.0, 2.5)),
     )
+    """Where it stands."""
     rcs_dbsm: Annotated[Number, within(-120, 120, "dBsm")] = Uniform(uniform=(-10.0, 10.0))
+    """Its radar cross-section."""
     residual_m: Annotated[NotNegative, within(0, 0.01, "m")] = Uniform(uniform=(5e-5, 5e-4))
+    """Standard deviation of its small motion along the line of sight."""
     highest_hz: Annotated[Positive, within(1e-3, 100, "Hz")] = 10.0
+    """Highest frequency of that motion."""
 
 
 MAX_REFLECTORS = 32
@@ -465,6 +548,7 @@ class RoomConfig(Section):
     """What stands in the room: a list, or a number of reflectors that are all drawn alike."""
 
     reflectors: Annotated[tuple[ReflectorConfig, ...], Field(max_length=MAX_REFLECTORS)] = ()
+    """A list of {position_m, rcs_dbsm, residual_m, highest_hz}, or how many of the default ones."""
 
     @field_validator("reflectors", mode="before")
     @classmethod
@@ -482,22 +566,29 @@ class LineConfig(Section):
     """Interference at a fixed Doppler; its level is over the white noise, of a raw sample."""
 
     doppler_hz: Annotated[Number, within(-1e7, 1e7, "Hz")]
+    """Where it stands."""
     level_db: Decibel = -10.0
+    """Over the white noise of a raw sample."""
 
 
 class ReceiverConfig(Section):
     """Noise that grows towards zero Doppler, and interference lines; both over the white noise."""
 
     noise_corner_hz: Annotated[NotNegative, within(0, 1e7, "Hz")] = 0.0
+    """Where noise that grows towards zero Doppler is as strong as the white; 0 is none."""
     noise_slope_db: Annotated[NotNegative, within(1, 20, "dB per decade")] = 10.0
+    """Of that noise, per decade."""
     lines: Annotated[tuple[LineConfig, ...], Field(max_length=16)] = ()
+    """Interference: a list of {doppler_hz, level_db}."""
 
 
 class SavgolConfig(Section):
     """The Savitzky-Golay filter of the denoised maps."""
 
     order: Annotated[int, Field(ge=0, le=30, strict=True)] = 5
+    """Of the polynomial."""
     frame: Annotated[int, Field(ge=1, strict=True)] = 11
+    """Odd, above the order."""
 
     @model_validator(mode="after")
     def _fits(self) -> "SavgolConfig":
@@ -512,11 +603,17 @@ class HighpassConfig(Section):
     """The Butterworth filter of `clutter: highpass`; its cut-off is given once, in any unit."""
 
     order: Annotated[int, Field(ge=1, le=10, strict=True)] = 4
+    """Of the filter."""
     cutoff_hz: Annotated[float, Field(gt=0, le=1e7, strict=True)] | None = None
+    """One of the three cut-offs."""
     cutoff_mps: Annotated[float, Field(gt=0, le=1e4, strict=True)] | None = None
+    """The same as a speed."""
     cutoff_fraction: Annotated[float, Field(gt=0, lt=1, strict=True)] | None = None
+    """The same of PRF/2."""
     zero_phase: Flag = False
+    """Filter both ways."""
     remove_mean: Flag = True
+    """Before the filter; without it what stands still rings, as with MATLAB's `filter`."""
 
     @model_validator(mode="after")
     def _one_cutoff(self) -> "HighpassConfig":
@@ -538,20 +635,33 @@ class ProcessingConfig(Section):
     """
 
     clutter: Literal["difference", "mean", "highpass", "none"] = "difference"
+    """s[m + 1] - s[m], the paper's MTI; less the mean; the filter below."""
     mti: Annotated[Flag | None, Field(exclude=True)] = None
+    """Another spelling: true is `clutter: difference`, false is `none`."""
     highpass: HighpassConfig = HighpassConfig()
     doppler: Literal["half_band", "gate"] = "half_band"
+    """The coherent sum of the kept bins, or STFTs of those around the torso."""
     gate_m: float | tuple[float, float] = 1.0
+    """How far the gate reaches to both sides of the torso, or [from, to]."""
     gate_sum: Literal["power", "magnitude"] = "power"
+    """Powers are added up, or (sum of the magnitudes)^2."""
     range_fft_length: Annotated[int, Field(ge=2, multiple_of=2, strict=True)] | None = None
+    """Even, at least the samples of a chirp; null is found."""
     range_reference: Literal["centre", "start"] = "centre"
+    """Where in the chirp the phase is taken."""
     window_fraction: Annotated[float, Field(gt=0, lt=1, strict=True)] = 0.1
+    """Of the recording."""
     window_s: Annotated[float, Field(gt=0, le=1e7, strict=True)] | None = None
+    """The window in s, before window_fraction."""
     overlap_fraction: Annotated[float, Field(ge=0, lt=1, strict=True)] = 0.9
+    """Of the window."""
     stft_fft_length: Annotated[int, Field(ge=8, strict=True)] | None = None
+    """At least the window; null is found."""
     savgol: SavgolConfig = SavgolConfig()
     fsst_hop_pulses: Annotated[int, Field(ge=1, le=2**24, strict=True)] | None = None
+    """Of the fsst maps; 1 is every sample; null is the STFT's."""
     fsst_threshold: Annotated[float, Field(ge=0, lt=1, strict=True)] = 1e-3
+    """Of the map's largest coefficient."""
 
     @field_validator("gate_m", mode="before")
     @classmethod
@@ -598,13 +708,21 @@ class CfarConfig(Section):
     """
 
     guard: tuple[Cells, Cells] = (10, 2)
+    """Pixels on each side, [rows, columns], left out."""
     training: tuple[Cells, Cells] = (50, 10)
+    """Pixels on each side, [rows, columns], averaged."""
     pfa: ExceedingRate | None = None
+    """False alarm rate; null where another is the threshold."""
     factor: Annotated[Positive, within(1e-3, 1e12)] | None = None
+    """Threshold: factor of the mean."""
     threshold_db: Decibel | None = None
+    """Threshold: dB above the mean."""
     on: Literal["power", "decibel"] = "decibel"
+    """What is averaged and compared."""
     floor_db: Annotated[Decibel, within(0, 200, "dB")] = Uniform(uniform=(10.0, 30.0))
+    """With decibels, where the map's median is put."""
     edges: Literal["wrap", "shrink"] = "wrap"
+    """Beyond an edge the opposite one goes on, or no training cells."""
 
     @model_validator(mode="after")
     def _one_threshold(self) -> "CfarConfig":
@@ -634,11 +752,16 @@ class ImageConfig(Section):
     """
 
     size_px: tuple[Pixels, Pixels] = (256, 256)
+    """[height, width]; one number is a square."""
     kind: Literal["decibel", "cfar"] = "decibel"
+    """Grey levels, or binary masks of what exceeds its background."""
     dynamic_range_db: Annotated[float, Field(gt=0, le=300, strict=True)] = 50.0
+    """Of `kind: decibel`."""
     cfar: CfarConfig = CfarConfig()
     colour_map: str = DEFAULT_COLOUR_MAP
+    """Any Matplotlib name; PNG only."""
     doppler_limits_mps: tuple[Real, Real] | None = None
+    """v for -v to v, or [low, high], approaching positive; null is all."""
 
     @field_validator("doppler_limits_mps", mode="before")
     @classmethod
@@ -682,10 +805,15 @@ class SplitConfig(Section):
     """Shares of the three parts, of the samples of each class or of the persons."""
 
     by: Literal["sample", "subject"] = "sample"
+    """Shares of each class's samples, or of the persons."""
     train: Share = 0.8
+    """Share."""
     validation: Share = 0.2
+    """Share."""
     test: Share = 0.0
+    """Share."""
     subjects: Annotated[int, Field(ge=1, strict=True)] | None = None
+    """With `by: subject`: persons who each perform every activity."""
 
     @model_validator(mode="after")
     def _whole(self) -> "SplitConfig":
@@ -716,10 +844,15 @@ class EngineConfig(Section):
     """
 
     kind: Literal["direct", "cube"] = "direct"
+    """The closed form within the tolerance, or the exact reference."""
     tolerance_db: Annotated[float, Field(ge=-400, le=MAX_TOLERANCE_DB, strict=True)] = -80.0
+    """Relative L2 error of the noiseless signal after MTI, -400 to -6."""
     fallback: Literal["refuse", "cube"] = "refuse"
+    """What to do with a scene for which `direct` cannot promise that."""
     precision: Literal["auto", "double"] = "auto"
+    """double: float64 whatever the tolerance."""
     motion_in_chirp: Flag = False
+    """Of `cube`: paths go on moving during a chirp."""
 
 
 Level = Annotated[int, Field(ge=0, le=9, strict=True)]
@@ -733,12 +866,19 @@ class OutputConfig(Section):
     """
 
     png: Flag = True
+    """Write a tree of images beside dataset.h5."""
     column_labels: Flag = False
+    """Store what is done at the time of each column of a map."""
     png_level: Level = 1
+    """Compression, 0 to 9."""
     hdf5_level: Level = 1
+    """Compression, 0 to 9."""
     power: Literal["float16"] | None = None
+    """float16: store the decibels behind every image, not clipped."""
     slow_time: Flag = False
+    """Store the complex slow-time signal."""
     license: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9.+-]{0,60}$")] | None = None
+    """Of the data card, as the Hugging Face Hub calls it: cc-by-4.0, mit."""
 
 
 MapName = Literal[
@@ -846,24 +986,22 @@ class RecordedPart(Section):
 
 
 class RecordingsConfig(Section):
-    """A data set of measured data: windows of recordings instead of scenes.
-
-    Attributes:
-        window_s, hop_s: length of a sample, and from one to the next.
-        receiver: one of them, or None for the sum of all maps' powers.
-        parts: of the manifest, in its order.
-        sha256: of each file, which the data set's bytes depend on.
-        rows: of images that exist already: lowest and highest edge, Hz (m of a range-time map).
-        packed: whether the columns of masks are bits.
-    """
+    """A data set of measured data: windows of recordings instead of scenes."""
 
     window_s: Annotated[float, Field(gt=0, le=1e6, strict=True)] = 4.0
+    """Length of a sample."""
     hop_s: Annotated[float, Field(gt=0, le=1e6, strict=True)] = 4.0
+    """From one sample to the next."""
     receiver: Annotated[int, Field(ge=0, le=2**16, strict=True)] | None = None
+    """One of them; null is the sum of all maps' powers."""
     parts: Annotated[tuple[RecordedPart, ...], Field(max_length=10_000)] = ()
+    """Filled in from the manifest, in its order."""
     sha256: dict[str, str] = {}
+    """Filled in: of each file, which the data set's bytes depend on."""
     rows: tuple[float, float] | None = None
+    """Of images that exist already: lowest and highest edge, Hz (m of a range-time map)."""
     packed: Flag = False
+    """Whether the columns of masks are bits."""
 
     @model_validator(mode="after")
     def _bounded(self) -> "RecordingsConfig":
@@ -898,28 +1036,39 @@ class Config(Section):
     """A data set: what to draw, what to compute, how to store it."""
 
     seed: Annotated[int, Field(ge=0, lt=2**63, strict=True)] = 1
+    """0 to 2^63 - 1."""
     samples_per_class: SamplesBy = 300
+    """May differ: {per_activity: {default: 300, walking: 100}}."""
     classes: Annotated[dict[str, ClassConfig], Field(max_length=200)] = {}  # labels are uint8
+    """One's own: {name: {sequence: [...]}} of movements, {name: [walk/*.bvh]} of files."""
     activities: Literal["all"] | tuple[str, ...] = "all"
+    """The twelve and those of `classes`; or a list of slugs or labels, [walking, S12]."""
     duration_s: Annotated[Positive, within(1e-9, 1e7, "s")] = 4.0
+    """Of a recording."""
     radar: RadarConfig = RadarConfig()
     subject: SubjectConfig = SubjectConfig()
     motion: MotionConfig = MotionConfig()
     timing: TimingConfig = TimingConfig()
     body: BodyConfig = BodyConfig()
     wall: WallConfig | None = None
+    """null is free space."""
     room: RoomConfig = RoomConfig()
     snr_db: Decibel | None = 30.0
+    """null is noiseless."""
     receiver: ReceiverConfig = ReceiverConfig()
     snr_reference: Literal["free_space", "received"] = "free_space"
+    """Signal without the wall, or with its loss."""
     on_invalid: Literal["keep", "redraw", "error"] = "keep"
+    """A body that meets the wall, a scatterer that leaves the range half-band."""
     processing: ProcessingConfig = ProcessingConfig()
     image: ImageConfig = ImageConfig()
     maps: tuple[MapName, ...] = ("stft",)
+    """Of rtm, stft, fsst; the latter two with _denoised, _compensated, _compensated_denoised."""
     split: SplitConfig = SplitConfig()
     engine: EngineConfig = EngineConfig()
     output: OutputConfig = OutputConfig()
     recordings: RecordingsConfig | None = None
+    """Of measured data instead of scenes: see docs/measured.md."""
 
     @field_validator("classes")
     @classmethod

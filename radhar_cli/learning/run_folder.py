@@ -21,12 +21,12 @@ from torch import Tensor, nn
 from typing_extensions import TypedDict
 
 from radhar_cli.config.schema import Section
-from radhar_cli.dataset.files import read_bytes, write_whole
+from radhar_cli.dataset.files import read_bytes, refuse_links, write_whole
 from radhar_cli.dataset.layout import WORK
 from radhar_cli.errors import ModelError, RadharError
 from radhar_cli.learning.batches import Normalisation
 from radhar_cli.learning.models.build import build_model
-from radhar_cli.learning.run_files import ABOUT, ALL, BEST, HISTORY, LAST, TRAINED_ON
+from radhar_cli.learning.run_files import ABOUT, ALL, BEST, EVENTS, HISTORY, LAST, TRAINED_ON
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.tables import csv_text
 from radhar_cli.untrusted import regular_size
@@ -176,6 +176,7 @@ def reserve_run(folder: Path, metadata: RunMetadata, overwrite: bool) -> None:
     if ours and (overwrite or not (folder / LAST).exists()):
         for name in reversed(ALL):
             (folder / name).unlink(missing_ok=True)
+        remove_events(folder)
     if not (folder / ABOUT).exists():
         foreign_files = sorted(p.name for p in folder.iterdir() if p.name != WORK)
         if foreign_files and not ours:
@@ -192,6 +193,17 @@ def reserve_run(folder: Path, metadata: RunMetadata, overwrite: bool) -> None:
             + "\n  ".join(found)
             + "\nchoose another folder, or --overwrite to start this one again"
         )
+
+
+def remove_events(folder: Path) -> None:
+    """Remove the event files of a run, nothing else.
+
+    Raises:
+        FolderError: their folder is a symbolic link.
+    """
+    refuse_links(folder, folder / EVENTS)
+    for path in (folder / EVENTS).glob("events.out.tfevents.*"):
+        path.unlink()
 
 
 def differences(old: RunMetadata, new: RunMetadata) -> list[str]:

@@ -35,8 +35,11 @@ class ScheduleConfig(Section):
     """
 
     kind: Literal["step", "cosine", "constant"] = "step"
+    """How the rate falls."""
     every_epochs: Count = 10
+    """Of step."""
     factor: Annotated[float, Field(gt=0, le=1, strict=True)] = 0.1
+    """Of step."""
 
 
 Fraction = Annotated[float, Field(ge=0, le=1, strict=True)]
@@ -52,15 +55,25 @@ class AugmentConfig(Section):
     """
 
     time_shift: Fraction = 0.0
+    """Largest shift, a fraction of the image."""
     time_stretch: Fraction = 0.0
+    """x: factors from e^-x to e^x about the middle."""
     doppler_shift: Fraction = 0.0
+    """As time_shift."""
     doppler_scale: Fraction = 0.0
+    """As time_stretch."""
     contrast: Fraction = 0.0
+    """x: distance from the brightest level times 1 - x to 1 + x."""
     noise: Fraction = 0.0
+    """Largest share of pixels that take the level of another place."""
     morphology: Fraction = 0.0
+    """Probability of a dilation or erosion by one pixel."""
     time_bands: Annotated[int, Field(ge=0, le=16, strict=True)] = 0
+    """Most bands that are blanked."""
     doppler_bands: Annotated[int, Field(ge=0, le=16, strict=True)] = 0
+    """Most bands that are blanked."""
     band_width: Fraction = 0.1
+    """Largest width of one."""
 
 
 class StreamConfig(Section):
@@ -78,28 +91,48 @@ class TrainConfig(Section):
     """One training run; the defaults are the paper's Table II."""
 
     model: Annotated[str, Field(min_length=1)] = "fftnet"
+    """The paper's network, smallnet, or any name of timm's."""
     map: str | None = None
+    """Which map; null is the first one."""
     input: Literal["rgb", "gray"] = "rgb"
+    """Colours as in the PNGs, or one channel three times."""
     seed: Annotated[int, Field(ge=0, lt=2**63, strict=True)] = 1
+    """Of first weights, order of the images, dropout."""
     epochs: Count = 20
+    """Passes over the training images."""
     batch_size: Annotated[int, Field(ge=2, le=1_000_000, strict=True)] = 128
+    """Images a step, over all processes."""
     micro_batch: Annotated[Auto, _auto_or(2)] = "auto"
+    """Most images in one pass of a process; auto is the whole batch."""
     optimiser: Literal["adam", "adamw", "sgd"] = "adam"
+    """adamw has decoupled decay, sgd a momentum of 0.9."""
     learning_rate: Rate = 0.00147
+    """The initial one."""
     weight_decay: Annotated[float, Field(ge=0, le=1e3, strict=True)] = 1e-4
+    """L2, of weights; biases and norms are left free."""
     label_smoothing: Annotated[float, Field(ge=0, lt=1, strict=True)] = 0.1
+    """zeta: a label is y (1 - zeta) + zeta/K."""
     schedule: ScheduleConfig = ScheduleConfig()
     warmup_epochs: Annotated[float, Field(ge=0, le=1e6, strict=True)] = 0.0
+    """Linear rise of the rate, step by step; may be a fraction."""
     gradient_clip_norm: Rate | None = None
+    """Largest norm of the gradient; null is none."""
     validation_share: Share = 0.2
+    """Of images that come without a split."""
     data_weights: tuple[Weight, ...] | None = None
+    """Of several data sets: how often an epoch shows an image of each."""
     sampling: Literal["all", "balanced"] = "all"
+    """balanced: every class equally often."""
     augment: AugmentConfig = AugmentConfig()
     stream: StreamConfig = StreamConfig()
     device: Literal["auto", "cpu", "cuda", "mps"] = "auto"
+    """auto takes cuda, mps, cpu in that order."""
     precision: Literal["auto", "float32", "bfloat16"] = "auto"
+    """auto: bfloat16 where the device computes in it."""
     workers: Annotated[Auto, _auto_or(0)] = "auto"
+    """Reading processes."""
     threads: Annotated[Auto, _auto_or(1)] = "auto"
+    """Of the CPU."""
 
     @model_validator(mode="after")
     def _fits(self) -> "TrainConfig":

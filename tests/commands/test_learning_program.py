@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from command_line import process, radhar
+from documented import KEYS
 from learning.patterns import BASE, load_timm, split_tree, trained, tree
 
 
@@ -60,6 +61,22 @@ def test_predict_prints_the_class_and_probabilities(place: Path) -> None:
     for row in rows:
         assert sum(row["probabilities"].values()) == pytest.approx(1, abs=1e-6)
         assert row["class"] == max(row["probabilities"], key=row["probabilities"].__getitem__)
+
+
+def test_json_of_commands_that_learn(place: Path) -> None:
+    run, data, one = place / "run", place / "tree", place / "tree/val/walking/000.png"
+    train = ("train", data, "-o", place / "told", "--config", place / "train.json")
+    commands = {
+        "train": train,
+        "eval": ("eval", run, data, "-o", place / "told-eval"),
+        "predict": ("predict", run, one),
+        "models": ("models", "smallnet", "--size", 32),
+    }
+    for name, command in commands.items():
+        done = radhar(*command, "--json")
+        assert done.returncode == 0, done.stderr
+        (line,) = done.stdout.splitlines()
+        assert json.loads(line).keys() == KEYS[name]
 
 
 def test_models_lists_our_networks_and_the_papers_rivals(place: Path) -> None:

@@ -1,0 +1,83 @@
+"""A config to start from, out of the schema: every key, its default, and what it means."""
+
+import inspect
+import json
+import re
+from collections.abc import Iterator
+from decimal import Decimal
+from textwrap import wrap
+from typing import Any, Literal, get_args, get_origin
+
+from radhar_cli.config.schema import Config, Section
+
+WIDTH = 100
+HEAD = """\
+# Every key with its default, which holds too where a key is left out; `base: other.yaml` takes
+# what is left out from another file.
+"""
+NUMBERS = """\
+# A number of a scene may be drawn: {uniform: [low, high]}, {normal: [mean, sd], min: a, max: b},
+# {choice: [a, b]}, {vary: [nominal, fraction]}; under motion and timing it may also differ:
+# {per_activity: {default: 2, walking: 1}}.
+"""
+
+
+def as_commented_yaml(kind: type[Section]) -> str:
+    """The text of a file that reads back as `kind()`."""
+    head = HEAD + (NUMBERS if kind is Config else "")
+    return re.sub("\n{3,}", "\n\n", "\n".join((head, *_lines(kind), "")))
+
+
+def _lines(kind: type[Section]) -> Iterator[str]:
+    defaults = kind.model_construct().model_dump(mode="json")  # nothing filled in for null
+    for name, field in kind.model_fields.items():
+        if field.exclude:
+            continue
+        members = [field.annotation, *get_args(field.annotation)]
+        inner = next((m for m in members if isinstance(m, type) and issubclass(m, Section)), None)
+        value, comment = defaults[name], _comment(members, field.description or "")
+        if inner is None or not (value is None or isinstance(value, dict)):
+            yield from _key(name, value, comment)
+            continue
+        yield ""
+        yield from _comment_lines((inspect.getdoc(inner) or "").partition("\n\n")[0])
+        mark = ""
+        if value is None:
+            yield from _key(name, value, f"{comment} Or, instead of this line:")
+            mark = "# "
+        yield f"{mark}{name}:"
+        yield from (f"{mark}  {line}" for line in _lines(inner) if line)
+        yield ""
+
+
+def _comment(members: list[Any], description: str) -> str:
+    choices = [get_args(one) for one in members if get_origin(one) is Literal]
+    if get_origin(members[0]) is tuple or sum(map(len, choices)) < 2:
+        return description
+    return f"{' | '.join(_text(value) for one in choices for value in one)}. {description}".strip()
+
+
+def _comment_lines(text: str) -> Iterator[str]:
+    return (f"# {line}" for line in wrap(text, WIDTH - 8, break_on_hyphens=False))
+
+
+def _key(name: str, value: object, comment: str) -> Iterator[str]:
+    line = f"{name}: {_text(value)}"
+    if comment and len(line) + len(comment) + 8 > WIDTH:
+        yield from _comment_lines(comment)
+        comment = ""
+    yield f"{line}  # {comment}" if comment else line
+
+
+def _text(value: object) -> str:
+    """A value in YAML, on a line; numbers as engineers write them, 77e9."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{_text(k)}: {_text(v)}" for k, v in value.items()) + "}"
+    if isinstance(value, list):
+        return f"[{', '.join(map(_text, value))}]"
+    if isinstance(value, float):
+        number = Decimal(repr(value)).normalize().to_eng_string()
+        return number.lower().replace("e+", "e")
+    if isinstance(value, str) and re.fullmatch(r"[A-Za-z_]+[0-9]*", value):
+        return value
+    return json.dumps(value)

@@ -1,0 +1,272 @@
+"""What every command prints: for people, for programs (--json), nothing (--quiet); its status."""
+
+import ast
+import io
+import json
+import signal
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from command_line import ROOT, Done, radhar
+from documented import KEYS
+from small import small_config
+
+from radhar_cli import commands
+from radhar_cli.cli import program
+from radhar_cli.commands import tell
+from radhar_cli.commands.bars import Bars
+
+FOLDER = Path(str(commands.__file__)).parent
+# Modules that report for commands of others.
+FOR = {
+    "terminal": ["generate", "merge"],
+    "dry_run": ["generate"],
+    "training_view": ["train"],
+}
+
+
+def registered(app: Any, prefix: str = "") -> dict[str, str]:
+    """{command: its module}."""
+    found = {}
+    for one in app.registered_commands:
+        name = one.name or one.callback.__name__
+        found[prefix + name] = one.callback.__module__.rpartition(".")[2]
+    for group in app.registered_groups:
+        found |= registered(group.typer_instance, f"{prefix}{group.name} ")
+    return found
+
+
+def values(done: Done) -> dict[str, Any]:
+    """The one object that a command printed."""
+    assert done.stdout.endswith("\n")
+    (line,) = done.stdout.splitlines()
+    found: dict[str, Any] = json.loads(line, parse_constant=pytest.fail)
+    return found
+
+
+def reports(module: str) -> list[set[str]]:
+    """The keywords of every call of `report` in a module."""
+    tree = ast.parse((FOLDER / f"{module}.py").read_text())
+    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
+    return [
+        {word.arg for word in call.keywords if word.arg}
+        for call in calls
+        if ast.unparse(call.func) == "report"
+    ]
+
+
+def test_every_command_reports_and_has_its_keys_documented() -> None:
+    found = registered(program())
+    assert len(found) > 20
+    reported = set()
+    for module in {*found.values(), *FOR}:
+        names = FOR.get(module) or [name for name, of in found.items() if of == module]
+        rows = [KEYS[row] for row in KEYS if row.partition(" --")[0] in names]
+        for keywords in reports(module):
+            assert keywords <= set().union(*rows), f"{module}: docs/output.md should list them"
+            reported.update(names)
+    assert found.keys() == reported, "should call tell.report"
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a config and a data set."""
+    folder = tmp_path_factory.mktemp("place")
+    small_config(folder)
+    done = radhar("generate", folder / "small.yaml", "-o", folder / "set", "--jobs", 1, "--json")
+    found = values(done)
+    assert found.keys() == KEYS["generate"]
+    assert (found["samples"], found["made"]) == (9, 9)
+    assert found["classes"] == {"punching": 3, "walking": 3, "walking_to_falling": 3}
+    assert sum(found["split"].values()) == 9
+    assert found["bytes"] == (folder / "set/dataset.h5").stat().st_size
+    return folder
+
+
+OTHERS = {
+    "generate": "generate {config} -o {set}",
+    "generate --shard": "generate {config} -o {out} --shard 1/2 --jobs 1",
+    "generate --dry-run": "generate {config} -o {out} --dry-run --jobs 1",
+    "verify": "verify {set} --samples 1",
+    "motion": "motion {config} -a walking --set motion.model=human -o {out}.bvh",
+    "simulate": "simulate {config} -a walking -o {out} --maps stft --no-figures",
+    "preview": "preview {set} -o {out}.png",
+    "config init": "config init {out}.yaml",
+}
+
+
+@pytest.mark.parametrize("command", OTHERS)
+def test_json_is_all_that_is_printed(place: Path, tmp_path: Path, command: str) -> None:
+    names = {"config": place / "small.yaml", "set": place / "set", "out": tmp_path / "out"}
+    done = radhar(*OTHERS[command].format(**names).split(), "--json")
+    assert done.returncode == 0, done.stderr
+    assert values(done).keys() == KEYS[command]
+
+
+def test_json_of_what_a_file_says(place: Path) -> None:
+    shown = values(radhar("config", "show", place / "small.yaml", "--json"))
+    assert shown["seed"] == 7
+    assert values(radhar("inspect", place / "set", "--json"))["kind"] == "data set"
+    assert "base" in values(radhar("config", "schema", "--json"))["properties"]
+
+
+def test_numbers_that_are_not_finite_are_null(capsys: pytest.CaptureFixture[str]) -> None:
+    command = tell.with_output_options(
+        lambda: tell.report(a=float("nan"), b=[(float("-inf"), 1)], c=Path("x"), d="\x1b\u202e")
+    )
+    command(json_=True, quiet=False)
+    out = capsys.readouterr().out
+    assert json.loads(out) == {"a": None, "b": [[None, 1]], "c": "x", "d": "\x1b\u202e"}
+    assert out.strip().isprintable()
+
+
+def test_quiet_says_nothing_and_the_status_tells(place: Path, tmp_path: Path) -> None:
+    config = place / "small.yaml"
+    done = radhar("generate", config, "-o", tmp_path / "set", "--jobs", 1, "--quiet")
+    assert (done.returncode, done.stdout) == (0, "")
+    assert all(line.startswith("warning: ") for line in done.stderr.splitlines())
+    again = radhar("generate", config, "-o", tmp_path / "set", "-q")
+    assert (again.returncode, again.stdout, again.stderr) == (0, "", "")
+    assert radhar("inspect", place / "set", "-q").stdout == ""
+    assert radhar("verify", tmp_path / "set", "-q", "--samples", 0).stdout == ""
+    (next((tmp_path / "set/png").rglob("*.png"))).write_bytes(b"")
+    wrong = radhar("verify", tmp_path / "set", "-q", "--samples", 0)
+    assert (wrong.returncode, wrong.stdout, wrong.stderr) == (1, "", "")
+    told = radhar("verify", tmp_path / "set", "--json", "--samples", 0)
+    assert told.returncode == 1
+    assert len(values(told)["problems"]) == 1
+
+
+def test_quiet_keeps_warnings_and_errors(place: Path, tmp_path: Path) -> None:
+    far = ("--index", 99, "--maps", "stft", "--no-figures", "--quiet")
+    done = radhar("simulate", place / "small.yaml", "-a", "walking", "-o", tmp_path, *far)
+    assert done.stdout == ""
+    assert done.stderr.startswith("warning: --index 99")
+    done = radhar("verify", tmp_path / "none", "--quiet", "--json")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "no such file" in done.stderr
+
+
+class Screen(io.StringIO):
+    """An error stream that is a terminal, or none."""
+
+    def __init__(self, terminal: bool) -> None:
+        super().__init__()
+        self._terminal = terminal
+
+    def isatty(self) -> bool:
+        return self._terminal
+
+
+@pytest.mark.parametrize(
+    ("terminal", "quiet", "shown"),
+    [(True, False, True), (True, True, False), (False, False, False), (False, True, False)],
+)
+def test_bars_show_on_a_terminal_alone(
+    monkeypatch: pytest.MonkeyPatch, terminal: bool, quiet: bool, shown: bool
+) -> None:
+    screen = Screen(terminal)
+    monkeypatch.setattr(sys, "stderr", screen)
+
+    def work() -> None:
+        bars = Bars()
+        bars.open("synthesis", 3, "sample")
+        bars.advance(3)
+        bars.say("resuming: 2 of 3")
+        bars.say("warning: far away")
+        bars.close()
+
+    tell.with_output_options(work)(json_=False, quiet=quiet)
+    assert ("synthesis" in screen.getvalue()) == shown
+    assert ("resuming" in screen.getvalue()) == (not quiet)
+    assert "warning: far away" in screen.getvalue()
+
+
+def test_what_was_asked_of_one_command_is_not_asked_of_the_next(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    def fail() -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        tell.with_output_options(fail)(json_=True, quiet=True)
+    tell.report(a=1)
+    tell.tell("spoken")
+    assert capsys.readouterr().out == "spoken\n"
+
+
+@pytest.mark.parametrize(
+    ("ends", "status", "said"),
+    [
+        (lambda: SimpleNamespace(), 0, ""),
+        (KeyboardInterrupt, 130, "interrupted: what is finished in "),
+        (lambda: signal.raise_signal(signal.SIGTERM), 143, "terminated: what is finished in "),
+    ],
+)
+def test_statuses_of_what_stops_a_build(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ends: Any, status: int, said: str
+) -> None:
+    def build(*_: object) -> object:
+        found = ends()
+        if isinstance(found, BaseException):
+            raise found
+        return found
+
+    monkeypatch.setattr("radhar_cli.dataset.build.build", build)
+    monkeypatch.setattr("radhar_cli.commands.terminal.print_outcome", lambda *_: None)
+    handler = signal.getsignal(signal.SIGTERM)
+    try:
+        done = radhar("generate", small_config(tmp_path), "-o", tmp_path / "set")
+    finally:
+        signal.signal(signal.SIGTERM, handler)
+    assert done.returncode == status
+    assert said in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_help_and_the_page_name_every_status() -> None:
+    page = (ROOT / "docs/output.md").read_text()
+    shown = " ".join(radhar("--help").stdout.split())
+    for status in (0, 1, 2, 130, 143):
+        assert f"| {status} | " in page
+        assert f" {status} " in shown.partition("Exit status:")[2]
+
+
+def test_config_init_refuses_to_overwrite(tmp_path: Path) -> None:
+    out = tmp_path / "new.yaml"
+    done = radhar("config", "init", out)
+    assert done.returncode == 0
+    assert f"radhar generate {out} -o OUT" in done.stdout
+    text = out.read_text()
+    again = radhar("config", "init", out, "--train")
+    assert again.returncode == 2
+    assert "exists already" in again.stderr
+    assert out.read_text() == text
+    out.unlink()
+    out.symlink_to(tmp_path / "elsewhere.yaml")
+    assert radhar("config", "init", out).returncode == 2
+    assert not (tmp_path / "elsewhere.yaml").exists()
+
+
+def test_config_diff_compares_what_files_mean(tmp_path: Path) -> None:
+    one, other = tmp_path / "one.yaml", tmp_path / "other.yaml"
+    one.write_text("seed: 1\nsnr_db: 30\nsubject: {height_m: {uniform: [1.6, 1.8]}}\n")
+    other.write_text("base: one.yaml\nradar: {prf_hz: 5000}\n")
+    same = radhar("config", "diff", one, other)
+    assert (same.returncode, same.stdout) == (0, "")
+    changes = "subject: {height_m: {uniform: [1.7, 1.8]}}\nwall: {eps_r: 4}\nradar: {prf_hz: 6e3}\n"
+    other.write_text(f"base: one.yaml\n{changes}")
+    done = radhar("config", "diff", one, other)
+    assert done.returncode == 1
+    lines = done.stdout.splitlines()
+    assert [line.split()[0] for line in lines] == ["radar.prf_hz", "subject.height_m", "wall"]
+    assert lines[0].endswith("  5000.0 -> 6000.0")
+    assert lines[1].endswith('  {"uniform": [1.6, 1.8]} -> {"uniform": [1.7, 1.8]}')
+    found = values(radhar("config", "diff", one, other, "--json"))["different"]
+    assert found["radar.prf_hz"] == [5000.0, 6000.0]
+    assert found["wall"][0] is None
+    assert radhar("config", "diff", one, tmp_path / "none.yaml").returncode == 2
+    assert radhar("config", "diff", one, other, "--quiet").stdout == ""

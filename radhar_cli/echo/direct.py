@@ -211,8 +211,8 @@ def _interpolated_sum(cycles: Float, envelope: Complex, shift: Index, step: int)
         phases = stencils(np.ascontiguousarray(cycles[:, reach].T), within)
         taps = stencils(np.ascontiguousarray(envelope[:, reach].T), within)
         turning = phasors_between_knots(phases, step, degree, envelope.dtype)
-        at_nodes = to_nodes @ taps.reshape(TAPS, -1).view(to_nodes.dtype)
-        at_nodes = at_nodes.view(taps.dtype).reshape(-1, *taps.shape[1:])
+        parts = to_nodes @ taps.reshape(TAPS, -1).view(to_nodes.dtype)
+        at_nodes = parts.view(taps.dtype).reshape(-1, *taps.shape[1:])
         sums = turning.transpose(1, 0, 2) @ at_nodes.transpose(1, 2, 0)  # [segments, step, nodes]
         total[start : start + count] = (sums.transpose(1, 0, 2) @ weights)[..., 0].T
     return total.ravel()

@@ -38,7 +38,7 @@ from radhar_cli.echo.knots import Knots, Motion, only, resolve
 from radhar_cli.echo.paths import Paths, PathSource
 from radhar_cli.echo.phase_recurrence import nodes, phasors_between_knots
 from radhar_cli.phasor import unit_phasor
-from radhar_cli.processing.canceller import FIRST_DIFFERENCE, Canceller
+from radhar_cli.processing.canceller import FIRST_DIFFERENCE, Canceller, Fir
 from radhar_cli.radar.waveform import Waveform
 
 # Values at work at once, which stay in the cache: at knots and at pulses; of phasors, of which some
@@ -46,6 +46,8 @@ from radhar_cli.radar.waveform import Waveform
 BLOCK, PHASORS, CHUNK = 2**15, 2**13, 2**20
 # Of the phase between knots in single precision: a cubic errs less than its rounding.
 SINGLE_DEGREE = 3
+SINGLE_ROUNDING_DB = -132.0  # of phasors that turn slowly
+GLANCES = 64
 
 
 class Accuracy(NamedTuple):
@@ -95,8 +97,7 @@ class DirectEcho:
         aim, best = self._aim, 0.0
         chosen, motion = self._settings(aim), self._motion
         while True:
-            # Paths at every pulse cost so much that single precision saves nothing.
-            chosen = chosen._replace(single=chosen.single and motion.step > 1)
+            chosen = chosen._replace(single=chosen.single and self._single_will_do(motion))
             unit = 2.0 ** frexp(motion.largest)[1]
             y = self._sum(chosen, motion, unit)
             exact = only(self._kept(motion), motion.at_pulses(self.source, self.waveform))
@@ -129,6 +130,21 @@ class DirectEcho:
     def _kept(self, motion: Motion) -> Bool:
         kept: Bool = motion.moving | (not self.canceller.removes_static)
         return kept
+
+    def _single_will_do(self, motion: Motion) -> bool:
+        """Whether rounding leaves enough of what the canceller leaves of paths that hardly turn."""
+        if motion.step == 1:
+            return False  # paths at every pulse cost so much that it would save nothing
+        if motion.kept is None or not isinstance(self.canceller, Fir):
+            return True
+        paths, kept = motion.kept.paths, self._kept(motion)
+        some = np.arange(0, paths.delay.shape[1] - 1, max(1, paths.delay.shape[1] // GLANCES))
+        turn = self.waveform.f0 / motion.step * (paths.delay[:, some + 1] - paths.delay[:, some])
+        amplitude = paths.amplitude[:, some] * kept[:, None]
+        left = sum(c * unit_phasor(k * turn) for k, c in enumerate(self.canceller.taps))
+        rounding_db = SINGLE_ROUNDING_DB - (self.tolerance_db - SPARE_DB)
+        least = 10 ** (rounding_db / 10) * np.sum(amplitude**2)
+        return bool(np.sum(np.abs(left * amplitude) ** 2) > least)
 
     def _sum(self, chosen: Settings, motion: Motion, unit: float) -> Complex:
         y = np.zeros(self.waveform.n_pulses, dtype=complex)
@@ -185,19 +201,18 @@ def _interpolated_sum(cycles: Float, envelope: Complex, shift: Index, step: int)
         step: pulses from knot to knot.
     """
     degree = SINGLE_DEGREE if envelope.dtype == np.complex64 else TAPS - 1
-    to_nodes, weights = _weights(step, degree)
-    to_nodes, weights = to_nodes.astype(envelope.real.dtype), weights.astype(envelope.dtype)
+    to_nodes, to_pulses = _weights(step, degree)
+    to_nodes, weights = to_nodes.astype(envelope.real.dtype), to_pulses.astype(envelope.dtype)
     total = np.empty((shift.size, step), dtype=complex)
     count = max(1, PHASORS // len(cycles))
     for start in range(0, shift.size, count):
         within = shift[start : start + count]
         reach = slice(start, start + within.size + BEFORE + AFTER)
-        phases, taps = (
-            stencils(np.ascontiguousarray(part[:, reach].T), within) for part in (cycles, envelope)
-        )
+        phases = stencils(np.ascontiguousarray(cycles[:, reach].T), within)
+        taps = stencils(np.ascontiguousarray(envelope[:, reach].T), within)
         turning = phasors_between_knots(phases, step, degree, envelope.dtype)
-        at_nodes = to_nodes @ taps.reshape(TAPS, -1).view(to_nodes.dtype)
-        at_nodes = at_nodes.view(taps.dtype).reshape(-1, *taps.shape[1:])
+        parts = to_nodes @ taps.reshape(TAPS, -1).view(to_nodes.dtype)
+        at_nodes = parts.view(taps.dtype).reshape(-1, *taps.shape[1:])
         sums = turning.transpose(1, 0, 2) @ at_nodes.transpose(1, 2, 0)  # [segments, step, nodes]
         total[start : start + count] = (sums.transpose(1, 0, 2) @ weights)[..., 0].T
     return total.ravel()

@@ -11,7 +11,7 @@ from radhar_cli.echo.interpolation import AFTER, BEFORE, EXACT, shifts, upsample
 from radhar_cli.echo.paths import Paths, PathSource
 from radhar_cli.radar.waveform import Waveform
 
-CHUNK_KNOTS = 32768
+CHUNK_KNOTS, BLOCK = 32768, 2**15
 MIN_KNOTS = 64  # in a recording
 GLANCE, MIN_GLANCE = 4, 512  # a look at every fourth knot, where there are many
 FEW_PULSES = 1024  # which all cost less than to find out how few of them would do
@@ -137,15 +137,19 @@ def _excess_at(source: PathSource, waveform: Waveform, spacing: Spacing, step: i
 
 def _excess(paths: Paths, w: Waveform, spacing: Spacing) -> float:
     """The largest change from one knot to the next, in units of what the spacing allows."""
-    a = paths.amplitude
-    change = np.abs(np.diff(a, axis=1))
-    change /= np.maximum(np.maximum(a[:, 1:], a[:, :-1]), np.finfo(float).tiny)
+    moved, least = 0.0, 1.0
+    rows = max(1, BLOCK // paths.delay.shape[1])
+    for start in range(0, len(paths.delay), rows):  # so that it stays in the cache
+        delay, a = (part[start : start + rows] for part in paths)
+        delay = np.diff(delay, axis=1)
+        moved = max(moved, float(delay.max(initial=0.0)), -float(delay.min(initial=0.0)))
+        with np.errstate(invalid="ignore"):  # 0/0 is no change
+            kept = np.minimum(a[:, 1:], a[:, :-1]) / np.maximum(a[:, 1:], a[:, :-1])
+        least = float(np.fmin.reduce(kept, axis=None, initial=least))
     # Referred to mid-chirp, the ends of the chirp, which turn fastest, weigh next to nothing.
     cycles = w.bandwidth / 4 if w.centred else w.bandwidth
-    delay = np.diff(paths.delay, axis=1)
-    moved = max(float(delay.max(initial=0.0)), -float(delay.min(initial=0.0)))
     return max(
-        float(change.max(initial=0.0)) / spacing.amplitude_change,
+        (1 - least) / spacing.amplitude_change,
         cycles * moved / spacing.phase_change,
     )
 
@@ -186,6 +190,11 @@ def only(kept: Bool, source: Callable[[Float], Paths]) -> Callable[[Float], Path
 
 
 def _differ(paths: Paths, since: Paths) -> Bool:
-    found: Bool = (paths.delay != since.delay[:, :1]).any(axis=1)
-    found |= (paths.amplitude != since.amplitude[:, :1]).any(axis=1)
+    """Which paths are not at all times as in the first column of `since`."""
+    few = slice(None, None, max(1, paths.delay.shape[1] // 16))
+    found: Bool = np.zeros(len(paths.delay), bool)
+    for part, first in zip(paths, since, strict=True):
+        for times in few, slice(None):
+            rest = np.flatnonzero(~found)
+            found[rest] = (part[rest, times] != first[rest, :1]).any(axis=1)
     return found

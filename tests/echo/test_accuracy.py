@@ -191,6 +191,16 @@ def test_tighter_tolerances_never_take_less():
     assert not found[-1].single
 
 
+def test_what_hardly_turns_is_double_at_once():
+    """5 mm/s: the first difference leaves -50 dB, and single precision not enough of that."""
+    slow = ref.Points(lambda t: (2 + 0.005 * t)[None])
+    echo = replace(walk(-80.0), source=slow)
+    _, accuracy = echo.slow_time()
+    assert not accuracy.single
+    assert accuracy.step == walk(-80.0).slow_time()[1].step  # no second attempt with denser knots
+    assert replace(echo, canceller=Fir((1.0,))).slow_time()[1].single
+
+
 def test_the_limit_that_a_refusal_names_can_be_kept():
     with pytest.raises(AccuracyError) as refusal:
         walk(-390.0).slow_time()

@@ -314,6 +314,17 @@ def test_block_lengths_do_not_matter(monkeypatch, size):
         assert ref.error_db(part, right) < -200
 
 
+@pytest.mark.parametrize("step", [3, 4, 19, 40])
+def test_an_envelope_in_single_precision_is_a_cubic(step):
+    """Through four points of every segment; shifted stencils included."""
+    at = np.arange(12.0) - direct.BEFORE
+    cubic = lambda x: 1 + 0.2 * x - 0.03 * x**2 + 1j * 0.004 * x**3  # noqa: E731
+    knots = np.stack([cubic(at), 0 * at + 1]).astype(np.complex64)
+    found = direct._interpolated_sum(0.25 + 0 * knots.real, knots, np.array([0, 1, -1]), step)
+    right = -1j * (cubic(np.arange(3 * step) / step) + 1)
+    assert np.abs(found - right).max() < 2e-5
+
+
 class TestFaces:
     """A limb that crosses the face of a wall jumps in amplitude: one pulse has most of x."""
 

@@ -18,7 +18,7 @@ from radhar_cli.config.schema import Config
 from radhar_cli.dataset.assembly import assembled
 from radhar_cli.dataset.batch import Batch, check_rows, run_batch
 from radhar_cli.dataset.check_cache import OUTCOME, Outcomes, store_checks, stored_checks
-from radhar_cli.dataset.folder import clean_up, folder_lock, mark_built, reserve
+from radhar_cli.dataset.folder import clean_up, folder_lock, mark_built, remove_checks, reserve
 from radhar_cli.dataset.hub import write_hub_files
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.layout import DATASET, MANIFEST, WORK, Rows, row_bytes
@@ -28,6 +28,7 @@ from radhar_cli.dataset.png_files import write_missing_pngs
 from radhar_cli.dataset.sample import Maker
 from radhar_cli.dataset.shards import (
     ForeignShardError,
+    Runs,
     Shard,
     check_shards,
     listed_shards,
@@ -174,6 +175,7 @@ class _Build:
         rows = part.rows(len(self.split))
         shards, made, shown = self._shards(rows, batch_size)
         write_part_manifest(self.folder, part, rows, self.identity_hash, shards)
+        remove_checks(self.folder)
         return Outcome(self.folder, len(rows), made, 0, shown)
 
     def _missing_pngs(self, source: Path) -> int:
@@ -185,11 +187,14 @@ class _Build:
         self, rows: range, batch_size: int | None
     ) -> tuple[list[Shard], int, list[dict[str, Any]]]:
         """Shards of the rows, how many rows this run made, and the warnings that were said."""
+        shards = self._sound_shards(rows)
+        gaps, _ = missing_and_repeated(shards, rows.stop, rows.start)
         few = self.maker is None and len(rows) <= MAX_CHECKED_FIRST
-        checked = self._check_scenes(rows) if few else None
+        checked = self._check_scenes(rows) if few and gaps else None
         shown = [] if checked is None else warnings(self.config, _counts(checked["flags"]))
         say_warnings(self.progress, shown)
-        return *self._batches(rows, checked, batch_size), shown
+        made, left = self._batches(rows, gaps, checked, batch_size)
+        return shards + made, left, shown
 
     def _check_scenes(self, rows: range) -> Outcomes:
         """Check every scene, but for those that an earlier run checked: an outcome a row."""
@@ -212,11 +217,11 @@ class _Build:
         return outcomes
 
     def _batches(
-        self, rows: range, checked: Outcomes | None, batch_size: int | None
+        self, rows: range, gaps: Runs, checked: Outcomes | None, batch_size: int | None
     ) -> tuple[list[Shard], int]:
-        """Make the rows that no sound shard holds; return the shards of all rows, and how many."""
-        shards, config = self._sound_shards(rows), self.config
-        gaps, _ = missing_and_repeated(shards, rows.stop, rows.start)
+        """Make the rows in the gaps; return their shards, and how many they are."""
+        shards: list[Shard] = []
+        config = self.config
         left = sum(stop - start for start, stop in gaps)
         self.progress.stage("samples", len(rows), len(rows) - left)
         size = batch_size or _batch_size(left, self.jobs, row_bytes(config))
@@ -250,7 +255,7 @@ class _Build:
     def _sound_shards(self, rows: range) -> list[Shard]:
         """Shards to go on from, of these rows.
 
-        A damaged one is made again, a foreign one moved out of the way.
+        A damaged one is removed, as its rows may be cut otherwise now; a foreign one put aside.
         """
         (self.folder / WORK / MANIFEST).unlink(missing_ok=True)
         listed = [
@@ -261,6 +266,8 @@ class _Build:
             self.progress.say(f"{shard.path}: {error}; its rows are made again")
             if isinstance(error, ForeignShardError):
                 shard.path.rename(shard.path.with_suffix(f".foreign-{uuid.uuid4().hex}"))
+            else:
+                shard.path.unlink(missing_ok=True)
         return sound
 
 

@@ -166,13 +166,21 @@ def clean_up(folder: Path) -> None:
 
 def _remove_batches(folder: Path) -> None:
     """Remove shards and outcomes of checks; what else somebody put beside them stays."""
-    for name, pattern in (("shards", "rows-*-*.h5"), (CHECKS, "*.bin")):
-        with suppress(OSError):
-            place = folder / WORK / name
-            for found in os.listdir(place):  # noqa: PTH208 - names take less memory than paths
-                if fnmatch(found, pattern):
-                    (place / found).unlink(missing_ok=True)
-            place.rmdir()
+    _remove(folder / WORK / "shards", "rows-*-*.h5")
+    remove_checks(folder)
+
+
+def remove_checks(folder: Path) -> None:
+    """Remove the outcomes of checks, for a folder whose rows are all made."""
+    _remove(folder / WORK / CHECKS, "*.bin")
+
+
+def _remove(place: Path, pattern: str) -> None:
+    with suppress(OSError):
+        for found in os.listdir(place):  # noqa: PTH208 - names take less memory than paths
+            if fnmatch(found, pattern):
+                (place / found).unlink(missing_ok=True)
+        place.rmdir()
 
 
 def _ours(folder: Path) -> bool:

@@ -2,6 +2,7 @@
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 import time
@@ -14,7 +15,10 @@ from listener import Listener
 from small import fingerprint, small_config
 
 from radhar_cli.config import load_config
-from radhar_cli.dataset.build import build
+from radhar_cli.dataset.build import build, build_part
+from radhar_cli.dataset.layout import Rows
+from radhar_cli.dataset.merge import merge
+from radhar_cli.dataset.parts import Part
 from radhar_cli.dataset.shards import listed_shards
 
 pytest.importorskip("distributed")
@@ -57,19 +61,35 @@ def cluster(tmp_path: Path) -> Iterator[tuple[str, list[Process]]]:
             one.communicate()
 
 
-def generate(address: str, folder: Path) -> Process:
+def generate(address: str, folder: Path, *more: str) -> Process:
     """Build in a folder, named from its parent, on a cluster."""
     changes = [x for change in CHANGES for x in ("--set", change)]
     return subprocess.Popen(
         [
             *(sys.executable, "-m", "radhar_cli", "generate", "small.yaml", "-o", folder.name),
-            *("--batch", "1", "--cluster", address, *changes),
+            *("--batch", "1", "--cluster", address, *changes, *more),
         ],
         cwd=folder.parent,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
     )
+
+
+def test_dask_shards_loky_and_one_process_give_the_same_bytes(tmp_path: Path) -> None:
+    config = load_config(small_config(tmp_path), CHANGES)
+    build(config, tmp_path / "alone", 1, Listener())
+    build(config, tmp_path / "loky", 2, Listener())
+    for number in (2, 1):
+        build_part(config, tmp_path / "shards", Part(2, number), 1, Listener())
+    merge(tmp_path / "shards", [], 1, Listener())
+    shutil.rmtree(tmp_path / "shards/parts")
+    made = generate("local", tmp_path / "dask", "--jobs", "2")
+    said, _ = made.communicate(timeout=300)
+    assert made.returncode == 0, said
+    prints = [fingerprint(tmp_path / way) for way in ("alone", "loky", "shards", "dask")]
+    assert prints[1:] == prints[:-1]
+    assert len(prints[0]) == 3 + 2 * len(Rows.of(config))  # a PNG of each map
 
 
 def test_a_killed_worker_is_survived_and_a_killed_scheduler_is_named(

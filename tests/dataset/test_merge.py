@@ -112,6 +112,29 @@ def test_gaps_and_damage_name_the_parts_to_run_again(
     assert merged(out) == whole
 
 
+def test_damaged_shards_that_were_made_again_with_other_cuts_are_gone(
+    config: Config, out: Path, whole: dict[str, str]
+) -> None:
+    damaged = listed_shards(out / "parts/2-of-4")
+    assert [shard.stop - shard.start for shard in damaged] == [1, 1]
+    for shard in damaged:
+        shard.path.write_bytes(shard.path.read_bytes()[:-1])
+    notes = Listener()
+    assert build_part(config, out, Part(4, 2), 1, notes, batch_size=2).made == 2
+    assert len(notes.said) >= 2
+    merge(out, [], 1, Listener())
+    assert merged(out) == whole
+
+
+def test_a_finished_part_leaves_no_outcomes_of_checks_and_checks_nothing_again(
+    config: Config, out: Path
+) -> None:
+    notes = Listener()
+    assert build_part(config, out, Part(4, 2), 1, notes).already_complete
+    assert "checking scenes" not in notes.stages
+    assert not (out / "parts/2-of-4/.radhar/checks").exists()
+
+
 def test_parts_of_something_else_are_refused(config: Config, out: Path, tmp_path: Path) -> None:
     other = config.model_copy(update={"seed": 8})
     with pytest.raises(FolderError, match="holds parts of 4; this would be part 1/3"):

@@ -1,11 +1,12 @@
 """The examples run, and show what they say."""
 
 import importlib.util
+import json
 from pathlib import Path
 from types import ModuleType
 
 import pytest
-from command_line import ROOT
+from command_line import ROOT, radhar
 from PIL import Image
 
 
@@ -34,8 +35,20 @@ def test_look_at_one_scene(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
 def test_config_to_confusion_matrix(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    """In this process: four that import PyTorch take their time."""
+    module = example("config_to_confusion_matrix")
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
-    example("config_to_confusion_matrix").main(tmp_path, samples=8, epochs=1)
+    (tmp_path / "other.yaml").write_text("seed: 9")
+    assert module.radhar("config", "show", tmp_path / "other.yaml")["seed"] == 9
+
+    def here(*words: object) -> object:
+        more = ("--jobs", 1) if words[0] == "generate" else ()
+        done = radhar(*words, *more, "--json")
+        assert done.returncode == 0, done.stderr
+        return json.loads(done.stdout)
+
+    monkeypatch.setattr(module, "radhar", here)
+    module.main(tmp_path, samples=8, epochs=1)
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith("24 samples in ")
     assert lines[2].startswith("test accuracy")

@@ -5,12 +5,14 @@ from typing import Annotated
 
 import typer
 
+from radhar_cli.commands.options import Replace, refuse_to_replace
 from radhar_cli.commands.tell import report, tell
 
 
 def fit(
     recordings: Annotated[list[Path], typer.Argument(help="Recordings of one radar.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="Config to write.")],
+    overwrite: Replace = False,
 ) -> None:
     """Read waveform, SNR and ranges off recordings into a config to simulate by.
 
@@ -26,10 +28,9 @@ def fit(
     from radhar_cli.capture.fitting import fit as read_off
     from radhar_cli.errors import FolderError
 
-    if out.is_dir():
-        raise FolderError(f"{out}: is a folder; -o should name a file, such as measured.yaml")
     if out.resolve() in {path.resolve() for path in recordings}:
         raise FolderError(f"{out}: is one of the recordings; -o should name another file")
+    refuse_to_replace(out, overwrite, "measured.yaml")
     found = read_off(recordings)
     for key, value in found.numbers().items():
         tell(f"  {key:<16} {value:.4g}")

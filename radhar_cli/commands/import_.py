@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from radhar_cli.commands.options import Replace, refuse_to_replace
 from radhar_cli.commands.tell import report, tell
 
 
@@ -34,6 +35,7 @@ def import_(
     to: Annotated[
         str | None, typer.Option("--to", help="sigmf: write that instead of a recording file.")
     ] = None,
+    overwrite: Replace = False,
 ) -> None:
     """Read a capture of a real radar into a recording file.
 
@@ -48,16 +50,17 @@ def import_(
 
     from radhar_cli.capture.importing import import_capture, read_settings
     from radhar_cli.capture.recording import Recording
+    from radhar_cli.capture.sigmf_file import DATA, META
     from radhar_cli.errors import FolderError
 
     sigmf = wants_sigmf(to)
     named = {"label": label, "person": person}
     overrides = [f"{key}={json.dumps(value)}" for key, value in named.items() if value is not None]
     settings = read_settings(radar, [*(set_ or []), *overrides])
-    if out.is_dir():
-        raise FolderError(f"{out}: is a folder; -o should name a file, such as walk.h5")
     if out.resolve() in {path.resolve() for path in captures}:
         raise FolderError(f"{out}: is the capture itself; -o should name another file")
+    for path in (out.with_suffix(META), out.with_suffix(DATA)) if sigmf else (out,):
+        refuse_to_replace(path, overwrite, "walk.h5")
     header = str(radar) if radar else "--set"
     written = out.with_suffix(".radhar-import.h5") if sigmf else out
     try:

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.options import Activity, Nominal, Overrides
+from radhar_cli.commands.options import Activity, Nominal, Overrides, Replace, refuse_to_replace
 from radhar_cli.commands.tell import report, tell
 
 
@@ -16,6 +16,7 @@ def motion(
     index: Annotated[int, typer.Option(min=0, help="Which sample of its class.")] = 0,
     nominal: Nominal = False,
     rate: Annotated[float, typer.Option(min=1, max=10_000, help="Frames per second.")] = 120.0,
+    overwrite: Replace = False,
     set_: Overrides = None,
 ) -> None:
     """Write the motion of one scene as BVH, for Blender and others: y up, cm, Mixamo's names.
@@ -30,6 +31,7 @@ def motion(
 
     if out.suffix.lower() != ".bvh":
         raise ConfigError(f"{out}: should end in .bvh")
+    refuse_to_replace(out, overwrite, "walk.bvh")
     text, frames = scene_bvh(
         load_config(config, set_ or []), activity, index=index, nominal=nominal, rate=rate
     )

@@ -3,12 +3,13 @@
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Annotated, TypeAlias
 
 import typer
 
 from radhar_cli.commands.tell import tell
-from radhar_cli.errors import INTERRUPTED, TERMINATED
+from radhar_cli.errors import INTERRUPTED, TERMINATED, FolderError
 
 Overrides: TypeAlias = Annotated[
     list[str] | None,
@@ -20,6 +21,9 @@ Activity: TypeAlias = Annotated[
 ]
 Nominal: TypeAlias = Annotated[
     bool, typer.Option("--nominal", help="Take mid-points instead of drawing.")
+]
+Replace: TypeAlias = Annotated[
+    bool, typer.Option("--overwrite", help="Replace a file that is there.")
 ]
 Tolerance: TypeAlias = Annotated[
     float | None,
@@ -44,6 +48,18 @@ def resumable(kept: str) -> Iterator[None]:
 def _say_kept(how: str, kept: str) -> None:
     if os.environ.get("RANK", "0") == "0":  # under torchrun all end alike; one should speak
         tell(f"\n{how}: {kept} is kept; the same command goes on", err=True)
+
+
+def refuse_to_replace(path: Path, replace: bool, example: str) -> None:
+    """Refuse an output file that is there, or is a folder.
+
+    Raises:
+        FolderError: names the path and what would be right.
+    """
+    if path.is_dir():
+        raise FolderError(f"{path}: is a folder; -o should name a file, such as {example}")
+    if path.exists() and not replace:
+        raise FolderError(f"{path}: is there already; --overwrite replaces it")
 
 
 def with_tolerance(overrides: list[str] | None, tolerance: float | None) -> list[str]:

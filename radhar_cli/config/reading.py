@@ -141,6 +141,8 @@ def _override(document: dict[str, Any], override: str) -> str:
     place = document
     for name in names[:-1]:
         inner = place.get(name)
+        if isinstance(inner, list) and names[0] == "classes":
+            inner = {"files": inner}  # the short form of a class of files
         place[name] = place = inner if isinstance(inner, dict) else {}
     place[names[-1]], _ = parse_yaml(text, f"--set {key.strip()}")
     return key.strip()

@@ -39,8 +39,16 @@ def split_rows(config: Config) -> Levels:
 
 
 def split_warnings(config: Config, split: Levels) -> list[str]:
-    """Say which classes have no sample in a part that is to have a share of them."""
+    """Say what parts do without, and which persons share motion files."""
     rows, found = Rows.of(config), []
+    people = config.split.subjects or 0
+    for activity in rows.activities:
+        one = config.files_of(activity)
+        if one is not None and one.file is None and len(one.files) < people:
+            found.append(
+                f"classes.{activity.slug}: {len(one.files)} files for split.subjects = {people}: "
+                "persons of training and validation share them"
+            )
     for number, part in enumerate(SPLITS):
         share = getattr(config.split, part)
         without = [a.slug for a, here in rows.classes() if not (split[here] == number).any()]

@@ -140,6 +140,8 @@ class UntrustedFile(Closing):
             self._file = h5py.File(self._source, "r")
             if self._file.id.get_create_plist().get_sizes() != (8, 8):
                 raise ValueError("its addresses and lengths should have 8 bytes")
+        except FileNotFoundError:
+            raise FolderError(f"{path}: no such file") from None
         except _DAMAGED as error:
             raise FolderError(f"{path}: is no HDF5 file, or a truncated one ({error})") from None
 

@@ -28,6 +28,11 @@ def test_a_motion_goes_out_and_comes_back(tmp_path: Path) -> None:
     done = radhar("motion", *common, "-o", bvh, "--rate", 200)
     assert (done.returncode, done.stderr) == (0, "")
     assert f"{bvh}: 301 frames, 200 a second" in done.stdout
+    again = radhar("motion", *common, "-o", bvh)
+    assert (again.returncode, again.stderr) == (
+        *(2, f"radhar: {bvh}: is there already; --overwrite replaces it\n"),
+    )
+    assert "Frames: 301" in bvh.read_text()
     scale = clip_of(read_motion(bvh).recording()).stature
     shown = ["--no-figures", "--maps", "stft", "-o"]
     radhar("simulate", *common, *shown, tmp_path / "a")

@@ -50,6 +50,12 @@ def test_patterns_become_sorted_paths_with_checksums(place: Path) -> None:
     assert not any("folder" in key for key in keys)
 
 
+def test_a_key_of_a_class_that_is_a_list_of_files_can_be_set(place: Path) -> None:
+    config = load_config(place / "x.yaml", ["classes.walking.mirror=0"])
+    assert files(config, "walking") == files(load_config(place / "x.yaml"), "walking")
+    assert config.model_dump()["classes"]["walking"]["mirror"] == 0
+
+
 def test_where_files_lie_is_no_part_of_what_a_config_says(place: Path) -> None:
     here = load_config(place / "x.yaml")
     shutil.copytree(place, place / "elsewhere")

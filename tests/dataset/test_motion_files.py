@@ -16,6 +16,7 @@ from radhar_cli.config.motion_files import with_folder
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.reading import open_dataset
+from radhar_cli.dataset.split import split_rows, split_warnings
 from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import FolderError, MotionFileError
 from radhar_cli.pipeline import motion_files
@@ -81,6 +82,15 @@ def test_bytes_depend_on_the_files_and_not_on_where_they_lie(
     monkeypatch.setattr(motion_files, "_clips", OrderedDict())  # as in a process that begins
     with pytest.raises(MotionFileError, match="is not the file it was"):
         build(moved.model_copy(update={"seed": 6}), tmp_path / "third", 1, Listener())
+
+
+def test_persons_that_share_files_are_told_of(place: Path) -> None:
+    config = load_config(place / "set.yaml", ["split.by=subject", "split.subjects=3"])
+    assert split_warnings(config, split_rows(config)) == [
+        f"classes.{slug}: 1 files for split.subjects = 3: "
+        "persons of training and validation share them"
+        for slug in ("rise", "wave")
+    ]
 
 
 def test_verify_opens_no_file_that_a_data_set_names(place: Path) -> None:

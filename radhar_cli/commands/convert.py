@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.tell import tell
+from radhar_cli.commands.tell import report, tell
 
 
 def convert(
@@ -40,4 +40,5 @@ def convert(
         samples = write(dataset, out, to, progress)
     finally:
         progress.close()
+    report(folder=out, samples=samples, format=to)
     tell(f"{out}: {samples} samples as {to}; {out / 'README.md'} says how to read them")

@@ -270,3 +270,17 @@ def test_config_diff_compares_what_files_mean(tmp_path: Path) -> None:
     assert found["wall"][0] is None
     assert radhar("config", "diff", one, tmp_path / "none.yaml").returncode == 2
     assert radhar("config", "diff", one, other, "--quiet").stdout == ""
+
+
+def test_a_data_set_needs_no_base(tmp_path: Path) -> None:
+    small_config(tmp_path)
+    own = tmp_path / "own.yaml"
+    own.write_text("base: small.yaml\nsamples_per_class: 1\nmaps: [stft]\n")
+    out = tmp_path / "set"
+    done = radhar("generate", own, "-o", out, "--jobs", 1)
+    assert done.returncode == 0, done.stderr
+    (tmp_path / "small.yaml").unlink()
+    assert radhar("generate", own, "-o", out).returncode == 2
+    stored = radhar("generate", out / "config.yaml", "-o", out)
+    assert "is complete: 3 samples" in stored.stdout
+    assert radhar("verify", out, "--samples", 1).returncode == 0

@@ -24,7 +24,7 @@ from radhar_cli.errors import ConfigError, FolderError, did_you_mean
 from radhar_cli.untrusted import Closing
 
 MAX_ENTROPY_BITS = 64.0
-BLOCK = 65_536  # rows of a column that are looked at together
+BLOCK = 4096  # rows of a column that are looked at together
 
 
 class Dataset(Closing):

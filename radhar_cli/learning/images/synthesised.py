@@ -208,7 +208,7 @@ def streamed_scenes(learned: LearnedFrom, images: ImageSet, rows: Index) -> int:
         return 0
     try:
         config = stored_config(found["config"], "the run")
-        if len(Rows.of(config)) > MOST_ROWS:
+        if config.recorded is not None or len(Rows.of(config)) > MOST_ROWS:
             return 0  # a run may be anyone's
         order = StreamOrder(config, "train", found["balanced"])
     except RadharError:

@@ -43,7 +43,7 @@ def stub_synthesise(scene: Scene, plan: object) -> Sample:
         drawn = json.dumps([name, scene.name, scene_numbers(scene)], sort_keys=True)
         rng = np.random.default_rng(list(hashlib.sha256(drawn.encode()).digest()))
         levels = rng.integers(0, 256, config.image.size_px, dtype=np.uint8)
-        return MapImage(levels, float(rng.random()), (0.0, 1.0, *rng.random(2)))
+        return MapImage(levels, float(rng.random()), (0.0, 1.0, *sorted(rng.random(2))))
 
     return Sample({name: image(name) for name in config.maps}, -100.0 - scene.index, False, {})
 

@@ -50,6 +50,7 @@ from radhar_cli.dataset.split import split_rows
 from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.pipeline.validity import Flags, warnings
+from radhar_cli.progress import Progress
 from radhar_cli.scene import subject_of
 
 SCHEMA_VERSION = 2
@@ -71,6 +72,7 @@ def assembled(
     config: Config,
     folder: Path,
     shards: Sequence[Shard],
+    progress: Progress,
     remedy: Callable[[Runs], str] = go_on,
     virtual: bool = False,
 ) -> Iterator[tuple[Path, list[dict[str, Any]]]]:
@@ -82,6 +84,7 @@ def assembled(
         config: the data set's.
         folder: the output folder.
         shards: that hold every row once.
+        progress: receives the rows that are copied.
         remedy: what to do about rows that are missing.
         virtual: refer to the large datasets of the shards, which lie below the folder, instead of
             copying them.
@@ -103,7 +106,7 @@ def assembled(
             held.write(f'{{"identity": "{own_hash}", "rows": {count}, "shards": [\n')
             if virtual:
                 _refer_to_shards(file, config, folder, shards)
-            flags = _copy_shards(file, config, shards, own_hash, text, held, virtual)
+            flags = _copy_shards(file, config, shards, own_hash, progress, text, held, virtual)
             held.write("]}\n")
             found = warnings(config, flags)
             _root_attributes(file, config, found)
@@ -125,6 +128,7 @@ def _copy_shards(
     config: Config,
     shards: Sequence[Shard],
     own_hash: str,
+    progress: Progress,
     table: io.TextIOBase,
     manifest: io.TextIOBase,
     virtual: bool,
@@ -174,6 +178,7 @@ def _copy_shards(
         for number, (field, target) in enumerate(zip(fields, scene, strict=True)):
             target.append(values[:, number] * field.factor)
         rows_csv.write(start, values)
+        progress.advance(rows)
         for flag in flags:
             flags[flag] += int(np.count_nonzero(here & flag))
         while stop - stored >= run or stored < stop == count:

@@ -161,9 +161,8 @@ class _Build:
             self.progress.say(f"warning: {message}")
         shards, made, shown = self._shards(range(count), batch_size)
         self.progress.stage("assembling", count, 0)
-        with assembled(config, self.folder, shards) as (unfinished, stored):
+        with assembled(config, self.folder, shards, self.progress) as (unfinished, stored):
             say_warnings(self.progress, [warning for warning in stored if warning not in shown])
-            self.progress.advance(count)
             pngs = self._missing_pngs(unfinished)
             write_hub_files(unfinished, self.folder, config.output.png)
         mark_built(self.folder)

@@ -65,12 +65,14 @@ def merge(
         with folder_lock(out):
             reserve(out, config, overwrite=False, beside=(PARTS,))
             progress.stage("merging", count, 0)
-            with assembled(config, out, shards, run_again, virtual) as (unfinished, stored):
+            with assembled(config, out, shards, progress, run_again, virtual) as (
+                unfinished,
+                stored,
+            ):
                 say_warnings(progress, stored)
                 if config.output.png:
                     parts = [(place.part.rows(count), place.folder) for place in places]
                     take_over_pngs(config, out, split, parts)
-                progress.advance(count)
                 pngs = write_missing_pngs(config, out, split, unfinished, jobs, progress)
                 write_hub_files(unfinished, out, config.output.png)
             mark_built(out)

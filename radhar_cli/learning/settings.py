@@ -84,7 +84,9 @@ class StreamConfig(Section):
     """
 
     samples_per_epoch: Annotated[Count, Field(ge=2)] | None = None
+    """Null is as many as the config's data set trains with."""
     validation_per_class: Count = 100
+    """At most; used without a data set to validate on."""
 
 
 class TrainConfig(Section):

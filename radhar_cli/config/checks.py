@@ -380,6 +380,8 @@ HUMAN_LIMITS: tuple[tuple[str, float, float], ...] = (
     ("motion.trunk_pitch_deg", -5.0, 15.0),
     ("motion.step_width", 0.02, 0.1),
     ("motion.step_asymmetry", -0.05, 0.05),
+    ("motion.surge", 0.0, 0.2),
+    ("motion.surge_asymmetry", -0.1, 0.1),
     ("motion.ragged_speed", 0.0, 0.06),
     ("motion.stride_jitter", 0.0, 0.03),
     ("motion.width_jitter_m", 0.0, 0.02),

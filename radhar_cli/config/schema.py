@@ -222,6 +222,8 @@ class MotionConfig(Section):
     trunk_pitch_deg: AngleBy = Normal(normal=(3.0, 2.0), min=-2.0, max=8.0)
     step_width: RatioBy = Normal(normal=(0.063, 0.011), min=0.03, max=0.1)
     step_asymmetry: SignedBy = Normal(normal=(0.0, 0.02), min=-0.05, max=0.05)
+    surge: RatioBy = Normal(normal=(0.125, 0.015), min=0.09, max=0.17)
+    surge_asymmetry: SignedBy = Normal(normal=(0.0, 0.05), min=-0.1, max=0.1)
     ragged_speed: RatioBy = Uniform(uniform=(0.0, 0.06))
     stride_jitter: RatioBy = Uniform(uniform=(0.0, 0.03))
     width_jitter_m: RatioBy = Uniform(uniform=(0.0, 0.02))

@@ -450,6 +450,41 @@ def _human_problems(c: Config) -> Iterator[Problem]:
                 break
 
 
+# Keys that only another key makes use of: (key, the other, its value).
+USED_ONLY_WITH = (
+    ("processing.gate_m", "processing.doppler", "gate"),
+    ("processing.gate_sum", "processing.doppler", "gate"),
+    ("processing.highpass", "processing.clutter", "highpass"),
+    ("image.cfar", "image.kind", "cfar"),
+)
+
+
+def unused_keys(c: Config) -> list[str]:
+    """Say which keys have no effect though they are not as by default."""
+    found = []
+    for key, other, wanted in USED_ONLY_WITH:
+        section, name = key.split(".")
+        given = getattr(c, section)
+        value = getattr(given, other.split(".")[1])
+        if value != wanted and getattr(given, name) != getattr(type(given)(), name):
+            found.append(f"{key} has no effect with {other}: {value}, but with {wanted}")
+    return found
+
+
+def config_warnings(c: Config) -> list[str]:
+    """Say which keys have no effect, and which interference lines alias."""
+    found = unused_keys(c)
+    prf = support(c.radar.prf_hz)[0]
+    for number, line in enumerate(c.receiver.lines):
+        least, most = support(line.doppler_hz)
+        if max(-least, most) > prf / 2:
+            found.append(
+                f"receiver.lines.{number}.doppler_hz reaches beyond PRF/2 = {prf / 2:g} Hz: the "
+                "line aliases, to that frequency less a multiple of the PRF"
+            )
+    return found
+
+
 def timing_warnings(c: Config, activities: Iterable[Activity] | None = None) -> list[str]:
     """Say which activities never reach their second phase within the recording."""
     from radhar_cli.config.schema import for_activity

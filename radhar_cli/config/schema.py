@@ -481,10 +481,15 @@ class RoomConfig(Section):
 
 
 class LineConfig(Section):
-    """Interference at a fixed Doppler; its level is over the white noise, of a raw sample."""
+    """Interference at a fixed Doppler; its level is over the white noise, of a raw sample.
+
+    on_s, off_s: mean times for which it is there and is not; always there where off_s is 0.
+    """
 
     doppler_hz: Annotated[Number, within(-1e7, 1e7, "Hz")]
     level_db: Decibel = -10.0
+    on_s: Annotated[Positive, within(1e-3, 1e7, "s")] = 1.0
+    off_s: Annotated[NotNegative, within(0, 1e7, "s")] = 0.0
 
 
 class ReceiverConfig(Section):

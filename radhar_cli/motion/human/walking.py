@@ -328,7 +328,11 @@ class Walking:
         both = np.split(times, [events[0].size])
         right, left = (
             FootTrack(
-                self.person, self._footfalls(at.reshape(4, -1), side), gait.roll, gait.lift, gait.lag
+                self.person,
+                self._footfalls(at.reshape(4, -1), side),
+                gait.roll,
+                gait.lift,
+                gait.lag,
             )
             for at, side in zip(both, (-1.0, 1.0), strict=True)
         )

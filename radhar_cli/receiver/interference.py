@@ -53,7 +53,8 @@ class Line(Impairment):
         if self.off == 0:
             return tone
         passed = np.searchsorted(self.switches, pulses / self.waveform.prf, side="right")
-        return tone * (passed % 2 == 1)
+        tone *= passed % 2
+        return tone
 
     @cached_property
     def switches(self) -> Float:

@@ -26,6 +26,8 @@ _STRIDE = (
     "motion.trunk_pitch_deg",
     "motion.step_width",
     "motion.step_asymmetry",
+    "motion.surge",
+    "motion.surge_asymmetry",
     "motion.ragged_speed",
     "motion.stride_jitter",
     "motion.width_jitter_m",

@@ -56,6 +56,8 @@ PERSONAL = (
     "motion.trunk_pitch_deg",
     "motion.step_width",
     "motion.step_asymmetry",
+    "motion.surge",
+    "motion.surge_asymmetry",
     "motion.strike_scale",
     "motion.lean_deg",
 )

@@ -6,7 +6,8 @@ MAPS.npz holds maps `view_*` [rows, columns] in dB, row 0 the fastest approach, 
 128, 0.047 m/s a row, 2.5 s long: four views of a walker of the data set MMRGait, as published with
 JoeyBGOfficial/Low-Cost-Accurate-Radar-Based-Human-Motion-Direction-Determination. They are compared
 with walkers of a config (the measured radar's by default) as segments, as points, and with the
-paper's motion. Writes OUT/comparison.md, .json and .png.
+paper's motion. Writes OUT/comparison.md, .json and .png; the second table says how many of the
+simulated walkers lie outside the bands that measured ones lie in.
 """
 
 import argparse
@@ -34,6 +35,16 @@ KINDS = {
     "human, segments": [],
     "human, points": ["body.scatterers=points"],
     "paper": ["motion.model=paper", "body.scatterers=points", "motion.speed_mps=1.1"],
+}
+# Where the statistics of measured walkers lie, with some room.
+BANDS = {
+    "sd of the noise, dB": (0.7, 1.3),
+    "limb below torso, dB": (8.0, np.inf),
+    "energy above 1.8 x torso, %": (0.5, 3.0),
+    "receding energy, %": (-np.inf, 2.0),
+    "energy near the torso line, %": (55.0, 80.0),
+    "occupied cells, %": (35.0, 60.0),
+    "torso ripple, m/s": (0.25, 0.7),
 }
 
 Float = NDArray[np.float64]
@@ -142,6 +153,20 @@ def table(columns: dict[str, dict[str, tuple[float, float, float]]]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def outside(columns: dict[str, list[dict[str, float]]]) -> str:
+    """Markdown: mean, standard deviation and how many are outside the band, of every statistic."""
+    lines = ["| mean, sd, outside | band | " + " | ".join(columns) + " |"]
+    lines.append("|---" * (len(columns) + 2) + "|")
+    for name, (low, high) in BANDS.items():
+        cells = []
+        for rows in columns.values():
+            x = np.array([row[name] for row in rows])
+            out = np.count_nonzero((x < low) | (x > high))
+            cells.append(f"{x.mean():.3g}, {x.std():.2g}, {out} of {x.size}")
+        lines.append(f"| {name} | {low:g} to {high:g} | " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
 def draw(rows: dict[str, list[Map]], path: Path) -> None:
     """A column for each kind, two maps each, from their floors to their peaks."""
     figure, axes = plt.subplots(
@@ -178,16 +203,19 @@ def main() -> None:
     shown: dict[str, list[Map]] = {"measured": list(views.values())}
     found = {name: statistics(view) for name, view in views.items()}
     columns = {"measured": spread(list(found.values()))}
+    each = {}
     for kind, overrides in KINDS.items():
         config = load_config(asked.config, [*asked.set, *overrides])
         shown[kind] = [simulated(config, seed) for seed in range(1, asked.seeds + 1)]
-        columns[kind] = spread([statistics(one) for one in shown[kind]])
+        each[kind] = [statistics(one) for one in shown[kind]]
+        columns[kind] = spread(each[kind])
     asked.out.mkdir(parents=True, exist_ok=True)
-    (asked.out / "comparison.md").write_text(table(columns))
+    text = f"{table(columns)}\n{outside(each)}"
+    (asked.out / "comparison.md").write_text(text)
     everything = {"views": found} | columns
     (asked.out / "comparison.json").write_text(json.dumps(everything, indent=2) + "\n")
     draw(shown, asked.out / "comparison.png")
-    print(table(columns))
+    print(text)
 
 
 if __name__ == "__main__":

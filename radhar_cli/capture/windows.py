@@ -16,6 +16,7 @@ from radhar_cli.activity import TWELVE
 from radhar_cli.capture.chain import maps_of
 from radhar_cli.capture.images import are_images, is_image, listed, read_image
 from radhar_cli.capture.recording import Recording, RecordingInfo
+from radhar_cli.config.checks import unused_keys
 from radhar_cli.config.identity import resolved
 from radhar_cli.config.reading import validated
 from radhar_cli.config.schema import Config, RecordingsConfig
@@ -201,6 +202,7 @@ def warnings_of(config: Config) -> list[str]:
     """What a user should know of a data set of recordings, in words."""
     recorded, found = config.recorded, []
     assert recorded is not None
+    found += unused_keys(config)
     short = sum(not recorded.count(part) for part in recorded.parts)
     if short and not is_image(recorded.parts[0].file):
         found.append(f"{short} parts are shorter than the window of {recorded.window_s:g} s")

@@ -380,6 +380,8 @@ HUMAN_LIMITS: tuple[tuple[str, float, float], ...] = (
     ("motion.trunk_pitch_deg", -5.0, 15.0),
     ("motion.step_width", 0.02, 0.1),
     ("motion.step_asymmetry", -0.05, 0.05),
+    ("motion.surge", 0.0, 0.2),
+    ("motion.surge_asymmetry", -0.1, 0.1),
     ("motion.ragged_speed", 0.0, 0.06),
     ("motion.stride_jitter", 0.0, 0.03),
     ("motion.width_jitter_m", 0.0, 0.02),
@@ -446,6 +448,41 @@ def _human_problems(c: Config) -> Iterator[Problem]:
                     f"(this one reaches from {least:g} to {most:g})",
                 )
                 break
+
+
+# Keys that only another key makes use of: (key, the other, its value).
+USED_ONLY_WITH = (
+    ("processing.gate_m", "processing.doppler", "gate"),
+    ("processing.gate_sum", "processing.doppler", "gate"),
+    ("processing.highpass", "processing.clutter", "highpass"),
+    ("image.cfar", "image.kind", "cfar"),
+)
+
+
+def unused_keys(c: Config) -> list[str]:
+    """Say which keys have no effect though they are not as by default."""
+    found = []
+    for key, other, wanted in USED_ONLY_WITH:
+        section, name = key.split(".")
+        given = getattr(c, section)
+        value = getattr(given, other.split(".")[1])
+        if value != wanted and getattr(given, name) != getattr(type(given)(), name):
+            found.append(f"{key} has no effect with {other}: {value}, but with {wanted}")
+    return found
+
+
+def config_warnings(c: Config) -> list[str]:
+    """Say which keys have no effect, and which interference lines alias."""
+    found = unused_keys(c)
+    prf = support(c.radar.prf_hz)[0]
+    for number, line in enumerate(c.receiver.lines):
+        least, most = support(line.doppler_hz)
+        if max(-least, most) > prf / 2:
+            found.append(
+                f"receiver.lines.{number}.doppler_hz reaches beyond PRF/2 = {prf / 2:g} Hz: the "
+                "line aliases, to that frequency less a multiple of the PRF"
+            )
+    return found
 
 
 def timing_warnings(c: Config, activities: Iterable[Activity] | None = None) -> list[str]:

@@ -262,6 +262,10 @@ class MotionConfig(Section):
     """Between the feet of who walks, over the stature."""
     step_asymmetry: SignedBy = Normal(normal=(0.0, 0.02), min=-0.05, max=0.05)
     """Of left over right steps."""
+    surge: RatioBy = Normal(normal=(0.125, 0.015), min=0.09, max=0.17)
+    """How much the hip goes faster and slower within each step, over the speed."""
+    surge_asymmetry: SignedBy = Normal(normal=(0.0, 0.05), min=-0.1, max=0.1)
+    """Of the right step's surge over the left one's."""
     ragged_speed: RatioBy = Uniform(uniform=(0.0, 0.06))
     """sd of the speed over time, over the speed."""
     stride_jitter: RatioBy = Uniform(uniform=(0.0, 0.03))
@@ -563,12 +567,19 @@ class RoomConfig(Section):
 
 
 class LineConfig(Section):
-    """Interference at a fixed Doppler; its level is over the white noise, of a raw sample."""
+    """Interference at a fixed Doppler; its level is over the white noise, of a raw sample.
+
+    on_s, off_s: mean times for which it is there and is not; always there where off_s is 0.
+    """
 
     doppler_hz: Annotated[Number, within(-1e7, 1e7, "Hz")]
     """Where it stands."""
     level_db: Decibel = -10.0
     """Over the white noise of a raw sample."""
+    on_s: Annotated[Positive, within(1e-3, 1e7, "s")] = 1.0
+    """How long a line is there, on average."""
+    off_s: Annotated[NotNegative, within(0, 1e7, "s")] = 0.0
+    """How long it is away; 0 is always there."""
 
 
 class ReceiverConfig(Section):

@@ -75,17 +75,17 @@ def _side(side: str) -> tuple[Segment, ...]:
         for point in ("shoulder", "elbow", "hand", "hip", "knee", "ankle", "heel", "toes")
     )
     return (
-        Segment(f"{side}_upper_arm", shoulder, elbow, 0.05, elbow, arm=True),
-        Segment(f"{side}_forearm", elbow, hand, 0.042, hand, arm=True),
-        Segment(f"{side}_hand", f"{hand}_from", f"{hand}_to", 0.035, hand, arm=True),
-        Segment(f"{side}_thigh", hip, knee, 0.075, knee, occludes=True),
-        Segment(f"{side}_shank", knee, ankle, 0.055, ankle),
+        Segment(f"{side}_upper_arm", shoulder, elbow, 0.05, elbow, arm=True, flatness=1.07),
+        Segment(f"{side}_forearm", elbow, hand, 0.042, hand, arm=True, flatness=1.2),
+        Segment(f"{side}_hand", f"{hand}_from", f"{hand}_to", 0.035, hand, arm=True, flatness=1.5),
+        Segment(f"{side}_thigh", hip, knee, 0.075, knee, occludes=True, flatness=0.97),
+        Segment(f"{side}_shank", knee, ankle, 0.055, ankle, flatness=0.95),
         Segment(f"{side}_foot", heel, toes, 0.04, ankle),
     )
 
 
 SEGMENTS: tuple[Segment, ...] = (
-    Segment("trunk", "trunk_from", "trunk_to", 0.14, "torso", occludes=True, flatness=1.25),
+    Segment("trunk", "trunk_from", "trunk_to", 0.14, "torso", occludes=True, flatness=1.18),
     Segment("head", "head_from", "head_to", 0.085, "head"),
     *_side("right"),
     *_side("left"),

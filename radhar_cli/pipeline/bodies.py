@@ -8,7 +8,7 @@ from radhar_cli.motion.reflectors import Reflectors
 from radhar_cli.motion.segments import covered, found_segments, landmarks_of
 from radhar_cli.pipeline.motion_paths import MotionPaths, SumOfPaths
 from radhar_cli.pipeline.physics import body_of, frames_of
-from radhar_cli.pipeline.segment_paths import SegmentPaths, draw_points, point_counts
+from radhar_cli.pipeline.segment_paths import Points, SegmentPaths, draw_points, point_counts
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
@@ -70,13 +70,19 @@ def segment_paths(
         config.body.points_per_segment,
     )
     points = tuple(
-        draw_points(count, _stream(scene, f"body/{number}/{one.name}"))
+        _tapered(draw_points(count, _stream(scene, f"body/{number}/{one.name}")))
         for one, count in zip(body.segments, counts, strict=True)
     )
     shadowing = config.body.shadowing
     return SegmentPaths(
         body, points, antennas, waveform.fc, wall, shadowing, tuple(sorted(set(kept)))
     )
+
+
+def _tapered(points: Points) -> Points:
+    """Points whose powers go with the width of the ellipsoid at their place, 0 at its ends."""
+    share = points.share * (1 - 4 * points.along * points.along) ** 0.25
+    return points._replace(share=share / np.sqrt((share * share).sum()))
 
 
 def _without_segments(motion: Motion) -> Motion | None:

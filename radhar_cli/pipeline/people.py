@@ -261,6 +261,8 @@ def _gait(scene: Scene, place: int) -> Gait:
         arm_swing=_f(motion.arm_swing),
         trunk_pitch=radians(_f(motion.trunk_pitch_deg)),
         half_width=_f(motion.step_width) / 2,
+        surge=_f(motion.surge),
+        surge_asymmetry=_f(motion.surge_asymmetry),
         asymmetry=_f(motion.step_asymmetry),
         ragged=_waves(motion, _f(motion.ragged_speed), RAGGED_HZ, 0.7),
         jitter=_some(np.clip(jitter, -0.03, 0.03)),

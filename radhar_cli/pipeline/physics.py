@@ -142,7 +142,8 @@ def impairments_of(scene: Scene, noise: WhiteNoise) -> tuple[Impairment, ...]:
         found.append(FlickerNoise(noise.sigma, *given, corner, slope))
     for number, line in enumerate(receiver.lines):
         amplitude = noise.sigma * 10 ** (_fixed(line.level_db) / 20)
-        found.append(Line(amplitude, _fixed(line.doppler_hz), *given, f"line {number}"))
+        times = _fixed(line.on_s), _fixed(line.off_s)
+        found.append(Line(amplitude, _fixed(line.doppler_hz), *given, f"line {number}", *times))
     return tuple(found)
 
 

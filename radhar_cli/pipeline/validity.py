@@ -9,7 +9,7 @@ import numpy as np
 
 from radhar_cli.activity import Activity
 from radhar_cli.arrays import Float, Index
-from radhar_cli.config.checks import timing_warnings
+from radhar_cli.config.checks import config_warnings, timing_warnings
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.files.motion import FileMotion
@@ -254,7 +254,9 @@ def scene_warnings(scene: Scene) -> list[str]:
     if found.too_close:
         raise SceneError(f"{scene.name}: {found.invalid}")
     outside = [_WORDING[flag] for flag in Flags if flag in found.flags]
-    return outside + timing_warnings(scene.config, (scene.activity,))
+    return (
+        outside + config_warnings(scene.config) + timing_warnings(scene.config, (scene.activity,))
+    )
 
 
 def warnings(config: Config, counts: Mapping[Flags, int]) -> list[dict[str, Any]]:
@@ -273,6 +275,10 @@ def warnings(config: Config, counts: Mapping[Flags, int]) -> list[dict[str, Any]
         }
         for flag, n in counts.items()
         if n
+    ]
+    found += [
+        {"kind": "config", "recordings": recordings, "message": message}
+        for message in config_warnings(config)
     ]
     return found + [
         {"kind": "timing", "recordings": config.samples_of(activity), "message": message}

@@ -1,4 +1,4 @@
-"""Interference at fixed Doppler frequencies: lines from end to end of a map."""
+"""Interference at fixed Doppler frequencies: lines from end to end of a map, or in parts of it."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -14,6 +14,8 @@ from radhar_cli.processing.range_compression import range_bins, range_compressio
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.receiver.impairment import Impairment
 
+BATCH = 256  # times that are drawn at once
+
 
 @dataclass(frozen=True)
 class Line(Impairment):
@@ -27,6 +29,7 @@ class Line(Impairment):
         waveform: the radar.
         stream: makes the random stream of a name.
         name: of the line.
+        on, off: mean times for which it is there and is not, s; always there where off is 0.
     """
 
     amplitude: float
@@ -34,6 +37,8 @@ class Line(Impairment):
     waveform: Waveform
     stream: Callable[[str], np.random.Generator]
     name: str
+    on: float = 1.0
+    off: float = 0.0
 
     @cached_property
     def code(self) -> Complex:
@@ -45,7 +50,23 @@ class Line(Impairment):
     def tone(self, pulses: Index) -> Complex:
         """exp(j 2 pi f m/PRF) of pulse numbers."""
         tone: Complex = unit_phasor(-np.mod(pulses * (self.frequency / self.waveform.prf), 1))
+        if self.off == 0:
+            return tone
+        passed = np.searchsorted(self.switches, pulses / self.waveform.prf, side="right")
+        tone *= passed % 2
         return tone
+
+    @cached_property
+    def switches(self) -> Float:
+        """When the line goes on, off, on and so on, s: exponential times, from the stationary
+        state at 0 s. The first is -inf of a line that is there then."""
+        rng, at, found = self.stream(f"{self.name} times"), 0.0, [np.empty(0)]
+        already = rng.random() * (self.on + self.off) < self.on
+        means = np.tile([self.off, self.on], BATCH)[already:][: 2 * BATCH - 2]
+        while at <= self.waveform.n_pulses / self.waveform.prf:
+            found.append(at + np.cumsum(rng.exponential(means)))
+            at = float(found[-1][-1])
+        return np.concatenate([[-np.inf] if already else [], *found])
 
     def beat(self, blocks: Iterator[Complex]) -> Iterator[Complex]:
         """Of a beat matrix in blocks."""

@@ -213,7 +213,7 @@ def test_the_direct_engine_keeps_its_tolerance(slug, tolerance_db):
     found = record(scene_of(slug, **more, **engine), ["signal", "accuracy"])
     error_db = ref.error_db(found["signal"].x, right)
     assert error_db < tolerance_db
-    assert error_db == pytest.approx(found["accuracy"].error_db, abs=8)
+    assert error_db == pytest.approx(found["accuracy"].error_db, abs=10)
 
 
 def test_who_stands_still_is_cancelled_to_the_last_digit():

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from radhar_cli.activity import ACTIVITIES, activity_named
-from radhar_cli.config import Config
+from radhar_cli.config import Config, config_from_json, config_warnings
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.pipeline import validity as module
@@ -20,6 +20,7 @@ from radhar_cli.pipeline.validity import (
     SceneCheck,
     check_scene,
     draw_valid_scene,
+    scene_warnings,
     warnings,
 )
 from radhar_cli.radar.wall import crossing, extra_delay
@@ -253,6 +254,39 @@ def test_a_recording_that_ends_before_the_second_phase_is_said() -> None:
     )
     assert found["timing"][0] == 2
     assert "S12" in found["timing"][1]
+
+
+@pytest.mark.parametrize(
+    ("document", "key"),
+    [
+        ({"processing": {"gate_m": 2.0}}, "processing.gate_m has no effect"),
+        ({"processing": {"gate_sum": "magnitude"}}, "processing.gate_sum has no effect"),
+        ({"processing": {"highpass": {"order": 2}}}, "processing.highpass has no effect"),
+        ({"image": {"cfar": {"pfa": 0.2}}}, "image.cfar has no effect"),
+        ({"receiver": {"lines": [{"doppler_hz": -3000}]}}, "receiver.lines.0.doppler_hz reaches"),
+    ],
+)
+def test_keys_without_effect_and_lines_that_alias_are_said(document: Any, key: str) -> None:
+    config = Config(activities=("S1",), samples_per_class=1, **document)
+    count, message = said(config)["config"]
+    assert count == 1
+    assert message.startswith(key)
+    assert message in scene_warnings(draw_scene(config, activity_named("stationary"), 0))
+
+
+def test_nothing_is_said_of_keys_with_effect() -> None:
+    config = Config(
+        processing={
+            "doppler": "gate",
+            "gate_m": 2.0,
+            "clutter": "highpass",
+            "highpass": {"order": 2},
+        },
+        image={"kind": "cfar", "cfar": {"pfa": 0.2}},
+        receiver={"lines": [{"doppler_hz": 2000}]},
+    )
+    assert config_warnings(config) == []
+    assert config_warnings(config_from_json(config.model_dump_json(), "here")) == []
 
 
 def test_nothing_is_said_of_scenes_inside_the_model() -> None:

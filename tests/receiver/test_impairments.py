@@ -96,6 +96,7 @@ def test_blocks_of_any_length_give_the_same(lengths):
     for impairment in (
         flicker(total + 2, 30.0),
         Line(0.3, 123.0, waveform(total), named, "line 0"),
+        Line(0.3, 123.0, waveform(total), named, "line 0", on=0.01, off=0.01),
     ):
         empty = np.zeros((SAMPLES, total), complex)
         (whole,) = impairment.beat(iter([empty]))
@@ -105,11 +106,14 @@ def test_blocks_of_any_length_give_the_same(lengths):
 
 @pytest.mark.parametrize("fft_length", [None, 64])
 @pytest.mark.parametrize("canceller", [NO_CANCELLER, FIRST_DIFFERENCE])
-def test_a_line_is_the_same_in_every_form(canceller, fft_length):
+@pytest.mark.parametrize("off", [0.0, 0.02])
+def test_a_line_is_the_same_in_every_form(canceller, fft_length, off):
     w = waveform(120, fft_length)
-    line = Line(0.3, 123.0, w, named, "line 0")
+    line = Line(0.3, 123.0, w, named, "line 0", on=0.02, off=off)
     (beat,) = line.beat(iter([np.zeros((SAMPLES, 120), complex)]))
-    assert np.abs(beat) == pytest.approx(np.full(beat.shape, 0.3))
+    there = np.abs(line.tone(np.arange(120)))
+    assert np.abs(beat) == pytest.approx(np.tile(0.3 * there, (SAMPLES, 1)))
+    assert off or beat.all()
     compressed = range_compression(beat, w)
     assert line.slow_time(np.zeros(120, complex)) == pytest.approx(half_band_signal(compressed))
     kept = slice(2, 6)
@@ -118,6 +122,25 @@ def test_a_line_is_the_same_in_every_form(canceller, fft_length):
     pulses = np.array([0, 7, 50, 118])
     bins = line.range_bins(np.zeros((w.n_bins, 4), complex), pulses, canceller)
     assert bins == pytest.approx(range_bins(canceller(beat)[:, pulses], w))
+
+
+def test_a_line_comes_and_goes_as_often_as_it_should():
+    """Exponential times: on for on/(on + off) of the time, also at the first pulse."""
+    w = waveform(200_000)
+    line = Line(1.0, 0.0, w, named, "line 0", on=0.02, off=0.06)
+    there = np.abs(line.tone(np.arange(w.n_pulses))) > 0.5
+    edges = np.flatnonzero(np.diff(there))
+    spells = np.diff(edges)[~there[edges[:-1]]] / w.prf  # from off to on: of being there
+    assert there.mean() == pytest.approx(0.25, abs=0.03)
+    assert spells.mean() == pytest.approx(0.02, rel=0.15)
+    assert np.std(spells) == pytest.approx(0.02, rel=0.25)
+    first = [
+        Line(1.0, 0.0, w, lambda name, k=k: np.random.default_rng([k, 1]), "l", 1.0, 3.0).tone(
+            np.arange(1)
+        )[0]
+        for k in range(400)
+    ]
+    assert np.count_nonzero(first) == pytest.approx(100, abs=40)
 
 
 RADAR = {"carrier_hz": 24e9, "bandwidth_hz": 1e9, "prf_hz": 1000, "adc_rate_hz": 5e5}

@@ -2,7 +2,8 @@
 
 Between heel-off and toe-off the foot turns about the ball of the foot by beta = B tau^3, from
 toe-off to touch-down it follows quintics that begin with the position, velocity and acceleration
-of that moment and end at rest, with a lift on top: everything is twice continuously differentiable.
+of that moment and end at rest, with a lift on top, and behind by a lag: people's feet are fastest
+late in a swing. Everything is twice continuously differentiable.
 """
 
 from dataclasses import dataclass
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 DEGREE = 8
 LIFT_SHAPE = np.array([0, 0, 0, 1, -5, 10, -10, 5, -1]) / (0.375**3 * 0.625**5)  # peak 1 at 3/8
+LAG_SHAPE = np.array([0, 0, 0, 1, -3, 3, -1, 0, 0]) * 64  # t^3 (1 - t)^3, peak 1 at 1/2
 
 
 class Footfalls(NamedTuple):
@@ -49,12 +51,14 @@ class FootTrack:
         falls: the swings.
         roll: angle at toe-off, rad.
         lift: height added to the swing, m.
+        lag: how far the foot is behind in mid-swing, over the length of the step.
     """
 
     person: Person
     falls: Footfalls
     roll: float
     lift: float
+    lag: float
 
     @property
     def breakpoints(self) -> Float:
@@ -87,10 +91,12 @@ class FootTrack:
         rolling[3, :, 3] = self.roll * f.size / (f.toe - f.off) ** 3
         length = f.down - f.toe
         ahead, up = self._toe_off()
-        for axis, way in enumerate((np.cos(f.heading), np.sin(f.heading))):
-            gone, velocity, acceleration = (way * value for value in ahead)
+        for axis, share in enumerate((np.cos(f.heading), np.sin(f.heading))):
+            gone, velocity, acceleration = (share * value for value in ahead)
             gone = gone + f.before[axis]
             swinging[:6, :, axis] = to_rest(gone, velocity, acceleration, f.after[axis], length)
+            way = f.after[axis] - f.before[axis]
+            swinging[:, :, axis] -= np.outer(LAG_SHAPE, self.lag * way)
         swinging[:6, :, 2] = to_rest(*up, np.zeros(n), length)
         swinging[:, :, 2] += np.outer(LIFT_SHAPE, self.lift * f.size)
         swinging /= (length ** np.arange(DEGREE + 1)[:, None])[..., None]

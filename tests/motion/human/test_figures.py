@@ -46,7 +46,7 @@ def speed(p: np.ndarray, name: str) -> float:
 
 
 @pytest.mark.parametrize(
-    ("v", "ankle", "rise"), [(0.8, 3.25, 25), (1.2, 3.18, 42), (1.5, 3.15, 56), (2.0, 3.13, 92)]
+    ("v", "ankle", "rise"), [(0.8, 3.27, 23), (1.2, 3.23, 39), (1.5, 3.17, 50), (2.0, 3.04, 71)]
 )
 def test_gait(v: float, ankle: float, rise: float) -> None:
     """Ankle speed over walking speed, and the hip's rise (mm) within 6 % (CMU: 56, 64 at 1.6)."""
@@ -54,9 +54,33 @@ def test_gait(v: float, ankle: float, rise: float) -> None:
     velocity = np.diff(p[0], axis=1) / DT
     assert velocity[joint("right_ankle")].max() / v == pytest.approx(ankle, abs=0.02)
     assert velocity[joint("right_ankle")].min() / v > -0.01
-    assert 0.87 < velocity[joint("torso")].min() / v < 0.90
-    assert 1.10 < velocity[joint("torso")].max() / v < 1.13
+    assert 0.87 < velocity[joint("torso")].min() / v < 0.90  # CMU: 0.88
+    assert 1.12 < velocity[joint("torso")].max() / v < 1.15  # CMU: 1.14
     assert 1e3 * np.ptp(p[2, joint("hip")]) == pytest.approx(rise, rel=0.06)
+
+
+def test_ankles_are_fastest_late_and_knees_half_as_fast() -> None:
+    """CMU: the ankle at u = 0.88. Boulic and Thalmann's hip curve: the knee at 1.9 times v."""
+    v, walk = 1.2, Walk(Gait(1.2), from_rest=False)
+    velocity = np.diff(positions(walk, 4.0)[0], axis=1) / DT / v
+    stride = walk.part(Person(1.75), 0.0, 4.0).stride
+    one = velocity[:, round(stride / DT) : round(2 * stride / DT)]
+    peak = one[joint("right_ankle")].argmax() / one.shape[1]
+    assert 0.83 < peak < 0.92
+    assert 1.8 < one[joint("right_knee")].max() < 2.15
+
+
+def test_surges_differ_from_right_to_left() -> None:
+    """What the right step gains, the left one loses."""
+    walk = Walk(Gait(1.2, surge_asymmetry=0.05), from_rest=False)
+    torso = np.diff(positions(walk, 4.0)[0, joint("torso")]) / DT / 1.2
+    stride = walk.part(Person(1.75), 0.0, 4.0).stride
+    fastest = [
+        torso[round((1 + u) * stride / DT) :][: round(0.3 * stride / DT)].max()
+        for u in (0.89, 1.39)
+    ]
+    even = 1 + 0.125 * 1.08
+    np.testing.assert_allclose(fastest, [even + 0.05, even - 0.05], atol=0.005)
 
 
 def test_knee_angles_of_a_walker() -> None:

@@ -223,6 +223,22 @@ def test_who_stands_still_is_cancelled_to_the_last_digit():
         assert not record(scene, ["signal"])["signal"].x.any()
 
 
+def test_points_are_as_strong_as_the_ellipsoid_is_wide():
+    """Powers add up to 1; towards the ends of a segment there is less to scatter."""
+    powers = {True: [], False: []}
+    for index in range(6):
+        scene = draw_scene(config_of(), activity_named("walking"), index)
+        for points in record(scene, ["paths"])["paths"].points:
+            assert (points.share**2).sum() == pytest.approx(1)
+            if points.share.size > 10:
+                for end in (True, False):
+                    these = (np.abs(points.along) > 0.45) == end
+                    powers[end] += list(points.share[these] ** 2 * points.share.size)
+    # The mean width beyond 0.45 and within, over the mean of all: sqrt(1 - 4 x^2), x up to 1/2.
+    assert np.mean(powers[True]) == pytest.approx(0.37, abs=0.1)
+    assert np.mean(powers[False]) == pytest.approx(1.07, abs=0.05)
+
+
 class TestDeterminism:
     def test_the_same_scene_has_the_same_points(self):
         first, second = (record(scene_of("walking"), ["signal"])["signal"].x for _ in range(2))

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from pydantic import BaseModel
 
-from radhar_cli.config import Config
+from radhar_cli.config import Config, load_config
 from radhar_cli.config.reading import load_section
 from radhar_cli.learning.settings import TrainConfig
 
@@ -20,6 +20,14 @@ def test_links_lead_somewhere(page: Path) -> None:
     for target in re.findall(r"\]\((?!https?:)([^)#]+)\)", text):
         assert (page.parent / target).exists(), target
     assert not re.search(r"TODO|FIXME|[A-Z]{4,}_TABLE", text)
+
+
+def test_the_yaml_of_the_readme_is_a_config(tmp_path: Path) -> None:
+    blocks = re.findall(r"```yaml\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    assert blocks
+    for block in blocks:
+        (tmp_path / "readme.yaml").write_text(block)
+        load_config(tmp_path / "readme.yaml")
 
 
 def sections(model: type[BaseModel], prefix: str = "") -> list[str]:

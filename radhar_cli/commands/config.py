@@ -49,6 +49,8 @@ def init(
             file.write(text)
     except FileExistsError:
         raise FolderError(f"{out}: exists already; should be a new file") from None
+    except OSError as error:
+        raise FolderError(f"{out}: {error.strerror}; should be a new file") from None
     report(file=out)
     tell(f"{out}: all keys with their defaults; leave out what should stay as it is")
     tell(f"  then        radhar {'train DATA --config' if train else 'generate'} {out} -o OUT")

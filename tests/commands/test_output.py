@@ -248,6 +248,9 @@ def test_config_init_refuses_to_overwrite(tmp_path: Path) -> None:
     out.unlink()
     out.symlink_to(tmp_path / "elsewhere.yaml")
     assert radhar("config", "init", out).returncode == 2
+    for nowhere in (tmp_path / "none/x.yaml", out / "x.yaml"):
+        done = radhar("config", "init", nowhere)
+        assert (done.returncode, done.stderr.count("\n")) == (2, 1)
     assert not (tmp_path / "elsewhere.yaml").exists()
 
 

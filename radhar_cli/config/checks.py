@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from pydantic import BaseModel
 
 from radhar_cli.activity import ACTIVITIES, DEFAULT, Activity, activity_named, own_activities
 from radhar_cli.config.number import nominal, support
@@ -466,9 +468,21 @@ def unused_keys(c: Config) -> list[str]:
         section, name = key.split(".")
         given = getattr(c, section)
         value = getattr(given, other.split(".")[1])
-        if value != wanted and getattr(given, name) != getattr(type(given)(), name):
+        if value != wanted and not _usual(getattr(given, name), getattr(type(given)(), name)):
             found.append(f"{key} has no effect with {other}: {value}, but with {wanted}")
     return found
+
+
+def _usual(given: Any, default: Any) -> bool:
+    """Whether a value is the default, or was drawn from it."""
+    if given == default or not isinstance(default, BaseModel):
+        return bool(given == default)
+    for name in type(default).model_fields:
+        own, usual = getattr(given, name), getattr(default, name)
+        drawn = isinstance(usual, BaseModel) and isinstance(own, int | float)
+        if not (support(usual)[0] <= own <= support(usual)[1] if drawn else own == usual):
+            return False
+    return True
 
 
 def config_warnings(c: Config) -> list[str]:

@@ -274,6 +274,12 @@ def test_keys_without_effect_and_lines_that_alias_are_said(document: Any, key: s
     assert message in scene_warnings(draw_scene(config, activity_named("stationary"), 0))
 
 
+def test_nothing_is_said_of_what_was_drawn_from_the_defaults() -> None:
+    scene = draw_scene(Config(**FREE_SPACE), activity_named("stationary"), 0)
+    assert isinstance(scene.config.image.cfar.floor_db, float)
+    assert scene_warnings(scene) == []
+
+
 def test_nothing_is_said_of_keys_with_effect() -> None:
     config = Config(
         processing={

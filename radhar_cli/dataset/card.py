@@ -56,38 +56,42 @@ def _splits(data: Dataset) -> list[int]:
 def features(config: Config) -> list[dict[str, Any]]:
     """Columns of a configuration, as `datasets` writes them down."""
     names = {str(a.index): a.slug for a in config.every_class}
-    numbers = [
-        {"name": name, "dtype": "int64" if name == "subject" else "float64"}
-        for name in number_names(config)
-    ]
     return [
         {"name": "image", "dtype": "image"},
         {"name": "label", "dtype": {"class_label": {"names": names}}},
-        {"name": "index", "dtype": "int64"},
-        *numbers,
+        *number_features(config),
     ]
 
 
-def configurations(config: Config, files: Files, described: bool) -> list[dict[str, Any]]:
-    """`configs` of the front matter, with the columns of each where they are described."""
+def number_features(config: Config) -> list[dict[str, Any]]:
+    """The columns of numbers among them: index, and what was drawn."""
+    kinds = {name: "int64" if name == "subject" else "float64" for name in number_names(config)}
+    return [{"name": n, "dtype": kind} for n, kind in {"index": "int64", **kinds}.items()]
+
+
+def data_files(files: Files) -> list[dict[str, Any]]:
+    """`configs` of the front matter: the files of each split of each configuration."""
     return [
         {
             "config_name": name,
             "data_files": [{"split": split, "path": path} for split, path in parts.items()],
-            **({"features": features(config)} if described else {}),
         }
         for name, parts in files.items()
     ]
 
 
-def card(data: Dataset, files: Files, reading: str, described: bool = True) -> str:
+def configurations(config: Config, files: Files) -> list[dict[str, Any]]:
+    """`configs` of the front matter where the columns of each are those of `features`."""
+    return [{**one, "features": features(config)} for one in data_files(files)]
+
+
+def card(data: Dataset, loading: Mapping[str, Any], reading: str) -> str:
     """The text of README.md.
 
     Args:
         data: the data set.
-        files: what `load_dataset` is to read; nothing where that cannot read the format.
+        loading: front matter that `load_dataset` goes by; none where that cannot read the format.
         reading: Markdown, how to read what lies beside the card.
-        described: whether the columns of the files are those of `features`.
     """
     config, count = data.config, len(data)
     measured = config.recorded is not None
@@ -97,7 +101,7 @@ def card(data: Dataset, files: Files, reading: str, described: bool = True) -> s
         "tags": ["radar", "fmcw", "micro-doppler", "human-activity-recognition", "radhar"]
         + ([] if measured else ["synthetic"]),
         "size_categories": [next((name for most, name in _SIZES if count < most), "n>100M")],
-        **({"configs": configurations(config, files, described)} if files else {}),
+        **loading,
     }
     title = f"{'Measured' if measured else 'Simulated'} radar maps of human activities"
     parts = [

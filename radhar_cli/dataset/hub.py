@@ -60,7 +60,7 @@ def folder_card(data: Dataset, png: bool) -> str:
         )
     return card(
         data,
-        png_files(data),
+        {"configs": configurations(data.config, png_files(data))},
         f"""\
 ```python
 from datasets import load_dataset
@@ -99,7 +99,7 @@ def _wrong_card(data: Dataset, folder: Path) -> list[str]:
     except (OSError, UnicodeDecodeError, ConfigError) as error:
         return [f"{CARD}: cannot be read ({getattr(error, 'strerror', None) or error})"]
     found = document.get("configs") if isinstance(document, dict) else None
-    if found is None or found == configurations(data.config, png_files(data), True):
+    if found is None or found == configurations(data.config, png_files(data)):
         return []
     return [
         f"{CARD}: its configs are not the maps here; where there is no card `generate` writes one"

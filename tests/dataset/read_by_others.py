@@ -69,7 +69,10 @@ if __name__ == "__main__":
                 "folder": {name: hub(place / "set", name) for name in ("rtm", "stft")},
                 "parquet": {name: hub(place / "parquet", name) for name in ("rtm", "stft")},
                 "tars": tars(place / "webdataset"),
-                "hub_tars": {split: rows["cls"][:] for split, rows in in_tars.items()},
+                "hub_tars": {
+                    split: [[row["cls"], row["json"], digest(row["stft.png"])] for row in rows]
+                    for split, rows in in_tars.items()
+                },
                 "tree": tree(place / "set/png/stft/train"),
             }
         )

@@ -51,7 +51,7 @@ def write(data: Dataset, folder: Path, progress: Progress) -> None:
         _texts(file, "class_slugs", data.class_slugs)
     with path.open("r+b") as raw:
         raw.write(HEADER)
-    describe(data, folder, {}, _reading(data), described=False)
+    describe(data, folder, {}, _reading(data))
 
 
 def _stored_as(dtype: np.dtype[Any]) -> tuple[np.dtype[Any], str]:

@@ -1,17 +1,24 @@
 """The data card, README.md: what strangers, and the Hugging Face Hub, should know of a data set."""
 
+import re
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import yaml
 
 from radhar_cli.config.schema import Config
+from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.dataset.layout import GALLERY, SPLITS, Rows, png_folder
 from radhar_cli.dataset.reading import BLOCK, Dataset
 from radhar_cli.dataset.scene_fields import ERROR
 from radhar_cli.dataset.table import number_names
+from radhar_cli.errors import ConfigError, FolderError
+from radhar_cli.untrusted import read_text
 
+MAX_CARD = 2**20
+_FRONT = re.compile(r"\s*---\n(.*?)\n---(?:\n|$)", re.DOTALL)
 # {configuration: {split: files}}
 Files = Mapping[str, Mapping[str, str]]
 
@@ -83,6 +90,21 @@ def data_files(files: Files) -> list[dict[str, Any]]:
 def configurations(config: Config, files: Files) -> list[dict[str, Any]]:
     """`configs` of the front matter where the columns of each are those of `features`."""
     return [{**one, "features": features(config)} for one in data_files(files)]
+
+
+def front_matter(path: Path) -> dict[str, Any]:
+    """The front matter of a card that anyone may have changed; empty where it has none.
+
+    Raises:
+        FolderError: the card cannot be read.
+    """
+    try:
+        found = _FRONT.match(read_text(path, MAX_CARD).replace("\r\n", "\n"))
+        document, _ = parse_yaml(found[1] if found else "", path.name)
+    except (OSError, UnicodeDecodeError, ConfigError) as error:
+        told = getattr(error, "strerror", None) or error
+        raise FolderError(f"{path}: cannot be read ({told})") from None
+    return document if isinstance(document, dict) else {}
 
 
 def card(data: Dataset, loading: Mapping[str, Any], reading: str) -> str:

@@ -10,7 +10,7 @@ import yaml
 
 from radhar_cli.config.schema import Config
 from radhar_cli.config.yaml_reader import parse_yaml
-from radhar_cli.dataset.layout import GALLERY, SPLITS, Rows, png_folder
+from radhar_cli.dataset.layout import CARD, GALLERY, SPLITS, Rows, png_folder
 from radhar_cli.dataset.reading import BLOCK, Dataset
 from radhar_cli.dataset.scene_fields import ERROR
 from radhar_cli.dataset.table import number_names
@@ -18,6 +18,7 @@ from radhar_cli.errors import ConfigError, FolderError
 from radhar_cli.untrusted import read_text
 
 MAX_CARD = 2**20
+_LICENCE = ("license", "license_name", "license_link")
 _FRONT = re.compile(r"\s*---\n(.*?)\n---(?:\n|$)", re.DOTALL)
 # {configuration: {split: files}}
 Files = Mapping[str, Mapping[str, str]]
@@ -107,12 +108,28 @@ def front_matter(path: Path) -> dict[str, Any]:
     return document if isinstance(document, dict) else {}
 
 
-def card(data: Dataset, loading: Mapping[str, Any], reading: str) -> str:
+def owner_licence(folder: Path) -> dict[str, str | list[str]]:
+    """What the card in a folder says of the licence, which its owner may have chosen.
+
+    Raises:
+        FolderError: the card cannot be read, or says something else than names of licences.
+    """
+    path = folder / CARD
+    found = front_matter(path) if path.exists() else {}
+    said = {key: found[key] for key in _LICENCE if found.get(key) is not None}
+    for key, value in said.items():
+        names = value if isinstance(value, list) else [value]
+        if not all(isinstance(name, str) and name.isprintable() for name in names):
+            raise FolderError(f"{path}: {key}: should be text on one line, such as cc-by-4.0")
+    return said
+
+
+def card(data: Dataset, more: Mapping[str, Any], reading: str) -> str:
     """The text of README.md.
 
     Args:
         data: the data set.
-        loading: front matter that `load_dataset` goes by; none where that cannot read the format.
+        more: front matter: what `load_dataset` goes by, and a licence where it is not the config's.
         reading: Markdown, how to read what lies beside the card.
     """
     config, count = data.config, len(data)
@@ -123,7 +140,7 @@ def card(data: Dataset, loading: Mapping[str, Any], reading: str) -> str:
         "tags": ["radar", "fmcw", "micro-doppler", "human-activity-recognition", "radhar"]
         + ([] if measured else ["synthetic"]),
         "size_categories": [next((name for most, name in _SIZES if count < most), "n>100M")],
-        **loading,
+        **more,
     }
     title = f"{'Measured' if measured else 'Simulated'} radar maps of human activities"
     parts = [
@@ -144,7 +161,7 @@ def card(data: Dataset, loading: Mapping[str, Any], reading: str) -> str:
         "## How it was made",
         _making(data),
         "## Licence and citation",
-        _licence(config),
+        _licence(front["license"]),
         f"```bibtex\n{BIBTEX.replace('VERSION', data.file.text('radhar_version'))}```",
     ]
     return "\n\n".join(parts) + "\n"
@@ -281,10 +298,11 @@ def _making(data: Dataset) -> str:
     )
 
 
-def _licence(config: Config) -> str:
-    if config.output.license is None:
+def _licence(name: str | list[str]) -> str:
+    if name == "unknown":
         return (
             "No licence was chosen: whoever publishes this data set puts one at `license:` in the "
             "first lines of this file. Please cite:"
         )
-    return f"Licence: {config.output.license}. Please cite:"
+    names = name if isinstance(name, str) else ", ".join(name)
+    return f"Licence: {names}. Please cite:"

@@ -202,6 +202,24 @@ def test_every_format_has_a_card_and_the_same_bytes_again(
     assert (tmp_path / "a/gallery.png").read_bytes() == (place / "set/gallery.png").read_bytes()
 
 
+def test_the_licence_that_an_owner_chose_goes_along(place: Path, tmp_path: Path) -> None:
+    h5, card = tmp_path / "set/dataset.h5", tmp_path / "set/README.md"
+    h5.parent.mkdir()
+    h5.symlink_to(place / "set/dataset.h5")
+    text = (place / "set/README.md").read_text()
+    chosen = "license: other\nlicense_name: radar-lab-1\n"
+    card.write_text(text.replace("license: unknown\n", chosen))
+    convert(h5.parent, tmp_path / "npy", "npy", Listener())
+    made = (tmp_path / "npy/README.md").read_text()
+    front = yaml.safe_load(made.split("---\n")[1])
+    assert (front["license"], front["license_name"]) == ("other", "radar-lab-1")
+    assert "Licence: other." in made
+    card.write_text(text.replace("license: unknown\n", "license: [mit, 3]\n"))
+    done = radhar("convert", h5, "-o", tmp_path / "no", "--to", "npy")
+    assert done.returncode == 2
+    assert "README.md: license: should be text" in done.stderr.splitlines()[-1]
+
+
 @pytest.mark.parametrize("name", FORMATS)
 def test_damage_is_not_passed_on(place: Path, tmp_path: Path, name: str) -> None:
     damaged = tmp_path / "dataset.h5"

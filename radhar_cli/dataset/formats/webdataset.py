@@ -68,12 +68,17 @@ def _reading(data: Dataset) -> str:
     name = data.config.maps[0]
     return f"""\
 ```python
-import webdataset
+import io
 
-train = webdataset.WebDataset("train-000000.tar", shardshuffle=False).decode("pil")
+import webdataset
+from PIL import Image
+
+train = webdataset.WebDataset("train-000000.tar", shardshuffle=False).decode()
 sample = next(iter(train))    # "{name}.png" and other maps, "cls", "json"
+image = Image.open(io.BytesIO(sample["{name}.png"]))
+# numpy.asarray(image): grey levels; image.convert("RGB"): colours, as .decode("pil") gives them
 ```
 
-`cls` is the label, `json` has label, index and the numbers of the sample. Samples stand in turn,
-one of each class. `datasets.load_dataset("FOLDER OR NAME ON THE HUB")` reads the same files; the
-pixels of the PNG files are grey levels, their palette has the colours."""
+`cls` is the label, a number; `json` has the name of the class as `label`, the index and the numbers
+of the sample. Samples stand in turn, one of each class.
+`datasets.load_dataset("FOLDER OR NAME ON THE HUB")` reads the same files."""

@@ -1,17 +1,25 @@
 """The data card, README.md: what strangers, and the Hugging Face Hub, should know of a data set."""
 
+import re
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import yaml
 
 from radhar_cli.config.schema import Config
-from radhar_cli.dataset.layout import GALLERY, SPLITS, Rows, png_folder
+from radhar_cli.config.yaml_reader import parse_yaml
+from radhar_cli.dataset.layout import CARD, GALLERY, SPLITS, Rows, png_folder
 from radhar_cli.dataset.reading import BLOCK, Dataset
 from radhar_cli.dataset.scene_fields import ERROR
 from radhar_cli.dataset.table import number_names
+from radhar_cli.errors import ConfigError, FolderError
+from radhar_cli.untrusted import read_text
 
+MAX_CARD = 2**20
+_LICENCE = ("license", "license_name", "license_link")
+_FRONT = re.compile(r"\s*---\n(.*?)\n---(?:\n|$)", re.DOTALL)
 # {configuration: {split: files}}
 Files = Mapping[str, Mapping[str, str]]
 
@@ -56,38 +64,73 @@ def _splits(data: Dataset) -> list[int]:
 def features(config: Config) -> list[dict[str, Any]]:
     """Columns of a configuration, as `datasets` writes them down."""
     names = {str(a.index): a.slug for a in config.every_class}
-    numbers = [
-        {"name": name, "dtype": "int64" if name == "subject" else "float64"}
-        for name in number_names(config)
-    ]
     return [
         {"name": "image", "dtype": "image"},
         {"name": "label", "dtype": {"class_label": {"names": names}}},
-        {"name": "index", "dtype": "int64"},
-        *numbers,
+        *number_features(config),
     ]
 
 
-def configurations(config: Config, files: Files, described: bool) -> list[dict[str, Any]]:
-    """`configs` of the front matter, with the columns of each where they are described."""
+def number_features(config: Config) -> list[dict[str, Any]]:
+    """The columns of numbers among them: index, and what was drawn."""
+    kinds = {name: "int64" if name == "subject" else "float64" for name in number_names(config)}
+    return [{"name": n, "dtype": kind} for n, kind in {"index": "int64", **kinds}.items()]
+
+
+def data_files(files: Files) -> list[dict[str, Any]]:
+    """`configs` of the front matter: the files of each split of each configuration."""
     return [
         {
             "config_name": name,
             "data_files": [{"split": split, "path": path} for split, path in parts.items()],
-            **({"features": features(config)} if described else {}),
         }
         for name, parts in files.items()
     ]
 
 
-def card(data: Dataset, files: Files, reading: str, described: bool = True) -> str:
+def configurations(config: Config, files: Files) -> list[dict[str, Any]]:
+    """`configs` of the front matter where the columns of each are those of `features`."""
+    return [{**one, "features": features(config)} for one in data_files(files)]
+
+
+def front_matter(path: Path) -> dict[str, Any]:
+    """The front matter of a card that anyone may have changed; empty where it has none.
+
+    Raises:
+        FolderError: the card cannot be read.
+    """
+    try:
+        found = _FRONT.match(read_text(path, MAX_CARD).replace("\r\n", "\n"))
+        document, _ = parse_yaml(found[1] if found else "", path.name)
+    except (OSError, UnicodeDecodeError, ConfigError) as error:
+        told = getattr(error, "strerror", None) or error
+        raise FolderError(f"{path}: cannot be read ({told})") from None
+    return document if isinstance(document, dict) else {}
+
+
+def owner_licence(folder: Path) -> dict[str, str | list[str]]:
+    """What the card in a folder says of the licence, which its owner may have chosen.
+
+    Raises:
+        FolderError: the card cannot be read, or says something else than names of licences.
+    """
+    path = folder / CARD
+    found = front_matter(path) if path.exists() else {}
+    said = {key: found[key] for key in _LICENCE if found.get(key) is not None}
+    for key, value in said.items():
+        names = value if isinstance(value, list) else [value]
+        if not all(isinstance(name, str) and name.isprintable() for name in names):
+            raise FolderError(f"{path}: {key}: should be text on one line, such as cc-by-4.0")
+    return said
+
+
+def card(data: Dataset, more: Mapping[str, Any], reading: str) -> str:
     """The text of README.md.
 
     Args:
         data: the data set.
-        files: what `load_dataset` is to read; nothing where that cannot read the format.
+        more: front matter: what `load_dataset` goes by, and a licence where it is not the config's.
         reading: Markdown, how to read what lies beside the card.
-        described: whether the columns of the files are those of `features`.
     """
     config, count = data.config, len(data)
     measured = config.recorded is not None
@@ -97,7 +140,7 @@ def card(data: Dataset, files: Files, reading: str, described: bool = True) -> s
         "tags": ["radar", "fmcw", "micro-doppler", "human-activity-recognition", "radhar"]
         + ([] if measured else ["synthetic"]),
         "size_categories": [next((name for most, name in _SIZES if count < most), "n>100M")],
-        **({"configs": configurations(config, files, described)} if files else {}),
+        **more,
     }
     title = f"{'Measured' if measured else 'Simulated'} radar maps of human activities"
     parts = [
@@ -118,7 +161,7 @@ def card(data: Dataset, files: Files, reading: str, described: bool = True) -> s
         "## How it was made",
         _making(data),
         "## Licence and citation",
-        _licence(config),
+        _licence(front["license"]),
         f"```bibtex\n{BIBTEX.replace('VERSION', data.file.text('radhar_version'))}```",
     ]
     return "\n\n".join(parts) + "\n"
@@ -255,10 +298,11 @@ def _making(data: Dataset) -> str:
     )
 
 
-def _licence(config: Config) -> str:
-    if config.output.license is None:
+def _licence(name: str | list[str]) -> str:
+    if name == "unknown":
         return (
             "No licence was chosen: whoever publishes this data set puts one at `license:` in the "
             "first lines of this file. Please cite:"
         )
-    return f"Licence: {config.output.license}. Please cite:"
+    names = name if isinstance(name, str) else ", ".join(name)
+    return f"Licence: {names}. Please cite:"

@@ -2,18 +2,14 @@
 
 from pathlib import Path
 
-from radhar_cli.config.yaml_reader import parse_yaml
-from radhar_cli.dataset.card import card, configurations, png_files
+from radhar_cli.dataset.card import card, configurations, front_matter, png_files
 from radhar_cli.dataset.files import refuse_links, write_whole
 from radhar_cli.dataset.gallery import gallery_png
 from radhar_cli.dataset.image_file import image_size
 from radhar_cli.dataset.layout import CARD, GALLERY, PNG
 from radhar_cli.dataset.metadata_csv import write_metadata, wrong_metadata
 from radhar_cli.dataset.reading import Dataset
-from radhar_cli.errors import ConfigError, FolderError
-from radhar_cli.untrusted import read_text
-
-MAX_CARD = 2**20
+from radhar_cli.errors import FolderError
 
 
 def write_hub_files(source: Path, folder: Path, png: bool) -> None:
@@ -60,7 +56,7 @@ def folder_card(data: Dataset, png: bool) -> str:
         )
     return card(
         data,
-        png_files(data),
+        {"configs": configurations(data.config, png_files(data))},
         f"""\
 ```python
 from datasets import load_dataset
@@ -79,27 +75,23 @@ def wrong_hub_files(data: Dataset, folder: Path) -> list[str]:
     """What is wrong with the card, its picture and the metadata, a line each.
 
     A card's text, its licence and more are its owner's to change; what `load_dataset` goes by is
-    not. A folder without card and picture is no worse for it.
+    not. A folder without picture is no worse for it, nor one without card and images.
     """
-    problems = wrong_metadata(data, folder) if (folder / PNG).is_dir() else []
+    png = (folder / PNG).is_dir()
+    problems = wrong_metadata(data, folder) if png else []
     try:
         if (folder / GALLERY).exists():
             image_size(folder / GALLERY)
-        if (folder / CARD).exists():
-            problems += _wrong_card(data, folder)
+        if png or (folder / CARD).exists():
+            problems += _wrong_card(data, folder, png)
     except FolderError as error:
         problems.append(str(error))
     return problems
 
 
-def _wrong_card(data: Dataset, folder: Path) -> list[str]:
-    try:
-        _, front, _ = f"{read_text(folder / CARD, MAX_CARD)}\n---\n---\n".split("---\n", 2)
-        document, _ = parse_yaml(front, CARD)
-    except (OSError, UnicodeDecodeError, ConfigError) as error:
-        return [f"{CARD}: cannot be read ({getattr(error, 'strerror', None) or error})"]
-    found = document.get("configs") if isinstance(document, dict) else None
-    if found is None or found == configurations(data.config, png_files(data), True):
+def _wrong_card(data: Dataset, folder: Path, png: bool) -> list[str]:
+    found = front_matter(folder / CARD).get("configs")
+    if found == configurations(data.config, png_files(data)) or (found is None and not png):
         return []
     return [
         f"{CARD}: its configs are not the maps here; where there is no card `generate` writes one"

@@ -9,10 +9,14 @@ from radhar_cli.arrays import Float, Levels
 from radhar_cli.config.reading import validated
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
+from radhar_cli.dataset.folder import stored_identity
 from radhar_cli.dataset.layout import (
     COLUMN_LABEL,
     DATASET,
+    MANIFEST,
+    PARTS,
     SPLITS,
+    WORK,
     Rows,
     checksum_of,
     chunked,
@@ -176,9 +180,15 @@ def open_dataset(path: str | Path) -> Dataset:
     path = Path(path)
     file = path / DATASET if path.is_dir() else path
     if not file.exists():
-        unfinished = path.is_dir() and is_incomplete(path)
-        hint = (
-            "its build is unfinished; run `radhar generate` again" if unfinished else "no such file"
-        )
-        raise FolderError(f"{file}: {hint}")
+        raise FolderError(f"{file}: {_why_missing(path)}")
     return Dataset(file)
+
+
+def _why_missing(path: Path) -> str:
+    named = stored_identity(path) or {}
+    whole_part = "part" in named and (path / WORK / MANIFEST).exists()
+    if whole_part or (path / PARTS).is_dir():
+        return "parts of a data set lie here; `radhar merge` makes it of all of them"
+    if path.is_dir() and is_incomplete(path):
+        return "its build is unfinished; run `radhar generate` again"
+    return "no such file"

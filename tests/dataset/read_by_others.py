@@ -3,10 +3,12 @@
 A program of its own: the three take seconds to import.
 """
 
+import contextlib
 import hashlib
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
 import datasets
 import numpy as np
@@ -40,17 +42,26 @@ def tars(folder: Path) -> dict[str, object]:
     parts = {}
     for split in ("train", "validation", "test"):
         files = sorted(map(str, folder.glob(f"{split}-*.tar")))
-        made = webdataset.WebDataset(files, shardshuffle=False, empty_check=False).decode("pil")
+        made = webdataset.WebDataset(files, shardshuffle=False, empty_check=False).decode()
         parts[split] = [
             {
                 "key": one["__key__"],
                 "cls": one["cls"],
                 "json": one["json"],
-                "stft": digest(one["stft.png"]),
+                "stft": hashlib.sha256(one["stft.png"]).hexdigest(),
             }
             for one in made
         ]
     return parts
+
+
+def snippet(folder: Path) -> list[str]:
+    """Key and image of the sample that the Python of a card reads."""
+    _, code, _ = (folder / "README.md").read_text().replace("```python", "```").split("```", 2)
+    held: dict[str, Any] = {}
+    with contextlib.chdir(folder):
+        exec(code, held)
+    return [held["sample"]["__key__"], digest(held["image"])]
 
 
 def tree(folder: Path) -> list[tuple[str, str]]:
@@ -69,7 +80,11 @@ if __name__ == "__main__":
                 "folder": {name: hub(place / "set", name) for name in ("rtm", "stft")},
                 "parquet": {name: hub(place / "parquet", name) for name in ("rtm", "stft")},
                 "tars": tars(place / "webdataset"),
-                "hub_tars": {split: rows["cls"][:] for split, rows in in_tars.items()},
+                "hub_tars": {
+                    split: [[row["cls"], row["json"], digest(row["stft.png"])] for row in rows]
+                    for split, rows in in_tars.items()
+                },
+                "snippet": snippet(place / "webdataset"),
                 "tree": tree(place / "set/png/stft/train"),
             }
         )

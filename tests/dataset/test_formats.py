@@ -3,6 +3,7 @@
 import hashlib
 import json
 import os
+import re
 import subprocess
 import sys
 import tarfile
@@ -16,7 +17,6 @@ import pytest
 import yaml
 from command_line import OPERATORS, ROOT, radhar
 from listener import Listener
-from PIL import Image
 from scipy.io.matlab import matfile_version
 from small import fingerprint, small_config
 
@@ -31,7 +31,7 @@ CONFIG = """
 seed: 3
 samples_per_class: {per_activity: {default: 5, home: 7}}
 classes: {home: {sequence: [grabbing, walking]}}
-activities: [punching, home]
+activities: [punching, kicking, grabbing, home]
 duration_s: 3.0
 radar: {carrier_hz: 10e9, bandwidth_hz: 1e9, prf_hz: 500}
 motion: {range_m: 5}
@@ -55,7 +55,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
         patch.setattr(parquet, "GROUP", 2)
         build(load_config(small_config(place, CONFIG)), place / "set", 1, Listener())
         for name in FORMATS:
-            assert convert(place / "set", place / name, name, Listener()) == 12
+            assert convert(place / "set", place / name, name, Listener()) == 22
     return place
 
 
@@ -110,9 +110,13 @@ def test_their_own_libraries_read_what_we_wrote(place: Path, h5: h5py.File, tmp_
             assert one["cls"] == h5["label"][row]
             assert one["key"] == f"{one['json']['label']}-{one['json']['index']:05d}"
             path = next((place / "set/png/stft").rglob(f"{one['key'].replace('-', '/**/')}.png"))
-            with Image.open(path) as image:
-                assert one["stft"] == digest(image.convert("RGB"))
-        assert found["hub_tars"][split] == [int(h5["label"][row]) for row in rows_of(h5, split)]
+            assert one["stft"] == hashlib.sha256(path.read_bytes()).hexdigest()
+        assert found["hub_tars"][split] == [
+            [h5["label"][row], line(h5, row), digest(h5["maps/stft"][row])]
+            for row in rows_of(h5, split)
+        ], "though the first samples lack numbers that others have"
+    first = rows_of(h5, "train")[0]
+    assert found["snippet"] == [found["tars"]["train"][0]["key"], digest(h5["maps/rtm"][first])]
     train = place / "set/png/stft/train"
     files = sorted(path.relative_to(train) for path in train.rglob("*.png"))
     assert sorted(found["tree"]) == [[str(path), path.parts[0]] for path in files]
@@ -182,6 +186,17 @@ def test_matlab_has_every_array_with_its_axes_turned(place: Path, h5: h5py.File)
         assert [cell.decode() for cell in cells] == list(h5.attrs["class_slugs"])
 
 
+def test_matlab_is_told_to_read_one_map(place: Path, h5: h5py.File) -> None:
+    code = r"h5read\('dataset.mat', '(.+)', \[1 1 n\], \[(\d+) (\d+) 1\]\)"
+    found = re.search(code, (place / "mat/README.md").read_text())
+    assert found is not None
+    name, height, width = found[1], int(found[2]), int(found[3])
+    with h5py.File(place / "mat/dataset.mat") as file:
+        one = file[name][3:4, :width, :height]  # MATLAB's order of axes is the reverse
+        assert file[name].shape[1:] == one.shape[1:]
+    _same(one[0].T, h5[name][3])
+
+
 @pytest.mark.parametrize("name", FORMATS)
 def test_every_format_has_a_card_and_the_same_bytes_again(
     place: Path, tmp_path: Path, name: str
@@ -192,11 +207,29 @@ def test_every_format_has_a_card_and_the_same_bytes_again(
     assert {path.name for path in tmp_path.iterdir()} == {"a", "deep"}
     card = (tmp_path / "a/README.md").read_text()
     front = yaml.safe_load(card.split("---\n")[1])
-    assert "12 samples of 2 classes" in card
+    assert "22 samples of 4 classes" in card
     for one in front.get("configs", []):
         for part in one["data_files"]:
             assert [*(tmp_path / "a").glob(part["path"])]
     assert (tmp_path / "a/gallery.png").read_bytes() == (place / "set/gallery.png").read_bytes()
+
+
+def test_the_licence_that_an_owner_chose_goes_along(place: Path, tmp_path: Path) -> None:
+    h5, card = tmp_path / "set/dataset.h5", tmp_path / "set/README.md"
+    h5.parent.mkdir()
+    h5.symlink_to(place / "set/dataset.h5")
+    text = (place / "set/README.md").read_text()
+    chosen = "license: other\nlicense_name: radar-lab-1\n"
+    card.write_text(text.replace("license: unknown\n", chosen))
+    convert(h5.parent, tmp_path / "npy", "npy", Listener())
+    made = (tmp_path / "npy/README.md").read_text()
+    front = yaml.safe_load(made.split("---\n")[1])
+    assert (front["license"], front["license_name"]) == ("other", "radar-lab-1")
+    assert "Licence: other." in made
+    card.write_text(text.replace("license: unknown\n", "license: [mit, 3]\n"))
+    done = radhar("convert", h5, "-o", tmp_path / "no", "--to", "npy")
+    assert done.returncode == 2
+    assert "README.md: license: should be text" in done.stderr.splitlines()[-1]
 
 
 @pytest.mark.parametrize("name", FORMATS)

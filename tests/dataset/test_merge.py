@@ -75,6 +75,16 @@ def test_parts_in_one_place_or_two_are_the_build_in_one_piece(
     assert verify(out, 1).problems == []
 
 
+def test_what_is_not_merged_is_said_to_be_parts(out: Path) -> None:
+    part = out / "parts/2-of-4"
+    for folder in (out, part):
+        with pytest.raises(FolderError, match=r"dataset\.h5: parts of a data set.*radhar merge"):
+            open_dataset(folder)
+    (part / ".radhar/manifest.json").unlink()
+    with pytest.raises(FolderError, match="unfinished; run `radhar generate` again"):
+        open_dataset(part)
+
+
 def test_a_virtual_data_set_reads_the_same_and_refuses_to_lose_a_part(
     out: Path, whole: dict[str, str]
 ) -> None:

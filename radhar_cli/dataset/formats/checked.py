@@ -1,7 +1,7 @@
 """Samples of a data set for the writers of other formats: what is damaged is not passed on."""
 
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import islice
 from math import prod
 from pathlib import Path
@@ -10,7 +10,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from radhar_cli.config.identity import as_yaml
-from radhar_cli.dataset.card import Files, card
+from radhar_cli.dataset.card import card, owner_licence
 from radhar_cli.dataset.gallery import gallery_png
 from radhar_cli.dataset.layout import CARD, CONFIG, GALLERY, SPLITS
 from radhar_cli.dataset.png import colour_table, encode_png
@@ -67,11 +67,16 @@ def present_splits(data: Dataset) -> list[tuple[int, str]]:
     return [(n, name) for n, name in enumerate(SPLITS) if (data.split == n).any()]
 
 
-def describe(data: Dataset, folder: Path, files: Files, reading: str, described: bool) -> None:
+def describe(data: Dataset, folder: Path, loading: Mapping[str, Any], reading: str) -> None:
     """Write the card of a converted data set, its picture and the resolved config.
 
-    Arguments are those of `card`.
+    Args:
+        data: the data set; its own card says the licence.
+        folder: to write to.
+        loading: front matter that `load_dataset` goes by; none where that cannot read the format.
+        reading: Markdown, how to read what lies beside the card.
     """
-    (folder / CARD).write_text(card(data, files, reading, described), encoding="utf-8")
+    front = {**loading, **owner_licence(data.path.parent)}
+    (folder / CARD).write_text(card(data, front, reading), encoding="utf-8")
     (folder / GALLERY).write_bytes(gallery_png(data))
     (folder / CONFIG).write_text(as_yaml(data.config), encoding="utf-8")

@@ -6,6 +6,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TypeAlias
 
+from radhar_cli.dataset.card import owner_licence
 from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.errors import FolderError
 from radhar_cli.progress import Progress
@@ -30,6 +31,7 @@ def convert(path: Path, out: Path, to: str, progress: Progress) -> int:
         raise FolderError(f"{out}: is there already; -o should name a new folder")
     write: Writer = import_module(f"radhar_cli.dataset.formats.{to}").write
     with open_dataset(path) as data:
+        owner_licence(data.path.parent)  # refused before anything is written
         out.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix=f".{out.name}.", dir=out.parent) as scratch:
             unfinished = Path(scratch, "set")

@@ -51,7 +51,7 @@ def write(data: Dataset, folder: Path, progress: Progress) -> None:
         _texts(file, "class_slugs", data.class_slugs)
     with path.open("r+b") as raw:
         raw.write(HEADER)
-    describe(data, folder, {}, _reading(data), described=False)
+    describe(data, folder, {}, _reading(data))
 
 
 def _stored_as(dtype: np.dtype[Any]) -> tuple[np.dtype[Any], str]:
@@ -83,11 +83,12 @@ def _texts(file: h5py.File, name: str, texts: list[str]) -> None:
 
 
 def _reading(data: Dataset) -> str:
-    name = data.config.maps[0]
+    name, (height, width) = data.config.maps[0], data.config.image.size_px
     return f"""\
 ```
-data = matfile('dataset.mat');            % reads what is asked for
-maps = data.maps;                         % maps.{name}(:, :, n): uint8 [H, W] of sample n
+% uint8 [H, W] of sample n alone: data.maps below would read every map
+image = h5read('dataset.mat', '/maps/{name}', [1 1 n], [{height} {width} 1]);
+data = matfile('dataset.mat');
 label = data.label;                       % uint8 [1, N]
 slugs = data.class_slugs;                 % slugs{{label(n) + 1}}: the class
 train = find(data.split == 0);            % 0 train, 1 validation, 2 test

@@ -29,7 +29,7 @@ def write(data: Dataset, folder: Path, progress: Progress) -> None:
                 file.write(np.ascontiguousarray(piece).tobytes())
                 progress.advance(len(piece) if array.name == first else 0)
     np.save(folder / CLASSES, np.array(data.class_slugs))
-    describe(data, folder, {}, _reading(data), described=False)
+    describe(data, folder, {}, _reading(data))
 
 
 def _reading(data: Dataset) -> str:

@@ -9,6 +9,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from radhar_cli.config.schema import Config
+from radhar_cli.dataset.card import configurations
 from radhar_cli.dataset.formats.checked import Samples, describe, files_of_split, present_splits
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.reading import Dataset
@@ -33,7 +34,8 @@ def write(data: Dataset, folder: Path, progress: Progress) -> None:
                         progress.advance(len(some) if name == data.config.maps[0] else 0)
     parts = [part for _, part in present_splits(data)]
     files_of = {n: {part: f"{n}/{part}-*.parquet" for part in parts} for n in data.maps}
-    describe(data, folder, files_of, _reading(data), described=True)
+    configs = configurations(data.config, files_of)
+    describe(data, folder, {"configs": configs}, _reading(data))
 
 
 def schema_of(config: Config) -> pa.Schema:

@@ -6,6 +6,8 @@ import tarfile
 from pathlib import Path
 from typing import Any
 
+from radhar_cli.config.schema import Config
+from radhar_cli.dataset.card import data_files, number_features
 from radhar_cli.dataset.formats.checked import Samples, describe, files_of_split, present_splits
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.reading import Dataset
@@ -28,7 +30,25 @@ def write(data: Dataset, folder: Path, progress: Progress) -> None:
                     _add(tar, f"{key}.json", json.dumps(said(entry, names)).encode())
                     progress.advance(1)
     files = {"default": {part: f"{part}-*.tar" for _, part in present_splits(data)}}
-    describe(data, folder, files, _reading(data), described=False)
+    loading = {
+        "configs": data_files(files),
+        "dataset_info": {"config_name": "default", "features": members(data.config)},
+    }
+    describe(data, folder, loading, _reading(data))
+
+
+def members(config: Config) -> list[dict[str, Any]]:
+    """Columns of `load_dataset`, which else takes what is null in five samples for nothing else."""
+    return [
+        *({"name": f"{name}.png", "dtype": "image"} for name in config.maps),
+        {"name": "cls", "dtype": "int64"},
+        {
+            "name": "json",
+            "struct": [{"name": "label", "dtype": "string"}, *number_features(config)],
+        },
+        {"name": "__key__", "dtype": "string"},
+        {"name": "__url__", "dtype": "string"},
+    ]
 
 
 def said(entry: Entry, names: list[str]) -> dict[str, Any]:
@@ -48,12 +68,17 @@ def _reading(data: Dataset) -> str:
     name = data.config.maps[0]
     return f"""\
 ```python
-import webdataset
+import io
 
-train = webdataset.WebDataset("train-000000.tar", shardshuffle=False).decode("pil")
+import webdataset
+from PIL import Image
+
+train = webdataset.WebDataset("train-000000.tar", shardshuffle=False).decode()
 sample = next(iter(train))    # "{name}.png" and other maps, "cls", "json"
+image = Image.open(io.BytesIO(sample["{name}.png"]))
+# numpy.asarray(image): grey levels; image.convert("RGB"): colours, as .decode("pil") gives them
 ```
 
-`cls` is the label, `json` has label, index and the numbers of the sample. Samples stand in turn,
-one of each class. `datasets.load_dataset("FOLDER OR NAME ON THE HUB")` reads the same files; the
-pixels of the PNG files are grey levels, their palette has the colours."""
+`cls` is the label, a number; `json` has the name of the class as `label`, the index and the numbers
+of the sample. Samples stand in turn, one of each class.
+`datasets.load_dataset("FOLDER OR NAME ON THE HUB")` reads the same files."""

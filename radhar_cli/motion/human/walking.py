@@ -82,12 +82,12 @@ class Gait:
     sidewards: float = 0.018
     sink: float = 0.003
     softness: float = 80.0
-    touch_down: float = 0.07
-    heel_off: float = 0.37
+    touch_down: float = 0.085
+    heel_off: float = 0.42
     below: float = 0.25
-    roll: float = radians(56)
-    lift: float = 0.095
-    lag: float = 0.155
+    roll: float = radians(52)
+    lift: float = 0.10
+    lag: float = 0.21
     ramp: float = 0.6
     asymmetry: float = 0.0
     ragged: Waves = field(default_factory=Waves)

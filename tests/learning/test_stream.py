@@ -27,7 +27,7 @@ DOCUMENT: dict[str, Any] = {
     "samples_per_class": 4,
     "activities": ["punching", "walking", "S12"],
     "radar": {"carrier_hz": 10e9, "bandwidth_hz": 1e9, "prf_hz": 500},
-    "motion": {"model": "paper"},
+    "motion": {"model": "paper", "range_m": {"per_activity": {"default": 2, "walking": 3}}},
     "maps": ["rtm", "stft"],
     "image": {"size_px": 16},
     "split": {"train": 0.5, "validation": 0.5},

@@ -9,9 +9,11 @@ from radhar_cli.arrays import Float, Levels
 from radhar_cli.config.reading import validated
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
+from radhar_cli.dataset.folder import stored_identity
 from radhar_cli.dataset.layout import (
     COLUMN_LABEL,
     DATASET,
+    PARTS,
     SPLITS,
     Rows,
     checksum_of,
@@ -176,9 +178,17 @@ def open_dataset(path: str | Path) -> Dataset:
     path = Path(path)
     file = path / DATASET if path.is_dir() else path
     if not file.exists():
-        unfinished = path.is_dir() and is_incomplete(path)
-        hint = (
-            "its build is unfinished; run `radhar generate` again" if unfinished else "no such file"
-        )
-        raise FolderError(f"{file}: {hint}")
+        raise FolderError(f"{file}: {_why_missing(path)}")
     return Dataset(file)
+
+
+def _why_missing(path: Path) -> str:
+    """Why a path leads to no dataset.h5, and what makes one."""
+    if (path / PARTS).is_dir():
+        return f"not made yet; `radhar merge {path}` puts the parts in {path / PARTS} together"
+    if not is_incomplete(path):
+        return "no such file"
+    part = (stored_identity(path) or {}).get("part")
+    if part is not None:
+        return f"{path} is part {part} alone; `radhar merge OUT` makes OUT of all parts"
+    return "its build is unfinished; run `radhar generate` again"

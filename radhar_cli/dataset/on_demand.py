@@ -205,7 +205,7 @@ def _named(fields: Iterable[str] | None) -> tuple[str, ...] | None:
     if fields is None:
         return None
     listed = isinstance(fields, Iterable) and not isinstance(fields, str)
-    names = tuple(fields) if listed else (None,)
+    names: tuple[Any, ...] = tuple(fields) if listed else (None,)
     if not all(isinstance(name, str) for name in names):
         raise ConfigError(f"fields = {fields!r}: should be a list of names, such as ['maps/stft']")
     return names

@@ -12,7 +12,7 @@ def merge(
     out: Annotated[Path, typer.Argument(help="Folder of the data set.")],
     parts: Annotated[
         list[Path] | None,
-        typer.Argument(help="Folders of parts, or that hold some; those below OUT if not given."),
+        typer.Argument(help="Folders of parts, or that hold some, beside those below OUT."),
     ] = None,
     virtual: Annotated[
         bool, typer.Option("--virtual", help="Refer to the parts below OUT; copy no samples.")

@@ -1,6 +1,7 @@
 """YAML files as documents: what a file says lies over the file that its `base` names."""
 
 import json
+import os
 from collections.abc import Iterator, Mapping
 from itertools import accumulate
 from pathlib import Path
@@ -67,7 +68,7 @@ def read_on_bases(path: Path | None, given: Mapping[str, Any]) -> tuple[Document
         who = f"{who}: {BASE} = {json.dumps(base)[:120]}"
         if not isinstance(base, str) or not base.endswith(SUFFIXES):
             raise ConfigError(f"{who}: should be the path of a {', '.join(SUFFIXES)} file")
-        below = folder / base
+        below = _plain(folder / base)
         try:
             lower, lower_places = read_document(below)
         except ConfigError as error:
@@ -84,6 +85,15 @@ def read_on_bases(path: Path | None, given: Mapping[str, Any]) -> tuple[Document
         document = _over(_with_folder(lower, folder), document, "", replaced)
         places = {k: v for k, v in lower_places.items() if replaced.isdisjoint(_ways(k))} | places
     return document, places
+
+
+def _plain(path: Path) -> Path:
+    """A path without "..", where links do not make that another file."""
+    plain = Path(os.path.normpath(path))
+    try:
+        return plain if plain.samefile(path) else path
+    except (OSError, ValueError):
+        return path  # told of where it is read
 
 
 def _over(lower: Any, own: Any, key: str, replaced: set[str]) -> Any:

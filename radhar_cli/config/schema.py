@@ -104,6 +104,18 @@ class PerActivity(Section, Generic[T]):
 
     per_activity: dict[str, T]
 
+    @classmethod
+    def model_parametrized_name(cls, params: tuple[Any, ...]) -> str:
+        """Such as PerActivity[Speed], by which pickle finds the class again in any process.
+
+        Raises:
+            TypeError: the number has no name in this module before the class is made of it.
+        """
+        for name, kind in globals().items():
+            if kind is params[0]:
+                return f"{cls.__name__}[{name}]"
+        raise TypeError(f"{params[0]}: should have a name in {__name__}")
+
     @field_validator("per_activity")
     @classmethod
     def _by_slug(cls, value: dict[str, T]) -> dict[str, T]:

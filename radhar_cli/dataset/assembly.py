@@ -116,7 +116,8 @@ def assembled(
         manifest.replace(folder / WORK / MANIFEST)
         unfinished.replace(folder / DATASET)
     except ShardError as error:
-        require_tiling(folder, check_shards(shards, own_hash)[0], count, remedy)
+        sound, unusable = check_shards(shards, own_hash)
+        require_tiling(folder, sound, count, remedy, unusable)
         raise UnfinishedError(f"{folder}: {error}; the same command goes on") from None
     finally:
         for path in (unfinished, table, manifest):

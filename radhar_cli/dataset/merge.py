@@ -35,7 +35,7 @@ def merge(
 
     Args:
         out: the output folder.
-        folders: of parts, or that hold parts; those below `out` where none are named.
+        folders: of parts, or that hold parts, beside those below `out`.
         jobs: processes, for PNGs that no part has.
         progress: receives progress and messages.
         virtual: dataset.h5 refers to the parts, all below `out`, instead of copying them.
@@ -45,7 +45,8 @@ def merge(
         UnfinishedError: rows are missing or damaged; names them and the parts to run again.
     """
     out = out.absolute()
-    places = _places(folders or [out])
+    own = [out] if (out / PARTS).is_dir() else []
+    places = _places([*own, *folders] or [out])
     config = _config(places)
     count, of = len(Rows.of(config)), places[0].part.of
 
@@ -83,8 +84,8 @@ def merge(
 
 
 def _places(folders: Iterable[Path]) -> list[_Place]:
-    """The parts in these folders, in order."""
-    found = []
+    """The parts in these folders, in order, each once."""
+    found = {}
     for folder in folders:
         folder = Path(os.path.abspath(folder))  # noqa: PTH100 - without ..; links stay
         inner = folder / PARTS
@@ -92,7 +93,7 @@ def _places(folders: Iterable[Path]) -> list[_Place]:
             refuse_foreign_work(part)
             named = stored_identity(part)
             if named is not None and isinstance(named.get("part"), str):
-                found.append(_Place(Part.parse(named["part"], f"{part}: part"), part, named))
+                found[part] = _Place(Part.parse(named["part"], f"{part}: part"), part, named)
             elif not inner.is_dir():
                 raise FolderError(f"{part}: is no part that `radhar generate --shard` made")
     if not found:
@@ -100,7 +101,7 @@ def _places(folders: Iterable[Path]) -> list[_Place]:
             f"{', '.join(map(str, folders))}: no part of a data set; "
             "`radhar generate CONFIG -o OUT --shard K/N` makes one"
         )
-    return sorted(found, key=lambda place: place.part)
+    return sorted(found.values(), key=lambda place: place.part)
 
 
 def _config(places: Sequence[_Place]) -> Config:

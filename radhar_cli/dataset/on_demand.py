@@ -55,12 +55,13 @@ def sample(
         {name: array or number}, `label` and `sample_key` always among them.
 
     Raises:
-        ConfigError: an unknown activity or field, a negative index, a config of measured data.
+        ConfigError: an unknown activity or field, an index or seed that is no whole number from 0
+            to 2^63 - 1, no config, a config of measured data.
         SceneError: a scene outside the model (`on_invalid`), or one that the direct engine does not
             reach its tolerance in.
     """
-    asked = None if fields is None else tuple(fields)
-    make = _recipe(SameConfig(config), asked, seed)
+    seed = None if seed is None else whole("seed", seed)
+    make = _recipe(SameConfig(config), _named(fields), seed)
     return make(activity_of(activity, make.config), index)
 
 
@@ -83,13 +84,16 @@ class Recipe:
         """What `sample` says of these arguments.
 
         Raises:
-            ConfigError: an unknown field, a config of measured data.
+            ConfigError: as `sample`.
         """
+        if not isinstance(config, Config):
+            raise ConfigError(f"config = {config!r}: should be a Config, such as of load_config")
         if config.recorded is not None:
             raise ConfigError("recordings: are measured; should be a config of scenes to simulate")
         if seed is not None:
-            config = config.model_copy(update={"seed": seed})
-        asked = tuple(chunked(config)) if fields is None else tuple(dict.fromkeys(fields))
+            config = config.model_copy(update={"seed": whole("seed", seed)})
+        named = _named(fields)
+        asked = tuple(chunked(config)) if named is None else tuple(dict.fromkeys(named))
         known = field_names(config)
         for name in asked:
             if name not in known:
@@ -102,12 +106,10 @@ class Recipe:
         """The fields of one sample.
 
         Raises:
-            ConfigError: a negative index.
+            ConfigError: an index that is no whole number from 0 to 2^63 - 1.
             SceneError: as `sample`.
         """
-        index = whole_number(index)
-        if index < 0:
-            raise ConfigError(f"index = {index}: should be at least 0")
+        index = whole("index", index)
         with one_thread():
             scene, _ = draw_valid_scene(self._narrowed, activity, index)
             made = synthesise(scene, self._plan)
@@ -177,6 +179,36 @@ class Recipe:
     def __setstate__(self, state: dict[str, Any]) -> None:
         know_activities(state.pop("own"))
         self.__dict__.update(state)
+
+
+def whole(name: str, value: int, least: int = 0) -> int:
+    """An argument that should be a whole number from `least` to 2^63 - 1, of numpy's too.
+
+    Raises:
+        ConfigError: it is none.
+    """
+    try:
+        number = whole_number(value)
+    except TypeError:
+        number = -1
+    if not least <= number < 2**63:
+        raise ConfigError(f"{name} = {value!r}: should be a whole number from {least} to 2^63 - 1")
+    return number
+
+
+def _named(fields: Iterable[str] | None) -> tuple[str, ...] | None:
+    """Names of fields as they were given, None for those that a data set has.
+
+    Raises:
+        ConfigError: these are no names.
+    """
+    if fields is None:
+        return None
+    listed = isinstance(fields, Iterable) and not isinstance(fields, str)
+    names: tuple[Any, ...] = tuple(fields) if listed else (None,)
+    if not all(isinstance(name, str) for name in names):
+        raise ConfigError(f"fields = {fields!r}: should be a list of names, such as ['maps/stft']")
+    return names
 
 
 @lru_cache(maxsize=16)

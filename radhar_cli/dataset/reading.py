@@ -185,10 +185,12 @@ def open_dataset(path: str | Path) -> Dataset:
 
 
 def _why_missing(path: Path) -> str:
-    named = stored_identity(path) or {}
-    whole_part = "part" in named and (path / WORK / MANIFEST).exists()
-    if whole_part or (path / PARTS).is_dir():
-        return "parts of a data set lie here; `radhar merge` makes it of all of them"
-    if path.is_dir() and is_incomplete(path):
-        return "its build is unfinished; run `radhar generate` again"
-    return "no such file"
+    """Why a path leads to no dataset.h5, and what makes one."""
+    if (path / PARTS).is_dir():
+        return f"not made yet; `radhar merge {path}` puts the parts in {path / PARTS} together"
+    if not is_incomplete(path):
+        return "no such file"
+    part = (stored_identity(path) or {}).get("part")
+    if part is not None and (path / WORK / MANIFEST).exists():
+        return f"{path} is part {part} alone; `radhar merge OUT` makes OUT of all parts"
+    return "its build is unfinished; run `radhar generate` again"

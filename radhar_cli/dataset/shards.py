@@ -207,7 +207,11 @@ def go_on(missing: Runs) -> str:
 
 
 def require_tiling(
-    folder: Path, shards: Sequence[Shard], count: int, remedy: Callable[[Runs], str] = go_on
+    folder: Path,
+    shards: Sequence[Shard],
+    count: int,
+    remedy: Callable[[Runs], str] = go_on,
+    unusable: Sequence[tuple[Shard, ShardError]] = (),
 ) -> None:
     """Refuse shards that do not hold each of `count` rows once.
 
@@ -216,16 +220,19 @@ def require_tiling(
         shards: of the data set.
         count: rows.
         remedy: what to do about rows.
+        unusable: shards that were left out, and why.
 
     Raises:
-        UnfinishedError: names the rows and the remedy.
+        UnfinishedError: names the rows, the shards left out, and the remedy.
     """
+    why = "".join(f", {shard.path} {error}" for shard, error in unusable[:RUNS_NAMED])
+    why += ", ..." if len(unusable) > RUNS_NAMED else ""
     missing, repeated = missing_and_repeated(shards, count)
     for runs, fault in ((missing, "missing from"), (repeated, "more than once in")):
         if runs:
             raise UnfinishedError(
                 f"{folder}: rows {_rows(runs)} ({sum(b - a for a, b in runs)} of {count}) are "
-                f"{fault} the finished shards; {remedy(runs)}"
+                f"{fault} the finished shards{why}; {remedy(runs)}"
             )
 
 

@@ -209,7 +209,9 @@ def remove_events(folder: Path) -> None:
 def differences(old: RunMetadata, new: RunMetadata) -> list[str]:
     """One line for each setting, version or hash in which two runs differ."""
     pairs = {key: (old.config.get(key), value) for key, value in new.config.items()}
-    pairs |= {"data": (old.data.get("hash"), new.data.get("hash"))}
+    if old.data["hash"] != new.data["hash"]:
+        there, here = ([data["path"], data["hash"]] for data in (old.data, new.data))
+        pairs["data"] = (there, here)
     pairs |= {"classes": (list(old.classes), list(new.classes)), "map": (old.map, new.map)}
     pairs |= {k: (old.work[k], v) for k, v in new.work.items() if k in old.work}
     pairs |= {f"versions.{k}": (old.versions.get(k), v) for k, v in new.versions.items()}

@@ -11,7 +11,7 @@ from radhar_cli.arrays import Index
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.layout import Rows
-from radhar_cli.dataset.on_demand import Recipe
+from radhar_cli.dataset.on_demand import Recipe, whole
 from radhar_cli.dataset.split import split_rows
 from radhar_cli.dataset.stream_order import StreamOrder
 from radhar_cli.errors import ConfigError
@@ -121,12 +121,9 @@ class Stream(IterableDataset[dict[str, Any]]):
         self.config = self._recipe.config
         if split not in ("all", "train"):
             raise ConfigError(f"split = {split!r}: should be all or train; others have an end")
-        for name, value, least in (("batch_size", batch_size, 1), ("start", start, 0)):
-            if value < least:
-                raise ConfigError(f"{name} = {value}: should be at least {least}")
         self._order = StreamOrder(self.config, split, balanced)
-        self._batch_size, self._shard = batch_size, shard
-        self.start = start
+        self._batch_size, self.start = whole("batch_size", batch_size, 1), whole("start", start)
+        self._shard = None if shard is None else _checked_shard(shard)
         self.class_slugs = self._recipe.class_slugs
         self.identity = identity_hash(identity(self.config))
 
@@ -144,6 +141,18 @@ class Stream(IterableDataset[dict[str, Any]]):
     def __getstate__(self) -> dict[str, Any]:
         # A spawned worker belongs to no process group.
         return {**self.__dict__, "_shard": self._shard or _rank()}
+
+
+def _checked_shard(shard: tuple[int, int]) -> tuple[int, int]:
+    try:
+        rank, ranks = (whole("shard", number) for number in shard)
+    except (TypeError, ValueError, ConfigError):
+        rank = ranks = 0
+    if rank >= ranks:
+        raise ConfigError(
+            f"shard = {shard!r}: should be (rank, ranks) with rank from 0 to ranks - 1"
+        )
+    return rank, ranks
 
 
 def _rank() -> tuple[int, int]:

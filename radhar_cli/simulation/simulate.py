@@ -194,13 +194,16 @@ def activity_of(asked: str | Activity | None, config: Config) -> Activity:
     """The activity, with its number in this config where it is a class of one's own.
 
     Raises:
-        ConfigError: there is none of that name, or none is named and the config has several.
+        ConfigError: there is none of that name, none is named and the config has several, or it is
+            neither name nor Activity.
     """
     chosen = config.chosen_activities
     if asked is None and len(chosen) > 1:
         raise ConfigError(f"--activity is needed: the config has {len(chosen)} activities")
     if asked is None:
         return chosen[0]
+    if not isinstance(asked, (str, Activity)):
+        raise ConfigError(f"activity = {asked!r}: should be a slug, a label or an Activity")
     own = {one.slug: one for one in config.every_class}
     try:
         found = activity_named(asked, own) if isinstance(asked, str) else asked

@@ -20,7 +20,7 @@ def write(folder: Path, **texts: str) -> None:
     """Files by name, `shared/` for `shared__`."""
     for name, text in texts.items():
         path = folder / f"{name.replace('__', '/')}.yaml"
-        path.parent.mkdir(exist_ok=True)
+        path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(dedent(text))
 
 
@@ -173,14 +173,22 @@ def test_a_mistake_is_told_of_the_file_and_line_in_which_it_stands(tmp_path: Pat
     assert refusal(b).startswith(f'{b}:1: base = "a.yaml": {a}:1: not valid YAML')
 
 
+def test_a_file_is_called_by_the_shortest_path_that_is_its_own(tmp_path: Path) -> None:
+    write(tmp_path, root="radar: {chirp_s: x}", sub__mine="base: ../root.yaml")
+    assert refusal(tmp_path / "sub/mine.yaml").startswith(f"{tmp_path / 'root.yaml'}:1: radar")
+    write(tmp_path, far__sub__x="seed: 1", far__root="seed: x")
+    (tmp_path / "link").symlink_to(tmp_path / "far/sub")
+    write(tmp_path, link__mine="base: ../root.yaml")
+    assert refusal(tmp_path / "link/mine.yaml").startswith(f"{tmp_path}/link/../root.yaml:1: seed")
+
+
 def test_bases_that_come_back_are_told_with_the_way(tmp_path: Path) -> None:
     write(tmp_path, a="base: b.yaml", b="seed: 1\nbase: sub/c.yaml", sub__c="base: ../a.yaml")
     a, b = tmp_path / "a.yaml", tmp_path / "b.yaml"
     c = tmp_path / "sub/c.yaml"
-    back = tmp_path / "sub/../a.yaml"
     assert refusal(a) == (
         f'{c}:1: base = "../a.yaml": should not lead back to a file on the way: '
-        f"{a} -> {b} -> {c} -> {back}"
+        f"{a} -> {b} -> {c} -> {a}"
     )
     write(tmp_path, d="base: d.yaml")
     assert "should not lead back" in refusal(tmp_path / "d.yaml")

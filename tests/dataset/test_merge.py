@@ -69,7 +69,9 @@ def test_parts_in_one_place_or_two_are_the_build_in_one_piece(
 ) -> None:
     elsewhere = tmp_path / "elsewhere"
     (out / "parts/2-of-4").rename(elsewhere)
-    merge(out, [out, elsewhere], 1, Listener())
+    merge(out, [elsewhere], 1, Listener())
+    assert merged(out) == whole
+    merge(out, [out, out / "parts/1-of-4", elsewhere], 1, Listener())
     assert merged(out) == whole
     shutil.rmtree(out / "parts")
     assert verify(out, 1).problems == []
@@ -78,7 +80,7 @@ def test_parts_in_one_place_or_two_are_the_build_in_one_piece(
 def test_what_is_not_merged_is_said_to_be_parts(out: Path) -> None:
     part = out / "parts/2-of-4"
     for folder in (out, part):
-        with pytest.raises(FolderError, match=r"dataset\.h5: parts of a data set.*radhar merge"):
+        with pytest.raises(FolderError, match=r"dataset\.h5: .*`radhar merge"):
             open_dataset(folder)
     (part / ".radhar/manifest.json").unlink()
     with pytest.raises(FolderError, match="unfinished; run `radhar generate` again"):
@@ -114,8 +116,11 @@ def test_gaps_and_damage_name_the_parts_to_run_again(
     with pytest.raises(UnfinishedError, match=r"rows 4-5 \(2 of 9\).* make .* --shard 3/4, then"):
         merge(out, [], 1, Listener())
     build_part(config, out, Part(4, 3), 1, Listener())
-    with pytest.raises(UnfinishedError, match=r"rows 0-1 \(2 of 9\).* make .* --shard 1/4, then"):
+    with pytest.raises(
+        UnfinishedError, match=r"rows 0-1 \(2 of 9\).* make .* --shard 1/4, then"
+    ) as told:
         merge(out, [], 1, Listener())
+    assert f"{shard} does not match its checksum" in str(told.value)
     assert not (out / "dataset.h5").exists()
     assert build_part(config, out, Part(4, 1), 1, Listener()).made == 2
     merge(out, [], 1, Listener())
@@ -157,11 +162,21 @@ def test_parts_of_something_else_are_refused(config: Config, out: Path, tmp_path
         build(config, out, 1, Listener())
     build_part(other, tmp_path / "other", Part(4, 2), 1, Listener())
     with pytest.raises(FolderError, match="seed: 7 there, 8 here"):
-        merge(out, [out, tmp_path / "other"], 1, Listener())
+        merge(out, [tmp_path / "other"], 1, Listener())
     with pytest.raises(FolderError, match="--virtual refers to parts below"):
         merge(tmp_path / "new", [out], 1, Listener(), virtual=True)
     with pytest.raises(FolderError, match="is no part that"):
         merge(tmp_path / "nothing", [], 1, Listener())
+
+
+def test_who_reads_a_part_or_unmerged_parts_is_told_to_merge(out: Path, tmp_path: Path) -> None:
+    part = out / "parts/1-of-4"
+    with pytest.raises(FolderError, match=f"{part} is part 1/4 alone; `radhar merge OUT`"):
+        open_dataset(part)
+    with pytest.raises(FolderError, match=f"not made yet; `radhar merge {out}`"):
+        open_dataset(out)
+    with pytest.raises(FolderError, match="no such file"):
+        open_dataset(tmp_path / "none")
 
 
 def test_the_manifest_of_a_part_has_rows_bytes_and_checksums(out: Path) -> None:

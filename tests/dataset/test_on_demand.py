@@ -176,12 +176,32 @@ def test_mistakes_are_one_clear_line(config: Config) -> None:
     ):
         with pytest.raises(ConfigError, match=words):
             sample(plain, "walking", 0, fields)
-    with pytest.raises(ConfigError, match="index = -1: should be at least 0"):
-        sample(config, "walking", -1)
+    for more, words in (
+        ({"index": -1}, "index = -1: should be a whole number from 0 to 2"),
+        ({"index": 1.5}, "index = 1.5: should be a whole number"),
+        ({"index": 2**70}, "index = 1180591620717411303424: should be"),
+        ({"seed": -1}, "seed = -1: should be a whole number"),
+        ({"seed": 1.5}, "seed = 1.5: should be a whole number"),
+        ({"seed": 2**64}, "seed = 18446744073709551616: should be"),
+        ({"seed": [1]}, "seed = .1.: should be"),
+        ({"fields": "maps/stft"}, "fields = 'maps/stft': should be a list of names"),
+        ({"fields": [1]}, "fields = .1.: should be a list of names"),
+        ({"fields": 1}, "fields = 1: should be a list of names"),
+        ({"activity": 7}, "activity = 7: should be a slug"),
+        ({"config": "x"}, "config = 'x': should be a Config"),
+    ):
+        with pytest.raises(ConfigError, match=words):
+            sample(**{"config": config, "activity": "walking", **more})
     with pytest.raises(ConfigError, match="'wlking' is no activity"):
         sample(config, "wlking")
-    with pytest.raises(TypeError):
-        sample(config, "walking", 1.5)  # type: ignore[arg-type]
+
+
+def test_a_whole_number_of_numpy_is_one(config: Config) -> None:
+    fields = ["scene/height"]
+    one = sample(config, "walking", np.int64(2), fields, np.uint8(5))
+    other = sample(config, "walking", 2, fields, 5)
+    assert one["scene/height"] == other["scene/height"]
+    assert sample(config, "walking", 2**63 - 1, fields)["sample_key"].dtype == np.int64
 
 
 def test_scenes_outside_the_model_are_refused_or_drawn_again_as_in_a_build(

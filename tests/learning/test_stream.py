@@ -27,7 +27,7 @@ DOCUMENT: dict[str, Any] = {
     "samples_per_class": 4,
     "activities": ["punching", "walking", "S12"],
     "radar": {"carrier_hz": 10e9, "bandwidth_hz": 1e9, "prf_hz": 500},
-    "motion": {"model": "paper"},
+    "motion": {"model": "paper", "range_m": {"per_activity": {"default": 2, "walking": 3}}},
     "maps": ["rtm", "stft"],
     "image": {"size_px": 16},
     "split": {"train": 0.5, "validation": 0.5},
@@ -211,8 +211,16 @@ def test_a_class_of_ones_own_is_known_to_workers(monkeypatch: pytest.MonkeyPatch
 
 def test_mistakes_are_one_clear_line() -> None:
     for make, words in (
-        (lambda: Stream(config(), batch_size=0), "batch_size = 0: should be at least 1"),
-        (lambda: Stream(config(), start=-1), "start = -1: should be at least 0"),
+        (lambda: Stream(config(), batch_size=0), "batch_size = 0: should be a whole number from 1"),
+        (lambda: Stream(config(), start=-1), "start = -1: should be a whole number from 0"),
+        (lambda: Stream(config(), batch_size=2.5), "batch_size = 2.5"),  # type: ignore[arg-type]
+        (lambda: Stream(config(), seed=-1), "seed = -1: should be a whole number from 0 to 2"),
+        (lambda: Samples(config(), 2**63), "seed = 9223372036854775808: should be"),
+        (lambda: Stream("x"), "config = 'x': should be a Config"),  # type: ignore[arg-type]
+        *(
+            (lambda shard=shard: Stream(config(), shard=shard), "shard = .*should be .rank, ranks")
+            for shard in ((5, 2), (2, 2), (0, 0), (-1, 2), (0.5, 2), (1,), 3)
+        ),
         (lambda: Stream(config(), split="val"), "should be all or train"),  # type: ignore[arg-type]
         (lambda: Stream(config(), fields=["maps/fsst"]), "is not in this data set"),
         (lambda: Samples(config(split={"train": 1, "validation": 0}), split="val"), "no sample"),

@@ -151,6 +151,13 @@ def test_validated_on_a_data_set_it_learns_the_same(place: Path, built: Path) ->
     assert not any("warning" in line for line in progress.said)
 
 
+def test_the_refusal_of_other_data_says_which_run_is_on_a_stream(place: Path, built: Path) -> None:
+    with pytest.raises(
+        run.RunError, match=r'data: \["a stream, .*"\] there, \["/.*built", .* here'
+    ):
+        train(settings(map="stft"), built, place / "run", Watched())
+
+
 def test_an_epoch_may_have_any_number_of_samples(place: Path) -> None:
     progress = Watched()
     streamed(place, "short", progress, stream={"samples_per_epoch": 13}, epochs=2)

@@ -215,6 +215,8 @@ def draw(found: Fit, path: Path) -> None:
         at = np.linspace(snr.min() - 3, snr.max() + 3, 200)
         bell = np.exp(-(((at - snr.mean()) / snr.std()) ** 2) / 2)
         right.plot(at, bell / (snr.std() * np.sqrt(2 * np.pi)), "k--", label="fitted: normal")
+    else:
+        right.axvline(snr.mean(), color="k", linestyle="--", label="fitted: constant")
     right.set(xlabel="SNR of a raw sample (dB)", ylabel="density")
     right.legend()
     figure.savefig(path, dpi=90)

@@ -34,7 +34,7 @@ def fit(
     found = read_off(recordings)
     for key, value in found.numbers().items():
         tell(f"  {key:<16} {value:.4g}")
-    text = f"# Read off {len(recordings)} recordings, {len(found.parts)} parts of them.\n"
+    text = f"# Read off: {len(recordings)} recordings, of these {len(found.parts)} parts.\n"
     lines = [f"{key}: {json.dumps(value)}" for key, value in found.document.items()]
     out.parent.mkdir(parents=True, exist_ok=True)
     out.write_text(text + "\n".join(lines) + "\n")

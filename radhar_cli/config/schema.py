@@ -333,11 +333,7 @@ class MotionConfig(Section):
 class TimingConfig(Section):
     """When the phases of an activity begin and how long they last.
 
-    seat_*: S5 and S6. grab_*: S4. rise_*, walk_start_s: S9 and S11. walk_stop_s: S10 and S12, then
-    sit_duration_s (S10) or fall_duration_s (S12). What is null takes the value of the model
-    (MODEL_DEFAULTS). blend_s, of the paper: length of the raised-cosine ramps that switch the gait
-    on and off; 0 is the paper's hard switch. overlap_s, of people: how long before the first
-    movement of S9 to S12 has come to rest the second begins, unless walk_start_s says when.
+    What is null takes the value of the model (MODEL_DEFAULTS).
     """
 
     seat_start_s: SecondsBy = 0.5
@@ -361,9 +357,9 @@ class TimingConfig(Section):
     fall_duration_s: SecondsBy | None = None
     """S12; null is the model's."""
     blend_s: SecondsBy = 0.3
-    """paper: the gait fades in and out over this; 0 is a hard switch."""
+    """paper: raised-cosine ramps of the gait, in and out; 0 is a hard switch."""
     overlap_s: SecondsBy = 0.0
-    """How long before S9 to S12's first movement has come to rest the second begins."""
+    """human: the second movement of S9 to S12 begins so long before the first rests."""
 
 
 SHORTEST_MOVEMENT = 0.3
@@ -882,11 +878,7 @@ Level = Annotated[int, Field(ge=0, le=9, strict=True)]
 
 
 class OutputConfig(Section):
-    """PNG tree or not, compression levels (0 none, 1 fast, 9 small), and what else is stored.
-
-    `column_labels` of every column; `power` the decibels behind every image, unclipped; `slow_time`
-    the complex signal; `license` is what the data card says, as the Hugging Face Hub calls it.
-    """
+    """What is written of every sample, and how hard it is compressed: 0 none, 1 fast, 9 small."""
 
     png: Flag = True
     """Write a tree of images beside dataset.h5."""

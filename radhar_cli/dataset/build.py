@@ -153,8 +153,7 @@ class _Build:
     def whole(self, batch_size: int | None) -> Outcome:
         config, count = self.config, len(Rows.of(self.config))
         if (self.folder / DATASET).exists():
-            pngs = self._missing_pngs(self.folder / DATASET)
-            write_hub_files(self.folder / DATASET, self.folder, config.output.png)
+            pngs = self._write_beside(self.folder / DATASET)
             clean_up(self.folder)
             return Outcome(self.folder, count, 0, pngs)
         for message in split_warnings(config, self.split):
@@ -163,8 +162,7 @@ class _Build:
         self.progress.stage("assembling", count, 0)
         with assembled(config, self.folder, shards, self.progress) as (unfinished, stored):
             say_warnings(self.progress, [warning for warning in stored if warning not in shown])
-            pngs = self._missing_pngs(unfinished)
-            write_hub_files(unfinished, self.folder, config.output.png)
+            pngs = self._write_beside(unfinished)
         mark_built(self.folder)
         clean_up(self.folder)
         return Outcome(self.folder, count, made, pngs, stored)
@@ -177,10 +175,13 @@ class _Build:
         remove_checks(self.folder)
         return Outcome(self.folder, len(rows), made, 0, shown)
 
-    def _missing_pngs(self, source: Path) -> int:
-        return write_missing_pngs(
+    def _write_beside(self, source: Path) -> int:
+        """Write what is missing beside dataset.h5; return how many PNGs that were."""
+        pngs = write_missing_pngs(
             self.config, self.folder, self.split, source, self.jobs, self.progress
         )
+        write_hub_files(source, self.folder, self.config.output.png)
+        return pngs
 
     def _shards(
         self, rows: range, batch_size: int | None
@@ -257,10 +258,7 @@ class _Build:
         A damaged one is removed, as its rows may be cut otherwise now; a foreign one put aside.
         """
         (self.folder / WORK / MANIFEST).unlink(missing_ok=True)
-        listed = [
-            s for s in listed_shards(self.folder) if rows.start <= s.start < s.stop <= rows.stop
-        ]
-        sound, unusable = check_shards(listed, self.identity_hash)
+        sound, unusable = check_shards(listed_shards(self.folder, rows), self.identity_hash)
         for shard, error in unusable:
             self.progress.say(f"{shard.path}: {error}; its rows are made again")
             if isinstance(error, ForeignShardError):

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Iterable, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -128,16 +129,9 @@ def _config(places: Sequence[_Place]) -> Config:
 
 def _shards(places: Sequence[_Place], count: int) -> list[Shard]:
     """The shards of all parts in row order; of those that share rows, the first."""
-    listed = []
-    for place in places:
-        rows = place.part.rows(count)
-        listed += [
-            shard
-            for shard in listed_shards(place.folder)
-            if rows.start <= shard.start < shard.stop <= rows.stop
-        ]
+    listed = (listed_shards(place.folder, place.part.rows(count)) for place in places)
     shards: list[Shard] = []
-    for shard in sorted(listed):
+    for shard in sorted(chain.from_iterable(listed)):
         if not shards or shard.start >= shards[-1].stop:
             shards.append(shard)
     return shards

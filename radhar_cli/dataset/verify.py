@@ -15,9 +15,9 @@ from radhar_cli.dataset.column_labels import label_names
 from radhar_cli.dataset.hub import wrong_hub_files
 from radhar_cli.dataset.identity import versions
 from radhar_cli.dataset.image_file import read_gray, read_rgb
-from radhar_cli.dataset.layout import COLUMN_LABEL, DATASET, PNG, Rows
+from radhar_cli.dataset.layout import COLUMN_LABEL, PNG, Rows
 from radhar_cli.dataset.png import colour_table
-from radhar_cli.dataset.reading import Dataset
+from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.split import split_rows
 from radhar_cli.errors import FolderError
@@ -68,10 +68,8 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Report:
         FolderError: there is no readable data set of ours.
     """
     prepare_process()
-    path = folder / DATASET if folder.is_dir() else folder
-    if not path.exists():
-        raise FolderError(f"{path}: no such file; `radhar generate` writes it when it is complete")
-    with Dataset(path) as data:
+    beside = folder if folder.is_dir() else folder.parent
+    with open_dataset(folder) as data:
         report = Report(len(data))
         _versions(data, report)
         if _structure(data, report):
@@ -79,9 +77,9 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Report:
             _column_labels(data, report)
             if data.config.recorded is None:  # whose recordings may lie anywhere
                 _resynthesise(data, samples, report, motion)
-            if (path.parent / PNG).is_dir():
-                _pngs(data, path.parent, report)
-            report.problems += wrong_hub_files(data, path.parent)
+            if (beside / PNG).is_dir():
+                _pngs(data, beside, report)
+            report.problems += wrong_hub_files(data, beside)
         return report
 
 

@@ -23,6 +23,7 @@ def program() -> "typer.Typer":
 
     from radhar_cli.commands import (
         adapt,
+        compare,
         config,
         convert,
         evaluate,
@@ -64,6 +65,7 @@ def program() -> "typer.Typer":
     app.command()(train.train)
     app.command("eval")(evaluate.evaluate)
     app.command()(adapt.adapt)
+    app.command()(compare.compare)
     app.command()(predict.predict)
     app.command()(models.models)
     app.command()(export.export)

@@ -37,6 +37,7 @@ ROOMS = (
     "dataset",
     "capture",
     "learning",
+    "two_sample",
     "tradeoff",
     "commands",
     "cli",

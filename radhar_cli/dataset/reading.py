@@ -1,5 +1,6 @@
 """Open a finished data set: lazy arrays and what is known of them."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -123,16 +124,24 @@ class Dataset(Closing):
 
     def extent(self, name: str) -> tuple[float, float, float, float] | None:
         """Edges (time left, right in s; bottom, top in Hz or m) that all images of a map share."""
-        column = self._extent[name]
-        first, same = column.rows(0, 1), True
-        for start in range(0, len(column), BLOCK):
-            edges = column.rows(start, start + BLOCK)
-            left, right, bottom, top = edges.T
-            if not (np.isfinite(edges).all() and left[0] < right[0] and bottom[0] < top[0]):
-                raise FolderError(f"{column.where}: should be left < right, bottom < top")
+        first, same = self._extent[name].rows(0, 1), True
+        for edges in self._edges(name):
             same &= bool((edges == first).all())
         left, right, bottom, top = map(float, first[0])
         return (left, right, bottom, top) if same else None
+
+    def extents(self, name: str) -> Float:
+        """Edges [N, 4] of every image of a map."""
+        return np.concatenate([*self._edges(name)])
+
+    def _edges(self, name: str) -> Iterator[Float]:
+        column = self._extent[name]
+        for start in range(0, len(column), BLOCK):
+            edges: Float = column.rows(start, start + BLOCK)
+            left, right, bottom, top = edges.T
+            if not (np.isfinite(edges).all() and (left < right).all() and (bottom < top).all()):
+                raise FolderError(f"{column.where}: should be left < right, bottom < top")
+            yield edges
 
     def map_name(self, name: str | None) -> str:
         """The map of that name, or the first.

@@ -10,10 +10,9 @@ from typing import Any
 from jinja2 import Environment
 
 from radhar_cli.dataset.files import write_whole
-from radhar_cli.errors import FolderError
-from radhar_cli.untrusted import read_json
+from radhar_cli.learning.report_folder import NUMBERS, remove_others
 
-PAGE, NUMBERS = "report.html", "report.json"
+PAGE = "report.html"
 _PAGE = """<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><title>radhar eval</title>
 <style>
@@ -94,21 +93,10 @@ class Report:
         """Write everything into a folder; report.json comes last."""
         files = {name: png for name, _, png in self.figures}
         files |= {name: text.encode("utf-8", "surrogateescape") for name, text in self.tables}
-        for name in _files_of(folder):
-            if name not in files:
-                (folder / name).unlink(missing_ok=True)
+        remove_others(folder, files)
         for name, content in files.items():
             write_whole(folder, folder / name, content)
         page = report_html(self.numbers, self.figures)
         write_whole(folder, folder / PAGE, page.encode("utf-8", "backslashreplace"))
         text = json.dumps({**self.numbers, "files": sorted(files)}, indent=2) + "\n"
         write_whole(folder, folder / NUMBERS, text.encode())
-
-
-def _files_of(folder: Path) -> list[str]:
-    """Files of the report that a folder holds, itself aside; those of another kind are not ours."""
-    try:
-        found = read_json(folder / NUMBERS)["files"]
-        return [n for n in found if Path(n).name == n and Path(n).suffix in (".png", ".csv")]
-    except (FolderError, KeyError, TypeError):
-        return []

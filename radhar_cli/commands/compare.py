@@ -1,0 +1,109 @@
+"""`radhar compare`: how far two data sets of maps are apart, class by class."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from radhar_cli.commands.learning_options import Classes
+from radhar_cli.commands.tell import report, tell
+
+if TYPE_CHECKING:
+    from radhar_cli.two_sample.comparison import ClassCompared, Comparison
+
+SHOWN = 6  # statistics of a class on the terminal
+
+
+def compare(
+    simulated: Annotated[
+        Path, typer.Argument(help="Data set: a folder of `generate`, or a tree of class folders.")
+    ],
+    measured: Annotated[Path, typer.Argument(help="Another, of measured maps.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder of the report.")],
+    map_: Annotated[
+        str | None, typer.Option("--map", help="Which map; the first if not given.")
+    ] = None,
+    classes: Classes = None,
+    resize: Annotated[
+        bool, typer.Option("--resize", help="Bring images to the size of the measured ones.")
+    ] = False,
+    per_class: Annotated[
+        int,
+        typer.Option(min=2, max=5000, help="Maps of a class and side, drawn if there are more."),
+    ] = 200,
+    zero: Annotated[
+        float | None,
+        typer.Option(
+            min=0, help="Half the width of the zero line, Hz; 5 % of the largest Doppler if none."
+        ),
+    ] = None,
+    pictures: Annotated[int, typer.Option(min=1, max=20, help="Maps in a row of a figure.")] = 6,
+    seed: Annotated[int, typer.Option(min=0, help="Of what is drawn.")] = 1,
+) -> None:
+    """Compare simulated with measured maps: statistics, their distances, and a two-sample test.
+
+    Example:
+
+      radhar compare datasets/like_measured datasets/measured -o out/compared
+
+    50 % told apart: nobody can tell simulated from measured.
+    """
+    from radhar_cli.commands.learning_options import apart
+    from radhar_cli.commands.terminal import BarProgress
+    from radhar_cli.learning.images.classes import read_classes
+    from radhar_cli.two_sample.comparison import Options
+    from radhar_cli.two_sample.comparison import compare as compared
+    from radhar_cli.two_sample.report import write
+
+    apart(out, [simulated, measured])
+    names = read_classes(classes) if classes else {}
+    options = Options(map_, names, resize, per_class, seed, zero, pictures)
+    progress = BarProgress("map")
+    try:
+        found = compared(simulated, measured, options, progress)
+    finally:
+        progress.close()
+    for warning in found.warnings:
+        tell(f"warning: {warning}", err=True)
+    files = write(found, out)
+    numbers = found.numbers()
+    report(
+        files=files,
+        test=numbers["test"],
+        coverage=numbers["coverage"],
+        classes=numbers["classes"],
+        warnings=numbers["warnings"],
+    )
+    for one in found.classes:
+        _tell_class(found, one, numbers["classes"][one.name])
+    if numbers["test"]:
+        tell(f"\nall classes: {_test(numbers['test'])}; {100 * numbers['coverage']:.0f} % covered")
+    tell(f"{files[0]}: {len(files) - 2} figures beside it")
+
+
+def _test(test: dict[str, Any]) -> str:
+    low, high = test["accuracy_95"]
+    return (
+        f"{100 * test['accuracy']:.1f} % told apart ({100 * low:.1f} to {100 * high:.1f} %, "
+        f"n = {test['images']})"
+    )
+
+
+def _tell_class(found: "Comparison", one: "ClassCompared", numbers: dict[str, Any]) -> None:
+    from radhar_cli.two_sample.map_statistics import STATISTICS
+
+    test = numbers["test"]
+    said = _test(test) if isinstance(test, dict) else "not tested"
+    tell(f"\n{one.name}: {said}; {100 * float((one.uncovered <= 1).mean()):.0f} % covered")
+    tell(
+        f"  {'mean (standard deviation)':<38} {'simulated':>18} {'measured':>18} {'distance':>9}"
+        f" {'KS':>5} {'p':>7}"
+    )
+    for name, apart in list(one.apart.items())[:SHOWN]:
+        unit = found.scale.unit(name)
+        words = STATISTICS[name].words + (f", {unit}" if unit else "")
+        cells = [f"{side.mean:.4g} ({side.sd:.2g})" for side in (apart.simulated, apart.measured)]
+        tell(
+            f"  {words:<38} {cells[0]:>18} {cells[1]:>18} {apart.distance:>9.2f}"
+            f" {apart.ks:>5.2f} {apart.p:>7.1g}"
+        )

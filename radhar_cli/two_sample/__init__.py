@@ -1,0 +1,1 @@
+"""How far two data sets of maps are apart, class by class."""

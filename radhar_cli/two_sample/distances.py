@@ -1,0 +1,77 @@
+"""How far two samples of numbers, or of features, are apart."""
+
+from math import ceil
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial.distance import cdist
+from scipy.stats import ks_2samp, wasserstein_distance
+
+from radhar_cli.arrays import Float
+
+NEIGHBOURS = 5
+
+
+class Spread(NamedTuple):
+    """Mean and standard deviation of the finite ones of some numbers, and how many there are."""
+
+    mean: float
+    sd: float
+    known: int
+
+    @classmethod
+    def of(cls, values: Float) -> "Spread":
+        """Of values [N]; NaN where none is finite."""
+        if not values.size:
+            return cls(np.nan, np.nan, 0)
+        return cls(float(values.mean()), float(values.std()), values.size)
+
+
+class Apart(NamedTuple):
+    """Two samples of a number.
+
+    Attributes:
+        simulated, measured: what each is like.
+        distance: Wasserstein distance (the mean of how far quantiles are apart) over the root of
+            the mean of both variances; of all together where these are 0.
+        ks: largest difference of the two distribution functions (Kolmogorov and Smirnov).
+        p: of it, where both were drawn from one distribution.
+    """
+
+    simulated: Spread
+    measured: Spread
+    distance: float
+    ks: float
+    p: float
+
+
+def apart(simulated: Float, measured: Float) -> Apart:
+    """Compare values [N] and [M]; NaN are left out, and all is NaN where nothing is left."""
+    x, y = (values[np.isfinite(values)] for values in (simulated, measured))
+    spreads = Spread.of(x), Spread.of(y)
+    if not (x.size and y.size):
+        return Apart(*spreads, np.nan, np.nan, np.nan)
+    scale = float(np.hypot(spreads[0].sd, spreads[1].sd) / np.sqrt(2))
+    scale = scale or Spread.of(np.concatenate([x, y])).sd or 1.0
+    test = ks_2samp(x, y, method="asymp")
+    distance = float(wasserstein_distance(x, y)) / scale
+    return Apart(*spreads, distance, float(test.statistic), float(test.pvalue))
+
+
+def uncovered(simulated: Float, measured: Float) -> Float:
+    """How far from anything simulated each measured sample is [M], 1 at the edge of being covered.
+
+    Distance of its nearest simulated neighbour over that of its measured neighbour number 5 M/N.
+    The share that is not above 1 is the coverage of M. F. Naeem et al., "Reliable fidelity and
+    diversity metrics for generative models", ICML 2020: 97 % or more of samples from one
+    distribution.
+
+    Args:
+        simulated: [N, D].
+        measured: [M, D].
+    """
+    neighbour = ceil(NEIGHBOURS * len(measured) / len(simulated))
+    among = np.sort(cdist(measured, measured), axis=1)
+    radius = among[:, min(neighbour, len(measured) - 1)]
+    nearest = cdist(measured, simulated).min(axis=1)
+    return np.asarray(nearest / np.maximum(radius, 1e-12))

@@ -1,0 +1,223 @@
+"""What a radar engineer looks at in a Doppler-time map, in numbers."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.ndimage import binary_dilation, find_objects, label, median_filter, uniform_filter
+
+from radhar_cli.arrays import Bool, Float
+
+TALL = 0.04  # of all rows: a piece apart from the zero line that is as tall belongs to the body
+JOINED = 2  # cells between two pieces that are one
+SLOW = 1.8  # times the torso: limbs are faster
+EIGHT = np.ones((3, 3), bool)  # neighbours of a cell
+
+
+class PowerMap(NamedTuple):
+    """Power [rows, columns] over Doppler [rows], Hz or m/s, descending."""
+
+    power: Float
+    doppler: Float
+
+    def noise(self, beyond: float) -> Float:
+        """Cells [some rows, columns] faster than `beyond`, where nobody is taken to be."""
+        return self.power[np.abs(self.doppler) > beyond]
+
+    def occupied(self, beyond: float) -> Bool:
+        """Cells [rows, columns] above the noise: mean of 3 x 3 over its mean and 5 deviations."""
+        noise = self.noise(beyond)
+        threshold = max(2 * np.median(noise), noise.mean() + 5 * noise.std())
+        return np.asarray(uniform_filter(self.power, 3) > threshold)
+
+    def without_noise(self, zero: float, beyond: float) -> Float:
+        """Power [rows, columns] less the mean of the noise, 0 within `zero`: noise adds up to 0."""
+        clean: Float = self.power - self.noise(beyond).mean()
+        clean[np.abs(self.doppler) <= zero] = 0
+        return clean
+
+    def torso_line(self, zero: float) -> Float:
+        """Doppler of the torso [columns]: where the mean of five rows is largest, smoothed."""
+        moving = np.where(np.abs(self.doppler)[:, None] <= zero, 0, self.power)
+        line: Float = median_filter(self.doppler[uniform_filter(moving, (5, 1)).argmax(axis=0)], 9)
+        return line
+
+
+def power_statistics(one: PowerMap, zero: float, beyond: float, near: float) -> dict[str, float]:
+    """Statistics of power, under the names of `STATISTICS`.
+
+    Of energy above the noise, the line at zero left out. A limb is the 75th percentile of the
+    largest power of each column beyond 1.8 times the torso's Doppler, the torso the median of the
+    columns' peaks; ripple is 5 to 95 % of the torso's line.
+
+    Args:
+        one: the map.
+        zero: half the width of the line of zero Doppler.
+        beyond: above that Doppler there is noise alone.
+        near: half the width of the torso's line.
+    """
+    doppler, noise = one.doppler[:, None], one.noise(beyond)
+    floor, clean, torso = float(noise.mean()), one.without_noise(zero, beyond), one.torso_line(zero)
+    total, columns = clean.sum(), clean.sum(axis=0)
+    fast = doppler * np.sign(torso) > SLOW * np.abs(torso)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        mean = (doppler * clean).sum(axis=0) / columns
+        spread = np.sqrt(np.maximum(((doppler - mean) ** 2 * clean).sum(axis=0) / columns, 0))
+    share = 100 / total if total > 0 else np.nan
+    limb = np.percentile(np.where(fast, clean, 0).max(axis=0), 75)
+    at_zero = one.power[np.abs(one.doppler) <= zero].max(axis=0)
+    low, high = np.percentile(torso, [5, 95])
+    return {
+        "peak_over_floor": decibel(float(clean.max()), floor),
+        "noise_sd": float(np.std(10 * np.log10(np.maximum(noise, 1e-30)))),
+        "limb_below_torso": decibel(float(np.median(clean.max(axis=0))), float(limb)),
+        "fast_energy": float(clean[fast].sum() * share),
+        "receding_energy": float(clean[one.doppler < -zero].sum() * share),
+        "torso_energy": float(clean[np.abs(doppler - torso) <= near].sum() * share),
+        "torso_ripple": float(high - low),
+        "torso_median": float(np.median(torso)),
+        "column_spread": float(np.median(spread)),
+        "zero_over_floor": decibel(float(np.median(at_zero)), floor),
+    }
+
+
+def decibel(above: float, below: float) -> float:
+    """10 lg of a ratio of powers, NaN where one is not above 0."""
+    return 10 * float(np.log10(above / below)) if min(above, below) > 0 else np.nan
+
+
+@dataclass(frozen=True)
+class Body:
+    """Which cells [rows, columns] of a map belong to who moves, and which are stray."""
+
+    cells: Bool
+    stray: Bool
+
+
+def body_of(occupied: Bool, at_zero: Bool) -> Body:
+    """The pieces that touch the line at zero Doppler, or are tall; the others are stray.
+
+    Lines of interference and single cells of noise are stray.
+
+    Args:
+        occupied: [rows, columns].
+        at_zero: rows of the line, [rows].
+    """
+    pieces, _ = label(binary_dilation(occupied, EIGHT, iterations=JOINED), EIGHT)
+    kept = np.zeros(pieces.max(initial=0) + 1, bool)
+    kept[pieces[at_zero]] = True
+    for number, place in enumerate(find_objects(pieces), 1):
+        kept[number] |= place[0].stop - place[0].start - 2 * JOINED >= TALL * len(occupied)
+    kept[0] = False
+    mine = kept[pieces] & occupied
+    return Body(mine, occupied & ~mine)
+
+
+def mask_statistics(
+    occupied: Bool, doppler: Float, seconds: float, zero: float
+) -> dict[str, float]:
+    """Statistics of which cells of a map are occupied, under the names of `STATISTICS`.
+
+    Of the body (`body_of`) beyond `zero` of zero Doppler; NaN where there is nothing to measure.
+    A column is active where it has any such cell.
+
+    Args:
+        occupied: [rows, columns].
+        doppler: of the rows, descending, Hz; or range, m; or in rows.
+        seconds: that the columns last; or their number.
+        zero: half the width of the line at zero, in the unit of `doppler`; below 0 for none.
+    """
+    rows, columns = occupied.shape
+    row, column = abs(doppler[0] - doppler[-1]) / max(1, rows - 1), seconds / columns
+    at_zero = np.abs(doppler) <= zero
+    body = body_of(occupied, at_zero)
+    beyond = body.cells & ~at_zero[:, None]
+    counts = beyond.sum(axis=0)
+    active = counts > 0
+    line: Bool = np.asarray(body.cells[np.abs(doppler) <= zero / 2].any(axis=0))
+    quiet = body.cells[:, line & ~active]
+    found = dict.fromkeys((name for name, one in STATISTICS.items() if not one.of_power), np.nan)
+    found |= {
+        "occupied": 100 * float(beyond.sum() / max(1, (~at_zero).sum() * columns)),
+        "stray": 100 * float(body.stray.sum() / max(1, (~at_zero).sum() * columns)),
+        "active": float(active.sum() * column),
+        "start_height": float(body.cells[:, 0].sum() * row),
+        "zero_line": 100 * float(line.mean()),
+        "zero_line_end": 100 * float(line[-max(1, columns // 5) :].mean()),
+    }
+    if quiet.size:
+        found["zero_line_width"] = float(np.median(quiet.sum(axis=0)) * row)
+        found["zero_line_offset"] = float((doppler @ quiet).sum() / quiet.sum())
+    if not active.any():
+        return found
+    whole = np.repeat(doppler, beyond.sum(axis=1))
+    low, high = np.percentile(whole, [2.5, 97.5])
+    times = np.flatnonzero(active)
+    shown = body.cells[:, active]
+    top, bottom = shown.argmax(axis=0), rows - 1 - shown[::-1].argmax(axis=0)
+    mean = (doppler @ beyond)[active] / counts[active]
+    step = np.abs(np.diff(doppler[top]))[np.diff(times) == 1]
+    sign = np.sign(mean)
+    slowest, fastest = np.percentile(mean, [5, 95])
+    return found | {
+        "receding": 100 * float((whole < 0).mean()),
+        "width": float(high - low),
+        "upper_envelope": float(np.percentile(doppler[top], 95)),
+        "lower_envelope": float(np.percentile(doppler[bottom], 5)),
+        "first": float(times[0] * column),
+        "rest": float((columns - 1 - times[-1]) * column),
+        "column_height": float(np.median(counts[active]) * row),
+        "filled": 100 * float(np.mean(shown.sum(axis=0) / (bottom - top + 1))),
+        "ragged": float(step.mean()) if step.size else np.nan,
+        "swings": float((np.diff(sign[sign != 0]) != 0).sum()),
+        "ripple": float(fastest - slowest),
+    }
+
+
+class Statistic(NamedTuple):
+    """What a statistic is called in tables.
+
+    Attributes:
+        words: for people.
+        unit: "%", "dB", "" of a number, "rows" (the unit of rows), "columns" (of columns).
+        of_range: whether it means something in a range-time map.
+        of_power: whether it needs power, not occupied cells alone.
+    """
+
+    words: str
+    unit: str
+    of_range: bool = False
+    of_power: bool = False
+
+
+STATISTICS = {
+    "occupied": Statistic("occupied cells", "%", True),
+    "receding": Statistic("cells that recede", "%"),
+    "width": Statistic("width of 95 % of the cells", "rows", True),
+    "upper_envelope": Statistic("upper envelope, 95 %", "rows", True),
+    "lower_envelope": Statistic("lower envelope, 5 %", "rows", True),
+    "column_height": Statistic("height of an active column", "rows", True),
+    "filled": Statistic("filled from edge to edge", "%", True),
+    "ragged": Statistic("step of the upper edge", "rows", True),
+    "ripple": Statistic("ripple of the mean, 5 to 95 %", "rows", True),
+    "swings": Statistic("changes of direction", ""),
+    "active": Statistic("time active", "columns", True),
+    "first": Statistic("quiet at the start", "columns", True),
+    "rest": Statistic("quiet at the end", "columns", True),
+    "start_height": Statistic("height of the first column", "rows", True),
+    "zero_line": Statistic("columns with a zero line", "%"),
+    "zero_line_end": Statistic("the same, last fifth", "%"),
+    "zero_line_width": Statistic("width of the zero line", "rows"),
+    "zero_line_offset": Statistic("middle of the zero line", "rows"),
+    "stray": Statistic("stray cells", "%", True),
+    "peak_over_floor": Statistic("peak over floor", "dB", of_power=True),
+    "noise_sd": Statistic("sd of the noise", "dB", of_power=True),
+    "limb_below_torso": Statistic("limb below torso", "dB", of_power=True),
+    "fast_energy": Statistic("energy above 1.8 x torso", "%", of_power=True),
+    "receding_energy": Statistic("receding energy", "%", of_power=True),
+    "torso_energy": Statistic("energy near the torso line", "%", of_power=True),
+    "torso_ripple": Statistic("ripple of the torso line", "rows", of_power=True),
+    "torso_median": Statistic("Doppler of the torso", "rows", of_power=True),
+    "column_spread": Statistic("sd of Doppler in a column", "rows", of_power=True),
+    "zero_over_floor": Statistic("zero line over floor", "dB", of_power=True),
+}

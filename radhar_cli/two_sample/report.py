@@ -1,0 +1,150 @@
+"""What `radhar compare` writes: numbers, a table, figures."""
+
+import json
+import re
+from collections.abc import Callable
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from radhar_cli.arrays import Index
+from radhar_cli.dataset.files import write_whole
+from radhar_cli.figures.two_samples import (
+    Distribution,
+    Picture,
+    distances_png,
+    distributions_png,
+    pictures_png,
+)
+from radhar_cli.learning.report_folder import NUMBERS, remove_others
+from radhar_cli.learning.tables import csv_text
+from radhar_cli.two_sample.comparison import ClassCompared, Comparison
+from radhar_cli.two_sample.map_statistics import STATISTICS
+
+
+def write(found: Comparison, folder: Path) -> list[Path]:
+    """Write report.json, statistics.csv and the figures into a folder; return their paths.
+
+    Files of an earlier comparison there are replaced or removed.
+    """
+    files = {"statistics.csv": _table(found).encode(), "distances.png": _distances(found)}
+    for number, one in enumerate(found.classes, 1):
+        stem = f"{number:02d}_" + re.sub(r"[^\w-]", "_", one.name)
+        files[f"{stem}_statistics.png"] = _distributions(found, one)
+        files[f"{stem}_pictures.png"] = _pictures(found, one)
+    remove_others(folder, files)
+    for name, content in files.items():
+        write_whole(folder, folder / name, content)
+    numbers = _plain({**found.numbers(), "files": sorted(files)})
+    write_whole(folder, folder / NUMBERS, (json.dumps(numbers, indent=2) + "\n").encode())
+    return [folder / NUMBERS, *(folder / name for name in files)]
+
+
+def _plain(value: Any) -> Any:
+    """The same with null for what is not finite."""
+    if isinstance(value, dict):
+        return {key: _plain(inner) for key, inner in value.items()}
+    if isinstance(value, list):
+        return [_plain(inner) for inner in value]
+    return None if isinstance(value, float) and not isfinite(value) else value
+
+
+def _table(found: Comparison) -> str:
+    head = ("class", "statistic", "unit", "simulated_mean", "simulated_sd", "measured_mean")
+    rows = (
+        (
+            one.name,
+            name,
+            found.scale.unit(name),
+            *(apart.simulated[:2]),
+            *(apart.measured[:2]),
+            apart.distance,
+            apart.ks,
+            apart.p,
+        )
+        for one in found.classes
+        for name, apart in one.apart.items()
+    )
+    return csv_text([*head, "measured_sd", "distance", "ks", "p"], rows)
+
+
+def _distances(found: Comparison) -> bytes:
+    """All statistics of all classes, what is most wrong over all classes first."""
+    table = np.array(
+        [[one.apart[name].distance for one in found.classes] for name in found.scale.names]
+    )
+    order = np.argsort(-np.nan_to_num(table).mean(axis=1), kind="stable")
+    columns = [one.name.replace("_", " ") + "\n" + how_sure(one) for one in found.classes]
+    rows = [STATISTICS[found.scale.names[number]].words for number in order]
+    return distances_png(table[order], rows, columns)
+
+
+def how_sure(one: ClassCompared) -> str:
+    """How surely the two sides of a class are told apart."""
+    if one.tested is None:
+        return "no test"
+    return f"{100 * one.tested.right / one.tested.truth.size:.0f} % told apart"
+
+
+def _distributions(found: Comparison, one: ClassCompared) -> bytes:
+    some = []
+    for name, apart in one.apart.items():
+        column = found.scale.names.index(name)
+        values = [side.statistics[:, column] for side in (one.simulated, one.measured)]
+        x, y = (v[np.isfinite(v)] for v in values)
+        words = f"{STATISTICS[name].words}: {apart.distance:.2f}"
+        some.append(Distribution(words, x, y, found.scale.unit(name)))
+    return distributions_png(some, f"{one.name}: statistic and distance, the largest first")
+
+
+def _pictures(found: Comparison, one: ClassCompared) -> bytes:
+    count, (tested, far) = found.options.pictures, (one.tested, one.uncovered)
+    scores = dict(zip(one.measured.rows.tolist(), far.tolist(), strict=True))
+    sure: dict[int, float] = {}
+    if tested is not None:
+        odds = np.sort(tested.score[tested.truth])[::-1]
+        chance = 1 / (1 + np.exp(-odds))
+        sure = dict(zip(one.surest.tolist(), chance.tolist(), strict=True))
+
+    def plain(row: int) -> str:
+        return ""
+
+    def surely(row: int) -> str:
+        return f"{100 * sure[row]:.1f} % simulated" if row in sure else ""
+
+    def away(row: int) -> str:
+        return f"{scores[row]:.2f} radii away"
+
+    rows = {
+        "simulated": _drawn(found, 0, _spread(one.typical[0], count), plain),
+        "measured": _drawn(found, 1, _spread(one.typical[1], count), plain),
+        "surest to be\nsimulated": _drawn(found, 0, one.surest[:count], surely),
+        "measured, least\ncovered": _drawn(found, 1, one.far[:count], away),
+    }
+    units = found.scale.units()
+    quantity = "range" if found.scale.ranges else "Doppler"
+    title = f"{one.name}: {how_sure(one)}, {100 * np.mean(far <= 1):.0f} % covered"
+    return pictures_png(rows, title, f"time ({units['columns']})", f"{quantity} ({units['rows']})")
+
+
+def _spread(rows: Index, count: int) -> Index:
+    """Some, evenly, of the nearer three quarters of rows that go from the middle outwards."""
+    near: Index = rows[: max(count, 3 * rows.size // 4)]
+    return np.asarray(near[np.linspace(0, near.size - 1, min(count, near.size)).astype(int)])
+
+
+def _drawn(
+    found: Comparison, number: int, rows: Index, words: Callable[[int], str]
+) -> list[Picture]:
+    """Maps of a side with the rows that are shown alone."""
+    side, (above, below), drawn = found.sides[number], found.shown, []
+    for row in rows.tolist():
+        levels = side.levels(row)
+        first, last = round(above * len(levels)), round(below * len(levels))
+        left, right, bottom, top = found.scale.edges(side, row)
+        step = (top - bottom) / len(levels)
+        extent = (left, right, top - last * step, top - first * step)
+        drawn.append(Picture(levels[first:last], extent, words(row)))
+    return drawn

@@ -1,0 +1,194 @@
+"""The two data sets that are compared, and what is known of their maps."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from radhar_cli.arrays import Float, Index, Levels
+from radhar_cli.capture.images import is_image
+from radhar_cli.dataset.reading import Dataset, open_dataset
+from radhar_cli.dataset.recorded import persons, windows
+from radhar_cli.errors import FolderError, did_you_mean
+from radhar_cli.learning.images.folder import our_map
+from radhar_cli.learning.images.image_set import ImageSet
+from radhar_cli.learning.images.opening import is_h5, open_images
+
+MOST_SIDE = 512  # px; larger images are brought there
+ASSUMED_DB = 40.0  # that levels span where a file does not say
+TWO_VALUED = 8  # images looked at to tell masks from grey
+
+
+@dataclass(frozen=True)
+class Side:
+    """One of two data sets.
+
+    Attributes:
+        images: its images.
+        classes: {class, by the common name: rows}.
+        left_out: {class of its own: images} that are not compared.
+        extent: [N, 4] edges (s; Hz or m) of every image; None where they are not known.
+        group: [N] who is in it, where that is known, or which recording; else a number of its own.
+        persons: whether it is known who.
+        dynamic_range_db: that levels span; None where it is not known, or of masks.
+        masks: whether its images are masks.
+    """
+
+    images: ImageSet
+    classes: dict[str, Index]
+    left_out: dict[str, int]
+    extent: Float | None
+    group: Index
+    persons: bool
+    dynamic_range_db: float | None
+    masks: bool
+
+    @property
+    def where(self) -> Path:
+        """File or folder."""
+        return self.images.where
+
+    def levels(self, row: int) -> Levels:
+        """Levels [H, W] of an image.
+
+        Raises:
+            FolderError: it cannot be read.
+        """
+        return self.images.pixels.read(row)[..., 0]
+
+    def power(self, levels: Levels) -> Float:
+        """Power of levels, over the largest."""
+        span = ASSUMED_DB if self.dynamic_range_db is None else self.dynamic_range_db
+        power: Float = 10 ** (span / 10 * (levels / 255.0 - 1))
+        return power
+
+
+def open_sides(
+    simulated: Path,
+    measured: Path,
+    map_name: str | None,
+    names: Mapping[str, str | None],
+    resize: bool,
+) -> tuple[Side, Side]:
+    """Open both, classes matched by name.
+
+    Args:
+        simulated: a data set, or a tree of images.
+        measured: another.
+        map_name: which map; the first of each if None.
+        names: {class in one of them: common name, or None to leave it out}.
+        resize: bring all images to the size of the measured ones.
+
+    Raises:
+        FolderError: it is none of these, they have no class in common, or differ in map or size.
+    """
+    paths = (simulated, measured)
+    given = [_open(path, map_name, None) for path in paths]
+    maps = [one.map for one in given]
+    if None not in maps and maps[0] != maps[1]:
+        raise FolderError(
+            f"{simulated}: shows {maps[0]}, {measured} {maps[1]}; --map names one for both"
+        )
+    sizes = [one.size for one in given]
+    if sizes[0] != sizes[1] and not resize:
+        raise FolderError(
+            f"{simulated}: images are {_px(sizes[0])}, those of {measured} {_px(sizes[1])}; "
+            "--resize brings them to one size"
+        )
+    size = (min(sizes[1][0], MOST_SIDE), min(sizes[1][1], MOST_SIDE))
+    if resize or size != sizes[1]:
+        given = [_open(path, map_name, size) for path in paths]
+    known = {name for one in given for name in one.classes}
+    for name in names:
+        if name not in known:
+            hint = did_you_mean(name, sorted(known), f"they have {', '.join(sorted(known))}")
+            raise FolderError(f"{simulated}, {measured}: no class {name!r} (--classes); {hint}")
+    rows = [_rows(one, names) for one in given]
+    both = [name for name in rows[0] if name in rows[1]]
+    if not both:
+        raise FolderError(
+            f"{simulated}: its classes ({', '.join(rows[0])}) are none of those of {measured} "
+            f"({', '.join(rows[1])}); --classes FILE maps names"
+        )
+    first, second = (
+        _side(path, one, {name: mine[name] for name in both})
+        for path, one, mine in zip(paths, given, rows, strict=True)
+    )
+    return first, second
+
+
+def _px(size: tuple[int, int]) -> str:
+    return f"{size[0]} x {size[1]} px"
+
+
+def _open(path: Path, map_name: str | None, resize: tuple[int, int] | None) -> ImageSet:
+    """A foreign tree names no map: it has what it has."""
+    foreign = path.is_dir() and not is_h5(path) and our_map(path) is None
+    if foreign and map_name is not None and not (path / map_name).is_dir():
+        map_name = None
+    return open_images(path, map_name, "gray", resize)
+
+
+def _rows(images: ImageSet, names: Mapping[str, str | None]) -> dict[str, Index]:
+    """{common name: rows}, in the order of the images' own classes."""
+    found: dict[str, list[int]] = {}
+    for number, name in enumerate(images.classes):
+        common = names.get(name, name)
+        if common is not None:
+            found.setdefault(common, []).append(number)
+    return {name: np.flatnonzero(np.isin(images.label, own)) for name, own in found.items()}
+
+
+def _side(path: Path, images: ImageSet, classes: dict[str, Index]) -> Side:
+    used = np.concatenate(list(classes.values()))
+    lost = np.bincount(np.delete(images.label, used), minlength=len(images.classes)).tolist()
+    left_out = {name: n for name, n in zip(images.classes, lost, strict=True) if n}
+    some = used[:: max(1, used.size // TWO_VALUED)]
+    known: dict[str, Any] = {
+        "extent": None,
+        "group": np.arange(len(images)),
+        "persons": False,
+        "dynamic_range_db": None,
+    }
+    masks = all(_two_valued(images.pixels.read(int(row))) for row in some)
+    if is_h5(path):
+        assert images.map is not None
+        with open_dataset(path) as data:
+            known |= _of_dataset(data, images.map)
+            masks |= data.config.image.kind == "cfar"
+    if masks:
+        known["dynamic_range_db"] = None
+    return Side(images, classes, left_out, masks=masks, **known)
+
+
+def _two_valued(levels: Levels) -> bool:
+    """Whether an image has black and white alone."""
+    return bool(((levels == 0) | (levels == 255)).all())
+
+
+def _of_dataset(data: Dataset, name: str) -> dict[str, Any]:
+    config, count = data.config, len(data)
+    own = config.recorded is not None and is_image(config.recorded.parts[0].file)
+    who = np.full(count, -1)
+    if "subject" in data.scene:
+        who = np.asarray(data.scene["subject"][:], np.intp)
+    elif config.recorded is not None:
+        who = np.array(persons(config))
+    group = np.where(who >= 0, who, who.max(initial=-1) + 1 + _recordings(data))
+    return {
+        "extent": data.extents(name),
+        "group": group,
+        "persons": bool((who >= 0).all()),
+        "dynamic_range_db": None if own else config.image.dynamic_range_db,
+    }
+
+
+def _recordings(data: Dataset) -> Index:
+    """A number [N] for every recording; of simulated maps, each its own."""
+    recorded = data.config.recorded
+    if recorded is None:
+        return np.arange(len(data))
+    files = {part.file: number for number, part in enumerate(recorded.parts)}
+    return np.array([files[window.part.file] for window in windows(data.config)])

@@ -164,8 +164,9 @@ def _side(path: Path, images: ImageSet, classes: dict[str, Index]) -> Side:
 
 
 def _two_valued(levels: Levels) -> bool:
-    """Whether an image has black and white alone."""
-    return bool(((levels == 0) | (levels == 255)).all())
+    """Whether an image has two levels at most, a dark and a bright one."""
+    dark, bright = levels.min(), levels.max()
+    return bool(((levels == dark) | (levels == bright)).all() and (bright >= 128 or bright == dark))
 
 
 def _of_dataset(data: Dataset, name: str) -> dict[str, Any]:

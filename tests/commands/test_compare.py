@@ -1,0 +1,153 @@
+"""`radhar compare` as a user calls it."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_line import ROOT, radhar
+from documented import KEYS
+from PIL import Image
+
+CONFIG = """
+samples_per_class: 24
+activities: [walking, punching]
+duration_s: 3.0
+radar: {carrier_hz: 10e9, bandwidth_hz: 1e9, prf_hz: 500}
+snr_db: 20
+maps: [rtm, stft]
+image: {size_px: 64}
+output: {png: false}
+split: {train: 0.67, validation: 0.33}
+"""
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """People who walk on their feet, twice, and the paper's."""
+    folder = tmp_path_factory.mktemp("compare")
+    (folder / "c.yaml").write_text(CONFIG)
+    for name, sets in {
+        "human": ["seed=1"],
+        "others": ["seed=2"],
+        "paper": ["seed=2", "motion.model=paper"],
+    }.items():
+        more = [part for one in sets for part in ("--set", one)]
+        done = radhar("generate", folder / "c.yaml", "-o", folder / name, "--jobs", 1, *more)
+        assert done.returncode == 0, done.stderr
+    return folder
+
+
+def report(place: Path, one: str, other: str, *more: object) -> dict[str, dict[str, object]]:
+    out = place / f"{one}_{other}"
+    done = radhar(
+        "compare", place / one, place / other, "-o", out, "--json", "--map", "stft", *more
+    )
+    assert done.returncode == 0, done.stderr
+    said = json.loads(done.stdout)
+    assert said.keys() == KEYS["compare"]
+    found: dict[str, dict[str, object]] = json.loads((out / "report.json").read_text())
+    for key in ("test", "coverage", "classes", "warnings"):
+        assert said[key] == found[key]
+    for file in said["files"]:
+        assert Path(file).stat().st_size > 0
+        if file.endswith(".png"):
+            assert np.asarray(Image.open(file)).std() > 0
+    return found
+
+
+def test_the_papers_motion_is_told_from_people_and_people_are_not(place: Path) -> None:
+    same = report(place, "human", "others")
+    low, high = same["test"]["accuracy_95"]  # type: ignore[misc]
+    assert low < 0.5 < high
+    other = report(place, "paper", "others")
+    assert other["test"]["accuracy_95"][0] > 0.85  # type: ignore[index]
+    assert other["coverage"] < same["coverage"]  # type: ignore[operator]
+    statistics = other["classes"]["walking"]["statistics"]  # type: ignore[index]
+    assert "limb_below_torso" in statistics, "levels of known decibels tell power"
+    assert {one["unit"] for one in statistics.values()} == {"%", "Hz", "s", "dB", ""}
+
+
+def test_the_same_bytes_and_nothing_left_of_before(place: Path, tmp_path: Path) -> None:
+    command = ("compare", place / "human", place / "paper", "--map", "stft", "--per-class", 12)
+    assert radhar(*command, "-o", tmp_path / "a").returncode == 0
+    (tmp_path / "only_walking.yaml").write_text("punching: null\n")
+    assert radhar(*command, "-o", tmp_path / "b").returncode == 0
+    files = sorted(p.name for p in (tmp_path / "a").iterdir() if p.is_file())
+    assert len(files) == 7
+    for name in files:
+        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes(), name
+    again = radhar(*command, "-o", tmp_path / "a", "--classes", tmp_path / "only_walking.yaml")
+    assert again.returncode == 0
+    assert len([p for p in (tmp_path / "a").iterdir() if p.is_file()]) == 5
+
+
+def test_a_range_time_map(place: Path, tmp_path: Path) -> None:
+    done = radhar("compare", place / "human", place / "paper", "--map", "rtm", "-o", tmp_path / "r")
+    assert done.returncode == 0, done.stderr
+    found = json.loads((tmp_path / "r/report.json").read_text())
+    assert found["units"] == {"rows": "m", "columns": "s"}
+    assert "receding" not in found["classes"]["walking"]["statistics"]
+
+
+def test_a_table_for_people(place: Path, tmp_path: Path) -> None:
+    done = radhar(
+        "compare", place / "human", place / "paper", "-o", tmp_path / "r", "--map", "stft"
+    )
+    text = done.stdout
+    assert "walking: " in text
+    assert "% told apart (" in text
+    assert "simulated" in text
+    assert "all classes: " in text
+    quiet = radhar(
+        "compare", place / "human", place / "paper", "-o", tmp_path / "r", "--map", "stft", "-q"
+    )
+    assert (quiet.returncode, quiet.stdout) == (0, "")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("{human}", "{none}"), "none: no such file or folder"),
+        (("{human}", "{paper}", "--map", "stfd"), "has no map 'stfd'"),
+        (("{human}", "{human}/dataset.h5", "-o", "{human}/x"), "lies in the data"),
+        (("{human}", "{c}"), "c.yaml: is no data set"),
+        (("{human}", "{paper}", "--classes", "{names}"), "no class 'walkin' (--classes)"),
+    ],
+)
+def test_one_line_says_what_is_wrong(
+    place: Path, tmp_path: Path, arguments: tuple[str, ...], said: str
+) -> None:
+    (tmp_path / "names.yaml").write_text("walkin: walking\n")
+    paths = {name: place / name for name in ("human", "paper", "none")}
+    filled = [
+        a.format(**paths, c=place / "c.yaml", names=tmp_path / "names.yaml") for a in arguments
+    ]
+    out = () if "-o" in filled else ("-o", tmp_path / "out")
+    done = radhar("compare", *filled, *out)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
+    assert said in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_core_install_will_do(place: Path, tmp_path: Path) -> None:
+    code = """
+import sys
+sys.argv = ["radhar", "compare", *sys.argv[1:]]
+from radhar_cli.cli import main
+try:
+    main()
+except SystemExit as ended:
+    assert not ended.code, ended.code
+assert not {"torch", "sklearn", "jinja2"} & set(sys.modules)
+"""
+    arguments = [place / "human", place / "paper", "-o", tmp_path / "out", "--per-class", 4]
+    done = subprocess.run(
+        [sys.executable, "-c", code, *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+    )
+    assert done.returncode == 0, done.stderr

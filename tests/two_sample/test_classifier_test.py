@@ -1,0 +1,81 @@
+"""The classifier two-sample test: half where nothing can be told, and groups kept apart."""
+
+import numpy as np
+
+from radhar_cli.arrays import Float
+from radhar_cli.two_sample.classifier_test import Logistic, folds, held_out, interval
+
+COUNT = 40
+
+
+def features(rng: np.random.Generator, shift: float = 0.0) -> Float:
+    """Twice COUNT samples [., 60] that hang together; the second half is shifted in one of 60."""
+    mixed = rng.normal(size=(2 * COUNT, 8)) @ rng.normal(size=(8, 60))
+    x: Float = mixed + 0.5 * rng.normal(size=mixed.shape)
+    x[COUNT:, 0] += shift
+    return x
+
+
+TRUTH = np.repeat([True, False], COUNT)
+
+
+def test_half_of_what_cannot_be_told_is_told_and_intervals_hold() -> None:
+    found = []
+    for seed in range(100):
+        rng = np.random.default_rng(seed)
+        tested = held_out(features(rng), TRUTH, np.arange(2 * COUNT), rng)
+        assert tested is not None
+        found.append(interval([tested]))
+    accuracy = np.array([one["accuracy"] for one in found])
+    assert abs(accuracy.mean() - 0.5) < 0.03
+    variance = accuracy.var() * 4 * 2 * COUNT
+    assert 1.2 < variance < 2.4, "tests depend on each other; classifier_test.SHARED allows 1.7"
+    inside = [one["accuracy_95"][0] <= 0.5 <= one["accuracy_95"][1] for one in found]
+    assert np.mean(inside) > 0.88
+
+
+def test_what_differs_is_told() -> None:
+    rng = np.random.default_rng(0)
+    tested = held_out(features(rng, 20.0), TRUTH, np.arange(2 * COUNT), rng)
+    assert tested is not None
+    assert interval([tested])["accuracy_95"][0] > 0.85
+
+
+def test_persons_are_held_out_together() -> None:
+    rng = np.random.default_rng(1)
+    group = rng.integers(0, 9, 2 * COUNT)
+    fold, count = folds(TRUTH, group, rng)
+    assert count == 5
+    for kind in (True, False):
+        for one in np.unique(group):
+            assert np.unique(fold[(kind == TRUTH) & (group == one)]).size <= 1
+        assert np.bincount(fold[kind == TRUTH], minlength=5).min() > 0
+
+
+def test_who_is_known_by_his_face_tells_nothing() -> None:
+    """Four persons a side, each with features of his own: whether they are seen decides."""
+    rng = np.random.default_rng(3)
+    person = np.tile(np.repeat(np.arange(4), COUNT // 4), 2)
+    who = rng.normal(size=(2, 4, 60))
+    x = who[np.repeat([0, 1], COUNT), person] + 0.1 * rng.normal(size=(2 * COUNT, 60))
+    apart = held_out(x, TRUTH, person, rng)
+    mixed = held_out(x, TRUTH, np.arange(2 * COUNT), rng)
+    assert apart is not None
+    assert mixed is not None
+    assert interval([mixed])["accuracy"] == 1
+    assert interval([apart])["accuracy"] < 0.9
+
+
+def test_one_person_cannot_be_held_out() -> None:
+    rng = np.random.default_rng(0)
+    assert held_out(features(rng), TRUTH, np.zeros(2 * COUNT, np.intp), rng) is None
+
+
+def test_numbers_that_are_missing_or_constant_tell_nothing() -> None:
+    rng = np.random.default_rng(0)
+    x = features(rng, 20.0)
+    x = np.hstack([x, np.full((2 * COUNT, 1), np.nan), np.full((2 * COUNT, 1), 7.0)])
+    x[3, 5] = np.nan
+    model = Logistic.of(x, TRUTH)
+    assert np.isfinite(model.score(x)).all()
+    assert np.allclose(model.weights[60:62], 0)

@@ -1,0 +1,177 @@
+"""Two data sets of maps, as they lie on disk, compared."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_line import radhar
+from PIL import Image
+
+from radhar_cli.arrays import Levels
+from radhar_cli.errors import FolderError
+from radhar_cli.two_sample.comparison import Comparison, Options, compare
+from radhar_cli.two_sample.description import Scale
+from radhar_cli.two_sample.sides import open_sides
+
+SIZE = 64
+
+
+class Quiet:
+    def say(self, message: str) -> None: ...
+    def stage(self, name: str, total: int, done: int) -> None: ...
+    def advance(self, count: int) -> None: ...
+
+
+def mask(rng: np.random.Generator, high: float = 12, size: int = SIZE) -> Levels:
+    """A zero line and a bump of a random height and place."""
+    cells = np.zeros((size, size), np.uint8)
+    middle, start = size // 2, int(rng.integers(5, size // 2))
+    tall = round(rng.normal(high, 2))
+    cells[middle - 2 : middle + 2] = 255
+    cells[middle - tall : middle, start : start + int(rng.integers(8, 20))] = 255
+    return cells
+
+
+def tree(
+    root: Path, seed: int, draw: Callable[[np.random.Generator], Levels], *classes: str
+) -> Path:
+    """40 images a class in a tree."""
+    rng = np.random.default_rng(seed)
+    for name in classes:
+        (root / name).mkdir(parents=True)
+        for number in range(40):
+            Image.fromarray(draw(rng)).save(root / name / f"{number:02d}.png")
+    return root
+
+
+def compared(one: Path, other: Path, **options: object) -> Comparison:
+    return compare(one, other, Options(**options), Quiet())  # type: ignore[arg-type]
+
+
+def test_two_halves_cannot_be_told_apart(tmp_path: Path) -> None:
+    one = tree(tmp_path / "a", 1, mask, "falling", "walking")
+    other = tree(tmp_path / "b", 2, mask, "walking", "falling")
+    found = compared(one, other)
+    numbers = found.numbers()
+    low, high = numbers["test"]["accuracy_95"]
+    assert low < 0.5 < high
+    assert numbers["test"]["images"] == 160
+    assert numbers["coverage"] > 0.9
+    assert [c.name for c in found.classes] == ["falling", "walking"]
+    for one_class in numbers["classes"].values():
+        assert max(s["distance"] or 0 for s in one_class["statistics"].values()) < 0.6
+    assert any("has no axes" in warning for warning in found.warnings)
+
+
+def test_what_is_most_wrong_stands_first(tmp_path: Path) -> None:
+    one = tree(tmp_path / "a", 1, lambda rng: mask(rng, 22), "walking")
+    other = tree(tmp_path / "b", 2, mask, "walking")
+    (found,) = compared(one, other).classes
+    first, *_ = found.apart
+    assert first in ("upper_envelope", "width", "column_height", "ripple")
+    distances = [value.distance for value in found.apart.values() if np.isfinite(value.distance)]
+    assert distances == sorted(distances, reverse=True)
+    assert found.apart["upper_envelope"].simulated.mean == pytest.approx(22, abs=1)
+    assert found.apart["upper_envelope"].measured.mean == pytest.approx(12, abs=1)
+    assert found.apart["active"].distance < 0.6
+    assert found.tested is not None
+    assert found.tested.right > 0.95 * 80
+
+
+def test_pictures_that_stand_out(tmp_path: Path) -> None:
+    one, other = (tree(tmp_path / name, n, mask, "a") for n, name in enumerate("xy"))
+    rng = np.random.default_rng(5)
+    Image.fromarray(mask(rng, 29)).save(one / "a/07.png")
+    Image.fromarray(mask(rng, 29)[::-1]).save(other / "a/11.png")
+    numbers = compared(one, other).numbers()["classes"]["a"]
+    assert numbers["surest_simulated"][0] == "a/07"
+    assert numbers["least_covered"][0] == "a/11"
+
+
+def test_classes_are_matched_and_the_others_named(tmp_path: Path) -> None:
+    one = tree(tmp_path / "a", 1, mask, "grabbing", "kicking")
+    other = tree(tmp_path / "b", 2, mask, "picking_up", "drinking")
+    with pytest.raises(FolderError, match=r"its classes \(kicking, grabbing\) are none of those"):
+        compared(one, other)
+    found = compared(one, other, names={"picking_up": "grabbing", "drinking": None})
+    assert [c.name for c in found.classes] == ["grabbing"]
+    assert any("kicking (40)" in warning for warning in found.warnings)
+    assert any("drinking (40)" in warning for warning in found.warnings)
+    with pytest.raises(FolderError, match="no class 'walkin'"):
+        compared(one, other, names={"walkin": "walking"})
+
+
+def test_other_sizes_need_resize(tmp_path: Path) -> None:
+    one = tree(tmp_path / "a", 1, mask, "walking")
+    other = tree(tmp_path / "b", 2, lambda rng: mask(rng, 12, 128), "walking")
+    with pytest.raises(FolderError, match=r"images are 64 x 64 px, .* --resize"):
+        compared(one, other)
+    found = compared(one, other, resize=True)
+    assert [side.images.size for side in found.sides] == [(128, 128)] * 2
+
+
+def test_few_maps_are_drawn_of_many_and_seeds_decide_which(tmp_path: Path) -> None:
+    one, other = (tree(tmp_path / name, n, mask, "a") for n, name in enumerate("xy"))
+    first, again = (compared(one, other, most=12).numbers() for _ in range(2))
+    assert first == again
+    assert first["classes"]["a"]["simulated"] == 12
+    assert compared(one, other, most=12, seed=2).numbers() != first
+
+
+def test_one_map_a_class_is_described_but_not_tested(tmp_path: Path) -> None:
+    one, other = (tree(tmp_path / name, n, mask, "a") for n, name in enumerate("xy"))
+    for number in range(1, 40):
+        (one / f"a/{number:02d}.png").unlink()
+    found = compared(one, other)
+    assert found.numbers()["test"] is None
+    assert any("a: no test" in warning for warning in found.warnings)
+
+
+@pytest.fixture
+def recorded(tmp_path: Path) -> Path:
+    """Masks of three persons as a data set with axes."""
+    rng = np.random.default_rng(0)
+    np.savez(
+        tmp_path / "masks.npz",
+        masks=np.array([mask(rng) for _ in range(36)]),
+        label=np.repeat(["walking", "falling"], 18),
+        person=np.tile(["ann", "bob", "eve"], 12),
+    )
+    (tmp_path / "c.yaml").write_text(
+        "maps: [stft]\nrecordings: {window_s: 5, rows: [-500, 500]}\n"
+        "split: {train: 0.5, validation: 0.5}\n"
+    )
+    done = radhar(
+        "generate", tmp_path / "c.yaml", "--recordings", tmp_path / "masks.npz", "-o",
+        tmp_path / "set", "--jobs", 1,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return tmp_path / "set"
+
+
+def test_axes_and_persons_of_a_data_set(recorded: Path) -> None:
+    sides = open_sides(recorded, recorded, None, {}, False)
+    scale = Scale.of(sides, None)
+    assert scale.edges(sides[0], 3) == (0, 5, -500, 500)
+    assert (scale.unit("active"), scale.unit("width"), scale.unit("stray")) == ("s", "Hz", "%")
+    assert sides[0].persons
+    assert sides[0].masks
+    assert np.unique(sides[0].group).size == 3
+    found = compared(recorded, recorded)
+    assert found.warnings == ()
+    assert found.classes[0].apart["active"].measured.mean == pytest.approx(13 / 64 * 5, rel=0.2)
+    assert found.classes[0].apart["upper_envelope"].measured.mean == pytest.approx(
+        12 * 1000 / 64, rel=0.1
+    )
+
+
+def test_other_axes_are_said(recorded: Path, tmp_path: Path) -> None:
+    other = tmp_path / "other"
+    more = ("--set", "recordings.window_s=10", "--jobs", 1)
+    source = (tmp_path / "c.yaml", "--recordings", tmp_path / "masks.npz")
+    assert radhar("generate", *source, "-o", other, *more).returncode == 0
+    (said, *_) = compared(recorded, other).warnings
+    assert said == (
+        "falling: axes differ, 5 s, -500 to 500 Hz simulated, 10 s, -500 to 500 Hz measured"
+    ) or said.startswith("walking: axes differ, 5 s")

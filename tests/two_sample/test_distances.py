@@ -1,0 +1,39 @@
+"""Distances of samples whose distance is known."""
+
+import numpy as np
+import pytest
+
+from radhar_cli.two_sample.distances import apart, uncovered
+
+RNG = np.random.default_rng(0)
+
+
+def test_a_shift_of_a_standard_deviation_is_a_distance_of_one() -> None:
+    x = RNG.normal(5, 2, 500)
+    found = apart(x + 2, x)
+    assert found.distance == pytest.approx(1, abs=0.08)
+    assert found.p < 1e-6
+    assert found.measured.mean == pytest.approx(5, abs=0.3)
+    same = apart(x, x)
+    assert (same.distance, same.ks) == (0, 0)
+
+
+def test_what_is_missing_is_left_out() -> None:
+    found = apart(np.array([1.0, np.nan, 3.0]), np.array([1.0, 3.0]))
+    assert (found.simulated.known, found.measured.known, found.distance) == (2, 2, 0)
+    nothing = apart(np.array([np.nan]), np.array([1.0]))
+    assert np.isnan(nothing.distance)
+
+
+def test_constants() -> None:
+    assert apart(np.ones(3), np.ones(4)).distance == 0
+    assert apart(np.zeros(4), np.ones(4)).distance == pytest.approx(2)
+
+
+def test_coverage() -> None:
+    x, y = RNG.normal(size=(200, 5)), RNG.normal(size=(200, 5))
+    assert np.mean(uncovered(x, y) <= 1) > 0.93
+    assert np.mean(uncovered(x[:50], y) <= 1) > 0.93
+    assert np.mean(uncovered(x + 10, y) <= 1) == 0
+    half = np.where(np.arange(200)[:, None] < 100, y, y + 50)
+    assert np.mean(uncovered(x, half) <= 1) == pytest.approx(0.5, abs=0.05)

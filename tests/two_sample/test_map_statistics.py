@@ -1,0 +1,150 @@
+"""Statistics of maps whose numbers are known."""
+
+import numpy as np
+import pytest
+
+from radhar_cli.arrays import Bool, Float
+from radhar_cli.two_sample.map_statistics import (
+    STATISTICS,
+    PowerMap,
+    mask_statistics,
+    power_statistics,
+)
+
+ROWS, COLUMNS, SECONDS = 100, 200, 4.0
+DOPPLER: Float = 10.0 * (49.5 - np.arange(ROWS))  # 10 Hz a row, from 495 to -495 Hz
+ZERO = 20.0  # four rows at 5 and 15 Hz
+
+
+def map_of_a_bump(shift: int = 0) -> Bool:
+    """A zero line of four rows; +-95 Hz from 1 to 2 s above it, to 2.5 s below it."""
+    cells = np.zeros((ROWS, COLUMNS), bool)
+    cells[48:52] = True
+    cells[40:48, 50 + shift : 100 + shift] = True
+    cells[52:60, 50 + shift : 125 + shift] = True
+    return cells
+
+
+def test_numbers_of_a_bump() -> None:
+    found = mask_statistics(map_of_a_bump(), DOPPLER, SECONDS, ZERO)
+    assert found.keys() == {name for name, one in STATISTICS.items() if not one.of_power}
+    expected = {
+        "active": 1.5,
+        "first": 1.0,
+        "rest": 1.5,
+        "receding": 60.0,  # 75 of 125 columns
+        "zero_line": 100.0,
+        "zero_line_end": 100.0,
+        "zero_line_width": 40.0,
+        "zero_line_offset": 0.0,
+        "start_height": 40.0,
+        "upper_envelope": 95.0,
+        "lower_envelope": -95.0,
+        "column_height": 160.0,
+        "filled": 100.0,
+        "swings": 0.0,  # as much up as down, then down
+        "stray": 0.0,
+        "occupied": 100 * 8 * 125 / (96 * 200),
+    }
+    for name, value in expected.items():
+        assert found[name] == pytest.approx(value), name
+    assert found["width"] == pytest.approx(180, abs=15)
+
+
+def test_what_moves_later_is_the_same_but_later() -> None:
+    early = mask_statistics(map_of_a_bump(), DOPPLER, SECONDS, ZERO)
+    late = mask_statistics(map_of_a_bump(25), DOPPLER, SECONDS, ZERO)
+    assert late["first"] == pytest.approx(early["first"] + 0.5)
+    assert late["rest"] == pytest.approx(early["rest"] - 0.5)
+    assert all(late[n] == pytest.approx(early[n]) for n in early if n not in ("first", "rest"))
+
+
+def test_a_mirrored_map_recedes_as_much_as_it_approached() -> None:
+    one = mask_statistics(map_of_a_bump(), DOPPLER, SECONDS, ZERO)
+    other = mask_statistics(map_of_a_bump()[::-1], DOPPLER, SECONDS, ZERO)
+    assert other["receding"] == pytest.approx(100 - one["receding"])
+    assert other["upper_envelope"] == pytest.approx(-one["lower_envelope"])
+    assert other["active"] == one["active"]
+
+
+def test_interference_and_noise_are_stray() -> None:
+    cells = map_of_a_bump()
+    clean = mask_statistics(cells, DOPPLER, SECONDS, ZERO)
+    cells[20] = True  # a line at 295 Hz
+    cells[80, 10] = True
+    dirty = mask_statistics(cells, DOPPLER, SECONDS, ZERO)
+    assert dirty["stray"] == pytest.approx(100 * 201 / (96 * 200))
+    assert all(dirty[name] == clean[name] for name in clean if name != "stray")
+
+
+def test_a_zero_line_that_fades() -> None:
+    cells = map_of_a_bump()
+    cells[:, 180:] = False
+    found = mask_statistics(cells, DOPPLER, SECONDS, ZERO)
+    assert found["zero_line"] == pytest.approx(90)
+    assert found["zero_line_end"] == pytest.approx(50)
+
+
+@pytest.mark.parametrize("full", [False, True])
+def test_maps_of_nothing_and_of_everything(full: bool) -> None:
+    found = mask_statistics(np.full((ROWS, COLUMNS), full), DOPPLER, SECONDS, ZERO)
+    assert found["occupied"] == (100 if full else 0)
+    assert found["active"] == (SECONDS if full else 0)
+    assert np.isfinite(found["receding"]) == full
+
+
+def test_a_range_time_map_has_no_line_at_zero() -> None:
+    cells = np.zeros((ROWS, COLUMNS), bool)
+    cells[30:40] = True
+    metres = (np.arange(ROWS)[::-1] + 0.5) / 10
+    found = mask_statistics(cells, metres, SECONDS, -1)
+    assert found["upper_envelope"] == pytest.approx(6.95)
+    assert found["lower_envelope"] == pytest.approx(6.05)
+    assert found["active"] == SECONDS
+
+
+def walker(limb_db: float, ripple: float = 0.0) -> PowerMap:
+    """A torso near 100 Hz, 40 dB over exponential noise, a limb at 300 Hz, a zero line."""
+    rng = np.random.default_rng(0)
+    power = rng.exponential(1.0, (ROWS, COLUMNS))
+    torso = 105 + ripple / 2 * np.sign(np.sin(np.arange(COLUMNS) / 15))
+    for column, doppler in enumerate(torso):
+        power[np.abs(DOPPLER - doppler).argmin(), column] += 1e4
+    power[np.abs(DOPPLER - 305).argmin()] += 1e4 * 10 ** (-limb_db / 10)
+    power[49] += 100
+    return PowerMap(power, DOPPLER)
+
+
+def test_power_of_a_walker() -> None:
+    found = power_statistics(walker(15), ZERO, 430, 20)
+    assert found.keys() == {name for name, one in STATISTICS.items() if one.of_power}
+    assert found["peak_over_floor"] == pytest.approx(40, abs=0.2)
+    assert found["limb_below_torso"] == pytest.approx(15, abs=0.2)
+    assert found["noise_sd"] == pytest.approx(5.57, abs=0.3)  # of an exponential's decibels
+    assert found["torso_median"] == pytest.approx(105)
+    assert found["torso_ripple"] == 0
+    share = 10**-1.5
+    assert found["fast_energy"] == pytest.approx(100 * share / (1 + share), abs=0.3)
+    assert found["torso_energy"] == pytest.approx(100 / (1 + share), abs=0.3)
+    assert abs(found["receding_energy"]) < 0.3
+    assert found["zero_over_floor"] == pytest.approx(20, abs=0.5)
+
+
+def test_a_brighter_limb_and_a_torso_that_ripples() -> None:
+    assert power_statistics(walker(5), ZERO, 430, 20)["limb_below_torso"] < 6
+    found = power_statistics(walker(30, ripple=40), ZERO, 430, 20)
+    assert found["torso_ripple"] == pytest.approx(40)
+
+
+def test_who_walks_away_has_the_same_limbs() -> None:
+    one = walker(15)
+    away = power_statistics(PowerMap(one.power[::-1], DOPPLER), ZERO, 430, 20)
+    assert away["limb_below_torso"] == pytest.approx(15, abs=0.2)
+    assert away["torso_median"] == pytest.approx(-105)
+    assert away["receding_energy"] > 99
+
+
+def test_a_map_without_power() -> None:
+    found = power_statistics(PowerMap(np.zeros((ROWS, COLUMNS)), DOPPLER), ZERO, 430, 20)
+    assert np.isnan(found["fast_energy"])
+    assert not PowerMap(np.zeros((ROWS, COLUMNS)), DOPPLER).occupied(430).any()

@@ -63,11 +63,11 @@ def distributions_png(some: Sequence[Distribution], title: str) -> bytes:
                 (one.measured, MEASURED, "measured"),
                 (one.simulated, SIMULATED, "simulated"),
             ):
-                shares = np.full(values.size, 100 / max(1, values.size))
-                style = {"color": colour, "alpha": 0.55, "label": name}
-                axes.hist(values, bins, weights=shares, **style)
+                counts = np.histogram(values, bins)[0] * 100 / max(1, values.size)
+                axes.stairs(counts, bins, fill=True, color=colour, alpha=0.55, label=name)
         axes.set_title(one.title, fontsize=8)
         axes.set_xlabel(one.unit, fontsize=7, labelpad=1)
+        axes.locator_params(nbins=4)
         axes.tick_params(labelsize=6)
     for axes in panels[len(some) :]:
         axes.set_axis_off()
@@ -114,7 +114,9 @@ def pictures_png(
                 interpolation="nearest",
             )
             panel.set_title(one.words, fontsize=7)
+            panel.locator_params(nbins=4)
             panel.tick_params(labelsize=6, length=2)
+            panel.label_outer()
         row[0].set_ylabel(name, fontsize=8)
     figure.supxlabel(across, fontsize=8)
     figure.supylabel(upwards, fontsize=8)

@@ -40,11 +40,10 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def report(place: Path, one: str, other: str, *more: object) -> dict[str, dict[str, object]]:
+def report(place: Path, one: str, other: str) -> dict[str, dict[str, object]]:
     out = place / f"{one}_{other}"
-    done = radhar(
-        "compare", place / one, place / other, "-o", out, "--json", "--map", "stft", *more
-    )
+    options = ("--json", "--map", "stft", "--pictures", 2)
+    done = radhar("compare", place / one, place / other, "-o", out, *options)
     assert done.returncode == 0, done.stderr
     said = json.loads(done.stdout)
     assert said.keys() == KEYS["compare"]
@@ -70,41 +69,44 @@ def test_the_papers_motion_is_told_from_people_and_people_are_not(place: Path) -
     assert {one["unit"] for one in statistics.values()} == {"%", "Hz", "s", "dB", ""}
 
 
+def few(place: Path, out: Path, map_name: str = "stft") -> list[object]:
+    """The command on walking alone."""
+    (place / "walking.yaml").write_text("punching: null\n")
+    options = ("--per-class", 6, "--pictures", 1, "--classes", place / "walking.yaml")
+    return ["compare", place / "human", place / "paper", "-o", out, "--map", map_name, *options]
+
+
 def test_the_same_bytes_and_nothing_left_of_before(place: Path, tmp_path: Path) -> None:
-    command = ("compare", place / "human", place / "paper", "--map", "stft", "--per-class", 12)
-    assert radhar(*command, "-o", tmp_path / "a").returncode == 0
-    (tmp_path / "only_walking.yaml").write_text("punching: null\n")
-    assert radhar(*command, "-o", tmp_path / "b").returncode == 0
+    other = tmp_path / "b"
+    other.mkdir()
+    for name in ("old.png", "mine.png"):
+        (other / name).touch()
+    (other / "report.json").write_text('{"files": ["old.png", "../mine.txt"]}')
+    (tmp_path / "mine.txt").touch()
+    done = radhar(*few(place, tmp_path / "a"))
+    assert done.returncode == 0, done.stderr
+    for word in ("walking: ", "% told apart (", "simulated", "measured", "all classes: "):
+        assert word in done.stdout
+    again = radhar(*few(place, other), "-q")
+    assert (again.returncode, again.stdout) == (0, "")
     files = sorted(p.name for p in (tmp_path / "a").iterdir() if p.is_file())
-    assert len(files) == 7
+    assert files == [
+        *("01_walking_pictures.png", "01_walking_statistics.png", "distances.png"),
+        *("report.json", "statistics.csv"),
+    ]
     for name in files:
-        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes(), name
-    again = radhar(*command, "-o", tmp_path / "a", "--classes", tmp_path / "only_walking.yaml")
-    assert again.returncode == 0
-    assert len([p for p in (tmp_path / "a").iterdir() if p.is_file()]) == 5
+        assert (tmp_path / "a" / name).read_bytes() == (other / name).read_bytes(), name
+    assert (other / "mine.png").exists()
+    assert not (other / "old.png").exists()
+    assert (tmp_path / "mine.txt").exists()
 
 
 def test_a_range_time_map(place: Path, tmp_path: Path) -> None:
-    done = radhar("compare", place / "human", place / "paper", "--map", "rtm", "-o", tmp_path / "r")
+    done = radhar(*few(place, tmp_path / "r", "rtm"))
     assert done.returncode == 0, done.stderr
     found = json.loads((tmp_path / "r/report.json").read_text())
     assert found["units"] == {"rows": "m", "columns": "s"}
     assert "receding" not in found["classes"]["walking"]["statistics"]
-
-
-def test_a_table_for_people(place: Path, tmp_path: Path) -> None:
-    done = radhar(
-        "compare", place / "human", place / "paper", "-o", tmp_path / "r", "--map", "stft"
-    )
-    text = done.stdout
-    assert "walking: " in text
-    assert "% told apart (" in text
-    assert "simulated" in text
-    assert "all classes: " in text
-    quiet = radhar(
-        "compare", place / "human", place / "paper", "-o", tmp_path / "r", "--map", "stft", "-q"
-    )
-    assert (quiet.returncode, quiet.stdout) == (0, "")
 
 
 @pytest.mark.parametrize(
@@ -143,7 +145,7 @@ except SystemExit as ended:
     assert not ended.code, ended.code
 assert not {"torch", "sklearn", "jinja2"} & set(sys.modules)
 """
-    arguments = [place / "human", place / "paper", "-o", tmp_path / "out", "--per-class", 4]
+    arguments = few(place, tmp_path / "out")[1:]
     done = subprocess.run(
         [sys.executable, "-c", code, *map(str, arguments)],
         capture_output=True,

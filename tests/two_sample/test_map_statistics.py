@@ -109,7 +109,8 @@ def walker(limb_db: float, ripple: float = 0.0) -> PowerMap:
     power = rng.exponential(1.0, (ROWS, COLUMNS))
     torso = 105 + ripple / 2 * np.sign(np.sin(np.arange(COLUMNS) / 15))
     for column, doppler in enumerate(torso):
-        power[np.abs(DOPPLER - doppler).argmin(), column] += 1e4
+        row = int(np.abs(DOPPLER - doppler).argmin())
+        power[row - 2 : row + 3, column] += 1e4 * np.array([0.25, 0.5, 1, 0.5, 0.25])
     power[np.abs(DOPPLER - 305).argmin()] += 1e4 * 10 ** (-limb_db / 10)
     power[49] += 100
     return PowerMap(power, DOPPLER)
@@ -123,7 +124,7 @@ def test_power_of_a_walker() -> None:
     assert found["noise_sd"] == pytest.approx(5.57, abs=0.3)  # of an exponential's decibels
     assert found["torso_median"] == pytest.approx(105)
     assert found["torso_ripple"] == 0
-    share = 10**-1.5
+    share = 10**-1.5 / 2.5  # of five rows of the torso
     assert found["fast_energy"] == pytest.approx(100 * share / (1 + share), abs=0.3)
     assert found["torso_energy"] == pytest.approx(100 / (1 + share), abs=0.3)
     assert abs(found["receding_energy"]) < 0.3

@@ -19,12 +19,12 @@ import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import median_filter, uniform_filter
 
 from radhar_cli.config import load_config
 from radhar_cli.config.schema import Config
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 from radhar_cli.simulation.simulate import simulate
+from radhar_cli.two_sample.map_statistics import PowerMap, power_statistics
 
 ROOT = Path(__file__).resolve().parents[1]
 CONFIG = ROOT / "configs" / "measured" / "mmrgait_77GHz.yaml"
@@ -84,48 +84,24 @@ def simulated(config: Config, seed: int) -> Map:
 
 def statistics(one: Map) -> dict[str, float]:
     """What a radar engineer looks at in the map of a walker, in the units of the names."""
-    v, noise = one.speed, one.power[one.speed > NOISE_MPS]
-    floor = float(noise.mean())
-    clean = one.power - floor  # cells of noise alone add up to nothing
-    clean[np.abs(v) <= ZERO_MPS] = 0
-    torso = torso_line(one)
-    total = clean.sum()
-    columns = clean.sum(axis=0)
-    near = np.abs(v[:, None] - torso) <= NEAR_MPS
-    fast = v[:, None] > 1.8 * torso
-    mean = (v[:, None] * clean).sum(axis=0) / columns
-    spread = np.sqrt(np.maximum(((v[:, None] - mean) ** 2 * clean).sum(axis=0) / columns, 0))
-    smooth = uniform_filter(one.power, 3)
-    threshold = max(2 * np.median(noise), floor + 5 * noise.std())
-    occupied, band = smooth > threshold, (v >= 0.2) & (v <= 4.5)
+    v, power = one.speed, PowerMap(one.power, one.speed)
+    found = power_statistics(power, ZERO_MPS, NOISE_MPS, NEAR_MPS)
+    occupied, band = power.occupied(NOISE_MPS), (v >= 0.2) & (v <= 4.5)
     envelope = v[np.argmax(occupied & (v < NOISE_MPS)[:, None], axis=0)]
-    limb = np.percentile(np.where(fast, clean, 0).max(axis=0), 75)
-    zero = one.power[np.abs(v) <= ZERO_MPS].max(axis=0)
-    low, high = np.percentile(torso, [5, 95])
     return {
-        "peak over floor, dB": decibel(clean.max() / floor),
-        "sd of the noise, dB": float(np.std(10 * np.log10(np.maximum(noise, 1e-30)))),
-        "limb below torso, dB": decibel(np.median(clean.max(axis=0)) / max(limb, 1e-30)),
-        "energy above 1.8 x torso, %": 100 * float(clean[fast].sum() / total),
-        "receding energy, %": 100 * float(clean[v < -ZERO_MPS].sum() / total),
-        "envelope (95 %) over torso": float(np.percentile(envelope, 95) / np.median(torso)),
+        "peak over floor, dB": found["peak_over_floor"],
+        "sd of the noise, dB": found["noise_sd"],
+        "limb below torso, dB": found["limb_below_torso"],
+        "energy above 1.8 x torso, %": found["fast_energy"],
+        "receding energy, %": found["receding_energy"],
+        "envelope (95 %) over torso": float(np.percentile(envelope, 95) / found["torso_median"]),
         "envelope, median, m/s": float(np.median(envelope)),
-        "sd of Doppler in a column, m/s": float(np.median(spread)),
-        "energy near the torso line, %": 100 * float(clean[near].sum() / total),
+        "sd of Doppler in a column, m/s": found["column_spread"],
+        "energy near the torso line, %": found["torso_energy"],
         "occupied cells, %": 100 * float(occupied[band].mean()),
-        "torso ripple, m/s": float(high - low),
-        "zero line over floor, dB": decibel(np.median(zero) / floor),
+        "torso ripple, m/s": found["torso_ripple"],
+        "zero line over floor, dB": found["zero_over_floor"],
     }
-
-
-def torso_line(one: Map) -> Float:
-    """Speed of the torso [columns], m/s: where the mean of five rows is largest, smoothed."""
-    moving = np.where(np.abs(one.speed)[:, None] <= ZERO_MPS, 0, one.power)
-    return median_filter(one.speed[uniform_filter(moving, (5, 1)).argmax(axis=0)], 9)
-
-
-def decibel(ratio: float) -> float:
-    return 10 * float(np.log10(max(ratio, 1e-30)))
 
 
 def spread(rows: list[dict[str, float]]) -> dict[str, tuple[float, float, float]]:

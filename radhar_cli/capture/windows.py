@@ -16,7 +16,6 @@ from radhar_cli.activity import TWELVE
 from radhar_cli.capture.chain import maps_of
 from radhar_cli.capture.images import are_images, is_image, listed, read_image
 from radhar_cli.capture.recording import Recording, RecordingInfo
-from radhar_cli.config.checks import unused_keys
 from radhar_cli.config.identity import resolved
 from radhar_cli.config.reading import validated
 from radhar_cli.config.schema import Config, RecordingsConfig
@@ -25,6 +24,7 @@ from radhar_cli.dataset.recorded import windows
 from radhar_cli.dataset.sample import Made, Sample
 from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.pipeline.products import image_of
+from radhar_cli.pipeline.unused_keys import unused_keys
 from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.power_map import MapImage
 from radhar_cli.untrusted import read_text

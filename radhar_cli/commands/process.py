@@ -36,9 +36,9 @@ def process(
     from radhar_cli.capture.chain import maps_of
     from radhar_cli.capture.recording import Recording
     from radhar_cli.config import load_config
-    from radhar_cli.config.checks import unused_keys
     from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.folder import refuse_file
+    from radhar_cli.pipeline.unused_keys import unused_keys
     from radhar_cli.simulation.simulate import map_names
 
     loaded = load_config(config, set_ or [])
@@ -51,7 +51,7 @@ def process(
         found = maps_of(opened, loaded, names, start, stop, receiver)
     if gaps:
         tell(f"{gaps} gaps: handled stretch by stretch")
-    for note in [*unused_keys(loaded), *found.notes]:
+    for note in [*unused_keys(loaded.model_copy(update={"maps": names})), *found.notes]:
         tell(f"warning: {note}", err=True)
     written = maps_file.write_maps(found, loaded, info, out)
     if figures:

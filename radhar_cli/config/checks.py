@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, NamedTuple
-
-from pydantic import BaseModel
+from typing import TYPE_CHECKING, NamedTuple
 
 from radhar_cli.activity import ACTIVITIES, DEFAULT, Activity, activity_named, own_activities
 from radhar_cli.config.number import nominal, support
@@ -452,42 +450,9 @@ def _human_problems(c: Config) -> Iterator[Problem]:
                 break
 
 
-# Keys that only another key makes use of: (key, the other, its value).
-USED_ONLY_WITH = (
-    ("processing.gate_m", "processing.doppler", "gate"),
-    ("processing.gate_sum", "processing.doppler", "gate"),
-    ("processing.highpass", "processing.clutter", "highpass"),
-    ("image.cfar", "image.kind", "cfar"),
-)
-
-
-def unused_keys(c: Config) -> list[str]:
-    """Say which keys have no effect though they are not as by default."""
+def line_warnings(c: Config) -> list[str]:
+    """Say which interference lines alias."""
     found = []
-    for key, other, wanted in USED_ONLY_WITH:
-        section, name = key.split(".")
-        given = getattr(c, section)
-        value = getattr(given, other.split(".")[1])
-        if value != wanted and not _usual(getattr(given, name), getattr(type(given)(), name)):
-            found.append(f"{key} has no effect with {other}: {value}, but with {wanted}")
-    return found
-
-
-def _usual(given: Any, default: Any) -> bool:
-    """Whether a value is the default, or was drawn from it."""
-    if given == default or not isinstance(default, BaseModel):
-        return bool(given == default)
-    for name in type(default).model_fields:
-        own, usual = getattr(given, name), getattr(default, name)
-        drawn = isinstance(usual, BaseModel) and isinstance(own, int | float)
-        if not (support(usual)[0] <= own <= support(usual)[1] if drawn else own == usual):
-            return False
-    return True
-
-
-def config_warnings(c: Config) -> list[str]:
-    """Say which keys have no effect, and which interference lines alias."""
-    found = unused_keys(c)
     prf = support(c.radar.prf_hz)[0]
     for number, line in enumerate(c.receiver.lines):
         least, most = support(line.doppler_hz)

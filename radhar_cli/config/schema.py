@@ -778,7 +778,7 @@ class ImageConfig(Section):
     """Of `kind: decibel`."""
     cfar: CfarConfig = CfarConfig()
     colour_map: str = DEFAULT_COLOUR_MAP
-    """Any Matplotlib name; PNG only."""
+    """Any Matplotlib name; of PNGs and figures, as dataset.h5 holds grey levels."""
     doppler_limits_mps: tuple[Real, Real] | None = None
     """v for -v to v, or [low, high], approaching positive; null is all."""
 

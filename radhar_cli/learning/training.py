@@ -57,6 +57,7 @@ from radhar_cli.learning.run_summary import write_run_summary
 from radhar_cli.learning.schedule import rate
 from radhar_cli.learning.settings import AugmentConfig, TrainConfig
 from radhar_cli.learning.starting_point import StartingPoint, start_from
+from radhar_cli.learning.step_memory import check_memory, smaller_step
 from radhar_cli.progress import Messages
 from radhar_cli.randomness import TRAINING, stream
 
@@ -131,7 +132,7 @@ def train(
         FolderError: data that cannot be used.
         ConfigError, SceneError: a stream that cannot be used.
         RunError: a folder that holds something else, or a damaged checkpoint.
-        ModelError, MachineError: a network or a device that cannot be had.
+        ModelError, MachineError: a network, a device or the memory of a step that cannot be had.
         TrainingError: the loss is not finite; earlier checkpoints are kept.
     """
     if config.threads != "auto":
@@ -146,9 +147,18 @@ def train(
         workers = choose_execution_plan(config, device, synthesises=True).workers
         learned, images = stream_and_validation(config, stream, paths, names or {}, workers)
     with process_group(device) as group, folder_lock(folder) if group.is_main else nullcontext():
-        return _Training.prepared(
-            config, images, folder, device, group, progress, overwrite, start, learned
-        ).run()
+        plan = choose_execution_plan(config, device, synthesises=learned is not None)
+        images_a_pass = min(plan.micro_batch, -(-config.batch_size // group.size))
+        step = config, len(images.classes), images.size, images_a_pass, plan.precision
+        check_memory(*step, device)
+        try:
+            return _Training.prepared(
+                config, images, folder, plan, group, progress, overwrite, start, learned
+            ).run()
+        except RuntimeError as error:
+            if not out_of_memory(error):
+                raise
+            raise TrainingError(f"out of memory on {device.type}: {smaller_step(*step)}") from None
 
 
 def checked_images(
@@ -202,7 +212,7 @@ class _Training:
         config: TrainConfig,
         images: ImageSet,
         folder: Path,
-        device: torch.device,
+        plan: ExecutionPlan,
         group: Group,
         progress: TrainingProgress,
         overwrite: bool = False,
@@ -218,7 +228,6 @@ class _Training:
         torch.manual_seed(config.seed)
         model = build_model(config.model, len(images.classes), images.size)
         started = None if start is None else start_from(start, model, config, images)
-        plan = choose_execution_plan(config, device, synthesises=stream is not None)
         if group.is_main:
             many = f"{len(images)} images of {len(images.classes)} classes"
             if stream is not None:
@@ -242,7 +251,7 @@ class _Training:
             _write_trained_on(folder, images, digests)
 
         on_rank_zero(group, reserve)
-        model.to(device)
+        model.to(plan.device)
         return cls(
             config=config,
             images=images,
@@ -258,20 +267,6 @@ class _Training:
         )
 
     def run(self) -> Outcome:
-        try:
-            return self._run()
-        except RuntimeError as error:
-            if not out_of_memory(error):
-                raise
-            share = -(-self.config.batch_size // self.group.size)
-            micro_batch = min(self.plan.micro_batch, share)
-            raise TrainingError(
-                f"micro_batch = {micro_batch}: out of memory on {self.plan.device.type}; "
-                f"--set micro_batch={max(2, micro_batch // 2)} needs about half "
-                f"({run.first_line(error)})"
-            ) from None
-
-    def _run(self) -> Outcome:
         resumed = self._restore()
         if self.group.is_main:
             self._announce(resumed)

@@ -9,7 +9,7 @@ import numpy as np
 
 from radhar_cli.activity import Activity
 from radhar_cli.arrays import Float, Index
-from radhar_cli.config.checks import config_warnings, timing_warnings
+from radhar_cli.config.checks import line_warnings, timing_warnings
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.files.motion import FileMotion
@@ -25,6 +25,7 @@ from radhar_cli.pipeline.physics import (
     waveform_of,
 )
 from radhar_cli.pipeline.segment_paths import Body
+from radhar_cli.pipeline.unused_keys import unused_keys
 from radhar_cli.radar.propagation import Antennas, bistatic_delay, leg
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
@@ -242,6 +243,11 @@ def draw_valid_scene(config: Config, activity: Activity, index: int) -> tuple[Sc
     raise SceneError(
         f"sample {activity.slug}/{index}: {found.invalid} (on_invalid: {config.on_invalid})"
     )
+
+
+def config_warnings(config: Config) -> list[str]:
+    """Say which keys have no effect, and which interference lines alias."""
+    return unused_keys(config) + line_warnings(config)
 
 
 def scene_warnings(scene: Scene) -> list[str]:

@@ -31,13 +31,16 @@ from learning.patterns import (
 from slow import slow
 from torch import nn
 
-from radhar_cli.learning import gradient_step, run_files, training
+from radhar_cli.errors import MachineError
+from radhar_cli.learning import gradient_step, run_files, step_memory, training
 from radhar_cli.learning import run_folder as run
-from radhar_cli.learning.execution_plan import ExecutionPlan
+from radhar_cli.learning.execution_plan import ExecutionPlan, choose_execution_plan
 from radhar_cli.learning.gradient_step import optimiser_for
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.scan import scan
+from radhar_cli.learning.models.build import build_model
 from radhar_cli.learning.process_group import Group
+from radhar_cli.learning.step_memory import smaller_step
 from radhar_cli.learning.training import TrainingError, _Training, checked_images
 
 CPU = torch.device("cpu")
@@ -49,7 +52,7 @@ def prepared(data: Path, out: Path, **changes: Any) -> _Training:
         settings(**changes),
         checked_images(settings(**changes), data),
         out,
-        CPU,
+        choose_execution_plan(settings(**changes), CPU),
         Group(),
         Watched(),
     )
@@ -258,8 +261,52 @@ def test_out_of_memory_names_a_smaller_micro_batch(
 ) -> None:
     """An allocation of 2**60 bytes, which PyTorch refuses at once."""
     monkeypatch.setattr(gradient_step, "cross_entropy", lambda *_, **__: torch.empty(2**58))
-    with pytest.raises(TrainingError, match=r"micro_batch = 6: out of memory on cpu; .*=3"):
+    with pytest.raises(TrainingError, match=r"out of memory on cpu: .* 6 images .*micro_batch=3 "):
         trained(data, tmp_path / "run", batch_size=6)
+
+
+def test_a_network_larger_than_memory_is_refused_before_it_is_built(
+    data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(step_memory, "total_memory", lambda device: 2e6)
+    with pytest.raises(MachineError, match=r"cpu has 0.00 GiB of memory; a step of 6 images of"):
+        trained(data, tmp_path / "run", batch_size=6)
+    assert not (tmp_path / "run" / ".radhar" / "run.json").exists()
+
+
+@pytest.mark.parametrize("name", ["fftnet", "smallnet"])
+def test_memory_of_a_step_is_what_autograd_keeps(name: str) -> None:
+    """State: weights, gradient and two moments; images: each adds the same."""
+    config, size = settings(model=name), (64, 64)
+    model = build_model(name, 3, size)
+    kept = list[torch.Tensor]()
+
+    def keep(tensor: torch.Tensor) -> torch.Tensor:
+        kept.append(tensor)
+        return tensor
+
+    with torch.autograd.graph.saved_tensors_hooks(keep, lambda tensor: tensor):
+        model(torch.zeros(6, 3, *size))
+    storages = {
+        t.untyped_storage().data_ptr(): t.untyped_storage().nbytes()
+        for t in kept
+        if not isinstance(t, nn.Parameter)
+    }
+    weights = sum(p.numel() * 4 for p in model.parameters())
+    needs = step_memory.step_memory(config, 3, size, torch.float32)
+    assert needs.of(6) == pytest.approx(4 * weights + sum(storages.values()), rel=0.01)
+
+
+def test_what_would_fit_fits() -> None:
+    config = settings(model="smallnet")
+    needs = step_memory.step_memory(config, 12, (8192, 8192), torch.float32)
+    fewer = smaller_step(config, 12, (8192, 8192), 128, torch.float32, needs.of(20))
+    assert "--set micro_batch=16 " in fewer
+    smaller = smaller_step(config, 12, (8192, 8192), 128, torch.float32, needs.of(2) / 60)
+    assert "; 2 images of 1024 x 1024 px (image.size_px of the data) " in smaller
+    assert smaller_step(config, 12, (64, 64), 2, torch.float32, 1e4).endswith(
+        "smaller model may fit"
+    )
 
 
 def test_clipping_limits_the_gradient(data: Path, tmp_path: Path) -> None:

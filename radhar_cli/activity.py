@@ -237,4 +237,4 @@ def activity_named(name: str, classes: Mapping[str, Activity] | None = None) -> 
         if near
         else "the slugs are " + ", ".join(slugs)
     )
-    raise ValueError(f"{name!r} is no activity; {hint}")
+    raise ValueError(f"{name!r} is not an activity; {hint}")

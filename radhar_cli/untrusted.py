@@ -51,7 +51,7 @@ def read_text(path: Path, most: int) -> str:
     """A regular file of at most `most` bytes as UTF-8.
 
     Raises:
-        OSError: it cannot be read, is larger, or is no regular file.
+        OSError: it cannot be read, is larger, or is not a regular file.
         UnicodeDecodeError: it is not UTF-8.
     """
     regular_size(path)
@@ -72,7 +72,7 @@ def read_json(path: Path) -> Any:
         return parse_json(read_text(path, MAX_JSON))
     except (OSError, ValueError) as error:
         told = getattr(error, "strerror", None) or error
-        raise FolderError(f"{path}: is damaged, or not radhar's ({told})") from None
+        raise FolderError(f"{path}: is damaged, or is not from radhar ({told})") from None
 
 
 def parse_json(text: str) -> Any:

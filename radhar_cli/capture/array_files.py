@@ -1,6 +1,6 @@
 """Captures that are arrays: .npy, .npz, .mat (v5 and v7.3) and HDF5.
 
-Anyone may have written them. Nothing is unpickled; objects of MATLAB are refused; what is packed is
+They are not trusted. Nothing is unpickled; objects of MATLAB are refused; what is packed is
 unpacked piece by piece and no further than its header promises.
 """
 
@@ -84,7 +84,7 @@ def open_arrays(path: Path, settings: CaptureSettings, scratch: Path) -> Source:
         array, times = _mat5(path, settings)
     else:
         raise CaptureError(
-            f"{path}: is no capture that radhar reads; should be .npy, .npz, .mat, HDF5, SigMF, "
+            f"{path}: is not a capture that radhar reads; should be .npy, .npz, .mat, HDF5, SigMF, "
             "or .bin of a DCA1000 with --radar"
         )
     return as_source(path, array, settings, times)

@@ -1,4 +1,4 @@
-"""What the samples themselves tell: offset binary, sign of the beat, clipping, lost packets."""
+"""Read off the samples themselves: offset binary, sign of the beat, clipping, lost packets."""
 
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple

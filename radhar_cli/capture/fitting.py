@@ -1,4 +1,4 @@
-"""What can be read off recordings, as a config to simulate by.
+"""Estimate a config to simulate by from recordings.
 
 A receiver's noise is the floor of its range-Doppler maps; the person is what moves above it. With
 range bins S_k = sum_n s[n] exp(...) of N samples, white noise of variance sigma^2 has |S_k|^2 =
@@ -33,7 +33,7 @@ HANN_GAIN = 0.5**2 + 2 * 0.25**2  # of white noise, by hann_in_range
 
 
 class Part(NamedTuple):
-    """What a few seconds of a recording tell.
+    """Estimates from a few seconds of a recording.
 
     Attributes:
         snr_db: of what moves, per raw sample.
@@ -53,7 +53,7 @@ class Part(NamedTuple):
 
 @dataclass(frozen=True)
 class Fit:
-    """What was read off recordings.
+    """Estimates from all recordings.
 
     Attributes:
         document: keys of a config.
@@ -94,7 +94,7 @@ def fit(paths: Sequence[Path]) -> Fit:
 
     Raises:
         CaptureError: they are of different radars, slow time, or nothing moves in any.
-        FolderError: one is no recording.
+        FolderError: one is not a recording.
     """
     parts: list[Part] = []
     waveform: Waveform | None = None

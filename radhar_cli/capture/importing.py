@@ -36,11 +36,11 @@ JITTER = 0.1  # of a pulse interval, beyond which it is told
 
 @dataclass(frozen=True)
 class Imported:
-    """What became of a capture.
+    """The outcome of an import.
 
     Attributes:
         info: of the recording.
-        found: what was found and decided, in words.
+        found: what was detected and decided, in words.
     """
 
     info: RecordingInfo
@@ -101,8 +101,8 @@ def _opened(
             f"{source.name}: a pulse of {source.receivers} receivers and {source.samples} samples "
             f"should take at most {MAX_PULSE} bytes, 16 of a sample"
         )
-    said = {key: value for key, value in source.settings.items() if getattr(settings, key) is None}
-    document = settings.model_dump(exclude_none=True) | said
+    known = {key: value for key, value in source.settings.items() if getattr(settings, key) is None}
+    document = settings.model_dump(exclude_none=True) | known
     return source, validated(CaptureSettings, document, source.name, {})
 
 
@@ -261,7 +261,7 @@ def _info(
             )
     if s.transmitters > 1:
         found.append(
-            f"{s.transmitters} transmitters in turn: {segments.prf:.6g} pulses/s of each, "
+            f"{s.transmitters} transmitters take turns: {segments.prf:.6g} pulses/s of each, "
             f"{source.receivers} virtual receivers"
         )
     per_turn = source.receivers // s.transmitters

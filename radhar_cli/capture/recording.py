@@ -1,4 +1,4 @@
-"""The recording file: what one radar received of one scene, whoever recorded it (docs/measured.md).
+"""The recording file: what one radar received of one scene (docs/measured.md).
 
 Beat signals follow radhar's sign: a target at range R lies at exp(-j 2 pi (fc tau + K tau t)).
 """
@@ -38,7 +38,7 @@ class _Part(BaseModel):
 
 
 class Label(_Part):
-    """What somebody did, from start to stop in s; None is the whole recording."""
+    """What a person does from start to stop, s; None is the whole recording."""
 
     label: Text
     person: Text | None = None
@@ -217,7 +217,7 @@ def is_recording(path: Path) -> bool:
 
 
 class Recording(Closing):
-    """A recording file that anyone may have written, opened for reading.
+    """A recording file opened for reading; it is not trusted.
 
     Attributes:
         info: its description.
@@ -233,7 +233,9 @@ class Recording(Closing):
         self._file = UntrustedFile(path)
         try:
             if not self._file.has_attribute("kind") or self._file.text("kind") != KIND:
-                raise FolderError(f"{path}: is no recording; `radhar import` makes one of it")
+                raise FolderError(
+                    f"{path}: is not a recording; `radhar import` makes one from a capture"
+                )
             version = self._file.whole_number("schema_version")
             if version != SCHEMA_VERSION:
                 raise FolderError(f"{path}: schema_version = {version}: should be {SCHEMA_VERSION}")

@@ -55,7 +55,7 @@ def read_manifest(path: Path) -> list[dict[str, Any]]:
         try:
             rows = [*csv.DictReader(io.StringIO(text), strict=True)]
         except csv.Error as error:
-            raise ConfigError(f"{path}: is no CSV ({error})") from None
+            raise ConfigError(f"{path}: is not CSV ({error})") from None
     found = [_row(row, f"{path}: row {number}") for number, row in enumerate(rows, 1)]
     if not found:
         raise ConfigError(f"{path}: lists nothing; should have columns {', '.join(COLUMNS)}")
@@ -67,7 +67,7 @@ def _row(row: dict[Any, Any], where: str) -> dict[str, Any]:
     for key in given:
         if key not in COLUMNS:
             hint = did_you_mean(str(key), COLUMNS, f"columns are {', '.join(COLUMNS)}")
-            raise ConfigError(f"{where}: {key!r} is no column; {hint}")
+            raise ConfigError(f"{where}: {key!r} is not a column; {hint}")
     for key in ("file", "label"):
         if key not in given:
             raise ConfigError(f"{where}: {key} is missing")

@@ -20,7 +20,7 @@ def fit(
 
       radhar fit walk.h5 fall.h5 -o measured.yaml
 
-    A figure of measured beside fitted lies next to the config, as .png.
+    A figure of measured and fitted values is written next to the config, as .png.
     """
     import json
 

@@ -17,12 +17,13 @@ def process(
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the results.")],
     set_: Overrides = None,
     maps: Annotated[
-        str | None, typer.Option(help="Comma-separated maps, not the config's.")
+        str | None, typer.Option(help="Comma-separated maps, instead of the config's.")
     ] = None,
     start: Annotated[float | None, typer.Option(min=0, help="From here on, s.")] = None,
     stop: Annotated[float | None, typer.Option(min=0, help="Up to here, s.")] = None,
     receiver: Annotated[
-        int | None, typer.Option(min=0, help="This one alone; else all powers are added up.")
+        int | None,
+        typer.Option(min=0, help="This one alone; default: the sum of all receivers' powers."),
     ] = None,
     figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw maps.png.")] = True,
 ) -> None:
@@ -50,7 +51,7 @@ def process(
         info, gaps = opened.info, len(opened.segments) - 1
         found = maps_of(opened, loaded, names, start, stop, receiver)
     if gaps:
-        tell(f"{gaps} gaps: handled stretch by stretch")
+        tell(f"{gaps} gaps: the stretches between are processed one by one")
     for note in [*unused_keys(loaded.model_copy(update={"maps": names})), *found.notes]:
         tell(f"warning: {note}", err=True)
     written = maps_file.write_maps(found, loaded, info, out)

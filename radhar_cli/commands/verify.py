@@ -16,7 +16,7 @@ def verify(
     samples: Annotated[int, typer.Option(min=0, help="Samples to synthesise anew.")] = 24,
     motion: Annotated[
         Path | None,
-        typer.Option("--motion", help="Folder from which the paths of motion files go."),
+        typer.Option("--motion", help="Folder that the paths of motion files are relative to."),
     ] = None,
 ) -> None:
     """Check a data set: checksums, labels, counts, and samples synthesised anew.
@@ -47,7 +47,7 @@ def verify(
         + (f"; {found.pngs} PNG files show the same" if found.pngs else "")
     )
     if found.unmade:
-        tell(f"{found.unmade} samples move by files: --motion FOLDER would make them anew too")
+        tell(f"{found.unmade} samples use motion files; --motion FOLDER synthesises them anew too")
 
 
 def _anew(found: "Report") -> str:

@@ -1,4 +1,4 @@
-"""The data card, README.md: what strangers, and the Hugging Face Hub, should know of a data set."""
+"""The data card, README.md: a data set described for readers and for the Hugging Face Hub."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -94,7 +94,7 @@ def configurations(config: Config, files: Files) -> list[dict[str, Any]]:
 
 
 def front_matter(path: Path) -> dict[str, Any]:
-    """The front matter of a card that anyone may have changed; empty where it has none.
+    """The front matter of a card, which may have been edited; empty where it has none.
 
     Raises:
         FolderError: the card cannot be read.
@@ -130,7 +130,7 @@ def card(data: Dataset, more: Mapping[str, Any], reading: str) -> str:
     Args:
         data: the data set.
         more: front matter: what `load_dataset` goes by, and a licence where it is not the config's.
-        reading: Markdown, how to read what lies beside the card.
+        reading: Markdown, how to read the files next to the card.
     """
     config, count = data.config, len(data)
     measured = config.recorded is not None

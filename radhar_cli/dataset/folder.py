@@ -77,16 +77,16 @@ def reserve(
     config: Config,
     overwrite: bool,
     part: str | None = None,
-    beside: tuple[str, ...] = (),
+    allowed: tuple[str, ...] = (),
 ) -> None:
-    """Make a folder, whose lock is held, this config's, or refuse.
+    """Take a locked folder for this config, or refuse it.
 
     Args:
         folder: the output folder, or a part's.
         config: of the data set.
-        overwrite: start again.
+        overwrite: start over.
         part: which one this is, K/N.
-        beside: names that a folder without a data set may hold already.
+        allowed: names that a folder without a data set may hold already.
 
     Raises:
         FolderError: it holds something else; the message names the keys that differ.
@@ -96,7 +96,7 @@ def reserve(
         _clear(folder, new)
     old = stored_identity(folder)
     if old is None:
-        foreign_files = sorted(p.name for p in folder.iterdir() if p.name not in (WORK, *beside))
+        foreign_files = sorted(p.name for p in folder.iterdir() if p.name not in (WORK, *allowed))
         if PARTS in foreign_files:
             raise FolderError(
                 f"{folder}: holds parts of a data set; `radhar merge {folder}` puts them together, "
@@ -114,7 +114,7 @@ def reserve(
             raise FolderError(
                 f"{folder}: holds another data set; it differs in\n  "
                 + "\n  ".join(found)
-                + "\nchoose another folder, or --overwrite to start this one again"
+                + "\nchoose another folder, or --overwrite to start this one over"
             )
     shutil.rmtree(folder / WORK / "unfinished", ignore_errors=True)
 
@@ -125,7 +125,7 @@ def _name(folder: Path, named: dict[str, Any]) -> None:
 
 
 def stored_identity(folder: Path) -> dict[str, Any] | None:
-    """The identity of what a folder holds, finished or not; None if it is no data set of ours."""
+    """Identity of a folder's data set, finished or not; None if it is not one of radhar."""
     path = folder / DATASET
     if path.exists():
         from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
@@ -135,7 +135,7 @@ def stored_identity(folder: Path) -> dict[str, Any] | None:
                 return checked_identity(file.json("identity"), path)
         except FolderError as error:
             raise FolderError(
-                f"{error}; this is not a data set of radhar's, or a damaged one; choose another "
+                f"{error}; this is not a data set of radhar, or is damaged; choose another "
                 "folder, or --overwrite if radhar built it"
             ) from None
     path = folder / WORK / IDENTITY
@@ -165,7 +165,7 @@ def clean_up(folder: Path) -> None:
 
 
 def _remove_batches(folder: Path) -> None:
-    """Remove shards and outcomes of checks; what else somebody put beside them stays."""
+    """Remove shards and outcomes of checks; foreign files next to them stay."""
     _remove(folder / WORK / "shards", "rows-*-*.h5")
     remove_checks(folder)
 

@@ -1,4 +1,4 @@
-"""Put parts of a data set, made apart from each other, together."""
+"""Merge parts of a data set that were built separately."""
 
 import os
 from collections.abc import Iterable, Sequence
@@ -36,7 +36,7 @@ def merge(
 
     Args:
         out: the output folder.
-        folders: of parts, or that hold parts, beside those below `out`.
+        folders: of parts, or that hold parts, in addition to those below `out`.
         jobs: processes, for PNGs that no part has.
         progress: receives progress and messages.
         virtual: dataset.h5 refers to the parts, all below `out`, instead of copying them.
@@ -65,7 +65,7 @@ def merge(
         progress.say(f"warning: {message}")
     try:
         with folder_lock(out):
-            reserve(out, config, overwrite=False, beside=(PARTS,))
+            reserve(out, config, overwrite=False, allowed=(PARTS,))
             progress.stage("merging", count, 0)
             with assembled(config, out, shards, progress, run_again, virtual) as (
                 unfinished,
@@ -96,7 +96,7 @@ def _places(folders: Iterable[Path]) -> list[_Place]:
             if named is not None and isinstance(named.get("part"), str):
                 found[part] = _Place(Part.parse(named["part"], f"{part}: part"), part, named)
             elif not inner.is_dir():
-                raise FolderError(f"{part}: is no part that `radhar generate --shard` made")
+                raise FolderError(f"{part}: is not a part that `radhar generate --shard` made")
     if not found:
         raise FolderError(
             f"{', '.join(map(str, folders))}: no part of a data set; "
@@ -114,14 +114,14 @@ def _config(places: Sequence[_Place]) -> Config:
             found = [f"parts: {first.part.of} there, {place.part.of} here"]
         if found:
             raise FolderError(
-                f"{place.folder}: is no part of what {first.folder} belongs to; it differs in\n  "
+                f"{place.folder}: is not of the same data set as {first.folder}; it differs in\n  "
                 + "\n  ".join(found)
             )
     config = stored_config(first.identity.get("config"), str(first.folder))
     found = differences(first.identity, identity(config))
     if found:
         raise FolderError(
-            f"{first.folder}: merge with what made the parts; this differs in\n  "
+            f"{first.folder}: should be merged by what made the parts; this differs in\n  "
             + "\n  ".join(found)
         )
     return config

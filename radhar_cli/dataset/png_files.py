@@ -1,4 +1,4 @@
-"""The PNG files of a data set: which are missing, and making or taking over those."""
+"""The PNG files of a data set: find missing ones, and write or link them."""
 
 import os
 import shutil

@@ -45,7 +45,7 @@ def split_persons(config: Config) -> Levels:
 
 
 def split_warnings(config: Config, split: Levels) -> list[str]:
-    """Say what parts do without, and which persons share motion files."""
+    """Warn of parts without samples of a class, and of persons that share motion files."""
     rows, found = Rows.of(config), []
     people = config.split.subjects or 0
     for activity in rows.activities:

@@ -56,10 +56,10 @@ def _refusing_damage(where: str) -> Iterator[None]:
         raise FolderError(f"{where}: cannot be read, the file is damaged ({error})") from None
 
 
-class _Watched:
+class _HeapChecked:
     """What HDF5 reads from: a file whose global heaps, where texts lie, are checked as they pass.
 
-    In a heap with a free object of no size HDF5 runs in a circle without end.
+    On a heap with a free object of size 0 HDF5 would loop forever.
     """
 
     def __init__(self, source: Path | bytes) -> None:
@@ -127,7 +127,7 @@ class UntrustedFile(Closing):
         folder: its folder, where it is going to be another than that of `path`.
 
     Raises:
-        FolderError: it is no regular file, or no HDF5 file. So do all methods, for whatever is not
+        FolderError: it is not a regular file, or not HDF5. So do all methods, for whatever is not
             as it should be; the message names file and field.
     """
 
@@ -142,7 +142,7 @@ class UntrustedFile(Closing):
         self._claimed = 0
         self._sources = _Sources() if virtual else None
         try:
-            self._source = _Watched(path if data is None else data)
+            self._source = _HeapChecked(path if data is None else data)
             self.bytes = self._source.size
             self._file = h5py.File(self._source, "r")
             if self._file.id.get_create_plist().get_sizes() != (8, 8):
@@ -150,7 +150,7 @@ class UntrustedFile(Closing):
         except FileNotFoundError:
             raise FolderError(f"{path}: no such file") from None
         except _DAMAGED as error:
-            raise FolderError(f"{path}: is no HDF5 file, or a truncated one ({error})") from None
+            raise FolderError(f"{path}: is not an HDF5 file, or is truncated ({error})") from None
 
     def has_attribute(self, name: str) -> bool:
         """Whether the file itself has an attribute of that name."""
@@ -161,7 +161,7 @@ class UntrustedFile(Closing):
         """A text attribute of the file."""
         where = f"{self.path}: attribute {name}"
         with _refusing_damage(where):
-            # Of what is no text, HDF5 may crash on converting it.
+            # HDF5 may crash on converting what is not text.
             if h5py.check_string_dtype(self._scalar(name, where)) is None:
                 raise FolderError(f"{where}: should be text")
             value = self._file.attrs[name]
@@ -177,7 +177,7 @@ class UntrustedFile(Closing):
         try:
             return parse_json(self.text(name))
         except ValueError as error:
-            raise FolderError(f"{self.path}: attribute {name}: is no JSON ({error})") from None
+            raise FolderError(f"{self.path}: attribute {name}: is not JSON ({error})") from None
 
     def whole_number(self, name: str) -> int:
         """A whole number among the attributes of the file."""

@@ -61,8 +61,8 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Report:
     Args:
         folder: output of `generate`.
         samples: how many to synthesise anew, spread evenly over the rows.
-        motion: where the motion files of its classes lie; None makes no sample of them anew: a
-            stored config may be anyone's, and names no file that is opened.
+        motion: folder of the motion files of its classes; None re-synthesises no sample of them: a
+            stored config is not trusted to name files.
 
     Raises:
         FolderError: there is no readable data set of ours.

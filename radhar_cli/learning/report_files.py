@@ -1,4 +1,4 @@
-"""A report on disk: figures, tables, report.json, and report.html that needs nothing else."""
+"""A report on disk: figures, tables, report.json, and a self-contained report.html."""
 
 import base64
 import json
@@ -106,7 +106,7 @@ class Report:
 
 
 def _files_of(folder: Path) -> list[str]:
-    """Files of the report that a folder holds, itself aside; those of another kind are not ours."""
+    """Figures and tables of the report that a folder holds already."""
     try:
         found = read_json(folder / NUMBERS)["files"]
         return [n for n in found if Path(n).name == n and Path(n).suffix in (".png", ".csv")]

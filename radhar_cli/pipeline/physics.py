@@ -46,7 +46,7 @@ def _fixed(number: Any) -> float:
         TypeError: it is still to be drawn.
     """
     if not isinstance(number, (int, float)):
-        raise TypeError(f"{number!r} should have been drawn; this config is no scene's")
+        raise TypeError(f"{number!r} should have been drawn; this is not the config of a scene")
     return float(number)
 
 

@@ -145,7 +145,7 @@ def map_names(chosen: list[str]) -> tuple[MapName, ...]:
     for name in names:
         if name not in MAP_NAMES:
             hint = did_you_mean(name, MAP_NAMES, "there are " + ", ".join(MAP_NAMES))
-            raise ConfigError(f"{name!r} is no map; {hint}")
+            raise ConfigError(f"{name!r} is not a map; {hint}")
     return tuple(name for name in MAP_NAMES if name in names)
 
 
@@ -217,4 +217,4 @@ def _joint(name: str, joints: tuple[str, ...]) -> int:
     if key in joints:
         return joints.index(key)
     hint = did_you_mean(key, joints, "the joints are " + ", ".join(joints))
-    raise ConfigError(f"{name!r} is no joint; {hint}")
+    raise ConfigError(f"{name!r} is not a joint; {hint}")

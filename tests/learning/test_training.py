@@ -503,6 +503,6 @@ def test_ctrl_c_keeps_the_last_epoch_and_is_quiet(data: Path, tmp_path: Path) ->
     said = process.communicate()[0]
     assert process.returncode == 130, said
     assert "Traceback" not in said
-    assert "the same command goes on" in said
+    assert "the same command resumes" in said
     assert 1 <= len(run.read_history(out)) < 5000
     run.load_best(out)

@@ -13,9 +13,9 @@ from typer.testing import CliRunner
 
 from radhar_cli.cli import program
 from radhar_cli.errors import FolderError
-from radhar_cli.figures.frontier import CostPoint, frontier
 from radhar_cli.scene import scene_numbers
 from radhar_cli.tradeoff import study
+from radhar_cli.tradeoff.figure import CostPoint, frontier
 from radhar_cli.tradeoff.result_cache import ResultCache
 from radhar_cli.tradeoff.scenes import Scenes
 from radhar_cli.tradeoff.settings import sweep, trials

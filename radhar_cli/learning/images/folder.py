@@ -1,4 +1,4 @@
-"""Images in class folders, as torchvision's ImageFolder reads them: ours or anyone's."""
+"""Images in class folders, as torchvision's ImageFolder reads them, from radhar or elsewhere."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -29,7 +29,7 @@ SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp"}
 
 @dataclass(frozen=True)
 class FilePixels:
-    """One file a row.
+    """One image file per row.
 
     Attributes:
         files: [N].
@@ -152,7 +152,7 @@ def _folders(root: Path, inside: Path) -> list[str]:
     """Names of the folders in `root`, of which each may become a class.
 
     Raises:
-        FolderError: a link that leads out of `inside`, or a name that is no plain text.
+        FolderError: a link that leads out of `inside`, or a name that is not plain text.
     """
     names = sorted(p.name for p in _visible(root, inside) if p.is_dir())
     for name in names:
@@ -173,7 +173,7 @@ def image_files(folder: Path, inside: Path) -> list[Path]:
 
 
 def _visible(folder: Path, inside: Path) -> Iterator[Path]:
-    """What lies in a folder; a stranger's tree shows no file that lies outside of it."""
+    """Entries of a folder that are not hidden; a link that leads out of `inside` is refused."""
     for path in folder.iterdir():
         if path.name.startswith("."):
             continue

@@ -125,7 +125,7 @@ def read_bvh(data: bytes, where: str) -> Bvh:
     """
     motion = _MOTION.search(data, 0, MAX_HEADER)
     if motion is None:
-        what = "has no line MOTION" if b"HIERARCHY" in data[:MAX_HEADER] else "is no BVH file"
+        what = "has no line MOTION" if b"HIERARCHY" in data[:MAX_HEADER] else "is not a BVH file"
         raise wrong(where, f"{what} in its first MiB")
     joints = _hierarchy(data[: motion.start()].decode("utf-8", "replace"), where)
     line = data.count(b"\n", 0, motion.start()) + 1
@@ -215,5 +215,5 @@ def _channels(values: list[str], place: str) -> tuple[tuple[str, int], ...]:
         raise wrong(place, "CHANNELS should have a number up to 6 and as many different names")
     for name in names:
         if name not in _CHANNELS:
-            raise wrong(place, f"{name[:30]!r} is no channel such as Xposition or Zrotation")
+            raise wrong(place, f"{name[:30]!r} is not a channel such as Xposition or Zrotation")
     return tuple(_CHANNELS[name] for name in names)

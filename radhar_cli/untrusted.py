@@ -40,11 +40,11 @@ def regular_size(path: str | os.PathLike[str]) -> int:
     Raises:
         OSError: there is none, or it is a folder, a FIFO, a socket or a device, which can block.
     """
-    found = Path(path).stat()
-    if not stat.S_ISREG(found.st_mode):
-        kind = "a folder" if stat.S_ISDIR(found.st_mode) else "a FIFO, a socket or a device"
+    status = Path(path).stat()
+    if not stat.S_ISREG(status.st_mode):
+        kind = "a folder" if stat.S_ISDIR(status.st_mode) else "a FIFO, a socket or a device"
         raise OSError(errno.EINVAL, f"is {kind}; should be a regular file", str(path))
-    return found.st_size
+    return status.st_size
 
 
 def read_text(path: Path, most: int) -> str:

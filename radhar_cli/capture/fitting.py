@@ -125,7 +125,7 @@ def _parts(recording: Recording) -> list[Part]:
     length = recording.segments.duration
     count = max(int(length / PART_S), 1)
     starts = np.linspace(0, max(length - PART_S, 0), min(count, MOST_PARTS))
-    found = []
+    parts = []
     for start in starts.tolist():
         stop = min(start + PART_S, length)
         first, last, segments = pulses_between(recording, start, stop)
@@ -133,8 +133,8 @@ def _parts(recording: Recording) -> list[Part]:
         bins = bins_of_part(recording, waveform, [0], first, last)
         part = _part(bins, segments, waveform)
         if part is not None:
-            found.append(part)
-    return found
+            parts.append(part)
+    return parts
 
 
 def _part(bins: Complex, segments: Any, w: Waveform) -> Part | None:
@@ -198,18 +198,18 @@ def _document(w: Waveform, parts: list[Part], seconds: float) -> dict[str, Any]:
     return document
 
 
-def draw(found: Fit, path: Path) -> None:
+def draw(fit: Fit, path: Path) -> None:
     """Write the figure: noise over range and SNRs, measured beside fitted."""
     from radhar_cli.figures.page import page
 
     figure = page(10.0, 4.0)
     left, right = figure.subplots(1, 2)
-    ranges = found.waveform.range_axis()
-    left.plot(ranges, found.floor_db, label="measured")
+    ranges = fit.waveform.range_axis()
+    left.plot(ranges, fit.floor_db, label="measured")
     left.axhline(0, color="k", linestyle="--", linewidth=0.8, label="fitted: white")
     left.set(xlabel="range (m)", ylabel="noise floor (dB over its median)")
     left.legend()
-    snr = np.array([part.snr_db for part in found.parts])
+    snr = np.array([part.snr_db for part in fit.parts])
     right.hist(snr, bins=min(20, max(3, snr.size // 2)), density=True, label="measured")
     if snr.size >= FEW and snr.std() > 0:
         at = np.linspace(snr.min() - 3, snr.max() + 3, 200)

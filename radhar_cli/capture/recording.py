@@ -178,13 +178,13 @@ def write_recording(
                     data[:, first:stop] = block[:, 0]
                 else:
                     data[:, :, first:stop] = block
-            flags, found = finished() if finished else (np.zeros(info.pulses, np.uint8), [])
+            flags, findings = finished() if finished else (np.zeros(info.pulses, np.uint8), [])
             file["flags"] = flags
             file["flags"].attrs["meaning"] = [f"{LOST}: samples lost", f"{CLIPPED}: clipped"]
             file["segment_start"] = segments.start.astype("f8")
             file["segment_start"].attrs["unit"] = "s"
             file["segment_first"] = segments.first.astype("i8")
-            source = info.source.model_copy(update={"found": [*info.source.found, *found]})
+            source = info.source.model_copy(update={"found": [*info.source.found, *findings]})
             info = info.model_copy(update={"source": source, "segments": len(segments)})
             file.attrs["kind"] = KIND
             file.attrs["schema_version"] = SCHEMA_VERSION

@@ -150,8 +150,8 @@ def _check_sum(wanted: str | None, data: Path) -> None:
     if wanted is None:
         return
     with data.open("rb") as file:
-        found = hashlib.file_digest(file, "sha512").hexdigest()
-    if found != wanted.lower():
+        digest = hashlib.file_digest(file, "sha512").hexdigest()
+    if digest != wanted.lower():
         raise CaptureError(f"{data}: core:sha512: the file is not the one that was described")
 
 
@@ -227,12 +227,12 @@ def _metadata(recording: Recording, sha512: str) -> dict[str, Any]:
 def _annotations(recording: Recording, samples: int) -> list[dict[str, Any]]:
     info, segments = recording.info, recording.segments
     times = segments.times(np.arange(info.pulses))
-    found = []
+    annotations = []
     for one in info.labels:
         first = 0 if one.start_s is None else int(np.searchsorted(times, one.start_s))
         stop = info.pulses if one.stop_s is None else int(np.searchsorted(times, one.stop_s))
         comment = {} if one.person is None else {"core:comment": f"person {one.person}"}
-        found.append(
+        annotations.append(
             {
                 "core:sample_start": first * samples,
                 "core:sample_count": max(stop - first, 1) * samples,
@@ -240,4 +240,4 @@ def _annotations(recording: Recording, samples: int) -> list[dict[str, Any]]:
                 **comment,
             }
         )
-    return sorted(found, key=lambda one: one["core:sample_start"])
+    return sorted(annotations, key=lambda one: one["core:sample_start"])

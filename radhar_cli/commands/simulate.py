@@ -122,11 +122,11 @@ def simulate(
         files=written,
     )
     tell(f"{simulation.activity.label} {simulation.activity.slug}: synthesised in {took:.2f} s")
-    found = scene_file.describe(simulation)["motion_file"]
-    if found is not None:
+    file = scene_file.describe(simulation)["motion_file"]
+    if file is not None:
         tell(
-            f"  motion: {found['path']}, {found['begin_s']:.2f} to {found['end_s']:.2f} s of its "
-            f"{found['lasts_s']:.2f} s; leg length of a person of {found['stature_m']:.2f} m"
+            f"  motion: {file['path']}, {file['begin_s']:.2f} to {file['end_s']:.2f} s of its "
+            f"{file['lasts_s']:.2f} s; leg length of a person of {file['stature_m']:.2f} m"
         )
     for path in written:
         tell(f"  {path}")

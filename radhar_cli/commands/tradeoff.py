@@ -122,7 +122,7 @@ def _accuracies(
     try:
         # Six samples per class teach nothing at any SNR: do not search for one.
         snr_db = CLEAN_DB if scenes.quick else find_snr(experiment)
-        found = measure(experiment, trials(scenes.config()), snr_db)
+        accuracies = measure(experiment, trials(scenes.config()), snr_db)
     finally:
         progress.close()
     learned = {
@@ -132,7 +132,7 @@ def _accuracies(
         "epochs": sizes.epochs,
         "smoke_run": scenes.quick,
     }
-    return found, learned
+    return accuracies, learned
 
 
 tradeoff.__doc__ = "Measure what accuracy costs: budgets, engines, precision, physics.\n" + EXAMPLE

@@ -452,16 +452,16 @@ def _human_problems(c: Config) -> Iterator[Problem]:
 
 def line_warnings(c: Config) -> list[str]:
     """Say which interference lines alias."""
-    found = []
+    warnings = []
     prf = support(c.radar.prf_hz)[0]
     for number, line in enumerate(c.receiver.lines):
         least, most = support(line.doppler_hz)
         if max(-least, most) > prf / 2:
-            found.append(
+            warnings.append(
                 f"receiver.lines.{number}.doppler_hz reaches beyond PRF/2 = {prf / 2:g} Hz: the "
                 "line aliases, to that frequency less a multiple of the PRF"
             )
-    return found
+    return warnings
 
 
 def timing_warnings(c: Config, activities: Iterable[Activity] | None = None) -> list[str]:
@@ -469,7 +469,7 @@ def timing_warnings(c: Config, activities: Iterable[Activity] | None = None) -> 
     from radhar_cli.config.schema import for_activity
 
     length = nominal(c.duration_s)
-    found = []
+    warnings = []
     for activity in c.chosen_activities if activities is None else activities:
         for key in ("seat_start_s", "walk_start_s", "walk_stop_s"):
             number = for_activity(getattr(c.timing, key), activity)
@@ -477,8 +477,8 @@ def timing_warnings(c: Config, activities: Iterable[Activity] | None = None) -> 
                 continue
             start = nominal(number)
             if start >= length:
-                found.append(
+                warnings.append(
                     f"{activity.label} {activity.slug}: timing.{key} = {start:g} s is not before "
                     f"the end of the recording, {length:g} s: its second phase is never seen"
                 )
-    return found
+    return warnings

@@ -1135,9 +1135,9 @@ class Config(Section):
 
     @model_validator(mode="after")
     def _consistent(self) -> "Config":
-        found = list(problems(self))
-        if found:
-            raise PydanticCustomError("across", "{problems}", {"problems": found})
+        mistakes = list(problems(self))
+        if mistakes:
+            raise PydanticCustomError("across", "{problems}", {"problems": mistakes})
         return self
 
     def samples_of(self, activity: Activity) -> int:
@@ -1189,14 +1189,14 @@ class Config(Section):
 
 def class_activities(classes: Mapping[str, ClassConfig]) -> dict[str, Activity]:
     """{slug: activity} of a config's classes: S13 and so on, or one of the twelve from files."""
-    found: dict[str, Activity] = {}
+    activities: dict[str, Activity] = {}
     twelve = {activity.slug: activity for activity in ACTIVITIES}
     number = len(ACTIVITIES)
     for slug, one in classes.items():
         if slug in twelve:
-            found[slug] = replace(twelve[slug], paper=(), human=())
+            activities[slug] = replace(twelve[slug], paper=(), human=())
             continue
         number += 1
         uses = sequence_uses(one.sequence) if isinstance(one, SequenceConfig) else ()
-        found[slug] = Activity(number, slug, human=uses)
-    return found
+        activities[slug] = Activity(number, slug, human=uses)
+    return activities

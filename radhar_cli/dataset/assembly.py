@@ -108,9 +108,9 @@ def assembled(
                 _refer_to_shards(file, config, folder, shards)
             flags = _copy_shards(file, config, shards, own_hash, progress, text, held, virtual)
             held.write("]}\n")
-            found = warnings(config, flags)
-            _root_attributes(file, config, found)
-        yield unfinished, found
+            messages = warnings(config, flags)
+            _root_attributes(file, config, messages)
+        yield unfinished, messages
         table.replace(folder / SCENES)
         write_whole(folder, folder / CONFIG, (CONFIG_HEADING + as_yaml(config)).encode())
         manifest.replace(folder / WORK / MANIFEST)
@@ -304,7 +304,7 @@ def _describe_slow_time(attributes: h5py.AttributeManager) -> None:
     )
 
 
-def _root_attributes(file: h5py.File, config: Config, found: list[dict[str, Any]]) -> None:
+def _root_attributes(file: h5py.File, config: Config, messages: list[dict[str, Any]]) -> None:
     file.attrs["schema_version"] = SCHEMA_VERSION
     file.attrs["config"] = json.dumps(resolved(config))
     file.attrs["config_hash"] = config_hash(config)
@@ -315,7 +315,7 @@ def _root_attributes(file: h5py.File, config: Config, found: list[dict[str, Any]
     file.attrs["seed"] = config.seed
     file.attrs["class_names"] = [activity.label for activity in config.every_class]
     file.attrs["class_slugs"] = [activity.slug for activity in config.every_class]
-    file.attrs["warnings"] = json.dumps(found)
+    file.attrs["warnings"] = json.dumps(messages)
     for library, version in versions().items():
         file.attrs[f"{library}_version"] = version
 

@@ -274,9 +274,9 @@ def _batch_size(left: int, jobs: int, one: int) -> int:
     return max(1, min(most, -(-left // (4 * jobs))))
 
 
-def say_warnings(progress: Progress, found: list[dict[str, Any]]) -> None:
+def say_warnings(progress: Progress, messages: list[dict[str, Any]]) -> None:
     """Say physical warnings."""
-    for warning in found:
+    for warning in messages:
         progress.say(f"warning: {warning['message']}")
 
 

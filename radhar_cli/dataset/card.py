@@ -115,8 +115,8 @@ def owner_licence(folder: Path) -> dict[str, str | list[str]]:
         FolderError: the card cannot be read, or says something else than names of licences.
     """
     path = folder / CARD
-    found = front_matter(path) if path.exists() else {}
-    said = {key: found[key] for key in _LICENCE if found.get(key) is not None}
+    matter = front_matter(path) if path.exists() else {}
+    said = {key: matter[key] for key in _LICENCE if matter.get(key) is not None}
     for key, value in said.items():
         names = value if isinstance(value, list) else [value]
         if not all(isinstance(name, str) and name.isprintable() for name in names):

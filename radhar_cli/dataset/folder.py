@@ -109,11 +109,11 @@ def reserve(
             )
         _name(folder, new)
     else:
-        found = differences(old, new)
-        if found:
+        differing = differences(old, new)
+        if differing:
             raise FolderError(
                 f"{folder}: holds another data set; it differs in\n  "
-                + "\n  ".join(found)
+                + "\n  ".join(differing)
                 + "\nchoose another folder, or --overwrite to start this one over"
             )
     shutil.rmtree(folder / WORK / "unfinished", ignore_errors=True)
@@ -142,18 +142,18 @@ def stored_identity(folder: Path) -> dict[str, Any] | None:
     return checked_identity(read_json(path), path) if path.exists() else None
 
 
-def checked_identity(found: Any, path: Path) -> dict[str, Any]:
+def checked_identity(value: Any, path: Path) -> dict[str, Any]:
     """An identity that was read from a file.
 
     Raises:
         FolderError: it is none.
     """
-    right = isinstance(found, dict) and all(
-        isinstance(found.get(part), dict) for part in ("keys", "versions")
+    right = isinstance(value, dict) and all(
+        isinstance(value.get(part), dict) for part in ("keys", "versions")
     )
     if not right:
         raise FolderError(f"{path}: is damaged: its identity should have keys and versions")
-    identity_there: dict[str, Any] = found
+    identity_there: dict[str, Any] = value
     return identity_there
 
 
@@ -177,9 +177,9 @@ def remove_checks(folder: Path) -> None:
 
 def _remove(place: Path, pattern: str) -> None:
     with suppress(OSError):
-        for found in os.listdir(place):  # noqa: PTH208 - names take less memory than paths
-            if fnmatch(found, pattern):
-                (place / found).unlink(missing_ok=True)
+        for name in os.listdir(place):  # noqa: PTH208 - names take less memory than paths
+            if fnmatch(name, pattern):
+                (place / name).unlink(missing_ok=True)
         place.rmdir()
 
 

@@ -86,7 +86,7 @@ def merge(
 
 def _places(folders: Iterable[Path]) -> list[_Place]:
     """The parts in these folders, in order, each once."""
-    found = {}
+    places = {}
     for folder in folders:
         folder = Path(os.path.abspath(folder))  # noqa: PTH100 - without ..; links stay
         inner = folder / PARTS
@@ -94,35 +94,35 @@ def _places(folders: Iterable[Path]) -> list[_Place]:
             refuse_foreign_work(part)
             named = stored_identity(part)
             if named is not None and isinstance(named.get("part"), str):
-                found[part] = _Place(Part.parse(named["part"], f"{part}: part"), part, named)
+                places[part] = _Place(Part.parse(named["part"], f"{part}: part"), part, named)
             elif not inner.is_dir():
                 raise FolderError(f"{part}: is not a part that `radhar generate --shard` made")
-    if not found:
+    if not places:
         raise FolderError(
             f"{', '.join(map(str, folders))}: no part of a data set; "
             "`radhar generate CONFIG -o OUT --shard K/N` makes one"
         )
-    return sorted(found.values(), key=lambda place: place.part)
+    return sorted(places.values(), key=lambda place: place.part)
 
 
 def _config(places: Sequence[_Place]) -> Config:
     """The config that all parts have."""
     first = places[0]
     for place in places[1:]:
-        found = differences(first.identity, place.identity)
+        differing = differences(first.identity, place.identity)
         if place.part.of != first.part.of:
-            found = [f"parts: {first.part.of} there, {place.part.of} here"]
-        if found:
+            differing = [f"parts: {first.part.of} there, {place.part.of} here"]
+        if differing:
             raise FolderError(
                 f"{place.folder}: is not of the same data set as {first.folder}; it differs in\n  "
-                + "\n  ".join(found)
+                + "\n  ".join(differing)
             )
     config = stored_config(first.identity.get("config"), str(first.folder))
-    found = differences(first.identity, identity(config))
-    if found:
+    differing = differences(first.identity, identity(config))
+    if differing:
         raise FolderError(
             f"{first.folder}: should be merged by what made the parts; this differs in\n  "
-            + "\n  ".join(found)
+            + "\n  ".join(differing)
         )
     return config
 

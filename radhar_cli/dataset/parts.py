@@ -36,10 +36,10 @@ class Part:
         Raises:
             FolderError: it is none.
         """
-        found = _TEXT.fullmatch(text)
-        if found is None or int(found[1]) > int(found[2]):
+        match = _TEXT.fullmatch(text)
+        if match is None or int(match[1]) > int(match[2]):
             raise FolderError(f"{where} {text}: should be K/N with K from 1 to N, such as 3/8")
-        return cls(int(found[2]), int(found[1]))
+        return cls(int(match[2]), int(match[1]))
 
     @classmethod
     def of_array_task(cls, environment: Mapping[str, str]) -> "Part":

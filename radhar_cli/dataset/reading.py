@@ -110,8 +110,8 @@ class Dataset(Closing):
         )
         if not right:
             raise FolderError(f"{self.path}: attribute warnings: should be a list of messages")
-        found: list[dict[str, Any]] = stored
-        return found
+        messages: list[dict[str, Any]] = stored
+        return messages
 
     def entropy(self, name: str) -> Float:
         """Entropies [N] of a map's power, bits."""

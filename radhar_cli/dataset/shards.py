@@ -159,10 +159,10 @@ def listed_shards(folder: Path, rows: range | None = None) -> list[Shard]:
     """Files that have the name of a shard, of these rows if they are given, in row order."""
     place = shard_folder(folder)
     names = (_NAME.fullmatch(path.name) for path in (place.iterdir() if place.is_dir() else ()))
-    found = sorted(Shard(int(name[1]), int(name[2]), folder) for name in names if name)
+    shards = sorted(Shard(int(name[1]), int(name[2]), folder) for name in names if name)
     if rows is None:
-        return found
-    return [one for one in found if rows.start <= one.start < one.stop <= rows.stop]
+        return shards
+    return [one for one in shards if rows.start <= one.start < one.stop <= rows.stop]
 
 
 def check_shards(

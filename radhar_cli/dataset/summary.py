@@ -99,19 +99,19 @@ def _spread(values: np.ndarray[Any, Any]) -> dict[str, float]:
 def _drawn(data: Dataset) -> dict[str, Any]:
     """Histograms of the numbers that differ from sample to sample."""
     units = {field.name: field.unit for field in data.fields}
-    found = {}
+    histograms = {}
     for name, column in data.scene.items():
         values = _known(column)
         if values.size and values.min() < values.max():
             counts, edges = np.histogram(values, HISTOGRAM_BINS)
-            found[name] = {
+            histograms[name] = {
                 "unit": units.get(name, "1"),
                 **_spread(values),
                 "samples": int(values.size),
                 "counts": counts.tolist(),
                 "edges": edges.tolist(),
             }
-    return found
+    return histograms
 
 
 def _known(column: Column) -> np.ndarray[Any, Any]:

@@ -108,7 +108,7 @@ class Report:
 def _files_of(folder: Path) -> list[str]:
     """Figures and tables of the report that a folder holds already."""
     try:
-        found = read_json(folder / NUMBERS)["files"]
-        return [n for n in found if Path(n).name == n and Path(n).suffix in (".png", ".csv")]
+        names = read_json(folder / NUMBERS)["files"]
+        return [n for n in names if Path(n).name == n and Path(n).suffix in (".png", ".csv")]
     except (FolderError, KeyError, TypeError):
         return []

@@ -186,11 +186,11 @@ def reserve_run(folder: Path, metadata: RunMetadata, overwrite: bool) -> None:
             )
         write_whole(folder, folder / ABOUT, (metadata.model_dump_json(indent=2) + "\n").encode())
         return
-    found = differences(read_metadata(folder), metadata)
-    if found:
+    differing = differences(read_metadata(folder), metadata)
+    if differing:
         raise RunError(
             f"{folder}: holds another run; it differs in\n  "
-            + "\n  ".join(found)
+            + "\n  ".join(differing)
             + "\nchoose another folder, or --overwrite to start this one over"
         )
 
@@ -396,8 +396,10 @@ def read_last(folder: Path) -> dict[str, Any] | None:
         _refuse_inflation(path)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            found: dict[str, Any] = torch.load(path, map_location="cpu", weights_only=True)
-        return {key: found[key] for key in ("model", "optimiser", "history", "random", "metadata")}
+            checkpoint: dict[str, Any] = torch.load(path, map_location="cpu", weights_only=True)
+        return {
+            key: checkpoint[key] for key in ("model", "optimiser", "history", "random", "metadata")
+        }
     except _DAMAGED as error:
         raise RunError(
             f"{path}: is damaged, or not a checkpoint of radhar ({first_line(error)}); {BEST} is "

@@ -308,23 +308,23 @@ class _Training:
         return TrainStep(self.config, self.metadata.normalisation, self.plan, self.group)
 
     def _restore(self) -> int:
-        found = run.read_last(self.folder)
-        if found is None:
+        checkpoint = run.read_last(self.folder)
+        if checkpoint is None:
             return 0
         path = self.folder / run_files.LAST
         try:
             other = run.differences(
-                RunMetadata.model_validate_json(found["metadata"]), self.metadata
+                RunMetadata.model_validate_json(checkpoint["metadata"]), self.metadata
             )
             if other:
                 raise run.RunError(f"{path}: is another run's; it differs in {other[0]}")
-            self.history = run.checked_history([Epoch(**row) for row in found["history"]])
+            self.history = run.checked_history([Epoch(**row) for row in checkpoint["history"]])
             if not self.history:
                 raise ValueError("it holds no epoch")
-            self.model.load_state_dict(found["model"])
-            check_state(self.optimiser, found["optimiser"])
-            self.optimiser.load_state_dict(found["optimiser"])
-            torch.set_rng_state(found["random"])
+            self.model.load_state_dict(checkpoint["model"])
+            check_state(self.optimiser, checkpoint["optimiser"])
+            self.optimiser.load_state_dict(checkpoint["optimiser"])
+            torch.set_rng_state(checkpoint["random"])
         except (
             AttributeError,
             IndexError,

@@ -114,24 +114,26 @@ def simulate(
     asked = [*SIGNALS, *maps, "waveform", "antennas", "wall"]
     asked += ["accuracy"] if config.engine.kind == "direct" else []
     asked += ["raw_echo"] if raw else []
-    found = record(scene, asked, [RAW_ECHO], motions=(kept,))
-    accuracy: EchoAccuracy | None = found.products.get("accuracy")
+    recorded = record(scene, asked, [RAW_ECHO], motions=(kept,))
+    accuracy: EchoAccuracy | None = recorded.products.get("accuracy")
     if isinstance(accuracy, Fallback):
         warnings.append(f"computed by the cube (engine.fallback): {accuracy.reason}")
     return Simulation(
         scene=scene,
-        waveform=found["waveform"],
-        antennas=found["antennas"],
-        wall=found["wall"],
+        waveform=recorded["waveform"],
+        antennas=recorded["antennas"],
+        wall=recorded["wall"],
         motion=motion,
         joint=None if joint is None else kept.names[0],
-        maps={name: found[name] for name in maps},
-        signals={name.removeprefix("signal").lstrip("_") or "raw": found[name] for name in SIGNALS},
-        truth=truth(motion, found["antennas"], found["wall"], found["waveform"]),
+        maps={name: recorded[name] for name in maps},
+        signals={
+            name.removeprefix("signal").lstrip("_") or "raw": recorded[name] for name in SIGNALS
+        },
+        truth=truth(motion, recorded["antennas"], recorded["wall"], recorded["waveform"]),
         warnings=warnings,
-        seconds=found.seconds,
+        seconds=recorded.seconds,
         accuracy=accuracy if isinstance(accuracy, Accuracy) else None,
-        beat=found["raw_echo"] if raw else None,
+        beat=recorded["raw_echo"] if raw else None,
     )
 
 
@@ -206,10 +208,10 @@ def activity_of(asked: str | Activity | None, config: Config) -> Activity:
         raise ConfigError(f"activity = {asked!r}: should be a slug, a label or an Activity")
     own = {one.slug: one for one in config.every_class}
     try:
-        found = activity_named(asked, own) if isinstance(asked, str) else asked
+        activity = activity_named(asked, own) if isinstance(asked, str) else asked
     except ValueError as error:
         raise ConfigError(str(error)) from None
-    return own.get(found.slug, found)
+    return own.get(activity.slug, activity)
 
 
 def _joint(name: str, joints: tuple[str, ...]) -> int:

@@ -40,16 +40,18 @@ class SceneDifferences:
     def of(self, setting: Setting) -> dict[str, Any]:
         """How far the setting's data are from its reference, in numbers that JSON can hold."""
         quiet = () if setting.noisy else (QUIET,)
-        found = self._sample((*setting.compared, *quiet))
+        compared = self._sample((*setting.compared, *quiet))
         right = self._sample((*setting.exact, *quiet))
         row: dict[str, Any] = {}
-        if found.signal.shape == right.signal.shape:
-            row["signal_error_db"] = relative_db(found.signal, right.signal)
-        if found.power.shape == right.power.shape:
-            error, worst = map_error_db(found.power, right.power, right.dynamic_range_db)
+        if compared.signal.shape == right.signal.shape:
+            row["signal_error_db"] = relative_db(compared.signal, right.signal)
+        if compared.power.shape == right.power.shape:
+            error, worst = map_error_db(compared.power, right.power, right.dynamic_range_db)
             row |= {"map_error_db": error, "map_error_max_db": worst}
         return (
-            row | image_scores(found.levels, right.levels) | {"measured_error_db": found.engine_db}
+            row
+            | image_scores(compared.levels, right.levels)
+            | {"measured_error_db": compared.engine_db}
         )
 
     def _sample(self, overrides: tuple[str, ...]) -> Sample:

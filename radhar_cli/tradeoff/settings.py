@@ -85,7 +85,7 @@ def _images(config: Config) -> list[Setting]:
 
 def _switches(config: Config) -> list[Setting]:
     fsst, dense = "maps=[fsst]", "processing.fsst_hop_pulses=1"
-    found = [
+    switches = [
         _switch(*_other_motion(config)),
         _switch(*_other_scatterers(config)),
         _over("shadowing", SEGMENTS, WITHOUT_SHADOWS, "segments without shadowing"),
@@ -106,12 +106,12 @@ def _switches(config: Config) -> list[Setting]:
         _over("FSST at every sample", (fsst, dense), (fsst,), "the FSST at the STFT's hop", False),
     ]
     if config.wall is not None:
-        found += [
+        switches += [
             _switch("refracted rays", "wall.rays=refracted"),
             _switch("Fresnel, perpendicular", "wall.fresnel=perpendicular"),
             _switch("Fresnel, parallel", "wall.fresnel=parallel"),
         ]
-    return found
+    return switches
 
 
 def trials(config: Config) -> list[Trial]:
@@ -121,11 +121,11 @@ def trials(config: Config) -> list[Trial]:
     within the chirp is not among them: its data sets would take hours.
     """
     budgets = sorted({-20, -40, -60, -100, round(EngineConfig().tolerance_db)}, reverse=True)
-    found = [Trial(f"{db} dB", budget(db), CUBE) for db in budgets]
-    found.append(Trial("cube", CUBE, CUBE))
+    rows = [Trial(f"{db} dB", budget(db), CUBE) for db in budgets]
+    rows.append(Trial("cube", CUBE, CUBE))
     for more in ("image.size_px=32", "maps=[fsst]"):
         name = more.partition("=")[2].strip("[]") + (" px" if "size" in more else "")
-        found.append(Trial(name, (*DIRECT, more), (*CUBE, more)))
+        rows.append(Trial(name, (*DIRECT, more), (*CUBE, more)))
     switches: dict[str, tuple[str, ...]] = {
         "residual video phase": ("radar.residual_video_phase=true",)
     }
@@ -138,11 +138,11 @@ def trials(config: Config) -> list[Trial]:
             "Fresnel by angle": ("wall.fresnel=perpendicular",),
         }
     for name, overrides in switches.items():
-        found += [
+        rows += [
             Trial(f"without {name}, tested with it", DIRECT, (*CUBE, *overrides)),
             Trial(f"with {name}", (*DIRECT, *overrides), (*CUBE, *overrides)),
         ]
-    return found
+    return rows
 
 
 def _other_motion(config: Config) -> tuple[str, ...]:

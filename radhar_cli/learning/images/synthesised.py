@@ -203,14 +203,14 @@ def streamed_scenes(learned: LearnedFrom, images: ImageSet, rows: Index) -> int:
 
     Scenes are drawn anew from the stream's config, those of the same class and number.
     """
-    found = learned.get("stream")
-    if found is None or images.scenes is None:
+    streamed = learned.get("stream")
+    if streamed is None or images.scenes is None:
         return 0
     try:
-        config = stored_config(found["config"], "the run")
+        config = stored_config(streamed["config"], "the run")
         if config.recorded is not None or len(Rows.of(config)) > MOST_ROWS:
             return 0  # the run may come from elsewhere
-        order = StreamOrder(config, "train", found["balanced"])
+        order = StreamOrder(config, "train", streamed["balanced"])
     except RadharError:
         return 0  # such as classes that are not known here
     known = {activity.slug: activity for activity in order.activities}
@@ -223,7 +223,7 @@ def streamed_scenes(learned: LearnedFrom, images: ImageSet, rows: Index) -> int:
         if slug not in known or not index.isdecimal():
             return False
         number = order.number(known[slug], int(index))
-        if number is None or number >= found["samples"]:
+        if number is None or number >= streamed["samples"]:
             return False
         scenes = (draw_scene(config, known[slug], int(index), attempt) for attempt in attempts)
         there = images.scenes[row] if images.scenes else ""

@@ -82,11 +82,11 @@ class Bvh:
 
     def positions(self, joints: Sequence[int]) -> Float:
         """Positions [frames, len(joints), 3]."""
-        found = stacked(self._blocks(joints), self.where)
-        if len(found) != self.frames:
-            last = self.place(len(found))
-            raise wrong(last, f"ends after {len(found)} frames; 'Frames:' says {self.frames}")
-        return found
+        points = stacked(self._blocks(joints), self.where)
+        if len(points) != self.frames:
+            last = self.place(len(points))
+            raise wrong(last, f"ends after {len(points)} frames; 'Frames:' says {self.frames}")
+        return points
 
     def _blocks(self, wanted: Sequence[int]) -> Iterator[Float]:
         needed = with_ancestors(wanted, self.parents)
@@ -201,12 +201,12 @@ def _named(
 
 def _offset(values: list[str], place: str) -> tuple[float, ...]:
     try:
-        found = tuple(map(float, values))
+        offset = tuple(map(float, values))
     except ValueError:
-        found = ()
-    if len(found) != 3 or not np.isfinite(found).all():
+        offset = ()
+    if len(offset) != 3 or not np.isfinite(offset).all():
         raise wrong(place, "OFFSET should have three numbers")
-    return found
+    return offset
 
 
 def _channels(values: list[str], place: str) -> tuple[tuple[str, int], ...]:

@@ -50,14 +50,14 @@ class Npz:
 
     def positions(self, joints: Sequence[int]) -> Float:
         """Positions [frames, len(joints), 3]."""
-        found: Float = self.values[:, list(joints)].astype(float)
-        bad = np.argwhere(~(np.abs(found) < 1e9))
+        points: Float = self.values[:, list(joints)].astype(float)
+        bad = np.argwhere(~(np.abs(points) < 1e9))
         if bad.size:
             frame, joint, axis = bad[0].tolist()
-            value = found[frame, joint, axis]
+            value = points[frame, joint, axis]
             name = self.names[joints[joint]]
             raise wrong(self.place(frame), f"{name} {'xyz'[axis]} is {value}; should be a number")
-        return found
+        return points
 
     def place(self, frame: int) -> str:
         return f"{self.where}: frame {frame + 1}"

@@ -102,7 +102,7 @@ def build(
         reserve(folder, config, overwrite)
         return _Build(config, folder, jobs, progress, maker).whole(batch_size)
 
-    return _locked(folder.absolute(), work)
+    return _with_lock(folder.absolute(), work)
 
 
 def build_part(
@@ -127,10 +127,10 @@ def build_part(
         reserve(folder, config, overwrite, str(part))
         return _Build(config, folder, jobs, progress).part(part, batch_size)
 
-    return _locked(part.folder(out.absolute()), work)
+    return _with_lock(part.folder(out.absolute()), work)
 
 
-def _locked(folder: Path, work: Callable[[Path], Outcome]) -> Outcome:
+def _with_lock(folder: Path, work: Callable[[Path], Outcome]) -> Outcome:
     try:
         with folder_lock(folder):
             return work(folder)

@@ -116,12 +116,12 @@ def owner_licence(folder: Path) -> dict[str, str | list[str]]:
     """
     path = folder / CARD
     matter = front_matter(path) if path.exists() else {}
-    said = {key: matter[key] for key in _LICENCE if matter.get(key) is not None}
-    for key, value in said.items():
+    licence = {key: matter[key] for key in _LICENCE if matter.get(key) is not None}
+    for key, value in licence.items():
         names = value if isinstance(value, list) else [value]
         if not all(isinstance(name, str) and name.isprintable() for name in names):
             raise FolderError(f"{path}: {key}: should be text on one line, such as cc-by-4.0")
-    return said
+    return licence
 
 
 def card(data: Dataset, more: Mapping[str, Any], reading: str) -> str:
@@ -274,14 +274,14 @@ def _reach(data: Dataset, name: str) -> tuple[float, float]:
 
 
 def _cautions(data: Dataset) -> str:
-    said = [str(warning["message"]) for warning in data.warnings]
+    notes = [str(warning["message"]) for warning in data.warnings]
     if data.config.recorded is None:
-        said.append(
+        notes.append(
             "simulated data: a network that is accurate on them need not be so on a real radar"
         )
     else:
-        said.append("config.yaml names files and persons as the manifest of the recordings does")
-    return "\n".join(f"- {' '.join(message.split())}" for message in said) or "- nothing was found"
+        notes.append("config.yaml names files and persons as the manifest of the recordings does")
+    return "\n".join(f"- {' '.join(message.split())}" for message in notes)
 
 
 def _making(data: Dataset) -> str:

@@ -2,6 +2,8 @@
 
 import os
 from dataclasses import dataclass
+from math import inf
+from pathlib import Path
 
 import torch
 from torch import Tensor
@@ -13,6 +15,7 @@ from radhar_cli.learning.settings import TrainConfig
 
 FLOAT = 4  # bytes
 COPIES = {"adam": 4, "adamw": 4, "sgd": 3}  # weights, gradient, moments
+CGROUP_LIMIT = Path("/sys/fs/cgroup/memory.max")
 MIN_SIDE = 32  # px; no network takes smaller images
 
 
@@ -73,13 +76,17 @@ def step_memory(
 
 
 def total_memory(device: torch.device) -> float:
-    """Bytes of memory that a device has, used or not; infinite where nobody says."""
+    """Bytes of memory that a device, or the container, has, used or not; infinite if unknown."""
     if device.type == "cuda":
         return torch.cuda.get_device_properties(device).total_memory
     try:
-        return float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+        total = float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
     except (AttributeError, ValueError):  # Windows
-        return float("inf")
+        return inf
+    try:
+        return min(total, float(CGROUP_LIMIT.read_text()))
+    except (OSError, ValueError):  # none, or "max"
+        return total
 
 
 def check_memory(

@@ -41,7 +41,7 @@ def test_a_motion_goes_out_and_comes_back(tmp_path: Path) -> None:
         *("--set", f"subject.height_m={scale}", "--set", "classes.from_file.low_pass_hz=null"),
     )
     assert done.returncode == 0, done.stderr
-    assert "by its legs a person of 1.78 m" in done.stdout
+    assert "leg length of a person of 1.78 m" in done.stdout
     with h5py.File(tmp_path / "a/scene.h5") as a, h5py.File(tmp_path / "b/scene.h5") as b:
         p, q = a["truth/positions"][:], b["truth/positions"][:]
     shift = (p - q).mean(axis=(0, 1))

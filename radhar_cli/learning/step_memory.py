@@ -1,7 +1,7 @@
 """Memory that a training step needs at least, counted without allocating it, and what would fit."""
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 from pathlib import Path
 
@@ -36,43 +36,101 @@ class StepMemory:
         return self.state + images * self.image
 
 
-def step_memory(
-    config: TrainConfig, classes: int, size: tuple[int, int], precision: torch.dtype
-) -> StepMemory:
-    """Least memory of a step: what is alive at once when its forward pass ends.
+@dataclass(frozen=True)
+class Step:
+    """One forward and backward pass of a run.
 
-    Args:
+    Attributes:
         config: of the run.
         classes: outputs of the network.
         size: (H, W) of the images, px.
+        images: of the pass.
         precision: of the forward pass; bfloat16 keeps half the bytes.
-
-    Raises:
-        ModelError: no such network, or images that it cannot take.
     """
-    with torch.device("meta"):
-        model = build_model(config.model, classes, size)
 
-    def kept(images: int) -> int:
-        storages = dict[int, int]()
-        alive = list[Tensor]()  # no address of a storage comes twice
+    config: TrainConfig
+    classes: int
+    size: tuple[int, int]
+    images: int
+    precision: torch.dtype
 
-        def keep(tensor: Tensor) -> Tensor:
-            if not isinstance(tensor, Parameter):
-                alive.append(tensor)
-                storage = tensor.untyped_storage()
-                storages[storage._cdata] = storage.nbytes()
-            return tensor
+    def memory(self) -> StepMemory:
+        """Least memory: what is alive at once when the forward pass ends.
 
-        with torch.autograd.graph.saved_tensors_hooks(keep, lambda tensor: tensor):
-            model(torch.zeros(images, 3, *size, device="meta"))
-        return sum(storages.values())
+        Raises:
+            ModelError: no such network, or images that it cannot take.
+        """
+        with torch.device("meta"):
+            model = build_model(self.config.model, self.classes, self.size)
+        two, four = (_kept(model, torch.zeros(n, 3, *self.size, device="meta")) for n in (2, 4))
+        halves = 1 if self.precision == torch.float32 else 2
+        image, shared = (four - two) // 2 // halves, (2 * two - four) // halves
+        state = COPIES[self.config.optimiser] * FLOAT * parameter_count(model)
+        return StepMemory(state + shared, image)
 
-    two, four = kept(2), kept(4)
-    image, shared = (four - two) // 2, 2 * two - four
-    if precision != torch.float32:
-        image, shared = image // 2, shared // 2
-    return StepMemory(COPIES[config.optimiser] * FLOAT * parameter_count(model) + shared, image)
+    def check(self, device: torch.device) -> None:
+        """Refuse a step that needs more memory than a device has.
+
+        Raises:
+            MachineError: says what it needs, and what would fit.
+            ModelError: no such network, or images that it cannot take.
+        """
+        total = total_memory(device)
+        if self.memory().of(self.images) > total:
+            advice = self.advice(total)
+            raise MachineError(f"{device.type} has {_gib(total)} of memory; {advice}")
+
+    def advice(self, limit: float | None = None) -> str:
+        """What the step needs, and the micro batch, or else the image size, that fits in `limit`.
+
+        Args:
+            limit: bytes; None is what half the images need.
+        """
+        memory, fewer = self.memory(), self.images
+        limit = memory.of(self.images // 2) if limit is None else limit
+        while fewer > 2 and memory.of(fewer) > limit:
+            fewer = max(2, fewer // 2)
+        if memory.of(fewer) <= limit:
+            fits = f"--set micro_batch={fewer} needs {_gib(memory.of(fewer))}"
+        else:
+            fits = replace(self, images=fewer)._smaller_images(limit)
+        return (
+            f"a step of {self._described()} needs at least {_gib(memory.of(self.images))}; {fits}"
+        )
+
+    def _smaller_images(self, limit: float) -> str:
+        step = self
+        while min(step.size) > MIN_SIDE:
+            # Half a side, on the grid of the strides of networks.
+            height, width = (max(MIN_SIDE, side // 2 // MIN_SIDE * MIN_SIDE) for side in step.size)
+            step = replace(step, size=(height, width))
+            try:
+                needed = step.memory().of(step.images)
+            except ModelError:  # a network that takes images of one size alone
+                break
+            if needed <= limit:
+                return f"{step._described()} (image.size_px of the data) need {_gib(needed)}"
+        return "a smaller model may fit"
+
+    def _described(self) -> str:
+        return f"{self.images} images of {self.size[0]} x {self.size[1]} px"
+
+
+def _kept(model: torch.nn.Module, images: Tensor) -> int:
+    """Bytes that a forward pass keeps for the backward pass, parameters aside."""
+    storages = dict[int, int]()
+    alive = list[Tensor]()  # no address of a storage comes twice
+
+    def keep(tensor: Tensor) -> Tensor:
+        if not isinstance(tensor, Parameter):
+            alive.append(tensor)
+            storage = tensor.untyped_storage()
+            storages[storage._cdata] = storage.nbytes()
+        return tensor
+
+    with torch.autograd.graph.saved_tensors_hooks(keep, lambda tensor: tensor):
+        model(images)
+    return sum(storages.values())
 
 
 def total_memory(device: torch.device) -> float:
@@ -87,84 +145,6 @@ def total_memory(device: torch.device) -> float:
         return min(total, float(CGROUP_LIMIT.read_text()))
     except (OSError, ValueError):  # none, or "max"
         return total
-
-
-def check_memory(
-    config: TrainConfig,
-    classes: int,
-    size: tuple[int, int],
-    images: int,
-    precision: torch.dtype,
-    device: torch.device,
-) -> None:
-    """Refuse a step that needs more memory than a device has; arguments as of `smaller_step`.
-
-    Raises:
-        MachineError: says what it needs, and what would fit.
-        ModelError: no such network, or images that it cannot take.
-    """
-    total = total_memory(device)
-    if step_memory(config, classes, size, precision).of(images) > total:
-        smaller = smaller_step(config, classes, size, images, precision, total)
-        raise MachineError(f"{device.type} has {_gib(total)} of memory; {smaller}")
-
-
-def smaller_step(
-    config: TrainConfig,
-    classes: int,
-    size: tuple[int, int],
-    images: int,
-    precision: torch.dtype,
-    limit: float | None = None,
-) -> str:
-    """What a step needs, and which micro batch, or else which image size, needs at most `limit`.
-
-    Args:
-        config: of the run.
-        classes: outputs of the network.
-        size: (H, W) of the images, px.
-        images: of one pass.
-        precision: of the forward pass.
-        limit: bytes; None is what half the images need.
-    """
-    needs = step_memory(config, classes, size, precision)
-    limit = needs.of(images // 2) if limit is None else limit
-    fewer = images
-    while fewer > 2 and needs.of(fewer) > limit:
-        fewer = max(2, fewer // 2)
-    if needs.of(fewer) <= limit:
-        advice = f"--set micro_batch={fewer} needs {_gib(needs.of(fewer))}"
-    else:
-        advice = _smaller_images(config, classes, size, fewer, precision, limit)
-    return f"a step of {_images(images, size)} needs at least {_gib(needs.of(images))}; {advice}"
-
-
-def _smaller_images(
-    config: TrainConfig,
-    classes: int,
-    size: tuple[int, int],
-    images: int,
-    precision: torch.dtype,
-    limit: float,
-) -> str:
-    while min(size) > MIN_SIDE:
-        size = _halved(size[0]), _halved(size[1])
-        try:
-            needed = step_memory(config, classes, size, precision).of(images)
-        except ModelError:  # a network that takes images of one size alone
-            break
-        if needed <= limit:
-            return f"{_images(images, size)} (image.size_px of the data) need {_gib(needed)}"
-    return "a smaller model may fit"
-
-
-def _halved(side: int) -> int:
-    """Half a side, on the grid of the strides of networks."""
-    return max(MIN_SIDE, side // 2 // MIN_SIDE * MIN_SIDE)
-
-
-def _images(count: int, size: tuple[int, int]) -> str:
-    return f"{count} images of {size[0]} x {size[1]} px"
 
 
 def _gib(memory: float) -> str:

@@ -57,7 +57,7 @@ from radhar_cli.learning.run_summary import write_run_summary
 from radhar_cli.learning.schedule import rate
 from radhar_cli.learning.settings import AugmentConfig, TrainConfig
 from radhar_cli.learning.starting_point import StartingPoint, start_from
-from radhar_cli.learning.step_memory import check_memory, smaller_step
+from radhar_cli.learning.step_memory import Step
 from radhar_cli.progress import Messages
 from radhar_cli.randomness import TRAINING, stream
 
@@ -150,8 +150,8 @@ def train(
     with process_group(device) as group, folder_lock(folder) if group.is_main else nullcontext():
         plan = choose_execution_plan(config, device, synthesises=training_stream is not None)
         images_a_pass = min(plan.micro_batch, -(-config.batch_size // group.size))
-        step = config, len(images.classes), images.size, images_a_pass, plan.precision
-        check_memory(*step, device)
+        step = Step(config, len(images.classes), images.size, images_a_pass, plan.precision)
+        step.check(device)
         try:
             return _Training.prepared(
                 config, images, folder, plan, group, progress, overwrite, start, training_stream
@@ -159,7 +159,7 @@ def train(
         except RuntimeError as error:
             if not out_of_memory(error):
                 raise
-            raise TrainingError(f"out of memory on {device.type}: {smaller_step(*step)}") from None
+            raise TrainingError(f"out of memory on {device.type}: {step.advice()}") from None
 
 
 def checked_images(

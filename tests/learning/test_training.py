@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -40,7 +41,7 @@ from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.scan import scan
 from radhar_cli.learning.models.build import build_model
 from radhar_cli.learning.process_group import Group
-from radhar_cli.learning.step_memory import smaller_step
+from radhar_cli.learning.step_memory import Step
 from radhar_cli.learning.training import TrainingError, _Training, checked_images
 
 CPU = torch.device("cpu")
@@ -293,20 +294,17 @@ def test_memory_of_a_step_is_what_autograd_keeps(name: str) -> None:
         if not isinstance(t, nn.Parameter)
     }
     weights = sum(p.numel() * 4 for p in model.parameters())
-    needs = step_memory.step_memory(config, 3, size, torch.float32)
+    needs = Step(config, 3, size, 6, torch.float32).memory()
     assert needs.of(6) == pytest.approx(4 * weights + sum(storages.values()), rel=0.01)
 
 
 def test_what_would_fit_fits() -> None:
-    config = settings(model="smallnet")
-    needs = step_memory.step_memory(config, 12, (8192, 8192), torch.float32)
-    fewer = smaller_step(config, 12, (8192, 8192), 128, torch.float32, needs.of(20))
-    assert "--set micro_batch=16 " in fewer
-    smaller = smaller_step(config, 12, (8192, 8192), 128, torch.float32, needs.of(2) / 60)
-    assert "; 2 images of 1024 x 1024 px (image.size_px of the data) " in smaller
-    assert smaller_step(config, 12, (64, 64), 2, torch.float32, 1e4).endswith(
-        "smaller model may fit"
-    )
+    step = Step(settings(model="smallnet"), 12, (8192, 8192), 128, torch.float32)
+    needs = step.memory()
+    assert "--set micro_batch=16 " in step.advice(needs.of(20))
+    smaller = step.advice(needs.of(2) / 60)
+    assert "; 2 images of 1024 x 1024 px (image.size_px of the data) need " in smaller
+    assert replace(step, size=(64, 64), images=2).advice(1e4).endswith("smaller model may fit")
 
 
 def test_clipping_limits_the_gradient(data: Path, tmp_path: Path) -> None:

@@ -78,7 +78,7 @@ def _class_problems(c: Config) -> Iterator[Problem]:
 
 
 def _unknown_activities(c: Config) -> Iterator[Problem]:
-    """Names under `per_activity` that are no activity, of one's own neither."""
+    """Names under `per_activity` that are neither an activity nor a user-defined class."""
     from radhar_cli.config.schema import PerActivity, class_activities
 
     own = class_activities(c.classes)

@@ -916,8 +916,8 @@ def possible_maps(processing: ProcessingConfig) -> tuple[MapName, ...]:
     return tuple(name for name in MAP_NAMES if not (gated and name.startswith("fsst")))
 
 
-# Who walks begins far away, as 4 s of it are 5 m, and passes the radar 2 m beside it; classes of
-# one's own may walk. All within the half-band of 7.5 m that the default radar has.
+# A walker starts far away, as 4 s of walking are 5 m, and passes the radar at 2 m; user-defined
+# classes may walk too. All within the half-band of 7.5 m of the default radar.
 _NEAR = (a.slug for a in ACTIVITIES if not a.walks)
 _HUMAN_RANGE = PerActivity[Coordinate](
     per_activity={
@@ -1055,7 +1055,7 @@ class Config(Section):
     samples_per_class: SamplesBy = 300
     """May differ: {per_activity: {default: 300, walking: 100}}."""
     classes: Annotated[dict[str, ClassConfig], Field(max_length=200)] = {}  # labels are uint8
-    """One's own: {name: {sequence: [...]}} of movements, {name: [walk/*.bvh]} of files."""
+    """Your own: {name: {sequence: [...]}} of movements, {name: [walk/*.bvh]} of files."""
     activities: Literal["all"] | tuple[str, ...] = "all"
     """The twelve and those of `classes`; or a list of slugs or labels, [walking, S12]."""
     duration_s: Annotated[Positive, within(1e-9, 1e7, "s")] = 4.0
@@ -1111,7 +1111,7 @@ class Config(Section):
             raise PydanticCustomError("activity", "{what}", {"what": str(error)}) from None
         if not chosen or len({a.slug for a in chosen}) != len(chosen):
             raise PydanticCustomError("activity", "should name at least one activity, each once")
-        # One's own last: those of `classes`, then added ones.
+        # User-defined ones last: those of `classes`, then those of `add_activity`.
         return tuple(a.slug for a in sorted(chosen, key=lambda a: (a.motion is not None, a.number)))
 
     @field_validator("maps")
@@ -1159,7 +1159,7 @@ class Config(Section):
 
     @property
     def chosen_activities(self) -> tuple[Activity, ...]:
-        """The activities to build: S1 to S12, then one's own, numbered from 13 in their order.
+        """The activities to build: S1 to S12, then user-defined ones from 13 on, in order.
 
         All of them are those of `classes` alone with `motion.model: file`.
         """

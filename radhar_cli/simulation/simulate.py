@@ -193,7 +193,7 @@ RAW_ECHO = Product(
 
 
 def activity_of(asked: str | Activity | None, config: Config) -> Activity:
-    """The activity, with its number in this config where it is a class of one's own.
+    """The activity, with its number in this config where it is a user-defined class.
 
     Raises:
         ConfigError: there is none of that name, none is named and the config has several, or it is

@@ -1,4 +1,4 @@
-"""A data set with two of the twelve and two classes of one's own, from files and from the model."""
+"""A data set with two of the twelve and two user-defined classes, from files and from the model."""
 
 import shutil
 from collections import OrderedDict

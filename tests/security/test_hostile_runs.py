@@ -139,7 +139,7 @@ def _claims(path: Path) -> None:
 
 
 FILES: dict[str, tuple[Callable[[Path], None], str]] = {
-    "not finite": (weights(lambda w: w["head.bias"].fill_(torch.nan)), "head.bias holds what is"),
+    "not finite": (weights(lambda w: w["head.bias"].fill_(torch.nan)), "head.bias holds a number"),
     "double": (weights(lambda w: w.update({"head.bias": torch.zeros(2).double()})), "F64"),
     "eight bits": (weights(lambda w: w.update({"head.bias": torch.zeros(2).char()})), "I8"),
     "too large": (weights(lambda w: w.update({"head.bias": torch.zeros(9)})), "(9,)"),

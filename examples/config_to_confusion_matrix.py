@@ -2,7 +2,7 @@
 
     python examples/config_to_confusion_matrix.py [FOLDER]
 
-Three classes, a small network, about a minute; the same command goes on where it was stopped.
+Three classes, a small network, about a minute; the same command resumes where it stopped.
 Needs `pip install 'radhar[train]'`.
 """
 

@@ -3,7 +3,7 @@
 The packages, in the order in which imports go; docs/architecture.md has the way of the data:
 
     motion        `Motion`: scatterers over time; the paper's model, the human one, their skeleton
-    activity      the twelve activities, and classes of one's own
+    activity      the twelve activities, and user-defined classes
     config        the schema of the YAML file, its checks, and how it is read
     scene         (config, class, index) -> one scene: a config with nothing left to draw
     radar         waveform, propagation (delay, amplitude), wall (refraction, Fresnel)
@@ -14,6 +14,7 @@ The packages, in the order in which imports go; docs/architecture.md has the way
     simulation    one scene with its truth, and its files
     figures       panels, animations, confusion matrices, curves
     dataset       many scenes -> shards -> dataset.h5 and PNG; resume, verify, estimate
+    capture       recordings of real radars -> maps, fitted configs, data sets
     learning      images -> trained networks and reports; the only package with PyTorch
     tradeoff      what accuracy costs
     commands      one file per subcommand of the `radhar` program

@@ -73,7 +73,7 @@ class Activity:
     """One class of a data set.
 
     Attributes:
-        number: 1 to 12, the paper's S number; 13 and more for classes of one's own.
+        number: 1 to 12, the paper's S number; 13 and more for user-defined classes.
         slug: name used in folders and on the command line.
         paper: dotted config keys of the motion and timing numbers this activity depends on,
             besides the position and the heading, which all of them use; of the paper's model.
@@ -203,14 +203,14 @@ def own_activities() -> tuple[Activity, ...]:
 
 
 def know_activities(own: Iterable[Activity]) -> None:
-    """Make the classes of one's own known that another process knows."""
+    """Register the user-defined classes of another process."""
     for activity in own:
         if activity.motion is not None and activity not in own_activities():
             add_activity(activity.slug, activity.motion, activity.paper)
 
 
 def is_new_slug(slug: str) -> bool:
-    """Whether a class of one's own may have this name: none of the twelve's, fit for a folder."""
+    """Whether a user-defined class may have this name: not one of the twelve, fit for a folder."""
     taken = slug in _BY_NAME or slug == DEFAULT
     return not taken and slug.isascii() and slug.isidentifier() and slug == slug.lower()
 
@@ -237,4 +237,4 @@ def activity_named(name: str, classes: Mapping[str, Activity] | None = None) -> 
         if near
         else "the slugs are " + ", ".join(slugs)
     )
-    raise ValueError(f"{name!r} is no activity; {hint}")
+    raise ValueError(f"{name!r} is not an activity; {hint}")

@@ -1,4 +1,4 @@
-"""What long work tells whoever started it."""
+"""Messages and progress of long work."""
 
 from typing import Protocol
 

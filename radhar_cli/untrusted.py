@@ -40,18 +40,18 @@ def regular_size(path: str | os.PathLike[str]) -> int:
     Raises:
         OSError: there is none, or it is a folder, a FIFO, a socket or a device, which can block.
     """
-    found = Path(path).stat()
-    if not stat.S_ISREG(found.st_mode):
-        kind = "a folder" if stat.S_ISDIR(found.st_mode) else "a FIFO, a socket or a device"
+    status = Path(path).stat()
+    if not stat.S_ISREG(status.st_mode):
+        kind = "a folder" if stat.S_ISDIR(status.st_mode) else "a FIFO, a socket or a device"
         raise OSError(errno.EINVAL, f"is {kind}; should be a regular file", str(path))
-    return found.st_size
+    return status.st_size
 
 
 def read_text(path: Path, most: int) -> str:
     """A regular file of at most `most` bytes as UTF-8.
 
     Raises:
-        OSError: it cannot be read, is larger, or is no regular file.
+        OSError: it cannot be read, is larger, or is not a regular file.
         UnicodeDecodeError: it is not UTF-8.
     """
     regular_size(path)
@@ -72,7 +72,7 @@ def read_json(path: Path) -> Any:
         return parse_json(read_text(path, MAX_JSON))
     except (OSError, ValueError) as error:
         told = getattr(error, "strerror", None) or error
-        raise FolderError(f"{path}: is damaged, or not radhar's ({told})") from None
+        raise FolderError(f"{path}: is damaged, or is not from radhar ({told})") from None
 
 
 def parse_json(text: str) -> Any:

@@ -2,7 +2,7 @@
 
     python scripts/reproduce_paper.py --scale smoke|cpu|full [--only NAME ...] [--report-only]
 
-Every step is a `radhar` command and goes on where it was stopped; run the same line again. A run
+Every step is a `radhar` command and resumes where it was stopped; run the same line again. A run
 that is not there is left out of the tables and named. See SCALES for what each scale does.
 """
 

@@ -12,8 +12,8 @@ import pytest
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "radhar_cli"
 
-# Data flows down this list; a room imports only from itself and from rooms above it.
-ROOMS = (
+# Data flows down this list; a package imports only from itself and from those above it.
+PACKAGES = (
     "arrays",
     "errors",
     "rounding",
@@ -65,7 +65,7 @@ def files() -> list[Path]:
     return sorted(PACKAGE.rglob("*.py"))
 
 
-def room(path: Path) -> str:
+def package(path: Path) -> str:
     first = path.relative_to(PACKAGE).parts[0]
     return first.removesuffix(".py")
 
@@ -78,7 +78,7 @@ def test_imports_never_turn_back() -> None:
         if path != PACKAGE / "__init__.py"
         for module in imports(path)
         if module.startswith("radhar_cli.")
-        and ROOMS.index(module.split(".")[1]) > ROOMS.index(room(path))
+        and PACKAGES.index(module.split(".")[1]) > PACKAGES.index(package(path))
     ]
     assert not back
 
@@ -100,15 +100,15 @@ LIBRARIES: dict[str, set[str]] = {
 }
 
 
-def test_libraries_stay_in_their_rooms() -> None:
+def test_libraries_stay_in_their_packages() -> None:
     for library, allowed in LIBRARIES.items():
-        users = {room(p) for p in files() if any(m.split(".")[0] == library for m in imports(p))}
+        users = {package(p) for p in files() if any(m.split(".")[0] == library for m in imports(p))}
         assert users <= allowed, library
 
 
 def test_physics_reads_no_config_objects() -> None:
     for path in files():
-        if room(path) in ("motion", "radar", "echo", "processing", "receiver"):
+        if package(path) in ("motion", "radar", "echo", "processing", "receiver"):
             mine = {m for m in imports(path) if m.startswith("radhar_cli.config")}
             assert mine <= {"radhar_cli.rounding"}, path
 

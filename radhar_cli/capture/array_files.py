@@ -1,6 +1,6 @@
 """Captures that are arrays: .npy, .npz, .mat (v5 and v7.3) and HDF5.
 
-Anyone may have written them. Nothing is unpickled; objects of MATLAB are refused; what is packed is
+They are not trusted. Nothing is unpickled; objects of MATLAB are refused; what is packed is
 unpacked piece by piece and no further than its header promises.
 """
 
@@ -84,7 +84,7 @@ def open_arrays(path: Path, settings: CaptureSettings, scratch: Path) -> Source:
         array, times = _mat5(path, settings)
     else:
         raise CaptureError(
-            f"{path}: is no capture that radhar reads; should be .npy, .npz, .mat, HDF5, SigMF, "
+            f"{path}: is not a capture that radhar reads; should be .npy, .npz, .mat, HDF5, SigMF, "
             "or .bin of a DCA1000 with --radar"
         )
     return as_source(path, array, settings, times)
@@ -132,8 +132,8 @@ def as_source(
     def read(first: int, stop: int) -> Parts:
         low, high = first * alternate, stop * alternate
         if "frame" in sizes:
-            found = [chirps_of(*where) for where in _by_frame(low, high, per_frame)]
-            block = found[0] if len(found) == 1 else np.concatenate(found, axis=3)
+            chunks = [chirps_of(*where) for where in _by_frame(low, high, per_frame)]
+            block = chunks[0] if len(chunks) == 1 else np.concatenate(chunks, axis=3)
         else:
             block = chirps_of(None, slice(low, high))
         if alternate > 1:
@@ -272,7 +272,7 @@ def check_npz(archive: zipfile.ZipFile) -> dict[str, tuple[tuple[int, ...], str]
     Raises:
         ValueError: one is packed in another way than NumPy's, or too much.
     """
-    found: dict[str, tuple[tuple[int, ...], str]] = {}
+    arrays: dict[str, tuple[tuple[int, ...], str]] = {}
     for one in archive.infolist():
         if one.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
             raise ValueError(f"{one.filename} is packed in a way that NumPy does not use")
@@ -280,8 +280,8 @@ def check_npz(archive: zipfile.ZipFile) -> dict[str, tuple[tuple[int, ...], str]
             raise ValueError(f"{one.filename} is packed {MAX_PACKING}-fold or more")
         with archive.open(one) as file:
             shape, _, dtype = _header(file)
-        found[one.filename.removesuffix(".npy")] = shape, dtype.kind
-    return found
+        arrays[one.filename.removesuffix(".npy")] = shape, dtype.kind
+    return arrays
 
 
 def _unpacked(archive: zipfile.ZipFile, member: zipfile.ZipInfo, target: Path) -> Path:
@@ -320,15 +320,19 @@ def _hdf5(path: Path, settings: CaptureSettings, of_matlab: bool) -> tuple[Array
     return _stored(file.samples(name), of_matlab), times
 
 
-def _stored(found: Samples, turned: bool) -> Array:
+def _stored(samples: Samples, turned: bool) -> Array:
     if not turned:
-        return Array(found.where, found.shape, found.number, found.parts, found.read, found.chunk)
+        return Array(
+            samples.where, samples.shape, samples.number, samples.parts, samples.read, samples.chunk
+        )
 
     def read(key: tuple[slice, ...]) -> NDArray[Any]:
-        block = found.read(key[::-1])
+        block = samples.read(key[::-1])
         return block.transpose(*range(len(key) - 1, -1, -1), len(key))
 
-    return Array(found.where, found.shape[::-1], found.number, found.parts, read, found.chunk[::-1])
+    return Array(
+        samples.where, samples.shape[::-1], samples.number, samples.parts, read, samples.chunk[::-1]
+    )
 
 
 def _mat5(path: Path, settings: CaptureSettings) -> tuple[Array, Float | None]:

@@ -106,10 +106,10 @@ def maps_of(
     turn = unit_phasor(np.arange(waveform.n_bins)[:, None] * (referred.n0 / waveform.n_fft))
     doppler = [name for name in names if name != "rtm"]
     stretches = [*_stretches(segments, canceller, config, doppler, recording, notes)]
-    found: dict[str, list[list[PowerMap]]] = {name: [] for name in names}
+    powers: dict[str, list[list[PowerMap]]] = {name: [] for name in names}
     for one in bins:
         if "rtm" in names:
-            found["rtm"].append([_range_time(one, segments, ranges, canceller, config)])
+            powers["rtm"].append([_range_time(one, segments, ranges, canceller, config)])
         made = []
         for part, frames in stretches if doppler else []:
             t = segments.times(np.arange(part.start, part.stop))
@@ -128,8 +128,8 @@ def maps_of(
                 )
             )
         for name in doppler:
-            found[name].append([maps[name] for maps in made])
-    return Maps(_joined(found), track, referred.f0, list(dict.fromkeys(notes)))
+            powers[name].append([maps[name] for maps in made])
+    return Maps(_joined(powers), track, referred.f0, list(dict.fromkeys(notes)))
 
 
 def pulses_between(
@@ -287,10 +287,10 @@ def _nearest(values: Float, wanted: Float) -> Index:
     return np.where(nearer, before, after).astype(np.intp)
 
 
-def _joined(found: dict[str, list[list[PowerMap]]]) -> dict[str, PowerMap]:
+def _joined(powers: dict[str, list[list[PowerMap]]]) -> dict[str, PowerMap]:
     """Powers of all receivers added up, stretches one after the other on an even grid of times."""
     joined = {}
-    for name, receivers in found.items():
+    for name, receivers in powers.items():
         summed = [
             PowerMap(sum(one.power for one in same), same[0].rows, same[0].columns)
             for same in zip(*receivers, strict=True)
@@ -340,12 +340,12 @@ def _of_slow_time(
     f0, prf = recording.info.carrier_hz, recording.info.prf_hz
     canceller, x = _before(config, prf, f0, x)
     stretches = [*_stretches(segments, canceller, config, names, recording, notes)]
-    found: dict[str, list[list[PowerMap]]] = {name: [] for name in names}
+    powers: dict[str, list[list[PowerMap]]] = {name: [] for name in names}
     for one in x:
         made = []
         for part, frames in stretches:
             t0 = float(segments.times(np.array([part.start]))[0]) + canceller.delay / prf
             made.append(process(Signal(canceller(one[part]), t0, prf, f0), config, names, **frames))
         for name in names:
-            found[name].append([maps[name] for maps in made])
-    return Maps(_joined(found), None, f0, list(dict.fromkeys(notes)))
+            powers[name].append([maps[name] for maps in made])
+    return Maps(_joined(powers), None, f0, list(dict.fromkeys(notes)))

@@ -82,16 +82,16 @@ def whole_capture(paths: Sequence[Path]) -> tuple[Path, ...]:
     Raises:
         CaptureError: one in between is missing.
     """
-    found = _NUMBERED.fullmatch(paths[0].name)
-    if len(paths) > 1 or found is None:
+    numbered = _NUMBERED.fullmatch(paths[0].name)
+    if len(paths) > 1 or numbered is None:
         return tuple(paths)
-    stem, _, suffix = found.groups()
+    stem, _, suffix = numbered.groups()
     numbers = {
         int(match[2]): other
         for other in paths[0].parent.iterdir()
         if (match := _NUMBERED.fullmatch(other.name)) and (match[1], match[3]) == (stem, suffix)
     }
-    if int(found[2]) != 0:
+    if int(numbered[2]) != 0:
         return tuple(paths)
     missing = [n for n in range(max(numbers)) if n not in numbers]
     if missing:

@@ -1,4 +1,4 @@
-"""What the samples themselves tell: offset binary, sign of the beat, clipping, lost packets."""
+"""Read off the samples themselves: offset binary, sign of the beat, clipping, lost packets."""
 
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -156,11 +156,11 @@ def lost(values: Parts) -> NDArray[np.bool_]:
     summed = np.cumsum(zero, axis=1, dtype=np.int32)
     inside = summed[:, run - 1 :].copy()
     inside[:, 1:] -= summed[:, :-run]
-    found: NDArray[np.bool_] = (inside == run).any(axis=(0, 1))
+    missing: NDArray[np.bool_] = (inside == run).any(axis=(0, 1))
     # The rest of a gap that reaches into the pulse before or after.
-    beside = np.convolve(found, [1, 1, 1])[1:-1] > 0
-    found |= beside & (summed[:, -1].max(axis=0) >= FEWEST)
-    return found
+    beside = np.convolve(missing, [1, 1, 1])[1:-1] > 0
+    missing |= beside & (summed[:, -1].max(axis=0) >= FEWEST)
+    return missing
 
 
 def full_scale(dtype: np.dtype[Any], offset: int, bits: int) -> tuple[int, int] | None:

@@ -1,4 +1,4 @@
-"""What can be read off recordings, as a config to simulate by.
+"""Estimate a config to simulate by from recordings.
 
 A receiver's noise is the floor of its range-Doppler maps; the person is what moves above it. With
 range bins S_k = sum_n s[n] exp(...) of N samples, white noise of variance sigma^2 has |S_k|^2 =
@@ -33,7 +33,7 @@ HANN_GAIN = 0.5**2 + 2 * 0.25**2  # of white noise, by hann_in_range
 
 
 class Part(NamedTuple):
-    """What a few seconds of a recording tell.
+    """Estimates from a few seconds of a recording.
 
     Attributes:
         snr_db: of what moves, per raw sample.
@@ -53,7 +53,7 @@ class Part(NamedTuple):
 
 @dataclass(frozen=True)
 class Fit:
-    """What was read off recordings.
+    """Estimates from all recordings.
 
     Attributes:
         document: keys of a config.
@@ -94,7 +94,7 @@ def fit(paths: Sequence[Path]) -> Fit:
 
     Raises:
         CaptureError: they are of different radars, slow time, or nothing moves in any.
-        FolderError: one is no recording.
+        FolderError: one is not a recording.
     """
     parts: list[Part] = []
     waveform: Waveform | None = None
@@ -125,7 +125,7 @@ def _parts(recording: Recording) -> list[Part]:
     length = recording.segments.duration
     count = max(int(length / PART_S), 1)
     starts = np.linspace(0, max(length - PART_S, 0), min(count, MOST_PARTS))
-    found = []
+    parts = []
     for start in starts.tolist():
         stop = min(start + PART_S, length)
         first, last, segments = pulses_between(recording, start, stop)
@@ -133,8 +133,8 @@ def _parts(recording: Recording) -> list[Part]:
         bins = bins_of_part(recording, waveform, [0], first, last)
         part = _part(bins, segments, waveform)
         if part is not None:
-            found.append(part)
-    return found
+            parts.append(part)
+    return parts
 
 
 def _part(bins: Complex, segments: Any, w: Waveform) -> Part | None:
@@ -198,18 +198,18 @@ def _document(w: Waveform, parts: list[Part], seconds: float) -> dict[str, Any]:
     return document
 
 
-def draw(found: Fit, path: Path) -> None:
+def draw(fit: Fit, path: Path) -> None:
     """Write the figure: noise over range and SNRs, measured beside fitted."""
     from radhar_cli.figures.page import page
 
     figure = page(10.0, 4.0)
     left, right = figure.subplots(1, 2)
-    ranges = found.waveform.range_axis()
-    left.plot(ranges, found.floor_db, label="measured")
+    ranges = fit.waveform.range_axis()
+    left.plot(ranges, fit.floor_db, label="measured")
     left.axhline(0, color="k", linestyle="--", linewidth=0.8, label="fitted: white")
     left.set(xlabel="range (m)", ylabel="noise floor (dB over its median)")
     left.legend()
-    snr = np.array([part.snr_db for part in found.parts])
+    snr = np.array([part.snr_db for part in fit.parts])
     right.hist(snr, bins=min(20, max(3, snr.size // 2)), density=True, label="measured")
     if snr.size >= FEW and snr.std() > 0:
         at = np.linspace(snr.min() - 3, snr.max() + 3, 200)

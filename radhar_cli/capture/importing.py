@@ -36,11 +36,11 @@ JITTER = 0.1  # of a pulse interval, beyond which it is told
 
 @dataclass(frozen=True)
 class Imported:
-    """What became of a capture.
+    """The outcome of an import.
 
     Attributes:
         info: of the recording.
-        found: what was found and decided, in words.
+        found: what was detected and decided, in words.
     """
 
     info: RecordingInfo
@@ -101,22 +101,22 @@ def _opened(
             f"{source.name}: a pulse of {source.receivers} receivers and {source.samples} samples "
             f"should take at most {MAX_PULSE} bytes, 16 of a sample"
         )
-    said = {key: value for key, value in source.settings.items() if getattr(settings, key) is None}
-    document = settings.model_dump(exclude_none=True) | said
+    known = {key: value for key, value in source.settings.items() if getattr(settings, key) is None}
+    document = settings.model_dump(exclude_none=True) | known
     return source, validated(CaptureSettings, document, source.name, {})
 
 
 def _written(source: Source, out: Path, s: CaptureSettings, header: str) -> Imported:
-    found = [*source.notes]
+    notes = [*source.notes]
     probed = findings.probe(source)
-    offset = _offset(probed, s, found)
+    offset = _offset(probed, s, notes)
     probed = [findings.without_offset(piece, offset, s.adc_bits) for piece in probed]
     if s.iq == "qi" and source.parts == 2:
-        found.append("Q before I, as the header says")
+        notes.append("Q before I, as the header says")
         probed = [piece[..., ::-1] for piece in probed]
-    turned = _turned(probed, source, s, found)
-    segments = _segments(source, s, header, found)
-    info = _info(source, s, segments, header, found)
+    turned = _turned(probed, source, s, notes)
+    segments = _segments(source, s, header, notes)
+    info = _info(source, s, segments, header, notes)
     dtype = source.dtype
     number = np.dtype("f4") if dtype == np.float16 else probed[0].dtype
     damage = findings.Damage(findings.full_scale(dtype, offset, s.adc_bits))
@@ -138,25 +138,25 @@ def _written(source: Source, out: Path, s: CaptureSettings, header: str) -> Impo
         return flags, told
 
     info = write_recording(out, info, number, source.parts, pieces(), segments, finished)
-    return Imported(info, [*found, *told])
+    return Imported(info, [*notes, *told])
 
 
-def _offset(probed: list[Parts], s: CaptureSettings, found: list[str]) -> int:
+def _offset(probed: list[Parts], s: CaptureSettings, notes: list[str]) -> int:
     offset = findings.offset_of(probed)
     kind = probed[0].dtype.kind
     if s.coding is not None and kind in "iu":
         told = "signed" if offset == 0 else "offset"
         if told != s.coding and kind == "i":
-            found.append(f"samples look {told}; read as {s.coding}, as asked")
+            notes.append(f"samples look {told}; read as {s.coding}, as asked")
         return 0 if s.coding == "signed" else (offset or 1 << (s.adc_bits - 1))
     if offset:
-        found.append(f"offset binary: {offset} is taken off every sample (coding=signed to keep)")
+        notes.append(f"offset binary: {offset} is taken off every sample (coding=signed to keep)")
     elif kind in "iu":
-        found.append("two's complement")
+        notes.append("two's complement")
     return offset
 
 
-def _turned(probed: list[Parts], source: Source, s: CaptureSettings, found: list[str]) -> bool:
+def _turned(probed: list[Parts], source: Source, s: CaptureSettings, notes: list[str]) -> bool:
     """Whether samples have to be conjugated for radhar's sign of the beat."""
     if source.parts == 1 or source.samples is None:
         if s.beat is not None and source.parts == 2:
@@ -167,16 +167,16 @@ def _turned(probed: list[Parts], source: Source, s: CaptureSettings, found: list
     told = f"{percent} lies at positive beat frequencies"
     sign = s.beat or share.sign
     if s.beat is not None:
-        found.append(f"beat {s.beat}, as asked ({told})")
+        notes.append(f"beat {s.beat}, as asked ({told})")
     elif sign is None:
         sign = "positive" if source.files[0].suffix.lower() == ".bin" else "negative"
-        found.append(
+        notes.append(
             f"{told}: that does not tell the sign of the beat; taken as {sign} (beat=... says it)"
         )
     else:
-        found.append(f"beat {sign}: {told}")
+        notes.append(f"beat {sign}: {told}")
     if sign == "positive":
-        found.append("samples are conjugated, for radhar's beat is negative")
+        notes.append("samples are conjugated, for radhar's beat is negative")
     return sign == "positive"
 
 
@@ -191,9 +191,9 @@ def _reordered(values: Parts, swapped: bool, turned: bool) -> Parts:
     return out
 
 
-def _segments(source: Source, s: CaptureSettings, header: str, found: list[str]) -> Segments:
+def _segments(source: Source, s: CaptureSettings, header: str, notes: list[str]) -> Segments:
     if source.times is not None:
-        return _timed(source, source.times, s, found)
+        return _timed(source, source.times, s, notes)
     if s.prf_hz is None:
         raise CaptureError(f"{header}: prf_hz is missing; --set prf_hz=..., or times=NAME")
     whole = Segments(np.zeros(1), np.zeros(1, np.int64), source.pulses, s.prf_hz)
@@ -212,10 +212,10 @@ def _segments(source: Source, s: CaptureSettings, header: str, found: list[str])
     gap = s.frame_s - s.frame_pulses / s.prf_hz
     if gap * s.prf_hz <= GAP:
         prf = s.frame_pulses / s.frame_s
-        found.append(f"frames without gaps: slow time is uniform, {prf:.6g} pulses/s")
+        notes.append(f"frames without gaps: slow time is uniform, {prf:.6g} pulses/s")
         return Segments(whole.start, whole.first, source.pulses, prf)
     first = np.arange(0, source.pulses, s.frame_pulses)
-    found.append(
+    notes.append(
         f"slow time is not uniform: {first.size} frames of {s.frame_pulses} pulses "
         f"({s.frame_pulses / s.prf_hz * 1e3:.4g} ms) every {s.frame_s * 1e3:.4g} ms, "
         f"{gap * 1e3:.4g} ms of each without a pulse"
@@ -223,7 +223,7 @@ def _segments(source: Source, s: CaptureSettings, header: str, found: list[str])
     return Segments(np.arange(first.size) * s.frame_s, first, source.pulses, s.prf_hz)
 
 
-def _timed(source: Source, times: Float, s: CaptureSettings, found: list[str]) -> Segments:
+def _timed(source: Source, times: Float, s: CaptureSettings, notes: list[str]) -> Segments:
     """Segments from the times of the pulses."""
     if times.size != source.pulses:
         raise CaptureError(f"{source.name}: {times.size} times; should be {source.pulses}, a pulse")
@@ -240,9 +240,9 @@ def _timed(source: Source, times: Float, s: CaptureSettings, found: list[str]) -
             f"{source.name}: prf_hz = {s.prf_hz:g}: the times have {1 / interval:.6g} pulses/s"
         )
     if jitter > JITTER:
-        found.append(f"pulses are up to {100 * jitter:.0f} % of their interval early or late")
+        notes.append(f"pulses are up to {100 * jitter:.0f} % of their interval early or late")
     if first.size > 1:
-        found.append(f"slow time is not uniform: {first.size} stretches with gaps between")
+        notes.append(f"slow time is not uniform: {first.size} stretches with gaps between")
     # Within a stretch pulses count as evenly spaced; the mean rate keeps them from drifting apart.
     lengths = np.diff(first, append=times.size)
     if s.prf_hz is None and (inside := int((lengths - 1).sum())):
@@ -251,7 +251,7 @@ def _timed(source: Source, times: Float, s: CaptureSettings, found: list[str]) -
 
 
 def _info(
-    source: Source, s: CaptureSettings, segments: Segments, header: str, found: list[str]
+    source: Source, s: CaptureSettings, segments: Segments, header: str, notes: list[str]
 ) -> RecordingInfo:
     needed = ["carrier_hz"] + (["bandwidth_hz", "adc_rate_hz"] if source.samples else [])
     for key in needed:
@@ -260,8 +260,8 @@ def _info(
                 f"{header}: {key} is missing; --radar FILE or --set {key}=... says it"
             )
     if s.transmitters > 1:
-        found.append(
-            f"{s.transmitters} transmitters in turn: {segments.prf:.6g} pulses/s of each, "
+        notes.append(
+            f"{s.transmitters} transmitters take turns: {segments.prf:.6g} pulses/s of each, "
             f"{source.receivers} virtual receivers"
         )
     per_turn = source.receivers // s.transmitters
@@ -280,7 +280,7 @@ def _info(
         receiver_delay_s=[n // per_turn * chirp for n in range(source.receivers)],
         start_time=s.start_time,
         labels=[] if label is None else [label],
-        source=SourceNote(format=name, files=[path.name for path in source.files], found=found[:]),
+        source=SourceNote(format=name, files=[path.name for path in source.files], found=notes[:]),
     )
 
 

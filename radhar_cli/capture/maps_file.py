@@ -70,6 +70,6 @@ def draw(maps: Maps, config: Config, title: str, path: Path) -> None:
 
 
 def _draw_track(axes: Axes, track: TorsoTrack) -> None:
-    found = np.where(track.confidence >= SURE, track.range, np.nan)
+    confident = np.where(track.confidence >= SURE, track.range, np.nan)
     axes.plot(track.time, track.range, "w:", linewidth=0.8, scalex=False, scaley=False)
-    axes.plot(track.time, found, "w-", linewidth=1.0, scalex=False, scaley=False)
+    axes.plot(track.time, confident, "w-", linewidth=1.0, scalex=False, scaley=False)

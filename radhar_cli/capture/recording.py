@@ -1,4 +1,4 @@
-"""The recording file: what one radar received of one scene, whoever recorded it (docs/measured.md).
+"""The recording file: what one radar received of one scene (docs/measured.md).
 
 Beat signals follow radhar's sign: a target at range R lies at exp(-j 2 pi (fc tau + K tau t)).
 """
@@ -38,7 +38,7 @@ class _Part(BaseModel):
 
 
 class Label(_Part):
-    """What somebody did, from start to stop in s; None is the whole recording."""
+    """What a person does from start to stop, s; None is the whole recording."""
 
     label: Text
     person: Text | None = None
@@ -178,13 +178,13 @@ def write_recording(
                     data[:, first:stop] = block[:, 0]
                 else:
                     data[:, :, first:stop] = block
-            flags, found = finished() if finished else (np.zeros(info.pulses, np.uint8), [])
+            flags, findings = finished() if finished else (np.zeros(info.pulses, np.uint8), [])
             file["flags"] = flags
             file["flags"].attrs["meaning"] = [f"{LOST}: samples lost", f"{CLIPPED}: clipped"]
             file["segment_start"] = segments.start.astype("f8")
             file["segment_start"].attrs["unit"] = "s"
             file["segment_first"] = segments.first.astype("i8")
-            source = info.source.model_copy(update={"found": [*info.source.found, *found]})
+            source = info.source.model_copy(update={"found": [*info.source.found, *findings]})
             info = info.model_copy(update={"source": source, "segments": len(segments)})
             file.attrs["kind"] = KIND
             file.attrs["schema_version"] = SCHEMA_VERSION
@@ -217,7 +217,7 @@ def is_recording(path: Path) -> bool:
 
 
 class Recording(Closing):
-    """A recording file that anyone may have written, opened for reading.
+    """A recording file opened for reading; it is not trusted.
 
     Attributes:
         info: its description.
@@ -233,7 +233,9 @@ class Recording(Closing):
         self._file = UntrustedFile(path)
         try:
             if not self._file.has_attribute("kind") or self._file.text("kind") != KIND:
-                raise FolderError(f"{path}: is no recording; `radhar import` makes one of it")
+                raise FolderError(
+                    f"{path}: is not a recording; `radhar import` makes one from a capture"
+                )
             version = self._file.whole_number("schema_version")
             if version != SCHEMA_VERSION:
                 raise FolderError(f"{path}: schema_version = {version}: should be {SCHEMA_VERSION}")

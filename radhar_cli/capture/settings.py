@@ -1,4 +1,4 @@
-"""What one has to know of a capture to read it: its header, or what is given by hand."""
+"""What must be known to read a capture: from its header, or given by hand."""
 
 from math import prod
 from typing import Annotated, Literal, TypeAlias

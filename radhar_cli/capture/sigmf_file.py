@@ -53,18 +53,21 @@ def open_sigmf(path: Path, settings: CaptureSettings) -> Source:
     meta, data = path.with_suffix(META), path.with_suffix(DATA)
     document = read_json(meta)
     _validated(document, str(meta))
-    about, captures = document["global"], document["captures"]
+    metadata, captures = document["global"], document["captures"]
     if len(captures) > MAX_CAPTURES:
         raise CaptureError(f"{meta}: captures: has {len(captures)}; at most {MAX_CAPTURES}")
     for key in ("core:dataset", "core:metadata_only", "core:trailing_bytes"):
-        if about.get(key):
-            raise CaptureError(f"{meta}: {key} = {about[key]!r}: should be data in {data.name}")
+        if metadata.get(key):
+            raise CaptureError(f"{meta}: {key} = {metadata[key]!r}: should be data in {data.name}")
     if any(one.get("core:header_bytes") for one in captures):
         raise CaptureError(f"{meta}: core:header_bytes: should be 0; headers are not read")
-    dtype, parts = _datatype(about["core:datatype"], str(meta))
-    said = _said(about, captures, settings)
-    validated(CaptureSettings, said, str(meta), {})
-    samples, channels = said.get("samples") or settings.samples, about.get("core:num_channels", 1)
+    dtype, parts = _datatype(metadata["core:datatype"], str(meta))
+    given = _given(metadata, captures, settings)
+    validated(CaptureSettings, given, str(meta), {})
+    samples, channels = (
+        given.get("samples") or settings.samples,
+        metadata.get("core:num_channels", 1),
+    )
     if channels > MAX_RECEIVERS:
         raise CaptureError(
             f"{meta}: core:num_channels = {channels}: should be at most {MAX_RECEIVERS}"
@@ -79,7 +82,7 @@ def open_sigmf(path: Path, settings: CaptureSettings) -> Source:
         raise CaptureError(
             f"{data}: holds {size} bytes; a pulse by {meta.name} takes {pulse * dtype.itemsize}"
         )
-    _check_sum(about.get("core:sha512"), data)
+    _check_sum(metadata.get("core:sha512"), data)
     number = dtype.newbyteorder("=")
 
     def read(first: int, stop: int) -> Parts:
@@ -88,13 +91,13 @@ def open_sigmf(path: Path, settings: CaptureSettings) -> Source:
         return values.reshape(stop - first, samples or 1, channels, parts).transpose(2, 1, 0, 3)
 
     notes = [f"the last {rest} bytes are no whole pulse and are left out"] if rest else []
-    starts = about.get(f"{EXTENSION}:segment_start_s")
+    starts = metadata.get(f"{EXTENSION}:segment_start_s")
     times = None
-    if starts is not None and "prf_hz" in said:
+    if starts is not None and "prf_hz" in given:
         first = [one["core:sample_start"] // (samples or 1) for one in captures]
-        times = _times(starts, first, pulses, said["prf_hz"], str(meta))
+        times = _times(starts, first, pulses, given["prf_hz"], str(meta))
     return Source(
-        (data, meta), channels, samples, pulses, number, parts, read, times, settings=said,
+        (data, meta), channels, samples, pulses, number, parts, read, times, settings=given,
         notes=tuple(notes),
     )  # fmt: skip
 
@@ -108,22 +111,22 @@ def _datatype(text: str, where: str) -> tuple[np.dtype[Any], int]:
     return np.dtype(found["component_dtype"]), 1 + found["is_complex"]
 
 
-def _said(
-    about: dict[str, Any], captures: list[dict[str, Any]], settings: CaptureSettings
+def _given(
+    metadata: dict[str, Any], captures: list[dict[str, Any]], settings: CaptureSettings
 ) -> dict[str, Any]:
     """Settings that the metadata hold."""
-    said: dict[str, Any] = {}
+    given: dict[str, Any] = {}
     for key in ("carrier_hz", "bandwidth_hz", "prf_hz", "samples", "beat"):
-        if f"{EXTENSION}:{key}" in about:
-            said[key] = about[f"{EXTENSION}:{key}"]
+        if f"{EXTENSION}:{key}" in metadata:
+            given[key] = metadata[f"{EXTENSION}:{key}"]
     if captures and "core:frequency" in captures[0]:
-        said.setdefault("carrier_hz", captures[0]["core:frequency"])
+        given.setdefault("carrier_hz", captures[0]["core:frequency"])
     if captures and "core:datetime" in captures[0]:
-        said["start_time"] = captures[0]["core:datetime"]
-    if "core:sample_rate" in about:
-        slow = not (said.get("samples") or settings.samples)
-        said.setdefault("prf_hz" if slow else "adc_rate_hz", about["core:sample_rate"])
-    return said
+        given["start_time"] = captures[0]["core:datetime"]
+    if "core:sample_rate" in metadata:
+        slow = not (given.get("samples") or settings.samples)
+        given.setdefault("prf_hz" if slow else "adc_rate_hz", metadata["core:sample_rate"])
+    return given
 
 
 def _times(
@@ -147,8 +150,8 @@ def _check_sum(wanted: str | None, data: Path) -> None:
     if wanted is None:
         return
     with data.open("rb") as file:
-        found = hashlib.file_digest(file, "sha512").hexdigest()
-    if found != wanted.lower():
+        digest = hashlib.file_digest(file, "sha512").hexdigest()
+    if digest != wanted.lower():
         raise CaptureError(f"{data}: core:sha512: the file is not the one that was described")
 
 
@@ -224,12 +227,12 @@ def _metadata(recording: Recording, sha512: str) -> dict[str, Any]:
 def _annotations(recording: Recording, samples: int) -> list[dict[str, Any]]:
     info, segments = recording.info, recording.segments
     times = segments.times(np.arange(info.pulses))
-    found = []
+    annotations = []
     for one in info.labels:
         first = 0 if one.start_s is None else int(np.searchsorted(times, one.start_s))
         stop = info.pulses if one.stop_s is None else int(np.searchsorted(times, one.stop_s))
         comment = {} if one.person is None else {"core:comment": f"person {one.person}"}
-        found.append(
+        annotations.append(
             {
                 "core:sample_start": first * samples,
                 "core:sample_count": max(stop - first, 1) * samples,
@@ -237,4 +240,4 @@ def _annotations(recording: Recording, samples: int) -> list[dict[str, Any]]:
                 **comment,
             }
         )
-    return sorted(found, key=lambda one: one["core:sample_start"])
+    return sorted(annotations, key=lambda one: one["core:sample_start"])

@@ -1,4 +1,4 @@
-"""What every format of captures is read as: numbers in pieces of pulses."""
+"""A capture of any format, opened: numbers that are read in blocks of pulses."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field

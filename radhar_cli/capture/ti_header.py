@@ -281,10 +281,10 @@ class _Commands:
         ]
 
     def one(self, command: str) -> dict[str, _Field]:
-        found = self.all(command)
-        if len(found) != 1:
-            raise CaptureError(f"{self.path}: {command}: should stand there once, not {len(found)}")
-        return self.whole(command, found[0])
+        lines = self.all(command)
+        if len(lines) != 1:
+            raise CaptureError(f"{self.path}: {command}: should stand there once, not {len(lines)}")
+        return self.whole(command, lines[0])
 
     def whole(self, command: str, fields: dict[str, _Field]) -> dict[str, _Field]:
         missing = [name for name in _COMMANDS[command] if name not in fields]

@@ -16,7 +16,6 @@ from radhar_cli.activity import TWELVE
 from radhar_cli.capture.chain import maps_of
 from radhar_cli.capture.images import are_images, is_image, listed, read_image
 from radhar_cli.capture.recording import Recording, RecordingInfo
-from radhar_cli.config.checks import unused_keys
 from radhar_cli.config.identity import resolved
 from radhar_cli.config.reading import validated
 from radhar_cli.config.schema import Config, RecordingsConfig
@@ -25,6 +24,7 @@ from radhar_cli.dataset.recorded import windows
 from radhar_cli.dataset.sample import Made, Sample
 from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.pipeline.products import image_of
+from radhar_cli.pipeline.unused_keys import unused_keys
 from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.power_map import MapImage
 from radhar_cli.untrusted import read_text
@@ -55,11 +55,11 @@ def read_manifest(path: Path) -> list[dict[str, Any]]:
         try:
             rows = [*csv.DictReader(io.StringIO(text), strict=True)]
         except csv.Error as error:
-            raise ConfigError(f"{path}: is no CSV ({error})") from None
-    found = [_row(row, f"{path}: row {number}") for number, row in enumerate(rows, 1)]
-    if not found:
+            raise ConfigError(f"{path}: is not CSV ({error})") from None
+    checked = [_row(row, f"{path}: row {number}") for number, row in enumerate(rows, 1)]
+    if not checked:
         raise ConfigError(f"{path}: lists nothing; should have columns {', '.join(COLUMNS)}")
-    return found
+    return checked
 
 
 def _row(row: dict[Any, Any], where: str) -> dict[str, Any]:
@@ -67,7 +67,7 @@ def _row(row: dict[Any, Any], where: str) -> dict[str, Any]:
     for key in given:
         if key not in COLUMNS:
             hint = did_you_mean(str(key), COLUMNS, f"columns are {', '.join(COLUMNS)}")
-            raise ConfigError(f"{where}: {key!r} is no column; {hint}")
+            raise ConfigError(f"{where}: {key!r} is not a column; {hint}")
     for key in ("file", "label"):
         if key not in given:
             raise ConfigError(f"{where}: {key} is missing")
@@ -137,11 +137,11 @@ def _with_images(config: Config, path: Path) -> Config:
             f"{path}: of images, maps should name the one map that they show, and "
             "recordings.rows=[low, high] the edges of its rows (Hz, or m)"
         )
-    found, document = listed(path, given.packed), resolved(config)
+    images, document = listed(path, given.packed), resolved(config)
     window = {"start_s": 0.0, "stop_s": given.window_s}
-    parts = [{**part, "label": _slug(part["label"]), **window} for part in found.parts]
-    document["recordings"] |= {"parts": parts, "sha256": found.sha256}
-    document["image"] |= {"size_px": list(found.size)}
+    parts = [{**part, "label": _slug(part["label"]), **window} for part in images.parts]
+    document["recordings"] |= {"parts": parts, "sha256": images.sha256}
+    document["image"] |= {"size_px": list(images.size)}
     return _whole(config, document, path)
 
 
@@ -200,18 +200,18 @@ def _refuse_what_cannot_be(config: Config, manifest: Path) -> None:
 
 def warnings_of(config: Config) -> list[str]:
     """What a user should know of a data set of recordings, in words."""
-    recorded, found = config.recorded, []
+    recorded, warnings = config.recorded, []
     assert recorded is not None
-    found += unused_keys(config)
+    warnings += unused_keys(config)
     short = sum(not recorded.count(part) for part in recorded.parts)
     if short and not is_image(recorded.parts[0].file):
-        found.append(f"{short} parts are shorter than the window of {recorded.window_s:g} s")
+        warnings.append(f"{short} parts are shorter than the window of {recorded.window_s:g} s")
     if config.split.by == "sample" and recorded.hop_s < recorded.window_s:
-        found.append(
+        warnings.append(
             "windows of one recording may lie in several parts of the split; split.by: subject "
             "keeps persons apart"
         )
-    return found
+    return warnings
 
 
 @dataclass(frozen=True)
@@ -232,15 +232,15 @@ class WindowMaker:
         if is_image(part.file):
             return Made(self._image(config, part.file), np.array([number, start, nan]))
         with Recording(self.folder / part.file) as recording:
-            found = maps_of(
+            made = maps_of(
                 recording, config, config.maps, start, start + recorded.window_s, recorded.receiver
             )
         images: dict[str, MapImage] = {}
         for name in config.maps:
-            one = found.maps[name]
+            one = made.maps[name]
             columns = replace(one.columns, values=one.columns.values - start)
             images[name] = image_of(config, replace(one, columns=columns))
-        sure = nan if found.track is None else float(found.track.confidence.mean())
+        sure = nan if made.track is None else float(made.track.confidence.mean())
         return Made(Sample(images, nan, False, {}), np.array([number, start, sure]))
 
     def _image(self, config: Config, file: str) -> Sample:

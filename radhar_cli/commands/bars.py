@@ -10,7 +10,7 @@ from radhar_cli.untrusted import shown
 
 
 class Bars:
-    """One bar at a time; none where nobody looks, or with --quiet."""
+    """One bar at a time; none without a terminal, or with --quiet."""
 
     def __init__(self) -> None:
         self._bar: tqdm[Any] | None = None

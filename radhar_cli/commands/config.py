@@ -70,9 +70,9 @@ def show(
     from radhar_cli.config.identity import as_yaml, resolved
     from radhar_cli.config.reading import load_section
 
-    found = load_section(_kind(train), config, set_ or [])
-    report(**resolved(found))
-    tell(as_yaml(found), nl=False)
+    loaded = load_section(_kind(train), config, set_ or [])
+    report(**resolved(loaded))
+    tell(as_yaml(loaded), nl=False)
 
 
 def diff(
@@ -93,13 +93,13 @@ def diff(
     from radhar_cli.config.identity import differences
     from radhar_cli.config.reading import load_section
 
-    found = differences(*(load_section(_kind(train), path) for path in (one, other)))
-    report(different=found)
-    width = max(map(len, found), default=0)
-    for key, values in found.items():
+    differing = differences(*(load_section(_kind(train), path) for path in (one, other)))
+    report(different=differing)
+    width = max(map(len, differing), default=0)
+    for key, values in differing.items():
         here, there = map(json.dumps, values)
         tell(f"{key:<{width}}  {here} -> {there}")
-    if found:
+    if differing:
         raise typer.Exit(1)
 
 
@@ -114,10 +114,10 @@ def schema(train: Training = False) -> None:
 
     from radhar_cli.config.documents import BASE, BASE_SCHEMA
 
-    found = _kind(train).model_json_schema()
-    found["properties"][BASE] = BASE_SCHEMA
-    report(**found)
-    tell(json.dumps(found, indent=2))
+    document = _kind(train).model_json_schema()
+    document["properties"][BASE] = BASE_SCHEMA
+    report(**document)
+    tell(json.dumps(document, indent=2))
 
 
 def _kind(train: bool) -> "type[Config] | type[TrainConfig]":

@@ -32,7 +32,7 @@ def convert(
 
     if to not in FORMATS:
         hint = did_you_mean(to, FORMATS, f"should be one of {', '.join(FORMATS)}")
-        raise RadharError(f"--to {to}: is no format; {hint}")
+        raise RadharError(f"--to {to}: is not a format; {hint}")
     if to == "parquet":
         needs("formats", ("pyarrow",))
     progress = BarProgress()

@@ -32,16 +32,16 @@ def print_plan(config: Config, jobs: int) -> None:
         tell("range bins of the gate, in nominal scenes:")
         for activity in config.chosen_activities:
             tell(f"  {activity.label:<3} {_bins(config, activity)}")
-    found = estimate(config, jobs)
+    cost = estimate(config, jobs)
     tell(
-        f"samples     {found.samples} = {rows.counted}, "
+        f"samples     {cost.samples} = {rows.counted}, "
         f"{len(config.maps)} map{'s' if len(config.maps) > 1 else ''} each"
     )
-    images = f" + png {_size(found.png_bytes)}" if config.output.png else ""
-    tell(f"on disk     dataset.h5 {_size(found.hdf5_bytes)}{images}")
+    images = f" + png {_size(cost.png_bytes)}" if config.output.png else ""
+    tell(f"on disk     dataset.h5 {_size(cost.hdf5_bytes)}{images}")
     tell(
-        f"time        about {_duration(found.seconds)} with {jobs} job{'s' if jobs > 1 else ''} "
-        f"({found.seconds_per_sample * 1e3:.1f} ms a sample, {found.probes} samples timed just now)"
+        f"time        about {_duration(cost.seconds)} with {jobs} job{'s' if jobs > 1 else ''} "
+        f"({cost.seconds_per_sample * 1e3:.1f} ms a sample, {cost.probes} samples timed just now)"
     )
     warnings = split_warnings(config, split_rows(config))
     report(
@@ -50,7 +50,7 @@ def print_plan(config: Config, jobs: int) -> None:
         maps=config.maps,
         jobs=jobs,
         warnings=warnings,
-        **vars(found),
+        **vars(cost),
     )
     for message in warnings:
         tell(f"warning: {message}")

@@ -20,7 +20,7 @@ def fit(
 
       radhar fit walk.h5 fall.h5 -o measured.yaml
 
-    A figure of measured beside fitted lies next to the config, as .png.
+    A figure of measured and fitted values is written next to the config, as .png.
     """
     import json
 
@@ -31,14 +31,14 @@ def fit(
     if out.resolve() in {path.resolve() for path in recordings}:
         raise FolderError(f"{out}: is one of the recordings; -o should name another file")
     refuse_to_replace(out, overwrite, "measured.yaml")
-    found = read_off(recordings)
-    for key, value in found.numbers().items():
+    fitted = read_off(recordings)
+    for key, value in fitted.numbers().items():
         tell(f"  {key:<16} {value:.4g}")
-    text = f"# Read off: {len(recordings)} recordings, of these {len(found.parts)} parts.\n"
-    lines = [f"{key}: {json.dumps(value)}" for key, value in found.document.items()]
+    text = f"# Read off: {len(recordings)} recordings, of these {len(fitted.parts)} parts.\n"
+    lines = [f"{key}: {json.dumps(value)}" for key, value in fitted.document.items()]
     out.parent.mkdir(parents=True, exist_ok=True)
     out.write_text(text + "\n".join(lines) + "\n")
-    draw(found, out.with_suffix(".png"))
-    report(files=[out, out.with_suffix(".png")], numbers=found.numbers(), parts=len(found.parts))
+    draw(fitted, out.with_suffix(".png"))
+    report(files=[out, out.with_suffix(".png")], numbers=fitted.numbers(), parts=len(fitted.parts))
     for path in (out, out.with_suffix(".png")):
         tell(f"  {path}")

@@ -21,7 +21,7 @@ Example:
 
   radhar generate configs/paper/through_wall.yaml -o datasets/ttw_10dB --set snr_db=10 --jobs 2
 
-The same command, run again, goes on where it stopped and says so when the folder is complete.
+The same command, run again, resumes where it stopped and says so when the folder is complete.
 """
 
 
@@ -63,7 +63,7 @@ def generate(
         ),
     ] = None,
     overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Start again in a folder that holds a data set.")
+        bool, typer.Option("--overwrite", help="Start over in a folder that holds a data set.")
     ] = False,
 ) -> None:
     with resumable(f"what is finished in {out}"):
@@ -110,7 +110,7 @@ def _generate(
     jobs = jobs or cores()
     if manifest is not None:
         if shard is not None or cluster is not None:
-            raise ConfigError("--recordings: are read here, without --shard and --cluster")
+            raise ConfigError("--recordings: cannot be combined with --shard or --cluster")
         _of_recordings(config, manifest, out, jobs, batch, dry_run, overwrite)
         return
     if config.recordings is not None:

@@ -1,4 +1,4 @@
-"""What the commands that learn share."""
+"""Options and checks shared by the learning commands."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -11,7 +11,8 @@ from radhar_cli.errors import FolderError, MachineError, RadharError, did_you_me
 
 DEVICES = ("auto", "cpu", "cuda", "mps")
 Resize: TypeAlias = Annotated[
-    bool, typer.Option("--resize", help="Bring images of another size to the network's.")
+    bool,
+    typer.Option("--resize", help="Resize images to the size that the network was trained on."),
 ]
 Classes: TypeAlias = Annotated[
     Path | None,
@@ -20,7 +21,7 @@ Classes: TypeAlias = Annotated[
 
 
 def needs_torch() -> None:
-    """Say clearly what to install where PyTorch or its companions are missing.
+    """Check that PyTorch and what else training needs are installed.
 
     Raises:
         MachineError: names the extra.
@@ -29,7 +30,7 @@ def needs_torch() -> None:
 
 
 def needs(extra: str, modules: Sequence[str]) -> None:
-    """Say clearly which extra to install where one of its modules is missing.
+    """Check that the modules of an extra are installed.
 
     Raises:
         MachineError: names the extra.
@@ -52,7 +53,7 @@ def known_device(name: str) -> str:
     """
     if name not in DEVICES:
         hint = did_you_mean(name, DEVICES, f"the devices are {', '.join(DEVICES)}")
-        raise RadharError(f"--device {name}: is no device; {hint}")
+        raise RadharError(f"--device {name}: is not a device; {hint}")
     return name
 
 
@@ -72,14 +73,14 @@ def runs_and_data(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:
     runs = [path for path in paths if is_run(path)]
     data = [path for path in paths if not is_run(path)]
     if not runs:
-        raise FolderError(f"{paths[0]}: is no training run; give one that `radhar train` wrote")
+        raise FolderError(f"{paths[0]}: is not a training run; give one that `radhar train` wrote")
     if not data:
         raise FolderError(f"{paths[-1]}: is a training run; give a data set after it")
     return runs, data
 
 
 class StderrLog:
-    """Tells the user on the error stream."""
+    """Writes messages to the error stream."""
 
     def say(self, message: str) -> None:
         if wanted(message):

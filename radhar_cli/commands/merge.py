@@ -12,16 +12,19 @@ def merge(
     out: Annotated[Path, typer.Argument(help="Folder of the data set.")],
     parts: Annotated[
         list[Path] | None,
-        typer.Argument(help="Folders of parts, or that hold some, beside those below OUT."),
+        typer.Argument(help="Parts, or folders that hold parts, in addition to those below OUT."),
     ] = None,
     virtual: Annotated[
         bool, typer.Option("--virtual", help="Refer to the parts below OUT; copy no samples.")
     ] = False,
     jobs: Annotated[
-        int | None, typer.Option("--jobs", "-j", min=1, help="Processes, for PNGs no part has.")
+        int | None,
+        typer.Option(
+            "--jobs", "-j", min=1, help="Processes that write PNGs missing from the parts."
+        ),
     ] = None,
 ) -> None:
-    """Put the parts of a data set together. They are read and stay as they are.
+    """Merge the parts of a data set, which are only read.
 
     Says which rows are missing, and with which --shard to make them. Exit status 1 then.
 

@@ -10,7 +10,7 @@ from radhar_cli.commands.tell import report, tell
 
 
 def motion(
-    config: Annotated[Path, typer.Argument(help="YAML file whose ranges are drawn from.")],
+    config: Annotated[Path, typer.Argument(help="YAML config that the scene is drawn from.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="The .bvh file to write.")],
     activity: Activity = None,
     index: Annotated[int, typer.Option(min=0, help="Which sample of its class.")] = 0,

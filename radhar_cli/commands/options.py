@@ -22,9 +22,7 @@ Activity: TypeAlias = Annotated[
 Nominal: TypeAlias = Annotated[
     bool, typer.Option("--nominal", help="Take mid-points instead of drawing.")
 ]
-Replace: TypeAlias = Annotated[
-    bool, typer.Option("--overwrite", help="Replace a file that is there.")
-]
+Replace: TypeAlias = Annotated[bool, typer.Option("--overwrite", help="Replace an existing file.")]
 Tolerance: TypeAlias = Annotated[
     float | None,
     typer.Option(metavar="DB", help="Tolerance of the direct engine, instead of the config's."),
@@ -47,7 +45,7 @@ def resumable(kept: str) -> Iterator[None]:
 
 def _say_kept(how: str, kept: str) -> None:
     if os.environ.get("RANK", "0") == "0":  # under torchrun all end alike; one should speak
-        tell(f"\n{how}: {kept} is kept; the same command goes on", err=True)
+        tell(f"\n{how}: {kept} is kept; the same command resumes", err=True)
 
 
 def refuse_to_replace(path: Path, replace: bool, example: str) -> None:
@@ -59,7 +57,7 @@ def refuse_to_replace(path: Path, replace: bool, example: str) -> None:
     if path.is_dir():
         raise FolderError(f"{path}: is a folder; -o should name a file, such as {example}")
     if path.exists() and not replace:
-        raise FolderError(f"{path}: is there already; --overwrite replaces it")
+        raise FolderError(f"{path}: already exists; --overwrite replaces it")
 
 
 def with_tolerance(overrides: list[str] | None, tolerance: float | None) -> list[str]:

@@ -22,18 +22,18 @@ def preview(
     ] = None,
     per_class: Annotated[int, typer.Option(min=1, max=50, help="Samples a class.")] = 4,
     out: Annotated[
-        Path | None, typer.Option("-o", "--out", help="PNG; preview_<map>.png beside the data.")
+        Path | None, typer.Option("-o", "--out", help="PNG; preview_<map>.png next to the data.")
     ] = None,
 ) -> None:
-    """Draw a contact sheet of a data set by class, or of anyone's tree of images.
+    """Draw a contact sheet of a data set by class, or of any tree of class folders.
 
     Example:
 
       radhar preview datasets/quickstart --map stft --per-class 4
     """
+    from radhar_cli.dataset.contact_sheet import draw_contact_sheet
     from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.reading import open_dataset
-    from radhar_cli.figures.contact_sheet import draw_contact_sheet
     from radhar_cli.learning.images.opening import is_tree
 
     if is_tree(dataset):
@@ -53,8 +53,8 @@ def _tell(path: Path) -> None:
 
 
 def _draw_tree(root: Path, map_name: str | None, per_class: int, out: Path | None) -> Path:
-    """Beside the tree, not in it: what lies in it is data."""
-    from radhar_cli.figures.contact_sheet import draw_image_sheet
+    """Draw next to the tree, not in it: its files are data."""
+    from radhar_cli.dataset.contact_sheet import draw_image_sheet
     from radhar_cli.learning.images.folder import folder_images
     from radhar_cli.learning.images.overview import first_of_each
 

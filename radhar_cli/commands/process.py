@@ -17,12 +17,13 @@ def process(
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the results.")],
     set_: Overrides = None,
     maps: Annotated[
-        str | None, typer.Option(help="Comma-separated maps, not the config's.")
+        str | None, typer.Option(help="Comma-separated maps, instead of the config's.")
     ] = None,
     start: Annotated[float | None, typer.Option(min=0, help="From here on, s.")] = None,
     stop: Annotated[float | None, typer.Option(min=0, help="Up to here, s.")] = None,
     receiver: Annotated[
-        int | None, typer.Option(min=0, help="This one alone; else all powers are added up.")
+        int | None,
+        typer.Option(min=0, help="This one alone; default: the sum of all receivers' powers."),
     ] = None,
     figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw maps.png.")] = True,
 ) -> None:
@@ -36,9 +37,9 @@ def process(
     from radhar_cli.capture.chain import maps_of
     from radhar_cli.capture.recording import Recording
     from radhar_cli.config import load_config
-    from radhar_cli.config.checks import unused_keys
     from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.folder import refuse_file
+    from radhar_cli.pipeline.unused_keys import unused_keys
     from radhar_cli.simulation.simulate import map_names
 
     loaded = load_config(config, set_ or [])
@@ -48,24 +49,24 @@ def process(
         refuse_links(out, out / name)
     with Recording(recording) as opened:
         info, gaps = opened.info, len(opened.segments) - 1
-        found = maps_of(opened, loaded, names, start, stop, receiver)
+        made = maps_of(opened, loaded, names, start, stop, receiver)
     if gaps:
-        tell(f"{gaps} gaps: handled stretch by stretch")
-    for note in [*unused_keys(loaded), *found.notes]:
+        tell(f"{gaps} gaps: the stretches between are processed one by one")
+    for note in [*unused_keys(loaded.model_copy(update={"maps": names})), *made.notes]:
         tell(f"warning: {note}", err=True)
-    written = maps_file.write_maps(found, loaded, info, out)
+    written = maps_file.write_maps(made, loaded, info, out)
     if figures:
         labels = ", ".join(one.label for one in info.labels) or "no label"
         title = f"{recording.name}   |   {labels}   |   {info.carrier_hz / 1e9:g} GHz"
         title += f", PRF {info.prf_hz:.6g} Hz"
-        maps_file.draw(found, loaded, title, out / maps_file.FIGURE)
+        maps_file.draw(made, loaded, title, out / maps_file.FIGURE)
         written.append(out / maps_file.FIGURE)
-    if found.track is not None:
-        track = found.track
+    if made.track is not None:
+        track = made.track
         tell(
             f"torso from {track.range.min():.2f} to {track.range.max():.2f} m, up to "
             f"{abs(track.velocity).max():.2f} m/s, confidence {track.confidence.mean():.2f}"
         )
-    report(files=written, gaps=gaps, warnings=found.notes, maps=names)
+    report(files=written, gaps=gaps, warnings=made.notes, maps=names)
     for path in written:
         tell(f"  {path}")

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def simulate(
-    config: Annotated[Path, typer.Argument(help="YAML file whose ranges are drawn from.")],
+    config: Annotated[Path, typer.Argument(help="YAML config that the scene is drawn from.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the results.")],
     activity: Activity = None,
     index: Annotated[
@@ -36,9 +36,7 @@ def simulate(
     engine: Annotated[
         str | None, typer.Option(help="cube or direct, instead of the config's.")
     ] = None,
-    maps: Annotated[
-        str | None, typer.Option(help="Comma-separated maps; all there are if not given.")
-    ] = None,
+    maps: Annotated[str | None, typer.Option(help="Comma-separated maps; default: all.")] = None,
     joint: Annotated[
         str | None, typer.Option(help="Keep this scatterer alone, such as right_ankle.")
     ] = None,
@@ -101,8 +99,8 @@ def simulate(
     if index >= samples and not nominal:
         tell(
             f"warning: --index {index}: a data set of this config has the samples 0 to "
-            f"{samples - 1} of {simulation.activity.slug}; this one is drawn alike, from a stream "
-            "of its own",
+            f"{samples - 1} of {simulation.activity.slug}; this one is drawn from its own "
+            "stream in the same way",
             err=True,
         )
     for warning in simulation.warnings:
@@ -124,11 +122,11 @@ def simulate(
         files=written,
     )
     tell(f"{simulation.activity.label} {simulation.activity.slug}: synthesised in {took:.2f} s")
-    found = scene_file.describe(simulation)["motion_file"]
-    if found is not None:
+    file = scene_file.describe(simulation)["motion_file"]
+    if file is not None:
         tell(
-            f"  motion: {found['path']}, {found['begin_s']:.2f} to {found['end_s']:.2f} s of its "
-            f"{found['lasts_s']:.2f} s; by its legs a person of {found['stature_m']:.2f} m"
+            f"  motion: {file['path']}, {file['begin_s']:.2f} to {file['end_s']:.2f} s of its "
+            f"{file['lasts_s']:.2f} s; leg length of a person of {file['stature_m']:.2f} m"
         )
     for path in written:
         tell(f"  {path}")

@@ -26,7 +26,7 @@ def print_summary(summary: dict[str, Any]) -> None:
 
 
 def _plain(value: Any) -> Any:
-    """The same values without anything in their texts that could steer a terminal."""
+    """The same values with the control characters of their texts escaped."""
     if isinstance(value, dict):
         return {_plain(key): _plain(inner) for key, inner in value.items()}
     if isinstance(value, list):
@@ -76,7 +76,7 @@ def _recording(console: Console, s: dict[str, Any]) -> None:
             table.add_row(key, f"{value:.6g}" if isinstance(value, float) else str(value))
     console.print(table)
     for one in s["labels"]:
-        console.print(f"label {one['label']}, person {one['person'] or 'not said'}")
+        console.print(f"label {one['label']}, person {one['person'] or 'not given'}")
     for line in s["source"]["found"]:
         console.print(Text("found", "yellow"), line)
 
@@ -122,7 +122,7 @@ def _unfinished(console: Console, s: dict[str, Any]) -> None:
     console.print(
         f"{_progress(share)} {share:.0%}   seed {s['seed']}   config {s['config_hash'][:12]}"
     )
-    console.print("the same `radhar generate` command goes on")
+    console.print("the same `radhar generate` command resumes")
 
 
 def _progress(share: float, width: int = 40) -> str:

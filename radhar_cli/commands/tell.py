@@ -1,4 +1,4 @@
-"""What commands say, and their --json and --quiet; nothing else in them writes to the terminal.
+"""Output of the commands, with --json and --quiet; nothing else in them writes to the terminal.
 
 A command tells people lines (`tell`) and programs values (`report`); the program gives the two
 options to every command (`with_output_options`).
@@ -36,7 +36,7 @@ _output = _Output()
 
 
 def talks() -> bool:
-    """Whether lines for people go to the output."""
+    """Whether text lines are printed."""
     return not (_output.json or _output.quiet)
 
 
@@ -46,13 +46,13 @@ def is_quiet() -> bool:
 
 
 def tell(message: object, *, err: bool = False, nl: bool = True) -> None:
-    """Print a line for people; what in it could steer a terminal is escaped."""
+    """Print a line of text; control characters are escaped."""
     if err or talks():
         typer.echo(shown(message), err=err, nl=nl)
 
 
 def wanted(message: str) -> bool:
-    """Whether a message of long work is shown: warnings always."""
+    """Whether a progress message is shown: warnings always."""
     return not _output.quiet or message.lstrip().startswith("warning")
 
 

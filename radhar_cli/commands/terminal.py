@@ -34,7 +34,7 @@ def class_counts(rows: Rows) -> dict[str, int]:
 
 
 def print_outcome(config: Config, outcome: "Outcome") -> None:
-    """Say what lies where."""
+    """Print what was written and where."""
     folder = outcome.folder
     rows, split = Rows.of(config), Counter(int(part) for part in split_rows(config))
     size = (folder / DATASET).stat().st_size
@@ -66,7 +66,7 @@ def print_outcome(config: Config, outcome: "Outcome") -> None:
 
 
 def print_part(outcome: "Outcome", out: Path, part: str) -> None:
-    """Say what a part holds and what to do with it."""
+    """Print what a part holds and how to merge it."""
     report(folder=outcome.folder, part=part, samples=outcome.samples, made=outcome.made)
     tell(
         f"{outcome.folder}: part {part} is complete: {outcome.samples} samples, {outcome.made} new"

@@ -25,10 +25,10 @@ times, not the errors.
 
 
 def tradeoff(
-    config: Annotated[Path, typer.Argument(help="YAML file whose scenes are looked at.")],
+    config: Annotated[Path, typer.Argument(help="YAML config whose scenes are measured.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the results.")],
     quick: Annotated[
-        bool, typer.Option("--quick", help="Three activities, two rounds: a first look.")
+        bool, typer.Option("--quick", help="Three activities, three rounds: a first look.")
     ] = False,
     train: Annotated[
         bool, typer.Option("--train", help="Train a small network on data of each setting too.")
@@ -38,7 +38,7 @@ def tradeoff(
         int | None, typer.Option("--jobs", "-j", min=1, help="Processes that build data to train.")
     ] = None,
     overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Start again in a folder that holds a sweep.")
+        bool, typer.Option("--overwrite", help="Start over in a folder that holds a sweep.")
     ] = False,
 ) -> None:
     from radhar_cli.commands.learning_options import needs, needs_torch
@@ -88,7 +88,7 @@ def _tradeoff(
         conditions: dict[str, Any] = {"scenes": len(scenes.names()), "rounds": ROUNDS[quick]}
         accuracies: list[Accuracy] = []
         if train:
-            # What is measured without it stands, whatever becomes of the training.
+            # The results so far stay on disk if the training fails.
             write_report(out, path.stem, command, rows, [], conditions)
             accuracies, learned = _accuracies(scenes, out, cache, jobs)
             conditions |= learned
@@ -120,9 +120,9 @@ def _accuracies(
         overrides=scenes.overrides,
     )
     try:
-        # Six samples a class teach nothing at any SNR: no use in looking for one.
+        # Six samples per class teach nothing at any SNR: do not search for one.
         snr_db = CLEAN_DB if scenes.quick else find_snr(experiment)
-        found = measure(experiment, trials(scenes.config()), snr_db)
+        accuracies = measure(experiment, trials(scenes.config()), snr_db)
     finally:
         progress.close()
     learned = {
@@ -132,7 +132,7 @@ def _accuracies(
         "epochs": sizes.epochs,
         "smoke_run": scenes.quick,
     }
-    return found, learned
+    return accuracies, learned
 
 
 tradeoff.__doc__ = "Measure what accuracy costs: budgets, engines, precision, physics.\n" + EXAMPLE

@@ -19,7 +19,7 @@ Example:
   radhar train --stream configs/quickstart.yaml -o runs/endless    # every image new, none stored
 
 Several processes, or several GPUs: torchrun --nproc-per-node 2 -m radhar_cli train ...
-The same command, run again, goes on after the last finished epoch.
+The same command, run again, resumes after the last finished epoch.
 """
 
 
@@ -29,14 +29,14 @@ def train(
         list[Path] | None,
         typer.Argument(
             help="dataset.h5, a folder that generate wrote, or a tree of class folders; several "
-            "are learned from as one (data_weights, sampling). With --stream: to validate on."
+            "are combined (data_weights, sampling). With --stream: the validation data."
         ),
     ] = None,
     stream: Annotated[
         Path | None,
         typer.Option(
             metavar="CONFIG",
-            help="Learn from samples of this config that are synthesised meanwhile, each once.",
+            help="Train on samples of this config, synthesised on the fly, each used once.",
         ),
     ] = None,
     config: Annotated[
@@ -51,14 +51,14 @@ def train(
     ] = None,
     init: Annotated[
         Path | None,
-        typer.Option(help="A run whose best weights are started from, to go on with other data."),
+        typer.Option(help="A run whose best weights are the initial ones."),
     ] = None,
     classes: Classes = None,
     tensorboard: Annotated[
         bool, typer.Option("--tensorboard", help="Also write event files into RUN/tensorboard.")
     ] = False,
     overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Start again in a folder that holds a run.")
+        bool, typer.Option("--overwrite", help="Start over in a folder that holds a run.")
     ] = False,
 ) -> None:
     from radhar_cli.commands.learning_options import apart, needs, needs_torch

@@ -18,7 +18,7 @@ class TrainingView(Bars):
     """A bar per epoch on a terminal; a line per epoch everywhere.
 
     Args:
-        events: kept up with the epochs, where asked for.
+        events: TensorBoard files to update after every epoch, or None.
     """
 
     def __init__(self, events: "EventFiles | None" = None) -> None:
@@ -31,7 +31,7 @@ class TrainingView(Bars):
         self.open(f"epoch {number}/{epochs}", steps, "step", leave=False)
 
     def step(self, loss: float, accuracy: float) -> None:
-        self.advance(1, f"loss {loss:.3f}, right {100 * accuracy:.1f} %")
+        self.advance(1, f"loss {loss:.3f}, accuracy {100 * accuracy:.1f} %")
 
     def epoch_done(self, row: Epoch, best: bool) -> None:
         self.close()
@@ -45,7 +45,7 @@ class TrainingView(Bars):
             self._events.update()
 
     def print_outcome(self, outcome: Outcome) -> None:
-        """Say what came out and where it lies; the first process alone speaks."""
+        """Print the results and their files; rank 0 only."""
         if os.environ.get("RANK", "0") != "0":
             return
         if self._events is not None:

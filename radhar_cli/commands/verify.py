@@ -16,7 +16,7 @@ def verify(
     samples: Annotated[int, typer.Option(min=0, help="Samples to synthesise anew.")] = 24,
     motion: Annotated[
         Path | None,
-        typer.Option("--motion", help="Folder from which the paths of motion files go."),
+        typer.Option("--motion", help="Folder that the paths of motion files are relative to."),
     ] = None,
 ) -> None:
     """Check a data set: checksums, labels, counts, and samples synthesised anew.
@@ -29,27 +29,31 @@ def verify(
     """
     from radhar_cli.dataset.verify import verify as verify_folder
 
-    found = verify_folder(out, samples, motion)
-    report(**vars(found))
-    if found.other_versions:
+    outcome = verify_folder(out, samples, motion)
+    report(**vars(outcome))
+    if outcome.other_versions:
         tell("built with other versions, compared within one grey level:")
-        for line in found.other_versions:
+        for line in outcome.other_versions:
             tell(f"  {line}")
-    for problem in found.problems[:20]:
+    for problem in outcome.problems[:20]:
         tell(f"WRONG {problem}")
-    if len(found.problems) > 20:
-        tell(f"... and {len(found.problems) - 20} more")
-    if found.problems:
+    if len(outcome.problems) > 20:
+        tell(f"... and {len(outcome.problems) - 20} more")
+    if outcome.problems:
         raise typer.Exit(1)
     tell(
-        f"{out}: {found.samples} samples; checksums, labels and counts right; "
-        + (_anew(found) if found.resynthesised else "none made anew")
-        + (f"; {found.pngs} PNG files show the same" if found.pngs else "")
+        f"{out}: {outcome.samples} samples; checksums, labels and counts right; "
+        + (_anew(outcome) if outcome.resynthesised else "none made anew")
+        + (f"; {outcome.pngs} PNG files show the same" if outcome.pngs else "")
     )
-    if found.unmade:
-        tell(f"{found.unmade} samples move by files: --motion FOLDER would make them anew too")
+    if outcome.unmade:
+        tell(
+            f"{outcome.unmade} samples use motion files; --motion FOLDER synthesises them anew too"
+        )
 
 
-def _anew(found: "Report") -> str:
-    within = f"within {found.worst_level} grey level" if found.other_versions else "byte for byte"
-    return f"{found.resynthesised} synthesised anew and equal {within}"
+def _anew(outcome: "Report") -> str:
+    within = (
+        f"within {outcome.worst_level} grey level" if outcome.other_versions else "byte for byte"
+    )
+    return f"{outcome.resynthesised} synthesised anew and equal {within}"

@@ -17,13 +17,13 @@ def _print(asked: bool) -> None:
 
     from radhar_cli import __version__
 
-    found = [f"Python {platform.python_version()}"]
+    versions = [f"Python {platform.python_version()}"]
     for library in LIBRARIES:
         try:
-            found.append(f"{library} {version(library)}")
+            versions.append(f"{library} {version(library)}")
         except PackageNotFoundError:
-            found.append(f"no {library}")
-    tell(f"radhar {__version__}\n{', '.join(found)}")
+            versions.append(f"no {library}")
+    tell(f"radhar {__version__}\n{', '.join(versions)}")
     raise typer.Exit
 
 

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, NamedTuple
-
-from pydantic import BaseModel
+from typing import TYPE_CHECKING, NamedTuple
 
 from radhar_cli.activity import ACTIVITIES, DEFAULT, Activity, activity_named, own_activities
 from radhar_cli.config.number import nominal, support
@@ -80,7 +78,7 @@ def _class_problems(c: Config) -> Iterator[Problem]:
 
 
 def _unknown_activities(c: Config) -> Iterator[Problem]:
-    """Names under `per_activity` that are no activity, of one's own neither."""
+    """Names under `per_activity` that are neither an activity nor a user-defined class."""
     from radhar_cli.config.schema import PerActivity, class_activities
 
     own = class_activities(c.classes)
@@ -452,51 +450,18 @@ def _human_problems(c: Config) -> Iterator[Problem]:
                 break
 
 
-# Keys that only another key makes use of: (key, the other, its value).
-USED_ONLY_WITH = (
-    ("processing.gate_m", "processing.doppler", "gate"),
-    ("processing.gate_sum", "processing.doppler", "gate"),
-    ("processing.highpass", "processing.clutter", "highpass"),
-    ("image.cfar", "image.kind", "cfar"),
-)
-
-
-def unused_keys(c: Config) -> list[str]:
-    """Say which keys have no effect though they are not as by default."""
-    found = []
-    for key, other, wanted in USED_ONLY_WITH:
-        section, name = key.split(".")
-        given = getattr(c, section)
-        value = getattr(given, other.split(".")[1])
-        if value != wanted and not _usual(getattr(given, name), getattr(type(given)(), name)):
-            found.append(f"{key} has no effect with {other}: {value}, but with {wanted}")
-    return found
-
-
-def _usual(given: Any, default: Any) -> bool:
-    """Whether a value is the default, or was drawn from it."""
-    if given == default or not isinstance(default, BaseModel):
-        return bool(given == default)
-    for name in type(default).model_fields:
-        own, usual = getattr(given, name), getattr(default, name)
-        drawn = isinstance(usual, BaseModel) and isinstance(own, int | float)
-        if not (support(usual)[0] <= own <= support(usual)[1] if drawn else own == usual):
-            return False
-    return True
-
-
-def config_warnings(c: Config) -> list[str]:
-    """Say which keys have no effect, and which interference lines alias."""
-    found = unused_keys(c)
+def line_warnings(c: Config) -> list[str]:
+    """Say which interference lines alias."""
+    warnings = []
     prf = support(c.radar.prf_hz)[0]
     for number, line in enumerate(c.receiver.lines):
         least, most = support(line.doppler_hz)
         if max(-least, most) > prf / 2:
-            found.append(
+            warnings.append(
                 f"receiver.lines.{number}.doppler_hz reaches beyond PRF/2 = {prf / 2:g} Hz: the "
                 "line aliases, to that frequency less a multiple of the PRF"
             )
-    return found
+    return warnings
 
 
 def timing_warnings(c: Config, activities: Iterable[Activity] | None = None) -> list[str]:
@@ -504,7 +469,7 @@ def timing_warnings(c: Config, activities: Iterable[Activity] | None = None) -> 
     from radhar_cli.config.schema import for_activity
 
     length = nominal(c.duration_s)
-    found = []
+    warnings = []
     for activity in c.chosen_activities if activities is None else activities:
         for key in ("seat_start_s", "walk_start_s", "walk_stop_s"):
             number = for_activity(getattr(c.timing, key), activity)
@@ -512,8 +477,8 @@ def timing_warnings(c: Config, activities: Iterable[Activity] | None = None) -> 
                 continue
             start = nominal(number)
             if start >= length:
-                found.append(
+                warnings.append(
                     f"{activity.label} {activity.slug}: timing.{key} = {start:g} s is not before "
                     f"the end of the recording, {length:g} s: its second phase is never seen"
                 )
-    return found
+    return warnings

@@ -201,7 +201,7 @@ class SubjectConfig(Section):
     weight_kg: Annotated[Positive, within(1e-3, 1e6, "kg")] | None = None
     """null is 26 kg/m^2 times the height squared."""
     sway_ahead_m: Metres = Uniform(uniform=(0.002, 0.006))
-    """Standard deviation of the sway of who stands."""
+    """Standard deviation of a standing person's sway."""
     sway_aside_m: Metres = Uniform(uniform=(0.0015, 0.0035))
     """The same to the side."""
     breathing_hz: Rate = Normal(normal=(0.25, 0.04), min=0.15, max=0.4)
@@ -209,7 +209,7 @@ class SubjectConfig(Section):
     chest_m: Metres = Uniform(uniform=(0.002, 0.006))
     """Amplitude of breathing."""
     pulse_hz: Rate = Normal(normal=(1.15, 0.12), min=0.8, max=1.8)
-    """Rate of the pulse."""
+    """Heart rate."""
     heart_m: Metres = Uniform(uniform=(0.0001, 0.0004))
     """Amplitude of the pulse."""
 
@@ -234,14 +234,14 @@ class MotionConfig(Section):
 
     range_m to angle_deg: all. speed_mps: not of files. gait_hz to turn_deg: the paper's. turn_deg
     on: the human model's. What another model alone knows is ignored; what is null takes the value
-    of the model (MODEL_DEFAULTS, docs/motion.md). folder: from which the paths of files go; it does
-    not belong to what a config says.
+    of the model (MODEL_DEFAULTS, docs/motion.md). folder: paths of files are relative to it; it is
+    not part of a data set's identity.
     """
 
     model: Literal["human", "paper", "file"] = "human"
-    """People, the paper's, or of files, which every class has."""
+    """Of people, of the paper, or motion files for every class."""
     folder: Annotated[str | None, Field(exclude=True, max_length=1000)] = None
-    """From which the paths of motion files go; no part of what a data set is."""
+    """Folder that paths of motion files are relative to; not part of a data set's identity."""
     range_m: CoordinateBy | None = None
     """Where people are: the torso (paper), the feet at first (human); null is the model's."""
     cross_range_m: CoordinateBy = 0.0
@@ -263,47 +263,47 @@ class MotionConfig(Section):
     rotation_hz: FrequencyBy = Vary(vary=(0.45, 0.2))
     """human: turns to both sides per second."""
     period_scale: RatioBy = Normal(normal=(0.95, 0.04), min=0.85, max=1.05)
-    """Stride time over Boulic and Thalmann's."""
+    """Stride time relative to Boulic and Thalmann's."""
     cycle_phase: SignedBy = Uniform(uniform=(-0.5, 0.5))
     """Where in their cycle steady walks, punches, kicks and turns are at 0 s."""
     arm_swing: RatioBy = Uniform(uniform=(0.6, 1.3))
-    """Over Boulic and Thalmann's."""
+    """Relative to Boulic and Thalmann's."""
     trunk_pitch_deg: AngleBy = Normal(normal=(3.0, 2.0), min=-2.0, max=8.0)
-    """Ahead, of who walks."""
+    """Forward pitch of a walker's trunk."""
     step_width: RatioBy = Normal(normal=(0.063, 0.011), min=0.03, max=0.1)
-    """Between the feet of who walks, over the stature."""
+    """Of a walker, relative to the stature."""
     step_asymmetry: SignedBy = Normal(normal=(0.0, 0.02), min=-0.05, max=0.05)
-    """Of left over right steps."""
+    """Of left relative to right steps."""
     surge: RatioBy = Normal(normal=(0.125, 0.015), min=0.09, max=0.17)
-    """How much the hip goes faster and slower within each step, over the speed."""
+    """Amplitude of the hip's speed within each step, relative to the mean speed."""
     surge_asymmetry: SignedBy = Normal(normal=(0.0, 0.05), min=-0.1, max=0.1)
-    """Of the right step's surge over the left one's."""
+    """Of the right step's surge relative to the left one's."""
     ragged_speed: RatioBy = Uniform(uniform=(0.0, 0.06))
-    """sd of the speed over time, over the speed."""
+    """Standard deviation of the speed over time, relative to the speed."""
     stride_jitter: RatioBy = Uniform(uniform=(0.0, 0.03))
-    """sd of the time from stride to stride."""
+    """Standard deviation of the stride time, relative to it."""
     width_jitter_m: RatioBy = Uniform(uniform=(0.0, 0.02))
-    """sd of half the width from stride to stride."""
+    """Standard deviation of half the step width from stride to stride, m."""
     lane_m: CoordinateBy = 0.0
-    """Walkers turn round after that way and every time again; 0 never."""
+    """Walkers turn round whenever they have gone so far; 0 is never."""
     lane_start: RatioBy = Uniform(uniform=(0.0, 1.0))
-    """Share of the first way that lies behind them."""
+    """Share of the first lane that lies behind them at 0 s."""
     punch_hz: FrequencyBy = Vary(vary=(0.7, 0.15))
-    """A right and a left punch."""
+    """Pairs of punches, right and left, per second."""
     kick_hz: FrequencyBy = Vary(vary=(0.45, 0.1))
-    """A kick."""
+    """Kicks per second."""
     strike_scale: RatioBy = Normal(normal=(1.0, 0.12), min=0.8, max=1.25)
-    """Duration of a punch or kick over the usual one."""
+    """Duration of a punch or kick, relative to the usual one."""
     tempo_jitter: RatioBy = Uniform(uniform=(0.0, 0.1))
-    """sd of the time from one punch or kick to the next."""
+    """Relative standard deviation of the time from one punch or kick to the next."""
     size_jitter: RatioBy = Uniform(uniform=(0.0, 0.1))
-    """sd of the size from one punch or kick to the next."""
+    """Relative standard deviation of the size from one punch or kick to the next."""
     bend_deg: AngleBy = Normal(normal=(72.0, 5.0), min=60.0, max=85.0)
     """S4: pitch of the trunk."""
     dwell_s: SecondsBy = Uniform(uniform=(0.2, 0.6))
     """S4: time at the floor."""
     seat_height: RatioBy = Normal(normal=(0.285, 0.015), min=0.25, max=0.32)
-    """Of the hip over the stature."""
+    """Height of the seated hip, relative to the stature."""
     lean_deg: AngleBy = Normal(normal=(42.0, 8.0), min=25.0, max=58.0)
     """Trunk ahead while rising."""
     recline_deg: AngleBy = 0.0
@@ -317,17 +317,17 @@ class MotionConfig(Section):
     settle_size: RatioBy = Uniform(uniform=(0.0, 3.0))
     """S4 to S6: size of the fidgets around the end."""
     kneel_s: SecondsBy = Uniform(uniform=(0.0, 0.6))
-    """A fall ahead stays over the knees for so long."""
+    """Pause on the knees in a forward fall."""
     fall: FallName | Falls = "forward"
     """Direction, or drawn: {choice: [forward, forward, sideways]}."""
     fidget_hz: FrequencyBy = Uniform(uniform=(0.0, 0.4))
-    """How often who stands or sits moves a little."""
+    """How often a standing or seated person fidgets."""
     fidget_size: RatioBy = Uniform(uniform=(0.5, 1.5))
-    """How large that is."""
+    """Size of the fidgets, relative to the usual one."""
     shuffle_hz: FrequencyBy = Uniform(uniform=(0.0, 0.2))
     """Steps of some centimetres, S1 and after S4."""
     idle_from_s: SecondsBy = Uniform(uniform=(0.0, 1000.0))
-    """How long sway, breath, pulse and ragged speed have been going on."""
+    """Time at 0 s of the processes of sway, breath, pulse and ragged speed."""
 
 
 class TimingConfig(Section):
@@ -369,7 +369,7 @@ FileSecond = Annotated[float, Field(ge=0, le=1e5, strict=True)]
 
 
 class SequenceConfig(Section):
-    """A class of one's own: movements one after the other, joined at rest."""
+    """A class of your own: movements one after the other, joined at rest."""
 
     sequence: Annotated[tuple[str, ...], Field(min_length=1, max_length=64)]
     """Names of movements (`radhar_cli.activity.MOVEMENTS`)."""
@@ -392,7 +392,7 @@ class SequenceConfig(Section):
             movement = MOVEMENTS.get(name)
             if movement is None:
                 hint = did_you_mean(name, MOVEMENTS, f"movements are {', '.join(MOVEMENTS)}")
-                raise _wrong(f"{name!r} is no movement; {hint}")
+                raise _wrong(f"{name!r} is not a movement; {hint}")
             if state not in (None, movement.before):
                 raise _wrong(
                     f"should be joined at rest: {name} begins {movement.before}, "
@@ -504,17 +504,17 @@ Size: TypeAlias = Annotated[Positive, within(1e-6, 1e6, "m")]
 class WallConfig(Section):
     """Centre, size along x, y, z, relative permittivity and loss tangent of the wall.
 
-    `rays` and `fresnel` are physics that one may add; docs/engines.md has their size.
+    `rays` and `fresnel` are optional physics; docs/engines.md has the size of their effects.
     """
 
     center_m: Vector = (1.0, 0.0, 1.25)
     """Range, cross-range, height of its middle."""
     size_m: tuple[Size, Size, Size] = (0.24, 5.0, 2.5)
-    """Along the same."""
+    """Extent in range, cross-range, height."""
     eps_r: Annotated[AtLeastOne, within(1, 1e6)] = 6.0
     """Relative permittivity."""
     loss_tangent: Annotated[NotNegative, within(0, 1e12)] = 0.03
-    """Of the material."""
+    """Of its material."""
     rays: Literal["straight", "refracted"] = "straight"
     """Through the wall; refracted is by Snell's law."""
     fresnel: Literal["normal", "perpendicular", "parallel"] = "normal"
@@ -531,7 +531,7 @@ class BodyConfig(Section):
     scatterers: Literal["points", "segments"] = "points"
     """The 13 joints, or ellipsoids between them."""
     points_per_segment: Annotated[int, Field(ge=1, le=1000, strict=True)] = 20
-    """Of segments: at most."""
+    """At most so many on a segment."""
     shadowing: Flag = True
     """Of segments: trunk and thighs hide what is behind them."""
 
@@ -544,7 +544,7 @@ class ReflectorConfig(Section):
         Uniform(uniform=(-3.0, 3.0)),
         Uniform(uniform=(0.0, 2.5)),
     )
-    """Where it stands."""
+    """Range, cross-range, height."""
     rcs_dbsm: Annotated[Number, within(-120, 120, "dBsm")] = Uniform(uniform=(-10.0, 10.0))
     """Its radar cross-section."""
     residual_m: Annotated[NotNegative, within(0, 0.01, "m")] = Uniform(uniform=(5e-5, 5e-4))
@@ -577,26 +577,26 @@ class RoomConfig(Section):
 class LineConfig(Section):
     """Interference at a fixed Doppler; its level is over the white noise, of a raw sample.
 
-    on_s, off_s: mean times for which it is there and is not; always there where off_s is 0.
+    on_s, off_s: mean times for which it is on and off; always on where off_s is 0.
     """
 
     doppler_hz: Annotated[Number, within(-1e7, 1e7, "Hz")]
-    """Where it stands."""
+    """Doppler frequency of the line."""
     level_db: Decibel = -10.0
     """Over the white noise of a raw sample."""
     on_s: Annotated[Positive, within(1e-3, 1e7, "s")] = 1.0
-    """How long a line is there, on average."""
+    """Mean time for which it is on."""
     off_s: Annotated[NotNegative, within(0, 1e7, "s")] = 0.0
-    """How long it is away; 0 is always there."""
+    """Mean time for which it is off; 0: always on."""
 
 
 class ReceiverConfig(Section):
     """Noise that grows towards zero Doppler, and interference lines; both over the white noise."""
 
     noise_corner_hz: Annotated[NotNegative, within(0, 1e7, "Hz")] = 0.0
-    """Where noise that grows towards zero Doppler is as strong as the white; 0 is none."""
+    """Doppler at which noise that grows towards zero equals the white noise; 0 is none."""
     noise_slope_db: Annotated[NotNegative, within(1, 20, "dB per decade")] = 10.0
-    """Of that noise, per decade."""
+    """Its slope."""
     lines: Annotated[tuple[LineConfig, ...], Field(max_length=16)] = ()
     """Interference: a list of {doppler_hz, level_db}."""
 
@@ -624,15 +624,15 @@ class HighpassConfig(Section):
     order: Annotated[int, Field(ge=1, le=10, strict=True)] = 4
     """Of the filter."""
     cutoff_hz: Annotated[float, Field(gt=0, le=1e7, strict=True)] | None = None
-    """One of the three cut-offs."""
+    """The cut-off; or one of the next two instead."""
     cutoff_mps: Annotated[float, Field(gt=0, le=1e4, strict=True)] | None = None
     """The same as a speed."""
     cutoff_fraction: Annotated[float, Field(gt=0, lt=1, strict=True)] | None = None
-    """The same of PRF/2."""
+    """The same as a fraction of PRF/2."""
     zero_phase: Flag = False
     """Filter both ways."""
     remove_mean: Flag = True
-    """Before the filter; without it what stands still rings, as with MATLAB's `filter`."""
+    """Take out the mean first; without it static echoes ring, as with MATLAB's `filter`."""
 
     @model_validator(mode="after")
     def _one_cutoff(self) -> "HighpassConfig":
@@ -669,18 +669,18 @@ class ProcessingConfig(Section):
     range_reference: Literal["centre", "start"] = "centre"
     """Where in the chirp the phase is taken."""
     window_fraction: Annotated[float, Field(gt=0, lt=1, strict=True)] = 0.1
-    """Of the recording."""
+    """Length of the window, as a fraction of the recording."""
     window_s: Annotated[float, Field(gt=0, le=1e7, strict=True)] | None = None
     """The window in s, before window_fraction."""
     overlap_fraction: Annotated[float, Field(ge=0, lt=1, strict=True)] = 0.9
-    """Of the window."""
+    """Of consecutive windows, as a fraction of the window."""
     stft_fft_length: Annotated[int, Field(ge=8, strict=True)] | None = None
     """At least the window; null is found."""
     savgol: SavgolConfig = SavgolConfig()
     fsst_hop_pulses: Annotated[int, Field(ge=1, le=2**24, strict=True)] | None = None
     """Of the fsst maps; 1 is every sample; null is the STFT's."""
     fsst_threshold: Annotated[float, Field(ge=0, lt=1, strict=True)] = 1e-3
-    """Of the map's largest coefficient."""
+    """Coefficients below this share of the map's largest are left out."""
 
     @field_validator("gate_m", mode="before")
     @classmethod
@@ -741,7 +741,7 @@ class CfarConfig(Section):
     floor_db: Annotated[Decibel, within(0, 200, "dB")] = Uniform(uniform=(10.0, 30.0))
     """With decibels, where the map's median is put."""
     edges: Literal["wrap", "shrink"] = "wrap"
-    """Beyond an edge the opposite one goes on, or no training cells."""
+    """Beyond an edge: the cells of the opposite edge, or none."""
 
     @model_validator(mode="after")
     def _one_threshold(self) -> "CfarConfig":
@@ -775,10 +775,10 @@ class ImageConfig(Section):
     kind: Literal["decibel", "cfar"] = "decibel"
     """Grey levels, or binary masks of what exceeds its background."""
     dynamic_range_db: Annotated[float, Field(gt=0, le=300, strict=True)] = 50.0
-    """Of `kind: decibel`."""
+    """Grey levels reach so far below the largest power (`kind: decibel`)."""
     cfar: CfarConfig = CfarConfig()
     colour_map: str = DEFAULT_COLOUR_MAP
-    """Any Matplotlib name; PNG only."""
+    """Any Matplotlib name; of PNGs and figures, as dataset.h5 holds grey levels."""
     doppler_limits_mps: tuple[Real, Real] | None = None
     """v for -v to v, or [low, high], approaching positive; null is all."""
 
@@ -826,11 +826,11 @@ class SplitConfig(Section):
     by: Literal["sample", "subject"] = "sample"
     """Shares of each class's samples, or of the persons."""
     train: Share = 0.8
-    """Share."""
+    """Share to learn from."""
     validation: Share = 0.2
-    """Share."""
+    """Share to choose the best epoch by."""
     test: Share = 0.0
-    """Share."""
+    """Share that training never sees."""
     subjects: Annotated[int, Field(ge=1, strict=True)] | None = None
     """With `by: subject`: persons who each perform every activity."""
 
@@ -867,7 +867,7 @@ class EngineConfig(Section):
     tolerance_db: Annotated[float, Field(ge=-400, le=MAX_TOLERANCE_DB, strict=True)] = -80.0
     """Relative L2 error of the noiseless signal after MTI, -400 to -6."""
     fallback: Literal["refuse", "cube"] = "refuse"
-    """What to do with a scene for which `direct` cannot promise that."""
+    """What to do with a scene in which `direct` misses the tolerance."""
     precision: Literal["auto", "double"] = "auto"
     """double: float64 whatever the tolerance."""
     motion_in_chirp: Flag = False
@@ -916,8 +916,8 @@ def possible_maps(processing: ProcessingConfig) -> tuple[MapName, ...]:
     return tuple(name for name in MAP_NAMES if not (gated and name.startswith("fsst")))
 
 
-# Who walks begins far away, as 4 s of it are 5 m, and passes the radar 2 m beside it; classes of
-# one's own may walk. All within the half-band of 7.5 m that the default radar has.
+# A walker starts far away, as 4 s of walking are 5 m, and passes the radar at 2 m; user-defined
+# classes may walk too. All within the half-band of 7.5 m of the default radar.
 _NEAR = (a.slug for a in ACTIVITIES if not a.walks)
 _HUMAN_RANGE = PerActivity[Coordinate](
     per_activity={
@@ -1055,7 +1055,7 @@ class Config(Section):
     samples_per_class: SamplesBy = 300
     """May differ: {per_activity: {default: 300, walking: 100}}."""
     classes: Annotated[dict[str, ClassConfig], Field(max_length=200)] = {}  # labels are uint8
-    """One's own: {name: {sequence: [...]}} of movements, {name: [walk/*.bvh]} of files."""
+    """Your own: {name: {sequence: [...]}} of movements, {name: [walk/*.bvh]} of files."""
     activities: Literal["all"] | tuple[str, ...] = "all"
     """The twelve and those of `classes`; or a list of slugs or labels, [walking, S12]."""
     duration_s: Annotated[Positive, within(1e-9, 1e7, "s")] = 4.0
@@ -1111,7 +1111,7 @@ class Config(Section):
             raise PydanticCustomError("activity", "{what}", {"what": str(error)}) from None
         if not chosen or len({a.slug for a in chosen}) != len(chosen):
             raise PydanticCustomError("activity", "should name at least one activity, each once")
-        # One's own last: those of `classes`, then added ones.
+        # User-defined ones last: those of `classes`, then those of `add_activity`.
         return tuple(a.slug for a in sorted(chosen, key=lambda a: (a.motion is not None, a.number)))
 
     @field_validator("maps")
@@ -1135,9 +1135,9 @@ class Config(Section):
 
     @model_validator(mode="after")
     def _consistent(self) -> "Config":
-        found = list(problems(self))
-        if found:
-            raise PydanticCustomError("across", "{problems}", {"problems": found})
+        mistakes = list(problems(self))
+        if mistakes:
+            raise PydanticCustomError("across", "{problems}", {"problems": mistakes})
         return self
 
     def samples_of(self, activity: Activity) -> int:
@@ -1153,13 +1153,13 @@ class Config(Section):
 
     @property
     def every_class(self) -> tuple[Activity, ...]:
-        """Every class by its label: the twelve, those of `classes`, then added ones."""
+        """Every class by label: the twelve, those of `classes`, then those of `add_activity`."""
         known = {a.slug: a for a in ACTIVITIES} | class_activities(self.classes)
         return (*(known | {a.slug: a for a in self.chosen_activities}).values(),)
 
     @property
     def chosen_activities(self) -> tuple[Activity, ...]:
-        """The activities to build: S1 to S12, then one's own, numbered from 13 in their order.
+        """The activities to build: S1 to S12, then user-defined ones from 13 on, in order.
 
         All of them are those of `classes` alone with `motion.model: file`.
         """
@@ -1189,14 +1189,14 @@ class Config(Section):
 
 def class_activities(classes: Mapping[str, ClassConfig]) -> dict[str, Activity]:
     """{slug: activity} of a config's classes: S13 and so on, or one of the twelve from files."""
-    found: dict[str, Activity] = {}
+    activities: dict[str, Activity] = {}
     twelve = {activity.slug: activity for activity in ACTIVITIES}
     number = len(ACTIVITIES)
     for slug, one in classes.items():
         if slug in twelve:
-            found[slug] = replace(twelve[slug], paper=(), human=())
+            activities[slug] = replace(twelve[slug], paper=(), human=())
             continue
         number += 1
         uses = sequence_uses(one.sequence) if isinstance(one, SequenceConfig) else ()
-        found[slug] = Activity(number, slug, human=uses)
-    return found
+        activities[slug] = Activity(number, slug, human=uses)
+    return activities

@@ -43,8 +43,8 @@ from radhar_cli.dataset.shards import (
     ShardError,
     check_shards,
     chunked_dataset,
-    go_on,
     require_tiling,
+    resume_hint,
 )
 from radhar_cli.dataset.split import split_rows
 from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
@@ -73,19 +73,19 @@ def assembled(
     folder: Path,
     shards: Sequence[Shard],
     progress: Progress,
-    remedy: Callable[[Runs], str] = go_on,
+    remedy: Callable[[Runs], str] = resume_hint,
     virtual: bool = False,
 ) -> Iterator[tuple[Path, list[dict[str, Any]]]]:
-    """Put a data set together; yield the path of its whole file, which becomes dataset.h5 after.
+    """Assemble a data set; yield the path of the complete file and the warnings stored in it.
 
-    With the path come the warnings that are stored in it.
+    On exit the file is renamed to dataset.h5.
 
     Args:
         config: the data set's.
         folder: the output folder.
         shards: that hold every row once.
         progress: receives the rows that are copied.
-        remedy: what to do about rows that are missing.
+        remedy: advice on rows that are missing, for the message.
         virtual: refer to the large datasets of the shards, which lie below the folder, instead of
             copying them.
 
@@ -108,9 +108,9 @@ def assembled(
                 _refer_to_shards(file, config, folder, shards)
             flags = _copy_shards(file, config, shards, own_hash, progress, text, held, virtual)
             held.write("]}\n")
-            found = warnings(config, flags)
-            _root_attributes(file, config, found)
-        yield unfinished, found
+            messages = warnings(config, flags)
+            _root_attributes(file, config, messages)
+        yield unfinished, messages
         table.replace(folder / SCENES)
         write_whole(folder, folder / CONFIG, (CONFIG_HEADING + as_yaml(config)).encode())
         manifest.replace(folder / WORK / MANIFEST)
@@ -118,7 +118,7 @@ def assembled(
     except ShardError as error:
         sound, unusable = check_shards(shards, own_hash)
         require_tiling(folder, sound, count, remedy, unusable)
-        raise UnfinishedError(f"{folder}: {error}; the same command goes on") from None
+        raise UnfinishedError(f"{folder}: {error}; the same command resumes") from None
     finally:
         for path in (unfinished, table, manifest):
             path.unlink(missing_ok=True)
@@ -304,7 +304,7 @@ def _describe_slow_time(attributes: h5py.AttributeManager) -> None:
     )
 
 
-def _root_attributes(file: h5py.File, config: Config, found: list[dict[str, Any]]) -> None:
+def _root_attributes(file: h5py.File, config: Config, messages: list[dict[str, Any]]) -> None:
     file.attrs["schema_version"] = SCHEMA_VERSION
     file.attrs["config"] = json.dumps(resolved(config))
     file.attrs["config_hash"] = config_hash(config)
@@ -315,7 +315,7 @@ def _root_attributes(file: h5py.File, config: Config, found: list[dict[str, Any]
     file.attrs["seed"] = config.seed
     file.attrs["class_names"] = [activity.label for activity in config.every_class]
     file.attrs["class_slugs"] = [activity.slug for activity in config.every_class]
-    file.attrs["warnings"] = json.dumps(found)
+    file.attrs["warnings"] = json.dumps(messages)
     for library, version in versions().items():
         file.attrs[f"{library}_version"] = version
 

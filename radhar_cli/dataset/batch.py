@@ -131,10 +131,10 @@ def _made(batch: Batch) -> Iterator[tuple[Made, int]]:
             yield batch.maker(config, row), 0
         return
     plan, columns = plan_images(config), scene_fields.fields(config)
-    for scene, found in batch.scenes():
+    for scene, flags in batch.scenes():
         leave_if_orphaned(batch.parent_pid)
         sample = synthesise(scene, plan)
-        yield Made(sample, scene_fields.values(scene, columns, sample.error_db)), found
+        yield Made(sample, scene_fields.values(scene, columns, sample.error_db)), flags
 
 
 def check_rows(config: Config, start: int, stop: int, parent_pid: int) -> tuple[int, Outcomes]:

@@ -80,14 +80,14 @@ def build(
     batch_size: int | None = None,
     maker: Maker | None = None,
 ) -> Outcome:
-    """Build `config` into `folder`, or go on with it, or find it complete.
+    """Build `config` into `folder`, or resume it; nothing to do where it is complete.
 
     Args:
         config: the data set.
         folder: created if need be.
         jobs: processes.
         progress: receives progress and messages.
-        overwrite: start again.
+        overwrite: start over.
         batch_size: samples a shard; it changes no byte of the result.
         maker: makes the rows of a data set that is not simulated.
 
@@ -102,7 +102,7 @@ def build(
         reserve(folder, config, overwrite)
         return _Build(config, folder, jobs, progress, maker).whole(batch_size)
 
-    return _locked(folder.absolute(), work)
+    return _with_lock(folder.absolute(), work)
 
 
 def build_part(
@@ -114,7 +114,7 @@ def build_part(
     overwrite: bool = False,
     batch_size: int | None = None,
 ) -> Outcome:
-    """Build one part of `config` in its folder below `out`, or go on with it, or find it complete.
+    """Build one part of `config` in its folder below `out`, or resume it.
 
     Arguments and errors are those of `build`.
     """
@@ -127,10 +127,10 @@ def build_part(
         reserve(folder, config, overwrite, str(part))
         return _Build(config, folder, jobs, progress).part(part, batch_size)
 
-    return _locked(part.folder(out.absolute()), work)
+    return _with_lock(part.folder(out.absolute()), work)
 
 
-def _locked(folder: Path, work: Callable[[Path], Outcome]) -> Outcome:
+def _with_lock(folder: Path, work: Callable[[Path], Outcome]) -> Outcome:
     try:
         with folder_lock(folder):
             return work(folder)
@@ -176,7 +176,7 @@ class _Build:
         return Outcome(self.folder, len(rows), made, 0, shown)
 
     def _write_beside(self, source: Path) -> int:
-        """Write what is missing beside dataset.h5; return how many PNGs that were."""
+        """Write the missing files next to dataset.h5; return the number of PNGs among them."""
         pngs = write_missing_pngs(
             self.config, self.folder, self.split, source, self.jobs, self.progress
         )
@@ -186,7 +186,7 @@ class _Build:
     def _shards(
         self, rows: range, batch_size: int | None
     ) -> tuple[list[Shard], int, list[dict[str, Any]]]:
-        """Shards of the rows, how many rows this run made, and the warnings that were said."""
+        """Shards of the rows, number of rows that this run made, and warnings."""
         shards = self._sound_shards(rows)
         gaps, _ = missing_and_repeated(shards, rows.stop, rows.start)
         few = self.maker is None and len(rows) <= MAX_CHECKED_FIRST
@@ -253,9 +253,9 @@ class _Build:
         return shards, left
 
     def _sound_shards(self, rows: range) -> list[Shard]:
-        """Shards to go on from, of these rows.
+        """Usable shards of these rows.
 
-        A damaged one is removed, as its rows may be cut otherwise now; a foreign one put aside.
+        A damaged one is removed, as new batches may be cut differently; a foreign one put aside.
         """
         (self.folder / WORK / MANIFEST).unlink(missing_ok=True)
         sound, unusable = check_shards(listed_shards(self.folder, rows), self.identity_hash)
@@ -274,9 +274,9 @@ def _batch_size(left: int, jobs: int, one: int) -> int:
     return max(1, min(most, -(-left // (4 * jobs))))
 
 
-def say_warnings(progress: Progress, found: list[dict[str, Any]]) -> None:
+def say_warnings(progress: Progress, messages: list[dict[str, Any]]) -> None:
     """Say physical warnings."""
-    for warning in found:
+    for warning in messages:
         progress.say(f"warning: {warning['message']}")
 
 
@@ -285,7 +285,7 @@ def _counts(flags: Levels) -> dict[Flags, int]:
 
 
 def disk_error(folder: Path, error: OSError) -> UnfinishedError:
-    """What to tell of a failed disk."""
+    """The error for a failed write or a full disk."""
     where = error.filename or folder
     if error.errno == errno.ENOSPC or "No space left" in str(error):
         why = "no space left on the disk"
@@ -294,5 +294,5 @@ def disk_error(folder: Path, error: OSError) -> UnfinishedError:
     else:
         why = error.strerror or str(error)
     return UnfinishedError(
-        f"{where}: {why}; what was finished in {folder} is kept, and the same command goes on"
+        f"{where}: {why}; what was finished in {folder} is kept, and the same command resumes"
     )

@@ -1,4 +1,4 @@
-"""The data card, README.md: what strangers, and the Hugging Face Hub, should know of a data set."""
+"""The data card, README.md: a data set described for readers and for the Hugging Face Hub."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -94,7 +94,7 @@ def configurations(config: Config, files: Files) -> list[dict[str, Any]]:
 
 
 def front_matter(path: Path) -> dict[str, Any]:
-    """The front matter of a card that anyone may have changed; empty where it has none.
+    """The front matter of a card, which may have been edited; empty where it has none.
 
     Raises:
         FolderError: the card cannot be read.
@@ -115,13 +115,13 @@ def owner_licence(folder: Path) -> dict[str, str | list[str]]:
         FolderError: the card cannot be read, or says something else than names of licences.
     """
     path = folder / CARD
-    found = front_matter(path) if path.exists() else {}
-    said = {key: found[key] for key in _LICENCE if found.get(key) is not None}
-    for key, value in said.items():
+    matter = front_matter(path) if path.exists() else {}
+    licence = {key: matter[key] for key in _LICENCE if matter.get(key) is not None}
+    for key, value in licence.items():
         names = value if isinstance(value, list) else [value]
         if not all(isinstance(name, str) and name.isprintable() for name in names):
             raise FolderError(f"{path}: {key}: should be text on one line, such as cc-by-4.0")
-    return said
+    return licence
 
 
 def card(data: Dataset, more: Mapping[str, Any], reading: str) -> str:
@@ -130,7 +130,7 @@ def card(data: Dataset, more: Mapping[str, Any], reading: str) -> str:
     Args:
         data: the data set.
         more: front matter: what `load_dataset` goes by, and a licence where it is not the config's.
-        reading: Markdown, how to read what lies beside the card.
+        reading: Markdown, how to read the files next to the card.
     """
     config, count = data.config, len(data)
     measured = config.recorded is not None
@@ -274,14 +274,14 @@ def _reach(data: Dataset, name: str) -> tuple[float, float]:
 
 
 def _cautions(data: Dataset) -> str:
-    said = [str(warning["message"]) for warning in data.warnings]
+    notes = [str(warning["message"]) for warning in data.warnings]
     if data.config.recorded is None:
-        said.append(
+        notes.append(
             "simulated data: a network that is accurate on them need not be so on a real radar"
         )
     else:
-        said.append("config.yaml names files and persons as the manifest of the recordings does")
-    return "\n".join(f"- {' '.join(message.split())}" for message in said) or "- nothing was found"
+        notes.append("config.yaml names files and persons as the manifest of the recordings does")
+    return "\n".join(f"- {' '.join(message.split())}" for message in notes)
 
 
 def _making(data: Dataset) -> str:

@@ -1,4 +1,4 @@
-"""Outcomes of the check of scenes, kept with an unfinished build: going on starts at once."""
+"""Outcomes of the check of scenes, stored with an unfinished build for a resumed one."""
 
 import hashlib
 from pathlib import Path

@@ -31,7 +31,7 @@ class Cluster:
         return max(1, int(sum(self._client.ncores().values())))
 
     def run(self, function: Callable[..., T], tasks: Iterable[tuple[Any, ...]]) -> Iterator[T]:
-        """Yield function(*task) for every task, in any order; what a lost worker had is run again.
+        """Yield function(*task) for every task, in any order; tasks of a lost worker are run again.
 
         Raises:
             UnfinishedError: the scheduler is gone, or one task lost several workers.
@@ -52,7 +52,7 @@ class Cluster:
                 yield done.result()
                 fill()
         except KilledWorker:
-            fault = "several workers were lost with the same task, for want of memory perhaps"
+            fault = "several workers were lost with the same task, perhaps out of memory"
         except (FutureCancelledError, OSError) as error:
             if isinstance(error, OSError) and self._client.status == "running":
                 raise  # the task's own
@@ -60,7 +60,7 @@ class Cluster:
         else:
             return
         raise UnfinishedError(
-            f"dask: {fault}; what was finished is kept, and the same command goes on"
+            f"dask: {fault}; what was finished is kept, and the same command resumes"
         )
 
 

@@ -1,4 +1,4 @@
-"""What is done at the time of each column of an image (`output.column_labels`)."""
+"""Movement or class at the time of each column of an image (`output.column_labels`)."""
 
 import numpy as np
 
@@ -16,7 +16,7 @@ def label_names(config: Config) -> tuple[str, ...]:
 
 
 def column_labels(scene: Scene, motion: Motion, image: MapImage) -> Levels:
-    """Number in `label_names` [width] of what is under way at the middle of each column.
+    """Index into `label_names` of each column, at the time of its middle [width].
 
     A motion that names no phases, or others than PHASES, is labelled with its class.
     """

@@ -77,16 +77,16 @@ def reserve(
     config: Config,
     overwrite: bool,
     part: str | None = None,
-    beside: tuple[str, ...] = (),
+    allowed: tuple[str, ...] = (),
 ) -> None:
-    """Make a folder, whose lock is held, this config's, or refuse.
+    """Take a locked folder for this config, or refuse it.
 
     Args:
         folder: the output folder, or a part's.
         config: of the data set.
-        overwrite: start again.
+        overwrite: start over.
         part: which one this is, K/N.
-        beside: names that a folder without a data set may hold already.
+        allowed: names that a folder without a data set may hold already.
 
     Raises:
         FolderError: it holds something else; the message names the keys that differ.
@@ -96,7 +96,7 @@ def reserve(
         _clear(folder, new)
     old = stored_identity(folder)
     if old is None:
-        foreign_files = sorted(p.name for p in folder.iterdir() if p.name not in (WORK, *beside))
+        foreign_files = sorted(p.name for p in folder.iterdir() if p.name not in (WORK, *allowed))
         if PARTS in foreign_files:
             raise FolderError(
                 f"{folder}: holds parts of a data set; `radhar merge {folder}` puts them together, "
@@ -109,12 +109,12 @@ def reserve(
             )
         _name(folder, new)
     else:
-        found = differences(old, new)
-        if found:
+        differing = differences(old, new)
+        if differing:
             raise FolderError(
                 f"{folder}: holds another data set; it differs in\n  "
-                + "\n  ".join(found)
-                + "\nchoose another folder, or --overwrite to start this one again"
+                + "\n  ".join(differing)
+                + "\nchoose another folder, or --overwrite to start this one over"
             )
     shutil.rmtree(folder / WORK / "unfinished", ignore_errors=True)
 
@@ -125,7 +125,7 @@ def _name(folder: Path, named: dict[str, Any]) -> None:
 
 
 def stored_identity(folder: Path) -> dict[str, Any] | None:
-    """The identity of what a folder holds, finished or not; None if it is no data set of ours."""
+    """Identity of a folder's data set, finished or not; None if it is not one of radhar."""
     path = folder / DATASET
     if path.exists():
         from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
@@ -135,25 +135,25 @@ def stored_identity(folder: Path) -> dict[str, Any] | None:
                 return checked_identity(file.json("identity"), path)
         except FolderError as error:
             raise FolderError(
-                f"{error}; this is not a data set of radhar's, or a damaged one; choose another "
+                f"{error}; this is not a data set of radhar, or is damaged; choose another "
                 "folder, or --overwrite if radhar built it"
             ) from None
     path = folder / WORK / IDENTITY
     return checked_identity(read_json(path), path) if path.exists() else None
 
 
-def checked_identity(found: Any, path: Path) -> dict[str, Any]:
+def checked_identity(value: Any, path: Path) -> dict[str, Any]:
     """An identity that was read from a file.
 
     Raises:
         FolderError: it is none.
     """
-    right = isinstance(found, dict) and all(
-        isinstance(found.get(part), dict) for part in ("keys", "versions")
+    right = isinstance(value, dict) and all(
+        isinstance(value.get(part), dict) for part in ("keys", "versions")
     )
     if not right:
         raise FolderError(f"{path}: is damaged: its identity should have keys and versions")
-    identity_there: dict[str, Any] = found
+    identity_there: dict[str, Any] = value
     return identity_there
 
 
@@ -165,7 +165,7 @@ def clean_up(folder: Path) -> None:
 
 
 def _remove_batches(folder: Path) -> None:
-    """Remove shards and outcomes of checks; what else somebody put beside them stays."""
+    """Remove shards and outcomes of checks; foreign files next to them stay."""
     _remove(folder / WORK / "shards", "rows-*-*.h5")
     remove_checks(folder)
 
@@ -177,9 +177,9 @@ def remove_checks(folder: Path) -> None:
 
 def _remove(place: Path, pattern: str) -> None:
     with suppress(OSError):
-        for found in os.listdir(place):  # noqa: PTH208 - names take less memory than paths
-            if fnmatch(found, pattern):
-                (place / found).unlink(missing_ok=True)
+        for name in os.listdir(place):  # noqa: PTH208 - names take less memory than paths
+            if fnmatch(name, pattern):
+                (place / name).unlink(missing_ok=True)
         place.rmdir()
 
 

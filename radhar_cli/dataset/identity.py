@@ -43,12 +43,12 @@ def identity_hash(named: dict[str, Any]) -> str:
 
 def differences(old: dict[str, Any], new: dict[str, Any]) -> list[str]:
     """Lines naming the keys and versions in which two identities differ."""
-    found = []
+    lines = []
     for part, prefix in (("keys", ""), ("versions", "versions.")):
         before, after = old.get(part, {}), new.get(part, {})
-        found += [
+        lines += [
             f"{prefix}{key}: {json.dumps(before.get(key))} there, {json.dumps(after.get(key))} here"
             for key in sorted(before.keys() | after.keys())
             if before.get(key) != after.get(key)
         ]
-    return found
+    return lines

@@ -44,7 +44,7 @@ def read_rgb(path: Path, size: tuple[int, int] | None = None) -> Levels:
 
 
 def read_gray(path: Path, size: tuple[int, int] | None = None) -> Levels:
-    """Levels [H, W] of an image file: as stored in a PNG of ours, the brightness of any other.
+    """Levels [H, W] of an image file: the indices of a PNG of radhar, the luminance of any other.
 
     Args and errors are those of `read_rgb`.
     """
@@ -89,7 +89,7 @@ def _opened(path: Path, size: tuple[int, int] | None) -> Iterator[Image.Image]:
         raise
     except Exception as error:  # Pillow raises whatever its parsers meet
         told = getattr(error, "strerror", None) or str(error).partition("\n")[0]
-        raise FolderError(f"{path}: is no image, or a truncated one ({told})") from None
+        raise FolderError(f"{path}: is not an image, or is truncated ({told})") from None
 
 
 def _wrong(image: Image.Image, size: tuple[int, int] | None) -> str | None:

@@ -1,4 +1,4 @@
-"""Put parts of a data set, made apart from each other, together."""
+"""Merge parts of a data set that were built separately."""
 
 import os
 from collections.abc import Iterable, Sequence
@@ -36,7 +36,7 @@ def merge(
 
     Args:
         out: the output folder.
-        folders: of parts, or that hold parts, beside those below `out`.
+        folders: of parts, or that hold parts, in addition to those below `out`.
         jobs: processes, for PNGs that no part has.
         progress: receives progress and messages.
         virtual: dataset.h5 refers to the parts, all below `out`, instead of copying them.
@@ -65,7 +65,7 @@ def merge(
         progress.say(f"warning: {message}")
     try:
         with folder_lock(out):
-            reserve(out, config, overwrite=False, beside=(PARTS,))
+            reserve(out, config, overwrite=False, allowed=(PARTS,))
             progress.stage("merging", count, 0)
             with assembled(config, out, shards, progress, run_again, virtual) as (
                 unfinished,
@@ -86,7 +86,7 @@ def merge(
 
 def _places(folders: Iterable[Path]) -> list[_Place]:
     """The parts in these folders, in order, each once."""
-    found = {}
+    places = {}
     for folder in folders:
         folder = Path(os.path.abspath(folder))  # noqa: PTH100 - without ..; links stay
         inner = folder / PARTS
@@ -94,35 +94,35 @@ def _places(folders: Iterable[Path]) -> list[_Place]:
             refuse_foreign_work(part)
             named = stored_identity(part)
             if named is not None and isinstance(named.get("part"), str):
-                found[part] = _Place(Part.parse(named["part"], f"{part}: part"), part, named)
+                places[part] = _Place(Part.parse(named["part"], f"{part}: part"), part, named)
             elif not inner.is_dir():
-                raise FolderError(f"{part}: is no part that `radhar generate --shard` made")
-    if not found:
+                raise FolderError(f"{part}: is not a part that `radhar generate --shard` made")
+    if not places:
         raise FolderError(
             f"{', '.join(map(str, folders))}: no part of a data set; "
             "`radhar generate CONFIG -o OUT --shard K/N` makes one"
         )
-    return sorted(found.values(), key=lambda place: place.part)
+    return sorted(places.values(), key=lambda place: place.part)
 
 
 def _config(places: Sequence[_Place]) -> Config:
     """The config that all parts have."""
     first = places[0]
     for place in places[1:]:
-        found = differences(first.identity, place.identity)
+        differing = differences(first.identity, place.identity)
         if place.part.of != first.part.of:
-            found = [f"parts: {first.part.of} there, {place.part.of} here"]
-        if found:
+            differing = [f"parts: {first.part.of} there, {place.part.of} here"]
+        if differing:
             raise FolderError(
-                f"{place.folder}: is no part of what {first.folder} belongs to; it differs in\n  "
-                + "\n  ".join(found)
+                f"{place.folder}: is not of the same data set as {first.folder}; it differs in\n  "
+                + "\n  ".join(differing)
             )
     config = stored_config(first.identity.get("config"), str(first.folder))
-    found = differences(first.identity, identity(config))
-    if found:
+    differing = differences(first.identity, identity(config))
+    if differing:
         raise FolderError(
-            f"{first.folder}: merge with what made the parts; this differs in\n  "
-            + "\n  ".join(found)
+            f"{first.folder}: should be merged by what made the parts; this differs in\n  "
+            + "\n  ".join(differing)
         )
     return config
 

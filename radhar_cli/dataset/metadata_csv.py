@@ -56,7 +56,7 @@ def write_metadata(data: Dataset, folder: Path) -> None:
 
 def wrong_metadata(data: Dataset, folder: Path) -> list[str]:
     """What is wrong with the files, a line each, but for maps that have no folder."""
-    found: dict[Path, str] = {}
+    problems: dict[Path, str] = {}
     with ExitStack() as stack:
         files = []
         for split, path in paths(data):
@@ -66,13 +66,13 @@ def wrong_metadata(data: Dataset, folder: Path) -> list[str]:
                 regular_size(folder / path)
                 files.append((split, path, stack.enter_context((folder / path).open("rb"))))
             except OSError as error:
-                found[path] = f"cannot be read ({error.strerror})"
+                problems[path] = f"cannot be read ({error.strerror})"
         for number, (whose, line) in enumerate(lines(data)):
             for split, path, file in files:
-                if whose in (None, split) and path not in found and file.read(len(line)) != line:
+                if whose in (None, split) and path not in problems and file.read(len(line)) != line:
                     what = line.partition(b",")[0].decode() if number else "its first line"
-                    found[path] = f"does not say of {what} what dataset.h5 does"
+                    problems[path] = f"does not say of {what} what dataset.h5 does"
         for _, path, file in files:
-            if path not in found and file.read(1):
-                found[path] = "goes on after the last sample"
-    return [f"{path}: {fault}" for path, fault in found.items()]
+            if path not in problems and file.read(1):
+                problems[path] = "goes on after the last sample"
+    return [f"{path}: {fault}" for path, fault in problems.items()]

@@ -1,4 +1,4 @@
-"""Samples made when they are asked for: those of a data set, without the data set.
+"""Samples of a data set synthesised one by one, without building the data set.
 
 Fields have the names, types and values that they have in dataset.h5 (docs/dataset.md), one row of
 each: `maps/stft`, `power/stft`, `entropy/stft`, `slow_time`, `scene/height`, `label`, ...
@@ -55,8 +55,8 @@ def sample(
         {name: array or number}, `label` and `sample_key` always among them.
 
     Raises:
-        ConfigError: an unknown activity or field, an index or seed that is no whole number from 0
-            to 2^63 - 1, no config, a config of measured data.
+        ConfigError: an unknown activity or field, an index or seed that is not a whole number from
+            0 to 2^63 - 1, no config, a config of measured data.
         SceneError: a scene outside the model (`on_invalid`), or one that the direct engine does not
             reach its tolerance in.
     """
@@ -67,7 +67,7 @@ def sample(
 
 @dataclass(frozen=True)
 class Recipe:
-    """Makes samples of a data set; may be handed to another process.
+    """Makes samples of a data set; can be pickled.
 
     Attributes:
         config: of the data set.
@@ -81,7 +81,7 @@ class Recipe:
     def of(
         cls, config: Config, fields: Iterable[str] | None = None, seed: int | None = None
     ) -> "Recipe":
-        """What `sample` says of these arguments.
+        """The recipe for arguments as those of `sample`.
 
         Raises:
             ConfigError: as `sample`.
@@ -106,7 +106,7 @@ class Recipe:
         """The fields of one sample.
 
         Raises:
-            ConfigError: an index that is no whole number from 0 to 2^63 - 1.
+            ConfigError: an index that is not a whole number from 0 to 2^63 - 1.
             SceneError: as `sample`.
         """
         index = whole("index", index)

@@ -1,7 +1,7 @@
-"""Parts of a data set, made apart from each other and put together by `merge`.
+"""Parts of a data set, built separately and merged by `radhar merge`.
 
 Part K of N holds the rows from (K - 1) rows/N to K rows/N, rounded down, in a folder of its own:
-lock, identity, shards, manifest and PNGs are as in a build, so that a part that was killed goes on.
+lock, identity, shards, manifest and PNGs are as in a build, so a part that was killed resumes.
 """
 
 import json
@@ -36,10 +36,10 @@ class Part:
         Raises:
             FolderError: it is none.
         """
-        found = _TEXT.fullmatch(text)
-        if found is None or int(found[1]) > int(found[2]):
+        match = _TEXT.fullmatch(text)
+        if match is None or int(match[1]) > int(match[2]):
             raise FolderError(f"{where} {text}: should be K/N with K from 1 to N, such as 3/8")
-        return cls(int(found[2]), int(found[1]))
+        return cls(int(match[2]), int(match[1]))
 
     @classmethod
     def of_array_task(cls, environment: Mapping[str, str]) -> "Part":
@@ -76,7 +76,7 @@ class Part:
 
 
 def refuse_other_cuts(out: Path, part: Part) -> None:
-    """Refuse a part beside parts of another number: their rows would overlap.
+    """Refuse a part where there are parts of another N: their rows would overlap.
 
     Raises:
         FolderError: names the number.
@@ -87,7 +87,7 @@ def refuse_other_cuts(out: Path, part: Part) -> None:
     if others:
         raise FolderError(
             f"{place}: holds parts of {min(others)}; this would be part {part}. To make one of "
-            f"them again name it, --shard K/{min(others)}; to cut anew choose another folder"
+            f"them again give --shard K/{min(others)}; for another N choose another folder"
         )
 
 

@@ -1,4 +1,4 @@
-"""The PNG files of a data set: which are missing, and making or taking over those."""
+"""The PNG files of a data set: find missing ones, and write or link them."""
 
 import os
 import shutil
@@ -106,12 +106,12 @@ def _stored_pngs(out: Path, name: str, rows: Rows, first: int, split: Levels) ->
     starts = range(first, first + split.size, layout.PNGS_A_FOLDER)
     for number, start in product(np.unique(split).tolist(), starts):
         folder = out / rows.png_path(name, number, start).parent
-        for found in os.scandir(folder) if folder.is_dir() else ():
-            stem = found.name.removesuffix(".png")
+        for entry in os.scandir(folder) if folder.is_dir() else ():
+            stem = entry.name.removesuffix(".png")
             index = int(stem) if stem.isdecimal() else split.size
             if index >= split.size or split[index] != number:
                 continue
             path = rows.png_path(name, number, first + index)
-            if found.name == path.name and folder == out / path.parent:
+            if entry.name == path.name and folder == out / path.parent:
                 there[index] = True
     return there

@@ -1,4 +1,4 @@
-"""Open a finished data set: lazy arrays and what is known of them."""
+"""Open a finished data set: arrays that are read when indexed, and their description."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -33,7 +33,7 @@ BLOCK = 4096  # rows of a column that are looked at together
 
 
 class Dataset(Closing):
-    """A data set opened for reading; it may be anyone's.
+    """A data set opened for reading; its file is not trusted.
 
     Names, shapes and types of everything in it follow from its config and are checked here.
 
@@ -56,7 +56,7 @@ class Dataset(Closing):
         class_slugs: slug of every label.
 
     Raises:
-        FolderError: it is no data set of ours, or a damaged one; the message names file and field.
+        FolderError: it is not a data set of radhar, or is damaged; names file and field.
     """
 
     def __init__(self, path: Path, folder: Path | None = None) -> None:
@@ -111,8 +111,8 @@ class Dataset(Closing):
         )
         if not right:
             raise FolderError(f"{self.path}: attribute warnings: should be a list of messages")
-        found: list[dict[str, Any]] = stored
-        return found
+        messages: list[dict[str, Any]] = stored
+        return messages
 
     def entropy(self, name: str) -> Float:
         """Entropies [N] of a map's power, bits."""
@@ -172,7 +172,7 @@ def stored_config(document: Any, where: str) -> Config:
     """The config that is stored with a data set, from its plain values.
 
     Raises:
-        FolderError: it is no config.
+        FolderError: it is not a config.
     """
     try:
         return validated(Config, document, f"{where}: the stored config", {})

@@ -50,7 +50,7 @@ class Sample(NamedTuple):
 
 
 class Made(NamedTuple):
-    """A sample that is no scene's.
+    """A sample that was not simulated.
 
     Attributes:
         sample: its images.

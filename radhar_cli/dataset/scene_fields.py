@@ -59,20 +59,20 @@ def fields(config: Config) -> tuple[Field, ...]:
     """
     if config.recorded is not None:
         return RECORDED
-    found = [
+    keys = [
         key
         for key, _ in numbers(config)
         if any(depends_on(config, activity, key) for activity in config.chosen_activities)
     ]
-    found += [
+    keys += [
         key
         for key in (FALL, *file_keys(config))
         if any(depends_on(config, activity, key) for activity in config.chosen_activities)
     ]
-    if "subject.weight_kg" not in found:
-        found.insert(found.index("subject.height_m") + 1, "subject.weight_kg")
+    if "subject.weight_kg" not in keys:
+        keys.insert(keys.index("subject.height_m") + 1, "subject.weight_kg")
     measured = (ERROR,) if config.engine.kind == "direct" and set(config.maps) != {"rtm"} else ()
-    return (*(_field(key) for key in found), *measured)
+    return (*(_field(key) for key in keys), *measured)
 
 
 def values(scene: Scene, columns: tuple[Field, ...], error_db: float = nan) -> Float:

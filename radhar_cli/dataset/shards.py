@@ -59,7 +59,7 @@ class Shard(NamedTuple):
         data = self.path.read_bytes()
         header = _HEADER.fullmatch(data[:USER_BLOCK])
         if header is None:
-            raise ShardError("is no shard, or damaged")
+            raise ShardError("is not a shard, or is damaged")
         owner, start, stop, checksum = (part.decode() for part in header.groups())
         if checksum != _checksum(owner, int(start), int(stop), memoryview(data)[USER_BLOCK:]):
             raise ShardError("does not match its checksum")
@@ -74,7 +74,7 @@ class Shard(NamedTuple):
         with self.path.open("rb") as file:
             header = _HEADER.fullmatch(file.read(USER_BLOCK))
         if header is None:
-            raise UnfinishedError(f"{self.path}: was changed meanwhile; the same command goes on")
+            raise UnfinishedError(f"{self.path}: was changed meanwhile; the same command resumes")
         return header[4].decode()
 
 
@@ -159,18 +159,18 @@ def listed_shards(folder: Path, rows: range | None = None) -> list[Shard]:
     """Files that have the name of a shard, of these rows if they are given, in row order."""
     place = shard_folder(folder)
     names = (_NAME.fullmatch(path.name) for path in (place.iterdir() if place.is_dir() else ()))
-    found = sorted(Shard(int(name[1]), int(name[2]), folder) for name in names if name)
+    shards = sorted(Shard(int(name[1]), int(name[2]), folder) for name in names if name)
     if rows is None:
-        return found
-    return [one for one in found if rows.start <= one.start < one.stop <= rows.stop]
+        return shards
+    return [one for one in shards if rows.start <= one.start < one.stop <= rows.stop]
 
 
 def check_shards(
     shards: Iterable[Shard], identity_hash: str
 ) -> tuple[list[Shard], list[tuple[Shard, ShardError]]]:
-    """Read shards, in row order: (those to go on from, those that cannot be used, and why).
+    """Read shards, in row order: (usable ones, unusable ones with the reason).
 
-    Of two that share rows, as runs with other batches leave them, the first is gone on from.
+    Of two shards that share rows, from runs with other batch sizes, the first is used.
     """
     sound: list[Shard] = []
     unusable = []
@@ -204,16 +204,16 @@ def missing_and_repeated(
     return missing, repeated
 
 
-def go_on(missing: Runs) -> str:
-    """What to do about rows that a build lacks."""
-    return "the rest is kept, and the same command goes on"
+def resume_hint(missing: Runs) -> str:
+    """Advice on rows that a build lacks."""
+    return "the rest is kept, and the same command resumes"
 
 
 def require_tiling(
     folder: Path,
     shards: Sequence[Shard],
     count: int,
-    remedy: Callable[[Runs], str] = go_on,
+    remedy: Callable[[Runs], str] = resume_hint,
     unusable: Sequence[tuple[Shard, ShardError]] = (),
 ) -> None:
     """Refuse shards that do not hold each of `count` rows once.

@@ -45,13 +45,13 @@ def split_persons(config: Config) -> Levels:
 
 
 def split_warnings(config: Config, split: Levels) -> list[str]:
-    """Say what parts do without, and which persons share motion files."""
-    rows, found = Rows.of(config), []
+    """Warn of parts without samples of a class, and of persons that share motion files."""
+    rows, warnings = Rows.of(config), []
     people = config.split.subjects or 0
     for activity in rows.activities:
         one = config.files_of(activity)
         if one is not None and one.file is None and len(one.files) < people:
-            found.append(
+            warnings.append(
                 f"classes.{activity.slug}: {len(one.files)} files for split.subjects = {people}: "
                 "persons of training and validation share them"
             )
@@ -61,11 +61,11 @@ def split_warnings(config: Config, split: Levels) -> list[str]:
         if share and without:
             whose = "any class" if len(without) == len(rows.activities) else ", ".join(without)
             key = "samples_per_class" if config.split.subjects is None else "split.subjects"
-            found.append(
+            warnings.append(
                 f"split.{part} = {share:g}, but there is no {part} sample of {whose}: "
                 f"{key} is too small"
             )
-    return found
+    return warnings
 
 
 def _cut(split: SplitConfig, count: int, rng: np.random.Generator) -> Levels:

@@ -1,4 +1,4 @@
-"""What `radhar inspect` tells, as plain values: of a data set, a half-built folder, a scene."""
+"""What `radhar inspect` shows of a data set, a half-built folder or a scene, as plain values."""
 
 from collections import Counter
 from pathlib import Path
@@ -44,10 +44,10 @@ class _Scene(BaseModel):
 
 
 def summarise(path: Path) -> dict[str, Any]:
-    """Summarise whatever of ours lies at `path`.
+    """Summarise what radhar wrote at `path`.
 
     Raises:
-        FolderError: nothing of ours, or damaged.
+        FolderError: not written by radhar, or damaged.
     """
     if path.is_dir() and not (path / DATASET).exists():
         if (path / SCENE_FILE).exists():
@@ -99,19 +99,19 @@ def _spread(values: np.ndarray[Any, Any]) -> dict[str, float]:
 def _drawn(data: Dataset) -> dict[str, Any]:
     """Histograms of the numbers that differ from sample to sample."""
     units = {field.name: field.unit for field in data.fields}
-    found = {}
+    histograms = {}
     for name, column in data.scene.items():
         values = _known(column)
         if values.size and values.min() < values.max():
             counts, edges = np.histogram(values, HISTOGRAM_BINS)
-            found[name] = {
+            histograms[name] = {
                 "unit": units.get(name, "1"),
                 **_spread(values),
                 "samples": int(values.size),
                 "counts": counts.tolist(),
                 "edges": edges.tolist(),
             }
-    return found
+    return histograms
 
 
 def _known(column: Column) -> np.ndarray[Any, Any]:
@@ -148,7 +148,7 @@ def _scene(path: Path) -> dict[str, Any]:
             first = error.errors(include_url=False)[0]
             key = ".".join(map(str, first["loc"]))
             raise FolderError(
-                f"{path}: is no whole scene of radhar's: {key}: {first['msg']}"
+                f"{path}: is not a complete scene file: {key}: {first['msg']}"
             ) from None
         maps = {name: file.shape(f"maps/{name}") for name in described["entropy_bits"]}
     for name, shape in maps.items():

@@ -41,7 +41,7 @@ def number_names(config: Config) -> list[str]:
 def entries(data: Dataset) -> Iterator[Entry]:
     """Every sample: the first of each class, then the second of each, and so on.
 
-    Who reads a piece of the table, or of files that were written in its order, sees every class.
+    In this order every piece of the table, or of files written from it, holds every class.
 
     Raises:
         FolderError: a label that is not that of its row.

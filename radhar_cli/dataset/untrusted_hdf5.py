@@ -56,10 +56,10 @@ def _refusing_damage(where: str) -> Iterator[None]:
         raise FolderError(f"{where}: cannot be read, the file is damaged ({error})") from None
 
 
-class _Watched:
+class _HeapChecked:
     """What HDF5 reads from: a file whose global heaps, where texts lie, are checked as they pass.
 
-    In a heap with a free object of no size HDF5 runs in a circle without end.
+    On a heap with a free object of size 0 HDF5 would loop forever.
     """
 
     def __init__(self, source: Path | bytes) -> None:
@@ -88,10 +88,10 @@ class _Watched:
         before = min(self._place, len(_HEAP) - 1)
         start = self._place - before
         data = self._at(before + count, start)
-        found = data.find(_HEAP)
-        while found >= 0:
-            self._check_heap(start + found)
-            found = data.find(_HEAP, found + 1)
+        at = data.find(_HEAP)
+        while at >= 0:
+            self._check_heap(start + at)
+            at = data.find(_HEAP, at + 1)
         self._place = start + len(data)
         return data[before:]
 
@@ -127,7 +127,7 @@ class UntrustedFile(Closing):
         folder: its folder, where it is going to be another than that of `path`.
 
     Raises:
-        FolderError: it is no regular file, or no HDF5 file. So do all methods, for whatever is not
+        FolderError: it is not a regular file, or not HDF5. So do all methods, for whatever is not
             as it should be; the message names file and field.
     """
 
@@ -142,7 +142,7 @@ class UntrustedFile(Closing):
         self._claimed = 0
         self._sources = _Sources() if virtual else None
         try:
-            self._source = _Watched(path if data is None else data)
+            self._source = _HeapChecked(path if data is None else data)
             self.bytes = self._source.size
             self._file = h5py.File(self._source, "r")
             if self._file.id.get_create_plist().get_sizes() != (8, 8):
@@ -150,7 +150,7 @@ class UntrustedFile(Closing):
         except FileNotFoundError:
             raise FolderError(f"{path}: no such file") from None
         except _DAMAGED as error:
-            raise FolderError(f"{path}: is no HDF5 file, or a truncated one ({error})") from None
+            raise FolderError(f"{path}: is not an HDF5 file, or is truncated ({error})") from None
 
     def has_attribute(self, name: str) -> bool:
         """Whether the file itself has an attribute of that name."""
@@ -161,7 +161,7 @@ class UntrustedFile(Closing):
         """A text attribute of the file."""
         where = f"{self.path}: attribute {name}"
         with _refusing_damage(where):
-            # Of what is no text, HDF5 may crash on converting it.
+            # HDF5 may crash on converting what is not text.
             if h5py.check_string_dtype(self._scalar(name, where)) is None:
                 raise FolderError(f"{where}: should be text")
             value = self._file.attrs[name]
@@ -177,7 +177,7 @@ class UntrustedFile(Closing):
         try:
             return parse_json(self.text(name))
         except ValueError as error:
-            raise FolderError(f"{self.path}: attribute {name}: is no JSON ({error})") from None
+            raise FolderError(f"{self.path}: attribute {name}: is not JSON ({error})") from None
 
     def whole_number(self, name: str) -> int:
         """A whole number among the attributes of the file."""
@@ -190,38 +190,38 @@ class UntrustedFile(Closing):
     def _scalar(self, name: str, where: str) -> np.dtype[Any]:
         if name not in self._file.attrs:
             raise FolderError(f"{where}: is missing")
-        found = self._file.attrs.get_id(name)
-        if found.shape != () or found.get_storage_size() > MAX_TEXT:
+        attribute = self._file.attrs.get_id(name)
+        if attribute.shape != () or attribute.get_storage_size() > MAX_TEXT:
             raise FolderError(f"{where}: should be a single value")
-        kind: np.dtype[Any] = found.dtype
+        kind: np.dtype[Any] = attribute.dtype
         return kind
 
     def column(self, name: str, dtype: DTypeLike, shape: tuple[int, ...]) -> "Column":
         """Numbers in one piece, all there: no gaps to be filled in, no filters."""
         where, wanted = f"{self.path}: /{name}", np.dtype(dtype)
         with _refusing_damage(where):
-            found = self._dataset(name, where, wanted, shape)
+            dataset = self._dataset(name, where, wanted, shape)
             size = wanted.itemsize * int(np.prod(shape, dtype=object))
-            if found.chunks is not None or found.id.get_storage_size() != size:
+            if dataset.chunks is not None or dataset.id.get_storage_size() != size:
                 raise FolderError(f"{where}: should be stored in one piece of {size} bytes")
         self._claimed += size
         if self._claimed > self.bytes:
             raise FolderError(f"{where}: is larger than the file; it is damaged or truncated")
-        return Column(where, found, wanted, shape)
+        return Column(where, dataset, wanted, shape)
 
     def chunks(self, name: str, dtype: DTypeLike, shape: tuple[int, ...]) -> "Chunks":
         """Samples [N, ...], each in a chunk of its own, plain or gzip."""
         where, one, wanted = f"{self.path}: /{name}", (1, *shape[1:]), np.dtype(dtype)
         with _refusing_damage(where):
-            found = self._dataset(name, where, wanted, shape, self._sources is not None)
-            if found.dtype != wanted:
-                raise FolderError(f"{where}: is of the type {found.dtype.str}; not {wanted.str}")
-            creation = found.id.get_create_plist()
+            dataset = self._dataset(name, where, wanted, shape, self._sources is not None)
+            if dataset.dtype != wanted:
+                raise FolderError(f"{where}: is of the type {dataset.dtype.str}; not {wanted.str}")
+            creation = dataset.id.get_create_plist()
             if self._sources is not None and creation.get_layout() == h5py.h5d.VIRTUAL:
                 parts = list(_parts(creation, where, name, shape, self._folder))
                 return VirtualChunks(
                     where,
-                    found,
+                    dataset,
                     wanted,
                     shape,
                     _deflated=False,
@@ -230,41 +230,43 @@ class UntrustedFile(Closing):
                     sources=self._sources,
                 )
             filters = [creation.get_filter(i)[0] for i in range(creation.get_nfilters())]
-            if found.chunks != one:
-                raise FolderError(f"{where}: has chunks of {found.chunks}; should be {one}")
+            if dataset.chunks != one:
+                raise FolderError(f"{where}: has chunks of {dataset.chunks}; should be {one}")
             if filters not in ([], [_DEFLATE]):
                 raise FolderError(f"{where}: is stored through filters {filters}; should be gzip")
-            if found.id.get_num_chunks() != shape[0]:
+            if dataset.id.get_num_chunks() != shape[0]:
                 raise FolderError(
-                    f"{where}: holds {found.id.get_num_chunks()} samples; should hold {shape[0]}"
+                    f"{where}: holds {dataset.id.get_num_chunks()} samples; should hold {shape[0]}"
                 )
-        return Chunks(where, found, wanted, shape, bool(filters))
+        return Chunks(where, dataset, wanted, shape, bool(filters))
 
     def samples(self, name: str) -> "Samples":
         """Real or complex numbers of any shape, plain or gzip, read in pieces."""
         where = f"{self.path}: /{name}"
         with _refusing_damage(where):
-            found = self._dataset(name, where, None, None)
-            number, parts = _numbers(found.dtype, where)
-            creation = found.id.get_create_plist()
+            dataset = self._dataset(name, where, None, None)
+            number, parts = _numbers(dataset.dtype, where)
+            creation = dataset.id.get_create_plist()
             filters = [creation.get_filter(i)[0] for i in range(creation.get_nfilters())]
-            size = found.dtype.itemsize * int(np.prod(found.shape, dtype=object))
-            if not found.shape or size == 0:
-                raise FolderError(f"{where}: has the shape {found.shape}; should hold numbers")
+            size = dataset.dtype.itemsize * int(np.prod(dataset.shape, dtype=object))
+            if not dataset.shape or size == 0:
+                raise FolderError(f"{where}: has the shape {dataset.shape}; should hold numbers")
             if filters not in ([], [_DEFLATE], [_SHUFFLE, _DEFLATE]):
                 raise FolderError(f"{where}: is stored through filters {filters}; should be gzip")
-            chunk = found.chunks
-            if chunk is None and found.id.get_storage_size() != size:
+            chunk = dataset.chunks
+            if chunk is None and dataset.id.get_storage_size() != size:
                 raise FolderError(f"{where}: should be stored in {size} bytes; it is truncated")
             if chunk is not None:
-                one = found.dtype.itemsize * int(np.prod(chunk, dtype=object))
+                one = dataset.dtype.itemsize * int(np.prod(chunk, dtype=object))
                 if one > MAX_CHUNK:
                     raise FolderError(f"{where}: has chunks of {one} bytes; at most {MAX_CHUNK}")
-                if found.id.get_num_chunks() != _grid(found.shape, chunk):
+                if dataset.id.get_num_chunks() != _grid(dataset.shape, chunk):
                     raise FolderError(f"{where}: lacks pieces; it is unfinished or damaged")
             if not filters and size > self.bytes:
                 raise FolderError(f"{where}: is larger than the file; it is damaged or truncated")
-        return Samples(where, found, found.shape, number, parts, _SHUFFLE in filters, bool(filters))
+        return Samples(
+            where, dataset, dataset.shape, number, parts, _SHUFFLE in filters, bool(filters)
+        )
 
     def numeric_names(self) -> list[str]:
         """Names of the datasets of numbers at the top of the file, at most 1000."""
@@ -273,10 +275,10 @@ class UntrustedFile(Closing):
             for name in islice(self._file, 1000):
                 if self._file.id.links.get_info(name.encode()).type != h5py.h5l.TYPE_HARD:
                     continue
-                found = self._file[name]
-                if isinstance(found, h5py.Dataset) and found.shape:
+                item = self._file[name]
+                if isinstance(item, h5py.Dataset) and item.shape:
                     with suppress(FolderError):
-                        _numbers(found.dtype, name)
+                        _numbers(item.dtype, name)
                         names.append(name)
         return names
 
@@ -293,26 +295,26 @@ class UntrustedFile(Closing):
         shape: tuple[int, ...] | None,
         virtual: bool = False,
     ) -> h5py.Dataset:
-        found: Any = self._file
+        place: Any = self._file
         for part in name.split("/"):
             # `part in found` and `found.get` would open the file that an external link names.
-            if not isinstance(found, h5py.Group) or not found.id.links.exists(part.encode()):
+            if not isinstance(place, h5py.Group) or not place.id.links.exists(part.encode()):
                 raise FolderError(f"{where}: is missing")
-            if found.id.links.get_info(part.encode()).type != h5py.h5l.TYPE_HARD:
+            if place.id.links.get_info(part.encode()).type != h5py.h5l.TYPE_HARD:
                 raise FolderError(f"{where}: is a link; should be stored in this file")
-            found = found[part]
-        if not isinstance(found, h5py.Dataset):
+            place = place[part]
+        if not isinstance(place, h5py.Dataset):
             raise FolderError(f"{where}: should be a dataset")
         # First of all: to know the shape of a virtual dataset HDF5 may open its sources.
-        creation = found.id.get_create_plist()
+        creation = place.id.get_create_plist()
         elsewhere = creation.get_layout() == h5py.h5d.VIRTUAL and not virtual
         if elsewhere or creation.get_external_count():
             raise FolderError(f"{where}: lies in another file; should be stored in this file")
-        if shape is not None and found.shape != shape:
-            raise FolderError(f"{where}: has the shape {found.shape}; should have {shape}")
-        if dtype is not None and found.dtype.newbyteorder("=") != dtype:
-            raise FolderError(f"{where}: is of the type {found.dtype}; should be {dtype}")
-        return found
+        if shape is not None and place.shape != shape:
+            raise FolderError(f"{where}: has the shape {place.shape}; should have {shape}")
+        if dtype is not None and place.dtype.newbyteorder("=") != dtype:
+            raise FolderError(f"{where}: is of the type {place.dtype}; should be {dtype}")
+        return place
 
     def close(self) -> None:
         """Close the file."""

@@ -61,8 +61,8 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Report:
     Args:
         folder: output of `generate`.
         samples: how many to synthesise anew, spread evenly over the rows.
-        motion: where the motion files of its classes lie; None makes no sample of them anew: a
-            stored config may be anyone's, and names no file that is opened.
+        motion: folder of the motion files of its classes; None re-synthesises no sample of them: a
+            stored config is not trusted to name files.
 
     Raises:
         FolderError: there is no readable data set of ours.
@@ -95,13 +95,13 @@ def _structure(data: Dataset, report: Report) -> bool:
     rows = Rows.of(config)
     label = np.repeat([a.index for a in rows.activities], rows.counts)
     index = np.concatenate([np.arange(count) for count in rows.counts])
-    for name, found, right in (
+    for name, stored, right in (
         ("label", data.label, label),
         ("split", data.split, split_rows(config)),
         ("sample_key", data.sample_key[:], np.stack([label, index], axis=1)),
     ):
-        if (found != right).any():
-            report.problems.append(f"/{name}: {np.count_nonzero(found != right)} wrong values")
+        if (stored != right).any():
+            report.problems.append(f"/{name}: {np.count_nonzero(stored != right)} wrong values")
     if config_hash(config) != data.file.text("config_hash"):
         report.problems.append("the stored config does not have the stored hash")
     if config.seed != data.file.whole_number("seed"):
@@ -154,10 +154,10 @@ def _resynthesise(data: Dataset, samples: int, report: Report, motion: Path | No
                     f"/scene/{column.name}[{row}]: {there} instead of {value * column.factor}"
                 )
         made = synthesise(scene, plan)
-        for name, found in data.large.items():
+        for name, stored in data.large.items():
             if not name.startswith("maps/"):
-                right = made.chunk(name, found.shape[1:])
-                if not _same(found[row], right, exactly=not report.other_versions):
+                right = made.chunk(name, stored.shape[1:])
+                if not _same(stored[row], right, exactly=not report.other_versions):
                     report.problems.append(f"/{name}[{row}] ({scene.name}): differs")
         for name, labels in made.column_labels.items():
             wrong = int(np.count_nonzero(data.column_label[name].rows(row, row + 1)[0] != labels))

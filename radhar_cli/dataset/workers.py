@@ -48,8 +48,8 @@ def run_tasks(
         yield from results
     except TerminatedWorkerError:
         raise UnfinishedError(
-            "a worker process was killed (by hand, or for want of memory); what was finished is "
-            "kept, and the same command goes on"
+            "a worker process was killed (by hand, or out of memory); what was finished is "
+            "kept, and the same command resumes"
         ) from None
 
 
@@ -61,7 +61,7 @@ def _with_activities(own: tuple[Activity, ...], function: Callable[..., T], *tas
 
 @contextmanager
 def on_cluster(address: str, jobs: int) -> Iterator[int]:
-    """Have a dask cluster run the tasks meanwhile; its number of cores.
+    """Context in which a dask cluster runs the tasks; yields its number of cores.
 
     Args:
         address: of the scheduler, or `local`.
@@ -95,7 +95,7 @@ def _import_physics() -> int:
 
 @contextmanager
 def _interrupts_blocked() -> Iterator[None]:
-    """Workers started meanwhile inherit the blocked signals: to stop is the master's alone."""
+    """Workers started meanwhile inherit the blocked signals: only the parent handles Ctrl-C."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return

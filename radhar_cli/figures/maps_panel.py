@@ -147,11 +147,11 @@ def places(names: Collection[str]) -> dict[str, tuple[slice, int]]:
     tall = [name for name in names if name == "rtm"]
     others = [name for name in TITLES if name in names and name not in tall]
     columns = max(1, -(-len(others) // rows))
-    found = {name: (slice(0, rows), 0) for name in tall}
+    cells = {name: (slice(0, rows), 0) for name in tall}
     for number, name in enumerate(others):
         row, column = divmod(number, columns)
-        found[name] = (slice(row, row + 1), len(tall) + column)
-    return found
+        cells[name] = (slice(row, row + 1), len(tall) + column)
+    return cells
 
 
 def draw_maps(shown: Shown, path: Path) -> None:

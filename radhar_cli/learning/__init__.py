@@ -1,17 +1,19 @@
 """Train and evaluate classifiers of maps.
 
-The only room with PyTorch in it; `pip install 'radhar[train]'` brings what it needs.
+The only package that imports PyTorch; `pip install 'radhar[train]'` installs it.
 
     settings        the YAML file of `radhar train`
-    images/         labelled images of dataset.h5, or of anyone's tree of class folders
-    batches         which images make a step, the same for any number of processes
-    models/         one network per file; the zoo
-    machine         device, precision, memory; work: in what portions a run goes through it
-    processes       several of them training one network
+    images/         labelled images of dataset.h5, of a tree of class folders, or synthesised
+    batches         which images make a step, the same for any number of processes; augmentation
+    models/         one network per file; zoo: those of timm
+    machine         device and precision; execution_plan, step_memory: what fits and how it runs
+    process_group   several processes that train one network
     gradient_step   logits, loss, gradient, update; schedule: the learning rate
-    training        epochs, validation, the best one, going on after a kill
-    run_folder      what a run leaves on disk, and how it is read safely; run_summary
+    training        epochs, validation, the best one, resuming; starting_point: --init
+    run_folder      the files of a run, and how they are read safely; run_summary, event_files
     evaluation      probabilities, features and speed; metrics: how good they are
     report          `radhar eval`: single_result and comparison fill it, report_files writes it
+    adaptation      batch norm fitted to unlabelled images
+    stream          samples for a PyTorch DataLoader, synthesised in its workers
     prediction      classes of single images; onnx_export
 """

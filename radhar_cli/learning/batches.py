@@ -37,7 +37,7 @@ class Normalisation:
 def epoch_order(weights: Float, seed: int, epoch: int) -> Index:
     """Shuffled numbers of the images of one epoch: number i as often as weights[i] on average.
 
-    A weight of 1 is once; of 2.3 twice, and a third time in three epochs of ten.
+    A weight of 1 is once; of 2.3 twice, and a third time with probability 0.3.
     """
     rng = stream(seed, TRAINING, epoch, name="order")
     if (weights == 1).all():
@@ -60,7 +60,7 @@ def epoch_batches(order: Index, size: int, processes: int) -> list[Index]:
 
 
 class Readable(Protocol):
-    """An image set, or what else has pixels to read."""
+    """Anything whose pixels are read by row: an image set, a stream."""
 
     @property
     def pixels(self) -> Pixels:
@@ -74,16 +74,16 @@ class Labels(Protocol):
 
 
 class _Rows(Dataset[tuple[Tensor, int]]):
-    """Rows of an image set, read as they are asked for; `labels` in the model's numbering."""
+    """Rows of an image set, read on demand; `labels` in the model's numbering."""
 
-    def __init__(self, images: Readable, labels: Labels, change: Augmentation | None) -> None:
-        self.images, self.labels, self.change = images, labels, change
+    def __init__(self, images: Readable, labels: Labels, augmentation: Augmentation | None) -> None:
+        self.images, self.labels, self.augmentation = images, labels, augmentation
 
     def __getitem__(self, place: tuple[int, int]) -> tuple[Tensor, int]:
         row, epoch = place
         rgb = self.images.pixels.read(row)
-        if self.change is not None and epoch >= 0:
-            rgb = repeated(self.change(rgb[..., 0], row, epoch))
+        if self.augmentation is not None and epoch >= 0:
+            rgb = repeated(self.augmentation(rgb[..., 0], row, epoch))
         return torch.from_numpy(np.ascontiguousarray(rgb.transpose(2, 0, 1))), int(self.labels[row])
 
 
@@ -101,7 +101,7 @@ class _Batches(Sampler[list[tuple[int, int]]]):
 class Reader:
     """Reads batches of an image set, in worker processes if there are any.
 
-    Every worker opens the file for itself and is kept until the end.
+    Each worker opens the file itself and lives as long as the reader.
     """
 
     def __init__(
@@ -110,11 +110,11 @@ class Reader:
         labels: Labels,
         workers: int,
         pin: bool,
-        change: Augmentation | None = None,
+        augmentation: Augmentation | None = None,
     ) -> None:
         self._sampler = _Batches()
         self._loader = DataLoader(
-            _Rows(images, labels, change),
+            _Rows(images, labels, augmentation),
             batch_sampler=self._sampler,
             num_workers=workers,
             persistent_workers=workers > 0,
@@ -128,7 +128,7 @@ class Reader:
     ) -> Iterator[tuple[Tensor, Tensor]]:
         """Yield (uint8 [B, 3, H, W], labels [B]) for every batch of row numbers.
 
-        With an epoch, images are changed as it has them; AS_STORED leaves them.
+        With an epoch number images are augmented as in that epoch; AS_STORED leaves them.
         """
         self._sampler.batches = [[(int(row), epoch) for row in batch] for batch in batches]
         try:

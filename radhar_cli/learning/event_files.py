@@ -18,7 +18,7 @@ SERIES = {
 
 
 class EventFiles:
-    """Event files in RUN/tensorboard. A process begins them anew: no epoch is lost or doubled."""
+    """Event files in RUN/tensorboard; each process rewrites them from the first epoch on."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -35,7 +35,7 @@ class EventFiles:
         rows = read_history(self._folder)
         if self._writer is None:
             remove_events(self._folder)
-            # A TensorBoard that is looking forgets the points of the files that are gone.
+            # A running TensorBoard drops the points of deleted files.
             self._writer = SummaryWriter(self._folder / EVENTS, purge_step=0)
         at = time.time() - sum(row.seconds for row in rows[self._written :])
         for row in rows[self._written :]:

@@ -14,7 +14,7 @@ CUDA_WORKERS = 8
 
 @dataclass(frozen=True)
 class ExecutionPlan:
-    """Where and in what portions training steps are computed.
+    """Device, precision, micro batch and reading processes of a run.
 
     Attributes:
         device, precision: of the forward and backward passes.
@@ -56,9 +56,9 @@ def choose_execution_plan(
 
 
 def _workers(config: TrainConfig, device: torch.device, synthesises: bool) -> int:
-    """On the CPU the cores are busy with the network, and reading is a few per cent of a step.
+    """Reading processes: none on the CPU, whose cores the network keeps busy.
 
-    Synthesis takes longer than a step: every core is to do it.
+    Samples of a stream take longer to synthesise than a step: every core gets a worker.
     """
     if config.workers != "auto":
         return config.workers

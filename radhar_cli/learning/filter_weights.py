@@ -15,15 +15,15 @@ def magnitudes(model: nn.Module) -> list[Float]:
 
     H is the Hermitian part of the stored weight, the only part that acts.
     """
-    found = []
+    filters = []
     with torch.no_grad():
         for layer in model.modules():
             if isinstance(layer, GlobalFilter):
                 half = layer.hermitian_half().abs().mean(0).double().cpu().numpy()
                 width = layer.weight.shape[2]
                 mirrored = np.roll(half[::-1, 1 : width - half.shape[1] + 1][:, ::-1], 1, axis=0)
-                found.append(np.concatenate([half, mirrored], axis=1))
-    return found
+                filters.append(np.concatenate([half, mirrored], axis=1))
+    return filters
 
 
 def table(filters: list[Float]) -> list[dict[str, Any]]:

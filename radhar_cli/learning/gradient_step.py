@@ -17,7 +17,7 @@ _ADAM = {"step", "exp_avg", "exp_avg_sq"}
 
 
 def optimiser_for(config: TrainConfig, model: nn.Module) -> torch.optim.Optimizer:
-    """L2 regularisation of the weights; biases, norms and what timm exempts are left free."""
+    """The config's optimiser; biases, norm layers and what timm exempts have no weight decay."""
     exempt: set[str] = getattr(model, "no_weight_decay", set)()
     weights: list[nn.Parameter] = []
     others: list[nn.Parameter] = []
@@ -40,7 +40,7 @@ def check_state(optimiser: torch.optim.Optimizer, stored: dict[str, Any]) -> Non
 
     Raises:
         ValueError: other settings, or numbers that do not belong to the weights.
-        KeyError, TypeError, AttributeError: it is no state of an optimiser.
+        KeyError, TypeError, AttributeError: it is not the state of an optimiser.
     """
     settings, here = (
         [{k: v for k, v in group.items() if k != "lr"} for group in groups]
@@ -70,7 +70,7 @@ def logits_of(
 
 @dataclass(frozen=True)
 class TrainStep:
-    """Forward pass, loss, gradient and update, as every step of a run does them."""
+    """Forward pass, loss, gradient and update of a training step."""
 
     config: TrainConfig
     prepare: Normalisation
@@ -96,16 +96,16 @@ class TrainStep:
         optimiser: torch.optim.Optimizer,
         levels: Tensor,
         labels: Tensor,
-        whole: int,
+        batch_size: int,
     ) -> tuple[float, int]:
-        """One update from this process's share of a batch of `whole` images.
+        """One update from this process's share of a batch.
 
         Args:
-            network: the one whose gradients the processes average.
+            network: wrapped so that the processes average its gradients.
             optimiser: of its parameters.
             levels: uint8 [B, 3, H, W], the share.
             labels: [B].
-            whole: images of the batch, over all processes.
+            batch_size: images of the whole batch, over all processes.
 
         Returns:
             The mean loss of the share, and how many of it are classified correctly.
@@ -117,7 +117,7 @@ class TrainStep:
             with no_sync(network, self.group, last=number == len(parts) - 1):
                 loss, part_correct = self.loss_and_correct(network, levels[part], labels[part])
                 # Processes average their gradients: the sum over all, divided by the whole batch.
-                torch.autograd.backward(loss * (self.group.size / whole))
+                torch.autograd.backward(loss * (self.group.size / batch_size))
             loss_sum += float(loss.detach())
             correct += part_correct
         if self.config.gradient_clip_norm is not None:

@@ -28,9 +28,9 @@ def choose_device(wanted: str) -> torch.device:
         "cpu": True,
     }
     if wanted == "auto":
-        wanted = next(name for name, found in there.items() if found)
+        wanted = next(name for name, available in there.items() if available)
     if not there[wanted]:
-        has = ", ".join(name for name, found in there.items() if found)
+        has = ", ".join(name for name, available in there.items() if available)
         raise MachineError(f'device = "{wanted}": is not on this machine; it has {has}')
     if wanted == "cuda":
         return torch.device("cuda", int(os.environ.get("LOCAL_RANK", 0)))

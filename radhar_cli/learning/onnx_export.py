@@ -76,9 +76,9 @@ def export(run: Path, path: Path) -> float:
         trial = _pixels(images, metadata)
         with torch.inference_mode():
             expected = model(trial).numpy()
-        found = session.run(["logits"], {"pixels": trial.numpy()})[0]
+        logits = session.run(["logits"], {"pixels": trial.numpy()})[0]
         scale = max(1.0, float(np.abs(expected).max()))
-        worst = max(worst, float(np.abs(found - expected).max()) / scale)
+        worst = max(worst, float(np.abs(logits - expected).max()) / scale)
     if not worst <= TOLERANCE:
         raise RunError(
             f"{run}: ONNX Runtime's logits differ from PyTorch's by {worst:.2g}, more than "

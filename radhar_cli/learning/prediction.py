@@ -1,4 +1,4 @@
-"""Classes of single images, or of data sets whose labels nobody need know."""
+"""Predicted classes of images, which need no labels."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path

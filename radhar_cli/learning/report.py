@@ -45,7 +45,7 @@ def evaluate(
     opened = [open_run(name, path, device) for name, path in _named(runs).items()]
     check_options(opened, options)
     named_data = _named(data)
-    eval_sets = {  # opened here, so that what does not fit is said before anything is computed
+    eval_sets = {  # all opened first: data that do not fit are reported before any computing
         (run.name, name): open_eval_set(run, path, options)
         for run in opened
         for name, path in named_data.items()

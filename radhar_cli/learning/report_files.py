@@ -1,4 +1,4 @@
-"""A report on disk: figures, tables, report.json, and report.html that needs nothing else."""
+"""A report on disk: figures, tables, report.json, and a self-contained report.html."""
 
 import base64
 import json

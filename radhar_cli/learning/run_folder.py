@@ -99,8 +99,8 @@ class RunMetadata(Section):
         config: the resolved training config.
         data: path, content hash, images of the training and validation sets.
         versions: of radhar, torch, numpy.
-        work: what the result depends on of how it was computed: precision, micro batch, number
-            of processes.
+        work: how it was computed, as far as the result depends on it: precision, micro batch,
+            number of processes.
     """
 
     model: Name
@@ -167,7 +167,7 @@ def best_epoch(history: Sequence[Epoch]) -> Epoch:
 
 
 def reserve_run(folder: Path, metadata: RunMetadata, overwrite: bool) -> None:
-    """Make a folder, whose lock is held, this run's, or refuse.
+    """Take a locked folder for this run, or refuse it.
 
     Raises:
         RunError: it holds something else; the message names what differs.
@@ -186,12 +186,12 @@ def reserve_run(folder: Path, metadata: RunMetadata, overwrite: bool) -> None:
             )
         write_whole(folder, folder / ABOUT, (metadata.model_dump_json(indent=2) + "\n").encode())
         return
-    found = differences(read_metadata(folder), metadata)
-    if found:
+    differing = differences(read_metadata(folder), metadata)
+    if differing:
         raise RunError(
             f"{folder}: holds another run; it differs in\n  "
-            + "\n  ".join(found)
-            + "\nchoose another folder, or --overwrite to start this one again"
+            + "\n  ".join(differing)
+            + "\nchoose another folder, or --overwrite to start this one over"
         )
 
 
@@ -234,7 +234,7 @@ def read_metadata(folder: Path) -> RunMetadata:
     except FileNotFoundError:
         raise RunError(f"{folder}: holds no training run ({ABOUT} is missing)") from None
     except ValidationError as error:
-        raise RunError(f"{path}: is damaged, or not radhar's ({_first(error)})") from None
+        raise RunError(f"{path}: is damaged, or is not from radhar ({_first(error)})") from None
 
 
 def _first(error: ValidationError) -> str:
@@ -295,7 +295,7 @@ def checked_history(history: list[Epoch]) -> list[Epoch]:
     """The same epochs.
 
     Raises:
-        ValueError: they are not numbered 1, 2, 3, or hold what is no number.
+        ValueError: they are not numbered 1, 2, 3, or hold a value that is not finite.
     """
     for number, row in enumerate(history, start=1):
         if row.epoch != number or not all(map(math.isfinite, vars(row).values())):
@@ -306,7 +306,7 @@ def checked_history(history: list[Epoch]) -> list[Epoch]:
 def write_best(
     folder: Path, metadata: RunMetadata, epoch: Epoch, weights: Mapping[str, Tensor]
 ) -> None:
-    """Write best.safetensors: weights, and beside them all that is needed to use them."""
+    """Write best.safetensors: weights and, as metadata, all that is needed to use them."""
     header = {"radhar": metadata.model_dump_json(), "epoch": str(epoch.epoch)}
     tensors = {name: tensor.detach().cpu().contiguous() for name, tensor in weights.items()}
     write_whole(folder, folder / BEST, safetensors_bytes(tensors, header))
@@ -316,7 +316,7 @@ def load_best(folder: Path) -> tuple[RunMetadata, nn.Module]:
     """The best epoch's model, in evaluation mode on the CPU.
 
     Args:
-        folder: the run's, or a .safetensors file, whoever wrote it.
+        folder: of the run, or a .safetensors file; it is not trusted.
 
     Raises:
         RunError: no such file, or a damaged or foreign one.
@@ -338,7 +338,7 @@ def load_best(folder: Path) -> tuple[RunMetadata, nn.Module]:
         with safe_open(path, framework="pt") as file:
             return _opened(path, file)
     except (SafetensorError, OSError, ValueError) as error:
-        raise RunError(f"{path}: is no safetensors file, or a truncated one ({error})") from None
+        raise RunError(f"{path}: is not a safetensors file, or is truncated ({error})") from None
 
 
 def _opened(path: Path, file: Any) -> tuple[RunMetadata, nn.Module]:
@@ -361,7 +361,7 @@ def _opened(path: Path, file: Any) -> tuple[RunMetadata, nn.Module]:
         weights = {name: file.get_tensor(name) for name in stored}
         for name, tensor in weights.items():
             if not tensor.isfinite().all():
-                raise RuntimeError(f"{name} holds what is no finite number")
+                raise RuntimeError(f"{name} holds a number that is not finite")
         model = build_model(metadata.model, len(metadata.classes), metadata.size)
         model.load_state_dict(weights)
     except ValidationError as error:
@@ -396,20 +396,22 @@ def read_last(folder: Path) -> dict[str, Any] | None:
         _refuse_inflation(path)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            found: dict[str, Any] = torch.load(path, map_location="cpu", weights_only=True)
-        return {key: found[key] for key in ("model", "optimiser", "history", "random", "metadata")}
+            checkpoint: dict[str, Any] = torch.load(path, map_location="cpu", weights_only=True)
+        return {
+            key: checkpoint[key] for key in ("model", "optimiser", "history", "random", "metadata")
+        }
     except _DAMAGED as error:
         raise RunError(
-            f"{path}: is damaged, or no checkpoint of radhar's ({first_line(error)}); {BEST} is "
-            "untouched; --overwrite starts the run again"
+            f"{path}: is damaged, or not a checkpoint of radhar ({first_line(error)}); {BEST} is "
+            "untouched; --overwrite starts the run over"
         ) from None
 
 
 def _refuse_inflation(path: Path) -> None:
-    """PyTorch stores what it saves as it is; what is packed could become any size.
+    """PyTorch saves without compression; a compressed entry could inflate to any size.
 
     Raises:
-        ValueError, BadZipFile: it is packed, or no file of PyTorch's.
+        ValueError, BadZipFile: it is compressed, or not a file of PyTorch.
     """
     size = regular_size(path)
     with zipfile.ZipFile(path) as file:
@@ -420,6 +422,6 @@ def _refuse_inflation(path: Path) -> None:
 
 
 def first_line(error: Exception) -> str:
-    """The first sentence of an error, or its kind where it has none."""
+    """The first line of an error, or its type where it has no text."""
     lines = str(error).strip().splitlines()
     return lines[0].split(". ")[0] if lines else type(error).__name__

@@ -1,4 +1,4 @@
-"""The YAML file of `radhar train`: what is learned, how, and on what machine."""
+"""The YAML file of `radhar train`: model, optimisation, augmentation, machine."""
 
 from typing import Annotated, Literal
 

@@ -168,7 +168,7 @@ def seen_message(numbers: Mapping[str, Any]) -> str:
     seen = numbers["seen_in_training"]
     return (
         f"{seen['images']} of these {numbers['images']} images, and the person and motion of "
-        f"{seen['scenes']}, were trained on: this is no test of what the network has not seen"
+        f"{seen['scenes']}, were trained on: this does not test on unseen data"
     )
 
 
@@ -210,7 +210,7 @@ def _in_place_vs_moving(
 def _mistakes(
     report: Report, predictions: Predictions, names: Sequence[str], stem: str, title: str
 ) -> None:
-    """The surest mistakes, or the least sure right predictions where there are none."""
+    """The most confident mistakes; where there are none, the least confident predictions."""
     sure, wrong = predictions.probabilities.max(1), predictions.predicted != predictions.truth
     order = np.argsort(-sure, kind="stable")
     chosen = order[wrong[order]][:MAX_MISTAKES]

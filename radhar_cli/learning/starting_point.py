@@ -1,4 +1,4 @@
-"""Weights of an earlier run, to go on learning from (`radhar train --init`)."""
+"""Initial weights from an earlier run (`radhar train --init`)."""
 
 import hashlib
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ class StartingPoint:
     Attributes:
         sha256: of the weights.
         normalisation: of the earlier run; the weights were learned with it.
-        notes: what was not taken over.
+        notes: what was not taken over, in words.
     """
 
     sha256: str
@@ -32,7 +32,7 @@ class StartingPoint:
 def start_from(run: Path, model: nn.Module, config: TrainConfig, images: ImageSet) -> StartingPoint:
     """Load the best weights of a run into a new model.
 
-    Where the classes differ, the last layer stays as it was drawn.
+    Where the classes differ, the last layer keeps its random weights.
 
     Raises:
         RunError: the run cannot be read.

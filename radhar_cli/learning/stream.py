@@ -20,7 +20,7 @@ from radhar_cli.worker_process import prepare_process
 
 
 class Samples(Dataset[dict[str, Any]]):
-    """The rows of a data set that need not be built: each is made when it is indexed.
+    """The rows of a data set without building it: each is synthesised when it is indexed.
 
     Row i is row i of the dataset.h5 that `radhar generate` would write, bit for bit, whichever
     process makes it; a DataLoader may shuffle them or share them out with DistributedSampler.
@@ -120,7 +120,9 @@ class Stream(IterableDataset[dict[str, Any]]):
         self._recipe = Recipe.of(config, fields, seed)
         self.config = self._recipe.config
         if split not in ("all", "train"):
-            raise ConfigError(f"split = {split!r}: should be all or train; others have an end")
+            raise ConfigError(
+                f"split = {split!r}: should be all or train; the other splits are finite"
+            )
         self._order = StreamOrder(self.config, split, balanced)
         self._batch_size, self.start = whole("batch_size", batch_size, 1), whole("start", start)
         self._shard = None if shard is None else _checked_shard(shard)

@@ -57,6 +57,7 @@ from radhar_cli.learning.run_summary import write_run_summary
 from radhar_cli.learning.schedule import rate
 from radhar_cli.learning.settings import AugmentConfig, TrainConfig
 from radhar_cli.learning.starting_point import StartingPoint, start_from
+from radhar_cli.learning.step_memory import Step
 from radhar_cli.progress import Messages
 from radhar_cli.randomness import TRAINING, stream
 
@@ -65,7 +66,7 @@ NOT_IDENTITY = ("device", "workers", "threads", "precision", "micro_batch")
 
 
 class TrainingError(RadharError):
-    """A run that cannot go on; what the last epoch left is kept."""
+    """A run that had to stop; the checkpoints of finished epochs are kept."""
 
 
 class TrainingProgress(Messages, Protocol):
@@ -111,44 +112,54 @@ def train(
     start: Path | None = None,
     stream: Config | None = None,
 ) -> Outcome:
-    """Train `config` on `data` in `folder`, go on with it, or find it done.
+    """Train `config` on `data` in `folder`, or resume; nothing to do where it is complete.
 
     Under torchrun every process calls this; the first one writes.
 
     Args:
-        config: what is learned, and how.
-        data: a data set, or several that are learned from as one; with a stream, what is validated
-            on, or nothing.
+        config: model, optimiser, schedule.
+        data: a data set, or several that are combined; with a stream, the validation data, or
+            nothing.
         folder: of the run.
         progress: receives progress.
-        overwrite: start again in a folder that holds a run.
-        names: those that the classes get, None to leave one out.
-        start: a run whose best weights and normalisation are started from; the last layer too if
-            the classes are the same.
-        stream: config of samples that are synthesised while they are learned from, each once.
+        overwrite: start over in a folder that holds a run.
+        names: {class of the data: class here, or None to leave it out}.
+        start: a run whose best weights and normalisation are the initial ones; those of the last
+            layer too if the classes are the same.
+        stream: config of samples that are synthesised on the fly, each used once.
 
     Raises:
         FolderError: data that cannot be used.
         ConfigError, SceneError: a stream that cannot be used.
         RunError: a folder that holds something else, or a damaged checkpoint.
-        ModelError, MachineError: a network or a device that cannot be had.
+        ModelError: a network that cannot be built.
+        MachineError: a device that is not available, or a step too large for memory.
         TrainingError: the loss is not finite; earlier checkpoints are kept.
     """
     if config.threads != "auto":
         torch.set_num_threads(config.threads)
     device = choose_device(config.device)
     repeatable(device)
-    learned = None
+    training_stream = None
     if stream is None:
         images = checked_images(config, data, names)
     else:
         paths = [data] if isinstance(data, Path) else list(data)
         workers = choose_execution_plan(config, device, synthesises=True).workers
-        learned, images = stream_and_validation(config, stream, paths, names or {}, workers)
+        training_stream, images = stream_and_validation(config, stream, paths, names or {}, workers)
     with process_group(device) as group, folder_lock(folder) if group.is_main else nullcontext():
-        return _Training.prepared(
-            config, images, folder, device, group, progress, overwrite, start, learned
-        ).run()
+        plan = choose_execution_plan(config, device, synthesises=training_stream is not None)
+        images_a_pass = min(plan.micro_batch, -(-config.batch_size // group.size))
+        step = Step(config, len(images.classes), images.size, images_a_pass, plan.precision)
+        step.check(device)
+        try:
+            return _Training.prepared(
+                config, images, folder, plan, group, progress, overwrite, start, training_stream
+            ).run()
+        except RuntimeError as error:
+            if not out_of_memory(error):
+                raise
+            raise TrainingError(f"out of memory on {device.type}: {step.advice()}") from None
 
 
 def checked_images(
@@ -202,23 +213,22 @@ class _Training:
         config: TrainConfig,
         images: ImageSet,
         folder: Path,
-        device: torch.device,
+        plan: ExecutionPlan,
         group: Group,
         progress: TrainingProgress,
         overwrite: bool = False,
         start: Path | None = None,
         stream: TrainingStream | None = None,
     ) -> "_Training":
-        least = MIN_PER_PROCESS * group.size
-        if config.batch_size < least:
+        minimum = MIN_PER_PROCESS * group.size
+        if config.batch_size < minimum:
             raise ConfigError(
-                f"batch_size = {config.batch_size}: should be at least {least} for {group.size} "
+                f"batch_size = {config.batch_size}: should be at least {minimum} for {group.size} "
                 "processes; batch norm needs two images in each"
             )
         torch.manual_seed(config.seed)
         model = build_model(config.model, len(images.classes), images.size)
         started = None if start is None else start_from(start, model, config, images)
-        plan = choose_execution_plan(config, device, synthesises=stream is not None)
         if group.is_main:
             many = f"{len(images)} images of {len(images.classes)} classes"
             if stream is not None:
@@ -242,7 +252,7 @@ class _Training:
             _write_trained_on(folder, images, digests)
 
         on_rank_zero(group, reserve)
-        model.to(device)
+        model.to(plan.device)
         return cls(
             config=config,
             images=images,
@@ -258,46 +268,34 @@ class _Training:
         )
 
     def run(self) -> Outcome:
-        try:
-            return self._run()
-        except RuntimeError as error:
-            if not out_of_memory(error):
-                raise
-            share = -(-self.config.batch_size // self.group.size)
-            micro_batch = min(self.plan.micro_batch, share)
-            raise TrainingError(
-                f"micro_batch = {micro_batch}: out of memory on {self.plan.device.type}; "
-                f"--set micro_batch={max(2, micro_batch // 2)} needs about half "
-                f"({run.first_line(error)})"
-            ) from None
-
-    def _run(self) -> Outcome:
         resumed = self._restore()
         if self.group.is_main:
             self._announce(resumed)
         network = distributed(self.model, self.plan.device, self.group)
-        change = (
+        augmentation = (
             Augmentation(self.config.augment, self.config.seed)
             if self.config.augment != AugmentConfig()
             else None
         )
         pin = self.plan.device.type == "cuda"
         if self.stream is None:
-            reader = learner = Reader(
-                self.images, self.images.label, self.plan.workers, pin, change
+            validation_reader = training_reader = Reader(
+                self.images, self.images.label, self.plan.workers, pin, augmentation
             )
         else:
-            reader = Reader(self.images, self.images.label, 0, pin)
-            learner = Reader(self.stream, self.stream.label, self.plan.workers, pin, change)
+            validation_reader = Reader(self.images, self.images.label, 0, pin)
+            training_reader = Reader(
+                self.stream, self.stream.label, self.plan.workers, pin, augmentation
+            )
         for epoch in range(resumed, self.config.epochs):
             began = time.perf_counter()
             torch.manual_seed(self._epoch_seed(epoch))
-            learned = self._learn(network, learner, epoch)
-            seen = self._validate(reader, epoch)
+            training = self._train_epoch(network, training_reader, epoch)
+            validation = self._validate(validation_reader, epoch)
             if self.group.is_main:
-                self._keep(epoch, learned, seen, time.perf_counter() - began)
+                self._keep(epoch, training, validation, time.perf_counter() - began)
             else:
-                self.history.append(_row(epoch, 0.0, learned, seen, 0.0))
+                self.history.append(_row(epoch, 0.0, training, validation, 0.0))
         if self.group.is_main:
             run.write_history(self.folder, self.history)
             if resumed < self.config.epochs or not (self.folder / run_files.METRICS).exists():
@@ -310,23 +308,23 @@ class _Training:
         return TrainStep(self.config, self.metadata.normalisation, self.plan, self.group)
 
     def _restore(self) -> int:
-        found = run.read_last(self.folder)
-        if found is None:
+        checkpoint = run.read_last(self.folder)
+        if checkpoint is None:
             return 0
         path = self.folder / run_files.LAST
         try:
             other = run.differences(
-                RunMetadata.model_validate_json(found["metadata"]), self.metadata
+                RunMetadata.model_validate_json(checkpoint["metadata"]), self.metadata
             )
             if other:
                 raise run.RunError(f"{path}: is another run's; it differs in {other[0]}")
-            self.history = run.checked_history([Epoch(**row) for row in found["history"]])
+            self.history = run.checked_history([Epoch(**row) for row in checkpoint["history"]])
             if not self.history:
                 raise ValueError("it holds no epoch")
-            self.model.load_state_dict(found["model"])
-            check_state(self.optimiser, found["optimiser"])
-            self.optimiser.load_state_dict(found["optimiser"])
-            torch.set_rng_state(found["random"])
+            self.model.load_state_dict(checkpoint["model"])
+            check_state(self.optimiser, checkpoint["optimiser"])
+            self.optimiser.load_state_dict(checkpoint["optimiser"])
+            torch.set_rng_state(checkpoint["random"])
         except (
             AttributeError,
             IndexError,
@@ -336,8 +334,7 @@ class _Training:
             ValueError,
         ) as error:
             raise run.RunError(
-                f"{path}: does not fit this run ({run.first_line(error)}); --overwrite starts it "
-                "again"
+                f"{path}: does not fit this run ({run.first_line(error)}); --overwrite starts over"
             ) from None
         on_rank_zero(self.group, self._ensure_best)
         return len(self.history)
@@ -354,8 +351,8 @@ class _Training:
         except run.RunError as error:
             if best is not self.history[-1]:
                 raise run.RunError(
-                    f"{error}; the weights of epoch {best.epoch} cannot be had again; --overwrite "
-                    "starts the run again"
+                    f"{error}; the weights of epoch {best.epoch} cannot be recovered; --overwrite "
+                    "starts the run over"
                 ) from None
             run.write_best(self.folder, self.metadata, best, self.model.state_dict())
 
@@ -376,7 +373,7 @@ class _Training:
             )
 
     def _epoch_seed(self, epoch: int) -> int:
-        """Seeds dropout and its like anew in every epoch and process, so that a run can go on."""
+        """Seed of dropout and the like for one epoch and process, so that a run can resume."""
         rng = stream(self.config.seed, TRAINING, epoch, self.group.rank, name="layers")
         return int(rng.integers(2**63))
 
@@ -389,8 +386,8 @@ class _Training:
         weights = sampling_weights(self.images, rows, config.data_weights, balanced)
         return rows[epoch_order(weights, config.seed, epoch)]
 
-    def _learn(self, network: nn.Module, reader: Reader, epoch: int) -> tuple[float, float]:
-        """One epoch of steps; returns mean loss and accuracy of what was seen on the way."""
+    def _train_epoch(self, network: nn.Module, reader: Reader, epoch: int) -> tuple[float, float]:
+        """One epoch of steps; returns mean loss and accuracy of its batches."""
         config, group = self.config, self.group
         rows = self._epoch_rows(epoch)
         batches = epoch_batches(rows, config.batch_size, group.size)
@@ -446,10 +443,14 @@ class _Training:
         )
 
     def _keep(
-        self, epoch: int, learned: tuple[float, float], seen: tuple[float, float], seconds: float
+        self,
+        epoch: int,
+        training: tuple[float, float],
+        validation: tuple[float, float],
+        seconds: float,
     ) -> None:
         """Put an epoch on disk: the best weights first, then what the next epoch starts from."""
-        row = _row(epoch, self.optimiser.param_groups[0]["lr"], learned, seen, seconds)
+        row = _row(epoch, self.optimiser.param_groups[0]["lr"], training, validation, seconds)
         self.history.append(row)
         best = best_epoch(self.history) is row
         weights = self.model.state_dict()
@@ -493,11 +494,11 @@ def _metadata(
         "train": rows.size,
         "val": validating.size,
     }
-    look = learned
+    statistics = learned
     if stream is not None:
-        look = stream.first
+        statistics = stream.first
         data |= stream_data(stream, data, config.epochs)
-    mean, sd = look.mean, look.sd
+    mean, sd = statistics.mean, statistics.sd
     if started is not None:
         mean, sd = started.normalisation.mean, started.normalisation.sd
     kept = {k: v for k, v in resolved(config).items() if k not in NOT_IDENTITY}
@@ -544,16 +545,16 @@ def _unbalanced(images: ImageSet) -> list[str]:
 def _row(
     epoch: int,
     learning_rate: float,
-    learned: tuple[float, float],
-    seen: tuple[float, float],
+    training: tuple[float, float],
+    validation: tuple[float, float],
     seconds: float,
 ) -> Epoch:
     return Epoch(
         epoch=epoch + 1,
         learning_rate=learning_rate,
-        train_loss=float(learned[0]),
-        train_accuracy=float(learned[1]),
-        val_loss=float(seen[0]),
-        val_accuracy=float(seen[1]),
+        train_loss=float(training[0]),
+        train_accuracy=float(training[1]),
+        val_loss=float(validation[0]),
+        val_accuracy=float(validation[1]),
         seconds=round(seconds, 3),
     )

@@ -324,11 +324,11 @@ def _idle(scene: Scene, person: Person, movements: tuple[Movement, ...]) -> Idle
 
 def _instants(scene: Scene, rate: float, name: str, start: float) -> list[float]:
     """Instants (s) of a Poisson process from `start` to the end of the recording."""
-    end, rng, found = _f(scene.config.duration_s), _draws(scene, name), []
+    end, rng, instants = _f(scene.config.duration_s), _draws(scene, name), []
     at = start
     while rate > 0 and (at := at + rng.exponential() / rate) < end:
-        found.append(at)
-    return found
+        instants.append(at)
+    return instants
 
 
 def _fidgets(scene: Scene) -> Iterable[Fidget]:

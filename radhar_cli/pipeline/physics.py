@@ -46,7 +46,7 @@ def _fixed(number: Any) -> float:
         TypeError: it is still to be drawn.
     """
     if not isinstance(number, (int, float)):
-        raise TypeError(f"{number!r} should have been drawn; this config is no scene's")
+        raise TypeError(f"{number!r} should have been drawn; this is not the config of a scene")
     return float(number)
 
 
@@ -134,17 +134,19 @@ def reflectors_of(scene: Scene) -> Reflectors | None:
 
 def impairments_of(scene: Scene, noise: WhiteNoise) -> tuple[Impairment, ...]:
     """What a receiver adds to white noise."""
-    receiver, found = scene.config.receiver, list[Impairment]()
+    receiver, impairments = scene.config.receiver, list[Impairment]()
     given = (noise.waveform, noise.stream)
     corner = _fixed(receiver.noise_corner_hz)
     if corner > 0:
         slope = _fixed(receiver.noise_slope_db)
-        found.append(FlickerNoise(noise.sigma, *given, corner, slope))
+        impairments.append(FlickerNoise(noise.sigma, *given, corner, slope))
     for number, line in enumerate(receiver.lines):
         amplitude = noise.sigma * 10 ** (_fixed(line.level_db) / 20)
         times = _fixed(line.on_s), _fixed(line.off_s)
-        found.append(Line(amplitude, _fixed(line.doppler_hz), *given, f"line {number}", *times))
-    return tuple(found)
+        impairments.append(
+            Line(amplitude, _fixed(line.doppler_hz), *given, f"line {number}", *times)
+        )
+    return tuple(impairments)
 
 
 def _paper_body(scene: Scene) -> PaperBody:

@@ -503,9 +503,9 @@ def _maps(c: Config, entropy: bool) -> Iterator[Product]:
         time = Axis("time", "s", (profiles.pulses + canceller.delay) / w.prf)
         return PowerMap(range_power(profiles.bins), Axis("range", "m", w.range_axis()), time)
 
-    def rtm_image(found: PowerMap, cfar: CellAveraging | None = None) -> MapImage:
-        small = partial(reduced_map, found.power, size, entropy=entropy)
-        return _image(c, cfar, small, found.extent, binary_exponent(found.power))
+    def rtm_image(power_map: PowerMap, cfar: CellAveraging | None = None) -> MapImage:
+        small = partial(reduced_map, power_map.power, size, entropy=entropy)
+        return _image(c, cfar, small, power_map.extent, binary_exponent(power_map.power))
 
     needs = ("range_profiles", "waveform", "canceller")
     yield Product("rtm", needs, rtm, "power of the range profiles")
@@ -576,11 +576,11 @@ def _shape(c: Config, entropy: bool) -> str:
     return f"{shape} and entropy" if entropy else shape
 
 
-def image_of(config: Config, found: PowerMap) -> MapImage:
+def image_of(config: Config, power_map: PowerMap) -> MapImage:
     """The image of a map that was measured, as a data set shows it; masks by fixed numbers."""
     cfar = cfar_of(config) if config.image.kind == "cfar" else None
-    small = partial(reduced_map, found.power, config.image.size_px)
-    return _image(config, cfar, small, found.extent, binary_exponent(found.power))
+    small = partial(reduced_map, power_map.power, config.image.size_px)
+    return _image(config, cfar, small, power_map.extent, binary_exponent(power_map.power))
 
 
 def _image(
@@ -631,15 +631,15 @@ def _gated_power(
     frames: Frames,
     gate: Gate,
 ) -> DopplerPower:
-    found = GatedPower(x, gate, frames, bins or frames.length, magnitudes, single)
-    return _cropped(c, iter(found), found.exponent, x, frames, found.bins)
+    gated = GatedPower(x, gate, frames, bins or frames.length, magnitudes, single)
+    return _cropped(c, iter(gated), gated.exponent, x, frames, gated.bins)
 
 
 def _doppler_map(make: MakePower, *given: Any) -> PowerMap:
-    found = make(False, *given)
-    power = np.concatenate(list(found.blocks), dtype=float)
-    np.ldexp(power, 2 * found.exponent, out=power)
-    return PowerMap(power.T, found.rows, found.columns)
+    doppler = make(False, *given)
+    power = np.concatenate(list(doppler.blocks), dtype=float)
+    np.ldexp(power, 2 * doppler.exponent, out=power)
+    return PowerMap(power.T, doppler.rows, doppler.columns)
 
 
 def _doppler_mask(
@@ -656,15 +656,15 @@ def _doppler_image(
     *given: Any,
     cfar: CellAveraging | None = None,
 ) -> MapImage:
-    found = make(single, *given)
+    doppler = make(single, *given)
     again = (make(single, *given).blocks for _ in repeat(None))
-    passes = chain([found.blocks], again)
+    passes = chain([doppler.blocks], again)
 
     def small(of: Callable[[Float], Float] | None) -> Reduced:
-        return reduced(next(passes), found.columns.values.size, c.image.size_px, of, entropy)
+        return reduced(next(passes), doppler.columns.values.size, c.image.size_px, of, entropy)
 
-    extent = (*found.columns.edges, *found.rows.edges)
-    return _image(c, cfar, small, extent, 2 * found.exponent)
+    extent = (*doppler.columns.edges, *doppler.rows.edges)
+    return _image(c, cfar, small, extent, 2 * doppler.exponent)
 
 
 def _cropped(

@@ -9,7 +9,7 @@ import numpy as np
 
 from radhar_cli.activity import Activity
 from radhar_cli.arrays import Float, Index
-from radhar_cli.config.checks import config_warnings, timing_warnings
+from radhar_cli.config.checks import line_warnings, timing_warnings
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.files.motion import FileMotion
@@ -25,6 +25,7 @@ from radhar_cli.pipeline.physics import (
     waveform_of,
 )
 from radhar_cli.pipeline.segment_paths import Body
+from radhar_cli.pipeline.unused_keys import unused_keys
 from radhar_cli.radar.propagation import Antennas, bistatic_delay, leg
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
@@ -215,8 +216,8 @@ def _nearest_segment(body: Body, antennas: Antennas, t: Float) -> Approach:
     for name, antenna in (("transmitter", antennas.tx), ("receiver", antennas.rx)):
         way = body.clearance(antenna, t)
         segment, at = divmod(int(np.argmin(way)), t.size)
-        found = max(float(way[segment, at]), 0.0)
-        candidates.append(Approach(found, body.segments[segment].name, name, float(t[at])))
+        distance = max(float(way[segment, at]), 0.0)
+        candidates.append(Approach(distance, body.segments[segment].name, name, float(t[at])))
     return min(candidates)
 
 
@@ -227,21 +228,26 @@ def draw_valid_scene(config: Config, activity: Activity, index: int) -> tuple[Sc
         SceneError: a scatterer too close to an antenna (unless redrawn), any scene outside the
             model under `on_invalid: error`, or no valid scene in 1000 redraws.
     """
-    found: SceneCheck | None = None
+    check: SceneCheck | None = None
     for attempt in range(MAX_ATTEMPTS if config.on_invalid == "redraw" else 1):
         scene = draw_scene(config, activity, index, attempt)
-        found = check_scene(scene)
-        if found.invalid is None or (config.on_invalid == "keep" and not found.too_close):
-            return scene, found.flags
-    assert found is not None
+        check = check_scene(scene)
+        if check.invalid is None or (config.on_invalid == "keep" and not check.too_close):
+            return scene, check.flags
+    assert check is not None
     if config.on_invalid == "redraw":
         raise SceneError(
             f"sample {activity.slug}/{index}: no scene inside the model in {MAX_ATTEMPTS} draws "
-            f"(on_invalid: redraw); the last: {found.invalid}"
+            f"(on_invalid: redraw); the last: {check.invalid}"
         )
     raise SceneError(
-        f"sample {activity.slug}/{index}: {found.invalid} (on_invalid: {config.on_invalid})"
+        f"sample {activity.slug}/{index}: {check.invalid} (on_invalid: {config.on_invalid})"
     )
+
+
+def config_warnings(config: Config) -> list[str]:
+    """Say which keys have no effect, and which interference lines alias."""
+    return unused_keys(config) + line_warnings(config)
 
 
 def scene_warnings(scene: Scene) -> list[str]:
@@ -250,10 +256,10 @@ def scene_warnings(scene: Scene) -> list[str]:
     Raises:
         SceneError: a scatterer comes within 5 cm of an antenna.
     """
-    found = check_scene(scene)
-    if found.too_close:
-        raise SceneError(f"{scene.name}: {found.invalid}")
-    outside = [_WORDING[flag] for flag in Flags if flag in found.flags]
+    check = check_scene(scene)
+    if check.too_close:
+        raise SceneError(f"{scene.name}: {check.invalid}")
+    outside = [_WORDING[flag] for flag in Flags if flag in check.flags]
     return (
         outside + config_warnings(scene.config) + timing_warnings(scene.config, (scene.activity,))
     )
@@ -267,7 +273,7 @@ def warnings(config: Config, counts: Mapping[Flags, int]) -> list[dict[str, Any]
         counts: how many of its recordings have each flag.
     """
     recordings = sum(map(config.samples_of, config.chosen_activities))
-    found: list[dict[str, Any]] = [
+    messages: list[dict[str, Any]] = [
         {
             "kind": str(flag.name).lower(),
             "recordings": n,
@@ -276,11 +282,11 @@ def warnings(config: Config, counts: Mapping[Flags, int]) -> list[dict[str, Any]
         for flag, n in counts.items()
         if n
     ]
-    found += [
+    messages += [
         {"kind": "config", "recordings": recordings, "message": message}
         for message in config_warnings(config)
     ]
-    return found + [
+    return messages + [
         {"kind": "timing", "recordings": config.samples_of(activity), "message": message}
         for activity in config.chosen_activities
         for message in timing_warnings(config, (activity,))

@@ -1,1 +1,1 @@
-"""From a beat matrix or a slow-time signal, whoever recorded it, to maps and images."""
+"""From a simulated or recorded beat matrix or slow-time signal to maps and images."""

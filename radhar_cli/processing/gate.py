@@ -144,8 +144,8 @@ class GatedPower:
             return
         span = self.frames.span(slice(start + int(shown[0]), start + int(shown[-1]) + 1))
         x = self.signals.x[k, span] * 2.0**-self.exponent
-        found = transform(x, self.frames, self.frames.window, self.bins, self.single)
-        size = np.abs(found)
+        spectrum = transform(x, self.frames, self.frames.window, self.bins, self.single)
+        size = np.abs(spectrum)
         if not self.magnitudes:
             size *= size
         if shown.size == len(size):  # the usual case: frames without a gap

@@ -1,4 +1,4 @@
-"""Slow-time signals of range bins, whoever made or recorded them."""
+"""Slow-time signals of range bins, simulated or recorded."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

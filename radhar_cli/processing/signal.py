@@ -1,4 +1,4 @@
-"""A slow-time signal, whoever made or recorded it."""
+"""A slow-time signal, simulated or recorded."""
 
 from dataclasses import dataclass, replace
 

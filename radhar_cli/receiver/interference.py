@@ -60,13 +60,13 @@ class Line(Impairment):
     def switches(self) -> Float:
         """When the line goes on, off, on and so on, s: exponential times, from the stationary
         state at 0 s. The first is -inf of a line that is there then."""
-        rng, at, found = self.stream(f"{self.name} times"), 0.0, [np.empty(0)]
+        rng, at, times = self.stream(f"{self.name} times"), 0.0, [np.empty(0)]
         already = rng.random() * (self.on + self.off) < self.on
         means = np.tile([self.off, self.on], BATCH)[already:][: 2 * BATCH - 2]
         while at <= self.waveform.n_pulses / self.waveform.prf:
-            found.append(at + np.cumsum(rng.exponential(means)))
-            at = float(found[-1][-1])
-        return np.concatenate([[-np.inf] if already else [], *found])
+            times.append(at + np.cumsum(rng.exponential(means)))
+            at = float(times[-1][-1])
+        return np.concatenate([[-np.inf] if already else [], *times])
 
     def beat(self, blocks: Iterator[Complex]) -> Iterator[Complex]:
         """Of a beat matrix in blocks."""

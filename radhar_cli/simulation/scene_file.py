@@ -148,15 +148,15 @@ def _engine(simulation: Simulation) -> str:
 
 def _accuracy(simulation: Simulation) -> dict[str, Any] | None:
     """How the direct engine made the signal, and its measured error; null where nothing errs."""
-    found = simulation.accuracy
-    if found is None:
+    accuracy = simulation.accuracy
+    if accuracy is None:
         return None
     return {
         "tolerance_db": simulation.config.engine.tolerance_db,
-        "error_db": found.error_db if isfinite(found.error_db) else None,
-        "kinematics_hz": simulation.waveform.prf / found.step,
-        "table_oversampling": found.table_oversampling,
-        "precision": "single" if found.single else "double",
+        "error_db": accuracy.error_db if isfinite(accuracy.error_db) else None,
+        "kinematics_hz": simulation.waveform.prf / accuracy.step,
+        "table_oversampling": accuracy.table_oversampling,
+        "precision": "single" if accuracy.single else "double",
     }
 
 

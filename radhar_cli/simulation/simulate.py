@@ -114,24 +114,26 @@ def simulate(
     asked = [*SIGNALS, *maps, "waveform", "antennas", "wall"]
     asked += ["accuracy"] if config.engine.kind == "direct" else []
     asked += ["raw_echo"] if raw else []
-    found = record(scene, asked, [RAW_ECHO], motions=(kept,))
-    accuracy: EchoAccuracy | None = found.products.get("accuracy")
+    recorded = record(scene, asked, [RAW_ECHO], motions=(kept,))
+    accuracy: EchoAccuracy | None = recorded.products.get("accuracy")
     if isinstance(accuracy, Fallback):
         warnings.append(f"computed by the cube (engine.fallback): {accuracy.reason}")
     return Simulation(
         scene=scene,
-        waveform=found["waveform"],
-        antennas=found["antennas"],
-        wall=found["wall"],
+        waveform=recorded["waveform"],
+        antennas=recorded["antennas"],
+        wall=recorded["wall"],
         motion=motion,
         joint=None if joint is None else kept.names[0],
-        maps={name: found[name] for name in maps},
-        signals={name.removeprefix("signal").lstrip("_") or "raw": found[name] for name in SIGNALS},
-        truth=truth(motion, found["antennas"], found["wall"], found["waveform"]),
+        maps={name: recorded[name] for name in maps},
+        signals={
+            name.removeprefix("signal").lstrip("_") or "raw": recorded[name] for name in SIGNALS
+        },
+        truth=truth(motion, recorded["antennas"], recorded["wall"], recorded["waveform"]),
         warnings=warnings,
-        seconds=found.seconds,
+        seconds=recorded.seconds,
         accuracy=accuracy if isinstance(accuracy, Accuracy) else None,
-        beat=found["raw_echo"] if raw else None,
+        beat=recorded["raw_echo"] if raw else None,
     )
 
 
@@ -145,7 +147,7 @@ def map_names(chosen: list[str]) -> tuple[MapName, ...]:
     for name in names:
         if name not in MAP_NAMES:
             hint = did_you_mean(name, MAP_NAMES, "there are " + ", ".join(MAP_NAMES))
-            raise ConfigError(f"{name!r} is no map; {hint}")
+            raise ConfigError(f"{name!r} is not a map; {hint}")
     return tuple(name for name in MAP_NAMES if name in names)
 
 
@@ -191,7 +193,7 @@ RAW_ECHO = Product(
 
 
 def activity_of(asked: str | Activity | None, config: Config) -> Activity:
-    """The activity, with its number in this config where it is a class of one's own.
+    """The activity, with its number in this config where it is a user-defined class.
 
     Raises:
         ConfigError: there is none of that name, none is named and the config has several, or it is
@@ -206,10 +208,10 @@ def activity_of(asked: str | Activity | None, config: Config) -> Activity:
         raise ConfigError(f"activity = {asked!r}: should be a slug, a label or an Activity")
     own = {one.slug: one for one in config.every_class}
     try:
-        found = activity_named(asked, own) if isinstance(asked, str) else asked
+        activity = activity_named(asked, own) if isinstance(asked, str) else asked
     except ValueError as error:
         raise ConfigError(str(error)) from None
-    return own.get(found.slug, found)
+    return own.get(activity.slug, activity)
 
 
 def _joint(name: str, joints: tuple[str, ...]) -> int:
@@ -217,4 +219,4 @@ def _joint(name: str, joints: tuple[str, ...]) -> int:
     if key in joints:
         return joints.index(key)
     hint = did_you_mean(key, joints, "the joints are " + ", ".join(joints))
-    raise ConfigError(f"{name!r} is no joint; {hint}")
+    raise ConfigError(f"{name!r} is not a joint; {hint}")

@@ -56,13 +56,13 @@ def measure(experiment: Experiment, trials: Sequence[Trial], snr_db: float) -> l
     """
     experiment = replace(experiment, progress=DistinctMessages(experiment.progress))
     setups = [TrialData.of(experiment, trial, snr_db) for trial in trials]
-    found = []
+    accuracies = []
     for number, setup in enumerate(setups):
         scores = [score(experiment, setup, seed) for seed in experiment.sizes.seeds]
-        found.append(_accuracy(setup.trial.name, scores))
+        accuracies.append(_accuracy(setup.trial.name, scores))
         experiment.remove_data(keep={name for later in setups[number + 1 :] for name in later.data})
     experiment.remove_all()
-    return found
+    return accuracies
 
 
 def _accuracy(name: str, scores: Sequence[TestResult]) -> Accuracy:

@@ -13,10 +13,10 @@ QUIET = "snr_db=null"
 
 
 class Sample(NamedTuple):
-    """One scene under one setting, noiseless.
+    """One scene under one setting.
 
     Attributes:
-        signal: x [M - 1].
+        signal: x [M] after the canceller.
         power: the first map of the config.
         levels: its image.
         dynamic_range_db: of the image.
@@ -39,13 +39,19 @@ class SceneDifferences:
 
     def of(self, setting: Setting) -> dict[str, Any]:
         """How far the setting's data are from its reference, in numbers that JSON can hold."""
-        found, right = self._sample(setting.compared), self._sample(setting.exact)
-        row: dict[str, Any] = {"signal_error_db": relative_db(found.signal, right.signal)}
-        if found.power.shape == right.power.shape:
-            error, worst = map_error_db(found.power, right.power, right.dynamic_range_db)
+        quiet = () if setting.noisy else (QUIET,)
+        compared = self._sample((*setting.compared, *quiet))
+        right = self._sample((*setting.exact, *quiet))
+        row: dict[str, Any] = {}
+        if compared.signal.shape == right.signal.shape:
+            row["signal_error_db"] = relative_db(compared.signal, right.signal)
+        if compared.power.shape == right.power.shape:
+            error, worst = map_error_db(compared.power, right.power, right.dynamic_range_db)
             row |= {"map_error_db": error, "map_error_max_db": worst}
         return (
-            row | image_scores(found.levels, right.levels) | {"measured_error_db": found.engine_db}
+            row
+            | image_scores(compared.levels, right.levels)
+            | {"measured_error_db": compared.engine_db}
         )
 
     def _sample(self, overrides: tuple[str, ...]) -> Sample:
@@ -54,7 +60,7 @@ class SceneDifferences:
         return self._made[overrides]
 
     def _make(self, overrides: tuple[str, ...]) -> Sample:
-        config = self._scenes.config((*overrides, QUIET))
+        config = self._scenes.config(overrides)
         name = config.maps[0]
         asked = ["signal", name, f"image:{name}"]
         if config.engine.kind == "direct":

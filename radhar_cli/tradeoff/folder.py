@@ -38,6 +38,6 @@ def reserve(folder: Path, config: Config, overwrite: bool) -> None:
         raise FolderError(
             f"{folder}: holds the sweep of another config; it differs in\n  "
             + "\n  ".join(found)
-            + "\nchoose another folder, or --overwrite to start this one again"
+            + "\nchoose another folder, or --overwrite to start this one over"
         )
     write_whole(folder, path, json.dumps(new).encode())

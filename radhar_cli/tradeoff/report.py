@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from radhar_cli.dataset.files import write_whole
-from radhar_cli.figures.frontier import Change, CostPoint, Score, tradeoff_png
 from radhar_cli.learning.tables import csv_text
 from radhar_cli.tradeoff.accuracy import Accuracy
+from radhar_cli.tradeoff.figure import tradeoff_png
 from radhar_cli.tradeoff.study import Row
-from radhar_cli.tradeoff.text import ENGINES, markdown
+from radhar_cli.tradeoff.text import markdown
 
 CSV, JSON, FIGURE, TEXT = "tradeoff.csv", "tradeoff.json", "pareto.png", "tradeoff.md"
 
@@ -64,44 +64,12 @@ def write_report(
     files = {
         CSV: csv_text(header, ([one[name] for name in header] for one in records)).encode(),
         JSON: (json.dumps(_finite(numbers), indent=2) + "\n").encode(),
-        FIGURE: _figure(title, rows, accuracies),
+        FIGURE: tradeoff_png(title, rows, accuracies),
         TEXT: markdown(title, command, FIGURE, records, accuracies, conditions).encode(),
     }
     for name, data in files.items():
         write_whole(folder, folder / name, data)
     return [folder / name for name in files]
-
-
-def _figure(title: str, rows: Sequence[Row], accuracies: Sequence[Accuracy]) -> bytes:
-    engines = [row for row in rows if row.setting.group in ENGINES and row.times]
-    changes = [
-        Change(row.setting.name, change, row.middle("ratio") or 1.0, row.setting.baseline_name)
-        for row in rows
-        if row.setting.group == "switch" and row.times
-        for change in [row.usual("signal_error_db")]
-        if change is not None and row.setting.of_signal
-    ]
-    return tradeoff_png(
-        title,
-        [_point(row, "echo_ratio") for row in engines],
-        [_point(row, "ratio") for row in engines],
-        changes,
-        [Score(a.name, a.mean, a.low, a.high) for a in accuracies],
-    )
-
-
-def _point(row: Row, column: str) -> CostPoint:
-    middle, spread = row.middle(column), row.spread(column)
-    assert middle is not None
-    assert spread is not None
-    error = row.worst("signal_error_db")
-    return CostPoint(
-        row.setting.name,
-        middle,
-        *spread,
-        None if error in (None, -inf) else error,
-        row.setting.is_default,
-    )
 
 
 def _finite(value: Any) -> Any:

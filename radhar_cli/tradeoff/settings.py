@@ -3,11 +3,13 @@
 import json
 from dataclasses import dataclass
 
+from radhar_cli.config.number import nominal
 from radhar_cli.config.schema import MAP_NAMES, Config, EngineConfig
 from radhar_cli.tradeoff.trial import Trial
 
 BUDGETS = (-20, -30, -40, -50, -60, -70, -80, -100, -120)
 SIZES = (64, 128, 256, 512)
+CLUTTER = ("difference", "mean", "highpass", "none")
 SEGMENTS = ("body.scatterers=segments", "body.shadowing=true")
 WITHOUT_SHADOWS = ("body.scatterers=segments", "body.shadowing=false")
 CUBE = ("engine.kind=cube",)
@@ -19,7 +21,7 @@ class Setting:
     """One row of the sweep. All overrides are dotted `key=value` pairs.
 
     Attributes:
-        group: budget, precision, engine, image size, map or switch.
+        group: budget, precision, engine, image size, image kind, map or switch.
         name: as printed.
         overrides: the setting itself; its time is measured with them.
         compared: of the data whose error is measured: `overrides`, or for a switch, without it.
@@ -27,6 +29,7 @@ class Setting:
         baseline: of the run that the time is divided by, on the same scenes, interleaved.
         baseline_name: as printed.
         of_signal: whether it changes the signal, not a map alone.
+        noisy: whether its errors are those of data with the config's noise.
     """
 
     group: str
@@ -37,6 +40,7 @@ class Setting:
     baseline: tuple[str, ...] = DIRECT
     baseline_name: str = "the default"
     of_signal: bool = True
+    noisy: bool = False
 
     @property
     def is_default(self) -> bool:
@@ -70,6 +74,9 @@ def _images(config: Config) -> list[Setting]:
     for size in SIZES:
         sized = (*DIRECT, f"image.size_px={size}")
         rows.append(Setting("image size", f"{size} px", sized, sized, CUBE))
+    kind = "cfar" if config.image.kind == "decibel" else "decibel"
+    on = f"image.kind={kind}"
+    rows.append(Setting("image kind", kind, (*DIRECT, on), (*DIRECT, on), (*CUBE, on)))
     for name in MAP_NAMES:
         one = f"maps=[{name}]"
         rows.append(Setting("map", name, (*DIRECT, one), (*DIRECT, one), (*CUBE, one)))
@@ -78,11 +85,14 @@ def _images(config: Config) -> list[Setting]:
 
 def _switches(config: Config) -> list[Setting]:
     fsst, dense = "maps=[fsst]", "processing.fsst_hop_pulses=1"
-    found = [
+    switches = [
         _switch(*_other_motion(config)),
         _switch(*_other_scatterers(config)),
         _over("shadowing", SEGMENTS, WITHOUT_SHADOWS, "segments without shadowing"),
         _gate(),
+        *_clutter(config),
+        _switch("room: 3 reflectors", "room.reflectors=3"),
+        *_receiver(config),
         _switch("residual video phase", "radar.residual_video_phase=true"),
         Setting(
             "switch",
@@ -96,12 +106,12 @@ def _switches(config: Config) -> list[Setting]:
         _over("FSST at every sample", (fsst, dense), (fsst,), "the FSST at the STFT's hop", False),
     ]
     if config.wall is not None:
-        found += [
+        switches += [
             _switch("refracted rays", "wall.rays=refracted"),
             _switch("Fresnel, perpendicular", "wall.fresnel=perpendicular"),
             _switch("Fresnel, parallel", "wall.fresnel=parallel"),
         ]
-    return found
+    return switches
 
 
 def trials(config: Config) -> list[Trial]:
@@ -111,11 +121,11 @@ def trials(config: Config) -> list[Trial]:
     within the chirp is not among them: its data sets would take hours.
     """
     budgets = sorted({-20, -40, -60, -100, round(EngineConfig().tolerance_db)}, reverse=True)
-    found = [Trial(f"{db} dB", budget(db), CUBE) for db in budgets]
-    found.append(Trial("cube", CUBE, CUBE))
+    rows = [Trial(f"{db} dB", budget(db), CUBE) for db in budgets]
+    rows.append(Trial("cube", CUBE, CUBE))
     for more in ("image.size_px=32", "maps=[fsst]"):
         name = more.partition("=")[2].strip("[]") + (" px" if "size" in more else "")
-        found.append(Trial(name, (*DIRECT, more), (*CUBE, more)))
+        rows.append(Trial(name, (*DIRECT, more), (*CUBE, more)))
     switches: dict[str, tuple[str, ...]] = {
         "residual video phase": ("radar.residual_video_phase=true",)
     }
@@ -128,11 +138,11 @@ def trials(config: Config) -> list[Trial]:
             "Fresnel by angle": ("wall.fresnel=perpendicular",),
         }
     for name, overrides in switches.items():
-        found += [
+        rows += [
             Trial(f"without {name}, tested with it", DIRECT, (*CUBE, *overrides)),
             Trial(f"with {name}", (*DIRECT, *overrides), (*CUBE, *overrides)),
         ]
-    return found
+    return rows
 
 
 def _other_motion(config: Config) -> tuple[str, ...]:
@@ -157,6 +167,35 @@ def _gate() -> Setting:
         ("maps=[stft]", "processing.doppler=half_band"),
     )
     return _over("doppler: gate instead of half_band", on, off, "the half_band's STFT", False)
+
+
+def _clutter(config: Config) -> list[Setting]:
+    """The other clutter filters; they give signals of other lengths, so images are compared."""
+    own = config.processing.clutter
+    return [
+        _over(
+            f"clutter: {other} instead of {own}",
+            (f"processing.clutter={other}",),
+            (f"processing.clutter={own}",),
+            "the default",
+            False,
+        )
+        for other in CLUTTER
+        if other != own
+    ]
+
+
+def _receiver(config: Config) -> list[Setting]:
+    """Noise that is not white, on the same white noise: no two engines draw the same."""
+    prf = nominal(config.radar.prf_hz)
+    impairments = {
+        "noise corner at PRF/20": f"receiver.noise_corner_hz={prf / 20:g}",
+        "interference line at PRF/8": f"receiver.lines=[{{doppler_hz: {prf / 8:g}}}]",
+    }
+    return [
+        Setting("switch", name, (*DIRECT, on), DIRECT, (*DIRECT, on), noisy=True)
+        for name, on in impairments.items()
+    ]
 
 
 def _over(

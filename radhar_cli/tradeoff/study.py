@@ -36,21 +36,21 @@ class Row:
 
     def middle(self, name: str) -> float | None:
         """Median of a column of `Times` over the rounds."""
-        found = [getattr(times, name) for times in self.times]
-        return median(found) if found else None
+        values = [getattr(times, name) for times in self.times]
+        return median(values) if values else None
 
     def spread(self, name: str) -> tuple[float, float] | None:
         """First and third quartile of a column of `Times`."""
-        found = [getattr(times, name) for times in self.times]
-        if len(found) < 2:
-            return (found[0], found[0]) if found else None
-        first, _, third = quantiles(found, n=4, method="inclusive")
+        values = [getattr(times, name) for times in self.times]
+        if len(values) < 2:
+            return (values[0], values[0]) if values else None
+        first, _, third = quantiles(values, n=4, method="inclusive")
         return first, third
 
     def values(self, name: str) -> list[float]:
         """A difference in every scene that has it."""
-        found = [row.get(name) for row in self.differences.values()]
-        return [float(value) for value in found if value is not None]
+        differences = [row.get(name) for row in self.differences.values()]
+        return [float(value) for value in differences if value is not None]
 
     def worst(self, name: str) -> float | None:
         """The largest value of a difference over the scenes."""
@@ -77,7 +77,7 @@ def run_sweep(scenes: Scenes, cache: ResultCache, progress: Progress) -> list[Ro
 
 def _possible(scenes: Scenes, progress: Progress) -> list[Setting]:
     """The settings that the config allows; the others are named, with the reason."""
-    found = []
+    settings = []
     for setting in sweep(scenes.config()):
         try:
             for overrides in (setting.overrides, setting.compared, setting.exact):
@@ -85,8 +85,8 @@ def _possible(scenes: Scenes, progress: Progress) -> list[Setting]:
         except RadharError as error:
             progress.say(f"left out: {setting.group} {setting.name}: {error}")
             continue
-        found.append(setting)
-    return found
+        settings.append(setting)
+    return settings
 
 
 def _differences(
@@ -124,12 +124,12 @@ def _times(scenes: Scenes, rows: Sequence[Row], cache: ResultCache, progress: Pr
 
 
 def _once(cache: ResultCache, key: str, measure: Callable[[], Any], kind: Any) -> Any:
-    found = cache.get(key, kind)
-    if found is None:
-        found = measure()
-        cache.put(key, _without_infinity(found))
-        found = cache.get(key, kind)
-    return _with_infinity(found)
+    result = cache.get(key, kind)
+    if result is None:
+        result = measure()
+        cache.put(key, _without_infinity(result))
+        result = cache.get(key, kind)
+    return _with_infinity(result)
 
 
 def _key(kind: str, setting: Setting, what: str) -> str:

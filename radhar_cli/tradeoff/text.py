@@ -28,11 +28,14 @@ def markdown(
         "## Engine, budget, precision",
         _table(_ENGINE, (one for one in records if one["group"] in ENGINES)),
         "## Physics and transforms that are left out",
-        "Time is that of the switch on; errors are those of data without it against data with it.",
+        "Time is that of the switch on; errors are those of data without it against data with it. "
+        "Noise corner and interference line are added to the config's noise, on both sides.",
         _table(_SWITCH, (one for one in records if one["group"] == "switch")),
         "## Image size and kind of map",
         "Images of another size are resized to the config's before they are compared.",
-        _table(_IMAGE, (one for one in records if one["group"] in ("image size", "map"))),
+        _table(
+            _IMAGE, (one for one in records if one["group"] in ("image size", "image kind", "map"))
+        ),
     ]
     if accuracies:
         parts += [

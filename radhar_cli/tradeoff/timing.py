@@ -12,7 +12,7 @@ from radhar_cli.tradeoff.settings import Setting
 SECONDS = 0.6
 ECHO = (
     *("motions", "paths", "direct", "echo", "signal_power", "slow_time", "signal"),
-    *("beat_cube", "range_profiles", "gate", "gated_echo", "range_signals"),
+    *("room", "snr_paths", "beat_cube", "range_profiles", "gate", "gated_echo", "range_signals"),
 )
 
 

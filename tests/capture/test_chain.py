@@ -192,7 +192,7 @@ def test_segments_of_a_part_keep_their_times() -> None:
 WRONG = [
     (["--start", "9"], "there are 0 pulses"),
     (["--receiver", "3"], "receiver 3: should be below 1"),
-    (["--maps", "stff"], "is no map"),
+    (["--maps", "stff"], "is not a map"),
 ]
 
 

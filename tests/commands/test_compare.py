@@ -115,7 +115,7 @@ def test_a_range_time_map(place: Path, tmp_path: Path) -> None:
         (("{human}", "{none}"), "none: no such file or folder"),
         (("{human}", "{paper}", "--map", "stfd"), "has no map 'stfd'"),
         (("{human}", "{human}/dataset.h5", "-o", "{human}/x"), "lies in the data"),
-        (("{human}", "{c}"), "c.yaml: is no data set"),
+        (("{human}", "{c}"), "c.yaml: is not a data set"),
         (("{human}", "{paper}", "--classes", "{names}"), "no class 'walkin' (--classes)"),
     ],
 )

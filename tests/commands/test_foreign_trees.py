@@ -11,8 +11,8 @@ from PIL import Image
 from typer.testing import CliRunner, Result
 
 from radhar_cli.cli import program
+from radhar_cli.dataset.contact_sheet import draw_image_sheet
 from radhar_cli.errors import FolderError
-from radhar_cli.figures.contact_sheet import draw_image_sheet
 
 
 def radhar(*arguments: object) -> Result:
@@ -79,7 +79,7 @@ def test_many_classes_stay_one_page(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         picture(tmp_path / f"t/c{number:02d}/a.png", (8, 8), (9, 9, 9))
     drawn: list[tuple[int, str]] = []
     monkeypatch.setattr(
-        "radhar_cli.figures.contact_sheet.draw_image_sheet",
+        "radhar_cli.dataset.contact_sheet.draw_image_sheet",
         lambda classes, title, path: drawn.append((len(classes), title)),
     )
     assert radhar("preview", tmp_path / "t").exit_code == 0
@@ -99,7 +99,7 @@ def test_what_is_no_tree_is_named(tmp_path: Path, photos: Path) -> None:
     for command, path, said in (
         ("inspect", tmp_path / "empty", "holds no class folders with images"),
         ("preview", tmp_path / "empty", "holds no class folders with images"),
-        ("inspect", photos, "broken.png: is no image"),
+        ("inspect", photos, "broken.png: is not an image"),
     ):
         error = radhar(command, path).exception
         assert isinstance(error, FolderError)

@@ -101,7 +101,7 @@ def test_models_lists_our_networks_and_the_papers_rivals(place: Path) -> None:
         (["eval", "{}/run", "{}/tree", "--split", "vall"], ["did you mean 'val'"]),
         (["eval", "{}/run", "{}/tree", "--split", "test"], ["has no test images"]),
         (["eval", "{}/run", "{}/tree", "--device", "cdua"], ["did you mean 'cuda'"]),
-        (["predict", "{}/run", "{}/train.json"], ["is no data set"]),
+        (["predict", "{}/run", "{}/train.json"], ["is not a data set"]),
         (["export", "{}/tree", "-o", "{}/x.onnx"], ["holds no best.safetensors"]),
         (["models", "resnet5O"], ["did you mean 'resnet50'"]),
     ],

@@ -84,7 +84,7 @@ def test_preview_and_inspect(tmp_path: Path) -> None:
         (["simulate", "CONFIG", "-a", "S8", "-o", "OUT", "--engine", "cubic"], "engine.kind"),
         (["preview", "OUT"], "no such file"),
         (["inspect", "OUT"], "no such file"),
-        (["inspect", "CONFIG"], "no HDF5 file"),
+        (["inspect", "CONFIG"], "not an HDF5 file"),
     ],
 )
 def test_bad_input_is_one_line_and_status_2(

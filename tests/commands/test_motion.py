@@ -30,7 +30,7 @@ def test_a_motion_goes_out_and_comes_back(tmp_path: Path) -> None:
     assert f"{bvh}: 301 frames, 200 a second" in done.stdout
     again = radhar("motion", *common, "-o", bvh)
     assert (again.returncode, again.stderr) == (
-        *(2, f"radhar: {bvh}: is there already; --overwrite replaces it\n"),
+        *(2, f"radhar: {bvh}: already exists; --overwrite replaces it\n"),
     )
     assert "Frames: 301" in bvh.read_text()
     scale = clip_of(read_motion(bvh).recording()).stature
@@ -41,7 +41,7 @@ def test_a_motion_goes_out_and_comes_back(tmp_path: Path) -> None:
         *("--set", f"subject.height_m={scale}", "--set", "classes.from_file.low_pass_hz=null"),
     )
     assert done.returncode == 0, done.stderr
-    assert "by its legs a person of 1.78 m" in done.stdout
+    assert "leg length of a person of 1.78 m" in done.stdout
     with h5py.File(tmp_path / "a/scene.h5") as a, h5py.File(tmp_path / "b/scene.h5") as b:
         p, q = a["truth/positions"][:], b["truth/positions"][:]
     shift = (p - q).mean(axis=(0, 1))
@@ -75,7 +75,7 @@ def test_what_cannot_be_done_is_one_line(tmp_path: Path) -> None:
     broken.with_suffix(".asf").unlink()
     for words, message in (
         (["motion", path, "-a", "walking", "-o", tmp_path / "x.fbx"], "should end in .bvh"),
-        (["motion", path, "-a", "flying", "-o", tmp_path / "x.bvh"], "is no activity"),
+        (["motion", path, "-a", "flying", "-o", tmp_path / "x.bvh"], "is not an activity"),
         (["motion", path, "-o", tmp_path / "x.bvh"], "--activity is needed"),
         (["motion", path, "-a", "S8", "-o", tmp_path / "no/x.bvh"], "No such file"),
         (["simulate", path, "-o", tmp_path / "o", "--motion", broken], "needs its skeleton"),

@@ -150,6 +150,6 @@ def test_disk_that_refuses_is_one_line_and_keeps_what_is_finished(tmp_path: Path
     done = process("-c", limited, *command, "--batch", 1)
     assert done.returncode == 1, done.stdout + done.stderr
     assert "Traceback" not in done.stderr
-    assert "is kept, and the same command goes on" in done.stderr
+    assert "is kept, and the same command resumes" in done.stderr
     assert not (tmp_path / "set/dataset.h5").exists()
     assert radhar(*command).returncode == 0

@@ -118,7 +118,7 @@ def test_generate_ends_with_its_workers_and_keeps_its_shards(tmp_path: Path) -> 
     output = run.communicate()[0]
     assert run.returncode == TERMINATED, output
     assert output.strip().splitlines()[-1] == (
-        f"terminated: what is finished in {folder} is kept; the same command goes on"
+        f"terminated: what is finished in {folder} is kept; the same command resumes"
     )
     assert "Traceback" not in output
     assert shards() > seen

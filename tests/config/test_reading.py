@@ -335,7 +335,7 @@ BROKEN = [
         2,
         "motion.gait_hz.per_activity.jogging",
         "2.0",
-        "'jogging' is no activity; the slugs are stationary",
+        "'jogging' is not an activity; the slugs are stationary",
     ),
     Broken(
         "seed: 1\nsamples_per_class: {per_activity: {default: 3, sitting: 2}}",
@@ -373,7 +373,7 @@ BROKEN = [
         1,
         "classes.home",
         '{"sequence": ["waking"]}',
-        "'waking' is no movement; did you mean 'walking'?",
+        "'waking' is not a movement; did you mean 'walking'?",
     ),
     Broken(
         "split: {by: subject, subjects: 3}\nsamples_per_class: {per_activity: {default: 3, S8: 2}}",

@@ -263,7 +263,7 @@ def test_disturbed_shards_never_give_a_wrong_data_set(
         if refusal is None:
             assert fingerprint(folder) == fingerprint(whole)
         else:
-            assert re.search(r"rows [\d, .-]+ \(\d+ of 12\) are missing .* goes on", refusal)
+            assert re.search(r"rows [\d, .-]+ \(\d+ of 12\) are missing .* resumes", refusal)
             assert not (folder / "dataset.h5").exists()
         build(config, folder, 1, Listener(), batch_size=size)
         assert fingerprint(folder) == fingerprint(whole)

@@ -161,7 +161,7 @@ def test_overwrite_leaves_what_radhar_did_not_build(config: Config, tmp_path: Pa
         file["mine"] = 1
     (tmp_path / "png").mkdir()
     (tmp_path / "png/mine.txt").write_text("mine")
-    with pytest.raises(FolderError, match="not a data set of radhar's"):
+    with pytest.raises(FolderError, match="not a data set of radhar"):
         make(config, tmp_path, overwrite=True)
     assert (tmp_path / "png/mine.txt").exists()
     assert (tmp_path / "dataset.h5").exists()

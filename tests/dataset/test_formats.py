@@ -246,11 +246,11 @@ def test_damage_is_not_passed_on(place: Path, tmp_path: Path, name: str) -> None
 
 def test_what_cannot_be_is_refused_in_a_line(place: Path, tmp_path: Path) -> None:
     for arguments, said in (
-        ((place / "set", "-o", place / "npy", "--to", "npy"), "npy: is there already"),
+        ((place / "set", "-o", place / "npy", "--to", "npy"), "npy: already exists"),
         ((place / "set", "-o", tmp_path / "x", "--to", "parket"), "did you mean 'parquet'?"),
         ((place / "no", "-o", tmp_path / "x", "--to", "npy"), "no such file"),
         ((place / "set/png", "-o", tmp_path / "x", "--to", "npy"), "no such file"),
-        ((place / "set/config.yaml", "-o", tmp_path / "x", "--to", "mat"), "is no HDF5 file"),
+        ((place / "set/config.yaml", "-o", tmp_path / "x", "--to", "mat"), "is not an HDF5 file"),
     ):
         done = radhar("convert", *arguments)
         assert (done.returncode, len(done.stderr.splitlines())) == (2, 1), done.stderr

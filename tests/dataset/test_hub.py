@@ -179,7 +179,7 @@ def _more(path: Path) -> None:
         ("README.md", lambda p: p.write_bytes(p.read_bytes().replace(b"\n", b"\r\n")), None),
         ("README.md", Path.unlink, "cannot be read .No such file"),
         ("gallery.png", _cut, None),
-        ("gallery.png", lambda p: p.write_bytes(b"no image"), "no image"),
+        ("gallery.png", lambda p: p.write_bytes(b"no image"), "not an image"),
     ],
 )
 def test_verify_finds_damage(copy: Path, name: str, damage, said: str | None) -> None:

@@ -112,7 +112,7 @@ def test_killed_worker_is_one_clear_line_and_what_is_finished_is_kept(tmp_path: 
     assert workers, output
     assert run.returncode == 1, output
     assert "a worker process was killed" in output
-    assert "the same command goes on" in output
+    assert "the same command resumes" in output
     assert "Traceback" not in output
     assert shards(tmp_path / "set") > 0
 
@@ -123,7 +123,7 @@ def test_ctrl_c_is_quiet_and_keeps_what_is_finished(tmp_path: Path) -> None:
     os.killpg(run.pid, signal.SIGINT)  # as a terminal does: master and workers alike
     output = run.communicate()[0]
     assert run.returncode == 130, output
-    assert "the same command goes on" in output
+    assert "the same command resumes" in output
     assert "Traceback" not in output
     assert shards(tmp_path / "set") > 0
 

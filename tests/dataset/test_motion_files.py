@@ -1,4 +1,4 @@
-"""A data set with two of the twelve and two classes of one's own, from files and from the model."""
+"""A data set with two of the twelve and two user-defined classes, from files and from the model."""
 
 import shutil
 from collections import OrderedDict
@@ -99,7 +99,7 @@ def test_verify_opens_no_file_that_a_data_set_names(place: Path) -> None:
     report = verify(place / "out", 24, place)
     assert (report.problems, report.resynthesised, report.unmade) == ([], 24, 0)
     done = radhar("verify", place / "out", "--samples", 4)
-    assert "--motion FOLDER would make them anew" in done.stdout
+    assert "--motion FOLDER synthesises them anew" in done.stdout
 
 
 def test_a_written_scene_is_the_same_recording(place: Path, tmp_path: Path) -> None:

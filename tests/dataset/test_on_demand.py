@@ -192,7 +192,7 @@ def test_mistakes_are_one_clear_line(config: Config) -> None:
     ):
         with pytest.raises(ConfigError, match=words):
             sample(**{"config": config, "activity": "walking", **more})
-    with pytest.raises(ConfigError, match="'wlking' is no activity"):
+    with pytest.raises(ConfigError, match="'wlking' is not an activity"):
         sample(config, "wlking")
 
 

@@ -113,5 +113,5 @@ def test_what_is_no_data_set_is_refused(whole: Path, tmp_path: Path) -> None:
     with pytest.raises(FolderError, match="no such file"):
         verify(tmp_path, 1)
     (tmp_path / "dataset.h5").write_bytes((whole / "dataset.h5").read_bytes()[:5000])
-    with pytest.raises(FolderError, match="no HDF5 file, or a truncated one"):
+    with pytest.raises(FolderError, match="not an HDF5 file, or is truncated"):
         verify(tmp_path, 1)

@@ -73,7 +73,7 @@ class Ball:
 
 
 def swinging(scene: Scene) -> Ball:
-    """A class of one's own: it reads what it needs off the config of the scene."""
+    """A user-defined class: it reads what it needs off the config of the scene."""
     return Ball(scene.config.motion.range_m)
 
 

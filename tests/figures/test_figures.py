@@ -11,9 +11,9 @@ from small import small_config
 from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import MAP_NAMES, load_config
 from radhar_cli.dataset.build import build
+from radhar_cli.dataset.contact_sheet import draw_contact_sheet
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import open_dataset
-from radhar_cli.figures.contact_sheet import draw_contact_sheet
 from radhar_cli.figures.maps_panel import TITLES, decibels, draw_maps, of_simulation, places
 from radhar_cli.figures.stickman import draw_stickman, frame_count
 from radhar_cli.simulation.simulate import simulate

@@ -24,6 +24,7 @@ import numpy as np, torch, torch.distributed as dist
 sys.path[:0] = [sys.argv[1], str(Path(sys.argv[1]).parent)]
 from learning.patterns import Watched, settings
 from radhar_cli.learning.batches import Reader
+from radhar_cli.learning.execution_plan import choose_execution_plan
 from radhar_cli.learning.gradient_step import TrainStep
 from radhar_cli.learning.process_group import Group, distributed, process_group
 from radhar_cli.learning.training import _Training, checked_images, train
@@ -46,7 +47,8 @@ with process_group(cpu) as group:
             place.mkdir(parents=True)
         dist.barrier()
         images = checked_images(config, data)
-        work = _Training.prepared(config, images, place, cpu, group, Watched())
+        plan = choose_execution_plan(config, cpu)
+        work = _Training.prepared(config, images, place, plan, group, Watched())
         rows = work.images.rows("train")[:count][::-1]
         levels = np.stack([work.images.pixels.read(int(r)).transpose(2, 0, 1) for r in rows])
         levels, labels = torch.from_numpy(levels), torch.from_numpy(work.images.label[rows].copy())

@@ -126,7 +126,7 @@ def test_best_weights_that_are_gone_are_said_or_made_again(
     else:
         with pytest.raises(RunError) as caught:
             trained(data, copy)
-        one_clear_line(caught.value, "cannot be had again", "--overwrite")
+        one_clear_line(caught.value, "cannot be recovered", "--overwrite")
 
 
 def test_what_can_be_derived_is_written_again(data: Path, run_dir: Path, copy: Path) -> None:
@@ -217,7 +217,7 @@ def test_a_file_that_breaks_in_a_worker_is_one_line(tmp_path: Path) -> None:
     (root / "train/kicking/001.png").write_bytes(b"no more")
     with pytest.raises(FolderError) as caught:
         list(Reader(images, images.label, 1, False)(pieces(np.arange(len(images)), 4)))
-    one_clear_line(caught.value, "001.png: is no image")
+    one_clear_line(caught.value, "001.png: is not an image")
     assert "Traceback" not in str(caught.value)
 
 

@@ -253,7 +253,7 @@ def broken(tmp_path: Path, what: str) -> tuple[Path, list[str]]:
         return root, ["'zebra' has no image"]
     if what == "text as image":
         first.write_text("no image")
-        return root, [str(first), "is no image, or a truncated one"]
+        return root, [str(first), "is not an image, or is truncated"]
     if what == "another size":
         Image.new("RGB", (64, 32)).save(first.with_name("999.png"))
         return root, ["999.png", "is 32 x 64 px; should be 32 x 32"]

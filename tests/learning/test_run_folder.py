@@ -230,7 +230,7 @@ def test_checkpoints_that_are_none_are_refused(copy: Path, content: bytes) -> No
     (copy / run_files.LAST).write_bytes(content)
     with pytest.raises(RunError) as caught:
         run.read_last(copy)
-    one_clear_line(caught.value, run_files.LAST, "is damaged, or no checkpoint")
+    one_clear_line(caught.value, run_files.LAST, "is damaged, or not a checkpoint")
 
 
 @pytest.mark.parametrize("value", [[1, 2], {"model": {}}, torch.zeros(2)])
@@ -238,7 +238,7 @@ def test_checkpoints_of_something_else_are_refused(copy: Path, value: Any) -> No
     torch.save(value, copy / run_files.LAST)
     with pytest.raises(RunError) as caught:
         run.read_last(copy)
-    one_clear_line(caught.value, run_files.LAST, "is damaged, or no checkpoint")
+    one_clear_line(caught.value, run_files.LAST, "is damaged, or not a checkpoint")
 
 
 def test_a_checkpoint_of_another_network_does_not_fit(data: Path, copy: Path) -> None:

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from radhar_cli.activity import ACTIVITIES, activity_named
-from radhar_cli.config import Config, config_from_json, config_warnings
+from radhar_cli.config import Config, config_from_json
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.pipeline import validity as module
@@ -19,6 +19,7 @@ from radhar_cli.pipeline.validity import (
     Flags,
     SceneCheck,
     check_scene,
+    config_warnings,
     draw_valid_scene,
     scene_warnings,
     warnings,
@@ -263,6 +264,32 @@ def test_a_recording_that_ends_before_the_second_phase_is_said() -> None:
         ({"processing": {"gate_sum": "magnitude"}}, "processing.gate_sum has no effect"),
         ({"processing": {"highpass": {"order": 2}}}, "processing.highpass has no effect"),
         ({"image": {"cfar": {"pfa": 0.2}}}, "image.cfar has no effect"),
+        (
+            {"image": {"kind": "cfar", "cfar": {"floor_db": 40.0, "threshold_db": 5.0}}},
+            "image.cfar.floor_db has no effect",
+        ),
+        ({"processing": {"window_s": 0.2, "window_fraction": 0.2}}, "processing.window_fraction"),
+        ({"processing": {"savgol": {"order": 3}}}, "processing.savgol has no effect with maps"),
+        ({"processing": {"fsst_threshold": 0.1}}, "processing.fsst_threshold has no effect"),
+        ({"maps": ["rtm"], "processing": {"window_s": 0.2}}, "processing.window_s has no effect"),
+        ({"body": {"shadowing": False}}, "body.shadowing has no effect"),
+        ({"engine": {"kind": "cube", "tolerance_db": -60.0}}, "engine.tolerance_db has no effect"),
+        ({"snr_reference": "received"}, "snr_reference has no effect with wall: null"),
+        (
+            {"snr_reference": "received", "wall": {}, "snr_db": None},
+            "snr_reference has no effect with snr_db: null",
+        ),
+        ({"receiver": {"noise_slope_db": 12.0}}, "receiver.noise_slope_db has no effect"),
+        ({"motion": {"gait_hz": 1.5}}, "motion.gait_hz has no effect with motion.model: human"),
+        ({"timing": {"blend_s": 0.5}}, "timing.blend_s has no effect with motion.model: human"),
+        (
+            {"motion": {"model": "paper", "fall": "sideways"}},
+            "motion.fall has no effect with motion.model: paper",
+        ),
+        (
+            {"motion": {"model": "paper"}, "subject": {"chest_m": 0.01}},
+            "subject.chest_m has no effect with motion.model: paper",
+        ),
         ({"receiver": {"lines": [{"doppler_hz": -3000}]}}, "receiver.lines.0.doppler_hz reaches"),
     ],
 )
@@ -274,7 +301,14 @@ def test_keys_without_effect_and_lines_that_alias_are_said(document: Any, key: s
     assert message in scene_warnings(draw_scene(config, activity_named("stationary"), 0))
 
 
-def test_nothing_is_said_of_what_was_drawn_from_the_defaults() -> None:
+@pytest.mark.parametrize("model", ["human", "paper"])
+def test_nothing_is_said_of_what_was_drawn_from_the_defaults(model: str) -> None:
+    for activity in ACTIVITIES:
+        for scene in (
+            draw_scene(Config(motion={"model": model}), activity, 0),
+            nominal_scene(Config(motion={"model": model}), activity),
+        ):
+            assert config_warnings(scene.config) == []
     scene = draw_scene(Config(**FREE_SPACE), activity_named("stationary"), 0)
     assert isinstance(scene.config.image.cfar.floor_db, float)
     assert scene_warnings(scene) == []

@@ -262,9 +262,9 @@ def a_dataset_for_a_group(file: h5py.File, _: Path) -> None:
 
 
 attribute("config", None, "attribute config: is missing")
-attribute("config", "{", "attribute config: is no JSON")
-attribute("config", "[" * 100_000, "attribute config: is no JSON .*nested")
-attribute("config", "9" * 5000, "attribute config: is no JSON")
+attribute("config", "{", "attribute config: is not JSON")
+attribute("config", "[" * 100_000, "attribute config: is not JSON .*nested")
+attribute("config", "9" * 5000, "attribute config: is not JSON")
 attribute("config", '{"seed": NaN}', "the stored config: seed")
 attribute("config", '{"colour": 3}', "the stored config: colour")
 attribute("config", "[]", "the stored config: .*mapping")
@@ -391,9 +391,9 @@ NO_FILES = {
     "pipe": "should be a regular file",
     "device": "should be a regular file",
     "folder": "should be a regular file",
-    "empty": "is no HDF5 file",
-    "text": "is no HDF5 file",
-    "magic": "is no HDF5 file",
+    "empty": "is not an HDF5 file",
+    "text": "is not an HDF5 file",
+    "magic": "is not an HDF5 file",
     "a text without kind": "attribute h5py_version: should be text",
     # Ours, or at the end of a heap HDF5's own.
     "a text without length": "object of an impossible size|heap object size does not match",

@@ -139,15 +139,15 @@ def _claims(path: Path) -> None:
 
 
 FILES: dict[str, tuple[Callable[[Path], None], str]] = {
-    "not finite": (weights(lambda w: w["head.bias"].fill_(torch.nan)), "head.bias holds what is"),
+    "not finite": (weights(lambda w: w["head.bias"].fill_(torch.nan)), "head.bias holds a number"),
     "double": (weights(lambda w: w.update({"head.bias": torch.zeros(2).double()})), "F64"),
     "eight bits": (weights(lambda w: w.update({"head.bias": torch.zeros(2).char()})), "I8"),
     "too large": (weights(lambda w: w.update({"head.bias": torch.zeros(9)})), "(9,)"),
     "a header without end": (header(b"{}", 2**63), "claims a header of"),
     "a header of 90 MB": (header(b" " * 10, 90_000_000), "claims a header of"),
-    "a deep header": (header(b"[" * 10**5), "no safetensors file"),
-    "no header": (header(b""), "no safetensors file"),
-    "a tensor that is not there": (_claims, "no safetensors file"),
+    "a deep header": (header(b"[" * 10**5), "not a safetensors file"),
+    "no header": (header(b""), "not a safetensors file"),
+    "a tensor that is not there": (_claims, "not a safetensors file"),
     "a folder": (as_folder, "regular file"),
     "a pipe": (as_pipe, "regular file"),
     "a device": (as_device, "regular file"),
@@ -191,7 +191,7 @@ def _state(found: dict[str, Any], number: int, **values: Any) -> None:
 
 CHECKPOINTS: dict[str, tuple[Callable[[Path], None], str]] = {
     "packed": (_packed, "more than its own size"),
-    "a pickle": (as_pickle, "no checkpoint"),
+    "a pickle": (as_pickle, "not a checkpoint"),
     "a folder": (as_folder, "regular file"),
     "a pipe": (as_pipe, "regular file"),
     "no epochs": (checkpoint(lambda c: c.update(history=[])), "no epoch"),

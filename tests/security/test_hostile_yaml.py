@@ -55,7 +55,7 @@ HOSTILE = {
     "a tag of one's own": ("%TAG ! tag:x:\n---\nseed: !int 3", 3, "has no meaning here"),
     "escapes in a key": ('"\\e[2Jx\\n\\u202e": 1', 1, r"\\x1b\[2Jx\\n\\u202e = 1"),
     "escapes in a value": ('snr_reference: "\\e[2J"', 1, r'snr_reference = "\\u001b\[2J"'),
-    "escapes in a name": ('activities: ["\\e[2J"]', 1, "is no activity"),
+    "escapes in a name": ('activities: ["\\e[2J"]', 1, "is not an activity"),
     "an unknown alias": ("seed: *nobody", 1, "undefined alias"),
 }
 

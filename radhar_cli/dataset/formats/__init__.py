@@ -1,1 +1,1 @@
-"""What `radhar convert` writes: a module a format, each with `write(data, folder, progress)`."""
+"""Formats of `radhar convert`: a module each, with `write(data, folder, progress)`."""

@@ -1,4 +1,4 @@
-"""Samples of a data set for the writers of other formats: what is damaged is not passed on."""
+"""Samples of a data set for the writers of other formats; a damaged sample is refused."""
 
 import hashlib
 from collections.abc import Iterator, Mapping
@@ -74,7 +74,7 @@ def describe(data: Dataset, folder: Path, loading: Mapping[str, Any], reading: s
         data: the data set; its own card says the licence.
         folder: to write to.
         loading: front matter that `load_dataset` goes by; none where that cannot read the format.
-        reading: Markdown, how to read what lies beside the card.
+        reading: Markdown, how to read the files next to the card.
     """
     front = {**loading, **owner_licence(data.path.parent)}
     (folder / CARD).write_text(card(data, front, reading), encoding="utf-8")

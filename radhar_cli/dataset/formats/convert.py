@@ -28,7 +28,7 @@ def convert(path: Path, out: Path, to: str, progress: Progress) -> int:
         FolderError: the data set cannot be read or is damaged, or there is something at `out`.
     """
     if out.exists() or out.is_symlink():
-        raise FolderError(f"{out}: is there already; -o should name a new folder")
+        raise FolderError(f"{out}: already exists; -o should name a new folder")
     write: Writer = import_module(f"radhar_cli.dataset.formats.{to}").write
     with open_dataset(path) as data:
         owner_licence(data.path.parent)  # refused before anything is written

@@ -50,8 +50,8 @@ def schema_of(config: Config) -> pa.Schema:
         **{n: {"dtype": k, "_type": "Value"} for n, k in {"index": "int64", **kinds}.items()},
     }
     columns = [("image", image), ("label", pa.int64()), ("index", pa.int64()), *numbers]
-    said = json.dumps({"info": {"features": features}})
-    return pa.schema(columns, metadata={"huggingface": said})
+    metadata = json.dumps({"info": {"features": features}})
+    return pa.schema(columns, metadata={"huggingface": metadata})
 
 
 def _table(

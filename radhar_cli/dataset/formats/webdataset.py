@@ -27,7 +27,7 @@ def write(data: Dataset, folder: Path, progress: Progress) -> None:
                     for name in data.config.maps:
                         _add(tar, f"{key}.{name}.png", samples.png(name, entry.row))
                     _add(tar, f"{key}.cls", str(entry.number).encode())
-                    _add(tar, f"{key}.json", json.dumps(said(entry, names)).encode())
+                    _add(tar, f"{key}.json", json.dumps(as_json(entry, names)).encode())
                     progress.advance(1)
     files = {"default": {part: f"{part}-*.tar" for _, part in present_splits(data)}}
     loading = {
@@ -38,7 +38,7 @@ def write(data: Dataset, folder: Path, progress: Progress) -> None:
 
 
 def members(config: Config) -> list[dict[str, Any]]:
-    """Columns of `load_dataset`, which else takes what is null in five samples for nothing else."""
+    """Columns for `load_dataset`, which otherwise infers them from the first values."""
     return [
         *({"name": f"{name}.png", "dtype": "image"} for name in config.maps),
         {"name": "cls", "dtype": "int64"},
@@ -51,17 +51,17 @@ def members(config: Config) -> list[dict[str, Any]]:
     ]
 
 
-def said(entry: Entry, names: list[str]) -> dict[str, Any]:
-    """The line of the table of a sample; what does not apply to its activity is null."""
+def as_json(entry: Entry, names: list[str]) -> dict[str, Any]:
+    """Label, index and numbers of a sample; null where one does not apply to its activity."""
     numbers = {k: None if v != v else v for k, v in zip(names, entry.values, strict=True)}
     return {"label": entry.label, "index": entry.place, **numbers}
 
 
 def _add(tar: tarfile.TarFile, name: str, data: bytes) -> None:
     """Add a file without owner and time: the same data set makes the same bytes."""
-    about = tarfile.TarInfo(name)
-    about.size = len(data)
-    tar.addfile(about, io.BytesIO(data))
+    info = tarfile.TarInfo(name)
+    info.size = len(data)
+    tar.addfile(info, io.BytesIO(data))
 
 
 def _reading(data: Dataset) -> str:

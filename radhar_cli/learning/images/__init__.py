@@ -1,1 +1,1 @@
-"""Labelled images, whoever stored them."""
+"""Labelled images from dataset.h5, from a tree of class folders, or synthesised when read."""

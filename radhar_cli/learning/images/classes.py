@@ -1,4 +1,4 @@
-"""`--classes FILE`: foreign names of classes, and what they are called here."""
+"""`--classes FILE`: maps the class names of other data sets to ours."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -12,7 +12,7 @@ def read_classes(path: Path) -> dict[str, str | None]:
     """Read `foreign name: our name`, or `null` for a class to leave out.
 
     Raises:
-        ConfigError: unreadable file, or a value that is no name.
+        ConfigError: unreadable file, or a value that is not a name.
     """
     names = load_mapping(path)
     for foreign, ours in names.items():
@@ -55,7 +55,7 @@ def known_to(images: ImageSet, known: Sequence[str]) -> ImageSet:
 
 
 def unknown_message(images: ImageSet, names: Mapping[str, str | None]) -> str | None:
-    """What to say of images left out though nobody asked for it; None if there are none."""
+    """Warning of images left out as the model does not know their class, if there are any."""
     unasked = {name: n for name, n in images.left_out.items() if name not in names}
     if not unasked:
         return None

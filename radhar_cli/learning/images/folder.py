@@ -1,4 +1,4 @@
-"""Images in class folders, as torchvision's ImageFolder reads them: ours or anyone's."""
+"""Images in class folders, as torchvision's ImageFolder reads them, from radhar or elsewhere."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -29,7 +29,7 @@ SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp"}
 
 @dataclass(frozen=True)
 class FilePixels:
-    """One file a row.
+    """One image file per row.
 
     Attributes:
         files: [N].
@@ -70,7 +70,7 @@ def folder_images(root: Path, map_name: str | None, kind: str, any_size: bool = 
     folders = _folders(root, inside)
     parts = {name: SPLIT_NAMES[name.lower()] for name in folders if name.lower() in SPLIT_NAMES}
     if parts:
-        found = [
+        images = [
             (split, name, file)
             for part, split in sorted(parts.items(), key=lambda item: item[1])
             for name in _folders(root / part, inside)
@@ -78,40 +78,40 @@ def folder_images(root: Path, map_name: str | None, kind: str, any_size: bool = 
         ]
         empty = {name for part in parts for name in _folders(root / part, inside)}
     else:
-        found = [(-1, name, file) for name in folders for file in image_files(root / name, inside)]
+        images = [(-1, name, file) for name in folders for file in image_files(root / name, inside)]
         empty = set(folders)
-    empty -= {name for _, name, _ in found}
-    if not found:
+    empty -= {name for _, name, _ in images}
+    if not images:
         maps = [name for name in folders if _folders(root / name, inside)]
         hint = f"--map {maps[0]} takes one of its maps" if maps and not parts else _WANTED
         raise FolderError(f"{root}: holds no class folders with images; {hint}")
     if empty:
         raise FolderError(f"{root}: the class {sorted(empty)[0]!r} has no image")
-    classes = class_order({name for _, name, _ in found})
+    classes = class_order({name for _, name, _ in images})
     if len(classes) > MAX_CLASSES:
         raise FolderError(f"{root}: has {len(classes)} classes; should have at most {MAX_CLASSES}")
-    found.sort(key=lambda item: (item[0], classes.index(item[1]), item[2].name))
-    files = tuple(file for _, _, file in found)
+    images.sort(key=lambda item: (item[0], classes.index(item[1]), item[2].name))
+    files = tuple(file for _, _, file in images)
     size = image_size(files[0])
     return ImageSet(
         where=root,
         map=own,
         classes=classes,
-        label=np.array([classes.index(name) for _, name, _ in found], dtype=np.intp),
-        split=np.array([split for split, _, _ in found], dtype=np.uint8) if parts else None,
-        names=_names(found),
+        label=np.array([classes.index(name) for _, name, _ in images], dtype=np.intp),
+        split=np.array([split for split, _, _ in images], dtype=np.uint8) if parts else None,
+        names=_names(images),
         scenes=None,
         size=size,
         pixels=FilePixels(files, kind, None if any_size else size),
     )
 
 
-def _names(found: Sequence[tuple[int, str, Path]]) -> tuple[str, ...]:
+def _names(images: Sequence[tuple[int, str, Path]]) -> tuple[str, ...]:
     """<class>/<image> of (split, class, file), with the ending where only that tells two apart."""
-    alike = Counter((split, name, file.stem) for split, name, file in found)
+    alike = Counter((split, name, file.stem) for split, name, file in images)
     return tuple(
         f"{name}/{file.stem if alike[split, name, file.stem] == 1 else _below(name, file)}"
-        for split, name, file in found
+        for split, name, file in images
     )
 
 
@@ -152,7 +152,7 @@ def _folders(root: Path, inside: Path) -> list[str]:
     """Names of the folders in `root`, of which each may become a class.
 
     Raises:
-        FolderError: a link that leads out of `inside`, or a name that is no plain text.
+        FolderError: a link that leads out of `inside`, or a name that is not plain text.
     """
     names = sorted(p.name for p in _visible(root, inside) if p.is_dir())
     for name in names:
@@ -173,7 +173,7 @@ def image_files(folder: Path, inside: Path) -> list[Path]:
 
 
 def _visible(folder: Path, inside: Path) -> Iterator[Path]:
-    """What lies in a folder; a stranger's tree shows no file that lies outside of it."""
+    """Entries of a folder that are not hidden; a link that leads out of `inside` is refused."""
     for path in folder.iterdir():
         if path.name.startswith("."):
             continue

@@ -1,4 +1,4 @@
-"""Labelled images, whoever stored them: one dataset.h5, or a tree of class folders."""
+"""Labelled images of one size, from a dataset.h5 or a tree of class folders."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -20,7 +20,7 @@ SPLIT_NAMES = {"train": 0, "val": 1, "validation": 1, "valid": 1, "test": 2}
 
 
 class Pixels(Protocol):
-    """Where pixels come from; may be handed to another process."""
+    """Reads images by row; can be pickled for worker processes."""
 
     def read(self, row: int) -> Levels:
         """RGB [H, W, 3] of a row.
@@ -47,7 +47,7 @@ class Resized:
 
 @dataclass(frozen=True)
 class SomeRows:
-    """Some rows of other pixels."""
+    """A selection of the rows of other pixels."""
 
     pixels: Pixels
     rows: Index
@@ -63,11 +63,11 @@ class ImageSet:
     Attributes:
         where: the file or folder they came from.
         map: name of the map, None for a tree that names none.
-        classes: names of the classes that are present, in the order of S1 to S12 where they are
-            ours, else by the alphabet.
+        classes: names of the classes that are present, S1 to S12 in this order where all are
+            of the twelve, else alphabetically.
         label: [N] index into `classes`.
         split: [N] 0 train, 1 validation, 2 test; None where the source does not say.
-        names: [N] what a reader calls each image.
+        names: [N] name of each image, for messages and tables.
         scenes: [N] fingerprint of the person and the motion, None where the source does not say.
         size: (H, W) in pixels.
         pixels: reads them.
@@ -167,7 +167,7 @@ class ImageSet:
 
 
 def class_order(names: set[str]) -> tuple[str, ...]:
-    """Order of class names: S1 to S12 where all are ours, else the alphabet."""
+    """Sort class names: S1 to S12 where all are of the twelve, else alphabetically."""
     ours = [activity.slug for activity in ACTIVITIES]
     if names <= set(ours):
         return tuple(slug for slug in ours if slug in names)
@@ -193,7 +193,7 @@ def repeated(levels: Levels) -> Levels:
 
 
 def split_named(name: str) -> str:
-    """The split that a user names.
+    """Check the name of a split.
 
     Raises:
         FolderError: no such split.
@@ -201,5 +201,5 @@ def split_named(name: str) -> str:
     known = {**SPLIT_NAMES, "all": -1}
     if name not in known:
         hint = did_you_mean(name, known, "the splits are train, val, test and all")
-        raise FolderError(f"--split {name}: is no split; {hint}")
+        raise FolderError(f"--split {name}: is not a split; {hint}")
     return name

@@ -13,7 +13,7 @@ from radhar_cli.learning.images.image_set import ImageSet, Pixels, class_order
 
 @dataclass(frozen=True)
 class JoinedPixels:
-    """Rows of several pixels, one after the other; `first` [parts] is each one's first row."""
+    """Several `Pixels`, concatenated; `first` [parts] is the first row of each."""
 
     parts: tuple[Pixels, ...]
     first: Index
@@ -58,7 +58,7 @@ def joined(sets: Sequence[ImageSet]) -> ImageSet:
 def sampling_weights(
     images: ImageSet, rows: Index, of_sets: Sequence[float] | None, balanced: bool
 ) -> Float:
-    """How often an epoch shows each of some rows, on average [rows].
+    """How often an epoch shows each of these rows on average [rows].
 
     Args:
         images: the set.

@@ -1,4 +1,4 @@
-"""Open whatever images a user names."""
+"""Open labelled images by path: dataset.h5, its folder, or a tree of class folders."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -31,8 +31,8 @@ def open_images(
         raise FolderError(f"{path}: is a training run; data is asked for here")
     if not path.is_dir() and not is_h5(path):
         raise FolderError(
-            f"{path}: is no data set; should be dataset.h5, a folder that `radhar generate` wrote, "
-            "or a folder of class folders with images"
+            f"{path}: is not a data set; should be dataset.h5, a folder that `radhar generate` "
+            "wrote, or a folder of class folders with images"
         )
     if is_tree(path):
         images = folder_images(path, map_name, kind, any_size=resize is not None)
@@ -44,7 +44,7 @@ def open_images(
 
 
 def is_tree(path: Path) -> bool:
-    """Whether a path can only be a tree of images: a folder without a data set, built or begun."""
+    """Whether a path is a folder that holds no data set, finished or not: a tree of images."""
     return path.is_dir() and not is_h5(path) and not is_incomplete(path)
 
 

@@ -1,4 +1,4 @@
-"""What `radhar inspect` and `radhar preview` show of a tree of images, ours or anyone's."""
+"""What `radhar inspect` and `radhar preview` show of a tree of images."""
 
 from collections import Counter
 from pathlib import Path
@@ -18,7 +18,7 @@ def summarise_tree(root: Path) -> dict[str, Any]:
     """Count the images of a tree by class, split and size; pixels are not read.
 
     Raises:
-        FolderError: it is no such tree, or a file is no image.
+        FolderError: it is no such tree, or a file is not an image.
     """
     images = open_images(root, None, "rgb")
     assert isinstance(images.pixels, FilePixels)
@@ -36,7 +36,7 @@ def summarise_tree(root: Path) -> dict[str, Any]:
 
 
 def _counts(images: ImageSet, label: int) -> dict[str, int]:
-    """Images of a class by split, or in all where nobody has split them."""
+    """Images of a class by split, or their number where there is no split."""
     mine = images.label == label
     if images.split is None:
         return {"images": int(mine.sum())}

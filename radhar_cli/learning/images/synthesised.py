@@ -91,7 +91,7 @@ class StreamLabels:
 
 @dataclass(frozen=True)
 class TrainingStream:
-    """Training images without end; every epoch has its own.
+    """An endless series of training images; no two epochs share any.
 
     Attributes:
         pixels, label: of every row.
@@ -127,7 +127,7 @@ def stream_and_validation(
     `data` the first of each class that the split of the stream's own data set holds back.
 
     Args:
-        config: what is learned, and how.
+        config: of the training run.
         stream: config of the samples.
         data: data sets to validate on, or none.
         names: those that classes of `data` get.
@@ -176,7 +176,7 @@ def stream_and_validation(
 
 
 def stream_data(stream: TrainingStream, validation: LearnedFrom, epochs: int) -> LearnedFrom:
-    """What is told of the data of a run on a stream.
+    """Description of the data of a run on a stream, stored with the run.
 
     Args:
         stream: what is learned from.
@@ -199,18 +199,18 @@ def stream_data(stream: TrainingStream, validation: LearnedFrom, epochs: int) ->
 
 
 def streamed_scenes(learned: LearnedFrom, images: ImageSet, rows: Index) -> int:
-    """How many of some images show a person and motion that a run on a stream has learned from.
+    """How many of these images show a person and motion that a run on a stream has trained on.
 
     Scenes are drawn anew from the stream's config, those of the same class and number.
     """
-    found = learned.get("stream")
-    if found is None or images.scenes is None:
+    streamed = learned.get("stream")
+    if streamed is None or images.scenes is None:
         return 0
     try:
-        config = stored_config(found["config"], "the run")
+        config = stored_config(streamed["config"], "the run")
         if config.recorded is not None or len(Rows.of(config)) > MOST_ROWS:
-            return 0  # a run may be anyone's
-        order = StreamOrder(config, "train", found["balanced"])
+            return 0  # the run may come from elsewhere
+        order = StreamOrder(config, "train", streamed["balanced"])
     except RadharError:
         return 0  # such as classes that are not known here
     known = {activity.slug: activity for activity in order.activities}
@@ -223,7 +223,7 @@ def streamed_scenes(learned: LearnedFrom, images: ImageSet, rows: Index) -> int:
         if slug not in known or not index.isdecimal():
             return False
         number = order.number(known[slug], int(index))
-        if number is None or number >= found["samples"]:
+        if number is None or number >= streamed["samples"]:
             return False
         scenes = (draw_scene(config, known[slug], int(index), attempt) for attempt in attempts)
         there = images.scenes[row] if images.scenes else ""

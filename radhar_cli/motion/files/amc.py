@@ -210,9 +210,9 @@ def _channels(words: list[str], place: str) -> tuple[str, ...]:
 
 def _numbers(words: list[str], count: int, place: str, name: str = "") -> list[float]:
     try:
-        found = [float(word) for word in words]
+        values = [float(word) for word in words]
     except ValueError:
-        found = []
-    if len(found) != count or not np.isfinite(found).all():
+        values = []
+    if len(values) != count or not np.isfinite(values).all():
         raise wrong(place, f"{name} should have {count} number{'s' * (count > 1)}".strip())
-    return found
+    return values

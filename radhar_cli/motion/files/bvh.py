@@ -82,11 +82,11 @@ class Bvh:
 
     def positions(self, joints: Sequence[int]) -> Float:
         """Positions [frames, len(joints), 3]."""
-        found = stacked(self._blocks(joints), self.where)
-        if len(found) != self.frames:
-            last = self.place(len(found))
-            raise wrong(last, f"ends after {len(found)} frames; 'Frames:' says {self.frames}")
-        return found
+        points = stacked(self._blocks(joints), self.where)
+        if len(points) != self.frames:
+            last = self.place(len(points))
+            raise wrong(last, f"ends after {len(points)} frames; 'Frames:' says {self.frames}")
+        return points
 
     def _blocks(self, wanted: Sequence[int]) -> Iterator[Float]:
         needed = with_ancestors(wanted, self.parents)
@@ -125,7 +125,7 @@ def read_bvh(data: bytes, where: str) -> Bvh:
     """
     motion = _MOTION.search(data, 0, MAX_HEADER)
     if motion is None:
-        what = "has no line MOTION" if b"HIERARCHY" in data[:MAX_HEADER] else "is no BVH file"
+        what = "has no line MOTION" if b"HIERARCHY" in data[:MAX_HEADER] else "is not a BVH file"
         raise wrong(where, f"{what} in its first MiB")
     joints = _hierarchy(data[: motion.start()].decode("utf-8", "replace"), where)
     line = data.count(b"\n", 0, motion.start()) + 1
@@ -201,12 +201,12 @@ def _named(
 
 def _offset(values: list[str], place: str) -> tuple[float, ...]:
     try:
-        found = tuple(map(float, values))
+        offset = tuple(map(float, values))
     except ValueError:
-        found = ()
-    if len(found) != 3 or not np.isfinite(found).all():
+        offset = ()
+    if len(offset) != 3 or not np.isfinite(offset).all():
         raise wrong(place, "OFFSET should have three numbers")
-    return found
+    return offset
 
 
 def _channels(values: list[str], place: str) -> tuple[tuple[str, int], ...]:
@@ -215,5 +215,5 @@ def _channels(values: list[str], place: str) -> tuple[tuple[str, int], ...]:
         raise wrong(place, "CHANNELS should have a number up to 6 and as many different names")
     for name in names:
         if name not in _CHANNELS:
-            raise wrong(place, f"{name[:30]!r} is no channel such as Xposition or Zrotation")
+            raise wrong(place, f"{name[:30]!r} is not a channel such as Xposition or Zrotation")
     return tuple(_CHANNELS[name] for name in names)

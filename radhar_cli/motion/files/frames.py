@@ -49,8 +49,8 @@ def bvh_frames(data: bytes, start: int, line: int, columns: int, where: str) -> 
     """
 
     def next_line(at: int) -> int:
-        found = data.find(b"\n", at)
-        return len(data) if found < 0 else found + 1
+        end = data.find(b"\n", at)
+        return len(data) if end < 0 else end + 1
 
     for piece, first in blocks(data, start, line, next_line):
         values = numbers(piece)
@@ -113,21 +113,21 @@ def amc_frames(
     columns, expected = sum(widths.values()), 1
 
     def next_frame(at: int) -> int:
-        found = FRAME_NUMBER.search(data, data.find(b"\n", at) + 1 or len(data))
-        return found.start() if found else len(data)
+        match = FRAME_NUMBER.search(data, data.find(b"\n", at) + 1 or len(data))
+        return match.start() if match else len(data)
 
     permutation, names = None, list[bytes]()
     for piece, first in blocks(data, start, line, next_frame):
         if permutation is None:
             names = _names_of_first_frame(piece, first, order, where)
             permutation = _columns(names, order, list(widths.values()))
-        found = [name.strip() for name in NAMED.findall(piece)]
+        listed = [name.strip() for name in NAMED.findall(piece)]
         values = numbers(NAMED.sub(b"", piece))
-        count = len(found) // len(names)
+        count = len(listed) // len(names)
         sound = (
             values is not None
             and np.isfinite(values).all()
-            and found == names * count
+            and listed == names * count
             and values.size == count * (columns + 1)
             and (values[:: columns + 1] == np.arange(expected, expected + count)).all()
         )
@@ -139,7 +139,7 @@ def amc_frames(
 
 
 def _names_of_first_frame(piece: bytes, line: int, order: list[bytes], where: str) -> list[bytes]:
-    ends = [found.start() for found in FRAME_NUMBER.finditer(piece)]
+    ends = [match.start() for match in FRAME_NUMBER.finditer(piece)]
     frame = piece[: ends[1]] if len(ends) > 1 else piece
     names = [name.strip() for name in NAMED.findall(frame)]
     for name in names:

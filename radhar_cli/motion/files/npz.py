@@ -1,4 +1,4 @@
-"""`.npz` with `names` [J], `positions` [frames, J, 3] and `rate` (Hz), of whoever wrote them.
+"""`.npz` with `names` [J], `positions` [frames, J, 3] and `rate` (Hz), from any source.
 
 Arrays are read by their declared size, which is bounded, and never as Python objects.
 """
@@ -50,14 +50,14 @@ class Npz:
 
     def positions(self, joints: Sequence[int]) -> Float:
         """Positions [frames, len(joints), 3]."""
-        found: Float = self.values[:, list(joints)].astype(float)
-        bad = np.argwhere(~(np.abs(found) < 1e9))
+        points: Float = self.values[:, list(joints)].astype(float)
+        bad = np.argwhere(~(np.abs(points) < 1e9))
         if bad.size:
             frame, joint, axis = bad[0].tolist()
-            value = found[frame, joint, axis]
+            value = points[frame, joint, axis]
             name = self.names[joints[joint]]
             raise wrong(self.place(frame), f"{name} {'xyz'[axis]} is {value}; should be a number")
-        return found
+        return points
 
     def place(self, frame: int) -> str:
         return f"{self.where}: frame {frame + 1}"
@@ -75,7 +75,7 @@ def read_npz(data: bytes, where: str) -> Npz:
             rate = _array(archive, "rate", 1024, where)
             positions = _array(archive, "positions", MAX_BYTES, where)
     except _DAMAGE as error:
-        raise wrong(where, f"is no whole npz file ({str(error)[:120]})") from None
+        raise wrong(where, f"is not a complete npz file ({str(error)[:120]})") from None
     if names.dtype.kind not in "US" or names.ndim != 1 or not 0 < names.size <= MAX_JOINTS:
         raise wrong(where, f"names should be 1 to {MAX_JOINTS} texts, not {_kind(names)}")
     text = [n.decode("utf-8", "replace") if isinstance(n, bytes) else n for n in names.tolist()]
@@ -125,4 +125,4 @@ def _array(archive: zipfile.ZipFile, name: str, most: int, where: str) -> NDArra
         return flat.reshape(shape, order="F" if fortran else "C")
     except (ValueError, TypeError, OverflowError, SyntaxError, MemoryError) as error:
         first = str(error).splitlines()[0][:120] if str(error) else "damaged"
-        raise wrong(where, f"{name} is no array of numbers ({first})") from None
+        raise wrong(where, f"{name} is not an array of numbers ({first})") from None

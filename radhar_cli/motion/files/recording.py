@@ -63,13 +63,13 @@ def wrong(where: str, what: str) -> MotionFileError:
 
 def with_ancestors(joints: Sequence[int], parents: Sequence[int | None]) -> list[int]:
     """The joints and all that they hang on, parents first."""
-    found: set[int] = set()
+    wanted: set[int] = set()
     for joint in joints:
         at: int | None = joint
-        while at is not None and at not in found:
-            found.add(at)
+        while at is not None and at not in wanted:
+            wanted.add(at)
             at = parents[at]
-    return sorted(found)
+    return sorted(wanted)
 
 
 def turn(axes: Float, axis: int, degrees: Float) -> None:

@@ -92,6 +92,6 @@ class Repertoire:
         }
         if name not in movements:
             raise ValueError(
-                f"{name!r} is no movement of a sequence; these are: {', '.join(movements)}"
+                f"{name!r} is not a movement of a sequence; these are: {', '.join(movements)}"
             )
         return movements[name]

@@ -74,7 +74,7 @@ BROKEN_BVH = {
     ),
     "a strange channel": (
         changed("Zrotation", "Wrotation"),
-        r"x\.bvh:5: 'wrotation' is no channel such as",
+        r"x\.bvh:5: 'wrotation' is not a channel such as",
     ),
     "no frame time": (
         changed(r"Frame Time: \S+", "Frame Time: 0"),
@@ -85,7 +85,7 @@ BROKEN_BVH = {
         r"x\.bvh:\d+: the hierarchy ends before its last }",
     ),
     "units that make a giant": (scaled, r"x\.bvh: has legs of \d+ units, which make .* unit_m"),
-    "another file": (lambda text: "hello", r"x\.bvh: is no BVH file"),
+    "another file": (lambda text: "hello", r"x\.bvh: is not a BVH file"),
     "two people": (
         changed("MOTION", "ROOT Hips\n{\nOFFSET 0 0 0\n}\nMOTION"),
         r"x\.bvh:97: 'ROOT Hips' is a second tree",
@@ -169,7 +169,7 @@ def test_broken_npz(tmp_path: Path) -> None:
         ),
         (p * 0, {}, r"has legs of 0 units"),
         (p, {"rate": 0.0}, r"rate should be one number"),
-        (p, {"names": np.array([object()] * 15)}, r"names is no array .*objects"),
+        (p, {"names": np.array([object()] * 15)}, r"names is not an array .*objects"),
         (p, {"names": np.zeros(15)}, r"names should be 1 to 1000 texts, not float64 \[15\]"),
     ):
         write_npz(path, positions)

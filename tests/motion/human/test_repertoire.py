@@ -62,7 +62,7 @@ def test_who_fell_backwards_does_not_get_up_from_the_belly() -> None:
 
 
 def test_an_unknown_movement_is_named() -> None:
-    with pytest.raises(ValueError, match="'swimming' is no movement"):
+    with pytest.raises(ValueError, match="'swimming' is not a movement"):
         REPERTOIRE.sequence(("swimming",), (1.0,))
 
 

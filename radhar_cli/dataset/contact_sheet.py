@@ -2,32 +2,17 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Protocol
 
 import numpy as np
 
 from radhar_cli.arrays import Levels
-from radhar_cli.config.schema import Config
+from radhar_cli.dataset.reading import Dataset
 from radhar_cli.figures.page import page
 
 MAX_SIDE = 1024  # a panel shows far fewer pixels
 
 
-class Images(Protocol):
-    """What a contact sheet needs of a data set."""
-
-    @property
-    def maps(self) -> Mapping[str, Any]: ...
-    @property
-    def label(self) -> Any: ...
-    @property
-    def class_slugs(self) -> list[str]: ...
-    @property
-    def config(self) -> Config: ...
-    def extent(self, name: str) -> tuple[float, float, float, float] | None: ...
-
-
-def draw_contact_sheet(data: Images, name: str, per_class: int, path: Path) -> None:
+def draw_contact_sheet(data: Dataset, name: str, per_class: int, path: Path) -> None:
     """Write a PNG with a row of `per_class` maps `name` for every class that is present."""
     labels = np.asarray(data.label[:])
     present = sorted(set(labels.tolist()))

@@ -1,12 +1,16 @@
-"""What accuracy costs: time against error with the frontier, and what physics left out changes."""
+"""pareto.png: time against error with the frontier, and what physics left out changes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 from matplotlib.axes import Axes
 
 from radhar_cli.figures.page import page, png_bytes
+from radhar_cli.tradeoff.accuracy import Accuracy
+from radhar_cli.tradeoff.study import Row
+from radhar_cli.tradeoff.text import ENGINES
 
 
 @dataclass(frozen=True)
@@ -20,25 +24,17 @@ class CostPoint:
     error_db: float | None
     default: bool
 
-
-@dataclass(frozen=True)
-class Change:
-    """A switch: what is missed without it (dB of the signal), its time over what setting's."""
-
-    name: str
-    change_db: float
-    time: float
-    over: str
-
-
-@dataclass(frozen=True)
-class Score:
-    """Accuracy of a network trained on a setting's data, in shares."""
-
-    name: str
-    mean: float
-    low: float
-    high: float
+    @classmethod
+    def of(cls, row: Row, column: str) -> "CostPoint":
+        """A row of the sweep, with the time of a column of its `Times`."""
+        middle, spread = row.middle(column), row.spread(column)
+        assert middle is not None
+        assert spread is not None
+        error = row.worst("signal_error_db")
+        exact = error in (None, -inf)
+        return cls(
+            row.setting.name, middle, *spread, None if exact else error, row.setting.is_default
+        )
 
 
 def frontier(points: Sequence[CostPoint]) -> list[CostPoint]:
@@ -51,23 +47,22 @@ def frontier(points: Sequence[CostPoint]) -> list[CostPoint]:
     return best
 
 
-def tradeoff_png(
-    title: str,
-    echo: Sequence[CostPoint],
-    whole: Sequence[CostPoint],
-    changes: Sequence[Change],
-    scores: Sequence[Score],
-) -> bytes:
+def tradeoff_png(title: str, rows: Sequence[Row], accuracies: Sequence[Accuracy]) -> bytes:
     """Draw time against error, the switches, and accuracies where there are any."""
-    count = 3 + bool(scores)
+    engines = [row for row in rows if row.setting.group in ENGINES and row.times]
+    count = 3 + bool(accuracies)
     figure = page(5.2 * count, 4.8)
     panels = figure.subplots(1, count)
     figure.suptitle(title)
-    _draw_costs(panels[0], echo, "echo alone: time over the default's")
-    _draw_costs(panels[1], whole, "whole sample: time over the default's")
-    _draw_changes(panels[2], changes)
-    if scores:
-        _draw_scores(panels[3], scores)
+    for axes, part, column in (
+        (panels[0], "echo alone", "echo_ratio"),
+        (panels[1], "whole sample", "ratio"),
+    ):
+        points = [CostPoint.of(row, column) for row in engines]
+        _draw_costs(axes, points, f"{part}: time over the default's")
+    _draw_switches(panels[2], rows)
+    if accuracies:
+        _draw_accuracies(panels[3], accuracies)
     return png_bytes(figure)
 
 
@@ -123,27 +118,31 @@ def _level(points: Sequence[CostPoint], floor: float) -> list[list[CostPoint]]:
     return groups
 
 
-def _draw_changes(axes: Axes, changes: Sequence[Change]) -> None:
-    rows = range(len(changes))
-    axes.barh(rows, [c.change_db + 100 for c in changes], left=-100, color="C1")
-    for row, change in zip(rows, changes, strict=True):
-        text = f"{change.change_db:.0f} dB, {change.time:.1f} times {change.over}"
-        axes.text(-98, row, text, va="center", fontsize=8)
-    axes.set_yticks(rows, [c.name for c in changes], fontsize=8)
+def _draw_switches(axes: Axes, rows: Sequence[Row]) -> None:
+    names = list[str]()
+    for row in rows:
+        setting, change_db = row.setting, row.usual("signal_error_db")
+        if setting.group != "switch" or not setting.of_signal or change_db is None or not row.times:
+            continue
+        axes.barh(len(names), change_db + 100, left=-100, color="C1")
+        text = f"{change_db:.0f} dB, {row.middle('ratio'):.1f} times {setting.baseline_name}"
+        axes.text(-98, len(names), text, va="center", fontsize=8)
+        names.append(setting.name)
+    axes.set_yticks(range(len(names)), names, fontsize=8)
     axes.set_xlim(-100, 15)
     axes.axvline(0, color="0.5", lw=0.8)
     axes.set_xlabel("what is missed without it (dB of the signal), median")
 
 
-def _draw_scores(axes: Axes, scores: Sequence[Score]) -> None:
-    rows = range(len(scores))
-    mean = [100 * s.mean for s in scores]
-    spread = [
-        [100 * max(0, s.mean - s.low) for s in scores],
-        [100 * max(0, s.high - s.mean) for s in scores],
+def _draw_accuracies(axes: Axes, accuracies: Sequence[Accuracy]) -> None:
+    rows = range(len(accuracies))
+    mean = [100 * a.mean for a in accuracies]
+    interval = [
+        [100 * max(0, a.mean - a.low) for a in accuracies],
+        [100 * max(0, a.high - a.mean) for a in accuracies],
     ]
-    axes.errorbar(mean, list(rows), xerr=spread, fmt="o", capsize=3)
-    axes.set_yticks(rows, [s.name for s in scores], fontsize=8)
+    axes.errorbar(mean, list(rows), xerr=interval, fmt="o", capsize=3)
+    axes.set_yticks(rows, [a.name for a in accuracies], fontsize=8)
     axes.set_xlabel("accuracy on the reference (%), 95 % interval")
     axes.grid(alpha=0.3)
 

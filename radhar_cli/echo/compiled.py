@@ -30,6 +30,7 @@ from radhar_cli.errors import MachineError
 
 TERMS = 4  # of a cubic
 LANES = 16  # paths at once; a remainder would be computed one by one
+LEAST = 2**20  # terms of a sum; with fewer, numba takes longer to load than some 200 sums save
 
 
 @cache
@@ -39,6 +40,11 @@ def numba_version() -> str | None:
         return version("numba")
     except PackageNotFoundError:
         return None
+
+
+def pays(terms: int) -> bool:
+    """Whether a sum over paths and pulses of that many terms is made here."""
+    return terms >= LEAST and numba_version() is not None
 
 
 @cache

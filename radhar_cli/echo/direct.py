@@ -161,7 +161,7 @@ class DirectEcho:
     ) -> None:
         """Add the sum of the paths at the pulses of these knots to y, some paths at a time."""
         moving, w = np.flatnonzero(kept), self.waveform
-        fast = chosen.single and compiled.numba_version() is not None
+        fast = chosen.single and compiled.pays(moving.size * w.n_pulses)
         count = max(1, (BLOCK if knots.step == 1 else CHUNK) // knots.paths.delay.shape[1])
         for start in range(0, moving.size, count):
             some = moving[start : start + count]

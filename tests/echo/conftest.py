@@ -13,6 +13,5 @@ def either_sum(request: pytest.FixtureRequest) -> Iterator[None]:
     if request.param == "numba" and compiled.numba_version() is None:
         pytest.skip("needs radhar[fast]")
     with pytest.MonkeyPatch.context() as patch:
-        if request.param == "numpy":
-            patch.setattr(compiled, "numba_version", lambda: None)
+        patch.setattr(compiled, "pays", lambda terms: request.param == "numba")
         yield

@@ -16,12 +16,15 @@ def versions() -> dict[str, str]:
     import PIL
     import scipy
 
+    from radhar_cli.echo.compiled import numba_version
+
     return {
         "radhar": __version__,
         "numpy": np.__version__,
         "scipy": scipy.__version__,
         "h5py": h5py.__version__,
         "pillow": PIL.__version__,
+        "numba": numba_version() or "none",
     }
 
 

@@ -46,7 +46,7 @@ def entries(data: Dataset) -> Iterator[Entry]:
     Raises:
         FolderError: a label that is not that of its row.
     """
-    rows = Rows.of(data.config)
+    rows, names = Rows.of(data.config), number_names(data.config)
     for first in range(0, max(rows.counts), BLOCK):
         held = []
         for activity, here in rows.classes():
@@ -54,9 +54,7 @@ def entries(data: Dataset) -> Iterator[Entry]:
                 min(here.start + first, here.stop),
                 min(here.start + first + BLOCK, here.stop),
             )
-            numbers = (
-                data.scene[name].rows(start, stop).tolist() for name in number_names(data.config)
-            )
+            numbers = (data.scene[name].rows(start, stop).tolist() for name in names)
             held.append((activity, start, list(zip(*numbers, strict=True))))
         for place in range(BLOCK):
             for activity, start, values in held:

@@ -9,6 +9,7 @@ from radhar_cli.phasor import unit_phasor
 from radhar_cli.radar.waveform import Waveform
 
 BLOCK_SAMPLES = 2**18  # of a beat matrix that is made block by block
+BLOCK = 2**11  # phasors at once, from each of which some forty follow
 
 
 def start_phase(delay: Float, waveform: Waveform, frequency: float) -> Float:
@@ -37,7 +38,7 @@ def beat_matrix(delay: Float, amplitude: Float, waveform: Waveform) -> Complex:
 
     With n = a fine + b the exponential is a product of one in a and one in b, so the sum over the
     paths is, pulse by pulse, a product of two small matrices: the same numbers to rounding, with
-    three exponentials a path instead of N_ADC.
+    two exponentials a path instead of N_ADC.
 
     Args:
         delay, amplitude: [I, M], s and 1.
@@ -48,11 +49,15 @@ def beat_matrix(delay: Float, amplitude: Float, waveform: Waveform) -> Complex:
     """
     coarse = isqrt(waveform.n_adc - 1) + 1
     fine = -(-waveform.n_adc // coarse)
-    tau = delay.T  # [M, I]
-    turn = waveform.slope / waveform.adc_rate * tau
-    first = unit_phasor(start_phase(tau, waveform, waveform.fc)) * amplitude.T
-    slow = powers(unit_phasor(fine * turn), coarse)  # [coarse, M, I]
-    slow *= first
-    fast = powers(unit_phasor(turn), fine)  # [fine, M, I]
-    beat: Complex = slow.transpose(1, 0, 2) @ fast.transpose(1, 2, 0)  # [M, coarse, fine]
-    return beat.reshape(len(tau), coarse * fine)[:, : waveform.n_adc].T
+    beat = np.empty((delay.shape[1], coarse, fine), dtype=complex)
+    length = max(1, BLOCK // max(len(delay), 1))
+    for start in range(0, len(beat), length):  # so that it stays in the cache
+        block = slice(start, start + length)
+        tau = delay[:, block].T  # [M, I]
+        turn = waveform.slope / waveform.adc_rate * tau
+        first = unit_phasor(start_phase(tau, waveform, waveform.fc)) * amplitude[:, block].T
+        fast = powers(unit_phasor(turn), fine + 1)  # [fine + 1, M, I]
+        slow = powers(fast[fine], coarse)  # [coarse, M, I]
+        slow *= first
+        np.matmul(slow.transpose(1, 0, 2), fast[:fine].transpose(1, 2, 0), out=beat[block])
+    return beat.reshape(len(beat), coarse * fine)[:, : waveform.n_adc].T

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from radhar_cli.arrays import Bool, Complex, Float, Index
+from radhar_cli.echo import compiled
 from radhar_cli.echo.accuracy import (
     FINEST_DB,
     MARGIN_DB,
@@ -159,15 +160,22 @@ class DirectEcho:
         self, chosen: Settings, knots: Knots, kept: Bool, unit: float, y: Complex
     ) -> None:
         """Add the sum of the paths at the pulses of these knots to y, some paths at a time."""
-        moving = np.flatnonzero(kept)
+        moving, w = np.flatnonzero(kept), self.waveform
+        fast = chosen.single and compiled.pays(moving.size * w.n_pulses)
         count = max(1, (BLOCK if knots.step == 1 else CHUNK) // knots.paths.delay.shape[1])
         for start in range(0, moving.size, count):
             some = moving[start : start + count]
-            terms = self._terms(knots.paths, some, unit, chosen)
             if knots.step == 1:
-                y += _phasor_sum(*terms)
+                y += _phasor_sum(*self._terms(knots.paths, some, unit, chosen))
                 continue
-            dense = _interpolated_sum(*terms, knots.shift, knots.step)
+            if fast:
+                table = half_band_table(w, chosen.table_oversampling, single=True)
+                dense = compiled.interpolated_sum(
+                    knots.paths, some, unit, table, knots.shift, knots.step
+                )
+            else:
+                terms = self._terms(knots.paths, some, unit, chosen)
+                dense = _interpolated_sum(*terms, knots.shift, knots.step)
             if knots.exact_pulses.size:
                 exact = self._terms(knots.exact, some, unit, chosen)
                 dense[knots.exact_pulses - knots.pulses[0]] = _phasor_sum(*exact)
@@ -176,15 +184,15 @@ class DirectEcho:
     def _terms(
         self, paths: Paths, some: Index, unit: float, chosen: Settings
     ) -> tuple[Float, Complex]:
-        """Phases f0 tau (cycles) and A G over the unit, [I, M] of some paths."""
-        w, shape = self.waveform, (some.size, paths.delay.shape[1])
+        """Phases f0 tau (cycles) and A G over the unit, [M, I] of some paths."""
+        w, shape = self.waveform, (paths.delay.shape[1], some.size)
         table = half_band_table(w, chosen.table_oversampling, chosen.single)
         cycles = np.empty(shape)
         envelope = np.empty(shape, np.complex64 if chosen.single else np.complex128)
-        rows = max(1, BLOCK // max(shape[1], 1))
-        for start in range(0, some.size, rows):
+        rows = max(1, BLOCK // some.size)
+        for start in range(0, shape[0], rows):
             block = slice(start, start + rows)
-            delay, amplitude = (part[some[block]] for part in paths)
+            delay, amplitude = (np.ascontiguousarray(part[some, block].T) for part in paths)
             cycles[block] = start_phase(delay, w, w.f0)
             g = table(w.slope / w.adc_rate * delay)
             np.multiply(g, (amplitude / unit).astype(g.real.dtype), out=envelope[block])
@@ -195,7 +203,7 @@ def _interpolated_sum(cycles: Float, envelope: Complex, shift: Index, step: int)
     """sum_i envelope exp(-j 2 pi cycles) at the pulses [segments * step].
 
     Args:
-        cycles: phases at the knots [I, BEFORE + segments + AFTER].
+        cycles: phases at the knots [BEFORE + segments + AFTER, I].
         envelope: at the knots, in the precision that phasors shall have.
         shift: of the stencils [segments].
         step: pulses from knot to knot.
@@ -204,12 +212,11 @@ def _interpolated_sum(cycles: Float, envelope: Complex, shift: Index, step: int)
     to_nodes, to_pulses = _weights(step, degree)
     to_nodes, weights = to_nodes.astype(envelope.real.dtype), to_pulses.astype(envelope.dtype)
     total = np.empty((shift.size, step), dtype=complex)
-    count = max(1, PHASORS // len(cycles))
+    count = max(1, PHASORS // cycles.shape[1])
     for start in range(0, shift.size, count):
         within = shift[start : start + count]
         reach = slice(start, start + within.size + BEFORE + AFTER)
-        phases = stencils(np.ascontiguousarray(cycles[:, reach].T), within)
-        taps = stencils(np.ascontiguousarray(envelope[:, reach].T), within)
+        phases, taps = stencils(cycles[reach], within), stencils(envelope[reach], within)
         turning = phasors_between_knots(phases, step, degree, envelope.dtype)
         parts = to_nodes @ taps.reshape(TAPS, -1).view(to_nodes.dtype)
         at_nodes = parts.view(taps.dtype).reshape(-1, *taps.shape[1:])
@@ -228,6 +235,6 @@ def _weights(step: int, degree: int) -> tuple[Float, Float]:
 
 
 def _phasor_sum(cycles: Float, envelope: Complex) -> Complex:
-    """sum_i envelope exp(-j 2 pi cycles) [M], of [I, M], in the envelope's precision."""
-    total: Complex = np.einsum("im,im->m", unit_phasor(cycles, envelope.dtype), envelope)
+    """sum_i envelope exp(-j 2 pi cycles) [M], of [M, I], in the envelope's precision."""
+    total: Complex = np.einsum("mi,mi->m", unit_phasor(cycles, envelope.dtype), envelope)
     return total

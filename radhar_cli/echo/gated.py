@@ -219,26 +219,15 @@ def _at_nodes(cycles: Float, turn: Float, amplitude: Float, nodes: Nodes, single
 
     As in `beat_matrix`, with the phase taken in the middle, from which float32 errs least.
     """
-    count, spacing, _ = nodes
+    (count, spacing, _), dtype = nodes, np.complex64 if single else np.complex128
     coarse = isqrt(count - 1) + 1
     fine = -(-count // coarse)
     origin = coarse // 2 * fine
-    first = _phasor(cycles + turn * ((origin - (count - 1) / 2) * spacing - 0.5), single)
+    first = unit_phasor(cycles + turn * ((origin - (count - 1) / 2) * spacing - 0.5), dtype)
     first *= amplitude
-    slow = powers(_phasor(turn * (fine * spacing), single), coarse)  # [coarse, M, I]
+    slow = powers(unit_phasor(turn * (fine * spacing), dtype), coarse)  # [coarse, M, I]
     first *= slow[coarse // 2].conj()
     slow *= first
-    fast = powers(_phasor(turn * spacing, single), fine)
+    fast = powers(unit_phasor(turn * spacing, dtype), fine)
     beat: Complex = slow.transpose(1, 0, 2) @ fast.transpose(1, 2, 0)  # [M, coarse, fine]
     return beat.reshape(len(cycles), coarse * fine)[:, :count]
-
-
-def _phasor(cycles: Float, single: bool) -> Complex:
-    """exp(-j 2 pi cycles)."""
-    if not single:
-        return unit_phasor(cycles)
-    angle = ((cycles - np.rint(cycles)) * (-2 * np.pi)).astype(np.float32)
-    out: Complex = np.empty(cycles.shape, dtype=np.complex64)
-    np.cos(angle, out=out.real)
-    np.sin(angle, out=out.imag)
-    return out

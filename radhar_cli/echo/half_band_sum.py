@@ -57,20 +57,21 @@ class HalfBandTable:
         oversampling: table points per fast-time sample; the root-mean-square relative error is
             about -48, -71, -95, -118 dB for 4, 8, 16, 32.
         single: whether values are complex64; places in the table are float64.
+        cubics: coefficients of the cubic in each cell, lowest power first, an array for each.
     """
 
     waveform: Waveform
     oversampling: int
     single: bool = False
-    _powers: tuple[Complex, ...] = field(init=False, repr=False)
+    cubics: tuple[Complex, ...] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         dtype = np.complex64 if self.single else np.complex128
-        powers = tuple(part.astype(dtype) for part in self._tabulate())
-        object.__setattr__(self, "_powers", powers)
+        cubics = tuple(part.astype(dtype) for part in self._tabulate())
+        object.__setattr__(self, "cubics", cubics)
 
     def _tabulate(self) -> tuple[Complex, ...]:
-        """Coefficients of the cubic in each cell, lowest power first, an array for each."""
+        """The cubics."""
         waveform, size = self.waveform, self.oversampling * self.waveform.n_adc
         n = np.arange(waveform.n_adc) - waveform.n0
         d = weights(waveform)
@@ -90,12 +91,12 @@ class HalfBandTable:
     def __call__(self, u: Float) -> Complex:
         """G(u) for u [...]."""
         turns = np.floor(u)
-        size = self._powers[0].size
+        size = self.cubics[0].size
         place = (u - turns) * size
         cell = np.minimum(place.astype(np.intp), size - 1)
-        part = (place - cell).astype(self._powers[0].real.dtype)
-        value: Complex = self._powers[3].take(cell, mode="clip")  # which is faster than "raise"
-        for coefficients in self._powers[2::-1]:
+        part = (place - cell).astype(self.cubics[0].real.dtype)
+        value: Complex = self.cubics[3].take(cell, mode="clip")  # which is faster than "raise"
+        for coefficients in self.cubics[2::-1]:
             value *= part
             value += coefficients.take(cell, mode="clip")
         if self.waveform.n0 % 1:

@@ -13,7 +13,7 @@ from radhar_cli.radar.waveform import Waveform
 
 CHUNK_KNOTS, BLOCK = 32768, 2**15
 MIN_KNOTS = 64  # in a recording
-GLANCE, MIN_GLANCE = 4, 512  # a look at every fourth knot, where there are many
+GLANCE, MIN_GLANCE = 8, 512  # a look at every eighth knot, where there are many
 FEW_PULSES = 1024  # which all cost less than to find out how few of them would do
 POWER_PER_SECOND, POWER_PER_CYCLE, POWER_CHANGE = 40.0, 20.0, 0.1
 MIN_STEP = 3  # fewer pulses from knot to knot are not worth interpolating

@@ -429,23 +429,25 @@ def _gate(c: Config) -> Iterator[Product]:
             return None
         return gate.needed(frames, w.n_pulses, canceller.lost + c.processing.savgol.frame)
 
-    def gated_echo(
+    def gated(
         paths: PathSource,
         w: Waveform,
         canceller: Canceller,
         gate: Gate,
         needed: tuple[Index, Index] | None,
-        scene: Scene,
-    ) -> tuple[Complex, EchoAccuracy]:
+    ) -> GatedEcho:
         double = engine.precision == "double"
-        echo = GatedEcho(paths, w, engine.tolerance_db, double, canceller, gate.bins, needed)
+        return GatedEcho(paths, w, engine.tolerance_db, double, canceller, gate.bins, needed)
+
+    def gated_echo(echo: GatedEcho, scene: Scene) -> tuple[Complex, EchoAccuracy]:
         try:
             return echo.range_bins()
         except AccuracyError as error:
             if engine.fallback == "refuse":
                 raise SceneError(_refusal(scene.name, engine.tolerance_db, error)) from None
-            before = NO_CANCELLER if isinstance(canceller, Fir) else canceller
-            return _range_bins(c, paths, w, before, (), gate.bins), Fallback(str(error))
+            before = NO_CANCELLER if isinstance(echo.canceller, Fir) else echo.canceller
+            bins = _range_bins(c, echo.source, echo.waveform, before, (), echo.bins)
+            return bins, Fallback(str(error))
 
     def from_echo(
         echo: tuple[Complex, EchoAccuracy],
@@ -482,12 +484,12 @@ def _gate(c: Config) -> Iterator[Product]:
             needed_of,
             "its bins that frames show, pulse by pulse",
         )
-        yield Product(
-            "gated_echo",
-            (*needs, "gate_needed", "scene"),
-            gated_echo,
-            "its bins and their measured error",
-        )
+        yield Product("gated", (*needs, "gate_needed"), gated, "closed form of them at knots")
+        if not _snr_of_other_paths(c):
+            power = DirectEcho.signal_power  # from the knots that the bins are made of
+            yield Product("signal_power", ("gated",), power, "P_s, for snr_db")
+        does = "its bins and their measured error"
+        yield Product("gated_echo", ("gated", "scene"), gated_echo, does)
         yield Product(
             "range_signals",
             ("gated_echo", *needs[1:], "gate_needed", "receiver"),

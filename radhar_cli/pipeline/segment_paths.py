@@ -27,7 +27,7 @@ SCATTER = 0.02  # standard deviation across a segment, m; cut at twice that
 JITTER = 0.7  # along it, of the distance from point to point
 RATE_STEP_S = 1e-3
 RATES_PER_SECOND, MOST_RATES = 25.0, 8192
-BLOCK = 512  # instants at once: what a block needs stays in the cache
+BLOCK = 2048  # instants at once: what a block needs stays in the cache
 TINY = np.finfo(float).tiny
 
 

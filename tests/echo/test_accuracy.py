@@ -19,6 +19,8 @@ from radhar_cli.processing.canceller import FIRST_DIFFERENCE, Fir
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene import draw_scene
 
+pytestmark = pytest.mark.usefixtures("either_sum")
+
 SAID_DB = 13.0  # the error is an estimate from some dozens of pulses; docs/engines.md
 CUBE = {"kind": "cube"}
 

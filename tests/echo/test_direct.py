@@ -15,6 +15,8 @@ from radhar_cli.echo.interpolation import AFTER, BEFORE
 from radhar_cli.processing.canceller import NO_CANCELLER
 from radhar_cli.radar.waveform import Waveform
 
+pytestmark = pytest.mark.usefixtures("either_sum")
+
 DEFAULT, TIGHT = -60.0, -110.0  # tolerances, dB
 
 few = settings(max_examples=40, deadline=None, derandomize=True, database=None)
@@ -317,9 +319,9 @@ def test_block_lengths_do_not_matter(monkeypatch, size):
 @pytest.mark.parametrize("step", [3, 4, 19, 40])
 def test_an_envelope_in_single_precision_is_a_cubic(step):
     """Through four points of every segment; shifted stencils included."""
-    at = np.arange(12.0) - direct.BEFORE
+    at = np.arange(12.0)[:, None] - direct.BEFORE
     cubic = lambda x: 1 + 0.2 * x - 0.03 * x**2 + 1j * 0.004 * x**3  # noqa: E731
-    knots = np.stack([cubic(at), 0 * at + 1]).astype(np.complex64)
+    knots = np.hstack([cubic(at), 0 * at + 1]).astype(np.complex64)
     found = direct._interpolated_sum(0.25 + 0 * knots.real, knots, np.array([0, 1, -1]), step)
     right = -1j * (cubic(np.arange(3 * step) / step) + 1)
     assert np.abs(found - right).max() < 2e-5

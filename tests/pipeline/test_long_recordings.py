@@ -140,12 +140,18 @@ import sys
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.config.schema import Config
 from radhar_cli.activity import activity_named
+from radhar_cli.echo import compiled
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.scene import draw_scene
 import numpy as np, json, scipy.fft, scipy.signal, PIL.Image
-config = Config.model_validate(json.loads(sys.argv[1]))
+def make(document):
+    config = Config.model_validate(document)
+    synthesise(draw_scene(config, activity_named("punching"), 0), plan_images(config))
+compiled.LEAST = 0
+document = json.loads(sys.argv[1])
+make(document | {"duration_s": 4.0})  # so that numba is loaded, if it is there
 before = peak()
-synthesise(draw_scene(config, activity_named("punching"), 0), plan_images(config))
+make(document)
 print((peak() - before) / 2**20)
 """
 )

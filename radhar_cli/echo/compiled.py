@@ -1,0 +1,208 @@
+"""The sum over paths from their knots in two loops, compiled by numba where that is installed.
+
+The same sum as `direct` makes with NumPy in single precision, of the same polynomials, within
+rounding. It is faster as nothing but the sum is stored, and as sines and cosines are polynomials
+too, which a processor computes for eight paths or more at once.
+"""
+
+from collections.abc import Callable
+from functools import cache, lru_cache
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import Polynomial
+
+from radhar_cli.arrays import Complex, Float, Index
+from radhar_cli.echo.half_band_sum import HalfBandTable
+from radhar_cli.echo.interpolation import (
+    BEFORE,
+    EXACT,
+    NODES,
+    REACH,
+    TAPS,
+    lagrange_basis,
+    shifted_weights,
+)
+from radhar_cli.echo.paths import Paths
+from radhar_cli.echo.phase_recurrence import nodes, runs
+from radhar_cli.errors import MachineError
+
+TERMS = 4  # of a cubic
+LANES = 16  # paths at once; a remainder would be computed one by one
+LEAST = 2**20  # terms of a sum; with fewer, numba takes longer to load than some 200 sums save
+
+
+@cache
+def numba_version() -> str | None:
+    """The version of numba that is installed, if it is."""
+    try:
+        return version("numba")
+    except PackageNotFoundError:
+        return None
+
+
+def pays(terms: int) -> bool:
+    """Whether a sum over paths and pulses of that many terms is made here."""
+    return terms >= LEAST and numba_version() is not None
+
+
+@cache
+def _machine_code(function: Callable[..., None]) -> Callable[..., None]:
+    """Compile a function, or take it from the cache beside this file or in the user's own folder.
+
+    Raises:
+        MachineError: numba is there and does not work.
+    """
+    try:
+        from numba import njit
+    except ImportError as error:
+        raise MachineError(
+            f"numba {numba_version()} does not work here ({error}); should be a version for NumPy "
+            f"{np.__version__}, or be removed"
+        ) from None
+    # Sums in any order, but not as if there were no NaN.
+    options: dict[str, Any] = {"fastmath": {"contract", "nsz", "reassoc"}, "error_model": "numpy"}
+    try:
+        compiled: Callable[..., None] = njit(function, cache=True, **options)
+    except RuntimeError:  # no folder for the cache can be written
+        compiled = njit(function, **options)
+    return compiled
+
+
+def interpolated_sum(
+    paths: Paths, some: Index, unit: float, table: HalfBandTable, shift: Index, step: int
+) -> Complex:
+    """sum_i A_i G_i exp(-j 2 pi f0 tau_i) at the pulses [segments * step], in units of `unit`.
+
+    Args:
+        paths: at the knots.
+        some: numbers of the paths to be summed.
+        unit: of the amplitudes.
+        table: of G, single.
+        shift: of the stencils [segments].
+        step: pulses from knot to knot.
+    """
+    w, shape = table.waveform, (paths.delay.shape[1], some.size)
+    cycles, real, imag = np.empty(shape), *np.empty((2, *shape), np.float32)
+    square = 0.5 * w.slope if w.residual_video_phase else 0.0
+    scale = (w.f0, square, w.slope / w.adc_rate, 1 / unit, bool(w.n0 % 1))
+    _machine_code(_at_knots)(*paths, some, scale, table.cubics, cycles, real, imag)
+    total = np.zeros(shift.size * step, dtype=complex)
+    _machine_code(_add)(cycles, real, imag, shift, *_cubics(step), SINE, COSINE, total)
+    return total
+
+
+def _fitted(function: Callable[[Float], Float], power: int) -> tuple[np.float32, ...]:
+    """Coefficients c_k of function(2 pi r) = sum c_k r^(2 k + power), for |r| <= 1/2."""
+    r = np.sqrt(0.126 * (1 - np.cos(np.pi * (np.arange(64) + 0.5) / 64)))
+    fit = Polynomial.fit(r * r, function(2 * np.pi * r) / r**power, 6)
+    return tuple(fit.convert().coef.astype(np.float32))
+
+
+SINE, COSINE = _fitted(np.sin, 1), _fitted(np.cos, 0)
+
+
+@lru_cache(maxsize=128)
+def _cubics(step: int) -> tuple[Float, Float, Float]:
+    """Cubics of the runs of a segment, through Chebyshev points of each.
+
+    Returns:
+        from the knots of a stencil with shift -REACH .. REACH to the coefficients of x^k
+        [runs, 2 REACH + 1, TERMS, TAPS], in double and in single precision; and x at the pulses
+        of a run [length], -1 to 1.
+    """
+    length, differences = runs(step, TERMS - 1)
+    at, x = nodes(TERMS - 1, length), np.linspace(-1, 1, length)
+    powers = np.vander(2 * at / (length - 1) - 1, TERMS, increasing=True)
+    found = np.zeros((len(differences), 2 * REACH + 1, TERMS, TAPS))
+    for run, shift in np.ndindex(found.shape[:2]):
+        values = lagrange_basis(NODES, (run * length + at) / step).T
+        found[run, shift] = np.linalg.pinv(powers) @ values @ shifted_weights(shift - REACH)
+    return found, found.astype(np.float32), x.astype(np.float32)
+
+
+def _at_knots(
+    delay: Float,
+    amplitude: Float,
+    some: Index,
+    scale: tuple[float, float, float, float, bool],
+    table: tuple[Complex, ...],
+    cycles: Float,
+    real: Float,
+    imag: Float,
+) -> None:
+    """Fill in phases and A G at knots [knots, I]."""
+    f0, square, turn, per_unit, alternating = scale
+    value, slope, curve, cube = table
+    for i in range(some.size):
+        for k in range(delay.shape[1]):
+            tau = delay[some[i], k]
+            cycles[k, i] = f0 * tau - square * tau * tau
+            whole = np.floor(turn * tau)
+            place = (turn * tau - whole) * value.size
+            cell = min(max(int(place), 0), value.size - 1)
+            s = np.float32(place - cell)
+            a = np.float32(amplitude[some[i], k] * per_unit)
+            if alternating and whole % 2 != 0:
+                a = -a
+            g = value[cell] + s * (slope[cell] + s * (curve[cell] + s * cube[cell]))
+            real[k, i] = a * g.real
+            imag[k, i] = a * g.imag
+
+
+def _add(
+    cycles: Float,
+    real: Float,
+    imag: Float,
+    shift: Index,
+    to_phase: Float,
+    to_envelope: Float,
+    x: Float,
+    sine: tuple[np.float32, ...],
+    cosine: tuple[np.float32, ...],
+    total: Complex,
+) -> None:
+    """Fill in the sum at the pulses of all segments but those that are EXACT."""
+    paths, step, length = cycles.shape[1], total.size // shift.size, x.size
+    phase, re, im = np.zeros((3, TERMS, -(-paths // LANES) * LANES), x.dtype)
+    s0, s1, s2, s3, s4, s5, s6 = sine
+    c0, c1, c2, c3, c4, c5, c6 = cosine
+    for segment in range(shift.size):
+        if shift[segment] == EXACT:
+            continue
+        k = segment + BEFORE - REACH + shift[segment]
+        for run in range(to_phase.shape[0]):
+            for n in range(TERMS):
+                w0, w1, w2, w3, w4, w5 = to_phase[run, shift[segment] + REACH, n]
+                for i in range(paths):
+                    y = cycles[k + 2, i]
+                    p = w0 * (cycles[k, i] - y) + w1 * (cycles[k + 1, i] - y)
+                    p += w3 * (cycles[k + 3, i] - y) + w4 * (cycles[k + 4, i] - y)
+                    p += w5 * (cycles[k + 5, i] - y)
+                    if n == 0:
+                        p += y - np.rint(p + y)
+                    phase[n, i] = p
+                w0, w1, w2, w3, w4, w5 = to_envelope[run, shift[segment] + REACH, n]
+                for i in range(paths):
+                    y = w0 * real[k, i] + w1 * real[k + 1, i] + w2 * real[k + 2, i]
+                    y += w3 * real[k + 3, i] + w4 * real[k + 4, i] + w5 * real[k + 5, i]
+                    re[n, i] = y
+                    y = w0 * imag[k, i] + w1 * imag[k + 1, i] + w2 * imag[k + 2, i]
+                    y += w3 * imag[k + 3, i] + w4 * imag[k + 4, i] + w5 * imag[k + 5, i]
+                    im[n, i] = y
+            start = segment * step + run * length
+            for m in range(min(length, step - run * length)):
+                t = x[m]
+                total_re = total_im = np.float32(0)
+                for i in range(re.shape[1]):
+                    r = phase[0, i] + t * (phase[1, i] + t * (phase[2, i] + t * phase[3, i]))
+                    r -= np.rint(r)
+                    u = r * r
+                    s = r * (s0 + u * (s1 + u * (s2 + u * (s3 + u * (s4 + u * (s5 + u * s6))))))
+                    c = c0 + u * (c1 + u * (c2 + u * (c3 + u * (c4 + u * (c5 + u * c6)))))
+                    a = re[0, i] + t * (re[1, i] + t * (re[2, i] + t * re[3, i]))
+                    b = im[0, i] + t * (im[1, i] + t * (im[2, i] + t * im[3, i]))
+                    total_re += a * c + b * s
+                    total_im += b * c - a * s
+                total[start + m] = complex(total_re, total_im)

@@ -134,20 +134,34 @@ def train(
         ModelError, MachineError: a network or a device that cannot be had.
         TrainingError: the loss is not finite; earlier checkpoints are kept.
     """
-    if config.threads != "auto":
-        torch.set_num_threads(config.threads)
-    device = choose_device(config.device)
-    repeatable(device)
     learned = None
     if stream is None:
         images = checked_images(config, data, names)
     else:
         paths = [data] if isinstance(data, Path) else list(data)
+        device = choose_device(config.device)
         workers = choose_execution_plan(config, device, synthesises=True).workers
         learned, images = stream_and_validation(config, stream, paths, names or {}, workers)
+    return train_on(config, images, folder, progress, overwrite, start, learned)
+
+
+def train_on(
+    config: TrainConfig,
+    images: ImageSet,
+    folder: Path,
+    progress: TrainingProgress,
+    overwrite: bool = False,
+    start: Path | None = None,
+    stream: TrainingStream | None = None,
+) -> Outcome:
+    """As `train`, on images that are open already, with training and validation images."""
+    if config.threads != "auto":
+        torch.set_num_threads(config.threads)
+    device = choose_device(config.device)
+    repeatable(device)
     with process_group(device) as group, folder_lock(folder) if group.is_main else nullcontext():
         return _Training.prepared(
-            config, images, folder, device, group, progress, overwrite, start, learned
+            config, images, folder, device, group, progress, overwrite, start, stream
         ).run()
 
 

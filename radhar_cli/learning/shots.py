@@ -40,7 +40,8 @@ from radhar_cli.progress import Messages
 from radhar_cli.randomness import TRAINING, stream
 
 TUNED, SCRATCH = "fine-tuned", "from scratch"
-SHOWN = 600  # labelled images an epoch, those of a few again and again
+SHOWN = 600  # labelled images an epoch, those of a few again and again; as many mixed ones
+MOST = 16  # times an epoch that an image is fine-tuned with
 NUMBERS, TABLE, FIGURE = "shots.json", "shots.csv", "shots.png"
 
 
@@ -252,8 +253,11 @@ def few_shots(
         for how, config, start in ((TUNED, tuned, run), (SCRATCH, scratch, None)):
             accuracies = []
             for repeat, draw in enumerate(draws):
-                images, weights = _learned_from(
-                    metadata, measured.images.some(draw.labelled), mix if start else []
+                labelled = measured.images.some(draw.labelled)
+                images, weights = (
+                    _learned_from(metadata, labelled, mix, MOST)
+                    if start
+                    else _learned_from(metadata, labelled, [], SHOWN)
                 )
                 seed = (config.seed + repeat) % 2**63
                 settings = config.model_copy(update={"data_weights": weights, "seed": seed})
@@ -333,9 +337,9 @@ def _training_images(metadata: RunMetadata, path: Path, config: TrainConfig) -> 
 
 
 def _learned_from(
-    metadata: RunMetadata, labelled: ImageSet, mix: Sequence[ImageSet]
+    metadata: RunMetadata, labelled: ImageSet, mix: Sequence[ImageSet], most: int
 ) -> tuple[ImageSet, tuple[float, ...]]:
-    """(images to learn from, weights of the sets): mixed ones together as often as labelled ones.
+    """Images to learn from, and how often an epoch shows those of each set.
 
     The labelled ones are validated on as well, so that the test says nothing about the epoch.
     """
@@ -346,5 +350,5 @@ def _learned_from(
     shown = max(SHOWN, count)
     return (
         replace(images, classes=metadata.classes, label=labels_for(images, metadata.classes)),
-        (shown / count, *(shown / mass for _ in mix)),
+        (min(shown / count, most), *(shown / mass for _ in mix)),
     )

@@ -136,19 +136,20 @@ def test_persons_or_recordings_come_from_recorded_sets(tmp_path: Path, named: bo
     assert set(persons) == (set("abc") if named else {f"file m.npz/{n}" for n in range(6)})
 
 
-def test_mixed_images_are_shown_as_often_as_labelled_ones(
+def test_mixed_images_are_shown_as_often_as_labelled_ones_unless_these_are_few(
     run_dir: Path, data: Path, measured: Path
 ) -> None:
     metadata, _ = load_best(run_dir)
     few = open_for(metadata, measured, None).some(np.array([0, 8, 16]))
     mixed = module._training_images(metadata, data, module.TrainConfig())
-    images, weights = module._learned_from(metadata, few, [mixed])
-    rows = images.rows("train")
-    shown = np.bincount(images.source[rows], np.array(weights)[images.source[rows]])
-    assert shown == pytest.approx([24, 24])
-    assert images.rows("val").size == 3
-    assert (images.source[images.rows("val")] == 0).all(), "the mixed ones choose no epoch"
-    assert images.classes == metadata.classes
+    for most, of_few in ((100, 24), (2, 6)):
+        images, weights = module._learned_from(metadata, few, [mixed], most)
+        rows = images.rows("train")
+        shown = np.bincount(images.source[rows], np.array(weights)[images.source[rows]])
+        assert shown == pytest.approx([of_few, 24])
+        assert images.rows("val").size == 3
+        assert (images.source[images.rows("val")] == 0).all(), "the mixed ones choose no epoch"
+        assert images.classes == metadata.classes
 
 
 def test_the_curve_of_a_run(run_dir: Path, data: Path, measured: Path, tmp_path: Path) -> None:

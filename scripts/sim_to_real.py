@@ -64,6 +64,7 @@ WITHOUT = {  # what is left out: keys of the simulation
 NO_AUGMENTATION = "augment={}"
 SEEDS = (1, 2, 3)
 SHOTS, REPEATS = (0, 1, 5, 20, 100), 5
+ADAPTING = 10  # epochs without labels
 MAX_MAPS, MAX_SIDE, MAX_BYTES = 100_000, 2048, 2**31
 
 
@@ -289,8 +290,8 @@ def curve(measured: Measured, images: Path, run: Path, out: Path) -> None:
 
 
 def adapted(run: Path, measured: Measured, out: Path) -> Path:
-    """The run with the batch norm of measured maps."""
-    radhar("adapt", run, measured.folder, "-o", out, "--overwrite")
+    """The run, adapted to measured maps without their labels."""
+    radhar("adapt", run, measured.folder, "-o", out, "--epochs", ADAPTING, "--overwrite")
     return out
 
 

@@ -70,7 +70,7 @@ def evaluate(
         typer.Option(
             metavar="KEY=VALUE",
             help="Of --shots: change a setting of fine-tuning alone (--set: of both; RUN's own "
-            "hold, with a quarter of its epochs, warm-up and learning rate to fine-tune).",
+            "hold, to fine-tune a quarter of its epochs and warm-up).",
         ),
     ] = None,
     overwrite: Annotated[

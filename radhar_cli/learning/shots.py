@@ -202,7 +202,7 @@ def few_shots(
     metadata = opened.metadata
     own = TrainConfig.model_validate(metadata.config)
     scratch = changed_section(own.model_copy(update={"device": device.type}), [*shots.overrides])
-    tuned = changed_section(gentler(scratch), [f"--tune {text}" for text in shots.tuning])
+    tuned = changed_section(shorter(scratch), [f"--tune {text}" for text in shots.tuning])
     measured = open_eval_set(opened, data, options)
     mix = [_training_images(metadata, path, own) for path in shots.mix]
     if message := unknown_message(measured.images, options.names):
@@ -274,15 +274,10 @@ def few_shots(
     return curve
 
 
-def gentler(config: TrainConfig) -> TrainConfig:
-    """Settings to fine-tune with: a quarter of the epochs, the warm-up and the learning rate."""
-    return config.model_copy(
-        update={
-            "epochs": -(-config.epochs // 4),
-            "warmup_epochs": config.warmup_epochs / 4,
-            "learning_rate": config.learning_rate / 4,
-        }
-    )
+def shorter(config: TrainConfig) -> TrainConfig:
+    """Settings to fine-tune with: a quarter of the epochs and of the warm-up."""
+    epochs, warmup = -(-config.epochs // 4), config.warmup_epochs / 4
+    return config.model_copy(update={"epochs": epochs, "warmup_epochs": warmup})
 
 
 def _persons(measured: EvalSet) -> list[str] | None:

@@ -12,7 +12,6 @@ from pathlib import Path
 
 import torch
 from torch import nn
-from torch.distributions import Categorical
 from torch.nn.modules.batchnorm import _BatchNorm
 
 from radhar_cli.arrays import Index
@@ -141,15 +140,13 @@ def maximise_information(
         for layer in norms:
             layer.train()
         for levels in _shuffled(metadata, images, rows, epoch):
-            logits = model(metadata.normalisation(levels.to(device)))
-            mean = logits.softmax(1).mean(0)
-            entropy = Categorical(logits=logits).entropy().mean()
-            of_mean = Categorical(probs=mean).entropy()
+            shares = model(metadata.normalisation(levels.to(device))).softmax(1)
+            entropy, of_mean = _entropy(shares).mean(), _entropy(shares.mean(0))
             loss = entropy - of_mean
             if not loss.isfinite():
                 raise run_folder.RunError(f"epoch {epoch} of --epochs: the loss is {loss.item()}")
             optimiser.zero_grad()
-            loss.backward()
+            loss.backward()  # type: ignore[no-untyped-call]
             optimiser.step()
         if progress is not None:
             progress.say(
@@ -157,6 +154,11 @@ def maximise_information(
                 f"{of_mean:.3f}"
             )
     model.eval()
+
+
+def _entropy(shares: torch.Tensor) -> torch.Tensor:
+    """Entropy [...] of shares [..., classes], nats."""
+    return -(shares * shares.clamp_min(1e-12).log()).sum(-1)
 
 
 def _shuffled(

@@ -276,9 +276,9 @@ def ablation(measured: Measured, images: Path, out: Path, given: argparse.Namesp
 
 
 def curve(measured: Measured, images: Path, run: Path, out: Path) -> None:
-    """Print accuracy with k labelled maps a class: fine-tuned, and from scratch."""
+    """Print accuracy with k labelled maps a class: fine-tuned, adapted as well, from scratch."""
     shots = ",".join(map(str, SHOTS))
-    more = ("--repeats", REPEATS, "--mix", images, "-o", out)
+    more = ("--repeats", REPEATS, "--mix", images, "--adapt", ADAPTING, "-o", out)
     radhar("eval", run, measured.folder, "--shots", shots, *more)
     for point in json.loads((out / "shots.json").read_text())["points"]:
         low, high = point["accuracy_95"]

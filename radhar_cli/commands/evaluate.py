@@ -73,6 +73,16 @@ def evaluate(
             "hold, to fine-tune a quarter of its epochs and warm-up).",
         ),
     ] = None,
+    adapt: Annotated[
+        int,
+        typer.Option(
+            min=0,
+            max=1000,
+            metavar="EPOCHS",
+            help="Of --shots: what is fine-tuned also learns from all maps of DATA without their "
+            "labels, as by radhar adapt --epochs.",
+        ),
+    ] = 0,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Of --shots: start again, with other settings.")
     ] = False,
@@ -140,6 +150,7 @@ def evaluate(
             tuple(mix or ()),
             tuple(set_ or ()),
             tuple(tune or ()),
+            adapt,
             overwrite,
         )
         with resumable(f"what is finished in {folder}"):
@@ -159,6 +170,7 @@ def evaluate(
         ("--mix", mix),
         ("--set", set_),
         ("--tune", tune),
+        ("--adapt", adapt),
         ("--overwrite", overwrite),
     ):
         if given:
@@ -189,19 +201,17 @@ def _numbers(text: str) -> tuple[int, ...]:
 
 def _print_curve(curve: "ShotCurve", folder: Path) -> None:
     """Print the table, and where it lies."""
-    from radhar_cli.learning.shots import FIGURE, NUMBERS, SCRATCH, TABLE, TUNED
+    from radhar_cli.learning.shots import FIGURE, NUMBERS, TABLE, WAYS
 
+    ways = [how for how in WAYS if curve.of(how)]
     report(
         numbers=folder / NUMBERS,
         table=folder / TABLE,
         figure=folder / FIGURE,
-        accuracy={
-            how: {p.shots: [p.accuracy, *p.interval] for p in curve.of(how)}
-            for how in (TUNED, SCRATCH)
-        },
+        accuracy={how: {p.shots: [p.accuracy, *p.interval] for p in curve.of(how)} for how in ways},
         left_out=curve.left_out,
     )
-    tell(f"{'labelled a class':>16}  {TUNED:^24}  {SCRATCH:^24}")
+    tell("  ".join([f"{'labelled a class':>16}", *(f"{how:24}" for how in ways)]).rstrip())
     for k in dict.fromkeys(point.shots for point in curve.points):
         cells = {
             p.how: "{:5.1f} % ({:.1f} to {:.1f})".format(
@@ -210,7 +220,7 @@ def _print_curve(curve: "ShotCurve", folder: Path) -> None:
             for p in curve.points
             if p.shots == k
         }
-        tell(f"{k:16d}  {cells.get(TUNED, ''):24}  {cells.get(SCRATCH, ''):24}".rstrip())
+        tell("  ".join([f"{k:16d}", *(f"{cells.get(how, ''):24}" for how in ways)]).rstrip())
     for line in curve.shortfalls():
         tell(line)
     tell(f"{folder / FIGURE}; numbers in {NUMBERS} and {TABLE}")

@@ -68,18 +68,33 @@ def adapt(
         RunError, FolderError: one of them cannot be used.
         ConfigError: the network has no batch norm, or there are fewer than FEWEST images.
     """
+    metadata, _ = load_best(run)
+    images = open_for(metadata, data, map_name, labelled=False, resize=resize)
+    rows, _ = rows_of(images, split)
+    return adapt_to(images, rows, run, folder, device, overwrite, epochs, progress)
+
+
+def adapt_to(
+    images: ImageSet,
+    rows: Index,
+    run: Path,
+    folder: Path,
+    device: torch.device,
+    overwrite: bool = False,
+    epochs: int = 0,
+    progress: Messages | None = None,
+) -> RunMetadata:
+    """As `adapt`, to some rows of images that are open already."""
     metadata, model = load_best(run)
     if not run.is_dir():
         raise run_folder.RunError(f"{run}: should be the folder of a run")
     if run.resolve() == folder.resolve():
         raise run_folder.RunError(f"{folder}: is the run itself; -o should name another folder")
     history = run_folder.read_history(run)
-    images = open_for(metadata, data, map_name, labelled=False, resize=resize)
-    rows, _ = rows_of(images, split)
     if not any(isinstance(layer, _BatchNorm) for layer in model.modules()):
         raise ConfigError(f"{run}: the network {metadata.model} has no batch norm to adapt")
     if rows.size < FEWEST:
-        raise ConfigError(f"{data}: has {rows.size} images; should have at least {FEWEST}")
+        raise ConfigError(f"{images.where}: has {rows.size} images; should have at least {FEWEST}")
     repeatable(device)
     adapt_batch_norm(model.to(device), metadata, images, rows, device)
     if epochs:

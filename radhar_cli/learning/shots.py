@@ -5,7 +5,7 @@ training run in a folder of its own, so work that was interrupted goes on where 
 """
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -19,6 +19,7 @@ from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.split import TRAIN, VALIDATION
 from radhar_cli.errors import FolderError
 from radhar_cli.figures.shots import shots_png
+from radhar_cli.learning.adaptation import adapt_to
 from radhar_cli.learning.evaluation import open_for, predict
 from radhar_cli.learning.images.classes import unknown_message
 from radhar_cli.learning.images.image_set import ImageSet, labels_for
@@ -39,7 +40,8 @@ from radhar_cli.learning.training import train_on
 from radhar_cli.progress import Messages
 from radhar_cli.randomness import TRAINING, stream
 
-TUNED, SCRATCH = "fine-tuned", "from scratch"
+TUNED, ADAPTED, SCRATCH = "fine-tuned", "adapted", "from scratch"
+WAYS = (TUNED, ADAPTED, SCRATCH)
 SHOWN = 600  # labelled images an epoch, those of a few again and again; as many mixed ones
 MOST = 16  # times an epoch that an image is fine-tuned with
 NUMBERS, TABLE, FIGURE = "shots.json", "shots.csv", "shots.png"
@@ -55,6 +57,8 @@ class ShotOptions:
         mix: data that go on being shown while the run is fine-tuned, the run's own.
         overrides: `key=value` of both ways of learning.
         tuning: `key=value` of fine-tuning alone.
+        adapting: epochs of `adaptation.adapt` after it, to all images without their labels; 0 for
+            none.
         overwrite: start again in folders that hold other runs.
     """
 
@@ -63,6 +67,7 @@ class ShotOptions:
     mix: tuple[Path, ...] = ()
     overrides: tuple[str, ...] = ()
     tuning: tuple[str, ...] = ()
+    adapting: int = 0
     overwrite: bool = False
 
 
@@ -72,7 +77,7 @@ class ShotPoint:
 
     Attributes:
         shots: labelled images of each class.
-        how: TUNED or SCRATCH.
+        how: TUNED, ADAPTED (TUNED, then without labels) or SCRATCH.
         tested: images that each repeat was tested on.
         accuracies: of each repeat.
     """
@@ -108,17 +113,18 @@ class ShotCurve:
 
     def shortfalls(self) -> list[str]:
         """A line for each number at which fine-tuning is below what it should at least reach."""
-        others = [("no labels", p.accuracy) for p in self.of(TUNED) if p.shots == 0]
         mixed = "" if self.about["mix"] else "; --mix shows on what the run learned from"
+        scratch = {p.shots: p.accuracy for p in self.of(SCRATCH)}
         found = []
-        for point in self.of(TUNED):
-            scratch = [p.accuracy for p in self.of(SCRATCH) if p.shots == point.shots]
-            for than, other in [*others, *((SCRATCH, share) for share in scratch)]:
-                if point.accuracy < other:
-                    found.append(
-                        f"{point.shots} a class: fine-tuned is below {than} "
-                        f"({100 * point.accuracy:.1f} and {100 * other:.1f} %){mixed}"
-                    )
+        for how in (TUNED, ADAPTED):
+            without = {p.shots: p.accuracy for p in self.of(how)}.get(0)
+            for point in self.of(how):
+                for than, other in (("no labels", without), (SCRATCH, scratch.get(point.shots))):
+                    if other is not None and point.accuracy < other:
+                        found.append(
+                            f"{point.shots} a class: {how} is below {than} "
+                            f"({100 * point.accuracy:.1f} and {100 * other:.1f} %){mixed}"
+                        )
         return found
 
     def write(self, folder: Path) -> None:
@@ -127,9 +133,9 @@ class ShotCurve:
         table = csv_text(("learned", "shots", "accuracy", "low_95", "high_95", "repeats"), rows)
         lines = {
             how: [(p.shots, p.accuracy, *p.interval) for p in self.of(how)]
-            for how in (TUNED, SCRATCH)
+            for how in WAYS
+            if self.of(how)
         }
-        lines = {how: points for how, points in lines.items() if points}
         numbers = {
             **self.about,
             "left_out": self.left_out,
@@ -188,7 +194,7 @@ def few_shots(
     Args:
         run: a trained network.
         data: labelled images of another radar.
-        folder: of the training runs, `<k>_a_class/<repeat>/<tuned or scratch>`.
+        folder: of the runs, `<k>_a_class/<repeat>/<fine_tuned, adapted or from_scratch>`.
         shots: how many labelled images, how often, and how they are learned from.
         options: of `data`: split, map, names of classes.
         device: where to compute.
@@ -222,6 +228,7 @@ def few_shots(
             "classes": list(measured.images.classes),
             "persons_kept_apart": _persons(measured) is not None,
             "repeats": shots.repeats,
+            "adapting": shots.adapting,
             "settings": {
                 TUNED: tuned.model_dump(mode="json"),
                 SCRATCH: scratch.model_dump(mode="json"),
@@ -236,39 +243,46 @@ def few_shots(
         )
         return float((found.predicted == found.truth).mean())
 
+    def learned(k: int, repeat: int, draw: Draw) -> Iterator[tuple[str, Path]]:
+        """What each way of learning makes of a draw: its name, and the folder of the run."""
+        here, seed = folder / f"{k}_a_class" / str(repeat + 1), (own.seed + repeat) % 2**63
+        tuned_run = here / "fine_tuned" if k else run
+        if k:
+            labelled = measured.images.some(draw.labelled)
+            images, weights = _learned_from(metadata, labelled, mix, MOST)
+            settings = tuned.model_copy(update={"data_weights": weights, "seed": seed})
+            train_on(settings, images, tuned_run, _NoProgress(), shots.overwrite, run)
+        yield TUNED, tuned_run
+        if shots.adapting:
+            one, every = here / "adapted", measured.rows
+            adapt_to(measured.images, every, tuned_run, one, device, True, shots.adapting)
+            yield ADAPTED, one
+        if k:
+            images, weights = _learned_from(metadata, labelled, [], SHOWN)
+            settings = scratch.model_copy(update={"data_weights": weights, "seed": seed})
+            train_on(settings, images, here / "from_scratch", _NoProgress(), shots.overwrite)
+            yield SCRATCH, here / "from_scratch"
+
     for k in shots.shots:
         draws = [drawn(measured, k, own.seed, repeat) for repeat in range(shots.repeats)]
         if why := next(filter(None, (missing(measured, draw, k) for draw in draws)), None):
             curve.left_out[k] = why
             progress.say(f"{k} a class: left out; {why}")
             continue
-        sizes = tuple(int(draw.tested.size) for draw in draws)
-        if k == 0:
-            if _persons(measured) is None:  # every draw is the same
-                draws, sizes = draws[:1], sizes[:1]
-            curve.points.append(
-                ShotPoint(0, TUNED, sizes, tuple(tested(run, draw) for draw in draws))
-            )
-            continue
-        for how, config, start in ((TUNED, tuned, run), (SCRATCH, scratch, None)):
-            accuracies = []
-            for repeat, draw in enumerate(draws):
-                labelled = measured.images.some(draw.labelled)
-                images, weights = (
-                    _learned_from(metadata, labelled, mix, MOST)
-                    if start
-                    else _learned_from(metadata, labelled, [], SHOWN)
-                )
-                seed = (config.seed + repeat) % 2**63
-                settings = config.model_copy(update={"data_weights": weights, "seed": seed})
-                one = folder / f"{k}_a_class" / str(repeat + 1) / how.replace(" ", "_")
-                train_on(settings, images, one, _NoProgress(), shots.overwrite, start)
-                accuracies.append(tested(one, draw))
+        if k == 0 and _persons(measured) is None:
+            draws = draws[:1]  # every draw is the same
+        accuracies: dict[str, list[float]] = {how: [] for how in WAYS}
+        for repeat, draw in enumerate(draws):
+            for how, one in learned(k, repeat, draw):
+                accuracies[how].append(tested(one, draw))
                 progress.say(
-                    f"{k} a class, {how}, {repeat + 1} of {shots.repeats}: "
-                    f"{100 * accuracies[-1]:.1f} % of {draw.tested.size}"
+                    f"{k} a class, {how}, {repeat + 1} of {len(draws)}: "
+                    f"{100 * accuracies[how][-1]:.1f} % of {draw.tested.size}"
                 )
-            curve.points.append(ShotPoint(k, how, sizes, tuple(accuracies)))
+        sizes = tuple(int(draw.tested.size) for draw in draws)
+        curve.points += [
+            ShotPoint(k, how, sizes, tuple(shares)) for how, shares in accuracies.items() if shares
+        ]
     if not curve.points:
         raise FolderError(f"{data}: --shots: {next(iter(curve.left_out.values()))}")
     return curve

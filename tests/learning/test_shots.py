@@ -17,6 +17,7 @@ from radhar_cli.learning.evaluation import open_for, predict
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.run_folder import load_best, read_metadata
 from radhar_cli.learning.shots import (
+    ADAPTED,
     SCRATCH,
     TUNED,
     Draw,
@@ -154,23 +155,25 @@ def test_mixed_images_are_shown_as_often_as_labelled_ones_unless_these_are_few(
 
 def test_the_curve_of_a_run(run_dir: Path, data: Path, measured: Path, tmp_path: Path) -> None:
     watched = Watched()
-    found = curve(run_dir, measured, tmp_path, watched, mix=(data,), shots=(0, 2, 8))
-    assert [(p.shots, p.how) for p in found.points] == [(0, TUNED), (2, TUNED), (2, SCRATCH)]
+    found = curve(run_dir, measured, tmp_path, watched, mix=(data,), shots=(0, 2, 8), adapting=1)
+    ways = [(p.shots, p.how) for p in found.points]
+    assert ways == [(0, TUNED), (0, ADAPTED), (2, TUNED), (2, ADAPTED), (2, SCRATCH)]
     assert found.left_out == {8: "punching has 8 images"}
     assert any("8 a class: left out" in line for line in watched.said)
-    zero, tuned, scratch = found.points
+    zero, _, tuned, _, scratch = found.points
     metadata, model = load_best(run_dir)
     every = predict(model, metadata, opened(measured).images, np.arange(24), CPU, 8)
     assert zero.accuracies == ((every.predicted == every.truth).mean(),)
     assert tuned.tested == scratch.tested == (18, 18)
     for repeat, share in enumerate(tuned.accuracies):
-        one = tmp_path / f"2_a_class/{repeat + 1}/fine-tuned"
+        one = tmp_path / f"2_a_class/{repeat + 1}/fine_tuned"
         about, model = load_best(one)
         draw = drawn(opened(measured), 2, metadata.config["seed"], repeat)
         again = predict(model, about, opened(measured).images, draw.tested, CPU, 8)
         assert share == (again.predicted == again.truth).mean()
         assert about.data["val"] == 6
         assert "start" in about.work
+        assert read_metadata(one.parent / "adapted").work["adapted_epochs"] == 1
         assert "start" not in read_metadata(one.parent / "from_scratch").work
 
 
@@ -186,7 +189,7 @@ def test_interrupted_it_goes_on_and_the_result_is_the_same(
     whole = curve(run_dir, measured, tmp_path / "whole", shots=(1,))
     with pytest.raises(KeyboardInterrupt):
         curve(run_dir, measured, tmp_path / "cut", Stopped(), shots=(1,))
-    first = tmp_path / "cut/1_a_class/1/fine-tuned/best.safetensors"
+    first = tmp_path / "cut/1_a_class/1/fine_tuned/best.safetensors"
     written = first.stat().st_mtime_ns
     assert not (tmp_path / "cut/1_a_class/2/from_scratch").exists()
     assert curve(run_dir, measured, tmp_path / "cut", shots=(1,)).points == whole.points

@@ -70,7 +70,7 @@ def evaluate(
         typer.Option(
             metavar="KEY=VALUE",
             help="Of --shots: change a setting of fine-tuning alone (--set: of both; RUN's own "
-            "hold, to fine-tune a quarter of its epochs and warm-up).",
+            "hold, to fine-tune half of its epochs and warm-up).",
         ),
     ] = None,
     adapt: Annotated[

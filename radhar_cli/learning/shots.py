@@ -289,8 +289,8 @@ def few_shots(
 
 
 def shorter(config: TrainConfig) -> TrainConfig:
-    """Settings to fine-tune with: a quarter of the epochs and of the warm-up."""
-    epochs, warmup = -(-config.epochs // 4), config.warmup_epochs / 4
+    """Settings to fine-tune with: half of the epochs and of the warm-up."""
+    epochs, warmup = -(-config.epochs // 2), config.warmup_epochs / 2
     return config.model_copy(update={"epochs": epochs, "warmup_epochs": warmup})
 
 

@@ -215,7 +215,7 @@ def test_settings_are_the_runs_with_fewer_epochs_to_fine_tune(
 ) -> None:
     found = curve(run_dir, measured, tmp_path, shots=(0,), overrides=("epochs=9",))
     tuned, scratch = (found.about["settings"][how] for how in (TUNED, SCRATCH))
-    assert (scratch["epochs"], tuned["epochs"]) == (9, 3)
+    assert (scratch["epochs"], tuned["epochs"]) == (9, 5)
     assert {key for key in tuned if tuned[key] != scratch[key]} == {"epochs"}
     other = curve(run_dir, measured, tmp_path, shots=(0,), tuning=("epochs=5",))
     assert other.about["settings"][TUNED]["epochs"] == 5

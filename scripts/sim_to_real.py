@@ -16,6 +16,7 @@ was stopped.
 
 import argparse
 import hashlib
+import json
 import subprocess
 import sys
 import zipfile
@@ -28,10 +29,13 @@ import torch
 from PIL import Image
 
 from radhar_cli.arrays import Bool, Index, Levels
+from radhar_cli.capture.array_files import check_npz, refusing
 from radhar_cli.dataset.reading import open_dataset
+from radhar_cli.errors import CaptureError
 from radhar_cli.learning.evaluation import open_for, predict
 from radhar_cli.learning.metrics import wilson
 from radhar_cli.learning.run_folder import load_best
+from radhar_cli.untrusted import regular_size
 
 ROOT = Path(__file__).resolve().parents[1]
 SIMULATED = ROOT / "configs/measured/glasgow_5p8GHz.yaml"
@@ -59,13 +63,9 @@ WITHOUT = {  # what is left out: keys of the simulation
 }
 NO_AUGMENTATION = "augment={}"
 SEEDS = (1, 2, 3)
-SHOTS, REPEATS, SHOWN_TIMES = (1, 5, 20, 100), 5, 600
-TUNING = ("epochs=10", "learning_rate=0.0005", "warmup_epochs=1")
+SHOTS, REPEATS = (0, 1, 5, 20, 100), 5
+ADAPTING = 10  # epochs without labels
 MAX_MAPS, MAX_SIDE, MAX_BYTES = 100_000, 2048, 2**31
-
-
-class MasksError(Exception):
-    """A file of measured masks that cannot be used."""
 
 
 def network_image(mask: Bool, slug: str) -> Levels:
@@ -87,43 +87,41 @@ def read_masks(path: Path) -> tuple[Bool, list[str]]:
     """Masks [K, H, W], and the class of each by our names, of the classes that we have.
 
     Raises:
-        MasksError: names the file, the array, and what is wrong with it.
+        CaptureError: names the file, the array, and what is wrong with it.
     """
-    try:
-        with zipfile.ZipFile(path) as file:
-            size = sum(part.file_size for part in file.infolist())
-        if size > MAX_BYTES:
-            raise MasksError(f"{path}: holds {size} bytes; should have at most {MAX_BYTES}")
-        with np.load(path, allow_pickle=False) as file:
-            missing = {"masks", "label", "classes"} - set(file.files)
-            if missing:
-                raise MasksError(f"{path}: has no array {sorted(missing)[0]!r}")
-            masks, label, classes = (np.asarray(file[n]) for n in ("masks", "label", "classes"))
-    except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
-        raise MasksError(f"{path}: is no .npz of plain arrays ({error})") from None
+    regular_size(path)
+    with refusing(str(path)), zipfile.ZipFile(path) as archive:
+        there = check_npz(archive)
+        size = sum(part.file_size for part in archive.infolist())
+    if size > MAX_BYTES:
+        raise CaptureError(f"{path}: holds {size} bytes; should have at most {MAX_BYTES}")
+    if missing := {"masks", "label", "classes"} - there.keys():
+        raise CaptureError(f"{path}: has no array {sorted(missing)[0]!r}")
+    with refusing(str(path)), np.load(path, allow_pickle=False) as file:
+        masks, label, classes = (np.asarray(file[n]) for n in ("masks", "label", "classes"))
     if masks.dtype != np.uint8 or masks.ndim != 3:
-        raise MasksError(
+        raise CaptureError(
             f"{path}: masks is {masks.dtype} {masks.shape}; should be uint8 [K, H, W/8]"
         )
     count, height, width = masks.shape
     if not (count <= MAX_MAPS and SIDE <= height <= MAX_SIDE and SIDE <= 8 * width <= MAX_SIDE):
-        raise MasksError(
+        raise CaptureError(
             f"{path}: masks is {masks.shape}; should be at most {MAX_MAPS} of {SIDE} to "
             f"{MAX_SIDE} px"
         )
     if label.shape != (count,) or label.dtype.kind not in "iu":
-        raise MasksError(
+        raise CaptureError(
             f"{path}: label is {label.dtype} {label.shape}; should be {count} integers"
         )
     if classes.ndim != 1 or classes.dtype.kind not in "US" or not classes.size:
-        raise MasksError(f"{path}: classes is {classes.dtype} {classes.shape}; should be names")
+        raise CaptureError(f"{path}: classes is {classes.dtype} {classes.shape}; should be names")
     if count and not 0 <= label.min() <= label.max() < classes.size:
-        raise MasksError(f"{path}: label reaches beyond the {classes.size} classes")
+        raise CaptureError(f"{path}: label reaches beyond the {classes.size} classes")
     names = [n.decode("ascii", "replace") if isinstance(n, bytes) else str(n) for n in classes]
     slugs = [CLASSES.get(name.strip().lower().replace(" ", "_")) for name in names]
     rows = [row for row in range(count) if slugs[label[row]] is not None]
     if not rows:
-        raise MasksError(f"{path}: has no map of {', '.join(CLASSES)}; its classes are {names}")
+        raise CaptureError(f"{path}: has no map of {', '.join(CLASSES)}; its classes are {names}")
     found: Bool = np.unpackbits(masks[rows], axis=2).astype(bool)
     return found, [str(slugs[label[row]]) for row in rows]
 
@@ -191,16 +189,11 @@ class Measured:
             write_image(network_image(mask, slug), folder / slug / f"{row:05d}.png")
         return cls(folder)
 
-    @property
-    def slugs(self) -> list[str]:
-        """Classes of which there are maps."""
-        return sorted(path.name for path in self.folder.iterdir())
-
-    def correct(self, run: Path, split: str = "all") -> "Correct":
+    def correct(self, run: Path) -> "Correct":
         """How a run does on them."""
         metadata, model = load_best(run)
         images = open_for(metadata, self.folder, None)
-        found = predict(model, metadata, images, images.rows(split), torch.device("cpu"), batch=128)
+        found = predict(model, metadata, images, images.rows("all"), torch.device("cpu"), batch=128)
         return Correct(found.truth, found.predicted, metadata.classes)
 
 
@@ -256,7 +249,7 @@ def main() -> None:
         print(f"{run.name}: best.safetensors has SHA-256 {digest}", flush=True)
     try:
         masks, slugs = read_masks(given.masks)
-    except MasksError as error:
+    except CaptureError as error:
         sys.exit(f"sim_to_real: {error}")
     measured = Measured.written(masks, slugs, out / "measured")
     if not given.quick:
@@ -283,40 +276,22 @@ def ablation(measured: Measured, images: Path, out: Path, given: argparse.Namesp
 
 
 def curve(measured: Measured, images: Path, run: Path, out: Path) -> None:
-    """Print accuracy with k labelled maps a class: fine-tuned, and from nothing.
-
-    Tuning goes on with simulated maps mixed in, about as many as labelled ones are shown.
-    """
-    files = {slug: sorted((measured.folder / slug).iterdir()) for slug in measured.slugs}
-    mass = len(list((images / "train").rglob("*.png")))
-    for k in (k for k in SHOTS if 2 * k <= min(map(len, files.values()))):
-        found: dict[str, list[Correct]] = {"fine-tuned": [], "from nothing": []}
-        for repeat in range(REPEATS):
-            rng, here = np.random.default_rng([k, repeat]), out / f"{k}_{repeat}"
-            for slug, some in files.items():
-                chosen = set(rng.choice(len(some), k, replace=False).tolist())
-                for number, file in enumerate(some):
-                    for part in ("train", "val") if number in chosen else ("test",):
-                        to = here / "images" / part / slug / file.name
-                        to.parent.mkdir(parents=True, exist_ok=True)
-                        to.write_bytes(file.read_bytes())
-            weights = f"data_weights=[{SHOWN_TIMES / (k * len(files))},{SHOWN_TIMES / mass}]"
-            shots, more = here / "images", (f"seed={repeat + 1}", weights, *TUNING)
-            tuned, scratch = here / "tuned", here / "scratch"
-            start = ("--init", run, "--config", TRAINING, *_sets(more))
-            radhar("train", shots, images, "-o", tuned, *start)
-            trained(
-                shots, scratch, repeat + 1, (f"data_weights=[{SHOWN_TIMES / (k * len(files))}]",)
-            )
-            for kind, one in (("fine-tuned", tuned), ("from nothing", scratch)):
-                found[kind].append(Measured(shots).correct(one, "test"))
-        for kind, correct in found.items():
-            print(accuracy_line(f"{k} labelled a class, {kind}", correct), flush=True)
+    """Print accuracy with k labelled maps a class: fine-tuned, adapted as well, from scratch."""
+    shots = ",".join(map(str, SHOTS))
+    more = ("--repeats", REPEATS, "--mix", images, "--adapt", ADAPTING, "-o", out)
+    radhar("eval", run, measured.folder, "--shots", shots, *more)
+    for point in json.loads((out / "shots.json").read_text())["points"]:
+        low, high = point["accuracy_95"]
+        print(
+            f"{point['shots']} labelled a class, {point['learned']}: {point['accuracy']:.3f} "
+            f"({low:.3f} to {high:.3f}), {len(point['accuracies'])} repeats",
+            flush=True,
+        )
 
 
 def adapted(run: Path, measured: Measured, out: Path) -> Path:
-    """The run with the batch norm of measured maps."""
-    radhar("adapt", run, measured.folder, "-o", out, "--overwrite")
+    """The run, adapted to measured maps without their labels."""
+    radhar("adapt", run, measured.folder, "-o", out, "--epochs", ADAPTING, "--overwrite")
     return out
 
 

@@ -270,7 +270,8 @@ def check_npz(archive: zipfile.ZipFile) -> dict[str, tuple[tuple[int, ...], str]
     """{name: (shape, kind of its type)} of the arrays of an .npz, read from their headers.
 
     Raises:
-        ValueError: one is packed in another way than NumPy's, or too much.
+        ValueError: one is packed in another way than NumPy's, or too much, or is shorter than it
+            says.
     """
     arrays: dict[str, tuple[tuple[int, ...], str]] = {}
     for one in archive.infolist():
@@ -280,6 +281,8 @@ def check_npz(archive: zipfile.ZipFile) -> dict[str, tuple[tuple[int, ...], str]
             raise ValueError(f"{one.filename} is packed {MAX_PACKING}-fold or more")
         with archive.open(one) as file:
             shape, _, dtype = _header(file)
+        if not dtype.hasobject and prod(shape) * dtype.itemsize > one.file_size:
+            raise ValueError(f"{one.filename} says it has the shape {shape}, and holds less")
         arrays[one.filename.removesuffix(".npy")] = shape, dtype.kind
     return arrays
 

@@ -19,22 +19,37 @@ def adapt(
         str | None, typer.Option("--map", help="Another map than the one it was trained on.")
     ] = None,
     split: Annotated[str, typer.Option(help="train, val, test or all.")] = "all",
+    epochs: Annotated[
+        int,
+        typer.Option(
+            min=0,
+            max=1000,
+            help="Passes in which it also learns from the images: to be sure of each, and of every "
+            "class equally often.",
+        ),
+    ] = 0,
     resize: Resize = False,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace a run that the folder holds.")
     ] = False,
     device: Annotated[str, typer.Option(help="auto, cpu, cuda or mps.")] = "auto",
 ) -> None:
-    """Give a copy of a run the batch-norm statistics of unlabelled images.
+    """Fit a copy of a run to unlabelled images: its batch-norm statistics, and with --epochs more.
 
     Example:
 
-      radhar adapt runs/simulated datasets/measured -o runs/adapted
+      radhar adapt runs/simulated datasets/measured -o runs/adapted --epochs 10
 
     For a network that learned from simulated maps and is to work on a radar's. The images should
-    show the classes about as often as those it will be asked about.
+    show the classes about as often as those it will be asked about; with --epochs, every class
+    about equally often.
     """
-    from radhar_cli.commands.learning_options import apart, known_device, needs_torch
+    from radhar_cli.commands.learning_options import (
+        StderrLog,
+        apart,
+        known_device,
+        needs_torch,
+    )
 
     needs_torch()
     from radhar_cli.learning import adaptation
@@ -51,6 +66,9 @@ def adapt(
         split_named(split),
         resize,
         overwrite,
+        epochs,
+        StderrLog(),
     )
-    report(folder=out, run=run, data=data)
-    tell(f"{out}: {run} with the batch norm of {data}")
+    report(folder=out, run=run, data=data, epochs=epochs)
+    more = f", after {epochs} epochs without labels" if epochs else ""
+    tell(f"{out}: {run} with the batch norm of {data}{more}")

@@ -58,16 +58,32 @@ def load_section(kind: type[S], path: Path | None, overrides: Iterable[str] = ()
     return _load(kind, path, overrides)[0]
 
 
+def changed_section(section: S, overrides: Iterable[str]) -> S:
+    """A config with overrides applied, each as `load_section` has them.
+
+    Raises:
+        ConfigError: as `load_section`.
+    """
+    document, options = section.model_dump(mode="json"), {}
+    for option, text in map(_told, overrides):
+        key = _override(document, text)
+        options[key] = option or f"--set {key}"
+    return validated(type(section), document, "--set", {}, options)
+
+
+def _told(override: str) -> tuple[str, str]:
+    """The option that an override names, if it does, and its text."""
+    option, _, text = override.partition(" ") if override.startswith("--") else ("", "", override)
+    return option, text
+
+
 def _load(kind: type[S], path: Path | None, overrides: Iterable[str]) -> tuple[S, Places, Options]:
     """The config, the places of its keys, and the options that gave some of them."""
-    told = [
-        override.partition(" ") if override.startswith("--") else ("", "", override)
-        for override in overrides
-    ]
-    bases = [text for _, _, text in told if text.partition("=")[0].strip() == BASE]
+    told = [_told(override) for override in overrides]
+    bases = [text for _, text in told if text.partition("=")[0].strip() == BASE]
     document, places = read_on_bases(path, with_overrides({}, bases))
     options: Options = {}
-    for option, _, text in told:
+    for option, text in told:
         if text in bases:
             continue
         key = _override(document, text)

@@ -2,9 +2,12 @@
 
 Batch norm keeps mean and variance of what each layer saw while it learned. Replaced by those of the
 new images they take away what differs between the two sources alone (Li et al., Adaptive batch
-normalization for practical domain adaptation, Pattern Recognition 80, 2018).
+normalization for practical domain adaptation, Pattern Recognition 80, 2018). Then all layers but
+the last can learn from the images: to be sure of each, and of every class equally often (Liang, Hu
+and Feng, Do we really need to access the source data?, ICML 2020).
 """
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import torch
@@ -20,11 +23,15 @@ from radhar_cli.learning.batches import Reader, pieces
 from radhar_cli.learning.evaluation import open_for, rows_of
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.scan import content_hash, scan
+from radhar_cli.learning.machine import repeatable
 from radhar_cli.learning.run_files import TRAINED_ON
 from radhar_cli.learning.run_folder import MAX_TABLE, RunMetadata, load_best
+from radhar_cli.learning.starting_point import is_of_last_layer
+from radhar_cli.progress import Messages
 from radhar_cli.randomness import TRAINING, stream
 
 FEWEST, BATCH = 16, 128
+RATE = 2e-4  # of Adam
 
 
 def adapt(
@@ -36,11 +43,14 @@ def adapt(
     split: str = "all",
     resize: bool = False,
     overwrite: bool = False,
+    epochs: int = 0,
+    progress: Messages | None = None,
 ) -> RunMetadata:
     """Write a copy of a run whose batch norm has the statistics of all images of `data`.
 
     Classes of `data` are not looked at, and may be others than the model's. The images should show
-    the classes about as often as those that will be predicted: statistics are of the mixture.
+    the classes about as often as those that will be predicted: statistics are of the mixture. With
+    epochs it learns from them as well, which takes every class to be there about equally often.
 
     Args:
         run: a training run.
@@ -51,26 +61,48 @@ def adapt(
         split: of `data`, where it has any.
         resize: bring images to the model's size.
         overwrite: replace a run that the folder holds.
+        epochs: of `maximise_information`.
+        progress: receives a line for each of them.
 
     Raises:
         RunError, FolderError: one of them cannot be used.
         ConfigError: the network has no batch norm, or there are fewer than FEWEST images.
     """
+    metadata, _ = load_best(run)
+    images = open_for(metadata, data, map_name, labelled=False, resize=resize)
+    rows, _ = rows_of(images, split)
+    return adapt_to(images, rows, run, folder, device, overwrite, epochs, progress)
+
+
+def adapt_to(
+    images: ImageSet,
+    rows: Index,
+    run: Path,
+    folder: Path,
+    device: torch.device,
+    overwrite: bool = False,
+    epochs: int = 0,
+    progress: Messages | None = None,
+) -> RunMetadata:
+    """As `adapt`, to some rows of images that are open already."""
     metadata, model = load_best(run)
     if not run.is_dir():
         raise run_folder.RunError(f"{run}: should be the folder of a run")
     if run.resolve() == folder.resolve():
         raise run_folder.RunError(f"{folder}: is the run itself; -o should name another folder")
     history = run_folder.read_history(run)
-    images = open_for(metadata, data, map_name, labelled=False, resize=resize)
-    rows, _ = rows_of(images, split)
     if not any(isinstance(layer, _BatchNorm) for layer in model.modules()):
         raise ConfigError(f"{run}: the network {metadata.model} has no batch norm to adapt")
     if rows.size < FEWEST:
-        raise ConfigError(f"{data}: has {rows.size} images; should have at least {FEWEST}")
+        raise ConfigError(f"{images.where}: has {rows.size} images; should have at least {FEWEST}")
+    repeatable(device)
     adapt_batch_norm(model.to(device), metadata, images, rows, device)
+    if epochs:
+        maximise_information(model, metadata, images, rows, device, epochs, progress)
+        adapt_batch_norm(model, metadata, images, rows, device)
     seen = content_hash(images, rows, scan(images, rows).digests)
-    metadata = metadata.model_copy(update={"work": {**metadata.work, "adapted_to": seen}})
+    work = {**metadata.work, "adapted_to": seen, "adapted_epochs": epochs}
+    metadata = metadata.model_copy(update={"work": work})
     with folder_lock(folder):
         run_folder.reserve_run(folder, metadata, overwrite)
         best = run_folder.best_epoch(history)
@@ -93,10 +125,63 @@ def adapt_batch_norm(
             layer.train()
             layer.reset_running_stats()
             layer.momentum = None  # the plain average over all batches
-    seed = int(metadata.config.get("seed", 0))
-    order = rows[stream(seed, TRAINING, name="adaptation").permutation(rows.size)]
-    size = -(-order.size // max(1, order.size // BATCH))
     with torch.inference_mode():
-        for levels, _ in Reader(images, images.label, workers=0, pin=False)(pieces(order, size)):
+        for levels in _shuffled(metadata, images, rows, 0):
             model(metadata.normalisation(levels.to(device)))
     model.eval()
+
+
+def maximise_information(
+    model: nn.Module,
+    metadata: RunMetadata,
+    images: ImageSet,
+    rows: Index,
+    device: torch.device,
+    epochs: int,
+    progress: Messages | None = None,
+) -> None:
+    """Lower the entropy of each prediction and raise that of their mean, by all but the last layer.
+
+    The mutual information of images and predictions grows; without labels, batch norm as in
+    training, in the batches of `adapt_batch_norm`.
+
+    Raises:
+        RunError: the loss is not finite.
+    """
+    norms = [layer for layer in model.modules() if isinstance(layer, _BatchNorm)]
+    learned = [p for name, p in model.named_parameters() if not is_of_last_layer(name, model)]
+    optimiser = torch.optim.Adam(learned, lr=RATE)
+    for epoch in range(1, epochs + 1):
+        for layer in norms:
+            layer.train()
+        for levels in _shuffled(metadata, images, rows, epoch):
+            shares = model(metadata.normalisation(levels.to(device))).softmax(1)
+            entropy, of_mean = _entropy(shares).mean(), _entropy(shares.mean(0))
+            loss = entropy - of_mean
+            if not loss.isfinite():
+                raise run_folder.RunError(f"epoch {epoch} of --epochs: the loss is {loss.item()}")
+            optimiser.zero_grad()
+            loss.backward()  # type: ignore[no-untyped-call]
+            optimiser.step()
+        if progress is not None:
+            progress.say(
+                f"epoch {epoch}/{epochs}  entropy of a prediction {entropy:.3f}, of their mean "
+                f"{of_mean:.3f}"
+            )
+    model.eval()
+
+
+def _entropy(shares: torch.Tensor) -> torch.Tensor:
+    """Entropy [...] of shares [..., classes], nats."""
+    return -(shares * shares.clamp_min(1e-12).log()).sum(-1)
+
+
+def _shuffled(
+    metadata: RunMetadata, images: ImageSet, rows: Index, epoch: int
+) -> Iterator[torch.Tensor]:
+    """Levels of the rows in nearly equal batches, in the order of an epoch."""
+    seed = int(metadata.config.get("seed", 0))
+    order = rows[stream(seed, TRAINING, epoch, name="adaptation").permutation(rows.size)]
+    size = -(-order.size // max(1, order.size // BATCH))
+    for levels, _ in Reader(images, images.label, workers=0, pin=False)(pieces(order, size)):
+        yield levels

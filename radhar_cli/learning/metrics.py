@@ -1,7 +1,9 @@
 """How good predictions are: intervals, confusion, precision and recall, calibration."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from statistics import NormalDist, variance
 from typing import Any
 
 import numpy as np
@@ -12,14 +14,28 @@ from radhar_cli.arrays import Float, Index
 CALIBRATION_BINS = 15
 
 
-def wilson(correct: int, count: int, confidence: float = 0.95) -> tuple[float, float]:
+def wilson(correct: float, count: float, confidence: float = 0.95) -> tuple[float, float]:
     """Wilson's interval of the proportion correct/count; (0, 1) where count is 0."""
     if count == 0:
         return 0.0, 1.0
-    from scipy.stats import binomtest
+    z2 = NormalDist().inv_cdf((1 + confidence) / 2) ** 2
+    share = correct / count
+    middle = share + z2 / (2 * count)
+    half = math.sqrt(z2 * (share * (1 - share) + z2 / (4 * count)) / count)
+    low, high = ((middle + side) / (1 + z2 / count) for side in (-half, half))
+    return max(0.0, low), min(1.0, high)
 
-    interval = binomtest(correct, count).proportion_ci(confidence, method="wilson")
-    return float(interval.low), float(interval.high)
+
+def interval_of_repeats(shares: Sequence[float], count: int) -> tuple[float, float]:
+    """Interval of 95 % of the mean of some proportions, of `count` images each.
+
+    Wilson's, of as many images as have the variance of `count` images and that of the mean over
+    the repeats together: it covers the choice of what was tested and of what was learned from.
+    """
+    mean = sum(shares) / len(shares)
+    one = mean * (1 - mean)
+    spread = variance(shares) / len(shares) if len(shares) > 1 else 0.0
+    return wilson(mean * (n := one / (one / count + spread) if one else count), n)
 
 
 def _ratio(above: Float, below: NDArray[np.int64]) -> Float:

@@ -121,7 +121,7 @@ def evaluate_one(
     predictions = predict(run.model, run.metadata, images, rows, device, options.batch)
     names, title = run.metadata.classes, f"{run.name} on {data_name}, {split}"
     numbers = metrics.summary(predictions.truth, predictions.probabilities, names)
-    numbers["seen_in_training"] = _seen(run, images, rows)
+    numbers["seen_in_training"] = seen_in_training(run, images, rows)
     numbers |= {"split": split, "map": images.map, "snr_db": images.snr_db}
     numbers |= {"left_out": dict(images.left_out)}
     counts = np.array(numbers["confusion"])
@@ -152,7 +152,7 @@ def evaluate_one(
     return predictions, numbers
 
 
-def _seen(run: Run, images: ImageSet, rows: Index) -> dict[str, int]:
+def seen_in_training(run: Run, images: ImageSet, rows: Index) -> dict[str, int]:
     """How many of the evaluated images, and of the scenes behind them, were trained on."""
     folder = run.folder if run.folder.is_dir() else run.folder.parent
     pixels, scenes = read_trained_on(folder)

@@ -52,14 +52,14 @@ def start_from(run: Path, model: nn.Module, config: TrainConfig, images: ImageSe
         digest.update(name.encode() + tensor.numpy().tobytes())
     notes: tuple[str, ...] = ()
     if metadata.classes != images.classes:
-        last = {name for name, old in model.state_dict().items() if _is_last(name, model)}
+        last = {name for name, old in model.state_dict().items() if is_of_last_layer(name, model)}
         weights = {name: tensor for name, tensor in weights.items() if name not in last}
         notes = (f"--init {run}: knows other classes; the last layer is learned from nothing",)
     model.load_state_dict(weights, strict=False)
     return StartingPoint(digest.hexdigest(), metadata.normalisation, notes)
 
 
-def _is_last(name: str, model: nn.Module) -> bool:
+def is_of_last_layer(name: str, model: nn.Module) -> bool:
     """Whether a parameter is one of the layer that makes the logits."""
     network: Any = model
     last = network.get_classifier() if hasattr(model, "get_classifier") else network.head

@@ -136,25 +136,39 @@ def train(
         MachineError: a device that is not available, or a step too large for memory.
         TrainingError: the loss is not finite; earlier checkpoints are kept.
     """
-    if config.threads != "auto":
-        torch.set_num_threads(config.threads)
-    device = choose_device(config.device)
-    repeatable(device)
     training_stream = None
     if stream is None:
         images = checked_images(config, data, names)
     else:
         paths = [data] if isinstance(data, Path) else list(data)
+        device = choose_device(config.device)
         workers = choose_execution_plan(config, device, synthesises=True).workers
         training_stream, images = stream_and_validation(config, stream, paths, names or {}, workers)
+    return train_on(config, images, folder, progress, overwrite, start, training_stream)
+
+
+def train_on(
+    config: TrainConfig,
+    images: ImageSet,
+    folder: Path,
+    progress: TrainingProgress,
+    overwrite: bool = False,
+    start: Path | None = None,
+    stream: TrainingStream | None = None,
+) -> Outcome:
+    """As `train`, on images that are open already, with training and validation images."""
+    if config.threads != "auto":
+        torch.set_num_threads(config.threads)
+    device = choose_device(config.device)
+    repeatable(device)
     with process_group(device) as group, folder_lock(folder) if group.is_main else nullcontext():
-        plan = choose_execution_plan(config, device, synthesises=training_stream is not None)
+        plan = choose_execution_plan(config, device, synthesises=stream is not None)
         images_a_pass = min(plan.micro_batch, -(-config.batch_size // group.size))
         step = Step(config, len(images.classes), images.size, images_a_pass, plan.precision)
         step.check(device)
         try:
             return _Training.prepared(
-                config, images, folder, plan, group, progress, overwrite, start, training_stream
+                config, images, folder, plan, group, progress, overwrite, start, stream
             ).run()
         except RuntimeError as error:
             if not out_of_memory(error):

@@ -70,6 +70,7 @@ def test_json_of_commands_that_learn(place: Path) -> None:
         "train": train,
         "eval": ("eval", run, data, "-o", place / "told-eval"),
         "predict": ("predict", run, one),
+        "adapt": ("adapt", run, data, "-o", place / "told-adapted", "--epochs", 1),
         "models": ("models", "smallnet", "--size", 32),
     }
     for name, command in commands.items():

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from learning.patterns import same, trained, tree
+from learning.patterns import Watched, same, trained, tree
 from PIL import Image
 from torch import nn
 
@@ -59,10 +59,49 @@ def test_statistics_alone_change_and_labels_do_not_matter(learned: Path, tmp_pat
         assert same != (layer in norms and part.startswith(("running", "num_batches"))), name
 
 
-def test_the_same_again_gives_the_same_weights(learned: Path, tmp_path: Path) -> None:
+def information(run: Path, data: Path) -> float:
+    """Of predictions on images: entropy of their mean less their mean entropy, in nats."""
+    metadata, model = load_best(run)
+    images = open_for(metadata, data, None)
+    p = predict(model, metadata, images, np.arange(len(images)), CPU, 32).probabilities
+    entropy = -(p * np.log(p)).sum(1).mean()
+    return float(-(p.mean(0) * np.log(p.mean(0))).sum() - entropy)
+
+
+def test_epochs_raise_the_information_of_predictions_and_lose_no_accuracy(
+    learned: Path, tmp_path: Path
+) -> None:
+    measured = another_radar(tree(tmp_path / "measured", seed=5))
+    watched = Watched()
+    adapt(learned, measured, tmp_path / "norms", CPU)
+    adapt(learned, measured, tmp_path / "epochs", CPU, epochs=6, progress=watched)
+    assert len(watched.said) == 6
+    assert information(tmp_path / "epochs", measured) > information(tmp_path / "norms", measured)
+    assert accuracy(tmp_path / "epochs", measured) > 0.9
+
+
+def test_epochs_leave_the_last_layer_and_do_not_look_at_labels(
+    learned: Path, tmp_path: Path
+) -> None:
+    one, other = (tree(tmp_path / name / "tree", seed=5) for name in ("one", "other"))
+    for number, name in enumerate(("punching", "kicking", "walking")):  # the order stays
+        (other / name).rename(other / f"class_{number}")
+    for data in (one, other):
+        adapt(learned, data, data.parent / "adapted", CPU, epochs=2)
+    before, after, blind = (
+        load_best(run)[1].state_dict()
+        for run in (learned, tmp_path / "one/adapted", tmp_path / "other/adapted")
+    )
+    assert same(after, blind)
+    for name, tensor in before.items():
+        assert torch.equal(tensor, after[name]) == name.startswith("head"), name
+
+
+@pytest.mark.parametrize("epochs", [0, 2])
+def test_the_same_again_gives_the_same_weights(learned: Path, tmp_path: Path, epochs: int) -> None:
     measured = tree(tmp_path / "measured", seed=5)
     for name in ("one", "two"):
-        adapt(learned, measured, tmp_path / name, CPU)
+        adapt(learned, measured, tmp_path / name, CPU, epochs=epochs)
     # Not the files' bytes: safetensors writes its metadata in any order.
     (about, one), (again, two) = (load_best(tmp_path / name) for name in ("one", "two"))
     assert about == again

@@ -67,6 +67,50 @@ def test_doppler_scale_keeps_zero_doppler_and_multiplies_the_rest() -> None:
         assert not found[34:].any()
 
 
+def test_time_stretch_keeps_the_middle_and_multiplies_the_distance_from_it() -> None:
+    left, right = (
+        np.array([centre(changed(blob(31, at), row, time_stretch=0.3)) for row in range(60)])
+        for at in (21, 41)
+    )
+    factors = (right[:, 1] - left[:, 1]) / 20
+    assert np.exp(-0.31) < factors.min() < 0.85
+    assert 1.15 < factors.max() < np.exp(0.31)
+    assert np.abs((left[:, 1] + right[:, 1]) / 2 - 31.5 + 0.5 * factors).max() < 0.3
+    assert np.abs(left[:, 0] - 31).max() < 0.1, "nothing moves along Doppler"
+
+
+def test_a_doppler_shift_moves_along_doppler_alone() -> None:
+    moves = np.array([centre(changed(blob(31, 31), row, doppler_shift=0.1)) for row in range(60)])
+    assert 5 < np.ptp(moves[:, 0]) <= 12.8
+    assert np.abs(moves[:, 1] - 31).max() < 0.1
+
+
+def test_contrast_is_another_snr() -> None:
+    """Levels are decibels: the strongest stays, and the floor lies so many more or fewer below."""
+    levels = np.tile(np.array([75, 155, 255], np.uint8), (8, 8))
+    floors = np.array([int(changed(levels, row, contrast=0.4)[0, 0]) for row in range(60)])
+    for row in range(60):
+        strongest, middle = (changed(levels, row, contrast=0.4)[0, at] for at in (2, 1))
+        assert strongest == 255
+        assert (255 - middle) == pytest.approx((255 - floors[row]) * 100 / 180, abs=1)
+    below = (255 - floors) / 180
+    assert 0.6 <= below.min() + 0.01 < 0.75
+    assert 1.25 < below.max() <= 1.41
+
+
+def test_masks_grow_or_shrink_by_one_pixel() -> None:
+    mask = blob(31, 31)  # 5 x 5 px
+    sizes = set()
+    for row in range(60):
+        found = changed(mask, row, morphology=1) > 0
+        height, width = (int(found.any(axis=axis).sum()) for axis in (1, 0))
+        assert found.sum() == height * width, "it stays a rectangle"
+        sizes.add((height, width))
+    assert sizes == {(3, 3), (3, 5), (5, 3), (7, 7), (7, 5), (5, 7)}
+    kept = [np.array_equal(changed(mask, row, morphology=0.5), mask) for row in range(200)]
+    assert 0.35 < np.mean(kept) < 0.65
+
+
 def test_noise_takes_levels_that_are_there() -> None:
     mask = (np.random.default_rng(2).random((64, 64)) < 0.3).astype(np.uint8) * 255
     found = changed(mask, 3, noise=0.4)
@@ -77,9 +121,10 @@ def test_noise_takes_levels_that_are_there() -> None:
 def test_bands_are_blank_from_edge_to_edge() -> None:
     full = np.full((64, 64), 255, np.uint8)
     for row in range(20):
-        found = changed(full, row, time_bands=1, band_width=0.3)
-        assert ((found == 0).all(axis=0) | (found == 255).all(axis=0)).all()
-        assert (found == 0).mean() <= 0.3
+        for bands, along in (("time_bands", 0), ("doppler_bands", 1)):
+            found = changed(full, row, **{bands: 1, "band_width": 0.3})
+            assert ((found == 0).all(axis=along) | (found == 255).all(axis=along)).all()
+            assert (found == 0).mean() <= 0.3
 
 
 @examples(max_examples=60)

@@ -4,11 +4,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from learning.patterns import Watched, settings, split_tree
+from learning.patterns import Watched, same_run, settings, split_tree
 
 from radhar_cli.errors import ConfigError, FolderError
+from radhar_cli.learning.batches import epoch_order
 from radhar_cli.learning.images.joined import sampling_weights
 from radhar_cli.learning.images.opening import open_images
+from radhar_cli.learning.run_folder import RunError
 from radhar_cli.learning.training import checked_images, train
 
 
@@ -53,6 +55,35 @@ def test_a_run_on_two_sets(data: Path, other: Path, tmp_path: Path) -> None:
     assert watched.losses
     with pytest.raises(ConfigError, match="for each of the 2 data sets"):
         train(settings(data_weights=[1.0]), [data, other], tmp_path / "no", watched)
+
+
+def test_an_epoch_shows_sets_by_their_weights_and_classes_equally_often(
+    data: Path, other: Path
+) -> None:
+    config = settings(data_weights=[3.0, 0.5], sampling="balanced")
+    both = checked_images(config, [data, other])
+    rows = both.rows("train")
+    weights = sampling_weights(both, rows, config.data_weights, balanced=True)
+    shown = np.concatenate([rows[epoch_order(weights, seed=1, epoch=e)] for e in range(50)])
+    by_class = np.bincount(both.label[shown]) / 50
+    assert by_class == pytest.approx([11] * 4, rel=0.1)
+    walking = both.classes.index("walking")
+    of_walking = shown[both.label[shown] == walking]
+    by_set = np.bincount(both.source[of_walking])
+    assert by_set[0] / by_set[1] == pytest.approx(3 * 4 / (0.5 * 8), rel=0.15)
+
+
+def test_two_weighted_sets_from_a_start_go_on_to_the_same_weights(
+    data: Path, other: Path, run_dir: Path, tmp_path: Path
+) -> None:
+    config = settings(data_weights=[1, 0.5], sampling="balanced")
+    train(config, [data, other], tmp_path / "whole", Watched(), start=run_dir)
+    with pytest.raises(KeyboardInterrupt):
+        train(config, [data, other], tmp_path / "cut", Watched(stop_after=1), start=run_dir)
+    train(config, [data, other], tmp_path / "cut", Watched(), start=run_dir)
+    assert same_run(tmp_path / "whole", tmp_path / "cut")
+    with pytest.raises(RunError, match=r"start: .* there"):
+        train(config, [data, other], tmp_path / "cut", Watched(), start=tmp_path / "whole")
 
 
 def test_images_of_two_sizes_are_refused(data: Path, tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.stats import binomtest
 
 from radhar_cli.learning import metrics
 
@@ -21,25 +22,27 @@ def test_known_precision_recall_and_f1() -> None:
     assert found["macro_f1"] == pytest.approx((8 / 11 + 1 / 2 + 0) / 3)
 
 
-def by_hand(right: int, count: int) -> tuple[float, float]:
-    """Wilson (1927): where the normal test of a proportion stops rejecting it."""
-    z, p = 1.959963984540054, right / count
-    middle = (p + z * z / (2 * count)) / (1 + z * z / count)
-    half = z / (1 + z * z / count) * math.sqrt(p * (1 - p) / count + z * z / (4 * count**2))
-    return middle - half, middle + half
-
-
 def test_wilson_of_eight_in_ten() -> None:
     assert metrics.wilson(8, 10) == pytest.approx((0.490162, 0.943318), abs=1e-6)
 
 
 @given(count=st.integers(1, 5000), share=st.floats(0, 1))
 @settings(max_examples=50, deadline=None)
-def test_wilson_is_its_formula(count: int, share: float) -> None:
+def test_wilson_is_that_of_scipy(count: int, share: float) -> None:
     right = round(share * count)
     low, high = metrics.wilson(right, count)
-    assert (low, high) == pytest.approx(by_hand(right, count), abs=1e-9)
+    known = binomtest(right, count).proportion_ci(0.95, method="wilson")
+    assert (low, high) == pytest.approx((known.low, known.high), abs=1e-9)
     assert 0 <= low <= right / count <= high <= 1
+
+
+def test_interval_of_repeats_holds_images_and_draws() -> None:
+    for share, repeats in ((0.8, 3), (1.0, 2), (0.0, 2), (0.8, 1)):
+        alike = metrics.interval_of_repeats([share] * repeats, 50)
+        assert alike == pytest.approx(metrics.wilson(50 * share, 50))
+    low, high = metrics.interval_of_repeats([0.7, 0.8, 0.9], 10**9)
+    known = 1.96 * 0.1 / math.sqrt(3)  # of the mean of three with a standard deviation of 0.1
+    assert (low, high) == pytest.approx((0.8 - known, 0.8 + known), abs=0.03)
 
 
 def test_wilson_of_nothing_says_nothing() -> None:
@@ -77,7 +80,7 @@ def test_summary_of_a_planted_confusion() -> None:
     assert numbers["confusion"] == [[2, 0, 0, 0], [0, 0, 3, 0], [0, 0, 2, 0], [0, 0, 0, 0]]
     assert (numbers["images"], numbers["right"]) == (7, 4)
     assert numbers["accuracy"] == pytest.approx(4 / 7)
-    assert numbers["accuracy_95"] == pytest.approx(by_hand(4, 7))
+    assert numbers["accuracy_95"] == pytest.approx(list(metrics.wilson(4, 7)))
     assert numbers["macro_f1"] == pytest.approx((1 + 0 + 4 / 7) / 3)
     assert list(numbers["classes"]) == ["a", "b", "c"]
     assert numbers["classes"]["b"] == {"precision": 0.0, "recall": 0.0, "f1": 0.0, "images": 3}

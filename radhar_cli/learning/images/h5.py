@@ -12,6 +12,7 @@ from radhar_cli.arrays import Float, Levels
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset, open_dataset
+from radhar_cli.dataset.recorded import windows
 from radhar_cli.dataset.scene_fields import Field
 from radhar_cli.learning.images.image_set import ImageSet, class_order, repeated
 
@@ -63,11 +64,22 @@ def h5_images(path: Path, map_name: str | None, kind: str) -> ImageSet:
             size=data.config.image.size_px,
             pixels=H5Pixels(data.path, name, table),
             snr_db=_one_number(data.config.snr_db),
+            persons=_persons(data),
         )
 
 
 def _one_number(value: object) -> float | None:
     return float(value) if isinstance(value, (int, float)) else None
+
+
+def _persons(data: Dataset) -> tuple[str, ...] | None:
+    """Who is in each row; of a recording that does not say, which recording it was cut from."""
+    if data.config.recorded is not None:
+        parts = (window.part for window in windows(data.config))
+        return tuple(f"file {p.file}" if p.person is None else p.person for p in parts)
+    if data.config.split.subjects is None:
+        return None
+    return tuple(map(str, data.scene["subject"][:].tolist()))
 
 
 def _scenes(data: Dataset, slugs: list[str]) -> tuple[str, ...]:

@@ -74,6 +74,8 @@ class ImageSet:
         snr_db: of all of them, None where they differ or the source does not say.
         left_out: {class: images of it that the source has and this set does not}.
         source: [N] which of several joined sets each came from.
+        persons: [N] who is in each, or the recording that it was cut from; None where the source
+            does not say.
     """
 
     where: Path
@@ -88,6 +90,7 @@ class ImageSet:
     snr_db: float | None = None
     left_out: Mapping[str, int] = field(default_factory=dict)
     source: Index = field(default_factory=lambda: np.zeros(0, np.intp))
+    persons: tuple[str, ...] | None = None
 
     def __post_init__(self) -> None:
         if not self.source.size:
@@ -129,19 +132,23 @@ class ImageSet:
         if rows.size == label.size:
             return replace(self, classes=classes, label=label)
         lost = np.bincount(self.label[label < 0], minlength=len(new)).tolist()
+        left_out = {name: n for name, n in zip(self.classes, lost, strict=True) if n}
+        return replace(
+            replace(self, classes=classes, label=label).some(rows),
+            left_out={**self.left_out, **left_out},
+        )
+
+    def some(self, rows: Index) -> "ImageSet":
+        """The images of some rows, in their order; a row may come twice."""
         return replace(
             self,
-            classes=classes,
-            label=label[rows],
+            label=self.label[rows],
             split=None if self.split is None else self.split[rows],
             names=tuple(self.names[row] for row in rows),
             scenes=None if self.scenes is None else tuple(self.scenes[row] for row in rows),
             pixels=SomeRows(self.pixels, rows),
             source=self.source[rows],
-            left_out={
-                **self.left_out,
-                **{name: n for name, n in zip(self.classes, lost, strict=True) if n},
-            },
+            persons=None if self.persons is None else tuple(self.persons[row] for row in rows),
         )
 
     def cut(self, share: float, seed: int) -> "ImageSet":

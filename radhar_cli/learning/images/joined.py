@@ -52,6 +52,7 @@ def joined(sets: Sequence[ImageSet]) -> ImageSet:
         snr_db=sets[0].snr_db if len({one.snr_db for one in sets}) == 1 else None,
         left_out={name: n for one in sets for name, n in one.left_out.items()},
         source=np.repeat(np.arange(len(sets)), count),
+        persons=None,
     )
 
 

@@ -1,0 +1,231 @@
+"""scripts/sim_to_real.py at the smallest sizes, and on files that are not what it asks for."""
+
+import importlib.util
+import io
+import re
+import sys
+import zipfile
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import command_line
+import numpy as np
+import pytest
+
+from radhar_cli import load_config, sample
+from radhar_cli.errors import CaptureError
+
+SLUGS = ("walking", "sitting_down", "standing_up", "picking_up", "falling")
+OURS = ("walking", "sitting_down", "standing_up", "grabbing", "walking_to_falling")
+
+
+@pytest.fixture(scope="module")
+def script() -> ModuleType:
+    path = command_line.ROOT / "scripts/sim_to_real.py"
+    spec = importlib.util.spec_from_file_location("sim_to_real", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module  # where dataclasses look for it
+    spec.loader.exec_module(module)
+    return module
+
+
+def arrays(count: int = 12, size: int = 64) -> dict[str, Any]:
+    """Masks of noise, and a class that has no counterpart."""
+    masks = np.random.default_rng(0).random((count, size, size)) < 0.3
+    classes = np.array([*SLUGS, "drinking"])
+    return {
+        "masks": np.packbits(masks, axis=2),
+        "label": np.arange(count) % len(classes),
+        "classes": classes,
+    }
+
+
+def written(path: Path, **changed: Any) -> Path:
+    values = {**arrays(), **changed}
+    np.savez(path, **{name: value for name, value in values.items() if value is not None})
+    return path
+
+
+def test_masks_and_our_names_of_their_classes(script: ModuleType, tmp_path: Path) -> None:
+    given = arrays()
+    masks, slugs = script.read_masks(written(tmp_path / "m.npz"))
+    kept = given["label"] != 5
+    assert slugs == [OURS[n] for n in given["label"][kept]]
+    assert np.array_equal(masks, np.unpackbits(given["masks"][kept], axis=2).astype(bool))
+    assert masks.dtype == bool
+
+
+def test_names_are_matched_however_they_are_written(script: ModuleType, tmp_path: Path) -> None:
+    names = np.array(["Walking ", "SITTING DOWN", "standing up", "grabbing", "Falling", "?"])
+    _, slugs = script.read_masks(written(tmp_path / "m.npz", classes=names))
+    assert set(slugs) == set(OURS)
+    _, slugs = script.read_masks(written(tmp_path / "b.npz", classes=names.astype("S")))
+    assert set(slugs) == set(OURS)
+
+
+HOSTILE: list[tuple[dict[str, Any], str]] = [
+    ({"masks": None}, "has no array 'masks'"),
+    ({"label": None}, "has no array 'label'"),
+    ({"classes": None}, "has no array 'classes'"),
+    ({"masks": arrays()["masks"].astype(float)}, "should be uint8"),
+    ({"masks": arrays()["masks"][0]}, "should be uint8"),
+    ({"masks": arrays(size=32)["masks"]}, "64 to 2048 px"),
+    ({"label": np.arange(11)}, "should be 12 integers"),
+    ({"label": np.linspace(0, 1, 12)}, "should be 12 integers"),
+    ({"label": np.full(12, 6)}, "reaches beyond the 6 classes"),
+    ({"label": np.full(12, -1)}, "reaches beyond the 6 classes"),
+    ({"classes": np.arange(6)}, "should be names"),
+    ({"classes": np.array(["a", "b", "c", "d", "e", "f"])}, "has no map of walking"),
+    ({"label": np.full(12, 5)}, "has no map of walking"),
+    ({"label": np.array([None] * 12)}, "cannot be read"),
+]
+
+
+@pytest.mark.parametrize(("changed", "said"), HOSTILE)
+def test_wrong_arrays_are_one_line(
+    script: ModuleType, tmp_path: Path, changed: dict[str, Any], said: str
+) -> None:
+    path = written(tmp_path / "m.npz", **changed)
+    with pytest.raises(CaptureError) as error:
+        script.read_masks(path)
+    assert str(error.value).startswith(f"{path}: ")
+    assert said in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def npy_header(shape: str, kind: str = "|u1") -> bytes:
+    """An array that says it is that large, without its values."""
+    text = f"{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}".ljust(117) + "\n"
+    return b"\x93NUMPY\x01\x00" + len(text).to_bytes(2, "little") + text.encode()
+
+
+def test_files_that_are_no_npz_or_bombs_are_one_line(
+    script: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(script, "MAX_BYTES", 2**22)
+    good = written(tmp_path / "good.npz").read_bytes()
+    claims = io.BytesIO()
+    with zipfile.ZipFile(claims, "w") as archive:
+        archive.writestr("masks.npy", npy_header("(99999, 2048, 256)"))
+        archive.writestr("label.npy", npy_header("(99999,)", "<i8"))
+        archive.writestr("classes.npy", npy_header("(1,)", "<U8"))
+    bomb = io.BytesIO()
+    with zipfile.ZipFile(bomb, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("masks.npy", npy_header("(6, 1024, 1024)") + bytes(6 * 2**20))
+    large = tmp_path / "large.npz"
+    noise = np.random.default_rng(0).integers(0, 256, (5, 1024, 1024), dtype=np.uint8)
+    written(large, masks=noise, label=np.zeros(5, int))
+    files = {
+        "text": b"no archive",
+        "empty": b"",
+        "cut": good[: len(good) // 2],
+        "claims": claims.getvalue(),
+        "bomb": bomb.getvalue(),
+        "larger": large.read_bytes(),
+    }
+    for name, content in files.items():
+        path = tmp_path / f"{name}.npz"
+        path.write_bytes(content)
+        with pytest.raises(CaptureError) as error:
+            script.read_masks(path)
+        assert str(error.value).startswith(f"{path}: "), name
+        assert "\n" not in str(error.value)
+
+
+def measured(path: Path, config: Path, per_class: int) -> int:
+    """Write simulated masks of another seed as if they were measured; returns how many count."""
+    masks, label = [], []
+    for number, slug in enumerate(OURS):
+        long = ["duration_s=10"] if slug == "walking" else []
+        settings = load_config(config, long)
+        for index in range(per_class):
+            image = sample(settings, slug, index, ["maps/stft"], seed=77)["maps/stft"]
+            masks.append(np.packbits(image > 0, axis=1))
+            label.append(number)
+    masks.append(masks[0])
+    label.append(5)  # drinking, which is left out
+    classes = np.array([*SLUGS, "drinking"])
+    np.savez(path, masks=np.stack(masks), label=np.array(label), classes=classes)
+    return len(label) - 1
+
+
+@pytest.mark.slow
+def test_the_whole_way(
+    script: ModuleType,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Generates, trains, fixes the network, tests; the last line is what the issue asks for."""
+    config, training = tmp_path / "people.yaml", tmp_path / "train.yaml"
+    config.write_text(f"base: {script.SIMULATED}\nbody: {{scatterers: points}}\n")
+    training.write_text(f"base: {script.TRAINING}\nepochs: 3\nthreads: 1\n")
+    commands: list[tuple[object, ...]] = []
+    masks = tmp_path / "masks.npz"
+    read = script.read_masks
+
+    def read_masks(path: Path) -> object:
+        commands.append(("the masks",))
+        return read(path)
+
+    def radhar(*arguments: object) -> None:
+        commands.append(arguments)
+        done = command_line.radhar(*arguments)
+        assert done.returncode == 0, done.stderr
+
+    monkeypatch.setattr(script, "SIMULATED", config)
+    monkeypatch.setattr(script, "TRAINING", training)
+    monkeypatch.setattr(script, "radhar", radhar)
+    monkeypatch.setattr(script, "read_masks", read_masks)
+    monkeypatch.setattr(script, "SHOTS", (0, 1))
+    monkeypatch.setattr(script, "REPEATS", 1)
+    count = measured(masks, config, per_class=4)
+    out = tmp_path / "out"
+    given = ["sim_to_real", str(masks), "-o", str(out), "--per-class", "8", "--jobs", "1"]
+    monkeypatch.setattr(sys, "argv", [*given, "--quick"])
+    script.main()
+    lines = capsys.readouterr().out.splitlines()
+    share = r"(0\.\d{3}|1\.000)"
+    last = rf"accuracy on measured: {share} \({share} to {share}\), n = {count}"
+    found = re.fullmatch(last, lines[-1])
+    assert found is not None, lines[-1]
+    right, low, high = map(float, found.groups())
+    assert low <= right <= high
+    assert lines[-2].startswith("accuracy with unlabelled measured maps: ")
+    assert lines[-2].endswith(f", n = {count}")
+    assert re.fullmatch(r"seed_1: best.safetensors has SHA-256 [0-9a-f]{64}", lines[0])
+    order = [command[0] for command in commands]
+    made = ["generate"] * 4 + ["train"]
+    assert order[:6] == [*made, "the masks"], "the network is fixed before they are opened"
+    assert set(order[6:]) == {"adapt"}
+    commands.clear()
+    script.main()
+    assert capsys.readouterr().out.splitlines() == lines, "again: the same"
+    assert "generate" not in {command[0] for command in commands}, "what is made is kept"
+    script.curve(
+        script.Measured(out / "measured"),
+        out / "simulated/images",
+        out / "runs/seed_1",
+        out / "shots",
+    )
+    printed = capsys.readouterr().out.splitlines()
+    assert [line.partition(":")[0] for line in printed] == [
+        "0 labelled a class, fine-tuned",
+        "0 labelled a class, adapted",
+        "1 labelled a class, fine-tuned",
+        "1 labelled a class, adapted",
+        "1 labelled a class, from scratch",
+    ]
+
+
+def test_a_missing_file_is_said_before_anything_is_made(
+    script: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    given = ["sim_to_real", str(tmp_path / "none.npz"), "-o", str(tmp_path / "out")]
+    monkeypatch.setattr(sys, "argv", given)
+    with pytest.raises(SystemExit, match=r"none\.npz: no such file"):
+        script.main()
+    assert not (tmp_path / "out").exists()

@@ -5,7 +5,8 @@
 Every step is a `radhar` command and resumes where it was stopped; run the same line again. Each
 finished run leaves one record, docs/results/SCALE/RUN.json, which is committed; data sets and runs
 are not. The tables are made from the records alone, so a machine that has one run adds its row and
-the others stay. See SCALES for what each scale does.
+the others stay; a row that has a record of all epochs is run --again only. See SCALES for what each
+scale does.
 
 Beside each data set and each run that it makes, the script notes commit and machine
 (NAME.made.json), for the record; --made-at says it of those that were made without it.
@@ -254,7 +255,11 @@ class Reproduction:
             history = list(csv.DictReader(file))
         config, (evaluated, validation) = metrics["config"], _parts(own)[0]
         seconds = sum(float(row["seconds"]) for row in history)
-        parts = {name: part for _, part in _parts(others) for name in [part.pop("name")]}
+        # What it says class by class is in the confusion matrix.
+        parts = {
+            part["name"]: {key: value for key, value in part.items() if key != "classes"}
+            for _, part in _parts(others)
+        }
         return {
             "name": run.name,
             "scenario": training.scenario,
@@ -504,13 +509,13 @@ class Row:
 
 def rows_of(name: str, scale: Scale, records: dict[str, dict[str, Any]]) -> list[Row]:
     """The runs of a scale in its order, then what else has a record."""
-    wanted = {run_name(scale, training): training for training in scale.trainings}
+    trainings = {run_name(scale, training): training for training in scale.trainings}
     for key, found in records.items():
         other = Training(found["scenario"], found["snr_db"], found["model"])
-        wanted.setdefault(key, replace(other, by_subject=found["subjects"] is not None))
+        trainings.setdefault(key, replace(other, by_subject=found["subjects"] is not None))
     return [
         Row(training, key, records.get(key), f"results/{name}/{key}.json")
-        for key, training in wanted.items()
+        for key, training in trainings.items()
     ]
 
 
@@ -525,6 +530,8 @@ def tables(name: str, records: dict[str, dict[str, Any]]) -> list[str]:
         "--only RUN` makes the row whose record is RUN.json.",
         "",
     ]
+    order = list(SCENARIOS)
+    rows.sort(key=lambda row: (order.index(row.training.scenario), -row.training.snr_db))
     plain = [row for row in rows if _plain(row.training)]
     apart = [row for row in rows if row.training.by_subject]
     networks = [row for row in rows if row.training.snr_db == 30 and not row.training.by_subject]
@@ -558,11 +565,13 @@ def _by_snr(rows: list[Row]) -> list[str]:
 def _robustness(scale: Scale, scenario: str, rows: list[Row]) -> list[str]:
     snrs = tested_snrs(scale, scenario)
     body = []
-    for row in sorted(rows, key=lambda row: -row.training.snr_db):
+    for row in rows:
         cells = [f"{row.training.snr_db} dB"]
         if row.record is None:
             body.append(row.cells(cells, len(snrs) + 1))
             continue
+        if row.record["reduced"]:
+            cells = [f"{cells[0]} (reduced)"]
         parts = [row.record["fresh"].get(str(snr)) for snr in snrs]
         body.append(
             cells
@@ -700,6 +709,18 @@ def write_page(path: Path, text: str) -> None:
     path.write_text(f"{before}{BEGIN}\n{text}\n{END}{after}")
 
 
+def wanted(scale: Scale, words: list[str], results: Path, again: bool) -> list[Training]:
+    """Runs whose names have all the words; of those with a record of all epochs only `again`."""
+    records = read_records(results)
+    full = {name for name, found in records.items() if not found["reduced"] and not again}
+    names = {training: run_name(scale, training) for training in scale.trainings}
+    return [
+        training
+        for training, name in names.items()
+        if name not in full and all(word in name for word in words)
+    ]
+
+
 def report(name: str, page: Path) -> None:
     """Write the page from the records beside it."""
     results = page.parent / "results"
@@ -720,6 +741,7 @@ def main() -> None:
     parser.add_argument(
         "--report-only", action="store_true", help="write the tables from the records, no more"
     )
+    parser.add_argument("--again", action="store_true", help="also rows that have a record")
     parser.add_argument("--jobs", type=int, help="processes that generate")
     parser.add_argument("--datasets", type=Path, default=ROOT / "datasets" / "results")
     parser.add_argument("--runs", type=Path, default=ROOT / "runs" / "results")
@@ -738,12 +760,10 @@ def main() -> None:
     work = Reproduction(
         asked.scale, scale, asked.datasets, asked.runs, results, asked.jobs, made_at
     )
-    for training in scale.trainings:
-        wanted = all(word in run_name(scale, training) for word in asked.only)
-        if wanted and not asked.report_only:
-            work.train(training)
-            work.record(training)
-            report(asked.scale, page)
+    for training in [] if asked.report_only else wanted(scale, asked.only, results, asked.again):
+        work.train(training)
+        work.record(training)
+        report(asked.scale, page)
     report(asked.scale, page)
 
 

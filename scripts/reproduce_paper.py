@@ -756,11 +756,19 @@ def main() -> None:
     smoke = asked.scale not in PAGE_SCALES
     page = asked.page or (asked.runs / "smoke.md" if smoke else ROOT / "docs" / "results.md")
     results = page.parent / "results" / asked.scale
-    made_at = asked.made_at and (_git("rev-parse", asked.made_at) or asked.made_at)
-    work = Reproduction(
-        asked.scale, scale, asked.datasets, asked.runs, results, asked.jobs, made_at
-    )
-    for training in [] if asked.report_only else wanted(scale, asked.only, results, asked.again):
+    made_at = asked.made_at and _git("rev-parse", "--verify", f"{asked.made_at}^{{commit}}")
+    if asked.made_at and not made_at:
+        parser.error(f"--made-at {asked.made_at}: no commit of this repository")
+    names = [run_name(scale, training) for training in scale.trainings]
+    if not any(all(word in name for word in asked.only) for name in names):
+        parser.error(f"--only {' '.join(asked.only)}: no run has that; runs: {', '.join(names)}")
+    todo = [] if asked.report_only else wanted(scale, asked.only, results, asked.again)
+    if not todo and not asked.report_only:
+        print("there is a record of all epochs of what is asked for; --again runs it again")
+    # Commands run in the root of the repository, whatever the folder this was called in.
+    folders = asked.datasets.absolute(), asked.runs.absolute()
+    work = Reproduction(asked.scale, scale, *folders, results, asked.jobs, made_at)
+    for training in todo:
         work.train(training)
         work.record(training)
         report(asked.scale, page)

@@ -1,18 +1,28 @@
 """Build the paper's data sets, train its networks, evaluate them, and write docs/results.md.
 
-    python scripts/reproduce_paper.py --scale smoke|cpu|full [--only NAME ...] [--report-only]
+    python scripts/reproduce_paper.py --scale smoke|cpu|full [--only WORD ...] [--report-only]
 
-Every step is a `radhar` command and resumes where it was stopped; run the same line again. A run
-that is not there is left out of the tables and named. See SCALES for what each scale does.
+Every step is a `radhar` command and resumes where it was stopped; run the same line again. Each
+finished run leaves one record, docs/results/SCALE/RUN.json, which is committed; data sets and runs
+are not. The tables are made from the records alone, so a machine that has one run adds its row and
+the others stay; a row that has a record of all epochs is run --again only. See SCALES for what each
+scale does.
+
+Beside each data set and each run that it makes, the script notes commit and machine
+(NAME.made.json), for the record; --made-at says it of those that were made without it.
 """
 
 import argparse
+import csv
 import json
+import os
 import platform
+import re
 import shutil
 import subprocess
 import sys
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +31,12 @@ BEGIN, END = "<!-- tables: scripts/reproduce_paper.py -->", "<!-- end of tables 
 SCENARIOS = {"free_space": "free space", "through_wall": "through the wall"}
 FRESH_SEED = 20261121
 SUBJECTS = 20
+PAPER_EPOCHS = 20
+PAGE_SCALES = ("cpu", "full")
+UNKNOWN, NOT_RUN = "not recorded", "not run"
+ENDING = ["core hours", "commit", "record"]
+# What a commit has to say about a result; a change elsewhere is none of it.
+CODE = ("radhar_cli", "configs", "scripts/reproduce_paper.py")
 
 # Paper, Table III: validation accuracy (%), parameters (M), seconds with model loading.
 PAPER = {
@@ -67,7 +83,7 @@ class Training:
     @property
     def settings(self) -> list[str]:
         """Overrides of the paper's training config."""
-        if (self.epochs, self.drop_every) == (20, 10):
+        if (self.epochs, self.drop_every) == (PAPER_EPOCHS, 10):
             return []
         epochs = [f"epochs={self.epochs}"]
         return epochs + (
@@ -136,13 +152,21 @@ SCALES = {
 
 @dataclass
 class Reproduction:
-    """The steps of one scale and what they left."""
+    """The steps of one scale and what they leave.
+
+    Attributes:
+        name: of the scale.
+        results: folder of the records and figures that are committed.
+        made_at: commit of data sets and runs without a note, made on this machine.
+    """
 
     name: str
     scale: Scale
     data_root: Path
     runs_root: Path
-    jobs: int | None
+    results: Path
+    jobs: int | None = None
+    made_at: str | None = None
 
     def data(self, scenario: str, snr_db: int, kind: str = "") -> Path:
         """Folder of a data set; `kind` is fresh or subjects."""
@@ -151,12 +175,13 @@ class Reproduction:
 
     def run(self, training: Training) -> Path:
         """Folder of a run."""
-        kind = "_subjects" if training.by_subject else ""
-        stem = f"{training.scenario}_{training.snr_db}dB_{self.scale.size_px}px{kind}"
-        return self.runs_root / f"{stem}_{training.model}"
+        return self.runs_root / run_name(self.scale, training)
 
-    def generate(self, scenario: str, snr_db: int, kind: str = "") -> None:
-        """Build a data set, or find it complete."""
+    def generate(self, scenario: str, snr_db: int, kind: str = "") -> Path:
+        """Build a data set, or find it complete; returns its folder."""
+        folder = self.data(scenario, snr_db, kind)
+        if (folder / "dataset.h5").exists():
+            return folder
         scale = self.scale
         per_class = scale.fresh_per_class if kind == "fresh" else scale.per_class
         settings = [
@@ -172,73 +197,185 @@ class Reproduction:
             settings += ["split.by=subject", f"split.subjects={min(SUBJECTS, per_class)}"]
         config = ROOT / "configs" / "paper" / f"{scenario}.yaml"
         jobs = ["--jobs", str(self.jobs)] if self.jobs else []
-        radhar("generate", config, "-o", self.data(scenario, snr_db, kind), *_set(settings), *jobs)
+        write_note(folder)
+        radhar("generate", config, "-o", folder, *_set(settings), *jobs)
+        return folder
 
     def train(self, training: Training) -> None:
-        """Build the data of a run and train it, or find it complete."""
-        kind = "subjects" if training.by_subject else ""
-        self.generate(training.scenario, training.snr_db, kind)
-        radhar(
-            "train",
-            self.data(training.scenario, training.snr_db, kind),
-            "-o",
-            self.run(training),
-            "--model",
-            training.model,
-            *_set([*training.settings, *self.scale.train]),
+        """Build the data of a run and train it, or find it finished."""
+        run = self.run(training)
+        if (run / "metrics.json").exists():
+            return
+        data = self.generate(training.scenario, training.snr_db, _kind(training))
+        write_note(run)
+        settings = _set([*training.settings, *self.scale.train])
+        radhar("train", data, "-o", run, "--model", training.model, *settings)
+
+    def record(self, training: Training) -> None:
+        """Evaluate a finished run and write its record and its figures."""
+        run, plain = self.run(training), _plain(training)
+        if not (run / "metrics.json").exists():
+            return
+        data = self.generate(training.scenario, training.snr_db, _kind(training))
+        own = self._eval(
+            run,
+            "val",
+            [data],
+            *(["--tsne"] if training.snr_db == 30 and plain else []),
+            *(["--in-place-vs-moving"] if training.model == "fftnet" else []),
         )
+        fresh: dict[int, Path] = {}
+        others: dict[str, Any] = {}
+        if plain:
+            snrs = tested_snrs(self.scale, training.scenario)
+            fresh = {snr: self.generate(training.scenario, snr, "fresh") for snr in snrs}
+            others = self._eval(run, "fresh", list(fresh.values()), "--filters")
+        self.results.mkdir(parents=True, exist_ok=True)
+        (self.results / f"{run.name}.json").write_text(
+            as_text(self._contents(training, data, own, fresh, others))
+        )
+        for name in _figures(training):
+            for kind in ("val", "fresh"):
+                source = self._reports(run, kind) / f"{name}.png"
+                if source.exists():
+                    shutil.copyfile(source, self.results / f"{run.name}_{name}.png")
+                    break
 
-    def finished(self) -> list[Training]:
-        """Runs that have come to their end."""
-        return [t for t in self.scale.trainings if (self.run(t) / "metrics.json").exists()]
-
-    def evaluate(self, folder: Path) -> dict[str, Any]:
-        """Evaluate every finished run; returns {what: report.json} and leaves the figures."""
-        done, reports = self.finished(), {}
-        for training in done:
-            kind = "subjects" if training.by_subject else ""
-            out = folder / self.run(training).name
-            reports[out.name] = self._eval(
-                out,
-                [self.run(training)],
-                [self.data(training.scenario, training.snr_db, kind)],
-                "val",
-                *(["--tsne"] if self._first(training) else []),
-                *(["--in-place-vs-moving"] if training.model == "fftnet" else []),
-            )
-        for scenario in SCENARIOS:
-            mine = [t for t in done if t.scenario == scenario and _plain(t)]
-            if not mine:
-                continue
-            for training in mine:
-                if not (self.data(scenario, training.snr_db, "fresh") / "dataset.h5").exists():
-                    self.generate(scenario, training.snr_db, "fresh")
-            fresh = [self.data(scenario, t.snr_db, "fresh") for t in mine]
-            out = folder / f"{scenario}_fresh"
-            runs = [self.run(t) for t in mine]
-            reports[out.name] = self._eval(out, runs, fresh, "all", "--filters")
-        return reports
-
-    def _first(self, training: Training) -> bool:
-        return training.snr_db == 30 and _plain(training)
-
-    def _eval(
-        self, out: Path, runs: list[Path], data: list[Path], split: str, *more: str
+    def _contents(
+        self,
+        training: Training,
+        data: Path,
+        own: dict[str, Any],
+        fresh: dict[int, Path],
+        others: dict[str, Any],
     ) -> dict[str, Any]:
-        stamp = out / "report.json"
-        newest = max((run / "metrics.json").stat().st_mtime for run in runs)
-        if not stamp.exists() or stamp.stat().st_mtime < newest:
-            radhar("eval", *runs, *data, "-o", out, "--split", split, *more)
-        report: dict[str, Any] = json.loads(stamp.read_text())
-        return report
+        run = self.run(training)
+        metrics = _read(run / "metrics.json")
+        with (run / "history.csv").open(newline="") as file:
+            history = list(csv.DictReader(file))
+        config, (evaluated, validation) = metrics["config"], _parts(own)[0]
+        seconds = sum(float(row["seconds"]) for row in history)
+        # What it says class by class is in the confusion matrix.
+        parts = {
+            part["name"]: {key: value for key, value in part.items() if key != "classes"}
+            for _, part in _parts(others)
+        }
+        return {
+            "name": run.name,
+            "scenario": training.scenario,
+            "snr_db": training.snr_db,
+            "model": training.model,
+            "size_px": metrics["size_px"][0],
+            "subjects": min(SUBJECTS, self.scale.per_class) if training.by_subject else None,
+            "epochs": config["epochs"],
+            "reduced": config["epochs"] < PAPER_EPOCHS,
+            "config": config,
+            "command": f"python scripts/reproduce_paper.py --scale {self.name} --only {run.name}",
+            "note": None,
+            "training": {
+                **self._made(run),
+                "versions": metrics["versions"],
+                "device": metrics["device"],
+                "precision": metrics["precision"],
+                "threads": metrics["threads"],
+                "processes": metrics["processes"],
+                "seconds": round(seconds, 1),
+                "core_hours": round(seconds * metrics["threads"] * metrics["processes"] / 3600, 3),
+            },
+            "data": {
+                **self._made(data),
+                **{key: metrics["data"][key] for key in ("hash", "train", "val")},
+            },
+            "evaluation": {**_note(self._reports(run, "val")), "threads": own["threads"]},
+            "best_epoch": metrics["best_epoch"],
+            "parameters": metrics["parameters"],
+            "multiply_adds": metrics["multiply_adds"],
+            "speed": evaluated["speed"],
+            "labels": metrics["classes"],
+            "validation": validation,
+            "fresh": {
+                str(snr): {**self._made(folder), **parts[folder.name]}
+                for snr, folder in fresh.items()
+            },
+            "filters": next(iter(others.get("filters", {}).values()), None),
+            "history": {
+                key: [float(row[key]) for row in history]
+                for key in ("train_loss", "train_accuracy", "val_loss", "val_accuracy", "seconds")
+            },
+        }
+
+    def _made(self, folder: Path) -> dict[str, Any]:
+        """Commits and machine at which a folder was made."""
+        if _note_file(folder).exists() or self.made_at is None:
+            return _note(folder)
+        return {"commits": [{"commit": self.made_at, "dirty": None}], "machine": machine()}
+
+    def _reports(self, run: Path, kind: str) -> Path:
+        return self.runs_root / f"reports_{self.name}" / f"{run.name}_{kind}"
+
+    def _eval(self, run: Path, kind: str, data: list[Path], *more: str) -> dict[str, Any]:
+        """Report of a run on some data sets, made again if the run is newer or a set is missing."""
+        out = self._reports(run, kind)
+        stamp, newest = out / "report.json", (run / "metrics.json").stat().st_mtime
+        there = _read(stamp) if stamp.exists() and stamp.stat().st_mtime >= newest else {}
+        if {folder.name for folder in data} == {part["name"] for _, part in _parts(there)}:
+            return there
+        out.parent.mkdir(parents=True, exist_ok=True)
+        _note_file(out).unlink(missing_ok=True)
+        write_note(out, load=round(os.getloadavg()[0], 1))
+        split = "all" if kind == "fresh" else kind
+        radhar("eval", run, *data, "-o", out, "--split", split, *more)
+        return _read(stamp)
+
+
+def run_name(scale: Scale, training: Training) -> str:
+    """Name of a run's folder and of its record."""
+    kind = "_subjects" if training.by_subject else ""
+    stem = f"{training.scenario}_{training.snr_db}dB_{scale.size_px}px{kind}"
+    return f"{stem}_{training.model}"
+
+
+def tested_snrs(scale: Scale, scenario: str) -> list[int]:
+    """SNRs at which every plain network of a scenario is tested, highest first."""
+    return sorted({t.snr_db for t in scale.trainings if t.scenario == scenario and _plain(t)})[::-1]
 
 
 def _plain(training: Training) -> bool:
     return training.model == "fftnet" and not training.by_subject
 
 
+def _kind(training: Training) -> str:
+    return "subjects" if training.by_subject else ""
+
+
+def _figures(training: Training) -> dict[str, str]:
+    """Figures of a run that are kept, {name: caption}: of the paper's network, by its SNR."""
+    if not _plain(training):
+        return {}
+    found = {"confusion": "Confusion matrix, validation"}
+    if training.snr_db in (30, -10):
+        found |= {"curves": "Training curves", "filters": "Global filters"}
+    if training.snr_db == 30:
+        found |= {"tsne": "t-SNE of maps and of features"}
+    return found
+
+
+def _read(path: Path) -> dict[str, Any]:
+    contents: dict[str, Any] = json.loads(path.read_text())
+    return contents
+
+
 def _set(settings: list[str]) -> list[str]:
     return [word for setting in settings for word in ("--set", setting)]
+
+
+def _parts(report: dict[str, Any]) -> list[tuple[dict[str, Any], dict[str, Any]]]:
+    """(run, result on a data set, its name included) of every data set of a report."""
+    return [
+        (run, {"name": Path(name).name, **part})
+        for run in report.get("runs", {}).values()
+        for name, part in run["data"].items()
+    ]
 
 
 def radhar(*words: object) -> None:
@@ -248,170 +385,350 @@ def radhar(*words: object) -> None:
     subprocess.run(line, check=True, cwd=ROOT)
 
 
-def percent(part: dict[str, Any]) -> str:
+def _git(*words: str) -> str | None:
+    """What git says of this checkout, or None where there is none."""
+    try:
+        line = ["git", "-C", str(ROOT), *words]
+        return subprocess.run(line, check=True, capture_output=True, text=True).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        return None
+
+
+@cache
+def commit() -> dict[str, Any]:
+    """Commit of this checkout, and whether its code has changes that are not committed."""
+    found = _git("rev-parse", "HEAD")
+    changes = _git("status", "--porcelain", "--", *CODE)
+    return {"commit": found, "dirty": None if found is None else bool(changes)}
+
+
+@cache
+def machine() -> dict[str, Any]:
+    """Processor, cores, GPU if there is one."""
+    import torch
+
+    names = [
+        line.partition(":")[2].strip()
+        for file in [Path("/proc/cpuinfo")]
+        if file.exists()
+        for line in file.read_text().splitlines()
+        if line.startswith("model name")
+    ]
+    return {
+        "processor": f"{(names or [platform.processor()])[0]} ({platform.machine()})",
+        "cores": os.cpu_count(),
+        "gpu": torch.cuda.get_device_name() if torch.cuda.is_available() else None,
+    }
+
+
+def _note_file(folder: Path) -> Path:
+    return folder.parent / f"{folder.name}.made.json"
+
+
+def _note(folder: Path) -> dict[str, Any]:
+    """What is noted beside a folder; nothing is known of one without a note."""
+    file = _note_file(folder)
+    note: dict[str, Any] = {"commits": [], "machine": None}
+    return note | (_read(file) if file.exists() else {})
+
+
+def write_note(folder: Path, **more: float) -> None:
+    """Note beside a folder that work on it begins, or goes on, at this commit on this machine."""
+    commits = [known for known in _note(folder)["commits"] if known != commit()]
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    note = {"commits": [*commits, commit()], "machine": machine(), **more}
+    _note_file(folder).write_text(json.dumps(note, indent=1) + "\n")
+
+
+def as_text(record: dict[str, Any]) -> str:
+    """JSON with a line for every row of numbers."""
+    text = json.dumps(record, indent=1)
+    return re.sub(r"\[[^][{}]*\]", lambda found: " ".join(found[0].split()), text) + "\n"
+
+
+def read_records(folder: Path) -> dict[str, dict[str, Any]]:
+    """Records of a folder by their names."""
+    found = [_read(file) for file in sorted(folder.glob("*.json"))]
+    return {record["name"]: record for record in found}
+
+
+def percent(part: dict[str, Any] | None) -> str:
     """Accuracy with its interval."""
+    if part is None:
+        return UNKNOWN
     low, high = part["accuracy_95"]
     return f"{100 * part['accuracy']:.2f} ({100 * low:.2f} to {100 * high:.2f})"
 
 
-def tables(work: Reproduction, reports: dict[str, Any], figures: list[tuple[str, str]]) -> str:
-    """The Markdown between the markers of docs/results.md."""
-    done = work.finished()
-    missing = [work.run(t).name for t in work.scale.trainings if t not in done]
-    not_run = ", ".join(missing) or "nothing; everything of this scale is here"
-    size, maps = work.scale.size_px, 12 * work.scale.per_class
-    lines = [
-        f"Printed by `python scripts/reproduce_paper.py --scale {work.name}` on {_machine()}. "
-        f"Maps of {size} x {size} px, {maps} a data set, 8:2. Accuracy in per cent with Wilson's "
-        "95 % interval. The epoch is chosen by the validation maps, so their accuracy is "
-        "optimistic; no choice was made on the fresh seed.",
-        "",
-        f"Not run: {not_run}.",
-        "",
-        "### Accuracy by SNR and scenario",
-        "",
-        "| scenario | SNR (dB) | epochs | best epoch | validation | fresh seed | paper |",
-        "| --- " * 7 + "|",
+def _number(value: float | None, form: str = ".0f", factor: float = 1.0) -> str:
+    return UNKNOWN if value is None else f"{factor * value:{form}}"
+
+
+def _epochs(record: dict[str, Any]) -> str:
+    return f"{record['epochs']}{' (reduced)' if record['reduced'] else ''}"
+
+
+def _commit(record: dict[str, Any]) -> str:
+    known = [
+        f"{made['commit'][:7]}{' with changes' if made['dirty'] else ''}"
+        for made in record["training"]["commits"]
+        if made["commit"]
     ]
-    for t in done:
-        if _plain(t):
-            own = _own(work, reports, t)
-            fresh = reports[f"{t.scenario}_fresh"]["runs"]
-            row = fresh[_name(fresh, work.run(t))]["data"]
-            there = row[_name(row, work.data(t.scenario, t.snr_db, "fresh"))]
-            lines.append(
-                f"| {SCENARIOS[t.scenario]} | {t.snr_db} | {_epochs(work, t)} "
-                f"| {own[0]['best_epoch']} | {percent(own[1])} | {percent(there)} "
-                f"| {PAPER_BY_SNR[t.scenario, t.snr_db]} |"
+    return ", ".join(known) or UNKNOWN
+
+
+def _hours(record: dict[str, Any]) -> str:
+    training = record["training"]
+    on_gpu = " on a GPU" if training["device"] not in ("cpu", None) else ""
+    return _number(training["core_hours"], ".2f") + on_gpu
+
+
+def _table(head: list[str], rows: list[list[str]]) -> list[str]:
+    lines = [head, ["---"] * len(head), *rows]
+    return [f"| {' | '.join(line)} |" for line in lines] + [""]
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row of a table: a run that is wanted, its record if there is one."""
+
+    training: Training
+    name: str
+    record: dict[str, Any] | None
+    link: str
+
+    def cells(self, first: list[str], count: int) -> list[str]:
+        """The first cells, then "not run" in the others, which are `count`."""
+        return first + [NOT_RUN] + [""] * (count - len(first) - 1)
+
+    def ending(self) -> list[str]:
+        """Core hours of training, its commit, the record."""
+        assert self.record is not None
+        return [_hours(self.record), _commit(self.record), f"[JSON]({self.link})"]
+
+
+def rows_of(name: str, scale: Scale, records: dict[str, dict[str, Any]]) -> list[Row]:
+    """The runs of a scale in its order, then what else has a record."""
+    trainings = {run_name(scale, training): training for training in scale.trainings}
+    for key, found in records.items():
+        other = Training(found["scenario"], found["snr_db"], found["model"])
+        trainings.setdefault(key, replace(other, by_subject=found["subjects"] is not None))
+    return [
+        Row(training, key, records.get(key), f"results/{name}/{key}.json")
+        for key, training in trainings.items()
+    ]
+
+
+def tables(name: str, records: dict[str, dict[str, Any]]) -> list[str]:
+    """The tables of a scale, as lines of Markdown, out of its records alone."""
+    scale = SCALES[name]
+    rows = rows_of(name, scale, records)
+    maps = 12 * scale.per_class
+    lines = [
+        f"Maps of {scale.size_px} x {scale.size_px} px, {maps} a data set, 8:2; fresh seed: "
+        f"{12 * scale.fresh_per_class} maps. `python scripts/reproduce_paper.py --scale {name} "
+        "--only RUN` makes the row whose record is RUN.json.",
+        "",
+    ]
+    order = list(SCENARIOS)
+    rows.sort(key=lambda row: (order.index(row.training.scenario), -row.training.snr_db))
+    plain = [row for row in rows if _plain(row.training)]
+    apart = [row for row in rows if row.training.by_subject]
+    networks = [row for row in rows if row.training.snr_db == 30 and not row.training.by_subject]
+    lines += ["### Accuracy by SNR and scenario", "", *_by_snr(plain)]
+    lines += ["### Trained at one SNR, tested at the others (fresh seed)", ""]
+    for scenario in SCENARIOS:
+        mine = [row for row in plain if row.training.scenario == scenario]
+        lines += _robustness(scale, scenario, mine)
+    if apart:
+        lines += _subjects(apart)
+    return [*lines, "### Networks at 30 dB", "", *_networks(networks)]
+
+
+def _by_snr(rows: list[Row]) -> list[str]:
+    head = ["scenario", "SNR (dB)", "epochs", "best epoch", "validation", "fresh seed", "paper"]
+    head += ENDING
+    body = []
+    for row in rows:
+        t, found = row.training, row.record
+        paper = PAPER_BY_SNR.get((t.scenario, t.snr_db), "not given")
+        cells = [SCENARIOS[t.scenario], str(t.snr_db)]
+        if found is None:
+            body.append([*cells, NOT_RUN, "", "", "", paper, "", "", ""])
+            continue
+        cells += [_epochs(found), _number(found["best_epoch"]), percent(found["validation"])]
+        cells += [percent(found["fresh"].get(str(t.snr_db))), paper, *row.ending()]
+        body.append(cells)
+    return _table(head, body)
+
+
+def _robustness(scale: Scale, scenario: str, rows: list[Row]) -> list[str]:
+    snrs = tested_snrs(scale, scenario)
+    body = []
+    for row in rows:
+        cells = [f"{row.training.snr_db} dB"]
+        if row.record is None:
+            body.append(row.cells(cells, len(snrs) + 1))
+            continue
+        if row.record["reduced"]:
+            cells = [f"{cells[0]} (reduced)"]
+        parts = [row.record["fresh"].get(str(snr)) for snr in snrs]
+        body.append(
+            cells
+            + [NOT_RUN if part is None else _number(part["accuracy"], ".2f", 100) for part in parts]
+        )
+    return _table(
+        [f"{SCENARIOS[scenario]}, trained at", *(f"tested at {snr} dB" for snr in snrs)], body
+    )
+
+
+def _subjects(rows: list[Row]) -> list[str]:
+    head = ["scenario", "SNR (dB)", "epochs", "validation on persons never seen", *ENDING]
+    body = []
+    for row in rows:
+        t, found = row.training, row.record
+        cells = [SCENARIOS[t.scenario], str(t.snr_db)]
+        body.append(
+            row.cells(cells, len(head))
+            if found is None
+            else [*cells, _epochs(found), percent(found["validation"]), *row.ending()]
+        )
+    return [
+        f"### Persons kept apart (`split.by: subject`, {SUBJECTS} persons)",
+        "",
+        *_table(head, body),
+    ]
+
+
+def _networks(rows: list[Row]) -> list[str]:
+    head = [
+        "scenario",
+        "network",
+        "epochs",
+        "validation",
+        "paper",
+        "parameters (M)",
+        "paper (M)",
+        "one image (ms)",
+        "with loading (ms)",
+        "paper (ms)",
+        *ENDING,
+    ]
+    body = []
+    for row in rows:
+        t, found = row.training, row.record
+        paper = PAPER.get((t.scenario, t.model))
+        theirs = (
+            [_number(paper[0], ".2f"), _number(paper[1], ".2f"), _number(paper[2], ".0f", 1e3)]
+            if paper
+            else ["not given"] * 3
+        )
+        cells = [SCENARIOS[t.scenario], t.model]
+        if found is None:
+            body.append(
+                [*cells, NOT_RUN, "", theirs[0], "", theirs[1], "", "", theirs[2], "", "", ""]
             )
-    lines += ["", *_robustness(work, reports, done), *_subjects(work, reports, done)]
-    lines += ["", *_models(work, reports, done), ""]
-    for name, caption in figures:
-        lines += [f"![{caption}](results/{name})", "", caption, ""]
+            continue
+        speed = found["speed"] or {}
+        load = found["evaluation"].get("load")
+        busy = " (busy)" if load and load > found["evaluation"]["machine"]["cores"] else ""
+        cells += [_epochs(found), percent(found["validation"]), theirs[0]]
+        cells += [_number(found["parameters"], ".2f", 1e-6), theirs[1]]
+        cells += [
+            _number(speed.get(key), ".0f", 1e3) + busy for key in ("image_s", "load_and_image_s")
+        ]
+        body.append([*cells, theirs[2], *row.ending()])
+    return _table(head, body)
+
+
+def snr_figures(name: str, results: Path, records: dict[str, dict[str, Any]]) -> None:
+    """Draw the accuracy over the SNR of each scenario, a line for every record."""
+    from radhar_cli.figures.robustness import Point, robustness_png
+
+    for scenario in SCENARIOS:
+        mine = [found for found in records.values() if found["scenario"] == scenario]
+        lines = {
+            f"trained at {found['snr_db']} dB{', reduced' if found['reduced'] else ''}": [
+                Point(snr, float(snr), part["accuracy"], *part["accuracy_95"])
+                for snr, part in found["fresh"].items()
+            ]
+            for found in sorted(mine, key=lambda found: -found["snr_db"])
+            if len(found["fresh"]) > 1
+        }
+        if lines:
+            (results / name / f"{scenario}_snr.png").write_bytes(robustness_png(lines))
+
+
+def figures(name: str, results: Path, records: dict[str, dict[str, Any]]) -> list[str]:
+    """The figures that are there, as lines of Markdown."""
+    found = []
+    for scenario, words in SCENARIOS.items():
+        found.append((f"{scenario}_snr.png", f"Trained at one SNR, tested at all, {words}."))
+        for row in rows_of(name, SCALES[name], records):
+            t = row.training
+            if t.scenario == scenario:
+                found += [
+                    (f"{row.name}_{figure}.png", f"{caption}, {words}, {t.snr_db} dB.")
+                    for figure, caption in _figures(t).items()
+                ]
+    return [
+        line
+        for file, caption in found
+        if (results / name / file).exists()
+        for line in (f"![{caption}](results/{name}/{file})", "", caption, "")
+    ]
+
+
+def page_text(scales: tuple[str, ...], results: Path) -> str:
+    """What stands between the markers of the page: every scale that has a record."""
+    lines = [
+        "Printed by `python scripts/reproduce_paper.py --scale cpu --report-only` from the records "
+        "in [results](results). Accuracy in per cent with Wilson's 95 % interval. The epoch is "
+        "chosen by the validation maps, so their accuracy is optimistic; no choice was made on the "
+        "fresh seed. Core hours: seconds of all epochs times threads, with what else the machine "
+        "did meanwhile. Commit: of the training. Latency is marked busy where more processes ran "
+        "than there are cores.",
+        "",
+    ]
+    for name in scales:
+        records = read_records(results / name)
+        size = SCALES[name].size_px
+        lines += [f"## Maps of {size} px (`--scale {name}`)", ""]
+        if records:
+            lines += [*tables(name, records), *figures(name, results, records)]
+        else:
+            lines += ["Not run.", ""]
     return "\n".join(lines)
 
 
-def _own(work: Reproduction, reports: dict[str, Any], t: Training) -> tuple[Any, Any]:
-    run = next(iter(reports[work.run(t).name]["runs"].values()))
-    return run, next(iter(run["data"].values()))
-
-
-def _name(known: dict[str, Any], path: Path) -> str:
-    return next(name for name in known if name == path.name or name.endswith(path.name))
-
-
-def _epochs(work: Reproduction, t: Training) -> str:
-    """Epochs as the run itself records them."""
-    config = json.loads((work.run(t) / "metrics.json").read_text())["config"]
-    paper = config["epochs"] == 20 and config["schedule"]["every_epochs"] == 10
-    return "20" if paper else f"{config['epochs']} (reduced)"
-
-
-def _robustness(work: Reproduction, reports: dict[str, Any], done: list[Training]) -> list[str]:
-    lines = ["### Trained at one SNR, tested at the others (fresh seed)", ""]
-    for scenario, words in SCENARIOS.items():
-        mine = [t for t in done if t.scenario == scenario and _plain(t)]
-        if len(mine) < 2:
-            continue
-        mine.sort(key=lambda t: -t.snr_db)
-        heads = [f"tested at {t.snr_db} dB" for t in mine]
-        lines.append(f"| {words}, trained at | {' | '.join(heads)} |")
-        lines.append("| --- " * (len(mine) + 1) + "|")
-        runs = reports[f"{scenario}_fresh"]["runs"]
-        for t in mine:
-            row = runs[_name(runs, work.run(t))]["data"]
-            cells = [
-                f"{100 * row[_name(row, work.data(scenario, o.snr_db, 'fresh'))]['accuracy']:.2f}"
-                for o in mine
-            ]
-            lines.append(f"| {t.snr_db} dB | {' | '.join(cells)} |")
-        lines.append("")
-    return lines
-
-
-def _subjects(work: Reproduction, reports: dict[str, Any], done: list[Training]) -> list[str]:
-    mine = [t for t in done if t.by_subject]
-    if not mine:
-        return []
-    lines = [
-        f"### Persons kept apart (`split.by: subject`, {SUBJECTS} persons)",
-        "",
-        "| scenario | SNR (dB) | epochs | validation on persons never seen |",
-        "| --- | --- | --- | --- |",
-    ]
-    return lines + [
-        f"| {SCENARIOS[t.scenario]} | {t.snr_db} | {_epochs(work, t)} | "
-        f"{percent(_own(work, reports, t)[1])} |"
-        for t in mine
-    ]
-
-
-def _models(work: Reproduction, reports: dict[str, Any], done: list[Training]) -> list[str]:
-    lines = [
-        "### Networks at 30 dB",
-        "",
-        "| scenario | network | epochs | validation | paper | parameters (M) | paper (M) "
-        "| one image (ms) | with loading (ms) | paper (ms) |",
-        "| --- " * 10 + "|",
-    ]
-    for t in done:
-        if t.snr_db != 30 or t.by_subject:
-            continue
-        run, part = _own(work, reports, t)
-        paper = PAPER[t.scenario, t.model]
-        speed = run["speed"]
-        cells = [
-            SCENARIOS[t.scenario],
-            t.model,
-            _epochs(work, t),
-            percent(part),
-            f"{paper[0]:.2f}",
-            f"{run['parameters'] / 1e6:.2f}",
-            f"{paper[1]:.2f}",
-            *(f"{1e3 * speed[key]:.0f}" for key in ("image_s", "load_and_image_s")),
-            f"{1e3 * paper[2]:.0f}",
-        ]
-        lines.append(f"| {' | '.join(cells)} |")
-    return lines
-
-
-def _machine() -> str:
-    import torch
-
-    if torch.cuda.is_available():
-        return f"{torch.cuda.get_device_name()}, PyTorch {torch.__version__}"
-    cores = torch.get_num_threads()
-    return f"{cores} cores ({platform.machine()}), PyTorch {torch.__version__}"
-
-
-def keep_figures(work: Reproduction, reports: Path, folder: Path) -> list[tuple[str, str]]:
-    """Copy the figures worth keeping into docs/results; returns (file, caption)."""
-    wanted = []
-    for scenario, words in SCENARIOS.items():
-        run = work.run(Training(scenario, 30)).name
-        wanted += [
-            (f"{scenario}_fresh/curves.png", f"Training curves, {words}, by SNR."),
-            (f"{run}/confusion.png", f"Confusion matrix, {words}, 30 dB, validation."),
-            (f"{run}/tsne.png", f"t-SNE of maps and of features, {words}, 30 dB."),
-            (f"{scenario}_fresh/filters.png", f"Global filters, {words}, by SNR."),
-            (f"{scenario}_fresh/robustness.png", f"Trained at one SNR, tested at all, {words}."),
-        ]
-    found = []
-    for source, caption in wanted:
-        if (reports / source).exists():
-            folder.mkdir(parents=True, exist_ok=True)
-            name = f"{work.name}_{source.replace('/', '_')}"
-            shutil.copyfile(reports / source, folder / name)
-            found.append((name, caption))
-    return found
-
-
-def write_report(path: Path, text: str) -> None:
+def write_page(path: Path, text: str) -> None:
     """Replace what stands between the markers of a page; the words around it stay."""
     page = path.read_text() if path.exists() else f"# Results\n\n{BEGIN}\n{END}\n"
     before, _, rest = page.partition(BEGIN)
     after = rest.partition(END)[2]
     path.write_text(f"{before}{BEGIN}\n{text}\n{END}{after}")
+
+
+def wanted(scale: Scale, words: list[str], results: Path, again: bool) -> list[Training]:
+    """Runs whose names have all the words; of those with a record of all epochs only `again`."""
+    records = read_records(results)
+    full = {name for name, found in records.items() if not found["reduced"] and not again}
+    names = {training: run_name(scale, training) for training in scale.trainings}
+    return [
+        training
+        for training, name in names.items()
+        if name not in full and all(word in name for word in words)
+    ]
+
+
+def report(name: str, page: Path) -> None:
+    """Write the page from the records beside it."""
+    results = page.parent / "results"
+    scales = PAGE_SCALES if name in PAGE_SCALES else (name,)
+    for scale in scales:
+        snr_figures(scale, results, read_records(results / scale))
+    write_page(page, page_text(scales, results))
+    print(f"wrote {page}")
 
 
 def main() -> None:
@@ -422,23 +739,40 @@ def main() -> None:
     parser.add_argument("--scale", choices=SCALES, required=True)
     parser.add_argument("--only", nargs="*", default=[], help="words that a run's name contains")
     parser.add_argument(
-        "--report-only", action="store_true", help="train nothing; evaluate what is there"
+        "--report-only", action="store_true", help="write the tables from the records, no more"
     )
+    parser.add_argument("--again", action="store_true", help="also rows that have a record")
     parser.add_argument("--jobs", type=int, help="processes that generate")
     parser.add_argument("--datasets", type=Path, default=ROOT / "datasets" / "results")
     parser.add_argument("--runs", type=Path, default=ROOT / "runs" / "results")
-    parser.add_argument("--page", type=Path, default=ROOT / "docs" / "results.md")
+    parser.add_argument(
+        "--made-at",
+        metavar="COMMIT",
+        help="commit at which data sets and runs without a note were made, on this machine",
+    )
+    parser.add_argument("--page", type=Path, help="default: docs/results.md; smoke: in --runs")
     asked = parser.parse_args()
-    work = Reproduction(asked.scale, SCALES[asked.scale], asked.datasets, asked.runs, asked.jobs)
-    for training in work.scale.trainings:
-        name = work.run(training).name
-        if not asked.report_only and all(word in name for word in asked.only):
-            work.train(training)
-    reports_folder = asked.runs / f"reports_{asked.scale}"
-    reports = work.evaluate(reports_folder)
-    figures = keep_figures(work, reports_folder, asked.page.parent / "results")
-    write_report(asked.page, tables(work, reports, figures))
-    print(f"wrote {asked.page}")
+    scale = SCALES[asked.scale]
+    smoke = asked.scale not in PAGE_SCALES
+    page = asked.page or (asked.runs / "smoke.md" if smoke else ROOT / "docs" / "results.md")
+    results = page.parent / "results" / asked.scale
+    made_at = asked.made_at and _git("rev-parse", "--verify", f"{asked.made_at}^{{commit}}")
+    if asked.made_at and not made_at:
+        parser.error(f"--made-at {asked.made_at}: no commit of this repository")
+    names = [run_name(scale, training) for training in scale.trainings]
+    if not any(all(word in name for word in asked.only) for name in names):
+        parser.error(f"--only {' '.join(asked.only)}: no run has that; runs: {', '.join(names)}")
+    todo = [] if asked.report_only else wanted(scale, asked.only, results, asked.again)
+    if not todo and not asked.report_only:
+        print("there is a record of all epochs of what is asked for; --again runs it again")
+    # Commands run in the root of the repository, whatever the folder this was called in.
+    folders = asked.datasets.absolute(), asked.runs.absolute()
+    work = Reproduction(asked.scale, scale, *folders, results, asked.jobs, made_at)
+    for training in todo:
+        work.train(training)
+        work.record(training)
+        report(asked.scale, page)
+    report(asked.scale, page)
 
 
 if __name__ == "__main__":

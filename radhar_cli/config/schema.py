@@ -7,6 +7,7 @@ import ast
 import inspect
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import cached_property
 from itertools import pairwise
 from math import floor
 from pathlib import PurePosixPath
@@ -1065,7 +1066,7 @@ class RecordingsConfig(Section):
         """When the windows of a part begin, s."""
         return [part.start_s + n * self.hop_s for n in range(self.count(part))]
 
-    @property
+    @cached_property
     def counts(self) -> dict[str, int]:
         """{label: windows}, of those that have any."""
         found: dict[str, int] = {}

@@ -1,5 +1,6 @@
 """Images that exist already become a data set of the same contract."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -66,8 +67,9 @@ def test_what_looks_like_packed_masks_is_said(
     np.savez(source, masks=np.full((12, *shape), 7, np.uint8), label=np.array(["falling"] * 12))
     given = ["--set", f"recordings.packed={more}"] if more else []
     command = ("generate", config, "--recordings", source, "-o", config.parent / "set", *given)
-    done = radhar(*command, "--dry-run")
+    done = radhar(*command, "--dry-run", "--json")
     assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["classes"] == {"falling": 12}
     assert ("recordings.packed=true makes 16 x 16" in done.stderr) == packed
     assert "windows of one recording" not in done.stderr
 

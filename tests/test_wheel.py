@@ -47,7 +47,7 @@ def test_it_holds_the_package_and_nothing_else(wheel: Path) -> None:
         points = file.read(metadata.replace("METADATA", "entry_points.txt")).decode()
         licences = [name for name in file.namelist() if name.endswith("licenses/LICENSE")]
     ours = {str(path.relative_to(ROOT)) for path in PACKAGE.rglob("*.py")}
-    assert names == ours | {"radhar_cli/py.typed"}
+    assert names == ours | {"radhar_cli/py.typed", "radhar_cli/dataset/viridis.rgb"}
     assert "radhar = radhar_cli.cli:main" in points
     assert licences
     for extra in ("train", "tensorboard", "cluster", "dev"):

@@ -203,8 +203,16 @@ def warnings_of(config: Config) -> list[str]:
     recorded, warnings = config.recorded, []
     assert recorded is not None
     warnings += unused_keys(config)
+    if is_image(recorded.parts[0].file):
+        height, width = config.image.size_px
+        if height == 8 * width and not recorded.packed:
+            warnings.append(
+                f"images are {height} x {width} pixels; where each byte holds 8 columns as bits, "
+                f"recordings.packed=true makes {height} x {height} of them"
+            )
+        return warnings
     short = sum(not recorded.count(part) for part in recorded.parts)
-    if short and not is_image(recorded.parts[0].file):
+    if short:
         warnings.append(f"{short} parts are shorter than the window of {recorded.window_s:g} s")
     if config.split.by == "sample" and recorded.hop_s < recorded.window_s:
         warnings.append(

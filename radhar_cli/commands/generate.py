@@ -159,9 +159,6 @@ def _of_recordings(
         tell(f"warning: {warning}", err=True)
     if dry_run:
         rows = Rows.of(measured)
-        counts = {a.slug: n for a, n in zip(rows.activities, rows.counts, strict=True)}
-        report(samples=len(rows), classes=counts)
-        rows = Rows.of(measured)
         report(samples=len(rows), classes=class_counts(rows), maps=measured.maps)
         tell(f"samples     {len(rows)} = {rows.counted}")
         tell("nothing was written")

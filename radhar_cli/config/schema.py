@@ -3,10 +3,15 @@
 Units stand in the keys. Every number of a scene (`SCENE_KEYS`) may be fixed or drawn.
 """
 
+import ast
+import inspect
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import cached_property
+from itertools import pairwise
 from math import floor
 from pathlib import PurePosixPath
+from textwrap import dedent
 from typing import Annotated, Any, ClassVar, Generic, Literal, TypeAlias, TypeVar
 
 from pydantic import (
@@ -14,12 +19,13 @@ from pydantic import (
     ConfigDict,
     Discriminator,
     Field,
+    GetJsonSchemaHandler,
     Tag,
     ValidationInfo,
     field_validator,
     model_validator,
 )
-from pydantic_core import PydanticCustomError
+from pydantic_core import CoreSchema, PydanticCustomError
 
 from radhar_cli.activity import (
     ACTIVITIES,
@@ -64,8 +70,35 @@ class Section(BaseModel):
         frozen=True,
         validate_default=True,
         allow_inf_nan=False,
-        use_attribute_docstrings=True,
     )
+
+    @classmethod
+    def descriptions(cls) -> dict[str, str]:
+        """What stands under each field in the source; Pydantic would read it at every start."""
+        try:
+            body = ast.parse(dedent(inspect.getsource(cls))).body[0]
+        except OSError:  # PerActivity[...] is written nowhere
+            return {}
+        assert isinstance(body, ast.ClassDef)
+        return {
+            ast.unparse(field.target): inspect.cleandoc(text.value.value)
+            for field, text in pairwise(body.body)
+            if isinstance(field, ast.AnnAssign)
+            and isinstance(text, ast.Expr)
+            and isinstance(text.value, ast.Constant)
+            and isinstance(text.value.value, str)
+        }
+
+    @classmethod
+    def __get_pydantic_json_schema__(
+        cls, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        document = handler(schema)
+        properties = handler.resolve_ref_schema(document)["properties"]
+        for name, text in cls.descriptions().items():
+            if name in properties:
+                properties[name]["description"] = text
+        return document
 
 
 class RadarConfig(Section):
@@ -1033,7 +1066,7 @@ class RecordingsConfig(Section):
         """When the windows of a part begin, s."""
         return [part.start_s + n * self.hop_s for n in range(self.count(part))]
 
-    @property
+    @cached_property
     def counts(self) -> dict[str, int]:
         """{label: windows}, of those that have any."""
         found: dict[str, int] = {}

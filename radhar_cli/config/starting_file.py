@@ -30,12 +30,13 @@ def as_commented_yaml(kind: type[Section]) -> str:
 
 def _lines(kind: type[Section]) -> Iterator[str]:
     defaults = kind.model_construct().model_dump(mode="json")  # nothing filled in for null
+    descriptions = kind.descriptions()
     for name, field in kind.model_fields.items():
         if field.exclude:
             continue
         members = [field.annotation, *get_args(field.annotation)]
         inner = next((m for m in members if isinstance(m, type) and issubclass(m, Section)), None)
-        value, comment = defaults[name], _comment(members, field.description or "")
+        value, comment = defaults[name], _comment(members, descriptions.get(name, ""))
         if inner is None or not (value is None or isinstance(value, dict)):
             yield from _key(name, value, comment)
             continue

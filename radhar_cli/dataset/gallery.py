@@ -45,7 +45,7 @@ def gallery_png(data: Dataset) -> bytes:
             draw.text(place, text, "black", font)
     buffer = io.BytesIO()
     few = picture.quantize(256, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
-    few.save(buffer, "png")
+    few.save(buffer, "png", compress_level=data.config.output.png_level)
     return buffer.getvalue()
 
 

@@ -1,19 +1,24 @@
 """PNG files of levels: the pixels are the levels, the palette is the colour map."""
 
 import io
+from pathlib import Path
 
 import numpy as np
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
 from radhar_cli.arrays import Levels
+from radhar_cli.config.schema import DEFAULT_COLOUR_MAP
 
+_DEFAULT_TABLE = Path(__file__).with_name(f"{DEFAULT_COLOUR_MAP}.rgb")  # Matplotlib starts slowly
 # Tells our files, whose palette indices are levels, from any other file with a palette.
 _MARK = ("Software", "radhar")
 
 
 def colour_table(name: str) -> Levels:
     """RGB [256, 3] of a Matplotlib colour map, whose name the config has checked."""
+    if name == DEFAULT_COLOUR_MAP:
+        return np.array([*_DEFAULT_TABLE.read_bytes()], np.uint8).reshape(256, 3)
     from matplotlib import colormaps
 
     rgb = colormaps[name](np.arange(256))[:, :3]

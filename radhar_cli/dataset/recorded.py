@@ -1,9 +1,11 @@
 """Samples that are windows of recordings, in the order of a data set's rows."""
 
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import NamedTuple
 
 from radhar_cli.config.schema import Config, RecordedPart
+from radhar_cli.scene import SameConfig
 
 
 class RecordedWindow(NamedTuple):
@@ -22,8 +24,12 @@ class RecordedWindow(NamedTuple):
 
 def windows(config: Config) -> list[RecordedWindow]:
     """The windows of a data set of recordings: class by class, each in the manifest's order."""
-    recorded = config.recorded
-    assert recorded is not None
+    return _windows(SameConfig(config))
+
+
+@lru_cache(maxsize=2)
+def _windows(same: SameConfig) -> list[RecordedWindow]:
+    config = same.config
     return [one for a in config.chosen_activities for one in _of_class(config, a.slug)]
 
 

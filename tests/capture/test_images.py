@@ -1,5 +1,6 @@
 """Images that exist already become a data set of the same contract."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -52,6 +53,25 @@ def test_masks_of_an_npz(config: Path, packed: bool) -> None:
     for command in (("verify", out), ("inspect", out), ("preview", out)):
         done = radhar(*command)
         assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize(
+    ("shape", "more", "packed"),
+    [((16, 2), "", True), ((16, 2), "true", False), ((16, 24), "", False)],
+)
+def test_what_looks_like_packed_masks_is_said(
+    config: Path, shape: tuple[int, int], more: str, packed: bool
+) -> None:
+    """A hop shorter than the window, which images do not have, is no warning."""
+    source = config.parent / "masks.npz"
+    np.savez(source, masks=np.full((12, *shape), 7, np.uint8), label=np.array(["falling"] * 12))
+    given = ["--set", f"recordings.packed={more}"] if more else []
+    command = ("generate", config, "--recordings", source, "-o", config.parent / "set", *given)
+    done = radhar(*command, "--dry-run", "--json")
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["classes"] == {"falling": 12}
+    assert ("recordings.packed=true makes 16 x 16" in done.stderr) == packed
+    assert "windows of one recording" not in done.stderr
 
 
 def test_a_tree_of_images(config: Path) -> None:

@@ -4,6 +4,7 @@ import io
 
 import numpy as np
 import pytest
+from matplotlib import colormaps
 from PIL import Image
 
 from radhar_cli.dataset.png import colour_table, encode_png, stored_levels
@@ -16,6 +17,11 @@ def levels() -> np.ndarray:
         .astype(np.uint8)
         .reshape(48, 32)
     )
+
+
+def test_the_stored_colour_map_is_that_of_matplotlib():
+    rgb = colormaps["viridis"](np.arange(256))[:, :3]
+    assert np.array_equal(colour_table("viridis"), np.floor(rgb * 255 + 0.5))
 
 
 @pytest.mark.parametrize("name", ["viridis", "gray", "jet"])

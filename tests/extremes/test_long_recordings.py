@@ -50,6 +50,7 @@ def measured(engine: str, name: str) -> dict[str, Any]:
     document = {
         "duration_s": PULSES / PRF,
         "radar": {"prf_hz": PRF, "adc_rate_hz": 2e5},  # 8 samples a chirp
+        "motion": {"model": "paper"},  # `human` ends at 600 s
         "engine": {"kind": engine},
         "image": {"size_px": 64},
         "maps": [name],

@@ -27,6 +27,7 @@ from pathlib import Path
 import numpy as np
 import torch
 from PIL import Image
+from scipy import ndimage
 
 from radhar_cli.arrays import Bool, Index, Levels
 from radhar_cli.capture.array_files import check_npz, refusing
@@ -52,6 +53,7 @@ CLASSES = {  # names in measured data: ours
 SLUGS = tuple(dict.fromkeys(CLASSES.values()))
 LONG = "walking"  # its maps last twice as long as those of the others
 SIDE, BAND_HZ, SHOWN_HZ, LINE_HZ = 64, 500.0, 160.0, 24.0
+MEDIAN, BLUR = (5, 9), 5  # cells of a mask, rows and columns; pixels of an image
 PAPERS_MOTION = "motion.model=paper"
 WITHOUT = {  # what is left out: keys of the simulation
     "human motion": (PAPERS_MOTION, "classes={}"),
@@ -65,22 +67,32 @@ NO_AUGMENTATION = "augment={}"
 SEEDS = (1, 2, 3)
 SHOTS, REPEATS = (0, 1, 5, 20, 100), 5
 ADAPTING = 10  # epochs without labels
+SHOT_EPOCHS = 40  # of who learns from a few labelled maps, which are soon gone through
 MAX_MAPS, MAX_SIDE, MAX_BYTES = 100_000, 2048, 2**31
 
 
 def network_image(mask: Bool, slug: str) -> Levels:
-    """A mask [H, W] as the network sees it [SIDE, SIDE]: the first 5 s, within SHOWN_HZ.
+    """A mask [H, W] as the network sees it [SIDE, SIDE]: the outline of what moves, blurred.
 
-    What lies within LINE_HZ is left out: how thick the line at zero is depends on the room and on
-    SNR more than on who moves. Simulated and measured masks go the same way.
+    Single cells and lines of interference go by a median, what is not connected with the line at
+    zero goes too, holes are filled. Then the first 5 s within SHOWN_HZ, without what lies within
+    LINE_HZ: how thick the line at zero is depends on the room and on SNR more than on who moves.
+    Without the first columns, in which filter and STFT start. Simulated and measured masks go the
+    same way.
     """
     height, width = mask.shape
-    reach, line = (round(height / 2 * hz / BAND_HZ) for hz in (SHOWN_HZ, LINE_HZ))
-    mask = mask.copy()
-    mask[height // 2 - line : height // 2 + line] = False
-    shown = mask[height // 2 - reach : height // 2 + reach, : width // 2 if slug == LONG else width]
+    centre = height // 2
+    reach, line = (round(centre * hz / BAND_HZ) for hz in (SHOWN_HZ, LINE_HZ))
+    body = ndimage.median_filter(mask, size=MEDIAN)
+    body[centre - 3 : centre + 3] = True
+    parts, _ = ndimage.label(body)
+    body = ndimage.binary_fill_holes(parts == parts[centre, 0])
+    body[centre - line : centre + line] = False
+    shown = body[centre - reach : centre + reach, : width // 2 if slug == LONG else width]
+    shown[:, : width // SIDE] = False
     levels = Image.fromarray(shown.astype(np.uint8) * 255)
-    return np.asarray(levels.resize((SIDE, SIDE), Image.Resampling.BOX))
+    small = np.asarray(levels.resize((SIDE, SIDE), Image.Resampling.BOX))
+    return ndimage.uniform_filter(small, BLUR)
 
 
 def read_masks(path: Path) -> tuple[Bool, list[str]]:
@@ -279,7 +291,8 @@ def curve(measured: Measured, images: Path, run: Path, out: Path) -> None:
     """Print accuracy with k labelled maps a class: fine-tuned, adapted as well, from scratch."""
     shots = ",".join(map(str, SHOTS))
     more = ("--repeats", REPEATS, "--mix", images, "--adapt", ADAPTING, "-o", out)
-    radhar("eval", run, measured.folder, "--shots", shots, *more)
+    epochs = ("--set", f"epochs={SHOT_EPOCHS}")
+    radhar("eval", run, measured.folder, "--shots", shots, *more, *epochs)
     for point in json.loads((out / "shots.json").read_text())["points"]:
         low, high = point["accuracy_95"]
         print(

@@ -447,9 +447,18 @@ def as_text(record: dict[str, Any]) -> str:
 
 
 def read_records(folder: Path) -> dict[str, dict[str, Any]]:
-    """Records of a folder by their names."""
-    found = [_read(file) for file in sorted(folder.glob("*.json"))]
-    return {record["name"]: record for record in found}
+    """Records of a folder by their names; leaves the program at a file that is none."""
+    records = {}
+    for file in sorted(folder.glob("*.json")):
+        try:
+            record = _read(file)
+            missing = {"name", "scenario", "snr_db", "model", "training"} - set(record)
+        except (ValueError, TypeError) as error:
+            sys.exit(f"reproduce_paper: {file}: is not a record of a run ({error})")
+        if missing:
+            sys.exit(f"reproduce_paper: {file}: has no {min(missing)!r}; should be a run's record")
+        records[record["name"]] = record
+    return records
 
 
 def percent(part: dict[str, Any] | None) -> str:

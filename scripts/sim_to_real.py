@@ -53,7 +53,7 @@ CLASSES = {  # names in measured data: ours
 SLUGS = tuple(dict.fromkeys(CLASSES.values()))
 LONG = "walking"  # its maps last twice as long as those of the others
 SIDE, BAND_HZ, SHOWN_HZ, LINE_HZ = 64, 500.0, 160.0, 24.0
-MEDIAN, BLUR = (5, 9), 5  # cells of a mask, rows and columns; pixels of an image
+MEDIAN, BLUR = (5, 5), 5  # cells of a mask, rows and columns of 39 ms; pixels of an image
 PAPERS_MOTION = "motion.model=paper"
 WITHOUT = {  # what is left out: keys of the simulation
     "human motion": (PAPERS_MOTION, "classes={}"),
@@ -83,13 +83,14 @@ def network_image(mask: Bool, slug: str) -> Levels:
     height, width = mask.shape
     centre = height // 2
     reach, line = (round(centre * hz / BAND_HZ) for hz in (SHOWN_HZ, LINE_HZ))
-    body = ndimage.median_filter(mask, size=MEDIAN)
+    body = mask[:, : width // 2] if slug == LONG else mask[:, ::2]  # columns as far apart in each
+    body = ndimage.median_filter(body, size=MEDIAN)
     body[centre - 3 : centre + 3] = True
     parts, _ = ndimage.label(body)
     body = ndimage.binary_fill_holes(parts == parts[centre, 0])
     body[centre - line : centre + line] = False
-    shown = body[centre - reach : centre + reach, : width // 2 if slug == LONG else width]
-    shown[:, : width // SIDE] = False
+    shown = body[centre - reach : centre + reach]
+    shown[:, : shown.shape[1] // SIDE] = False
     levels = Image.fromarray(shown.astype(np.uint8) * 255)
     small = np.asarray(levels.resize((SIDE, SIDE), Image.Resampling.BOX))
     return ndimage.uniform_filter(small, BLUR)

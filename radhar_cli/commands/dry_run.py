@@ -11,6 +11,7 @@ from radhar_cli.pipeline.bodies import segment_paths
 from radhar_cli.pipeline.physics import antennas_of, motion_of, waveform_of
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.run import record
+from radhar_cli.pipeline.validity import config_warnings
 from radhar_cli.scene import nominal_scene
 
 
@@ -43,7 +44,7 @@ def print_plan(config: Config, jobs: int) -> None:
         f"time        about {_duration(cost.seconds)} with {jobs} job{'s' if jobs > 1 else ''} "
         f"({cost.seconds_per_sample * 1e3:.1f} ms a sample, {cost.probes} samples timed just now)"
     )
-    warnings = split_warnings(config, split_rows(config))
+    warnings = split_warnings(config, split_rows(config)) + config_warnings(config)
     report(
         stages=[product.name for product in plan.products],
         classes=class_counts(rows),

@@ -53,7 +53,7 @@ def apart(simulated: Float, measured: Float) -> Apart:
         return Apart(*spreads, np.nan, np.nan, np.nan)
     scale = float(np.hypot(spreads[0].sd, spreads[1].sd) / np.sqrt(2))
     scale = scale or Spread.of(np.concatenate([x, y])).sd or 1.0
-    test = ks_2samp(x, y, method="asymp")
+    test = ks_2samp(x, y)
     distance = float(wasserstein_distance(x, y)) / scale
     return Apart(*spreads, distance, float(test.statistic), float(test.pvalue))
 

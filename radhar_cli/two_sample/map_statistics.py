@@ -206,7 +206,7 @@ STATISTICS = {
     "rest": Statistic("quiet at the end", "columns", True),
     "start_height": Statistic("height of the first column", "rows", True),
     "zero_line": Statistic("columns with a zero line", "%"),
-    "zero_line_end": Statistic("the same, last fifth", "%"),
+    "zero_line_end": Statistic("columns with a zero line, last fifth", "%"),
     "zero_line_width": Statistic("width of the zero line", "rows"),
     "zero_line_offset": Statistic("middle of the zero line", "rows"),
     "stray": Statistic("stray cells", "%", True),

@@ -18,7 +18,7 @@ def test_bytes_are_close_to_those_of_the_build(tmp_path: Path) -> None:
     found = estimate(config, jobs=1)
     build(config, tmp_path / "set", 1, BarProgress())
     hdf5 = (tmp_path / "set/dataset.h5").stat().st_size
-    pngs = sum(path.stat().st_size for path in (tmp_path / "set").rglob("*.png"))
+    pngs = sum(path.stat().st_size for path in (tmp_path / "set/png").rglob("*.png"))
     assert found.samples == 18
     assert 0.8 < found.hdf5_bytes / hdf5 < 1.25
     assert 0.9 < found.png_bytes / pngs < 1.1

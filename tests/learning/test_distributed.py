@@ -78,7 +78,7 @@ with process_group(cpu) as group:
         seen.append([whole, [hash(image.numpy().tobytes()) for image in levels]])
         return 0.0, 0
     TrainStep.step = look
-    work._learn(network, Reader(work.images, work.images.label, 0, False), 0)
+    work._train_epoch(network, Reader(work.images, work.images.label, 0, False), 0)
     everyone = [None] * group.size
     dist.all_gather_object(everyone, seen)
     if group.is_main:

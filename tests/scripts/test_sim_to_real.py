@@ -12,6 +12,7 @@ from typing import Any
 import command_line
 import numpy as np
 import pytest
+from scipy import ndimage
 
 from radhar_cli import load_config, sample
 from radhar_cli.errors import CaptureError
@@ -229,3 +230,13 @@ def test_a_missing_file_is_said_before_anything_is_made(
     with pytest.raises(SystemExit, match=r"none\.npz: no such file"):
         script.main()
     assert not (tmp_path / "out").exists()
+
+
+def test_the_class_is_not_in_the_image(script: ModuleType) -> None:
+    rng = np.random.default_rng(4)
+    short = ndimage.binary_dilation(rng.random((256, 256)) < 0.002, iterations=6)
+    short[120:136] = True
+    long = np.concatenate([short[:, ::2], rng.random((256, 128)) < 0.5], axis=1)
+    seen = script.network_image(short, "grabbing")
+    np.testing.assert_array_equal(seen, script.network_image(long, "walking"))
+    assert seen.shape == (64, 64) and 0 < seen.mean() < 255

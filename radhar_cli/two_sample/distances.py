@@ -10,6 +10,7 @@ from scipy.stats import ks_2samp, wasserstein_distance
 from radhar_cli.arrays import Float
 
 NEIGHBOURS = 5
+ROUNDING = 1e-9  # of the largest value: a standard deviation below is none
 
 
 class Spread(NamedTuple):
@@ -52,7 +53,9 @@ def apart(simulated: Float, measured: Float) -> Apart:
     if not (x.size and y.size):
         return Apart(*spreads, np.nan, np.nan, np.nan)
     scale = float(np.hypot(spreads[0].sd, spreads[1].sd) / np.sqrt(2))
-    scale = scale or Spread.of(np.concatenate([x, y])).sd or 1.0
+    every = np.concatenate([x, y])
+    if scale <= ROUNDING * np.abs(every).max():
+        scale = Spread.of(every).sd or 1.0
     test = ks_2samp(x, y)
     distance = float(wasserstein_distance(x, y)) / scale
     return Apart(*spreads, distance, float(test.statistic), float(test.pvalue))

@@ -28,6 +28,8 @@ def test_what_is_missing_is_left_out() -> None:
 def test_constants() -> None:
     assert apart(np.ones(3), np.ones(4)).distance == 0
     assert apart(np.zeros(4), np.ones(4)).distance == pytest.approx(2)
+    rounded = np.array([4.0, 4.0, np.nextafter(4.0, 5.0)])
+    assert apart(rounded, np.full(3, 3.0)).distance == pytest.approx(2)
 
 
 def test_coverage() -> None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import nan
 
 from radhar_cli.figures.page import page, png_bytes
 
@@ -22,10 +23,13 @@ def robustness_png(lines: Mapping[str, Sequence[Point]]) -> bytes:
     figure = page(7.5, 4.6)
     axes = figure.subplots()
     by_snr = all(point.snr_db is not None for points in lines.values() for point in points)
+    snrs = {p.snr_db for points in lines.values() for p in points}
     names = list(dict.fromkeys(p.data for points in lines.values() for p in points))
     for number, (name, points) in enumerate(lines.items()):
         if by_snr:
-            points = sorted(points, key=lambda p: p.snr_db or 0.0)
+            untested = snrs - {p.snr_db for p in points}  # where the line is interrupted
+            points = [*points, *(Point("", snr, nan, nan, nan) for snr in untested)]
+            points.sort(key=lambda p: p.snr_db or 0.0)
             x = [p.snr_db or 0.0 for p in points]
         else:
             x = [names.index(p.data) + 0.08 * (number - (len(lines) - 1) / 2) for p in points]

@@ -66,7 +66,7 @@ REDRAWN = ("motion.", "timing.", "classes.")
 FALL = "motion.fall"
 # Numbers of `motion:` that every activity depends on.
 PLACE = ("motion.range_m", "motion.cross_range_m", "motion.angle_deg")
-# What a walk may overlap, by at most MOST_OVERLAP of its duration, as low down no legs are long
+# What a walk may overlap, by at most MAX_OVERLAP of its duration, as low down no legs are long
 # enough for a step; falls to the side not at all, as their feet are not planted.
 OVERLAPPED = {
     "sitting_to_walking": "rise_duration_s",
@@ -74,7 +74,7 @@ OVERLAPPED = {
     "falling_to_walking": "rise_duration_s",
     "walking_to_falling": "fall_duration_s",
 }
-MOST_OVERLAP = 0.3
+MAX_OVERLAP = 0.3
 # Numbers besides `uses` that people always depend on, whatever they do.
 OF_PEOPLE = (
     *(key for key in PERSONAL if key.startswith("subject.") and key not in _BODY),
@@ -170,7 +170,7 @@ def _with_possible_overlap(config: Config, activity: Activity) -> Config:
     if key is None or config.motion.model != "human":
         return config
     sideways = activity.slug == "walking_to_falling" and config.motion.fall == "sideways"
-    most = 0.0 if sideways else MOST_OVERLAP * getattr(timing, key)
+    most = 0.0 if sideways else MAX_OVERLAP * getattr(timing, key)
     capped = {"overlap_s": min(timing.overlap_s, most)}
     if key == "rise_duration_s" and timing.walk_start_s is not None:
         earliest = timing.rise_start_s + timing.rise_duration_s - most

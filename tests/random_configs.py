@@ -16,7 +16,7 @@ from radhar_cli.config.checks import HUMAN_LIMITS
 from radhar_cli.config.schema import PerActivity
 
 Document = dict[str, Any]
-MOST_SECONDS = next(high for key, _, high in HUMAN_LIMITS if key == "duration_s")
+MAX_SECONDS = next(high for key, _, high in HUMAN_LIMITS if key == "duration_s")
 
 
 def dotted_keys(model: type[BaseModel] = Config, prefix: str = "") -> Iterator[str]:
@@ -151,7 +151,7 @@ class Drawer:
         self.maybe(document, 0.7, "motion", self.motion)
         self.maybe(document, 0.6, "timing", lambda: self.timing(document["duration_s"]))
         self.maybe(document, 0.6, "subject", self.subject)
-        if document["duration_s"] <= MOST_SECONDS and self.chance(0.4):
+        if document["duration_s"] <= MAX_SECONDS and self.chance(0.4):
             self.people(document)
         self.maybe(document, 0.3, "body", self.body)
         self.maybe(document, 0.5, "wall", self.wall)

@@ -18,6 +18,7 @@ PACKAGES = (
     "errors",
     "rounding",
     "light",
+    "plain_json",
     "phasor",
     "untrusted",
     "randomness",

@@ -11,7 +11,7 @@ from radhar_cli.capture.source import Parts, Source
 PROBES, PROBED = 16, 64  # places that are looked at, and pulses of each
 SURE = 0.65  # share of the energy in one half of the spectrum
 LOST_RUN = 32  # zero samples one after the other
-FEWEST = 4  # zero samples of a pulse beside a lost one
+MIN_ZEROS = 4  # zero samples of a pulse beside a lost one
 RARE = 3  # samples at full scale that prove nothing
 LOST, CLIPPED = 1, 2  # flags of a pulse
 
@@ -159,7 +159,7 @@ def lost(values: Parts) -> NDArray[np.bool_]:
     missing: NDArray[np.bool_] = (inside == run).any(axis=(0, 1))
     # The rest of a gap that reaches into the pulse before or after.
     beside = np.convolve(missing, [1, 1, 1])[1:-1] > 0
-    missing |= beside & (summed[:, -1].max(axis=0) >= FEWEST)
+    missing |= beside & (summed[:, -1].max(axis=0) >= MIN_ZEROS)
     return missing
 
 

@@ -24,7 +24,7 @@ from radhar_cli.processing.torso_track import hann_in_range
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 PART_S = 4.0  # of a recording that gives one SNR
-MOST_PARTS = 50  # of a recording
+MAX_PARTS = 50  # of a recording
 FEW = 3  # SNRs from which on a spread is fitted
 SURE = 0.5  # confidence of the track from which its range counts
 SLOW_MPS = 0.15
@@ -121,10 +121,10 @@ def _differs(one: Waveform, other: Waveform) -> bool:
 
 
 def _parts(recording: Recording) -> list[Part]:
-    """Parts of about PART_S, at most MOST_PARTS, spread over a recording."""
+    """Parts of about PART_S, at most MAX_PARTS, spread over a recording."""
     length = recording.segments.duration
     count = max(int(length / PART_S), 1)
-    starts = np.linspace(0, max(length - PART_S, 0), min(count, MOST_PARTS))
+    starts = np.linspace(0, max(length - PART_S, 0), min(count, MAX_PARTS))
     parts = []
     for start in starts.tolist():
         stop = min(start + PART_S, length)

@@ -6,16 +6,15 @@ options to every command (`with_output_options`).
 
 import inspect
 import json
-import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import wraps
-from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
+from radhar_cli.plain_json import plain
 from radhar_cli.untrusted import shown
 
 Json = Annotated[
@@ -59,18 +58,7 @@ def wanted(message: str) -> bool:
 def report(**values: object) -> None:
     """With --json, print an object of values on a line; docs/output.md lists all keys."""
     if _output.json:
-        typer.echo(json.dumps(_plain(values), allow_nan=False))
-
-
-def _plain(value: object) -> object:
-    """Of JSON's types; numbers that are not finite are null."""
-    if isinstance(value, dict):
-        return {str(key): _plain(inner) for key, inner in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(inner) for inner in value]
-    if isinstance(value, Path):
-        return str(value)
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+        typer.echo(json.dumps(plain(values), allow_nan=False))
 
 
 def with_output_options(command: Callable[..., None]) -> Callable[..., None]:

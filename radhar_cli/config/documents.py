@@ -21,7 +21,7 @@ BASE_SCHEMA = {
     "type": ["string", "null"],
 }
 SUFFIXES = (".yaml", ".yml", ".json")
-MOST_FILES = 8  # that stand on each other
+MAX_CHAIN = 8  # that stand on each other
 _ONE_VALUE = {*FORMS, "sequence", "files"}  # what has such a key is replaced as a whole
 
 
@@ -77,8 +77,8 @@ def read_on_bases(path: Path | None, given: Mapping[str, Any]) -> tuple[Document
         if any(below.samefile(file) for file in files):
             raise ConfigError(f"{who}: should not lead back to a file on the way: {chain}")
         files.append(below)
-        if len(files) > MOST_FILES:
-            raise ConfigError(f"{who}: should end after {MOST_FILES} files: {chain}")
+        if len(files) > MAX_CHAIN:
+            raise ConfigError(f"{who}: should end after {MAX_CHAIN} files: {chain}")
         folder, who = below.parent, lower_places.get(BASE, "")
         base = lower.pop(BASE, None)
         replaced: set[str] = set()

@@ -1008,7 +1008,7 @@ MODEL_DEFAULTS: dict[str, dict[str, dict[str, Any]]] = {
 }
 
 
-MOST_WINDOWS = 1_000_000
+MAX_WINDOWS = 1_000_000
 SLUG = r"[a-z][a-z0-9_]{0,62}"
 
 
@@ -1053,8 +1053,8 @@ class RecordingsConfig(Section):
 
     @model_validator(mode="after")
     def _bounded(self) -> "RecordingsConfig":
-        if (total := sum(map(self.count, self.parts))) > MOST_WINDOWS:
-            raise _wrong(f"should have at most {MOST_WINDOWS} windows; hop_s makes {total}")
+        if (total := sum(map(self.count, self.parts))) > MAX_WINDOWS:
+            raise _wrong(f"should have at most {MAX_WINDOWS} windows; hop_s makes {total}")
         return self
 
     def count(self, part: RecordedPart) -> int:

@@ -30,7 +30,7 @@ from radhar_cli.errors import MachineError
 
 TERMS = 4  # of a cubic
 LANES = 16  # paths at once; a remainder would be computed one by one
-LEAST = 2**20  # terms of a sum; with fewer, numba takes longer to load than some 200 sums save
+MIN_TERMS = 2**20  # terms of a sum; with fewer, numba takes longer to load than some 200 sums save
 
 
 @cache
@@ -44,7 +44,7 @@ def numba_version() -> str | None:
 
 def pays(terms: int) -> bool:
     """Whether a sum over paths and pulses of that many terms is made here."""
-    return terms >= LEAST and numba_version() is not None
+    return terms >= MIN_TERMS and numba_version() is not None
 
 
 @cache

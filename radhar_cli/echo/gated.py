@@ -31,7 +31,7 @@ from radhar_cli.radar.waveform import Waveform
 SEGMENTS = 32  # a block: short enough that the body hardly moves on
 PULSES = 512  # where paths are taken at every pulse
 VALUES, NODES = 2**20, 10  # phasors at work at once, some ten a path and pulse
-MOST_NODES = 400  # of a design, which takes a second; beyond, every sample is one
+MAX_NODES = 400  # of a design, which takes a second; beyond, every sample is one
 WIDTHS = 8  # bins: extents are rounded up to these, so that few designs are needed
 
 
@@ -60,7 +60,7 @@ def nodes(samples: int, width: int, single: bool) -> Nodes:
     over, beyond, cut = (1.25, 8, 1e-7) if single else (1.5, 12, 1e-14)
     spacing = samples / (over * width)
     count = ceil((samples - 1) / spacing) + 1 + 2 * beyond
-    if count >= min(0.7 * samples, MOST_NODES):
+    if count >= min(0.7 * samples, MAX_NODES):
         return Nodes(samples, 1.0, None)
     d = -np.cos(np.pi * (np.arange(2 * count) + 0.5) / (2 * count)) * width / (2 * samples)
     at_nodes = unit_phasor(np.outer(d, _about_zero(count) * spacing))

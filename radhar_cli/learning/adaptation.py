@@ -30,7 +30,7 @@ from radhar_cli.learning.starting_point import is_of_last_layer
 from radhar_cli.progress import Messages
 from radhar_cli.randomness import TRAINING, stream
 
-FEWEST, BATCH = 16, 128
+MIN_IMAGES, BATCH = 16, 128
 RATE = 2e-4  # of Adam
 
 
@@ -66,7 +66,7 @@ def adapt(
 
     Raises:
         RunError, FolderError: one of them cannot be used.
-        ConfigError: the network has no batch norm, or there are fewer than FEWEST images.
+        ConfigError: the network has no batch norm, or there are fewer than MIN_IMAGES images.
     """
     metadata, _ = load_best(run)
     images = open_for(metadata, data, map_name, labelled=False, resize=resize)
@@ -93,8 +93,10 @@ def adapt_to(
     history = run_folder.read_history(run)
     if not any(isinstance(layer, _BatchNorm) for layer in model.modules()):
         raise ConfigError(f"{run}: the network {metadata.model} has no batch norm to adapt")
-    if rows.size < FEWEST:
-        raise ConfigError(f"{images.where}: has {rows.size} images; should have at least {FEWEST}")
+    if rows.size < MIN_IMAGES:
+        raise ConfigError(
+            f"{images.where}: has {rows.size} images; should have at least {MIN_IMAGES}"
+        )
     repeatable(device)
     adapt_batch_norm(model.to(device), metadata, images, rows, device)
     if epochs:

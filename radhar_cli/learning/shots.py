@@ -43,7 +43,7 @@ from radhar_cli.randomness import TRAINING, stream
 TUNED, ADAPTED, SCRATCH = "fine-tuned", "adapted", "from scratch"
 WAYS = (TUNED, ADAPTED, SCRATCH)
 SHOWN = 600  # labelled images an epoch, those of a few again and again; as many mixed ones
-MOST = 16  # times an epoch that an image is fine-tuned with
+MAX_SHOWN = 16  # times an epoch that an image is fine-tuned with
 NUMBERS, TABLE, FIGURE = "shots.json", "shots.csv", "shots.png"
 
 
@@ -249,7 +249,7 @@ def few_shots(
         tuned_run = here / "fine_tuned" if k else run
         if k:
             labelled = measured.images.some(draw.labelled)
-            images, weights = _learned_from(metadata, labelled, mix, MOST)
+            images, weights = _learned_from(metadata, labelled, mix, MAX_SHOWN)
             settings = tuned.model_copy(update={"data_weights": weights, "seed": seed})
             train_on(settings, images, tuned_run, _NoProgress(), shots.overwrite, run)
         yield TUNED, tuned_run

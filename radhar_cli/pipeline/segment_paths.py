@@ -26,7 +26,7 @@ REFLECTANCE = 0.5  # |Gamma|^2 of skin and clothes
 SCATTER = 0.02  # standard deviation across a segment, m; cut at twice that
 JITTER = 0.7  # along it, of the distance from point to point
 RATE_STEP_S = 1e-3
-RATES_PER_SECOND, MOST_RATES = 25.0, 8192
+RATES_PER_SECOND, MAX_RATES = 25.0, 8192
 BLOCK = 2048  # instants at once: what a block needs stays in the cache
 TINY = np.finfo(float).tiny
 
@@ -121,7 +121,7 @@ def point_counts(
         duration: of the recording, s.
         most: at most this many a segment.
     """
-    count = int(np.clip(RATES_PER_SECOND * duration, 64, MOST_RATES))
+    count = int(np.clip(RATES_PER_SECOND * duration, 64, MAX_RATES))
     t = np.linspace(0, duration, count)
     placed = body.at(np.concatenate([t, t + RATE_STEP_S]))
     apart = np.zeros((len(body.segments), count))

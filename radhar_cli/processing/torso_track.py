@@ -28,10 +28,10 @@ RANGE_SD_M = 0.1  # of a peak about the middle of a torso, besides the resolutio
 SMOOTHED_MPS = 0.1  # to both sides: a torso is no point
 NEAR_M = 1.0  # of the track: what counts as the person
 FALSE_ALARMS = 1e-6  # of a cell of white noise
-FEWEST, LEAST_SHARE = 2, 0.05  # frames that a ridge has, of all
+MIN_FRAMES, MIN_SHARE = 2, 0.05  # frames that a ridge has, of all
 MISS = 3.0  # cost of a frame without candidate within the ridge: a jump by 2.4 deviations
 REWARD_DB = 5.0  # decibels that are worth a jump by 1.4 standard deviations
-MOST_DB = 60.0
+MAX_DB = 60.0
 
 
 class Peaks(NamedTuple):
@@ -144,7 +144,7 @@ def peaks(power: Float, ranges: Float, speeds: Float, looks: int = 1) -> Peaks:
     rows, columns = rows[order], columns[order]
     between = _vertex(smooth, rows, columns)
     spacing = ranges[1] - ranges[0] if ranges.size > 1 else 0.0
-    snr = smooth[rows, columns] / floor if floor > 0 else np.full(rows.size, 10 ** (MOST_DB / 10))
+    snr = smooth[rows, columns] / floor if floor > 0 else np.full(rows.size, 10 ** (MAX_DB / 10))
     # A velocity is known but for multiples of PRF lambda/2.
     turns = round(FASTEST_MPS / (step * speeds.size) + 0.5)
     velocity = np.add.outer(np.arange(-turns, turns + 1) * step * speeds.size, speeds[columns])
@@ -185,7 +185,7 @@ def find_torso(
     times = np.array(time)
     spacing = float(ranges[1] - ranges[0]) if ranges.size > 1 else RANGE_SD_M
     ridge = _ridge(found, times, float(np.hypot(spacing / 2, RANGE_SD_M)))
-    if np.count_nonzero(ridge >= 0) < max(FEWEST, LEAST_SHARE * ridge.size):
+    if np.count_nonzero(ridge >= 0) < max(MIN_FRAMES, MIN_SHARE * ridge.size):
         return None
     measured = np.array(
         [
@@ -210,7 +210,7 @@ def _ridge(found: list[Peaks], time: Float, range_sd: float) -> Index:
     came: list[list[tuple[int, int]]] = []
     best, at = 0.0, (-1, -1)
     for f, now in enumerate(found):
-        reward = np.minimum(10 * np.log10(np.maximum(now.snr, 1)), MOST_DB) / REWARD_DB
+        reward = np.minimum(10 * np.log10(np.maximum(now.snr, 1)), MAX_DB) / REWARD_DB
         score = reward.copy()  # the ridge may begin here
         previous = [(-1, -1)] * reward.size
         for back in range(f - 1, -1, -1):

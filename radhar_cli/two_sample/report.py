@@ -3,9 +3,7 @@
 import json
 import re
 from collections.abc import Callable
-from math import isfinite
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -20,6 +18,7 @@ from radhar_cli.figures.two_samples import (
 )
 from radhar_cli.learning.report_folder import NUMBERS, remove_others
 from radhar_cli.learning.tables import csv_text
+from radhar_cli.plain_json import plain
 from radhar_cli.two_sample.comparison import ClassCompared, Comparison
 from radhar_cli.two_sample.map_statistics import STATISTICS
 
@@ -39,18 +38,9 @@ def write(found: Comparison, folder: Path) -> list[Path]:
     remove_others(folder, files)
     for name, content in files.items():
         write_whole(folder, folder / name, content)
-    numbers = _plain({**found.numbers(), "files": sorted(files)})
+    numbers = plain({**found.numbers(), "files": sorted(files)})
     write_whole(folder, folder / NUMBERS, (json.dumps(numbers, indent=2) + "\n").encode())
     return [folder / NUMBERS, *(folder / name for name in files)]
-
-
-def _plain(value: Any) -> Any:
-    """The same with null for what is not finite."""
-    if isinstance(value, dict):
-        return {key: _plain(inner) for key, inner in value.items()}
-    if isinstance(value, list):
-        return [_plain(inner) for inner in value]
-    return None if isinstance(value, float) and not isfinite(value) else value
 
 
 def _table(found: Comparison) -> str:

@@ -16,7 +16,7 @@ from radhar_cli.learning.images.folder import our_map
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.opening import is_h5, open_images
 
-MOST_SIDE = 512  # px; larger images are brought there
+MAX_SIDE = 512  # px; larger images are brought there
 ASSUMED_DB = 40.0  # that levels span where a file does not say
 TWO_VALUED = 8  # images looked at to tell masks from grey
 
@@ -97,7 +97,7 @@ def open_sides(
             f"{simulated}: images are {_px(sizes[0])}, those of {measured} {_px(sizes[1])}; "
             "--resize brings them to one size"
         )
-    size = (min(sizes[1][0], MOST_SIDE), min(sizes[1][1], MOST_SIDE))
+    size = (min(sizes[1][0], MAX_SIDE), min(sizes[1][1], MAX_SIDE))
     if resize or size != sizes[1]:
         given = [_open(path, map_name, size) for path in paths]
     known = {name for one in given for name in one.classes}

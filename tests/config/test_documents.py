@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from radhar_cli.config import Config, load_config, resolved
-from radhar_cli.config.documents import MOST_FILES
+from radhar_cli.config.documents import MAX_CHAIN
 from radhar_cli.config.identity import as_yaml, config_hash
 from radhar_cli.config.number import Choice, Normal, Uniform, Vary
 from radhar_cli.config.reading import load_section
@@ -195,11 +195,11 @@ def test_bases_that_come_back_are_told_with_the_way(tmp_path: Path) -> None:
 
 
 def test_a_chain_has_an_end(tmp_path: Path) -> None:
-    for n in range(MOST_FILES + 1):
+    for n in range(MAX_CHAIN + 1):
         write(tmp_path, **{f"n{n}": f"base: n{n + 1}.yaml"})
-    write(tmp_path, **{f"n{MOST_FILES + 1}": "seed: 3"})
+    write(tmp_path, **{f"n{MAX_CHAIN + 1}": "seed: 3"})
     assert load_config(tmp_path / "n2.yaml").seed == 3
-    assert f"should end after {MOST_FILES} files: " in refusal(tmp_path / "n1.yaml")
+    assert f"should end after {MAX_CHAIN} files: " in refusal(tmp_path / "n1.yaml")
 
 
 @pytest.mark.parametrize(

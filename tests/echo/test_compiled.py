@@ -93,7 +93,7 @@ class TestSum:
         found, _ = echo[0].slow_time()
         monkeypatch.setattr(compiled, "numba_version", lambda: None)
         right, _ = echo[1].slow_time()
-        assert np.array_equal(found, right) == (250 * radar.n_pulses < compiled.LEAST)
+        assert np.array_equal(found, right) == (250 * radar.n_pulses < compiled.MIN_TERMS)
         assert ref.error_db(found, right) < -100
 
     def test_what_is_no_number_stays_none(self):

@@ -27,7 +27,7 @@ SEED = 20261121
 BLOCKS, CONFIGS = 10, 220
 AGREEING_BLOCKS, AGREEING = 4, 60
 DIRECT_DB = -60.0
-MOST_CYCLES = 1e10  # beyond, the phases of either engine are off by 1e-6 of a cycle and more
+MAX_CYCLES = 1e10  # beyond, the phases of either engine are off by 1e-6 of a cycle and more
 BROKEN = 0.2  # share of the documents in which one key is replaced by junk
 ALL_MAPS = 0.3  # share of the recordings that make all nine maps
 LEAST_MAPPED = 0.5  # nothing is gained where everything is refused
@@ -169,7 +169,7 @@ def test_direct_keeps_its_promise_or_refuses(block: int) -> None:
             refused += 1
             continue
         right, direct = (recording["signal"].x for recording in found)
-        if cycles(found[0]) > MOST_CYCLES:
+        if cycles(found[0]) > MAX_CYCLES:
             rounded += 1
             continue
         compared += 1
@@ -182,6 +182,6 @@ def test_direct_keeps_its_promise_or_refuses(block: int) -> None:
         worst = max(worst, error_db)
     print(
         f"block {block}: {compared} scenes, direct {worst:.0f} dB at worst; {refused} refused, "
-        f"{rounded} beyond {MOST_CYCLES:g} cycles"
+        f"{rounded} beyond {MAX_CYCLES:g} cycles"
     )
     assert compared >= LEAST_MAPPED * AGREEING

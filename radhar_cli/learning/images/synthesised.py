@@ -35,7 +35,7 @@ from radhar_cli.scene import draw_scene
 
 NORMALISED_BY = 256  # first images of a stream, whose mean and deviation all are normalised by
 PIECE = 8
-MOST_ROWS = 10_000_000
+MAX_ROWS = 10_000_000
 REDRAWN = 4  # draws of a scene that are looked at
 GREY = repeated(np.arange(256, dtype=np.uint8))
 
@@ -208,7 +208,7 @@ def streamed_scenes(learned: LearnedFrom, images: ImageSet, rows: Index) -> int:
         return 0
     try:
         config = stored_config(streamed["config"], "the run")
-        if config.recorded is not None or len(Rows.of(config)) > MOST_ROWS:
+        if config.recorded is not None or len(Rows.of(config)) > MAX_ROWS:
             return 0  # the run may come from elsewhere
         order = StreamOrder(config, "train", streamed["balanced"])
     except RadharError:

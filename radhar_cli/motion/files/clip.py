@@ -16,7 +16,7 @@ ANKLE = 0.039  # height of the ankle over the stature
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inches": 0.0254, "CMU's 0.0564 m": 0.0254 / 0.45}
 STATURES = (0.9, 2.3)  # m, of people
 FASTEST = 30.0  # m/s, of any joint
-FEWEST = 12  # frames
+MIN_FRAMES = 12  # frames
 UPRIGHT = 0.8  # least cosine of the angle to the vertical that tells which way is up
 # Two passes of an order of 2 are 3 dB down, each 1.5 dB, at 0.802 of the corner of one.
 ORDER, TWO_PASSES = 2, (sqrt(2) - 1) ** 0.25
@@ -87,8 +87,8 @@ def clip_of(
     hips = numbers[len(JOINTS) :] if own_hips else [hip] * len(HIP_JOINTS)
     wanted = [number for number in (*numbers[: len(JOINTS)], *hips) if number is not None]
     p = file.positions(wanted)
-    if len(p) < FEWEST:
-        raise wrong(file.where, f"has {len(p)} frames; should have {FEWEST} or more")
+    if len(p) < MIN_FRAMES:
+        raise wrong(file.where, f"has {len(p)} frames; should have {MIN_FRAMES} or more")
     rate = rate or file.rate
     if rate is None or not RATES[0] <= rate <= RATES[1]:
         raise wrong(file.where, "should have a frame rate of 1 to 10000 Hz: rate_hz")

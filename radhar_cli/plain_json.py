@@ -1,0 +1,15 @@
+"""Values as JSON can hold them."""
+
+import math
+from pathlib import Path
+
+
+def plain(value: object) -> object:
+    """Of JSON's types; numbers that are not finite are null."""
+    if isinstance(value, dict):
+        return {str(key): plain(inner) for key, inner in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(inner) for inner in value]
+    if isinstance(value, Path):
+        return str(value)
+    return None if isinstance(value, float) and not math.isfinite(value) else value

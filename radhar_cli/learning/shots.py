@@ -361,19 +361,6 @@ def drawn(measured: EvalSet, k: int, seed: int, repeat: int) -> Draw:
     return Draw(labelled, np.sort(np.setdiff1d(others, labelled)))
 
 
-def missing(measured: EvalSet, draw: Draw, k: int) -> str | None:
-    """Which class gives fewer than k images to learn from or none to test on; None if none does."""
-    images, apart = measured.images, _persons(measured) is not None
-    learned, tested = _counts(measured, draw)
-    for number, name in enumerate(images.classes):
-        if k and (learned[number] < k or not tested[number]):
-            have = int((images.label[measured.rows] == number).sum())
-            return f"{name} has {have} images" + (
-                f", {learned[number]} of the persons to learn from" if apart else ""
-            )
-    return None
-
-
 def most_shots(measured: EvalSet, seed: int, repeats: int) -> int:
     """The largest k that every class can give in all draws, with some left to test."""
     apart, found = _persons(measured) is not None, []
@@ -390,6 +377,19 @@ def _counts(measured: EvalSet, draw: Draw) -> tuple[Index, Index]:
         np.bincount(label[rows], minlength=classes) for rows in (draw.labelled, draw.tested)
     )
     return learned, tested
+
+
+def missing(measured: EvalSet, draw: Draw, k: int) -> str | None:
+    """Which class gives fewer than k images to learn from or none to test on; None if none does."""
+    images, apart = measured.images, _persons(measured) is not None
+    learned, tested = _counts(measured, draw)
+    for number, name in enumerate(images.classes):
+        if k and (learned[number] < k or not tested[number]):
+            have = int((images.label[measured.rows] == number).sum())
+            return f"{name} has {have} images" + (
+                f", {learned[number]} of the persons to learn from" if apart else ""
+            )
+    return None
 
 
 def _training_images(metadata: RunMetadata, path: Path, config: TrainConfig) -> ImageSet:

@@ -11,8 +11,6 @@ from radhar_cli.commands.tell import report, tell
 from radhar_cli.errors import RadharError
 
 if TYPE_CHECKING:
-    import torch
-
     from radhar_cli.learning.shots import ShotCurve, ShotOptions
     from radhar_cli.learning.single_result import EvalOptions
 
@@ -113,7 +111,6 @@ def evaluate(
     from radhar_cli.dataset.files import refuse_links
     from radhar_cli.learning.images.classes import read_classes
     from radhar_cli.learning.images.image_set import split_named
-    from radhar_cli.learning.machine import choose_device
     from radhar_cli.learning.shots import ShotOptions
     from radhar_cli.learning.single_result import EvalOptions
 
@@ -152,9 +149,9 @@ def evaluate(
     if out is None:
         refuse_links(inside, folder)
     apart(folder, [*data, *(mix or [])])
-    found_device = choose_device(known_device(device))
+    known_device(device)
     if shots is None:
-        _report(runs, data, folder, options, found_device)
+        _report(runs, data, folder, options, device)
         return
     if len(runs) > 1 or len(data) > 1:
         raise RadharError(
@@ -169,17 +166,18 @@ def evaluate(
         adapt or 0,
         overwrite,
     )
-    _few_shots(runs[0], data[0], folder, wanted, options, found_device)
+    _few_shots(runs[0], data[0], folder, wanted, options, device)
 
 
 def _report(
-    runs: list[Path], data: list[Path], folder: Path, options: "EvalOptions", device: "torch.device"
+    runs: list[Path], data: list[Path], folder: Path, options: "EvalOptions", device: str
 ) -> None:
     """Test every run on every data set, and write the report."""
     from radhar_cli.commands.learning_options import StderrLog
+    from radhar_cli.learning.machine import choose_device
     from radhar_cli.learning.report import evaluate
 
-    found = evaluate(runs, data, options, device, StderrLog())
+    found = evaluate(runs, data, options, choose_device(device), StderrLog())
     found.write(folder)
     accuracies = {
         run: {data: numbers["accuracy"] for data, numbers in about["data"].items()}
@@ -195,14 +193,15 @@ def _few_shots(
     folder: Path,
     wanted: "ShotOptions",
     options: "EvalOptions",
-    device: "torch.device",
+    device: str,
 ) -> None:
     """Learn from a few labelled images, write the curve and print it."""
     from radhar_cli.commands.learning_options import StderrLog
+    from radhar_cli.learning.machine import choose_device
     from radhar_cli.learning.shots import few_shots
 
     with resumable(f"what is finished in {folder}"):
-        curve = few_shots(run, data, folder, wanted, options, device, StderrLog())
+        curve = few_shots(run, data, folder, wanted, options, choose_device(device), StderrLog())
     curve.write(folder)
     _print_curve(curve, folder)
 

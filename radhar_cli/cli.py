@@ -3,7 +3,7 @@
 import os
 import signal
 import sys
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from radhar_cli.errors import INTERRUPTED, TERMINATED, RadharError
 from radhar_cli.untrusted import shown
@@ -95,7 +95,8 @@ def main() -> None:
 
     signal.signal(signal.SIGTERM, _terminate)
     try:
-        program()(shard_named(sys.argv[1:]), prog_name="radhar")
+        status = _run(shard_named(sys.argv[1:]))
+        sys.exit(status)
     except RadharError as error:
         if os.environ.get("RANK", "0") == "0":  # under torchrun all fail alike; one should speak
             print(f"radhar: {shown(error)}", file=sys.stderr)
@@ -113,6 +114,33 @@ def main() -> None:
     finally:
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, signal.SIG_IGN)  # the work is done; leave quietly
+
+
+def _run(arguments: list[str]) -> int | None:
+    """Run the program and return its status.
+
+    Raises:
+        RadharError: an option or argument is mistaken; one line, as of all our errors.
+    """
+    import typer
+
+    usage_error = typer.BadParameter.__mro__[1]  # of click, or of the copy that newer typers hold
+    try:
+        return program()(arguments, prog_name="radhar", standalone_mode=False)  # type: ignore[no-any-return]
+    except Exception as error:
+        if not isinstance(error, usage_error):
+            raise
+        message: str = error.format_message()  # type: ignore[attr-defined]
+        if "\n" in message:  # the help of a group that was called alone
+            error.show()  # type: ignore[attr-defined]
+            return RadharError.status
+        of_pydantic: list[Any] = getattr(error.__cause__, "errors", list)()  # knows the value
+        if of_pydantic and isinstance(error, typer.BadParameter) and error.param is not None:
+            name, said = max(error.param.opts, key=len), of_pydantic[0]
+            message = f"{name} {said['input']}: {said['msg'].removeprefix('Input ')}"
+        context = error.ctx  # type: ignore[attr-defined]
+        path = context.command_path if context else "radhar"
+        raise RadharError(f"{message.rstrip('.')} ({path} --help)") from None
 
 
 def _terminate(number: int, frame: object) -> None:

@@ -185,9 +185,21 @@ def _refuse_too_much(
 
 
 def bins_of_part(
-    recording: Recording, w: Waveform, chosen: Sequence[int], first: int, last: int
+    recording: Recording,
+    w: Waveform,
+    chosen: Sequence[int],
+    first: int,
+    last: int,
+    window: Float | None = None,
 ) -> Complex:
     """Range bins [receiver, K, M] of pulses first .. last - 1, referred to the chirp's start.
+
+    Args:
+        recording: an open one.
+        w: its chirps.
+        chosen: receivers.
+        first, last: pulses.
+        window: over the samples of a chirp [N_ADC]; None is none.
 
     Raises:
         CaptureError: they are more than MAX_BYTES.
@@ -197,6 +209,8 @@ def bins_of_part(
     step = max(PIECE_SAMPLES // (w.n_fft * recording.info.receivers), 1)
     for at in range(first, last, step):
         beat = recording.beat(at, min(at + step, last))
+        if window is not None:
+            beat *= window[:, None]
         for row, number in enumerate(chosen):
             x[row, :, at - first : at - first + beat.shape[2]] = range_bins(beat[number], w)
     return x

@@ -1,54 +1,49 @@
 """Estimate a config to simulate by from recordings.
 
-A receiver's noise is the floor of its range-Doppler maps; the person is what moves above it. With
-range bins S_k = sum_n s[n] exp(...) of N samples, white noise of variance sigma^2 has |S_k|^2 =
-N sigma^2 and a path of amplitude A has sum_k |S_k|^2 = N^2 A^2: SNR = P_s/sigma^2 as in model.md.
+A receiver's noise is the floor of its range-Doppler maps; the person is what moves above it. What
+stands in the room is measured against the person, whose cross section is taken to be that of the
+model: sigma_r = sigma_p (A_r R_r^2)^2/(A_p R_p^2)^2.
 """
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
-import scipy.fft
 
-from radhar_cli.arrays import Complex, Float
-from radhar_cli.capture.chain import bins_of_part, pulses_between
+from radhar_cli.arrays import Float
+from radhar_cli.capture.fit_parts import QUARTILE, SLOW_MPS, Part, looks, part_of
+from radhar_cli.capture.noise_spectrum import (
+    WINDOW_S,
+    Colour,
+    FoundLine,
+    NoiseSpectrum,
+    OnOff,
+    colour,
+    lines,
+)
 from radhar_cli.capture.recording import Recording
-from radhar_cli.capture.tracking import WINDOW_S, track_torso, without_static
+from radhar_cli.capture.room_returns import (
+    BLOCK_S,
+    MAIN_LOBE,
+    Return,
+    Returns,
+    peaks,
+    range_window,
+)
+from radhar_cli.config.number import nominal
 from radhar_cli.config.reading import validated
-from radhar_cli.config.schema import Config
+from radhar_cli.config.schema import MAX_REFLECTORS, Config
 from radhar_cli.errors import CaptureError
-from radhar_cli.processing.torso_track import hann_in_range
+from radhar_cli.motion.skeleton import cross_sections, default_weight
+from radhar_cli.radar.propagation import amplitude
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
-PART_S = 4.0  # of a recording that gives one SNR
-MAX_PARTS = 50  # of a recording
 FEW = 3  # SNRs from which on a spread is fitted
-SURE = 0.5  # confidence of the track from which its range counts
-SLOW_MPS = 0.15
-QUARTILE = 0.25
-HANN_GAIN = 0.5**2 + 2 * 0.25**2  # of white noise, by hann_in_range
-
-
-class Part(NamedTuple):
-    """Estimates from a few seconds of a recording.
-
-    Attributes:
-        snr_db: of what moves, per raw sample.
-        ranges: of the torso where it is surely found, m.
-        floor: of the noise in each range bin, as variance of a raw sample [K].
-        static_db: what stands still over what moves.
-        zero_line_db: of the clutter's slow movement, |v| < 0.15 m/s, over the floor, in the bins of
-            the person; after the mean was taken out.
-    """
-
-    snr_db: float
-    ranges: Float
-    floor: Float
-    static_db: float
-    zero_line_db: float
+LEAKAGE_BINS = 3  # the nearest, in which the antennas' leakage lies
 
 
 @dataclass(frozen=True)
@@ -56,14 +51,26 @@ class Fit:
     """Estimates from all recordings.
 
     Attributes:
-        document: keys of a config.
         parts: what it rests on.
         waveform: of all.
+        seconds: that half of the recordings last at least.
+        spectrum: of the noise.
+        colour: fitted to it.
+        lines: found in it.
+        room: returns of all parts, powers over the noise.
+        reflectors: found in it.
+        leakage: between the antennas, power over the noise of a raw sample, or at most so much.
     """
 
-    document: dict[str, Any]
     parts: list[Part]
     waveform: Waveform
+    seconds: float
+    spectrum: NoiseSpectrum
+    colour: Colour
+    lines: list[FoundLine]
+    room: Returns
+    reflectors: list[Return]
+    leakage: float
 
     @property
     def floor_db(self) -> Float:
@@ -71,6 +78,13 @@ class Fit:
         floor = np.quantile([part.floor for part in self.parts], QUARTILE, axis=0)
         decibels: Float = 10 * np.log10(floor / np.median(floor))
         return decibels
+
+    @property
+    def snr_db(self) -> Float:
+        """Of the parts in which somebody moves, over the white noise."""
+        snr = np.array([part.snr_db for part in self.parts])
+        finite: Float = snr[np.isfinite(snr)]
+        return finite - 10 * float(np.log10(self.colour.white))
 
     @property
     def slope_db(self) -> float:
@@ -81,24 +95,124 @@ class Fit:
         return float(theilslopes(floor, np.linspace(0, 1, floor.size)).slope)
 
     def numbers(self) -> dict[str, float]:
-        """What no key of a config says yet, and what the keys rest on."""
-        median = {
-            key: float(np.median([getattr(part, key) for part in self.parts]))
-            for key in ("snr_db", "static_db", "zero_line_db")
+        """What the keys rest on, and what no key says.
+
+        static_db is what stands still over what moves; zero_line_db slow movement, |v| < 0.15 m/s,
+        over the white noise where nobody is; noise_over_range_db how much noise rises with range.
+        """
+        zero = self.spectrum.slow_db(SLOW_MPS * 2 * self.waveform.f0 / SPEED_OF_LIGHT)
+        return {
+            "parts": len(self.parts),
+            "snr_db": float(np.median(self.snr_db)),
+            "static_db": float(np.nanmedian([part.static_db for part in self.parts])),
+            **({} if zero is None else {"zero_line_db": zero}),
+            "noise_corner_hz": self.colour.corner,
+            "lines": len(self.lines),
+            "reflectors": len(self.reflectors),
+            "noise_over_range_db": self.slope_db,
         }
-        return {"parts": len(self.parts), **median, "noise_slope_db": self.slope_db}
+
+    @cached_property
+    def document(self) -> dict[str, Any]:
+        """Keys of a config."""
+        w, snr, usual = self.waveform, self.snr_db, Config()
+        ranges = np.concatenate([part.ranges for part in self.parts])
+        middle, spread = round(float(snr.mean()), 2), round(float(snr.std()), 2)
+        radar = {
+            "carrier_hz": w.fc,
+            "bandwidth_hz": w.bandwidth,
+            "chirp_s": w.chirp,
+            "adc_rate_hz": w.adc_rate,
+            "prf_hz": w.prf,
+        }
+        tx, rx = (np.array([nominal(x) for x in p]) for p in (usual.radar.tx_m, usual.radar.rx_m))
+        place, apart = (tx + rx) / 2, float(np.linalg.norm(tx - rx))
+        document: dict[str, Any] = {
+            "duration_s": round(self.seconds, 3),
+            "radar": {key: float(f"{value:.9g}") for key, value in radar.items()},
+            "snr_db": {"normal": [middle, spread]} if snr.size >= FEW and spread > 0 else middle,
+        }
+        if ranges.size:
+            low, high = (np.percentile(ranges, [5, 95]) + place[0]).round(2).tolist()
+            document["motion"] = {"range_m": {"uniform": [low, high]} if high > low else low}
+        # Cross section of unit power at unit range, both over the noise.
+        height = nominal(usual.subject.height_m)
+        body = float(cross_sections(height, default_weight(height)).sum())
+        unit = body * float(
+            np.nanmedian([part.spreading / 10 ** (part.snr_db / 10) for part in self.parts])
+        )
+        if self.leakage > 0:
+            gain = 10 ** (nominal(usual.radar.antenna_gain_dbi) / 10)
+            one = np.ones(1)
+            a = float(amplitude(one, one, self.leakage * unit * one, gain, w.wavelength)[0])
+            document["radar"]["antenna_isolation_db"] = round(-20 * float(np.log10(a)), 1)
+        if self.reflectors:
+            document["room"] = {
+                "reflectors": [_reflector(one, unit, place, apart) for one in self.reflectors]
+            }
+        receiver: dict[str, Any] = {}
+        if self.colour.corner > 0:
+            receiver["noise_corner_hz"] = float(f"{self.colour.corner:.4g}")
+            receiver["noise_slope_db"] = round(self.colour.slope, 1)
+        if self.lines:
+            receiver["lines"] = [_line(one) for one in self.lines]
+        if receiver:
+            document["receiver"] = receiver
+        return document
 
 
 def fit(paths: Sequence[Path]) -> Fit:
-    """Read waveform, SNR and ranges off recordings of one radar.
+    """Read waveform, SNR, ranges, noise and what stands in the room off recordings of one radar.
 
     Raises:
-        CaptureError: they are of different radars, slow time, or nothing moves in any.
+        CaptureError: they are of different radars, slow time, or nobody moves in any.
         FolderError: one is not a recording.
     """
-    parts: list[Part] = []
-    waveform: Waveform | None = None
-    seconds = []
+    waveform, seconds, length = _waveform(paths)
+    spectrum = NoiseSpectrum(length, waveform.prf)
+    every: list[Part | None] = []
+    for look in looks(paths):
+        seen = part_of(look)
+        every.append(seen and seen[1])
+        for moving, away in seen[0].stretches() if seen else ():
+            spectrum.add(moving, away)
+    parts = [part for part in every if part is not None]
+    if not any(np.isfinite(part.snr_db) for part in parts):
+        raise CaptureError(
+            f"{paths[0]}: nobody is seen to move faster than {SLOW_MPS} m/s in any recording"
+        )
+    room, found, leakage = _room(parts, waveform)
+    for one in found:
+        if one.residual > 0:
+            beside = np.abs(waveform.range_axis() - one.range)
+            spectrum.left_out |= beside < MAIN_LOBE * waveform.range_step
+    narrow = _with_times(lines(spectrum), paths, every, waveform.prf)
+    coloured = colour(spectrum, narrow)
+    fitted = Fit(parts, waveform, seconds, spectrum, coloured, narrow, room, found, leakage)
+    validated(Config, fitted.document, str(paths[0]), {})
+    return fitted
+
+
+def _with_times(
+    found: list[FoundLine], paths: Sequence[Path], parts: list[Part | None], prf: float
+) -> list[FoundLine]:
+    """Lines, with the times for which they are on and off: the recordings are read once more."""
+    if not found:
+        return []
+    times = [OnOff(line, prf) for line in found]
+    for look, part in zip(looks(paths), parts, strict=True):
+        if part is None:
+            continue
+        known = look if np.isfinite(part.snr_db) else look.empty()
+        for moving, away in known.stretches():
+            for one in times:
+                one.add(moving, away, part.noise * look.gain)
+    return [one.line_with_times() for one in times]
+
+
+def _waveform(paths: Sequence[Path]) -> tuple[Waveform, float, int]:
+    """The chirps of all recordings, how long they last (s), and pulses of a window in any."""
+    waveform, seconds, lengths = None, [], []
     for path in paths:
         with Recording(path) as recording:
             one = recording.info.waveform()
@@ -106,117 +220,54 @@ def fit(paths: Sequence[Path]) -> Fit:
                 raise CaptureError(f"{path}: is of another radar than {paths[0]}")
             waveform = waveform or one
             seconds.append(recording.segments.duration)
-            parts += _parts(recording)
+            lengths.append(int(recording.segments.lengths.max()))
     assert waveform is not None
-    if not parts:
-        raise CaptureError(f"{paths[0]}: nothing moves above the noise in any of the recordings")
-    document = _document(waveform, parts, float(np.median(seconds)))
-    validated(Config, document, str(paths[0]), {})
-    return Fit(document, parts, waveform)
+    return waveform, float(np.median(seconds)), min(round(WINDOW_S * waveform.prf), *lengths)
 
 
 def _differs(one: Waveform, other: Waveform) -> bool:
-    keys = ("fc", "bandwidth", "chirp", "adc_rate", "prf")
+    keys = ("fc", "bandwidth", "chirp", "adc_rate", "prf", "n_adc")
     return any(abs(getattr(one, k) / getattr(other, k) - 1) > 1e-3 for k in keys)
 
 
-def _parts(recording: Recording) -> list[Part]:
-    """Parts of about PART_S, at most MAX_PARTS, spread over a recording."""
-    length = recording.segments.duration
-    count = max(int(length / PART_S), 1)
-    starts = np.linspace(0, max(length - PART_S, 0), min(count, MAX_PARTS))
-    parts = []
-    for start in starts.tolist():
-        stop = min(start + PART_S, length)
-        first, last, segments = pulses_between(recording, start, stop)
-        waveform = recording.info.waveform()
-        bins = bins_of_part(recording, waveform, [0], first, last)
-        part = _part(bins, segments, waveform)
-        if part is not None:
-            parts.append(part)
-    return parts
+def _room(parts: list[Part], w: Waveform) -> tuple[Returns, list[Return], float]:
+    """Returns of all parts together, those that stand out, and the leakage, over the noise."""
+    noise = np.array([part.noise for part in parts])[:, None]
+    power, residual, highest = (np.array(one) for one in zip(*(p.room for p in parts), strict=True))
+    seen, moves = np.isfinite(residual).sum(axis=0), residual > 0
+    moving = 2 * moves.sum(axis=0) >= np.maximum(seen, 1)  # in half of the parts that show it
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # a bin that is seen in no part is NaN
+        room = Returns(
+            np.nanmedian(power / noise, axis=0),
+            np.where(moving, np.nanmedian(np.where(moves, residual, np.nan), axis=0), 0.0),
+            np.nanmedian(highest, axis=0),
+        )
+    gain = float(np.sum(range_window(w.n_adc) ** 2))
+    found = peaks(room, gain / max(round(BLOCK_S * w.prf), 1), w)
+    far = [one for one in found if one.range > LEAKAGE_BINS * w.range_step]
+    strongest = sorted(far, key=lambda one: -one.power)[:MAX_REFLECTORS]
+    leakage = float(np.nanmax(room.power[: LEAKAGE_BINS + 1], initial=0))
+    return room, [one for one in far if one in strongest], leakage
 
 
-def _part(bins: Complex, segments: Any, w: Waveform) -> Part | None:
-    moving = without_static(bins)
-    track = track_torso(moving, segments, w)
-    if track is None:
-        return None
-    length = min(max(round(WINDOW_S * w.prf), 8), int(segments.lengths.max()))
-    window = np.hanning(length + 2)[1:-1]
-    power = []
-    for first, count in zip(segments.first.tolist(), segments.lengths.tolist(), strict=True):
-        for at in range(first, first + count - length + 1, length):
-            part = hann_in_range(moving[0, :, at : at + length])  # no sidelobes far off
-            spectrum = scipy.fft.fft(part * window, axis=1)
-            power.append(np.abs(spectrum) ** 2)
-    maps = np.stack(power)  # [frame, bin, Doppler]
-    # |.|^2 of noise is exponential; the lower quartile of a frame has little of the person in it,
-    # and the median over frames little of those in which a person fills the bin.
-    white = HANN_GAIN * w.n_adc * float(np.sum(window**2))
-    floor = np.median(np.quantile(maps, QUARTILE, axis=2), axis=0)
-    floor /= -np.log(1 - QUARTILE) * white
-    noise = float(np.quantile(floor, QUARTILE))
-    signal = np.mean(np.sum(np.abs(moving[0]) ** 2, axis=0)) - w.n_bins * w.n_adc * noise
-    signal /= w.n_adc**2
-    if not signal > 0 or not noise > 0:
-        return None
-    sure = track.confidence >= SURE
-    near = np.abs(w.range_axis() - np.median(track.range)) <= 1.0
-    still = np.sum(np.abs(bins[0].mean(axis=1)) ** 2) / w.n_adc**2
-    slow = int(SLOW_MPS * 2 * w.f0 / SPEED_OF_LIGHT * length / w.prf)
-    rows = np.r_[0 : slow + 1, length - slow : length] if slow else np.array([0])
-    zero = maps[:, near][:, :, rows].mean() / (noise * white)
-    return Part(
-        10 * float(np.log10(signal / noise)),
-        track.range[sure],
-        floor,
-        10 * float(np.log10(max(still / signal, 1e-30))),
-        10 * float(np.log10(zero)),
-    )
-
-
-def _document(w: Waveform, parts: list[Part], seconds: float) -> dict[str, Any]:
-    snr = np.array([part.snr_db for part in parts])
-    ranges = np.concatenate([part.ranges for part in parts])
-    middle, spread = round(float(snr.mean()), 2), round(float(snr.std()), 2)
-    radar = {
-        "carrier_hz": w.fc,
-        "bandwidth_hz": w.bandwidth,
-        "chirp_s": w.chirp,
-        "adc_rate_hz": w.adc_rate,
-        "prf_hz": w.prf,
+def _reflector(one: Return, unit: float, place: Float, apart: float) -> dict[str, Any]:
+    """A reflector straight ahead of the antennas, `apart` (m) across the line of sight."""
+    ahead = np.sqrt(max(one.range**2 - (apart / 2) ** 2, 0.01))
+    rcs = np.clip(10 * np.log10(one.power * unit * one.range**4), -120, 120)
+    reflector: dict[str, Any] = {
+        "position_m": [round(float(place[0] + ahead), 3), float(place[1]), float(place[2])],
+        "rcs_dbsm": round(float(rcs), 1),
+        "residual_m": float(f"{min(one.residual, 0.01):.3g}"),
     }
-    document: dict[str, Any] = {
-        "duration_s": round(seconds, 3),
-        "radar": {key: float(f"{value:.9g}") for key, value in radar.items()},
-        "snr_db": {"normal": [middle, spread]} if snr.size >= FEW and spread > 0 else middle,
-    }
-    if ranges.size:
-        low, high = np.percentile(ranges, [5, 95]).round(2).tolist()
-        document["motion"] = {"range_m": {"uniform": [low, high]} if high > low else low}
-    return document
+    if one.residual > 0:
+        reflector["highest_hz"] = round(min(one.highest, 100.0), 2)
+    return reflector
 
 
-def draw(fit: Fit, path: Path) -> None:
-    """Write the figure: noise over range and SNRs, measured beside fitted."""
-    from radhar_cli.figures.page import page
-
-    figure = page(10.0, 4.0)
-    left, right = figure.subplots(1, 2)
-    ranges = fit.waveform.range_axis()
-    left.plot(ranges, fit.floor_db, label="measured")
-    left.axhline(0, color="k", linestyle="--", linewidth=0.8, label="fitted: white")
-    left.set(xlabel="range (m)", ylabel="noise floor (dB over its median)")
-    left.legend()
-    snr = np.array([part.snr_db for part in fit.parts])
-    right.hist(snr, bins=min(20, max(3, snr.size // 2)), density=True, label="measured")
-    if snr.size >= FEW and snr.std() > 0:
-        at = np.linspace(snr.min() - 3, snr.max() + 3, 200)
-        bell = np.exp(-(((at - snr.mean()) / snr.std()) ** 2) / 2)
-        right.plot(at, bell / (snr.std() * np.sqrt(2 * np.pi)), "k--", label="fitted: normal")
-    else:
-        right.axvline(snr.mean(), color="k", linestyle="--", label="fitted: constant")
-    right.set(xlabel="SNR of a raw sample (dB)", ylabel="density")
-    right.legend()
-    figure.savefig(path, dpi=90)
+def _line(one: FoundLine) -> dict[str, Any]:
+    level = round(10 * float(np.log10(one.level)), 1)
+    line: dict[str, Any] = {"doppler_hz": round(one.doppler, 3), "level_db": level}
+    if one.off > 0:
+        line |= {"on_s": float(f"{one.on:.3g}"), "off_s": float(f"{one.off:.3g}")}
+    return line

@@ -70,5 +70,5 @@ def adapt(
         StderrLog(),
     )
     report(folder=out, run=run, data=data, epochs=epochs)
-    more = f", after {epochs} epochs without labels" if epochs else ""
+    more = f", after {epochs} epoch{'s' * (epochs > 1)} without labels" if epochs else ""
     tell(f"{out}: {run} with the batch norm of {data}{more}")

@@ -11,7 +11,8 @@ from radhar_cli.commands.tell import report, tell
 from radhar_cli.errors import RadharError
 
 if TYPE_CHECKING:
-    from radhar_cli.learning.shots import ShotCurve
+    from radhar_cli.learning.shots import ShotCurve, ShotOptions
+    from radhar_cli.learning.single_result import EvalOptions
 
 
 def evaluate(
@@ -54,8 +55,9 @@ def evaluate(
         ),
     ] = None,
     repeats: Annotated[
-        int, typer.Option(min=1, max=1000, help="Of --shots: draws of the labelled images.")
-    ] = 5,
+        int | None,
+        typer.Option(min=1, max=1000, help="Of --shots: draws of the labelled images; 5 if none."),
+    ] = None,
     mix: Annotated[
         list[Path] | None,
         typer.Option(
@@ -74,7 +76,7 @@ def evaluate(
         ),
     ] = None,
     adapt: Annotated[
-        int,
+        int | None,
         typer.Option(
             min=0,
             max=1000,
@@ -82,7 +84,7 @@ def evaluate(
             help="Of --shots: what is fine-tuned also learns from all maps of DATA without their "
             "labels, as by radhar adapt --epochs.",
         ),
-    ] = 0,
+    ] = None,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Of --shots: start again, with other settings.")
     ] = False,
@@ -99,7 +101,6 @@ def evaluate(
     Several runs or data sets give the comparison: train at one SNR, test at all.
     """
     from radhar_cli.commands.learning_options import (
-        StderrLog,
         apart,
         known_device,
         needs_torch,
@@ -110,13 +111,29 @@ def evaluate(
     from radhar_cli.dataset.files import refuse_links
     from radhar_cli.learning.images.classes import read_classes
     from radhar_cli.learning.images.image_set import split_named
-    from radhar_cli.learning.machine import choose_device
-    from radhar_cli.learning.report import evaluate
-    from radhar_cli.learning.shots import ShotOptions, few_shots
+    from radhar_cli.learning.shots import ShotOptions
     from radhar_cli.learning.single_result import EvalOptions
 
+    of_shots = {
+        "--repeats": repeats,
+        "--mix": mix,
+        "--set": set_,
+        "--tune": tune,
+        "--adapt": adapt,
+        "--overwrite": overwrite or None,
+    }
+    figures = {
+        "--tsne": tsne,
+        "--filters": filters,
+        "--in-place-vs-moving": in_place_vs_moving,
+    }
+    for name, given in of_shots.items() if shots is None else ():
+        if given is not None:
+            raise RadharError(f"{name}: belongs to --shots, which is missing")
+    for name, drawn in figures.items() if shots is not None else ():
+        if drawn:
+            raise RadharError(f"{name}: is not drawn with --shots; leave one of them out")
     runs, data = runs_and_data(paths)
-    names = read_classes(classes) if classes else {}
     options = EvalOptions(
         split_named(split or ("all" if shots else "val")),
         map_,
@@ -125,57 +142,42 @@ def evaluate(
         in_place_vs_moving,
         batch,
         resize,
-        names,
+        read_classes(classes) if classes else {},
     )
     inside = runs[0] if runs[0].is_dir() else runs[0].parent
     folder = out or inside / ("eval" if shots is None else "shots")
     if out is None:
         refuse_links(inside, folder)
     apart(folder, [*data, *(mix or [])])
-    if shots is not None:
-        if len(runs) > 1 or len(data) > 1:
-            raise RadharError(
-                f"--shots: has {len(runs)} runs and {len(data)} data sets; should have one of each"
-            )
-        for name, asked in (
-            ("tsne", tsne),
-            ("filters", filters),
-            ("in-place-vs-moving", in_place_vs_moving),
-        ):
-            if asked:
-                raise RadharError(f"--{name}: is not drawn with --shots; leave one of them out")
-        wanted = ShotOptions(
-            _numbers(shots),
-            repeats,
-            tuple(mix or ()),
-            tuple(set_ or ()),
-            tuple(tune or ()),
-            adapt,
-            overwrite,
-        )
-        with resumable(f"what is finished in {folder}"):
-            curve = few_shots(
-                runs[0],
-                data[0],
-                folder,
-                wanted,
-                options,
-                choose_device(known_device(device)),
-                StderrLog(),
-            )
-        curve.write(folder)
-        _print_curve(curve, folder)
+    known_device(device)
+    if shots is None:
+        _report(runs, data, folder, options, device)
         return
-    for name, given in (
-        ("--mix", mix),
-        ("--set", set_),
-        ("--tune", tune),
-        ("--adapt", adapt),
-        ("--overwrite", overwrite),
-    ):
-        if given:
-            raise RadharError(f"{name}: belongs to --shots, which is missing")
-    found = evaluate(runs, data, options, choose_device(known_device(device)), StderrLog())
+    if len(runs) > 1 or len(data) > 1:
+        raise RadharError(
+            f"--shots: has {len(runs)} runs and {len(data)} data sets; should have one of each"
+        )
+    wanted = ShotOptions(
+        _numbers(shots),
+        5 if repeats is None else repeats,
+        tuple(mix or ()),
+        tuple(set_ or ()),
+        tuple(tune or ()),
+        adapt or 0,
+        overwrite,
+    )
+    _few_shots(runs[0], data[0], folder, wanted, options, device)
+
+
+def _report(
+    runs: list[Path], data: list[Path], folder: Path, options: "EvalOptions", device: str
+) -> None:
+    """Test every run on every data set, and write the report."""
+    from radhar_cli.commands.learning_options import StderrLog
+    from radhar_cli.learning.machine import choose_device
+    from radhar_cli.learning.report import evaluate
+
+    found = evaluate(runs, data, options, choose_device(device), StderrLog())
     found.write(folder)
     accuracies = {
         run: {data: numbers["accuracy"] for data, numbers in about["data"].items()}
@@ -183,6 +185,25 @@ def evaluate(
     }
     report(page=folder / "report.html", numbers=folder / "report.json", accuracy=accuracies)
     tell(f"{folder / 'report.html'}: {len(found.figures)} figures; numbers in report.json")
+
+
+def _few_shots(
+    run: Path,
+    data: Path,
+    folder: Path,
+    wanted: "ShotOptions",
+    options: "EvalOptions",
+    device: str,
+) -> None:
+    """Learn from a few labelled images, write the curve and print it."""
+    from radhar_cli.commands.learning_options import StderrLog
+    from radhar_cli.learning.machine import choose_device
+    from radhar_cli.learning.shots import few_shots
+
+    with resumable(f"what is finished in {folder}"):
+        curve = few_shots(run, data, folder, wanted, options, choose_device(device), StderrLog())
+    curve.write(folder)
+    _print_curve(curve, folder)
 
 
 def _numbers(text: str) -> tuple[int, ...]:

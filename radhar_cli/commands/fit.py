@@ -14,7 +14,7 @@ def fit(
     out: Annotated[Path, typer.Option("-o", "--out", help="Config to write.")],
     overwrite: Replace = False,
 ) -> None:
-    """Read waveform, SNR and ranges off recordings into a config to simulate by.
+    """Read waveform, SNR, ranges, noise and what stands in the room into a config to simulate by.
 
     Example:
 
@@ -24,7 +24,7 @@ def fit(
     """
     import json
 
-    from radhar_cli.capture.fitting import draw
+    from radhar_cli.capture.fit_figure import draw
     from radhar_cli.capture.fitting import fit as read_off
     from radhar_cli.errors import FolderError
 

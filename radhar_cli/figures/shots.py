@@ -5,8 +5,16 @@ from collections.abc import Mapping, Sequence
 from radhar_cli.figures.page import page, png_bytes
 
 
-def shots_png(lines: Mapping[str, Sequence[tuple[int, float, float, float]]], title: str) -> bytes:
-    """Draw a line for each way of learning; points are (labelled a class, share, low, high)."""
+def shots_png(
+    lines: Mapping[str, Sequence[tuple[int, float, float, float]]], title: str, chance: float
+) -> bytes:
+    """Draw a line for each way of learning; points are (labelled a class, share, low, high).
+
+    Args:
+        lines: {way of learning: points}.
+        title: of the figure.
+        chance: accuracy of guessing.
+    """
     figure = page(7.0, 4.6)
     axes = figure.subplots()
     for number, (name, points) in enumerate(lines.items()):
@@ -22,6 +30,7 @@ def shots_png(lines: Mapping[str, Sequence[tuple[int, float, float, float]]], ti
         axes.errorbar(
             x, middle, [below, above], fmt="o-", capsize=3, color=f"C{number}", label=name
         )
+    axes.axhline(100 * chance, color="k", linestyle=":", linewidth=1, label="chance")
     ticks = sorted({point[0] for points in lines.values() for point in points})
     axes.set_xscale("symlog", linthresh=1)
     axes.set_xticks(ticks, list(map(str, ticks)), minor=False)

@@ -40,8 +40,8 @@ from radhar_cli.learning.training import train_on
 from radhar_cli.progress import Messages
 from radhar_cli.randomness import TRAINING, stream
 
-TUNED, ADAPTED, SCRATCH = "fine-tuned", "adapted", "from scratch"
-WAYS = (TUNED, ADAPTED, SCRATCH)
+AS_TRAINED, TUNED, ADAPTED, SCRATCH = "as trained", "fine-tuned", "adapted", "from scratch"
+WAYS = (AS_TRAINED, TUNED, ADAPTED, SCRATCH)
 SHOWN = 600  # labelled images an epoch, those of a few again and again; as many mixed ones
 MAX_SHOWN = 16  # times an epoch that an image is fine-tuned with
 NUMBERS, TABLE, FIGURE = "shots.json", "shots.csv", "shots.png"
@@ -77,7 +77,7 @@ class ShotPoint:
 
     Attributes:
         shots: labelled images of each class.
-        how: TUNED, ADAPTED (TUNED, then without labels) or SCRATCH.
+        how: AS_TRAINED (0 images), TUNED, ADAPTED (that, then without labels) or SCRATCH.
         tested: images that each repeat was tested on.
         accuracies: of each repeat.
     """
@@ -111,13 +111,44 @@ class ShotCurve:
         """The points of one way of learning."""
         return [point for point in self.points if point.how == how]
 
+    def earlier(self, folder: Path) -> list[ShotPoint]:
+        """The points of the curve that a folder holds; none where it holds none.
+
+        Raises:
+            FolderError: it is of something else, or other settings.
+        """
+        path = folder / NUMBERS
+        if not path.is_file():
+            return []
+        try:
+            there = json.loads(path.read_text())
+            points = [
+                ShotPoint(p["shots"], p["learned"], tuple(p["tested"]), tuple(p["accuracies"]))
+                for p in there["points"]
+            ]
+        except (ValueError, KeyError, TypeError):
+            raise FolderError(f"{path}: is not a curve; --overwrite starts again") from None
+        for key, value in json.loads(json.dumps(self.about)).items():
+            if there.get(key) != value:
+                raise FolderError(
+                    f"{path}: is another curve, as {key} differs; --overwrite starts again, -o "
+                    "names another folder"
+                )
+        return points
+
+    def add(self, points: Sequence[ShotPoint]) -> None:
+        """Take over points of other numbers of images."""
+        own = {point.shots for point in self.points}
+        self.points += [point for point in points if point.shots not in own]
+        self.points.sort(key=lambda point: (point.shots, WAYS.index(point.how)))
+
     def shortfalls(self) -> list[str]:
         """A line for each number at which fine-tuning is below what it should at least reach."""
         mixed = "" if self.about["mix"] else "; --mix shows on what the run learned from"
         scratch = {p.shots: p.accuracy for p in self.of(SCRATCH)}
         found = []
-        for how in (TUNED, ADAPTED):
-            without = {p.shots: p.accuracy for p in self.of(how)}.get(0)
+        for how, start in ((TUNED, AS_TRAINED), (ADAPTED, ADAPTED)):
+            without = {p.shots: p.accuracy for p in self.of(start)}.get(0)
             for point in self.of(how):
                 for than, other in (("no labels", without), (SCRATCH, scratch.get(point.shots))):
                     if other is not None and point.accuracy < other:
@@ -152,7 +183,9 @@ class ShotCurve:
             ],
         }
         write_whole(folder, folder / TABLE, table.encode())
-        write_whole(folder, folder / FIGURE, shots_png(lines, self.title))
+        write_whole(
+            folder, folder / FIGURE, shots_png(lines, self.title, 1 / len(self.about["classes"]))
+        )
         write_whole(folder, folder / NUMBERS, (json.dumps(numbers, indent=2) + "\n").encode())
 
 
@@ -236,6 +269,8 @@ def few_shots(
         },
     )
 
+    earlier = [] if shots.overwrite else curve.earlier(folder)
+
     def tested(one: Path, draw: Draw) -> float:
         about, model = load_best(one)
         found = predict(
@@ -252,7 +287,7 @@ def few_shots(
             images, weights = _learned_from(metadata, labelled, mix, MAX_SHOWN)
             settings = tuned.model_copy(update={"data_weights": weights, "seed": seed})
             train_on(settings, images, tuned_run, _NoProgress(), shots.overwrite, run)
-        yield TUNED, tuned_run
+        yield TUNED if k else AS_TRAINED, tuned_run
         if shots.adapting:
             one, every = here / "adapted", measured.rows
             adapt_to(measured.images, every, tuned_run, one, device, True, shots.adapting)
@@ -267,7 +302,8 @@ def few_shots(
         draws = [drawn(measured, k, own.seed, repeat) for repeat in range(shots.repeats)]
         if why := next(filter(None, (missing(measured, draw, k) for draw in draws)), None):
             curve.left_out[k] = why
-            progress.say(f"{k} a class: left out; {why}")
+            most = most_shots(measured, own.seed, shots.repeats)
+            progress.say(f"{k} a class: left out; {why}; should be at most {most}")
             continue
         if k == 0 and _persons(measured) is None:
             draws = draws[:1]  # every draw is the same
@@ -284,7 +320,10 @@ def few_shots(
             ShotPoint(k, how, sizes, tuple(shares)) for how, shares in accuracies.items() if shares
         ]
     if not curve.points:
-        raise FolderError(f"{data}: --shots: {next(iter(curve.left_out.values()))}")
+        k, why = next(iter(curve.left_out.items()))
+        most = most_shots(measured, own.seed, shots.repeats)
+        raise FolderError(f"{data}: --shots {k}: {why}; should be at most {most}")
+    curve.add(earlier)
     return curve
 
 
@@ -322,13 +361,28 @@ def drawn(measured: EvalSet, k: int, seed: int, repeat: int) -> Draw:
     return Draw(labelled, np.sort(np.setdiff1d(others, labelled)))
 
 
+def most_shots(measured: EvalSet, seed: int, repeats: int) -> int:
+    """The largest k that every class can give in all draws, with some left to test."""
+    apart, found = _persons(measured) is not None, []
+    for repeat in range(repeats):
+        learned, tested = _counts(measured, drawn(measured, len(measured.images), seed, repeat))
+        found.append(learned.min() * tested.all() if apart else learned.min() - 1)
+    return max(0, int(min(found)))
+
+
+def _counts(measured: EvalSet, draw: Draw) -> tuple[Index, Index]:
+    """Images of each class to learn from, and to test on."""
+    label, classes = measured.images.label, len(measured.images.classes)
+    learned, tested = (
+        np.bincount(label[rows], minlength=classes) for rows in (draw.labelled, draw.tested)
+    )
+    return learned, tested
+
+
 def missing(measured: EvalSet, draw: Draw, k: int) -> str | None:
     """Which class gives fewer than k images to learn from or none to test on; None if none does."""
     images, apart = measured.images, _persons(measured) is not None
-    learned, tested = (
-        np.bincount(images.label[rows], minlength=len(images.classes))
-        for rows in (draw.labelled, draw.tested)
-    )
+    learned, tested = _counts(measured, draw)
     for number, name in enumerate(images.classes):
         if k and (learned[number] < k or not tested[number]):
             have = int((images.label[measured.rows] == number).sum())

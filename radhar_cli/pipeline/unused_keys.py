@@ -61,7 +61,8 @@ def _unused(config: Config) -> Iterator[str]:
 
     for key, other, wanted in USED_ONLY_WITH:
         if _at(config, other) != wanted and changed(key):
-            yield f"{key} has no effect with {_entry(config, other)}, but with {_yaml(wanted)}"
+            needed = f"{other}: {_yaml(wanted)}"
+            yield f"{key} has no effect with {_entry(config, other)}; it needs {needed}"
     for part, keys in USED_ONLY_BY_MAPS.items():
         if not any(part in name for name in config.maps):
             for key in filter(changed, keys):
@@ -85,7 +86,7 @@ def _unused_numbers(config: Config) -> Iterator[tuple[str, str]]:
         "timing": _entry(config, "motion.model"),
     }
     if config.image.kind == "cfar":
-        reasons["image"] = "image.cfar.on: power, nor with threshold_db"
+        reasons["image"] = "image.cfar.on: power or a threshold_db"
     for key in (*(key for key, _ in numbers(config)), FALL):
         reason = reasons.get(key.partition(".")[0])
         if reason and not any(depends_on(config, activity, key) for activity in activities):

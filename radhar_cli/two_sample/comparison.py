@@ -147,9 +147,11 @@ def compare(simulated: Path, measured: Path, options: Options, progress: Progres
 
     Raises:
         FolderError: one cannot be read, or they do not fit each other.
+        RadharError: the line at zero is too wide.
     """
     sides = open_sides(simulated, measured, options.map_name, options.names or {}, options.resize)
     scale = Scale.of(sides, options.zero)
+    scale.refuse_zero(sides)
     names = [*sides[0].classes]
     drawn = {
         name: [_drawn(side, name, n, options) for n, side in enumerate(sides)] for name in names
@@ -277,6 +279,14 @@ def _warnings(
         found.append(f"{without}: has no axes, so all is counted in px{middle}")
     else:
         found += _different_axes(sides, scale, drawn)
+    drawn_too = {h for one in classes for h in one.simulated.hashes if h is not None}
+    same = sum(h in drawn_too for one in classes for h in one.measured.hashes)
+    if same:
+        every = sum(len(one.measured.hashes) for one in classes)
+        found.append(
+            f"{same} of {every} images of {measured.where} are the same, pixel by pixel, in "
+            f"{simulated.where}: the sides should share none"
+        )
     for one in classes:
         if one.tested is None:
             found.append(f"{one.name}: no test; each side should have two persons or maps")

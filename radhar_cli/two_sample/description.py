@@ -2,11 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from hashlib import sha256
 
 import numpy as np
 from PIL import Image
 
 from radhar_cli.arrays import Float, Index, Levels
+from radhar_cli.errors import RadharError
 from radhar_cli.two_sample.map_statistics import (
     STATISTICS,
     PowerMap,
@@ -59,6 +61,28 @@ class Scale:
         bottom = 0.0 if self.ranges else -height / 2
         return 0.0, float(width), bottom, bottom + height
 
+    def refuse_zero(self, sides: Sequence[Side]) -> None:
+        """Refuse a line at zero that leaves no Doppler beside it, or has none.
+
+        Raises:
+            RadharError: names the value, and what would be right.
+        """
+        if self.zero is None:
+            return
+        if self.ranges:
+            raise RadharError(f"--zero {self.zero:g}: is of Doppler-time maps; these show ranges")
+        edges = [
+            np.abs(self.edges(side, int(row))[2:]).max()
+            for side in sides
+            for rows in side.classes.values()
+            for row in rows
+        ]
+        if not self.zero < (most := BEYOND * min(edges)):
+            raise RadharError(
+                f"--zero {self.zero:g}: should be below {most:.4g} {self.units()['rows']}, from "
+                "where on there is noise alone"
+            )
+
     def units(self) -> dict[str, str]:
         """{"rows", "columns": unit}."""
         if not self.axes:
@@ -79,11 +103,13 @@ class Described:
         rows: [N] of the side.
         statistics: [N, statistics].
         fine: [N, FINE, columns] mean levels 0 to 1.
+        hashes: [N] of the levels; None of an image of one level.
     """
 
     rows: Index
     statistics: Float
     fine: Float
+    hashes: tuple[bytes | None, ...]
 
     def features(self, shown: slice) -> Float:
         """Statistics and few pixels [N, D] for a classifier; `shown` are rows of `fine`."""
@@ -97,13 +123,15 @@ def describe(side: Side, rows: Index, scale: Scale) -> Described:
     Raises:
         FolderError: one cannot be read.
     """
-    statistics, fine = [], []
+    statistics, fine, hashes = [], [], list[bytes | None]()
     for row in rows:
         levels = side.levels(int(row))
         found = measured(levels, side, int(row), scale)
         statistics.append([found[name] for name in scale.names])
         fine.append(_boxes(levels / np.float32(255), (FINE, COARSE[1])))
-    return Described(rows, np.array(statistics), np.array(fine, np.float32))
+        blank = levels.min() == levels.max()
+        hashes.append(None if blank else sha256(levels.tobytes()).digest())
+    return Described(rows, np.array(statistics), np.array(fine, np.float32), tuple(hashes))
 
 
 def measured(levels: Levels, side: Side, row: int, scale: Scale) -> dict[str, float]:
@@ -124,7 +152,7 @@ def measured(levels: Levels, side: Side, row: int, scale: Scale) -> dict[str, fl
     one, beyond = PowerMap(side.power(levels), doppler), BEYOND * largest
     found = mask_statistics(one.occupied(beyond), doppler, right - left, zero)
     if any(STATISTICS[name].of_power for name in scale.names):
-        found |= power_statistics(one, zero, beyond, NEAR * largest)
+        found |= power_statistics(one, zero, beyond, NEAR * largest, found["active"] > 0)
     return found
 
 

@@ -43,7 +43,9 @@ class PowerMap(NamedTuple):
         return line
 
 
-def power_statistics(one: PowerMap, zero: float, beyond: float, near: float) -> dict[str, float]:
+def power_statistics(
+    one: PowerMap, zero: float, beyond: float, near: float, body: bool = True
+) -> dict[str, float]:
     """Statistics of power, under the names of `STATISTICS`.
 
     Of energy above the noise, the line at zero left out. A limb is the 75th percentile of the
@@ -55,6 +57,7 @@ def power_statistics(one: PowerMap, zero: float, beyond: float, near: float) -> 
         zero: half the width of the line of zero Doppler.
         beyond: above that Doppler there is noise alone.
         near: half the width of the torso's line.
+        body: whether anybody moves; else what is said of torso and limbs is NaN, not noise's.
     """
     doppler, noise = one.doppler[:, None], one.noise(beyond)
     floor, clean, torso = float(noise.mean()), one.without_noise(zero, beyond), one.torso_line(zero)
@@ -67,9 +70,7 @@ def power_statistics(one: PowerMap, zero: float, beyond: float, near: float) -> 
     limb = np.percentile(np.where(fast, clean, 0).max(axis=0), 75)
     at_zero = one.power[np.abs(one.doppler) <= zero].max(axis=0)
     low, high = np.percentile(torso, [5, 95])
-    return {
-        "peak_over_floor": decibel(float(clean.max()), floor),
-        "noise_sd": float(np.std(10 * np.log10(np.maximum(noise, 1e-30)))),
+    found = {
         "limb_below_torso": decibel(float(np.median(clean.max(axis=0))), float(limb)),
         "fast_energy": float(clean[fast].sum() * share),
         "receding_energy": float(clean[one.doppler < -zero].sum() * share),
@@ -77,6 +78,10 @@ def power_statistics(one: PowerMap, zero: float, beyond: float, near: float) -> 
         "torso_ripple": float(high - low),
         "torso_median": float(np.median(torso)),
         "column_spread": float(np.median(spread)),
+    }
+    return (found if body else dict.fromkeys(found, np.nan)) | {
+        "peak_over_floor": decibel(float(clean.max()), floor),
+        "noise_sd": float(np.std(10 * np.log10(np.maximum(noise, 1e-30)))),
         "zero_over_floor": decibel(float(np.median(at_zero)), floor),
     }
 

@@ -63,11 +63,12 @@ def _table(found: Comparison) -> str:
 
 
 def _distances(found: Comparison) -> bytes:
-    """All statistics of all classes, what is most wrong over all classes first."""
+    """Statistics that any class has, of all classes, what is most wrong over all of them first."""
     table = np.array(
         [[one.apart[name].distance for one in found.classes] for name in found.scale.names]
     )
     order = np.argsort(-np.nan_to_num(table).mean(axis=1), kind="stable")
+    order = order[np.isfinite(table[order]).any(axis=1)]
     columns = [one.name.replace("_", " ") + "\n" + how_sure(one) for one in found.classes]
     rows = [STATISTICS[found.scale.names[number]].words for number in order]
     return distances_png(table[order], rows, columns)

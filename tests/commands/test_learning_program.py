@@ -80,6 +80,16 @@ def test_json_of_commands_that_learn(place: Path) -> None:
         assert json.loads(line).keys() == KEYS[name]
 
 
+@pytest.mark.parametrize(("epochs", "said"), [(0, ""), (1, "1 epoch "), (2, "2 epochs ")])
+def test_adapt_says_how_long(place: Path, tmp_path: Path, epochs: int, said: str) -> None:
+    done = radhar(
+        "adapt", place / "run", place / "tree", "-o", tmp_path / "out", "--epochs", epochs
+    )
+    assert done.returncode == 0, done.stderr
+    assert ("without labels" in done.stdout) == bool(said)
+    assert said in done.stdout
+
+
 def test_models_lists_our_networks_and_the_papers_rivals(place: Path) -> None:
     load_timm()
     done = radhar("models")

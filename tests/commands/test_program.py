@@ -116,7 +116,35 @@ def test_wrong_use_is_status_2(tmp_path: Path) -> None:
         assert done.returncode == 2
         assert "Traceback" not in done.stderr
         assert "no such file" in done.stderr
-    assert radhar("generat").returncode == 2
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ("generat", "No such command 'generat'. Did you mean 'generate'"),
+        ("config shwo", "'shwo'. Did you mean 'show'"),
+        ("generate", "Missing argument"),
+        ("generate c.yaml", "Missing option"),
+        ("generate c.yaml -o out --jbos 2", "No such option: --jbos"),
+        ("generate c.yaml -o out --jobs 0", "--jobs 0: should be greater than or equal to 1"),
+        ("generate c.yaml -o out -j two", "--jobs two: should be a valid integer"),
+        ("eval run data --repeats", "--repeats"),
+        ("compare a b -o c --zero x", "--zero x: should be a valid number"),
+    ],
+)
+def test_mistaken_options_are_one_line_as_all_our_errors(arguments: str, said: str) -> None:
+    done = radhar(*arguments.split())
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1), done.stderr
+    assert done.stderr.startswith("radhar: ")
+    assert said in done.stderr
+    assert " --help)" in done.stderr
+
+
+@pytest.mark.parametrize("group", [[], ["config"]])
+def test_a_group_alone_shows_its_help(group: list[str]) -> None:
+    done = radhar(*group)
+    assert done.returncode == 2
+    assert done.stderr.startswith("Usage: radhar")
 
 
 def test_every_help_has_an_example() -> None:

@@ -18,6 +18,7 @@ from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.run_folder import load_best, read_metadata
 from radhar_cli.learning.shots import (
     ADAPTED,
+    AS_TRAINED,
     SCRATCH,
     TUNED,
     Draw,
@@ -27,6 +28,7 @@ from radhar_cli.learning.shots import (
     drawn,
     few_shots,
     missing,
+    most_shots,
 )
 from radhar_cli.learning.single_result import EvalOptions, EvalSet
 
@@ -76,6 +78,13 @@ def test_a_class_that_has_too_few_is_named(measured: Path) -> None:
     assert missing(some, drawn(some, 7, 1, 0), 7) is None
     assert missing(some, drawn(some, 8, 1, 0), 8) == "punching has 8 images"
     assert missing(some, drawn(some, 9, 1, 0), 9) == "punching has 8 images"
+
+
+def test_the_most_that_can_be_drawn(measured: Path) -> None:
+    for some in (opened(measured), opened(measured, tuple("abcd"[row % 4] for row in range(24)))):
+        most = most_shots(some, 1, 3)
+        assert all(missing(some, drawn(some, most, 1, n), most) is None for n in range(3))
+        assert any(missing(some, drawn(some, most + 1, 1, n), most + 1) for n in range(3))
 
 
 def test_labelled_images_come_from_other_persons_than_tested_ones(measured: Path) -> None:
@@ -157,7 +166,7 @@ def test_the_curve_of_a_run(run_dir: Path, data: Path, measured: Path, tmp_path:
     watched = Watched()
     found = curve(run_dir, measured, tmp_path, watched, mix=(data,), shots=(0, 2, 8), adapting=1)
     ways = [(p.shots, p.how) for p in found.points]
-    assert ways == [(0, TUNED), (0, ADAPTED), (2, TUNED), (2, ADAPTED), (2, SCRATCH)]
+    assert ways == [(0, AS_TRAINED), (0, ADAPTED), (2, TUNED), (2, ADAPTED), (2, SCRATCH)]
     assert found.left_out == {8: "punching has 8 images"}
     assert any("8 a class: left out" in line for line in watched.said)
     zero, _, tuned, _, scratch = found.points
@@ -210,6 +219,23 @@ def test_other_settings_in_the_same_folder_are_refused(
     curve(run_dir, measured, tmp_path, shots=(1,), repeats=1, overrides=changed, overwrite=True)
 
 
+def test_further_numbers_of_images_are_added_to_the_curve(
+    run_dir: Path, measured: Path, tmp_path: Path
+) -> None:
+    whole = curve(run_dir, measured, tmp_path / "whole", shots=(0, 1))
+    for shots in ((1,), (0,)):
+        found = curve(run_dir, measured, tmp_path / "parts", shots=shots)
+        found.write(tmp_path / "parts")
+    assert found.points == whole.points
+    with pytest.raises(FolderError, match="as repeats differs; --overwrite starts again"):
+        curve(run_dir, measured, tmp_path / "parts", shots=(0,), repeats=1)
+    again = curve(run_dir, measured, tmp_path / "parts", shots=(0,), repeats=1, overwrite=True)
+    assert [point.shots for point in again.points] == [0]
+    (tmp_path / "parts/shots.json").write_text("[]")
+    with pytest.raises(FolderError, match="is not a curve"):
+        curve(run_dir, measured, tmp_path / "parts", shots=(0,))
+
+
 def test_settings_are_the_runs_with_fewer_epochs_to_fine_tune(
     run_dir: Path, measured: Path, tmp_path: Path
 ) -> None:
@@ -227,13 +253,15 @@ def test_settings_are_the_runs_with_fewer_epochs_to_fine_tune(
 def test_nothing_to_draw_is_one_line(run_dir: Path, measured: Path, tmp_path: Path) -> None:
     with pytest.raises(FolderError) as error:
         curve(run_dir, measured, tmp_path, shots=(50,))
-    one_clear_line(error.value, measured, "--shots", "punching has 8 images")
+    one_clear_line(
+        error.value, measured, "--shots 50: punching has 8 images", "should be at most 7"
+    )
 
 
 def test_what_is_below_its_comparison_is_said() -> None:
     found = ShotCurve("", {"mix": []})
     found.points = [
-        ShotPoint(0, TUNED, (10,), (0.8,)),
+        ShotPoint(0, AS_TRAINED, (10,), (0.8,)),
         ShotPoint(1, TUNED, (10,), (0.7,)),
         ShotPoint(1, SCRATCH, (10,), (0.5,)),
         ShotPoint(5, TUNED, (10,), (0.85,)),
@@ -276,6 +304,9 @@ def test_the_command_writes_table_figure_and_numbers(
         (("--shots", "1", "--tsne"), "--tsne: is not drawn with --shots"),
         (("--mix", "{data}"), "--mix: belongs to --shots"),
         (("--tune", "epochs=1"), "--tune: belongs to --shots"),
+        (("--repeats", "2"), "--repeats: belongs to --shots"),
+        (("--adapt", "2"), "--adapt: belongs to --shots"),
+        (("--shots", "0,50000", "--repeats", "0"), "--repeats 0: should be greater than"),
         (("--shots", "1", "--set", "epoch=1"), "did you mean 'epochs'"),
         (("--shots", "1", "--mix", "{data}/none"), "no such file or folder"),
         (("--shots", "1", "{data}"), "should have one of each"),

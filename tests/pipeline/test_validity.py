@@ -260,7 +260,11 @@ def test_a_recording_that_ends_before_the_second_phase_is_said() -> None:
 @pytest.mark.parametrize(
     ("document", "key"),
     [
-        ({"processing": {"gate_m": 2.0}}, "processing.gate_m has no effect"),
+        (
+            {"processing": {"gate_m": 2.0}},
+            "processing.gate_m has no effect with processing.doppler: half_band; it needs "
+            "processing.doppler: gate",
+        ),
         ({"processing": {"gate_sum": "magnitude"}}, "processing.gate_sum has no effect"),
         ({"processing": {"highpass": {"order": 2}}}, "processing.highpass has no effect"),
         ({"image": {"cfar": {"pfa": 0.2}}}, "image.cfar has no effect"),

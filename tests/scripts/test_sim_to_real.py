@@ -214,7 +214,7 @@ def test_the_whole_way(
     )
     printed = capsys.readouterr().out.splitlines()
     assert [line.partition(":")[0] for line in printed] == [
-        "0 labelled a class, fine-tuned",
+        "0 labelled a class, as trained",
         "0 labelled a class, adapted",
         "1 labelled a class, fine-tuned",
         "1 labelled a class, adapted",

@@ -8,10 +8,12 @@ import pytest
 from command_line import radhar
 from PIL import Image
 
-from radhar_cli.arrays import Levels
-from radhar_cli.errors import FolderError
+from radhar_cli.arrays import Float, Levels
+from radhar_cli.errors import FolderError, RadharError
+from radhar_cli.two_sample import report
 from radhar_cli.two_sample.comparison import Comparison, Options, compare
 from radhar_cli.two_sample.description import Scale
+from radhar_cli.two_sample.map_statistics import STATISTICS
 from radhar_cli.two_sample.sides import open_sides
 
 SIZE = 64
@@ -128,6 +130,43 @@ def test_one_map_a_class_is_described_but_not_tested(tmp_path: Path) -> None:
     assert any("a: no test" in warning for warning in found.warnings)
 
 
+def test_a_zero_line_as_wide_as_the_map_is_refused(tmp_path: Path) -> None:
+    one, other = (tree(tmp_path / name, n, mask, "a") for n, name in enumerate("xy"))
+    for zero in (1e9, 28, np.inf, np.nan):
+        with pytest.raises(RadharError, match=r"--zero \S+: should be below 27.74 px"):
+            compared(one, other, zero=zero)
+    assert compared(one, other, zero=20).classes
+
+
+def test_images_that_both_sides_hold_are_said(tmp_path: Path) -> None:
+    one, other = (tree(tmp_path / name, n, mask, "a") for n, name in enumerate("xy"))
+    blank = Image.fromarray(np.zeros((SIZE, SIZE), np.uint8))
+    for place in (one, other):
+        blank.save(place / "a/00.png")
+    assert not any("pixel by pixel" in warning for warning in compared(one, other).warnings)
+    (other / "a/01.png").write_bytes((one / "a/03.png").read_bytes())
+    assert any("1 of 40 images of" in warning for warning in compared(one, other).warnings)
+    assert any("39 of 40 images of" in warning for warning in compared(one, one).warnings)
+
+
+def test_statistics_that_no_class_has_are_not_drawn(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    still = mask(np.random.default_rng(1), 0)
+    one, other = (tree(tmp_path / name, n, lambda rng: still, "a") for n, name in enumerate("xy"))
+    found, drawn = compared(one, other), list[str]()
+
+    def draws(distances: Float, rows: list[str], columns: list[str]) -> bytes:
+        assert np.isfinite(distances).any(axis=1).all()
+        drawn.extend(rows)
+        return b""
+
+    monkeypatch.setattr(report, "distances_png", draws)
+    report.write(found, tmp_path / "out")
+    assert STATISTICS["occupied"].words in drawn
+    assert STATISTICS["ripple"].words not in drawn, "nothing moves"
+
+
 @pytest.fixture
 def recorded(tmp_path: Path) -> Path:
     """Masks of three persons as a data set with axes."""
@@ -159,7 +198,8 @@ def test_axes_and_persons_of_a_data_set(recorded: Path) -> None:
     assert sides[0].masks
     assert np.unique(sides[0].group).size == 3
     found = compared(recorded, recorded)
-    assert found.warnings == ()
+    (same,) = found.warnings
+    assert "pixel by pixel" in same
     assert found.classes[0].apart["active"].measured.mean == pytest.approx(13 / 64 * 5, rel=0.2)
     assert found.classes[0].apart["upper_envelope"].measured.mean == pytest.approx(
         12 * 1000 / 64, rel=0.1

@@ -149,3 +149,14 @@ def test_a_map_without_power() -> None:
     found = power_statistics(PowerMap(np.zeros((ROWS, COLUMNS)), DOPPLER), ZERO, 430, 20)
     assert np.isnan(found["fast_energy"])
     assert not PowerMap(np.zeros((ROWS, COLUMNS)), DOPPLER).occupied(430).any()
+
+
+def test_where_nobody_is_seen_noise_is_no_torso() -> None:
+    rng = np.random.default_rng(1)
+    one = PowerMap(rng.exponential(size=(ROWS, COLUMNS)), DOPPLER)
+    cells = mask_statistics(one.occupied(430), DOPPLER, SECONDS, ZERO)
+    assert cells["active"] == 0
+    found = power_statistics(one, ZERO, 430, 15, cells["active"] > 0)
+    finite = {name for name, value in found.items() if np.isfinite(value)}
+    assert finite == {"peak_over_floor", "noise_sd", "zero_over_floor"}
+    assert found.keys() == {name for name, statistic in STATISTICS.items() if statistic.of_power}

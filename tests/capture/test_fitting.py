@@ -33,7 +33,7 @@ def recorded(folder: Path, snr_db: float, activity: str = "walking", seed: int =
 
 
 @pytest.mark.parametrize("snr_db", [20.0, 5.0, -5.0])
-def test_snr_and_range_come_back(tmp_path: Path, snr_db: float) -> None:
+def test_snr_and_range_are_recovered(tmp_path: Path, snr_db: float) -> None:
     found = fit([recorded(tmp_path, snr_db)])
     assert found.document["snr_db"] == pytest.approx(snr_db, abs=1.0)
     assert abs(found.slope_db) < 1, "white noise has no colour"
@@ -42,7 +42,7 @@ def test_snr_and_range_come_back(tmp_path: Path, snr_db: float) -> None:
     assert low + 2 < high < 9
 
 
-def test_the_config_simulates(tmp_path: Path) -> None:
+def test_the_fitted_config_can_be_simulated(tmp_path: Path) -> None:
     paths = [recorded(tmp_path, snr, seed=n) for n, snr in enumerate((5.0, 10.0, 15.0))]
     done = radhar("fit", *paths, "-o", tmp_path / "fit.yaml")
     assert done.returncode == 0, done.stderr

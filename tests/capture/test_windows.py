@@ -82,7 +82,7 @@ def test_windows_are_samples(recordings: Path, tmp_path: Path) -> None:
     assert len([*(tmp_path / "set/png/stft").rglob("*.png")]) == 28
 
 
-def test_every_command_takes_it(recordings: Path, tmp_path: Path) -> None:
+def test_every_command_accepts_it(recordings: Path, tmp_path: Path) -> None:
     out = tmp_path / "set"
     generate(recordings, out)
     assert "is complete" in generate(recordings, out)
@@ -101,7 +101,7 @@ def test_any_number_of_workers_and_batches_give_the_same(recordings: Path, tmp_p
     assert a == b
 
 
-def test_persons_are_kept_apart(recordings: Path, tmp_path: Path) -> None:
+def test_no_person_is_in_two_splits(recordings: Path, tmp_path: Path) -> None:
     more = [f"split={{by: subject, subjects: 9, train: {0.5}, validation: 0.5}}"]
     generate(recordings, tmp_path / "set", "--set", *more)
     with open_dataset(tmp_path / "set") as data:
@@ -143,7 +143,9 @@ WRONG = [
 
 
 @pytest.mark.parametrize(("text", "said"), WRONG)
-def test_wrong_manifest_is_a_line(recordings: Path, tmp_path: Path, text: str, said: str) -> None:
+def test_wrong_manifest_is_refused_in_one_line(
+    recordings: Path, tmp_path: Path, text: str, said: str
+) -> None:
     manifest = recordings / "wrong.csv"
     manifest.write_text(text)
     command = ("generate", recordings / "c.yaml", "--recordings", manifest)

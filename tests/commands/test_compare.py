@@ -57,7 +57,7 @@ def report(place: Path, one: str, other: str) -> dict[str, dict[str, object]]:
     return found
 
 
-def test_the_papers_motion_is_told_from_people_and_people_are_not(place: Path) -> None:
+def test_the_papers_motion_differs_from_people_and_people_not_from_people(place: Path) -> None:
     same = report(place, "human", "others")
     low, high = same["test"]["accuracy_95"]  # type: ignore[misc]
     assert low < 0.5 < high
@@ -76,7 +76,9 @@ def few(place: Path, out: Path, map_name: str = "stft") -> list[object]:
     return ["compare", place / "human", place / "paper", "-o", out, "--map", map_name, *options]
 
 
-def test_the_same_bytes_and_nothing_left_of_before(place: Path, tmp_path: Path) -> None:
+def test_repeated_compare_writes_the_same_bytes_and_removes_old_files(
+    place: Path, tmp_path: Path
+) -> None:
     other = tmp_path / "b"
     other.mkdir()
     for name in ("old.png", "mine.png"):
@@ -119,7 +121,7 @@ def test_a_range_time_map(place: Path, tmp_path: Path) -> None:
         (("{human}", "{paper}", "--classes", "{names}"), "no class 'walkin' (--classes)"),
     ],
 )
-def test_one_line_says_what_is_wrong(
+def test_mistakes_are_refused_in_one_line(
     place: Path, tmp_path: Path, arguments: tuple[str, ...], said: str
 ) -> None:
     (tmp_path / "names.yaml").write_text("walkin: walking\n")
@@ -134,7 +136,7 @@ def test_one_line_says_what_is_wrong(
     assert not (tmp_path / "out").exists()
 
 
-def test_the_core_install_will_do(place: Path, tmp_path: Path) -> None:
+def test_compare_needs_the_core_install_only(place: Path, tmp_path: Path) -> None:
     code = """
 import sys
 sys.argv = ["radhar", "compare", *sys.argv[1:]]

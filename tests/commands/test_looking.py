@@ -98,7 +98,7 @@ def test_bad_input_is_one_line_and_status_2(
     assert len(done.stderr.strip().splitlines()) == 1
 
 
-def test_readme_lines_run(tmp_path: Path) -> None:
+def test_readme_python_runs(tmp_path: Path) -> None:
     """The Python lines of the README make a map and plot it."""
     text = (ROOT / "README.md").read_text()
     code = (

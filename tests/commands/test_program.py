@@ -14,7 +14,7 @@ TRAINING = sorted((ROOT / "configs/train").glob("*.yaml"))
 CONFIGS = sorted(set((ROOT / "configs").rglob("*.yaml")) - set(TRAINING))
 
 
-def test_generate_verify_and_again(tmp_path: Path) -> None:
+def test_generate_verify_and_generate_again(tmp_path: Path) -> None:
     config, out = small_config(tmp_path), tmp_path / "set"
     first = radhar("generate", config, "-o", out, "--jobs", 1)
     assert first.returncode == 0, first.stderr
@@ -34,7 +34,7 @@ def test_generate_verify_and_again(tmp_path: Path) -> None:
     assert "WRONG /label" in wrong.stdout
 
 
-def test_set_repeats_and_changes_the_config(tmp_path: Path) -> None:
+def test_repeated_set_options_change_the_config(tmp_path: Path) -> None:
     out = tmp_path / "set"
     done = radhar(
         *("generate", small_config(tmp_path), "-o", out, "--jobs", 1),
@@ -98,7 +98,7 @@ def test_schema_is_json_schema() -> None:
         ("image: {colour_map: viridus}", ["image.colour_map", "viridus", "viridis"]),
     ],
 )
-def test_broken_configs_end_in_one_message_and_status_2(
+def test_broken_configs_are_refused_in_one_message_with_status_2(
     tmp_path: Path, text: str, said: list[str]
 ) -> None:
     path = small_config(tmp_path, text)
@@ -139,7 +139,7 @@ def test_second_run_on_a_live_folder_is_refused(tmp_path: Path) -> None:
     assert "another run is writing here" in done.stderr
 
 
-def test_disk_that_refuses_is_one_line_and_keeps_what_is_finished(tmp_path: Path) -> None:
+def test_full_disk_is_one_line_and_keeps_finished_samples(tmp_path: Path) -> None:
     """A limit on the size of a file stands for a full disk: writing fails midway, as there."""
     config = small_config(tmp_path)
     limited = (

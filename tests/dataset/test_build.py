@@ -51,7 +51,7 @@ def test_jobs_and_batch_size_change_no_byte(
     assert fingerprint(tmp_path / "set") == fingerprint(whole)
 
 
-def test_batches_share_few_rows_evenly_and_grow_with_many() -> None:
+def test_batch_size_by_number_of_rows() -> None:
     def size(left: int, jobs: int, one: int = 10**4) -> int:
         return build_module._batch_size(left, jobs, one)
 
@@ -78,7 +78,7 @@ def test_a_relative_folder_is_built_whatever_the_working_directory_of_the_worker
     assert not list(elsewhere.iterdir())
 
 
-def test_unfinished_build_goes_on_with_another_batch_size(
+def test_an_unfinished_build_resumes_with_another_batch_size(
     config: Config, whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder, made = tmp_path / "set", []
@@ -100,7 +100,7 @@ def test_unfinished_build_goes_on_with_another_batch_size(
     assert fingerprint(folder) == fingerprint(whole)
 
 
-def test_complete_folder_is_left_alone(config: Config, whole: Path) -> None:
+def test_a_complete_folder_is_not_changed(config: Config, whole: Path) -> None:
     before = (whole / "dataset.h5").stat().st_mtime_ns
     assert make(config, whole).already_complete
     assert (whole / "dataset.h5").stat().st_mtime_ns == before
@@ -122,7 +122,7 @@ def test_other_versions_are_refused(
         make(config, whole)
 
 
-def test_pngs_can_be_added_later_and_lost_ones_come_back(
+def test_pngs_can_be_added_later_and_lost_ones_are_rewritten(
     config: Config, whole: Path, tmp_path: Path
 ) -> None:
     folder = tmp_path / "set"
@@ -144,7 +144,7 @@ def test_pngs_can_be_added_later_and_lost_ones_come_back(
     assert fingerprint(folder).items() >= {k: right[k] for k in right if k[:3] == "png"}.items()
 
 
-def test_overwrite_starts_again_and_keeps_strangers(
+def test_overwrite_starts_again_and_keeps_foreign_files(
     config: Config, whole: Path, tmp_path: Path
 ) -> None:
     folder = tmp_path / "set"
@@ -156,7 +156,9 @@ def test_overwrite_starts_again_and_keeps_strangers(
     assert fingerprint(folder) == fingerprint(whole)
 
 
-def test_overwrite_leaves_what_radhar_did_not_build(config: Config, tmp_path: Path) -> None:
+def test_overwrite_refuses_folders_that_radhar_did_not_build(
+    config: Config, tmp_path: Path
+) -> None:
     with h5py.File(tmp_path / "dataset.h5", "w") as file:
         file["mine"] = 1
     (tmp_path / "png").mkdir()
@@ -167,7 +169,7 @@ def test_overwrite_leaves_what_radhar_did_not_build(config: Config, tmp_path: Pa
     assert (tmp_path / "dataset.h5").exists()
 
 
-def test_overwrite_killed_midway_goes_on(
+def test_overwrite_killed_midway_resumes(
     config: Config, whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Whatever step of clearing is the last, the same command finishes the job."""
@@ -263,7 +265,7 @@ def test_scene_too_close_to_an_antenna_stops_before_any_echo(
         make(near, tmp_path / "set")
 
 
-def test_physical_warnings_are_said_once_with_their_number_and_stored(
+def test_physical_warnings_are_given_once_with_a_count_and_stored(
     config: Config, tmp_path: Path
 ) -> None:
     notes = Listener()
@@ -280,7 +282,7 @@ def test_physical_warnings_are_said_once_with_their_number_and_stored(
     }
 
 
-def test_scenes_that_fall_back_to_the_cube_are_counted_whoever_made_them(
+def test_fallbacks_to_the_cube_are_counted_across_resumed_runs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Double precision cannot promise -300 dB of anybody who moves."""
@@ -346,7 +348,7 @@ def test_dataset_contract(config: Config, whole: Path) -> None:
 
 
 @pytest.mark.parametrize(("count", "last"), [(3, "00002"), (10**5, "99999"), (10**5 + 1, "100000")])
-def test_names_of_a_class_sort_however_many(config: Config, count: int, last: str) -> None:
+def test_png_names_sort_by_index_at_any_count(config: Config, count: int, last: str) -> None:
     rows = Rows(config.chosen_activities[:2], (5, count))
     assert (rows.name(4), rows.name(4 + count)) == ("00004", last)
     assert rows.png_path("rtm", 0, 5).stem == "0".zfill(len(last))

@@ -99,7 +99,7 @@ def test_dask_shards_loky_and_one_process_give_the_same_bytes(tmp_path: Path) ->
     assert len(pngs) == 2 * len(Rows.of(config))  # one of each map
 
 
-def test_a_killed_worker_is_survived_and_a_killed_scheduler_is_named(
+def test_a_build_survives_a_killed_worker_and_names_a_killed_scheduler(
     cluster: tuple[str, list[Process]], tmp_path: Path
 ) -> None:
     address, (scheduler, first, _) = cluster

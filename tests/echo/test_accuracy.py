@@ -193,7 +193,7 @@ def test_tighter_tolerances_never_take_less():
     assert not found[-1].single
 
 
-def test_what_hardly_turns_is_double_at_once():
+def test_slow_motion_is_computed_in_double_at_once():
     """5 mm/s: the first difference leaves -50 dB, and single precision not enough of that."""
     slow = ref.Points(lambda t: (2 + 0.005 * t)[None])
     echo = replace(walk(-80.0), source=slow)
@@ -212,7 +212,7 @@ def test_the_limit_that_a_refusal_names_can_be_kept():
         walk(limit_db - 20).slow_time()
 
 
-def test_float64_holds_less_of_a_signal_of_which_the_mti_leaves_less():
+def test_the_limit_of_float64_depends_on_what_the_mti_leaves():
     """A phase is held to 1e-16 of its cycles, whatever the PRF; x shrinks with it."""
     limits = []
     for prf in (1250.0, 20000.0):

@@ -180,7 +180,7 @@ class TestMotionInChirp:
         assert -80 < ref.error_db(moving["signal"].x, frozen["signal"].x) < -20
         assert -80 < ref.error_db(moving["rtm"].power, frozen["rtm"].power) < -20
 
-    def test_blocks_are_bounded_and_do_not_matter(self, monkeypatch):
+    def test_block_length_is_bounded_and_does_not_matter(self, monkeypatch):
         radar = RADARS["odd"]
         whole = self.beat(crowd, radar)
         monkeypatch.setattr(cube, "BLOCK_SAMPLES", 7 * radar.n_adc)

@@ -159,7 +159,7 @@ def test_range_power(kind: str) -> None:
     assert not range_power(z * 1e-310).any()
 
 
-def test_squares_beyond_a_double_are_said() -> None:
+def test_squares_beyond_a_double_overflow_with_a_warning() -> None:
     """|S| from 1.4e154 on: NumPy warns of the overflow and the map is infinite."""
     with pytest.warns(RuntimeWarning, match="overflow"):
         power = range_power(np.full((20, 24), 1e155 + 0j))

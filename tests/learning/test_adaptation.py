@@ -39,7 +39,7 @@ def learned(data: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return run
 
 
-def test_other_contrast_is_learned_without_labels(learned: Path, tmp_path: Path) -> None:
+def test_adaptation_restores_accuracy_at_another_contrast(learned: Path, tmp_path: Path) -> None:
     measured = another_radar(tree(tmp_path / "measured", seed=5))
     adapt(learned, measured, tmp_path / "adapted", CPU)
     assert accuracy(learned, measured) < 0.7
@@ -98,7 +98,7 @@ def test_epochs_leave_the_last_layer_and_do_not_look_at_labels(
 
 
 @pytest.mark.parametrize("epochs", [0, 2])
-def test_the_same_again_gives_the_same_weights(learned: Path, tmp_path: Path, epochs: int) -> None:
+def test_adaptation_is_reproducible(learned: Path, tmp_path: Path, epochs: int) -> None:
     measured = tree(tmp_path / "measured", seed=5)
     for name in ("one", "two"):
         adapt(learned, measured, tmp_path / name, CPU, epochs=epochs)
@@ -108,7 +108,7 @@ def test_the_same_again_gives_the_same_weights(learned: Path, tmp_path: Path, ep
     assert same(one.state_dict(), two.state_dict())
 
 
-def test_what_cannot_be_adapted_is_told(learned: Path, data: Path, tmp_path: Path) -> None:
+def test_what_cannot_be_adapted_is_refused(learned: Path, data: Path, tmp_path: Path) -> None:
     few = tree(tmp_path / "few", classes=("walking",))
     with pytest.raises(ConfigError, match="has 8 images; should have at least 16"):
         adapt(learned, few, tmp_path / "no", CPU)

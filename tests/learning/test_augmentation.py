@@ -37,7 +37,7 @@ def centre(levels: Levels) -> tuple[float, float]:
     )
 
 
-def test_nothing_asked_changes_nothing() -> None:
+def test_no_augmentation_by_default() -> None:
     levels = np.random.default_rng(1).integers(0, 256, (16, 20), dtype=np.uint8)
     assert np.array_equal(changed(levels), levels)
 
@@ -147,7 +147,7 @@ def test_any_setting_gives_an_image_of_the_same_size_again_and_again(
     assert np.array_equal(one, again)
 
 
-def test_rows_epochs_and_seeds_differ() -> None:
+def test_augmentation_differs_by_row_epoch_and_seed() -> None:
     levels = blob(20, 20)
     kinds = [
         changed(levels, row, epoch, seed, time_shift=0.3).tobytes()

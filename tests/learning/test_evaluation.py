@@ -97,7 +97,7 @@ def test_report_of_a_good_run(learned: tuple[Path, Path], tmp_path: Path) -> Non
     assert timing["image_s"] > 0
 
 
-def test_a_planted_confusion_is_found_where_it_was_planted(
+def test_planted_confusions_appear_in_the_matrix(
     learned: tuple[Path, Path], tmp_path: Path
 ) -> None:
     """The folders of punching and walking change their names; kicking loses an image."""
@@ -125,7 +125,7 @@ def test_some_of_the_classes_are_matched_by_name(
     assert numbers["accuracy"] == 1
 
 
-def test_it_is_said_when_images_were_trained_on(learned: tuple[Path, Path]) -> None:
+def test_evaluation_on_training_images_is_warned_of(learned: tuple[Path, Path]) -> None:
     report, ears = asked(learned, split="train")
     assert only(report)["seen_in_training"]["images"] == 24
     assert any("24 of these 24 images" in line for line in ears.said)
@@ -171,7 +171,7 @@ def test_weights_alone_are_evaluated_without_curves(
     assert not any(name == "curves.png" for name, _, _ in report.figures)
 
 
-def test_batches_do_not_change_the_answers(learned: tuple[Path, Path]) -> None:
+def test_batch_size_does_not_change_predictions(learned: tuple[Path, Path]) -> None:
     metadata, model = load_best(learned[0])
     images = open_for(metadata, learned[1], None)
     rows = images.rows("val")[::-1].copy()
@@ -214,7 +214,7 @@ def test_data_that_does_not_fit_the_model_is_refused(
     one_clear_line(caught.value, *said, root)
 
 
-def test_two_groups_need_classes_of_ours(tmp_path: Path) -> None:
+def test_two_groups_need_the_twelve_classes(tmp_path: Path) -> None:
     root = split_tree(tmp_path / "t", 2, 1, classes=("a", "b"))
     trained(root, tmp_path / "run", epochs=1)
     with pytest.raises(RadharError, match="'a' is none of the twelve activities"):
@@ -227,7 +227,7 @@ def test_the_same_data_twice_is_refused(learned: tuple[Path, Path]) -> None:
 
 
 @pytest.mark.parametrize("content", ["", "a,b\n1,2\n"])
-def test_damaged_list_of_training_images_is_no_traceback(
+def test_a_damaged_list_of_training_images_is_refused(
     learned: tuple[Path, Path], tmp_path: Path, content: str
 ) -> None:
     shutil.copytree(learned[0], tmp_path / "run")
@@ -273,7 +273,7 @@ def test_predict_of_files_and_folders(learned: tuple[Path, Path]) -> None:
     assert dict(answers)[f"{root}: walking/001"] == pytest.approx(answers[0][1], abs=1e-5)
 
 
-def test_predict_asks_for_no_labels(learned: tuple[Path, Path], tmp_path: Path) -> None:
+def test_predict_needs_no_labels(learned: tuple[Path, Path], tmp_path: Path) -> None:
     root = tree(tmp_path / "t", ("who", "knows"), {"": 1})
     assert len(list(predict_paths(learned[0], [root], CPU, None, "all"))) == 2
 
@@ -288,7 +288,9 @@ def test_predict_refuses_other_sizes_and_damage(learned: tuple[Path, Path], tmp_
         one_clear_line(caught.value, tmp_path / f"{name}.png", said)
 
 
-def test_onnx_runtime_agrees(learned: tuple[Path, Path], tmp_path: Path) -> None:
+def test_onnx_runtime_gives_the_same_probabilities(
+    learned: tuple[Path, Path], tmp_path: Path
+) -> None:
     import onnx
     import onnxruntime
 
@@ -349,7 +351,7 @@ def test_hdf5_and_png_train_and_evaluate_the_same(tmp_path: Path) -> None:
         evaluate([tmp_path / "run"], [stored], EvalOptions(map="stfft"), CPU, Ears())
 
 
-def test_a_map_that_is_not_in_the_folder_is_not_passed_over(tmp_path: Path) -> None:
+def test_a_map_that_the_folder_lacks_is_refused(tmp_path: Path) -> None:
     """A tree of one map of ours asked for another one."""
     build(load_config(small_config(tmp_path, SET)), tmp_path / "set", progress=Quiet(), jobs=1)
     with pytest.raises(RadharError):

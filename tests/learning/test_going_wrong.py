@@ -69,14 +69,14 @@ def test_nothing_is_written_into_the_data(
 
 
 @pytest.mark.parametrize("command", ["train", "predict"])
-def test_a_run_is_no_data(command: str, run_dir: Path, tmp_path: Path) -> None:
+def test_a_run_folder_is_not_read_as_data(command: str, run_dir: Path, tmp_path: Path) -> None:
     more = [run_dir, run_dir] if command == "predict" else [run_dir, "-o", tmp_path / "x"]
     error = radhar(command, *more)
     one_clear_line(error, run_dir, "is a training run", "asked for here")
     assert not (tmp_path / "x").exists()
 
 
-def test_a_failed_start_does_not_take_the_folder(data: Path, tmp_path: Path) -> None:
+def test_a_failed_start_leaves_the_folder_free(data: Path, tmp_path: Path) -> None:
     with pytest.raises(ModelError, match="did you mean 'fftnet'"):
         trained(data, tmp_path / "run", model="fftnett")
     with pytest.raises(KeyboardInterrupt):
@@ -109,9 +109,7 @@ def test_a_checkpoint_of_another_run_is_refused(data: Path, copy: Path, tmp_path
 
 
 @pytest.mark.parametrize("best", [1, 3])
-def test_best_weights_that_are_gone_are_said_or_made_again(
-    best: int, data: Path, copy: Path
-) -> None:
+def test_missing_best_weights_are_reported_or_restored(best: int, data: Path, copy: Path) -> None:
     """They can be had again if they are those of the last epoch; which were best is planted."""
     last = run.read_last(copy)
     assert last is not None
@@ -129,7 +127,7 @@ def test_best_weights_that_are_gone_are_said_or_made_again(
         one_clear_line(caught.value, "cannot be recovered", "--overwrite")
 
 
-def test_what_can_be_derived_is_written_again(data: Path, run_dir: Path, copy: Path) -> None:
+def test_derived_files_are_written_again(data: Path, run_dir: Path, copy: Path) -> None:
     for name in (run_files.HISTORY, run_files.METRICS, run_files.CURVES, run_files.SUMMARY):
         (copy / name).unlink()
     trained(data, copy)
@@ -137,7 +135,7 @@ def test_what_can_be_derived_is_written_again(data: Path, run_dir: Path, copy: P
     assert same_run(run_dir, copy)
 
 
-def test_eval_finds_the_cut_of_training_again(tmp_path: Path) -> None:
+def test_eval_reproduces_the_split_of_training(tmp_path: Path) -> None:
     root = tree(tmp_path / "t", parts={"": 5})
     trained(root, tmp_path / "run", epochs=1)
     metadata = run.read_metadata(tmp_path / "run")
@@ -149,7 +147,7 @@ def test_eval_finds_the_cut_of_training_again(tmp_path: Path) -> None:
     assert (split, rows.size) == ("all", 14), "another set: what it is is said"
 
 
-def test_a_model_that_knows_no_map_asks_for_one(tmp_path: Path) -> None:
+def test_a_run_on_unnamed_images_needs_a_map(tmp_path: Path) -> None:
     from radhar_cli.config import load_config
     from radhar_cli.dataset.build import build
 
@@ -196,7 +194,7 @@ def test_hidden_files_are_no_images(tmp_path: Path) -> None:
     assert len(open_images(root, None, "rgb")) == 9
 
 
-def test_a_class_without_validation_images_is_said(tmp_path: Path) -> None:
+def test_a_class_without_validation_images_is_warned_of(tmp_path: Path) -> None:
     from learning.patterns import Watched
 
     root = split_tree(tmp_path / "t", 2, 1)
@@ -211,7 +209,7 @@ def test_predict_takes_a_folder_of_images(run_dir: Path, data: Path) -> None:
     assert [Path(name).name for name, _ in answers] == ["000.png", "001.png"]
 
 
-def test_a_file_that_breaks_in_a_worker_is_one_line(tmp_path: Path) -> None:
+def test_a_broken_file_in_a_worker_is_one_line(tmp_path: Path) -> None:
     root = split_tree(tmp_path / "t", 2, 1)
     images = open_images(root, None, "rgb")
     (root / "train/kicking/001.png").write_bytes(b"no more")
@@ -221,7 +219,7 @@ def test_a_file_that_breaks_in_a_worker_is_one_line(tmp_path: Path) -> None:
     assert "Traceback" not in str(caught.value)
 
 
-def test_workers_do_not_draw_from_the_layers_stream(data: Path) -> None:
+def test_workers_leave_the_random_state_of_the_network_alone(data: Path) -> None:
     images = open_images(data, None, "rgb")
     drawn = []
     for workers in (0, 1):
@@ -264,7 +262,7 @@ def test_what_cannot_be_drawn_is_refused_before_anything_is_computed(tmp_path: P
         evaluate([tmp_path / "run"], [root], EvalOptions(in_place_vs_moving=True), CPU, Ears())
 
 
-def test_auto_or_a_number_is_one_message() -> None:
+def test_a_value_neither_auto_nor_a_number_gives_one_message() -> None:
     for key in ("workers", "threads", "micro_batch"):
         with pytest.raises(ValueError, match="should be auto or a whole number") as caught:
             settings(**{key: "many"})

@@ -45,7 +45,7 @@ def test_interval_of_repeats_holds_images_and_draws() -> None:
     assert (low, high) == pytest.approx((0.8 - known, 0.8 + known), abs=0.03)
 
 
-def test_wilson_of_nothing_says_nothing() -> None:
+def test_wilson_of_no_images_is_the_whole_interval() -> None:
     assert metrics.wilson(0, 0) == (0.0, 1.0)
 
 

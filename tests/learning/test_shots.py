@@ -177,7 +177,7 @@ def test_the_curve_of_a_run(run_dir: Path, data: Path, measured: Path, tmp_path:
         assert "start" not in read_metadata(one.parent / "from_scratch").work
 
 
-def test_interrupted_it_goes_on_and_the_result_is_the_same(
+def test_an_interrupted_measurement_resumes_to_the_same_result(
     run_dir: Path, measured: Path, tmp_path: Path
 ) -> None:
     class Stopped(Watched):
@@ -224,13 +224,15 @@ def test_settings_are_the_runs_with_fewer_epochs_to_fine_tune(
     one_clear_line(error.value, "--tune: epochs = 0", "greater than or equal to 1")
 
 
-def test_nothing_to_draw_is_one_line(run_dir: Path, measured: Path, tmp_path: Path) -> None:
+def test_too_few_images_to_draw_from_are_refused_in_one_line(
+    run_dir: Path, measured: Path, tmp_path: Path
+) -> None:
     with pytest.raises(FolderError) as error:
         curve(run_dir, measured, tmp_path, shots=(50,))
     one_clear_line(error.value, measured, "--shots", "punching has 8 images")
 
 
-def test_what_is_below_its_comparison_is_said() -> None:
+def test_accuracy_below_the_baselines_is_reported() -> None:
     found = ShotCurve("", {"mix": []})
     found.points = [
         ShotPoint(0, TUNED, (10,), (0.8,)),
@@ -281,7 +283,7 @@ def test_the_command_writes_table_figure_and_numbers(
         (("--shots", "1", "{data}"), "should have one of each"),
     ],
 )
-def test_wrong_use_is_one_line(
+def test_wrong_use_is_refused_in_one_line(
     run_dir: Path, data: Path, measured: Path, tmp_path: Path, options: tuple[str, ...], said: str
 ) -> None:
     given = [option.replace("{data}", str(data)) for option in options]
@@ -292,7 +294,7 @@ def test_wrong_use_is_one_line(
     assert not list(tmp_path.glob("out/*"))
 
 
-def test_a_planted_run_is_right_without_labels(
+def test_zero_shots_is_the_accuracy_of_the_run(
     run_dir: Path, measured: Path, tmp_path: Path
 ) -> None:
     """What 0 shots reports is the run's own accuracy: 1 where it is right about everything."""

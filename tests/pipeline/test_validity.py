@@ -126,7 +126,7 @@ def test_a_scatterer_within_5_cm_of_an_antenna_is_found(
         assert distance_at(scene, found.closest) == pytest.approx(expected.distance, abs=1e-12)
 
 
-def test_a_fast_ankle_is_found_between_two_looks() -> None:
+def test_a_fast_ankle_is_found_between_grid_times() -> None:
     """At 6.2 m/s an ankle is 3 cm further in 5 ms: passing at 4.5 cm, it looks 5.4 cm away."""
     time = 0.425  # half-way between two looks 10 ms apart
     body = motion_of(scene_of(Config(**PERSON, activities=("S8",))))
@@ -180,7 +180,7 @@ def test_half_band_aliasing_and_wall_as_at_every_pulse(setting: Any, activity: A
 
 
 @pytest.mark.parametrize(("start", "leaves"), [(1.5, False), (1.55, True)])
-def test_a_walker_leaves_the_half_band_who_starts_beyond_1_5_m(start: float, leaves: bool) -> None:
+def test_a_walker_from_beyond_1_5_m_leaves_the_half_band(start: float, leaves: bool) -> None:
     config = Config(**{**PERSON, "motion": {**PERSON["motion"], "range_m": start}})
     found = check_scene(nominal_scene(config, WALKING))
     assert (Flags.HALF_BAND in found.flags) == leaves
@@ -249,7 +249,7 @@ def test_warnings_of_the_papers_randomised_walkers() -> None:
     assert "half-band" in found["half_band"][1]
 
 
-def test_a_recording_that_ends_before_the_second_phase_is_said() -> None:
+def test_a_recording_that_ends_before_the_second_phase_is_warned_of() -> None:
     found = said(
         Config(**FREE_SPACE, activities=("S5", "S12"), samples_per_class=2, duration_s=1.5)
     )
@@ -293,7 +293,7 @@ def test_a_recording_that_ends_before_the_second_phase_is_said() -> None:
         ({"receiver": {"lines": [{"doppler_hz": -3000}]}}, "receiver.lines.0.doppler_hz reaches"),
     ],
 )
-def test_keys_without_effect_and_lines_that_alias_are_said(document: Any, key: str) -> None:
+def test_keys_without_effect_and_aliased_lines_are_warned_of(document: Any, key: str) -> None:
     config = Config(activities=("S1",), samples_per_class=1, **document)
     count, message = said(config)["config"]
     assert count == 1
@@ -302,7 +302,7 @@ def test_keys_without_effect_and_lines_that_alias_are_said(document: Any, key: s
 
 
 @pytest.mark.parametrize("model", ["human", "paper"])
-def test_nothing_is_said_of_what_was_drawn_from_the_defaults(model: str) -> None:
+def test_no_warning_for_defaults(model: str) -> None:
     for activity in ACTIVITIES:
         for scene in (
             draw_scene(Config(motion={"model": model}), activity, 0),
@@ -314,7 +314,7 @@ def test_nothing_is_said_of_what_was_drawn_from_the_defaults(model: str) -> None
     assert scene_warnings(scene) == []
 
 
-def test_nothing_is_said_of_keys_with_effect() -> None:
+def test_no_warning_for_keys_with_effect() -> None:
     config = Config(
         processing={
             "doppler": "gate",
@@ -329,7 +329,7 @@ def test_nothing_is_said_of_keys_with_effect() -> None:
     assert config_warnings(config_from_json(config.model_dump_json(), "here")) == []
 
 
-def test_nothing_is_said_of_scenes_inside_the_model() -> None:
+def test_no_warning_for_scenes_inside_the_model() -> None:
     assert said(Config(**FREE_SPACE, activities=("S1", "S5"), samples_per_class=3)) == {}
 
 
@@ -352,7 +352,7 @@ def first_valid(config: Config, index: int) -> int:
     return attempt
 
 
-def test_keep_keeps_the_first_draw_with_its_findings() -> None:
+def test_keep_takes_the_first_draw_with_its_warnings() -> None:
     config = near_the_wall("keep")
     drawn = [draw_valid_scene(config, STANDING, index) for index in range(20)]
     assert all(scene.attempt == 0 for scene, _ in drawn)
@@ -427,7 +427,9 @@ def test_no_valid_scene_ends_the_redraws(monkeypatch: pytest.MonkeyPatch) -> Non
         (1.0, False, True, "half-band"),
     ],
 )
-def test_the_gravest_reason_is_given(distance: float, wall: bool, band: bool, why: Any) -> None:
+def test_the_most_serious_reason_is_given(
+    distance: float, wall: bool, band: bool, why: Any
+) -> None:
     closest = Approach(distance, "head", "receiver", 0.5)
     flags = Flags.ALIASING | (Flags.HALF_BAND * band) | (Flags.WALL * wall)
     invalid = SceneCheck(closest, Flags(flags)).invalid
@@ -438,7 +440,7 @@ def test_the_gravest_reason_is_given(distance: float, wall: bool, band: bool, wh
     ("gate_m", "leaves"),
     [([0.0, 7.0], False), ([0.0, 3.0], True), ([3.0, 7.0], True), (1.0, False)],
 )
-def test_a_torso_that_leaves_a_fixed_gate_is_told(gate_m, leaves):
+def test_a_torso_that_leaves_a_fixed_gate_is_warned_of(gate_m, leaves):
     """From 2 m, 1.5 m/s away for 3 s; a gate around the torso goes with it."""
     motion = {"model": "paper", "range_m": 2.0, "angle_deg": 0.0, "speed_mps": 1.5}
     config = Config.model_validate(

@@ -100,7 +100,7 @@ def test_a_floor_makes_the_factor_of_decibels_independent_of_the_scale():
     assert share("db", 3.0, 10) == pytest.approx(share("db", 3.0, 30), abs=1e-3)
 
 
-def test_what_is_strong_leaves_the_background_far_away_alone():
+def test_a_strong_cell_does_not_raise_distant_thresholds():
     """Running sums forget a cell 100 dB above the noise once it is out of the window."""
     noise = np.random.default_rng(4).exponential(size=(200, 64))
     strong = noise.copy()
@@ -112,5 +112,5 @@ def test_what_is_strong_leaves_the_background_far_away_alone():
 
 @pytest.mark.parametrize(("cell", "right"), [(0.0, -300.0), (1e-40, -300.0), (1.0, 0.0)])
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
-def test_decibels_of_nothing_are_finite(cell, right, dtype):
+def test_decibels_of_zero_power_are_finite(cell, right, dtype):
     assert decibels_of(np.full((2, 2), cell, dtype)) == pytest.approx(np.full((2, 2), right))

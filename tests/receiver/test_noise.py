@@ -254,7 +254,7 @@ class TestRangeProfiles:
         for noise in (every, apart):
             assert np.mean(np.abs(noise) ** 2) == pytest.approx(power, rel=2 * error)
 
-    def test_only_those_pairs(self):
+    def test_only_shared_pulses_are_correlated(self):
         """M - 1 = 3/2 W: the pairs shown are 1 and 2 pulses apart in turn."""
         noise, _ = self.noise(3000, duration_s=0.9002)
         assert noise.shape == (SAMPLES // 2, 3000)

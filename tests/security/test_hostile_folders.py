@@ -85,9 +85,7 @@ LINKS = [
 
 
 @pytest.mark.parametrize("plant", LINKS, ids=lambda p: p.__name__)
-def test_a_work_folder_that_leads_elsewhere_is_refused(
-    plant: Plant, tmp_path: Path, outside: Path
-) -> None:
+def test_links_in_the_work_folder_are_refused(plant: Plant, tmp_path: Path, outside: Path) -> None:
     folder = tmp_path / "out"
     folder.mkdir()
     plant(folder, outside)
@@ -100,7 +98,7 @@ def test_a_work_folder_that_leads_elsewhere_is_refused(
 
 @pytest.mark.parametrize("more", [[], ["--overwrite"]], ids=["again", "overwrite"])
 @pytest.mark.parametrize("command", ["generate", "train", "tradeoff"])
-def test_every_command_that_writes_looks_first(
+def test_every_writing_command_checks_the_folder_first(
     command: str, more: list[str], tmp_path: Path, outside: Path, good_set: Path
 ) -> None:
     (tmp_path / "c.yaml").write_text(SET)
@@ -169,7 +167,7 @@ IDENTITIES = {
 
 
 @pytest.mark.parametrize("case", IDENTITIES)
-def test_a_damaged_identity_is_said(case: str, tmp_path: Path) -> None:
+def test_a_damaged_identity_is_refused(case: str, tmp_path: Path) -> None:
     (tmp_path / "c.yaml").write_text(SET)
     place = tmp_path / "out/.radhar/identity.json"
     place.parent.mkdir(parents=True)
@@ -233,7 +231,7 @@ def _huge(file: h5py.File) -> None:
         (_huge, "/scene: has the shape"),
     ],
 )
-def test_a_shard_goes_through_the_same_door(
+def test_shards_are_checked_like_data_sets(
     change: Callable[[h5py.File], None], said: str, tmp_path: Path
 ) -> None:
     (tmp_path / "c.yaml").write_text(SET)

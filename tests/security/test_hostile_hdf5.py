@@ -438,7 +438,7 @@ def told(
 
 
 @pytest.mark.parametrize("case", [*HOSTILE, *NO_FILES])
-def test_refused_in_a_line_that_names_file_and_field(told: dict[str, Answer], case: str) -> None:
+def test_hostile_files_are_refused_by_file_and_field(told: dict[str, Answer], case: str) -> None:
     said, commands = (
         HOSTILE[case][1:] if case in HOSTILE else (NO_FILES[case], ("inspect", "verify"))
     )
@@ -453,9 +453,7 @@ def test_refused_in_a_line_that_names_file_and_field(told: dict[str, Answer], ca
 
 @pytest.mark.parametrize("case", HARMLESS)
 @pytest.mark.parametrize("name", COMMANDS)
-def test_what_does_not_matter_changes_nothing(
-    told: dict[str, Answer], case: str, name: str
-) -> None:
+def test_harmless_changes_have_no_effect(told: dict[str, Answer], case: str, name: str) -> None:
     answer, right = told[f"{name} {case}"], told[f"{name} nothing"]
     assert answer.status == right.status == 0, answer.err
     if name == "eval":

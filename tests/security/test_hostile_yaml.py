@@ -114,7 +114,9 @@ def test_a_hostile_config_is_refused_with_its_line(given: dict[str, Answer], nam
         ("bytes", "\\udcff.yaml: no such file"),
     ],
 )
-def test_what_is_no_config_is_refused(given: dict[str, Answer], name: str, says: str) -> None:
+def test_files_that_are_no_configs_are_refused(
+    given: dict[str, Answer], name: str, says: str
+) -> None:
     assert says in refused(given[name])
 
 
@@ -123,7 +125,7 @@ def test_a_good_config_is_still_read(given: dict[str, Answer]) -> None:
     assert "seed: 3" in given["good"].out
 
 
-def test_what_fits_is_read_whole() -> None:
+def test_configs_within_the_limits_are_read() -> None:
     numbers = ", ".join(["1"] * (LARGEST // 4))
     value, lines = parse_yaml(f"a: &a {{b: 1}}\nc: {{<<: *a, d: *a}}\ne: [{numbers}]", "x")
     assert value == {"a": {"b": 1}, "c": {"b": 1, "d": {"b": 1}}, "e": [1] * (LARGEST // 4)}

@@ -49,7 +49,7 @@ def compared(one: Path, other: Path, **options: object) -> Comparison:
     return compare(one, other, Options(**options), Quiet())  # type: ignore[arg-type]
 
 
-def test_two_halves_cannot_be_told_apart(tmp_path: Path) -> None:
+def test_halves_of_one_set_cannot_be_told_apart(tmp_path: Path) -> None:
     one = tree(tmp_path / "a", 1, mask, "falling", "walking")
     other = tree(tmp_path / "b", 2, mask, "walking", "falling")
     found = compared(one, other)
@@ -64,7 +64,7 @@ def test_two_halves_cannot_be_told_apart(tmp_path: Path) -> None:
     assert any("has no axes" in warning for warning in found.warnings)
 
 
-def test_what_is_most_wrong_stands_first(tmp_path: Path) -> None:
+def test_the_largest_differences_come_first(tmp_path: Path) -> None:
     one = tree(tmp_path / "a", 1, lambda rng: mask(rng, 22), "walking")
     other = tree(tmp_path / "b", 2, mask, "walking")
     (found,) = compared(one, other).classes
@@ -79,7 +79,7 @@ def test_what_is_most_wrong_stands_first(tmp_path: Path) -> None:
     assert found.tested.right > 0.95 * 80
 
 
-def test_pictures_that_stand_out(tmp_path: Path) -> None:
+def test_outlying_maps_are_named(tmp_path: Path) -> None:
     one, other = (tree(tmp_path / name, n, mask, "a") for n, name in enumerate("xy"))
     rng = np.random.default_rng(5)
     Image.fromarray(mask(rng, 29)).save(one / "a/07.png")
@@ -111,7 +111,7 @@ def test_other_sizes_need_resize(tmp_path: Path) -> None:
     assert [side.images.size for side in found.sides] == [(128, 128)] * 2
 
 
-def test_few_maps_are_drawn_of_many_and_seeds_decide_which(tmp_path: Path) -> None:
+def test_maps_are_subsampled_by_seed(tmp_path: Path) -> None:
     one, other = (tree(tmp_path / name, n, mask, "a") for n, name in enumerate("xy"))
     first, again = (compared(one, other, most=12).numbers() for _ in range(2))
     assert first == again
@@ -166,7 +166,7 @@ def test_axes_and_persons_of_a_data_set(recorded: Path) -> None:
     )
 
 
-def test_other_axes_are_said(recorded: Path, tmp_path: Path) -> None:
+def test_different_axes_are_reported(recorded: Path, tmp_path: Path) -> None:
     other = tmp_path / "other"
     more = ("--set", "recordings.window_s=10", "--jobs", 1)
     source = (tmp_path / "c.yaml", "--recordings", tmp_path / "masks.npz")

@@ -119,16 +119,14 @@ class PaperBody:
         ahead = np.zeros((len(JOINTS), count))
         aside = np.zeros((len(JOINTS), 1))
         turned: list[Float | float] = [now.pitch + now.angles.get(JOINTS[TORSO], 0.0)]
-        rotation = [(np.cos(turned[TORSO]), np.sin(turned[TORSO]))]
         for joint, parent in enumerate(PARENTS):
             if parent is None:
                 continue
             x, y, z = self.links[joint]
+            angle = turned[parent]
             own = now.angles.get(JOINTS[joint])
-            angle = turned[parent] if own is None else turned[parent] + own
-            turned.append(angle)
-            rotation.append(rotation[parent] if own is None else (np.cos(angle), np.sin(angle)))
-            cos, sin = rotation[joint]
+            turned.append(angle if own is None else angle + own)
+            cos, sin = np.cos(turned[joint]), np.sin(turned[joint])
             ahead[joint] = ahead[parent] + (x * cos + z * sin)
             aside[joint] = aside[parent] + y
             p[2, joint] = p[2, parent] + (z * cos - x * sin)

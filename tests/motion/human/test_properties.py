@@ -173,7 +173,7 @@ def test_positions_and_velocities_are_continuous(what: str) -> None:
 
 
 @pytest.mark.parametrize("what", ["S9", "S10", "S11", "S12", "backwards", "everything"])
-def test_joins_change_neither_position_nor_velocity(what: str) -> None:
+def test_position_and_velocity_are_continuous_across_movements(what: str) -> None:
     fidgets = tuple(Fidget(channel, 0.05, 0.1 * k, 0.7) for k, channel in enumerate(FIDGETS))
     motion = moving(what, idle=Idle(Person(1.75), fidgets=fidgets))
     dt = 1e-5

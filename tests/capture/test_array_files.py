@@ -170,13 +170,13 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("name", "x", "overrides", "said"), WRONG)
+@pytest.mark.parametrize(("name", "x", "overrides", "expected"), WRONG)
 def test_wrong_array_is_refused_in_one_line(
-    tmp_path: Path, name: str, x: np.ndarray, overrides: list[str], said: str
+    tmp_path: Path, name: str, x: np.ndarray, overrides: list[str], expected: str
 ) -> None:
     with pytest.raises(CaptureError) as caught:
         imported(save(tmp_path / name, x), *overrides)
-    assert said in str(caught.value)
+    assert expected in str(caught.value)
     assert "\n" not in str(caught.value)
     assert [p.name for p in tmp_path.iterdir()] == [name], "nothing is left"
 

@@ -196,8 +196,8 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("more", "said"), WRONG)
-def test_wrong_use_is_refused_in_one_line(tmp_path: Path, more: list[str], said: str) -> None:
+@pytest.mark.parametrize(("more", "expected"), WRONG)
+def test_wrong_use_is_refused_in_one_line(tmp_path: Path, more: list[str], expected: str) -> None:
     config = config_of(tmp_path)
     scene = simulate(config, seed=3, raw=True, maps=("stft",))
     assert scene.beat is not None
@@ -205,7 +205,7 @@ def test_wrong_use_is_refused_in_one_line(tmp_path: Path, more: list[str], said:
     command = ("process", tmp_path / "r.h5", "--config", tmp_path / "scene.yaml")
     done = radhar(*command, *more, "-o", tmp_path / "out")
     assert done.returncode == 2
-    assert said in done.stderr
+    assert expected in done.stderr
     assert "Traceback" not in done.stderr
     assert not (tmp_path / "out").exists()
 

@@ -166,9 +166,9 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("changed", "said"), WRONG, ids=[next(iter(c)) for c, _ in WRONG])
+@pytest.mark.parametrize(("changed", "expected"), WRONG, ids=[next(iter(c)) for c, _ in WRONG])
 def test_wrong_header_is_refused_with_what_would_fit(
-    tmp_path: Path, beat: np.ndarray, changed: dict[str, object], said: list[str]
+    tmp_path: Path, beat: np.ndarray, changed: dict[str, object], expected: list[str]
 ) -> None:
     words(beat, 2).tofile(tmp_path / "adc_data_Raw_0.bin")
     header = write_studio(tmp_path / "radar.mmwave.json", RADAR, **changed)
@@ -177,7 +177,7 @@ def test_wrong_header_is_refused_with_what_would_fit(
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1, done.stderr
     assert str(header) in done.stderr
-    for text in said:
+    for text in expected:
         assert text in done.stderr
     assert not (tmp_path / "out.h5").exists()
 

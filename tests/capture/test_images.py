@@ -95,15 +95,15 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("arrays", "said"), WRONG)
+@pytest.mark.parametrize(("arrays", "expected"), WRONG)
 def test_wrong_npz_is_refused_in_one_line(
-    config: Path, arrays: dict[str, np.ndarray], said: str
+    config: Path, arrays: dict[str, np.ndarray], expected: str
 ) -> None:
     source = config.parent / "x.npz"
     np.savez(source, **arrays)  # type: ignore[arg-type]
     done = radhar("generate", config, "--recordings", source, "-o", config.parent / "set")
     assert done.returncode == 2
-    assert said in done.stderr
+    assert expected in done.stderr
     assert "Traceback" not in done.stderr
 
 

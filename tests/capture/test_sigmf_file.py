@@ -91,9 +91,9 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("key", "value", "said"), WRONG)
+@pytest.mark.parametrize(("key", "value", "expected"), WRONG)
 def test_wrong_metadata_are_refused_in_one_line(
-    recording: Path, tmp_path: Path, key: str, value: object, said: str
+    recording: Path, tmp_path: Path, key: str, value: object, expected: str
 ) -> None:
     with Recording(recording) as one:
         meta, _ = write_sigmf(one, tmp_path / "y")
@@ -102,7 +102,7 @@ def test_wrong_metadata_are_refused_in_one_line(
     meta.write_text(json.dumps(document))
     done = radhar("import", meta, "-o", tmp_path / "out.h5")
     assert done.returncode == 2, done.stdout
-    assert said in done.stderr
+    assert expected in done.stderr
     assert done.stderr.count("\n") == 1, done.stderr
 
 
@@ -141,7 +141,7 @@ class TestHostileRecording:
     """A recording from anyone: one line, no traceback."""
 
     @pytest.mark.parametrize(
-        ("key", "value", "said"),
+        ("key", "value", "expected"),
         [
             ("receivers", 4, "should"),
             ("pulses", 10**12, "pulses"),
@@ -153,13 +153,13 @@ class TestHostileRecording:
             ("samples", 2**24, "should take at most"),
         ],
     )
-    def test_wrong_attribute(self, recording: Path, key: str, value: object, said: str) -> None:
+    def test_wrong_attribute(self, recording: Path, key: str, value: object, expected: str) -> None:
         with h5py.File(recording, "r+") as file:
             document = json.loads(file.attrs["recording"])
             file.attrs["recording"] = json.dumps({**document, key: value})
         with pytest.raises(FolderError) as caught:
             Recording(recording)
-        assert said in str(caught.value)
+        assert expected in str(caught.value)
         assert "\n" not in str(caught.value)
 
     def test_segments_out_of_order(self, recording: Path) -> None:

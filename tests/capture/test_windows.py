@@ -60,8 +60,8 @@ def generate(folder: Path, out: Path, *more: object) -> str:
 
 
 def test_windows_are_samples(recordings: Path, tmp_path: Path) -> None:
-    said = generate(recordings, tmp_path / "set")
-    assert "may lie in several parts" in said
+    output = generate(recordings, tmp_path / "set")
+    assert "may lie in several parts" in output
     with open_dataset(tmp_path / "set") as data:
         # 3 s hold 5 windows of 1 s every 0.5 s; 2 s hold 3.
         counts = {slug: int((data.label == n).sum()) for n, slug in enumerate(data.class_slugs)}
@@ -142,16 +142,16 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("text", "said"), WRONG)
+@pytest.mark.parametrize(("text", "expected"), WRONG)
 def test_wrong_manifest_is_refused_in_one_line(
-    recordings: Path, tmp_path: Path, text: str, said: str
+    recordings: Path, tmp_path: Path, text: str, expected: str
 ) -> None:
     manifest = recordings / "wrong.csv"
     manifest.write_text(text)
     command = ("generate", recordings / "c.yaml", "--recordings", manifest)
     done = radhar(*command, "-o", tmp_path / "set")
     assert done.returncode in (1, 2)
-    assert said in done.stderr
+    assert expected in done.stderr
     assert "Traceback" not in done.stderr
     assert not (tmp_path / "set").exists()
 

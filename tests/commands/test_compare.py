@@ -45,12 +45,12 @@ def report(place: Path, one: str, other: str) -> dict[str, dict[str, object]]:
     options = ("--json", "--map", "stft", "--pictures", 2)
     done = radhar("compare", place / one, place / other, "-o", out, *options)
     assert done.returncode == 0, done.stderr
-    said = json.loads(done.stdout)
-    assert said.keys() == KEYS["compare"]
+    expected = json.loads(done.stdout)
+    assert expected.keys() == KEYS["compare"]
     found: dict[str, dict[str, object]] = json.loads((out / "report.json").read_text())
     for key in ("test", "coverage", "classes", "warnings"):
-        assert said[key] == found[key]
-    for file in said["files"]:
+        assert expected[key] == found[key]
+    for file in expected["files"]:
         assert Path(file).stat().st_size > 0
         if file.endswith(".png"):
             assert np.asarray(Image.open(file)).std() > 0
@@ -112,7 +112,7 @@ def test_a_range_time_map(place: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "expected"),
     [
         (("{human}", "{none}"), "none: no such file or folder"),
         (("{human}", "{paper}", "--map", "stfd"), "has no map 'stfd'"),
@@ -122,7 +122,7 @@ def test_a_range_time_map(place: Path, tmp_path: Path) -> None:
     ],
 )
 def test_mistakes_are_refused_in_one_line(
-    place: Path, tmp_path: Path, arguments: tuple[str, ...], said: str
+    place: Path, tmp_path: Path, arguments: tuple[str, ...], expected: str
 ) -> None:
     (tmp_path / "names.yaml").write_text("walkin: walking\n")
     paths = {name: place / name for name in ("human", "paper", "none")}
@@ -132,7 +132,7 @@ def test_mistakes_are_refused_in_one_line(
     out = () if "-o" in filled else ("-o", tmp_path / "out")
     done = radhar("compare", *filled, *out)
     assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
-    assert said in done.stderr
+    assert expected in done.stderr
     assert not (tmp_path / "out").exists()
 
 

@@ -96,14 +96,14 @@ def test_dollar_signs_in_names_are_not_mathtext(tmp_path: Path) -> None:
 def test_paths_that_are_no_trees_are_named(tmp_path: Path, photos: Path) -> None:
     (tmp_path / "empty").mkdir()
     (photos / "train/cats/broken.png").write_bytes(b"no image")
-    for command, path, said in (
+    for command, path, expected in (
         ("inspect", tmp_path / "empty", "holds no class folders with images"),
         ("preview", tmp_path / "empty", "holds no class folders with images"),
         ("inspect", photos, "broken.png: is not an image"),
     ):
         error = radhar(command, path).exception
         assert isinstance(error, FolderError)
-        assert said in str(error)
+        assert expected in str(error)
 
 
 def test_looking_at_images_needs_no_torch(photos: Path) -> None:

@@ -90,7 +90,7 @@ def test_models_lists_our_networks_and_the_papers_rivals(place: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "expected"),
     [
         (["train", "{}/tree", "-o", "{}/x", "--model", "fftnett"], ["did you mean 'fftnet'"]),
         (["train", "{}/tree", "-o", "{}/x", "--set", "epoch=3"], ["epoch", "epochs"]),
@@ -109,7 +109,7 @@ def test_models_lists_our_networks_and_the_papers_rivals(place: Path) -> None:
     ids=lambda x: "-".join(x).replace("{}/", "") if x[0] in ("train", "eval") else None,
 )
 def test_wrong_use_is_refused_in_one_line_with_status_2(
-    place: Path, arguments: list[str], said: list[str]
+    place: Path, arguments: list[str], expected: list[str]
 ) -> None:
     load_timm()
     if not (place / "alone").exists():
@@ -117,7 +117,7 @@ def test_wrong_use_is_refused_in_one_line_with_status_2(
     done = radhar(*[a.replace("{}", str(place)) for a in arguments])
     assert done.returncode == 2
     assert "Traceback" not in done.stderr
-    for words in said:
+    for words in expected:
         assert words in done.stderr
     assert not (place / "x" / "best.safetensors").exists()
 

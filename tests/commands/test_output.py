@@ -199,7 +199,7 @@ def test_output_options_do_not_leak_into_the_next_command(
 
 
 @pytest.mark.parametrize(
-    ("ends", "status", "said"),
+    ("ends", "status", "expected"),
     [
         (lambda: SimpleNamespace(), 0, ""),
         (KeyboardInterrupt, 130, "interrupted: what is finished in "),
@@ -207,7 +207,7 @@ def test_output_options_do_not_leak_into_the_next_command(
     ],
 )
 def test_exit_statuses_of_a_stopped_build(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ends: Any, status: int, said: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ends: Any, status: int, expected: str
 ) -> None:
     def build(*_: object) -> object:
         found = ends()
@@ -223,7 +223,7 @@ def test_exit_statuses_of_a_stopped_build(
     finally:
         signal.signal(signal.SIGTERM, handler)
     assert done.returncode == status
-    assert said in done.stderr
+    assert expected in done.stderr
     assert "Traceback" not in done.stderr
 
 

@@ -88,7 +88,7 @@ def test_schema_is_json_schema() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "expected"),
     [
         ("radar: {prf_hz: -5}", ["radar.prf_hz", "-5", "above 0"]),
         ("motion: {sped_mps: 1}", ["motion.sped_mps", "speed_mps"]),
@@ -99,13 +99,13 @@ def test_schema_is_json_schema() -> None:
     ],
 )
 def test_broken_configs_are_refused_in_one_message_with_status_2(
-    tmp_path: Path, text: str, said: list[str]
+    tmp_path: Path, text: str, expected: list[str]
 ) -> None:
     path = small_config(tmp_path, text)
     done = radhar("generate", path, "-o", tmp_path / "set")
     assert done.returncode == 2
     assert "Traceback" not in done.stderr
-    for word in said:
+    for word in expected:
         assert word in done.stderr
     assert not (tmp_path / "set").exists()
 

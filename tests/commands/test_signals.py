@@ -52,9 +52,9 @@ def test_sigterm_of_train_keeps_the_last_epoch_and_it_resumes(
     with monkeypatch.context() as patched:
         patched.setattr(TrainingView, "epoch_done", terminate)
         assert status(patched, *command) == TERMINATED
-    said = capsys.readouterr().err
-    assert f"terminated: the last finished epoch in {tmp_path / 'run'} is kept" in said
-    assert "Traceback" not in said
+    expected = capsys.readouterr().err
+    assert f"terminated: the last finished epoch in {tmp_path / 'run'} is kept" in expected
+    assert "Traceback" not in expected
     again = CliRunner().invoke(program(), [str(word) for word in command])
     assert again.exit_code == 0, again.output
     assert "resuming: 1 of 2 epochs are done" in again.stderr

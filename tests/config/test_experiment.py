@@ -315,10 +315,10 @@ def test_a_resolved_config_names_every_key() -> None:
 def test_a_recording_too_short_for_the_second_phase_is_warned_of(label: str, key: str) -> None:
     long_enough = Config(activities=(label,), duration_s=2.01)
     assert timing_warnings(long_enough) == []
-    (said,) = timing_warnings(Config(activities=(label,), duration_s=2.0, timing={key: 2.0}))
-    assert label in said
-    assert activity_named(label).slug in said
-    assert f"timing.{key} = 2 s" in said
+    (message,) = timing_warnings(Config(activities=(label,), duration_s=2.0, timing={key: 2.0}))
+    assert label in message
+    assert activity_named(label).slug in message
+    assert f"timing.{key} = 2 s" in message
 
 
 def test_activities_without_a_second_phase_are_never_too_short() -> None:
@@ -328,5 +328,5 @@ def test_activities_without_a_second_phase_are_never_too_short() -> None:
 
 def test_timing_warnings_follow_the_activity() -> None:
     late = {"per_activity": {"default": 2.0, "S12": 5.0}}
-    said = timing_warnings(Config(timing={"walk_stop_s": late}))
-    assert [line.split()[0] for line in said] == ["S12"]
+    messages = timing_warnings(Config(timing={"walk_stop_s": late}))
+    assert [line.split()[0] for line in messages] == ["S12"]

@@ -138,7 +138,7 @@ def test_a_damaged_shard_is_made_again_and_a_foreign_one_kept(
     (work / "shards" / "notes.txt").write_text("mine")
     notes = Listener()
     assert build(config, tmp_path / "set", 1, notes).made == 8
-    assert [m.rpartition(": ")[2] for m in notes.said if "shards" in m] == [
+    assert [m.rpartition(": ")[2] for m in notes.messages if "shards" in m] == [
         "does not match its checksum; its rows are made again",
         "belongs to another data set; its rows are made again",
     ]

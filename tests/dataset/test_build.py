@@ -217,16 +217,16 @@ def test_scenes_of_a_large_data_set_are_checked_by_the_workers(
     """The same bytes, redraws and warnings as where they are all checked first."""
     text = SMALL.replace("seed: 7", "seed: 7\nwall: {}\non_invalid: keep")
     config = load_config(small_config(tmp_path, text), ["motion.range_m={uniform: [1, 3]}"])
-    said = []
+    expected = []
     for name, first in (("first", 9), ("by workers", 8)):
         monkeypatch.setattr(build_module, "MAX_CHECKED_FIRST", first)
         notes = Listener()
         build(config, tmp_path / name, 2, notes, batch_size=2)
         assert ("checking scenes" in notes.stages) == (name == "first")
-        assert len(notes.said) == len(set(notes.said))
-        said.append(set(notes.said))
-    assert said[0] == said[1]
-    assert any("passes through the wall" in message for message in said[0])
+        assert len(notes.messages) == len(set(notes.messages))
+        expected.append(set(notes.messages))
+    assert expected[0] == expected[1]
+    assert any("passes through the wall" in message for message in expected[0])
     assert fingerprint(tmp_path / "first") == fingerprint(tmp_path / "by workers")
 
 
@@ -271,7 +271,7 @@ def test_physical_warnings_are_given_once_with_a_count_and_stored(
     notes = Listener()
     far = load_config(small_config(tmp_path), ["motion.range_m=28", "activities=[walking, S1]"])
     build(far, tmp_path / "set", 1, notes)
-    assert [m for m in notes.said if "half-band" in m] == [
+    assert [m for m in notes.messages if "half-band" in m] == [
         "warning: 3 of 6 recordings: a scatterer leaves the range half-band and its echo the kept "
         "bins"
     ]
@@ -290,7 +290,7 @@ def test_fallbacks_to_the_cube_are_counted_across_resumed_runs(
     config = load_config(small_config(tmp_path), [*engine, "activities=[punching, S1, S8]"])
     notes, original, made = Listener(), batch_module.synthesise, []
     build(config, tmp_path / "whole", 1, notes)
-    assert "warning: 6 of 9 recordings: computed by the cube (engine.fallback)" in notes.said
+    assert "warning: 6 of 9 recordings: computed by the cube (engine.fallback)" in notes.messages
 
     def stops_after_four(*arguments: object) -> object:
         made.append(arguments)
@@ -388,5 +388,5 @@ def test_redrawn_scenes_are_valid_and_deterministic(tmp_path: Path) -> None:
     notes = Listener()
     build(config, tmp_path / "one", 1, notes)
     make(config, tmp_path / "two", jobs=2, batch_size=1)
-    assert not [m for m in notes.said if "wall" in m]
+    assert not [m for m in notes.messages if "wall" in m]
     assert fingerprint(tmp_path / "one") == fingerprint(tmp_path / "two")

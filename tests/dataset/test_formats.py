@@ -69,8 +69,8 @@ def line(h5: h5py.File, row: int) -> dict[str, Any]:
     """What every table should say of a row."""
     number, index = h5["sample_key"][row].tolist()
     scene = {name: values[row].item() for name, values in h5["scene"].items()}
-    said = {name: None if value != value else value for name, value in scene.items()}
-    return {"label": h5.attrs["class_slugs"][number], "index": index, **said}
+    expected = {name: None if value != value else value for name, value in scene.items()}
+    return {"label": h5.attrs["class_slugs"][number], "index": index, **expected}
 
 
 def digest(levels: Any) -> str:
@@ -245,7 +245,7 @@ def test_damaged_data_sets_are_not_converted(place: Path, tmp_path: Path, name: 
 
 
 def test_impossible_conversions_are_refused_in_one_line(place: Path, tmp_path: Path) -> None:
-    for arguments, said in (
+    for arguments, expected in (
         ((place / "set", "-o", place / "npy", "--to", "npy"), "npy: already exists"),
         ((place / "set", "-o", tmp_path / "x", "--to", "parket"), "did you mean 'parquet'?"),
         ((place / "no", "-o", tmp_path / "x", "--to", "npy"), "no such file"),
@@ -254,7 +254,7 @@ def test_impossible_conversions_are_refused_in_one_line(place: Path, tmp_path: P
     ):
         done = radhar("convert", *arguments)
         assert (done.returncode, len(done.stderr.splitlines())) == (2, 1), done.stderr
-        assert said in done.stderr
+        assert expected in done.stderr
     assert not [*tmp_path.iterdir()]
 
 

@@ -166,7 +166,7 @@ def _more(path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "damage", "said"),
+    ("name", "damage", "expected"),
     [
         ("png/rtm/val/metadata.csv", _digit, "of punching/0000..png what"),
         ("png/stft/train/metadata.csv", _cut, "of .*/0000..png what"),
@@ -182,13 +182,13 @@ def _more(path: Path) -> None:
         ("gallery.png", lambda p: p.write_bytes(b"no image"), "not an image"),
     ],
 )
-def test_verify_finds_damage(copy: Path, name: str, damage, said: str | None) -> None:
+def test_verify_finds_damage(copy: Path, name: str, damage, expected: str | None) -> None:
     damage(copy / name)
     problems = verify(copy, 0).problems
-    assert len(problems) == (said is not None), problems
-    if said is not None:
+    assert len(problems) == (expected is not None), problems
+    if expected is not None:
         assert name in problems[0]
-        assert re.search(said, problems[0])
+        assert re.search(expected, problems[0])
 
 
 def test_every_reader_finds_the_subfolders_of_large_classes(

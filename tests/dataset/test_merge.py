@@ -136,7 +136,7 @@ def test_damaged_shards_are_replaced_by_shards_of_other_rows(
         shard.path.write_bytes(shard.path.read_bytes()[:-1])
     notes = Listener()
     assert build_part(config, out, Part(4, 2), 1, notes, batch_size=2).made == 2
-    assert len(notes.said) >= 2
+    assert len(notes.messages) >= 2
     merge(out, [], 1, Listener())
     assert merged(out) == whole
 

@@ -130,7 +130,7 @@ def test_a_short_file_is_warned_of(place: Path, tmp_path: Path) -> None:
     )
     listener = Listener()
     build(config, tmp_path / "long", 1, listener)
-    assert any("2 of 2 recordings: the motion file ends before" in said for said in listener.said)
+    assert any("2 of 2 recordings: the motion file ends" in line for line in listener.messages)
 
 
 def test_train_and_eval_accept_it(place: Path, tmp_path: Path) -> None:

@@ -142,7 +142,7 @@ def test_the_tolerance_is_kept(block):
         assert error_db <= tolerance_db, (drawn, activity.slug, found["accuracy"])
         if isinstance(canceller, Fir):
             assert error_db == pytest.approx(said_db, abs=13), (drawn, activity.slug)
-        else:  # what is said bounds it
+        else:  # the reported error bounds it
             assert error_db < said_db + 13, (drawn, activity.slug)
         made += 1
     assert made >= 12

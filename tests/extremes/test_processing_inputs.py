@@ -2,7 +2,7 @@
 
 Zero, constant, impulse, denormal (1e-310), huge (1e150): finite results, no warning, and the same
 as for an input of size 1 but for the scale. Spectra are those of a signal scaled to 1, so that
-their squares are finite; elsewhere squares beyond 1e154 are infinite: that is said.
+their squares are finite; elsewhere squares beyond 1e154 are infinite, with a warning of NumPy.
 """
 
 from collections.abc import Callable

@@ -75,7 +75,7 @@ def test_epochs_raise_the_information_of_predictions_and_lose_no_accuracy(
     watched = Watched()
     adapt(learned, measured, tmp_path / "norms", CPU)
     adapt(learned, measured, tmp_path / "epochs", CPU, epochs=6, progress=watched)
-    assert len(watched.said) == 6
+    assert len(watched.messages) == 6
     assert information(tmp_path / "epochs", measured) > information(tmp_path / "norms", measured)
     assert accuracy(tmp_path / "epochs", measured) > 0.9
 

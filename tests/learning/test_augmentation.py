@@ -212,7 +212,7 @@ def test_init_with_other_classes_learns_the_last_layer_anew(run_dir: Path, tmp_p
     other = split_tree(tmp_path / "other", classes=("walking", "wave"))
     watched = Watched()
     train(settings(epochs=1), other, tmp_path / "out", watched, start=run_dir)
-    assert any("last layer" in message for message in watched.said)
+    assert any("last layer" in message for message in watched.messages)
 
 
 def test_init_of_another_model_is_refused(run_dir: Path, data: Path, tmp_path: Path) -> None:

@@ -164,7 +164,7 @@ def test_train_uses_the_class_names_of_the_file_and_resumes(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "words"),
     [
         ("box: 3", ["classes.yaml", "box = 3", "name of a class"]),
         ("box: ''", ["box = ''"]),
@@ -172,11 +172,11 @@ def test_train_uses_the_class_names_of_the_file_and_resumes(tmp_path: Path) -> N
         ("1: walking", ["the key 1 should be text"]),
     ],
 )
-def test_a_file_that_maps_no_names_is_refused(tmp_path: Path, text: str, said: list[str]) -> None:
+def test_a_file_that_maps_no_names_is_refused(tmp_path: Path, text: str, words: list[str]) -> None:
     (tmp_path / "classes.yaml").write_text(text)
     with pytest.raises(ConfigError) as caught:
         read_classes(tmp_path / "classes.yaml")
-    one_clear_line(caught.value, *said)
+    one_clear_line(caught.value, *words)
 
 
 def test_a_missing_class_is_refused(tmp_path: Path) -> None:

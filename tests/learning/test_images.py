@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import settings as examples
 from hypothesis import strategies as st
 from learning.patterns import one_clear_line, settings, split_tree, stripes, tree
+from listener import Listener
 from PIL import Image
 from small import small_config
 
@@ -42,17 +43,11 @@ split: {train: 0.5, validation: 0.25, test: 0.25}
 """
 
 
-class Quiet:
-    def stage(self, name: str, total: int, done: int) -> None: ...
-    def advance(self, samples: int) -> None: ...
-    def say(self, message: str) -> None: ...
-
-
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A data set of ours, classes named out of their order."""
     place = tmp_path_factory.mktemp("made")
-    build(load_config(small_config(place, SET)), place / "set", progress=Quiet(), jobs=1)
+    build(load_config(small_config(place, SET)), place / "set", progress=Listener(), jobs=1)
     return place / "set"
 
 
@@ -268,10 +263,10 @@ def broken(tmp_path: Path, what: str) -> tuple[Path, list[str]]:
     ],
 )
 def test_unusable_data_is_named(tmp_path: Path, what: str) -> None:
-    root, said = broken(tmp_path, what)
+    root, expected = broken(tmp_path, what)
     with pytest.raises(FolderError) as caught:
         look_at_all(root)
-    one_clear_line(caught.value, *said)
+    one_clear_line(caught.value, *expected)
 
 
 def test_a_truncated_image_is_named_wherever_it_ends(tmp_path: Path) -> None:
@@ -354,7 +349,7 @@ def test_gray_and_other_formats_are_read_as_rgb(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("parts", "classes", "size", "said"),
+    ("parts", "classes", "size", "expected"),
     [
         ({"train": 2, "val": 1}, ("a",), 32, "the class 'a' alone"),
         ({"train": 2, "test": 1}, ("a", "b"), 32, "no val images (it has 4 train, 2 test)"),
@@ -367,12 +362,12 @@ def test_unusable_training_data_is_refused(
     parts: dict[str, int],
     classes: tuple[str, ...],
     size: int | tuple[int, int],
-    said: str,
+    expected: str,
 ) -> None:
     root = tree(tmp_path / "t", classes, parts, size)
     with pytest.raises(FolderError) as caught:
         checked_images(settings(), root)
-    one_clear_line(caught.value, said, root)
+    one_clear_line(caught.value, expected, root)
 
 
 def test_a_class_without_training_images_is_named(tmp_path: Path) -> None:

@@ -146,7 +146,7 @@ def text_size(path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("damage", "said"),
+    ("damage", "expected"),
     [
         (foreign, "not written by `radhar train`"),
         (wrong_shape, "do not fit its description"),
@@ -159,12 +159,12 @@ def text_size(path: Path) -> None:
     ids=lambda x: getattr(x, "__name__", ""),
 )
 def test_weights_that_do_not_fit_are_refused_in_one_line(
-    copy: Path, damage: Callable[[Path], None], said: str
+    copy: Path, damage: Callable[[Path], None], expected: str
 ) -> None:
     damage(copy / run_files.BEST)
     with pytest.raises(RunError) as caught:
         run.load_best(copy)
-    one_clear_line(caught.value, copy / run_files.BEST, said)
+    one_clear_line(caught.value, copy / run_files.BEST, expected)
     assert "\n" not in str(caught.value)
 
 

@@ -159,7 +159,7 @@ def test_the_curve_of_a_run(run_dir: Path, data: Path, measured: Path, tmp_path:
     ways = [(p.shots, p.how) for p in found.points]
     assert ways == [(0, TUNED), (0, ADAPTED), (2, TUNED), (2, ADAPTED), (2, SCRATCH)]
     assert found.left_out == {8: "punching has 8 images"}
-    assert any("8 a class: left out" in line for line in watched.said)
+    assert any("8 a class: left out" in line for line in watched.messages)
     zero, _, tuned, _, scratch = found.points
     metadata, model = load_best(run_dir)
     every = predict(model, metadata, opened(measured).images, np.arange(24), CPU, 8)
@@ -271,7 +271,7 @@ def test_the_command_writes_table_figure_and_numbers(
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "message"),
     [
         (("--shots", "1;5"), "should be whole numbers with commas"),
         (("--shots", "-1"), "should be whole numbers with commas"),
@@ -284,12 +284,17 @@ def test_the_command_writes_table_figure_and_numbers(
     ],
 )
 def test_wrong_use_is_refused_in_one_line(
-    run_dir: Path, data: Path, measured: Path, tmp_path: Path, options: tuple[str, ...], said: str
+    run_dir: Path,
+    data: Path,
+    measured: Path,
+    tmp_path: Path,
+    options: tuple[str, ...],
+    message: str,
 ) -> None:
     given = [option.replace("{data}", str(data)) for option in options]
     done = radhar("eval", run_dir, measured, "-o", tmp_path / "out", *given)
     assert done.returncode == 2
-    assert said in done.stderr
+    assert message in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1
     assert not list(tmp_path.glob("out/*"))
 

@@ -150,7 +150,7 @@ def test_validation_on_a_data_set_gives_the_same_weights(place: Path, built: Pat
     assert same(last_weights(place / "given"), last_weights(place / "run"))
     own = run.read_history(place / "run")
     assert [row.val_accuracy for row in done.history] == [row.val_accuracy for row in own]
-    assert not any("warning" in line for line in progress.said)
+    assert not any("warning" in line for line in progress.messages)
 
 
 def test_refusing_other_data_names_the_run_on_a_stream(place: Path, built: Path) -> None:
@@ -191,7 +191,7 @@ def test_eval_warns_of_images_that_the_stream_has_shown(place: Path, built: Path
 def test_validating_on_samples_of_the_stream_is_warned_of(place: Path, built: Path) -> None:
     progress = Watched()
     streamed(place, "leak", progress, (built,), ("samples_per_class=3",), epochs=1)
-    assert any("validation images show the person and motion" in line for line in progress.said)
+    assert any("validation images show the person and motion" in line for line in progress.messages)
 
 
 def test_another_config_is_another_run(place: Path) -> None:

@@ -123,7 +123,7 @@ def test_resumed_after_an_epoch_gives_the_same_run(
     done = trained(data, out, progress)
     assert done.resumed == epoch
     assert len(progress.best) == 3 - epoch
-    assert any("resuming" in line for line in progress.said)
+    assert any("resuming" in line for line in progress.messages)
     assert same_run(run_dir, out)
 
 
@@ -256,7 +256,8 @@ def test_accumulation_is_reported_and_recorded(data: Path, tmp_path: Path) -> No
     metrics = json.loads((tmp_path / "run" / run_files.METRICS).read_text())
     assert (metrics["micro_batch"], metrics["gradient_accumulation"]) == (2, 3)
     assert any(
-        "3 parts a process, of at most 2" in line and "batch norm" in line for line in progress.said
+        "3 parts a process, of at most 2" in line and "batch norm" in line
+        for line in progress.messages
     )
     assert "in 3 part(s)" in (tmp_path / "run" / run_files.SUMMARY).read_text()
 
@@ -500,9 +501,9 @@ def test_ctrl_c_keeps_the_last_epoch_and_is_quiet(data: Path, tmp_path: Path) ->
     out = tmp_path / "run"
     process = started(data, out, run_files.HISTORY, "--set", "epochs=5000")
     process.send_signal(signal.SIGINT)
-    said = process.communicate()[0]
-    assert process.returncode == 130, said
-    assert "Traceback" not in said
-    assert "the same command resumes" in said
+    output = process.communicate()[0]
+    assert process.returncode == 130, output
+    assert "Traceback" not in output
+    assert "the same command resumes" in output
     assert 1 <= len(run.read_history(out)) < 5000
     run.load_best(out)

@@ -383,7 +383,7 @@ def test_every_movement_can_begin_a_sequence(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("classes", "said"),
+    ("classes", "expected"),
     [
         ({"own": {"sequence": ["swimming"]}}, "movements are stationary"),
         ({"own": {"sequence": ["waking", "falling"]}}, "did you mean 'walking'"),
@@ -399,13 +399,13 @@ def test_every_movement_can_begin_a_sequence(name: str) -> None:
     ],
 )
 def test_impossible_sequences_are_refused(
-    classes: dict[str, Any], said: str, tmp_path: Path
+    classes: dict[str, Any], expected: str, tmp_path: Path
 ) -> None:
     import yaml
 
     path = tmp_path / "own.yaml"
     path.write_text(yaml.safe_dump({"motion": {"model": "human"}, "classes": classes}))
-    with pytest.raises(ConfigError, match=said) as error:
+    with pytest.raises(ConfigError, match=expected) as error:
         load_config(path)
     assert "classes" in str(error.value)
 

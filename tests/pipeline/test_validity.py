@@ -204,7 +204,7 @@ def test_aliasing_is_that_of_the_frequency_the_doppler_is_read_at() -> None:
     assert Flags.ALIASING not in check_scene(nominal_scene(start, kicking)).flags
 
 
-def said(config: Config) -> dict[str, tuple[int, str]]:
+def by_kind(config: Config) -> dict[str, tuple[int, str]]:
     found = [
         draw_valid_scene(config, activity, index)[1]
         for activity in config.chosen_activities
@@ -219,7 +219,7 @@ def test_warnings_at_the_papers_free_space_settings() -> None:
 
     The paper's falls turn about the torso, feet and head 0.2 m below the floor.
     """
-    found = said(Config(**FREE_SPACE, samples_per_class=1))
+    found = by_kind(Config(**FREE_SPACE, samples_per_class=1))
     assert found.keys() == {"aliasing", "floor"}
     assert found["floor"] == (2, "2 of 12 recordings: a scatterer goes below the floor")
     assert found["aliasing"][0] == 5
@@ -228,7 +228,7 @@ def test_warnings_at_the_papers_free_space_settings() -> None:
 
 def test_warnings_at_the_papers_through_the_wall_settings() -> None:
     """S8 to S12 start inside the wall; they and the kick alias."""
-    found = said(Config(**THROUGH_WALL, samples_per_class=1))
+    found = by_kind(Config(**THROUGH_WALL, samples_per_class=1))
     assert {kind: count for kind, (count, _) in found.items()} == {
         "wall": 5,
         "aliasing": 6,
@@ -242,7 +242,7 @@ def test_warnings_of_the_papers_randomised_walkers() -> None:
     scenes = [draw_scene(config, WALKING, index) for index in range(20)]
     half_band = C * 10e6 / (4 * 1e14)
     leaving = sum(bool(brute_delay(scene).max() * C / 2 >= half_band) for scene in scenes)
-    found = said(config)
+    found = by_kind(config)
     assert 0 < leaving < 20
     assert found["half_band"][0] == leaving
     assert f"{leaving} of 20 recordings" in found["half_band"][1]
@@ -250,7 +250,7 @@ def test_warnings_of_the_papers_randomised_walkers() -> None:
 
 
 def test_a_recording_that_ends_before_the_second_phase_is_warned_of() -> None:
-    found = said(
+    found = by_kind(
         Config(**FREE_SPACE, activities=("S5", "S12"), samples_per_class=2, duration_s=1.5)
     )
     assert found["timing"][0] == 2
@@ -295,7 +295,7 @@ def test_a_recording_that_ends_before_the_second_phase_is_warned_of() -> None:
 )
 def test_keys_without_effect_and_aliased_lines_are_warned_of(document: Any, key: str) -> None:
     config = Config(activities=("S1",), samples_per_class=1, **document)
-    count, message = said(config)["config"]
+    count, message = by_kind(config)["config"]
     assert count == 1
     assert message.startswith(key)
     assert message in scene_warnings(draw_scene(config, activity_named("stationary"), 0))
@@ -330,7 +330,7 @@ def test_no_warning_for_keys_with_effect() -> None:
 
 
 def test_no_warning_for_scenes_inside_the_model() -> None:
-    assert said(Config(**FREE_SPACE, activities=("S1", "S5"), samples_per_class=3)) == {}
+    assert by_kind(Config(**FREE_SPACE, activities=("S1", "S5"), samples_per_class=3)) == {}
 
 
 def near_the_wall(on_invalid: str) -> Config:
@@ -450,5 +450,7 @@ def test_a_torso_that_leaves_a_fixed_gate_is_warned_of(gate_m, leaves):
             "processing": {"doppler": "gate", "gate_m": gate_m},
         }
     )
-    said = module.scene_warnings(draw_scene(config, activity_named("walking"), 0))
-    assert any("the torso leaves the ranges of processing.gate_m" in one for one in said) == leaves
+    messages = module.scene_warnings(draw_scene(config, activity_named("walking"), 0))
+    assert (
+        any("the torso leaves the ranges of processing.gate_m" in one for one in messages) == leaves
+    )

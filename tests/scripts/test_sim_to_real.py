@@ -85,15 +85,15 @@ HOSTILE: list[tuple[dict[str, Any], str]] = [
 ]
 
 
-@pytest.mark.parametrize(("changed", "said"), HOSTILE)
+@pytest.mark.parametrize(("changed", "expected"), HOSTILE)
 def test_wrong_arrays_are_refused_in_one_line(
-    script: ModuleType, tmp_path: Path, changed: dict[str, Any], said: str
+    script: ModuleType, tmp_path: Path, changed: dict[str, Any], expected: str
 ) -> None:
     path = written(tmp_path / "m.npz", **changed)
     with pytest.raises(CaptureError) as error:
         script.read_masks(path)
     assert str(error.value).startswith(f"{path}: ")
-    assert said in str(error.value)
+    assert expected in str(error.value)
     assert "\n" not in str(error.value)
 
 

@@ -1,4 +1,4 @@
-"""Output folders from strangers: nothing outside of them is written, deleted, or waited for."""
+"""Untrusted output folders: nothing outside of them is written, deleted, or waited for."""
 
 import json
 import os
@@ -31,7 +31,7 @@ def radhar(*words: object) -> str:
 
 @pytest.fixture
 def outside(tmp_path: Path) -> Path:
-    """Somebody's files, as a stranger's link might name them."""
+    """Files outside the folder, as a malicious link might name them."""
     place = tmp_path / "outside"
     for name in ("lock", "built", "identity.json", "unfinished/x", "shards/rows-000000000-1.h5"):
         (place / name).parent.mkdir(parents=True, exist_ok=True)
@@ -182,7 +182,7 @@ def test_a_damaged_identity_is_refused(case: str, tmp_path: Path) -> None:
 
 
 def shard(folder: Path, change: Callable[[h5py.File], None]) -> None:
-    """A shard of rows 0 to 5 with the right checksum, whose content a stranger made."""
+    """A shard of rows 0 to 5 with the right checksum and malicious content."""
     path = folder / ".radhar/shards/rows-000000000-000000006.h5"
     path.parent.mkdir(parents=True)
     config = load_config(folder.parent / "c.yaml")
@@ -223,7 +223,7 @@ def _huge(file: h5py.File) -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "expected"),
     [
         (_external, "/maps/stft: is a link"),
         (_labels, "/entropy/stft: is of the type"),
@@ -232,7 +232,7 @@ def _huge(file: h5py.File) -> None:
     ],
 )
 def test_shards_are_checked_like_data_sets(
-    change: Callable[[h5py.File], None], said: str, tmp_path: Path
+    change: Callable[[h5py.File], None], expected: str, tmp_path: Path
 ) -> None:
     (tmp_path / "c.yaml").write_text(SET)
     folder = tmp_path / "out"
@@ -240,5 +240,5 @@ def test_shards_are_checked_like_data_sets(
     named = identity(load_config(tmp_path / "c.yaml"))
     (folder / ".radhar/identity.json").write_text(json.dumps(named))
     message = radhar("generate", tmp_path / "c.yaml", "-o", folder, "--jobs", 1)
-    assert f"rows-000000000-000000006.h5: {said}" in message
+    assert f"rows-000000000-000000006.h5: {expected}" in message
     assert not (folder / "dataset.h5").exists()

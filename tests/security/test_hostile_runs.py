@@ -1,4 +1,4 @@
-"""Training runs and sweeps from strangers: one line that names file and field."""
+"""Untrusted training runs and sweeps: one line that names file and field."""
 
 import json
 import os
@@ -74,16 +74,16 @@ ABOUTS: dict[str, tuple[Change, str]] = {
 
 @pytest.mark.parametrize("case", ABOUTS)
 def test_invalid_metadata_are_refused(case: str, run: Path) -> None:
-    change, said = ABOUTS[case]
+    change, expected = ABOUTS[case]
     about = json.loads((run / "run.json").read_text())
     change(about)
     (run / "run.json").write_text(json.dumps(about))
-    one_line(lambda: read_metadata(run), "run.json", said)
+    one_line(lambda: read_metadata(run), "run.json", expected)
     path = run / "best.safetensors"
     with safe_open(path, "pt") as file:
         metadata = file.metadata()
     save_file(load_file(path), path, {**metadata, "radhar": json.dumps(about)})
-    one_line(lambda: load_best(run), "best.safetensors", said)
+    one_line(lambda: load_best(run), "best.safetensors", expected)
 
 
 @pytest.mark.parametrize("text", ["", "[" * 10**5, "[]", "3", "\xff", "{" * 10, " " * 2**21])
@@ -156,9 +156,9 @@ FILES: dict[str, tuple[Callable[[Path], None], str]] = {
 
 @pytest.mark.parametrize("case", FILES)
 def test_hostile_weights_are_refused(case: str, run: Path) -> None:
-    damage, said = FILES[case]
+    damage, expected = FILES[case]
     damage(run / "best.safetensors")
-    one_line(lambda: load_best(run), "best.safetensors", said)
+    one_line(lambda: load_best(run), "best.safetensors", expected)
 
 
 def test_predictions_that_are_not_finite_are_refused(run: Path, good_set: Path) -> None:
@@ -216,9 +216,9 @@ CHECKPOINTS: dict[str, tuple[Callable[[Path], None], str]] = {
 
 @pytest.mark.parametrize("case", CHECKPOINTS)
 def test_hostile_checkpoints_are_refused(case: str, run: Path, good_set: Path) -> None:
-    damage, said = CHECKPOINTS[case]
+    damage, expected = CHECKPOINTS[case]
     damage(run / "last.ckpt")
-    one_line(lambda: trained(good_set, run, epochs=2, model="smallnet"), "last.ckpt", said)
+    one_line(lambda: trained(good_set, run, epochs=2, model="smallnet"), "last.ckpt", expected)
 
 
 @pytest.mark.parametrize("name", ["history.csv", "trained_on.csv", "run.json"])

@@ -177,15 +177,15 @@ def test_what_is_not_asked_for_is_not_computed(monkeypatch: pytest.MonkeyPatch) 
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "expected"),
     [
         ({"activity": "walkin"}, "'walking'"),
         ({"joint": "right_anckle"}, "'right_ankle'"),
         ({"joint": "x"}, "the joints are torso"),
     ],
 )
-def test_unknown_names_suggest_the_nearest(change: dict[str, str], said: str) -> None:
-    with pytest.raises(ConfigError, match=said):
+def test_unknown_names_suggest_the_nearest(change: dict[str, str], expected: str) -> None:
+    with pytest.raises(ConfigError, match=expected):
         simulate(load_config(WALL), **{"activity": "S1", **change})
     with pytest.raises(ConfigError, match="'fsst'"):
         map_names(["fsts"])

@@ -179,7 +179,7 @@ def test_a_warning_of_several_data_sets_is_given_once(tmp_path: Path) -> None:
     sizes = dataclasses.replace(QUICK, epochs=1)
     mine = experiment(tmp_path, sizes=sizes, overrides=("radar.prf_hz=100",))
     measure(mine, [TRIALS[0], TRIALS[2]], 30.0)
-    aliased = [message for message in mine.progress.said if "aliases" in message]
+    aliased = [message for message in mine.progress.messages if "aliases" in message]
     assert [message.split()[3] for message in aliased] == ["18", "15"], "training, test"
 
 

@@ -230,8 +230,8 @@ class TestSettings:
         scenes = self.scenes(config, "processing.savgol={order: 1, frame: 1001}")
         possible = study._possible(scenes, listener)
         assert not any("denoised" in setting.name for setting in possible)
-        assert len(listener.said) == 4
-        assert all("processing.savgol.frame" in message for message in listener.said)
+        assert len(listener.messages) == 4
+        assert all("processing.savgol.frame" in message for message in listener.messages)
 
     def test_names_are_told_apart_and_one_is_the_default(self, config):
         settings = sweep(self.scenes(config, "wall={}").config())

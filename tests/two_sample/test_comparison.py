@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_line import radhar
+from listener import Listener
 from PIL import Image
 
 from radhar_cli.arrays import Levels
@@ -15,12 +16,6 @@ from radhar_cli.two_sample.description import Scale
 from radhar_cli.two_sample.sides import open_sides
 
 SIZE = 64
-
-
-class Quiet:
-    def say(self, message: str) -> None: ...
-    def stage(self, name: str, total: int, done: int) -> None: ...
-    def advance(self, count: int) -> None: ...
 
 
 def mask(rng: np.random.Generator, high: float = 12, size: int = SIZE) -> Levels:
@@ -46,7 +41,7 @@ def tree(
 
 
 def compared(one: Path, other: Path, **options: object) -> Comparison:
-    return compare(one, other, Options(**options), Quiet())  # type: ignore[arg-type]
+    return compare(one, other, Options(**options), Listener())  # type: ignore[arg-type]
 
 
 def test_halves_of_one_set_cannot_be_told_apart(tmp_path: Path) -> None:
@@ -171,7 +166,7 @@ def test_different_axes_are_reported(recorded: Path, tmp_path: Path) -> None:
     more = ("--set", "recordings.window_s=10", "--jobs", 1)
     source = (tmp_path / "c.yaml", "--recordings", tmp_path / "masks.npz")
     assert radhar("generate", *source, "-o", other, *more).returncode == 0
-    (said, *_) = compared(recorded, other).warnings
-    assert said == (
+    (message, *_) = compared(recorded, other).warnings
+    assert message == (
         "falling: axes differ, 5 s, -500 to 500 Hz simulated, 10 s, -500 to 500 Hz measured"
-    ) or said.startswith("walking: axes differ, 5 s")
+    ) or message.startswith("walking: axes differ, 5 s")

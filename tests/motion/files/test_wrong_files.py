@@ -72,7 +72,7 @@ BROKEN_BVH = {
         in_line(FIRST + 2, lambda line: line + " 1.0"),
         rf"x\.bvh:{FIRST + 2}: has 43 numbers; its joints have 42 channels",
     ),
-    "a strange channel": (
+    "an unknown channel": (
         changed("Zrotation", "Wrotation"),
         r"x\.bvh:5: 'wrotation' is not a channel such as",
     ),

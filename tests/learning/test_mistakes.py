@@ -1,4 +1,4 @@
-"""What two newcomers stumbled over: every one of these once ended badly."""
+"""Mistakes that users make with runs and data: each is refused clearly, or works."""
 
 import shutil
 from pathlib import Path
@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import torch
 from learning.patterns import (
+    Watched,
     best_weights,
     last_weights,
     one_clear_line,
@@ -17,6 +18,7 @@ from learning.patterns import (
     trained,
     tree,
 )
+from listener import Listener
 from PIL import Image
 
 from radhar_cli.cli import program
@@ -34,11 +36,6 @@ from radhar_cli.learning.run_folder import RunError
 from radhar_cli.learning.single_result import EvalOptions
 
 CPU = torch.device("cpu")
-
-
-class Ears:
-    def say(self, message: str) -> None:
-        pass
 
 
 def radhar(*arguments: object) -> RadharError:
@@ -84,20 +81,11 @@ def test_a_failed_start_leaves_the_folder_free(data: Path, tmp_path: Path) -> No
     assert len(trained(data, tmp_path / "run", epochs=1, seed=9).history) == 1
 
 
-class _Stop:
+class _Stop(Watched):
     """Stops a run at its first step."""
-
-    def say(self, message: str) -> None:
-        pass
-
-    def epoch(self, number: int, epochs: int, steps: int) -> None:
-        pass
 
     def step(self, loss: float, accuracy: float) -> None:
         raise KeyboardInterrupt
-
-    def epoch_done(self, row: run.Epoch, best: bool) -> None:
-        pass
 
 
 def test_a_checkpoint_of_another_run_is_refused(data: Path, copy: Path, tmp_path: Path) -> None:
@@ -144,17 +132,12 @@ def test_eval_reproduces_the_split_of_training(tmp_path: Path) -> None:
     assert (split, rows.size) == ("val", metadata.data["val"])
     (root / "walking/000.png").unlink()
     rows, split = rows_of(open_for(metadata, root, None), "val")
-    assert (split, rows.size) == ("all", 14), "another set: what it is is said"
+    assert (split, rows.size) == ("all", 14), "another set: the split that was used is named"
 
 
 def test_a_run_on_unnamed_images_needs_a_map(tmp_path: Path) -> None:
     from radhar_cli.config import load_config
     from radhar_cli.dataset.build import build
-
-    class Quiet:
-        def stage(self, name: str, total: int, done: int) -> None: ...
-        def advance(self, samples: int) -> None: ...
-        def say(self, message: str) -> None: ...
 
     config = tmp_path / "two_maps.yaml"
     config.write_text(
@@ -163,7 +146,7 @@ def test_a_run_on_unnamed_images_needs_a_map(tmp_path: Path) -> None:
         " split: {train: 0.67, validation: 0.33}}"
     )
     ours = tmp_path / "ours"
-    build(load_config(config), ours, jobs=1, progress=Quiet())
+    build(load_config(config), ours, jobs=1, progress=Listener())
     trained(ours / "png/stft", tmp_path / "run", epochs=1)
     metadata = run.read_metadata(tmp_path / "run")
     assert metadata.map == "stft", "the folder's name says so"
@@ -201,7 +184,7 @@ def test_a_class_without_validation_images_is_warned_of(tmp_path: Path) -> None:
     shutil.rmtree(root / "val/walking")
     progress = Watched()
     trained(root, tmp_path / "run", progress, epochs=1)
-    assert any("'walking' has no validation image" in line for line in progress.said)
+    assert any("'walking' has no validation image" in line for line in progress.messages)
 
 
 def test_predict_takes_a_folder_of_images(run_dir: Path, data: Path) -> None:
@@ -234,7 +217,7 @@ def test_names_with_commas_stay_in_their_column(tmp_path: Path) -> None:
 
     root = tree(tmp_path / "t", ("one, two", 'a "b"'), {"train": 2, "val": 1})
     trained(root, tmp_path / "run", epochs=1)
-    report = evaluate([tmp_path / "run"], [root], EvalOptions(), CPU, Ears())
+    report = evaluate([tmp_path / "run"], [root], EvalOptions(), CPU, Listener())
     report.write(tmp_path / "out")
     with (tmp_path / "out/confusion.csv").open(newline="") as file:
         rows = list(csv.reader(file))
@@ -259,7 +242,7 @@ def test_what_cannot_be_drawn_is_refused_before_anything_is_computed(tmp_path: P
     root = tree(tmp_path / "t", ("a", "b"), {"train": 2, "val": 1})
     trained(root, tmp_path / "run", epochs=1)
     with pytest.raises(RunError, match="'a' is none of the twelve activities"):
-        evaluate([tmp_path / "run"], [root], EvalOptions(in_place_vs_moving=True), CPU, Ears())
+        evaluate([tmp_path / "run"], [root], EvalOptions(in_place_vs_moving=True), CPU, Listener())
 
 
 def test_a_value_neither_auto_nor_a_number_gives_one_message() -> None:

@@ -74,7 +74,7 @@ def _rgb(image: Image.Image) -> Levels:
 
 @contextmanager
 def _opened(path: Path, size: tuple[int, int] | None) -> Iterator[Image.Image]:
-    """An image whose header is as it should be; errors of Pillow's parsers become one of ours."""
+    """An image whose header is as it should be; errors of Pillow's parsers become a FolderError."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -88,8 +88,8 @@ def _opened(path: Path, size: tuple[int, int] | None) -> Iterator[Image.Image]:
     except FolderError:
         raise
     except Exception as error:  # Pillow raises whatever its parsers meet
-        told = getattr(error, "strerror", None) or str(error).partition("\n")[0]
-        raise FolderError(f"{path}: is not an image, or is truncated ({told})") from None
+        reason = getattr(error, "strerror", None) or str(error).partition("\n")[0]
+        raise FolderError(f"{path}: is not an image, or is truncated ({reason})") from None
 
 
 def _wrong(image: Image.Image, size: tuple[int, int] | None) -> str | None:

@@ -1,6 +1,6 @@
 """HDF5 files that anyone may have written: the one place that opens them.
 
-Only what is asked for by name is looked at; the rest of the file does not matter. Each link on the
+Only what is asked for by name is read; the rest of the file does not matter. Each link on the
 way is a hard one and each dataset lies in the file itself, so nothing leads to another file, but
 for virtual datasets whose sources lie in the folder of the file or below: HDF5 is never asked for
 their samples, the sources are opened here by the same rules. Types, shapes and stored bytes are

@@ -65,7 +65,7 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Report:
             stored config is not trusted to name files.
 
     Raises:
-        FolderError: there is no readable data set of ours.
+        FolderError: there is no readable data set of radhar.
     """
     prepare_process()
     beside = folder if folder.is_dir() else folder.parent

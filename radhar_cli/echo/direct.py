@@ -48,7 +48,7 @@ BLOCK, PHASORS, CHUNK = 2**15, 2**13, 2**20
 # Of the phase between knots in single precision: a cubic errs less than its rounding.
 SINGLE_DEGREE = 3
 SINGLE_ROUNDING_DB = -132.0  # of phasors that turn slowly
-GLANCES = 64
+SAMPLED = 64
 
 
 class Accuracy(NamedTuple):
@@ -139,7 +139,7 @@ class DirectEcho:
         if motion.kept is None or not isinstance(self.canceller, Fir):
             return True
         paths, kept = motion.kept.paths, self._kept(motion)
-        some = np.arange(0, paths.delay.shape[1] - 1, max(1, paths.delay.shape[1] // GLANCES))
+        some = np.arange(0, paths.delay.shape[1] - 1, max(1, paths.delay.shape[1] // SAMPLED))
         turn = self.waveform.f0 / motion.step * (paths.delay[:, some + 1] - paths.delay[:, some])
         amplitude = paths.amplitude[:, some] * kept[:, None]
         left = sum(c * unit_phasor(k * turn) for k, c in enumerate(self.canceller.taps))

@@ -1,4 +1,4 @@
-"""A scene of a class of files -> somebody who moves as one of them."""
+"""A scene of a class of files -> a person who moves as one of them."""
 
 from collections import OrderedDict
 from math import radians

@@ -234,7 +234,7 @@ def _repertoire(scene: Scene, duration: float | None, place: int = 0) -> Reperto
 
 
 def _lasting(duration: float | None, movement: M) -> M:
-    """The movement, lasting as long as it is told to, s."""
+    """The movement with another duration (s), if one is given."""
     return movement if duration is None else replace(movement, duration=duration)
 
 
@@ -339,7 +339,7 @@ def _fidgets(scene: Scene) -> Iterable[Fidget]:
 
 
 def _settling(scene: Scene, movements: tuple[Movement, ...]) -> Iterable[Fidget]:
-    """Small movements around the end of S4 to S6, and of who looks behind before sitting down."""
+    """Small movements around the end of S4 to S6, and of a look behind before sitting down."""
     motion, slug = scene.config.motion, scene.activity.slug
     if slug not in STEPS:
         return

@@ -145,7 +145,7 @@ def _check(scene: Scene, motion: Motion) -> SceneCheck:
             flags |= Flags.GATE
     closest = min(block.closest for block in blocks)
     room = reflectors_of(scene)
-    if room is not None:  # what is nearly still needs to be looked at once
+    if room is not None:  # reflectors move by millimetres: one instant will do
         p, start = room.positions(np.zeros(1)), np.zeros(1)
         names, legs = room.names, (leg(p, antennas.tx), leg(p, antennas.rx))
         closest = min(closest, _nearest(names, start, *legs))

@@ -99,7 +99,7 @@ def test_the_card_describes_the_data_set(whole: Path) -> None:
     assert "| 7 | `walking` | 1 | 1 | 1 |" in text
     assert "| `snr` | 10 | 30 | dB | `snr_db` |" in text
     assert "| `carrier` | 1e+10 | Hz | `radar.carrier_hz` |" in text
-    assert "nobody of 3 is in two of its parts" in text
+    assert "none of the 3 is in two of its parts" in text
     assert "a joint moves faster than the Doppler PRF/2" in text
     assert "](gallery.png)" in text
     with Image.open(whole / "gallery.png") as picture:
@@ -170,7 +170,7 @@ def _more(path: Path) -> None:
     [
         ("png/rtm/val/metadata.csv", _digit, "of punching/0000..png what"),
         ("png/stft/train/metadata.csv", _cut, "of .*/0000..png what"),
-        ("png/stft/test/metadata.csv", _more, "goes on after"),
+        ("png/stft/test/metadata.csv", _more, "has rows after"),
         ("png/stft/test/metadata.csv", Path.unlink, "cannot be read"),
         ("README.md", lambda p: p.write_text(p.read_text().replace("/train", "/t")), "configs"),
         ("README.md", lambda p: p.write_text("---\n{\n---\n"), "cannot be read"),

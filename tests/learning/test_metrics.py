@@ -22,10 +22,6 @@ def test_known_precision_recall_and_f1() -> None:
     assert found["macro_f1"] == pytest.approx((8 / 11 + 1 / 2 + 0) / 3)
 
 
-def test_wilson_of_eight_in_ten() -> None:
-    assert metrics.wilson(8, 10) == pytest.approx((0.490162, 0.943318), abs=1e-6)
-
-
 @given(count=st.integers(1, 5000), share=st.floats(0, 1))
 @settings(max_examples=50, deadline=None)
 def test_wilson_is_that_of_scipy(count: int, share: float) -> None:

@@ -354,10 +354,9 @@ def test_damaged_run_json_is_named(data: Path, copy: Path, content: str) -> None
     one_clear_line(caught.value, copy / run_files.ABOUT, "is damaged")
 
 
-@pytest.mark.parametrize("content", ["epoch\nx\n", "epoch,val_loss\n1,2\n", "a,b\n1,2\n", "\0\xff"])
+@pytest.mark.parametrize("content", ["epoch\nx\n", "epoch,val_loss\n1,2\n", "a,b\n1,2\n"])
 def test_damaged_history_is_named(tmp_path: Path, content: str) -> None:
     (tmp_path / run_files.HISTORY).write_text(content)
-    try:
-        assert run.read_history(tmp_path) == []
-    except RunError as error:
-        one_clear_line(error, tmp_path / run_files.HISTORY, "is damaged")
+    with pytest.raises(RunError) as caught:
+        run.read_history(tmp_path)
+    one_clear_line(caught.value, tmp_path / run_files.HISTORY, "is damaged")

@@ -1,4 +1,4 @@
-"""The code itself: lint, types, layers of imports, lightness of the program."""
+"""The code itself: lint, types, layers of imports, light start of the program."""
 
 import ast
 import importlib.util

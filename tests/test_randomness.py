@@ -1,4 +1,4 @@
-"""Named streams: what one yields hangs on its name and on nothing else."""
+"""Named streams: what one yields depends on its name alone."""
 
 from itertools import combinations
 from zlib import crc32

@@ -1,4 +1,4 @@
-"""The stages of a simulation, without the simulator: a recording comes back as its scene's maps."""
+"""The processing chain on recordings: a simulated recording gives the maps of its scene."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Captures of TI's card: every layout comes back as the echo that was written."""
+"""Captures of TI's card: every layout is read back as the echo that was written."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""Commands once in a process of their own, as a shell starts them.
+"""Commands in processes of their own, as a shell starts them.
 
 `make smoke` does so with generate, train, eval and predict.
 """

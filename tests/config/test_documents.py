@@ -1,4 +1,4 @@
-"""`base`: a config over another; deep, in a chain, refused where it leads nowhere or back."""
+"""`base`: a config over another; merged deeply, in a chain, refused where missing or circular."""
 
 import os
 from pathlib import Path

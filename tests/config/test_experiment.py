@@ -1,4 +1,4 @@
-"""The whole config: what is just possible, what counts as the same data set, what is frozen."""
+"""The whole config: limits, identity of a data set, frozen sections."""
 
 import json
 from collections.abc import Iterator

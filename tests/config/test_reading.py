@@ -1,4 +1,4 @@
-"""YAML in, Config out; and for every mistake the file, line, key, value and what would be right."""
+"""YAML to Config; for every mistake the file, line, key, value and what would be right."""
 
 import json
 from pathlib import Path
@@ -185,7 +185,7 @@ class Broken(NamedTuple):
 
 WALL = "wall: {}\n"
 BROKEN = [
-    # Keys nobody knows, at every depth.
+    # Unknown keys, at every depth.
     Broken("sead: 1", 1, "sead", "1", "unknown key; did you mean 'seed'"),
     Broken("seed: 1\nzzz: 1", 2, "zzz", "1", "unknown key"),
     Broken(

@@ -1,4 +1,4 @@
-"""Whatever becomes of the shards, a finished data set is the right one or there is none.
+"""Whatever happens to the shards, a finished data set is the right one or there is none.
 
 Rows are stubs (noise of the row's own number), so that a build takes some hundredths of a second.
 """
@@ -73,7 +73,7 @@ def whole(config: Config, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 class AtAssembly(Listener):
-    """Does something to a folder when its shards are all made, before they are put together."""
+    """Changes a folder when its shards are all made, before assembly."""
 
     def __init__(self, action: Callable[[], None]) -> None:
         super().__init__()

@@ -1,4 +1,4 @@
-"""A build gives the same bytes however it is cut up, and says what it cannot do."""
+"""A build gives the same bytes for any batches, workers and interruptions; what it refuses."""
 
 import errno
 import json

@@ -1,4 +1,4 @@
-"""A dask cluster makes the same bytes, and its losses are survived or named."""
+"""A dask cluster makes the same bytes; lost workers are survived, a lost scheduler is named."""
 
 import os
 import re

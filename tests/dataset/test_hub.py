@@ -1,4 +1,4 @@
-"""The output folder as others see it: data card, picture, and what stands beside every image."""
+"""Files for the Hugging Face hub: data card, picture, metadata.csv."""
 
 import csv
 import math

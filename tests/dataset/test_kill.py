@@ -120,7 +120,7 @@ def test_a_killed_worker_is_one_clear_line_and_finished_batches_are_kept(tmp_pat
 def test_ctrl_c_is_quiet_and_keeps_what_is_finished(tmp_path: Path) -> None:
     small_config(tmp_path)
     run = amid_the_work(tmp_path / "set")
-    os.killpg(run.pid, signal.SIGINT)  # as a terminal does: master and workers alike
+    os.killpg(run.pid, signal.SIGINT)  # as a terminal does: master and workers
     output = run.communicate()[0]
     assert run.returncode == 130, output
     assert "the same command resumes" in output

@@ -1,4 +1,4 @@
-"""Parts made apart become the data set that one build makes; nothing is put together with gaps."""
+"""Parts built separately merge into the data set of one build; gaps are refused."""
 
 import json
 import os

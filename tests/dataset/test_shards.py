@@ -1,4 +1,4 @@
-"""A shard says what it holds, and no other content passes for it."""
+"""A shard names its content, and any other content is refused."""
 
 import io
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""`verify` finds whatever was changed behind a data set's back."""
+"""`verify` finds every change of a data set."""
 
 import shutil
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""The promise of `tolerance_db`: never exceeded, refused only where it must be."""
+"""`tolerance_db`: never exceeded, refused only where float64 cannot keep it."""
 
 from dataclasses import replace
 

@@ -163,7 +163,7 @@ class TestMotionInChirp:
         assert beat_frequency(False) == pytest.approx(radar.slope * 2 * 3.0 / ref.C, abs=bin_width)
 
     def test_the_plan_uses_it(self):
-        """For the slow-time signal and the range-time map of a person alike."""
+        """Both for the slow-time signal and for the range-time map of a person."""
         base = {
             "duration_s": 0.4,
             "radar": {"carrier_hz": 24e9, "bandwidth_hz": 1e9, "prf_hz": 300},
@@ -191,7 +191,7 @@ class TestMotionInChirp:
 
 
 class TestBlocks:
-    """The matrix is made block by block; nobody may notice."""
+    """The matrix is made block by block; results do not depend on the blocks."""
 
     @pytest.fixture
     def waveform(self):

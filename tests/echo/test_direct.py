@@ -236,7 +236,7 @@ class TestBreakpoints:
 
 
 class TestKnots:
-    """How often the kinematics are evaluated: no more than they ask for."""
+    """How often the kinematics are evaluated: no more often than the motion needs."""
 
     def asked(self, source: ref.Points, radar: ref.Radar, tolerance: float = DEFAULT) -> int:
         """Times that the source was asked for, without those of the check."""

@@ -40,7 +40,7 @@ def test_a_path_of_amplitude_0_needs_no_knots():
 
 
 def test_moving_paths_are_told_from_static_ones():
-    """Also where the change lies between the places that are looked at first."""
+    """Also where the change lies between the times that are compared first."""
 
     class Blink(Fading):
         def __call__(self, t: Float) -> Paths:

@@ -1,4 +1,4 @@
-"""Where the signal of a scene is right: every parameter from one end of its range to the other.
+"""Accuracy of the signal over the full range of every parameter.
 
 The cube is compared with the naive formulas in extended precision (free space), the direct engine
 with the cube. docs/limits.md quotes what these tests print.

@@ -48,7 +48,7 @@ def test_adaptation_restores_accuracy_at_another_contrast(learned: Path, tmp_pat
 
 def test_statistics_alone_change_and_labels_do_not_matter(learned: Path, tmp_path: Path) -> None:
     tree(tmp_path / "one", seed=5)
-    (tmp_path / "one/walking").rename(tmp_path / "one/unknown")  # a class of nobody's
+    (tmp_path / "one/walking").rename(tmp_path / "one/unknown")  # an unknown class
     metadata = adapt(learned, tmp_path / "one", tmp_path / "adapted", CPU)
     assert "adapted_to" in metadata.work
     (_, before), (_, after) = load_best(learned), load_best(tmp_path / "adapted")
@@ -60,7 +60,7 @@ def test_statistics_alone_change_and_labels_do_not_matter(learned: Path, tmp_pat
 
 
 def information(run: Path, data: Path) -> float:
-    """Of predictions on images: entropy of their mean less their mean entropy, in nats."""
+    """Mutual information of images and predictions: entropy of the mean less mean entropy, nats."""
     metadata, model = load_best(run)
     images = open_for(metadata, data, None)
     p = predict(model, metadata, images, np.arange(len(images)), CPU, 32).probabilities

@@ -1,4 +1,4 @@
-"""Data that others made: images of another size, classes under other names."""
+"""Foreign data: images of another size, classes under other names."""
 
 import json
 from collections.abc import Mapping

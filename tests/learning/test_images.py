@@ -90,7 +90,7 @@ def test_gray_is_the_stored_level(made: Path) -> None:
 
 
 def test_levels_of_radhar_pngs_are_read_without_their_data_set(made: Path, tmp_path: Path) -> None:
-    """And of nobody else's palette: a screenshot with 16 colours is as bright as it looks."""
+    """Of no other palette: a screenshot with 16 colours is read by its brightness."""
     own = next((made / "png/stft/train/walking").glob("*.png"))
     right = read_gray(own)
     shutil.copy(own, tmp_path / "moved.png")

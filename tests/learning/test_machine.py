@@ -1,4 +1,4 @@
-"""What a machine offers."""
+"""Device, precision and threads of the machine."""
 
 import pytest
 import torch

@@ -47,7 +47,7 @@ def radhar(*arguments: object) -> RadharError:
 
 @pytest.fixture
 def copy(run_dir: Path, tmp_path: Path) -> Path:
-    """A run that may be damaged."""
+    """A copy of a run, to be damaged."""
     return Path(shutil.copytree(run_dir, tmp_path / "copy"))
 
 

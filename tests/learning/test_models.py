@@ -1,4 +1,4 @@
-"""Networks by name: the zoo, and what a network costs."""
+"""Networks by name: timm's, and what a network costs."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""What a run leaves on disk: the best epoch, and files that lie."""
+"""The files of a run: the best epoch, and damaged or malicious files."""
 
 import contextlib
 import json
@@ -71,7 +71,7 @@ def test_history_round_trips(tmp_path: Path) -> None:
 
 @pytest.fixture
 def copy(run_dir: Path, tmp_path: Path) -> Path:
-    """A run one may damage."""
+    """A copy of a run, to be damaged."""
     shutil.copytree(run_dir, tmp_path / "run")
     return tmp_path / "run"
 

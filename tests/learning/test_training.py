@@ -1,4 +1,4 @@
-"""Training: what a step does, and that nothing but config and data decides what is learned."""
+"""Training: what a step does; config and data alone determine the weights."""
 
 import copy
 import json

@@ -126,7 +126,7 @@ def test_compensation_and_denoising_are_those_of_every_bin(engine):
 
 
 class TestRecording:
-    """Range bins that somebody recorded go through the same chain."""
+    """Recorded range bins go through the same chain."""
 
     @clutters
     def test_gives_the_same_map(self, clutter):

@@ -1,4 +1,4 @@
-"""People as a config asks for them: drawn, repeated exactly, sound whatever is drawn."""
+"""People from a config: drawn, reproducible, physically sound for every draw."""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,4 @@
-"""Model only what a scene requires: for every request, what runs and what does not."""
+"""Only what a request needs is computed: for every request, the products that run."""
 
 from math import floor
 

@@ -317,7 +317,7 @@ class TestOneJoint:
         assert np.array_equal(kept(t).amplitude, whole(t).amplitude[some])
 
     def test_echoes_of_all_joints_sum_to_the_body(self):
-        """Limb by limb, the echoes add up; hip and shoulders go with the trunk."""
+        """Echoes of single limbs sum to that of the body; hip and shoulders belong to the trunk."""
         config = config_of(duration_s=0.5)
         joints = [one for one in JOINTS if "shoulder" not in one and one != "hip"]
         parts = [simulate(config, "walking", joint=one, maps=()) for one in joints]

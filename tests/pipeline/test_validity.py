@@ -1,4 +1,4 @@
-"""Scenes outside the model are found before any echo, told, and kept, redrawn or refused."""
+"""Scenes outside the model are found before any echo: kept with a warning, redrawn or refused."""
 
 from math import radians
 from typing import Any
@@ -114,7 +114,7 @@ def scene_of(config: Config) -> Scene:
 def test_a_scatterer_within_5_cm_of_an_antenna_is_found(
     label: str, joint: str, time: float, offset: tuple[float, float, float], name: str
 ) -> None:
-    """The antenna stands beside the path of a joint, and so often between two looks at it."""
+    """The antenna is beside the path of a joint, often nearest between two times of the grid."""
     body = motion_of(scene_of(Config(**PERSON, activities=(label,))))
     beside = body.positions(np.array([time]))[:, JOINTS.index(joint), 0] + offset
     config = with_antenna_at(label, beside, name)
@@ -127,8 +127,8 @@ def test_a_scatterer_within_5_cm_of_an_antenna_is_found(
 
 
 def test_a_fast_ankle_is_found_between_grid_times() -> None:
-    """At 6.2 m/s an ankle is 3 cm further in 5 ms: passing at 4.5 cm, it looks 5.4 cm away."""
-    time = 0.425  # half-way between two looks 10 ms apart
+    """At 6.2 m/s an ankle is 3 cm further in 5 ms: nearest at 4.5 cm, it is 5.4 cm away on the grid."""
+    time = 0.425  # half-way between two times of the grid, 10 ms apart
     body = motion_of(scene_of(Config(**PERSON, activities=("S8",))))
     aside = np.array([0.0, 0.045, 0.0])
     config = with_antenna_at("S8", body.positions(np.array([time]))[:, 10, 0] + aside)

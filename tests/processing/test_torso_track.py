@@ -1,4 +1,4 @@
-"""The torso in range-Doppler maps: its way, through gaps, past ambiguous velocities and limbs."""
+"""Tracking the torso in range-Doppler maps: gaps, ambiguous velocities, limbs."""
 
 import numpy as np
 import pytest

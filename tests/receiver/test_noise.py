@@ -118,7 +118,7 @@ class TestPower:
         t = np.arange(recording["waveform"].n_pulses) / RADAR["prf_hz"]
         right = np.mean(np.sum(recording["paths"](t).amplitude ** 2, axis=0)) / 10
         assert recording["noise"].sigma ** 2 == pytest.approx(right, rel=1e-6)
-        # The paper's wall takes 9.8 dB at 2 GHz and more at 24 GHz, from whoever is behind it.
+        # The paper's wall takes 9.8 dB at 2 GHz and more at 24 GHz, of what is behind it.
         assert recording["noise"].sigma ** 2 < 0.5 * free_space_power(scene_of(**more)) / 10
 
     @engines

@@ -56,7 +56,7 @@ def attribute(name: str, value: Any, expected: str, *commands: str) -> None:
 
 
 def secret(place: Path) -> Path:
-    """Somebody else's file, as pixels and as bytes."""
+    """A file outside the data set, as pixels and as bytes."""
     with h5py.File(place / "secret.h5", "w") as file:
         file["maps/stft"] = np.full((6, 32, 32), 77, np.uint8)
         file["label"] = np.zeros(6, np.uint8)

@@ -32,7 +32,7 @@ def in_bounds() -> Iterator[None]:
 
 @pytest.fixture
 def run(good_run: Path, tmp_path: Path) -> Path:
-    """A run that may be damaged."""
+    """A copy of a run, to be damaged."""
     return Path(shutil.copytree(good_run, tmp_path / "run"))
 
 

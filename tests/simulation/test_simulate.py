@@ -1,4 +1,4 @@
-"""One scene: its maps, its signals, and the truth behind them, held against each other."""
+"""One scene: its maps, signals and ground truth agree."""
 
 from pathlib import Path
 

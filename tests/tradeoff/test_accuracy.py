@@ -62,7 +62,7 @@ class Counts:
 
 @pytest.fixture
 def counts(monkeypatch: pytest.MonkeyPatch) -> Iterator[Counts]:
-    """What was built and trained; a training run can be told to be interrupted."""
+    """What was built and trained; a training run can be interrupted."""
     found = Counts([], [])
     build, train = trial_module.build, training.train
 

@@ -1,4 +1,4 @@
-"""The classifier two-sample test: half where nothing can be told, and groups kept apart."""
+"""The classifier two-sample test: accuracy of one half for equal distributions; groups held out."""
 
 import numpy as np
 

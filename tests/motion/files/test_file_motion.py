@@ -1,4 +1,4 @@
-"""A clip becomes somebody in a room: axes, size, floor, low-pass, heading, ends."""
+"""A clip becomes a person in a room: axes, size, floor, low-pass, heading, ends."""
 
 from dataclasses import replace
 from pathlib import Path

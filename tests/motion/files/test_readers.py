@@ -81,7 +81,7 @@ def in_metres(file: Recording, unit: float) -> Float:
     ["stationary", "punching", "kicking", "grabbing", "standing_up", "falling_to_walking"],
 )
 def test_bvh_and_amc_round_trips(activity: str, tmp_path: Path) -> None:
-    """Through BVH and AMC every joint comes back to 1e-6 m; a fallen person too."""
+    """Through BVH and AMC every joint is reproduced to 1e-6 m; a fallen person too."""
     p = frames(activity, 2.0)
     bvh = read_motion(write_bvh(tmp_path / "x.bvh", p)).recording()
     assert np.abs(in_metres(bvh, 0.01) - p).max() < 1e-6

@@ -1,4 +1,4 @@
-"""What holds for every person and activity: stiff links, planted feet, a floor, no jumps."""
+"""Properties of every person and activity: stiff links, planted feet, a floor, no jumps."""
 
 from dataclasses import replace
 from math import inf
@@ -180,7 +180,7 @@ def test_position_and_velocity_are_continuous_across_movements(what: str) -> Non
     for part, _ in motion.parts[1:]:
         p = motion.positions(part.begin + dt * np.array([-1.5, -0.5, 0.5, 1.5]))
         step = np.diff(p, axis=2)
-        assert np.abs(step[..., 1]).max() < 1.0 * dt  # nobody is fast at rest
+        assert np.abs(step[..., 1]).max() < 1.0 * dt  # no joint is fast at rest
         assert np.abs(np.diff(step, axis=2)).max() < 100 * dt**2
 
 

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 MIN_WINDOW = 8
 MAX_PULSES = 2**24
 MAX_PADDING = 64
-MAX_BIN_SAMPLES = 2**27  # of range bins that are held at once, 16 bytes each
-MIN_CUTOFF = 1e-4  # of PRF/2; below, float64 rounds a filter of order 10 away
+MAX_BIN_SAMPLES = 2**27  # of range bins in memory, 16 bytes each
+MIN_CUTOFF = 1e-4  # of PRF/2; below, rounding spoils a filter of order 10 in float64
 
 
 class Problem(NamedTuple):

@@ -21,8 +21,8 @@ BASE_SCHEMA = {
     "type": ["string", "null"],
 }
 SUFFIXES = (".yaml", ".yml", ".json")
-MAX_CHAIN = 8  # that stand on each other
-_ONE_VALUE = {*FORMS, "sequence", "files"}  # what has such a key is replaced as a whole
+MAX_CHAIN = 8  # files in a chain of bases
+_ONE_VALUE = {*FORMS, "sequence", "files"}  # mappings with such a key are replaced as a whole
 
 
 def read_document(path: Path) -> tuple[Document, Places]:

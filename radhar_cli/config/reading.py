@@ -26,7 +26,7 @@ _UNION_TAGS = {
 }
 Options: TypeAlias = dict[str, str]
 MAX_MISTAKES = 20
-LONGEST_VALUE, LONGEST_ADVICE = 120, 500  # characters of them that a message shows
+MAX_VALUE, MAX_ADVICE = 120, 500  # characters of value and advice in a message
 
 
 def load_config(path: str | Path, overrides: Iterable[str] = ()) -> Config:
@@ -258,10 +258,10 @@ def _place(where: str, key: str, places: Places, options: Mapping[str, str]) -> 
 def _what(problem: Problem) -> str:
     value = problem.value
     shown_value = _short(json.dumps(value, default=_plain))
-    return f" = {shown_value}: {_short(problem.right, LONGEST_ADVICE)}"
+    return f" = {shown_value}: {_short(problem.right, MAX_ADVICE)}"
 
 
-def _short(text: str, most: int = LONGEST_VALUE) -> str:
+def _short(text: str, most: int = MAX_VALUE) -> str:
     return text if len(text) <= most else text[: most - 3] + "..."
 
 

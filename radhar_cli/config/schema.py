@@ -439,7 +439,7 @@ class SequenceConfig(Section):
         return self
 
 
-MAX_FILES = 1500  # of all classes
+MAX_FILES = 1500  # of all classes together
 LONGEST_PATH = 240
 Share01 = Annotated[Number, within(0, 1)]
 

@@ -12,7 +12,7 @@ import yaml
 from radhar_cli.errors import ConfigError
 from radhar_cli.untrusted import DEEPEST
 
-MAX_CHARACTERS = 2**16  # characters, every alias written out
+MAX_CHARACTERS = 2**16  # with every alias written out
 LONGEST_KEY = 100
 Lines = dict[str, int]
 

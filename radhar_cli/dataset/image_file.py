@@ -15,7 +15,7 @@ from radhar_cli.untrusted import regular_size
 
 # No format that runs a program: EPS, whatever its file is called, would start Ghostscript.
 FORMATS = ("PNG", "JPEG", "BMP", "TIFF", "WEBP")
-MAX_SIDE = 8192  # of an image that a config may ask for
+MAX_SIDE = 8192  # px; largest image size of a config
 MAX_FILE = 4 * MAX_SIDE**2  # bytes
 
 

@@ -29,7 +29,7 @@ from radhar_cli.errors import ConfigError, FolderError, did_you_mean
 from radhar_cli.untrusted import Closing
 
 MAX_ENTROPY_BITS = 64.0
-BLOCK = 4096  # rows of a column that are read together
+BLOCK = 4096  # rows of a column read at once
 
 
 class Dataset(Closing):

@@ -42,9 +42,9 @@ _DAMAGED = (
 )
 _HEAP = b"GCOL\x01"
 MAX_TEXT = 2**20
-MAX_SOURCES = 64  # files of a virtual data set that are open at a time
-MIN_HEAP, MAX_HEAP = 4096, 2**24  # bytes; the first is HDF5's
-MAX_CHUNK = 2**27  # bytes of samples that are stored together
+MAX_SOURCES = 64  # open files per virtual data set
+MIN_HEAP, MAX_HEAP = 4096, 2**24  # bytes; the minimum is HDF5's
+MAX_CHUNK = 2**27  # bytes of a chunk
 _DEFLATE, _SHUFFLE = h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE
 
 

@@ -12,7 +12,7 @@ from radhar_cli.echo.paths import Paths, PathSource
 from radhar_cli.radar.waveform import Waveform
 
 CHUNK_KNOTS, BLOCK = 32768, 2**15
-MIN_KNOTS = 64  # in a recording
+MIN_KNOTS = 64  # per recording
 SKIP, MIN_SKIPPED = 8, 512  # of many knots every eighth is tried first
 FEW_PULSES = 1024  # up to which all are cheaper than finding the spacing
 POWER_PER_SECOND, POWER_PER_CYCLE, POWER_CHANGE = 40.0, 20.0, 0.1

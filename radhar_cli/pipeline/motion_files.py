@@ -12,7 +12,7 @@ from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.motion.files.reading import read_motion
 from radhar_cli.scene import Scene
 
-KEPT_BYTES = 2**26  # of clips, in each process
+KEPT_BYTES = 2**26  # size of the cache of clips in a process
 _clips: OrderedDict[tuple[Any, ...], Clip] = OrderedDict()
 
 

@@ -127,7 +127,7 @@ def test_a_scatterer_within_5_cm_of_an_antenna_is_found(
 
 
 def test_a_fast_ankle_is_found_between_grid_times() -> None:
-    """At 6.2 m/s an ankle is 3 cm further in 5 ms: nearest at 4.5 cm, it is 5.4 cm away on the grid."""
+    """At 6.2 m/s an ankle goes 3 cm in 5 ms: nearest at 4.5 cm, it is 5.4 cm away on the grid."""
     time = 0.425  # half-way between two times of the grid, 10 ms apart
     body = motion_of(scene_of(Config(**PERSON, activities=("S8",))))
     aside = np.array([0.0, 0.045, 0.0])

@@ -18,7 +18,7 @@ from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.table import Entry, entries
 from radhar_cli.errors import FolderError
 
-FILE_BYTES = 2**28  # of the pixels in a file of samples
+FILE_BYTES = 2**28  # of pixels per file
 
 
 class Samples:

@@ -302,7 +302,7 @@ def _fixed(config: Config, activity: Activity, draw: Draw) -> Config:
     fixed, drawn = _fixed_and_drawn(SameConfig(config), activity)
     values = {key: draw(key, number) for key, number in drawn.items()}
     if fixed.subject.weight_kg is None:
-        height = values.get("subject.height_m", fixed.subject.height_m)
+        height: Any = values.get("subject.height_m", fixed.subject.height_m)
         values["subject.weight_kg"] = default_weight(height)
     return _with(fixed, values)
 

@@ -97,9 +97,7 @@ def main() -> None:
     try:
         program()(shard_named(sys.argv[1:]), prog_name="radhar")
     except RadharError as error:
-        if (
-            os.environ.get("RANK", "0") == "0"
-        ):  # under torchrun all fail the same way; one reports it
+        if os.environ.get("RANK", "0") == "0":  # under torchrun all fail, and one reports it
             print(f"radhar: {shown(error)}", file=sys.stderr)
         sys.exit(error.status)
     except KeyboardInterrupt:

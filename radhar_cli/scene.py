@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from math import nan
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar, cast
 
 from radhar_cli.activity import Activity
 from radhar_cli.config.number import Number, is_fixed, nominal, quantile, support
@@ -96,6 +96,7 @@ UNSTEADY = (
     "motion.kneel_s",
 )
 
+T = TypeVar("T")
 Draw: TypeAlias = Callable[[str, Number], float]
 
 
@@ -315,32 +316,26 @@ def _part(config: Section, key: str) -> Any:
     return place
 
 
-def _with(config: Config, parts: Mapping[str, Any]) -> Config:
-    """The config with other values under some dotted keys."""
-    changed: Config = _replaced(config, parts)
-    return changed
-
-
-def _replaced(value: Any, parts: Mapping[str, Any]) -> Any:
-    """A section, mapping or vector with other values under some of the dotted keys inside it."""
+def _with(value: T, parts: Mapping[str, Any]) -> T:
+    """A config, or part of one, with other values under some of the dotted keys inside it."""
     inside = dict[str, dict[str, Any]]()
     for key, part in parts.items():
         name, _, rest = key.partition(".")
         inside.setdefault(name, {})[rest] = part
 
-    def changed(name: str, before: Any) -> Any:
-        here = inside[name]
-        return here[""] if "" in here else _replaced(before, here)
+    def changed(name: str, old: Any) -> Any:
+        new = inside.get(name)
+        return old if new is None else new[""] if "" in new else _with(old, new)
 
+    found: Any
     if isinstance(value, Section):
-        return value.model_copy(
-            update={name: changed(name, getattr(value, name)) for name in inside}
-        )
-    if isinstance(value, dict):
-        return {**value, **{name: changed(name, value[name]) for name in inside}}
-    return tuple(
-        changed(str(place), one) if str(place) in inside else one for place, one in enumerate(value)
-    )
+        found = value.model_copy(update={n: changed(n, getattr(value, n)) for n in inside})
+    elif isinstance(value, dict):
+        found = {name: changed(name, old) for name, old in value.items()}
+    else:
+        assert isinstance(value, tuple)
+        found = tuple(changed(str(place), old) for place, old in enumerate(value))
+    return cast(T, found)
 
 
 def _each_number(value: Any, key: str, change: Callable[[str, Any], Any]) -> Any:

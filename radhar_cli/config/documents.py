@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from radhar_cli.config.number import FORMS
-from radhar_cli.config.yaml_reader import MAX_CHARACTERS, parse_yaml
+from radhar_cli.config.yaml_reader import MAX_TEXT, parse_yaml
 from radhar_cli.errors import ConfigError
 from radhar_cli.untrusted import read_text
 
@@ -32,7 +32,7 @@ def read_document(path: Path) -> tuple[Document, Places]:
         ConfigError: unreadable file, bad YAML, or no mapping.
     """
     try:
-        text = read_text(path, MAX_CHARACTERS)
+        text = read_text(path, MAX_TEXT)
     except FileNotFoundError:
         raise ConfigError(f"{path}: no such file") from None
     except OSError as error:

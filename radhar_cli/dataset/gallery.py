@@ -12,11 +12,7 @@ from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset
 
 MAX_CLASSES, ROWS = 16, 4
-WIDTH, MIN_SIDE, MAX_SIDE = (
-    960,
-    72,
-    160,
-)  # px: width of a row, smallest and largest side of an image
+WIDTH, MIN_SIDE, MAX_SIDE = 960, 72, 160  # px, of a row and of an image
 GAP, MARGIN, LINE, FONT = 4, 128, 13, 11  # px
 
 

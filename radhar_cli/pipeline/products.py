@@ -81,9 +81,7 @@ from radhar_cli.receiver.noise import WhiteNoise, noise_variance
 from radhar_cli.scene import Scene
 
 CHUNK = 2**18  # pulses per chunk of pulse-by-pulse work
-SINGLE_RANGE_DB = (
-    70.0  # largest dynamic range of images in float32: one pixel in 1e5 differs, by a level
-)
+SINGLE_RANGE_DB = 70.0  # of images in float32, in which a pixel in 1e5 differs by a level
 # In the order in which few are held at once: each follows the one it is made from.
 SIGNALS = ("signal", "signal_denoised", "signal_compensated", "signal_compensated_denoised")
 

@@ -18,10 +18,7 @@ from radhar_cli.arrays import Float
 
 LEFT_IN_SHADOW = 0.03  # field deep in the shadow of a body, relative to none
 PENUMBRA = 0.4  # width of the edge of a shadow over sqrt(wavelength * 1 m)
-BEHIND, BEHIND_WIDTH = (
-    0.06,
-    0.03,
-)  # distance behind an occluder at which its shadow begins, and its transition, m
+BEHIND, BEHIND_WIDTH = 0.06, 0.03  # start of a shadow behind its occluder, and transition, m
 
 
 class View(NamedTuple):

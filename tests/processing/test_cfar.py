@@ -31,12 +31,12 @@ def training_cells(cells: np.ndarray, row: int, column: int, window: CellAveragi
     return found
 
 
-@given(CELLS, PAIR, PAIR, st.booleans(), st.sampled_from(["pfa", "factor", "db"]))
+@given(CELLS, PAIR, PAIR, st.booleans(), st.sampled_from(["pfa", "factor", "db"]), st.booleans())
 @settings(max_examples=150, deadline=None)
-def test_as_a_loop_over_every_cell(cells, guard, training, wrap, threshold):
+def test_as_a_loop_over_every_cell(cells, guard, training, wrap, threshold, decibel):
     """Windows larger than the map, without training cells and with all of them beyond the edges."""
     value = {"pfa": 0.2, "factor": 1.3, "db": 1.5}[threshold]
-    window = CellAveraging(guard, training, threshold, value, wrap=wrap)
+    window = CellAveraging(guard, training, threshold, value, decibel=decibel, wrap=wrap)
     found = window.is_set(cells)
     for place, cell in np.ndenumerate(cells):
         around = training_cells(cells, *place, window)
@@ -46,7 +46,8 @@ def test_as_a_loop_over_every_cell(cells, guard, training, wrap, threshold):
             continue
         count = len(around)
         factor = {"pfa": count * (0.2 ** (-1 / count) - 1), "factor": 1.3, "db": 10**0.15}
-        level = factor[threshold] * sum(around) / count
+        mean = sum(around) / count
+        level = mean + 1.5 if decibel and threshold == "db" else factor[threshold] * mean
         if abs(cell - level) > 1e-9:  # on the border either is right
             assert found[place] == (cell > level)
 

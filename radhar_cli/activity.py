@@ -14,7 +14,7 @@ _SEAT = ("timing.seat_start_s", "timing.seat_duration_s")
 _RISE = ("timing.rise_start_s", "timing.rise_duration_s", "timing.walk_start_s")
 _STOP = ("timing.walk_stop_s", "timing.overlap_s")
 
-# What each movement of people depends on, besides body, place and the restlessness of everybody.
+# What each movement of people depends on, besides body, place and fidgets.
 _UNEVEN = ("motion.tempo_jitter", "motion.size_jitter")
 _STRIKE = ("motion.cycle_phase", "motion.strike_scale", *_UNEVEN)
 _SIT = ("motion.seat_height", "motion.lean_deg", "motion.recline_deg")
@@ -41,7 +41,7 @@ class Movement(NamedTuple):
 
     before: str
     after: str
-    seconds: float | None  # None goes on until it is told to end
+    seconds: float | None  # None: as long as it is asked for
     uses: tuple[str, ...] = ()
 
 

@@ -98,7 +98,7 @@ def main() -> None:
         status = _run(shard_named(sys.argv[1:]))
         sys.exit(status)
     except RadharError as error:
-        if os.environ.get("RANK", "0") == "0":  # under torchrun all fail alike; one should speak
+        if os.environ.get("RANK", "0") == "0":  # under torchrun all fail, and one reports it
             print(f"radhar: {shown(error)}", file=sys.stderr)
         sys.exit(error.status)
     except KeyboardInterrupt:

@@ -4,14 +4,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from math import nan
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar, cast
 
 from radhar_cli.activity import Activity
 from radhar_cli.config.number import Number, is_fixed, nominal, quantile, support
 from radhar_cli.config.schema import (
     FALLS,
     Config,
-    FallName,
     Falls,
     PerActivity,
     Section,
@@ -97,6 +96,7 @@ UNSTEADY = (
     "motion.kneel_s",
 )
 
+T = TypeVar("T")
 Draw: TypeAlias = Callable[[str, Number], float]
 
 
@@ -143,8 +143,8 @@ def draw_scene(config: Config, activity: Activity, index: int, attempt: int = 0)
 
     fixed = _fixed(config, activity, draw)
     if isinstance(fixed.motion.fall, Falls):
-        u = stream(config.seed, SCENE, activity.index, index, attempt, name="motion.fall").random()
-        fixed = _with_fall(fixed, fixed.motion.fall.drawn(u))
+        u = stream(config.seed, SCENE, activity.index, index, attempt, name=FALL).random()
+        fixed = _with(fixed, {FALL: fixed.motion.fall.drawn(u)})
     if config.files_of(activity) is not None:
         name = f"classes.{activity.slug}.file"
         u = stream(config.seed, SCENE, activity.index, index, attempt, name=name).random()
@@ -155,10 +155,9 @@ def draw_scene(config: Config, activity: Activity, index: int, attempt: int = 0)
 def nominal_scene(config: Config, activity: Activity) -> Scene:
     """The scene with every number at its middle, and nothing that people do not repeat."""
     fixed = _fixed(config, activity, lambda key, number: nominal(number))
-    steady = {key.removeprefix("motion."): 0.0 for key in UNSTEADY}
-    fixed = fixed.model_copy(update={"motion": fixed.motion.model_copy(update=steady)})
+    fixed = _with(fixed, dict.fromkeys(UNSTEADY, 0.0))
     if isinstance(fixed.motion.fall, Falls):
-        fixed = _with_fall(fixed, fixed.motion.fall.drawn(0.5))
+        fixed = _with(fixed, {FALL: fixed.motion.fall.drawn(0.5)})
     fixed = _with_file(fixed, activity, 0.5, None)
     return Scene(_with_possible_overlap(fixed, activity), activity, 0)
 
@@ -171,11 +170,11 @@ def _with_possible_overlap(config: Config, activity: Activity) -> Config:
         return config
     sideways = activity.slug == "walking_to_falling" and config.motion.fall == "sideways"
     most = 0.0 if sideways else MAX_OVERLAP * getattr(timing, key)
-    capped = {"overlap_s": min(timing.overlap_s, most)}
+    capped = {"timing.overlap_s": min(timing.overlap_s, most)}
     if key == "rise_duration_s" and timing.walk_start_s is not None:
         earliest = timing.rise_start_s + timing.rise_duration_s - most
-        capped["walk_start_s"] = max(timing.walk_start_s, earliest)
-    return config.model_copy(update={"timing": timing.model_copy(update=capped)})
+        capped["timing.walk_start_s"] = max(timing.walk_start_s, earliest)
+    return _with(config, capped)
 
 
 def _with_file(config: Config, activity: Activity, u: float, subject: int | None) -> Config:
@@ -190,12 +189,8 @@ def _with_file(config: Config, activity: Activity, u: float, subject: int | None
     files = range(len(one.files))
     if subject is not None:
         files = files[subject :: config.split.subjects] or files
-    drawn = one.model_copy(update={"file": files[min(int(u * len(files)), len(files) - 1)]})
-    return config.model_copy(update={"classes": {**config.classes, activity.slug: drawn}})
-
-
-def _with_fall(config: Config, fall: FallName) -> Config:
-    return config.model_copy(update={"motion": config.motion.model_copy(update={"fall": fall})})
+    drawn = files[min(int(u * len(files)), len(files) - 1)]
+    return _with(config, {f"classes.{activity.slug}.file": drawn})
 
 
 def subject_of(config: Config, index: int) -> int | None:
@@ -300,23 +295,17 @@ def _fixed_and_drawn(same: SameConfig, activity: Activity) -> tuple[Config, dict
         return nominal(one)
 
     sections = {key: _each_number(_part(config, key), key, fix) for key in SCENE_KEYS}
-    return _with_parts(config, sections | {"activities": (activity.slug,)}), drawn
+    return _with(config, sections | {"activities": (activity.slug,)}), drawn
 
 
 def _fixed(config: Config, activity: Activity, draw: Draw) -> Config:
     """The config of one scene; numbers that its activity does not depend on are at their middle."""
     fixed, drawn = _fixed_and_drawn(SameConfig(config), activity)
     values = {key: draw(key, number) for key, number in drawn.items()}
-    sections: dict[str, Any] = {
-        key: _each_number(_part(fixed, key), key, lambda name, number: values.get(name, number))
-        for key in SCENE_KEYS
-        if any(name == key or name.startswith(f"{key}.") for name in values)
-    }
-    subject = sections.get("subject", fixed.subject)
-    if subject.weight_kg is None:
-        weight = {"weight_kg": default_weight(subject.height_m)}
-        sections["subject"] = subject.model_copy(update=weight)
-    return _with_parts(fixed, sections)
+    if fixed.subject.weight_kg is None:
+        height: Any = values.get("subject.height_m", fixed.subject.height_m)
+        values["subject.weight_kg"] = default_weight(height)
+    return _with(fixed, values)
 
 
 def _part(config: Section, key: str) -> Any:
@@ -327,14 +316,26 @@ def _part(config: Section, key: str) -> Any:
     return place
 
 
-def _with_parts(config: Config, parts: Mapping[str, Any]) -> Config:
-    """The config with other values under dotted keys of sections."""
-    update = dict[str, Any]()
-    for key, value in parts.items():
+def _with(value: T, parts: Mapping[str, Any]) -> T:
+    """A config, or part of one, with other values under some of the dotted keys inside it."""
+    inside = dict[str, dict[str, Any]]()
+    for key, part in parts.items():
         name, _, rest = key.partition(".")
-        section = update.get(name, getattr(config, name))
-        update[name] = section.model_copy(update={rest: value}) if rest else value
-    return config.model_copy(update=update)
+        inside.setdefault(name, {})[rest] = part
+
+    def changed(name: str, old: Any) -> Any:
+        new = inside.get(name)
+        return old if new is None else new[""] if "" in new else _with(old, new)
+
+    found: Any
+    if isinstance(value, Section):
+        found = value.model_copy(update={n: changed(n, getattr(value, n)) for n in inside})
+    elif isinstance(value, dict):
+        found = {name: changed(name, old) for name, old in value.items()}
+    else:
+        assert isinstance(value, tuple)
+        found = tuple(changed(str(place), old) for place, old in enumerate(value))
+    return cast(T, found)
 
 
 def _each_number(value: Any, key: str, change: Callable[[str, Any], Any]) -> Any:

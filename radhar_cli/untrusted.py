@@ -71,8 +71,8 @@ def read_json(path: Path) -> Any:
     try:
         return parse_json(read_text(path, MAX_JSON))
     except (OSError, ValueError) as error:
-        told = getattr(error, "strerror", None) or error
-        raise FolderError(f"{path}: is damaged, or is not from radhar ({told})") from None
+        reason = getattr(error, "strerror", None) or error
+        raise FolderError(f"{path}: is damaged, or is not from radhar ({reason})") from None
 
 
 def parse_json(text: str) -> Any:

@@ -26,7 +26,7 @@ def prepare_process() -> None:
     """Hold numerical libraries to one thread and keep the memory of arrays of some MB.
 
     One thread: the workers already fill the cores, and bytes must not depend on a thread count.
-    Libraries that are loaded already are told; those loaded later (scipy has an OpenBLAS of its
+    Libraries that are loaded already are set; those loaded later (scipy has an OpenBLAS of its
     own) read the environment.
     """
     from threadpoolctl import threadpool_limits
@@ -54,7 +54,7 @@ def _loaded_libraries() -> Any:
 
 
 def tune_malloc(mapped_above: int, trimmed_above: int) -> None:
-    """Stop glibc from returning memory after each array, unless the user has told it what to do.
+    """Stop glibc from returning memory after each array, unless the user has configured it.
 
     Fresh pages, mapped, zeroed and faulted in for every temporary array, would take most of a
     sample's time.

@@ -1,11 +1,11 @@
-"""Who is told how far a build or a sweep is, in tests."""
+"""Progress of a build or a sweep, recorded for tests."""
 
 
 class Listener:
-    """A progress that remembers what was said."""
+    """A `Progress` that keeps messages and names of stages."""
 
     def __init__(self) -> None:
-        self.said: list[str] = []
+        self.messages: list[str] = []
         self.stages: list[str] = []
 
     def stage(self, name: str, total: int, done: int) -> None:
@@ -15,4 +15,4 @@ class Listener:
         pass
 
     def say(self, message: str) -> None:
-        self.said.append(message)
+        self.messages.append(message)

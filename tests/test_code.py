@@ -1,4 +1,4 @@
-"""The code itself: lint, types, layers of imports, lightness of the program."""
+"""The code itself: lint, types, layers of imports, light start of the program."""
 
 import ast
 import importlib.util
@@ -71,7 +71,7 @@ def package(path: Path) -> str:
     return first.removesuffix(".py")
 
 
-def test_imports_never_turn_back() -> None:
+def test_imports_follow_the_layers() -> None:
     assert imports(PACKAGE / "__init__.py") <= {"importlib"}, "importing the package stays light"
     back = [
         f"{path.relative_to(PACKAGE)} imports {module}"
@@ -177,7 +177,7 @@ def test_arrays_from_elsewhere_are_opened_where_they_are_checked() -> None:
     assert users == {f"capture/{name}.py" for name in ("array_files", "images", "sigmf_file")}
 
 
-def test_one_place_prints() -> None:
+def test_only_one_module_prints() -> None:
     assert {p.name for p in files() if "print" in calls(p)} == {"cli.py"}
     writes = {p.name for p in files() if {"tqdm.write", "console.print"} & calls(p)}
     assert writes == {"bars.py", "summary_view.py"}
@@ -202,7 +202,7 @@ def test_hdf5_is_opened_for_reading_in_one_place() -> None:
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "scripts").glob("*.py")), ids=lambda p: p.stem)
-def test_scripts_use_names_that_there_are(path: Path) -> None:
+def test_scripts_use_existing_names(path: Path) -> None:
     spec = importlib.util.spec_from_file_location(f"scripts_{path.stem}", path)
     assert spec is not None
     assert spec.loader is not None

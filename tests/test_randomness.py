@@ -1,4 +1,4 @@
-"""Named streams: what one yields hangs on its name and on nothing else."""
+"""Named streams: what one yields depends on its name alone."""
 
 from itertools import combinations
 from zlib import crc32
@@ -19,7 +19,7 @@ def test_the_same_name_yields_the_same_numbers_whatever_was_drawn_before() -> No
     np.testing.assert_array_equal(alone, again)
 
 
-def test_every_part_of_the_name_counts() -> None:
+def test_every_part_of_the_name_matters() -> None:
     names: list[tuple[int, int, tuple[int, ...], str]] = [
         (1, SCENE, (7, 3), "motion.range_m"),
         (2, SCENE, (7, 3), "motion.range_m"),
@@ -45,7 +45,7 @@ def test_no_two_keys_of_a_scene_share_a_stream() -> None:
 
 
 @pytest.mark.parametrize("seed", [0, 2**63 - 1])
-def test_every_seed_of_a_config_is_a_seed(seed: int) -> None:
+def test_every_seed_that_a_config_allows_works(seed: int) -> None:
     assert 0 <= stream(seed, SCENE, 0, 0, name="motion.range_m").random() < 1
 
 

@@ -109,7 +109,7 @@ def test_a_record_names_no_folder_of_the_machine(quick: Reproduction) -> None:
         assert str(quick.runs_root.parent) not in file.read_text()
 
 
-def test_rows_accumulate_and_a_missing_run_deletes_none(
+def test_rows_accumulate_and_missing_runs_delete_none(
     quick: Reproduction, records: dict[str, dict[str, Any]]
 ) -> None:
     alone, both = {FIRST: records[FIRST]}, {name: records[name] for name in (FIRST, SECOND)}
@@ -123,9 +123,7 @@ def test_rows_accumulate_and_a_missing_run_deletes_none(
     assert apart != lines_of(quick, records, "| free space | 30 |")[-1]
 
 
-def test_a_run_that_is_gone_keeps_its_record_and_figures(
-    quick: Reproduction, tmp_path: Path
-) -> None:
+def test_a_deleted_run_keeps_its_record_and_figures(quick: Reproduction, tmp_path: Path) -> None:
     shutil.copytree(quick.results, tmp_path / "results" / "quick")
     before = {file.name: file.read_bytes() for file in (tmp_path / "results/quick").iterdir()}
     assert f"{FIRST}_confusion.png" in before
@@ -173,7 +171,7 @@ def test_rows_with_a_record_of_all_epochs_are_not_run_again(
     assert names("subjects") == [APART]
 
 
-def test_what_is_not_known_is_said(quick: Reproduction, records: dict[str, dict[str, Any]]) -> None:
+def test_unknown_values_are_marked(quick: Reproduction, records: dict[str, dict[str, Any]]) -> None:
     nothing = {"commits": [], "machine": None}
     record = {**records[FIRST], "best_epoch": None, "speed": None, "fresh": {}}
     record["training"] = {**record["training"], **nothing, "core_hours": None}

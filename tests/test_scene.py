@@ -207,7 +207,7 @@ def test_the_nominal_scene_is_the_middle_of_everything() -> None:
     assert {key: values[key] for key in expected} == pytest.approx(expected)
 
 
-def test_without_persons_every_sample_is_somebody_else() -> None:
+def test_without_persons_every_sample_is_another_person() -> None:
     config = Config(**DRAWN)
     assert subject_of(config, 3) is None
     heights = {drawn(config, a.label, i)["subject.height_m"] for a in ACTIVITIES for i in range(4)}

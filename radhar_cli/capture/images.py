@@ -20,7 +20,7 @@ from radhar_cli.errors import CaptureError
 from radhar_cli.untrusted import regular_size
 
 SUFFIXES = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp")
-LARGEST_NPZ = 2**29  # bytes of its images, which are held
+MAX_NPZ = 2**29  # bytes of its images, which are held
 
 
 class Listed(NamedTuple):
@@ -104,8 +104,8 @@ def _loaded(
         wide = [name for name, (shape, kind) in shapes.items() if len(shape) == 3 and kind in "ub"]
         if len(wide) != 1 or "label" not in shapes:
             raise ValueError("should hold one array of images [N, H, W], uint8 or bool, and label")
-        if int(np.prod(shapes[wide[0]][0], dtype=object)) > LARGEST_NPZ:
-            raise ValueError(f"holds more than {LARGEST_NPZ} bytes of images")
+        if int(np.prod(shapes[wide[0]][0], dtype=object)) > MAX_NPZ:
+            raise ValueError(f"holds more than {MAX_NPZ} bytes of images")
         with np.load(path, allow_pickle=False) as arrays:
             values, label = arrays[wide[0]], arrays["label"].ravel()
             classes = arrays["classes"].ravel() if "classes" in shapes else None

@@ -15,7 +15,7 @@ from typing import Any
 from radhar_cli.errors import CaptureError, did_you_mean
 from radhar_cli.untrusted import read_json, read_text
 
-LARGEST_CFG = 2**16
+MAX_CFG = 2**16
 TRANSMIT = "txEnable"
 
 
@@ -260,7 +260,7 @@ class _Commands:
     def __init__(self, path: Path) -> None:
         self.path, self.lines = path, list[tuple[int, list[str]]]()
         try:
-            text = read_text(path, LARGEST_CFG)
+            text = read_text(path, MAX_CFG)
         except (OSError, UnicodeDecodeError) as error:
             told = getattr(error, "strerror", None) or error
             raise CaptureError(f"{path}: cannot be read as text ({told})") from None

@@ -29,8 +29,8 @@ from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.power_map import MapImage
 from radhar_cli.untrusted import read_text
 
-LARGEST_MANIFEST = 2**20  # bytes
-LARGEST_CONFIG = 2**19  # characters of the resolved config: two of it lie beside the data set
+MAX_MANIFEST = 2**20  # bytes
+MAX_CONFIG = 2**19  # characters of the resolved config: two of it lie beside the data set
 COLUMNS = ("file", "label", "person", "start", "stop")
 
 
@@ -43,7 +43,7 @@ def read_manifest(path: Path) -> list[dict[str, Any]]:
         ConfigError: it cannot be read, or has another column; names file, row, column and value.
     """
     try:
-        text = read_text(path, LARGEST_MANIFEST)
+        text = read_text(path, MAX_MANIFEST)
     except (OSError, UnicodeDecodeError) as error:
         told = getattr(error, "strerror", None) or error
         raise ConfigError(f"{path}: cannot be read as text ({told})") from None
@@ -149,7 +149,7 @@ def _whole(config: Config, document: dict[str, Any], manifest: Path) -> Config:
     parts, window = document["recordings"]["parts"], document["recordings"].get("window_s", 4.0)
     document |= {"duration_s": window, "snr_db": None}
     document["split"] = _split(config, parts, manifest)
-    if len(json.dumps(document)) > LARGEST_CONFIG:
+    if len(json.dumps(document)) > MAX_CONFIG:
         raise ConfigError(f"{manifest}: has {len(parts)} rows, too many for one data set")
     made = validated(Config, document, str(manifest), {})
     _refuse_what_cannot_be(made, manifest)

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 MIN_WINDOW = 8
 MAX_PULSES = 2**24
 MAX_PADDING = 64
-MAX_BIN_SAMPLES = 2**27  # of range bins that are held at once, 16 bytes each
-MIN_CUTOFF = 1e-4  # of PRF/2; below, float64 rounds a filter of order 10 away
+MAX_BIN_SAMPLES = 2**27  # of range bins in memory, 16 bytes each
+MIN_CUTOFF = 1e-4  # of PRF/2; below, rounding spoils a filter of order 10 in float64
 
 
 class Problem(NamedTuple):
@@ -224,7 +224,7 @@ def _clutter_problems(c: Config) -> Iterator[Problem]:
                     f"(it is {least:g} to {most:g} times PRF/2)",
                 )
     if "rtm" in c.maps and processing.clutter in ("mean", "highpass"):
-        bins = (processing.range_fft_length or _most_samples(c) + 1) // 2
+        bins = (processing.range_fft_length or _max_samples(c) + 1) // 2
         yield from _too_many(c, bins, "processing.clutter", processing.clutter, "the rtm")
 
 
@@ -258,7 +258,7 @@ def _gate_problems(c: Config) -> Iterator[Problem]:
             "should reach so far to both sides that the gate is narrower than the range "
             f"half-band of {half_band:.4g} m",
         )
-    bins = (processing.range_fft_length or _most_samples(c) + 1) // 2
+    bins = (processing.range_fft_length or _max_samples(c) + 1) // 2
     yield from _too_many(c, bins, "processing.doppler", "gate", "the gate")
 
 
@@ -280,7 +280,7 @@ def _mid_chirp(c: Config) -> tuple[float, float]:
     return carrier[0] + bandwidth[0] / 2, carrier[1] + bandwidth[1] / 2
 
 
-def _most_samples(c: Config) -> int:
+def _max_samples(c: Config) -> int:
     return half_up(support(c.radar.adc_rate_hz)[1], support(c.radar.chirp_s)[1])
 
 

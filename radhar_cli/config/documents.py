@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from radhar_cli.config.number import FORMS
-from radhar_cli.config.yaml_reader import LARGEST, parse_yaml
+from radhar_cli.config.yaml_reader import MAX_TEXT, parse_yaml
 from radhar_cli.errors import ConfigError
 from radhar_cli.untrusted import read_text
 
@@ -21,8 +21,8 @@ BASE_SCHEMA = {
     "type": ["string", "null"],
 }
 SUFFIXES = (".yaml", ".yml", ".json")
-MAX_CHAIN = 8  # that stand on each other
-_ONE_VALUE = {*FORMS, "sequence", "files"}  # what has such a key is replaced as a whole
+MAX_CHAIN = 8  # files in a chain of bases
+_ONE_VALUE = {*FORMS, "sequence", "files"}  # mappings with such a key are replaced as a whole
 
 
 def read_document(path: Path) -> tuple[Document, Places]:
@@ -32,7 +32,7 @@ def read_document(path: Path) -> tuple[Document, Places]:
         ConfigError: unreadable file, bad YAML, or no mapping.
     """
     try:
-        text = read_text(path, LARGEST)
+        text = read_text(path, MAX_TEXT)
     except FileNotFoundError:
         raise ConfigError(f"{path}: no such file") from None
     except OSError as error:
@@ -55,8 +55,8 @@ def read_on_bases(path: Path | None, given: Mapping[str, Any]) -> tuple[Document
         given: may have a `base` instead of the file's own, as seen from the current folder.
 
     Raises:
-        ConfigError: as `read_document`; of a base also who names it. Bases that come back to
-            themselves, or are too many.
+        ConfigError: as `read_document`; of a base also what names it. Bases that are circular
+            or too many.
     """
     document, places = read_document(path) if path else ({}, {})
     files = [path] if path else []
@@ -93,7 +93,7 @@ def _plain(path: Path) -> Path:
     try:
         return plain if plain.samefile(path) else path
     except (OSError, ValueError):
-        return path  # told of where it is read
+        return path  # reported where it is read
 
 
 def _over(lower: Any, own: Any, key: str, replaced: set[str]) -> Any:
@@ -115,10 +115,10 @@ def _ways(key: str) -> Iterator[str]:
 
 
 def _with_folder(document: Document, folder: Path) -> Document:
-    """A base whose motion files, if it names some, are looked for from its own folder on."""
+    """A base whose motion files, if it names some, are relative to its own folder."""
     motion, classes = document.get("motion") or {}, document.get("classes")
     if not isinstance(motion, dict) or not isinstance(motion.get("folder", ""), str):
-        return document  # a mistake, told later
+        return document  # a mistake, reported later
     has_files = isinstance(classes, dict) and any(
         isinstance(one, list) or (isinstance(one, dict) and "files" in one)
         for one in classes.values()

@@ -73,7 +73,7 @@ def _expanded(one: FilesConfig, root: Path, key: str, refuse: Refuse) -> Iterato
 
 
 def with_folder(config: Config, folder: Path) -> Config:
-    """A stored config whose files are looked for in a folder, and nowhere else.
+    """A stored config whose files lie in a folder, and nowhere else.
 
     Raises:
         FolderError: a class names a file outside of it.

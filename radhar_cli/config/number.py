@@ -18,12 +18,12 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
-LARGEST = 1e30
+MAX_NUMBER = 1e30
 NORMAL_CUT = 6.0
 
 
 def _checked(value: float) -> float:
-    if not abs(value) <= LARGEST:
+    if not abs(value) <= MAX_NUMBER:
         raise PydanticCustomError("range", "should be a finite number of at most 1e30 in size")
     return value
 
@@ -202,7 +202,7 @@ def nominal(number: Number) -> float:
 
 
 def is_fixed(number: Number) -> bool:
-    """Tell whether every draw of this number is the same."""
+    """Whether every draw of this number is the same."""
     low, high = support(number)
     return low == high
 
@@ -228,9 +228,9 @@ def within(low: float, high: float, unit: str = "") -> AfterValidator:
     return _bound(low, high, f"from {low:g} to {high:g} {unit}".rstrip(), open_low=False)
 
 
-Positive: TypeAlias = Annotated[Number, _bound(0, LARGEST, "above 0", open_low=True)]
-NotNegative: TypeAlias = Annotated[Number, _bound(0, LARGEST, "0 or more", open_low=False)]
-AtLeastOne: TypeAlias = Annotated[Number, _bound(1, LARGEST, "1 or more", open_low=False)]
+Positive: TypeAlias = Annotated[Number, _bound(0, MAX_NUMBER, "above 0", open_low=True)]
+NotNegative: TypeAlias = Annotated[Number, _bound(0, MAX_NUMBER, "0 or more", open_low=False)]
+AtLeastOne: TypeAlias = Annotated[Number, _bound(1, MAX_NUMBER, "1 or more", open_low=False)]
 Angle: TypeAlias = Annotated[Number, _bound(-360, 360, "from -360 to 360 degrees", open_low=False)]
 Decibel: TypeAlias = Annotated[Number, _bound(-300, 300, "from -300 to 300 dB", open_low=False)]
 Coordinate: TypeAlias = Annotated[

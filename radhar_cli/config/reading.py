@@ -26,7 +26,7 @@ _UNION_TAGS = {
 }
 Options: TypeAlias = dict[str, str]
 MAX_MISTAKES = 20
-LONGEST_VALUE, LONGEST_ADVICE = 120, 500  # characters of them that a message shows
+MAX_VALUE, MAX_ADVICE = 120, 500  # characters of value and advice in a message
 
 
 def load_config(path: str | Path, overrides: Iterable[str] = ()) -> Config:
@@ -65,13 +65,13 @@ def changed_section(section: S, overrides: Iterable[str]) -> S:
         ConfigError: as `load_section`.
     """
     document, options = section.model_dump(mode="json"), {}
-    for option, text in map(_told, overrides):
+    for option, text in map(_option_and_text, overrides):
         key = _override(document, text)
         options[key] = option or f"--set {key}"
     return validated(type(section), document, "--set", {}, options)
 
 
-def _told(override: str) -> tuple[str, str]:
+def _option_and_text(override: str) -> tuple[str, str]:
     """The option that an override names, if it does, and its text."""
     option, _, text = override.partition(" ") if override.startswith("--") else ("", "", override)
     return option, text
@@ -79,11 +79,11 @@ def _told(override: str) -> tuple[str, str]:
 
 def _load(kind: type[S], path: Path | None, overrides: Iterable[str]) -> tuple[S, Places, Options]:
     """The config, the places of its keys, and the options that gave some of them."""
-    told = [_told(override) for override in overrides]
-    bases = [text for _, text in told if text.partition("=")[0].strip() == BASE]
+    given = [_option_and_text(override) for override in overrides]
+    bases = [text for _, text in given if text.partition("=")[0].strip() == BASE]
     document, places = read_on_bases(path, with_overrides({}, bases))
     options: Options = {}
-    for option, text in told:
+    for option, text in given:
         if text in bases:
             continue
         key = _override(document, text)
@@ -126,12 +126,12 @@ def validated(
     try:
         return kind.model_validate(document)
     except ValidationError as error:
-        told = dict.fromkeys(
+        mistakes = dict.fromkeys(
             _place(where, problem.key, places, options) + _what(problem)
             for problem in islice(_found(kind, error, document), MAX_MISTAKES)
         )
         more = error.error_count() - MAX_MISTAKES
-        messages = [*told, f"{where}: and {more} more"] if more > 0 else [*told]
+        messages = [*mistakes, f"{where}: and {more} more"] if more > 0 else [*mistakes]
         raise ConfigError("\n".join(messages)) from None
 
 
@@ -168,7 +168,7 @@ def _within(key: str, parent: str) -> bool:
     return key == parent or key.startswith(parent + ".")
 
 
-# What pydantic says in terms of Python, said in terms of YAML.
+# Pydantic's terms of Python in terms of YAML.
 _WORDING = {
     "model_type": "should be a mapping of keys",
     "dict_type": "should be a mapping of keys",
@@ -244,8 +244,8 @@ def _place(where: str, key: str, places: Places, options: Mapping[str, str]) -> 
     of_options = [option for name, option in options.items() if _within(key, name)]
     of_options = of_options or (within if key not in places else [])
     if of_options:
-        told = of_options[-1]
-        return told if told.endswith(f" {key}") else f"{told}: {_short(shown(key))}"
+        option = of_options[-1]
+        return option if option.endswith(f" {key}") else f"{option}: {_short(shown(key))}"
     place = places.get(key)
     parent = key
     while place is None and "." in parent:
@@ -258,10 +258,10 @@ def _place(where: str, key: str, places: Places, options: Mapping[str, str]) -> 
 def _what(problem: Problem) -> str:
     value = problem.value
     shown_value = _short(json.dumps(value, default=_plain))
-    return f" = {shown_value}: {_short(problem.right, LONGEST_ADVICE)}"
+    return f" = {shown_value}: {_short(problem.right, MAX_ADVICE)}"
 
 
-def _short(text: str, most: int = LONGEST_VALUE) -> str:
+def _short(text: str, most: int = MAX_VALUE) -> str:
     return text if len(text) <= most else text[: most - 3] + "..."
 
 

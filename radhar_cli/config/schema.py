@@ -439,7 +439,7 @@ class SequenceConfig(Section):
         return self
 
 
-MAX_FILES = 1500  # of all classes
+MAX_FILES = 1500  # of all classes together
 LONGEST_PATH = 240
 Share01 = Annotated[Number, within(0, 1)]
 
@@ -590,7 +590,7 @@ MAX_REFLECTORS = 32
 
 
 class RoomConfig(Section):
-    """What stands in the room: a list, or a number of reflectors that are all drawn alike."""
+    """What stands in the room: a list, or a number of reflectors of one distribution."""
 
     reflectors: Annotated[tuple[ReflectorConfig, ...], Field(max_length=MAX_REFLECTORS)] = ()
     """A list of {position_m, rcs_dbsm, residual_m, highest_hz}, or how many of the default ones."""
@@ -1076,7 +1076,7 @@ class RecordingsConfig(Section):
 
     @property
     def persons(self) -> tuple[str, ...]:
-        """Everybody who is named, in alphabetical order."""
+        """Names of all persons, in alphabetical order."""
         return tuple(sorted({part.person for part in self.parts if part.person is not None}))
 
 
@@ -1136,7 +1136,7 @@ class Config(Section):
     @classmethod
     def _slugs(cls, value: object, info: ValidationInfo) -> object:
         if not isinstance(value, (list, tuple)) or "classes" not in info.data:
-            return value  # a mistake in `classes` is told once
+            return value  # a mistake in `classes` is reported once
         own = class_activities(info.data["classes"])
         try:
             chosen = [activity_named(str(name), own) for name in value]

@@ -12,7 +12,7 @@ import yaml
 from radhar_cli.errors import ConfigError
 from radhar_cli.untrusted import DEEPEST
 
-LARGEST = 2**16  # characters, every alias written out
+MAX_TEXT = 2**16  # characters, every alias written out
 LONGEST_KEY = 100
 Lines = dict[str, int]
 
@@ -71,8 +71,8 @@ class _Loader(yaml.BaseLoader):
             self._written += self._sizes[node]
         else:
             _refuse(event, f"the alias {event.anchor!r} stands inside of what it stands for")
-        if self._written > LARGEST:
-            _refuse(event, f"with every alias written out it has more than {LARGEST} characters")
+        if self._written > MAX_TEXT:
+            _refuse(event, f"with every alias written out it has more than {MAX_TEXT} characters")
         return node
 
 

@@ -44,7 +44,7 @@ from radhar_cli.progress import Progress
 # no more than 1/64 of a worker's share, as much as a kill may lose.
 BATCH, MAX_BATCH, SHARE, BATCH_BYTES = 32, 1024, 64, 2**28
 CHECK_BATCH = 64
-MAX_CHECKED_FIRST = 100_000  # rows; of more, every worker checks its own
+MAX_CHECKED_FIRST = 100_000  # rows; with more, workers check their own
 
 
 @dataclass(frozen=True)

@@ -103,8 +103,8 @@ def front_matter(path: Path) -> dict[str, Any]:
         found = _FRONT.match(read_text(path, MAX_CARD).replace("\r\n", "\n"))
         document, _ = parse_yaml(found[1] if found else "", path.name)
     except (OSError, UnicodeDecodeError, ConfigError) as error:
-        told = getattr(error, "strerror", None) or error
-        raise FolderError(f"{path}: cannot be read ({told})") from None
+        reason = getattr(error, "strerror", None) or error
+        raise FolderError(f"{path}: cannot be read ({reason})") from None
     return document if isinstance(document, dict) else {}
 
 
@@ -129,7 +129,7 @@ def card(data: Dataset, more: Mapping[str, Any], reading: str) -> str:
 
     Args:
         data: the data set.
-        more: front matter: what `load_dataset` goes by, and a licence where it is not the config's.
+        more: front matter: what `load_dataset` reads, and a licence where it is not the config's.
         reading: Markdown, how to read the files next to the card.
     """
     config, count = data.config, len(data)
@@ -188,8 +188,8 @@ def _summary(data: Dataset) -> str:
     walled = "through a wall" if config.wall is not None else "in free space"
     return (
         f"{what}what an FMCW radar sees of one moving person {walled}, simulated from a model of "
-        "the body, the waves and the receiver. Nobody was recorded. Every number of a scene (who "
-        "moves, where, how fast, how much noise) was drawn, and stands beside its image."
+        "the body, the waves and the receiver. No person was recorded. Every number of a scene "
+        "(who moves, where, how fast, how much noise) was drawn, and stands beside its image."
     )
 
 
@@ -233,7 +233,7 @@ def _classes(data: Dataset) -> str:
         lines.append([activity.index, f"`{activity.slug}`", *(counts[n] for n in present)])
     by = "sample: every sample was drawn on its own"
     if data.config.split.subjects is not None:
-        by = f"person: nobody of {data.config.split.subjects} is in two of its parts"
+        by = f"person: none of the {data.config.split.subjects} is in two of its parts"
     return table(["label", "class", *(SPLITS[n] for n in present)], lines) + f"\n\nSplit by {by}."
 
 
@@ -301,7 +301,7 @@ def _making(data: Dataset) -> str:
 def _licence(name: str | list[str]) -> str:
     if name == "unknown":
         return (
-            "No licence was chosen: whoever publishes this data set puts one at `license:` in the "
+            "No licence was chosen: who publishes this data set puts one at `license:` in the "
             "first lines of this file. Please cite:"
         )
     names = name if isinstance(name, str) else ", ".join(name)

@@ -73,7 +73,7 @@ def connected(address: str, jobs: int) -> Iterator[Cluster]:
         jobs: processes of `local`.
 
     Raises:
-        MachineError: nobody answers, or dask is not installed.
+        MachineError: no scheduler answers, or dask is not installed.
     """
     try:
         import dask

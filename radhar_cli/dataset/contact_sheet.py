@@ -9,7 +9,7 @@ from radhar_cli.arrays import Levels
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.figures.page import page
 
-MAX_SIDE = 1024  # a panel shows far fewer pixels
+MAX_SIDE = 1024  # px of a panel
 
 
 def draw_contact_sheet(data: Dataset, name: str, per_class: int, path: Path) -> None:

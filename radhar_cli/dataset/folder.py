@@ -184,7 +184,7 @@ def _remove(place: Path, pattern: str) -> None:
 
 
 def _ours(folder: Path) -> bool:
-    """Whether radhar built, or began to build, what a folder holds; a damaged file may be ours."""
+    """Whether radhar built, or began to build, what a folder holds, damaged or not."""
     ours = is_incomplete(folder) or (folder / WORK / "built").exists()
     if ours or not (folder / DATASET).exists():
         return ours

@@ -12,7 +12,7 @@ from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset
 
 MAX_CLASSES, ROWS = 16, 4
-WIDTH, SMALLEST, LARGEST = 960, 72, 160  # px of all images of a row, of one image
+WIDTH, MIN_SIDE, MAX_SIDE = 960, 72, 160  # px, of a row and of an image
 GAP, MARGIN, LINE, FONT = 4, 128, 13, 11  # px
 
 
@@ -21,7 +21,7 @@ def gallery_png(data: Dataset) -> bytes:
     order = Rows.of(data.config)
     classes = list(order.classes())[:MAX_CLASSES]
     repeats = min(max(1, ROWS // len(data.maps)), max(order.counts))
-    side = min(max(WIDTH // len(classes), SMALLEST), LARGEST)
+    side = min(max(WIDTH // len(classes), MIN_SIDE), MAX_SIDE)
     titles = [activity.slug.split("_") for activity, _ in classes]
     top = LINE * max(map(len, titles)) + 2 * GAP
     step, every = side + GAP, range(len(data.maps) * repeats)

@@ -74,7 +74,7 @@ numbers the classes by the alphabet. {h5}""",
 def wrong_hub_files(data: Dataset, folder: Path) -> list[str]:
     """What is wrong with the card, its picture and the metadata, a line each.
 
-    A card's text, its licence and more are its owner's to change; what `load_dataset` goes by is
+    A card's text, its licence and more are its owner's to change; what `load_dataset` reads is
     not. A folder without picture is no worse for it, nor one without card and images.
     """
     png = (folder / PNG).is_dir()

@@ -15,7 +15,7 @@ from radhar_cli.untrusted import regular_size
 
 # No format that runs a program: EPS, whatever its file is called, would start Ghostscript.
 FORMATS = ("PNG", "JPEG", "BMP", "TIFF", "WEBP")
-MAX_SIDE = 8192  # of an image that a config may ask for
+MAX_SIDE = 8192  # px; largest image size of a config
 MAX_FILE = 4 * MAX_SIDE**2  # bytes
 
 
@@ -74,7 +74,7 @@ def _rgb(image: Image.Image) -> Levels:
 
 @contextmanager
 def _opened(path: Path, size: tuple[int, int] | None) -> Iterator[Image.Image]:
-    """An image whose header is as it should be; errors of Pillow's parsers become one of ours."""
+    """An image whose header is as it should be; errors of Pillow's parsers become a FolderError."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -88,8 +88,8 @@ def _opened(path: Path, size: tuple[int, int] | None) -> Iterator[Image.Image]:
     except FolderError:
         raise
     except Exception as error:  # Pillow raises whatever its parsers meet
-        told = getattr(error, "strerror", None) or str(error).partition("\n")[0]
-        raise FolderError(f"{path}: is not an image, or is truncated ({told})") from None
+        reason = getattr(error, "strerror", None) or str(error).partition("\n")[0]
+        raise FolderError(f"{path}: is not an image, or is truncated ({reason})") from None
 
 
 def _wrong(image: Image.Image, size: tuple[int, int] | None) -> str | None:

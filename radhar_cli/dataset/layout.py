@@ -41,9 +41,9 @@ def chunked(config: Config) -> Parts:
     if config.output.power is not None:
         parts |= {f"power/{name}": ("<f2", size) for name in config.maps}
     if config.output.slow_time:
-        from radhar_cli.pipeline.physics import most_samples  # slow to import
+        from radhar_cli.pipeline.physics import max_samples  # slow to import
 
-        parts["slow_time"] = ("<c8", (most_samples(config),))
+        parts["slow_time"] = ("<c8", (max_samples(config),))
     return parts
 
 
@@ -70,7 +70,7 @@ def row_bytes(config: Config) -> int:
 
 
 def is_incomplete(folder: Path) -> bool:
-    """Whether a build in this folder was begun and not finished."""
+    """Whether a build in this folder is unfinished."""
     return any((folder / WORK / name).exists() for name in (IDENTITY, "shards", CHECKS))
 
 

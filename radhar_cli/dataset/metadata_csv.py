@@ -74,5 +74,5 @@ def wrong_metadata(data: Dataset, folder: Path) -> list[str]:
                     problems[path] = f"does not say of {what} what dataset.h5 does"
         for _, path, file in files:
             if path not in problems and file.read(1):
-                problems[path] = "goes on after the last sample"
+                problems[path] = "has rows after the last sample"
     return [f"{path}: {fault}" for path, fault in problems.items()]

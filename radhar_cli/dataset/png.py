@@ -11,7 +11,7 @@ from radhar_cli.arrays import Levels
 from radhar_cli.config.schema import DEFAULT_COLOUR_MAP
 
 _DEFAULT_TABLE = Path(__file__).with_name(f"{DEFAULT_COLOUR_MAP}.rgb")  # Matplotlib starts slowly
-# Tells our files, whose palette indices are levels, from any other file with a palette.
+# Marks files whose palette indices are levels.
 _MARK = ("Software", "radhar")
 
 

@@ -18,7 +18,7 @@ from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.workers import parent_pid, run_tasks
 from radhar_cli.progress import Progress
 
-ROWS = 32  # of which the PNGs are one task
+ROWS = 32  # rows per task
 
 
 def write_missing_pngs(

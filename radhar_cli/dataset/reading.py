@@ -29,7 +29,7 @@ from radhar_cli.errors import ConfigError, FolderError, did_you_mean
 from radhar_cli.untrusted import Closing
 
 MAX_ENTROPY_BITS = 64.0
-BLOCK = 4096  # rows of a column that are looked at together
+BLOCK = 4096  # rows of a column read at once
 
 
 class Dataset(Closing):
@@ -184,7 +184,7 @@ def open_dataset(path: str | Path) -> Dataset:
     """Open the data set in a folder, or a dataset.h5.
 
     Raises:
-        FolderError: there is none, it is not ours, or it is damaged.
+        FolderError: there is none, it is not radhar's, or it is damaged.
     """
     path = Path(path)
     file = path / DATASET if path.is_dir() else path

@@ -43,7 +43,7 @@ def _of_class(config: Config, slug: str) -> Iterator[RecordedWindow]:
 
 
 def persons(config: Config) -> list[int]:
-    """Number of the person in every row, as `recordings.persons` has them; -1 of nobody named."""
+    """Number of the person in every row, as `recordings.persons` has them; -1 without a name."""
     recorded = config.recorded
     assert recorded is not None
     named = {name: number for number, name in enumerate(recorded.persons)}

@@ -9,7 +9,7 @@ from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.errors import FolderError
 
-BLOCK = 256  # indices of which the numbers are read at once
+BLOCK = 256  # indices whose numbers are read at once
 
 
 class Entry(NamedTuple):

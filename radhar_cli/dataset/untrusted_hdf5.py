@@ -1,6 +1,6 @@
 """HDF5 files that anyone may have written: the one place that opens them.
 
-Only what is asked for by name is looked at; the rest of the file does not matter. Each link on the
+Only what is asked for by name is read; the rest of the file does not matter. Each link on the
 way is a hard one and each dataset lies in the file itself, so nothing leads to another file, but
 for virtual datasets whose sources lie in the folder of the file or below: HDF5 is never asked for
 their samples, the sources are opened here by the same rules. Types, shapes and stored bytes are
@@ -42,9 +42,9 @@ _DAMAGED = (
 )
 _HEAP = b"GCOL\x01"
 MAX_TEXT = 2**20
-MAX_SOURCES = 64  # files of a virtual data set that are open at a time
-MIN_HEAP, MAX_HEAP = 4096, 2**24  # bytes; the first is HDF5's
-MAX_CHUNK = 2**27  # bytes of samples that are stored together
+MAX_SOURCES = 64  # open files per virtual data set
+MIN_HEAP, MAX_HEAP = 4096, 2**24  # bytes; the minimum is HDF5's
+MAX_CHUNK = 2**27  # bytes of a chunk
 _DEFLATE, _SHUFFLE = h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE
 
 

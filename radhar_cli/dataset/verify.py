@@ -29,7 +29,7 @@ from radhar_cli.worker_process import prepare_process
 MASK_SHARE = 1e-3
 # How far stored power and signals may be off then, dB and relative.
 POWER_DB, SIGNAL_ERROR = 0.25, 1e-5
-ROWS = 4096  # of column labels that are read at once
+ROWS = 4096  # rows of column labels read at once
 
 
 @dataclass
@@ -65,7 +65,7 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Report:
             stored config is not trusted to name files.
 
     Raises:
-        FolderError: there is no readable data set of ours.
+        FolderError: there is no readable data set of radhar.
     """
     prepare_process()
     beside = folder if folder.is_dir() else folder.parent

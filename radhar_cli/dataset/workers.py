@@ -13,7 +13,7 @@ from radhar_cli.errors import UnfinishedError
 from radhar_cli.worker_process import prepare_process
 
 T = TypeVar("T")
-NO_PARENT = 0  # of workers on other machines, which end with their scheduler
+NO_PARENT = 0  # parent of workers on other machines, which end with their scheduler
 _CLUSTER: ContextVar[Cluster | None] = ContextVar("cluster", default=None)
 
 

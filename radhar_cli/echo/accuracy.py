@@ -26,9 +26,9 @@ SPACING_DB = -140.0
 PER_SECOND, PER_CYCLE, AMPLITUDE_CHANGE, PHASE_CHANGE = 400.0, 200.0, 0.1, 0.05
 # Cubic Hermite cells err by the fourth power of their width: -48 dB at 4 a fast-time sample.
 TABLE_DB = -48.0
-SINGLE_DB = -115.0  # what the recurrence leaves of float32
+SINGLE_DB = -115.0  # error of the recurrence in float32
 # Settings aim below the tolerance, and are taken if the measured error is below it by SPARE.
-MARGIN_DB, SPARE_DB, REFINE_DB, FINEST_DB = 25.0, 10.0, 30.0, -220.0
+MARGIN_DB, SPARE_DB, REFINE_DB, MIN_AIM_DB = 25.0, 10.0, 30.0, -220.0
 PROBES = 48
 
 

@@ -8,8 +8,8 @@ from radhar_cli.arrays import Complex, Float
 from radhar_cli.phasor import unit_phasor
 from radhar_cli.radar.waveform import Waveform
 
-BLOCK_SAMPLES = 2**18  # of a beat matrix that is made block by block
-BLOCK = 2**11  # phasors at once, from each of which some forty follow
+BLOCK_SAMPLES = 2**18  # size of a block of the beat matrix
+BLOCK = 2**11  # start phasors per block; some forty follow from each
 
 
 def start_phase(delay: Float, waveform: Waveform, frequency: float) -> Float:

@@ -28,8 +28,8 @@ from radhar_cli.echo.paths import Paths
 from radhar_cli.echo.phase_recurrence import nodes, runs
 from radhar_cli.errors import MachineError
 
-TERMS = 4  # of a cubic
-LANES = 16  # paths at once; a remainder would be computed one by one
+TERMS = 4  # coefficients of a cubic
+LANES = 16  # paths per SIMD batch; a remainder would be computed one by one
 MIN_TERMS = 2**20  # terms of a sum; with fewer, numba takes longer to load than some 200 sums save
 
 

@@ -16,8 +16,8 @@ import numpy as np
 from radhar_cli.arrays import Bool, Complex, Float, Index
 from radhar_cli.echo import compiled
 from radhar_cli.echo.accuracy import (
-    FINEST_DB,
     MARGIN_DB,
+    MIN_AIM_DB,
     REFINE_DB,
     SPARE_DB,
     AccuracyError,
@@ -47,8 +47,8 @@ from radhar_cli.radar.waveform import Waveform
 BLOCK, PHASORS, CHUNK = 2**15, 2**13, 2**20
 # Of the phase between knots in single precision: a cubic errs less than its rounding.
 SINGLE_DEGREE = 3
-SINGLE_ROUNDING_DB = -132.0  # of phasors that turn slowly
-GLANCES = 64
+SINGLE_ROUNDING_DB = -132.0  # rounding of slowly turning phasors in float32
+SAMPLED = 64
 
 
 class Accuracy(NamedTuple):
@@ -107,15 +107,15 @@ class DirectEcho:
             if error <= self.tolerance_db - SPARE_DB:
                 y *= unit
                 return y, Accuracy(motion.step, *chosen[1:], error)
-            if aim == FINEST_DB:
+            if aim == MIN_AIM_DB:
                 raise AccuracyError(best + SPARE_DB)
-            aim = max(aim - max(REFINE_DB, error - self.tolerance_db), FINEST_DB)
+            aim = max(aim - max(REFINE_DB, error - self.tolerance_db), MIN_AIM_DB)
             chosen = self._settings(aim)._replace(single=False)
             motion = resolve(self.source, self.waveform, chosen.spacing)
 
     @property
     def _aim(self) -> float:
-        return max(self.tolerance_db - MARGIN_DB, FINEST_DB)
+        return max(self.tolerance_db - MARGIN_DB, MIN_AIM_DB)
 
     @cached_property
     def _motion(self) -> Motion:
@@ -139,7 +139,7 @@ class DirectEcho:
         if motion.kept is None or not isinstance(self.canceller, Fir):
             return True
         paths, kept = motion.kept.paths, self._kept(motion)
-        some = np.arange(0, paths.delay.shape[1] - 1, max(1, paths.delay.shape[1] // GLANCES))
+        some = np.arange(0, paths.delay.shape[1] - 1, max(1, paths.delay.shape[1] // SAMPLED))
         turn = self.waveform.f0 / motion.step * (paths.delay[:, some + 1] - paths.delay[:, some])
         amplitude = paths.amplitude[:, some] * kept[:, None]
         left = sum(c * unit_phasor(k * turn) for k, c in enumerate(self.canceller.taps))

@@ -28,11 +28,11 @@ from radhar_cli.processing.canceller import NO_CANCELLER, Fir
 from radhar_cli.processing.range_compression import range_bins
 from radhar_cli.radar.waveform import Waveform
 
-SEGMENTS = 32  # a block: short enough that the body hardly moves on
-PULSES = 512  # where paths are taken at every pulse
-VALUES, NODES = 2**20, 10  # phasors at work at once, some ten a path and pulse
-MAX_NODES = 400  # of a design, which takes a second; beyond, every sample is one
-WIDTHS = 8  # bins: extents are rounded up to these, so that few designs are needed
+SEGMENTS = 32  # knot intervals per block, in which the body hardly moves
+PULSES = 512  # pulses per block where paths are evaluated at every pulse
+VALUES, NODES = 2**20, 10  # phasors per block, and about how many a path and pulse takes
+MAX_NODES = 400  # designing that many takes a second; beyond, all samples are nodes
+WIDTHS = 8  # bins to which extents are rounded up, so that few designs are needed
 
 
 class Nodes(NamedTuple):

@@ -14,7 +14,7 @@ import scipy.fft
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.radar.waveform import Waveform
 
-MAX_CELLS = 2**22  # of a table, 64 bytes each
+MAX_CELLS = 2**22  # size of a table; a cell has 64 bytes
 
 
 @lru_cache(maxsize=4)

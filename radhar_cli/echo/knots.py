@@ -12,9 +12,9 @@ from radhar_cli.echo.paths import Paths, PathSource
 from radhar_cli.radar.waveform import Waveform
 
 CHUNK_KNOTS, BLOCK = 32768, 2**15
-MIN_KNOTS = 64  # in a recording
-GLANCE, MIN_GLANCE = 8, 512  # a look at every eighth knot, where there are many
-FEW_PULSES = 1024  # which all cost less than to find out how few of them would do
+MIN_KNOTS = 64  # per recording
+SKIP, MIN_SKIPPED = 8, 512  # of many knots every eighth is tried first
+FEW_PULSES = 1024  # up to which all are cheaper than finding the spacing
 POWER_PER_SECOND, POWER_PER_CYCLE, POWER_CHANGE = 40.0, 20.0, 0.1
 MIN_STEP = 3  # fewer pulses from knot to knot are not worth interpolating
 
@@ -100,9 +100,9 @@ class Motion(NamedTuple):
 def resolve(source: PathSource, waveform: Waveform, spacing: Spacing) -> Motion:
     """Place knots that resolve the motion of a source: as far apart as the spacing allows."""
     step = int(min(waveform.prf // spacing.per_second, waveform.n_pulses // MIN_KNOTS))
-    if source.smooth and step >= MIN_STEP and waveform.n_pulses // step > MIN_GLANCE:
-        # Most of what the knots will have to be shows in a few of them.
-        excess = _excess_at(source, waveform, spacing, GLANCE * step) / GLANCE
+    if source.smooth and step >= MIN_STEP and waveform.n_pulses // step > MIN_SKIPPED:
+        # A few of the knots show nearly how close all have to be.
+        excess = _excess_at(source, waveform, spacing, SKIP * step) / SKIP
         step = int(step / max(excess, 1))
     while True:
         step = step if source.smooth and step >= MIN_STEP else 1

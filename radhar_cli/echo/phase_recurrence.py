@@ -15,7 +15,7 @@ from radhar_cli.echo.interpolation import NODES, REACH, TAPS, lagrange_basis
 from radhar_cli.phasor import unit_phasor
 
 # A rounding of D2p, 1e-7 in single precision, grows with the square of the pulses since the start.
-LONGEST_RUN = 20
+MAX_RUN = 20
 
 
 def nodes(degree: int, length: int) -> Float:
@@ -48,7 +48,7 @@ def runs(step: int, degree: int) -> Runs:
 
     Of degree TAPS - 1 they are the polynomial through the knots itself.
     """
-    count = -(-step // LONGEST_RUN)
+    count = -(-step // MAX_RUN)
     length = -(-step // count)
     at = nodes(degree, length)
     order = np.arange(at.size)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from radhar_cli.figures.page import page, png_bytes
 
-MAX_NUMBERED = 32  # classes; of more than that colours alone are drawn
+MAX_NUMBERED = 32  # classes; with more, cells have no numbers
 
 
 def confusion_png(counts: NDArray[np.int64], names: Sequence[str], title: str) -> bytes:

@@ -9,9 +9,9 @@ from radhar_cli.arrays import Float, Levels
 from radhar_cli.figures.page import page, png_bytes
 
 SIMULATED, MEASURED = "C1", "C0"
-ACROSS = 4  # distributions in a row
+ACROSS = 4  # distributions per row
 BINS = 24
-FULL = 2.0  # distance that is drawn in the strongest colour
+FULL = 2.0  # distance of the strongest colour
 
 
 def distances_png(distances: Float, rows: Sequence[str], columns: Sequence[str]) -> bytes:

@@ -14,11 +14,11 @@ from radhar_cli.arrays import Float, Index
 CALIBRATION_BINS = 15
 
 
-def wilson(correct: float, count: float, confidence: float = 0.95) -> tuple[float, float]:
-    """Wilson's interval of the proportion correct/count; (0, 1) where count is 0."""
+def wilson(correct: float, count: float) -> tuple[float, float]:
+    """Wilson's interval of 95 % of the proportion correct/count; (0, 1) where count is 0."""
     if count == 0:
         return 0.0, 1.0
-    z2 = NormalDist().inv_cdf((1 + confidence) / 2) ** 2
+    z2 = NormalDist().inv_cdf(0.975) ** 2
     share = correct / count
     middle = share + z2 / (2 * count)
     half = math.sqrt(z2 * (share * (1 - share) + z2 / (4 * count)) / count)

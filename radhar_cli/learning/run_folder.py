@@ -258,6 +258,8 @@ def read_trained_on(folder: Path) -> tuple[set[str], set[str]]:
     try:
         rows = csv.DictReader(io.StringIO(_text(path), newline=""))
         pairs = {(row["pixels"], row["scene"]) for row in rows}
+        if not pairs:
+            raise ValueError("names no image")
         return {pixels for pixels, _ in pairs}, {scene for _, scene in pairs if scene}
     except (KeyError, ValueError, csv.Error) as error:
         raise RunError(f"{path}: is damaged ({error})") from None

@@ -54,7 +54,7 @@ class Segment(NamedTuple):
         start, end: names of the points between which it lies.
         radius: across, m, the mean of two where it is flat.
         joint: which it goes with when joints are seen alone.
-        arm: whether it is of an arm: what is across it is told from behind instead of the side.
+        arm: whether it is of an arm: its cross axis comes from the back instead of the side.
         occludes: whether it is large enough to hide others.
         flatness: width over the mean radius, and this over depth.
     """

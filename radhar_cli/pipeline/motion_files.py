@@ -1,4 +1,4 @@
-"""A scene of a class of files -> somebody who moves as one of them."""
+"""A scene of a class of files -> a person who moves as one of them."""
 
 from collections import OrderedDict
 from math import radians
@@ -12,7 +12,7 @@ from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.motion.files.reading import read_motion
 from radhar_cli.scene import Scene
 
-KEPT_BYTES = 2**26  # of clips, in each process
+KEPT_BYTES = 2**26  # size of the cache of clips in a process
 _clips: OrderedDict[tuple[Any, ...], Clip] = OrderedDict()
 
 

@@ -47,8 +47,8 @@ from radhar_cli.scene import Scene
 M = TypeVar("M", SitDown, StandUp, GetUp, StepTo, FallForward, FallBackward, FallSideways)
 
 RAGGED_HZ = (0.1, 0.25, 0.4)
-SHORTEST_STRIDE = 0.5  # s
-SHUFFLE = 0.9  # s
+MIN_STRIDE_S = 0.5  # no stride is shorter
+SHUFFLE = 0.9  # duration of a shuffle, s
 STEP_S, STEP_LIFT = 0.7, 0.06  # s, m
 # How many of the steps before and after go ahead, the others backwards; None for no step. People
 # feel for the chair, and leave it.
@@ -234,7 +234,7 @@ def _repertoire(scene: Scene, duration: float | None, place: int = 0) -> Reperto
 
 
 def _lasting(duration: float | None, movement: M) -> M:
-    """The movement, lasting as long as it is told to, s."""
+    """The movement with another duration (s), if one is given."""
     return movement if duration is None else replace(movement, duration=duration)
 
 
@@ -249,7 +249,7 @@ def _fall(scene: Scene, duration: float | None) -> FallForward | FallBackward | 
 
 def _gait(scene: Scene, place: int) -> Gait:
     motion = scene.config.motion
-    strides = ceil(_f(scene.config.duration_s) / SHORTEST_STRIDE) + 8
+    strides = ceil(_f(scene.config.duration_s) / MIN_STRIDE_S) + 8
     rng = _draws(scene, f"motion.stride_jitter/{place}")
     # The duration of a stride is the difference of two deviations.
     jitter = _f(motion.stride_jitter) / 2**0.5 * rng.standard_normal(strides)
@@ -339,7 +339,7 @@ def _fidgets(scene: Scene) -> Iterable[Fidget]:
 
 
 def _settling(scene: Scene, movements: tuple[Movement, ...]) -> Iterable[Fidget]:
-    """Small movements around the end of S4 to S6, and of who looks behind before sitting down."""
+    """Small movements around the end of S4 to S6, and of a look behind before sitting down."""
     motion, slug = scene.config.motion, scene.activity.slug
     if slug not in STEPS:
         return

@@ -207,7 +207,7 @@ def gate_of(config: Config, ranges: Float, torso: Float | None) -> Gate:
     return around(torso, within, ranges)
 
 
-def most_samples(config: Config) -> int:
+def max_samples(config: Config) -> int:
     """Length of the longest slow-time signal after the canceller that a config draws."""
     pulses = half_up(support(config.duration_s)[1], support(config.radar.prf_hz)[1])
     return pulses - 1 if config.processing.clutter == "difference" else pulses

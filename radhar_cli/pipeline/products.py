@@ -80,8 +80,8 @@ from radhar_cli.receiver.impairment import Impairment
 from radhar_cli.receiver.noise import WhiteNoise, noise_variance
 from radhar_cli.scene import Scene
 
-CHUNK = 2**18  # pulses at work at once, where each is on its own
-SINGLE_RANGE_DB = 70.0  # of images: up to here float32 changes a pixel in 1e5, by one level
+CHUNK = 2**18  # pulses per chunk of pulse-by-pulse work
+SINGLE_RANGE_DB = 70.0  # of images in float32, in which a pixel in 1e5 differs by a level
 # In the order in which few are held at once: each follows the one it is made from.
 SIGNALS = ("signal", "signal_denoised", "signal_compensated", "signal_compensated_denoised")
 

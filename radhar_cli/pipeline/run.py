@@ -1,4 +1,4 @@
-"""Run a plan: make every product once, in its order, and release what nobody needs any more."""
+"""Run a plan: make every product once, in its order, and release what is not needed any more."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field

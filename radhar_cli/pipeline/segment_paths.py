@@ -24,10 +24,10 @@ from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
 REFLECTANCE = 0.5  # |Gamma|^2 of skin and clothes
 SCATTER = 0.02  # standard deviation across a segment, m; cut at twice that
-JITTER = 0.7  # along it, of the distance from point to point
+JITTER = 0.7  # standard deviation along it, over the distance between points
 RATE_STEP_S = 1e-3
 RATES_PER_SECOND, MAX_RATES = 25.0, 8192
-BLOCK = 2048  # instants at once: what a block needs stays in the cache
+BLOCK = 2048  # times per block, which then fits the cache
 TINY = np.finfo(float).tiny
 
 

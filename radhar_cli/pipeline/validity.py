@@ -32,14 +32,14 @@ from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.scene import Scene, draw_scene
 
 MIN_DISTANCE_M = 0.05
-REACH_M = 1.0  # no segment reaches farther from its joints
+REACH_M = 1.0  # distance of a segment's surface from its joints, at most
 GRID_HZ = 50.0
 GRID_PER_CYCLE = 40
 ANTENNA_KEYS = {"transmitter": "radar.tx_m", "receiver": "radar.rx_m"}
 MAX_ATTEMPTS = 1000
 CHUNK = 65536
 GRID_CHUNK = 16384
-FLOOR_MARGIN_M = 1e-3  # rounding, and the paper's ankles in the floor
+FLOOR_MARGIN_M = 1e-3  # for rounding, and the paper's ankles in the floor
 
 
 class Flags(IntFlag):
@@ -145,7 +145,7 @@ def _check(scene: Scene, motion: Motion) -> SceneCheck:
             flags |= Flags.GATE
     closest = min(block.closest for block in blocks)
     room = reflectors_of(scene)
-    if room is not None:  # what is nearly still needs to be looked at once
+    if room is not None:  # reflectors move by millimetres: one instant will do
         p, start = room.positions(np.zeros(1)), np.zeros(1)
         names, legs = room.names, (leg(p, antennas.tx), leg(p, antennas.rx))
         closest = min(closest, _nearest(names, start, *legs))

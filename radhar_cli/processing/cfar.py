@@ -12,8 +12,8 @@ import numpy as np
 
 from radhar_cli.arrays import Bool, Float, Levels
 
-SET = 255  # level of a cell that is set; the others have 0
-FAINTEST_DB = -300.0  # of a map of a scale near 1: what is below counts as this
+SET = 255  # level of a detected cell; all others are 0
+FLOOR_DB = -300.0  # lowest level of a map scaled near 1
 
 
 @dataclass(frozen=True)
@@ -83,8 +83,8 @@ def false_alarm_factor(pfa: float, count: Float) -> Float:
 
 
 def decibels_of(power: Float) -> Float:
-    """10 log10 P of a power of a scale near 1, at least FAINTEST_DB."""
-    level: Float = np.maximum(power, power.dtype.type(10 ** (FAINTEST_DB / 10)), dtype=power.dtype)
+    """10 log10 P of a power of a scale near 1, at least FLOOR_DB."""
+    level: Float = np.maximum(power, power.dtype.type(10 ** (FLOOR_DB / 10)), dtype=power.dtype)
     np.log10(level, out=level)
     level *= 10
     return level

@@ -9,7 +9,7 @@ def compensate(x: Complex, torso_delay: Float, f0: float) -> Complex:
 
     Args:
         x: slow-time signals [..., M - 1] after MTI, or [..., M] without it.
-        torso_delay: delay track tau [M], s, whoever measured it.
+        torso_delay: delay track tau [M], s, true or measured.
         f0: frequency at which the Doppler is read, Hz.
     """
     later = torso_delay[torso_delay.size - x.shape[-1] :]

@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from radhar_cli.arrays import Float, Half, Levels
-from radhar_cli.processing.cfar import FAINTEST_DB
+from radhar_cli.processing.cfar import FLOOR_DB
 from radhar_cli.processing.entropy import EntropySum, largest_power
 
-BAND = 64  # rows or columns of a map that are weighed at once, and as many as overlap
+BAND = 64  # rows or columns per matrix product, besides the overlap
 
 
 class Reduced(NamedTuple):
@@ -90,8 +90,8 @@ def unclipped(power: Float, exponent: int) -> tuple[Half, float]:
         power: in units of 2^exponent.
         exponent: of the unit.
     """
-    level = decibels(power.astype(float), -FAINTEST_DB)
-    largest = max(largest_power(power), 10 ** (FAINTEST_DB / 10))
+    level = decibels(power.astype(float), -FLOOR_DB)
+    largest = max(largest_power(power), 10 ** (FLOOR_DB / 10))
     return level.astype(np.float16), 10 * (log10(largest) + exponent * log10(2))
 
 

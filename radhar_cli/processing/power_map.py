@@ -59,10 +59,10 @@ class MapImage:
 
     Attributes:
         levels: grey levels [height, width], row 0 at the top.
-        entropy: of the power map, bits; NaN where nobody asked for it.
+        entropy: of the power map, bits; NaN where it is not requested.
         extent: outer edges of the map (columns from, columns to, rows from, rows to).
         decibels: of the resized power below its largest, float16 [height, width], or None where
-            nobody asked for them.
+            they are not requested.
         largest_db: that largest power, dB for unit transmit power.
     """
 

@@ -20,17 +20,17 @@ from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
 CANDIDATES = 8
-ACCELERATION = 4.0  # of a torso, standard deviation, m/s^2: the ripple of a gait
-CHANGE_MPS = 1.5  # by which its velocity changes however long one waits, standard deviation
-FASTEST_MPS = 3.0  # of a torso
-BRIDGED_S = 1.0  # the longest gap
-RANGE_SD_M = 0.1  # of a peak about the middle of a torso, besides the resolution
-SMOOTHED_MPS = 0.1  # to both sides: a torso is no point
-NEAR_M = 1.0  # of the track: what counts as the person
-FALSE_ALARMS = 1e-6  # of a cell of white noise
-MIN_FRAMES, MIN_SHARE = 2, 0.05  # frames that a ridge has, of all
-MISS = 3.0  # cost of a frame without candidate within the ridge: a jump by 2.4 deviations
-REWARD_DB = 5.0  # decibels that are worth a jump by 1.4 standard deviations
+ACCELERATION = 4.0  # standard deviation of a torso's, m/s^2: the ripple of a gait
+CHANGE_MPS = 1.5  # standard deviation of the change of velocity after any time
+MAX_SPEED_MPS = 3.0  # of a torso
+MAX_GAP_S = 1.0  # longest gap that is bridged
+RANGE_SD_M = 0.1  # of a peak about the middle of a torso, in addition to the resolution
+SMOOTHED_MPS = 0.1  # half width of the smoothing over velocity: a torso is extended
+NEAR_M = 1.0  # within this distance of the track a peak is of the person
+FALSE_ALARMS = 1e-6  # probability per cell of white noise
+MIN_FRAMES, MIN_SHARE = 2, 0.05  # frames of a ridge, and their share of all
+MISS = 3.0  # cost of a frame without a candidate on the ridge: that of a jump by 2.4 deviations
+REWARD_DB = 5.0  # decibels that outweigh a jump by 1.4 deviations
 MAX_DB = 60.0
 
 
@@ -146,9 +146,9 @@ def peaks(power: Float, ranges: Float, speeds: Float, looks: int = 1) -> Peaks:
     spacing = ranges[1] - ranges[0] if ranges.size > 1 else 0.0
     snr = smooth[rows, columns] / floor if floor > 0 else np.full(rows.size, 10 ** (MAX_DB / 10))
     # A velocity is known but for multiples of PRF lambda/2.
-    turns = round(FASTEST_MPS / (step * speeds.size) + 0.5)
+    turns = round(MAX_SPEED_MPS / (step * speeds.size) + 0.5)
     velocity = np.add.outer(np.arange(-turns, turns + 1) * step * speeds.size, speeds[columns])
-    turn, peak = np.nonzero(np.abs(velocity) <= FASTEST_MPS)
+    turn, peak = np.nonzero(np.abs(velocity) <= MAX_SPEED_MPS)
     return Peaks((ranges[rows] + between * spacing)[peak], velocity[turn, peak], snr[peak])
 
 
@@ -215,7 +215,7 @@ def _ridge(found: list[Peaks], time: Float, range_sd: float) -> Index:
         previous = [(-1, -1)] * reward.size
         for back in range(f - 1, -1, -1):
             dt = time[f] - time[back]
-            if dt > BRIDGED_S and back < f - 1:
+            if dt > MAX_GAP_S and back < f - 1:
                 break
             before = found[back]
             if not before.range.size or not reward.size:
@@ -250,7 +250,7 @@ def _cost(before: Peaks, now: Peaks, dt: float, range_sd: float) -> Float:
     faster = min(ACCELERATION * dt, CHANGE_MPS)
     spread = np.hypot(range_sd, faster * dt / 2)
     cost: Float = (off / spread) ** 2 + (change / np.hypot(faster, 0.1)) ** 2
-    too_far = np.abs(way) > FASTEST_MPS * dt + 3 * range_sd
+    too_far = np.abs(way) > MAX_SPEED_MPS * dt + 3 * range_sd
     return np.where(too_far, np.inf, cost / 2)
 
 

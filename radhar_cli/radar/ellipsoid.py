@@ -16,9 +16,9 @@ from scipy.special import expit
 
 from radhar_cli.arrays import Float
 
-LEFT_IN_SHADOW = 0.03  # of the field, deep in the shadow of a body
-PENUMBRA = 0.4  # of the edge of a shadow, over sqrt(wavelength * 1 m)
-BEHIND, BEHIND_WIDTH = 0.06, 0.03  # how far behind an occluder shadows begin, and how softly, m
+LEFT_IN_SHADOW = 0.03  # field deep in the shadow of a body, relative to none
+PENUMBRA = 0.4  # width of the edge of a shadow over sqrt(wavelength * 1 m)
+BEHIND, BEHIND_WIDTH = 0.06, 0.03  # start of a shadow behind its occluder, and transition, m
 
 
 class View(NamedTuple):

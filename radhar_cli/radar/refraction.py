@@ -19,7 +19,7 @@ from radhar_cli.arrays import Float
 from radhar_cli.radar.wall import Crossing, Wall, extra_delay, faces_met
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
-# What rounding makes of f, in units of rho: seven roundings of half an epsilon each, and to spare.
+# Rounding error of f in units of rho: at most seven roundings of half an epsilon each.
 MISSES_BY = 8 * np.finfo(float).eps
 # Newton gains a factor of 3/2 in t a step, or more, until it converges quadratically. Slowest is
 # rho = d/sqrt(n^2 - 1) as a + b vanishes: 19 steps for 1e-9 m, 24 for 1e-12 m; 3 are usual.

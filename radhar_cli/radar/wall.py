@@ -116,7 +116,7 @@ def _between_planes(
         at = antenna[axis]
         step = p[axis] - at
         parallel = step == 0
-        # A nearly parallel ray overflows to the infinity that the comparisons want.
+        # A nearly parallel ray overflows to infinity, which the comparisons handle.
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
             first, second = (low - at) / step, (high - at) / step
         near, far = np.minimum(first, second), np.maximum(first, second)

@@ -15,7 +15,7 @@ from radhar_cli.receiver.impairment import Impairment
 from radhar_cli.receiver.noise import circular_gaussian, compressed_colour
 
 POLES_A_DECADE = 2
-ROWS = 8  # range bins or fast-time samples whose noise is made at once, over all pulses
+ROWS = 8  # range bins or fast-time samples whose noise is made at once
 
 
 @dataclass(frozen=True)

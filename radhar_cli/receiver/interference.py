@@ -14,7 +14,7 @@ from radhar_cli.processing.range_compression import range_bins, range_compressio
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.receiver.impairment import Impairment
 
-BATCH = 256  # times that are drawn at once
+BATCH = 256  # switching times drawn at once
 
 
 @dataclass(frozen=True)

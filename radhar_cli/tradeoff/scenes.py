@@ -1,4 +1,4 @@
-"""The scenes that a sweep looks at, and their samples under any setting."""
+"""The scenes of a sweep, and their samples under any setting."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -68,14 +68,14 @@ def save(path: Path, x: np.ndarray) -> Path:
 
 
 @pytest.mark.parametrize("suffix", [".npy", ".npz", ".mat", ".h5", ".mat73"])
-def test_every_format_comes_in(tmp_path: Path, suffix: str) -> None:
+def test_every_format_is_imported(tmp_path: Path, suffix: str) -> None:
     x = cube()
     assert np.array_equal(imported(save(tmp_path / f"x{suffix}", x)), x)
 
 
 @pytest.mark.parametrize("dtype", ["c8", "c16", "f4", "f8", "i2", "i4", "u2", ">c8", ">i2"])
 @pytest.mark.parametrize("suffix", [".npy", ".npz", ".h5"])
-def test_every_type_comes_in(tmp_path: Path, suffix: str, dtype: str) -> None:
+def test_every_type_is_imported(tmp_path: Path, suffix: str, dtype: str) -> None:
     x = cube(dtype.lstrip(">") if "u" not in dtype else "i2")
     x = (x.astype(int) + 2**15).astype(dtype) if "u" in dtype else x.astype(dtype)
     found = imported(save(tmp_path / f"x{suffix}", x))
@@ -92,7 +92,7 @@ def test_every_type_comes_in(tmp_path: Path, suffix: str, dtype: str) -> None:
     suffix=st.sampled_from([".npy", ".h5"]),
     fortran=st.booleans(),
 )
-def test_every_order_of_axes_comes_in(
+def test_every_order_of_axes_is_imported(
     tmp_path: Path, order: list[str], suffix: str, fortran: bool
 ) -> None:
     """Receivers of the first transmitter come first; frames follow one another."""
@@ -109,7 +109,7 @@ def test_every_order_of_axes_comes_in(
 
 
 @given(first=st.integers(0, 39), count=st.integers(1, 40), frame=st.sampled_from([1, 4, 10, 40]))
-def test_any_piece_of_frames_is_read(first: int, count: int, frame: int) -> None:
+def test_any_range_of_pulses_is_read(first: int, count: int, frame: int) -> None:
     """No more than the pulses asked for, whole frames or not."""
     x = np.arange(40 * 2 * 3.0).reshape(40 // frame, frame, 2, 3)
     read: list[int] = []
@@ -133,7 +133,7 @@ def test_chirps_of_transmitters_in_turn_are_told_apart(tmp_path: Path) -> None:
     assert np.array_equal(found, np.concatenate([x[:, :, ::2], x[:, :, 1::2]]))
 
 
-def test_slow_time_comes_in(tmp_path: Path) -> None:
+def test_slow_time_is_imported(tmp_path: Path) -> None:
     x = np.exp(2j * np.pi * 0.1 * np.arange(1000))
     np.save(tmp_path / "x.npy", x)
     out = tmp_path / "out.h5"
@@ -143,7 +143,7 @@ def test_slow_time_comes_in(tmp_path: Path) -> None:
         assert np.array_equal(recording.beat(0, 1000)[0, 0], x)
 
 
-def test_times_tell_the_gaps(tmp_path: Path) -> None:
+def test_gaps_follow_from_the_times(tmp_path: Path) -> None:
     x = cube()
     times = 5 + np.arange(PULSES) / 500
     times[30:] += 0.7
@@ -170,19 +170,19 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("name", "x", "overrides", "said"), WRONG)
-def test_wrong_array_is_one_line(
-    tmp_path: Path, name: str, x: np.ndarray, overrides: list[str], said: str
+@pytest.mark.parametrize(("name", "x", "overrides", "expected"), WRONG)
+def test_wrong_array_is_refused_in_one_line(
+    tmp_path: Path, name: str, x: np.ndarray, overrides: list[str], expected: str
 ) -> None:
     with pytest.raises(CaptureError) as caught:
         imported(save(tmp_path / name, x), *overrides)
-    assert said in str(caught.value)
+    assert expected in str(caught.value)
     assert "\n" not in str(caught.value)
     assert [p.name for p in tmp_path.iterdir()] == [name], "nothing is left"
 
 
 @pytest.mark.parametrize("key", ["carrier_hz", "bandwidth_hz", "adc_rate_hz", "prf_hz"])
-def test_what_is_missing_is_asked_for(tmp_path: Path, key: str) -> None:
+def test_missing_settings_are_asked_for(tmp_path: Path, key: str) -> None:
     np.save(tmp_path / "x.npy", cube())
     left = [one for one in RADAR if not one.startswith(key)]
     done = radhar(
@@ -224,7 +224,7 @@ class TestHostile:
         with pytest.raises(CaptureError, match="does not fit the file"):
             imported(tmp_path / "x.npy")
 
-    def test_packed_bombs_are_refused(self, tmp_path: Path) -> None:
+    def test_decompression_bombs_are_refused(self, tmp_path: Path) -> None:
         x = np.zeros((64, 2**18), "c8")
         save(tmp_path / "x.npz", x)
         savemat(tmp_path / "x.mat", {"beat": x}, do_compression=True)
@@ -274,7 +274,7 @@ class TestHostile:
         values=st.binary(min_size=1, max_size=8),
         cut=st.integers(0, 10**6) | st.none(),
     )
-    def test_damage_ends_in_a_line(
+    def test_damage_is_refused_in_one_line(
         self, tmp_path: Path, suffix: str, at: int, values: bytes, cut: int | None
     ) -> None:
         path = save(tmp_path / f"x{suffix}", cube()[:, :, :8])

@@ -1,4 +1,4 @@
-"""The stages of a simulation, without the simulator: a recording comes back as its scene's maps."""
+"""The processing chain on recordings: a simulated recording gives the maps of its scene."""
 
 from pathlib import Path
 
@@ -90,7 +90,7 @@ def stft_of_frames(beat: Complex, times: np.ndarray, length: int) -> PowerMap:
 
 
 @pytest.mark.parametrize(("lanes", "order"), [(2, 1), (4, 0)])
-def test_a_capture_of_the_card_comes_back_as_the_maps_of_its_scene(
+def test_a_dca1000_capture_gives_the_maps_of_its_scene(
     tmp_path: Path, lanes: int, order: int
 ) -> None:
     """TDM-MIMO, frames with gaps, TI's sign, whole numbers: import, process, and it is the scene.
@@ -131,7 +131,7 @@ def test_a_capture_of_the_card_comes_back_as_the_maps_of_its_scene(
     assert track.confidence.mean() > 0.8
 
 
-def test_lost_pulses_leave_no_flash(tmp_path: Path) -> None:
+def test_lost_pulses_leave_no_bright_line(tmp_path: Path) -> None:
     """Ten lost pulses are a bright line over all of the Doppler, unless they are filled in."""
     config = config_of(tmp_path, "snr_db=30")
     scene = simulate(config, seed=3, raw=True)
@@ -153,7 +153,7 @@ def test_lost_pulses_leave_no_flash(tmp_path: Path) -> None:
     assert apart(kept, scene.maps["stft"]) > 2
 
 
-def test_slow_time_alone_has_its_doppler(tmp_path: Path) -> None:
+def test_doppler_of_imported_slow_time(tmp_path: Path) -> None:
     config = config_of(tmp_path, "processing.clutter=none")
     np.save(tmp_path / "x.npy", np.exp(2j * np.pi * 120 / 1000 * np.arange(3000)))
     keys = ["carrier_hz=24e9", "prf_hz=1000"]
@@ -196,8 +196,8 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("more", "said"), WRONG)
-def test_wrong_use_is_one_line(tmp_path: Path, more: list[str], said: str) -> None:
+@pytest.mark.parametrize(("more", "expected"), WRONG)
+def test_wrong_use_is_refused_in_one_line(tmp_path: Path, more: list[str], expected: str) -> None:
     config = config_of(tmp_path)
     scene = simulate(config, seed=3, raw=True, maps=("stft",))
     assert scene.beat is not None
@@ -205,7 +205,7 @@ def test_wrong_use_is_one_line(tmp_path: Path, more: list[str], said: str) -> No
     command = ("process", tmp_path / "r.h5", "--config", tmp_path / "scene.yaml")
     done = radhar(*command, *more, "-o", tmp_path / "out")
     assert done.returncode == 2
-    assert said in done.stderr
+    assert expected in done.stderr
     assert "Traceback" not in done.stderr
     assert not (tmp_path / "out").exists()
 

@@ -1,4 +1,4 @@
-"""Captures of TI's card: every layout comes back as the echo that was written."""
+"""Captures of TI's card: every layout is read back as the echo that was written."""
 
 import json
 import re
@@ -42,7 +42,7 @@ def imported(folder: Path, *overrides: str, header: str = "radar.mmwave.json") -
 
 @pytest.mark.parametrize("real", [False, True], ids=["complex", "real"])
 @pytest.mark.parametrize(("lanes", "order"), [(2, 1), (2, 0), (4, 0), (4, 1)])
-def test_every_layout_comes_back(
+def test_every_layout_is_read_back(
     tmp_path: Path, beat: np.ndarray, lanes: int, order: int, real: bool
 ) -> None:
     """Half a step of the converter is the only difference."""
@@ -63,7 +63,7 @@ def test_every_layout_comes_back(
     assert np.abs(found - wanted).max() < 1 / 8000
 
 
-def test_header_of_the_demos_says_the_same(tmp_path: Path, beat: np.ndarray) -> None:
+def test_sdk_demo_header_describes_the_same_capture(tmp_path: Path, beat: np.ndarray) -> None:
     (tmp_path / "demo.cfg").write_text(RADAR.demo())
     write_studio(tmp_path / "radar.mmwave.json", RADAR)
     studio = read_settings(tmp_path / "radar.mmwave.json", [])
@@ -73,7 +73,7 @@ def test_header_of_the_demos_says_the_same(tmp_path: Path, beat: np.ndarray) -> 
 
 
 @pytest.mark.parametrize("swapped", [False, True])
-def test_sign_of_the_beat_is_found_and_overruled(
+def test_sign_of_the_beat_is_detected_and_can_be_overridden(
     tmp_path: Path, beat: np.ndarray, swapped: bool
 ) -> None:
     """Q before I is a conjugate turned by 90 degrees; the sign is found either way."""
@@ -94,7 +94,7 @@ def test_sign_of_the_beat_is_found_and_overruled(
     assert np.abs(kept - (kept if swapped else np.conj(beat[..., :10]))).max() < 2 / 8000
 
 
-def test_offset_binary_is_found_and_overruled(tmp_path: Path, beat: np.ndarray) -> None:
+def test_offset_binary_is_detected_and_can_be_overridden(tmp_path: Path, beat: np.ndarray) -> None:
     stream = (words(beat, 2).astype(int) + 2**15).astype("<u2")
     stream.tofile(tmp_path / "adc_data_Raw_0.bin")
     write_studio(tmp_path / "radar.mmwave.json", RADAR)
@@ -106,7 +106,7 @@ def test_offset_binary_is_found_and_overruled(tmp_path: Path, beat: np.ndarray) 
         assert np.abs(recording.beat(0, 20)).max() > 30000
 
 
-def test_capture_that_is_split_anywhere(tmp_path: Path, beat: np.ndarray) -> None:
+def test_capture_split_at_any_byte(tmp_path: Path, beat: np.ndarray) -> None:
     data = words(beat, 2).tobytes()
     cuts = [0, 10_007, 200_000, len(data) - 100]
     for n, (low, high) in enumerate(pairwise(cuts)):
@@ -166,9 +166,9 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("changed", "said"), WRONG, ids=[next(iter(c)) for c, _ in WRONG])
-def test_wrong_header_is_one_line_that_says_what_fits(
-    tmp_path: Path, beat: np.ndarray, changed: dict[str, object], said: list[str]
+@pytest.mark.parametrize(("changed", "expected"), WRONG, ids=[next(iter(c)) for c, _ in WRONG])
+def test_wrong_header_is_refused_with_what_would_fit(
+    tmp_path: Path, beat: np.ndarray, changed: dict[str, object], expected: list[str]
 ) -> None:
     words(beat, 2).tofile(tmp_path / "adc_data_Raw_0.bin")
     header = write_studio(tmp_path / "radar.mmwave.json", RADAR, **changed)
@@ -177,12 +177,12 @@ def test_wrong_header_is_one_line_that_says_what_fits(
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1, done.stderr
     assert str(header) in done.stderr
-    for text in said:
+    for text in expected:
         assert text in done.stderr
     assert not (tmp_path / "out.h5").exists()
 
 
-def test_program_says_what_it_found(tmp_path: Path, beat: np.ndarray) -> None:
+def test_import_reports_what_it_found(tmp_path: Path, beat: np.ndarray) -> None:
     words(beat, 2).tofile(tmp_path / "adc_data_Raw_0.bin")
     header = write_studio(tmp_path / "radar.mmwave.json", RADAR)
     command = ("import", tmp_path / "adc_data_Raw_0.bin", "--radar", header, "--label", "walking")
@@ -206,7 +206,9 @@ def test_program_says_what_it_found(tmp_path: Path, beat: np.ndarray) -> None:
     max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
 @given(data=st.data())
-def test_any_header_ends_in_a_line_or_in_a_recording(tmp_path: Path, data: st.DataObject) -> None:
+def test_damaged_headers_are_refused_in_one_line_or_imported(
+    tmp_path: Path, data: st.DataObject
+) -> None:
     """One value of a header after the other is replaced by nonsense; the capture is short."""
     (tmp_path / "adc_data_Raw_0.bin").write_bytes(bytes(range(256)) * 64)
     nonsense = st.sampled_from([None, -1, 0, 1, 3, 1e308, 2**70, "0x", "0xFFFFFFFFFF", [], {}, "x"])

@@ -59,7 +59,7 @@ def test_masks_of_an_npz(config: Path, packed: bool) -> None:
     ("shape", "more", "packed"),
     [((16, 2), "", True), ((16, 2), "true", False), ((16, 24), "", False)],
 )
-def test_what_looks_like_packed_masks_is_said(
+def test_masks_that_look_packed_are_warned_of(
     config: Path, shape: tuple[int, int], more: str, packed: bool
 ) -> None:
     """A hop shorter than the window, which images do not have, is no warning."""
@@ -95,17 +95,19 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("arrays", "said"), WRONG)
-def test_wrong_npz_is_a_line(config: Path, arrays: dict[str, np.ndarray], said: str) -> None:
+@pytest.mark.parametrize(("arrays", "expected"), WRONG)
+def test_wrong_npz_is_refused_in_one_line(
+    config: Path, arrays: dict[str, np.ndarray], expected: str
+) -> None:
     source = config.parent / "x.npz"
     np.savez(source, **arrays)  # type: ignore[arg-type]
     done = radhar("generate", config, "--recordings", source, "-o", config.parent / "set")
     assert done.returncode == 2
-    assert said in done.stderr
+    assert expected in done.stderr
     assert "Traceback" not in done.stderr
 
 
-def test_axes_are_asked_for(config: Path) -> None:
+def test_missing_axes_are_asked_for(config: Path) -> None:
     source = config.parent / "masks.npz"
     np.savez(source, masks=masks(), label=np.array(["a"] * 12))
     command = ("generate", config, "--recordings", source, "-o", config.parent / "set")

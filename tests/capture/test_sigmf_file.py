@@ -38,7 +38,7 @@ def recording(tmp_path: Path) -> Path:
     return tmp_path / "x.h5"
 
 
-def test_out_and_in_again_is_the_same(recording: Path, tmp_path: Path) -> None:
+def test_export_and_import_are_inverse(recording: Path, tmp_path: Path) -> None:
     done = radhar("import", tmp_path / "x.npy", "--to", "sigmf", "-o", tmp_path / "none")
     assert done.returncode == 2
     with Recording(recording) as one:
@@ -53,7 +53,7 @@ def test_out_and_in_again_is_the_same(recording: Path, tmp_path: Path) -> None:
             assert getattr(again.info, key) == pytest.approx(getattr(info, key))
 
 
-def test_the_sigmf_package_reads_ours(recording: Path, tmp_path: Path) -> None:
+def test_the_sigmf_package_reads_exported_recordings(recording: Path, tmp_path: Path) -> None:
     with Recording(recording) as one:
         meta, _ = write_sigmf(one, tmp_path / "y")
         beat = one.beat(0, 40)
@@ -65,7 +65,7 @@ def test_the_sigmf_package_reads_ours(recording: Path, tmp_path: Path) -> None:
     assert len(found.get_captures()) == 4
 
 
-def test_slow_time_of_others_comes_in(tmp_path: Path) -> None:
+def test_slow_time_of_other_software_is_imported(tmp_path: Path) -> None:
     """A continuous-wave radar recorded by a software radio: the rate is that of the pulses."""
     x = np.exp(2j * np.pi * 0.1 * np.arange(500)).astype("c8")
     x.tofile(tmp_path / "cw.sigmf-data")
@@ -91,9 +91,9 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("key", "value", "said"), WRONG)
-def test_wrong_metadata_are_one_line(
-    recording: Path, tmp_path: Path, key: str, value: object, said: str
+@pytest.mark.parametrize(("key", "value", "expected"), WRONG)
+def test_wrong_metadata_are_refused_in_one_line(
+    recording: Path, tmp_path: Path, key: str, value: object, expected: str
 ) -> None:
     with Recording(recording) as one:
         meta, _ = write_sigmf(one, tmp_path / "y")
@@ -102,7 +102,7 @@ def test_wrong_metadata_are_one_line(
     meta.write_text(json.dumps(document))
     done = radhar("import", meta, "-o", tmp_path / "out.h5")
     assert done.returncode == 2, done.stdout
-    assert said in done.stderr
+    assert expected in done.stderr
     assert done.stderr.count("\n") == 1, done.stderr
 
 
@@ -141,7 +141,7 @@ class TestHostileRecording:
     """A recording from anyone: one line, no traceback."""
 
     @pytest.mark.parametrize(
-        ("key", "value", "said"),
+        ("key", "value", "expected"),
         [
             ("receivers", 4, "should"),
             ("pulses", 10**12, "pulses"),
@@ -153,13 +153,13 @@ class TestHostileRecording:
             ("samples", 2**24, "should take at most"),
         ],
     )
-    def test_wrong_attribute(self, recording: Path, key: str, value: object, said: str) -> None:
+    def test_wrong_attribute(self, recording: Path, key: str, value: object, expected: str) -> None:
         with h5py.File(recording, "r+") as file:
             document = json.loads(file.attrs["recording"])
             file.attrs["recording"] = json.dumps({**document, key: value})
         with pytest.raises(FolderError) as caught:
             Recording(recording)
-        assert said in str(caught.value)
+        assert expected in str(caught.value)
         assert "\n" not in str(caught.value)
 
     def test_segments_out_of_order(self, recording: Path) -> None:
@@ -168,7 +168,7 @@ class TestHostileRecording:
         with pytest.raises(FolderError, match="follow one another"):
             Recording(recording)
 
-    def test_damage_anywhere(self, recording: Path, tmp_path: Path) -> None:
+    def test_damage_anywhere_is_refused_in_one_line(self, recording: Path, tmp_path: Path) -> None:
         data, rng = recording.read_bytes(), np.random.default_rng(0)
         for _ in range(150):
             spoilt = bytearray(data)
@@ -179,14 +179,14 @@ class TestHostileRecording:
                 one.beat(0, one.info.pulses)
 
 
-def test_an_unfinished_recording_is_none(tmp_path: Path) -> None:
+def test_a_file_that_is_no_recording_is_refused(tmp_path: Path) -> None:
     (tmp_path / "x.h5").write_bytes(b"nothing")
     assert not is_recording(tmp_path / "x.h5")
     with pytest.raises(CaptureError, match="not a capture that radhar reads"):
         import_capture([tmp_path / "x.h5"], tmp_path / "y.h5", read_settings(None, RADAR))
 
 
-def test_inspect_says_what_a_recording_holds(recording: Path) -> None:
+def test_inspect_shows_what_a_recording_holds(recording: Path) -> None:
     done = radhar("inspect", recording)
     assert done.returncode == 0, done.stderr
     for text in ("0.31 s in 4 stretches", "highest_speed_mps", "label walking, person ann"):

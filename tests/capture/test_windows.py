@@ -60,8 +60,8 @@ def generate(folder: Path, out: Path, *more: object) -> str:
 
 
 def test_windows_are_samples(recordings: Path, tmp_path: Path) -> None:
-    said = generate(recordings, tmp_path / "set")
-    assert "may lie in several parts" in said
+    output = generate(recordings, tmp_path / "set")
+    assert "may lie in several parts" in output
     with open_dataset(tmp_path / "set") as data:
         # 3 s hold 5 windows of 1 s every 0.5 s; 2 s hold 3.
         counts = {slug: int((data.label == n).sum()) for n, slug in enumerate(data.class_slugs)}
@@ -82,7 +82,7 @@ def test_windows_are_samples(recordings: Path, tmp_path: Path) -> None:
     assert len([*(tmp_path / "set/png/stft").rglob("*.png")]) == 28
 
 
-def test_every_command_takes_it(recordings: Path, tmp_path: Path) -> None:
+def test_every_command_accepts_it(recordings: Path, tmp_path: Path) -> None:
     out = tmp_path / "set"
     generate(recordings, out)
     assert "is complete" in generate(recordings, out)
@@ -101,7 +101,7 @@ def test_any_number_of_workers_and_batches_give_the_same(recordings: Path, tmp_p
     assert a == b
 
 
-def test_persons_are_kept_apart(recordings: Path, tmp_path: Path) -> None:
+def test_no_person_is_in_two_splits(recordings: Path, tmp_path: Path) -> None:
     more = [f"split={{by: subject, subjects: 9, train: {0.5}, validation: 0.5}}"]
     generate(recordings, tmp_path / "set", "--set", *more)
     with open_dataset(tmp_path / "set") as data:
@@ -142,14 +142,16 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("text", "said"), WRONG)
-def test_wrong_manifest_is_a_line(recordings: Path, tmp_path: Path, text: str, said: str) -> None:
+@pytest.mark.parametrize(("text", "expected"), WRONG)
+def test_wrong_manifest_is_refused_in_one_line(
+    recordings: Path, tmp_path: Path, text: str, expected: str
+) -> None:
     manifest = recordings / "wrong.csv"
     manifest.write_text(text)
     command = ("generate", recordings / "c.yaml", "--recordings", manifest)
     done = radhar(*command, "-o", tmp_path / "set")
     assert done.returncode in (1, 2)
-    assert said in done.stderr
+    assert expected in done.stderr
     assert "Traceback" not in done.stderr
     assert not (tmp_path / "set").exists()
 

@@ -45,19 +45,19 @@ def report(place: Path, one: str, other: str) -> dict[str, dict[str, object]]:
     options = ("--json", "--map", "stft", "--pictures", 2)
     done = radhar("compare", place / one, place / other, "-o", out, *options)
     assert done.returncode == 0, done.stderr
-    said = json.loads(done.stdout)
-    assert said.keys() == KEYS["compare"]
+    expected = json.loads(done.stdout)
+    assert expected.keys() == KEYS["compare"]
     found: dict[str, dict[str, object]] = json.loads((out / "report.json").read_text())
     for key in ("test", "coverage", "classes", "warnings"):
-        assert said[key] == found[key]
-    for file in said["files"]:
+        assert expected[key] == found[key]
+    for file in expected["files"]:
         assert Path(file).stat().st_size > 0
         if file.endswith(".png"):
             assert np.asarray(Image.open(file)).std() > 0
     return found
 
 
-def test_the_papers_motion_is_told_from_people_and_people_are_not(place: Path) -> None:
+def test_the_papers_motion_differs_from_people_and_people_not_from_people(place: Path) -> None:
     same = report(place, "human", "others")
     low, high = same["test"]["accuracy_95"]  # type: ignore[misc]
     assert low < 0.5 < high
@@ -76,7 +76,9 @@ def few(place: Path, out: Path, map_name: str = "stft") -> list[object]:
     return ["compare", place / "human", place / "paper", "-o", out, "--map", map_name, *options]
 
 
-def test_the_same_bytes_and_nothing_left_of_before(place: Path, tmp_path: Path) -> None:
+def test_repeated_compare_writes_the_same_bytes_and_removes_old_files(
+    place: Path, tmp_path: Path
+) -> None:
     other = tmp_path / "b"
     other.mkdir()
     for name in ("old.png", "mine.png"):
@@ -110,7 +112,7 @@ def test_a_range_time_map(place: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "expected"),
     [
         (("{human}", "{none}"), "none: no such file or folder"),
         (("{human}", "{paper}", "--map", "stfd"), "has no map 'stfd'"),
@@ -119,8 +121,8 @@ def test_a_range_time_map(place: Path, tmp_path: Path) -> None:
         (("{human}", "{paper}", "--classes", "{names}"), "no class 'walkin' (--classes)"),
     ],
 )
-def test_one_line_says_what_is_wrong(
-    place: Path, tmp_path: Path, arguments: tuple[str, ...], said: str
+def test_mistakes_are_refused_in_one_line(
+    place: Path, tmp_path: Path, arguments: tuple[str, ...], expected: str
 ) -> None:
     (tmp_path / "names.yaml").write_text("walkin: walking\n")
     paths = {name: place / name for name in ("human", "paper", "none")}
@@ -130,11 +132,11 @@ def test_one_line_says_what_is_wrong(
     out = () if "-o" in filled else ("-o", tmp_path / "out")
     done = radhar("compare", *filled, *out)
     assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
-    assert said in done.stderr
+    assert expected in done.stderr
     assert not (tmp_path / "out").exists()
 
 
-def test_the_core_install_will_do(place: Path, tmp_path: Path) -> None:
+def test_compare_needs_the_core_install_only(place: Path, tmp_path: Path) -> None:
     code = """
 import sys
 sys.argv = ["radhar", "compare", *sys.argv[1:]]

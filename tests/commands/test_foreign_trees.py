@@ -86,24 +86,24 @@ def test_many_classes_stay_one_page(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert drawn == [(40, "t: 45 images of 45 classes, the first 40 shown")]
 
 
-def test_names_are_no_formulas(tmp_path: Path) -> None:
+def test_dollar_signs_in_names_are_not_mathtext(tmp_path: Path) -> None:
     """Dollar signs would be read as mathematics, and wrong mathematics is an error."""
     rows = {"a $_$ b": [np.zeros((8, 8, 3), np.uint8)]}
     draw_image_sheet(rows, "100 $^$", tmp_path / "sheet.png")
     assert (tmp_path / "sheet.png").exists()
 
 
-def test_what_is_no_tree_is_named(tmp_path: Path, photos: Path) -> None:
+def test_paths_that_are_no_trees_are_named(tmp_path: Path, photos: Path) -> None:
     (tmp_path / "empty").mkdir()
     (photos / "train/cats/broken.png").write_bytes(b"no image")
-    for command, path, said in (
+    for command, path, expected in (
         ("inspect", tmp_path / "empty", "holds no class folders with images"),
         ("preview", tmp_path / "empty", "holds no class folders with images"),
         ("inspect", photos, "broken.png: is not an image"),
     ):
         error = radhar(command, path).exception
         assert isinstance(error, FolderError)
-        assert said in str(error)
+        assert expected in str(error)
 
 
 def test_looking_at_images_needs_no_torch(photos: Path) -> None:

@@ -20,7 +20,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_train_says_what_it_does_and_again_that_nothing_is_left(place: Path) -> None:
+def test_train_reports_what_it_does_and_that_a_finished_run_is_complete(place: Path) -> None:
     out = place / "mine"
     command = ("train", place / "tree", "-o", out, "--config", place / "train.json")
     first = radhar(*command, "--set", "epochs=1")
@@ -38,7 +38,7 @@ def test_train_says_what_it_does_and_again_that_nothing_is_left(place: Path) -> 
     assert "Traceback" not in other.stderr
 
 
-def test_eval_writes_its_report_into_the_run(place: Path) -> None:
+def test_eval_writes_its_report_into_the_run_folder(place: Path) -> None:
     done = radhar("eval", place / "run", place / "tree", "--split", "train")
     assert done.returncode == 0, done.stderr
     assert (place / "run/eval/report.html").exists()
@@ -63,7 +63,7 @@ def test_predict_prints_the_class_and_probabilities(place: Path) -> None:
         assert row["class"] == max(row["probabilities"], key=row["probabilities"].__getitem__)
 
 
-def test_json_of_commands_that_learn(place: Path) -> None:
+def test_json_of_learning_commands(place: Path) -> None:
     run, data, one = place / "run", place / "tree", place / "tree/val/walking/000.png"
     train = ("train", data, "-o", place / "told", "--config", place / "train.json")
     commands = {
@@ -100,7 +100,7 @@ def test_models_lists_our_networks_and_the_papers_rivals(place: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "expected"),
     [
         (["train", "{}/tree", "-o", "{}/x", "--model", "fftnett"], ["did you mean 'fftnet'"]),
         (["train", "{}/tree", "-o", "{}/x", "--set", "epoch=3"], ["epoch", "epochs"]),
@@ -118,8 +118,8 @@ def test_models_lists_our_networks_and_the_papers_rivals(place: Path) -> None:
     ],
     ids=lambda x: "-".join(x).replace("{}/", "") if x[0] in ("train", "eval") else None,
 )
-def test_wrong_use_is_one_message_and_status_2(
-    place: Path, arguments: list[str], said: list[str]
+def test_wrong_use_is_refused_in_one_line_with_status_2(
+    place: Path, arguments: list[str], expected: list[str]
 ) -> None:
     load_timm()
     if not (place / "alone").exists():
@@ -127,7 +127,7 @@ def test_wrong_use_is_one_message_and_status_2(
     done = radhar(*[a.replace("{}", str(place)) for a in arguments])
     assert done.returncode == 2
     assert "Traceback" not in done.stderr
-    for words in said:
+    for words in expected:
         assert words in done.stderr
     assert not (place / "x" / "best.safetensors").exists()
 

@@ -76,7 +76,7 @@ def test_preview_and_inspect(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "expected"),
     [
         (["simulate", "CONFIG", "-a", "walkin", "-o", "OUT"], "did you mean 'walking'"),
         (["simulate", "CONFIG", "-a", "S8", "-o", "OUT", "--joint", "rite_hand"], "'right_hand'"),
@@ -88,17 +88,17 @@ def test_preview_and_inspect(tmp_path: Path) -> None:
     ],
 )
 def test_bad_input_is_one_line_and_status_2(
-    arguments: list[str], said: str, tmp_path: Path
+    arguments: list[str], expected: str, tmp_path: Path
 ) -> None:
     config = small_config(tmp_path)
     done = radhar(*[{"CONFIG": config, "OUT": tmp_path / "out"}.get(a, a) for a in arguments])
     assert done.returncode == 2
-    assert said in done.stderr
+    assert expected in done.stderr
     assert "Traceback" not in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1
 
 
-def test_readme_lines_run(tmp_path: Path) -> None:
+def test_readme_python_runs(tmp_path: Path) -> None:
     """The Python lines of the README make a map and plot it."""
     text = (ROOT / "README.md").read_text()
     code = (

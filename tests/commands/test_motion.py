@@ -19,7 +19,7 @@ classes: {wave: {files: [theirs.npz], joints: {head: Kopf}}}
 """
 
 
-def test_a_motion_goes_out_and_comes_back(tmp_path: Path) -> None:
+def test_a_motion_is_exported_and_read_back(tmp_path: Path) -> None:
     path, bvh = tmp_path / "x.yaml", tmp_path / "kick.bvh"
     names = [n if n != "head" else "Kopf" for n in clip_names()]
     write_npz(tmp_path / "theirs.npz", frames("punching", 2.0, 60.0), 60.0, names)
@@ -55,7 +55,7 @@ def clip_names() -> list[str]:
     return [*WANTED]
 
 
-def test_a_look_may_use_what_the_config_says_of_a_class(tmp_path: Path) -> None:
+def test_simulate_motion_uses_the_joint_names_of_a_class(tmp_path: Path) -> None:
     path = tmp_path / "x.yaml"
     names = [n if n != "head" else "Kopf" for n in clip_names()]
     write_npz(tmp_path / "theirs.npz", frames("punching", 2.0, 60.0), 60.0, names)
@@ -68,7 +68,7 @@ def test_a_look_may_use_what_the_config_says_of_a_class(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
 
 
-def test_what_cannot_be_done_is_one_line(tmp_path: Path) -> None:
+def test_impossible_requests_are_refused_in_one_line(tmp_path: Path) -> None:
     path = tmp_path / "x.yaml"
     path.write_text("duration_s: 1\n")
     broken = write_amc(tmp_path / "x.amc", frames(seconds=0.5))

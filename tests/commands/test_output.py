@@ -106,7 +106,7 @@ def test_json_is_all_that_is_printed(place: Path, tmp_path: Path, command: str) 
     assert values(done).keys() == KEYS[command]
 
 
-def test_json_of_what_a_file_says(place: Path) -> None:
+def test_json_of_commands_that_show_files(place: Path) -> None:
     shown = values(radhar("config", "show", place / "small.yaml", "--json"))
     assert shown["seed"] == 7
     assert values(radhar("inspect", place / "set", "--json"))["kind"] == "data set"
@@ -123,7 +123,7 @@ def test_numbers_that_are_not_finite_are_null(capsys: pytest.CaptureFixture[str]
     assert out.strip().isprintable()
 
 
-def test_quiet_says_nothing_and_the_status_tells(place: Path, tmp_path: Path) -> None:
+def test_quiet_prints_nothing_and_sets_the_status(place: Path, tmp_path: Path) -> None:
     config = place / "small.yaml"
     done = radhar("generate", config, "-o", tmp_path / "set", "--jobs", 1, "--quiet")
     assert (done.returncode, done.stdout) == (0, "")
@@ -165,7 +165,7 @@ class Screen(io.StringIO):
     ("terminal", "quiet", "shown"),
     [(True, False, True), (True, True, False), (False, False, False), (False, True, False)],
 )
-def test_bars_show_on_a_terminal_alone(
+def test_progress_bars_show_on_terminals_only(
     monkeypatch: pytest.MonkeyPatch, terminal: bool, quiet: bool, shown: bool
 ) -> None:
     screen = Screen(terminal)
@@ -185,7 +185,7 @@ def test_bars_show_on_a_terminal_alone(
     assert "warning: far away" in screen.getvalue()
 
 
-def test_what_was_asked_of_one_command_is_not_asked_of_the_next(
+def test_output_options_do_not_leak_into_the_next_command(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     def fail() -> None:
@@ -199,15 +199,15 @@ def test_what_was_asked_of_one_command_is_not_asked_of_the_next(
 
 
 @pytest.mark.parametrize(
-    ("ends", "status", "said"),
+    ("ends", "status", "expected"),
     [
         (lambda: SimpleNamespace(), 0, ""),
         (KeyboardInterrupt, 130, "interrupted: what is finished in "),
         (lambda: signal.raise_signal(signal.SIGTERM), 143, "terminated: what is finished in "),
     ],
 )
-def test_statuses_of_what_stops_a_build(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ends: Any, status: int, said: str
+def test_exit_statuses_of_a_stopped_build(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ends: Any, status: int, expected: str
 ) -> None:
     def build(*_: object) -> object:
         found = ends()
@@ -223,11 +223,11 @@ def test_statuses_of_what_stops_a_build(
     finally:
         signal.signal(signal.SIGTERM, handler)
     assert done.returncode == status
-    assert said in done.stderr
+    assert expected in done.stderr
     assert "Traceback" not in done.stderr
 
 
-def test_help_and_the_page_name_every_status() -> None:
+def test_help_and_docs_name_every_status() -> None:
     page = (ROOT / "docs/output.md").read_text()
     shown = " ".join(radhar("--help").stdout.split())
     for status in (0, 1, 2, 130, 143):
@@ -254,7 +254,7 @@ def test_config_init_refuses_to_overwrite(tmp_path: Path) -> None:
     assert not (tmp_path / "elsewhere.yaml").exists()
 
 
-def test_config_diff_compares_what_files_mean(tmp_path: Path) -> None:
+def test_config_diff_compares_meaning_not_spelling(tmp_path: Path) -> None:
     one, other = tmp_path / "one.yaml", tmp_path / "other.yaml"
     one.write_text("seed: 1\nsnr_db: 30\nsubject: {height_m: {uniform: [1.6, 1.8]}}\n")
     other.write_text("base: one.yaml\nradar: {prf_hz: 5000}\n")

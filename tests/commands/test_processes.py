@@ -1,4 +1,4 @@
-"""Commands once in a process of their own, as a shell starts them.
+"""Commands in processes of their own, as a shell starts them.
 
 `make smoke` does so with generate, train, eval and predict.
 """
@@ -27,7 +27,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize(
-    ("command", "said"),
+    ("command", "expected"),
     [
         ("simulate {}/small.yaml -a S8 -o {}/scene --no-figures --maps stft", "scene.h5"),
         ("verify {}/set", ""),
@@ -37,8 +37,8 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ("tradeoff --help", "Example"),
     ],
 )
-def test_data(made: Path, command: str, said: str) -> None:
-    assert said in smoke(*command.replace("{}", str(made)).split()).stdout
+def test_data(made: Path, command: str, expected: str) -> None:
+    assert expected in smoke(*command.replace("{}", str(made)).split()).stdout
 
 
 @pytest.fixture(scope="module")
@@ -51,11 +51,11 @@ def learned(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize(
-    ("command", "said"),
+    ("command", "expected"),
     [
         ("export {}/run -o {}/model.onnx", "model.onnx"),
         ("models", "fftnet"),
     ],
 )
-def test_learning(learned: Path, command: str, said: str) -> None:
-    assert said in smoke(*command.replace("{}", str(learned)).split()).stdout
+def test_learning(learned: Path, command: str, expected: str) -> None:
+    assert expected in smoke(*command.replace("{}", str(learned)).split()).stdout

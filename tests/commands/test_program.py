@@ -14,7 +14,7 @@ TRAINING = sorted((ROOT / "configs/train").glob("*.yaml"))
 CONFIGS = sorted(set((ROOT / "configs").rglob("*.yaml")) - set(TRAINING))
 
 
-def test_generate_verify_and_again(tmp_path: Path) -> None:
+def test_generate_verify_and_generate_again(tmp_path: Path) -> None:
     config, out = small_config(tmp_path), tmp_path / "set"
     first = radhar("generate", config, "-o", out, "--jobs", 1)
     assert first.returncode == 0, first.stderr
@@ -34,7 +34,7 @@ def test_generate_verify_and_again(tmp_path: Path) -> None:
     assert "WRONG /label" in wrong.stdout
 
 
-def test_set_repeats_and_changes_the_config(tmp_path: Path) -> None:
+def test_repeated_set_options_change_the_config(tmp_path: Path) -> None:
     out = tmp_path / "set"
     done = radhar(
         *("generate", small_config(tmp_path), "-o", out, "--jobs", 1),
@@ -88,7 +88,7 @@ def test_schema_is_json_schema() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "expected"),
     [
         ("radar: {prf_hz: -5}", ["radar.prf_hz", "-5", "above 0"]),
         ("motion: {sped_mps: 1}", ["motion.sped_mps", "speed_mps"]),
@@ -98,14 +98,14 @@ def test_schema_is_json_schema() -> None:
         ("image: {colour_map: viridus}", ["image.colour_map", "viridus", "viridis"]),
     ],
 )
-def test_broken_configs_end_in_one_message_and_status_2(
-    tmp_path: Path, text: str, said: list[str]
+def test_broken_configs_are_refused_in_one_message_with_status_2(
+    tmp_path: Path, text: str, expected: list[str]
 ) -> None:
     path = small_config(tmp_path, text)
     done = radhar("generate", path, "-o", tmp_path / "set")
     assert done.returncode == 2
     assert "Traceback" not in done.stderr
-    for word in said:
+    for word in expected:
         assert word in done.stderr
     assert not (tmp_path / "set").exists()
 
@@ -167,7 +167,7 @@ def test_second_run_on_a_live_folder_is_refused(tmp_path: Path) -> None:
     assert "another run is writing here" in done.stderr
 
 
-def test_disk_that_refuses_is_one_line_and_keeps_what_is_finished(tmp_path: Path) -> None:
+def test_full_disk_is_one_line_and_keeps_finished_samples(tmp_path: Path) -> None:
     """A limit on the size of a file stands for a full disk: writing fails midway, as there."""
     config = small_config(tmp_path)
     limited = (

@@ -43,7 +43,7 @@ def terminate(*_: object) -> None:
     signal.raise_signal(signal.SIGTERM)
 
 
-def test_train_keeps_the_last_epoch_and_goes_on(
+def test_sigterm_of_train_keeps_the_last_epoch_and_it_resumes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     data = split_tree(tmp_path / "tree")
@@ -52,9 +52,9 @@ def test_train_keeps_the_last_epoch_and_goes_on(
     with monkeypatch.context() as patched:
         patched.setattr(TrainingView, "epoch_done", terminate)
         assert status(patched, *command) == TERMINATED
-    said = capsys.readouterr().err
-    assert f"terminated: the last finished epoch in {tmp_path / 'run'} is kept" in said
-    assert "Traceback" not in said
+    expected = capsys.readouterr().err
+    assert f"terminated: the last finished epoch in {tmp_path / 'run'} is kept" in expected
+    assert "Traceback" not in expected
     again = CliRunner().invoke(program(), [str(word) for word in command])
     assert again.exit_code == 0, again.output
     assert "resuming: 1 of 2 epochs are done" in again.stderr
@@ -62,7 +62,7 @@ def test_train_keeps_the_last_epoch_and_goes_on(
     assert same_run(tmp_path / "run", tmp_path / "whole")
 
 
-def test_tradeoff_says_what_is_kept(
+def test_sigterm_of_tradeoff_says_what_is_kept(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(BarProgress, "stage", terminate)
@@ -91,7 +91,7 @@ def wait_for(done: Callable[[], bool], run: subprocess.Popen[str]) -> None:
 
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="needs /proc")
-def test_generate_ends_with_its_workers_and_keeps_its_shards(tmp_path: Path) -> None:
+def test_sigterm_of_generate_ends_its_workers_and_keeps_shards(tmp_path: Path) -> None:
     """The workers leave it to their master: batch systems and `timeout` signal all of a group."""
     text = SMALL.replace("samples_per_class: 3", "samples_per_class: 60\nengine: {kind: cube}")
     config, folder = small_config(tmp_path, text), tmp_path / "set"

@@ -1,4 +1,4 @@
-"""`base`: a config over another; deep, in a chain, refused where it leads nowhere or back."""
+"""`base`: a config over another; merged deeply, in a chain, refused where missing or circular."""
 
 import os
 from pathlib import Path
@@ -30,7 +30,7 @@ def refusal(path: Path, *overrides: str) -> str:
     return str(caught.value)
 
 
-def test_keys_of_a_file_lie_over_those_of_its_base(tmp_path: Path) -> None:
+def test_keys_of_a_file_override_those_of_its_base(tmp_path: Path) -> None:
     write(
         tmp_path,
         lab="""
@@ -74,12 +74,14 @@ def test_keys_of_a_file_lie_over_those_of_its_base(tmp_path: Path) -> None:
         ("{choice: [1, 2, 3]}", "{choice: [1]}", Choice(choice=(1,))),
     ],
 )
-def test_a_distribution_is_one_value(tmp_path: Path, lower: str, own: str, both: object) -> None:
+def test_a_distribution_is_overridden_as_a_whole(
+    tmp_path: Path, lower: str, own: str, both: object
+) -> None:
     write(tmp_path, a=f"snr_db: {lower}", b=f"base: a.yaml\nsnr_db: {own}")
     assert load_config(tmp_path / "b.yaml").snr_db == both
 
 
-def test_a_number_for_all_takes_the_place_of_one_by_activity_and_back(tmp_path: Path) -> None:
+def test_a_plain_number_replaces_one_by_activity_and_vice_versa(tmp_path: Path) -> None:
     by_activity = "{per_activity: {default: 2, walking: 1}}"
     write(tmp_path, a=f"motion: {{model: paper, range_m: {by_activity}, gait_hz: 2}}")
     write(
@@ -91,7 +93,7 @@ def test_a_number_for_all_takes_the_place_of_one_by_activity_and_back(tmp_path: 
     assert resolved(motion)["gait_hz"] == {"per_activity": {"default": 2, "walking": 1}}
 
 
-def test_null_takes_a_section_away(tmp_path: Path) -> None:
+def test_null_removes_a_section(tmp_path: Path) -> None:
     write(tmp_path, a="wall: {eps_r: 4}\nsnr_db: 3", b="base: a.yaml\nwall: null\nsnr_db: null")
     config = load_config(tmp_path / "b.yaml")
     assert (config.wall, config.snr_db) == (None, None)
@@ -108,7 +110,7 @@ def test_a_class_of_a_base_is_replaced_by_another_kind_and_keeps_its_number(tmp_
     assert resolved(config)["classes"]["pace"]["pauses_s"] == [0, 0]
 
 
-def test_a_chain_goes_from_folder_to_folder(tmp_path: Path) -> None:
+def test_bases_are_relative_to_the_file_that_names_them(tmp_path: Path) -> None:
     write(
         tmp_path,
         shared__radar="radar: {prf_hz: 2000, carrier_hz: 5e9}\nseed: 1",
@@ -119,7 +121,7 @@ def test_a_chain_goes_from_folder_to_folder(tmp_path: Path) -> None:
     assert (config.seed, config.snr_db, config.radar.prf_hz) == (3, 7, 2000)
 
 
-def test_of_set_the_base_goes_from_the_current_folder_and_the_file_lies_over_it(
+def test_a_base_given_by_set_is_relative_to_the_current_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     write(tmp_path, other="seed: 9\nsnr_db: 1", own="seed: 4", sub__mine="base: ../own.yaml")
@@ -137,14 +139,14 @@ def test_of_set_the_base_goes_from_the_current_folder_and_the_file_lies_over_it(
     assert load_section(TrainConfig, None, ["base=teach.yaml"]) == TrainConfig(epochs=3)
 
 
-def test_overrides_change_what_a_base_says(tmp_path: Path) -> None:
+def test_overrides_apply_to_keys_of_a_base(tmp_path: Path) -> None:
     write(tmp_path, a="snr_db: {normal: [10, 1]}\nradar: {prf_hz: 1000}", b="base: a.yaml")
     config = load_config(tmp_path / "b.yaml", ["snr_db.min=9", "radar.chirp_s=2e-5"])
     assert config.snr_db == Normal(normal=(10, 1), min=9)
     assert (config.radar.prf_hz, config.radar.chirp_s) == (1000, 2e-5)
 
 
-def test_what_is_stored_names_no_base(tmp_path: Path) -> None:
+def test_stored_configs_name_no_base(tmp_path: Path) -> None:
     write(tmp_path, a="seed: 4", b="base: a.yaml")
     config = load_config(tmp_path / "b.yaml")
     assert "base" not in yaml.safe_load(as_yaml(config))
@@ -153,7 +155,7 @@ def test_what_is_stored_names_no_base(tmp_path: Path) -> None:
     assert load_config(tmp_path / "c.yaml") == config
 
 
-def test_a_mistake_is_told_of_the_file_and_line_in_which_it_stands(tmp_path: Path) -> None:
+def test_mistakes_name_the_file_and_line_they_are_in(tmp_path: Path) -> None:
     write(
         tmp_path,
         a="seed: 1\nradar:\n  prf_hz: -5\n  chirp_s: 4e-5\nsead: 3\nsnr_db: {uniform: [2, 1]}",
@@ -173,7 +175,7 @@ def test_a_mistake_is_told_of_the_file_and_line_in_which_it_stands(tmp_path: Pat
     assert refusal(b).startswith(f'{b}:1: base = "a.yaml": {a}:1: not valid YAML')
 
 
-def test_a_file_is_called_by_the_shortest_path_that_is_its_own(tmp_path: Path) -> None:
+def test_files_are_named_by_the_shortest_unambiguous_path(tmp_path: Path) -> None:
     write(tmp_path, root="radar: {chirp_s: x}", sub__mine="base: ../root.yaml")
     assert refusal(tmp_path / "sub/mine.yaml").startswith(f"{tmp_path / 'root.yaml'}:1: radar")
     write(tmp_path, far__sub__x="seed: 1", far__root="seed: x")
@@ -182,7 +184,7 @@ def test_a_file_is_called_by_the_shortest_path_that_is_its_own(tmp_path: Path) -
     assert refusal(tmp_path / "link/mine.yaml").startswith(f"{tmp_path}/link/../root.yaml:1: seed")
 
 
-def test_bases_that_come_back_are_told_with_the_way(tmp_path: Path) -> None:
+def test_circular_bases_are_refused_with_their_chain(tmp_path: Path) -> None:
     write(tmp_path, a="base: b.yaml", b="seed: 1\nbase: sub/c.yaml", sub__c="base: ../a.yaml")
     a, b = tmp_path / "a.yaml", tmp_path / "b.yaml"
     c = tmp_path / "sub/c.yaml"
@@ -194,7 +196,7 @@ def test_bases_that_come_back_are_told_with_the_way(tmp_path: Path) -> None:
     assert "should not lead back" in refusal(tmp_path / "d.yaml")
 
 
-def test_a_chain_has_an_end(tmp_path: Path) -> None:
+def test_chains_of_bases_have_a_maximum_length(tmp_path: Path) -> None:
     for n in range(MAX_CHAIN + 1):
         write(tmp_path, **{f"n{n}": f"base: n{n + 1}.yaml"})
     write(tmp_path, **{f"n{MAX_CHAIN + 1}": "seed: 3"})
@@ -220,7 +222,7 @@ def test_a_chain_has_an_end(tmp_path: Path) -> None:
     ],
     ids=lambda text: text[:12].strip('"\\'),
 )
-def test_what_is_no_base(tmp_path: Path, base: str, says: str) -> None:
+def test_invalid_bases_are_refused(tmp_path: Path, base: str, says: str) -> None:
     os.mkfifo(tmp_path / "fifo.yaml")
     (tmp_path / "folder.yaml").mkdir()
     alias = ", ".join(["*a"] * 99)

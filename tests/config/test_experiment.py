@@ -1,4 +1,4 @@
-"""The whole config: what is just possible, what counts as the same data set, what is frozen."""
+"""The whole config: limits, identity of a data set, frozen sections."""
 
 import json
 from collections.abc import Iterator
@@ -44,7 +44,7 @@ def test_the_defaults_are_the_papers_free_space_data_set() -> None:
     assert config.on_invalid == "keep"
 
 
-def test_activities_and_maps_stand_in_one_order_however_written() -> None:
+def test_activities_and_maps_have_a_canonical_order() -> None:
     config = Config(activities=("S12", "walking", "s2"), maps=("fsst", "rtm", "stft"))
     assert [a.label for a in config.chosen_activities] == ["S2", "S8", "S12"]
     assert config.maps == ("rtm", "stft", "fsst")
@@ -79,7 +79,7 @@ POSSIBLE: list[dict[str, Any]] = [
 
 
 @pytest.mark.parametrize("values", POSSIBLE, ids=str)
-def test_what_is_just_possible(values: dict[str, Any]) -> None:
+def test_values_at_the_limits_are_accepted(values: dict[str, Any]) -> None:
     Config(**values)
 
 
@@ -312,13 +312,13 @@ def test_a_resolved_config_names_every_key() -> None:
         ("S12", "walk_stop_s"),
     ],
 )
-def test_a_recording_too_short_for_the_second_phase_is_said(label: str, key: str) -> None:
+def test_a_recording_too_short_for_the_second_phase_is_warned_of(label: str, key: str) -> None:
     long_enough = Config(activities=(label,), duration_s=2.01)
     assert timing_warnings(long_enough) == []
-    (said,) = timing_warnings(Config(activities=(label,), duration_s=2.0, timing={key: 2.0}))
-    assert label in said
-    assert activity_named(label).slug in said
-    assert f"timing.{key} = 2 s" in said
+    (message,) = timing_warnings(Config(activities=(label,), duration_s=2.0, timing={key: 2.0}))
+    assert label in message
+    assert activity_named(label).slug in message
+    assert f"timing.{key} = 2 s" in message
 
 
 def test_activities_without_a_second_phase_are_never_too_short() -> None:
@@ -328,5 +328,5 @@ def test_activities_without_a_second_phase_are_never_too_short() -> None:
 
 def test_timing_warnings_follow_the_activity() -> None:
     late = {"per_activity": {"default": 2.0, "S12": 5.0}}
-    said = timing_warnings(Config(timing={"walk_stop_s": late}))
-    assert [line.split()[0] for line in said] == ["S12"]
+    messages = timing_warnings(Config(timing={"walk_stop_s": late}))
+    assert [line.split()[0] for line in messages] == ["S12"]

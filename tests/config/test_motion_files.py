@@ -56,7 +56,7 @@ def test_a_key_of_a_class_that_is_a_list_of_files_can_be_set(place: Path) -> Non
     assert config.model_dump()["classes"]["walking"]["mirror"] == 0
 
 
-def test_where_files_lie_is_no_part_of_what_a_config_says(place: Path) -> None:
+def test_folders_of_motion_files_are_no_part_of_a_config(place: Path) -> None:
     here = load_config(place / "x.yaml")
     shutil.copytree(place, place / "elsewhere")
     assert resolved(load_config(place / "elsewhere/x.yaml")) == resolved(here)
@@ -119,7 +119,7 @@ def test_another_file_of_the_same_name_is_another_data_set(place: Path) -> None:
         ),
     ],
 )
-def test_a_wrong_class_is_one_clear_line(text: str, message: str, place: Path) -> None:
+def test_wrong_classes_are_refused_in_one_line(text: str, message: str, place: Path) -> None:
     path = place / "wrong.yaml"
     path.write_text(text)
     with pytest.raises(ConfigError, match=message) as refused:
@@ -128,7 +128,7 @@ def test_a_wrong_class_is_one_clear_line(text: str, message: str, place: Path) -
     assert "\n" not in str(refused.value)
 
 
-def test_files_beside_any_model(place: Path) -> None:
+def test_file_classes_work_with_any_model(place: Path) -> None:
     """All of the twelve and the files' classes with a model; with `file`, those of the files."""
     for model, count in (("human", 13), ("paper", 13), ("file", 2)):
         config = load_config(place / "x.yaml", [f"motion.model={model}"])

@@ -175,6 +175,6 @@ def test_choices_are_equally_likely() -> None:
         {"vary": [30, float("nan")]},
     ],
 )
-def test_what_is_no_number_is_refused(form: Any) -> None:
+def test_invalid_numbers_are_refused(form: Any) -> None:
     with pytest.raises(ValidationError):
         NUMBER.validate_python(form)

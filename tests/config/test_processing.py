@@ -14,7 +14,7 @@ def refused(**document: object) -> list[tuple[str, str]]:
 
 
 @pytest.mark.parametrize(("mti", "clutter"), [(True, "difference"), (False, "none")])
-def test_mti_is_another_spelling(mti, clutter):
+def test_mti_is_an_alias_of_clutter(mti, clutter):
     spellings = [
         Config.model_validate({"processing": processing})
         for processing in ({"mti": mti}, {"clutter": clutter}, {"mti": mti, "clutter": clutter})
@@ -27,7 +27,7 @@ def test_mti_is_another_spelling(mti, clutter):
 
 
 @pytest.mark.parametrize("mti", [True, False])
-def test_mti_alone_says_what_the_default_would_not(mti):
+def test_mti_alone_sets_the_canceller(mti):
     assert Config(processing={"mti": mti}).processing.clutter == ("difference" if mti else "none")
 
 
@@ -39,7 +39,7 @@ def test_mti_alone_says_what_the_default_would_not(mti):
         ({"cutoff_mps": 0.2}, (None, 0.2, None)),
     ],
 )
-def test_the_cut_off_is_given_once(given, right):
+def test_only_one_cutoff_is_given(given, right):
     config = Config.model_validate({"processing": {"clutter": "highpass", "highpass": given}})
     found = config.processing.highpass
     assert (found.cutoff_hz, found.cutoff_mps, found.cutoff_fraction) == right
@@ -63,21 +63,21 @@ def test_a_cut_off_is_below_half_the_prf_and_above_what_float64_holds(highpass, 
     assert Config(processing={"clutter": "mean", "highpass": highpass})  # which is not used
 
 
-def test_the_slowest_prf_that_may_be_drawn_counts():
+def test_the_lowest_drawable_prf_limits_the_cutoff():
     processing = {"clutter": "highpass", "highpass": {"cutoff_hz": 300.0}}
     assert Config(processing=processing)
     ((key, _),) = refused(radar={"prf_hz": {"uniform": [500, 5000]}}, processing=processing)
     assert key == "processing.highpass.cutoff_hz"
 
 
-def test_a_gate_has_no_fsst():
+def test_a_gate_excludes_the_fsst():
     ((key, right),) = refused(processing={"doppler": "gate"}, maps=["stft", "fsst_denoised"])
     assert key == "maps"
     assert "by their phase" in right
 
 
 @pytest.mark.parametrize("gate_m", [4.0, [6.0, 8.0], [9.0, 10.0]])
-def test_a_gate_lies_within_the_half_band(gate_m):
+def test_a_gate_must_lie_within_the_half_band(gate_m):
     """Of 7.49 m by default."""
     ((key, right),) = refused(processing={"doppler": "gate", "gate_m": gate_m})
     assert key == "processing.gate_m"

@@ -1,4 +1,4 @@
-"""YAML in, Config out; and for every mistake the file, line, key, value and what would be right."""
+"""YAML to Config; for every mistake the file, line, key, value and what would be right."""
 
 import json
 from pathlib import Path
@@ -141,7 +141,7 @@ def test_overrides(tmp_path: Path) -> None:
     )
 
 
-def test_the_last_of_repeated_overrides_holds(tmp_path: Path) -> None:
+def test_the_last_of_repeated_overrides_wins(tmp_path: Path) -> None:
     assert read(tmp_path, "seed: 1", "seed=2", "seed=3").seed == 3
     config = read(tmp_path, "", "radar={prf_hz: 128}", "radar.prf_hz=256", "radar.chirp_s=2e-5")
     assert (config.radar.prf_hz, config.radar.chirp_s) == (256, 2e-5)
@@ -161,7 +161,7 @@ def test_an_override_without_key_or_value(tmp_path: Path, override: str) -> None
     assert "key=value" in line
 
 
-def test_an_override_that_is_no_yaml(tmp_path: Path) -> None:
+def test_an_override_that_is_not_yaml(tmp_path: Path) -> None:
     (line,) = mistakes(tmp_path, "", "radar.tx_m=[0, 1")
     assert "--set radar.tx_m" in line
     assert "not valid YAML" in line
@@ -185,7 +185,7 @@ class Broken(NamedTuple):
 
 WALL = "wall: {}\n"
 BROKEN = [
-    # Keys nobody knows, at every depth.
+    # Unknown keys, at every depth.
     Broken("sead: 1", 1, "sead", "1", "unknown key; did you mean 'seed'"),
     Broken("seed: 1\nzzz: 1", 2, "zzz", "1", "unknown key"),
     Broken(
@@ -530,7 +530,7 @@ BROKEN = [
 
 
 @pytest.mark.parametrize("broken", BROKEN, ids=lambda b: f"{b.key} {b.value} {b.right}"[:60])
-def test_one_mistake_is_told_in_one_line(tmp_path: Path, broken: Broken) -> None:
+def test_each_mistake_is_reported_in_one_line(tmp_path: Path, broken: Broken) -> None:
     (line,) = mistakes(tmp_path, broken.text)
     place, _, what = line.partition(" = ")
     assert place == f"{tmp_path / 'scene.yaml'}:{broken.line}: {broken.key}"
@@ -538,7 +538,7 @@ def test_one_mistake_is_told_in_one_line(tmp_path: Path, broken: Broken) -> None
     assert broken.right in what.removeprefix(broken.value)
 
 
-def test_mistakes_are_told_together(tmp_path: Path) -> None:
+def test_all_mistakes_are_reported_together(tmp_path: Path) -> None:
     lines = mistakes(tmp_path, "sead: 1\nradar:\n  prf_hz: -1\nsnr_db: loud\n")
     assert {line.split(": ")[1].split(" =")[0] for line in lines} == {
         "sead",
@@ -560,14 +560,14 @@ def test_mistakes_are_told_together(tmp_path: Path) -> None:
         ("radar: &a {tx_m: *a}\n", 1, "not valid YAML"),
     ],
 )
-def test_what_is_not_yaml(tmp_path: Path, text: str, line: int, says: str) -> None:
+def test_invalid_yaml_is_refused(tmp_path: Path, text: str, line: int, says: str) -> None:
     (message,) = mistakes(tmp_path, text)
     assert message.startswith(f"{tmp_path / 'scene.yaml'}:{line}: ")
     assert says in message
 
 
 @pytest.mark.parametrize(("text", "key"), [("null: 2\n", "None"), ("? [seed]\n: 1\n", "seed")])
-def test_a_key_that_is_no_text_did_not_appear_twice(tmp_path: Path, text: str, key: str) -> None:
+def test_a_non_text_key_is_not_reported_as_a_duplicate(tmp_path: Path, text: str, key: str) -> None:
     (message,) = mistakes(tmp_path, text)
     assert message.startswith(f"{tmp_path / 'scene.yaml'}:1: ")
     assert key in message
@@ -575,7 +575,7 @@ def test_a_key_that_is_no_text_did_not_appear_twice(tmp_path: Path, text: str, k
 
 
 @pytest.mark.parametrize("text", ["- seed\n- 1\n", "seed\n", "3\n", "[]\n"])
-def test_what_is_no_mapping(tmp_path: Path, text: str) -> None:
+def test_files_without_a_mapping_are_refused(tmp_path: Path, text: str) -> None:
     (message,) = mistakes(tmp_path, text)
     assert message.startswith(f"{tmp_path / 'scene.yaml'}: ")
     assert "mapping" in message
@@ -609,9 +609,7 @@ def answer(path: Path) -> str:
     max_examples=150,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )
-def test_whatever_is_typed_the_answer_is_a_config_or_a_config_error(
-    tmp_path: Path, text: str
-) -> None:
+def test_any_input_gives_a_config_or_a_config_error(tmp_path: Path, text: str) -> None:
     path = tmp_path / "typed.yaml"
     path.write_text(text, encoding="utf-8")
     told = answer(path)
@@ -655,9 +653,7 @@ def test_a_stored_config_that_is_broken_names_its_file(stored: str) -> None:
         ("rada.x=1", '--set rada.x: rada = {"x": 1}: '),
     ],
 )
-def test_a_mistake_of_an_option_is_told_of_the_option(
-    tmp_path: Path, override: str, place: str
-) -> None:
+def test_mistakes_in_set_name_the_option(tmp_path: Path, override: str, place: str) -> None:
     path = tmp_path / "scene.yaml"
     path.write_text("seed: 1\nradar: {prf_hz: 100}\nengine: {tolerance_db: -60}\n")
     with pytest.raises(ConfigError) as caught:
@@ -665,7 +661,7 @@ def test_a_mistake_of_an_option_is_told_of_the_option(
     assert str(caught.value).startswith(place)
 
 
-def test_a_mistake_of_file_and_option_together_is_told_of_both(tmp_path: Path) -> None:
+def test_a_mistake_of_file_and_option_together_names_both(tmp_path: Path) -> None:
     path = tmp_path / "scene.yaml"
     path.write_text("seed: 1\nsplit: {train: 0.5, validation: 0.5}\n")
     with pytest.raises(ConfigError) as caught:

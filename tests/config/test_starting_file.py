@@ -51,13 +51,13 @@ def test_every_key_stands_in_it_and_is_explained(kind: type[Section]) -> None:
     assert not [key for key in keys(kind) if not stand[key]]
 
 
-def test_what_a_model_decides_is_left_to_it(tmp_path: Path) -> None:
+def test_the_starting_file_leaves_defaults_of_the_model_alone(tmp_path: Path) -> None:
     path = tmp_path / "new.yaml"
     path.write_text(as_commented_yaml(Config).replace("model: human", "model: paper"))
     assert load_config(path) == Config(motion={"model": "paper"})
 
 
-def test_a_section_that_is_commented_out_can_be_put_in(tmp_path: Path) -> None:
+def test_a_commented_section_can_be_uncommented(tmp_path: Path) -> None:
     text = as_commented_yaml(Config)
     path = tmp_path / "new.yaml"
     before, _, rest = text.partition("wall: null")

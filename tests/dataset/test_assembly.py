@@ -1,4 +1,4 @@
-"""Whatever becomes of the shards, a finished data set is the right one or there is none.
+"""Whatever happens to the shards, a finished data set is the right one or there is none.
 
 Rows are stubs (noise of the row's own number), so that a build takes some hundredths of a second.
 """
@@ -73,7 +73,7 @@ def whole(config: Config, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 class AtAssembly(Listener):
-    """Does something to a folder when its shards are all made, before they are put together."""
+    """Changes a folder when its shards are all made, before assembly."""
 
     def __init__(self, action: Callable[[], None]) -> None:
         super().__init__()
@@ -95,7 +95,7 @@ def interrupted(config: Config, folder: Path, batch_size: int) -> Path:
     return folder / ".radhar"
 
 
-def test_a_shard_that_vanishes_is_named_and_made_by_the_same_command(
+def test_a_shard_that_vanishes_is_named_and_made_again(
     config: Config, whole: Path, tmp_path: Path
 ) -> None:
     folder = tmp_path / "set"
@@ -112,7 +112,7 @@ def test_a_shard_that_vanishes_is_named_and_made_by_the_same_command(
     assert fingerprint(folder) == fingerprint(whole)
 
 
-def test_a_listing_that_lags_behind_loses_no_row(
+def test_a_stale_directory_listing_loses_no_row(
     config: Config, whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     listing = Path.iterdir
@@ -126,7 +126,7 @@ def test_a_listing_that_lags_behind_loses_no_row(
     assert fingerprint(tmp_path / "set") == fingerprint(whole)
 
 
-def test_damaged_shard_is_made_again_and_foreign_one_kept(
+def test_a_damaged_shard_is_made_again_and_a_foreign_one_kept(
     config: Config, whole: Path, tmp_path: Path
 ) -> None:
     other = interrupted(config.model_copy(update={"seed": 8}), tmp_path / "other", 4)
@@ -138,7 +138,7 @@ def test_damaged_shard_is_made_again_and_foreign_one_kept(
     (work / "shards" / "notes.txt").write_text("mine")
     notes = Listener()
     assert build(config, tmp_path / "set", 1, notes).made == 8
-    assert [m.rpartition(": ")[2] for m in notes.said if "shards" in m] == [
+    assert [m.rpartition(": ")[2] for m in notes.messages if "shards" in m] == [
         "does not match its checksum; its rows are made again",
         "belongs to another data set; its rows are made again",
     ]
@@ -166,7 +166,7 @@ def test_manifest_counts_what_was_put_together(config: Config, tmp_path: Path) -
         assert shard["bytes"] == len(data)
 
 
-def test_chunks_lie_the_same_however_shards_cut_the_rows(
+def test_chunk_layout_does_not_depend_on_the_shards(
     config: Config, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """With more rows than a run of chunks or of columns, on both sides of their borders."""
@@ -244,7 +244,7 @@ def lay(work: Path, laid: dict[str, bytes | None]) -> None:
 
 @settings(max_examples=40, deadline=None)
 @given(data=st.data())
-def test_disturbed_shards_never_give_a_wrong_data_set(
+def test_damaged_or_exchanged_shards_never_give_a_wrong_data_set(
     data: st.DataObject, config: Config, whole: Path, pieces: dict[str, Pieces]
 ) -> None:
     """Before a run and again in the midst of it; afterwards the same command, left alone."""

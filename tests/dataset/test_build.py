@@ -1,4 +1,4 @@
-"""A build gives the same bytes however it is cut up, and says what it cannot do."""
+"""A build gives the same bytes for any batches, workers and interruptions; what it refuses."""
 
 import errno
 import json
@@ -51,7 +51,7 @@ def test_jobs_and_batch_size_change_no_byte(
     assert fingerprint(tmp_path / "set") == fingerprint(whole)
 
 
-def test_batches_share_few_rows_evenly_and_grow_with_many() -> None:
+def test_batch_size_by_number_of_rows() -> None:
     def size(left: int, jobs: int, one: int = 10**4) -> int:
         return build_module._batch_size(left, jobs, one)
 
@@ -78,7 +78,7 @@ def test_a_relative_folder_is_built_whatever_the_working_directory_of_the_worker
     assert not list(elsewhere.iterdir())
 
 
-def test_unfinished_build_goes_on_with_another_batch_size(
+def test_an_unfinished_build_resumes_with_another_batch_size(
     config: Config, whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folder, made = tmp_path / "set", []
@@ -100,7 +100,7 @@ def test_unfinished_build_goes_on_with_another_batch_size(
     assert fingerprint(folder) == fingerprint(whole)
 
 
-def test_complete_folder_is_left_alone(config: Config, whole: Path) -> None:
+def test_a_complete_folder_is_not_changed(config: Config, whole: Path) -> None:
     before = (whole / "dataset.h5").stat().st_mtime_ns
     assert make(config, whole).already_complete
     assert (whole / "dataset.h5").stat().st_mtime_ns == before
@@ -122,7 +122,7 @@ def test_other_versions_are_refused(
         make(config, whole)
 
 
-def test_pngs_can_be_added_later_and_lost_ones_come_back(
+def test_pngs_can_be_added_later_and_lost_ones_are_rewritten(
     config: Config, whole: Path, tmp_path: Path
 ) -> None:
     folder = tmp_path / "set"
@@ -144,7 +144,7 @@ def test_pngs_can_be_added_later_and_lost_ones_come_back(
     assert fingerprint(folder).items() >= {k: right[k] for k in right if k[:3] == "png"}.items()
 
 
-def test_overwrite_starts_again_and_keeps_strangers(
+def test_overwrite_starts_again_and_keeps_foreign_files(
     config: Config, whole: Path, tmp_path: Path
 ) -> None:
     folder = tmp_path / "set"
@@ -156,7 +156,9 @@ def test_overwrite_starts_again_and_keeps_strangers(
     assert fingerprint(folder) == fingerprint(whole)
 
 
-def test_overwrite_leaves_what_radhar_did_not_build(config: Config, tmp_path: Path) -> None:
+def test_overwrite_refuses_folders_that_radhar_did_not_build(
+    config: Config, tmp_path: Path
+) -> None:
     with h5py.File(tmp_path / "dataset.h5", "w") as file:
         file["mine"] = 1
     (tmp_path / "png").mkdir()
@@ -167,7 +169,7 @@ def test_overwrite_leaves_what_radhar_did_not_build(config: Config, tmp_path: Pa
     assert (tmp_path / "dataset.h5").exists()
 
 
-def test_overwrite_killed_midway_goes_on(
+def test_overwrite_killed_midway_resumes(
     config: Config, whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Whatever step of clearing is the last, the same command finishes the job."""
@@ -215,16 +217,16 @@ def test_scenes_of_a_large_data_set_are_checked_by_the_workers(
     """The same bytes, redraws and warnings as where they are all checked first."""
     text = SMALL.replace("seed: 7", "seed: 7\nwall: {}\non_invalid: keep")
     config = load_config(small_config(tmp_path, text), ["motion.range_m={uniform: [1, 3]}"])
-    said = []
+    expected = []
     for name, first in (("first", 9), ("by workers", 8)):
         monkeypatch.setattr(build_module, "MAX_CHECKED_FIRST", first)
         notes = Listener()
         build(config, tmp_path / name, 2, notes, batch_size=2)
         assert ("checking scenes" in notes.stages) == (name == "first")
-        assert len(notes.said) == len(set(notes.said))
-        said.append(set(notes.said))
-    assert said[0] == said[1]
-    assert any("passes through the wall" in message for message in said[0])
+        assert len(notes.messages) == len(set(notes.messages))
+        expected.append(set(notes.messages))
+    assert expected[0] == expected[1]
+    assert any("passes through the wall" in message for message in expected[0])
     assert fingerprint(tmp_path / "first") == fingerprint(tmp_path / "by workers")
 
 
@@ -263,13 +265,13 @@ def test_scene_too_close_to_an_antenna_stops_before_any_echo(
         make(near, tmp_path / "set")
 
 
-def test_physical_warnings_are_said_once_with_their_number_and_stored(
+def test_physical_warnings_are_given_once_with_a_count_and_stored(
     config: Config, tmp_path: Path
 ) -> None:
     notes = Listener()
     far = load_config(small_config(tmp_path), ["motion.range_m=28", "activities=[walking, S1]"])
     build(far, tmp_path / "set", 1, notes)
-    assert [m for m in notes.said if "half-band" in m] == [
+    assert [m for m in notes.messages if "half-band" in m] == [
         "warning: 3 of 6 recordings: a scatterer leaves the range half-band and its echo the kept "
         "bins"
     ]
@@ -280,7 +282,7 @@ def test_physical_warnings_are_said_once_with_their_number_and_stored(
     }
 
 
-def test_scenes_that_fall_back_to_the_cube_are_counted_whoever_made_them(
+def test_fallbacks_to_the_cube_are_counted_across_resumed_runs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Double precision cannot promise -300 dB of anybody who moves."""
@@ -288,7 +290,7 @@ def test_scenes_that_fall_back_to_the_cube_are_counted_whoever_made_them(
     config = load_config(small_config(tmp_path), [*engine, "activities=[punching, S1, S8]"])
     notes, original, made = Listener(), batch_module.synthesise, []
     build(config, tmp_path / "whole", 1, notes)
-    assert "warning: 6 of 9 recordings: computed by the cube (engine.fallback)" in notes.said
+    assert "warning: 6 of 9 recordings: computed by the cube (engine.fallback)" in notes.messages
 
     def stops_after_four(*arguments: object) -> object:
         made.append(arguments)
@@ -346,7 +348,7 @@ def test_dataset_contract(config: Config, whole: Path) -> None:
 
 
 @pytest.mark.parametrize(("count", "last"), [(3, "00002"), (10**5, "99999"), (10**5 + 1, "100000")])
-def test_names_of_a_class_sort_however_many(config: Config, count: int, last: str) -> None:
+def test_png_names_sort_by_index_at_any_count(config: Config, count: int, last: str) -> None:
     rows = Rows(config.chosen_activities[:2], (5, count))
     assert (rows.name(4), rows.name(4 + count)) == ("00004", last)
     assert rows.png_path("rtm", 0, 5).stem == "0".zfill(len(last))
@@ -386,5 +388,5 @@ def test_redrawn_scenes_are_valid_and_deterministic(tmp_path: Path) -> None:
     notes = Listener()
     build(config, tmp_path / "one", 1, notes)
     make(config, tmp_path / "two", jobs=2, batch_size=1)
-    assert not [m for m in notes.said if "wall" in m]
+    assert not [m for m in notes.messages if "wall" in m]
     assert fingerprint(tmp_path / "one") == fingerprint(tmp_path / "two")

@@ -1,4 +1,4 @@
-"""A dask cluster makes the same bytes, and its losses are survived or named."""
+"""A dask cluster makes the same bytes; lost workers are survived, a lost scheduler is named."""
 
 import os
 import re
@@ -90,16 +90,16 @@ def test_dask_shards_loky_and_one_process_give_the_same_bytes(tmp_path: Path) ->
     merge(tmp_path / "shards", [], 1, Listener())
     shutil.rmtree(tmp_path / "shards/parts")
     made = generate("local", tmp_path / "dask", "--jobs", "2")
-    said, _ = made.communicate(timeout=300)
-    assert made.returncode == 0, said
-    assert "Pydantic" not in said, said
+    output, _ = made.communicate(timeout=300)
+    assert made.returncode == 0, output
+    assert "Pydantic" not in output, output
     prints = [fingerprint(tmp_path / way) for way in ("alone", "loky", "shards", "dask")]
     assert prints[1:] == prints[:-1]
     pngs = [name for name in prints[0] if name.startswith("png/") and name.endswith(".png")]
     assert len(pngs) == 2 * len(Rows.of(config))  # one of each map
 
 
-def test_a_killed_worker_is_survived_and_a_killed_scheduler_is_named(
+def test_a_build_survives_a_killed_worker_and_names_a_killed_scheduler(
     cluster: tuple[str, list[Process]], tmp_path: Path
 ) -> None:
     address, (scheduler, first, _) = cluster
@@ -111,23 +111,23 @@ def test_a_killed_worker_is_survived_and_a_killed_scheduler_is_named(
             time.sleep(0.001)
         assert run.poll() is None
         victim.kill()
-        said, _ = run.communicate(timeout=100)
-        return said
+        output, _ = run.communicate(timeout=100)
+        return output
 
     lost = generate(address, tmp_path / "set")
-    said = kill_after(lost, 3, first)
-    assert (lost.returncode, said) == (0, said), said
+    output = kill_after(lost, 3, first)
+    assert (lost.returncode, output) == (0, output), output
     assert fingerprint(tmp_path / "set") == fingerprint(tmp_path / "whole")
     assert not list((tmp_path / "a").glob("*.h5"))
 
     (tmp_path / "set").rename(tmp_path / "first")
     stopped = generate(address, tmp_path / "set")
-    said = kill_after(stopped, 3, scheduler)
-    assert (stopped.returncode, "the scheduler is gone" in said) == (1, True), said
-    assert "Traceback" not in said, said
+    output = kill_after(stopped, 3, scheduler)
+    assert (stopped.returncode, "the scheduler is gone" in output) == (1, True), output
+    assert "Traceback" not in output, output
     refused = generate(address, tmp_path / "set")
-    said, _ = refused.communicate(timeout=100)
-    assert (refused.returncode, "no dask scheduler answers" in said) == (2, True), said
+    output, _ = refused.communicate(timeout=100)
+    assert (refused.returncode, "no dask scheduler answers" in output) == (2, True), output
     made = build(config, tmp_path / "set", 1, Listener()).made
     assert 0 < made < 18
     assert fingerprint(tmp_path / "set") == fingerprint(tmp_path / "whole")

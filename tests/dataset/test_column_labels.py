@@ -70,7 +70,7 @@ def test_labels_are_those_of_the_truth_at_the_middle_of_each_column(
         assert done == ["walking", "sitting down", "seated"]
 
 
-def test_batches_change_no_byte_and_nothing_comes_unasked(
+def test_column_labels_do_not_depend_on_batches_and_are_optional(
     config: Config, whole: Path, tmp_path: Path
 ) -> None:
     build(config, tmp_path / "set", 1, Listener(), batch_size=1)

@@ -69,8 +69,8 @@ def line(h5: h5py.File, row: int) -> dict[str, Any]:
     """What every table should say of a row."""
     number, index = h5["sample_key"][row].tolist()
     scene = {name: values[row].item() for name, values in h5["scene"].items()}
-    said = {name: None if value != value else value for name, value in scene.items()}
-    return {"label": h5.attrs["class_slugs"][number], "index": index, **said}
+    expected = {name: None if value != value else value for name, value in scene.items()}
+    return {"label": h5.attrs["class_slugs"][number], "index": index, **expected}
 
 
 def digest(levels: Any) -> str:
@@ -84,7 +84,7 @@ def rows_of(h5: h5py.File, split: str) -> list[int]:
     return sorted(rows, key=lambda row: (key[row, 1], row))
 
 
-def test_their_own_libraries_read_what_we_wrote(place: Path, h5: h5py.File, tmp_path: Path) -> None:
+def test_each_format_is_read_by_its_own_library(place: Path, h5: h5py.File, tmp_path: Path) -> None:
     paths = os.pathsep.join([str(OPERATORS), str(ROOT)])
     done = subprocess.run(
         [sys.executable, READER, place],
@@ -143,7 +143,7 @@ def test_parquet_holds_the_png_files(place: Path, h5: h5py.File) -> None:
             assert image["bytes"] == (place / "set/png/rtm" / split / image["path"]).read_bytes()
 
 
-def test_tars_say_nothing_of_who_and_when(place: Path) -> None:
+def test_tars_hold_no_user_and_no_time(place: Path) -> None:
     with tarfile.open(place / "webdataset/train-000000.tar") as tar:
         assert {(one.mtime, one.uid, one.uname, one.mode) for one in tar} == {(0, 0, "", 0o644)}
 
@@ -186,7 +186,7 @@ def test_matlab_has_every_array_with_its_axes_turned(place: Path, h5: h5py.File)
         assert [cell.decode() for cell in cells] == list(h5.attrs["class_slugs"])
 
 
-def test_matlab_is_told_to_read_one_map(place: Path, h5: h5py.File) -> None:
+def test_the_matlab_readme_shows_how_to_read_one_map(place: Path, h5: h5py.File) -> None:
     code = r"h5read\('dataset.mat', '(.+)', \[1 1 n\], \[(\d+) (\d+) 1\]\)"
     found = re.search(code, (place / "mat/README.md").read_text())
     assert found is not None
@@ -233,7 +233,7 @@ def test_the_licence_that_an_owner_chose_goes_along(place: Path, tmp_path: Path)
 
 
 @pytest.mark.parametrize("name", FORMATS)
-def test_damage_is_not_passed_on(place: Path, tmp_path: Path, name: str) -> None:
+def test_damaged_data_sets_are_not_converted(place: Path, tmp_path: Path, name: str) -> None:
     damaged = tmp_path / "dataset.h5"
     damaged.write_bytes((place / "set/dataset.h5").read_bytes())
     with h5py.File(damaged, "r+") as file:
@@ -244,8 +244,8 @@ def test_damage_is_not_passed_on(place: Path, tmp_path: Path, name: str) -> None
     assert [path.name for path in tmp_path.iterdir()] == ["dataset.h5"], "nothing half written"
 
 
-def test_what_cannot_be_is_refused_in_a_line(place: Path, tmp_path: Path) -> None:
-    for arguments, said in (
+def test_impossible_conversions_are_refused_in_one_line(place: Path, tmp_path: Path) -> None:
+    for arguments, expected in (
         ((place / "set", "-o", place / "npy", "--to", "npy"), "npy: already exists"),
         ((place / "set", "-o", tmp_path / "x", "--to", "parket"), "did you mean 'parquet'?"),
         ((place / "no", "-o", tmp_path / "x", "--to", "npy"), "no such file"),
@@ -254,7 +254,7 @@ def test_what_cannot_be_is_refused_in_a_line(place: Path, tmp_path: Path) -> Non
     ):
         done = radhar("convert", *arguments)
         assert (done.returncode, len(done.stderr.splitlines())) == (2, 1), done.stderr
-        assert said in done.stderr
+        assert expected in done.stderr
     assert not [*tmp_path.iterdir()]
 
 

@@ -1,4 +1,4 @@
-"""The output folder as others see it: data card, picture, and what stands beside every image."""
+"""Files for the Hugging Face hub: data card, picture, metadata.csv."""
 
 import csv
 import math
@@ -52,7 +52,7 @@ def front(folder: Path) -> dict:
     return yaml.safe_load(text)
 
 
-def test_metadata_say_of_every_image_what_dataset_h5_does(whole: Path) -> None:
+def test_metadata_csv_agrees_with_dataset_h5(whole: Path) -> None:
     with h5py.File(whole / "dataset.h5") as file:
         key, split, scene = file["sample_key"][:], file["split"][:], file["scene"]
         slugs = file.attrs["class_slugs"]
@@ -94,12 +94,12 @@ def test_the_card_has_a_configuration_a_map(whole: Path) -> None:
     assert names == ["image", *columns[1:]]
 
 
-def test_the_card_tells_strangers_what_there_is(whole: Path) -> None:
+def test_the_card_describes_the_data_set(whole: Path) -> None:
     text = (whole / "README.md").read_text()
     assert "| 7 | `walking` | 1 | 1 | 1 |" in text
     assert "| `snr` | 10 | 30 | dB | `snr_db` |" in text
     assert "| `carrier` | 1e+10 | Hz | `radar.carrier_hz` |" in text
-    assert "nobody of 3 is in two of its parts" in text
+    assert "none of the 3 is in two of its parts" in text
     assert "a joint moves faster than the Doppler PRF/2" in text
     assert "](gallery.png)" in text
     with Image.open(whole / "gallery.png") as picture:
@@ -121,7 +121,7 @@ def test_the_citation_is_that_of_the_project() -> None:
         assert f"{{{text}}}" in BIBTEX
 
 
-def test_what_is_missing_is_written_again(copy: Path, tmp_path: Path) -> None:
+def test_missing_hub_files_are_written_again(copy: Path, tmp_path: Path) -> None:
     before = fingerprint(copy)
     for name in ("README.md", "gallery.png", "png/rtm/val/metadata.csv"):
         (copy / name).unlink()
@@ -140,7 +140,7 @@ def test_images_that_are_added_later_come_with_their_metadata(whole: Path, tmp_p
     assert found == right
 
 
-def test_a_card_belongs_to_its_owner(copy: Path, tmp_path: Path) -> None:
+def test_an_edited_card_is_kept_until_overwrite(copy: Path, tmp_path: Path) -> None:
     card = copy / "README.md"
     text = card.read_text().replace("cc-by-4.0", "mit").replace("# Simulated", "# My simulated")
     card.write_text(text)
@@ -166,11 +166,11 @@ def _more(path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "damage", "said"),
+    ("name", "damage", "expected"),
     [
         ("png/rtm/val/metadata.csv", _digit, "of punching/0000..png what"),
         ("png/stft/train/metadata.csv", _cut, "of .*/0000..png what"),
-        ("png/stft/test/metadata.csv", _more, "goes on after"),
+        ("png/stft/test/metadata.csv", _more, "has rows after"),
         ("png/stft/test/metadata.csv", Path.unlink, "cannot be read"),
         ("README.md", lambda p: p.write_text(p.read_text().replace("/train", "/t")), "configs"),
         ("README.md", lambda p: p.write_text("---\n{\n---\n"), "cannot be read"),
@@ -182,16 +182,16 @@ def _more(path: Path) -> None:
         ("gallery.png", lambda p: p.write_bytes(b"no image"), "not an image"),
     ],
 )
-def test_verify_finds_damage(copy: Path, name: str, damage, said: str | None) -> None:
+def test_verify_finds_damage(copy: Path, name: str, damage, expected: str | None) -> None:
     damage(copy / name)
     problems = verify(copy, 0).problems
-    assert len(problems) == (said is not None), problems
-    if said is not None:
+    assert len(problems) == (expected is not None), problems
+    if expected is not None:
         assert name in problems[0]
-        assert re.search(said, problems[0])
+        assert re.search(expected, problems[0])
 
 
-def test_large_classes_have_folders_that_all_of_ours_read(
+def test_every_reader_finds_the_subfolders_of_large_classes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(layout, "PNGS_A_FOLDER", 2)

@@ -66,7 +66,7 @@ def uninterrupted(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("trial", [0, *slow(range(1, FOLDERS))])
-def test_killed_at_random_moments(
+def test_builds_killed_at_random_moments_resume_to_the_same_bytes(
     trial: int, uninterrupted: dict[str, str], tmp_path: Path
 ) -> None:
     small_config(tmp_path)
@@ -102,7 +102,7 @@ def amid_the_work(folder: Path) -> subprocess.Popen[str]:
 
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="needs /proc")
-def test_killed_worker_is_one_clear_line_and_what_is_finished_is_kept(tmp_path: Path) -> None:
+def test_a_killed_worker_is_one_clear_line_and_finished_batches_are_kept(tmp_path: Path) -> None:
     small_config(tmp_path)
     run = amid_the_work(tmp_path / "set")
     workers = children(run.pid)
@@ -120,7 +120,7 @@ def test_killed_worker_is_one_clear_line_and_what_is_finished_is_kept(tmp_path: 
 def test_ctrl_c_is_quiet_and_keeps_what_is_finished(tmp_path: Path) -> None:
     small_config(tmp_path)
     run = amid_the_work(tmp_path / "set")
-    os.killpg(run.pid, signal.SIGINT)  # as a terminal does: master and workers alike
+    os.killpg(run.pid, signal.SIGINT)  # as a terminal does: master and workers
     output = run.communicate()[0]
     assert run.returncode == 130, output
     assert "the same command resumes" in output

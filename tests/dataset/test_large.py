@@ -48,7 +48,7 @@ def built(rows: int, folder: Path, monkeypatch: pytest.MonkeyPatch) -> int:
     finally:
         tracemalloc.stop()
     assert "checking scenes" not in notes.stages
-    assert any(f"{rows} of {rows} recordings" in message for message in notes.said)
+    assert any(f"{rows} of {rows} recordings" in message for message in notes.messages)
     return peak
 
 

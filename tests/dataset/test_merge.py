@@ -1,4 +1,4 @@
-"""Parts made apart become the data set that one build makes; nothing is put together with gaps."""
+"""Parts built separately merge into the data set of one build; gaps are refused."""
 
 import json
 import os
@@ -77,7 +77,7 @@ def test_parts_in_one_place_or_two_are_the_build_in_one_piece(
     assert verify(out, 1).problems == []
 
 
-def test_what_is_not_merged_is_said_to_be_parts(out: Path) -> None:
+def test_unmerged_folders_are_reported_as_parts(out: Path) -> None:
     part = out / "parts/2-of-4"
     for folder in (out, part):
         with pytest.raises(FolderError, match=r"dataset\.h5: .*`radhar merge"):
@@ -87,7 +87,7 @@ def test_what_is_not_merged_is_said_to_be_parts(out: Path) -> None:
         open_dataset(part)
 
 
-def test_a_virtual_data_set_reads_the_same_and_refuses_to_lose_a_part(
+def test_a_virtual_data_set_reads_the_same_and_refuses_a_missing_part(
     out: Path, whole: dict[str, str]
 ) -> None:
     merge(out, [], 1, Listener(), virtual=True)
@@ -127,7 +127,7 @@ def test_gaps_and_damage_name_the_parts_to_run_again(
     assert merged(out) == whole
 
 
-def test_damaged_shards_that_were_made_again_with_other_cuts_are_gone(
+def test_damaged_shards_are_replaced_by_shards_of_other_rows(
     config: Config, out: Path, whole: dict[str, str]
 ) -> None:
     damaged = listed_shards(out / "parts/2-of-4")
@@ -136,7 +136,7 @@ def test_damaged_shards_that_were_made_again_with_other_cuts_are_gone(
         shard.path.write_bytes(shard.path.read_bytes()[:-1])
     notes = Listener()
     assert build_part(config, out, Part(4, 2), 1, notes, batch_size=2).made == 2
-    assert len(notes.said) >= 2
+    assert len(notes.messages) >= 2
     merge(out, [], 1, Listener())
     assert merged(out) == whole
 
@@ -169,7 +169,7 @@ def test_parts_of_something_else_are_refused(config: Config, out: Path, tmp_path
         merge(tmp_path / "nothing", [], 1, Listener())
 
 
-def test_who_reads_a_part_or_unmerged_parts_is_told_to_merge(out: Path, tmp_path: Path) -> None:
+def test_reading_unmerged_parts_asks_to_merge(out: Path, tmp_path: Path) -> None:
     part = out / "parts/1-of-4"
     with pytest.raises(FolderError, match=f"{part} is part 1/4 alone; `radhar merge OUT`"):
         open_dataset(part)

@@ -138,7 +138,7 @@ def test_seed_and_index_name_a_sample_beyond_the_data_set_too(config: Config) ->
     assert len({levels(None, 0), levels(99, 0), levels(None, 4000), levels(99, 4000)}) == 4
 
 
-def test_a_recipe_may_be_handed_to_another_process(config: Config) -> None:
+def test_samples_can_be_pickled(config: Config) -> None:
     recipe = Recipe.of(config, ["maps/stft"])
     activity = config.chosen_activities[1]
     first = recipe(activity, 2)["maps/stft"]
@@ -163,7 +163,7 @@ def test_the_plan_is_made_once_for_one_config(
     assert made == [False]
 
 
-def test_mistakes_are_one_clear_line(config: Config) -> None:
+def test_mistakes_are_refused_in_one_line(config: Config) -> None:
     plain = config.model_copy(
         update={"output": config.output.model_copy(update={"power": None, "slow_time": False})}
     )
@@ -196,7 +196,7 @@ def test_mistakes_are_one_clear_line(config: Config) -> None:
         sample(config, "wlking")
 
 
-def test_a_whole_number_of_numpy_is_one(config: Config) -> None:
+def test_numpy_integers_are_accepted(config: Config) -> None:
     fields = ["scene/height"]
     one = sample(config, "walking", np.int64(2), fields, np.uint8(5))
     other = sample(config, "walking", 2, fields, 5)

@@ -1,4 +1,4 @@
-"""A shard says what it holds, and no other content passes for it."""
+"""A shard names its content, and any other content is refused."""
 
 import io
 from pathlib import Path
@@ -92,9 +92,7 @@ def test_why_a_shard_cannot_be_used(config: Config, tmp_path: Path) -> None:
     assert shard.read(whose(other))
 
 
-def test_of_two_shards_with_the_same_rows_one_is_gone_on_from(
-    config: Config, tmp_path: Path
-) -> None:
+def test_of_two_shards_with_the_same_rows_one_is_used(config: Config, tmp_path: Path) -> None:
     for start, stop in ((0, 4), (2, 6), (4, 6), (8, 9)):
         write_shard(tmp_path, start, stop, stub(config, start, stop))
     Shard(6, 8, tmp_path).path.write_bytes(b"half")

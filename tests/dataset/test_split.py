@@ -27,7 +27,7 @@ def half_up(share: str, count: int) -> int:
 
 @given(st.integers(1, 400))
 @settings(deadline=None, max_examples=40)
-def test_every_class_is_cut_at_80_percent(count: int) -> None:
+def test_every_class_is_split_at_80_percent(count: int) -> None:
     found = split_of(count)
     train = half_up("0.8", count)
     assert found.shape == (12, count)
@@ -47,7 +47,7 @@ SHARES = [("0.7", "0.15"), ("0.5", "0.25"), ("0.35", "0.05"), ("0.5", "0.5"), ("
 
 @given(st.integers(1, 200), st.sampled_from(SHARES))
 @settings(deadline=None, max_examples=40)
-def test_three_parts(count: int, shares: tuple[str, str]) -> None:
+def test_three_splits(count: int, shares: tuple[str, str]) -> None:
     train, test = shares
     validation = float(1 - Fraction(train) - Fraction(test))
     found = split_of(
@@ -62,7 +62,7 @@ def test_three_parts(count: int, shares: tuple[str, str]) -> None:
 
 @given(st.integers(1, 100), st.integers(0, 100))
 @settings(deadline=None, max_examples=40)
-def test_a_part_of_no_share_gets_no_sample(count: int, percent: int) -> None:
+def test_a_split_of_share_0_gets_no_sample(count: int, percent: int) -> None:
     share = percent / 100
     without = split_of(count, train=share, validation=0.0, test=round(1 - share, 2))
     assert not np.any(without == VALIDATION)
@@ -71,7 +71,7 @@ def test_a_part_of_no_share_gets_no_sample(count: int, percent: int) -> None:
     assert not np.any(split_of(count, train=share, validation=round(1 - share, 2)) == TEST)
 
 
-def test_shares_that_miss_1_by_a_rounding_leave_no_sample_to_a_part_of_no_share() -> None:
+def test_rounding_of_shares_gives_no_sample_to_a_split_of_share_0() -> None:
     found = split_of(1, train=0.4999999996, validation=0.0, test=0.4999999996)
     assert not np.any(found == VALIDATION)
 
@@ -91,7 +91,7 @@ def test_classes_are_shuffled_apart_and_alone() -> None:
 
 @given(st.integers(1, 40), st.integers(0, 80), st.integers(0, 100))
 @settings(deadline=None, max_examples=40)
-def test_by_subject_nobody_is_on_two_sides(subjects: int, more: int, seed: int) -> None:
+def test_by_subject_no_person_is_in_two_splits(subjects: int, more: int, seed: int) -> None:
     count = subjects + more
     config = Config(
         samples_per_class=count,
@@ -127,7 +127,7 @@ COUNTS = {"per_activity": {"default": 4, "walking": 10, "home": 1}}
 HOME = {"home": {"sequence": ["walking"]}}
 
 
-def test_classes_of_different_sizes_are_cut_one_by_one() -> None:
+def test_classes_of_different_sizes_are_split_one_by_one() -> None:
     config = Config(samples_per_class=COUNTS, classes=HOME, activities=["S1", "S8", "home"])
     rows, split = Rows.of(config), split_rows(config)
     assert rows.counts == (4, 10, 1)
@@ -142,7 +142,7 @@ def test_classes_of_different_sizes_are_cut_one_by_one() -> None:
     )
 
 
-def test_persons_keep_their_side_in_classes_of_different_sizes() -> None:
+def test_persons_keep_their_split_in_classes_of_different_sizes() -> None:
     persons = {"by": "subject", "subjects": 4, "train": 0.5, "validation": 0.5}
     counts = {"per_activity": {"default": 4, "walking": 10}}
     config = Config(samples_per_class=counts, activities=["S1", "S8"], split=persons)
@@ -151,7 +151,7 @@ def test_persons_keep_their_side_in_classes_of_different_sizes() -> None:
     assert sides == [{int(side)} for side in split[:4]]
 
 
-def test_a_part_that_stays_empty_is_warned_of() -> None:
+def test_an_empty_split_is_warned_of() -> None:
     config = Config(samples_per_class=2)
     (warning,) = split_warnings(config, split_rows(config))
     assert "no validation sample of any class" in warning

@@ -38,7 +38,9 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place / "set"
 
 
-def test_verified_and_the_same_from_other_batches_and_workers(whole: Path, tmp_path: Path) -> None:
+def test_stored_signals_are_verified_and_do_not_depend_on_batches_or_workers(
+    whole: Path, tmp_path: Path
+) -> None:
     report = verify(whole, 100)
     assert report.problems == []
     assert report.resynthesised == 9
@@ -129,7 +131,7 @@ def _signal_and_checksum(file: h5py.File) -> None:
         (_signal_and_checksum, "/slow_time[4] (walking/1): differs"),
     ],
 )
-def test_what_was_changed_is_found(
+def test_changed_signals_are_found(
     change: Callable[[h5py.File], None], words: str, whole: Path, tmp_path: Path
 ) -> None:
     copy = tmp_path / "dataset.h5"
@@ -139,7 +141,7 @@ def test_what_was_changed_is_found(
     assert any(words in problem for problem in verify(copy, 9).problems)
 
 
-def test_other_versions_may_round_otherwise(
+def test_other_versions_may_round_differently(
     whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A last bit of every sample is no problem under another version; a wrong one still is."""
@@ -171,7 +173,7 @@ def test_other_versions_may_round_otherwise(
         ("slow_time", None, "is missing"),
     ],
 )
-def test_a_file_that_has_something_else_is_refused(
+def test_wrong_shapes_and_types_are_refused(
     name: str, wrong: np.ndarray | None, words: str, whole: Path, tmp_path: Path
 ) -> None:
     copy = tmp_path / "dataset.h5"
@@ -185,7 +187,7 @@ def test_a_file_that_has_something_else_is_refused(
     assert f"/{name}" in str(caught.value)
 
 
-def test_the_estimate_knows_of_them(tmp_path: Path) -> None:
+def test_the_estimate_counts_stored_signals(tmp_path: Path) -> None:
     with_signals, plain = config_of(tmp_path), config_of(tmp_path, SMALL)
     more = estimate(with_signals, 1).hdf5_bytes - estimate(plain, 1).hdf5_bytes
     raw = row_bytes(with_signals) - row_bytes(plain)
@@ -193,6 +195,6 @@ def test_the_estimate_knows_of_them(tmp_path: Path) -> None:
     assert 0.5 * 9 * raw < more < 2 * 9 * raw
 
 
-def test_their_keys_belong_to_the_identity(whole: Path, tmp_path: Path) -> None:
+def test_their_keys_are_part_of_the_identity(whole: Path, tmp_path: Path) -> None:
     with pytest.raises(FolderError, match=r"output\.slow_time"):
         build(config_of(tmp_path, SMALL), whole, 1, BarProgress())

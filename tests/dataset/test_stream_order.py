@@ -46,7 +46,7 @@ def test_a_round_has_the_classes_in_the_ratio_of_the_data_set() -> None:
     assert set(Counter(slug for slug, _ in even).values()) == {10}
 
 
-def test_classes_are_mixed_and_another_seed_mixes_them_otherwise() -> None:
+def test_classes_are_shuffled_by_the_seed() -> None:
     one, other = (first(StreamOrder(config(seed=seed)), 40) for seed in (5, 6))
     assert one != other
     assert len({tuple(slug for slug, _ in one[at : at + 4]) for at in range(0, 40, 4)}) > 3
@@ -78,7 +78,7 @@ def test_training_leaves_out_persons_and_nobody_else() -> None:
     assert max(index for _, index in seen) < 2 * 160 / 4 + 4, "no index is skipped but theirs"
 
 
-def test_nobody_to_train_with_is_said() -> None:
+def test_a_split_without_training_persons_is_refused() -> None:
     split = {"train": 0.0, "validation": 1.0, "by": "subject", "subjects": 2}
     with pytest.raises(ConfigError, match=r"split.train: leaves no person"):
         StreamOrder(config(split=split), "train")
@@ -91,7 +91,7 @@ def test_nobody_to_train_with_is_said() -> None:
     split=st.sampled_from(["all", "train"]),
     balanced=st.booleans(),
 )
-def test_number_and_sample_name_each_other(
+def test_number_and_sample_are_inverse(
     number: int, persons: bool, split: Any, balanced: bool
 ) -> None:
     shares: dict[str, Any] = {"train": 0.5, "validation": 0.5}
@@ -103,7 +103,7 @@ def test_number_and_sample_name_each_other(
 
 
 @pytest.mark.parametrize("persons", [False, True])
-def test_what_is_left_out_has_no_number(persons: bool) -> None:
+def test_held_back_samples_have_no_number(persons: bool) -> None:
     shares: dict[str, Any] = {"train": 0.5, "validation": 0.5}
     if persons:
         shares |= {"by": "subject", "subjects": 4}

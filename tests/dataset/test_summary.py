@@ -37,7 +37,7 @@ def test_data_set(whole: Path, name: str) -> None:
     assert found["entropy_bits"]["stft"]["walking"]["mean"] > 0
 
 
-def test_half_built_folder_says_how_far_it_is(
+def test_inspect_of_an_unfinished_build_shows_its_progress(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     original, made = batch.synthesise, []
@@ -67,7 +67,7 @@ def test_scene(tmp_path: Path) -> None:
         assert found["activity"]["slug"] == "walking_to_falling"
 
 
-def test_what_is_not_ours_is_refused(whole: Path, tmp_path: Path) -> None:
+def test_foreign_files_are_refused(whole: Path, tmp_path: Path) -> None:
     import h5py
 
     with h5py.File(tmp_path / "other.h5", "w") as file:

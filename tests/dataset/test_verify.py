@@ -1,4 +1,4 @@
-"""`verify` finds whatever was changed behind a data set's back."""
+"""`verify` finds every change of a data set."""
 
 import shutil
 from collections.abc import Callable
@@ -63,7 +63,7 @@ def _move(file: h5py.File) -> None:
 
 
 @pytest.mark.parametrize(
-    ("damage", "said"),
+    ("damage", "expected"),
     [
         (_flip_level, "checksum"),
         (_flip_level_and_checksum, "differs by up to 1 grey level"),
@@ -74,12 +74,12 @@ def _move(file: h5py.File) -> None:
     ],
 )
 def test_damage_is_found(
-    whole: Path, tmp_path: Path, damage: Callable[[h5py.File], None], said: str
+    whole: Path, tmp_path: Path, damage: Callable[[h5py.File], None], expected: str
 ) -> None:
     shutil.copytree(whole, tmp_path / "set")
     with h5py.File(tmp_path / "set/dataset.h5", "r+") as file:
         damage(file)
-    assert any(said in problem for problem in verify(tmp_path / "set", 9).problems)
+    assert any(expected in problem for problem in verify(tmp_path / "set", 9).problems)
 
 
 def test_other_versions_compare_within_one_level(whole: Path, tmp_path: Path) -> None:

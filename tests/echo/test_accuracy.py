@@ -1,4 +1,4 @@
-"""The promise of `tolerance_db`: never exceeded, refused only where it must be."""
+"""`tolerance_db`: never exceeded, refused only where float64 cannot keep it."""
 
 from dataclasses import replace
 
@@ -21,7 +21,7 @@ from radhar_cli.scene import draw_scene
 
 pytestmark = pytest.mark.usefixtures("either_sum")
 
-SAID_DB = 13.0  # the error is an estimate from some dozens of pulses; docs/engines.md
+ESTIMATE_DB = 13.0  # the error is an estimate from some dozens of pulses; docs/engines.md
 CUBE = {"kind": "cube"}
 
 
@@ -95,7 +95,7 @@ def within(drawn: dict, activity: Activity, tolerance_db: float) -> float | None
         return -np.inf
     error_db = ref.error_db(found, right)
     assert error_db <= tolerance_db, (activity.slug, waveform, accuracy)
-    assert error_db == pytest.approx(accuracy.error_db, abs=SAID_DB), (activity.slug, waveform)
+    assert error_db == pytest.approx(accuracy.error_db, abs=ESTIMATE_DB), (activity.slug, waveform)
     return error_db
 
 
@@ -112,11 +112,12 @@ def test_the_tolerance_is_kept(block):
 
 def test_without_mti_it_is_that_of_the_whole_signal():
     """24 scenes more; what stands still counts, so that every one has a signal."""
-    rng = np.random.default_rng(7)
+    rng, found = np.random.default_rng(7), []
     for number in range(24):
         tolerance_db, drawn = float(rng.uniform(-120, -20)), random_config(rng)
         drawn["processing"]["mti"] = False
-        within(drawn, ACTIVITIES[number % 12], tolerance_db)
+        found.append(within(drawn, ACTIVITIES[number % 12], tolerance_db))
+    assert sum(error is not None and np.isfinite(error) for error in found) >= 20
 
 
 CONFIG = {
@@ -193,7 +194,7 @@ def test_tighter_tolerances_never_take_less():
     assert not found[-1].single
 
 
-def test_what_hardly_turns_is_double_at_once():
+def test_slow_motion_is_computed_in_double_at_once():
     """5 mm/s: the first difference leaves -50 dB, and single precision not enough of that."""
     slow = ref.Points(lambda t: (2 + 0.005 * t)[None])
     echo = replace(walk(-80.0), source=slow)
@@ -212,7 +213,7 @@ def test_the_limit_that_a_refusal_names_can_be_kept():
         walk(limit_db - 20).slow_time()
 
 
-def test_float64_holds_less_of_a_signal_of_which_the_mti_leaves_less():
+def test_the_limit_of_float64_depends_on_what_the_mti_leaves():
     """A phase is held to 1e-16 of its cycles, whatever the PRF; x shrinks with it."""
     limits = []
     for prf in (1250.0, 20000.0):
@@ -235,7 +236,7 @@ def test_the_tolerance_is_that_after_any_canceller(canceller):
     )
     error_db = ref.error_db(found, right)
     assert error_db < -100
-    assert error_db == pytest.approx(accuracy.error_db, abs=SAID_DB)
+    assert error_db == pytest.approx(accuracy.error_db, abs=ESTIMATE_DB)
 
 
 class TestEstimate:

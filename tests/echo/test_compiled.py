@@ -74,7 +74,7 @@ class TestSum:
         gap = np.abs(found - by_numpy(*scene))[~exact]
         assert gap.max(initial=0) < 3e-5 * size
 
-    def test_takes_the_paths_that_it_is_told(self):
+    def test_only_the_given_paths_are_summed(self):
         waveform = Waveform(77e9, 4e9, 40e-6, 1e6, 1e3, 1.0)
         delay = 1e-8 + 1e-12 * np.arange(4)[:, None] * np.arange(20)
         paths, shift = Paths(delay, np.ones((4, 20))), np.zeros(11, np.intp)
@@ -96,7 +96,7 @@ class TestSum:
         assert np.array_equal(found, right) == (250 * radar.n_pulses < compiled.MIN_TERMS)
         assert ref.error_db(found, right) < -100
 
-    def test_what_is_no_number_stays_none(self):
+    def test_nan_stays_nan_and_is_read_within_bounds(self):
         """And reads no memory but its own."""
         waveform = Waveform(77e9, 4e9, 40e-6, 1e6, 1e3, 1.0)
         paths = Paths(np.full((1, 20), np.nan), np.ones((1, 20)))

@@ -163,7 +163,7 @@ class TestMotionInChirp:
         assert beat_frequency(False) == pytest.approx(radar.slope * 2 * 3.0 / ref.C, abs=bin_width)
 
     def test_the_plan_uses_it(self):
-        """For the slow-time signal and the range-time map of a person alike."""
+        """Both for the slow-time signal and for the range-time map of a person."""
         base = {
             "duration_s": 0.4,
             "radar": {"carrier_hz": 24e9, "bandwidth_hz": 1e9, "prf_hz": 300},
@@ -180,7 +180,7 @@ class TestMotionInChirp:
         assert -80 < ref.error_db(moving["signal"].x, frozen["signal"].x) < -20
         assert -80 < ref.error_db(moving["rtm"].power, frozen["rtm"].power) < -20
 
-    def test_blocks_are_bounded_and_do_not_matter(self, monkeypatch):
+    def test_block_length_is_bounded_and_does_not_matter(self, monkeypatch):
         radar = RADARS["odd"]
         whole = self.beat(crowd, radar)
         monkeypatch.setattr(cube, "BLOCK_SAMPLES", 7 * radar.n_adc)
@@ -191,7 +191,7 @@ class TestMotionInChirp:
 
 
 class TestBlocks:
-    """The matrix is made block by block; nobody may notice."""
+    """The matrix is made block by block; results do not depend on the blocks."""
 
     @pytest.fixture
     def waveform(self):

@@ -136,11 +136,11 @@ class TestStaticPaths:
 
         return ref.Points(ranges, strength=np.array([strength, 1.0]))
 
-    def test_they_change_no_bit(self):
+    def test_static_paths_change_no_bit(self):
         alone = after_mti(ref.Points(walk), RADAR)
         assert np.array_equal(after_mti(self.with_static(1e6), RADAR), alone)
 
-    def test_without_mti_they_count(self):
+    def test_without_mti_static_paths_count(self):
         source = self.with_static(5.0)
         paths = source(RADAR.times)
         y = DirectEcho(
@@ -190,7 +190,7 @@ class TestPrecision:
         assert ref.error_db(np.diff(y), right_answer(source, RADAR)) < DEFAULT
 
     @pytest.mark.parametrize("speed", np.geomspace(1e-6, 1, 13))
-    def test_no_speed_falls_between_the_two(self, speed):
+    def test_every_speed_keeps_the_tolerance_in_single_or_double(self, speed):
         source = ref.Points(lambda t: (2 + speed * t)[None])
         assert ref.error_db(after_mti(source, RADAR), right_answer(source, RADAR)) < DEFAULT
 
@@ -216,7 +216,7 @@ class TestBreakpoints:
         assert np.abs(error[near]).max() <= 2 * np.abs(error[~near]).max()
         check(source, RADAR)
 
-    def test_one_that_nobody_names_is_interpolated_across(self):
+    def test_an_undeclared_breakpoint_is_interpolated_across(self):
         """A broken contract costs accuracy at that place alone."""
         source = self.braked(())
         assert ref.error_db(after_mti(source, RADAR), right_answer(source, RADAR)) < DEFAULT
@@ -236,7 +236,7 @@ class TestBreakpoints:
 
 
 class TestKnots:
-    """How often the kinematics are evaluated: no more than they ask for."""
+    """How often the kinematics are evaluated: no more often than the motion needs."""
 
     def asked(self, source: ref.Points, radar: ref.Radar, tolerance: float = DEFAULT) -> int:
         """Times that the source was asked for, without those of the check."""
@@ -251,14 +251,14 @@ class TestKnots:
             highest_frequency=gait,
         )
 
-    def test_a_fast_radar_needs_few(self):
+    def test_a_high_prf_needs_few_knots(self):
         assert self.asked(self.swinging(0.5), RADAR) < 0.1 * RADAR.times.size
 
-    def test_a_tighter_tolerance_more(self):
+    def test_a_tighter_tolerance_needs_more_knots(self):
         asked = [self.asked(self.swinging(1.0), RADAR, db) for db in (-40, -80, -120)]
         assert asked == sorted(set(asked))
 
-    def test_a_slow_radar_takes_its_pulses_once(self):
+    def test_a_low_prf_evaluates_each_pulse_once(self):
         source, radar = ref.Points(walk), ref.Radar(2e9, 1e9, adc_rate=1e6, prf=128, duration=0.5)
         assert self.asked(source, radar) == 64
         moments = np.concatenate(source.asked)
@@ -268,7 +268,7 @@ class TestKnots:
         source = ref.Points(walk, smooth=False)
         assert self.asked(source, RADAR) == RADAR.times.size
 
-    def test_fast_motions_get_more(self):
+    def test_fast_motion_needs_more_knots(self):
         """Eight times the frequency, a few times the knots."""
         slow, fast = (self.asked(self.swinging(gait), RADAR) for gait in (0.25, 2.0))
         assert 2 * slow < fast < RADAR.times.size
@@ -341,13 +341,13 @@ class TestFaces:
 
     @pytest.mark.parametrize("tolerance", [-40.0, -84.0])
     @pytest.mark.parametrize("at", [1, 2, 309, 618, 1250, 1545, 2498, 2499])
-    def test_whichever_pulse_it_is(self, at, tolerance):
+    def test_a_jump_at_any_pulse(self, at, tolerance):
         source = self.jumping(at, 0.4, 1.0)
         found = after_mti(source, RADAR, tolerance)
         assert ref.error_db(found, right_answer(source, RADAR)) < tolerance
 
     @pytest.mark.parametrize("at", [1, 1250, 2497, 2499])
-    def test_out_of_a_wall_that_lets_nothing_through(self, at):
+    def test_a_step_out_of_an_opaque_wall(self, at):
         """A hundred decades at once: nothing overflows, and the little before is not missed."""
         source = self.jumping(at, 1e-101, 1.0)
         found = after_mti(source, RADAR)

@@ -1,4 +1,4 @@
-"""Two engines, one contract: the same slow-time signal, for every activity and many radars."""
+"""Both engines give the same slow-time signal, for every activity and many radars."""
 
 import numpy as np
 import pytest

@@ -40,7 +40,7 @@ def exact_bins(paths: Paths, w: Waveform) -> np.ndarray:
 @pytest.mark.parametrize("samples", [2, 7, 40, 401, 2000])
 @given(data=st.data())
 @settings(max_examples=10, deadline=None)
-def test_few_nodes_show_all_of_a_chirp(single, error_db, samples, data):
+def test_few_fast_time_nodes_give_every_bin(single, error_db, samples, data):
     """Any extent, any place, any padding: bins as of all samples, beside a scatterer's peak."""
     seed = data.draw(st.integers(0, 2**32 - 1))
     rng = np.random.default_rng(seed)
@@ -142,7 +142,7 @@ def test_the_tolerance_is_kept(block):
         assert error_db <= tolerance_db, (drawn, activity.slug, found["accuracy"])
         if isinstance(canceller, Fir):
             assert error_db == pytest.approx(said_db, abs=13), (drawn, activity.slug)
-        else:  # what is said bounds it
+        else:  # the reported error bounds it
             assert error_db < said_db + 13, (drawn, activity.slug)
         made += 1
     assert made >= 12
@@ -176,7 +176,7 @@ def test_a_high_pass_that_leaves_little_keeps_the_promise():
     assert ref.error_db(canceller(y), canceller(right)) < min(-60, accuracy.error_db + 6)
 
 
-def test_what_stands_still_is_left_out():
+def test_static_paths_are_left_out():
     both = ref.Points(lambda t: np.stack([2 + 1.5 * t, 2.5 + 0 * t]))
     alone = ref.Points(lambda t: (2 + 1.5 * t)[None])
     for canceller in (FIRST_DIFFERENCE, MeanRemoval(), HighPass(4, 0.01)):

@@ -91,13 +91,13 @@ class TestBreakpoints:
         )
 
     @pytest.mark.parametrize("between", [0.5, 3.0, 6.0])
-    def test_a_piece_of_few_knots_is_not_interpolated(self, between):
+    def test_a_short_piece_is_not_interpolated(self, between):
         """Eight knots, for a stencil and one to spare on either side."""
         both = (5.1, 5.1 + between)
         spoilt = np.flatnonzero(shifts(self.times(), both) == EXACT)
         assert spoilt.tolist() == list(range(5, int(both[1]) + 1))
 
-    def test_a_longer_piece_is(self):
+    def test_a_longer_piece_is_interpolated(self):
         shift = shifts(self.times(), (5.1, 5.1 + TAPS + 1))
         assert np.flatnonzero(shift == EXACT).tolist() == [5, 12]
         assert shift.tolist() == [0, 0, 0, -1, -2, EXACT, 2, 1, 0, 0, -1, -2, EXACT, 2, 1] + 5 * [0]

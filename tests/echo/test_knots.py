@@ -35,12 +35,12 @@ def test_the_path_that_changes_most_decides():
     assert step(0.0, 40.0, 1.0) == int(0.1 / 40 * 5000) + 1  # 1 - exp(-x) < x
 
 
-def test_a_path_without_an_echo_asks_for_nothing():
+def test_a_path_of_amplitude_0_needs_no_knots():
     assert step(10.0, silent=2) == 25
 
 
-def test_moving_paths_are_told_from_those_that_stand():
-    """Also where the change lies between the places that are looked at first."""
+def test_moving_paths_are_told_from_static_ones():
+    """Also where the change lies between the times that are compared first."""
 
     class Blink(Fading):
         def __call__(self, t: Float) -> Paths:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from radhar_cli.echo.interpolation import NODES, TAPS
-from radhar_cli.echo.phase_recurrence import LONGEST_RUN, phasors_between_knots, runs
+from radhar_cli.echo.phase_recurrence import MAX_RUN, phasors_between_knots, runs
 
 SEGMENTS, PATHS = 3, 4
 
@@ -54,5 +54,5 @@ def test_a_cubic_errs_by_what_chebyshev_leaves(step):
 @pytest.mark.parametrize("step", range(3, 90))
 def test_runs_are_short_and_cover_the_segment(step):
     length, differences = runs(step, 3)
-    assert length <= LONGEST_RUN
+    assert length <= MAX_RUN
     assert len(differences) * length - step < len(differences)

@@ -2,7 +2,7 @@
 
 Zero, constant, impulse, denormal (1e-310), huge (1e150): finite results, no warning, and the same
 as for an input of size 1 but for the scale. Spectra are those of a signal scaled to 1, so that
-their squares are finite; elsewhere squares beyond 1e154 are infinite: that is said.
+their squares are finite; elsewhere squares beyond 1e154 are infinite, with a warning of NumPy.
 """
 
 from collections.abc import Callable
@@ -159,7 +159,7 @@ def test_range_power(kind: str) -> None:
     assert not range_power(z * 1e-310).any()
 
 
-def test_squares_beyond_a_double_are_said() -> None:
+def test_squares_beyond_a_double_overflow_with_a_warning() -> None:
     """|S| from 1.4e154 on: NumPy warns of the overflow and the map is infinite."""
     with pytest.warns(RuntimeWarning, match="overflow"):
         power = range_power(np.full((20, 24), 1e155 + 0j))

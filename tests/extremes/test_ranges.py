@@ -1,4 +1,4 @@
-"""Where the signal of a scene is right: every parameter from one end of its range to the other.
+"""Accuracy of the signal over the full range of every parameter.
 
 The cube is compared with the naive formulas in extended precision (free space), the direct engine
 with the cube. docs/limits.md quotes what these tests print.
@@ -181,7 +181,7 @@ class TestSnr:
         assert measured == pytest.approx(variance, rel=5 / np.sqrt(self.PULSES))
 
     @pytest.mark.parametrize("engine", ["cube", "direct"])
-    def test_beyond_the_digits_of_a_double(self, engine: str) -> None:
+    def test_noise_below_the_rounding_of_a_double(self, engine: str) -> None:
         """At 300 dB the noise is 1e-15 of the signal: defined, drawn, and at rounding's size."""
         recording = record(self.config(engine, 300), "noise", "signal")
         assert recording["noise"].sigma > 0
@@ -189,7 +189,7 @@ class TestSnr:
         assert relative(recording["signal"].x, clean) < 1e-13
 
     @pytest.mark.parametrize("engine", ["cube", "direct"])
-    def test_none_is_none(self, engine: str) -> None:
+    def test_snr_null_adds_no_noise(self, engine: str) -> None:
         """Another seed changes nothing where there is no noise, and something where there is."""
         for snr_db, same in ((None, True), (120, False)):
             config = self.config(engine, snr_db)
@@ -243,7 +243,7 @@ class TestFewPulses:
                 fit, rel=1e-9, abs=1e-10 * np.abs(x).max()
             )
 
-    def test_one_pulse_less_is_refused(self) -> None:
+    def test_a_window_longer_than_the_signal_is_refused(self) -> None:
         """A window of all 100 pulses, of which the MTI leaves 99."""
         document = SCENE | {"duration_s": 0.02, "processing": {"window_fraction": 0.996}}
         with pytest.raises(ConfigError, match=r"processing.window_fraction = 0.996: .*\b99 pulses"):

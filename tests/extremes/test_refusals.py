@@ -102,7 +102,7 @@ keys = pytest.mark.parametrize("key", LIMITS)
 
 
 @keys
-def test_at_its_limits_it_is_taken_and_beyond_them_refused_by_key_and_value(key: str) -> None:
+def test_limits_are_accepted_and_values_beyond_are_refused_by_key(key: str) -> None:
     least, most, below, above = LIMITS[key]
     if key not in TOGETHER:
         for value in (least, most):
@@ -129,7 +129,7 @@ NUMBERS = [key for key in LIMITS if key.split(".")[0] in ("radar", "subject", "m
 
 @pytest.mark.parametrize("key", ["radar.carrier_hz", "motion.angle_deg", "snr_db", "wall.eps_r"])
 @pytest.mark.parametrize("form", ["uniform", "choice", "normal"])
-def test_a_distribution_that_reaches_beyond_it_is_refused(key: str, form: str) -> None:
+def test_a_distribution_that_exceeds_a_limit_is_refused(key: str, form: str) -> None:
     """Every draw has to be in the range; the message says how far this one reaches."""
     with pytest.raises(ConfigError, match=re.escape(f"here: {key} = ")) as caught:
         validated(Config, document(key, reaching(key)[form]), "here", {})
@@ -147,7 +147,7 @@ def reaching(key: str) -> dict[str, dict[str, Any]]:
     }
 
 
-def test_every_number_of_a_scene_is_held_to_its_range_in_every_form() -> None:
+def test_every_distribution_of_a_number_is_checked_against_its_range() -> None:
     for key in [*NUMBERS, "snr_db", "duration_s", "wall.eps_r"]:
         for value in reaching(key).values():
             with pytest.raises(ConfigError, match=re.escape(f"here: {key} = ")):
@@ -181,7 +181,7 @@ def spoilt(key: str, value: Any) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("value", ["fast", [], {}, None, True, math.nan, math.inf, 10**400])
-def test_what_is_no_number_is_refused_whatever_the_key(value: Any) -> None:
+def test_nonsense_is_refused_for_every_key(value: Any) -> None:
     for key in LIMITS:
         if value is None and key in NULLABLE:
             continue

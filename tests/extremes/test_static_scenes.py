@@ -1,4 +1,4 @@
-"""What does not move: nothing of it is left after the MTI, however strong it is."""
+"""Static echoes: the MTI removes them completely, however strong they are."""
 
 import numpy as np
 import pytest

@@ -62,7 +62,7 @@ def test_behind_metal_there_is_only_the_noise_that_the_snr_refers_to(
 
 
 @engines
-def test_a_wall_down_to_the_last_denormal(engine: str) -> None:
+def test_losses_down_to_denormal_amplitudes(engine: str) -> None:
     """Losses that leave amplitudes of 1e-122 and less: still finite, and the engines agree."""
     for loss_tangent in (1.0, 2.0, 3.0):
         config = config_of(engine, wall={"loss_tangent": loss_tangent}, snr_db=0.0)
@@ -76,7 +76,7 @@ def test_a_wall_down_to_the_last_denormal(engine: str) -> None:
 
 
 @pytest.mark.parametrize("thickness", [1e-6, 1e6])
-def test_thinnest_and_thickest(thickness: float) -> None:
+def test_thinnest_and_thickest_walls(thickness: float) -> None:
     """A micrometre is two faces and hardly any chord; a wall of 1e6 m has the person inside."""
     wall = {"size_m": [thickness, 5, 2.5], "center_m": [1 + thickness / 2, 0, 1.25]}
     found = {engine: signal(config_of(engine, wall=wall)) for engine in ("cube", "direct")}

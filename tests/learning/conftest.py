@@ -1,4 +1,4 @@
-"""Runs that several tests look at; nobody changes them."""
+"""Runs that several tests read and none changes."""
 
 from pathlib import Path
 

@@ -84,14 +84,14 @@ class Watched:
     """A progress that remembers, and raises after an epoch if asked to."""
 
     def __init__(self, stop_after: int = 0, error: type[BaseException] = KeyboardInterrupt) -> None:
-        self.said: list[str] = []
+        self.messages: list[str] = []
         self.losses: list[float] = []
         self.best: list[bool] = []
         self.steps: list[int] = []
         self.stop_after, self.error = stop_after, error
 
     def say(self, message: str) -> None:
-        self.said.append(message)
+        self.messages.append(message)
 
     def epoch(self, number: int, epochs: int, steps: int) -> None:
         self.steps.append(steps)

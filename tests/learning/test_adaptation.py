@@ -39,7 +39,7 @@ def learned(data: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return run
 
 
-def test_other_contrast_is_learned_without_labels(learned: Path, tmp_path: Path) -> None:
+def test_adaptation_restores_accuracy_at_another_contrast(learned: Path, tmp_path: Path) -> None:
     measured = another_radar(tree(tmp_path / "measured", seed=5))
     adapt(learned, measured, tmp_path / "adapted", CPU)
     assert accuracy(learned, measured) < 0.7
@@ -48,7 +48,7 @@ def test_other_contrast_is_learned_without_labels(learned: Path, tmp_path: Path)
 
 def test_statistics_alone_change_and_labels_do_not_matter(learned: Path, tmp_path: Path) -> None:
     tree(tmp_path / "one", seed=5)
-    (tmp_path / "one/walking").rename(tmp_path / "one/unknown")  # a class of nobody's
+    (tmp_path / "one/walking").rename(tmp_path / "one/unknown")  # an unknown class
     metadata = adapt(learned, tmp_path / "one", tmp_path / "adapted", CPU)
     assert "adapted_to" in metadata.work
     (_, before), (_, after) = load_best(learned), load_best(tmp_path / "adapted")
@@ -60,7 +60,7 @@ def test_statistics_alone_change_and_labels_do_not_matter(learned: Path, tmp_pat
 
 
 def information(run: Path, data: Path) -> float:
-    """Of predictions on images: entropy of their mean less their mean entropy, in nats."""
+    """Mutual information of images and predictions: entropy of the mean less mean entropy, nats."""
     metadata, model = load_best(run)
     images = open_for(metadata, data, None)
     p = predict(model, metadata, images, np.arange(len(images)), CPU, 32).probabilities
@@ -75,7 +75,7 @@ def test_epochs_raise_the_information_of_predictions_and_lose_no_accuracy(
     watched = Watched()
     adapt(learned, measured, tmp_path / "norms", CPU)
     adapt(learned, measured, tmp_path / "epochs", CPU, epochs=6, progress=watched)
-    assert len(watched.said) == 6
+    assert len(watched.messages) == 6
     assert information(tmp_path / "epochs", measured) > information(tmp_path / "norms", measured)
     assert accuracy(tmp_path / "epochs", measured) > 0.9
 
@@ -98,7 +98,7 @@ def test_epochs_leave_the_last_layer_and_do_not_look_at_labels(
 
 
 @pytest.mark.parametrize("epochs", [0, 2])
-def test_the_same_again_gives_the_same_weights(learned: Path, tmp_path: Path, epochs: int) -> None:
+def test_adaptation_is_reproducible(learned: Path, tmp_path: Path, epochs: int) -> None:
     measured = tree(tmp_path / "measured", seed=5)
     for name in ("one", "two"):
         adapt(learned, measured, tmp_path / name, CPU, epochs=epochs)
@@ -108,7 +108,7 @@ def test_the_same_again_gives_the_same_weights(learned: Path, tmp_path: Path, ep
     assert same(one.state_dict(), two.state_dict())
 
 
-def test_what_cannot_be_adapted_is_told(learned: Path, data: Path, tmp_path: Path) -> None:
+def test_what_cannot_be_adapted_is_refused(learned: Path, data: Path, tmp_path: Path) -> None:
     few = tree(tmp_path / "few", classes=("walking",))
     with pytest.raises(ConfigError, match="has 8 images; should have at least 16"):
         adapt(learned, few, tmp_path / "no", CPU)

@@ -37,7 +37,7 @@ def centre(levels: Levels) -> tuple[float, float]:
     )
 
 
-def test_nothing_asked_changes_nothing() -> None:
+def test_no_augmentation_by_default() -> None:
     levels = np.random.default_rng(1).integers(0, 256, (16, 20), dtype=np.uint8)
     assert np.array_equal(changed(levels), levels)
 
@@ -147,7 +147,7 @@ def test_any_setting_gives_an_image_of_the_same_size_again_and_again(
     assert np.array_equal(one, again)
 
 
-def test_rows_epochs_and_seeds_differ() -> None:
+def test_augmentation_differs_by_row_epoch_and_seed() -> None:
     levels = blob(20, 20)
     kinds = [
         changed(levels, row, epoch, seed, time_shift=0.3).tobytes()
@@ -212,7 +212,7 @@ def test_init_with_other_classes_learns_the_last_layer_anew(run_dir: Path, tmp_p
     other = split_tree(tmp_path / "other", classes=("walking", "wave"))
     watched = Watched()
     train(settings(epochs=1), other, tmp_path / "out", watched, start=run_dir)
-    assert any("last layer" in message for message in watched.said)
+    assert any("last layer" in message for message in watched.messages)
 
 
 def test_init_of_another_model_is_refused(run_dir: Path, data: Path, tmp_path: Path) -> None:

@@ -120,7 +120,7 @@ def test_two_processes_have_the_gradient_of_one(data: Path, tmp_path: Path) -> N
 
 
 @pytest.mark.slow
-def test_two_processes_leave_one_set_of_files_and_go_on(
+def test_two_processes_write_one_set_of_files_and_resume(
     data: Path, run_dir: Path, tmp_path: Path
 ) -> None:
     config, out = tmp_path / "train.json", tmp_path / "run"

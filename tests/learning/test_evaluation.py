@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import torch
 from learning.patterns import CLASSES, one_clear_line, plant, split_tree, trained, tree
+from listener import Listener
 from PIL import Image
 from small import small_config
 
@@ -29,14 +30,6 @@ from radhar_cli.learning.single_result import EvalOptions
 CPU = torch.device("cpu")
 
 
-class Ears:
-    def __init__(self) -> None:
-        self.said: list[str] = []
-
-    def say(self, message: str) -> None:
-        self.said.append(message)
-
-
 @pytest.fixture(scope="session")
 def learned(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     """(run, data) of a run that gets everything right, its last layer planted: S2, S3 and S8."""
@@ -47,13 +40,13 @@ def learned(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     return place / "good", root
 
 
-def asked(
+def evaluated(
     learned: tuple[Path, Path], data: Path | list[Path] | None = None, **more: Any
-) -> tuple[Report, Ears]:
-    ears = Ears()
+) -> tuple[Report, Listener]:
+    listener = Listener()
     places = learned[1] if data is None else data
     places = places if isinstance(places, list) else [places]
-    return evaluate([learned[0]], places, EvalOptions(**more), CPU, ears), ears
+    return evaluate([learned[0]], places, EvalOptions(**more), CPU, listener), listener
 
 
 def only(report: Report) -> dict[str, Any]:
@@ -68,13 +61,13 @@ def test_report_of_a_good_run(learned: tuple[Path, Path], tmp_path: Path) -> Non
     good = tmp_path / "good", learned[1]
     trained(good[1], good[0], epochs=1, model="fftnet")
     plant(*good)
-    report, ears = asked(good, tsne=True, filters=True, in_place_vs_moving=True, batch=4)
+    report, listener = evaluated(good, tsne=True, filters=True, in_place_vs_moving=True, batch=4)
     numbers = only(report)
     assert numbers["accuracy"] == 1.0
     assert numbers["confusion"] == np.diag([3, 3, 3]).tolist()
     assert numbers["in_place_vs_moving"] == [[6, 0], [0, 3]]
     assert numbers["seen_in_training"] == {"images": 0, "scenes": 0}
-    assert not any("trained on" in line for line in ears.said)
+    assert not any("trained on" in line for line in listener.messages)
     assert len(report.numbers["filters"]["good"]) == 6
     out = tmp_path / "report"
     report.write(out)
@@ -97,7 +90,7 @@ def test_report_of_a_good_run(learned: tuple[Path, Path], tmp_path: Path) -> Non
     assert timing["image_s"] > 0
 
 
-def test_a_planted_confusion_is_found_where_it_was_planted(
+def test_planted_confusions_appear_in_the_matrix(
     learned: tuple[Path, Path], tmp_path: Path
 ) -> None:
     """The folders of punching and walking change their names; kicking loses an image."""
@@ -108,7 +101,7 @@ def test_a_planted_confusion_is_found_where_it_was_planted(
     (val / "walking").rename(val / "punching")
     (val / "x").rename(val / "walking")
     (val / "walking/000.png").unlink()
-    numbers = only(asked(learned, root, in_place_vs_moving=True)[0])
+    numbers = only(evaluated(learned, root, in_place_vs_moving=True)[0])
     assert numbers["confusion"] == [[0, 0, 3], [0, 3, 0], [2, 0, 0]]
     assert numbers["in_place_vs_moving"] == [[3, 3], [2, 0]]
     assert numbers["accuracy"] == 3 / 8
@@ -120,22 +113,22 @@ def test_some_of_the_classes_are_matched_by_name(
 ) -> None:
     for name in ("walking", "kicking"):
         shutil.copytree(learned[1] / "val" / name, tmp_path / "t/val" / name)
-    numbers = only(asked(learned, tmp_path / "t")[0])
+    numbers = only(evaluated(learned, tmp_path / "t")[0])
     assert numbers["confusion"] == np.diag([0, 3, 3]).tolist()
     assert numbers["accuracy"] == 1
 
 
-def test_it_is_said_when_images_were_trained_on(learned: tuple[Path, Path]) -> None:
-    report, ears = asked(learned, split="train")
+def test_evaluation_on_training_images_is_warned_of(learned: tuple[Path, Path]) -> None:
+    report, listener = evaluated(learned, split="train")
     assert only(report)["seen_in_training"]["images"] == 24
-    assert any("24 of these 24 images" in line for line in ears.said)
-    report, _ = asked(learned, split="all")
+    assert any("24 of these 24 images" in line for line in listener.messages)
+    report, _ = evaluated(learned, split="all")
     assert only(report)["seen_in_training"]["images"] == 24
 
 
 def test_several_data_sets_give_robustness(learned: tuple[Path, Path], tmp_path: Path) -> None:
     noisy = split_tree(tmp_path / "noisy", 1, 2, seed=4)
-    report, _ = asked(learned, [learned[1], noisy], in_place_vs_moving=True)
+    report, _ = evaluated(learned, [learned[1], noisy], in_place_vs_moving=True)
     report.write(tmp_path / "out")
     with (tmp_path / "out/robustness.csv").open() as file:
         rows = list(csv.DictReader(file))
@@ -156,7 +149,7 @@ def test_several_runs_overlay_their_curves(
     monkeypatch.setattr(
         module, "curves_png", lambda series, best: drawn.append(list(series)) or draw(series, best)
     )
-    report = evaluate([learned[0], run_dir], [learned[1]], EvalOptions(), CPU, Ears())
+    report = evaluate([learned[0], run_dir], [learned[1]], EvalOptions(), CPU, Listener())
     assert drawn == [["good", "plain"]]
     assert list(report.numbers["runs"]) == ["good", "plain"]
     assert not any(name == "robustness.png" for name, _, _ in report.figures)
@@ -166,12 +159,14 @@ def test_weights_alone_are_evaluated_without_curves(
     learned: tuple[Path, Path], tmp_path: Path
 ) -> None:
     shutil.copy(learned[0] / BEST, tmp_path / "model.safetensors")
-    report = evaluate([tmp_path / "model.safetensors"], [learned[1]], EvalOptions(), CPU, Ears())
+    report = evaluate(
+        [tmp_path / "model.safetensors"], [learned[1]], EvalOptions(), CPU, Listener()
+    )
     assert only(report)["accuracy"] == 1.0
     assert not any(name == "curves.png" for name, _, _ in report.figures)
 
 
-def test_batches_do_not_change_the_answers(learned: tuple[Path, Path]) -> None:
+def test_batch_size_does_not_change_predictions(learned: tuple[Path, Path]) -> None:
     metadata, model = load_best(learned[0])
     images = open_for(metadata, learned[1], None)
     rows = images.rows("val")[::-1].copy()
@@ -193,7 +188,7 @@ def test_features_and_last_layer_make_the_probabilities(learned: tuple[Path, Pat
 
 
 @pytest.mark.parametrize(
-    ("classes", "parts", "size", "said"),
+    ("classes", "parts", "size", "expected"),
     [
         (("walkin",), {"val": 1}, 32, ["'walkin' is unknown to the model", "'walking'"]),
         (CLASSES, {"val": 1}, 64, ["64 x 64 px", "32 x 32 px"]),
@@ -206,47 +201,46 @@ def test_data_that_does_not_fit_the_model_is_refused(
     classes: tuple[str, ...],
     parts: dict[str, int],
     size: int,
-    said: list[str],
+    expected: list[str],
 ) -> None:
     root = tree(tmp_path / "t", classes, parts, size)
     with pytest.raises(FolderError) as caught:
-        asked(learned, root)
-    one_clear_line(caught.value, *said, root)
+        evaluated(learned, root)
+    one_clear_line(caught.value, *expected, root)
 
 
-def test_two_groups_need_classes_of_ours(tmp_path: Path) -> None:
+def test_two_groups_need_the_twelve_classes(tmp_path: Path) -> None:
     root = split_tree(tmp_path / "t", 2, 1, classes=("a", "b"))
     trained(root, tmp_path / "run", epochs=1)
     with pytest.raises(RadharError, match="'a' is none of the twelve activities"):
-        asked((tmp_path / "run", root), in_place_vs_moving=True)
+        evaluated((tmp_path / "run", root), in_place_vs_moving=True)
 
 
 def test_the_same_data_twice_is_refused(learned: tuple[Path, Path]) -> None:
     with pytest.raises(FolderError, match="is given twice"):
-        asked(learned, [learned[1], learned[1]])
+        evaluated(learned, [learned[1], learned[1]])
 
 
 @pytest.mark.parametrize("content", ["", "a,b\n1,2\n"])
-def test_damaged_list_of_training_images_is_no_traceback(
+def test_a_damaged_list_of_training_images_is_refused(
     learned: tuple[Path, Path], tmp_path: Path, content: str
 ) -> None:
     shutil.copytree(learned[0], tmp_path / "run")
     (tmp_path / "run" / TRAINED_ON).write_text(content)
-    try:
-        asked((tmp_path / "run", learned[1]))
-    except RadharError as error:
-        one_clear_line(error, TRAINED_ON)
+    with pytest.raises(RadharError) as caught:
+        evaluated((tmp_path / "run", learned[1]))
+    one_clear_line(caught.value, TRAINED_ON, "is damaged")
 
 
-@pytest.mark.parametrize("count", [1, 2])
-def test_tsne_of_few_images_is_no_traceback(
-    learned: tuple[Path, Path], tmp_path: Path, count: int
-) -> None:
-    root = tree(tmp_path / "t", ("walking", "kicking")[:count], {"val": 1})
-    try:
-        asked(learned, root, tsne=True)
-    except RadharError as error:
-        one_clear_line(error, "tsne")
+def test_tsne_needs_two_images(learned: tuple[Path, Path], tmp_path: Path) -> None:
+    one = tree(tmp_path / "one", ("walking",), {"val": 1})
+    with pytest.raises(RadharError) as caught:
+        evaluated(learned, one, tsne=True)
+    one_clear_line(caught.value, "--tsne", "at least 2 images")
+    report, _ = evaluated(
+        learned, tree(tmp_path / "two", ("walking", "kicking"), {"val": 1}), tsne=True
+    )
+    assert any(name == "tsne.png" for name, _, _ in report.figures)
 
 
 def test_speed_times_what_the_paper_times(learned: tuple[Path, Path]) -> None:
@@ -273,7 +267,7 @@ def test_predict_of_files_and_folders(learned: tuple[Path, Path]) -> None:
     assert dict(answers)[f"{root}: walking/001"] == pytest.approx(answers[0][1], abs=1e-5)
 
 
-def test_predict_asks_for_no_labels(learned: tuple[Path, Path], tmp_path: Path) -> None:
+def test_predict_needs_no_labels(learned: tuple[Path, Path], tmp_path: Path) -> None:
     root = tree(tmp_path / "t", ("who", "knows"), {"": 1})
     assert len(list(predict_paths(learned[0], [root], CPU, None, "all"))) == 2
 
@@ -282,13 +276,15 @@ def test_predict_refuses_other_sizes_and_damage(learned: tuple[Path, Path], tmp_
     Image.new("RGB", (64, 32)).save(tmp_path / "a.png")
     Image.new("RGB", (32, 32)).save(tmp_path / "b.png")
     (tmp_path / "b.png").write_bytes((tmp_path / "b.png").read_bytes()[:50])
-    for name, said in (("a", "32 x 64 px"), ("b", "truncated"), ("c", "no such file")):
+    for name, expected in (("a", "32 x 64 px"), ("b", "truncated"), ("c", "no such file")):
         with pytest.raises(FolderError) as caught:
             list(predict_paths(learned[0], [tmp_path / f"{name}.png"], CPU, None, "all"))
-        one_clear_line(caught.value, tmp_path / f"{name}.png", said)
+        one_clear_line(caught.value, tmp_path / f"{name}.png", expected)
 
 
-def test_onnx_runtime_agrees(learned: tuple[Path, Path], tmp_path: Path) -> None:
+def test_onnx_runtime_gives_the_same_probabilities(
+    learned: tuple[Path, Path], tmp_path: Path
+) -> None:
     import onnx
     import onnxruntime
 
@@ -321,36 +317,30 @@ split: {train: 0.5, validation: 0.5}
 """
 
 
-class Quiet:
-    def stage(self, name: str, total: int, done: int) -> None: ...
-    def advance(self, samples: int) -> None: ...
-    def say(self, message: str) -> None: ...
-
-
 def test_hdf5_and_png_train_and_evaluate_the_same(tmp_path: Path) -> None:
-    build(load_config(small_config(tmp_path, SET)), tmp_path / "set", progress=Quiet(), jobs=1)
+    build(load_config(small_config(tmp_path, SET)), tmp_path / "set", progress=Listener(), jobs=1)
     stored, files = tmp_path / "set", tmp_path / "set/png/stft"
     trained(stored, tmp_path / "run", epochs=1, batch_size=4, map="stft")
     on_both = []
     for data in (stored, files):
-        ears = Ears()
-        report = evaluate([tmp_path / "run"], [data], EvalOptions(), CPU, ears)
+        listener = Listener()
+        report = evaluate([tmp_path / "run"], [data], EvalOptions(), CPU, listener)
         on_both.append(only(report))
     for key in ("accuracy", "confusion", "calibration_error"):
         assert on_both[0][key] == on_both[1][key]
     assert on_both[0]["snr_db"] == 20.0
     seen = [
-        only(evaluate([tmp_path / "run"], [data], EvalOptions(split="train"), CPU, Ears()))
+        only(evaluate([tmp_path / "run"], [data], EvalOptions(split="train"), CPU, Listener()))
         for data in (stored, files)
     ]
     assert seen[0]["seen_in_training"] == {"images": 4, "scenes": 4}
     assert seen[1]["seen_in_training"] == {"images": 4, "scenes": 0}
     with pytest.raises(FolderError, match="has no map 'stfft'"):
-        evaluate([tmp_path / "run"], [stored], EvalOptions(map="stfft"), CPU, Ears())
+        evaluate([tmp_path / "run"], [stored], EvalOptions(map="stfft"), CPU, Listener())
 
 
-def test_a_map_that_is_not_in_the_folder_is_not_passed_over(tmp_path: Path) -> None:
+def test_a_map_that_the_folder_lacks_is_refused(tmp_path: Path) -> None:
     """A tree of one map of ours asked for another one."""
-    build(load_config(small_config(tmp_path, SET)), tmp_path / "set", progress=Quiet(), jobs=1)
+    build(load_config(small_config(tmp_path, SET)), tmp_path / "set", progress=Listener(), jobs=1)
     with pytest.raises(RadharError):
         trained(tmp_path / "set/png/rtm", tmp_path / "run", epochs=1, map="stft")

@@ -58,7 +58,7 @@ def test_an_interrupted_run_has_every_epoch_once(
     assert len(list((place / "run/tensorboard").iterdir())) == 1
 
 
-def test_a_finished_run_gets_them_later_and_loses_them_when_started_again(place: Path) -> None:
+def test_event_files_are_added_later_and_removed_by_overwrite(place: Path) -> None:
     trained(place / "tree", place / "run")
     assert not (place / "run/tensorboard").exists()
     for _ in range(2):

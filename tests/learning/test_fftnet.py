@@ -110,7 +110,7 @@ def test_filter_computes_in_float32_under_autocast() -> None:
         assert layer(x.bfloat16()).dtype == torch.float32
 
 
-def test_it_learns(tmp_path: Path) -> None:
+def test_training_lowers_the_loss(tmp_path: Path) -> None:
     """The loss of stripes in three directions falls by more than rounding could undo."""
     root = split_tree(tmp_path / "tree")
     history = trained(root, tmp_path / "run", epochs=4, model="fftnet").history

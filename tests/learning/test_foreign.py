@@ -1,4 +1,4 @@
-"""Data that others made: images of another size, classes under other names."""
+"""Foreign data: images of another size, classes under other names."""
 
 import json
 from collections.abc import Mapping
@@ -88,7 +88,7 @@ def test_eval_and_predict_take_other_sizes_with_resize_alone(run_dir: Path, tmp_
     assert json.loads((tmp_path / "report/report.json").read_text())["resize"] is True
 
 
-def test_resize_changes_nothing_of_the_right_size(data: Path, run_dir: Path) -> None:
+def test_resize_leaves_images_of_the_right_size_unchanged(data: Path, run_dir: Path) -> None:
     plain, resized = (radhar("predict", run_dir, data, *more) for more in ((), ("--resize",)))
     assert plain.stdout == resized.stdout
 
@@ -101,9 +101,7 @@ def test_predict_on_a_data_set_passes_over_its_preview(run_dir: Path, tmp_path: 
     assert len(done.stdout.splitlines()) == 9
 
 
-def test_a_class_that_the_model_does_not_know_is_left_out_and_said(
-    run_dir: Path, tmp_path: Path
-) -> None:
+def test_unknown_classes_are_left_out_with_a_warning(run_dir: Path, tmp_path: Path) -> None:
     root = tree(tmp_path / "t", (*CLASSES, "zebra"), {"val": 2})
     out = tmp_path / "report"
     done = radhar("eval", run_dir, root, "-o", out)
@@ -132,7 +130,7 @@ def test_classes_are_mapped_and_left_out_as_the_file_says(run_dir: Path, tmp_pat
     assert found["left_out"] == {"hop": 2}
 
 
-def test_rows_that_are_kept_keep_their_pixels_names_and_splits(tmp_path: Path) -> None:
+def test_kept_rows_have_their_pixels_names_and_splits(tmp_path: Path) -> None:
     images = open_images(split_tree(tmp_path / "t", 2, 1, classes=("a", "b", "c")), None, "rgb")
     left = images.renamed({"a": None, "c": "walking", "b": "punching"})
     assert left.classes == ("punching", "walking")
@@ -148,7 +146,7 @@ def test_rows_that_are_kept_keep_their_pixels_names_and_splits(tmp_path: Path) -
         images.renamed(dict.fromkeys("abc"))
 
 
-def test_train_learns_the_names_of_the_file_and_goes_on(tmp_path: Path) -> None:
+def test_train_uses_the_class_names_of_the_file_and_resumes(tmp_path: Path) -> None:
     root = split_tree(tmp_path / "t", classes=("box", "go", "hop"))
     file = classes_file(tmp_path, {"box": "punching", "go": "walking", "hop": None})
     command = ["train", root, "-o", tmp_path / "mine", "--classes", file, "--model", "smallnet"]
@@ -166,7 +164,7 @@ def test_train_learns_the_names_of_the_file_and_goes_on(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "words"),
     [
         ("box: 3", ["classes.yaml", "box = 3", "name of a class"]),
         ("box: ''", ["box = ''"]),
@@ -174,14 +172,14 @@ def test_train_learns_the_names_of_the_file_and_goes_on(tmp_path: Path) -> None:
         ("1: walking", ["the key 1 should be text"]),
     ],
 )
-def test_a_file_that_maps_no_names_is_refused(tmp_path: Path, text: str, said: list[str]) -> None:
+def test_a_file_that_maps_no_names_is_refused(tmp_path: Path, text: str, words: list[str]) -> None:
     (tmp_path / "classes.yaml").write_text(text)
     with pytest.raises(ConfigError) as caught:
         read_classes(tmp_path / "classes.yaml")
-    one_clear_line(caught.value, *said)
+    one_clear_line(caught.value, *words)
 
 
-def test_a_class_that_is_not_there_to_learn_from_is_refused(tmp_path: Path) -> None:
+def test_a_missing_class_is_refused(tmp_path: Path) -> None:
     images = open_images(tree(tmp_path / "t"), None, "rgb")
     with pytest.raises(FolderError) as caught:
         renamed(images, {"walkin": "walking"})

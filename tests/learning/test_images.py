@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import settings as examples
 from hypothesis import strategies as st
 from learning.patterns import one_clear_line, settings, split_tree, stripes, tree
+from listener import Listener
 from PIL import Image
 from small import small_config
 
@@ -42,17 +43,11 @@ split: {train: 0.5, validation: 0.25, test: 0.25}
 """
 
 
-class Quiet:
-    def stage(self, name: str, total: int, done: int) -> None: ...
-    def advance(self, samples: int) -> None: ...
-    def say(self, message: str) -> None: ...
-
-
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A data set of ours, classes named out of their order."""
     place = tmp_path_factory.mktemp("made")
-    build(load_config(small_config(place, SET)), place / "set", progress=Quiet(), jobs=1)
+    build(load_config(small_config(place, SET)), place / "set", progress=Listener(), jobs=1)
     return place / "set"
 
 
@@ -94,8 +89,8 @@ def test_gray_is_the_stored_level(made: Path) -> None:
     assert np.array_equal(read, np.repeat(levels[..., None], 3, axis=-1))
 
 
-def test_levels_of_our_pngs_need_no_data_set_around_them(made: Path, tmp_path: Path) -> None:
-    """And of nobody else's palette: a screenshot with 16 colours is as bright as it looks."""
+def test_levels_of_radhar_pngs_are_read_without_their_data_set(made: Path, tmp_path: Path) -> None:
+    """Of no other palette: a screenshot with 16 colours is read by its brightness."""
     own = next((made / "png/stft/train/walking").glob("*.png"))
     right = read_gray(own)
     shutil.copy(own, tmp_path / "moved.png")
@@ -106,7 +101,7 @@ def test_levels_of_our_pngs_need_no_data_set_around_them(made: Path, tmp_path: P
     assert np.array_equal(read_gray(few), luminance(read_rgb(few)))
 
 
-def test_gray_of_a_strange_image_is_its_brightness(tmp_path: Path) -> None:
+def test_gray_of_a_foreign_image_is_its_brightness(tmp_path: Path) -> None:
     split_tree(tmp_path / "t")
     rgb = open_images(tmp_path / "t", None, "rgb").pixels.read(0)
     gray = open_images(tmp_path / "t", None, "gray").pixels.read(0)
@@ -115,7 +110,7 @@ def test_gray_of_a_strange_image_is_its_brightness(tmp_path: Path) -> None:
     assert luminance(np.full((1, 1, 3), 255, np.uint8))[0, 0] == 255
 
 
-def test_hash_sees_pixels_labels_classes_and_splits(made: Path) -> None:
+def test_hash_covers_pixels_labels_classes_and_splits(made: Path) -> None:
     images = open_images(made, "stft", "rgb")
     rows = images.rows("train")
     digests = scan(images, rows).digests
@@ -136,14 +131,14 @@ def test_first_map_is_read_if_none_is_named_and_a_wrong_one_is_suggested(made: P
     one_clear_line(caught.value)
 
 
-def test_scenes_tell_people_apart_and_snr_is_known(made: Path) -> None:
+def test_subjects_and_snr_are_read_from_the_scenes(made: Path) -> None:
     images = open_images(made, None, "rgb")
     assert images.scenes is not None
     assert len(set(images.scenes)) == len(images)
     assert images.snr_db == 20.0
 
 
-def test_classes_of_ours_stand_in_the_papers_order_others_by_alphabet() -> None:
+def test_known_classes_keep_the_papers_order_and_others_are_alphabetical() -> None:
     ours = ("stationary", "punching", "kicking", "body_rotating", "walking")
     assert class_order(set(ours)) == ours
     assert class_order({"walking", "kicking", "zebra"}) == ("kicking", "walking", "zebra")
@@ -169,7 +164,7 @@ def test_folders_named_like_splits_are_splits(tmp_path: Path, name: str) -> None
     assert images.names[0] == "punching/000"
 
 
-def test_tree_without_splits_is_cut_class_by_class_and_always_alike(tmp_path: Path) -> None:
+def test_a_tree_without_splits_is_split_by_class_reproducibly(tmp_path: Path) -> None:
     root = tree(tmp_path / "t", ("a", "b"), {"": 10})
     images = open_images(root, None, "rgb")
     assert images.split is None
@@ -187,7 +182,7 @@ def test_tree_without_splits_is_cut_class_by_class_and_always_alike(tmp_path: Pa
 
 @examples(max_examples=50)
 @given(counts=st.lists(st.integers(2, 30), min_size=2, max_size=4), share=st.floats(0.01, 0.5))
-def test_every_class_keeps_something_on_both_sides(counts: list[int], share: float) -> None:
+def test_every_class_has_images_in_both_splits(counts: list[int], share: float) -> None:
     label = np.repeat(np.arange(len(counts)), counts)
     names = tuple(str(n) for n in range(len(label)))
     kinds = tuple("abcd"[: len(counts)])
@@ -199,7 +194,7 @@ def test_every_class_keeps_something_on_both_sides(counts: list[int], share: flo
         assert held < count
 
 
-def test_a_tree_that_is_cut_already_is_left_alone(tmp_path: Path) -> None:
+def test_existing_splits_are_kept(tmp_path: Path) -> None:
     images = open_images(split_tree(tmp_path / "t"), None, "rgb")
     assert images.cut(0.5, 1) is images
 
@@ -222,7 +217,7 @@ def test_constant_channel_has_unit_spread(tmp_path: Path) -> None:
     assert scan(images, [0]).sd == (1.0, 1.0, 1.0)
 
 
-def test_images_travel_to_other_processes_unopened(made: Path) -> None:
+def test_image_sets_are_pickled_without_open_files(made: Path) -> None:
     images = open_images(made, "rtm", "rgb")
     first = images.pixels.read(1)
     again = pickle.loads(pickle.dumps(images.pixels))
@@ -268,10 +263,10 @@ def broken(tmp_path: Path, what: str) -> tuple[Path, list[str]]:
     ],
 )
 def test_unusable_data_is_named(tmp_path: Path, what: str) -> None:
-    root, said = broken(tmp_path, what)
+    root, expected = broken(tmp_path, what)
     with pytest.raises(FolderError) as caught:
         look_at_all(root)
-    one_clear_line(caught.value, *said)
+    one_clear_line(caught.value, *expected)
 
 
 def test_a_truncated_image_is_named_wherever_it_ends(tmp_path: Path) -> None:
@@ -354,7 +349,7 @@ def test_gray_and_other_formats_are_read_as_rgb(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("parts", "classes", "size", "said"),
+    ("parts", "classes", "size", "expected"),
     [
         ({"train": 2, "val": 1}, ("a",), 32, "the class 'a' alone"),
         ({"train": 2, "test": 1}, ("a", "b"), 32, "no val images (it has 4 train, 2 test)"),
@@ -362,17 +357,17 @@ def test_gray_and_other_formats_are_read_as_rgb(tmp_path: Path) -> None:
         ({"": 1}, ("a", "b"), 32, "the class 'a' has one image; should have two"),
     ],
 )
-def test_what_cannot_be_learned_from_is_refused(
+def test_unusable_training_data_is_refused(
     tmp_path: Path,
     parts: dict[str, int],
     classes: tuple[str, ...],
     size: int | tuple[int, int],
-    said: str,
+    expected: str,
 ) -> None:
     root = tree(tmp_path / "t", classes, parts, size)
     with pytest.raises(FolderError) as caught:
         checked_images(settings(), root)
-    one_clear_line(caught.value, said, root)
+    one_clear_line(caught.value, expected, root)
 
 
 def test_a_class_without_training_images_is_named(tmp_path: Path) -> None:
@@ -383,7 +378,7 @@ def test_a_class_without_training_images_is_named(tmp_path: Path) -> None:
         checked_images(settings(), root)
 
 
-def test_split_named_suggests() -> None:
+def test_an_unknown_split_is_refused_with_a_suggestion() -> None:
     assert split_named("all") == "all"
     with pytest.raises(FolderError, match="did you mean 'train'"):
         split_named("trian")

@@ -20,7 +20,7 @@ def other(tmp_path: Path) -> Path:
     return split_tree(tmp_path / "other", train=8, seed=7, classes=("walking", "wave"))
 
 
-def test_rows_and_classes_of_all_are_there(data: Path, other: Path) -> None:
+def test_a_joined_set_has_all_rows_and_classes(data: Path, other: Path) -> None:
     one, two = (open_images(path, None, "rgb") for path in (data, other))
     both = checked_images(settings(), [data, other])
     assert len(both) == len(one) + len(two)
@@ -73,7 +73,7 @@ def test_an_epoch_shows_sets_by_their_weights_and_classes_equally_often(
     assert by_set[0] / by_set[1] == pytest.approx(3 * 4 / (0.5 * 8), rel=0.15)
 
 
-def test_two_weighted_sets_from_a_start_go_on_to_the_same_weights(
+def test_a_run_on_weighted_sets_resumes_to_the_same_weights(
     data: Path, other: Path, run_dir: Path, tmp_path: Path
 ) -> None:
     config = settings(data_weights=[1, 0.5], sampling="balanced")

@@ -1,4 +1,4 @@
-"""What a machine offers."""
+"""Device, precision and threads of the machine."""
 
 import pytest
 import torch
@@ -22,7 +22,7 @@ def test_a_device_that_is_not_there_is_named() -> None:
     assert choose_device("cpu") == CPU
 
 
-def test_precision_is_what_was_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_precision_is_as_requested(monkeypatch: pytest.MonkeyPatch) -> None:
     assert choose_precision("bfloat16", CPU) == torch.bfloat16
     assert choose_precision("float32", CPU) == torch.float32
     for able, chosen in (({}, torch.float32), ({"amx_bf16": True}, torch.bfloat16)):
@@ -36,7 +36,7 @@ def test_float32_is_computed_in_float32() -> None:
             assert (torch.ones(2, 2) @ torch.ones(2, 2)).dtype == precision
 
 
-def test_alone_without_torchrun(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_single_process_without_torchrun(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("WORLD_SIZE", "TORCHELASTIC_RUN_ID"):
         monkeypatch.delenv(name, raising=False)
     with process_group(CPU) as group:

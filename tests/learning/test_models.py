@@ -1,4 +1,4 @@
-"""Networks by name: the zoo, and what a network costs."""
+"""Networks by name: timm's, and what a network costs."""
 
 from pathlib import Path
 
@@ -46,7 +46,7 @@ def test_rivals_build_and_take_a_step(zoo: None, name: str) -> None:
     assert features.shape[0] == 2
 
 
-def test_a_rival_trains_and_is_read_back(zoo: None, data: Path, tmp_path: Path) -> None:
+def test_a_rival_is_trained_and_loaded(zoo: None, data: Path, tmp_path: Path) -> None:
     done = trained(data, tmp_path / "run", epochs=1, model="mobilenetv2_100")
     metadata, _ = run.load_best(tmp_path / "run")
     assert metadata.model == "mobilenetv2_100"
@@ -62,13 +62,13 @@ def test_a_rival_trains_and_is_read_back(zoo: None, data: Path, tmp_path: Path) 
         ("convnext_tinny", "convnext_tiny"),
     ],
 )
-def test_unknown_names_are_met_with_a_suggestion(zoo: None, name: str, near: str) -> None:
+def test_unknown_names_get_a_suggestion(zoo: None, name: str, near: str) -> None:
     with pytest.raises(ModelError, match=f"did you mean '{near}") as caught:
         build_model(name, 4, (32, 32))
     assert caught.value.status == 2
 
 
-def test_nothing_like_it_points_to_the_list(zoo: None) -> None:
+def test_unrecognisable_names_point_to_the_list(zoo: None) -> None:
     with pytest.raises(ModelError, match="`radhar models` lists some"):
         build_model("qqqqqqqqqqqqqqqq", 4, (32, 32))
 
@@ -98,7 +98,7 @@ def test_smallnet_needs_sixteen_pixels() -> None:
         build_model("smallnet", 4, (15, 64))
 
 
-def test_smallnet_learns_and_is_read_back(data: Path, tmp_path: Path) -> None:
+def test_smallnet_is_trained_and_loaded(data: Path, tmp_path: Path) -> None:
     """The loss of stripes in three directions falls by more than rounding could undo."""
     history = trained(data, tmp_path / "run", epochs=6, model="smallnet").history
     assert history[-1].train_loss < 0.8 * history[0].train_loss
@@ -118,7 +118,7 @@ def test_smallnet_by_hand() -> None:
     assert price.multiply_adds == by_hand
 
 
-def test_papers_network_costs_what_it_has() -> None:
+def test_cost_of_the_papers_network() -> None:
     price = cost("fftnet", 12, (256, 256))
     assert price.parameters == 6_496_012
     small = cost("fftnet", 12, (32, 32))

@@ -35,12 +35,12 @@ def test_cosine_starts_at_the_rate_and_ends_at_zero() -> None:
     assert at(config, 9, 0.99) == pytest.approx(0.0, abs=1e-8)
 
 
-def test_constant_stays() -> None:
+def test_the_constant_schedule_is_constant() -> None:
     config = settings(epochs=40, schedule={"kind": "constant"})
     assert {at(config, epoch, 0.3) for epoch in range(40)} == {1e-3}
 
 
-def test_warm_up_is_linear_and_then_hands_over() -> None:
+def test_warm_up_is_linear_and_the_schedule_follows() -> None:
     config = settings(epochs=10, warmup_epochs=2.0, schedule={"kind": "cosine"})
     assert at(config, 0, 0.0) == pytest.approx(1e-3 / 200), "the first of two hundred steps"
     assert at(config, 0, 0.49) == pytest.approx(0.25e-3)

@@ -168,7 +168,7 @@ def test_the_curve_of_a_run(run_dir: Path, data: Path, measured: Path, tmp_path:
     ways = [(p.shots, p.how) for p in found.points]
     assert ways == [(0, AS_TRAINED), (0, ADAPTED), (2, TUNED), (2, ADAPTED), (2, SCRATCH)]
     assert found.left_out == {8: "punching has 8 images"}
-    assert any("8 a class: left out" in line for line in watched.said)
+    assert any("8 a class: left out" in line for line in watched.messages)
     zero, _, tuned, _, scratch = found.points
     metadata, model = load_best(run_dir)
     every = predict(model, metadata, opened(measured).images, np.arange(24), CPU, 8)
@@ -186,7 +186,7 @@ def test_the_curve_of_a_run(run_dir: Path, data: Path, measured: Path, tmp_path:
         assert "start" not in read_metadata(one.parent / "from_scratch").work
 
 
-def test_interrupted_it_goes_on_and_the_result_is_the_same(
+def test_an_interrupted_measurement_resumes_to_the_same_result(
     run_dir: Path, measured: Path, tmp_path: Path
 ) -> None:
     class Stopped(Watched):
@@ -250,7 +250,9 @@ def test_settings_are_the_runs_with_fewer_epochs_to_fine_tune(
     one_clear_line(error.value, "--tune: epochs = 0", "greater than or equal to 1")
 
 
-def test_nothing_to_draw_is_one_line(run_dir: Path, measured: Path, tmp_path: Path) -> None:
+def test_too_few_images_to_draw_from_are_refused_in_one_line(
+    run_dir: Path, measured: Path, tmp_path: Path
+) -> None:
     with pytest.raises(FolderError) as error:
         curve(run_dir, measured, tmp_path, shots=(50,))
     one_clear_line(
@@ -258,7 +260,7 @@ def test_nothing_to_draw_is_one_line(run_dir: Path, measured: Path, tmp_path: Pa
     )
 
 
-def test_what_is_below_its_comparison_is_said() -> None:
+def test_accuracy_below_the_baselines_is_reported() -> None:
     found = ShotCurve("", {"mix": []})
     found.points = [
         ShotPoint(0, AS_TRAINED, (10,), (0.8,)),
@@ -297,7 +299,7 @@ def test_the_command_writes_table_figure_and_numbers(
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "message"),
     [
         (("--shots", "1;5"), "should be whole numbers with commas"),
         (("--shots", "-1"), "should be whole numbers with commas"),
@@ -312,18 +314,23 @@ def test_the_command_writes_table_figure_and_numbers(
         (("--shots", "1", "{data}"), "should have one of each"),
     ],
 )
-def test_wrong_use_is_one_line(
-    run_dir: Path, data: Path, measured: Path, tmp_path: Path, options: tuple[str, ...], said: str
+def test_wrong_use_is_refused_in_one_line(
+    run_dir: Path,
+    data: Path,
+    measured: Path,
+    tmp_path: Path,
+    options: tuple[str, ...],
+    message: str,
 ) -> None:
     given = [option.replace("{data}", str(data)) for option in options]
     done = radhar("eval", run_dir, measured, "-o", tmp_path / "out", *given)
     assert done.returncode == 2
-    assert said in done.stderr
+    assert message in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1
     assert not list(tmp_path.glob("out/*"))
 
 
-def test_a_planted_run_is_right_without_labels(
+def test_zero_shots_is_the_accuracy_of_the_run(
     run_dir: Path, measured: Path, tmp_path: Path
 ) -> None:
     """What 0 shots reports is the run's own accuracy: 1 where it is right about everything."""

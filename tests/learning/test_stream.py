@@ -85,12 +85,12 @@ def test_spawned_workers_make_the_same_too(alone: list[dict[str, Any]]) -> None:
     assert same(batches(2, 1, multiprocessing_context="spawn"), alone[:2])
 
 
-def test_ranks_share_the_batches_out(alone: list[dict[str, Any]]) -> None:
+def test_ranks_share_the_batches(alone: list[dict[str, Any]]) -> None:
     shares = [batches(3, workers, (rank, 2)) for rank, workers in ((0, 0), (1, 2))]
     assert same([batch for pair in zip(*shares, strict=True) for batch in pair], alone)
 
 
-def test_a_later_start_goes_on_as_if_it_had_never_stopped(alone: list[dict[str, Any]]) -> None:
+def test_a_stream_resumed_at_a_sample_continues_unchanged(alone: list[dict[str, Any]]) -> None:
     assert same(batches(4, 2, start=2 * 4), alone[2:])
     assert same(batches(1, 0, (1, 2), start=2 * 4), [alone[3]])
 
@@ -167,7 +167,7 @@ def test_samples_of_a_split_are_those_rows_alone() -> None:
     assert not held_back & seen
 
 
-def test_a_distributed_sampler_shares_the_rows_out() -> None:
+def test_a_distributed_sampler_shares_the_rows() -> None:
     samples = Samples(config(), fields=["scene/height"])
     found: list[tuple[int, int]] = []
     for rank in range(2):
@@ -187,7 +187,7 @@ def test_power_and_slow_time_come_as_tensors() -> None:
 
 
 @pytest.mark.parametrize("workers", [0, 1])
-def test_a_scene_outside_the_model_ends_a_stream_that_is_to_err(workers: int) -> None:
+def test_on_invalid_error_ends_a_stream(workers: int) -> None:
     far = config(motion={"model": "paper", "range_m": {"uniform": [1, 40]}}, on_invalid="error")
     stream = Stream(far, fields=["scene/range"])
     with pytest.raises(SceneError, match=r"sample \w+/\d+: a scatterer leaves the range half-band"):
@@ -196,7 +196,7 @@ def test_a_scene_outside_the_model_ends_a_stream_that_is_to_err(workers: int) ->
     assert all(math.isfinite(made["scene/range"]) for made in islice(again, 10))
 
 
-def test_a_class_of_ones_own_is_known_to_workers(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_user_defined_classes_are_known_to_workers(monkeypatch: pytest.MonkeyPatch) -> None:
     """A spawned worker begins without it, and gets the stream as bytes."""
     monkeypatch.setattr(activity, "_OWN", {})
     add_activity("swinging_ball", swinging)
@@ -209,7 +209,7 @@ def test_a_class_of_ones_own_is_known_to_workers(monkeypatch: pytest.MonkeyPatch
         assert np.array_equal(one["maps/stft"], other["maps/stft"])
 
 
-def test_mistakes_are_one_clear_line() -> None:
+def test_mistakes_are_refused_in_one_line() -> None:
     for make, words in (
         (lambda: Stream(config(), batch_size=0), "batch_size = 0: should be a whole number from 1"),
         (lambda: Stream(config(), start=-1), "start = -1: should be a whole number from 0"),
@@ -229,6 +229,6 @@ def test_mistakes_are_one_clear_line() -> None:
             make()
 
 
-def test_the_packages_names_are_these() -> None:
+def test_public_names_of_the_package() -> None:
     assert radhar.Stream is Stream
     assert radhar.Samples is Samples

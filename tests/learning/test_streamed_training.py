@@ -67,7 +67,7 @@ def streamed(
     return train(changed, data, place / out, progress or Watched(), stream=config)
 
 
-def test_a_run_on_a_stream_leaves_what_every_run_leaves(place: Path) -> None:
+def test_a_run_on_a_stream_has_the_files_of_any_run(place: Path) -> None:
     out = place / "run"
     assert {p.name for p in out.iterdir()} - {".radhar"} == set(run_files.ALL)
     metrics = json.loads((out / run_files.METRICS).read_text())
@@ -82,7 +82,7 @@ def test_reading_by_workers_gives_the_same(place: Path) -> None:
     assert same_run(place / "run", place / "workers")
 
 
-def test_stopped_after_an_epoch_and_gone_on_is_the_same(place: Path) -> None:
+def test_resumed_after_an_epoch_gives_the_same_run(place: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
         streamed(place, "stopped", Watched(stop_after=1))
     progress = Watched()
@@ -123,7 +123,9 @@ def test_every_image_is_seen_once_and_none_that_is_held_back(
 
 
 @pytest.mark.parametrize("kind", ["rgb", "gray"])
-def test_its_images_are_those_of_the_built_data_set(place: Path, built: Path, kind: str) -> None:
+def test_streamed_images_are_those_of_the_built_data_set(
+    place: Path, built: Path, kind: str
+) -> None:
     config = load_config(place / "scenes.yaml")
     stream, validation = stream_and_validation(settings(map="stft", input=kind), config, [], {}, 0)
     metadata = run.read_metadata(place / "run").model_copy(update={"input": kind})
@@ -142,16 +144,16 @@ def test_its_images_are_those_of_the_built_data_set(place: Path, built: Path, ki
         assert validation.classes[stream.label[row]] == one.slug
 
 
-def test_validated_on_a_data_set_it_learns_the_same(place: Path, built: Path) -> None:
+def test_validation_on_a_data_set_gives_the_same_weights(place: Path, built: Path) -> None:
     progress = Watched()
     done = streamed(place, "given", progress, data=(built,))
     assert same(last_weights(place / "given"), last_weights(place / "run"))
     own = run.read_history(place / "run")
     assert [row.val_accuracy for row in done.history] == [row.val_accuracy for row in own]
-    assert not any("warning" in line for line in progress.said)
+    assert not any("warning" in line for line in progress.messages)
 
 
-def test_the_refusal_of_other_data_says_which_run_is_on_a_stream(place: Path, built: Path) -> None:
+def test_refusing_other_data_names_the_run_on_a_stream(place: Path, built: Path) -> None:
     with pytest.raises(
         run.RunError, match=r'data: \["a stream, .*"\] there, \["/.*built", .* here'
     ):
@@ -172,7 +174,7 @@ def test_validation_of_its_own_has_a_largest_number_a_class(place: Path) -> None
     assert np.bincount(validation.label).tolist() == [4, 4, 4]
 
 
-def test_eval_tells_what_the_stream_has_shown(place: Path, built: Path) -> None:
+def test_eval_warns_of_images_that_the_stream_has_shown(place: Path, built: Path) -> None:
     metadata = run.read_metadata(place / "run")
     images = open_for(metadata, built, "stft")
     counts = {
@@ -189,7 +191,7 @@ def test_eval_tells_what_the_stream_has_shown(place: Path, built: Path) -> None:
 def test_validating_on_samples_of_the_stream_is_warned_of(place: Path, built: Path) -> None:
     progress = Watched()
     streamed(place, "leak", progress, (built,), ("samples_per_class=3",), epochs=1)
-    assert any("validation images show the person and motion" in line for line in progress.said)
+    assert any("validation images show the person and motion" in line for line in progress.messages)
 
 
 def test_another_config_is_another_run(place: Path) -> None:
@@ -208,7 +210,7 @@ def test_another_config_is_another_run(place: Path) -> None:
     ],
     ids=["map", "class", "validation", "weights", "scene"],
 )
-def test_what_cannot_be_streamed_is_one_clear_line(
+def test_what_cannot_be_streamed_is_refused_in_one_line(
     place: Path, scenes: tuple[str, ...], changes: dict[str, Any], words: list[str]
 ) -> None:
     with pytest.raises((ConfigError, SceneError)) as caught:
@@ -216,7 +218,7 @@ def test_what_cannot_be_streamed_is_one_clear_line(
     one_clear_line(caught.value, *words)
 
 
-def test_data_that_does_not_fit_the_stream_is_one_clear_line(place: Path, built: Path) -> None:
+def test_data_that_does_not_fit_the_stream_is_refused_in_one_line(place: Path, built: Path) -> None:
     with pytest.raises(FolderError, match="32 x 32 px, those of the stream 64 x 64"):
         streamed(place, "refused", data=(built,), scenes=("image.size_px=64",))
     with pytest.raises(FolderError, match="shows rtm, the stream stft; --map"):
@@ -225,7 +227,7 @@ def test_data_that_does_not_fit_the_stream_is_one_clear_line(place: Path, built:
         streamed(place, "refused", data=(built,), scenes=("activities=[walking, S12]",))
 
 
-def test_the_program_learns_from_a_stream(place: Path) -> None:
+def test_train_command_on_a_stream(place: Path) -> None:
     (place / "train.json").write_text(json.dumps(settings(map="stft").model_dump()))
     done = radhar(
         *("train", "--stream", place / "scenes.yaml", "-o", place / "told"),

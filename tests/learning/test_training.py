@@ -1,4 +1,4 @@
-"""Training: what a step does, and that nothing but config and data decides what is learned."""
+"""Training: what a step does; config and data alone determine the weights."""
 
 import copy
 import json
@@ -112,7 +112,7 @@ def test_reading_by_workers_gives_the_same(data: Path, run_dir: Path, tmp_path: 
 
 
 @pytest.mark.parametrize("epoch", [1, 2])
-def test_stopped_after_an_epoch_and_gone_on_is_the_same(
+def test_resumed_after_an_epoch_gives_the_same_run(
     data: Path, run_dir: Path, tmp_path: Path, epoch: int
 ) -> None:
     out = tmp_path / "run"
@@ -123,11 +123,11 @@ def test_stopped_after_an_epoch_and_gone_on_is_the_same(
     done = trained(data, out, progress)
     assert done.resumed == epoch
     assert len(progress.best) == 3 - epoch
-    assert any("resuming" in line for line in progress.said)
+    assert any("resuming" in line for line in progress.messages)
     assert same_run(run_dir, out)
 
 
-def test_dropout_goes_on_as_if_it_had_never_stopped(
+def test_dropout_resumes_its_random_state(
     data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def with_dropout(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
@@ -163,7 +163,7 @@ def test_stopped_between_the_files_of_the_last_epoch_loses_nothing(
     assert same_run(run_dir, out)
 
 
-def test_a_finished_run_is_found_done(data: Path, run_dir: Path) -> None:
+def test_a_finished_run_is_not_trained_again(data: Path, run_dir: Path) -> None:
     before = (run_dir / run_files.BEST).stat().st_mtime_ns
     progress = Watched()
     done = trained(data, run_dir, progress)
@@ -209,7 +209,9 @@ def test_validation_is_that_of_the_stored_weights(data: Path, run_dir: Path) -> 
     assert last.val_accuracy == float((logits.argmax(1) == truth).double().mean())
 
 
-def test_step_reports_the_smoothed_loss_and_what_is_right(data: Path, tmp_path: Path) -> None:
+def test_step_reports_the_smoothed_loss_and_the_correct_predictions(
+    data: Path, tmp_path: Path
+) -> None:
     work = prepared(data, tmp_path / "run", label_smoothing=0.2)
     levels, labels = first_batch(work)
     network = copy.deepcopy(work.model).train()
@@ -222,7 +224,9 @@ def test_step_reports_the_smoothed_loss_and_what_is_right(data: Path, tmp_path: 
 
 
 @pytest.mark.parametrize("micro_batch", [2, 3, 4, 5])
-def test_parts_of_a_batch_sum_to_its_gradient(data: Path, tmp_path: Path, micro_batch: int) -> None:
+def test_gradients_of_micro_batches_sum_to_that_of_the_batch(
+    data: Path, tmp_path: Path, micro_batch: int
+) -> None:
     """With batch norm in evaluation mode, where images do not see each other."""
     whole = prepared(data, tmp_path / "whole", micro_batch=6)
     parts = prepared(data, tmp_path / "parts", micro_batch=micro_batch)
@@ -236,7 +240,7 @@ def test_parts_of_a_batch_sum_to_its_gradient(data: Path, tmp_path: Path, micro_
         torch.testing.assert_close(one, other, rtol=1e-4, atol=1e-6)
 
 
-def test_a_step_starts_from_no_gradient(data: Path, tmp_path: Path) -> None:
+def test_a_step_starts_from_zero_gradient(data: Path, tmp_path: Path) -> None:
     work = prepared(data, tmp_path / "run", learning_rate=1e-12, optimiser="sgd")
     levels, labels = first_batch(work)
     work._train_step.step(work.model.eval(), work.optimiser, levels, labels, 6)
@@ -246,13 +250,14 @@ def test_a_step_starts_from_no_gradient(data: Path, tmp_path: Path) -> None:
         torch.testing.assert_close(one, other, rtol=1e-4, atol=1e-7)
 
 
-def test_accumulation_is_said_and_recorded(data: Path, tmp_path: Path) -> None:
+def test_accumulation_is_reported_and_recorded(data: Path, tmp_path: Path) -> None:
     progress = Watched()
     trained(data, tmp_path / "run", progress, epochs=1, micro_batch=2)
     metrics = json.loads((tmp_path / "run" / run_files.METRICS).read_text())
     assert (metrics["micro_batch"], metrics["gradient_accumulation"]) == (2, 3)
     assert any(
-        "3 parts a process, of at most 2" in line and "batch norm" in line for line in progress.said
+        "3 parts a process, of at most 2" in line and "batch norm" in line
+        for line in progress.messages
     )
     assert "in 3 part(s)" in (tmp_path / "run" / run_files.SUMMARY).read_text()
 
@@ -298,7 +303,7 @@ def test_memory_of_a_step_is_what_autograd_keeps(name: str) -> None:
     assert needs.of(6) == pytest.approx(4 * weights + sum(storages.values()), rel=0.01)
 
 
-def test_what_would_fit_fits() -> None:
+def test_advice_on_memory_names_what_would_fit() -> None:
     step = Step(settings(model="smallnet"), 12, (8192, 8192), 128, torch.float32)
     needs = step.memory()
     assert "--set micro_batch=16 " in step.advice(needs.of(20))
@@ -359,7 +364,7 @@ def test_rates_of_the_schedule_reach_the_optimiser(
 
 
 @pytest.mark.parametrize("model_step", [1, 4])
-def test_a_loss_that_is_not_finite_is_one_clear_line(
+def test_a_non_finite_loss_is_one_clear_line(
     data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, model_step: int
 ) -> None:
     """Two steps an epoch: the first is of the first epoch, the fourth the last of the second."""
@@ -385,7 +390,7 @@ def test_a_loss_that_is_not_finite_is_one_clear_line(
         assert trained(data, out).resumed == 1
 
 
-def test_a_validation_loss_that_is_not_finite_is_one_clear_line(
+def test_a_non_finite_validation_loss_is_one_clear_line(
     data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     loss = gradient_step.cross_entropy
@@ -409,9 +414,7 @@ def test_a_huge_rate_ends_in_one_clear_line(data: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("changes", [{"batch_size": 2}, {"micro_batch": 2}, {"micro_batch": 5}])
-def test_no_part_of_a_batch_is_one_image(
-    data: Path, tmp_path: Path, changes: dict[str, int]
-) -> None:
+def test_no_micro_batch_has_one_image(data: Path, tmp_path: Path, changes: dict[str, int]) -> None:
     """At 32 px the last maps are 1 x 1: a part of one image has no spread to normalise by."""
     done = trained(data, tmp_path / "run", epochs=1, model="fftnet", **changes)
     assert len(done.history) == 1
@@ -424,7 +427,7 @@ def test_a_batch_of_one_image_is_refused(key: str) -> None:
 
 
 @given(images=st.integers(2, 500), micro_batch=st.integers(2, 500))
-def test_parts_are_nearly_equal_and_fit(images: int, micro_batch: int) -> None:
+def test_micro_batches_are_nearly_equal_and_within_the_limit(images: int, micro_batch: int) -> None:
     parts = ExecutionPlan(CPU, torch.float32, micro_batch, 0).parts(images)
     sizes = [part.stop - part.start for part in parts]
     assert [row for part in parts for row in range(images)[part]] == list(range(images))
@@ -433,7 +436,7 @@ def test_parts_are_nearly_equal_and_fit(images: int, micro_batch: int) -> None:
     assert max(sizes) <= max(micro_batch, 3), "three, where two would leave one alone"
 
 
-def test_a_tree_without_splits_trains_and_is_cut_alike(tmp_path: Path) -> None:
+def test_a_tree_without_splits_is_split_the_same_for_training(tmp_path: Path) -> None:
     root = tree(tmp_path / "t", parts={"": 4})
     done = trained(root, tmp_path / "run", epochs=1, validation_share=0.25)
     metadata = run.read_metadata(tmp_path / "run")
@@ -478,7 +481,7 @@ LATER = (run_files.BEST, run_files.LAST, run_files.HISTORY, run_files.CURVES)
 
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
 @pytest.mark.parametrize("sign", [run_files.ABOUT, *slow(LATER)])
-def test_killed_and_gone_on_is_the_same(
+def test_killed_and_resumed_gives_the_same_run(
     data: Path, run_dir: Path, tmp_path: Path, sign: str
 ) -> None:
     """As soon as a file of the run is there, or some moments later."""
@@ -498,9 +501,9 @@ def test_ctrl_c_keeps_the_last_epoch_and_is_quiet(data: Path, tmp_path: Path) ->
     out = tmp_path / "run"
     process = started(data, out, run_files.HISTORY, "--set", "epochs=5000")
     process.send_signal(signal.SIGINT)
-    said = process.communicate()[0]
-    assert process.returncode == 130, said
-    assert "Traceback" not in said
-    assert "the same command resumes" in said
+    output = process.communicate()[0]
+    assert process.returncode == 130, output
+    assert "Traceback" not in output
+    assert "the same command resumes" in output
     assert 1 <= len(run.read_history(out)) < 5000
     run.load_best(out)

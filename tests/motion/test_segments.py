@@ -40,14 +40,14 @@ def segments_at(who: Motion, t: np.ndarray):
 
 
 class TestFinding:
-    def test_the_thirteen_joints_have_all(self):
+    def test_the_thirteen_joints_give_all_segments(self):
         assert found_segments(JOINTS) == SEGMENTS
         assert len(SEGMENTS) == 14
 
-    def test_other_names_have_none(self):
+    def test_unknown_names_give_no_segments(self):
         assert found_segments(("ball", "string")) == ()
 
-    def test_a_leg_alone_has_its_limbs(self):
+    def test_a_leg_alone_gives_thigh_and_shank(self):
         names = ("right_hip", "right_knee", "right_ankle", "tail")
         assert [one.name for one in found_segments(names)] == ["right_thigh", "right_shank"]
 
@@ -134,12 +134,12 @@ class Pointing:
         return p
 
 
-def test_no_pose_is_without_a_number():
+def test_no_pose_gives_nan():
     placed = segments_at(Pointing(motion("paper", "stationary")), times(5))
     assert all(np.isfinite(part).all() for part in placed)
 
 
-def test_a_point_that_is_all_points_has_no_direction_and_no_nan():
+def test_coincident_points_give_no_nan():
     @dataclass(frozen=True)
     class Nowhere(Pointing):
         def positions(self, t):
@@ -149,6 +149,6 @@ def test_a_point_that_is_all_points_has_no_direction_and_no_nan():
     assert all(np.isfinite(part).all() for part in placed)
 
 
-def test_only_some_joints_keep_their_names():
+def test_a_selection_of_joints_keeps_its_names():
     who = motion("human")
     assert landmarks_of(Only(who, (3,))) == (JOINTS[3],)

@@ -126,7 +126,7 @@ def test_compensation_and_denoising_are_those_of_every_bin(engine):
 
 
 class TestRecording:
-    """Range bins that somebody recorded go through the same chain."""
+    """Recorded range bins go through the same chain."""
 
     @clutters
     def test_gives_the_same_map(self, clutter):
@@ -195,7 +195,7 @@ class TestNoise:
             assert found["stft"].power.mean() == pytest.approx(2 * mean, rel=0.05)
 
     @pytest.mark.parametrize("clutter", ["difference", "none"])
-    def test_only_bins_that_frames_show_get_noise_and_all_of_these_do(self, clutter):
+    def test_exactly_the_bins_shown_get_noise(self, clutter):
         asked = ("range_signals", "gate", "gate_needed", "noise", "waveform")
         more = {"processing": {"gate_m": 0.3, "clutter": clutter}, "snr_db": -60}
         found = record("direct", *asked, **more)
@@ -233,7 +233,7 @@ class TestPlan:
         assert "torso_track" not in self.names(["stft"], processing={"gate_m": [1, 3]})
         assert "torso_track" in self.names(["stft"])
 
-    def test_without_a_gate_nothing_of_it_is_made(self):
+    def test_without_a_gate_no_gated_product_is_made(self):
         names = self.names(["stft", "fsst"], processing={"doppler": "half_band"})
         assert not {"gate", "range_signals", "range_axis"} & names
 

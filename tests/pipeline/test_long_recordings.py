@@ -68,13 +68,13 @@ def adc_samples(document: dict) -> int:
     return recorded(document, "waveform")["waveform"].n_adc
 
 
-def test_what_was_asked_for_is_kept_and_no_more():
+def test_only_requested_products_are_kept():
     asked = ("signal", "stft_denoised", "slow_time", "image:fsst")
     assert set(recorded(SMALL, *asked).products) == set(asked)
 
 
 @pytest.mark.parametrize("engine", ["direct", "cube"])
-def test_signals_are_released_as_soon_as_nobody_reads_them(engine):
+def test_signals_are_released_after_their_last_use(engine):
     """At most two at once when an image is made, and none is left."""
     alive, held = WeakValueDictionary[int, Signal](), []
 
@@ -123,7 +123,7 @@ class TestHop:
         assert np.array_equal(dense.power[:, ::5], usual.power)
 
 
-def test_a_scene_checked_in_parts_is_found_the_same(monkeypatch):
+def test_checking_a_scene_in_chunks_finds_the_same(monkeypatch):
     """Near, behind a wall, leaving the half-band: whatever there is to find, and when."""
     for more in ({}, {"wall": {}}, {"motion": {"range_m": 0.6, "angle_deg": 180}}):
         scene = scene_of(Config.model_validate(SMALL | more | {"duration_s": 4.0}))

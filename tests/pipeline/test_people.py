@@ -1,4 +1,4 @@
-"""People as a config asks for them: drawn, repeated exactly, sound whatever is drawn."""
+"""People from a config: drawn, reproducible, physically sound for every draw."""
 
 from pathlib import Path
 from typing import Any
@@ -123,7 +123,7 @@ def test_walkers_plant_their_feet(stature: float, speed: float) -> None:
 
 
 @pytest.mark.parametrize("slug", TWELVE)
-def test_nobody_jumps(slug: str) -> None:
+def test_velocities_of_people_are_continuous(slug: str) -> None:
     """The change of velocity from sample to sample falls with the sample interval."""
     config = load_config(FREE_SPACE)
     for index in range(3):
@@ -227,7 +227,7 @@ def test_walkers_turn_round_where_the_lane_ends() -> None:
     assert straight.parts[0][0].gait.lane is None
 
 
-def test_a_fall_over_the_knees_takes_longer() -> None:
+def test_a_fall_by_way_of_the_knees_takes_longer() -> None:
     ends = [
         moving(draw_scene(people({"kneel_s": kneel}), activity_named("S12"), 0)).phases[-1][0]
         for kneel in (0.0, 0.5)
@@ -236,7 +236,7 @@ def test_a_fall_over_the_knees_takes_longer() -> None:
 
 
 @pytest.mark.parametrize("slug", ["stationary", "walking", "punching"])
-def test_samples_differ_and_repeat_themselves(slug: str) -> None:
+def test_samples_differ_and_are_reproducible(slug: str) -> None:
     config, t = people(), np.arange(0, 6, 0.05)
     first, second = (draw_scene(config, activity_named(slug), index) for index in (1, 2))
     p = moving(first).positions(t)
@@ -246,7 +246,7 @@ def test_samples_differ_and_repeat_themselves(slug: str) -> None:
     assert np.abs(p - moving(second).positions(t)).max() > 0.01
 
 
-def test_a_stride_a_punch_and_a_kick_are_never_the_same() -> None:
+def test_strides_punches_and_kicks_vary() -> None:
     config = people({"tempo_jitter": 0.1, "size_jitter": 0.1, "stride_jitter": 0.03})
     punch, kick = (
         moving(draw_scene(config, activity_named(slug), 0)).parts[0][0].course
@@ -283,7 +283,7 @@ def test_keys_of_the_other_model_are_ignored() -> None:
 
 
 @pytest.mark.parametrize("slug", ["sitting_to_walking", "falling_to_walking"])
-def test_who_rises_walks_when_risen_unless_told_when(slug: str) -> None:
+def test_walking_follows_rising_unless_walk_start_s_is_given(slug: str) -> None:
     activity = activity_named(slug)
     _, (begin, _), *_, (walks, name) = moving(nominal_scene(people(), activity)).phases
     assert name == "walking"
@@ -297,7 +297,7 @@ def test_who_rises_walks_when_risen_unless_told_when(slug: str) -> None:
 
 
 @pytest.mark.parametrize("fall", ["forward", "backward", "sideways"])
-def test_people_fall_where_they_are_told(fall: str) -> None:
+def test_falls_go_in_the_configured_direction(fall: str) -> None:
     config = people({"fall": fall, "speed_mps": 1.2, "angle_deg": 0})
     scene = nominal_scene(config, activity_named("walking_to_falling"))
     p = moving(scene).positions(np.array([5.9]))[..., 0]
@@ -334,7 +334,7 @@ def test_a_written_scene_gives_the_same_recording(slug: str, nominal: bool, tmp_
         assert file["truth/hip_joints"].shape == (1800, 2, 3)
 
 
-def test_the_paper_has_no_hip_joints() -> None:
+def test_the_papers_model_has_no_hip_joints() -> None:
     assert (
         simulate(Config(motion={"model": "paper"}), "walking", maps=("stft",)).truth.hip_joints
         is None
@@ -383,7 +383,7 @@ def test_every_movement_can_begin_a_sequence(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("classes", "said"),
+    ("classes", "expected"),
     [
         ({"own": {"sequence": ["swimming"]}}, "movements are stationary"),
         ({"own": {"sequence": ["waking", "falling"]}}, "did you mean 'walking'"),
@@ -399,13 +399,13 @@ def test_every_movement_can_begin_a_sequence(name: str) -> None:
     ],
 )
 def test_impossible_sequences_are_refused(
-    classes: dict[str, Any], said: str, tmp_path: Path
+    classes: dict[str, Any], expected: str, tmp_path: Path
 ) -> None:
     import yaml
 
     path = tmp_path / "own.yaml"
     path.write_text(yaml.safe_dump({"motion": {"model": "human"}, "classes": classes}))
-    with pytest.raises(ConfigError, match=said) as error:
+    with pytest.raises(ConfigError, match=expected) as error:
         load_config(path)
     assert "classes" in str(error.value)
 
@@ -419,7 +419,7 @@ def test_who_gets_up_has_fallen_forward(tmp_path: Path) -> None:
         load_config(path)
 
 
-def test_the_paper_has_no_sequences(tmp_path: Path) -> None:
+def test_the_papers_model_has_no_sequences(tmp_path: Path) -> None:
     path = tmp_path / "own.yaml"
     path.write_text("motion: {model: paper}\nclasses: {own: {sequence: [falling]}}")
     with pytest.raises(ConfigError, match=r"classes\.own = .*: should have files with motion"):
@@ -427,7 +427,7 @@ def test_the_paper_has_no_sequences(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("key", "value"), [("motion.speed_mps", 0), ("subject.height_m", 0.5)])
-def test_numbers_beyond_people_are_refused_where_they_matter(key: str, value: float) -> None:
+def test_human_limits_apply_to_the_human_model(key: str, value: float) -> None:
     section = key.partition(".")[0]
     for model, slugs, refused in [
         ("human", ["walking"], True),
@@ -467,7 +467,7 @@ def test_the_limits_of_people(key: str, low: float, high: float) -> None:
 @pytest.mark.parametrize(
     "name", ["human/free_space_77GHz.yaml", "human/through_wall_2GHz.yaml", "quickstart.yaml"]
 )
-def test_nobody_of_the_usual_kind_leaves_the_model_or_aliases(name: str) -> None:
+def test_nominal_scenes_have_no_warnings(name: str) -> None:
     config = load_config(ROOT / "configs" / name)
     for activity in config.chosen_activities:
         assert not check_scene(nominal_scene(config, activity)).flags, activity.slug
@@ -510,7 +510,7 @@ def test_the_number_of_an_overlap_is_the_overlap_that_there_is(
         assert scene_numbers(nominal_scene(sideways, activity))["timing.overlap_s"] == 0
 
 
-def test_who_rises_does_not_walk_off_earlier_than_legs_allow() -> None:
+def test_walking_starts_no_earlier_than_legs_allow() -> None:
     timing = {"rise_start_s": 0.5, "rise_duration_s": 2.0, "walk_start_s": 0.6}
     scene = nominal_scene(people(timing=timing), activity_named("S9"))
     assert scene_numbers(scene)["timing.walk_start_s"] == pytest.approx(0.5 + 0.7 * 2.0)

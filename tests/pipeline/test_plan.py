@@ -1,4 +1,4 @@
-"""Model only what a scene requires: for every request, what runs and what does not."""
+"""Only what a request needs is computed: for every request, the products that run."""
 
 from math import floor
 
@@ -171,11 +171,11 @@ class TestSpecificPromises:
         assert not noise & set(self.names(" ".join(MAP_NAMES), snr_db=None))
         assert noise <= set(self.names(" ".join(MAP_NAMES)))
 
-    def test_the_cube_is_gone_through_once_for_all_maps(self):
+    def test_the_beat_is_computed_once_for_all_maps(self):
         assert self.names(" ".join(MAP_NAMES), **CUBE).count("beat_cube") == 1
 
     @pytest.mark.parametrize("with_mti", [True, False])
-    def test_range_profiles_look_at_the_pulses_shown_alone(self, monkeypatch, with_mti):
+    def test_range_profiles_compute_only_the_pulses_shown(self, monkeypatch, with_mti):
         asked: list[np.ndarray] = []
         original = PaperBody.positions
 
@@ -207,7 +207,7 @@ def test_a_fast_radar_evaluates_the_body_at_its_knots(monkeypatch):
     assert sum(evaluated) < 0.2 * 2.0 * 5000
 
 
-def test_a_plan_knows_its_products_and_who_reads_them():
+def test_a_plan_knows_its_products_and_their_consumers():
     config = config_of("stft", QUIET)
     asked = plan(products.products(config), ["stft", "fsst"], ["scene"])
     assert isinstance(asked, Plan)
@@ -220,7 +220,7 @@ def test_a_plan_knows_its_products_and_who_reads_them():
 
 
 @pytest.mark.parametrize("engine", ["direct", "cube"])
-def test_every_product_there_could_be_can_be_made(engine):
+def test_every_product_can_be_made_alone(engine):
     """Whatever row of the table is asked for alone, it is made, and none but what it needs."""
     config = config_of(" ".join(MAP_NAMES), WALL | {"engine": {"kind": engine}})
     for name in products.products(config):

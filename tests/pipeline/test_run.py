@@ -155,7 +155,7 @@ def test_a_motionless_scene_without_noise_is_black(engine):
         assert images[f"image:{name}"].entropy == 0
 
 
-def test_settings_reach_their_stage():
+def test_each_processing_key_changes_its_map_alone():
     """Every processing key changes the map it is about, and no other."""
     base = {"radar": {"carrier_hz": 24e9, "bandwidth_hz": 1e9, "prf_hz": 500}, "duration_s": 2.0}
     names = ("rtm", "stft", "stft_denoised", "fsst", "stft_compensated")

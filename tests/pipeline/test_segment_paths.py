@@ -144,7 +144,7 @@ def test_points_lie_where_a_rigid_body_has_them():
 
 class TestPoints:
     @pytest.mark.parametrize("count", [1, 2, 7, 20])
-    def test_they_share_the_power_and_cover_the_length(self, count):
+    def test_points_share_the_power_and_cover_the_length(self, count):
         points = draw_points(count, np.random.default_rng(1))
         assert (points.share**2).sum() == pytest.approx(1)
         assert (np.diff(points.along) > 0).all()
@@ -152,7 +152,7 @@ class TestPoints:
         assert ((points.along >= edges[:-1]) & (points.along <= edges[1:])).all()
         assert np.abs(points.across).max() <= 0.04
 
-    def test_a_single_one_is_the_middle_itself(self):
+    def test_a_single_point_is_the_middle(self):
         assert all(np.array_equal(*both) for both in zip(draw_points(1, None), MIDDLE, strict=True))
 
 
@@ -165,11 +165,11 @@ class TestCounts:
         return found[0]
 
     @pytest.mark.parametrize("speed", [0.0, 0.02, 0.5, 2.0])
-    def test_a_doppler_cell_for_each(self, speed):
+    def test_one_point_a_doppler_cell(self, speed):
         cells = 2 * speed * self.WINDOW / self.WAVELENGTH
         assert self.counts(speed) == max(1, int(np.ceil(cells)))
 
-    def test_no_more_than_allowed(self):
+    def test_no_more_points_than_allowed(self):
         assert self.counts(2.0, 20) == 20
 
 
@@ -216,7 +216,7 @@ def test_the_direct_engine_keeps_its_tolerance(slug, tolerance_db):
     assert error_db == pytest.approx(found["accuracy"].error_db, abs=10)
 
 
-def test_who_stands_still_is_cancelled_to_the_last_digit():
+def test_a_motionless_person_cancels_exactly():
     """The paper's S1 has no sway: in neither engine is anything left."""
     for engine in ({}, CUBE):
         scene = scene_of("stationary", **PAPER, **engine)
@@ -244,7 +244,7 @@ class TestDeterminism:
         first, second = (record(scene_of("walking"), ["signal"])["signal"].x for _ in range(2))
         assert np.array_equal(first, second)
 
-    def test_a_person_keeps_theirs_and_samples_differ(self):
+    def test_points_are_the_persons_and_differ_between_samples(self):
         split = {"split": {"by": "subject", "subjects": 2}}
         activity = activity_named("walking")
 
@@ -256,7 +256,7 @@ class TestDeterminism:
         assert not np.array_equal(shares(0, **split), shares(1, **split))
         assert not np.array_equal(shares(0), shares(2))
 
-    def test_the_path_source_has_no_memory(self):
+    def test_paths_do_not_depend_on_earlier_calls(self):
         source, t = record(scene_of("walking"), ["paths"])["paths"], np.linspace(0, 1.5, 33)
         whole = source(t)
         assert np.abs(source(t[5:9]).delay - whole.delay[:, 5:9]).max() < 1e-22
@@ -289,20 +289,20 @@ class TestRadarCrossSection:
         return 10 * np.log10(sigma.sum(axis=0).mean())
 
     @pytest.mark.parametrize("angle", [0.0, 90.0, 180.0])
-    def test_it_is_a_persons(self, angle):
+    def test_it_is_that_of_a_person(self, angle):
         assert -7 < self.dbsm(angle) < 0
 
-    def test_points_do_not_change_it(self):
+    def test_it_does_not_depend_on_the_number_of_points(self):
         one, many = (self.dbsm(180.0, points_per_segment=n) for n in (1, 40))
         assert one == pytest.approx(many, abs=0.1)
 
-    def test_from_the_side_half_the_body_hides(self):
+    def test_from_the_side_half_the_body_is_hidden(self):
         lit, shaded = (self.dbsm(90.0, shadowing=flag) for flag in (False, True))
         assert 0.5 < lit - shaded < 6
 
 
 class TestOneJoint:
-    def test_its_segments_alone_but_in_the_shadow_of_all(self):
+    def test_one_joint_echoes_alone_in_the_shadow_of_the_whole_body(self):
         scene = scene_of("walking")
         whole = record(scene, ["paths"])["paths"]
         person = motion_of(scene)
@@ -316,8 +316,8 @@ class TestOneJoint:
         some = slice(first, first + kept(t).delay.shape[0])
         assert np.array_equal(kept(t).amplitude, whole(t).amplitude[some])
 
-    def test_all_joints_make_the_whole(self):
-        """Limb by limb, the echoes add up; hip and shoulders go with the trunk."""
+    def test_echoes_of_all_joints_sum_to_the_body(self):
+        """Echoes of single limbs sum to that of the body; hip and shoulders belong to the trunk."""
         config = config_of(duration_s=0.5)
         joints = [one for one in JOINTS if "shoulder" not in one and one != "hip"]
         parts = [simulate(config, "walking", joint=one, maps=()) for one in joints]
@@ -343,7 +343,7 @@ class WithSword(Stick):
         return np.array([[1.0], [1.0], [1.0], [7.0]])
 
 
-def test_what_has_no_segment_stays_a_point():
+def test_joints_without_a_segment_stay_points():
     scene = scene_of("walking")
     source = record(scene, ["paths"], motions=(WithSword(None, None),))["paths"]
     segments, points = source.sources
@@ -385,7 +385,7 @@ class TestTooNear:
         with pytest.raises(SceneError, match=r"trunk comes to 0 cm from the transmitter"):
             scene_warnings(replace(scene, config=inside))
 
-    def test_and_has_finite_paths_all_the_same(self):
+    def test_an_antenna_in_a_body_has_finite_paths(self):
         scene = scene_of("stationary", motion={"range_m": 0.5, "angle_deg": 180.0})
         for place in ((0.5, 0.0, 1.2), (0.5, 0.0, -3.0)):  # inside; along the axes of the legs
             antennas = Antennas(place, place, 1.0, 10.0)
@@ -394,7 +394,7 @@ class TestTooNear:
 
 
 @pytest.mark.parametrize("activity", ACTIVITIES, ids=lambda one: one.slug)
-def test_shadows_only_take(activity):
+def test_shadows_never_add_amplitude(activity):
     config = config_of(duration_s=3.0, motion={"range_m": 6.0, "angle_deg": 150.0})
     scene = nominal_scene(config, activity)
     source = record(scene, ["paths"])["paths"]

@@ -1,4 +1,4 @@
-"""Scenes outside the model are found before any echo, told, and kept, redrawn or refused."""
+"""Scenes outside the model are found before any echo: kept with a warning, redrawn or refused."""
 
 from math import radians
 from typing import Any
@@ -114,7 +114,7 @@ def scene_of(config: Config) -> Scene:
 def test_a_scatterer_within_5_cm_of_an_antenna_is_found(
     label: str, joint: str, time: float, offset: tuple[float, float, float], name: str
 ) -> None:
-    """The antenna stands beside the path of a joint, and so often between two looks at it."""
+    """The antenna is beside the path of a joint, often nearest between two times of the grid."""
     body = motion_of(scene_of(Config(**PERSON, activities=(label,))))
     beside = body.positions(np.array([time]))[:, JOINTS.index(joint), 0] + offset
     config = with_antenna_at(label, beside, name)
@@ -126,9 +126,9 @@ def test_a_scatterer_within_5_cm_of_an_antenna_is_found(
         assert distance_at(scene, found.closest) == pytest.approx(expected.distance, abs=1e-12)
 
 
-def test_a_fast_ankle_is_found_between_two_looks() -> None:
-    """At 6.2 m/s an ankle is 3 cm further in 5 ms: passing at 4.5 cm, it looks 5.4 cm away."""
-    time = 0.425  # half-way between two looks 10 ms apart
+def test_a_fast_ankle_is_found_between_grid_times() -> None:
+    """At 6.2 m/s an ankle goes 3 cm in 5 ms: nearest at 4.5 cm, it is 5.4 cm away on the grid."""
+    time = 0.425  # half-way between two times of the grid, 10 ms apart
     body = motion_of(scene_of(Config(**PERSON, activities=("S8",))))
     aside = np.array([0.0, 0.045, 0.0])
     config = with_antenna_at("S8", body.positions(np.array([time]))[:, 10, 0] + aside)
@@ -180,7 +180,7 @@ def test_half_band_aliasing_and_wall_as_at_every_pulse(setting: Any, activity: A
 
 
 @pytest.mark.parametrize(("start", "leaves"), [(1.5, False), (1.55, True)])
-def test_a_walker_leaves_the_half_band_who_starts_beyond_1_5_m(start: float, leaves: bool) -> None:
+def test_a_walker_from_beyond_1_5_m_leaves_the_half_band(start: float, leaves: bool) -> None:
     config = Config(**{**PERSON, "motion": {**PERSON["motion"], "range_m": start}})
     found = check_scene(nominal_scene(config, WALKING))
     assert (Flags.HALF_BAND in found.flags) == leaves
@@ -204,7 +204,7 @@ def test_aliasing_is_that_of_the_frequency_the_doppler_is_read_at() -> None:
     assert Flags.ALIASING not in check_scene(nominal_scene(start, kicking)).flags
 
 
-def said(config: Config) -> dict[str, tuple[int, str]]:
+def by_kind(config: Config) -> dict[str, tuple[int, str]]:
     found = [
         draw_valid_scene(config, activity, index)[1]
         for activity in config.chosen_activities
@@ -219,7 +219,7 @@ def test_warnings_at_the_papers_free_space_settings() -> None:
 
     The paper's falls turn about the torso, feet and head 0.2 m below the floor.
     """
-    found = said(Config(**FREE_SPACE, samples_per_class=1))
+    found = by_kind(Config(**FREE_SPACE, samples_per_class=1))
     assert found.keys() == {"aliasing", "floor"}
     assert found["floor"] == (2, "2 of 12 recordings: a scatterer goes below the floor")
     assert found["aliasing"][0] == 5
@@ -228,7 +228,7 @@ def test_warnings_at_the_papers_free_space_settings() -> None:
 
 def test_warnings_at_the_papers_through_the_wall_settings() -> None:
     """S8 to S12 start inside the wall; they and the kick alias."""
-    found = said(Config(**THROUGH_WALL, samples_per_class=1))
+    found = by_kind(Config(**THROUGH_WALL, samples_per_class=1))
     assert {kind: count for kind, (count, _) in found.items()} == {
         "wall": 5,
         "aliasing": 6,
@@ -242,15 +242,15 @@ def test_warnings_of_the_papers_randomised_walkers() -> None:
     scenes = [draw_scene(config, WALKING, index) for index in range(20)]
     half_band = C * 10e6 / (4 * 1e14)
     leaving = sum(bool(brute_delay(scene).max() * C / 2 >= half_band) for scene in scenes)
-    found = said(config)
+    found = by_kind(config)
     assert 0 < leaving < 20
     assert found["half_band"][0] == leaving
     assert f"{leaving} of 20 recordings" in found["half_band"][1]
     assert "half-band" in found["half_band"][1]
 
 
-def test_a_recording_that_ends_before_the_second_phase_is_said() -> None:
-    found = said(
+def test_a_recording_that_ends_before_the_second_phase_is_warned_of() -> None:
+    found = by_kind(
         Config(**FREE_SPACE, activities=("S5", "S12"), samples_per_class=2, duration_s=1.5)
     )
     assert found["timing"][0] == 2
@@ -297,16 +297,16 @@ def test_a_recording_that_ends_before_the_second_phase_is_said() -> None:
         ({"receiver": {"lines": [{"doppler_hz": -3000}]}}, "receiver.lines.0.doppler_hz reaches"),
     ],
 )
-def test_keys_without_effect_and_lines_that_alias_are_said(document: Any, key: str) -> None:
+def test_keys_without_effect_and_aliased_lines_are_warned_of(document: Any, key: str) -> None:
     config = Config(activities=("S1",), samples_per_class=1, **document)
-    count, message = said(config)["config"]
+    count, message = by_kind(config)["config"]
     assert count == 1
     assert message.startswith(key)
     assert message in scene_warnings(draw_scene(config, activity_named("stationary"), 0))
 
 
 @pytest.mark.parametrize("model", ["human", "paper"])
-def test_nothing_is_said_of_what_was_drawn_from_the_defaults(model: str) -> None:
+def test_no_warning_for_defaults(model: str) -> None:
     for activity in ACTIVITIES:
         for scene in (
             draw_scene(Config(motion={"model": model}), activity, 0),
@@ -318,7 +318,7 @@ def test_nothing_is_said_of_what_was_drawn_from_the_defaults(model: str) -> None
     assert scene_warnings(scene) == []
 
 
-def test_nothing_is_said_of_keys_with_effect() -> None:
+def test_no_warning_for_keys_with_effect() -> None:
     config = Config(
         processing={
             "doppler": "gate",
@@ -333,8 +333,8 @@ def test_nothing_is_said_of_keys_with_effect() -> None:
     assert config_warnings(config_from_json(config.model_dump_json(), "here")) == []
 
 
-def test_nothing_is_said_of_scenes_inside_the_model() -> None:
-    assert said(Config(**FREE_SPACE, activities=("S1", "S5"), samples_per_class=3)) == {}
+def test_no_warning_for_scenes_inside_the_model() -> None:
+    assert by_kind(Config(**FREE_SPACE, activities=("S1", "S5"), samples_per_class=3)) == {}
 
 
 def near_the_wall(on_invalid: str) -> Config:
@@ -356,7 +356,7 @@ def first_valid(config: Config, index: int) -> int:
     return attempt
 
 
-def test_keep_keeps_the_first_draw_with_its_findings() -> None:
+def test_keep_takes_the_first_draw_with_its_warnings() -> None:
     config = near_the_wall("keep")
     drawn = [draw_valid_scene(config, STANDING, index) for index in range(20)]
     assert all(scene.attempt == 0 for scene, _ in drawn)
@@ -431,7 +431,9 @@ def test_no_valid_scene_ends_the_redraws(monkeypatch: pytest.MonkeyPatch) -> Non
         (1.0, False, True, "half-band"),
     ],
 )
-def test_the_gravest_reason_is_given(distance: float, wall: bool, band: bool, why: Any) -> None:
+def test_the_most_serious_reason_is_given(
+    distance: float, wall: bool, band: bool, why: Any
+) -> None:
     closest = Approach(distance, "head", "receiver", 0.5)
     flags = Flags.ALIASING | (Flags.HALF_BAND * band) | (Flags.WALL * wall)
     invalid = SceneCheck(closest, Flags(flags)).invalid
@@ -442,7 +444,7 @@ def test_the_gravest_reason_is_given(distance: float, wall: bool, band: bool, wh
     ("gate_m", "leaves"),
     [([0.0, 7.0], False), ([0.0, 3.0], True), ([3.0, 7.0], True), (1.0, False)],
 )
-def test_a_torso_that_leaves_a_fixed_gate_is_told(gate_m, leaves):
+def test_a_torso_that_leaves_a_fixed_gate_is_warned_of(gate_m, leaves):
     """From 2 m, 1.5 m/s away for 3 s; a gate around the torso goes with it."""
     motion = {"model": "paper", "range_m": 2.0, "angle_deg": 0.0, "speed_mps": 1.5}
     config = Config.model_validate(
@@ -452,5 +454,7 @@ def test_a_torso_that_leaves_a_fixed_gate_is_told(gate_m, leaves):
             "processing": {"doppler": "gate", "gate_m": gate_m},
         }
     )
-    said = module.scene_warnings(draw_scene(config, activity_named("walking"), 0))
-    assert any("the torso leaves the ranges of processing.gate_m" in one for one in said) == leaves
+    messages = module.scene_warnings(draw_scene(config, activity_named("walking"), 0))
+    assert (
+        any("the torso leaves the ranges of processing.gate_m" in one for one in messages) == leaves
+    )

@@ -31,12 +31,12 @@ def training_cells(cells: np.ndarray, row: int, column: int, window: CellAveragi
     return found
 
 
-@given(CELLS, PAIR, PAIR, st.booleans(), st.sampled_from(["pfa", "factor", "db"]))
+@given(CELLS, PAIR, PAIR, st.booleans(), st.sampled_from(["pfa", "factor", "db"]), st.booleans())
 @settings(max_examples=150, deadline=None)
-def test_as_a_loop_over_every_cell(cells, guard, training, wrap, threshold):
+def test_as_a_loop_over_every_cell(cells, guard, training, wrap, threshold, decibel):
     """Windows larger than the map, without training cells and with all of them beyond the edges."""
     value = {"pfa": 0.2, "factor": 1.3, "db": 1.5}[threshold]
-    window = CellAveraging(guard, training, threshold, value, wrap=wrap)
+    window = CellAveraging(guard, training, threshold, value, decibel=decibel, wrap=wrap)
     found = window.is_set(cells)
     for place, cell in np.ndenumerate(cells):
         around = training_cells(cells, *place, window)
@@ -46,7 +46,8 @@ def test_as_a_loop_over_every_cell(cells, guard, training, wrap, threshold):
             continue
         count = len(around)
         factor = {"pfa": count * (0.2 ** (-1 / count) - 1), "factor": 1.3, "db": 10**0.15}
-        level = factor[threshold] * sum(around) / count
+        mean = sum(around) / count
+        level = mean + 1.5 if decibel and threshold == "db" else factor[threshold] * mean
         if abs(cell - level) > 1e-9:  # on the border either is right
             assert found[place] == (cell > level)
 
@@ -100,7 +101,7 @@ def test_a_floor_makes_the_factor_of_decibels_independent_of_the_scale():
     assert share("db", 3.0, 10) == pytest.approx(share("db", 3.0, 30), abs=1e-3)
 
 
-def test_what_is_strong_leaves_the_background_far_away_alone():
+def test_a_strong_cell_does_not_raise_distant_thresholds():
     """Running sums forget a cell 100 dB above the noise once it is out of the window."""
     noise = np.random.default_rng(4).exponential(size=(200, 64))
     strong = noise.copy()
@@ -112,5 +113,5 @@ def test_what_is_strong_leaves_the_background_far_away_alone():
 
 @pytest.mark.parametrize(("cell", "right"), [(0.0, -300.0), (1e-40, -300.0), (1.0, 0.0)])
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
-def test_decibels_of_nothing_are_finite(cell, right, dtype):
+def test_decibels_of_zero_power_are_finite(cell, right, dtype):
     assert decibels_of(np.full((2, 2), cell, dtype)) == pytest.approx(np.full((2, 2), right))

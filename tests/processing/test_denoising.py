@@ -35,7 +35,7 @@ def test_order_5_frame_11_is_a_low_pass_at_a_third_of_the_band(fraction, least_d
 
 
 def test_it_does_not_shift_the_signal():
-    """Symmetric coefficients: a pulse stays where it is, the signs of Doppler are alike."""
+    """Symmetric coefficients: a pulse stays where it is, signs of Doppler are treated equally."""
     pulse = np.zeros(41, complex)
     pulse[20] = 1 + 2j
     out = savgol(pulse, 5, 11)

@@ -42,7 +42,7 @@ def test_the_later_pulse_of_each_pair_counts():
     assert compensate(np.ones(4, complex), track, f0) == pytest.approx([1, 1, turned, turned])
 
 
-def test_it_only_turns():
+def test_compensation_changes_phases_only():
     x = np.random.default_rng(0).standard_normal((50, 2)).view(complex)[:, 0]
     track = np.random.default_rng(1).uniform(1e-9, 5e-8, 51)
     assert np.abs(compensate(x, track, 77e9)) == pytest.approx(np.abs(x), rel=1e-14)

@@ -14,7 +14,7 @@ def test_a_uniform_map_has_the_logarithm_of_its_size(shape):
     assert entropy_bits(np.full(shape, 3.7)) == pytest.approx(log2(np.prod(shape)), abs=1e-11)
 
 
-def test_a_single_pixel_has_none():
+def test_a_single_pixel_has_entropy_0():
     power = np.zeros((20, 30))
     power[3, 4] = 1e-9
     assert entropy_bits(power) == 0
@@ -27,7 +27,7 @@ def test_zero_pixels_do_not_count(pixels):
     assert entropy_bits(power.reshape(10, 10)) == pytest.approx(log2(pixels), abs=1e-12)
 
 
-def test_a_map_of_nothing_has_none():
+def test_a_map_of_zeros_has_entropy_0():
     assert entropy_bits(np.zeros((4, 5))) == 0
 
 
@@ -36,7 +36,7 @@ def test_known_value():
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_it_is_its_definition(seed):
+def test_matches_the_definition(seed):
     """Powers over sixteen decades."""
     power = 10 ** np.random.default_rng(seed).uniform(-16, 0, (40, 30))
     assert entropy_bits(power) == pytest.approx(ref.entropy_bits(power), rel=1e-12)

@@ -40,7 +40,7 @@ def middles(x: np.ndarray, frames: Frames) -> np.ndarray:
 
 @lengths
 @pytest.mark.parametrize("threshold", [0.0, 1e-3, 0.1, 0.5])
-def test_it_is_its_definition(length, threshold):
+def test_matches_the_definition(length, threshold):
     x = random_signal(70)
     right = ref.fsst(x, length, 4, threshold)
     found = squeezed(x, Frames(length, 4), threshold)
@@ -119,7 +119,7 @@ def test_the_threshold_is_relative_to_the_whole_map():
 
 
 @pytest.mark.parametrize("threshold", [0.0, 1e-3])
-def test_nothing_gives_nothing(threshold):
+def test_a_zero_signal_gives_a_zero_map(threshold):
     assert not squeezed(np.zeros(60, complex), Frames(20, 2), threshold).any()
 
 

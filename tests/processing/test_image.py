@@ -20,7 +20,7 @@ def random_map(shape: tuple[int, int]) -> np.ndarray:
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (51, 93), (2000, 90)])
-def test_a_map_of_nothing_is_black(shape):
+def test_a_map_of_zeros_is_black(shape):
     found = levels(np.zeros(shape), (64, 32), RANGE_DB)
     assert found.dtype == np.uint8
     assert found.shape == (64, 32)
@@ -108,7 +108,7 @@ def test_height_comes_first(size):
     assert found.max() == 255
 
 
-def test_the_map_is_left_alone_whatever_its_layout():
+def test_the_input_is_not_modified_in_any_layout():
     power = random_map((30, 20))
     kept = power.copy()
     plain = levels(power, (16, 16), RANGE_DB)
@@ -128,7 +128,7 @@ def test_resizing_is_pillows(shape, size):
         assert np.abs(found / right - 1).max() < rounding
 
 
-def test_bands_do_not_matter(monkeypatch):
+def test_size_of_bands_does_not_matter(monkeypatch):
     power = np.random.default_rng(0).exponential(size=(700, 300))
     right = reduced([power.T], 300, (64, 64)).cells
     monkeypatch.setattr(image, "BAND", 5)

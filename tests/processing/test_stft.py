@@ -23,7 +23,7 @@ def power(x: np.ndarray, frames: Frames, fft_length: int | None = None) -> np.nd
 
 @frame_sizes
 @pytest.mark.parametrize("padding", [None, 0, 1, 10])
-def test_it_is_its_definition(length, hop, padding):
+def test_matches_the_definition(length, hop, padding):
     x = random_signal(60)
     fft_length = None if padding is None else length + padding
     right = ref.stft(x, length, hop, fft_length)

@@ -1,4 +1,4 @@
-"""The torso in range-Doppler maps: its way, through gaps, past ambiguous velocities and limbs."""
+"""Tracking the torso in range-Doppler maps: gaps, ambiguous velocities, limbs."""
 
 import numpy as np
 import pytest
@@ -61,7 +61,7 @@ def test_a_point_is_followed(speed: float) -> None:
     assert np.allclose(found.delays(t), 2 * found.ranges(t) / SPEED_OF_LIGHT)
 
 
-def test_limbs_do_not_lead_it_away() -> None:
+def test_limbs_do_not_divert_the_track() -> None:
     """A limb that swings by 0.3 m at 2 Hz is faster than a torso turns, though as bright."""
     t = times()
     torso = 3 + 1.2 * t
@@ -71,7 +71,7 @@ def test_limbs_do_not_lead_it_away() -> None:
     assert rms(found, t, torso) < 0.08
 
 
-def test_gaps_are_bridged_and_not_sure_of() -> None:
+def test_gaps_are_bridged_with_low_confidence() -> None:
     t = times()
     r = 5 + np.sin(0.8 * t)
     there = ((t < 1.5) | (t > 2.2)).astype(float)
@@ -120,7 +120,7 @@ def test_a_peak_lies_between_its_bins() -> None:
         assert found.velocity[0] == pytest.approx(0.8, abs=0.04)
 
 
-def test_who_leaves_is_not_found_elsewhere() -> None:
+def test_a_person_who_leaves_is_not_found_elsewhere() -> None:
     """Something faint that sways in place, 4 m from where the person was last, is no person."""
     t = times()
     r = 9 + 1.4 * t

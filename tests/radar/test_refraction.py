@@ -1,4 +1,4 @@
-"""Rays bent at the faces of the slab: Fermat, Snell, and what must stay as it was."""
+"""Rays refracted at the faces of the slab: Fermat, Snell, and unchanged special cases."""
 
 from dataclasses import replace
 from math import sqrt
@@ -47,7 +47,7 @@ def late(antenna: Point, p: Point, wall: Wall = WALL) -> float:
 @given(outsides, depths, offsets, indices)
 @settings(deadline=None, max_examples=300)
 def test_the_ray_arrives_and_obeys_snell(a: float, d: float, rho: float, n: float) -> None:
-    """Angles measured from where it crosses: sin outside is n sin inside, at both faces alike."""
+    """Angles measured from where it crosses: sin outside is n sin inside, at both faces."""
     t, inside, _ = solved(a, d, rho, n)
     assert a * t + d * inside == pytest.approx(rho, rel=ROUNDING, abs=0)
     sine, sine_inside = t / sqrt(1 + t * t), inside / sqrt(1 + inside * inside)

@@ -1,4 +1,4 @@
-"""The switches of the wall reach the paths, the torso's track and the check of scenes alike."""
+"""The switches of the wall reach the paths, the torso's track and the check of scenes."""
 
 from dataclasses import replace
 

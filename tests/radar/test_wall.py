@@ -31,7 +31,7 @@ def ray(antenna: Point, p: Point, wall: Wall = WALL) -> tuple[float, int]:
 
 
 def decibel(crossed: Crossing, wall: Wall = WALL) -> float:
-    """Two-way loss of the power where both legs cross alike."""
+    """Two-way loss of the power where both legs cross in the same way."""
     return -2 * 20 * log10(float(field_factor(crossed, wall, FC)))
 
 

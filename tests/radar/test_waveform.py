@@ -1,4 +1,4 @@
-"""What follows from the numbers of an FMCW waveform."""
+"""Derived numbers of an FMCW waveform."""
 
 from dataclasses import replace
 

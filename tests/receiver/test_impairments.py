@@ -170,7 +170,7 @@ def test_lines_lie_at_their_doppler(engine):
     assert abs(strongest[np.abs(strongest + 100) > 20][0] - drawn) <= 5
 
 
-def test_the_white_noise_is_what_it_is_without_them():
+def test_lines_leave_the_white_noise_unchanged():
     plain, more = (
         record(scene_of(receiver=receiver), ["noise", "signal"])
         for receiver in ({}, {"noise_corner_hz": 10, "lines": LINES})
@@ -181,5 +181,5 @@ def test_the_white_noise_is_what_it_is_without_them():
     assert np.array_equal(again["signal"].x, more["signal"].x)
 
 
-def test_they_are_off_by_default_and_no_numbers_of_a_scene_then():
+def test_lines_are_off_by_default_and_add_no_numbers():
     assert not [key for key in scene_numbers(scene_of()) if key.startswith(("receiver", "room"))]

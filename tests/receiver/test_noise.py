@@ -118,7 +118,7 @@ class TestPower:
         t = np.arange(recording["waveform"].n_pulses) / RADAR["prf_hz"]
         right = np.mean(np.sum(recording["paths"](t).amplitude ** 2, axis=0)) / 10
         assert recording["noise"].sigma ** 2 == pytest.approx(right, rel=1e-6)
-        # The paper's wall takes 9.8 dB at 2 GHz and more at 24 GHz, from whoever is behind it.
+        # The paper's wall takes 9.8 dB at 2 GHz and more at 24 GHz, of what is behind it.
         assert recording["noise"].sigma ** 2 < 0.5 * free_space_power(scene_of(**more)) / 10
 
     @engines
@@ -254,7 +254,7 @@ class TestRangeProfiles:
         for noise in (every, apart):
             assert np.mean(np.abs(noise) ** 2) == pytest.approx(power, rel=2 * error)
 
-    def test_only_those_pairs(self):
+    def test_only_shared_pulses_are_correlated(self):
         """M - 1 = 3/2 W: the pairs shown are 1 and 2 pulses apart in turn."""
         noise, _ = self.noise(3000, duration_s=0.9002)
         assert noise.shape == (SAMPLES // 2, 3000)

@@ -85,15 +85,15 @@ HOSTILE: list[tuple[dict[str, Any], str]] = [
 ]
 
 
-@pytest.mark.parametrize(("changed", "said"), HOSTILE)
-def test_wrong_arrays_are_one_line(
-    script: ModuleType, tmp_path: Path, changed: dict[str, Any], said: str
+@pytest.mark.parametrize(("changed", "expected"), HOSTILE)
+def test_wrong_arrays_are_refused_in_one_line(
+    script: ModuleType, tmp_path: Path, changed: dict[str, Any], expected: str
 ) -> None:
     path = written(tmp_path / "m.npz", **changed)
     with pytest.raises(CaptureError) as error:
         script.read_masks(path)
     assert str(error.value).startswith(f"{path}: ")
-    assert said in str(error.value)
+    assert expected in str(error.value)
     assert "\n" not in str(error.value)
 
 
@@ -154,7 +154,7 @@ def measured(path: Path, config: Path, per_class: int) -> int:
 
 
 @pytest.mark.slow
-def test_the_whole_way(
+def test_the_whole_experiment(
     script: ModuleType,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -222,7 +222,7 @@ def test_the_whole_way(
     ]
 
 
-def test_a_missing_file_is_said_before_anything_is_made(
+def test_a_missing_file_is_refused_before_any_work(
     script: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     given = ["sim_to_real", str(tmp_path / "none.npz"), "-o", str(tmp_path / "out")]

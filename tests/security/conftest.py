@@ -1,4 +1,4 @@
-"""What the hostile files are made from; nobody changes it."""
+"""What the hostile files are made from; read-only."""
 
 from pathlib import Path
 

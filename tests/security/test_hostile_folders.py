@@ -1,4 +1,4 @@
-"""Output folders from strangers: nothing outside of them is written, deleted, or waited for."""
+"""Untrusted output folders: nothing outside of them is written, deleted, or waited for."""
 
 import json
 import os
@@ -31,7 +31,7 @@ def radhar(*words: object) -> str:
 
 @pytest.fixture
 def outside(tmp_path: Path) -> Path:
-    """Somebody's files, as a stranger's link might name them."""
+    """Files outside the folder, as a malicious link might name them."""
     place = tmp_path / "outside"
     for name in ("lock", "built", "identity.json", "unfinished/x", "shards/rows-000000000-1.h5"):
         (place / name).parent.mkdir(parents=True, exist_ok=True)
@@ -85,9 +85,7 @@ LINKS = [
 
 
 @pytest.mark.parametrize("plant", LINKS, ids=lambda p: p.__name__)
-def test_a_work_folder_that_leads_elsewhere_is_refused(
-    plant: Plant, tmp_path: Path, outside: Path
-) -> None:
+def test_links_in_the_work_folder_are_refused(plant: Plant, tmp_path: Path, outside: Path) -> None:
     folder = tmp_path / "out"
     folder.mkdir()
     plant(folder, outside)
@@ -100,7 +98,7 @@ def test_a_work_folder_that_leads_elsewhere_is_refused(
 
 @pytest.mark.parametrize("more", [[], ["--overwrite"]], ids=["again", "overwrite"])
 @pytest.mark.parametrize("command", ["generate", "train", "tradeoff"])
-def test_every_command_that_writes_looks_first(
+def test_every_writing_command_checks_the_folder_first(
     command: str, more: list[str], tmp_path: Path, outside: Path, good_set: Path
 ) -> None:
     (tmp_path / "c.yaml").write_text(SET)
@@ -169,7 +167,7 @@ IDENTITIES = {
 
 
 @pytest.mark.parametrize("case", IDENTITIES)
-def test_a_damaged_identity_is_said(case: str, tmp_path: Path) -> None:
+def test_a_damaged_identity_is_refused(case: str, tmp_path: Path) -> None:
     (tmp_path / "c.yaml").write_text(SET)
     place = tmp_path / "out/.radhar/identity.json"
     place.parent.mkdir(parents=True)
@@ -184,7 +182,7 @@ def test_a_damaged_identity_is_said(case: str, tmp_path: Path) -> None:
 
 
 def shard(folder: Path, change: Callable[[h5py.File], None]) -> None:
-    """A shard of rows 0 to 5 with the right checksum, whose content a stranger made."""
+    """A shard of rows 0 to 5 with the right checksum and malicious content."""
     path = folder / ".radhar/shards/rows-000000000-000000006.h5"
     path.parent.mkdir(parents=True)
     config = load_config(folder.parent / "c.yaml")
@@ -225,7 +223,7 @@ def _huge(file: h5py.File) -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "expected"),
     [
         (_external, "/maps/stft: is a link"),
         (_labels, "/entropy/stft: is of the type"),
@@ -233,8 +231,8 @@ def _huge(file: h5py.File) -> None:
         (_huge, "/scene: has the shape"),
     ],
 )
-def test_a_shard_goes_through_the_same_door(
-    change: Callable[[h5py.File], None], said: str, tmp_path: Path
+def test_shards_are_checked_like_data_sets(
+    change: Callable[[h5py.File], None], expected: str, tmp_path: Path
 ) -> None:
     (tmp_path / "c.yaml").write_text(SET)
     folder = tmp_path / "out"
@@ -242,5 +240,5 @@ def test_a_shard_goes_through_the_same_door(
     named = identity(load_config(tmp_path / "c.yaml"))
     (folder / ".radhar/identity.json").write_text(json.dumps(named))
     message = radhar("generate", tmp_path / "c.yaml", "-o", folder, "--jobs", 1)
-    assert f"rows-000000000-000000006.h5: {said}" in message
+    assert f"rows-000000000-000000006.h5: {expected}" in message
     assert not (folder / "dataset.h5").exists()

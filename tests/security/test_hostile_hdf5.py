@@ -1,4 +1,4 @@
-"""Data sets from strangers: one line that names file and field, or a right result; in bounds."""
+"""Untrusted data sets: one line that names file and field, or a right result; in bounds."""
 
 import json
 import os
@@ -24,17 +24,17 @@ _packer = zlib.compressobj()
 BOMB = b"".join(_packer.compress(bytes(2**20)) for _ in range(2**7)) + _packer.flush()
 
 
-def hostile(said: str, *commands: str) -> Callable[[Change], Change]:
-    """Register what a stranger did to a data set, what is said of it, and which commands say so."""
+def hostile(expected: str, *commands: str) -> Callable[[Change], Change]:
+    """Register a change to a data set, the expected message, and the commands that give it."""
 
     def register(change: Change) -> Change:
-        HOSTILE[change.__name__.strip("_")] = (change, said, commands or COMMANDS)
+        HOSTILE[change.__name__.strip("_")] = (change, expected, commands or COMMANDS)
         return change
 
     return register
 
 
-def replaced(name: str, said: str, *commands: str, **arguments: Any) -> None:
+def replaced(name: str, expected: str, *commands: str, **arguments: Any) -> None:
     """A dataset that is replaced by one created with these arguments."""
 
     def change(file: h5py.File, _: Path) -> None:
@@ -42,21 +42,21 @@ def replaced(name: str, said: str, *commands: str, **arguments: Any) -> None:
         file.create_dataset(name, **arguments)
 
     change.__name__ = f"{name} by {arguments}"[:80]
-    hostile(said, *commands)(change)
+    hostile(expected, *commands)(change)
 
 
-def attribute(name: str, value: Any, said: str, *commands: str) -> None:
+def attribute(name: str, value: Any, expected: str, *commands: str) -> None:
     def change(file: h5py.File, _: Path) -> None:
         del file.attrs[name]
         if value is not None:
             file.attrs[name] = value
 
     change.__name__ = f"attribute {name} = {value!r}"[:60]
-    hostile(said, *commands)(change)
+    hostile(expected, *commands)(change)
 
 
 def secret(place: Path) -> Path:
-    """Somebody else's file, as pixels and as bytes."""
+    """A file outside the data set, as pixels and as bytes."""
     with h5py.File(place / "secret.h5", "w") as file:
         file["maps/stft"] = np.full((6, 32, 32), 77, np.uint8)
         file["label"] = np.zeros(6, np.uint8)
@@ -186,7 +186,7 @@ def chunk(content: bytes, mask: int = 0) -> Change:
 
 
 PIXELS_READ = ("preview", "verify", "eval")
-for name, content, said in (
+for name, content, expected in (
     ("gzip_bomb", BOMB, "stored in 1[0-9]{5} bytes, too"),
     ("gzip_that_becomes_too_much", zlib.compress(b"\0" * 2**20), "too long or truncated"),
     ("gzip_that_becomes_too_little", zlib.compress(b"\0" * 10), "is 10 bytes; should be 1024"),
@@ -195,7 +195,7 @@ for name, content, said in (
 ):
     _change = chunk(content)
     _change.__name__ = name
-    hostile(rf"/maps/stft\[\d\]: .*{said}", *PIXELS_READ)(_change)
+    hostile(rf"/maps/stft\[\d\]: .*{expected}", *PIXELS_READ)(_change)
 
 PIXELS = {"shape": (6, 32, 32), "dtype": np.uint8}
 ONE = {**PIXELS, "data": np.zeros((6, 32, 32), np.uint8), "chunks": (1, 32, 32)}
@@ -438,8 +438,8 @@ def told(
 
 
 @pytest.mark.parametrize("case", [*HOSTILE, *NO_FILES])
-def test_refused_in_a_line_that_names_file_and_field(told: dict[str, Answer], case: str) -> None:
-    said, commands = (
+def test_hostile_files_are_refused_by_file_and_field(told: dict[str, Answer], case: str) -> None:
+    expected, commands = (
         HOSTILE[case][1:] if case in HOSTILE else (NO_FILES[case], ("inspect", "verify"))
     )
     for name in commands:
@@ -448,14 +448,12 @@ def test_refused_in_a_line_that_names_file_and_field(told: dict[str, Answer], ca
         message = refused(answer._replace(err=said_last))
         assert len(message.splitlines()) == 1
         assert "dataset.h5: " in message
-        assert re.search(said, message), (name, message)
+        assert re.search(expected, message), (name, message)
 
 
 @pytest.mark.parametrize("case", HARMLESS)
 @pytest.mark.parametrize("name", COMMANDS)
-def test_what_does_not_matter_changes_nothing(
-    told: dict[str, Answer], case: str, name: str
-) -> None:
+def test_harmless_changes_have_no_effect(told: dict[str, Answer], case: str, name: str) -> None:
     answer, right = told[f"{name} {case}"], told[f"{name} nothing"]
     assert answer.status == right.status == 0, answer.err
     if name == "eval":

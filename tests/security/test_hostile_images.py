@@ -74,7 +74,7 @@ WEBP_VP8X = b"RIFF\x16\0\0\0WEBPVP8X\x0a\0\0\0\0\0\0\0\xfe\x3f\0\xfe\x3f\0"
 EPS = b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 32 32\n%%EndComments\n(x) run showpage\n"
 BMP = struct.pack("<2sIIIIiiHHIIIIII", b"BM", 54, 0, 54, 40, 2**30, 2**30, 1, 24, 0, 0, 0, 0, 0, 0)
 
-# {name of the file: (what writes it, what is said of it)}
+# {name of the file: (what writes it, the expected message)}
 REFUSED: dict[str, tuple[Callable[[Path], object], str]] = {
     "13000.png": (bytes_of(png(13000, 13000, rows=0)), "is 13000 x 13000 px"),
     "20000.png": (bytes_of(png(20000, 20000, rows=0)), "400000000 pixels"),
@@ -143,7 +143,7 @@ def classes(root: Path, *names: str) -> Path:
 
 
 def trees(place: Path) -> dict[str, tuple[Path, str]]:
-    """{name: (tree, what is said of it)}."""
+    """{name: (tree, the expected message)}."""
     elsewhere = classes(place / "elsewhere", "c")
     out = classes(place / "out", "a", "b")
     (out / "c").symlink_to(elsewhere / "c")

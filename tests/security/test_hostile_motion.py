@@ -99,7 +99,7 @@ def test_no_pipe_no_device_and_nothing_too_large(tmp_path: Path) -> None:
             read_motion(tmp_path / f"{name}.bvh")
 
 
-def test_the_program_refuses_them_in_words(tmp_path: Path) -> None:
+def test_the_program_refuses_them_in_one_line(tmp_path: Path) -> None:
     for name, (file, data) in HOSTILE.items():
         folder = tmp_path / name.replace(" ", "_")
         folder.mkdir()

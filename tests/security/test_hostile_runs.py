@@ -1,4 +1,4 @@
-"""Training runs and sweeps from strangers: one line that names file and field."""
+"""Untrusted training runs and sweeps: one line that names file and field."""
 
 import json
 import os
@@ -32,7 +32,7 @@ def in_bounds() -> Iterator[None]:
 
 @pytest.fixture
 def run(good_run: Path, tmp_path: Path) -> Path:
-    """A run that may be damaged."""
+    """A copy of a run, to be damaged."""
     return Path(shutil.copytree(good_run, tmp_path / "run"))
 
 
@@ -73,21 +73,21 @@ ABOUTS: dict[str, tuple[Change, str]] = {
 
 
 @pytest.mark.parametrize("case", ABOUTS)
-def test_a_description_that_cannot_be_is_refused(case: str, run: Path) -> None:
-    change, said = ABOUTS[case]
+def test_invalid_metadata_are_refused(case: str, run: Path) -> None:
+    change, expected = ABOUTS[case]
     about = json.loads((run / "run.json").read_text())
     change(about)
     (run / "run.json").write_text(json.dumps(about))
-    one_line(lambda: read_metadata(run), "run.json", said)
+    one_line(lambda: read_metadata(run), "run.json", expected)
     path = run / "best.safetensors"
     with safe_open(path, "pt") as file:
         metadata = file.metadata()
     save_file(load_file(path), path, {**metadata, "radhar": json.dumps(about)})
-    one_line(lambda: load_best(run), "best.safetensors", said)
+    one_line(lambda: load_best(run), "best.safetensors", expected)
 
 
 @pytest.mark.parametrize("text", ["", "[" * 10**5, "[]", "3", "\xff", "{" * 10, " " * 2**21])
-def test_a_description_that_is_none_is_refused(text: str, run: Path) -> None:
+def test_files_that_are_no_metadata_are_refused(text: str, run: Path) -> None:
     (run / "run.json").write_bytes(text.encode("latin-1"))
     one_line(lambda: read_metadata(run), "run.json")
 
@@ -155,13 +155,13 @@ FILES: dict[str, tuple[Callable[[Path], None], str]] = {
 
 
 @pytest.mark.parametrize("case", FILES)
-def test_weights_that_cannot_be_are_refused(case: str, run: Path) -> None:
-    damage, said = FILES[case]
+def test_hostile_weights_are_refused(case: str, run: Path) -> None:
+    damage, expected = FILES[case]
     damage(run / "best.safetensors")
-    one_line(lambda: load_best(run), "best.safetensors", said)
+    one_line(lambda: load_best(run), "best.safetensors", expected)
 
 
-def test_answers_that_are_no_numbers_are_not_passed_on(run: Path, good_set: Path) -> None:
+def test_predictions_that_are_not_finite_are_refused(run: Path, good_set: Path) -> None:
     huge = weights(lambda w: [t.fill_(3e38) for t in w.values() if t.is_floating_point()])
     huge(run / "best.safetensors")
     words = ["predict", str(run), str(good_set)]
@@ -215,15 +215,15 @@ CHECKPOINTS: dict[str, tuple[Callable[[Path], None], str]] = {
 
 
 @pytest.mark.parametrize("case", CHECKPOINTS)
-def test_a_checkpoint_that_cannot_be_is_refused(case: str, run: Path, good_set: Path) -> None:
-    damage, said = CHECKPOINTS[case]
+def test_hostile_checkpoints_are_refused(case: str, run: Path, good_set: Path) -> None:
+    damage, expected = CHECKPOINTS[case]
     damage(run / "last.ckpt")
-    one_line(lambda: trained(good_set, run, epochs=2, model="smallnet"), "last.ckpt", said)
+    one_line(lambda: trained(good_set, run, epochs=2, model="smallnet"), "last.ckpt", expected)
 
 
 @pytest.mark.parametrize("name", ["history.csv", "trained_on.csv", "run.json"])
 @pytest.mark.parametrize("kind", ["pipe", "folder", "garbage"])
-def test_tables_that_are_none_are_refused(name: str, kind: str, run: Path) -> None:
+def test_invalid_tables_are_refused(name: str, kind: str, run: Path) -> None:
     path = run / name
     path.unlink()
     if kind == "pipe":

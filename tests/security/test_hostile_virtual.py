@@ -1,4 +1,4 @@
-"""Virtual data sets from strangers: samples come from the folder of the file, or from nowhere."""
+"""Untrusted virtual data sets: samples come from the folder of the file, or from nowhere."""
 
 import os
 from collections.abc import Callable
@@ -17,9 +17,11 @@ Source = h5py.VirtualSource
 CASES: dict[str, tuple[Callable[[Path, Layout], None], str]] = {}
 
 
-def case(said: str) -> Callable[[Callable[[Path, Layout], None]], Callable[[Path, Layout], None]]:
+def case(
+    message: str,
+) -> Callable[[Callable[[Path, Layout], None]], Callable[[Path, Layout], None]]:
     def register(fill: Callable[[Path, Layout], None]) -> Callable[[Path, Layout], None]:
-        CASES[fill.__name__] = fill, said
+        CASES[fill.__name__] = fill, message
         return fill
 
     return register
@@ -32,14 +34,14 @@ def samples(path: Path, name: str = "maps/stft", rows: int = 4, dtype: str = "u1
     return path
 
 
-def from_file(name: str, said: str, rows: int = 4) -> None:
+def from_file(name: str, message: str, rows: int = 4) -> None:
     """A data set whose second half comes from a file of that name."""
 
     def fill(place: Path, layout: Layout) -> None:
         layout[:2] = Source("good.h5", "maps/stft", (2, *SHAPE[1:]), "u1")
         layout[2:] = Source(name.format(place), "maps/stft", (2, *SHAPE[1:]), "u1")
 
-    CASES[name] = fill, said
+    CASES[name] = fill, message
 
 
 from_file("{}/good.h5", "lies in another file")
@@ -107,14 +109,14 @@ def test_refused(name: str, tmp_path: Path) -> None:
     for inner, made in (("virtual", virtual), ("external", external)):
         with h5py.File(place / f"{inner}.h5", "w") as file:
             made(file)
-    fill, said = CASES[name]
+    fill, message = CASES[name]
     with h5py.File(place / "dataset.h5", "w") as file:
         layout = Layout(SHAPE, "u1")
         fill(place, layout)
         file.create_virtual_dataset("maps/stft", layout)
     with (
         UntrustedFile(place / "dataset.h5", virtual=True) as opened,
-        pytest.raises(FolderError, match=said),
+        pytest.raises(FolderError, match=message),
     ):
         opened.chunks("maps/stft", np.uint8, SHAPE)[:]
     with (

@@ -6,7 +6,7 @@ import re
 import pytest
 from security.bounded import Answer, answers, refused
 
-from radhar_cli.config.yaml_reader import LARGEST, parse_yaml
+from radhar_cli.config.yaml_reader import MAX_TEXT, parse_yaml
 from radhar_cli.errors import ConfigError
 from radhar_cli.untrusted import DEEPEST, parse_json
 
@@ -74,7 +74,7 @@ def given(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Answer]:
     cases["--set"] = ["config", "show", place / "good.yaml", "--set", "radar=" + "[" * 5000]
     cases["train"] = ["config", "show", lol, "--train"]
     (place / "good.yaml").write_text("seed: 3\n")
-    (place / "large.yaml").write_text("# \n" * LARGEST)
+    (place / "large.yaml").write_text("# \n" * MAX_TEXT)
     (place / "null.yaml").write_bytes(b"seed: \x00")
     (place / "\x1b[2J.yaml").write_text("seed: -1")
     (place / "sparse.yaml").touch()
@@ -103,7 +103,7 @@ def test_a_hostile_config_is_refused_with_its_line(given: dict[str, Answer], nam
         ("generate", "0.yaml:6: not valid YAML"),
         ("train", "0.yaml:6: not valid YAML"),
         ("--set", "--set radar:1: not valid YAML"),
-        ("large", f"large.yaml: cannot be read as text (holds more than {LARGEST} bytes)"),
+        ("large", f"large.yaml: cannot be read as text (holds more than {MAX_TEXT} bytes)"),
         ("sparse", "sparse.yaml: cannot be read as text (holds more than"),
         ("null", "null.yaml: not valid YAML: unacceptable character"),
         ("fifo", "fifo.yaml: cannot be read as text (is a FIFO"),
@@ -114,7 +114,9 @@ def test_a_hostile_config_is_refused_with_its_line(given: dict[str, Answer], nam
         ("bytes", "\\udcff.yaml: no such file"),
     ],
 )
-def test_what_is_no_config_is_refused(given: dict[str, Answer], name: str, says: str) -> None:
+def test_files_that_are_no_configs_are_refused(
+    given: dict[str, Answer], name: str, says: str
+) -> None:
     assert says in refused(given[name])
 
 
@@ -123,10 +125,10 @@ def test_a_good_config_is_still_read(given: dict[str, Answer]) -> None:
     assert "seed: 3" in given["good"].out
 
 
-def test_what_fits_is_read_whole() -> None:
-    numbers = ", ".join(["1"] * (LARGEST // 4))
+def test_configs_within_the_limits_are_read() -> None:
+    numbers = ", ".join(["1"] * (MAX_TEXT // 4))
     value, lines = parse_yaml(f"a: &a {{b: 1}}\nc: {{<<: *a, d: *a}}\ne: [{numbers}]", "x")
-    assert value == {"a": {"b": 1}, "c": {"b": 1, "d": {"b": 1}}, "e": [1] * (LARGEST // 4)}
+    assert value == {"a": {"b": 1}, "c": {"b": 1, "d": {"b": 1}}, "e": [1] * (MAX_TEXT // 4)}
     assert lines == {"a": 1, "a.b": 1, "c": 2, "c.b": 1, "c.d": 2, "c.d.b": 1, "e": 3}
     nested = "[" * (DEEPEST - 1) + "]" * (DEEPEST - 1)
     assert parse_yaml(nested, "x")

@@ -12,7 +12,7 @@ HOSTILE = "a\x1b[2J\x9b31m\r\x08\x07\u202e\udcff[red]b[/] :smile:\nc"
 ESCAPED = r"a\x1b[2J\x9b31m\r\x08\x07\u202e\udcff[red]b[/] :smile:"
 
 
-def test_what_steers_a_terminal_is_escaped_and_what_is_text_stays() -> None:
+def test_control_sequences_are_escaped_and_text_is_kept() -> None:
     assert shown(HOSTILE) == ESCAPED + "\nc"
     assert shown("Größe 漢字 █ ▁ µ λ²") == "Größe 漢字 █ ▁ µ λ²"
 

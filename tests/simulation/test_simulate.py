@@ -1,4 +1,4 @@
-"""One scene: its maps, its signals, and the truth behind them, held against each other."""
+"""One scene: its maps, signals and ground truth agree."""
 
 from pathlib import Path
 
@@ -129,7 +129,7 @@ def test_engines_agree_without_noise() -> None:
     assert np.linalg.norm(x - y) < 1e-3 * np.linalg.norm(x)
 
 
-def test_raw_echo_has_the_static_returns_and_only_it() -> None:
+def test_only_the_raw_echo_has_static_returns() -> None:
     config = load_config(WALL, ["snr_db=null", "radar.antenna_isolation_db=10"])
     one = simulate(config, "S1", raw=True, maps=("stft",))
     assert one.beat is not None
@@ -177,15 +177,15 @@ def test_what_is_not_asked_for_is_not_computed(monkeypatch: pytest.MonkeyPatch) 
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "expected"),
     [
         ({"activity": "walkin"}, "'walking'"),
         ({"joint": "right_anckle"}, "'right_ankle'"),
         ({"joint": "x"}, "the joints are torso"),
     ],
 )
-def test_unknown_names_suggest_the_nearest(change: dict[str, str], said: str) -> None:
-    with pytest.raises(ConfigError, match=said):
+def test_unknown_names_suggest_the_nearest(change: dict[str, str], expected: str) -> None:
+    with pytest.raises(ConfigError, match=expected):
         simulate(load_config(WALL), **{"activity": "S1", **change})
     with pytest.raises(ConfigError, match="'fsst'"):
         map_names(["fsts"])
@@ -206,7 +206,7 @@ def test_python_interface(tmp_path: Path) -> None:
         radhar.nothing  # noqa: B018
 
 
-def test_figures_of_an_earlier_scene_do_not_stay(tmp_path: Path, walking: Simulation) -> None:
+def test_figures_of_an_earlier_scene_are_removed(tmp_path: Path, walking: Simulation) -> None:
     for name in ("maps.png", "stickman.gif"):
         (tmp_path / name).write_bytes(b"of another scene")
     write_all(walking, tmp_path)

@@ -62,7 +62,7 @@ class Counts:
 
 @pytest.fixture
 def counts(monkeypatch: pytest.MonkeyPatch) -> Iterator[Counts]:
-    """What was built and trained; a training run can be told to be interrupted."""
+    """What was built and trained; a training run can be interrupted."""
     found = Counts([], [])
     build, train = trial_module.build, training.train
 
@@ -89,7 +89,7 @@ def measured(tmp_path_factory: pytest.TempPathFactory) -> list[Accuracy]:
     return measure(experiment(tmp_path_factory.mktemp("whole")), TRIALS, 30.0)
 
 
-def test_what_several_trials_share_is_done_once_and_nothing_is_left(
+def test_shared_work_is_done_once_and_temporary_files_are_removed(
     counts: Counts, tmp_path: Path, measured: list[Accuracy]
 ) -> None:
     mine = experiment(tmp_path)
@@ -104,7 +104,7 @@ def test_what_several_trials_share_is_done_once_and_nothing_is_left(
     assert len(counts.trained) == 4
 
 
-def test_going_on_after_an_interruption_repeats_nothing(
+def test_resuming_after_an_interruption_repeats_nothing(
     counts: Counts, tmp_path: Path, measured: list[Accuracy]
 ) -> None:
     mine = experiment(tmp_path)
@@ -117,7 +117,7 @@ def test_going_on_after_an_interruption_repeats_nothing(
     assert len(counts.built) == 3
 
 
-def test_numbers_fit_together(measured: list[Accuracy]) -> None:
+def test_numbers_are_consistent(measured: list[Accuracy]) -> None:
     for one in measured:
         assert one.images == 3 * EFFORT.test_per_class, "all of the test set, whatever its split"
         assert len(one.seeds) == 2
@@ -138,7 +138,7 @@ def test_training_and_test_scenes_differ_in_their_seed_alone(tmp_path: Path) -> 
     assert not setup.train.output.png
 
 
-def test_a_trial_wins_over_what_is_common(tmp_path: Path) -> None:
+def test_overrides_of_a_trial_win_over_common_ones(tmp_path: Path) -> None:
     own = ("image.size_px=32", "maps=[stft]", "snr_db=3")
     mine = experiment(tmp_path, overrides=("duration_s=2.0", "image.size_px=80"))
     setup = TrialData.of(mine, Trial("own", own, CUBE), 30.0)
@@ -149,7 +149,7 @@ def test_a_trial_wins_over_what_is_common(tmp_path: Path) -> None:
     assert setup.test.duration_s == 2.0
 
 
-def test_a_config_by_subjects_is_cut_by_samples(tmp_path: Path) -> None:
+def test_a_config_split_by_subjects_is_split_by_samples(tmp_path: Path) -> None:
     """Six samples cannot be ten people's, and every training set needs validation images."""
     mine = experiment(tmp_path)
     by_subject = SMALL.replace(
@@ -161,7 +161,7 @@ def test_a_config_by_subjects_is_cut_by_samples(tmp_path: Path) -> None:
     assert TrialData.of(mine, TRIALS[0], 30.0).train.split.by == "sample"
 
 
-def test_a_wrong_override_is_said_before_anything_is_done(counts: Counts, tmp_path: Path) -> None:
+def test_a_wrong_override_is_refused_before_any_work(counts: Counts, tmp_path: Path) -> None:
     wrong = Trial("wrong", ("engine.tolerance=-20",), REFERENCE)
     with pytest.raises(ConfigError, match="tolerance_db"):
         measure(experiment(tmp_path), [TRIALS[0], wrong], 30.0)
@@ -174,12 +174,12 @@ def test_tests_of_another_size_are_refused(tmp_path: Path) -> None:
         measure(experiment(tmp_path, sizes=dataclasses.replace(QUICK, epochs=1)), [other], 30.0)
 
 
-def test_a_warning_of_several_data_sets_is_said_once(tmp_path: Path) -> None:
+def test_a_warning_of_several_data_sets_is_given_once(tmp_path: Path) -> None:
     """Two training sets of the same scenes, whose Doppler aliases at this PRF."""
     sizes = dataclasses.replace(QUICK, epochs=1)
     mine = experiment(tmp_path, sizes=sizes, overrides=("radar.prf_hz=100",))
     measure(mine, [TRIALS[0], TRIALS[2]], 30.0)
-    aliased = [message for message in mine.progress.said if "aliases" in message]
+    aliased = [message for message in mine.progress.messages if "aliases" in message]
     assert [message.split()[3] for message in aliased] == ["18", "15"], "training, test"
 
 
@@ -193,7 +193,7 @@ def test_snr_is_found_by_trials_that_are_kept(counts: Counts, tmp_path: Path) ->
     assert len(counts.trained) == 1, "the reference was measured on the way"
 
 
-def test_the_rest_of_the_room_needs_no_pytorch() -> None:
+def test_tradeoff_without_training_needs_no_pytorch() -> None:
     code = "import sys, radhar_cli.tradeoff.accuracy; print('torch' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.stdout.strip() == "False", done.stderr
@@ -231,7 +231,7 @@ def test_snr_of_a_steep_rise_is_between_two_steps(middle: float, slope: float) -
     assert BAND[0] <= accuracy_at(found) <= BAND[1]
 
 
-def test_without_a_hit_the_nearest_try_is_taken() -> None:
+def test_without_a_match_the_nearest_snr_is_taken() -> None:
     assert searched(lambda snr_db: 0.2 + snr_db / 1000, 8) == 35.0
     assert searched(lambda snr_db: 0.99 + snr_db / 10_000, 8) == -35.0
     steep = {0.0: 0.5, 5.0: 1.0, 2.5: 0.69}

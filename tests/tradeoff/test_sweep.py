@@ -149,7 +149,7 @@ class TestCommand:
             assert -80 < rows[name]["signal_error_db"] < 0  # the same white noise on both sides
         assert rows["cfar"]["pixels_changed"] < 0.05  # masks of the engine against the cube's
 
-    def test_again_measures_nothing(self, done, monkeypatch):
+    def test_a_second_sweep_measures_nothing(self, done, monkeypatch):
         config, out = done
         before = files_of(out)
 
@@ -162,7 +162,7 @@ class TestCommand:
         assert tradeoff(config, out).exit_code == 0
         assert files_of(out) == before
 
-    def test_goes_on_where_it_was_interrupted(self, config, tmp_path, monkeypatch):
+    def test_resumes_where_it_was_interrupted(self, config, tmp_path, monkeypatch):
         out, whole, measured = tmp_path / "out", study.time_setting, []
 
         def stopping(scenes, setting, turn):
@@ -230,8 +230,8 @@ class TestSettings:
         scenes = self.scenes(config, "processing.savgol={order: 1, frame: 1001}")
         possible = study._possible(scenes, listener)
         assert not any("denoised" in setting.name for setting in possible)
-        assert len(listener.said) == 4
-        assert all("processing.savgol.frame" in message for message in listener.said)
+        assert len(listener.messages) == 4
+        assert all("processing.savgol.frame" in message for message in listener.messages)
 
     def test_names_are_told_apart_and_one_is_the_default(self, config):
         settings = sweep(self.scenes(config, "wall={}").config())
@@ -257,13 +257,13 @@ class TestSettings:
         for key in ("motion.range_m", "motion.angle_deg", "subject.height_m"):
             assert one[key] == other[key]
 
-    def test_the_other_body_is_the_one_that_the_config_has_not(self, config):
+    def test_the_other_body_setting_is_the_one_the_config_lacks(self, config):
         scenes = self.scenes(config, "body.scatterers=segments")
         names = [setting.name for setting in sweep(scenes.config())]
         assert "scatterers: points instead of segments" in names
         assert "shadowing" in names
 
-    def test_a_gate_is_compared_where_other_maps_forbid_it(self, config):
+    def test_gates_are_compared_without_maps_that_forbid_them(self, config):
         scenes = self.scenes(config, "maps=[stft, fsst]")
         names = [setting.name for setting in study._possible(scenes, Listener())]
         assert "doppler: gate instead of half_band" in names
@@ -283,7 +283,7 @@ class TestFrontier:
     def point(self, name, time, error_db):
         return CostPoint(name, time, time, time, error_db, False)
 
-    def test_keeps_what_nothing_beats(self):
+    def test_keeps_undominated_settings(self):
         points = [
             self.point("exact", 30, None),
             self.point("slow and bad", 3, -20),
@@ -295,7 +295,7 @@ class TestFrontier:
 
 
 @pytest.mark.usefixtures("few")
-def test_trains_and_says_that_a_quick_look_means_nothing(config, tmp_path, monkeypatch):
+def test_train_warns_that_few_trials_mean_little(config, tmp_path, monkeypatch):
     """The whole way with --train, on two trials."""
     monkeypatch.setattr("radhar_cli.tradeoff.settings.trials", lambda c: trials(c)[:2])
     out, short = tmp_path / "out", ("--set", "activities=[punching, walking]")

@@ -1,4 +1,4 @@
-"""The classifier two-sample test: half where nothing can be told, and groups kept apart."""
+"""The classifier two-sample test: accuracy of one half for equal distributions; groups held out."""
 
 import numpy as np
 
@@ -19,7 +19,7 @@ def features(rng: np.random.Generator, shift: float = 0.0) -> Float:
 TRUTH = np.repeat([True, False], COUNT)
 
 
-def test_half_of_what_cannot_be_told_is_told_and_intervals_hold() -> None:
+def test_accuracy_is_half_for_equal_distributions_and_intervals_cover_it() -> None:
     found = []
     for seed in range(100):
         rng = np.random.default_rng(seed)
@@ -34,7 +34,7 @@ def test_half_of_what_cannot_be_told_is_told_and_intervals_hold() -> None:
     assert np.mean(inside) > 0.88
 
 
-def test_what_differs_is_told() -> None:
+def test_different_distributions_are_told_apart() -> None:
     rng = np.random.default_rng(0)
     tested = held_out(features(rng, 20.0), TRUTH, np.arange(2 * COUNT), rng)
     assert tested is not None
@@ -52,7 +52,7 @@ def test_persons_are_held_out_together() -> None:
         assert np.bincount(fold[kind == TRUTH], minlength=5).min() > 0
 
 
-def test_who_is_known_by_his_face_tells_nothing() -> None:
+def test_features_that_identify_persons_tell_nothing() -> None:
     """Four persons a side, each with features of his own: whether they are seen decides."""
     rng = np.random.default_rng(3)
     person = np.tile(np.repeat(np.arange(4), COUNT // 4), 2)

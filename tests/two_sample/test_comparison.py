@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_line import radhar
+from listener import Listener
 from PIL import Image
 
 from radhar_cli.arrays import Float, Levels
@@ -17,12 +18,6 @@ from radhar_cli.two_sample.map_statistics import STATISTICS
 from radhar_cli.two_sample.sides import open_sides
 
 SIZE = 64
-
-
-class Quiet:
-    def say(self, message: str) -> None: ...
-    def stage(self, name: str, total: int, done: int) -> None: ...
-    def advance(self, count: int) -> None: ...
 
 
 def mask(rng: np.random.Generator, high: float = 12, size: int = SIZE) -> Levels:
@@ -48,10 +43,10 @@ def tree(
 
 
 def compared(one: Path, other: Path, **options: object) -> Comparison:
-    return compare(one, other, Options(**options), Quiet())  # type: ignore[arg-type]
+    return compare(one, other, Options(**options), Listener())  # type: ignore[arg-type]
 
 
-def test_two_halves_cannot_be_told_apart(tmp_path: Path) -> None:
+def test_halves_of_one_set_cannot_be_told_apart(tmp_path: Path) -> None:
     one = tree(tmp_path / "a", 1, mask, "falling", "walking")
     other = tree(tmp_path / "b", 2, mask, "walking", "falling")
     found = compared(one, other)
@@ -66,7 +61,7 @@ def test_two_halves_cannot_be_told_apart(tmp_path: Path) -> None:
     assert any("has no axes" in warning for warning in found.warnings)
 
 
-def test_what_is_most_wrong_stands_first(tmp_path: Path) -> None:
+def test_the_largest_differences_come_first(tmp_path: Path) -> None:
     one = tree(tmp_path / "a", 1, lambda rng: mask(rng, 22), "walking")
     other = tree(tmp_path / "b", 2, mask, "walking")
     (found,) = compared(one, other).classes
@@ -81,7 +76,7 @@ def test_what_is_most_wrong_stands_first(tmp_path: Path) -> None:
     assert found.tested.right > 0.95 * 80
 
 
-def test_pictures_that_stand_out(tmp_path: Path) -> None:
+def test_outlying_maps_are_named(tmp_path: Path) -> None:
     one, other = (tree(tmp_path / name, n, mask, "a") for n, name in enumerate("xy"))
     rng = np.random.default_rng(5)
     Image.fromarray(mask(rng, 29)).save(one / "a/07.png")
@@ -113,7 +108,7 @@ def test_other_sizes_need_resize(tmp_path: Path) -> None:
     assert [side.images.size for side in found.sides] == [(128, 128)] * 2
 
 
-def test_few_maps_are_drawn_of_many_and_seeds_decide_which(tmp_path: Path) -> None:
+def test_maps_are_subsampled_by_seed(tmp_path: Path) -> None:
     one, other = (tree(tmp_path / name, n, mask, "a") for n, name in enumerate("xy"))
     first, again = (compared(one, other, most=12).numbers() for _ in range(2))
     assert first == again
@@ -206,12 +201,12 @@ def test_axes_and_persons_of_a_data_set(recorded: Path) -> None:
     )
 
 
-def test_other_axes_are_said(recorded: Path, tmp_path: Path) -> None:
+def test_different_axes_are_reported(recorded: Path, tmp_path: Path) -> None:
     other = tmp_path / "other"
     more = ("--set", "recordings.window_s=10", "--jobs", 1)
     source = (tmp_path / "c.yaml", "--recordings", tmp_path / "masks.npz")
     assert radhar("generate", *source, "-o", other, *more).returncode == 0
-    (said, *_) = compared(recorded, other).warnings
-    assert said == (
+    (message, *_) = compared(recorded, other).warnings
+    assert message == (
         "falling: axes differ, 5 s, -500 to 500 Hz simulated, 10 s, -500 to 500 Hz measured"
-    ) or said.startswith("walking: axes differ, 5 s")
+    ) or message.startswith("walking: axes differ, 5 s")

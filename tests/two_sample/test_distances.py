@@ -18,7 +18,7 @@ def test_a_shift_of_a_standard_deviation_is_a_distance_of_one() -> None:
     assert (same.distance, same.ks) == (0, 0)
 
 
-def test_what_is_missing_is_left_out() -> None:
+def test_missing_statistics_are_left_out() -> None:
     found = apart(np.array([1.0, np.nan, 3.0]), np.array([1.0, 3.0]))
     assert (found.simulated.known, found.measured.known, found.distance) == (2, 2, 0)
     nothing = apart(np.array([np.nan]), np.array([1.0]))

@@ -51,7 +51,7 @@ def test_numbers_of_a_bump() -> None:
     assert found["width"] == pytest.approx(180, abs=15)
 
 
-def test_what_moves_later_is_the_same_but_later() -> None:
+def test_a_shift_in_time_changes_times_alone() -> None:
     early = mask_statistics(map_of_a_bump(), DOPPLER, SECONDS, ZERO)
     late = mask_statistics(map_of_a_bump(25), DOPPLER, SECONDS, ZERO)
     assert late["first"] == pytest.approx(early["first"] + 0.5)
@@ -77,7 +77,7 @@ def test_interference_and_noise_are_stray() -> None:
     assert all(dirty[name] == clean[name] for name in clean if name != "stray")
 
 
-def test_a_zero_line_that_fades() -> None:
+def test_fading_of_the_zero_line() -> None:
     cells = map_of_a_bump()
     cells[:, 180:] = False
     found = mask_statistics(cells, DOPPLER, SECONDS, ZERO)
@@ -137,7 +137,7 @@ def test_a_brighter_limb_and_a_torso_that_ripples() -> None:
     assert found["torso_ripple"] == pytest.approx(40)
 
 
-def test_who_walks_away_has_the_same_limbs() -> None:
+def test_a_receding_walker_has_the_same_limbs() -> None:
     one = walker(15)
     away = power_statistics(PowerMap(one.power[::-1], DOPPLER), ZERO, 430, 20)
     assert away["limb_below_torso"] == pytest.approx(15, abs=0.2)

@@ -18,7 +18,7 @@ from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.table import Entry, entries
 from radhar_cli.errors import FolderError
 
-FILE_BYTES = 2**28  # of the pixels in a file of samples
+FILE_BYTES = 2**28  # of pixels per file
 
 
 class Samples:
@@ -73,7 +73,7 @@ def describe(data: Dataset, folder: Path, loading: Mapping[str, Any], reading: s
     Args:
         data: the data set; its own card says the licence.
         folder: to write to.
-        loading: front matter that `load_dataset` goes by; none where that cannot read the format.
+        loading: front matter that `load_dataset` reads; none where that cannot read the format.
         reading: Markdown, how to read the files next to the card.
     """
     front = {**loading, **owner_licence(data.path.parent)}

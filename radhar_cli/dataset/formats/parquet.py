@@ -16,7 +16,7 @@ from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.table import Entry, number_names
 from radhar_cli.progress import Progress
 
-GROUP, GROUP_BYTES = 256, 2**26  # samples that are written together, and their pixels
+GROUP, GROUP_BYTES = 256, 2**26  # samples and bytes of pixels per row group
 
 
 def write(data: Dataset, folder: Path, progress: Progress) -> None:

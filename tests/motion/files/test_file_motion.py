@@ -1,4 +1,4 @@
-"""A clip becomes somebody in a room: axes, size, floor, low-pass, heading, ends."""
+"""A clip becomes a person in a room: axes, size, floor, low-pass, heading, ends."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -46,7 +46,7 @@ def test_any_axis_may_be_up_and_any_unit_will_do(up: str) -> None:
     assert clip(100 * q, up=up).positions[:, 0, 2].mean() > 0
 
 
-def test_a_person_who_lies_all_the_time_is_asked_about(tmp_path: Path) -> None:
+def test_the_up_axis_of_a_lying_person_must_be_given(tmp_path: Path) -> None:
     p = frames("stationary", 1.0)
     lying = p[..., [2, 1, 0]] * np.array([1, 1, -1])
     file = read_motion(write_bvh(tmp_path / "x.bvh", lying)).recording("x.bvh")
@@ -85,7 +85,7 @@ def test_the_low_pass_is_8_hz_and_moves_nothing_in_time(rate: float) -> None:
     assert np.ptp(clip(moving, rate, low_pass=None).positions[:, 0, 0]) > 0.01
 
 
-def test_who_travels_goes_ahead_and_who_does_not_faces_there() -> None:
+def test_heading_is_the_direction_of_travel_or_else_of_facing() -> None:
     there = np.array([0.7, -0.2, 3.0])
     for activity, turn in (("walking", 0.4), ("walking", 2.5), ("punching", 0.4)):
         p = frames(activity)
@@ -140,7 +140,7 @@ def test_past_its_end_a_motion_goes_on_or_comes_to_rest() -> None:
 
 
 @pytest.mark.parametrize("rate", [30.0, 60.0, 120.0])
-def test_a_walk_comes_back_smooth_and_right(rate: float) -> None:
+def test_an_exported_walk_is_read_back_smoothly(rate: float) -> None:
     """Velocities are continuous, and those of the walk to some cm/s."""
     p = frames("walking", 4.0, rate)
     fine, one = frames("walking", 4.0, 1000.0), clip(p, rate)
@@ -152,7 +152,7 @@ def test_a_walk_comes_back_smooth_and_right(rate: float) -> None:
     assert jumps < 5e4
 
 
-def test_the_torso_is_the_torso() -> None:
+def test_torso_is_that_of_positions() -> None:
     motion, t = mover(clip(frames())), np.linspace(-0.2, 3.2, 400)
     np.testing.assert_allclose(motion.torso(t), motion.positions(t)[:, :1], atol=1e-12)
     marks = motion.landmark_positions(t)

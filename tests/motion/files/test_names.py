@@ -161,7 +161,7 @@ def test_cmu_bones_are_named_by_their_ends() -> None:
     assert mine["left_hip_joint"] == "lhipjoint"
 
 
-def test_other_names_have_a_table_of_their_own() -> None:
+def test_other_names_need_a_table() -> None:
     names, _ = RIGS["mocapbank"]
     foreign = tuple("Knie_rechts" if name == "RightKnee" else name for name in names)
     rig = Rig(foreign, (None,) * len(names))

@@ -80,8 +80,8 @@ def in_metres(file: Recording, unit: float) -> Float:
     "activity",
     ["stationary", "punching", "kicking", "grabbing", "standing_up", "falling_to_walking"],
 )
-def test_there_and_back(activity: str, tmp_path: Path) -> None:
-    """Through BVH and AMC every joint comes back to 1e-6 m; a fallen person too."""
+def test_bvh_and_amc_round_trips(activity: str, tmp_path: Path) -> None:
+    """Through BVH and AMC every joint is reproduced to 1e-6 m; a fallen person too."""
     p = frames(activity, 2.0)
     bvh = read_motion(write_bvh(tmp_path / "x.bvh", p)).recording()
     assert np.abs(in_metres(bvh, 0.01) - p).max() < 1e-6
@@ -93,7 +93,7 @@ def test_there_and_back(activity: str, tmp_path: Path) -> None:
     assert np.array_equal(npz.positions(range(len(WANTED))), p)
 
 
-def test_blocks_do_not_show(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_block_borders_do_not_matter(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Pieces of text are read as one; empty lines and CR LF do not matter."""
     monkeypatch.setattr(radhar_cli.motion.files.frames, "BLOCK", 5000)
     p = frames(seconds=0.5)

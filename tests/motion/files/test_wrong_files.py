@@ -72,7 +72,7 @@ BROKEN_BVH = {
         in_line(FIRST + 2, lambda line: line + " 1.0"),
         rf"x\.bvh:{FIRST + 2}: has 43 numbers; its joints have 42 channels",
     ),
-    "a strange channel": (
+    "an unknown channel": (
         changed("Zrotation", "Wrotation"),
         r"x\.bvh:5: 'wrotation' is not a channel such as",
     ),
@@ -98,7 +98,7 @@ BROKEN_BVH = {
 
 
 @pytest.mark.parametrize("name", BROKEN_BVH)
-def test_broken_bvh(name: str, tmp_path: Path) -> None:
+def test_broken_bvh_is_refused(name: str, tmp_path: Path) -> None:
     change, message = BROKEN_BVH[name]
     path = write_bvh(tmp_path / "x.bvh", frames(seconds=0.5))
     assert path.read_text().split("\n")[FIRST - 2].startswith("Frame Time")
@@ -144,7 +144,7 @@ BROKEN_AMC = {
 
 
 @pytest.mark.parametrize("name", BROKEN_AMC)
-def test_broken_amc(name: str, tmp_path: Path) -> None:
+def test_broken_amc_is_refused(name: str, tmp_path: Path) -> None:
     suffix, change, message = BROKEN_AMC[name]
     path = write_amc(tmp_path / "x.amc", frames(seconds=0.5))
     broken = path.with_suffix(suffix)
@@ -155,7 +155,7 @@ def test_broken_amc(name: str, tmp_path: Path) -> None:
     assert "\n" not in str(refused.value)
 
 
-def test_broken_npz(tmp_path: Path) -> None:
+def test_broken_npz_is_refused(tmp_path: Path) -> None:
     p, path = frames(seconds=0.5), tmp_path / "x.npz"
     hole, few = p.copy(), p[:5]
     hole[20, 3, 1] = np.nan
@@ -183,7 +183,7 @@ def test_broken_npz(tmp_path: Path) -> None:
         read_motion(path).recording()
 
 
-def test_what_is_no_file_of_ours(tmp_path: Path) -> None:
+def test_unknown_motion_files_are_refused(tmp_path: Path) -> None:
     (tmp_path / "x.fbx").write_text("")
     (tmp_path / "x.bvh").mkdir()
     for name, message in (

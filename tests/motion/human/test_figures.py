@@ -151,7 +151,7 @@ def test_a_fall_ahead_lies_flat() -> None:
     assert positions(FallForward(), 1.5)[2, joint("hip") :, -1].max() < 0.12
 
 
-def test_falls_go_their_way() -> None:
+def test_falls_go_in_their_direction() -> None:
     for fall, axis, sign in (
         (FallForward(), 0, 1),
         (FallBackward(), 0, -1),
@@ -235,7 +235,7 @@ def test_a_repetition_may_be_faster_or_smaller() -> None:
     assert np.argmax(varied[0, hand]) < np.argmax(usual[0, hand])
 
 
-def test_no_turn_of_the_trunk_is_the_last_one_again() -> None:
+def test_turns_of_the_trunk_vary() -> None:
     """Each to both sides of its own angle and time; from one to the next both change smoothly."""
     usual = positions(Turn(), 12.0)
     varied = positions(Turn(paces=(1.0, 1.3, 0.8, 1.1), sizes=(1.0, 0.7, 1.1, 0.9)), 12.0)
@@ -255,12 +255,12 @@ def test_no_elbow_bends_backwards() -> None:
 
 
 @pytest.mark.parametrize("gait", [{"speed": 0.0}, {"speed": -1.0}])
-def test_who_does_not_walk_has_no_gait(gait: dict[str, float]) -> None:
+def test_a_gait_needs_a_speed_above_0(gait: dict[str, float]) -> None:
     with pytest.raises(ValueError, match="speed above 0"):
         Gait(**gait)
 
 
-def test_rest_pose_is_common() -> None:
+def test_movements_start_from_a_common_rest_pose() -> None:
     """At rest everybody stands as `Person` says, whatever comes next."""
     person = Person(1.8)
     pose = positions(Grab(), 0.01, 1.8)[..., 0]

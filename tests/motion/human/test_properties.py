@@ -1,4 +1,4 @@
-"""What holds for every person and activity: stiff links, planted feet, a floor, no jumps."""
+"""Properties of every person and activity: stiff links, planted feet, a floor, no jumps."""
 
 from dataclasses import replace
 from math import inf
@@ -173,14 +173,14 @@ def test_positions_and_velocities_are_continuous(what: str) -> None:
 
 
 @pytest.mark.parametrize("what", ["S9", "S10", "S11", "S12", "backwards", "everything"])
-def test_joins_change_neither_position_nor_velocity(what: str) -> None:
+def test_position_and_velocity_are_continuous_across_movements(what: str) -> None:
     fidgets = tuple(Fidget(channel, 0.05, 0.1 * k, 0.7) for k, channel in enumerate(FIDGETS))
     motion = moving(what, idle=Idle(Person(1.75), fidgets=fidgets))
     dt = 1e-5
     for part, _ in motion.parts[1:]:
         p = motion.positions(part.begin + dt * np.array([-1.5, -0.5, 0.5, 1.5]))
         step = np.diff(p, axis=2)
-        assert np.abs(step[..., 1]).max() < 1.0 * dt  # nobody is fast at rest
+        assert np.abs(step[..., 1]).max() < 1.0 * dt  # no joint is fast at rest
         assert np.abs(np.diff(step, axis=2)).max() < 100 * dt**2
 
 

@@ -53,7 +53,7 @@ def test_a_sequence_waits_at_rest() -> None:
     assert np.ptp(body.positions(seated)[:, JOINTS.index("hip")], axis=1).max() < 1e-9
 
 
-def test_who_fell_backwards_does_not_get_up_from_the_belly() -> None:
+def test_getting_up_from_a_backward_fall_is_refused() -> None:
     movements = Repertoire(Gait(1.0), fall=FallBackward()).sequence(
         ("falling", "getting_up"), (inf, inf)
     )
@@ -66,7 +66,7 @@ def test_an_unknown_movement_is_named() -> None:
         REPERTOIRE.sequence(("swimming",), (1.0,))
 
 
-def test_a_turn_is_taken_along_by_what_follows() -> None:
+def test_a_turn_carries_over_to_the_next_movement() -> None:
     """Who walks ahead, turns around and walks as far again is back, facing the other way."""
     body = motion(REPERTOIRE.sequence(("walking", "turning_around", "walking"), (1.0, inf, 1.0)))
     end = body.parts[-1][0].end

@@ -413,7 +413,7 @@ def test_without_a_floor_the_ankles_pass_19_cm_below_it(number: int) -> None:
     assert p[2].min() == p[2, ANKLES].min()
 
 
-def test_a_body_tells_its_links_and_rcs() -> None:
+def test_links_and_rcs_of_a_body() -> None:
     child = default_person(1, height=1.2, weight=40.0)
     np.testing.assert_allclose(child.links, links(1.2))
     scale = np.sqrt(1.2 * 40 / (1.8 * 84.24))

@@ -51,7 +51,7 @@ def test_progress_never_goes_back(start: float, duration: float) -> None:
 
 @given(STARTS)
 @settings(deadline=None, max_examples=30)
-def test_no_duration_is_a_step_on_from_the_instant(start: float) -> None:
+def test_duration_0_is_a_step(start: float) -> None:
     t = np.array([np.nextafter(start, -np.inf), start, np.nextafter(start, np.inf)])
     np.testing.assert_array_equal(progress(t, start, 0.0), [0, 1, 1])
 

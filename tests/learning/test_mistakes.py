@@ -1,4 +1,4 @@
-"""What two newcomers stumbled over: every one of these once ended badly."""
+"""Mistakes that users make with runs and data: each is refused clearly, or works."""
 
 import shutil
 from pathlib import Path
@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import torch
 from learning.patterns import (
+    Watched,
     best_weights,
     last_weights,
     one_clear_line,
@@ -17,6 +18,7 @@ from learning.patterns import (
     trained,
     tree,
 )
+from listener import Listener
 from PIL import Image
 
 from radhar_cli.cli import program
@@ -36,11 +38,6 @@ from radhar_cli.learning.single_result import EvalOptions
 CPU = torch.device("cpu")
 
 
-class Ears:
-    def say(self, message: str) -> None:
-        pass
-
-
 def radhar(*arguments: object) -> RadharError:
     """The error that a command ends with, in this process."""
     with pytest.raises(RadharError) as caught:
@@ -50,7 +47,7 @@ def radhar(*arguments: object) -> RadharError:
 
 @pytest.fixture
 def copy(run_dir: Path, tmp_path: Path) -> Path:
-    """A run that may be damaged."""
+    """A copy of a run, to be damaged."""
     return Path(shutil.copytree(run_dir, tmp_path / "copy"))
 
 
@@ -69,14 +66,14 @@ def test_nothing_is_written_into_the_data(
 
 
 @pytest.mark.parametrize("command", ["train", "predict"])
-def test_a_run_is_no_data(command: str, run_dir: Path, tmp_path: Path) -> None:
+def test_a_run_folder_is_not_read_as_data(command: str, run_dir: Path, tmp_path: Path) -> None:
     more = [run_dir, run_dir] if command == "predict" else [run_dir, "-o", tmp_path / "x"]
     error = radhar(command, *more)
     one_clear_line(error, run_dir, "is a training run", "asked for here")
     assert not (tmp_path / "x").exists()
 
 
-def test_a_failed_start_does_not_take_the_folder(data: Path, tmp_path: Path) -> None:
+def test_a_failed_start_leaves_the_folder_free(data: Path, tmp_path: Path) -> None:
     with pytest.raises(ModelError, match="did you mean 'fftnet'"):
         trained(data, tmp_path / "run", model="fftnett")
     with pytest.raises(KeyboardInterrupt):
@@ -84,20 +81,11 @@ def test_a_failed_start_does_not_take_the_folder(data: Path, tmp_path: Path) -> 
     assert len(trained(data, tmp_path / "run", epochs=1, seed=9).history) == 1
 
 
-class _Stop:
+class _Stop(Watched):
     """Stops a run at its first step."""
-
-    def say(self, message: str) -> None:
-        pass
-
-    def epoch(self, number: int, epochs: int, steps: int) -> None:
-        pass
 
     def step(self, loss: float, accuracy: float) -> None:
         raise KeyboardInterrupt
-
-    def epoch_done(self, row: run.Epoch, best: bool) -> None:
-        pass
 
 
 def test_a_checkpoint_of_another_run_is_refused(data: Path, copy: Path, tmp_path: Path) -> None:
@@ -109,9 +97,7 @@ def test_a_checkpoint_of_another_run_is_refused(data: Path, copy: Path, tmp_path
 
 
 @pytest.mark.parametrize("best", [1, 3])
-def test_best_weights_that_are_gone_are_said_or_made_again(
-    best: int, data: Path, copy: Path
-) -> None:
+def test_missing_best_weights_are_reported_or_restored(best: int, data: Path, copy: Path) -> None:
     """They can be had again if they are those of the last epoch; which were best is planted."""
     last = run.read_last(copy)
     assert last is not None
@@ -129,7 +115,7 @@ def test_best_weights_that_are_gone_are_said_or_made_again(
         one_clear_line(caught.value, "cannot be recovered", "--overwrite")
 
 
-def test_what_can_be_derived_is_written_again(data: Path, run_dir: Path, copy: Path) -> None:
+def test_derived_files_are_written_again(data: Path, run_dir: Path, copy: Path) -> None:
     for name in (run_files.HISTORY, run_files.METRICS, run_files.CURVES, run_files.SUMMARY):
         (copy / name).unlink()
     trained(data, copy)
@@ -137,7 +123,7 @@ def test_what_can_be_derived_is_written_again(data: Path, run_dir: Path, copy: P
     assert same_run(run_dir, copy)
 
 
-def test_eval_finds_the_cut_of_training_again(tmp_path: Path) -> None:
+def test_eval_reproduces_the_split_of_training(tmp_path: Path) -> None:
     root = tree(tmp_path / "t", parts={"": 5})
     trained(root, tmp_path / "run", epochs=1)
     metadata = run.read_metadata(tmp_path / "run")
@@ -146,17 +132,12 @@ def test_eval_finds_the_cut_of_training_again(tmp_path: Path) -> None:
     assert (split, rows.size) == ("val", metadata.data["val"])
     (root / "walking/000.png").unlink()
     rows, split = rows_of(open_for(metadata, root, None), "val")
-    assert (split, rows.size) == ("all", 14), "another set: what it is is said"
+    assert (split, rows.size) == ("all", 14), "another set: the split that was used is named"
 
 
-def test_a_model_that_knows_no_map_asks_for_one(tmp_path: Path) -> None:
+def test_a_run_on_unnamed_images_needs_a_map(tmp_path: Path) -> None:
     from radhar_cli.config import load_config
     from radhar_cli.dataset.build import build
-
-    class Quiet:
-        def stage(self, name: str, total: int, done: int) -> None: ...
-        def advance(self, samples: int) -> None: ...
-        def say(self, message: str) -> None: ...
 
     config = tmp_path / "two_maps.yaml"
     config.write_text(
@@ -165,7 +146,7 @@ def test_a_model_that_knows_no_map_asks_for_one(tmp_path: Path) -> None:
         " split: {train: 0.67, validation: 0.33}}"
     )
     ours = tmp_path / "ours"
-    build(load_config(config), ours, jobs=1, progress=Quiet())
+    build(load_config(config), ours, jobs=1, progress=Listener())
     trained(ours / "png/stft", tmp_path / "run", epochs=1)
     metadata = run.read_metadata(tmp_path / "run")
     assert metadata.map == "stft", "the folder's name says so"
@@ -196,14 +177,14 @@ def test_hidden_files_are_no_images(tmp_path: Path) -> None:
     assert len(open_images(root, None, "rgb")) == 9
 
 
-def test_a_class_without_validation_images_is_said(tmp_path: Path) -> None:
+def test_a_class_without_validation_images_is_warned_of(tmp_path: Path) -> None:
     from learning.patterns import Watched
 
     root = split_tree(tmp_path / "t", 2, 1)
     shutil.rmtree(root / "val/walking")
     progress = Watched()
     trained(root, tmp_path / "run", progress, epochs=1)
-    assert any("'walking' has no validation image" in line for line in progress.said)
+    assert any("'walking' has no validation image" in line for line in progress.messages)
 
 
 def test_predict_takes_a_folder_of_images(run_dir: Path, data: Path) -> None:
@@ -211,7 +192,7 @@ def test_predict_takes_a_folder_of_images(run_dir: Path, data: Path) -> None:
     assert [Path(name).name for name, _ in answers] == ["000.png", "001.png"]
 
 
-def test_a_file_that_breaks_in_a_worker_is_one_line(tmp_path: Path) -> None:
+def test_a_broken_file_in_a_worker_is_one_line(tmp_path: Path) -> None:
     root = split_tree(tmp_path / "t", 2, 1)
     images = open_images(root, None, "rgb")
     (root / "train/kicking/001.png").write_bytes(b"no more")
@@ -221,7 +202,7 @@ def test_a_file_that_breaks_in_a_worker_is_one_line(tmp_path: Path) -> None:
     assert "Traceback" not in str(caught.value)
 
 
-def test_workers_do_not_draw_from_the_layers_stream(data: Path) -> None:
+def test_workers_leave_the_random_state_of_the_network_alone(data: Path) -> None:
     images = open_images(data, None, "rgb")
     drawn = []
     for workers in (0, 1):
@@ -236,7 +217,7 @@ def test_names_with_commas_stay_in_their_column(tmp_path: Path) -> None:
 
     root = tree(tmp_path / "t", ("one, two", 'a "b"'), {"train": 2, "val": 1})
     trained(root, tmp_path / "run", epochs=1)
-    report = evaluate([tmp_path / "run"], [root], EvalOptions(), CPU, Ears())
+    report = evaluate([tmp_path / "run"], [root], EvalOptions(), CPU, Listener())
     report.write(tmp_path / "out")
     with (tmp_path / "out/confusion.csv").open(newline="") as file:
         rows = list(csv.reader(file))
@@ -261,10 +242,10 @@ def test_what_cannot_be_drawn_is_refused_before_anything_is_computed(tmp_path: P
     root = tree(tmp_path / "t", ("a", "b"), {"train": 2, "val": 1})
     trained(root, tmp_path / "run", epochs=1)
     with pytest.raises(RunError, match="'a' is none of the twelve activities"):
-        evaluate([tmp_path / "run"], [root], EvalOptions(in_place_vs_moving=True), CPU, Ears())
+        evaluate([tmp_path / "run"], [root], EvalOptions(in_place_vs_moving=True), CPU, Listener())
 
 
-def test_auto_or_a_number_is_one_message() -> None:
+def test_a_value_neither_auto_nor_a_number_gives_one_message() -> None:
     for key in ("workers", "threads", "micro_batch"):
         with pytest.raises(ValueError, match="should be auto or a whole number") as caught:
             settings(**{key: "many"})

@@ -5,7 +5,7 @@ from glob import has_magic, iglob
 from itertools import islice
 from pathlib import Path
 
-from radhar_cli.config.schema import LONGEST_PATH, MAX_FILES, Config, FilesConfig
+from radhar_cli.config.schema import MAX_PATH_LENGTH, MAX_FILES, Config, FilesConfig
 from radhar_cli.errors import ConfigError, FolderError, MotionFileError
 from radhar_cli.motion.files.reading import read_motion
 
@@ -67,8 +67,8 @@ def _expanded(one: FilesConfig, root: Path, key: str, refuse: Refuse) -> Iterato
         if len(paths) > MAX_FILES:
             raise refuse(key, written, f"should name at most {MAX_FILES} files")
         for path in paths:
-            if len(path) > LONGEST_PATH:
-                raise refuse(key, path, f"should have at most {LONGEST_PATH} characters")
+            if len(path) > MAX_PATH_LENGTH:
+                raise refuse(key, path, f"should have at most {MAX_PATH_LENGTH} characters")
             yield path, ""
 
 

@@ -395,7 +395,7 @@ class TimingConfig(Section):
     """human: the second movement of S9 to S12 begins so long before the first rests."""
 
 
-SHORTEST_MOVEMENT = 0.3
+MIN_MOVEMENT_S = 0.3
 
 
 FileSecond = Annotated[float, Field(ge=0, le=1e5, strict=True)]
@@ -431,8 +431,8 @@ class SequenceConfig(Section):
                     f"should be joined at rest: {name} begins {movement.before}, "
                     f"{self.sequence[n - 1]} ends {state}"
                 )
-            if duration is not None and not support(duration)[0] >= SHORTEST_MOVEMENT:
-                raise _wrong(f"should have durations_s from {SHORTEST_MOVEMENT} s on")
+            if duration is not None and not support(duration)[0] >= MIN_MOVEMENT_S:
+                raise _wrong(f"should have durations_s from {MIN_MOVEMENT_S} s on")
             if movement.seconds is None and duration is None and n < last:
                 raise _wrong(f"should have a duration of {name}, which something follows")
             state = movement.after
@@ -440,7 +440,7 @@ class SequenceConfig(Section):
 
 
 MAX_FILES = 1500  # of all classes together
-LONGEST_PATH = 240
+MAX_PATH_LENGTH = 240
 Share01 = Annotated[Number, within(0, 1)]
 
 
@@ -449,7 +449,7 @@ class FilesConfig(Section):
 
     files: dict[str, str]
     """{path: SHA-256}; a list of paths and patterns when it is written."""
-    skeleton: Annotated[str, Field(max_length=LONGEST_PATH)] | None = None
+    skeleton: Annotated[str, Field(max_length=MAX_PATH_LENGTH)] | None = None
     """The ASF of AMC files, where it is not beside them."""
     joints: dict[str, Annotated[str, Field(min_length=1, max_length=100)]] = {}
     """{our joint: the file's}, where the tables of names do not know it."""
@@ -492,7 +492,7 @@ class FilesConfig(Section):
     @classmethod
     def _known(cls, value: dict[str, str]) -> dict[str, str]:
         for path in value:
-            if not path.lower().endswith(SUFFIXES) or len(path) > LONGEST_PATH or "\0" in path:
+            if not path.lower().endswith(SUFFIXES) or len(path) > MAX_PATH_LENGTH or "\0" in path:
                 raise _wrong(f"should be paths of {', '.join(SUFFIXES)} files, not {path!r}")
         if not 0 < len(value) <= MAX_FILES:
             raise _wrong(f"should have 1 to {MAX_FILES} files")

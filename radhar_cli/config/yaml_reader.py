@@ -13,7 +13,7 @@ from radhar_cli.errors import ConfigError
 from radhar_cli.untrusted import DEEPEST
 
 MAX_TEXT = 2**16  # characters, every alias written out
-LONGEST_KEY = 100
+MAX_KEY_LENGTH = 100
 Lines = dict[str, int]
 
 _INT = re.compile(r"[-+]?(?:0|[1-9][0-9_]*)")
@@ -108,9 +108,11 @@ def _mapping(node: yaml.MappingNode, key: str, lines: Lines) -> dict[str, Any]:
     own: dict[str, Any] = {}
     for name_node, value_node in node.value:
         name = _value(name_node, "", {})
-        if not isinstance(name, str) or len(name) > LONGEST_KEY:
-            what = repr(name)[: LONGEST_KEY // 2]
-            _refuse(name_node, f"the key {what} should be text of at most {LONGEST_KEY} characters")
+        if not isinstance(name, str) or len(name) > MAX_KEY_LENGTH:
+            what = repr(name)[: MAX_KEY_LENGTH // 2]
+            _refuse(
+                name_node, f"the key {what} should be text of at most {MAX_KEY_LENGTH} characters"
+            )
         if name in own:
             _refuse(name_node, f"the key {name!r} appears twice")
         if name == "<<":

@@ -31,7 +31,7 @@ from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 MAX_BYTES = 3 * 2**29  # of range bins that are held at once
 PIECE_SAMPLES = 2**20
-SHORTEST_FRAME = 8  # pulses of a window
+MIN_FRAME_PULSES = 8  # pulses of a window
 
 
 @dataclass(frozen=True)
@@ -146,7 +146,7 @@ def pulses_between(
     half = 0.5 / segments.prf  # a time that a decimal rounds is that of its pulse
     first = 0 if start is None else int(np.searchsorted(times, origin + start - half))
     last = times.size if stop is None else int(np.searchsorted(times, origin + stop - half))
-    if last - first < SHORTEST_FRAME:
+    if last - first < MIN_FRAME_PULSES:
         until = "the end" if stop is None else f"{stop:g} s"
         raise CaptureError(
             f"{recording.path}: from {start or 0:g} s to {until} there are "
@@ -236,10 +236,10 @@ def _stretches(
     usual = int(np.median(segments.lengths)) - canceller.lost
     length = min(wanted.length, usual)
     needed = config.processing.savgol.frame if any("denoised" in n for n in names) else 0
-    if length < max(SHORTEST_FRAME, needed):
+    if length < max(MIN_FRAME_PULSES, needed):
         raise CaptureError(
             f"{recording.path}: stretches of {usual + canceller.lost} pulses without a gap are too "
-            f"short for a Doppler map; should have {max(SHORTEST_FRAME, needed) + canceller.lost}"
+            f"short for a Doppler map; should have {max(MIN_FRAME_PULSES, needed) + canceller.lost}"
         )
     if length < wanted.length:
         notes.append(

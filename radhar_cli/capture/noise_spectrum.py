@@ -17,7 +17,7 @@ WINDOW_S = 1.0
 LOWEST = 2  # Doppler bins next to zero, which Hann's window mixes with the removed mean
 A_DECADE = 12  # points of the spectrum that the colour is fitted to
 SURE_BIC = 20.0  # by which the Bayesian information criterion has to favour coloured noise
-LEAST_DB = 1.0  # rise of the noise at the lowest frequency, and of a line over the noise
+MIN_RISE_DB = 1.0  # rise of the noise at the lowest frequency, and of a line over the noise
 DEVIATIONS = 6.0  # of a line over the noise beside it
 BESIDE = 31  # Doppler bins that tell this noise
 MAX_LINES = 16
@@ -155,7 +155,7 @@ def lines(spectrum: NoiseSpectrum) -> list[FoundLine]:
     background, base = (median_filter(one, BESIDE, mode="wrap") for one in (median, mean))
     ratio = median / background
     spread = 1.4826 * float(np.median(np.abs(ratio - np.median(ratio))))
-    least = max(1 + DEVIATIONS * spread, 10 ** (LEAST_DB / 10))
+    least = max(1 + DEVIATIONS * spread, 10 ** (MIN_RISE_DB / 10))
     f, length = spectrum.frequency, spectrum.length
     found: list[FoundLine] = []
     taken = np.zeros(length, bool)
@@ -210,7 +210,7 @@ def colour(spectrum: NoiseSpectrum, found: list[FoundLine]) -> Colour:
     squares = [float(np.sum(r**2)) for r in (y - y.mean(), off(best))]
     gain = x.size * np.log(squares[0] / max(squares[1], 1e-12)) - 2 * np.log(x.size)
     rise = 10 * np.log10(1 + (10 ** best[1] / x[0]) ** (best[2] / 10))
-    if gain < SURE_BIC or rise < LEAST_DB:
+    if gain < SURE_BIC or rise < MIN_RISE_DB:
         return Colour(1.0, 0.0, SLOPES[0])
     return Colour(*(float(one) for one in (10 ** (best[0] / 10), 10 ** best[1], best[2])))
 

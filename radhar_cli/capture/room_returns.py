@@ -17,7 +17,7 @@ from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 SIDELOBES_DB = 120.0  # of the window over the chirp: leakage may be that much stronger
 MAIN_LOBE = 5.0  # cells c/(2 B) from its middle to its first zero
 BLOCK_S = 0.01  # of pulses that are averaged; slower movements are seen
-LEAST_S = 1.0  # that a range bin has to be seen for
+MIN_SEEN_S = 1.0  # that a range bin has to be seen for
 QUARTILE = 0.25
 OVER_NOISE = 10.0  # in power: what is no return
 OVER_OTHERS = 100.0  # over the lower tenth of all bins: noise that drifts slowly is in all of them
@@ -69,11 +69,11 @@ def returns(bins: Complex, away: Bool, first: Index, prf: float, f0: float) -> R
     metres = SPEED_OF_LIGHT / (4 * np.pi * f0)
     found = np.full((3, len(bins)), np.nan)
     for k in range(len(bins)):
-        if np.count_nonzero(free[k]) < LEAST_S * rate:
+        if np.count_nonzero(free[k]) < MIN_SEEN_S * rate:
             continue
         found[0, k] = np.quantile(np.abs(z[k, free[k]]) ** 2, QUARTILE)
         there = _longest(free[k], gaps)
-        if there.stop - there.start >= LEAST_S * rate:
+        if there.stop - there.start >= MIN_SEEN_S * rate:
             found[1:, k] = _movement(z[k, there], rate)
     return Returns(found[0], metres * found[1], found[2])
 

@@ -5,7 +5,7 @@ from glob import has_magic, iglob
 from itertools import islice
 from pathlib import Path
 
-from radhar_cli.config.schema import MAX_PATH_LENGTH, MAX_FILES, Config, FilesConfig
+from radhar_cli.config.schema import MAX_FILES, MAX_PATH_LENGTH, Config, FilesConfig
 from radhar_cli.errors import ConfigError, FolderError, MotionFileError
 from radhar_cli.motion.files.reading import read_motion
 

@@ -513,7 +513,8 @@ def _hours(record: dict[str, Any]) -> str:
     return _number(training["core_hours"], ".2f") + on_gpu
 
 
-def _table(head: list[str], rows: list[list[str]]) -> list[str]:
+def table(head: list[str], rows: list[list[str]]) -> list[str]:
+    """A table, as lines of Markdown."""
     lines = [head, ["---"] * len(head), *rows]
     return [f"| {' | '.join(line)} |" for line in lines] + [""]
 
@@ -592,7 +593,7 @@ def _by_snr(rows: list[Row]) -> list[str]:
         cells += [_epochs(found), _number(found["best_epoch"]), percent(found["validation"])]
         cells += [percent(found["fresh"].get(str(t.snr_db))), paper, *row.ending()]
         body.append(cells)
-    return _table(head, body)
+    return table(head, body)
 
 
 def _robustness(scale: Scale, scenario: str, rows: list[Row]) -> list[str]:
@@ -610,7 +611,7 @@ def _robustness(scale: Scale, scenario: str, rows: list[Row]) -> list[str]:
             cells
             + [NOT_RUN if part is None else _number(part["accuracy"], ".2f", 100) for part in parts]
         )
-    return _table(
+    return table(
         [f"{SCENARIOS[scenario]}, trained at", *(f"tested at {snr} dB" for snr in snrs)], body
     )
 
@@ -644,7 +645,7 @@ def _one_network(rows: list[Row], specialists: list[Row]) -> list[str]:
         "[robust.yaml](../configs/train/robust.yaml)), tested on the fresh seed, beside the "
         "networks of the table above that were trained at the SNR at which they are tested."
     )
-    return ["### One network for every SNR", "", words, "", *_table(head, body)]
+    return ["### One network for every SNR", "", words, "", *table(head, body)]
 
 
 def _subjects(rows: list[Row]) -> list[str]:
@@ -661,7 +662,7 @@ def _subjects(rows: list[Row]) -> list[str]:
     return [
         f"### Persons kept apart (`split.by: subject`, {SUBJECTS} persons)",
         "",
-        *_table(head, body),
+        *table(head, body),
     ]
 
 
@@ -703,7 +704,7 @@ def _networks(rows: list[Row]) -> list[str]:
             _number(speed.get(key), ".0f", 1e3) + busy for key in ("image_s", "load_and_image_s")
         ]
         body.append([*cells, theirs[2], *row.ending()])
-    return _table(head, body)
+    return table(head, body)
 
 
 def snr_figures(name: str, results: Path, records: dict[str, dict[str, Any]]) -> None:
@@ -766,12 +767,12 @@ def page_text(scales: tuple[str, ...], results: Path) -> str:
     return "\n".join(lines)
 
 
-def write_page(path: Path, text: str) -> None:
+def write_page(path: Path, text: str, begin: str = BEGIN) -> None:
     """Replace what stands between the markers of a page; the words around it stay."""
-    page = path.read_text() if path.exists() else f"# Results\n\n{BEGIN}\n{END}\n"
-    before, _, rest = page.partition(BEGIN)
+    page = path.read_text() if path.exists() else f"# Results\n\n{begin}\n{END}\n"
+    before, _, rest = page.partition(begin)
     after = rest.partition(END)[2]
-    path.write_text(f"{before}{BEGIN}\n{text}\n{END}{after}")
+    path.write_text(f"{before}{begin}\n{text}\n{END}{after}")
 
 
 def wanted(scale: Scale, words: list[str], results: Path, again: bool) -> list[Training]:

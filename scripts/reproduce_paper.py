@@ -260,7 +260,7 @@ class Reproduction:
         others: dict[str, Any],
     ) -> dict[str, Any]:
         run = self.run(training)
-        metrics = _read(run / "metrics.json")
+        metrics = read_json(run / "metrics.json")
         with (run / "history.csv").open(newline="") as file:
             history = list(csv.DictReader(file))
         config, (evaluated, validation) = metrics["config"], _parts(own)[0]
@@ -327,7 +327,7 @@ class Reproduction:
         """Report of a run on some data sets, made again if the run is newer or a set is missing."""
         out = self._reports(run, kind)
         stamp, newest = out / "report.json", (run / "metrics.json").stat().st_mtime
-        there = _read(stamp) if stamp.exists() and stamp.stat().st_mtime >= newest else {}
+        there = read_json(stamp) if stamp.exists() and stamp.stat().st_mtime >= newest else {}
         if {folder.name for folder in data} == {part["name"] for _, part in _parts(there)}:
             return there
         out.parent.mkdir(parents=True, exist_ok=True)
@@ -335,7 +335,7 @@ class Reproduction:
         write_note(out, load=round(os.getloadavg()[0], 1))
         split = "all" if kind == "fresh" else kind
         radhar("eval", run, *data, "-o", out, "--split", split, *more)
-        return _read(stamp)
+        return read_json(stamp)
 
 
 def run_name(scale: Scale, training: Training) -> str:
@@ -381,7 +381,8 @@ def _figures(training: Training) -> dict[str, str]:
     return found
 
 
-def _read(path: Path) -> dict[str, Any]:
+def read_json(path: Path) -> dict[str, Any]:
+    """What a JSON file holds."""
     contents: dict[str, Any] = json.loads(path.read_text())
     return contents
 
@@ -450,7 +451,7 @@ def _note(folder: Path) -> dict[str, Any]:
     """What is noted beside a folder; nothing is known of one without a note."""
     file = _note_file(folder)
     note: dict[str, Any] = {"commits": [], "machine": None}
-    return note | (_read(file) if file.exists() else {})
+    return note | (read_json(file) if file.exists() else {})
 
 
 def write_note(folder: Path, **more: float) -> None:
@@ -472,7 +473,7 @@ def read_records(folder: Path) -> dict[str, dict[str, Any]]:
     records = {}
     for file in sorted(folder.glob("*.json")):
         try:
-            record = _read(file)
+            record = read_json(file)
             missing = {"name", "scenario", "snr_db", "model", "training"} - set(record)
         except (ValueError, TypeError) as error:
             sys.exit(f"reproduce_paper: {file}: is not a record of a run ({error})")

@@ -9,7 +9,6 @@ docs/results/small/NAME.json, of which the tables are made; a row that has one i
 """
 
 import argparse
-import json
 import re
 import sys
 from dataclasses import dataclass
@@ -26,6 +25,7 @@ from reproduce_paper import (
     commit,
     machine,
     radhar,
+    read_json,
     table,
     write_page,
 )
@@ -67,7 +67,8 @@ class Experiment:
         data: changes of the paper's config.
         train: settings of the training.
         learned: what is changed further in the maps it learns from, and not in those of the test.
-        of: names of experiments instead: their probabilities are averaged, seed by seed.
+        of: labels of other experiments on the same scenes instead: their probabilities are
+            averaged, seed by seed.
     """
 
     table: str
@@ -111,61 +112,48 @@ def advice(label: str, *data: str, **more: Any) -> list[Experiment]:
     return [Experiment(ADVICE, label, scenario, -10, data, **more) for scenario in SCENARIOS]
 
 
-def other_map(name: str) -> list[Experiment]:
-    """Rows of another map of the same scenes."""
-    return advice(f"map {name}", *SEVERAL, train=(*SMALLNET, f"map={name}"))
-
-
+RTM = "map rtm"
+MORE = ("samples_per_class=500", "seed=2", "split={train: 0.8, validation: 0.2}")
 EXPERIMENTS: tuple[Experiment, ...] = (
     *(
         Experiment(BOUND, "smallnet", scenario, snr, seeds=(1, 2, 3))
         for scenario in SCENARIOS
         for snr in (-10, None)
     ),
-    *(Experiment(CURVE, "smallnet", FREE, snr) for snr in (0, -20, 10, 20)),
-    *(Experiment(CURVE, "smallnet", WALL, snr) for snr in (0, 10, 20)),
     *advice("gate of 1 m about the torso", "processing.doppler=gate"),
-    *advice("gate from 0.5 to 4 m", "processing.doppler=gate", "processing.gate_m=[0.5, 4]"),
-    *other_map("rtm"),
+    *(Experiment(CURVE, "smallnet", FREE, snr, seeds=(1,)) for snr in (0, -20, 10, -5)),
+    *(Experiment(CURVE, "smallnet", WALL, snr, seeds=(1,)) for snr in (0, 10, 20)),
+    *advice("400 maps a class to learn from", learned=MORE),
+    *advice("window of 0.8 s", "processing.window_s=0.8"),
+    Experiment(FACTORS, "smallnet, 32 px", FREE, -10, ("image.size_px=32",)),
+    Experiment(FACTORS, "smallnet, 128 px", FREE, -10, ("image.size_px=128",), seeds=(1,)),
+    Experiment(FACTORS, "fftnet, 20 epochs, steps", FREE, -10, train=FFTNET, seeds=(1,)),
+    *advice(RTM, *SEVERAL, train=(*SMALLNET, "map=rtm")),
     *(
         Experiment(
-            ADVICE,
-            "stft and rtm, probabilities averaged",
-            scenario,
-            -10,
-            of=(f"{scenario}_-10dB_smallnet", f"{scenario}_-10dB_map_rtm"),
+            ADVICE, "stft and rtm, probabilities averaged", scenario, -10, of=("smallnet", RTM)
         )
         for scenario in SCENARIOS
     ),
-    *advice("window of 0.2 s", "processing.window_s=0.2"),
-    *advice("window of 0.8 s", "processing.window_s=0.8"),
-    *advice(
-        "400 maps a class to learn from",
-        learned=("samples_per_class=500", "seed=2", "split={train: 0.8, validation: 0.2}"),
-    ),
+    Experiment(FACTORS, "smallnet, 5 epochs", FREE, -10, train=(*SMALLNET, "epochs=5")),
     Experiment(
-        FACTORS, "fftnet, 20 epochs, step", FREE, -10, train=(*FFTNET, ONE_THREAD), seeds=(1, 2)
-    ),
-    *(
-        Experiment(FACTORS, f"smallnet, {n} epochs", FREE, -10, train=(*SMALLNET, f"epochs={n}"))
-        for n in (5, 45)
+        FACTORS, "smallnet, 45 epochs", FREE, -10, train=(*SMALLNET, "epochs=45"), seeds=(1,)
     ),
     Experiment(
         FACTORS,
-        "smallnet, 15 epochs, step every 8",
+        "smallnet, 15 epochs, rate / 10 after 8",
         FREE,
         -10,
         train=(*SMALLNET, "schedule={kind: step, every_epochs: 8}"),
     ),
-    Experiment(FACTORS, "smallnet, 32 px", FREE, -10, data=("image.size_px=32",)),
-    Experiment(FACTORS, "smallnet, 128 px", FREE, -10, data=("image.size_px=128",)),
+    Experiment(BOUND, "fftnet", WALL, -10, train=FFTNET, seeds=(1,)),
+    *advice("window of 0.2 s", "processing.window_s=0.2"),
     *(
-        Experiment(BOUND, "fftnet", scenario, snr, train=FFTNET, seeds=(1,))
-        for scenario, snr in ((WALL, -10), (WALL, None))
+        one
+        for name in ("fsst", "stft_compensated", "stft_denoised")
+        for one in advice(f"map {name}", *SEVERAL, train=(*SMALLNET, f"map={name}"))
     ),
-    *other_map("fsst"),
-    *other_map("stft_compensated"),
-    *other_map("stft_denoised"),
+    *advice("gate from 0.5 to 4 m", "processing.doppler=gate", "processing.gate_m=[0.5, 4]"),
     Experiment(CURVE, "smallnet, SNR of the received echo", WALL, -10, ("snr_reference=received",)),
 )
 
@@ -190,7 +178,8 @@ class Bench:
     def probabilities(self, one: Experiment, seed: int) -> tuple[Float, Index]:
         """Probabilities [N, 12] of the test maps after training with one seed, true classes [N]."""
         if one.of:
-            parts = [self.probabilities(named(name), seed) for name in one.of]
+            others = [f"{data_name(one)}_{plain(label)}" for label in one.of]
+            parts = [self.probabilities(named(name), seed) for name in others]
             return np.mean([p for p, _ in parts], axis=0), parts[0][1]
         run = self.out / "runs" / f"{one.name}_{seed}"
         if not (run / "metrics.json").exists():
@@ -222,7 +211,7 @@ class Bench:
             "command": f"python scripts/small_scale.py --only {one.name}",
             "commits": [commit()],
             "machine": machine(),
-            "precision": [json.loads(run.read_text())["precision"] for run in runs if run.exists()],
+            "precision": [read_json(run)["precision"] for run in runs if run.exists()],
             "tested": int(truth.size),
             "correct": correct,
             "correct_together": int(np.trace(confusion)),
@@ -280,7 +269,7 @@ def page_text(results: Path) -> str:
         keys = {one: (one.scenario, -s, order[one]) for one, s in zip(rows, snr, strict=True)}
         for one in sorted(rows, key=lambda one: keys[one]):
             file = results / f"{one.name}.json"
-            found = json.loads(file.read_text()) if file.exists() else None
+            found = read_json(file) if file.exists() else None
             noise = "noiseless" if one.snr_db is None else str(one.snr_db)
             body.append([SCENARIOS[one.scenario], noise, one.label, *cells(found)])
         head = ["scenario", "SNR (dB)", "what", "accuracy, mean of seeds", "each seed"]

@@ -50,12 +50,14 @@ class Gains:
             bins; N_FFT/n_bins = 2 unpadded: the noise of all bins takes back what compression won.
         window: (sum g)^2/sum g^2, of a tone in the middle of a cell.
         gate: from the raw sample to the sum of the powers of `gate_bins`.
+        recording: M, of a filter matched to the whole recording.
     """
 
     compression: float
     half_band: float
     window: float
     gate: float
+    recording: float
     gate_bins: int
 
 
@@ -67,6 +69,7 @@ def gains(w: Waveform, frames: Frames, gate_bins: int) -> Gains:
         half_band=db(w.n_fft**2 / noise_gain(w)),
         window=db(np.sum(g) ** 2 / np.sum(g**2)),
         gate=db(w.n_adc / gate_bins),
+        recording=db(w.n_pulses),
         gate_bins=gate_bins,
     )
 
@@ -228,6 +231,18 @@ def page_text(contents: Mapping[str, Any]) -> str:
         ),
         ("gate: strongest cell", lambda b: median_of(b["scenes"], "gated_peak")),
         ("gate: median of the body's cells", lambda b: median_of(b["scenes"], "gated_median")),
+        (
+            "filter matched to the whole echo, of x[m], theory",
+            lambda b: (
+                median_of(b["scenes"], "wall") + b["gains"]["half_band"] + b["gains"]["recording"]
+            ),
+        ),
+        (
+            "filter matched to the whole echo, of the raw samples, theory",
+            lambda b: (
+                median_of(b["scenes"], "wall") + b["gains"]["compression"] + b["gains"]["recording"]
+            ),
+        ),
     ]
     rows = [[words, *(f"{value(b):+.1f}" for b in both)] for words, value in shown]
     made = [words for words, _ in shown].index("x[m] as it is made") + 1

@@ -124,26 +124,25 @@ def other_map(name: str) -> list[Experiment]:
 
 
 EXPERIMENTS: tuple[Experiment, ...] = (
-    Experiment(BOUND, SMALL, WALL, -10, seeds=(1, 2, 3)),
     Experiment(BOUND, SMALL, FREE, -10, seeds=(1, 2, 3)),
+    Experiment(BOUND, SMALL, WALL, -10, seeds=(1, 2, 3)),
     Experiment(BOUND, SMALL, WALL, None),
     Experiment(BOUND, SMALL, FREE, None),
-    Experiment(ADVICE, GATED, WALL, -10, GATE, seeds=(1, 2, 3)),
-    Experiment(ADVICE, GATED, FREE, -10, GATE),
+    Experiment(ADVICE, GATED, WALL, -10, GATE, seeds=(1, 2)),
     *(Experiment(CURVE, SMALL, WALL, snr) for snr in (10, 0)),
     Experiment(CURVE, SMALL, FREE, -20),
-    *(Experiment(ADVICE, MORE, scenario, -10, learned=FIVE_HUNDRED) for scenario in (WALL, FREE)),
-    Experiment(FACTORS, "fftnet, 20 epochs, rate / 10 after 10", FREE, -10, train=FFTNET),
-    Experiment(CURVE, SMALL, FREE, -15),
-    Experiment(CURVE, SMALL, WALL, 5),
+    Experiment(ADVICE, MORE, FREE, -10, learned=FIVE_HUNDRED),
+    Experiment(ADVICE, f"{GATED}, {MORE}", WALL, -10, GATE, learned=FIVE_HUNDRED),
     *other_map("rtm"),
     *(
         Experiment(ADVICE, f"{SMALL} and map rtm, averaged", s, -10, of=(SMALL, "map rtm"))
         for s in (WALL, FREE)
     ),
+    Experiment(CURVE, SMALL, FREE, -15),
     *advice("window of 0.8 s", "processing.window_s=0.8"),
     Experiment(FACTORS, "smallnet, 32 px", FREE, -10, ("image.size_px=32",)),
     Experiment(FACTORS, "smallnet, 5 epochs", FREE, -10, train=(*SMALLNET, "epochs=5")),
+    Experiment(FACTORS, "fftnet, 20 epochs, rate / 10 after 10", FREE, -10, train=FFTNET),
     Experiment(
         FACTORS,
         "smallnet, rate / 10 after 8 of 15 epochs",
@@ -153,10 +152,12 @@ EXPERIMENTS: tuple[Experiment, ...] = (
     ),
     Experiment(FACTORS, "smallnet, 128 px", FREE, -10, ("image.size_px=128",)),
     Experiment(FACTORS, "smallnet, 45 epochs", FREE, -10, train=(*SMALLNET, "epochs=45")),
-    *advice("window of 0.2 s", "processing.window_s=0.2"),
+    Experiment(CURVE, SMALL, WALL, 5),
     *(one for name in ("fsst", "stft_compensated", "stft_denoised") for one in other_map(name)),
-    *advice("gate from 0.5 to 4 m", "processing.doppler=gate", "processing.gate_m=[0.5, 4]"),
+    *advice("window of 0.2 s", "processing.window_s=0.2"),
     Experiment(CURVE, RECEIVED, WALL, -10, ("snr_reference=received",)),
+    Experiment(ADVICE, MORE, WALL, -10, learned=FIVE_HUNDRED),
+    Experiment(ADVICE, GATED, FREE, -10, GATE),
 )
 
 

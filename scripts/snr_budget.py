@@ -204,56 +204,60 @@ def disagreement(scenes: list[dict[str, Any]]) -> str:
     return f"{np.median(apart):.1f} (median), {max(apart):.1f} (largest)"
 
 
+def steps(b: Mapping[str, Any]) -> dict[str, str | float]:
+    """The budget of a scenario at 0 dB, step by step."""
+    gain, scenes = b["gains"], b["scenes"]
+    wall, compression, half_band = median_of(scenes, "wall"), gain["compression"], gain["half_band"]
+    return {
+        "raw sample, free space: what `snr_db` says": 0.0,
+        "wall, both ways": wall,
+        "range compression, in the scatterer's bin": compression,
+        "coherent sum over the kept bins: noise of all of them": half_band - compression,
+        "canceller, mean power": median_of(scenes, "canceller"),
+        "**slow-time signal x[m], theory**": median_of(scenes, "signal_theory"),
+        "x[m] as it is made": median_of(scenes, "signal"),
+        "apart in a scene": disagreement(scenes),
+        "window of the STFT, a tone": gain["window"],
+        "**all of the echo in one cell, theory**": median_of(scenes, "cell_theory"),
+        "strongest cell of the maps": median_of(scenes, "peak"),
+        "median of the body's cells": median_of(scenes, "median"),
+        "gate of 1 m: all of the echo in one cell, theory": median_of(scenes, "gated_cell_theory"),
+        "gate: strongest cell": median_of(scenes, "gated_peak"),
+        "gate: median of the body's cells": median_of(scenes, "gated_median"),
+        "filter matched to the whole echo, of x[m], theory": wall + half_band + gain["recording"],
+        "the same, of the raw samples": wall + compression + gain["recording"],
+    }
+
+
+def readings(b: Mapping[str, Any]) -> dict[str, float]:
+    """What another place of an SNR of -10 dB would be as our `snr_db`."""
+    wall = median_of(b["scenes"], "wall")
+    return {
+        "a raw sample, of the echo in free space (ours)": -10.0,
+        "a raw sample, of the echo that is received": -10 - wall,
+        "after range compression, in the scatterer's bin": -10 - wall - b["gains"]["compression"],
+        "the sum over the bins, before the canceller": -10 - wall - b["gains"]["half_band"],
+        "x[m], after the canceller": -10 - median_of(b["scenes"], "signal_theory"),
+        "the strongest cell of the map": -10 - median_of(b["scenes"], "peak"),
+    }
+
+
 def page_text(contents: Mapping[str, Any]) -> str:
     """The tables."""
     both = [contents["scenarios"][name] for name in SCENARIOS]
-    shown = [
-        ("raw sample, free space: what `snr_db` says", lambda b: 0.0),
-        ("wall, both ways", lambda b: median_of(b["scenes"], "wall")),
-        ("range compression, in the scatterer's bin", lambda b: b["gains"]["compression"]),
-        (
-            "coherent sum over the kept bins: noise of all of them",
-            lambda b: b["gains"]["half_band"] - b["gains"]["compression"],
-        ),
-        ("canceller, mean power", lambda b: median_of(b["scenes"], "canceller")),
-        ("**slow-time signal x[m], theory**", lambda b: median_of(b["scenes"], "signal_theory")),
-        ("x[m] as it is made", lambda b: median_of(b["scenes"], "signal")),
-        ("window of the STFT, a tone", lambda b: b["gains"]["window"]),
-        (
-            "**all of the echo in one cell, theory**",
-            lambda b: median_of(b["scenes"], "cell_theory"),
-        ),
-        ("strongest cell of the maps", lambda b: median_of(b["scenes"], "peak")),
-        ("median of the body's cells", lambda b: median_of(b["scenes"], "median")),
-        (
-            "gate of 1 m: all of the echo in one cell, theory",
-            lambda b: median_of(b["scenes"], "gated_cell_theory"),
-        ),
-        ("gate: strongest cell", lambda b: median_of(b["scenes"], "gated_peak")),
-        ("gate: median of the body's cells", lambda b: median_of(b["scenes"], "gated_median")),
-        (
-            "filter matched to the whole echo, of x[m], theory",
-            lambda b: (
-                median_of(b["scenes"], "wall") + b["gains"]["half_band"] + b["gains"]["recording"]
-            ),
-        ),
-        (
-            "filter matched to the whole echo, of the raw samples, theory",
-            lambda b: (
-                median_of(b["scenes"], "wall") + b["gains"]["compression"] + b["gains"]["recording"]
-            ),
-        ),
-    ]
-    rows = [[words, *(f"{value(b):+.1f}" for b in both)] for words, value in shown]
-    made = [words for words, _ in shown].index("x[m] as it is made") + 1
-    rows.insert(made, ["apart in a scene", *(disagreement(b["scenes"]) for b in both)])
+
+    def side_by_side(columns: list[Mapping[str, str | float]]) -> list[list[str]]:
+        values = ([column[words] for column in columns] for words in columns[0])
+        text = ([v if isinstance(v, str) else f"{v:+.1f}" for v in row] for row in values)
+        return [[words, *row] for words, row in zip(columns[0], text, strict=True)]
+
     per_class = len(both[0]["scenes"]) // 12
     lines = [
         f"Made by `python scripts/snr_budget.py --per-class {per_class}` at {contents['commit']}: "
         f"medians over {12 * per_class} scenes of each config, dB, at 0 dB; stationary people, of "
         "whom the canceller leaves nothing, are left out.",
         "",
-        *table(["", *SCENARIOS.values()], rows),
+        *table(["", *SCENARIOS.values()], side_by_side([steps(b) for b in both])),
     ]
     head = ["scenario", "", *(f"{snr} dB" for snr in SNRS)]
     body = []
@@ -281,7 +285,13 @@ def page_text(contents: Mapping[str, Any]) -> str:
     head = ["class, at -10 dB"]
     for words in SCENARIOS.values():
         head += [f"{words}: strongest cell", "median of the body's cells"]
-    return "\n".join([*lines, "Class by class:", "", *table(head, rows)])
+    lines += ["Class by class:", "", *table(head, rows)]
+    head = [
+        "if -10 dB were the SNR of",
+        *(f"our `snr_db`, {words}" for words in SCENARIOS.values()),
+    ]
+    lines += ["Other places to which an SNR could refer:", ""]
+    return "\n".join([*lines, *table(head, side_by_side([readings(b) for b in both]))])
 
 
 def main() -> None:

@@ -108,7 +108,7 @@ FREE, WALL = SCENARIOS
 
 
 SMALL, GATED, MORE = "smallnet", "gate of 1 m about the torso", "400 maps a class to learn from"
-RECEIVED = "smallnet, SNR of the received echo"
+LONG, RECEIVED = "window of 0.8 s", "smallnet, SNR of the received echo"
 GATE = ("processing.doppler=gate",)
 FIVE_HUNDRED = ("samples_per_class=500", "seed=2", "split={train: 0.8, validation: 0.2}")
 
@@ -131,17 +131,17 @@ EXPERIMENTS: tuple[Experiment, ...] = (
     Experiment(ADVICE, GATED, WALL, -10, GATE, seeds=(1, 2)),
     *(Experiment(CURVE, SMALL, WALL, snr) for snr in (10, 0)),
     Experiment(CURVE, SMALL, FREE, -20),
-    Experiment(ADVICE, MORE, FREE, -10, learned=FIVE_HUNDRED),
-    Experiment(ADVICE, f"{GATED}, {MORE}", WALL, -10, GATE, learned=FIVE_HUNDRED),
-    *other_map("rtm"),
-    *(
-        Experiment(ADVICE, f"{SMALL} and map rtm, averaged", s, -10, of=(SMALL, "map rtm"))
-        for s in (WALL, FREE)
-    ),
-    Experiment(CURVE, SMALL, FREE, -15),
-    *advice("window of 0.8 s", "processing.window_s=0.8"),
+    Experiment(ADVICE, "map rtm", WALL, -10, SEVERAL, train=(*SMALLNET, "map=rtm")),
+    Experiment(ADVICE, "gate and map rtm, averaged", WALL, -10, of=(GATED, "map rtm")),
     Experiment(FACTORS, "smallnet, 32 px", FREE, -10, ("image.size_px=32",)),
     Experiment(FACTORS, "smallnet, 5 epochs", FREE, -10, train=(*SMALLNET, "epochs=5")),
+    Experiment(ADVICE, f"{GATED}, {MORE}", WALL, -10, GATE, learned=FIVE_HUNDRED),
+    Experiment(CURVE, SMALL, FREE, -15),
+    Experiment(ADVICE, f"{GATED}, {LONG}", WALL, -10, (*GATE, "processing.window_s=0.8")),
+    Experiment(ADVICE, MORE, FREE, -10, learned=FIVE_HUNDRED),
+    Experiment(ADVICE, "map rtm", FREE, -10, SEVERAL, train=(*SMALLNET, "map=rtm")),
+    Experiment(ADVICE, "stft and map rtm, averaged", FREE, -10, of=(SMALL, "map rtm")),
+    *advice(LONG, "processing.window_s=0.8"),
     Experiment(FACTORS, "fftnet, 20 epochs, rate / 10 after 10", FREE, -10, train=FFTNET),
     Experiment(
         FACTORS,

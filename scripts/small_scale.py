@@ -108,6 +108,7 @@ FREE, WALL = SCENARIOS
 
 
 SMALL, GATED, MORE = "smallnet", "gate of 1 m about the torso", "400 maps a class to learn from"
+FIXED = "all bins from 0.5 to 8 m, powers summed"
 LONG, RECEIVED = "window of 0.8 s", "smallnet, SNR of the received echo"
 GATE = ("processing.doppler=gate",)
 FIVE_HUNDRED = ("samples_per_class=500", "seed=2", "split={train: 0.8, validation: 0.2}")
@@ -131,6 +132,7 @@ EXPERIMENTS: tuple[Experiment, ...] = (
     Experiment(ADVICE, GATED, WALL, -10, GATE, seeds=(1, 2)),
     *(Experiment(CURVE, SMALL, WALL, snr) for snr in (10, 0)),
     Experiment(CURVE, SMALL, FREE, -20),
+    Experiment(ADVICE, FIXED, WALL, -10, (*GATE, "processing.gate_m=[0.5, 8]")),
     Experiment(ADVICE, "map rtm", WALL, -10, SEVERAL, train=(*SMALLNET, "map=rtm")),
     Experiment(ADVICE, "gate and map rtm, averaged", WALL, -10, of=(GATED, "map rtm")),
     Experiment(FACTORS, "smallnet, 32 px", FREE, -10, ("image.size_px=32",)),

@@ -109,19 +109,9 @@ FREE, WALL = SCENARIOS
 
 SMALL, GATED, MORE = "smallnet", "gate of 1 m about the torso", "400 maps a class to learn from"
 FIXED = "all bins from 0.5 to 8 m, powers summed"
-LONG, RECEIVED = "window of 0.8 s", "smallnet, SNR of the received echo"
+LONG = "window of 0.8 s"
 GATE = ("processing.doppler=gate",)
 FIVE_HUNDRED = ("samples_per_class=500", "seed=2", "split={train: 0.8, validation: 0.2}")
-
-
-def advice(label: str, *data: str, **more: Any) -> list[Experiment]:
-    """A row of the advice in both scenarios."""
-    return [Experiment(ADVICE, label, scenario, -10, data, **more) for scenario in (WALL, FREE)]
-
-
-def other_map(name: str) -> list[Experiment]:
-    """Rows of another map of the same scenes."""
-    return advice(f"map {name}", *SEVERAL, train=(*SMALLNET, f"map={name}"))
 
 
 EXPERIMENTS: tuple[Experiment, ...] = (
@@ -135,16 +125,7 @@ EXPERIMENTS: tuple[Experiment, ...] = (
     Experiment(ADVICE, FIXED, WALL, -10, (*GATE, "processing.gate_m=[0.5, 8]")),
     Experiment(ADVICE, "map rtm", WALL, -10, SEVERAL, train=(*SMALLNET, "map=rtm")),
     Experiment(ADVICE, "gate and map rtm, averaged", WALL, -10, of=(GATED, "map rtm")),
-    Experiment(FACTORS, "smallnet, 32 px", FREE, -10, ("image.size_px=32",)),
     Experiment(FACTORS, "smallnet, 5 epochs", FREE, -10, train=(*SMALLNET, "epochs=5")),
-    Experiment(ADVICE, f"{GATED}, {MORE}", WALL, -10, GATE, learned=FIVE_HUNDRED),
-    Experiment(CURVE, SMALL, FREE, -15),
-    Experiment(ADVICE, f"{GATED}, {LONG}", WALL, -10, (*GATE, "processing.window_s=0.8")),
-    Experiment(ADVICE, MORE, FREE, -10, learned=FIVE_HUNDRED),
-    Experiment(ADVICE, "map rtm", FREE, -10, SEVERAL, train=(*SMALLNET, "map=rtm")),
-    Experiment(ADVICE, "stft and map rtm, averaged", FREE, -10, of=(SMALL, "map rtm")),
-    *advice(LONG, "processing.window_s=0.8"),
-    Experiment(FACTORS, "fftnet, 20 epochs, rate / 10 after 10", FREE, -10, train=FFTNET),
     Experiment(
         FACTORS,
         "smallnet, rate / 10 after 8 of 15 epochs",
@@ -152,14 +133,18 @@ EXPERIMENTS: tuple[Experiment, ...] = (
         -10,
         train=(*SMALLNET, "schedule={kind: step, every_epochs: 8}"),
     ),
+    Experiment(FACTORS, "smallnet, 32 px", FREE, -10, ("image.size_px=32",)),
+    Experiment(CURVE, SMALL, FREE, -15),
+    Experiment(ADVICE, f"{GATED}, {LONG}", WALL, -10, (*GATE, "processing.window_s=0.8")),
     Experiment(FACTORS, "smallnet, 128 px", FREE, -10, ("image.size_px=128",)),
-    Experiment(FACTORS, "smallnet, 45 epochs", FREE, -10, train=(*SMALLNET, "epochs=45")),
-    Experiment(CURVE, SMALL, WALL, 5),
-    *(one for name in ("fsst", "stft_compensated", "stft_denoised") for one in other_map(name)),
-    *advice("window of 0.2 s", "processing.window_s=0.2"),
-    Experiment(CURVE, RECEIVED, WALL, -10, ("snr_reference=received",)),
-    Experiment(ADVICE, MORE, WALL, -10, learned=FIVE_HUNDRED),
-    Experiment(ADVICE, GATED, FREE, -10, GATE),
+    Experiment(ADVICE, LONG, FREE, -10, ("processing.window_s=0.8",)),
+    Experiment(ADVICE, MORE, FREE, -10, learned=FIVE_HUNDRED),
+    *(
+        Experiment(ADVICE, f"map {name}", FREE, -10, SEVERAL, train=(*SMALLNET, f"map={name}"))
+        for name in ("rtm", "stft_denoised", "stft_compensated", "fsst")
+    ),
+    Experiment(FACTORS, "fftnet, rate / 10 after 10 of 20 epochs", FREE, -10, train=FFTNET),
+    Experiment(ADVICE, f"{GATED}, {MORE}", WALL, -10, GATE, learned=FIVE_HUNDRED),
 )
 
 

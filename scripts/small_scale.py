@@ -29,6 +29,7 @@ from reproduce_paper import (
     table,
     write_page,
 )
+from snr_budget import readings
 
 from radhar_cli.arrays import Float, Index
 from radhar_cli.learning.evaluation import open_for, predict
@@ -265,7 +266,36 @@ def page_text(results: Path) -> str:
             body.append([SCENARIOS[one.scenario], noise, what, *cells(found)])
         head = ["scenario", "SNR (dB)", "what", "accuracy, mean of seeds", "each seed"]
         lines += [f"### {title}", "", *table([*head, "seeds together", "record"], body)]
+        if key == CURVE:
+            lines += _other_places(results)
     return "\n".join(lines)
+
+
+def _other_places(results: Path) -> list[str]:
+    """What the curves say of an SNR of -10 dB that refers to another place of the chain."""
+    budget = results.parent / "snr_budget.json"
+    if not budget.exists():
+        return []
+    body: dict[str, list[str]] = {}
+    for scenario in SCENARIOS:
+        curve: dict[float, float] = {}
+        for one in EXPERIMENTS:
+            file = results / f"{one.name}.json"
+            of_curve = (one.label, one.scenario) == (SMALL, scenario)
+            if of_curve and one.snr_db is not None and file.exists():
+                found = read_json(file)
+                curve[one.snr_db] = float(100 * np.mean(found["correct"]) / found["tested"])
+        for place, snr in readings(read_json(budget)["scenarios"][scenario]).items():
+            share = NOT_RUN
+            if snrs := sorted(curve):
+                share = f"{np.interp(snr, snrs, [curve[n] for n in snrs]):.0f}"
+                share = f"{'at most ' * (snr < snrs[0])}{'at least ' * (snr > snrs[-1])}{share}"
+            body.setdefault(place, [place]).extend([f"{snr:+.1f}", share])
+    head = ["if -10 dB were the SNR of"]
+    for words in SCENARIOS.values():
+        head += [f"our `snr_db`, {words}", "accuracy"]
+    words = "Other places to which an SNR could refer; accuracy between the points of the curves:"
+    return [words, "", *table(head, list(body.values()))]
 
 
 def main() -> None:

@@ -230,7 +230,7 @@ def steps(b: Mapping[str, Any]) -> dict[str, str | float]:
 
 
 def readings(b: Mapping[str, Any]) -> dict[str, float]:
-    """What another place of an SNR of -10 dB would be as our `snr_db`."""
+    """What an SNR of -10 dB would be as our `snr_db`, if it were that of another place."""
     wall = median_of(b["scenes"], "wall")
     return {
         "a raw sample, of the echo in free space (ours)": -10.0,
@@ -285,13 +285,7 @@ def page_text(contents: Mapping[str, Any]) -> str:
     head = ["class, at -10 dB"]
     for words in SCENARIOS.values():
         head += [f"{words}: strongest cell", "median of the body's cells"]
-    lines += ["Class by class:", "", *table(head, rows)]
-    head = [
-        "if -10 dB were the SNR of",
-        *(f"our `snr_db`, {words}" for words in SCENARIOS.values()),
-    ]
-    lines += ["Other places to which an SNR could refer:", ""]
-    return "\n".join([*lines, *table(head, side_by_side([readings(b) for b in both]))])
+    return "\n".join([*lines, "Class by class:", "", *table(head, rows)])
 
 
 def main() -> None:

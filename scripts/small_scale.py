@@ -29,7 +29,7 @@ from reproduce_paper import (
     table,
     write_page,
 )
-from snr_budget import readings
+from snr_budget import read_budget, readings
 
 from radhar_cli.arrays import Float, Index
 from radhar_cli.learning.evaluation import open_for, predict
@@ -285,7 +285,7 @@ def _other_places(results: Path) -> list[str]:
             if of_curve and one.snr_db is not None and file.exists():
                 found = read_json(file)
                 curve[one.snr_db] = float(100 * np.mean(found["correct"]) / found["tested"])
-        for place, snr in readings(read_json(budget)["scenarios"][scenario]).items():
+        for place, snr in readings(read_budget(budget)["scenarios"][scenario]).items():
             share = NOT_RUN
             if snrs := sorted(curve):
                 share = f"{np.interp(snr, snrs, [curve[n] for n in snrs]):.0f}"

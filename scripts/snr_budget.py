@@ -186,11 +186,21 @@ def budget(config: Config, gated: Config, per_class: int) -> dict[str, Any]:
         )
     return {
         "gains": {name: round(value, 2) for name, value in vars(known).items()},
-        "scenes": [
-            {k: round(v, 2) if isinstance(v, float) else v for k, v in scene.items()}
-            for scene in scenes
-        ],
+        "scenes": {
+            key: [round(s[key], 2) if isinstance(s[key], float) else s[key] for s in scenes]
+            for key in scenes[0]
+        },
     }
+
+
+def read_budget(file: Path) -> dict[str, Any]:
+    """The record, its scenes one by one."""
+    contents = read_json(file)
+    for found in contents["scenarios"].values():
+        columns = found["scenes"]
+        rows = zip(*columns.values(), strict=True)
+        found["scenes"] = [dict(zip(columns, row, strict=True)) for row in rows]
+    return contents
 
 
 def median_of(scenes: list[dict[str, Any]], key: str) -> float:
@@ -307,7 +317,7 @@ def main() -> None:
         contents = {"commit": (commit()["commit"] or "")[:7], "snr_db": 0, "scenarios": found}
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(as_text(contents))
-    write_page(asked.page, page_text(read_json(file)), BEGIN)
+    write_page(asked.page, page_text(read_budget(file)), BEGIN)
 
 
 if __name__ == "__main__":

@@ -89,4 +89,4 @@ def test_cells_of_a_map() -> None:
 
 def test_the_committed_tables_are_those_of_the_record() -> None:
     inside = PAGE.read_text().partition(snr_budget.BEGIN)[2].partition(reproduce_paper.END)[0]
-    assert inside.strip() == snr_budget.page_text(reproduce_paper.read_json(RESULT)).strip()
+    assert inside.strip() == snr_budget.page_text(snr_budget.read_budget(RESULT)).strip()

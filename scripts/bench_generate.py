@@ -242,25 +242,16 @@ def maps(rounds: int) -> dict[str, Any]:
             both = load_config(PAPER, [f"maps=[stft, {name}]"])
             alone = load_config(PAPER, [f"maps=[{name}]"])
             ready = [ready_for(scene(both, i), name) for i in range(12)]
-            sinks = {c: Sink(c, Path(place)) for c in (base, both, alone)}
+            image, sink = Floor(alone, name), Sink(alone, Path(place))
 
-            def whole(config: Config, turn: int, sinks: dict = sinks) -> None:
-                p = plan_images(config)
-                sinks[config].write([synthesise(scene(config, i), p) for i in range(12)])
+            def whole(config: Config) -> Callable[[int], None]:
+                p, sink = plan_images(config), Sink(config, Path(place))
+                return lambda turn: sink.write([synthesise(scene(config, i), p) for i in range(12)])
 
-            image = Floor(alone, name)
-
-            def own(turn: int, ready=ready, image=image, sink=sinks[alone]) -> None:
+            def own(turn: int, ready=ready, image=image, sink=sink) -> None:
                 sink.write([image.sample(there) for there in ready])
 
-            times = interleaved(
-                {
-                    "both": lambda t, c=both: whole(c, t),
-                    "base": lambda t: whole(base, t),
-                    "own": own,
-                },
-                rounds,
-            )
+            times = interleaved({"both": whole(both), "base": whole(base), "own": own}, rounds)
             added = median(b - a for a, b in zip(times["base"], times["both"], strict=True)) / 12
             floor = median(times["own"]) / 12
             found[name] = {"added_ms": added * 1e3, "own_ms": floor * 1e3, "ratio": added / floor}
@@ -472,8 +463,70 @@ def scatterers(rounds: int, against: Path | None = None) -> dict[str, Any]:
     return found
 
 
+BUILDS = {  # what is built: config, settings beside it
+    "free space": ("free_space", ()),
+    "free space, double": ("free_space", ("engine.precision=double",)),
+    "through the wall": ("through_wall", ()),
+    "free space, nine maps": ("free_space", (f"maps=[{','.join(MAP_NAMES)}]",)),
+}
+FEW, MANY = 1, 17  # samples a class
+
+
+def builds(rounds: int, against: Path | None = None) -> dict[str, Any]:
+    """Processor time of a further sample of `radhar generate --jobs 1`, the start not counted."""
+    trees = {"this": ROOT} | ({"against": against.resolve()} if against else {})
+    one_thread = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    print("\nwhole builds, one job, ms of processor time a further sample")
+    found: dict[str, Any] = {}
+    for label, (config, more) in BUILDS.items():
+        times: dict[str, list[float]] = {name: [] for name in trees}
+        for _ in range(rounds):
+            for name, tree in trees.items():
+                few, many = (
+                    _generate_seconds(
+                        tree, config, (*more, f"samples_per_class={count}"), one_thread
+                    )
+                    for count in (FEW, MANY)
+                )
+                times[name].append(1e3 * (many - few) / (12 * (MANY - FEW)))
+        found[label] = {name: median(ms) for name, ms in times.items()}
+        line = "".join(f"{name:>9} {ms:6.1f}" for name, ms in found[label].items())
+        if against:
+            found[label]["ratio"] = found[label]["against"] / found[label]["this"]
+            each = (old / new for old, new in zip(times["against"], times["this"], strict=True))
+            line += (
+                f"   {found[label]['ratio']:.2f} times ("
+                + ", ".join(f"{r:.2f}" for r in each)
+                + ")"
+            )
+        print(f"  {label:<24}{line}", flush=True)
+    return found
+
+
+def _generate_seconds(
+    tree: Path, config: str, settings: tuple[str, ...], environment: dict[str, str]
+) -> float:
+    """User and system time of `radhar generate` in a tree."""
+    path = tree / "configs/paper" / f"{config}.yaml"
+    command = [sys.executable, "-m", "radhar_cli", "generate", str(path), "--jobs", "1"]
+    command += [word for setting in settings for word in ("--set", setting)]
+    before = os.times()
+    with tempfile.TemporaryDirectory() as place:
+        subprocess.run(
+            [*command, "-o", f"{place}/o"],
+            env=os.environ | environment | {"PYTHONPATH": str(tree)},
+            cwd=tree,
+            capture_output=True,
+            check=True,
+        )
+    after = os.times()
+    children = after.children_user - before.children_user
+    return children + after.children_system - before.children_system
+
+
 SECTIONS = {
     "rows": rows,
+    "builds": builds,
     "scatterers": scatterers,
     "maps": maps,
     "jobs": jobs,
@@ -489,10 +542,12 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--json", type=Path, default=Path("build/bench_generate.json"))
     parser.add_argument("--only", default=",".join(SECTIONS), help="sections, comma separated")
-    parser.add_argument("--against", type=Path, help="another tree of radhar, for `scatterers`")
+    parser.add_argument(
+        "--against", type=Path, help="another tree of radhar, for builds and scatterers"
+    )
     arguments = parser.parse_args()
     prepare_process()
-    more = {"scatterers": {"against": arguments.against}}
+    more = {name: {"against": arguments.against} for name in ("builds", "scatterers")}
     found = {
         name: SECTIONS[name](arguments.rounds, **more.get(name, {}))
         for name in arguments.only.split(",")

@@ -33,6 +33,9 @@ FRESH_SEED = 20261121
 SUBJECTS = 20
 PAPER_EPOCHS = 20
 PAGE_SCALES = ("cpu", "full")
+ROBUST = ROOT / "configs" / "train" / "robust.yaml"
+DRAWN_SNR = (-20, 30)
+DRAWN_TESTED = (30, 20, 10, 0, -10, -20)
 UNKNOWN, NOT_RUN = "not recorded", "not run"
 ENDING = ["core hours", "commit", "record"]
 # What a commit has to say about a result; a change elsewhere is none of it.
@@ -71,10 +74,13 @@ RIVALS = tuple(dict.fromkeys(model for _, model in PAPER if model != "fftnet"))
 
 @dataclass(frozen=True)
 class Training:
-    """One run: a scenario, an SNR, a network, its settings, and how the data are split."""
+    """One run: a scenario, an SNR, a network, its settings, and how the data are split.
+
+    An SNR of None is drawn for each map, uniformly within DRAWN_SNR.
+    """
 
     scenario: str
-    snr_db: int
+    snr_db: int | None
     model: str = "fftnet"
     epochs: int = 20
     drop_every: int = 10
@@ -120,6 +126,7 @@ SCALES = {
             Training("free_space", 30, epochs=2),
             Training("through_wall", 30, epochs=2),
             Training("free_space", -10, epochs=2),
+            Training("free_space", None, epochs=2),
         ),
         generate=("radar.prf_hz=500", "radar.carrier_hz=10e9"),
         train=("batch_size=12",),
@@ -131,6 +138,7 @@ SCALES = {
         fresh_per_class=100,
         trainings=(
             *(Training(s, n) for n in (30, -10, 10, 20, 0) for s in ("through_wall", "free_space")),
+            *(Training(s, None) for s in ("free_space", "through_wall")),
             *(Training(s, 30, by_subject=True) for s in ("through_wall", "free_space")),
             *(Training(s, 30, "mobilenetv2_100") for s in ("through_wall", "free_space")),
             Training("free_space", 30, "resnet50"),
@@ -142,7 +150,7 @@ SCALES = {
         per_class=300,
         fresh_per_class=100,
         trainings=(
-            *(Training(s, n) for n in (30, 20, 10, 0, -10) for s in SCENARIOS),
+            *(Training(s, n) for n in (30, 20, 10, 0, -10, None) for s in SCENARIOS),
             *(Training(s, 30, by_subject=True) for s in SCENARIOS),
             *(Training(s, 30, m) for m in RIVALS for s in SCENARIOS),
         ),
@@ -168,16 +176,16 @@ class Reproduction:
     jobs: int | None = None
     made_at: str | None = None
 
-    def data(self, scenario: str, snr_db: int, kind: str = "") -> Path:
+    def data(self, scenario: str, snr_db: int | None, kind: str = "") -> Path:
         """Folder of a data set; `kind` is fresh or subjects."""
         ending = f"_{kind}" if kind else ""
-        return self.data_root / f"{scenario}_{snr_db}dB_{self.scale.size_px}px{ending}"
+        return self.data_root / f"{scenario}_{snr_name(snr_db)}_{self.scale.size_px}px{ending}"
 
     def run(self, training: Training) -> Path:
         """Folder of a run."""
         return self.runs_root / run_name(self.scale, training)
 
-    def generate(self, scenario: str, snr_db: int, kind: str = "") -> Path:
+    def generate(self, scenario: str, snr_db: int | None, kind: str = "") -> Path:
         """Build a data set, or find it complete; returns its folder."""
         folder = self.data(scenario, snr_db, kind)
         if (folder / "dataset.h5").exists():
@@ -187,7 +195,7 @@ class Reproduction:
         settings = [
             f"image.size_px={scale.size_px}",
             f"samples_per_class={per_class}",
-            f"snr_db={snr_db}",
+            f"snr_db={f'{{uniform: {[*DRAWN_SNR]}}}' if snr_db is None else snr_db}",
             "output.png=false",
             *(scale.generate if scenario == "free_space" else ()),
         ]
@@ -209,7 +217,8 @@ class Reproduction:
         data = self.generate(training.scenario, training.snr_db, _kind(training))
         write_note(run)
         settings = _set([*training.settings, *self.scale.train])
-        radhar("train", data, "-o", run, "--model", training.model, *settings)
+        config = ["--config", ROBUST] if training.snr_db is None else []
+        radhar("train", data, "-o", run, "--model", training.model, *config, *settings)
 
     def record(self, training: Training) -> None:
         """Evaluate a finished run and write its record and its figures."""
@@ -227,7 +236,8 @@ class Reproduction:
         fresh: dict[int, Path] = {}
         others: dict[str, Any] = {}
         if plain:
-            snrs = tested_snrs(self.scale, training.scenario)
+            drawn = training.snr_db is None
+            snrs = DRAWN_TESTED if drawn else tested_snrs(self.scale, training.scenario)
             fresh = {snr: self.generate(training.scenario, snr, "fresh") for snr in snrs}
             others = self._eval(run, "fresh", list(fresh.values()), "--filters")
         self.results.mkdir(parents=True, exist_ok=True)
@@ -250,7 +260,7 @@ class Reproduction:
         others: dict[str, Any],
     ) -> dict[str, Any]:
         run = self.run(training)
-        metrics = _read(run / "metrics.json")
+        metrics = read_json(run / "metrics.json")
         with (run / "history.csv").open(newline="") as file:
             history = list(csv.DictReader(file))
         config, (evaluated, validation) = metrics["config"], _parts(own)[0]
@@ -317,7 +327,7 @@ class Reproduction:
         """Report of a run on some data sets, made again if the run is newer or a set is missing."""
         out = self._reports(run, kind)
         stamp, newest = out / "report.json", (run / "metrics.json").stat().st_mtime
-        there = _read(stamp) if stamp.exists() and stamp.stat().st_mtime >= newest else {}
+        there = read_json(stamp) if stamp.exists() and stamp.stat().st_mtime >= newest else {}
         if {folder.name for folder in data} == {part["name"] for _, part in _parts(there)}:
             return there
         out.parent.mkdir(parents=True, exist_ok=True)
@@ -325,19 +335,30 @@ class Reproduction:
         write_note(out, load=round(os.getloadavg()[0], 1))
         split = "all" if kind == "fresh" else kind
         radhar("eval", run, *data, "-o", out, "--split", split, *more)
-        return _read(stamp)
+        return read_json(stamp)
 
 
 def run_name(scale: Scale, training: Training) -> str:
     """Name of a run's folder and of its record."""
     kind = "_subjects" if training.by_subject else ""
-    stem = f"{training.scenario}_{training.snr_db}dB_{scale.size_px}px{kind}"
+    stem = f"{training.scenario}_{snr_name(training.snr_db)}_{scale.size_px}px{kind}"
     return f"{stem}_{training.model}"
+
+
+def snr_name(snr_db: int | None) -> str:
+    """An SNR in names of files."""
+    return "{}to{}dB".format(*DRAWN_SNR) if snr_db is None else f"{snr_db}dB"
+
+
+def _snr(snr_db: int | None) -> str:
+    """An SNR in captions."""
+    return "{} to {} dB".format(*DRAWN_SNR) if snr_db is None else f"{snr_db} dB"
 
 
 def tested_snrs(scale: Scale, scenario: str) -> list[int]:
     """SNRs at which every plain network of a scenario is tested, highest first."""
-    return sorted({t.snr_db for t in scale.trainings if t.scenario == scenario and _plain(t)})[::-1]
+    mine = [t for t in scale.trainings if t.scenario == scenario and _plain(t)]
+    return sorted({t.snr_db for t in mine if t.snr_db is not None})[::-1]
 
 
 def _plain(training: Training) -> bool:
@@ -360,7 +381,8 @@ def _figures(training: Training) -> dict[str, str]:
     return found
 
 
-def _read(path: Path) -> dict[str, Any]:
+def read_json(path: Path) -> dict[str, Any]:
+    """What a JSON file holds."""
     contents: dict[str, Any] = json.loads(path.read_text())
     return contents
 
@@ -429,7 +451,7 @@ def _note(folder: Path) -> dict[str, Any]:
     """What is noted beside a folder; nothing is known of one without a note."""
     file = _note_file(folder)
     note: dict[str, Any] = {"commits": [], "machine": None}
-    return note | (_read(file) if file.exists() else {})
+    return note | (read_json(file) if file.exists() else {})
 
 
 def write_note(folder: Path, **more: float) -> None:
@@ -451,7 +473,7 @@ def read_records(folder: Path) -> dict[str, dict[str, Any]]:
     records = {}
     for file in sorted(folder.glob("*.json")):
         try:
-            record = _read(file)
+            record = read_json(file)
             missing = {"name", "scenario", "snr_db", "model", "training"} - set(record)
         except (ValueError, TypeError) as error:
             sys.exit(f"reproduce_paper: {file}: is not a record of a run ({error})")
@@ -492,7 +514,8 @@ def _hours(record: dict[str, Any]) -> str:
     return _number(training["core_hours"], ".2f") + on_gpu
 
 
-def _table(head: list[str], rows: list[list[str]]) -> list[str]:
+def table(head: list[str], rows: list[list[str]]) -> list[str]:
+    """A table, as lines of Markdown."""
     lines = [head, ["---"] * len(head), *rows]
     return [f"| {' | '.join(line)} |" for line in lines] + [""]
 
@@ -540,8 +563,9 @@ def tables(name: str, records: dict[str, dict[str, Any]]) -> list[str]:
         "",
     ]
     order = list(SCENARIOS)
-    rows.sort(key=lambda row: (order.index(row.training.scenario), -row.training.snr_db))
-    plain = [row for row in rows if _plain(row.training)]
+    rows.sort(key=lambda row: (order.index(row.training.scenario), -(row.training.snr_db or 0)))
+    drawn = [row for row in rows if row.training.snr_db is None]
+    plain = [row for row in rows if _plain(row.training) and row not in drawn]
     apart = [row for row in rows if row.training.by_subject]
     networks = [row for row in rows if row.training.snr_db == 30 and not row.training.by_subject]
     lines += ["### Accuracy by SNR and scenario", "", *_by_snr(plain)]
@@ -549,6 +573,8 @@ def tables(name: str, records: dict[str, dict[str, Any]]) -> list[str]:
     for scenario in SCENARIOS:
         mine = [row for row in plain if row.training.scenario == scenario]
         lines += _robustness(scale, scenario, mine)
+    if drawn:
+        lines += _one_network(drawn, plain)
     if apart:
         lines += _subjects(apart)
     return [*lines, "### Networks at 30 dB", "", *_networks(networks)]
@@ -568,7 +594,7 @@ def _by_snr(rows: list[Row]) -> list[str]:
         cells += [_epochs(found), _number(found["best_epoch"]), percent(found["validation"])]
         cells += [percent(found["fresh"].get(str(t.snr_db))), paper, *row.ending()]
         body.append(cells)
-    return _table(head, body)
+    return table(head, body)
 
 
 def _robustness(scale: Scale, scenario: str, rows: list[Row]) -> list[str]:
@@ -586,9 +612,41 @@ def _robustness(scale: Scale, scenario: str, rows: list[Row]) -> list[str]:
             cells
             + [NOT_RUN if part is None else _number(part["accuracy"], ".2f", 100) for part in parts]
         )
-    return _table(
+    return table(
         [f"{SCENARIOS[scenario]}, trained at", *(f"tested at {snr} dB" for snr in snrs)], body
     )
+
+
+def _one_network(rows: list[Row], specialists: list[Row]) -> list[str]:
+    """One network for every SNR beside those trained at the SNR at which they are tested."""
+    low, high = DRAWN_SNR
+    head = ["scenario", "network", *(f"{snr} dB" for snr in DRAWN_TESTED), "epochs", *ENDING]
+    body = []
+    for row in rows:
+        scenario, found = row.training.scenario, row.record
+        cells = [SCENARIOS[scenario], f"one, trained at {low} to {high} dB"]
+        if found is None:
+            body.append(row.cells(cells, len(head)))
+        else:
+            cells += [percent(found["fresh"].get(str(snr))) for snr in DRAWN_TESTED]
+            body.append([*cells, _epochs(found), *row.ending()])
+        own = {
+            other.training.snr_db: other.record
+            for other in specialists
+            if other.training.scenario == scenario and other.record
+        }
+        cells = [SCENARIOS[scenario], "of that SNR alone"]
+        for snr in DRAWN_TESTED:
+            part = own[snr]["fresh"].get(str(snr)) if snr in own else None
+            reduced = " (reduced)" if part and own[snr]["reduced"] else ""
+            cells.append(percent(part) + reduced if part else NOT_RUN)
+        body.append([*cells, *[""] * (len(head) - len(cells))])
+    words = (
+        f"Trained on maps whose SNR is drawn (`snr_db: {{uniform: {[low, high]}}}`, "
+        "[robust.yaml](../configs/train/robust.yaml)), tested on the fresh seed, beside the "
+        "networks of the table above that were trained at the SNR at which they are tested."
+    )
+    return ["### One network for every SNR", "", words, "", *table(head, body)]
 
 
 def _subjects(rows: list[Row]) -> list[str]:
@@ -605,7 +663,7 @@ def _subjects(rows: list[Row]) -> list[str]:
     return [
         f"### Persons kept apart (`split.by: subject`, {SUBJECTS} persons)",
         "",
-        *_table(head, body),
+        *table(head, body),
     ]
 
 
@@ -647,7 +705,7 @@ def _networks(rows: list[Row]) -> list[str]:
             _number(speed.get(key), ".0f", 1e3) + busy for key in ("image_s", "load_and_image_s")
         ]
         body.append([*cells, theirs[2], *row.ending()])
-    return _table(head, body)
+    return table(head, body)
 
 
 def snr_figures(name: str, results: Path, records: dict[str, dict[str, Any]]) -> None:
@@ -657,11 +715,11 @@ def snr_figures(name: str, results: Path, records: dict[str, dict[str, Any]]) ->
     for scenario in SCENARIOS:
         mine = [found for found in records.values() if found["scenario"] == scenario]
         lines = {
-            f"trained at {found['snr_db']} dB{', reduced' if found['reduced'] else ''}": [
+            f"trained at {_snr(found['snr_db'])}{', reduced' if found['reduced'] else ''}": [
                 Point(snr, float(snr), part["accuracy"], *part["accuracy_95"])
                 for snr, part in found["fresh"].items()
             ]
-            for found in sorted(mine, key=lambda found: -found["snr_db"])
+            for found in sorted(mine, key=lambda found: -(found["snr_db"] or -99))
             if len(found["fresh"]) > 1
         }
         if lines:
@@ -677,7 +735,7 @@ def figures(name: str, results: Path, records: dict[str, dict[str, Any]]) -> lis
             t = row.training
             if t.scenario == scenario:
                 found += [
-                    (f"{row.name}_{figure}.png", f"{caption}, {words}, {t.snr_db} dB.")
+                    (f"{row.name}_{figure}.png", f"{caption}, {words}, {_snr(t.snr_db)}.")
                     for figure, caption in _figures(t).items()
                 ]
     return [
@@ -710,12 +768,12 @@ def page_text(scales: tuple[str, ...], results: Path) -> str:
     return "\n".join(lines)
 
 
-def write_page(path: Path, text: str) -> None:
+def write_page(path: Path, text: str, begin: str = BEGIN) -> None:
     """Replace what stands between the markers of a page; the words around it stay."""
-    page = path.read_text() if path.exists() else f"# Results\n\n{BEGIN}\n{END}\n"
-    before, _, rest = page.partition(BEGIN)
+    page = path.read_text() if path.exists() else f"# Results\n\n{begin}\n{END}\n"
+    before, _, rest = page.partition(begin)
     after = rest.partition(END)[2]
-    path.write_text(f"{before}{BEGIN}\n{text}\n{END}{after}")
+    path.write_text(f"{before}{begin}\n{text}\n{END}{after}")
 
 
 def wanted(scale: Scale, words: list[str], results: Path, again: bool) -> list[Training]:

@@ -179,6 +179,38 @@ def test_unknown_values_are_marked(quick: Reproduction, records: dict[str, dict[
     assert row.count("not recorded") == 4  # best epoch, fresh seed, core hours, commit
 
 
+def test_one_network_learns_from_a_drawn_snr_by_its_own_settings(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    said: list[list[str]] = []
+    monkeypatch.setattr(reproduce_paper, "radhar", lambda *words: said.append([*map(str, words)]))
+    work = Reproduction("quick", QUICK, tmp_path / "data", tmp_path / "runs", tmp_path / "results")
+    work.train(Training("free_space", None))
+    work.train(Training("free_space", 30))
+    drawn, robust, fixed, plain = said
+    assert "snr_db={uniform: [-20, 30]}" in drawn
+    assert "snr_db=30" in fixed
+    assert robust[robust.index("--config") + 1].endswith("robust.yaml")
+    assert "--config" not in plain
+    assert drawn[3] == robust[1] != fixed[3]
+
+
+def test_one_network_stands_beside_those_of_one_snr(
+    quick: Reproduction, records: dict[str, dict[str, Any]]
+) -> None:
+    part = records[FIRST]["fresh"]["30"]
+    fresh = {str(snr): {**part, "accuracy": 0.5 + snr / 100} for snr in (30, 20, 10, 0, -10, -20)}
+    one = {**records[FIRST], "name": "one", "snr_db": None, "fresh": fresh}
+    lines = lines_of(quick, {**records, "one": one}, "")
+    at = lines.index("### One network for every SNR")
+    ours, theirs = (line.split(" | ") for line in lines[at + 6 : at + 8])
+    assert [float(cell.split()[0]) for cell in ours[2:8]] == [80, 70, 60, 50, 40, 30]
+    assert theirs[2] == f"{reproduce_paper.percent(part)} (reduced)"
+    assert theirs[3:6] == ["not run"] * 3
+    by_snr = lines[lines.index("### Accuracy by SNR and scenario") : at]
+    assert not any("one.json" in line for line in by_snr)
+
+
 def test_the_committed_page_is_that_of_its_records() -> None:
     inside = PAGE.read_text().partition(reproduce_paper.BEGIN)[2]
     inside = inside.partition(reproduce_paper.END)[0]

@@ -312,8 +312,9 @@ def _back_wall_problems(c: Config) -> Iterator[Problem]:
         return
     if c.wall is not None:
         yield Problem(key, at, "should be null with a wall in front: one of the two is simulated")
-    ranges = [for_activity(c.motion.range_m, one) for one in c.chosen_activities]
-    farthest = max((support(one)[1] for one in ranges if one is not None), default=0.0)
+    given, farthest = c.motion.range_m, 0.0
+    if given is not None:
+        farthest = max(support(for_activity(given, one))[1] for one in c.chosen_activities)
     if support(at)[0] <= farthest:
         yield Problem(
             key,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from radhar_cli.activity import ACTIVITIES, DEFAULT, Activity, activity_named, own_activities
 from radhar_cli.config.number import nominal, support
@@ -312,7 +312,8 @@ def _back_wall_problems(c: Config) -> Iterator[Problem]:
         return
     if c.wall is not None:
         yield Problem(key, at, "should be null with a wall in front: one of the two is simulated")
-    given, farthest = c.motion.range_m, 0.0
+    given: Any = c.motion.range_m
+    farthest = 0.0
     if given is not None:
         farthest = max(support(for_activity(given, one))[1] for one in c.chosen_activities)
     if support(at)[0] <= farthest:

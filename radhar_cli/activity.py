@@ -17,7 +17,21 @@ _STOP = ("timing.walk_stop_s", "timing.overlap_s")
 # What each movement of people depends on, besides body, place and fidgets.
 _UNEVEN = ("motion.tempo_jitter", "motion.size_jitter")
 _STRIKE = ("motion.cycle_phase", "motion.strike_scale", *_UNEVEN)
-_SIT = ("motion.seat_height", "motion.lean_deg", "motion.recline_deg")
+_SIT = (
+    "motion.seat_height",
+    "motion.lean_deg",
+    "motion.recline_deg",
+    "motion.lap",
+    "motion.stagger",
+)
+_GRAB = (
+    "motion.bend_deg",
+    "motion.dwell_s",
+    "motion.squat",
+    "motion.reach_deg",
+    "motion.free_arm",
+    "motion.stagger",
+)
 _STRIDE = (
     "motion.speed_mps",
     "motion.period_scale",
@@ -50,10 +64,8 @@ MOVEMENTS = {
     "stationary": Movement("standing", "standing", None),
     "punching": Movement("standing", "standing", None, ("motion.punch_hz", *_STRIKE)),
     "kicking": Movement("standing", "standing", None, ("motion.kick_hz", *_STRIKE)),
-    "grabbing": Movement(
-        "standing", "standing", 2.5, ("motion.bend_deg", "motion.dwell_s", "motion.squat")
-    ),
-    "sitting_down": Movement("standing", "seated", 2.0, _SIT),
+    "grabbing": Movement("standing", "standing", 2.5, _GRAB),
+    "sitting_down": Movement("standing", "seated", 2.0, (*_SIT, "motion.recline_from")),
     "standing_up": Movement("seated", "standing", 1.8, _SIT),
     "body_rotating": Movement(
         "standing",
@@ -132,10 +144,10 @@ ACTIVITIES: tuple[Activity, ...] = (
         *("grabbing", "timing.grab_start_s", "timing.grab_duration_s", "motion.shuffle_hz"),
         *_AROUND,
     ),
-    Activity(5, "sitting_down", _SEAT, (*_SITTING, "motion.look_deg")),
+    Activity(5, "sitting_down", _SEAT, (*_SITTING, "motion.recline_from", "motion.look_deg")),
     Activity(6, "standing_up", _SEAT, _SITTING),
     _activity(7, "body_rotating", ("motion.gait_hz", "motion.turn_deg")),
-    _activity(8, "walking", _WALK),
+    _activity(8, "walking", _WALK, "walking", "timing.walk_begin_s"),
     _activity(
         9,
         "sitting_to_walking",

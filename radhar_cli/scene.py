@@ -93,6 +93,7 @@ UNSTEADY = (
     "motion.step_m",
     "motion.look_deg",
     "motion.settle_size",
+    "motion.stagger",
     "motion.kneel_s",
 )
 
@@ -260,6 +261,8 @@ def depends_on(config: Config, activity: Activity, key: str) -> bool:
     model = config.motion.model
     if key.startswith("receiver.noise_"):
         return support(config.receiver.noise_corner_hz)[1] > 0
+    if key == "room.back_wall_reflection_db":
+        return config.room.back_wall_m is not None
     if key.startswith("image.cfar."):
         return config.image.kind == "cfar" and config.image.cfar.uses(key.rpartition(".")[2])
     if key.startswith("classes."):

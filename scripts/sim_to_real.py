@@ -60,7 +60,7 @@ WITHOUT = {  # what is left out: keys of the simulation
     "segments": ("body.scatterers=points",),
     "gate": ("processing.doppler=half_band",),
     "CFAR on decibels": ("image.cfar={on: power, edges: shrink}",),
-    "room": ("room.reflectors=0",),
+    "room": ("room.reflectors=0", "room.back_wall_m=null"),
     "noise that is drawn": ("snr_db=30",),
 }
 NO_AUGMENTATION = "augment={}"

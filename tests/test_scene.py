@@ -162,7 +162,7 @@ def test_draws_follow_their_distribution() -> None:
 
 @pytest.mark.parametrize("model", ["paper", "human"])
 def test_a_scene_holds_what_its_activity_uses(model: str) -> None:
-    config = Config(motion={"model": model}, timing={"walk_start_s": 2.0})
+    config = Config(motion={"model": model}, timing={"walk_start_s": 2.0, "walk_begin_s": 0.5})
     everybody = (*PLACE, *(key for key in OF_PEOPLE if model == "human"))
     for activity in ACTIVITIES:
         keys = set(scene_numbers(draw_scene(config, activity, 0)))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from radhar_cli.activity import ACTIVITIES, DEFAULT, Activity, activity_named, own_activities
 from radhar_cli.config.number import nominal, support
@@ -39,6 +39,7 @@ def problems(c: Config) -> Iterator[Problem]:
     yield from _clutter_problems(c)
     yield from _gate_problems(c)
     yield from _wall_problems(c)
+    yield from _back_wall_problems(c)
     yield from _image_problems(c)
     if c.motion.model == "human":
         yield from _human_problems(c)
@@ -303,6 +304,26 @@ def _wall_problems(c: Config) -> Iterator[Problem]:
             )
 
 
+def _back_wall_problems(c: Config) -> Iterator[Problem]:
+    from radhar_cli.config.schema import for_activity
+
+    key, at = "room.back_wall_m", c.room.back_wall_m
+    if at is None:
+        return
+    if c.wall is not None:
+        yield Problem(key, at, "should be null with a wall in front: one of the two is simulated")
+    given: Any = c.motion.range_m
+    farthest = 0.0
+    if given is not None:
+        farthest = max(support(for_activity(given, one))[1] for one in c.chosen_activities)
+    if support(at)[0] <= farthest:
+        yield Problem(
+            key,
+            at,
+            f"should be beyond the people, who stand at up to {farthest:g} m (motion.range_m)",
+        )
+
+
 def _flickers(c: Config) -> bool:
     return support(c.receiver.noise_corner_hz)[1] > 0
 
@@ -399,7 +420,12 @@ HUMAN_LIMITS: tuple[tuple[str, float, float], ...] = (
     ("motion.seat_height", 0.24, 0.33),
     ("motion.lean_deg", 0.0, 60.0),
     ("motion.recline_deg", -10.0, 45.0),
+    ("motion.recline_from", 0.0, 1.0),
+    ("motion.lap", 0.0, 1.0),
     ("motion.squat", -1.0, 1.0),
+    ("motion.reach_deg", -10.0, 60.0),
+    ("motion.free_arm", -0.5, 1.0),
+    ("motion.stagger", 0.0, 0.6),
     ("motion.step_m", 0.0, 0.5),
     ("motion.look_deg", -60.0, 60.0),
     ("motion.settle_size", 0.0, 3.0),
@@ -413,6 +439,7 @@ HUMAN_LIMITS: tuple[tuple[str, float, float], ...] = (
     ("timing.sit_duration_s", 1.0, 60.0),
     ("timing.fall_duration_s", 0.7, 10.0),
     ("timing.overlap_s", 0.0, 0.8),
+    ("timing.walk_begin_s", 0.0, 600.0),
     ("timing.walk_stop_s", 0.5, 600.0),
     ("timing.walk_start_s", 0.0, 600.0),
 )
@@ -471,7 +498,7 @@ def timing_warnings(c: Config, activities: Iterable[Activity] | None = None) -> 
     length = nominal(c.duration_s)
     warnings = []
     for activity in c.chosen_activities if activities is None else activities:
-        for key in ("seat_start_s", "walk_start_s", "walk_stop_s"):
+        for key in ("seat_start_s", "walk_begin_s", "walk_start_s", "walk_stop_s"):
             number = for_activity(getattr(c.timing, key), activity)
             if f"timing.{key}" not in activity.uses(c.motion.model) or number is None:
                 continue

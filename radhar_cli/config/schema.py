@@ -341,8 +341,18 @@ class MotionConfig(Section):
     """Trunk ahead while rising."""
     recline_deg: AngleBy = 0.0
     """Trunk backwards in the seat."""
+    lap: RatioBy = 1.0
+    """How far the hands of who sits are on the lap (1); 0 is beside the seat."""
+    recline_from: RatioBy = 0.7
+    """S5: share of the duration from which on the trunk leans back."""
     squat: SignedBy = Uniform(uniform=(-1.0, 1.0))
     """S4: from over straight legs (-1) to deep in the knees (1)."""
+    reach_deg: AngleBy = 12.0
+    """S4: of the right arm ahead of the vertical."""
+    free_arm: SignedBy = 0.55
+    """S4: what the left arm does of what the right one does; below 0 it swings back."""
+    stagger: RatioBy = 0.0
+    """S4 to S6: share of the movement by which some joints lead and others lag."""
     step_m: RatioBy = Uniform(uniform=(0.0, 0.5))
     """Steps back before sitting down (S5), ahead after standing up (S6), around picking up (S4)."""
     look_deg: AngleBy = Uniform(uniform=(-40.0, 40.0))
@@ -381,6 +391,8 @@ class TimingConfig(Section):
     """S9, S11."""
     rise_duration_s: SecondsBy | None = None
     """S9, S11; null is the model's."""
+    walk_begin_s: SecondsBy | None = None
+    """human: S8 stands until then; null: walks all the time."""
     walk_start_s: SecondsBy | None = None
     """S9, S11; null is the model's: of people, when risen."""
     walk_stop_s: SecondsBy = 2.0
@@ -594,6 +606,10 @@ class RoomConfig(Section):
 
     reflectors: Annotated[tuple[ReflectorConfig, ...], Field(max_length=MAX_REFLECTORS)] = ()
     """A list of {position_m, rcs_dbsm, residual_m, highest_hz}, or how many of the default ones."""
+    back_wall_m: Annotated[Number, within(0, 1e4, "m")] | None = None
+    """Range of a wall behind people, in which they are seen once more; null is none."""
+    back_wall_reflection_db: Annotated[Number, within(-120, 0, "dB")] = -8.0
+    """What it reflects, over what meets it; the mirrored echo meets it twice."""
 
     @field_validator("reflectors", mode="before")
     @classmethod
@@ -621,6 +637,8 @@ class LineConfig(Section):
     """Mean time for which it is on."""
     off_s: Annotated[NotNegative, within(0, 1e7, "s")] = 0.0
     """Mean time for which it is off; 0: always on."""
+    both_sides: Flag = False
+    """As strong at the opposite Doppler, at the same times: amplitude modulation, real samples."""
 
 
 class ReceiverConfig(Section):

@@ -1,5 +1,7 @@
 """A scene and a motion -> paths, from joints or from segments as `body:` has it."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from radhar_cli.echo.paths import PathSource
@@ -7,7 +9,7 @@ from radhar_cli.motion.protocol import Motion, Only
 from radhar_cli.motion.reflectors import Reflectors
 from radhar_cli.motion.segments import covered, found_segments, landmarks_of
 from radhar_cli.pipeline.motion_paths import MotionPaths, SumOfPaths
-from radhar_cli.pipeline.physics import body_of, frames_of
+from radhar_cli.pipeline.physics import antennas_behind_mirror, body_of, frames_of
 from radhar_cli.pipeline.segment_paths import Points, SegmentPaths, draw_points, point_counts
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
@@ -23,9 +25,13 @@ def paths_of(
     wall: Wall | None,
     waveform: Waveform,
     room: Reflectors | None = None,
+    mirrored: bool = True,
 ) -> PathSource:
-    """The paths of everything in a scene: of what moves, and of what stands in the room."""
-    sources: list[PathSource] = []
+    """The paths of everything in a scene: of what moves, and of what stands in the room.
+
+    With a wall behind them (`room.back_wall_m`) people are there twice, unless not `mirrored`.
+    """
+    sources: list[SegmentPaths | MotionPaths] = []
     for number, motion in enumerate(motions):
         rest: Motion | None = motion
         if scene.config.body.scatterers == "segments":
@@ -34,6 +40,9 @@ def paths_of(
             rest = _without_segments(motion)
         if rest is not None:
             sources.append(MotionPaths(rest, antennas, waveform.fc, wall))
+    behind = antennas_behind_mirror(scene.config, antennas) if mirrored else None
+    if behind is not None:
+        sources += [replace(source, antennas=behind) for source in sources]
     if room is not None:
         sources.append(MotionPaths(room, antennas, waveform.fc, wall))
     return sources[0] if len(sources) == 1 else SumOfPaths(tuple(sources))

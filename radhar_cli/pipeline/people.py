@@ -31,9 +31,11 @@ from radhar_cli.motion.human.idle import (
 )
 from radhar_cli.motion.human.kicking import Kick
 from radhar_cli.motion.human.lane import Lane
+from radhar_cli.motion.human.minimum_jerk import Lags
 from radhar_cli.motion.human.motion import HumanMotion, Movement
 from radhar_cli.motion.human.part import Place
 from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.planted import ELBOWS, LEGS_AND_TRUNK, SHOULDERS
 from radhar_cli.motion.human.punching import Punch
 from radhar_cli.motion.human.repertoire import AROUND, Repertoire
 from radhar_cli.motion.human.sitting import Rise, Seat, SitDown, StandUp
@@ -120,6 +122,8 @@ def _begin(scene: Scene) -> float:
         "kicking": motion.kick_hz,
         "body_rotating": motion.rotation_hz,
     }
+    if timing.walk_begin_s is not None:
+        starts["walking"] = timing.walk_begin_s
     slug = scene.activity.slug
     if slug in rates and (rate := _f(rates[slug])):
         return -(_f(motion.cycle_phase) % 1) / rate
@@ -194,15 +198,21 @@ def _sequence(scene: Scene) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
 def _repertoire(scene: Scene, duration: float | None, place: int = 0) -> Repertoire:
     """How this person moves; `duration` (s) is that of a movement that has one."""
     motion = scene.config.motion
-    seat = Seat(height=_f(motion.seat_height), recline=radians(_f(motion.recline_deg)))
+    seat = Seat(
+        height=_f(motion.seat_height), recline=radians(_f(motion.recline_deg)), lap=_f(motion.lap)
+    )
     rise = Rise(lean=radians(_f(motion.lean_deg)))
     scale, steps = _f(motion.strike_scale), ceil(3 * _f(scene.config.duration_s)) + 8
     paces, sizes = _repetitions(scene, steps, place)
     bend = _f(motion.bend_deg)
+    lags = _lags(scene, place)
+    against = _f(motion.recline_from), SitDown.recline[1]
+    sitting = SitDown(seat=seat, rise=rise, recline=against, lags=lags[0])
     moving = 2.5 if duration is None else duration
     return Repertoire(
         gait=_gait(scene, place),
         walk=_f(scene.config.timing.walk_stop_s),
+        standing_first=scene.config.timing.walk_begin_s is not None,
         punch=Punch(
             frequency=scale * _f(motion.punch_hz),
             paces=_some(scale * paces),
@@ -217,10 +227,14 @@ def _repertoire(scene: Scene, duration: float | None, place: int = 0) -> Reperto
             up=moving * 1.3 / 2.5,
             thigh=radians(-62) * bend / 72,
             trunk=radians(bend),
+            reach=radians(_f(motion.reach_deg)),
+            other_arm=_f(motion.free_arm),
             squat=_f(motion.squat),
+            lowering=lags[0],
+            rising=lags[1],
         ),
-        sit_down=_lasting(duration, SitDown(seat=seat, rise=rise)),
-        stand_up=_lasting(duration, StandUp(seat=seat, rise=rise)),
+        sit_down=_lasting(duration, sitting),
+        stand_up=_lasting(duration, StandUp(seat=seat, rise=rise, lags=lags[1])),
         turn=Turn(
             frequency=_f(motion.rotation_hz),
             angle=radians(_f(motion.turn_deg)),
@@ -238,10 +252,22 @@ def _lasting(duration: float | None, movement: M) -> M:
     return movement if duration is None else replace(movement, duration=duration)
 
 
+def _lags(scene: Scene, place: int) -> tuple[Lags, Lags]:
+    """Which joints lead, going down and coming up."""
+    rng = _draws(scene, f"motion.stagger/{place}")
+    share, channels = _f(scene.config.motion.stagger), (*LEGS_AND_TRUNK, *SHOULDERS, *ELBOWS)
+    down, up = (
+        Lags(share, dict(zip(channels, rng.random(len(channels)).tolist(), strict=True)))
+        for _ in range(2)
+    )
+    return down, up
+
+
 def _fall(scene: Scene, duration: float | None) -> FallForward | FallBackward | FallSideways:
-    if scene.config.motion.fall == "forward":
-        return _lasting(duration, FallForward(kneel=_f(scene.config.motion.kneel_s)))
-    if scene.config.motion.fall == "backward":
+    motion = scene.config.motion
+    if motion.fall == "forward":
+        return _lasting(duration, FallForward(kneel=_f(motion.kneel_s)))
+    if motion.fall == "backward":
         return _lasting(duration, FallBackward())
     left = _draws(scene, "motion.fall/side").random() < 0.5
     return _lasting(duration, FallSideways(side=1.0 if left else -1.0))

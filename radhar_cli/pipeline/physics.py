@@ -27,7 +27,7 @@ from radhar_cli.processing.canceller import (
 from radhar_cli.processing.cfar import CellAveraging
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.gate import Gate, around, interval
-from radhar_cli.radar.propagation import Antennas
+from radhar_cli.radar.propagation import Antennas, behind_mirror
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.randomness import NOISE, stream
@@ -114,6 +114,14 @@ def body_of(scene: Scene, motion: Motion) -> Body:
     return Body(whole, found_segments(landmarks_of(whole)), stature, thickness(stature, weight))
 
 
+def antennas_behind_mirror(config: Config, antennas: Antennas) -> Antennas | None:
+    """The antennas as the wall behind people mirrors them; None without one."""
+    if config.room.back_wall_m is None:
+        return None
+    reflectance = 10 ** (_fixed(config.room.back_wall_reflection_db) / 10)
+    return behind_mirror(antennas, _fixed(config.room.back_wall_m), reflectance)
+
+
 def reflectors_of(scene: Scene) -> Reflectors | None:
     """What stands in the room of a scene, if anything does."""
     config, each = scene.config, scene.config.room.reflectors
@@ -144,7 +152,14 @@ def impairments_of(scene: Scene, noise: WhiteNoise) -> tuple[Impairment, ...]:
         amplitude = noise.sigma * 10 ** (_fixed(line.level_db) / 20)
         times = _fixed(line.on_s), _fixed(line.off_s)
         impairments.append(
-            Line(amplitude, _fixed(line.doppler_hz), *given, f"line {number}", *times)
+            Line(
+                amplitude,
+                _fixed(line.doppler_hz),
+                *given,
+                f"line {number}",
+                *times,
+                line.both_sides,
+            )
         )
     return tuple(impairments)
 

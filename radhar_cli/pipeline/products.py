@@ -143,7 +143,7 @@ def _physics(c: Config) -> Iterator[Product]:
         w: Waveform,
     ) -> PathSource:
         through = None if c.snr_reference == "free_space" else wall
-        return paths_of(scene, motions, antennas, through, w)
+        return paths_of(scene, motions, antennas, through, w, mirrored=False)
 
     def torso_track(
         motions: tuple[Motion, ...], antennas: Antennas, wall: Wall | None, w: Waveform
@@ -173,7 +173,7 @@ def _physics(c: Config) -> Iterator[Product]:
 def _snr_of_other_paths(c: Config) -> bool:
     """Whether the SNR refers to another echo than the simulated: no wall, or no room."""
     no_wall = c.wall is not None and c.snr_reference == "free_space"
-    return no_wall or bool(c.room.reflectors)
+    return no_wall or bool(c.room.reflectors) or c.room.back_wall_m is not None
 
 
 def _echo(c: Config) -> Iterator[Product]:

@@ -1,6 +1,6 @@
 """Bistatic delay and amplitude of a path (paper, section "Radar Echo Model"; docs/model.md)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 
 import numpy as np
@@ -23,6 +23,22 @@ class Antennas:
     rx: tuple[float, float, float]
     gain: float
     isolation_db: float
+
+
+def behind_mirror(antennas: Antennas, x: float, reflectance: float) -> Antennas:
+    """The antennas as a wall at range x (m) mirrors them: what they see is seen by way of it.
+
+    Echoes that go there and back by way of the wall come from a range of 2 x less the scatterer's,
+    with the opposite Doppler, and are weaker by the square of the power `reflectance`. Neglected:
+    echoes that meet the wall once, whose Doppler is that of movements across, and polarisation.
+    """
+    (tx_x, tx_y, tx_z), (rx_x, rx_y, rx_z) = antennas.tx, antennas.rx
+    return replace(
+        antennas,
+        tx=(2 * x - tx_x, tx_y, tx_z),
+        rx=(2 * x - rx_x, rx_y, rx_z),
+        gain=antennas.gain * reflectance,
+    )
 
 
 def leg(p: Float, antenna: tuple[float, float, float]) -> Float:

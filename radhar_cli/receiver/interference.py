@@ -21,7 +21,8 @@ BATCH = 256  # switching times drawn at once
 class Line(Impairment):
     """i[n, m] = a c[n] exp(j 2 pi f m/PRF), |c[n]| = 1 of random phase, the same in all pulses.
 
-    So a line, such as a power supply's, lies at all ranges, in each bin with another strength.
+    So a line, such as a power supply's, lies at all ranges, in each bin with another strength. A
+    real one, 2 a c[n] cos(2 pi f m/PRF), is as strong at -f.
 
     Attributes:
         amplitude: a, of a raw sample.
@@ -30,6 +31,7 @@ class Line(Impairment):
         stream: makes the random stream of a name.
         name: of the line.
         on, off: mean times for which it is there and is not, s; always there where off is 0.
+        real: whether it is on both sides of zero.
     """
 
     amplitude: float
@@ -39,6 +41,7 @@ class Line(Impairment):
     name: str
     on: float = 1.0
     off: float = 0.0
+    real: bool = False
 
     @cached_property
     def code(self) -> Complex:
@@ -48,8 +51,10 @@ class Line(Impairment):
         return code
 
     def tone(self, pulses: Index) -> Complex:
-        """exp(j 2 pi f m/PRF) of pulse numbers."""
+        """exp(j 2 pi f m/PRF) of pulse numbers, or twice its real part."""
         tone: Complex = unit_phasor(-np.mod(pulses * (self.frequency / self.waveform.prf), 1))
+        if self.real:
+            tone += tone.conj()
         if self.off == 0:
             return tone
         passed = np.searchsorted(self.switches, pulses / self.waveform.prf, side="right")

@@ -196,6 +196,76 @@ def test_people_step_to_the_chair_and_away_from_it(
     assert "stepping" not in [name for _, name in nominal.phases]
 
 
+QUIET = {
+    **{"step_m": 0.0, "fidget_hz": 0.0, "look_deg": 0.0, "settle_size": 0.0, "shuffle_hz": 0.0},
+    **{"angle_deg": 0, "range_m": 5.0},
+}
+
+
+def test_joints_lead_and_lag_out_of_step_and_no_movement_takes_longer() -> None:
+    """Of who is in step trunk and legs bend alike; else one is ahead, another in each sample."""
+    t, leads = np.arange(0, 6, 0.01), []
+    for stagger in (0.0, 0.4):
+        for index in range(4):
+            config = people(QUIET | {"stagger": stagger}, timing={"grab_duration_s": 2.0})
+            motion = moving(draw_scene(config, activity_named("grabbing"), index))
+            part = motion.parts[0][0]
+            course = dict(zip(part.course.channels, part.course(t), strict=True))
+            begin, end = part.begin, part.begin + 2.0 * 1.2 / 2.5
+            shares = [
+                (course[name][t <= end] - course[name][0]) / (course[name][t <= end][-1])
+                for name in ("trunk", "right_shoulder")
+            ]
+            assert [share[0] for share in shares] == pytest.approx([0.0, 0.0], abs=1e-9)
+            assert [share[-1] for share in shares] == pytest.approx([1.0, 1.0], abs=1e-3)
+            leads.append(float(np.abs(shares[0] - shares[1]).max()))
+            assert begin == 0.5
+    assert max(leads[:4]) < 1e-9
+    assert min(leads[4:]) > 0.01
+    assert np.ptp(leads[4:]) > 0.05
+
+
+def test_who_picks_up_reaches_ahead_and_the_free_arm_does_as_it_likes() -> None:
+    at, hands = np.array([1.8]), {}
+    for reach, free in ((0.0, 0.5), (50.0, 0.5), (0.0, -0.4)):
+        motion = QUIET | {"reach_deg": reach, "free_arm": free, "dwell_s": 0.4, "bend_deg": 72}
+        person = moving(nominal_scene(people(motion), activity_named("grabbing")))
+        p = person.positions(at)[0, :, 0]
+        hands[reach, free] = [p[JOINTS.index(f"{side}_hand")] for side in ("right", "left")]
+    assert hands[50.0, 0.5][0] > hands[0.0, 0.5][0] + 0.2
+    assert hands[0.0, -0.4][1] < hands[0.0, 0.5][1] - 0.2
+
+
+def test_hands_are_on_the_lap_or_beside_the_seat_and_people_lean_back_when_they_like() -> None:
+    at, hand = np.arange(0, 6, 0.01), JOINTS.index("right_hand")
+    ahead = {}
+    for lap in (0.0, 1.0):
+        config = people(QUIET | {"lap": lap})
+        p = moving(nominal_scene(config, activity_named("sitting_down"))).positions(at)
+        ahead[lap] = p[0, hand, -1] - p[0, TORSO, -1]
+    assert ahead[0.0] < 0.1 < 0.4 < ahead[1.0]
+    back = []
+    for begin in (0.0, 1.0):
+        config = people(QUIET | {"recline_deg": 20.0, "recline_from": begin})
+        p = moving(nominal_scene(config, activity_named("sitting_down"))).positions(at)
+        reclines = p[0, TORSO] - p[0, JOINTS.index("hip")]
+        assert reclines[-1] == pytest.approx(-0.3 * np.sin(np.radians(20)), abs=0.02)
+        back.append(at[np.flatnonzero(reclines > -0.05)[-1]])
+    assert back[1] > back[0] + 0.4
+
+
+def test_who_stands_at_first_walks_when_told_to() -> None:
+    config = people(QUIET | {"speed_mps": 1.2}, timing={"walk_begin_s": 1.5})
+    scene = nominal_scene(config, activity_named("walking"))
+    t = np.arange(0, 6, 0.01)
+    v = np.gradient(moving(scene).torso(t)[0, 0], t)
+    assert np.abs(v[t < 1.4]).max() < 0.05
+    assert v[t > 3].mean() == pytest.approx(1.2, abs=0.1)
+    assert [phase.name for phase in moving(scene).phases] == ["standing", "walking"]
+    at_once = moving(nominal_scene(people(QUIET | {"speed_mps": 1.2}), activity_named("walking")))
+    assert np.gradient(at_once.torso(t)[0, 0], t)[t < 1].mean() == pytest.approx(1.2, abs=0.15)
+
+
 def test_people_look_behind_and_settle_when_they_sit_down() -> None:
     quiet = {"step_m": 0.0, "fidget_hz": 0.0, "look_deg": 0.0, "settle_size": 0.0}
     sitting = activity_named("sitting_down")

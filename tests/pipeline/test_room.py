@@ -101,6 +101,41 @@ def test_a_person_moves_the_same_with_and_without_them():
     assert kept == scene_numbers(without)
 
 
+def test_a_wall_behind_people_shows_them_again_with_the_opposite_doppler():
+    """At twice the wall's range less theirs; the SNR stays that of the person alone."""
+    more = {"body": {"scatterers": "points"}, "duration_s": 2.0, "snr_db": 20}
+    more |= {"radar": RADAR | {"adc_rate_hz": 2e6}, "subject": {"height_m": 1.75}}
+    more |= {"motion": {"angle_deg": 180, "range_m": 5, "speed_mps": 0.6, "cycle_phase": 0}}
+    mirror = {"back_wall_m": 5.2, "back_wall_reflection_db": 0}
+
+    def sides(kind: str, room: dict[str, object]) -> tuple[float, float]:
+        scene = scene_of(room=room, engine={"kind": kind}, **more)
+        made = record(scene, ["stft", "noise"])
+        stft = made["stft"]
+        towards = stft.power[stft.rows.values > 20].sum() / stft.power.sum()
+        return float(towards), float(made["noise"].sigma)
+
+    for kind in ("cube", "direct"):
+        (alone, noise), (mirrored, same) = sides(kind, {}), sides(kind, mirror)
+        assert alone > 0.9
+        assert 0.6 < mirrored < 0.85
+        assert same == pytest.approx(noise)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("motion: {range_m: 5}\nroom: {back_wall_m: 4.5}", "beyond the people"),
+        ("wall: {}\nroom: {back_wall_m: 40}", "null with a wall"),
+    ],
+)
+def test_a_wall_behind_people_is_behind_them_and_the_only_one(text, words, tmp_path):
+    path = tmp_path / "wrong.yaml"
+    path.write_text(text)
+    with pytest.raises(ConfigError, match=rf"room.back_wall_m.*{words}"):
+        load_config(path)
+
+
 def test_a_reflector_at_an_antenna_is_refused():
     config = Config.model_validate(
         {"room": {"reflectors": [{"position_m": [0.4, 0.1, 1.52]}]}, "activities": ["S1"]}

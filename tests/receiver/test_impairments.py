@@ -124,6 +124,17 @@ def test_a_line_is_the_same_in_every_form(canceller, fft_length, off):
     assert bins == pytest.approx(range_bins(canceller(beat)[:, pulses], w))
 
 
+def test_a_real_line_is_on_both_sides_at_the_same_times():
+    w, pulses = waveform(4000), np.arange(4000)
+    given = (1.0, 50.0, w, named, "line 0", 0.3, 0.3)
+    one, both = Line(*given).tone(pulses), Line(*given, real=True).tone(pulses)
+    assert both == pytest.approx(2 * one.real)
+    spectrum = np.abs(np.fft.fft(both))
+    at = round(50 * pulses.size / w.prf)
+    assert spectrum[at] == pytest.approx(spectrum[-at])
+    assert spectrum[at] > 0.9 * spectrum.max()
+
+
 def test_a_line_comes_and_goes_as_often_as_it_should():
     """Exponential times: on for on/(on + off) of the time, also at the first pulse."""
     w = waveform(200_000)

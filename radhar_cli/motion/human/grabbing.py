@@ -1,9 +1,9 @@
 """S4: people who bend to pick something up from the floor."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import radians
 
-from radhar_cli.motion.human.minimum_jerk import Course, Step
+from radhar_cli.motion.human.minimum_jerk import Course, Lags, Step
 from radhar_cli.motion.human.part import Phase
 from radhar_cli.motion.human.person import Person
 from radhar_cli.motion.human.planted import Planted, at_rest
@@ -22,6 +22,7 @@ class Grab:
         reach: of the right arm ahead of the vertical.
         other_arm: what the left arm does of what the right one does.
         squat: from -1, over straight legs, to 1, deep in the knees.
+        lowering, rising: which joints lead and which lag.
     """
 
     down: float = 1.2
@@ -33,6 +34,8 @@ class Grab:
     reach: float = radians(12)
     other_arm: float = 0.55
     squat: float = 0.0
+    lowering: Lags = field(default_factory=Lags)
+    rising: Lags = field(default_factory=Lags)
 
     def part(self, person: Person, begin: float, horizon: float = 0.0) -> Planted:
         """The movement from `begin` (s) on."""
@@ -50,15 +53,14 @@ class Grab:
             "right_shoulder": arm,
             "left_shoulder": self.other_arm * arm + 0.5 * reach,
         }
-        rising = begin + self.down + self.dwell
-        steps = [
-            step
+        rises = begin + self.down + self.dwell
+        steps = self.lowering(
+            Step(channel, angle - rest[channel], begin, self.down)
             for channel, angle in bent.items()
-            for step in (
-                Step(channel, angle - rest[channel], begin, self.down),
-                Step(channel, rest[channel] - angle, rising, self.up),
-            )
-        ]
-        end = rising + self.up
+        )
+        steps += self.rising(
+            Step(channel, rest[channel] - angle, rises, self.up) for channel, angle in bent.items()
+        )
+        end = rises + self.up
         phases = (Phase(begin, "picking up"), Phase(end, "standing"))
         return Planted(person, Course.of(rest, steps), begin, end, phases)

@@ -5,7 +5,7 @@ least jerk from rest to rest; twice continuously differentiable, peak slope 1.87
 """
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -104,6 +104,29 @@ class Course:
     def at(self, t: float) -> dict[str, float]:
         """Values by channel at one time."""
         return dict(zip(self.channels, self(np.array([t]))[:, 0].tolist(), strict=True))
+
+
+@dataclass(frozen=True)
+class Lags:
+    """How far joints lead and lag: each channel moves in a part of its steps' time of its own.
+
+    Attributes:
+        share: of the lengths of all steps, by which they are shorter; 0 is all at the same time.
+        places: of each channel's part, from 0 (the beginning) to 1 (the end).
+    """
+
+    share: float = 0.0
+    places: Mapping[str, float] = field(default_factory=dict)
+
+    def __call__(self, steps: Iterable[Step]) -> list[Step]:
+        """The steps of those who move so."""
+        return [
+            step._replace(
+                start=step.start + self.share * self.places.get(step.channel, 0.0) * step.length,
+                length=(1 - self.share) * step.length,
+            )
+            for step in steps
+        ]
 
 
 def mirrored(steps: Iterable[Step], length: float) -> list[Step]:

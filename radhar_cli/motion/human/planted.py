@@ -17,6 +17,7 @@ from radhar_cli.motion.human.part import STANDING, Phase, Place
 from radhar_cli.motion.human.person import Person
 from radhar_cli.motion.human.pose import SIDES, Axes, Pose, axes, shoulder_points
 
+LEGS_AND_TRUNK = ("shank", "thigh", "trunk")
 SHOULDERS = ("right_shoulder", "left_shoulder")
 ELBOWS = ("right_elbow", "left_elbow")
 HAND = 0.03  # height of a hand on the floor, m

@@ -28,11 +28,13 @@ class Repertoire:
     Attributes:
         gait: of every walk.
         walk: how long the walk of S10 and S12 lasts before its last steps, s.
+        standing_first: whether who walks (S8) has stood before.
         fall: in which direction people fall, and how.
     """
 
     gait: Gait
     walk: float = 2.0
+    standing_first: bool = False
     punch: Punch = field(default_factory=Punch)
     kick: Kick = field(default_factory=Kick)
     grab: Grab = field(default_factory=Grab)
@@ -54,7 +56,7 @@ class Repertoire:
             5: (self.sit_down,),
             6: (self.stand_up,),
             7: (replace(self.turn, duration=inf, from_rest=False),),
-            8: (Walk(self.gait, from_rest=False),),
+            8: (Walk(self.gait, from_rest=self.standing_first),),
             9: (self.stand_up, Walk(self.gait)),
             10: (stopping, self.sit_down),
             11: (self.get_up, Walk(self.gait)),

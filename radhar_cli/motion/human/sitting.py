@@ -7,7 +7,7 @@ through a posture on the way: Yamasaki et al., 2014.
 from dataclasses import dataclass, field, replace
 from math import acos, cos, radians
 
-from radhar_cli.motion.human.minimum_jerk import Course, Step, mirrored
+from radhar_cli.motion.human.minimum_jerk import Course, Lags, Step, mirrored
 from radhar_cli.motion.human.part import SEATED, STANDING, Phase
 from radhar_cli.motion.human.person import Person
 from radhar_cli.motion.human.planted import (
@@ -23,19 +23,26 @@ from radhar_cli.motion.human.planted import (
 
 @dataclass(frozen=True)
 class Seat:
-    """How people sit: height of the hip over stature, angles in rad, `recline` backwards."""
+    """How people sit: height of the hip over stature, angles in rad, `recline` backwards.
+
+    Attributes:
+        lap: how far the hands are on the lap, where shoulders and elbows are flexed as given; 0 is
+            hanging beside the seat.
+    """
 
     height: float = 0.285
     shank: float = radians(8)
     shoulder: float = radians(35)
     elbow: float = radians(53)
     recline: float = 0.0
+    lap: float = 1.0
 
     def posture(self, person: Person) -> dict[str, float]:
         """The posture on the seat."""
         rise = self.height * person.stature - person.ankle - person.leg * cos(self.shank)
         thigh = -acos(rise / person.leg)
-        return posture(self.shank, thigh, -self.recline, self.shoulder, self.elbow)
+        shoulder, hanging = self.lap * self.shoulder, (1 - self.lap) * person.elbow
+        return posture(self.shank, thigh, -self.recline, shoulder, self.lap * self.elbow + hanging)
 
 
 @dataclass(frozen=True)
@@ -76,15 +83,16 @@ class Rise:
 
 @dataclass(frozen=True)
 class StandUp:
-    """From a seat to standing within `duration` s."""
+    """From a seat to standing within `duration` s; `lags` has which joints lead."""
 
     duration: float = 1.8
     seat: Seat = field(default_factory=Seat)
     rise: Rise = field(default_factory=Rise)
+    lags: Lags = field(default_factory=Lags)
 
     def part(self, person: Person, begin: float, horizon: float = 0.0) -> Planted:
         """The movement from `begin` (s) on."""
-        steps = timed(self.rise.steps(person, self.seat), begin, self.duration)
+        steps = timed(self.lags(self.rise.steps(person, self.seat)), begin, self.duration)
         course = Course.of(self.seat.posture(person), steps)
         end = begin + self.duration
         phases = (Phase(begin, "standing up"), Phase(end, "standing"))
@@ -97,17 +105,20 @@ class SitDown:
 
     Attributes:
         recline: the trunk leans back from that share of the duration on, for so long in s.
+        lags: which joints lead and which lag.
     """
 
     duration: float = 2.0
     seat: Seat = field(default_factory=Seat)
     rise: Rise = field(default_factory=Rise)
     recline: tuple[float, float] = (0.7, 1.0)
+    lags: Lags = field(default_factory=Lags)
 
     def part(self, person: Person, begin: float, horizon: float = 0.0) -> Planted:
         """The movement from `begin` (s) on."""
         upright = replace(self.seat, recline=0.0)
-        backwards = timed(mirrored(self.rise.steps(person, upright), 1.0), begin, self.duration)
+        steps = self.lags(mirrored(self.rise.steps(person, upright), 1.0))
+        backwards = timed(steps, begin, self.duration)
         end = begin + self.duration
         if self.seat.recline:
             share, length = self.recline

@@ -15,6 +15,7 @@ from radhar_cli.motion.human.grabbing import Grab
 from radhar_cli.motion.human.idle import FIDGETS, SWAY_HZ, Breath, Fidget, Idle, Sway, Waves
 from radhar_cli.motion.human.kicking import Kick
 from radhar_cli.motion.human.lane import Lane, along
+from radhar_cli.motion.human.minimum_jerk import Lags
 from radhar_cli.motion.human.motion import HumanMotion, Movement
 from radhar_cli.motion.human.part import Place
 from radhar_cli.motion.human.person import Person
@@ -59,6 +60,10 @@ GAITS = st.builds(
 )
 
 
+LEGS_LAG = Lags(0.6, {"shank": 1.0, "thigh": 0.7, "right_elbow": 0.4})
+TRUNK_LAGS = Lags(0.6, {"trunk": 1.0, "right_shoulder": 0.5, "left_elbow": 0.9})
+
+
 def walks_of(gait: Gait) -> dict[str, tuple[Movement, ...]]:
     """The twelve activities, and what else a person can do."""
     steady, off = Walk(gait, from_rest=False), Walk(gait)
@@ -82,6 +87,11 @@ def walks_of(gait: Gait) -> dict[str, tuple[Movement, ...]]:
         "sideways": (FallSideways(),),
         "squat": (StepTo(0.9, Place(0.4)), Grab(squat=1.0), StepTo(0.9, Place(-0.4, 0.05))),
         "stoop": (Grab(squat=-1.0),),
+        "out of step": (
+            Grab(reach=1.0, other_arm=-0.5, squat=0.5, lowering=LEGS_LAG, rising=TRUNK_LAGS),
+            SitDown(seat=Seat(recline=0.4, lap=0.0), recline=(0.0, 1.0), lags=TRUNK_LAGS),
+            StandUp(seat=Seat(recline=0.4, lap=0.0), lags=LEGS_LAG),
+        ),
         "over the knees": (stopping, FallForward(kneel=0.6)),
         "rightwards": (stopping, FallSideways(side=-1.0)),
         "everything": (

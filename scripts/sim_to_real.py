@@ -52,8 +52,8 @@ CLASSES = {  # names in measured data: ours
 }
 SLUGS = tuple(dict.fromkeys(CLASSES.values()))
 LONG = "walking"  # its maps last twice as long as those of the others
-SIDE, BAND_HZ, SHOWN_HZ, LINE_HZ = 64, 500.0, 160.0, 24.0
-MEDIAN, BLUR = (5, 5), 5  # cells of a mask, rows and columns of 39 ms; pixels of an image
+SIDE, BAND_HZ, SHOWN_HZ, LINE_HZ = 32, 500.0, 160.0, 24.0
+MEDIAN, BLUR = (5, 5), 3  # cells of a mask, rows and columns of 39 ms; pixels of an image
 PAPERS_MOTION = "motion.model=paper"
 WITHOUT = {  # what is left out: keys of the simulation
     "human motion": (PAPERS_MOTION, "classes={}"),
@@ -66,7 +66,7 @@ WITHOUT = {  # what is left out: keys of the simulation
 NO_AUGMENTATION = "augment={}"
 SEEDS = (1, 2, 3)
 SHOTS, REPEATS = (0, 1, 5, 20, 100), 5
-ADAPTING = 10  # epochs without labels
+ADAPTING = 20  # epochs without labels
 SHOT_EPOCHS = 40  # of who learns from a few labelled maps, which are soon gone through
 MAX_MAPS, MAX_SIDE, MAX_BYTES = 100_000, 2048, 2**31
 
@@ -268,7 +268,7 @@ def main() -> None:
     if not given.quick:
         ablation(measured, images, out / "without", given)
         curve(measured, images, runs[0], out / "shots")
-    report(measured, runs, out)
+    report(measured, images, runs, out)
 
 
 def ablation(measured: Measured, images: Path, out: Path, given: argparse.Namespace) -> None:
@@ -282,7 +282,10 @@ def ablation(measured: Measured, images: Path, out: Path, given: argparse.Namesp
         ]
         for kind, tested in (
             ("as it is", runs),
-            ("adapted", [adapted(run, measured, folder / "adapted" / run.name) for run in runs]),
+            (
+                "adapted",
+                [adapted(run, measured, data, folder / "adapted" / run.name) for run in runs],
+            ),
         ):
             correct = [measured.correct(run) for run in tested]
             print(accuracy_line(f"without {what}, {kind}, three seeds", correct), flush=True)
@@ -303,15 +306,16 @@ def curve(measured: Measured, images: Path, run: Path, out: Path) -> None:
         )
 
 
-def adapted(run: Path, measured: Measured, out: Path) -> Path:
-    """The run, adapted to measured maps without their labels."""
-    radhar("adapt", run, measured.folder, "-o", out, "--epochs", ADAPTING, "--overwrite")
+def adapted(run: Path, measured: Measured, data: Path, out: Path) -> Path:
+    """The run, adapted to measured maps without their labels; it is shown its own on."""
+    learned = ("--epochs", ADAPTING, "--mix", data)
+    radhar("adapt", run, measured.folder, "-o", out, *learned, "--overwrite")
     return out
 
 
-def report(measured: Measured, runs: Sequence[Path], out: Path) -> None:
+def report(measured: Measured, images: Path, runs: Sequence[Path], out: Path) -> None:
     """Print what the runs make of measured maps, as they are and adapted; the first is the one."""
-    fitted = [adapted(run, measured, out / "adapted" / run.name) for run in runs]
+    fitted = [adapted(run, measured, images, out / "adapted" / run.name) for run in runs]
     found = {"as it is": runs, "adapted": fitted}
     correct = {kind: [measured.correct(run) for run in some] for kind, some in found.items()}
     for kind, some in correct.items():

@@ -7,6 +7,7 @@ import typer
 
 from radhar_cli.commands.learning_options import Resize
 from radhar_cli.commands.tell import report, tell
+from radhar_cli.errors import ConfigError
 
 
 def adapt(
@@ -28,6 +29,14 @@ def adapt(
             "class equally often.",
         ),
     ] = 0,
+    mix: Annotated[
+        list[Path] | None,
+        typer.Option(
+            metavar="DATA",
+            help="Of --epochs: labelled data that RUN learned from, shown at the same time; may "
+            "repeat.",
+        ),
+    ] = None,
     resize: Resize = False,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace a run that the folder holds.")
@@ -38,7 +47,7 @@ def adapt(
 
     Example:
 
-      radhar adapt runs/simulated datasets/measured -o runs/adapted --epochs 10
+      radhar adapt runs/simulated measured -o runs/adapted --epochs 20 --mix datasets/simulated
 
     For a network that learned from simulated maps and is to work on a radar's. The images should
     show the classes about as often as those it will be asked about; with --epochs, every class
@@ -56,7 +65,9 @@ def adapt(
     from radhar_cli.learning.images.image_set import split_named
     from radhar_cli.learning.machine import choose_device
 
-    apart(out, [data])
+    if mix and not epochs:
+        raise ConfigError("--mix: needs --epochs, in which it is shown")
+    apart(out, [data, *(mix or [])])
     adaptation.adapt(
         run,
         data,
@@ -67,6 +78,7 @@ def adapt(
         resize,
         overwrite,
         epochs,
+        tuple(mix or ()),
         StderrLog(),
     )
     report(folder=out, run=run, data=data, epochs=epochs)

@@ -4,14 +4,18 @@ Batch norm keeps mean and variance of what each layer saw while it learned. Repl
 new images they take away what differs between the two sources alone (Li et al., Adaptive batch
 normalization for practical domain adaptation, Pattern Recognition 80, 2018). Then all layers but
 the last can learn from the images: to be sure of each, and of every class equally often (Liang, Hu
-and Feng, Do we really need to access the source data?, ICML 2020).
+and Feng, Do we really need to access the source data?, ICML 2020). Labelled images of the first
+source, shown at the same time, keep the classes what they were.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import cos, pi
 from pathlib import Path
 
 import torch
-from torch import nn
+from torch import Tensor, nn
+from torch.nn.functional import cross_entropy
 from torch.nn.modules.batchnorm import _BatchNorm
 
 from radhar_cli.arrays import Index
@@ -19,19 +23,48 @@ from radhar_cli.dataset.files import read_bytes, write_whole
 from radhar_cli.dataset.folder import folder_lock
 from radhar_cli.errors import ConfigError
 from radhar_cli.learning import run_folder
+from radhar_cli.learning.augmentation import Augmentation
 from radhar_cli.learning.batches import Reader, pieces
-from radhar_cli.learning.evaluation import open_for, rows_of
-from radhar_cli.learning.images.image_set import ImageSet
+from radhar_cli.learning.evaluation import open_for, rows_of, training_images
+from radhar_cli.learning.images.image_set import ImageSet, labels_for
+from radhar_cli.learning.images.joined import joined, sampling_weights
 from radhar_cli.learning.images.scan import content_hash, scan
 from radhar_cli.learning.machine import repeatable
 from radhar_cli.learning.run_files import TRAINED_ON
 from radhar_cli.learning.run_folder import MAX_TABLE, RunMetadata, load_best
+from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.starting_point import is_of_last_layer
 from radhar_cli.progress import Messages
 from radhar_cli.randomness import TRAINING, stream
 
-MIN_IMAGES, BATCH = 16, 128
-RATE = 2e-4  # of Adam
+MIN_IMAGES, BATCH = 16, 96
+MIXED = 32  # labelled images a step
+RATE = 5e-4  # of Adam, falls to zero by a cosine
+
+
+@dataclass(frozen=True)
+class Mixed:
+    """Labelled images that are shown while a network learns from unlabelled ones.
+
+    Attributes:
+        images: their training images are taken.
+        weights: how often those of each joined set; None: all alike.
+    """
+
+    images: ImageSet
+    weights: tuple[float, ...] | None = None
+
+    def batches(
+        self, metadata: RunMetadata, epoch: int, count: int
+    ) -> Iterator[tuple[Tensor, Tensor]]:
+        """`count` batches (uint8 [MIXED, 3, H, W], labels [MIXED]), changed as in training."""
+        config, rows = TrainConfig.model_validate(metadata.config), self.images.rows("train")
+        weights = sampling_weights(self.images, rows, self.weights, balanced=False)
+        rng = stream(config.seed, TRAINING, epoch, name="adaptation mixed")
+        drawn = rng.choice(rows, (count, MIXED), p=weights / weights.sum())
+        labels = labels_for(self.images, metadata.classes)
+        change = Augmentation(config.augment, config.seed) if config.input == "gray" else None
+        yield from Reader(self.images, labels, 0, False, change)(list(drawn), epoch)
 
 
 def adapt(
@@ -44,6 +77,7 @@ def adapt(
     resize: bool = False,
     overwrite: bool = False,
     epochs: int = 0,
+    mix: Sequence[Path] = (),
     progress: Messages | None = None,
 ) -> RunMetadata:
     """Write a copy of a run whose batch norm has the statistics of all images of `data`.
@@ -62,6 +96,7 @@ def adapt(
         resize: bring images to the model's size.
         overwrite: replace a run that the folder holds.
         epochs: of `maximise_information`.
+        mix: labelled data sets that it shows as well, those that the run learned from.
         progress: receives a line for each of them.
 
     Raises:
@@ -71,7 +106,8 @@ def adapt(
     metadata, _ = load_best(run)
     images = open_for(metadata, data, map_name, labelled=False, resize=resize)
     rows, _ = rows_of(images, split)
-    return adapt_to(images, rows, run, folder, device, overwrite, epochs, progress)
+    mixed = Mixed(joined([training_images(metadata, path) for path in mix])) if mix else None
+    return adapt_to(images, rows, run, folder, device, overwrite, epochs, mixed, progress)
 
 
 def adapt_to(
@@ -82,6 +118,7 @@ def adapt_to(
     device: torch.device,
     overwrite: bool = False,
     epochs: int = 0,
+    mixed: Mixed | None = None,
     progress: Messages | None = None,
 ) -> RunMetadata:
     """As `adapt`, to some rows of images that are open already."""
@@ -100,10 +137,15 @@ def adapt_to(
     repeatable(device)
     adapt_batch_norm(model.to(device), metadata, images, rows, device)
     if epochs:
-        maximise_information(model, metadata, images, rows, device, epochs, progress)
+        maximise_information(model, metadata, images, rows, device, epochs, mixed, progress)
         adapt_batch_norm(model, metadata, images, rows, device)
     seen = content_hash(images, rows, scan(images, rows).digests)
     work = {**metadata.work, "adapted_to": seen, "adapted_epochs": epochs}
+    if mixed is not None:
+        learned = mixed.images.rows("train")
+        work["adapted_with"] = content_hash(
+            mixed.images, learned, scan(mixed.images, learned).digests
+        )
     metadata = metadata.model_copy(update={"work": work})
     with folder_lock(folder):
         run_folder.reserve_run(folder, metadata, overwrite)
@@ -128,7 +170,7 @@ def adapt_batch_norm(
             layer.reset_running_stats()
             layer.momentum = None  # the plain average over all batches
     with torch.inference_mode():
-        for levels in _shuffled(metadata, images, rows, 0):
+        for levels in _levels(images, _batches(metadata, rows, 0)):
             model(metadata.normalisation(levels.to(device)))
     model.eval()
 
@@ -140,26 +182,37 @@ def maximise_information(
     rows: Index,
     device: torch.device,
     epochs: int,
+    mixed: Mixed | None = None,
     progress: Messages | None = None,
 ) -> None:
     """Lower the entropy of each prediction and raise that of their mean, by all but the last layer.
 
     The mutual information of images and predictions grows; without labels, batch norm as in
-    training, in the batches of `adapt_batch_norm`.
+    training, in the batches of `adapt_batch_norm`. Mixed images, in batches of their own, add their
+    cross-entropy, smoothed as in training.
 
     Raises:
         RunError: the loss is not finite.
     """
     norms = [layer for layer in model.modules() if isinstance(layer, _BatchNorm)]
     learned = [p for name, p in model.named_parameters() if not is_of_last_layer(name, model)]
-    optimiser = torch.optim.Adam(learned, lr=RATE)
+    optimiser = torch.optim.Adam(learned)
+    smoothing = TrainConfig.model_validate(metadata.config).label_smoothing
     for epoch in range(1, epochs + 1):
         for layer in norms:
             layer.train()
-        for levels in _shuffled(metadata, images, rows, epoch):
+        batches = _batches(metadata, rows, epoch)
+        labelled = mixed.batches(metadata, epoch, len(batches)) if mixed else None
+        for step, levels in enumerate(_levels(images, batches)):
+            done = (epoch - 1 + step / len(batches)) / epochs
+            optimiser.param_groups[0]["lr"] = RATE * (1 + cos(pi * done)) / 2
             shares = model(metadata.normalisation(levels.to(device))).softmax(1)
             entropy, of_mean = _entropy(shares).mean(), _entropy(shares.mean(0))
             loss = entropy - of_mean
+            if labelled is not None:
+                shown, label = (part.to(device) for part in next(labelled))
+                logits = model(metadata.normalisation(shown))
+                loss = loss + cross_entropy(logits, label, label_smoothing=smoothing)
             if not loss.isfinite():
                 raise run_folder.RunError(f"epoch {epoch} of --epochs: the loss is {loss.item()}")
             optimiser.zero_grad()
@@ -173,17 +226,19 @@ def maximise_information(
     model.eval()
 
 
-def _entropy(shares: torch.Tensor) -> torch.Tensor:
+def _entropy(shares: Tensor) -> Tensor:
     """Entropy [...] of shares [..., classes], nats."""
     return -(shares * shares.clamp_min(1e-12).log()).sum(-1)
 
 
-def _shuffled(
-    metadata: RunMetadata, images: ImageSet, rows: Index, epoch: int
-) -> Iterator[torch.Tensor]:
-    """Levels of the rows in nearly equal batches, in the order of an epoch."""
+def _batches(metadata: RunMetadata, rows: Index, epoch: int) -> list[Index]:
+    """The rows in nearly equal batches, in the order of an epoch."""
     seed = int(metadata.config.get("seed", 0))
     order = rows[stream(seed, TRAINING, epoch, name="adaptation").permutation(rows.size)]
-    size = -(-order.size // max(1, order.size // BATCH))
-    for levels, _ in Reader(images, images.label, workers=0, pin=False)(pieces(order, size)):
+    return pieces(order, -(-order.size // max(1, order.size // BATCH)))
+
+
+def _levels(images: ImageSet, batches: list[Index]) -> Iterator[Tensor]:
+    """Levels uint8 [B, 3, H, W] of each batch."""
+    for levels, _ in Reader(images, images.label, workers=0, pin=False)(batches):
         yield levels

@@ -3,7 +3,7 @@
 import statistics
 import time
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +12,7 @@ from torch import nn
 
 from radhar_cli.arrays import Float, Index
 from radhar_cli.dataset.reading import open_dataset
+from radhar_cli.dataset.split import TRAIN
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.batches import Reader, pieces
 from radhar_cli.learning.images.classes import known_to
@@ -112,6 +113,14 @@ def _cut_as_in_training(metadata: RunMetadata, images: ImageSet) -> ImageSet:
     rows = np.concatenate([cut.rows("train"), cut.rows("val")])
     same = content_hash(cut, rows, scan(cut, rows).digests) == metadata.data["hash"]
     return cut if same else images
+
+
+def training_images(metadata: RunMetadata, path: Path) -> ImageSet:
+    """Training images of a data set, of the classes that a run knows."""
+    config = TrainConfig.model_validate(metadata.config)
+    images = open_for(metadata, path, None).cut(config.validation_share, config.seed)
+    images = images.some(images.rows("train"))
+    return replace(images, split=np.full(len(images), TRAIN, np.uint8))
 
 
 def rows_of(images: ImageSet, split: str) -> tuple[Index, str]:

@@ -119,6 +119,8 @@ class TrainConfig(Section):
     """Linear rise of the rate, step by step; may be a fraction."""
     gradient_clip_norm: Rate | None = None
     """Largest norm of the gradient; null is none."""
+    average_last: Annotated[float, Field(ge=0, le=1, strict=True)] = 0.0
+    """Share of the steps, at the end, whose weights are averaged; 0 keeps those of an epoch."""
     validation_share: Share = 0.2
     """Of images that come without a split."""
     data_weights: tuple[Weight, ...] | None = None

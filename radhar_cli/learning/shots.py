@@ -19,8 +19,8 @@ from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.split import TRAIN, VALIDATION
 from radhar_cli.errors import FolderError
 from radhar_cli.figures.shots import shots_png
-from radhar_cli.learning.adaptation import adapt_to
-from radhar_cli.learning.evaluation import open_for, predict
+from radhar_cli.learning.adaptation import Mixed, adapt_to
+from radhar_cli.learning.evaluation import predict, training_images
 from radhar_cli.learning.images.classes import unknown_message
 from radhar_cli.learning.images.image_set import ImageSet, labels_for
 from radhar_cli.learning.images.joined import joined
@@ -57,8 +57,8 @@ class ShotOptions:
         mix: data that go on being shown while the run is fine-tuned, the run's own.
         overrides: `key=value` of both ways of learning.
         tuning: `key=value` of fine-tuning alone.
-        adapting: epochs of `adaptation.adapt` after it, to all images without their labels; 0 for
-            none.
+        adapting: epochs of `adaptation.adapt` after it, to all images without their labels,
+            while it is shown what it was fine-tuned with; 0 for none.
         overwrite: start again in folders that hold other runs.
     """
 
@@ -243,7 +243,7 @@ def few_shots(
     scratch = changed_section(own.model_copy(update={"device": device.type}), [*shots.overrides])
     tuned = changed_section(shorter(scratch), [f"--tune {text}" for text in shots.tuning])
     measured = open_eval_set(opened, data, options)
-    mix = [_training_images(metadata, path, own) for path in shots.mix]
+    mix = [training_images(metadata, path) for path in shots.mix]
     if message := unknown_message(measured.images, options.names):
         progress.say(f"warning: {message}")
     seen = seen_in_training(opened, measured.images, measured.rows)
@@ -282,15 +282,17 @@ def few_shots(
         """What each way of learning makes of a draw: its name, and the folder of the run."""
         here, seed = folder / f"{k}_a_class" / str(repeat + 1), (own.seed + repeat) % 2**63
         tuned_run = here / "fine_tuned" if k else run
+        mixed = Mixed(joined(mix)) if mix else None
         if k:
             labelled = measured.images.some(draw.labelled)
             images, weights = _learned_from(metadata, labelled, mix, MAX_SHOWN)
             settings = tuned.model_copy(update={"data_weights": weights, "seed": seed})
             train_on(settings, images, tuned_run, _NoProgress(), shots.overwrite, run)
+            mixed = Mixed(images, weights)
         yield TUNED if k else AS_TRAINED, tuned_run
         if shots.adapting:
             one, every = here / "adapted", measured.rows
-            adapt_to(measured.images, every, tuned_run, one, device, True, shots.adapting)
+            adapt_to(measured.images, every, tuned_run, one, device, True, shots.adapting, mixed)
             yield ADAPTED, one
         if k:
             images, weights = _learned_from(metadata, labelled, [], SHOWN)
@@ -390,13 +392,6 @@ def missing(measured: EvalSet, draw: Draw, k: int) -> str | None:
                 f", {learned[number]} of the persons to learn from" if apart else ""
             )
     return None
-
-
-def _training_images(metadata: RunMetadata, path: Path, config: TrainConfig) -> ImageSet:
-    """Training images of a data set, of the classes that a run knows."""
-    images = open_for(metadata, path, None).cut(config.validation_share, config.seed)
-    images = images.some(images.rows("train"))
-    return replace(images, split=np.full(len(images), TRAIN, np.uint8))
 
 
 def _learned_from(

@@ -11,6 +11,7 @@ from typing import Protocol
 import numpy as np
 import torch
 from torch import nn
+from torch.optim.swa_utils import AveragedModel
 
 from radhar_cli import __version__
 from radhar_cli.arrays import Float, Index
@@ -220,6 +221,7 @@ class _Training:
     optimiser: torch.optim.Optimizer
     history: list[Epoch]
     stream: TrainingStream | None = None
+    average: AveragedModel | None = None
 
     @classmethod
     def prepared(
@@ -279,6 +281,7 @@ class _Training:
             optimiser=optimiser_for(config, model),
             history=[],
             stream=stream,
+            average=AveragedModel(model, use_buffers=True) if config.average_last else None,
         )
 
     def run(self) -> Outcome:
@@ -338,6 +341,8 @@ class _Training:
             self.model.load_state_dict(checkpoint["model"])
             check_state(self.optimiser, checkpoint["optimiser"])
             self.optimiser.load_state_dict(checkpoint["optimiser"])
+            if self.average is not None:
+                self.average.load_state_dict(checkpoint["average"])
             torch.set_rng_state(checkpoint["random"])
         except (
             AttributeError,
@@ -368,7 +373,14 @@ class _Training:
                     f"{error}; the weights of epoch {best.epoch} cannot be recovered; --overwrite "
                     "starts the run over"
                 ) from None
-            run.write_best(self.folder, self.metadata, best, self.model.state_dict())
+            run.write_best(self.folder, self.metadata, best, self._kept.state_dict())
+
+    @property
+    def _kept(self) -> nn.Module:
+        """The network that is validated and kept: the average, as soon as there is one."""
+        if self.average is None or not self.average.n_averaged:
+            return self.model
+        return self.average.module
 
     def _announce(self, resumed: int) -> None:
         plan, say, size = self.plan, self.progress.say, self.config.batch_size
@@ -418,6 +430,9 @@ class _Training:
             loss, correct = train_step.step(
                 network, self.optimiser, levels, labels, batches[step].size
             )
+            done = (epoch + (step + 1) / len(batches)) / config.epochs
+            if self.average is not None and done > 1 - config.average_last:
+                self.average.update_parameters(self.model)
             # The sum: where one process fails, all should say so.
             if not math.isfinite(all_reduce_sum(np.array([loss]), group)[0]):
                 raise TrainingError(self._not_finite(f"epoch {epoch + 1}, step {step + 1}", loss))
@@ -431,14 +446,16 @@ class _Training:
         """Mean loss and accuracy over the validation images, shared by the processes."""
         group = self.group
         broadcast_buffers(self.model, group)
+        model = self._kept
+        broadcast_buffers(model, group)
         rows = self.images.rows("val")
         mine = rows[group.rank :: group.size]
         size = min(self.config.batch_size, self.plan.micro_batch)
-        self.model.eval()
+        model.eval()
         totals: Float = np.zeros(3)
         with torch.no_grad():
             for levels, labels in reader(pieces(mine, size)):
-                loss, correct = self._train_step.loss_and_correct(self.model, levels, labels)
+                loss, correct = self._train_step.loss_and_correct(model, levels, labels)
                 totals += (float(loss), correct, len(labels))
         totals = all_reduce_sum(totals, group)
         if not math.isfinite(totals[0]):
@@ -467,14 +484,14 @@ class _Training:
         row = _row(epoch, self.optimiser.param_groups[0]["lr"], training, validation, seconds)
         self.history.append(row)
         best = best_epoch(self.history) is row
-        weights = self.model.state_dict()
         if best:
-            run.write_best(self.folder, self.metadata, row, weights)
+            run.write_best(self.folder, self.metadata, row, self._kept.state_dict())
         run.write_last(
             self.folder,
             {
                 "metadata": self.metadata.model_dump_json(),
-                "model": weights,
+                "model": self.model.state_dict(),
+                "average": None if self.average is None else self.average.state_dict(),
                 "optimiser": self.optimiser.state_dict(),
                 "history": [asdict(r) for r in self.history],
                 "random": torch.get_rng_state(),

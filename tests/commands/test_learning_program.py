@@ -113,6 +113,10 @@ def test_models_lists_our_networks_and_the_papers_rivals(place: Path) -> None:
         (["eval", "{}/run", "{}/tree", "--split", "test"], ["has no test images"]),
         (["eval", "{}/run", "{}/tree", "--device", "cdua"], ["did you mean 'cuda'"]),
         (["predict", "{}/run", "{}/train.json"], ["is not a data set"]),
+        (
+            ["adapt", "{}/run", "{}/tree", "-o", "{}/x", "--mix", "{}/tree"],
+            ["--mix: needs --epochs"],
+        ),
         (["export", "{}/tree", "-o", "{}/x.onnx"], ["holds no best.safetensors"]),
         (["models", "resnet5O"], ["did you mean 'resnet50'"]),
     ],

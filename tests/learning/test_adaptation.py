@@ -5,13 +5,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from learning.patterns import Watched, same, trained, tree
+from learning.patterns import Watched, same, split_tree, trained, tree
 from PIL import Image
 from torch import nn
 
 from radhar_cli.errors import ConfigError
-from radhar_cli.learning.adaptation import adapt
-from radhar_cli.learning.evaluation import open_for, predict
+from radhar_cli.learning.adaptation import Mixed, adapt
+from radhar_cli.learning.evaluation import open_for, predict, training_images
+from radhar_cli.learning.images.joined import joined
 from radhar_cli.learning.run_folder import RunError, load_best
 
 CPU = torch.device("cpu")
@@ -22,6 +23,16 @@ def accuracy(run: Path, data: Path) -> float:
     images = open_for(metadata, data, None)
     found = predict(model, metadata, images, np.arange(len(images)), CPU, 32)
     return float((found.predicted == found.truth).mean())
+
+
+def cross_entropy(run: Path, data: Path) -> float:
+    """With batch norm as in training: statistics of other images are not what is asked about."""
+    metadata, model = load_best(run)
+    images = training_images(metadata, data)
+    levels = np.stack([images.pixels.read(row).transpose(2, 0, 1) for row in range(len(images))])
+    with torch.inference_mode():
+        logits = model.train()(metadata.normalisation(torch.from_numpy(levels)))
+    return float(nn.functional.cross_entropy(logits, torch.from_numpy(images.label)))
 
 
 def another_radar(data: Path) -> Path:
@@ -97,11 +108,43 @@ def test_epochs_leave_the_last_layer_and_do_not_look_at_labels(
         assert torch.equal(tensor, after[name]) == name.startswith("head"), name
 
 
-@pytest.mark.parametrize("epochs", [0, 2])
-def test_adaptation_is_reproducible(learned: Path, tmp_path: Path, epochs: int) -> None:
+def test_mixed_images_teach_their_labels(learned: Path, tmp_path: Path) -> None:
+    measured, other = tree(tmp_path / "measured", seed=5), split_tree(tmp_path / "other", seed=6)
+    for part in other.iterdir():  # two classes change names
+        for old, new in (("kicking", "x"), ("punching", "kicking"), ("x", "punching")):
+            (part / old).rename(part / new)
+    loss, work = [], []
+    for mix in ((), (other,)):
+        metadata = adapt(
+            learned, measured, tmp_path / "adapted", CPU, epochs=30, mix=mix, overwrite=True
+        )
+        loss.append(cross_entropy(tmp_path / "adapted", other))
+        work.append(metadata.work.get("adapted_with"))
+    assert loss[1] < loss[0] / 2
+    assert work[0] is None
+    assert work[1] is not None
+
+
+def test_mixed_sets_are_drawn_by_their_weights(learned: Path, tmp_path: Path) -> None:
+    metadata, _ = load_best(learned)
+    sets = [
+        training_images(metadata, split_tree(tmp_path / name, classes=(name,)))
+        for name in ("walking", "kicking")
+    ]
+    mixed = Mixed(joined(sets), (3.0, 1.0))
+    drawn = torch.cat([labels for _, labels in mixed.batches(metadata, 1, 50)])
+    shares = torch.bincount(drawn, minlength=3) / drawn.numel()
+    wanted = [{"walking": 0.75, "kicking": 0.25}.get(name, 0.0) for name in metadata.classes]
+    torch.testing.assert_close(shares, torch.tensor(wanted), atol=0.05, rtol=0)
+
+
+@pytest.mark.parametrize(("epochs", "mix"), [(0, False), (2, False), (2, True)])
+def test_adaptation_is_reproducible(
+    learned: Path, data: Path, tmp_path: Path, epochs: int, mix: bool
+) -> None:
     measured = tree(tmp_path / "measured", seed=5)
     for name in ("one", "two"):
-        adapt(learned, measured, tmp_path / name, CPU, epochs=epochs)
+        adapt(learned, measured, tmp_path / name, CPU, epochs=epochs, mix=(data,) * mix)
     # Not the files' bytes: safetensors writes its metadata in any order.
     (about, one), (again, two) = (load_best(tmp_path / name) for name in ("one", "two"))
     assert about == again

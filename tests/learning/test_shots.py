@@ -151,7 +151,7 @@ def test_mixed_images_are_shown_as_often_as_labelled_ones_unless_these_are_few(
 ) -> None:
     metadata, _ = load_best(run_dir)
     few = open_for(metadata, measured, None).some(np.array([0, 8, 16]))
-    mixed = module._training_images(metadata, data, module.TrainConfig())
+    mixed = module.training_images(metadata, data)
     for most, of_few in ((100, 24), (2, 6)):
         images, weights = module._learned_from(metadata, few, [mixed], most)
         rows = images.rows("train")

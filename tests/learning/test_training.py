@@ -191,6 +191,43 @@ def test_only_a_better_epoch_replaces_the_best(
     assert same(dict(sorted(best_weights(tmp_path / "run").items())), dict(sorted(kept[3].items())))
 
 
+class KeepsLast(Watched):
+    """Remembers the weights, not averaged, after each epoch."""
+
+    def __init__(self, out: Path) -> None:
+        super().__init__()
+        self.out, self.weights = out, list[dict[str, torch.Tensor]]()
+
+    def epoch_done(self, row: run.Epoch, best: bool) -> None:
+        super().epoch_done(row, best)
+        self.weights.append(last_weights(self.out))
+
+
+def test_weights_of_the_last_steps_are_averaged(
+    data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    losses = iter([4.0, 3.0, 2.0, 1.0])
+    monkeypatch.setattr(_Training, "_validate", lambda *_: (next(losses), 0.5))
+    progress = KeepsLast(tmp_path / "run")
+    trained(data, tmp_path / "run", progress, epochs=4, batch_size=12, average_last=0.5)
+    assert len(progress.losses) == 4  # one step an epoch
+    third, fourth = progress.weights[2:]
+    for name, weights in best_weights(tmp_path / "run").items():
+        if weights.is_floating_point():
+            torch.testing.assert_close(weights, (third[name] + fourth[name]) / 2)
+
+
+def test_averages_go_on_as_if_they_had_never_stopped(data: Path, tmp_path: Path) -> None:
+    trained(data, tmp_path / "whole", average_last=0.6)
+    with pytest.raises(KeyboardInterrupt):
+        trained(data, tmp_path / "stopped", Watched(stop_after=2), average_last=0.6)
+    trained(data, tmp_path / "stopped", average_last=0.6)
+    assert same_run(tmp_path / "whole", tmp_path / "stopped")
+    trained(data, tmp_path / "plain")
+    assert same(last_weights(tmp_path / "plain"), last_weights(tmp_path / "whole"))
+    assert not same(best_weights(tmp_path / "plain"), best_weights(tmp_path / "whole"))
+
+
 def test_validation_is_that_of_the_stored_weights(data: Path, run_dir: Path) -> None:
     """Loss with label smoothing and accuracy of the last epoch, worked out anew."""
     metadata, model = run.load_best(run_dir)

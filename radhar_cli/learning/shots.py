@@ -292,7 +292,7 @@ def few_shots(
         yield TUNED if k else AS_TRAINED, tuned_run
         if shots.adapting:
             one, every = here / "adapted", measured.rows
-            adapt_to(measured.images, every, tuned_run, one, device, True, shots.adapting, mixed)
+            adapt_to(measured.images, every, run, one, device, True, shots.adapting, mixed)
             yield ADAPTED, one
         if k:
             images, weights = _learned_from(metadata, labelled, [], SHOWN)

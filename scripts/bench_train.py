@@ -1,15 +1,22 @@
 """What each shortcut of a training step buys, as ratios of one run.
 
     python scripts/bench_train.py [--px 128] [--batch 32] [--rounds 3]
+    python scripts/bench_train.py --models NAME ... [--json FILE]
 
 Every variant runs in a process of its own, in turn, and the rounds are interleaved; printed are the
-median step and its spread, and the ratio to the step as `radhar train` does it.
+median step and its spread, and the ratio to the step as `radhar train` does it. With --models the
+steps of those networks are timed instead: processor time of one thread, which other work on the
+machine changes little.
 """
 
 import argparse
+import os
 import statistics
 import subprocess
 import sys
+from pathlib import Path
+
+from reproduce_paper import as_text, commit, machine
 
 VARIANTS = {
     "as radhar train does it": (),
@@ -24,7 +31,7 @@ from torch.nn.functional import cross_entropy
 from radhar_cli.learning import machine
 from radhar_cli.learning.models.build import build_model
 from radhar_cli.learning.models.fftnet import GlobalFilter
-px, batch, steps, *without = sys.argv[1:]
+name, px, batch, steps, *without = sys.argv[1:]
 px, batch, steps = int(px), int(batch), int(steps)
 if "complex" in without:
     def full(self, x):
@@ -36,13 +43,13 @@ precision = machine.choose_precision("auto", device)
 if "precision" in without:
     precision = torch.float32 if precision == torch.bfloat16 else torch.bfloat16
 torch.manual_seed(0)
-model = build_model("fftnet", 12, (px, px)).to(device)
+model = build_model(name, 12, (px, px)).to(device)
 optimiser = torch.optim.Adam(model.parameters(), 1e-3)
 x = torch.randn(batch, 3, px, px, device=device)
 y = torch.randint(12, (batch,), device=device)
 times = []
 for _ in range(steps):
-    start = time.perf_counter()
+    start, processor = time.perf_counter(), time.process_time()
     with machine.autocast(device, precision):
         logits = model(x)
     cross_entropy(logits.float(), y).backward()
@@ -50,9 +57,31 @@ for _ in range(steps):
     optimiser.zero_grad()
     if device.type == "cuda":
         torch.cuda.synchronize()
-    times.append(time.perf_counter() - start)
+    clock = "processor" in without
+    times.append(time.process_time() - processor if clock else time.perf_counter() - start)
 print(device.type, str(precision).removeprefix("torch."), *times[1:])
 """
+
+
+def timed(model: str, px: int, batch: int, *without: str) -> tuple[str, list[float]]:
+    """Device and precision, and seconds of each step but the first, of a process of its own."""
+    line = [sys.executable, "-c", STEP, model, px, batch, STEPS, *without]
+    done = subprocess.run(list(map(str, line)), stdout=subprocess.PIPE, text=True, check=True)
+    device, precision, *steps = done.stdout.split()
+    return f"{device}, {precision}", [float(step) for step in steps]
+
+
+def models(names: list[str], px: int, batch: int, path: Path | None) -> None:
+    """Print, and write, processor time of a step of each network."""
+    os.environ["OMP_NUM_THREADS"] = "1"
+    found = {}
+    for name in names:
+        kind, steps = timed(name, px, batch, "processor")
+        found[name] = round(statistics.median(steps), 2)
+        print(f"{name:<36} {kind:<14} {found[name]:7.2f} s a step", flush=True)
+    if path:
+        about = {"px": px, "batch": batch, "kind": kind, "commit": commit(), "machine": machine()}
+        path.write_text(as_text({**about, "seconds": found}))
 
 
 def main() -> None:
@@ -61,16 +90,18 @@ def main() -> None:
     parser.add_argument("--px", type=int, default=128)
     parser.add_argument("--batch", type=int, default=32)
     parser.add_argument("--rounds", type=int, default=3)
+    parser.add_argument("--models", nargs="+", default=[], help="networks to time instead")
+    parser.add_argument("--json", type=Path, help="where the times of --models are written")
     asked = parser.parse_args()
+    if asked.models:
+        models(asked.models, asked.px, asked.batch, asked.json)
+        return
     times: dict[str, list[float]] = {name: [] for name in VARIANTS}
     kinds = {}
     for _ in range(asked.rounds):
         for name, without in VARIANTS.items():
-            line = [sys.executable, "-c", STEP, asked.px, asked.batch, STEPS, *without]
-            done = subprocess.run(list(map(str, line)), capture_output=True, text=True, check=True)
-            device, precision, *steps = done.stdout.split()
-            kinds[name] = f"{device}, {precision}"
-            times[name] += map(float, steps)
+            kinds[name], steps = timed("fftnet", asked.px, asked.batch, *without)
+            times[name] += steps
     own = statistics.median(next(iter(times.values())))
     print(f"fftnet, {asked.px} x {asked.px} px, batch {asked.batch}; {asked.rounds} rounds")
     for name, found in times.items():

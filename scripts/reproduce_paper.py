@@ -580,6 +580,29 @@ def tables(name: str, records: dict[str, dict[str, Any]]) -> list[str]:
     return [*lines, "### Networks at 30 dB", "", *_networks(networks)]
 
 
+def not_reached(name: str, results: Path) -> list[str]:
+    """Networks of the paper that a scale leaves out, and what a step of each costs."""
+    models = {training.model for training in SCALES[name].trainings}
+    path = results / "seconds_a_step.json"
+    if not path.exists() or not (left := [model for model in RIVALS if model not in models]):
+        return []
+    found = read_json(path)
+    per_run = 0.8 * 12 * SCALES[name].per_class / found["batch"] * PAPER_EPOCHS / 3600
+    return [
+        f"Not reached, by what a step of {found['batch']} maps of {found['px']} px costs, "
+        f"processor time, {found['kind']} (`python scripts/bench_train.py --models "
+        f"{' '.join(RIVALS)} --json docs/results/seconds_a_step.json`, commit {found['commit']['commit'][:7]}):",
+        "",
+        *table(
+            ["network", "seconds a step", f"hours for {PAPER_EPOCHS} epochs"],
+            [
+                [model, _number(s := found["seconds"][model], ".1f"), _number(s * per_run, ".1f")]
+                for model in left
+            ],
+        ),
+    ]
+
+
 def _by_snr(rows: list[Row]) -> list[str]:
     head = ["scenario", "SNR (dB)", "epochs", "best epoch", "validation", "fresh seed", "paper"]
     head += ENDING
@@ -762,7 +785,8 @@ def page_text(scales: tuple[str, ...], results: Path) -> str:
         size = SCALES[name].size_px
         lines += [f"## Maps of {size} px (`--scale {name}`)", ""]
         if records:
-            lines += [*tables(name, records), *figures(name, results, records)]
+            lines += [*tables(name, records), *not_reached(name, results)]
+            lines += figures(name, results, records)
         else:
             lines += ["Not run.", ""]
     return "\n".join(lines)

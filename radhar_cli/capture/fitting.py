@@ -43,6 +43,7 @@ from radhar_cli.radar.propagation import amplitude
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 FEW = 3  # SNRs from which on a spread is fitted
+PAIR_HZ, PAIR_DB = 0.2, 3.0  # twice the error of a line
 LEAKAGE_BINS = 3  # the nearest, in which the antennas' leakage lies
 
 
@@ -155,7 +156,7 @@ class Fit:
             receiver["noise_corner_hz"] = float(f"{self.colour.corner:.4g}")
             receiver["noise_slope_db"] = round(self.colour.slope, 1)
         if self.lines:
-            receiver["lines"] = [_line(one) for one in self.lines]
+            receiver["lines"] = line_keys(self.lines)
         if receiver:
             document["receiver"] = receiver
         return document
@@ -263,6 +264,22 @@ def _reflector(one: Return, unit: float, place: Float, apart: float) -> dict[str
     if one.residual > 0:
         reflector["highest_hz"] = round(min(one.highest, 100.0), 2)
     return reflector
+
+
+def line_keys(found: list[FoundLine]) -> list[dict[str, Any]]:
+    """Keys of the lines; two at opposite Dopplers, equally strong within the errors, are one."""
+    left, keys = list(found), []
+    while left:
+        one = left.pop(0)
+        line = _line(one)
+        for other in left:
+            apart = abs(10 * float(np.log10(other.level / one.level)))
+            if abs(one.doppler + other.doppler) < PAIR_HZ and apart < PAIR_DB:
+                left.remove(other)
+                line["both_sides"] = True
+                break
+        keys.append(line)
+    return keys
 
 
 def _line(one: FoundLine) -> dict[str, Any]:

@@ -166,9 +166,10 @@ def lines(spectrum: NoiseSpectrum) -> list[FoundLine]:
         near = (peak + np.arange(-LOWEST, LOWEST + 1)) % length
         if not taken[near].any():
             excess = (mean - base)[near]
-            step = float(excess @ np.arange(-LOWEST, LOWEST + 1)) / float(excess.sum())
-            level = float(excess.sum()) / length
-            if level > 0:
+            total = float(excess.sum())
+            if total > 0:
+                step = float(excess @ np.arange(-LOWEST, LOWEST + 1)) / total
+                level = total / length
                 found.append(FoundLine(float(f[peak]) + step * spectrum.prf / length, level))
         taken[near] = True
     return found

@@ -81,8 +81,8 @@ def evaluate(
             min=0,
             max=1000,
             metavar="EPOCHS",
-            help="Of --shots: what is fine-tuned also learns from all maps of DATA without their "
-            "labels, as by radhar adapt --epochs.",
+            help="Of --shots: also adapt the run to all maps of DATA without their labels, as "
+            "radhar adapt --epochs does, with the labelled ones and those of --mix shown beside.",
         ),
     ] = None,
     overwrite: Annotated[

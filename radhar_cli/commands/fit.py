@@ -30,6 +30,8 @@ def fit(
 
     if out.resolve() in {path.resolve() for path in recordings}:
         raise FolderError(f"{out}: is one of the recordings; -o should name another file")
+    if out.suffix == ".png":
+        raise FolderError(f"{out}: is where the figure goes; -o should end in .yaml")
     refuse_to_replace(out, overwrite, "measured.yaml")
     fitted = read_off(recordings)
     for key, value in fitted.numbers().items():

@@ -638,7 +638,8 @@ class LineConfig(Section):
     off_s: Annotated[NotNegative, within(0, 1e7, "s")] = 0.0
     """Mean time for which it is off; 0: always on."""
     both_sides: Flag = False
-    """As strong at the opposite Doppler, at the same times: amplitude modulation, real samples."""
+    """As strong at the opposite Doppler, at the same times: amplitude modulation, real samples.
+    At 0 Hz the two are one line of 6 dB more."""
 
 
 class ReceiverConfig(Section):

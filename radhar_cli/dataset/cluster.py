@@ -38,6 +38,7 @@ class Cluster:
         """
         from distributed import as_completed
         from distributed.client import FutureCancelledError
+        from distributed.comm import CommClosedError
         from distributed.scheduler import KilledWorker
 
         left, running = iter(tasks), as_completed()
@@ -53,8 +54,10 @@ class Cluster:
                 fill()
         except KilledWorker:
             fault = "several workers were lost with the same task, perhaps out of memory"
-        except (FutureCancelledError, OSError) as error:
-            if isinstance(error, OSError) and self._client.status == "running":
+        except (FutureCancelledError, CommClosedError):
+            fault = "the scheduler is gone"
+        except OSError:
+            if self._client.status == "running":
                 raise  # the task's own
             fault = "the scheduler is gone"
         else:

@@ -57,8 +57,8 @@ class ShotOptions:
         mix: data that go on being shown while the run is fine-tuned, the run's own.
         overrides: `key=value` of both ways of learning.
         tuning: `key=value` of fine-tuning alone.
-        adapting: epochs of `adaptation.adapt` after it, to all images without their labels,
-            while it is shown what it was fine-tuned with; 0 for none.
+        adapting: epochs of `adaptation.adapt` of the run itself, to all images without their
+            labels, with the labelled ones and `mix` shown beside them; 0 for none.
         overwrite: start again in folders that hold other runs.
     """
 

@@ -10,7 +10,7 @@ from command_line import radhar
 from slow import slow
 
 from radhar_cli.activity import ACTIVITIES
-from radhar_cli.capture.fitting import Fit, fit
+from radhar_cli.capture.fitting import Fit, fit, line_keys
 from radhar_cli.capture.importing import write_simulated
 from radhar_cli.capture.noise_spectrum import FoundLine, OnOff
 from radhar_cli.capture.recording import Label, RecordingInfo, Segments, SourceNote, write_recording
@@ -126,6 +126,16 @@ def test_a_line_that_comes_and_goes_is_told_from_one_that_is_always_there() -> N
             assert found.level == pytest.approx(level, rel=0.2)
             assert found.on == pytest.approx(on, rel=0.3)  # blocks of 0.1 s
             assert found.off == pytest.approx(off, rel=0.3)
+
+
+def test_lines_on_both_sides_are_one_key() -> None:
+    keys = line_keys([FoundLine(100.1, 0.1), FoundLine(-99.99, 0.12), FoundLine(-233.0, 0.1)])
+    assert [(one["doppler_hz"], one.get("both_sides")) for one in keys] == [
+        (100.1, True),
+        (-233.0, None),
+    ]
+    different = line_keys([FoundLine(100.0, 0.1), FoundLine(-100.0, 0.01)])
+    assert not any("both_sides" in one for one in different)
 
 
 def test_an_empty_room_adds_what_stands_in_it(tmp_path: Path) -> None:

@@ -170,8 +170,8 @@ def test_the_curve_of_a_run(run_dir: Path, data: Path, measured: Path, tmp_path:
     assert found.left_out == {8: "punching has 8 images"}
     assert any("8 a class: left out" in line for line in watched.messages)
     zero, _, tuned, _, scratch = found.points
-    metadata, model = load_best(run_dir)
-    every = predict(model, metadata, opened(measured).images, np.arange(24), CPU, 8)
+    metadata, as_trained = load_best(run_dir)
+    every = predict(as_trained, metadata, opened(measured).images, np.arange(24), CPU, 8)
     assert zero.accuracies == ((every.predicted == every.truth).mean(),)
     assert tuned.tested == scratch.tested == (18, 18)
     for repeat, share in enumerate(tuned.accuracies):
@@ -182,7 +182,10 @@ def test_the_curve_of_a_run(run_dir: Path, data: Path, measured: Path, tmp_path:
         assert share == (again.predicted == again.truth).mean()
         assert about.data["val"] == 6
         assert "start" in about.work
-        assert read_metadata(one.parent / "adapted").work["adapted_epochs"] == 1
+        about, adapted = load_best(one.parent / "adapted")
+        assert about.work["adapted_epochs"] == 1
+        assert torch.equal(adapted.head.weight, as_trained.head.weight), "not the fine-tuned one"
+        assert not torch.equal(adapted.head.weight, model.head.weight)
         assert "start" not in read_metadata(one.parent / "from_scratch").work
 
 

@@ -591,7 +591,8 @@ def not_reached(name: str, results: Path) -> list[str]:
     return [
         f"Not reached, by what a step of {found['batch']} maps of {found['px']} px costs, "
         f"processor time, {found['kind']} (`python scripts/bench_train.py --models "
-        f"{' '.join(RIVALS)} --json docs/results/seconds_a_step.json`, commit {found['commit']['commit'][:7]}):",
+        f"{' '.join(RIVALS)} --json docs/results/seconds_a_step.json`, commit "
+        f"{found['commit']['commit'][:7]}):",
         "",
         *table(
             ["network", "seconds a step", f"hours for {PAPER_EPOCHS} epochs"],

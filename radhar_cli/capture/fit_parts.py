@@ -16,7 +16,7 @@ from radhar_cli.arrays import Bool, Complex, Float, Index
 from radhar_cli.capture.chain import bins_of_part, filled, pulses_between
 from radhar_cli.capture.findings import LOST
 from radhar_cli.capture.recording import Recording, Segments
-from radhar_cli.capture.room_returns import MAIN_LOBE, Returns, range_window, returns
+from radhar_cli.capture.room_returns import MAIN_LOBE, QUARTILE, Returns, range_window, returns
 from radhar_cli.capture.tracking import WINDOW_S, track_torso, without_static
 from radhar_cli.processing.torso_track import TorsoTrack, hann_in_range
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
@@ -24,7 +24,6 @@ from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 PART_S = 4.0  # of a recording that gives one SNR
 MAX_PARTS = 50  # of a recording
 SURE = 0.5  # confidence of the track from which its range counts
-QUARTILE = 0.25
 HANN_GAIN = 0.5**2 + 2 * 0.25**2  # of white noise, by hann_in_range
 SLOW_MPS = 0.15  # what moves no faster is no person
 FAST_SHARE = 0.02  # of the power of a person who does something

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.capture.fit_parts import QUARTILE, SLOW_MPS, Part, looks, part_of
+from radhar_cli.capture.fit_parts import SLOW_MPS, Part, looks, part_of
 from radhar_cli.capture.noise_spectrum import (
     WINDOW_S,
     Colour,
@@ -29,6 +29,7 @@ from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.room_returns import (
     BLOCK_S,
     MAIN_LOBE,
+    QUARTILE,
     Return,
     Returns,
     peaks,

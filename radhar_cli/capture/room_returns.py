@@ -155,5 +155,6 @@ def peaks(together: Returns, noise: float, w: Waveform) -> list[Return]:
 
 def _vertex(low: float, mid: float, high: float) -> tuple[float, float]:
     """Of the parabola through a peak and its neighbours, dB: bins beside it, and dB above it."""
-    shift = 0.5 * (low - high) / (low - 2 * mid + high)
+    curve = low - 2 * mid + high
+    shift = 0.5 * (low - high) / curve if curve < 0 else 0.0  # three equal ones have none
     return shift, -0.25 * (low - high) * shift

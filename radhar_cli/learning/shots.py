@@ -77,7 +77,7 @@ class ShotPoint:
 
     Attributes:
         shots: labelled images of each class.
-        how: AS_TRAINED (0 images), TUNED, ADAPTED (that, then without labels) or SCRATCH.
+        how: AS_TRAINED (0 images), TUNED, ADAPTED (the run itself, no fine-tuning) or SCRATCH.
         tested: images that each repeat was tested on.
         accuracies: of each repeat.
     """
@@ -222,7 +222,7 @@ def few_shots(
     device: torch.device,
     progress: Messages,
 ) -> ShotCurve:
-    """Fine-tune a run, and learn from scratch, with a few labelled images, and test on others.
+    """Fine-tune a run, adapt it, and learn from scratch with a few labelled images; test on others.
 
     Args:
         run: a trained network.

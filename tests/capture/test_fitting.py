@@ -14,6 +14,7 @@ from radhar_cli.capture.fitting import Fit, fit, line_keys
 from radhar_cli.capture.importing import write_simulated
 from radhar_cli.capture.noise_spectrum import FoundLine, OnOff
 from radhar_cli.capture.recording import Label, RecordingInfo, Segments, SourceNote, write_recording
+from radhar_cli.capture.room_returns import Returns, peaks
 from radhar_cli.config import load_config
 from radhar_cli.errors import CaptureError
 from radhar_cli.radar.waveform import Waveform
@@ -126,6 +127,15 @@ def test_a_line_that_comes_and_goes_is_told_from_one_that_is_always_there() -> N
             assert found.level == pytest.approx(level, rel=0.2)
             assert found.on == pytest.approx(on, rel=0.3)  # blocks of 0.1 s
             assert found.off == pytest.approx(off, rel=0.3)
+
+
+def test_a_flat_top_is_a_return() -> None:
+    power = np.full(60, 1e-9)
+    power[20:23] = 1.0
+    radar = Waveform(77e9, 4e9, 40e-6, 10e6, 5000.0, 4.0)
+    found = peaks(Returns(power, np.zeros(60), np.full(60, np.nan)), 1e-9, radar)
+    assert all(20 <= one.range / radar.range_step <= 22 for one in found)
+    assert found
 
 
 def test_lines_on_both_sides_are_one_key() -> None:

@@ -36,7 +36,7 @@ from radhar_cli.learning.single_result import (
     seen_message,
 )
 from radhar_cli.learning.tables import csv_text
-from radhar_cli.learning.training import train_on
+from radhar_cli.learning.training import Task, train_on
 from radhar_cli.progress import Messages
 from radhar_cli.randomness import TRAINING, stream
 
@@ -287,7 +287,7 @@ def few_shots(
             labelled = measured.images.some(draw.labelled)
             images, weights = _learned_from(metadata, labelled, mix, MAX_SHOWN)
             settings = tuned.model_copy(update={"data_weights": weights, "seed": seed})
-            train_on(settings, images, tuned_run, _NoProgress(), shots.overwrite, run)
+            train_on(Task(settings, images, tuned_run, shots.overwrite, run), _NoProgress())
             mixed = Mixed(images, weights)
         yield TUNED if k else AS_TRAINED, tuned_run
         if shots.adapting:
@@ -297,7 +297,7 @@ def few_shots(
         if k:
             images, weights = _learned_from(metadata, labelled, [], SHOWN)
             settings = scratch.model_copy(update={"data_weights": weights, "seed": seed})
-            train_on(settings, images, here / "from_scratch", _NoProgress(), shots.overwrite)
+            train_on(Task(settings, images, here / "from_scratch", shots.overwrite), _NoProgress())
             yield SCRATCH, here / "from_scratch"
 
     for k in shots.shots:

@@ -20,6 +20,7 @@ PACKAGES = (
     "light",
     "plain_json",
     "phasor",
+    "replacing",
     "untrusted",
     "randomness",
     "progress",

@@ -84,9 +84,8 @@ class Look(NamedTuple):
         """(`smooth` without its mean while nobody is near, `away`) of the pulses between gaps."""
         count = np.maximum(self.away.sum(axis=1, keepdims=True), 1)
         moving = self.smooth - np.sum(self.smooth * self.away, axis=1, keepdims=True) / count
-        first = self.segments.first
-        for start, stop in zip(first, np.append(first[1:], self.segments.pulses), strict=True):
-            yield moving[:, start:stop], self.away[:, start:stop]
+        for one in self.segments.slices:
+            yield moving[:, one], self.away[:, one]
 
 
 def looks(paths: Sequence[Path]) -> Iterator[Look]:
@@ -122,9 +121,8 @@ def part_of(look: Look) -> tuple[Look, Part] | None:
     length = min(max(round(WINDOW_S * w.prf), 8), int(look.segments.lengths.max()))
     window = np.hanning(length + 2)[1:-1]
     power, middle = [], []
-    first_of, lengths = look.segments.first.tolist(), look.segments.lengths.tolist()
-    for first, count in zip(first_of, lengths, strict=True):
-        for at in range(first, first + count - length + 1, length):
+    for one in look.segments.slices:
+        for at in range(one.start, one.stop - length + 1, length):
             here = hann_in_range(moving[:, at : at + length])  # no sidelobes far off
             power.append(np.abs(scipy.fft.fft(here * window, axis=1)) ** 2)
             middle.append(at + length // 2)

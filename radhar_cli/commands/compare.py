@@ -58,11 +58,8 @@ def compare(
     apart(out, [simulated, measured])
     names = read_classes(classes) if classes else {}
     options = Options(map_, names, resize, per_class, seed, zero, pictures)
-    progress = BarProgress("map")
-    try:
+    with BarProgress("map") as progress:
         found = compared(simulated, measured, options, progress)
-    finally:
-        progress.close()
     for warning in found.warnings:
         tell(f"warning: {warning}", err=True)
     files = write(found, out)

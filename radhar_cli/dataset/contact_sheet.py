@@ -17,13 +17,14 @@ def draw_contact_sheet(data: Dataset, name: str, per_class: int, path: Path) -> 
     image, images, extent = data.config.image, data.maps[name], data.extent(name)
     every = tuple(slice(None, None, -(-side // MAX_SIDE)) for side in image.size_px)
     rows = {
-        data.class_slugs[label].replace("_", "\n"): np.flatnonzero(data.label == label)[:per_class]
+        data.class_slugs[label].replace("_", "\n"): np.flatnonzero(data.label == label).tolist()
         for label in np.unique(data.label)
     }
+    rows = {name: samples[:per_class] for name, samples in rows.items()}
     figure, panels = page_of_rows(rows, (1.5, 1.4), (1.6, 0.7))
     for panel, sample in panels:
         panel.imshow(
-            images[int(sample)][every],
+            images[sample][every],
             extent=extent,
             aspect="auto",
             cmap=image.colour_map,

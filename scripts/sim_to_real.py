@@ -135,8 +135,8 @@ def read_masks(path: Path) -> tuple[Bool, list[str]]:
     rows = [row for row in range(count) if slugs[label[row]] is not None]
     if not rows:
         raise CaptureError(f"{path}: has no map of {', '.join(CLASSES)}; its classes are {names}")
-    found: Bool = np.unpackbits(masks[rows], axis=2).astype(bool)
-    return found, [str(slugs[label[row]]) for row in rows]
+    result: Bool = np.unpackbits(masks[rows], axis=2).astype(bool)
+    return result, [str(slugs[label[row]]) for row in rows]
 
 
 def write_image(levels: Levels, path: Path) -> None:
@@ -206,8 +206,10 @@ class Measured:
         """How a run does on them."""
         metadata, model = load_best(run)
         images = open_for(metadata, self.folder, None)
-        found = predict(model, metadata, images, images.rows("all"), torch.device("cpu"), batch=128)
-        return Correct(found.truth, found.predicted, metadata.classes)
+        result = predict(
+            model, metadata, images, images.rows("all"), torch.device("cpu"), batch=128
+        )
+        return Correct(result.truth, result.predicted, metadata.classes)
 
 
 @dataclass(frozen=True)
@@ -316,8 +318,8 @@ def adapted(run: Path, measured: Measured, data: Path, out: Path) -> Path:
 def report(measured: Measured, images: Path, runs: Sequence[Path], out: Path) -> None:
     """Print what the runs make of measured maps, as they are and adapted; the first is the one."""
     fitted = [adapted(run, measured, images, out / "adapted" / run.name) for run in runs]
-    found = {"as it is": runs, "adapted": fitted}
-    correct = {kind: [measured.correct(run) for run in some] for kind, some in found.items()}
+    result = {"as it is": runs, "adapted": fitted}
+    correct = {kind: [measured.correct(run) for run in some] for kind, some in result.items()}
     for kind, some in correct.items():
         print(f"\n{runs[0].name}, {kind}; rows are true classes\n{some[0].confusion}")
         if len(runs) > 1:

@@ -59,11 +59,11 @@ def compare(
     names = read_classes(classes) if classes else {}
     options = Options(map_, names, resize, per_class, seed, zero, pictures)
     with BarProgress("map") as progress:
-        found = compared(simulated, measured, options, progress)
-    for warning in found.warnings:
+        comparison = compared(simulated, measured, options, progress)
+    for warning in comparison.warnings:
         tell(f"warning: {warning}", err=True)
-    files = write(found, out)
-    numbers = found.numbers()
+    files = write(comparison, out)
+    numbers = comparison.numbers()
     report(
         files=files,
         test=numbers["test"],
@@ -71,8 +71,8 @@ def compare(
         classes=numbers["classes"],
         warnings=numbers["warnings"],
     )
-    for one in found.classes:
-        _tell_class(found, one, numbers["classes"][one.name])
+    for one in comparison.classes:
+        _tell_class(comparison, one, numbers["classes"][one.name])
     if numbers["test"]:
         tell(f"\nall classes: {_test(numbers['test'])}; {100 * numbers['coverage']:.0f} % covered")
     tell(f"{files[0]}: {len(files) - 2} figures beside it")
@@ -86,7 +86,7 @@ def _test(test: dict[str, Any]) -> str:
     )
 
 
-def _tell_class(found: "Comparison", one: "ClassCompared", numbers: dict[str, Any]) -> None:
+def _tell_class(comparison: "Comparison", one: "ClassCompared", numbers: dict[str, Any]) -> None:
     from radhar_cli.two_sample.map_statistics import STATISTICS
 
     test = numbers["test"]
@@ -97,7 +97,7 @@ def _tell_class(found: "Comparison", one: "ClassCompared", numbers: dict[str, An
         f" {'KS':>5} {'p':>7}"
     )
     for name, apart in list(one.apart.items())[:SHOWN]:
-        unit = found.scale.unit(name)
+        unit = comparison.scale.unit(name)
         words = STATISTICS[name].words + (f", {unit}" if unit else "")
         cells = [f"{side.mean:.4g} ({side.sd:.2g})" for side in (apart.simulated, apart.measured)]
         tell(

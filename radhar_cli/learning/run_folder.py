@@ -356,10 +356,10 @@ def _opened(path: Path, file: Any) -> tuple[RunMetadata, nn.Module]:
         for name in wanted.keys() | stored.keys():
             if name not in stored or name not in wanted:
                 raise RuntimeError(f"{name} is {'too much' if name in stored else 'missing'}")
-            found = (tuple(stored[name].get_shape()), stored[name].get_dtype())
-            right = (tuple(wanted[name].shape), _TYPES.get(wanted[name].dtype))
-            if found != right:
-                raise RuntimeError(f"{name} is {found}, should be {right}")
+            actual = (tuple(stored[name].get_shape()), stored[name].get_dtype())
+            expected = (tuple(wanted[name].shape), _TYPES.get(wanted[name].dtype))
+            if actual != expected:
+                raise RuntimeError(f"{name} is {actual}, should be {expected}")
         weights = {name: file.get_tensor(name) for name in stored}
         for name, tensor in weights.items():
             if not tensor.isfinite().all():

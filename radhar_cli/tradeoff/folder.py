@@ -34,10 +34,10 @@ def reserve(folder: Path, config: Config, overwrite: bool) -> None:
     elif overwrite:
         for part in ("measured", "accuracy"):
             shutil.rmtree(folder / WORK / part, ignore_errors=True)
-    elif found := differences(old, new):
+    elif differing := differences(old, new):
         raise FolderError(
             f"{folder}: holds the sweep of another config; it differs in\n  "
-            + "\n  ".join(found)
+            + "\n  ".join(differing)
             + "\nchoose another folder, or --overwrite to start this one over"
         )
     write_whole(folder, path, json.dumps(new).encode())

@@ -50,15 +50,11 @@ BIBTEX = """\
 
 def png_files(data: Dataset) -> Files:
     """The configurations of a folder with PNGs: one a map."""
-    present = _splits(data)
+    present = data.present_splits
     return {
-        name: {SPLITS[n]: f"{png_folder(name, n).as_posix()}/**" for n in present}
+        name: {split: f"{png_folder(name, n).as_posix()}/**" for n, split in present.items()}
         for name in data.config.maps
     }
-
-
-def _splits(data: Dataset) -> list[int]:
-    return [number for number in range(len(SPLITS)) if (data.split == number).any()]
 
 
 def features(config: Config) -> list[dict[str, Any]]:
@@ -226,7 +222,7 @@ def _maps(data: Dataset) -> str:
 
 
 def _classes(data: Dataset) -> str:
-    present = _splits(data)
+    present = data.present_splits
     lines = []
     for activity, rows in Rows.of(data.config).classes():
         counts = np.bincount(data.split[rows], minlength=len(SPLITS))
@@ -234,7 +230,7 @@ def _classes(data: Dataset) -> str:
     by = "sample: every sample was drawn on its own"
     if data.config.split.subjects is not None:
         by = f"person: none of the {data.config.split.subjects} is in two of its parts"
-    return table(["label", "class", *(SPLITS[n] for n in present)], lines) + f"\n\nSplit by {by}."
+    return table(["label", "class", *present.values()], lines) + f"\n\nSplit by {by}."
 
 
 def _numbers(data: Dataset) -> str:

@@ -90,17 +90,20 @@ def _tell_class(comparison: "Comparison", one: "ClassCompared", numbers: dict[st
     from radhar_cli.two_sample.map_statistics import STATISTICS
 
     test = numbers["test"]
-    said = _test(test) if isinstance(test, dict) else "not tested"
-    tell(f"\n{one.name}: {said}; {100 * float((one.uncovered <= 1).mean()):.0f} % covered")
+    outcome = _test(test) if isinstance(test, dict) else "not tested"
+    tell(f"\n{one.name}: {outcome}; {100 * float((one.uncovered <= 1).mean()):.0f} % covered")
     tell(
         f"  {'mean (standard deviation)':<38} {'simulated':>18} {'measured':>18} {'distance':>9}"
         f" {'KS':>5} {'p':>7}"
     )
-    for name, apart in list(one.apart.items())[:SHOWN]:
+    for name, difference in list(one.differences.items())[:SHOWN]:
         unit = comparison.scale.unit(name)
         words = STATISTICS[name].words + (f", {unit}" if unit else "")
-        cells = [f"{side.mean:.4g} ({side.sd:.2g})" for side in (apart.simulated, apart.measured)]
+        cells = [
+            f"{side.mean:.4g} ({side.sd:.2g})"
+            for side in (difference.simulated, difference.measured)
+        ]
         tell(
-            f"  {words:<38} {cells[0]:>18} {cells[1]:>18} {apart.distance:>9.2f}"
-            f" {apart.ks:>5.2f} {apart.p:>7.1g}"
+            f"  {words:<38} {cells[0]:>18} {cells[1]:>18} {difference.distance:>9.2f}"
+            f" {difference.ks:>5.2f} {difference.p:>7.1g}"
         )

@@ -12,7 +12,7 @@ from radhar_cli.progress import Progress
 from radhar_cli.randomness import TRAINING, stream
 from radhar_cli.two_sample.classifier_test import Tested, held_out, interval
 from radhar_cli.two_sample.description import Described, Scale, describe, span
-from radhar_cli.two_sample.distances import Apart, apart, uncovered
+from radhar_cli.two_sample.distances import Difference, difference, uncovered
 from radhar_cli.two_sample.map_statistics import STATISTICS
 from radhar_cli.two_sample.sides import Side, open_sides
 
@@ -50,7 +50,7 @@ class ClassCompared:
     Attributes:
         name: of the class.
         simulated, measured: what was drawn of it.
-        apart: {statistic: how far it is apart}, what is most wrong first.
+        differences: {statistic: difference}, the largest first.
         tested: the classifier test, of as many maps of either side; None where a side has fewer
             than two persons or maps.
         surest: rows of simulated maps, what is told from measured ones most surely first.
@@ -62,7 +62,7 @@ class ClassCompared:
     name: str
     simulated: Described
     measured: Described
-    apart: dict[str, Apart]
+    differences: dict[str, Difference]
     tested: Tested | None
     surest: Index
     uncovered: Float
@@ -124,7 +124,7 @@ class Comparison:
                     "ks": difference.ks,
                     "p": difference.p,
                 }
-                for name, difference in one.apart.items()
+                for name, difference in one.differences.items()
             },
             "surest_simulated": [names[0][row] for row in one.surest[: self.options.pictures]],
             "least_covered": [names[1][row] for row in one.far[: self.options.pictures]],
@@ -210,7 +210,7 @@ def _class(
     open_ = uncovered(*near)
     far = both[1].rows[np.argsort(-open_, kind="stable")]
     distances = {
-        key: apart(*(one.statistics[:, column] for one in both))
+        key: difference(*(one.statistics[:, column] for one in both))
         for column, key in enumerate(scale.names)
     }
     order = sorted(distances, key=lambda key: -np.nan_to_num(distances[key].distance, nan=-1))

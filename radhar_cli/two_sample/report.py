@@ -50,14 +50,14 @@ def _table(comparison: Comparison) -> str:
             one.name,
             name,
             comparison.scale.unit(name),
-            *(apart.simulated[:2]),
-            *(apart.measured[:2]),
-            apart.distance,
-            apart.ks,
-            apart.p,
+            *(difference.simulated[:2]),
+            *(difference.measured[:2]),
+            difference.distance,
+            difference.ks,
+            difference.p,
         )
         for one in comparison.classes
-        for name, apart in one.apart.items()
+        for name, difference in one.differences.items()
     )
     return csv_text([*head, "measured_sd", "distance", "ks", "p"], rows)
 
@@ -66,7 +66,7 @@ def _distances(comparison: Comparison) -> bytes:
     """Statistics that any class has, of all classes, what is most wrong over all of them first."""
     table = np.array(
         [
-            [one.apart[name].distance for one in comparison.classes]
+            [one.differences[name].distance for one in comparison.classes]
             for name in comparison.scale.names
         ]
     )
@@ -86,11 +86,11 @@ def how_sure(one: ClassCompared) -> str:
 
 def _distributions(comparison: Comparison, one: ClassCompared) -> bytes:
     some = []
-    for name, apart in list(one.apart.items())[:DRAWN]:
+    for name, difference in list(one.differences.items())[:DRAWN]:
         column = comparison.scale.names.index(name)
         values = [side.statistics[:, column] for side in (one.simulated, one.measured)]
         x, y = (v[np.isfinite(v)] for v in values)
-        words = f"{STATISTICS[name].words}: {apart.distance:.2f}"
+        words = f"{STATISTICS[name].words}: {difference.distance:.2f}"
         some.append(Distribution(words, x, y, comparison.scale.unit(name)))
     return distributions_png(some, f"{one.name}: statistic and distance, the largest first")
 

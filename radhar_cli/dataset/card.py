@@ -10,7 +10,7 @@ import yaml
 
 from radhar_cli.config.schema import Config
 from radhar_cli.config.yaml_reader import parse_yaml
-from radhar_cli.dataset.layout import CARD, GALLERY, SPLITS, Rows, png_folder
+from radhar_cli.dataset.layout import CARD, GALLERY, SPLITS, Rows, png_folder, row_axis
 from radhar_cli.dataset.reading import BLOCK, Dataset
 from radhar_cli.dataset.scene_fields import ERROR
 from radhar_cli.dataset.table import number_names
@@ -194,7 +194,7 @@ def _maps(data: Dataset) -> str:
     for name in data.config.maps:
         first, *steps = name.split("_")
         says = ", ".join([_KINDS[first], *(_STEPS[step] for step in steps)])
-        edges, unit = data.extent(name), "m" if name == "rtm" else "Hz"
+        edges, unit = data.extent(name), row_axis(name)[1]
         if edges is None:
             lines.append([f"`{name}`", says, "/extent", "/extent"])
             continue

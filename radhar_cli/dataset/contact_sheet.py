@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from radhar_cli.arrays import Levels
+from radhar_cli.dataset.layout import row_axis
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.figures.page import DPI, page_of_rows
 
@@ -33,9 +34,8 @@ def draw_contact_sheet(data: Dataset, name: str, per_class: int, path: Path) -> 
         )
         panel.tick_params(labelsize=5, length=2)
         panel.label_outer()
-    unit = "range (m)" if name == "rtm" else "Doppler frequency (Hz)"
     figure.supxlabel("time (s)", fontsize=8)
-    figure.supylabel(unit, fontsize=8)
+    figure.supylabel("{} ({})".format(*row_axis(name)), fontsize=8)
     power = f"power, {image.dynamic_range_db:g} dB down from the largest of each map"
     shown = "cells that the CFAR sets" if image.kind == "cfar" else power
     figure.suptitle(f"{name}: {shown}", fontsize=9)

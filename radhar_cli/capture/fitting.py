@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.capture.fit_parts import SLOW_MPS, Part, looks, part_of
+from radhar_cli.capture.fit_parts import SLOW_MPS, Part, excerpts, part_of
 from radhar_cli.capture.noise_spectrum import (
     WHITE,
     WINDOW_S,
@@ -177,8 +177,8 @@ def fit(paths: Sequence[Path]) -> Fit:
     waveform, seconds, length = _waveform(paths)
     spectrum = NoiseSpectrum(length, waveform.prf)
     every: list[Part | None] = []
-    for look in looks(paths):
-        seen = part_of(look)
+    for excerpt in excerpts(paths):
+        seen = part_of(excerpt)
         every.append(seen and seen[1])
         for moving, away in seen[0].stretches() if seen else ():
             spectrum.add(moving, away)
@@ -208,13 +208,13 @@ def _with_times(
     if not found:
         return []
     times = [OnOff(line, prf) for line in found]
-    for look, part in zip(looks(paths), parts, strict=True):
+    for excerpt, part in zip(excerpts(paths), parts, strict=True):
         if part is None:
             continue
-        known = look if np.isfinite(part.snr_db) else look.empty()
+        known = excerpt if np.isfinite(part.snr_db) else excerpt.empty()
         for moving, away in known.stretches():
             for one in times:
-                one.add(moving, away, part.noise * look.gain)
+                one.add(moving, away, part.noise * excerpt.gain)
     return [one.line_with_times() for one in times]
 
 

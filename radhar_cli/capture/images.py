@@ -115,6 +115,8 @@ def _loaded(
         images = np.unpackbits(values.view(np.uint8), axis=2) if packed else values.view(np.uint8)
         if images.max(initial=0) <= 1:
             images = images * np.uint8(255)
+        if classes is not None and classes.dtype.kind == "S":
+            classes = np.char.decode(classes, "ascii", "replace")
         if label.dtype.kind in "iu":
             if classes is None or not ((label >= 0) & (label < classes.size)).all():
                 raise ValueError("label should be numbers into classes, or texts")

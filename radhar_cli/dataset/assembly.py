@@ -34,6 +34,7 @@ from radhar_cli.dataset.layout import (
     Rows,
     chunked,
     columns,
+    row_axis,
     row_bytes,
 )
 from radhar_cli.dataset.recorded import persons
@@ -266,7 +267,7 @@ def _describe_map(
     """Attributes of a map of these extents; of more than one, two are enough."""
     same = len(extents) == 1
     start, stop, low, high = next(iter(extents)) if same else [np.nan] * 4
-    vertical = ("range", "m") if name == "rtm" else ("Doppler frequency", "Hz")
+    vertical = row_axis(name)
     attributes = file[f"maps/{name}"].attrs
     attributes["axes"] = ["sample", f"{vertical[0]} (row 0 is the highest)", "time"]
     attributes["row_quantity"], attributes["row_unit"] = vertical

@@ -117,7 +117,8 @@ def encode_shard(
         flags: what there is to warn of in each row (`Flags`).
     """
     buffer = io.BytesIO()
-    with h5py.File(buffer, "w", libver="latest", userblock_size=USER_BLOCK) as file:
+    # Not libver="latest", whose groups hold the time at which they were made.
+    with h5py.File(buffer, "w", userblock_size=USER_BLOCK) as file:
         for name, (dtype, shape) in chunked(config).items():
             target, checksums = chunked_dataset(file, name, len(samples), config), []
             level = config.output.hdf5_level

@@ -23,6 +23,7 @@ import subprocess
 import sys
 from dataclasses import dataclass, field, replace
 from functools import cache
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -736,6 +737,9 @@ def snr_figures(name: str, results: Path, records: dict[str, dict[str, Any]]) ->
     """Draw the accuracy over the SNR of each scenario, a line for every record."""
     from radhar_cli.figures.robustness import Point, robustness_png
 
+    def by_snr(record: dict[str, Any]) -> float:
+        return -inf if record["snr_db"] is None else record["snr_db"]
+
     for scenario in SCENARIOS:
         mine = [record for record in records.values() if record["scenario"] == scenario]
         lines = {
@@ -743,7 +747,7 @@ def snr_figures(name: str, results: Path, records: dict[str, dict[str, Any]]) ->
                 Point(snr, float(snr), part["accuracy"], *part["accuracy_95"])
                 for snr, part in record["fresh"].items()
             ]
-            for record in sorted(mine, key=lambda record: -(record["snr_db"] or -99))
+            for record in sorted(mine, key=by_snr, reverse=True)
             if len(record["fresh"]) > 1
         }
         if lines:

@@ -156,7 +156,8 @@ def _numbers(first: _Field, last: _Field) -> range:
 def _of_frame(by_number: Mapping[int, T], first: _Field, last: _Field, where: str) -> list[T]:
     """The chirps of a frame, in order."""
     wanted = range(first.whole(), last.whole() + 1)
-    if not 0 < len(wanted) <= MAX_CHIRPS or not by_number.keys() >= {*wanted}:
+    count = wanted.stop - wanted.start  # len() has a limit
+    if not 0 < count <= MAX_CHIRPS or not by_number.keys() >= {*wanted}:
         raise CaptureError(
             f"{last.where} = {last.value!r}: a frame should be made of chirps that {where} defines"
         )

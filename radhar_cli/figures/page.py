@@ -26,7 +26,7 @@ def page(width: float, height: float, apart: float = 0.04) -> Figure:
 def page_of_rows(
     rows: Mapping[str, Sequence[T]], size: tuple[float, float], margin: tuple[float, float]
 ) -> tuple[Figure, list[tuple[Axes, T]]]:
-    """A figure with a row of panels under each name, and what each panel is to show.
+    """A figure with a row of panels beside each name, and what each panel is to show.
 
     `size` is that of a panel, `margin` what the figure has beside and above them, in inches.
     """

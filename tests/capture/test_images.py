@@ -133,3 +133,15 @@ def test_an_npz_that_promises_or_holds_too_much_is_refused(
     np.savez(tmp_path / "large.npz", masks=masks(), label=np.array(["a"] * 12))
     with pytest.raises(CaptureError, match=r"large\.npz: .*more than 1000 bytes of images"):
         listed(tmp_path / "large.npz", packed=False)
+
+
+def test_masks_are_taken_by_name_and_bytes_are_text(tmp_path: Path) -> None:
+    np.savez(
+        tmp_path / "x.npz",
+        masks=masks(),
+        noise=masks(),
+        label=np.array([b"falling"] * 12),
+        person=np.array([b"p1"] * 12),
+    )
+    part = listed(tmp_path / "x.npz", packed=False).parts[0]
+    assert (part["label"], part["person"]) == ("falling", "p1")

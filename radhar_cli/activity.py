@@ -24,9 +24,11 @@ _SIT = (
     "motion.lap",
     "motion.stagger",
 )
+_FALL = ("motion.fall", "motion.kneel_s", "motion.heels_deg")
 _GRAB = (
     "motion.bend_deg",
     "motion.dwell_s",
+    "motion.haste",
     "motion.squat",
     "motion.reach_deg",
     "motion.free_arm",
@@ -47,6 +49,7 @@ _STRIDE = (
     "motion.width_jitter_m",
     "motion.lane_m",
     "motion.lane_start",
+    "motion.speed_up",
 )
 
 
@@ -74,7 +77,7 @@ MOVEMENTS = {
         ("motion.rotation_hz", "motion.turn_deg", "motion.cycle_phase", *_UNEVEN),
     ),
     "walking": Movement("standing", "standing", None, _STRIDE),
-    "falling": Movement("standing", "lying", 1.1, ("motion.fall", "motion.kneel_s")),
+    "falling": Movement("standing", "lying", 1.1, _FALL),
     "getting_up": Movement("lying", "standing", 3.0),
     "turning_around": Movement("standing", "standing", 1.8),
 }

@@ -95,6 +95,7 @@ UNSTEADY = (
     "motion.settle_size",
     "motion.stagger",
     "motion.kneel_s",
+    "motion.heels_deg",
 )
 
 T = TypeVar("T")

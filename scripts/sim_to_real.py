@@ -252,6 +252,7 @@ def main() -> None:
 
 def ablation(measured: Measured, images: Path, out: Path, given: argparse.Namespace) -> None:
     """Print what three seeds reach without each piece of the simulation, one at a time."""
+    made: dict[str, tuple[Path, list[Path]]] = {}
     for what, more in {**WITHOUT, "augmentation": (NO_AUGMENTATION,)}.items():
         folder = out / what.replace(" ", "_")
         same = more == (NO_AUGMENTATION,)
@@ -259,15 +260,15 @@ def ablation(measured: Measured, images: Path, out: Path, given: argparse.Namesp
         runs = [
             trained(data, folder / f"seed_{seed}", seed, more if same else ()) for seed in SEEDS
         ]
-        for kind, tested in (
-            ("as it is", runs),
-            (
-                "adapted",
-                [adapted(run, measured, data, folder / "adapted" / run.name) for run in runs],
-            ),
-        ):
-            correct = [measured.correct(run) for run in tested]
-            print(accuracy_line(f"without {what}, {kind}, three seeds", correct), flush=True)
+        made[what] = data, runs
+        correct = [measured.correct(run) for run in runs]
+        print(accuracy_line(f"without {what}, as it is, three seeds", correct), flush=True)
+    for what, (data, runs) in made.items():
+        correct = [
+            measured.correct(adapted(run, measured, data, run.parent / "adapted" / run.name))
+            for run in runs
+        ]
+        print(accuracy_line(f"without {what}, adapted, three seeds", correct), flush=True)
 
 
 def curve(measured: Measured, images: Path, run: Path, out: Path) -> None:

@@ -321,6 +321,8 @@ class MotionConfig(Section):
     """Walkers turn round whenever they have gone so far; 0 is never."""
     lane_start: RatioBy = Uniform(uniform=(0.0, 1.0))
     """Share of the first lane that lies behind them at 0 s."""
+    speed_up: RatioBy = 0.6
+    """Strides in which a walker gains speed from rest."""
     punch_hz: FrequencyBy = Vary(vary=(0.7, 0.15))
     """Pairs of punches, right and left, per second."""
     kick_hz: FrequencyBy = Vary(vary=(0.45, 0.1))
@@ -335,6 +337,8 @@ class MotionConfig(Section):
     """S4: pitch of the trunk."""
     dwell_s: SecondsBy = Uniform(uniform=(0.2, 0.6))
     """S4: time at the floor."""
+    haste: RatioBy = 0.0
+    """S4: share of the way down before whose end people come up."""
     seat_height: RatioBy = Normal(normal=(0.285, 0.015), min=0.25, max=0.32)
     """Height of the seated hip, relative to the stature."""
     lean_deg: AngleBy = Normal(normal=(42.0, 8.0), min=25.0, max=58.0)
@@ -361,6 +365,8 @@ class MotionConfig(Section):
     """S4 to S6: size of the fidgets around the end."""
     kneel_s: SecondsBy = Uniform(uniform=(0.0, 0.6))
     """Pause on the knees in a forward fall."""
+    heels_deg: AngleBy = 0.0
+    """How far the shanks swing up as people land on their knees in a forward fall."""
     fall: FallName | Falls = "forward"
     """Direction, or drawn: {choice: [forward, forward, sideways]}."""
     fidget_hz: FrequencyBy = Uniform(uniform=(0.0, 0.4))

@@ -230,6 +230,7 @@ def _repertoire(scene: Scene, duration: float | None, place: int = 0) -> Reperto
             reach=radians(_f(motion.reach_deg)),
             other_arm=_f(motion.free_arm),
             squat=_f(motion.squat),
+            haste=_f(motion.haste),
             lowering=lags[0],
             rising=lags[1],
         ),
@@ -266,7 +267,9 @@ def _lags(scene: Scene, place: int) -> tuple[Lags, Lags]:
 def _fall(scene: Scene, duration: float | None) -> FallForward | FallBackward | FallSideways:
     motion = scene.config.motion
     if motion.fall == "forward":
-        return _lasting(duration, FallForward(kneel=_f(motion.kneel_s)))
+        return _lasting(
+            duration, FallForward(kneel=_f(motion.kneel_s), heels=radians(_f(motion.heels_deg)))
+        )
     if motion.fall == "backward":
         return _lasting(duration, FallBackward())
     left = _draws(scene, "motion.fall/side").random() < 0.5
@@ -289,6 +292,7 @@ def _gait(scene: Scene, place: int) -> Gait:
         half_width=_f(motion.step_width) / 2,
         surge=_f(motion.surge),
         surge_asymmetry=_f(motion.surge_asymmetry),
+        start=_f(motion.speed_up),
         asymmetry=_f(motion.step_asymmetry),
         ragged=_waves(motion, _f(motion.ragged_speed), RAGGED_HZ, 0.7),
         jitter=_some(np.clip(jitter, -0.03, 0.03)),

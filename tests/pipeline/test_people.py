@@ -263,6 +263,42 @@ def test_a_fall_by_way_of_the_knees_takes_longer() -> None:
     assert ends[1] - ends[0] == pytest.approx(0.5)
 
 
+def test_feet_swing_up_as_a_fall_lands_on_the_knees_and_come_down_again() -> None:
+    t, foot = np.arange(0, 6, 0.01), JOINTS.index("right_ankle")
+    up = {}
+    for heels in (0.0, 60.0):
+        config = people(QUIET | {"heels_deg": heels})
+        up[heels] = moving(draw_scene(config, activity_named("S12"), 0)).positions(t)[2, foot]
+    raised = up[60.0] - up[0.0]
+    assert raised.max() == pytest.approx(up[0.0][-1] + 0.3, abs=0.15)
+    assert raised[-1] == pytest.approx(0.0, abs=1e-9)
+    assert np.count_nonzero(raised > 0.01) * 0.01 < 0.9
+
+
+def test_who_is_in_haste_never_comes_to_rest_at_the_floor() -> None:
+    t, still = np.arange(0, 6, 0.01), {}
+    for haste in (0.0, 0.5):
+        config = people(QUIET | {"haste": haste, "dwell_s": 0.0})
+        motion = moving(nominal_scene(config, activity_named("grabbing")))
+        trunk = motion.parts[0][0].course(t)[2]
+        bent = trunk > 0.5 * trunk.max()
+        rate = np.abs(np.gradient(trunk, t))
+        still[haste] = np.count_nonzero(rate[bent] < 0.3) * 0.01
+    assert still[0.5] < 0.5 * still[0.0]
+
+
+def test_who_gains_speed_slowly_falls_behind_by_half_of_that_time() -> None:
+    t, x = np.arange(0, 6, 0.01), {}
+    for strides in (0.6, 1.6):
+        config = people(
+            QUIET | {"speed_mps": 1.0, "speed_up": strides}, timing={"walk_begin_s": 0.5}
+        )
+        motion = moving(nominal_scene(config, activity_named("walking")))
+        x[strides] = motion.torso(t)[0, 0]
+        stride = motion.parts[0][0].stride
+    assert x[0.6][-1] - x[1.6][-1] == pytest.approx(stride / 2, abs=0.02)
+
+
 @pytest.mark.parametrize("slug", ["stationary", "walking", "punching"])
 def test_samples_differ_and_are_reproducible(slug: str) -> None:
     config, t = people(), np.arange(0, 6, 0.05)

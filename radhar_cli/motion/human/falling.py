@@ -20,6 +20,8 @@ from radhar_cli.motion.human.planted import (
     timed,
 )
 
+LANDED = 0.7  # of the duration: the knees are down
+SWING = 0.35, 0.45  # of the shanks, up and down, s
 PRONE, SUPINE = "lying prone", "lying on the back"
 
 
@@ -56,6 +58,7 @@ class FallForward:
         buckle: by how much the thighs give way at first, rad.
         arms: flexion of the shoulders as the hands look for the floor, rad.
         kneel: how long the trunk stays over the knees before it falls too, s.
+        heels: how far the shanks swing up behind the knees on which the body lands, rad.
     """
 
     duration: float = 1.1
@@ -63,6 +66,7 @@ class FallForward:
     buckle: float = radians(26)
     arms: float = radians(80)
     kneel: float = 0.0
+    heels: float = 0.0
 
     def part(self, person: Person, begin: float, horizon: float = 0.0) -> Planted:
         """The movement from `begin` (s) on."""
@@ -79,6 +83,12 @@ class FallForward:
             *both(SHOULDERS, self.arms, kneel + 0.05, 0.7),
             Step("hands", 1.0, kneel + 0.25, 0.65),
         ]
+        if self.heels:
+            up, down = (time / self.duration for time in SWING)
+            steps += [
+                Step("heels", self.heels, LANDED, up),
+                Step("heels", -self.heels, LANDED + up, down),
+            ]
         return _falling(person, begin, self.duration, rest, steps, PRONE, self.kneel)
 
 
@@ -141,6 +151,6 @@ def _falling(
     """A fall of some steps, in units of the duration, in which the sway comes to its end."""
     steps += [Step("standing", -1.0, 0.0, 0.5), Step("upright", -1.0, 0.0, 1.0)]
     course = Course.of(rest, timed(steps, begin, duration))
-    end = begin + 1.1 * duration + kneel
+    end = max(course.breakpoints)
     phases = (Phase(begin, "falling"), Phase(end, "lying"))
     return Planted(person, course, begin, end, phases, STANDING, after)

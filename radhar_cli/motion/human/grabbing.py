@@ -19,6 +19,7 @@ class Grab:
     """Down, a dwell, and up, s; angles at the floor in rad.
 
     Attributes:
+        haste: people come up before they are all the way down, by that share of `down`.
         reach: of the right arm ahead of the vertical.
         other_arm: what the left arm does of what the right one does.
         squat: from -1, over straight legs, to 1, deep in the knees.
@@ -34,6 +35,7 @@ class Grab:
     reach: float = radians(12)
     other_arm: float = 0.55
     squat: float = 0.0
+    haste: float = 0.0
     lowering: Lags = field(default_factory=Lags)
     rising: Lags = field(default_factory=Lags)
 
@@ -53,7 +55,7 @@ class Grab:
             "right_shoulder": arm,
             "left_shoulder": self.other_arm * arm + 0.5 * reach,
         }
-        rises = begin + self.down + self.dwell
+        rises = begin + (1 - self.haste) * self.down + self.dwell
         steps = self.lowering(
             Step(channel, angle - rest[channel], begin, self.down)
             for channel, angle in bent.items()

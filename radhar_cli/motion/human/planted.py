@@ -36,7 +36,8 @@ def posture(
 ) -> dict[str, float]:
     """Angles (rad), and how much of the sway legs and trunk take part in, by channel.
 
-    "hands" is how far the hands are on the floor, at "hands_ahead" (m), "hands_beside".
+    "hands" is how far the hands are on the floor, at "hands_ahead" (m), "hands_beside"; "heels"
+    how far (rad) the shanks of who lies on the knees are lifted.
     """
     return {
         "shank": shank,
@@ -51,6 +52,7 @@ def posture(
         "hands": 0.0,
         "hands_ahead": 0.0,
         "hands_beside": 0.0,
+        "heels": 0.0,
     }
 
 
@@ -96,9 +98,14 @@ class Planted:
     def pose(self, t: Float, idle: IdleState) -> Pose:
         """The body at times t [M] (s)."""
         body = self.person
-        shank, thigh, trunk, *arms, standing, upright, share, far, beside = self.course(t)
+        shank, thigh, trunk, *arms, standing, upright, share, far, beside, heels = self.course(t)
         ankle = np.stack([np.zeros((2, 1)), body.hip * SIDES, np.full((2, 1), body.ankle)])
+        ankles = np.broadcast_to(ankle, (3, 2, t.size))
         knee, hip = legs(body, shank, thigh, standing * idle.lean, standing * idle.legs_roll)
+        if heels.any():
+            up = shank + heels
+            lifted = knee - body.leg * np.stack([np.sin(up), np.zeros(t.size), np.cos(up)])
+            ankles = ankles + np.where(heels, lifted, 0.0)[:, None]
         hip[2] += body.ankle
         tilted = axes(trunk + upright * idle.pitch, upright * idle.yaw, upright * idle.roll)
         shoulder = np.stack(arms[:2]) + upright * idle.shoulders
@@ -109,7 +116,7 @@ class Planted:
             trunk=tilted,
             hip_joints=hip[:, None] + np.array([0.0 * SIDES, body.hip * SIDES, 0.0 * SIDES]),
             knees=ankle + knee[:, None],
-            ankles=np.broadcast_to(ankle, (3, 2, t.size)),
+            ankles=ankles,
             upper_arms=upper,
             forearms=fore,
             breath=idle.breath,

@@ -64,6 +64,7 @@ class Gait:
         lift: of the swinging foot, m.
         lag: of the foot in mid-swing behind a smooth course, over the length of the step.
         ramp: in which a walk gains and loses its speed, fraction of a stride.
+        start: in which it gains it from rest, likewise; as ramp if None.
         asymmetry: of left over right step lengths, fraction of a step.
         ragged: relative deviation of the speed over time.
         jitter: by how much the phase is ahead after each stride, fractions of a stride.
@@ -89,6 +90,7 @@ class Gait:
     lift: float = 0.10
     lag: float = 0.21
     ramp: float = 0.6
+    start: float | None = None
     asymmetry: float = 0.0
     ragged: Waves = field(default_factory=Waves)
     jitter: tuple[float, ...] = ()
@@ -152,6 +154,12 @@ class Walking:
         """Duration of gaining speed, and of losing it, s."""
         return self.gait.ramp * self.stride
 
+    @cached_property
+    def start(self) -> float:
+        """Duration of gaining speed from rest, s."""
+        start = self.gait.start
+        return self.ramp if start is None else start * self.stride
+
     @property
     def stops(self) -> bool:
         """Whether the walk ends."""
@@ -161,7 +169,7 @@ class Walking:
         """g [M]: 0 at rest, 1 when walking."""
         g: Float = np.ones(t.size)
         if self.from_rest:
-            g = minimum_jerk((t - self.begin) / self.ramp)
+            g = minimum_jerk((t - self.begin) / self.start)
         if self.stops:
             g *= 1 - minimum_jerk((t - self.stop) / self.ramp)
         return g
@@ -176,7 +184,7 @@ class Walking:
         """X(t) [M], m: where the body is above its feet on average."""
         v, ramp = self.gait.speed, self.ramp
         if self.from_rest:
-            x = v * ramp * minimum_jerk_integral((t - self.begin) / ramp)
+            x = v * self.start * minimum_jerk_integral((t - self.begin) / self.start)
         else:
             x = v * (t - self.begin)
         if self.stops:
@@ -207,7 +215,7 @@ class Walking:
         if lane is None:
             return np.array(begins)
         least = v * self.ramp  # to slow down, or to gain speed
-        at = max(lane.first, least if self.from_rest else 0.0)
+        at = max(lane.first, v * self.start if self.from_rest else 0.0)
         # Way of who does not slow down: a turn begins in it when the walker is slow.
         lost = lane.slow / (1 - lane.slow) * self._arc
         until, whole = max(self.horizon, self.begin) + self.stride, 0.0
@@ -227,6 +235,8 @@ class Walking:
         takes = self._arc / (v * (1 - lane.slow))
         lost = np.arange(self._turns.size) * lane.slow * v * takes
         on = self.begin + (self._turns + lost) / v - self.ramp / 2
+        if self.from_rest:
+            on += (self.start - self.ramp) / 2
         return np.stack([on, on + takes])
 
     def _lost(self, t: Float) -> Float:
@@ -309,7 +319,7 @@ class Walking:
         """Events of both feet, ends of the ramps, and of strides where these differ, s."""
         ends = [track.breakpoints for track in self._feet]
         if self.from_rest:
-            ends.append(np.array([self.begin, self.begin + self.ramp]))
+            ends.append(np.array([self.begin, self.begin + self.start]))
         if self.stops:
             ends.append(np.array([self.stop, self.stop + self.ramp]))
         if self._jitter is not None:

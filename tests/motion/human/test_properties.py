@@ -92,7 +92,8 @@ def walks_of(gait: Gait) -> dict[str, tuple[Movement, ...]]:
             SitDown(seat=Seat(recline=0.4, lap=0.0), recline=(0.0, 1.0), lags=TRUNK_LAGS),
             StandUp(seat=Seat(recline=0.4, lap=0.0), lags=LEGS_LAG),
         ),
-        "over the knees": (stopping, FallForward(kneel=0.6)),
+        "over the knees": (stopping, FallForward(kneel=0.6, heels=1.4)),
+        "slowly off": (Grab(haste=0.6), Walk(replace(gait, start=2.0))),
         "rightwards": (stopping, FallSideways(side=-1.0)),
         "everything": (
             Punch(0.5, from_rest=True),

@@ -16,6 +16,7 @@ The packages, in the order in which imports go; docs/architecture.md has the way
     dataset       many scenes -> shards -> dataset.h5 and PNG; resume, verify, estimate
     capture       recordings of real radars -> maps, fitted configs, data sets
     learning      images -> trained networks and reports; the only package with PyTorch
+    two_sample    statistics of two sets of maps, and whether they can be told apart
     tradeoff      what accuracy costs
     commands      one file per subcommand of the `radhar` program
 

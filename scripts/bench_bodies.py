@@ -47,10 +47,10 @@ def point_counts(scene: Scene) -> list[int]:
     return [points.share.size for points in paths.points]
 
 
-def occupied(found: Any) -> float:
+def occupied(products: Any) -> float:
     """Share of the band's cells that a map fills."""
-    power, doppler = found["stft"].power, found["stft"].rows.values
-    speed = doppler * SPEED_OF_LIGHT / (2 * found["waveform"].f0)
+    power, doppler = products["stft"].power, products["stft"].rows.values
+    speed = doppler * SPEED_OF_LIGHT / (2 * products["waveform"].f0)
     band = (speed >= BAND_MPS[0]) & (speed <= BAND_MPS[1])
     return float(np.mean(power[band] > power.max() * 10 ** (-DEPTH_DB / 10)))
 
@@ -65,7 +65,7 @@ def main() -> None:
     for radar in RADARS:
         for activity in ACTIVITIES:
             both = [scene_of(radar, activity, kind) for kind in ("points", "segments")]
-            found = [record(s, ["stft", "image:stft", "waveform"]).products for s in both]
+            made = [record(s, ["stft", "image:stft", "waveform"]).products for s in both]
             seconds: tuple[list[float], list[float]] = ([], [])
             for _ in range(rounds):
                 for scene, spent in zip(both, seconds, strict=True):
@@ -73,9 +73,9 @@ def main() -> None:
                     record(scene, ["image:stft"])
                     spent.append(process_time() - start)
             counts = point_counts(both[1])
-            filled = " -> ".join(f"{100 * occupied(one):.0f} %" for one in found)
+            filled = " -> ".join(f"{100 * occupied(one):.0f} %" for one in made)
             ratio = min(seconds[1]) / min(seconds[0])
-            one, other = (each["image:stft"].levels for each in found)
+            one, other = (each["image:stft"].levels for each in made)
             print(
                 f"| {radar[0]} GHz, {1e3 * radar[2]:g} ms | {activity} | {sum(counts)}, "
                 f"{max(counts)} | x{ratio:.1f} | {filled} | "

@@ -51,10 +51,10 @@ def main() -> None:
             for name, way in WAYS.items():
                 scene = scene_of(way)
                 start = perf_counter()
-                found = record(scene, ["image:stft"], motions=bodies(scene, count))
+                made = record(scene, ["image:stft"], motions=bodies(scene, count))
                 if turn:  # the first one fills tables
                     seconds[name].append(perf_counter() - start)
-                del found
+                del made
         base = seconds["half-band, direct"]
         print(f"{13 * count} scatterers; {min(base) * 1e3:.0f} ms for the half-band sum")
         for name, way in WAYS.items():

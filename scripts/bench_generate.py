@@ -61,11 +61,11 @@ def interleaved(
     """Time every row once a round, round after round, after one round of warming up."""
     for function in rows.values():
         function(0)
-    found: dict[str, list[float]] = {name: [] for name in rows}
+    results: dict[str, list[float]] = {name: [] for name in rows}
     for turn in range(rounds):
         for name, function in rows.items():
-            found[name].append(timed(lambda function=function, turn=turn: function(turn), clock))
-    return found
+            results[name].append(timed(lambda function=function, turn=turn: function(turn), clock))
+    return results
 
 
 def scene(config: Config, number: int) -> Scene:
@@ -174,7 +174,7 @@ def rows(rounds: int) -> dict[str, Any]:
             signal = there["signal"].with_samples(naive_signal(scene(config, turn % 12)))
             sink.write([image.sample(there | {"signal": signal})])
 
-        found = interleaved(
+        results = interleaved(
             {
                 "naive": naive,
                 "cube": cube,
@@ -186,7 +186,7 @@ def rows(rounds: int) -> dict[str, Any]:
         )
     ms = {
         name: 1e3 * median(seconds) / {"naive": 1, "cube": 2}.get(name, SHARD)
-        for name, seconds in found.items()
+        for name, seconds in results.items()
     }
     errors = {"cube_against_naive": 0.0, "direct_after_mti_db": -np.inf}
     for number in range(12):
@@ -224,16 +224,16 @@ def rows(rounds: int) -> dict[str, Any]:
 def ready_for(scene: Scene, name: str) -> dict[str, Any]:
     """What a map's own transform starts from."""
     names = ["signal", "waveform", "canceller", "paths"]
-    found = record(scene, [*names, *(["torso_track"] if "compensated" in name else [])]).products
-    w, canceller, paths = found["waveform"], found["canceller"], found.pop("paths")
+    results = record(scene, [*names, *(["torso_track"] if "compensated" in name else [])]).products
+    w, canceller, paths = results["waveform"], results["canceller"], results.pop("paths")
     shown = shown_pulses(w.n_pulses - canceller.lost, scene.config.image.size_px[1])
-    return found | {"beat": beat_at(paths, w, shown, canceller.taps)}
+    return results | {"beat": beat_at(paths, w, shown, canceller.taps)}
 
 
 def maps(rounds: int) -> dict[str, Any]:
     """What each further map adds, over its own transform, image and write."""
     base = load_config(PAPER)
-    found = {}
+    results = {}
     print(
         "\na further map: what it adds to a build with `stft`, over its own transform, image, write"
     )
@@ -254,12 +254,12 @@ def maps(rounds: int) -> dict[str, Any]:
             times = interleaved({"both": whole(both), "base": whole(base), "own": own}, rounds)
             added = median(b - a for a, b in zip(times["base"], times["both"], strict=True)) / 12
             floor = median(times["own"]) / 12
-            found[name] = {"added_ms": added * 1e3, "own_ms": floor * 1e3, "ratio": added / floor}
+            results[name] = {"added_ms": added * 1e3, "own_ms": floor * 1e3, "ratio": added / floor}
             print(
                 f"  {name:<28}{added * 1e3:8.2f} ms over {floor * 1e3:6.2f} ms"
                 f" = {added / floor:.2f}"
             )
-    return found
+    return results
 
 
 def radhar(*arguments: str | Path) -> float:
@@ -303,7 +303,7 @@ def jobs(rounds: int) -> dict[str, Any]:
             min(rounds, 3),
             time.perf_counter,
         )
-    seconds = {name: median(found) for name, found in times.items()}
+    seconds = {name: median(results) for name, results in times.items()}
     print("\n480 samples, seconds")
     for name, value in seconds.items():
         print(f"  {name:<10}{value:8.2f}")
@@ -337,7 +337,7 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024)
 
 def memory(rounds: int) -> dict[str, Any]:
     """Peak resident memory of one worker's work, for few and many samples, with a slow disk too."""
-    found = {}
+    results = {}
     print("\npeak memory of one process that does everything, MiB")
     for label, per_class, slow in (
         ("12 samples", 1, 0.0),
@@ -350,14 +350,14 @@ def memory(rounds: int) -> dict[str, Any]:
             done = subprocess.run(
                 list(map(str, command)), capture_output=True, text=True, check=True, cwd=ROOT
             )
-        found[label] = int(done.stdout.split()[-1])
-        print(f"  {label:<50}{found[label]:6d}")
-    return found
+        results[label] = int(done.stdout.split()[-1])
+        print(f"  {label:<50}{results[label]:6d}")
+    return results
 
 
 def dry_run(rounds: int) -> dict[str, Any]:
     """The estimate of `--dry-run` over the time of the whole command."""
-    found = {}
+    results = {}
     print("\nestimate of --dry-run over the whole run")
     for label, path, per_class, count in (
         ("free space, 1200 samples, 2 jobs", PAPER, 100, 2),
@@ -379,9 +379,9 @@ def dry_run(rounds: int) -> dict[str, Any]:
             value, unit = line.split("about ")[1].split()[:2]
             estimate = float(value) * {"s": 1, "min": 60, "h": 3600}[unit]
             took = radhar("generate", path, "-o", f"{place}/o", *options)
-        found[label] = {"estimate_s": estimate, "took_s": took, "ratio": estimate / took}
+        results[label] = {"estimate_s": estimate, "took_s": took, "ratio": estimate / took}
         print(f"  {label:<42}{estimate:8.1f} s over {took:6.1f} s = {estimate / took:.2f}")
-    return found
+    return results
 
 
 _SCATTERERS = """
@@ -450,17 +450,17 @@ def scatterers(rounds: int, against: Path | None = None) -> dict[str, Any]:
             )
             times[name].append(list(json.loads(done.stdout).values()))
     print("\ndirect echo of 13, 52, 208 scatterers, ms of processor time a sample")
-    found: dict[str, Any] = {}
+    results: dict[str, Any] = {}
     for name, of_rounds in times.items():
         ms = np.median(of_rounds, axis=0)
         slope, start = np.polyfit([13, 52, 208], ms, 1)
-        found[name] = {"ms": ms.tolist(), "start_ms": start, "scatterer_ms": slope}
+        results[name] = {"ms": ms.tolist(), "start_ms": start, "scatterer_ms": slope}
         each = "".join(f"{value:9.2f}" for value in ms)
         print(f"  {name:<10}{each}   = {start:.2f} + {slope:.4f} n")
     if against:
-        found["ratio"] = found["this"]["scatterer_ms"] / found["against"]["scatterer_ms"]
-        print(f"  a further scatterer costs {found['ratio']:.2f} of what it does in {against}")
-    return found
+        results["ratio"] = results["this"]["scatterer_ms"] / results["against"]["scatterer_ms"]
+        print(f"  a further scatterer costs {results['ratio']:.2f} of what it does in {against}")
+    return results
 
 
 BUILDS = {  # what is built: config, settings beside it
@@ -477,7 +477,7 @@ def builds(rounds: int, against: Path | None = None) -> dict[str, Any]:
     trees = {"this": ROOT} | ({"against": against.resolve()} if against else {})
     one_thread = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     print("\nwhole builds, one job, ms of processor time a further sample")
-    found: dict[str, Any] = {}
+    results: dict[str, Any] = {}
     for label, (config, more) in BUILDS.items():
         times: dict[str, list[float]] = {name: [] for name in trees}
         for _ in range(rounds):
@@ -489,18 +489,18 @@ def builds(rounds: int, against: Path | None = None) -> dict[str, Any]:
                     for count in (FEW, MANY)
                 )
                 times[name].append(1e3 * (many - few) / (12 * (MANY - FEW)))
-        found[label] = {name: median(ms) for name, ms in times.items()}
-        line = "".join(f"{name:>9} {ms:6.1f}" for name, ms in found[label].items())
+        results[label] = {name: median(ms) for name, ms in times.items()}
+        line = "".join(f"{name:>9} {ms:6.1f}" for name, ms in results[label].items())
         if against:
-            found[label]["ratio"] = found[label]["against"] / found[label]["this"]
+            results[label]["ratio"] = results[label]["against"] / results[label]["this"]
             each = (old / new for old, new in zip(times["against"], times["this"], strict=True))
             line += (
-                f"   {found[label]['ratio']:.2f} times ("
+                f"   {results[label]['ratio']:.2f} times ("
                 + ", ".join(f"{r:.2f}" for r in each)
                 + ")"
             )
         print(f"  {label:<24}{line}", flush=True)
-    return found
+    return results
 
 
 def _generate_seconds(
@@ -548,12 +548,12 @@ def main() -> None:
     arguments = parser.parse_args()
     prepare_process()
     more = {name: {"against": arguments.against} for name in ("builds", "scatterers")}
-    found = {
+    results = {
         name: SECTIONS[name](arguments.rounds, **more.get(name, {}))
         for name in arguments.only.split(",")
     }
     arguments.json.parent.mkdir(parents=True, exist_ok=True)
-    arguments.json.write_text(json.dumps(found, indent=2))
+    arguments.json.write_text(json.dumps(results, indent=2))
     print(f"\n{arguments.json}")
 
 

@@ -111,31 +111,31 @@ def _read(folder: Path) -> dict[str, float]:
 
     from radhar_cli.dataset.reading import open_dataset
 
-    found = {}
+    numbers = {}
     start = time.perf_counter()
     with open_dataset(folder) as data:
-        found["open, radhar"] = time.perf_counter() - start
+        numbers["open, radhar"] = time.perf_counter() - start
         order = np.random.default_rng(1).integers(len(data), size=READS)
         start = time.perf_counter()
         for row in order:
             data.maps["stft"][row]
-        found["a sample, radhar"] = (time.perf_counter() - start) / READS
+        numbers["a sample, radhar"] = (time.perf_counter() - start) / READS
     with h5py.File(folder / "dataset.h5") as file:
         start = time.perf_counter()
         maps = file["maps/stft"]
-        found["open, h5py"] = time.perf_counter() - start
+        numbers["open, h5py"] = time.perf_counter() - start
         start, read = time.perf_counter(), 0
         while read < READS and time.perf_counter() - start < 60:
             maps[order[read]]
             read += 1
-        found["a sample, h5py"] = (time.perf_counter() - start) / read
-    return found
+        numbers["a sample, h5py"] = (time.perf_counter() - start) / read
+    return numbers
 
 
 def held(place: Path) -> tuple[int, int]:
     """Files below a folder and their bytes; a link counts once."""
-    found = [Path(at, f).stat() for at, _, files in os.walk(place) for f in files]
-    return len(found), sum(f.st_size for f in found)
+    numbers = [Path(at, f).stat() for at, _, files in os.walk(place) for f in files]
+    return len(numbers), sum(f.st_size for f in numbers)
 
 
 def main() -> None:
@@ -154,10 +154,10 @@ def main() -> None:
     place = given.place or Path(tempfile.mkdtemp())
     rows = int(given.rows)
     if given.one:
-        found = stage(given.one, place, rows, given.parts, given.batch)
+        numbers = stage(given.one, place, rows, given.parts, given.batch)
         used = resource.getrusage(resource.RUSAGE_SELF)
         cpu = {"user": used.ru_utime, "system": used.ru_stime}
-        print(json.dumps(found | cpu | {"peak_mib": used.ru_maxrss / 1024}))
+        print(json.dumps(numbers | cpu | {"peak_mib": used.ru_maxrss / 1024}))
         return
     results = {}
     try:
@@ -166,11 +166,11 @@ def main() -> None:
             command += ["--rows", str(rows), "--parts", str(given.parts)]
             command += ["--batch", str(given.batch)] if given.batch else []
             done = subprocess.run(command, capture_output=True, text=True, check=True)
-            found = json.loads(done.stdout)
+            numbers = json.loads(done.stdout)
             if not name.startswith("read"):
-                found["files"], found["bytes"] = held(place)
-            results[name] = found
-            told = ", ".join(f"{key} {value:,.4g}" for key, value in found.items())
+                numbers["files"], numbers["bytes"] = held(place)
+            results[name] = numbers
+            told = ", ".join(f"{key} {value:,.4g}" for key, value in numbers.items())
             print(f"{rows} rows, {name}: {told}", flush=True)
             if name == "build":
                 shutil.rmtree(place / "whole")

@@ -64,16 +64,16 @@ def main() -> None:
     if arguments.one:
         print(json.dumps(measure(arguments.one, int(arguments.pulses))))
         return
-    found: dict[str, Any] = {}
+    rows: dict[str, Any] = {}
     labels = [name.strip() for name in arguments.only.split(";")] if arguments.only else list(ROWS)
     for label in labels:
         command = [sys.executable, __file__, "--one", label, "--pulses", str(arguments.pulses)]
         done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT)
-        found[label] = json.loads(done.stdout)
-        row = found[label]
+        rows[label] = json.loads(done.stdout)
+        row = rows[label]
         print(f"{label:<20}{row['peak_mib']:8.0f} MiB{row['seconds']:8.1f} s", flush=True)
     arguments.json.parent.mkdir(parents=True, exist_ok=True)
-    arguments.json.write_text(json.dumps(found, indent=2))
+    arguments.json.write_text(json.dumps(rows, indent=2))
 
 
 if __name__ == "__main__":

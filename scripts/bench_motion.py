@@ -30,19 +30,19 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("config", type=Path, nargs="?", default=CONFIG)
     parser.add_argument("--rounds", type=int, default=5)
-    asked = parser.parse_args()
+    options = parser.parse_args()
     spent: dict[str, list[tuple[float, float]]] = {kind: [] for kind in KINDS}
     order = Random(0)
-    for number in range(asked.rounds + 1):  # the first fills caches
+    for number in range(options.rounds + 1):  # the first fills caches
         for kind in order.sample([*KINDS], len(KINDS)):
-            config = load_config(asked.config, KINDS[kind])
+            config = load_config(options.config, KINDS[kind])
             scenes = [draw_scene(config, activity, number) for activity in ACTIVITIES]
             times = sample_and_check(scenes)
             if number:
                 spent[kind].append(times)
     print("| motion, body | a sample, ms | its check, ms |\n| --- | --- | --- |")
-    for kind, found in spent.items():
-        sample, check = np.median(found, axis=0) * 1e3
+    for kind, times in spent.items():
+        sample, check = np.median(times, axis=0) * 1e3
         print(f"| {kind} | {sample:.1f} | {check:.2f} |")
 
 

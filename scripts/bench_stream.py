@@ -83,10 +83,10 @@ def streamed(config: Config, workers: int, batches: int) -> Iterator[object]:
 def timed(made: Iterable[object], batches: int) -> tuple[float, float]:
     """Samples a second after the first batch, and ms of processor time a sample."""
     before = processor_time()
-    found = iter(made)
-    next(found)
+    results = iter(made)
+    next(results)
     began, last = time.perf_counter(), 0.0
-    for number, _ in enumerate(found, start=2):
+    for number, _ in enumerate(results, start=2):
         if number == batches:
             last = time.perf_counter()
     return (
@@ -122,13 +122,13 @@ def main() -> None:
     for path in given.configs:
         config = radhar.load_config(path)
         for workers in given.workers:
-            found: dict[str, list[tuple[float, float]]] = {"plain": [], "streamed": []}
+            results: dict[str, list[tuple[float, float]]] = {"plain": [], "streamed": []}
             for turn in range(given.rounds):
                 for way in ways if turn % 2 == 0 else ways[::-1]:
                     made = way(config, workers, given.batches)
-                    found[way.__name__].append(timed(made, given.batches))
+                    results[way.__name__].append(timed(made, given.batches))
             for column, what in enumerate(("samples/s", "processor ms a sample")):
-                a, b = ([pair[column] for pair in found[name]] for name in ("plain", "streamed"))
+                a, b = ([pair[column] for pair in results[name]] for name in ("plain", "streamed"))
                 better = [y / x if column == 0 else x / y for x, y in zip(a, b, strict=True)]
                 print(
                     f"| `{path}` | {workers} | {what} | {middle(a, 1)} | {middle(b, 1)} | "

@@ -74,14 +74,14 @@ def timed(model: str, px: int, batch: int, *without: str) -> tuple[str, list[flo
 def models(names: list[str], px: int, batch: int, path: Path | None) -> None:
     """Print, and write, processor time of a step of each network."""
     os.environ["OMP_NUM_THREADS"] = "1"
-    found = {}
+    times = {}
     for name in names:
         kind, steps = timed(name, px, batch, "processor")
-        found[name] = round(statistics.median(steps), 2)
-        print(f"{name:<36} {kind:<14} {found[name]:7.2f} s a step", flush=True)
+        times[name] = round(statistics.median(steps), 2)
+        print(f"{name:<36} {kind:<14} {times[name]:7.2f} s a step", flush=True)
     if path:
         about = {"px": px, "batch": batch, "kind": kind, "commit": commit(), "machine": machine()}
-        path.write_text(as_text({**about, "seconds": found}))
+        path.write_text(as_text({**about, "seconds": times}))
 
 
 def main() -> None:
@@ -92,23 +92,23 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--models", nargs="+", default=[], help="networks to time instead")
     parser.add_argument("--json", type=Path, help="where the times of --models are written")
-    asked = parser.parse_args()
-    if asked.models:
-        models(asked.models, asked.px, asked.batch, asked.json)
+    options = parser.parse_args()
+    if options.models:
+        models(options.models, options.px, options.batch, options.json)
         return
     times: dict[str, list[float]] = {name: [] for name in VARIANTS}
     kinds = {}
-    for _ in range(asked.rounds):
+    for _ in range(options.rounds):
         for name, without in VARIANTS.items():
-            kinds[name], steps = timed("fftnet", asked.px, asked.batch, *without)
+            kinds[name], steps = timed("fftnet", options.px, options.batch, *without)
             times[name] += steps
     own = statistics.median(next(iter(times.values())))
-    print(f"fftnet, {asked.px} x {asked.px} px, batch {asked.batch}; {asked.rounds} rounds")
-    for name, found in times.items():
-        middle = statistics.median(found)
+    print(f"fftnet, {options.px} x {options.px} px, batch {options.batch}; {options.rounds} rounds")
+    for name, steps in times.items():
+        middle = statistics.median(steps)
         print(
             f"{name:<36} {kinds[name]:<14} {middle:7.3f} s a step "
-            f"({min(found):.3f} to {max(found):.3f})  ratio {middle / own:.2f}"
+            f"({min(steps):.3f} to {max(steps):.3f})  ratio {middle / own:.2f}"
         )
 
 

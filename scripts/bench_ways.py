@@ -50,11 +50,11 @@ def made(way: str, out: Path, config: Path, change: str, parts: int) -> dict[str
     """Make the data set; return the processor time of each command, s."""
     common = ("generate", config, "-o", out, "--set", change)
     if way == "shards":
-        found = {
+        seconds = {
             f"{k}/{parts}": radhar(*common, "--jobs", 1, "--shard", f"{k}/{parts}")
             for k in range(1, parts + 1)
         }
-        return found | {"merge": radhar("merge", out, "--jobs", 1)}
+        return seconds | {"merge": radhar("merge", out, "--jobs", 1)}
     options = {
         "one process": ("--jobs", 1),
         "loky": ("--jobs", 2),
@@ -94,13 +94,13 @@ def main() -> None:
             shutil.rmtree(out)
             fixed["a merge"].append(small.pop("merge"))
             fixed["a part"].append(median(small.values()))
-            said = ", ".join(f"{way} {found[-1]:.1f}" for way, found in (times | fixed).items())
+            said = ", ".join(f"{way} {seconds[-1]:.1f}" for way, seconds in (times | fixed).items())
             print(f"round {turn + 1}: {said}", flush=True)
     alone = median(times["one process"])
-    for way, found in times.items():
-        print(f"{way:<12}{median(found):8.1f} s   {median(found) / alone:.3f}")
-    for name, found in fixed.items():
-        print(f"{name:<12}{median(found):8.1f} s")
+    for way, seconds in times.items():
+        print(f"{way:<12}{median(seconds):8.1f} s   {median(seconds) / alone:.3f}")
+    for name, seconds in fixed.items():
+        print(f"{name:<12}{median(seconds):8.1f} s")
     given.json.parent.mkdir(parents=True, exist_ok=True)
     given.json.write_text(json.dumps(times | fixed, indent=2))
 

@@ -26,11 +26,13 @@ def dbsm(slug: str, angle_deg: float, overrides: list[str]) -> float:
     """Sum of the cross sections of all paths, mean over the recording, dBsm."""
     place = [f"motion.range_m={RANGE_M}", f"motion.angle_deg={angle_deg}", "subject.height_m=1.75"]
     config = load_config(CONFIG, ["radar.tx_m=[0,0,1]", "radar.rx_m=[0,0,1]", *place, *overrides])
-    found = record(nominal_scene(config, activity_named(slug)), ["paths", "antennas", "waveform"])
-    paths = found["paths"](np.linspace(0, 1.2, 240))
+    products = record(
+        nominal_scene(config, activity_named(slug)), ["paths", "antennas", "waveform"]
+    )
+    paths = products["paths"](np.linspace(0, 1.2, 240))
     distance = paths.delay * SPEED_OF_LIGHT / 2
-    wavelength = found["waveform"].wavelength
-    field = paths.amplitude * distance**2 / (found["antennas"].gain * wavelength)
+    wavelength = products["waveform"].wavelength
+    field = paths.amplitude * distance**2 / (products["antennas"].gain * wavelength)
     return float(10 * np.log10(((4 * np.pi) ** 3 * field**2).sum(axis=0).mean()))
 
 

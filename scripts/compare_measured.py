@@ -75,9 +75,9 @@ def measured(path: Path) -> dict[str, Map]:
 
 def simulated(config: Config, seed: int) -> Map:
     """The STFT of a walker."""
-    found = simulate(config, "walking", seed, maps=("stft",))
-    one = found.maps["stft"]
-    speed = one.rows.values * SPEED_OF_LIGHT / (2 * found.waveform.f0)
+    numbers = simulate(config, "walking", seed, maps=("stft",))
+    one = numbers.maps["stft"]
+    speed = one.rows.values * SPEED_OF_LIGHT / (2 * numbers.waveform.f0)
     shown = speed > -ZERO_ROW / 2 * ROW_MPS  # as much as is measured
     return Map(one.power[shown][::-1], speed[shown][::-1], one.columns.values)
 
@@ -85,22 +85,22 @@ def simulated(config: Config, seed: int) -> Map:
 def statistics(one: Map) -> dict[str, float]:
     """What a radar engineer looks at in the map of a walker, in the units of the names."""
     v, power = one.speed, PowerMap(one.power, one.speed)
-    found = power_statistics(power, ZERO_MPS, NOISE_MPS, NEAR_MPS)
+    numbers = power_statistics(power, ZERO_MPS, NOISE_MPS, NEAR_MPS)
     occupied, band = power.occupied(NOISE_MPS), (v >= 0.2) & (v <= 4.5)
     envelope = v[np.argmax(occupied & (v < NOISE_MPS)[:, None], axis=0)]
     return {
-        "peak over floor, dB": found["peak_over_floor"],
-        "sd of the noise, dB": found["noise_sd"],
-        "limb below torso, dB": found["limb_below_torso"],
-        "energy above 1.8 x torso, %": found["fast_energy"],
-        "receding energy, %": found["receding_energy"],
-        "envelope (95 %) over torso": float(np.percentile(envelope, 95) / found["torso_median"]),
+        "peak over floor, dB": numbers["peak_over_floor"],
+        "sd of the noise, dB": numbers["noise_sd"],
+        "limb below torso, dB": numbers["limb_below_torso"],
+        "energy above 1.8 x torso, %": numbers["fast_energy"],
+        "receding energy, %": numbers["receding_energy"],
+        "envelope (95 %) over torso": float(np.percentile(envelope, 95) / numbers["torso_median"]),
         "envelope, median, m/s": float(np.median(envelope)),
-        "sd of Doppler in a column, m/s": found["column_spread"],
-        "energy near the torso line, %": found["torso_energy"],
+        "sd of Doppler in a column, m/s": numbers["column_spread"],
+        "energy near the torso line, %": numbers["torso_energy"],
         "occupied cells, %": 100 * float(occupied[band].mean()),
-        "torso ripple, m/s": found["torso_ripple"],
-        "zero line over floor, dB": found["zero_over_floor"],
+        "torso ripple, m/s": numbers["torso_ripple"],
+        "zero line over floor, dB": numbers["zero_over_floor"],
     }
 
 
@@ -173,24 +173,24 @@ def main() -> None:
     parser.add_argument("--config", type=Path, default=CONFIG)
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
     parser.add_argument("--seeds", type=int, default=8)
-    asked = parser.parse_args()
+    options = parser.parse_args()
     matplotlib.use("Agg")
-    views = measured(asked.maps)
+    views = measured(options.maps)
     shown: dict[str, list[Map]] = {"measured": list(views.values())}
-    found = {name: statistics(view) for name, view in views.items()}
-    columns = {"measured": spread(list(found.values()))}
+    numbers = {name: statistics(view) for name, view in views.items()}
+    columns = {"measured": spread(list(numbers.values()))}
     each = {}
     for kind, overrides in KINDS.items():
-        config = load_config(asked.config, [*asked.set, *overrides])
-        shown[kind] = [simulated(config, seed) for seed in range(1, asked.seeds + 1)]
+        config = load_config(options.config, [*options.set, *overrides])
+        shown[kind] = [simulated(config, seed) for seed in range(1, options.seeds + 1)]
         each[kind] = [statistics(one) for one in shown[kind]]
         columns[kind] = spread(each[kind])
-    asked.out.mkdir(parents=True, exist_ok=True)
+    options.out.mkdir(parents=True, exist_ok=True)
     text = f"{table(columns)}\n{outside(each)}"
-    (asked.out / "comparison.md").write_text(text)
-    everything = {"views": found} | columns
-    (asked.out / "comparison.json").write_text(json.dumps(everything, indent=2) + "\n")
-    draw(shown, asked.out / "comparison.png")
+    (options.out / "comparison.md").write_text(text)
+    everything = {"views": numbers} | columns
+    (options.out / "comparison.json").write_text(json.dumps(everything, indent=2) + "\n")
+    draw(shown, options.out / "comparison.png")
     print(text)
 
 

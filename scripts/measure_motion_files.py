@@ -90,9 +90,9 @@ def from_file(known: Walk, rate: float, noise_mm: float, low_pass: float | None,
 
 def beyond_db(known: Walk, motion: Motion) -> float:
     """Power beyond the walk's own fastest joint, dB below the largest of the column."""
-    found = record(known.scene, ["stft"], motions=(motion,))["stft"]
-    speed = -found.rows.values * HALF_WAVE  # receding
-    t = found.columns.values
+    power_map = record(known.scene, ["stft"], motions=(motion,))["stft"]
+    speed = -power_map.rows.values * HALF_WAVE  # receding
+    t = power_map.columns.values
     step = 1e-4
     ranges = [
         np.linalg.norm(
@@ -103,8 +103,8 @@ def beyond_db(known: Walk, motion: Motion) -> float:
     velocity = (ranges[1] - ranges[0]) / (2 * step)
     low, high = velocity.min(axis=0) - 0.3, velocity.max(axis=0) + 0.3
     outside = (speed[:, None] < low) | (speed[:, None] > high)
-    largest = np.where(outside, found.power, 0).max(axis=0)
-    return float(10 * np.log10(np.median(largest / found.power.max(axis=0))))
+    largest = np.where(outside, power_map.power, 0).max(axis=0)
+    return float(10 * np.log10(np.median(largest / power_map.power.max(axis=0))))
 
 
 def row(known: Walk, rate: float, noise: float, low_pass: float | None, draws: int,

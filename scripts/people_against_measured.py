@@ -67,8 +67,8 @@ def range_bins(scene: Scene, rng: np.random.Generator) -> Complex:
     clutter = sosfilt(butter(2, (2 / PRF * 2, 2 / PRF * 6), "band", output="sos"), clutter)
     clutter *= amplitude * 10 ** (rng.uniform(-34, -22) / 20) / clutter.std()
     noise *= amplitude * 10 ** (-rng.uniform(12, 32) / 20) / 2**0.5
-    found: Complex = x + (clutter + noise)[0] + 1j * (clutter + noise)[1]
-    return found
+    result: Complex = x + (clutter + noise)[0] + 1j * (clutter + noise)[1]
+    return result
 
 
 def mask(x: Complex, floor_db: float) -> Bool:
@@ -84,8 +84,8 @@ def mask(x: Complex, floor_db: float) -> Bool:
     total -= uniform_filter(db, inner, mode="nearest") * prod(inner)
     mean = total / (prod(outer) - prod(inner))
     rows, columns = (np.round(np.linspace(0, n - 1, 256)).astype(int) for n in db.shape)
-    found: Bool = (db > 1.171 * mean)[rows][:, columns]
-    return found
+    result: Bool = (db > 1.171 * mean)[rows][:, columns]
+    return result
 
 
 def figures(one: Bool) -> list[float]:
@@ -104,9 +104,9 @@ def measured(path: Path) -> dict[str, list[Bool]]:
     with np.load(path, allow_pickle=False) as file:
         masks = np.unpackbits(file["masks"], axis=2).astype(bool)
         label, classes = file["label"], [str(name) for name in file["classes"]]
-    found = {name: list(masks[label == classes.index(name)]) for name in CLASSES}
-    found["walking"] = [np.repeat(one[:, :128], 2, axis=1) for one in found["walking"]]
-    return found
+    result = {name: list(masks[label == classes.index(name)]) for name in CLASSES}
+    result["walking"] = [np.repeat(one[:, :128], 2, axis=1) for one in result["walking"]]
+    return result
 
 
 def main() -> None:

@@ -23,6 +23,7 @@ import subprocess
 import sys
 from dataclasses import dataclass, field, replace
 from functools import cache
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -373,12 +374,12 @@ def _figures(training: Training) -> dict[str, str]:
     """Figures of a run that are kept, {name: caption}: of the paper's network, by its SNR."""
     if not _plain(training):
         return {}
-    found = {"confusion": "Confusion matrix, validation"}
+    captions = {"confusion": "Confusion matrix, validation"}
     if training.snr_db in (30, -10):
-        found |= {"curves": "Training curves", "filters": "Global filters"}
+        captions |= {"curves": "Training curves", "filters": "Global filters"}
     if training.snr_db == 30:
-        found |= {"tsne": "t-SNE of maps and of features"}
-    return found
+        captions |= {"tsne": "t-SNE of maps and of features"}
+    return captions
 
 
 def read_json(path: Path) -> dict[str, Any]:
@@ -419,9 +420,9 @@ def _git(*words: str) -> str | None:
 @cache
 def commit() -> dict[str, Any]:
     """Commit of this checkout, and whether its code has changes that are not committed."""
-    found = _git("rev-parse", "HEAD")
+    head = _git("rev-parse", "HEAD")
     changes = _git("status", "--porcelain", "--", *CODE)
-    return {"commit": found, "dirty": None if found is None else bool(changes)}
+    return {"commit": head, "dirty": None if head is None else bool(changes)}
 
 
 @cache
@@ -465,7 +466,7 @@ def write_note(folder: Path, **more: float) -> None:
 def as_text(record: dict[str, Any]) -> str:
     """JSON with a line for every row of numbers."""
     text = json.dumps(record, indent=1)
-    return re.sub(r"\[[^][{}]*\]", lambda found: " ".join(found[0].split()), text) + "\n"
+    return re.sub(r"\[[^][{}]*\]", lambda match: " ".join(match[0].split()), text) + "\n"
 
 
 def read_records(folder: Path) -> dict[str, dict[str, Any]]:
@@ -542,9 +543,9 @@ class Row:
 def rows_of(name: str, scale: Scale, records: dict[str, dict[str, Any]]) -> list[Row]:
     """The runs of a scale in its order, then what else has a record."""
     trainings = {run_name(scale, training): training for training in scale.trainings}
-    for key, found in records.items():
-        other = Training(found["scenario"], found["snr_db"], found["model"])
-        trainings.setdefault(key, replace(other, by_subject=found["subjects"] is not None))
+    for key, record in records.items():
+        other = Training(record["scenario"], record["snr_db"], record["model"])
+        trainings.setdefault(key, replace(other, by_subject=record["subjects"] is not None))
     return [
         Row(training, key, records.get(key), f"results/{name}/{key}.json")
         for key, training in trainings.items()
@@ -586,18 +587,18 @@ def not_reached(name: str, results: Path) -> list[str]:
     path = results / "seconds_a_step.json"
     if not path.exists() or not (left := [model for model in RIVALS if model not in models]):
         return []
-    found = read_json(path)
-    per_run = 0.8 * 12 * SCALES[name].per_class / found["batch"] * PAPER_EPOCHS / 3600
+    record = read_json(path)
+    per_run = 0.8 * 12 * SCALES[name].per_class / record["batch"] * PAPER_EPOCHS / 3600
     return [
-        f"Not reached, by what a step of {found['batch']} maps of {found['px']} px costs, "
-        f"processor time, {found['kind']} (`python scripts/bench_train.py --models "
+        f"Not reached, by what a step of {record['batch']} maps of {record['px']} px costs, "
+        f"processor time, {record['kind']} (`python scripts/bench_train.py --models "
         f"{' '.join(RIVALS)} --json docs/results/seconds_a_step.json`, commit "
-        f"{found['commit']['commit'][:7]}):",
+        f"{record['commit']['commit'][:7]}):",
         "",
         *table(
             ["network", "seconds a step", f"hours for {PAPER_EPOCHS} epochs"],
             [
-                [model, _number(s := found["seconds"][model], ".1f"), _number(s * per_run, ".1f")]
+                [model, _number(s := record["seconds"][model], ".1f"), _number(s * per_run, ".1f")]
                 for model in left
             ],
         ),
@@ -609,14 +610,14 @@ def _by_snr(rows: list[Row]) -> list[str]:
     head += ENDING
     body = []
     for row in rows:
-        t, found = row.training, row.record
+        t, record = row.training, row.record
         paper = PAPER_BY_SNR.get((t.scenario, t.snr_db), "not given")
         cells = [SCENARIOS[t.scenario], str(t.snr_db)]
-        if found is None:
+        if record is None:
             body.append([*cells, NOT_RUN, "", "", "", paper, "", "", ""])
             continue
-        cells += [_epochs(found), _number(found["best_epoch"]), percent(found["validation"])]
-        cells += [percent(found["fresh"].get(str(t.snr_db))), paper, *row.ending()]
+        cells += [_epochs(record), _number(record["best_epoch"]), percent(record["validation"])]
+        cells += [percent(record["fresh"].get(str(t.snr_db))), paper, *row.ending()]
         body.append(cells)
     return table(head, body)
 
@@ -647,13 +648,13 @@ def _one_network(rows: list[Row], specialists: list[Row]) -> list[str]:
     head = ["scenario", "network", *(f"{snr} dB" for snr in DRAWN_TESTED), "epochs", *ENDING]
     body = []
     for row in rows:
-        scenario, found = row.training.scenario, row.record
+        scenario, record = row.training.scenario, row.record
         cells = [SCENARIOS[scenario], f"one, trained at {low} to {high} dB"]
-        if found is None:
+        if record is None:
             body.append(row.cells(cells, len(head)))
         else:
-            cells += [percent(found["fresh"].get(str(snr))) for snr in DRAWN_TESTED]
-            body.append([*cells, _epochs(found), *row.ending()])
+            cells += [percent(record["fresh"].get(str(snr))) for snr in DRAWN_TESTED]
+            body.append([*cells, _epochs(record), *row.ending()])
         own = {
             other.training.snr_db: other.record
             for other in specialists
@@ -677,12 +678,12 @@ def _subjects(rows: list[Row]) -> list[str]:
     head = ["scenario", "SNR (dB)", "epochs", "validation on persons never seen", *ENDING]
     body = []
     for row in rows:
-        t, found = row.training, row.record
+        t, record = row.training, row.record
         cells = [SCENARIOS[t.scenario], str(t.snr_db)]
         body.append(
             row.cells(cells, len(head))
-            if found is None
-            else [*cells, _epochs(found), percent(found["validation"]), *row.ending()]
+            if record is None
+            else [*cells, _epochs(record), percent(record["validation"]), *row.ending()]
         )
     return [
         f"### Persons kept apart (`split.by: subject`, {SUBJECTS} persons)",
@@ -707,7 +708,7 @@ def _networks(rows: list[Row]) -> list[str]:
     ]
     body = []
     for row in rows:
-        t, found = row.training, row.record
+        t, record = row.training, row.record
         paper = PAPER.get((t.scenario, t.model))
         theirs = (
             [_number(paper[0], ".2f"), _number(paper[1], ".2f"), _number(paper[2], ".0f", 1e3)]
@@ -715,16 +716,16 @@ def _networks(rows: list[Row]) -> list[str]:
             else ["not given"] * 3
         )
         cells = [SCENARIOS[t.scenario], t.model]
-        if found is None:
+        if record is None:
             body.append(
                 [*cells, NOT_RUN, "", theirs[0], "", theirs[1], "", "", theirs[2], "", "", ""]
             )
             continue
-        speed = found["speed"] or {}
-        load = found["evaluation"].get("load")
-        busy = " (busy)" if load and load > found["evaluation"]["machine"]["cores"] else ""
-        cells += [_epochs(found), percent(found["validation"]), theirs[0]]
-        cells += [_number(found["parameters"], ".2f", 1e-6), theirs[1]]
+        speed = record["speed"] or {}
+        load = record["evaluation"].get("load")
+        busy = " (busy)" if load and load > record["evaluation"]["machine"]["cores"] else ""
+        cells += [_epochs(record), percent(record["validation"]), theirs[0]]
+        cells += [_number(record["parameters"], ".2f", 1e-6), theirs[1]]
         cells += [
             _number(speed.get(key), ".0f", 1e3) + busy for key in ("image_s", "load_and_image_s")
         ]
@@ -736,15 +737,18 @@ def snr_figures(name: str, results: Path, records: dict[str, dict[str, Any]]) ->
     """Draw the accuracy over the SNR of each scenario, a line for every record."""
     from radhar_cli.figures.robustness import Point, robustness_png
 
+    def by_snr(record: dict[str, Any]) -> float:
+        return -inf if record["snr_db"] is None else record["snr_db"]
+
     for scenario in SCENARIOS:
-        mine = [found for found in records.values() if found["scenario"] == scenario]
+        mine = [record for record in records.values() if record["scenario"] == scenario]
         lines = {
-            f"trained at {_snr(found['snr_db'])}{', reduced' if found['reduced'] else ''}": [
+            f"trained at {_snr(record['snr_db'])}{', reduced' if record['reduced'] else ''}": [
                 Point(snr, float(snr), part["accuracy"], *part["accuracy_95"])
-                for snr, part in found["fresh"].items()
+                for snr, part in record["fresh"].items()
             ]
-            for found in sorted(mine, key=lambda found: -(found["snr_db"] or -99))
-            if len(found["fresh"]) > 1
+            for record in sorted(mine, key=by_snr, reverse=True)
+            if len(record["fresh"]) > 1
         }
         if lines:
             (results / name / f"{scenario}_snr.png").write_bytes(robustness_png(lines))
@@ -752,19 +756,19 @@ def snr_figures(name: str, results: Path, records: dict[str, dict[str, Any]]) ->
 
 def figures(name: str, results: Path, records: dict[str, dict[str, Any]]) -> list[str]:
     """The figures that are there, as lines of Markdown."""
-    found = []
+    named = []
     for scenario, words in SCENARIOS.items():
-        found.append((f"{scenario}_snr.png", f"Trained at one SNR, tested at all, {words}."))
+        named.append((f"{scenario}_snr.png", f"Trained at one SNR, tested at all, {words}."))
         for row in rows_of(name, SCALES[name], records):
             t = row.training
             if t.scenario == scenario:
-                found += [
+                named += [
                     (f"{row.name}_{figure}.png", f"{caption}, {words}, {_snr(t.snr_db)}.")
                     for figure, caption in _figures(t).items()
                 ]
     return [
         line
-        for file, caption in found
+        for file, caption in named
         if (results / name / file).exists()
         for line in (f"![{caption}](results/{name}/{file})", "", caption, "")
     ]
@@ -804,7 +808,7 @@ def write_page(path: Path, text: str, begin: str = BEGIN) -> None:
 def wanted(scale: Scale, words: list[str], results: Path, again: bool) -> list[Training]:
     """Runs whose names have all the words; of those with a record of all epochs only `again`."""
     records = read_records(results)
-    full = {name for name, found in records.items() if not found["reduced"] and not again}
+    full = {name for name, record in records.items() if not record["reduced"] and not again}
     names = {training: run_name(scale, training) for training in scale.trainings}
     return [
         training
@@ -843,28 +847,28 @@ def main() -> None:
         help="commit at which data sets and runs without a note were made, on this machine",
     )
     parser.add_argument("--page", type=Path, help="default: docs/results.md; smoke: in --runs")
-    asked = parser.parse_args()
-    scale = SCALES[asked.scale]
-    smoke = asked.scale not in PAGE_SCALES
-    page = asked.page or (asked.runs / "smoke.md" if smoke else ROOT / "docs" / "results.md")
-    results = page.parent / "results" / asked.scale
-    made_at = asked.made_at and _git("rev-parse", "--verify", f"{asked.made_at}^{{commit}}")
-    if asked.made_at and not made_at:
-        parser.error(f"--made-at {asked.made_at}: no commit of this repository")
+    options = parser.parse_args()
+    scale = SCALES[options.scale]
+    smoke = options.scale not in PAGE_SCALES
+    page = options.page or (options.runs / "smoke.md" if smoke else ROOT / "docs" / "results.md")
+    results = page.parent / "results" / options.scale
+    made_at = options.made_at and _git("rev-parse", "--verify", f"{options.made_at}^{{commit}}")
+    if options.made_at and not made_at:
+        parser.error(f"--made-at {options.made_at}: no commit of this repository")
     names = [run_name(scale, training) for training in scale.trainings]
-    if not any(all(word in name for word in asked.only) for name in names):
-        parser.error(f"--only {' '.join(asked.only)}: no run has that; runs: {', '.join(names)}")
-    todo = [] if asked.report_only else wanted(scale, asked.only, results, asked.again)
-    if not todo and not asked.report_only:
+    if not any(all(word in name for word in options.only) for name in names):
+        parser.error(f"--only {' '.join(options.only)}: no run has that; runs: {', '.join(names)}")
+    todo = [] if options.report_only else wanted(scale, options.only, results, options.again)
+    if not todo and not options.report_only:
         print("there is a record of all epochs of what is asked for; --again runs it again")
     # Commands run in the root of the repository, whatever the folder this was called in.
-    folders = asked.datasets.absolute(), asked.runs.absolute()
-    work = Reproduction(asked.scale, scale, *folders, results, asked.jobs, made_at)
+    folders = options.datasets.absolute(), options.runs.absolute()
+    work = Reproduction(options.scale, scale, *folders, results, options.jobs, made_at)
     for training in todo:
         work.train(training)
         work.record(training)
-        report(asked.scale, page)
-    report(asked.scale, page)
+        report(options.scale, page)
+    report(options.scale, page)
 
 
 if __name__ == "__main__":

@@ -19,7 +19,6 @@ import hashlib
 import json
 import subprocess
 import sys
-import zipfile
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,13 +29,12 @@ from PIL import Image
 from scipy import ndimage
 
 from radhar_cli.arrays import Bool, Index, Levels
-from radhar_cli.capture.array_files import check_npz, refusing
+from radhar_cli.capture.images import listed, read_image
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import CaptureError
 from radhar_cli.learning.evaluation import open_for, predict
 from radhar_cli.learning.metrics import wilson
 from radhar_cli.learning.run_folder import load_best
-from radhar_cli.untrusted import regular_size
 
 ROOT = Path(__file__).resolve().parents[1]
 SIMULATED = ROOT / "configs/measured/glasgow_5p8GHz.yaml"
@@ -68,7 +66,7 @@ SEEDS = (1, 2, 3)
 SHOTS, REPEATS = (0, 1, 5, 20, 100), 5
 ADAPTING = 20  # epochs without labels
 SHOT_EPOCHS = 40  # of who learns from a few labelled maps, which are soon gone through
-MAX_MAPS, MAX_SIDE, MAX_BYTES = 100_000, 2048, 2**31
+MAX_SIDE = 2048  # px of a mask
 
 
 def network_image(mask: Bool, slug: str) -> Levels:
@@ -100,43 +98,22 @@ def read_masks(path: Path) -> tuple[Bool, list[str]]:
     """Masks [K, H, W], and the class of each by our names, of the classes that we have.
 
     Raises:
-        CaptureError: names the file, the array, and what is wrong with it.
+        CaptureError: names the file and what is wrong with it.
     """
-    regular_size(path)
-    with refusing(str(path)), zipfile.ZipFile(path) as archive:
-        there = check_npz(archive)
-        size = sum(part.file_size for part in archive.infolist())
-    if size > MAX_BYTES:
-        raise CaptureError(f"{path}: holds {size} bytes; should have at most {MAX_BYTES}")
-    if missing := {"masks", "label", "classes"} - there.keys():
-        raise CaptureError(f"{path}: has no array {sorted(missing)[0]!r}")
-    with refusing(str(path)), np.load(path, allow_pickle=False) as file:
-        masks, label, classes = (np.asarray(file[n]) for n in ("masks", "label", "classes"))
-    if masks.dtype != np.uint8 or masks.ndim != 3:
+    images = listed(path, packed=True)
+    if not SIDE <= min(images.size) <= max(images.size) <= MAX_SIDE:
         raise CaptureError(
-            f"{path}: masks is {masks.dtype} {masks.shape}; should be uint8 [K, H, W/8]"
+            f"{path}: masks have {images.size[0]} x {images.size[1]} px; should have {SIDE} to "
+            f"{MAX_SIDE} a side"
         )
-    count, height, width = masks.shape
-    if not (count <= MAX_MAPS and SIDE <= height <= MAX_SIDE and SIDE <= 8 * width <= MAX_SIDE):
-        raise CaptureError(
-            f"{path}: masks is {masks.shape}; should be at most {MAX_MAPS} of {SIDE} to "
-            f"{MAX_SIDE} px"
-        )
-    if label.shape != (count,) or label.dtype.kind not in "iu":
-        raise CaptureError(
-            f"{path}: label is {label.dtype} {label.shape}; should be {count} integers"
-        )
-    if classes.ndim != 1 or classes.dtype.kind not in "US" or not classes.size:
-        raise CaptureError(f"{path}: classes is {classes.dtype} {classes.shape}; should be names")
-    if count and not 0 <= label.min() <= label.max() < classes.size:
-        raise CaptureError(f"{path}: label reaches beyond the {classes.size} classes")
-    names = [n.decode("ascii", "replace") if isinstance(n, bytes) else str(n) for n in classes]
-    slugs = [CLASSES.get(name.strip().lower().replace(" ", "_")) for name in names]
-    rows = [row for row in range(count) if slugs[label[row]] is not None]
+    names = [str(part["label"]).strip().lower().replace(" ", "_") for part in images.parts]
+    rows = [row for row, name in enumerate(names) if name in CLASSES]
     if not rows:
-        raise CaptureError(f"{path}: has no map of {', '.join(CLASSES)}; its classes are {names}")
-    found: Bool = np.unpackbits(masks[rows], axis=2).astype(bool)
-    return found, [str(slugs[label[row]]) for row in rows]
+        there = sorted(set(names))
+        raise CaptureError(f"{path}: has no map of {', '.join(CLASSES)}; its classes are {there}")
+    files = (images.parts[row]["file"] for row in rows)
+    masks = [read_image(path.parent, file, images.size, packed=True) > 0 for file in files]
+    return np.stack(masks), [CLASSES[names[row]] for row in rows]
 
 
 def write_image(levels: Levels, path: Path) -> None:
@@ -206,8 +183,10 @@ class Measured:
         """How a run does on them."""
         metadata, model = load_best(run)
         images = open_for(metadata, self.folder, None)
-        found = predict(model, metadata, images, images.rows("all"), torch.device("cpu"), batch=128)
-        return Correct(found.truth, found.predicted, metadata.classes)
+        result = predict(
+            model, metadata, images, images.rows("all"), torch.device("cpu"), batch=128
+        )
+        return Correct(result.truth, result.predicted, metadata.classes)
 
 
 @dataclass(frozen=True)
@@ -317,8 +296,8 @@ def adapted(run: Path, measured: Measured, data: Path, out: Path) -> Path:
 def report(measured: Measured, images: Path, runs: Sequence[Path], out: Path) -> None:
     """Print what the runs make of measured maps, as they are and adapted; the first is the one."""
     fitted = [adapted(run, measured, images, out / "adapted" / run.name) for run in runs]
-    found = {"as it is": runs, "adapted": fitted}
-    correct = {kind: [measured.correct(run) for run in some] for kind, some in found.items()}
+    result = {"as it is": runs, "adapted": fitted}
+    correct = {kind: [measured.correct(run) for run in some] for kind, some in result.items()}
     for kind, some in correct.items():
         print(f"\n{runs[0].name}, {kind}; rows are true classes\n{some[0].confusion}")
         if len(runs) > 1:

@@ -178,15 +178,17 @@ class Bench:
             radhar("train", self.maps(one, learned=True), "-o", run, *words)
         metadata, model = load_best(run)
         images = open_for(metadata, self.maps(one), None)
-        found = predict(model, metadata, images, images.rows("test"), torch.device("cpu"), 128)
-        return found.probabilities, found.truth
+        predictions = predict(
+            model, metadata, images, images.rows("test"), torch.device("cpu"), 128
+        )
+        return predictions.probabilities, predictions.truth
 
     def record(self, one: Experiment) -> None:
         """Run an experiment and write its record."""
-        found = [self.probabilities(one, seed) for seed in one.seeds]
-        truth = found[0][1]
-        correct = [int((p.argmax(1) == truth).sum()) for p, _ in found]
-        together = np.mean([p for p, _ in found], axis=0).argmax(1)
+        answers = [self.probabilities(one, seed) for seed in one.seeds]
+        truth = answers[0][1]
+        correct = [int((p.argmax(1) == truth).sum()) for p, _ in answers]
+        together = np.mean([p for p, _ in answers], axis=0).argmax(1)
         confusion = np.zeros((12, 12), int)
         np.add.at(confusion, (truth, together), 1)
         runs = [self.out / "runs" / f"{one.name}_{seed}" / "metrics.json" for seed in one.seeds]
@@ -225,16 +227,16 @@ def _share(correct: float, tested: int) -> str:
     return f"{100 * correct / tested:.1f}"
 
 
-def cells(found: dict[str, Any] | None) -> list[str]:
+def cells(record: dict[str, Any] | None) -> list[str]:
     """Mean accuracy of the seeds with Wilson's interval for the maps, their spread, together."""
-    if found is None:
+    if record is None:
         return [NOT_RUN, "", "", ""]
-    correct, tested = found["correct"], found["tested"]
+    correct, tested = record["correct"], record["tested"]
     mean = float(np.mean(correct))
     low, high = wilson(mean, tested)
     seeds = ", ".join(_share(one, tested) for one in correct)
-    together = _share(found["correct_together"], tested) if len(correct) > 1 else ""
-    link = f"[JSON](results/small/{found['name']}.json)"
+    together = _share(record["correct_together"], tested) if len(correct) > 1 else ""
+    link = f"[JSON](results/small/{record['name']}.json)"
     return [
         f"{_share(mean, tested)} ({100 * low:.1f} to {100 * high:.1f})",
         seeds,
@@ -260,10 +262,10 @@ def page_text(results: Path) -> str:
         keys = {one: (one.scenario, -s, order[one]) for one, s in zip(rows, snr, strict=True)}
         for one in sorted(rows, key=lambda one: keys[one]):
             file = results / f"{one.name}.json"
-            found = read_json(file) if file.exists() else None
+            record = read_json(file) if file.exists() else None
             noise = "noiseless" if one.snr_db is None else str(one.snr_db)
             what = PAPERS if key == ADVICE and one.label == SMALL else one.label
-            body.append([SCENARIOS[one.scenario], noise, what, *cells(found)])
+            body.append([SCENARIOS[one.scenario], noise, what, *cells(record)])
         head = ["scenario", "SNR (dB)", "what", "accuracy, mean of seeds", "each seed"]
         lines += [f"### {title}", "", *table([*head, "seeds together", "record"], body)]
         if key == CURVE:
@@ -283,8 +285,8 @@ def _other_places(results: Path) -> list[str]:
             file = results / f"{one.name}.json"
             of_curve = (one.label, one.scenario) == (SMALL, scenario)
             if of_curve and one.snr_db is not None and file.exists():
-                found = read_json(file)
-                curve[one.snr_db] = float(100 * np.mean(found["correct"]) / found["tested"])
+                record = read_json(file)
+                curve[one.snr_db] = float(100 * np.mean(record["correct"]) / record["tested"])
         for place, snr in readings(read_budget(budget)["scenarios"][scenario]).items():
             share = NOT_RUN
             if snrs := sorted(curve):
@@ -308,19 +310,19 @@ def main() -> None:
     parser.add_argument("--again", action="store_true", help="also rows that have a record")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "small_scale")
     parser.add_argument("--page", type=Path, default=ROOT / "docs" / "results.md")
-    asked = parser.parse_args()
-    results = asked.page.parent / "results" / "small"
-    wanted = [one for one in EXPERIMENTS if one.name in asked.only] or [
-        one for one in EXPERIMENTS if all(word in one.name for word in asked.only)
+    options = parser.parse_args()
+    results = options.page.parent / "results" / "small"
+    wanted = [one for one in EXPERIMENTS if one.name in options.only] or [
+        one for one in EXPERIMENTS if all(word in one.name for word in options.only)
     ]
     if not wanted:
-        sys.exit(f"small_scale: --only {' '.join(asked.only)}: no experiment has that")
-    bench = Bench(asked.out.absolute(), results.absolute())
-    for one in [] if asked.report_only else wanted:
-        if asked.again or not (results / f"{one.name}.json").exists():
+        sys.exit(f"small_scale: --only {' '.join(options.only)}: no experiment has that")
+    bench = Bench(options.out.absolute(), results.absolute())
+    for one in [] if options.report_only else wanted:
+        if options.again or not (results / f"{one.name}.json").exists():
             bench.record(one)
-            write_page(asked.page, page_text(results), BEGIN)
-    write_page(asked.page, page_text(results), BEGIN)
+            write_page(options.page, page_text(results), BEGIN)
+    write_page(options.page, page_text(results), BEGIN)
 
 
 if __name__ == "__main__":

@@ -162,8 +162,8 @@ def budget(config: Config, gated: Config, per_class: int) -> dict[str, Any]:
     parts = [parts_of(scene, in_gate) for _, scene, in_gate in drawn]
     noise = np.mean([p.noise_map.mean(1) for p in parts], axis=0)
     gated_noise = np.mean([p.gated_noise.mean(1) for p in parts], axis=0)
-    found = record(drawn[0][2], ("waveform", "frames", "gate"))
-    known = gains(found["waveform"], found["frames"], found["gate"].count)
+    products = record(drawn[0][2], ("waveform", "frames", "gate"))
+    known = gains(products["waveform"], products["frames"], products["gate"].count)
     scenes = []
     for (activity, _, _), p in zip(drawn, parts, strict=True):
         moves = db(p.canceller) > STILL_DB
@@ -196,10 +196,10 @@ def budget(config: Config, gated: Config, per_class: int) -> dict[str, Any]:
 def read_budget(file: Path) -> dict[str, Any]:
     """The record, its scenes one by one."""
     contents = read_json(file)
-    for found in contents["scenarios"].values():
-        columns = found["scenes"]
+    for scenario in contents["scenarios"].values():
+        columns = scenario["scenes"]
         rows = zip(*columns.values(), strict=True)
-        found["scenes"] = [dict(zip(columns, row, strict=True)) for row in rows]
+        scenario["scenes"] = [dict(zip(columns, row, strict=True)) for row in rows]
     return contents
 
 
@@ -306,18 +306,18 @@ def main() -> None:
     parser.add_argument("--per-class", type=int, default=4)
     parser.add_argument("--report-only", action="store_true", help="write the tables, no more")
     parser.add_argument("--page", type=Path, default=ROOT / "docs" / "results.md")
-    asked = parser.parse_args()
-    file = asked.page.parent / "results" / "snr_budget.json"
-    if not asked.report_only:
-        found = {}
+    options = parser.parse_args()
+    file = options.page.parent / "results" / "snr_budget.json"
+    if not options.report_only:
+        scenarios = {}
         for name in SCENARIOS:
             config = ROOT / "configs" / "paper" / f"{name}.yaml"
             both = (load_config(config, ["snr_db=0", *more]) for more in ((), GATE))
-            found[name] = budget(*both, asked.per_class)
-        contents = {"commit": (commit()["commit"] or "")[:7], "snr_db": 0, "scenarios": found}
+            scenarios[name] = budget(*both, options.per_class)
+        contents = {"commit": (commit()["commit"] or "")[:7], "snr_db": 0, "scenarios": scenarios}
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(as_text(contents))
-    write_page(asked.page, page_text(read_budget(file)), BEGIN)
+    write_page(options.page, page_text(read_budget(file)), BEGIN)
 
 
 if __name__ == "__main__":

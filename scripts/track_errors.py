@@ -58,16 +58,16 @@ def table(seeds: int) -> Iterator[str]:
                 cells = []
                 for snr in SNR_DB:
                     given = [*radar, f"motion.model={model}", f"snr_db={snr}"]
-                    found = np.array([errors(config, given, activity, s + 1) for s in range(seeds)])
-                    cells.append(_cell(found))
+                    rows = np.array([errors(config, given, activity, s + 1) for s in range(seeds)])
+                    cells.append(_cell(rows))
                 yield f"| {scenario}, {model} | {activity} | " + " | ".join(cells) + " |"
 
 
-def _cell(found: Float) -> str:
-    none = int(np.isnan(found[:, 0]).sum())
-    if none == len(found):
+def _cell(rows: Float) -> str:
+    none = int(np.isnan(rows[:, 0]).sum())
+    if none == len(rows):
         return "none found"
-    far, fast, sure = np.nanmean(found, axis=0)
+    far, fast, sure = np.nanmean(rows, axis=0)
     return f"{far:.2f} m ({fast:.2f} m/s), {sure:.2f}" + (f"; none in {none}" if none else "")
 
 

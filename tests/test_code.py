@@ -20,6 +20,7 @@ PACKAGES = (
     "light",
     "plain_json",
     "phasor",
+    "replacing",
     "untrusted",
     "randomness",
     "progress",
@@ -175,6 +176,12 @@ ARRAYS = {"np.load", "np.memmap", "np.fromfile", "loadmat"}
 def test_arrays_from_elsewhere_are_opened_where_they_are_checked() -> None:
     users = {str(p.relative_to(PACKAGE)) for p in files() if ARRAYS & calls(p)}
     assert users == {f"capture/{name}.py" for name in ("array_files", "images", "sigmf_file")}
+
+
+def test_noise_is_made_by_the_receiver_alone() -> None:
+    assert {p.name for p in files() if "noise_variance" in calls(p)} == {"products.py"}
+    draw = {package(p) for p in files() if any(c.startswith("rng.") for c in calls(p))}
+    assert not draw & {"motion", "radar", "echo", "processing", "simulation", "capture"}
 
 
 def test_only_one_module_prints() -> None:

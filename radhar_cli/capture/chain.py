@@ -248,12 +248,12 @@ def _stretches(
         )
     skipped, hop = 0, min(wanted.hop, length)
     fine = fsst_frames_of(config, segments.duration, segments.prf)
-    for first, count in zip(segments.first.tolist(), segments.lengths.tolist(), strict=True):
-        if count - canceller.lost < length:
+    for part in segments.slices:
+        if part.stop - part.start - canceller.lost < length:
             skipped += 1
             continue
         yield (
-            slice(first, first + count),
+            part,
             {"frames": Frames(length, hop), "fsst_frames": Frames(length, min(fine.hop, length))},
         )
     if skipped:
@@ -264,19 +264,10 @@ def _range_time(
     bins: Complex, segments: Segments, ranges: Float, canceller: Canceller, config: Config
 ) -> PowerMap:
     """The range-time map: pulses of even times, as many as the image has columns."""
-    ends = np.append(segments.first[1:], segments.pulses)
-    pieces = [
-        canceller(bins[:, low:high])
-        for low, high in zip(segments.first, ends, strict=True)
-        if high - low > canceller.lost
-    ]
+    parts = [one for one in segments.slices if one.stop - one.start > canceller.lost]
+    pieces = [canceller(bins[:, one]) for one in parts]
     x = pieces[0] if len(pieces) == 1 else np.concatenate(pieces, axis=1)
-    numbers = np.concatenate(
-        [
-            np.arange(low, high - canceller.lost)
-            for low, high in zip(segments.first, ends, strict=True)
-        ]
-    )
+    numbers = np.concatenate([np.arange(one.start, one.stop - canceller.lost) for one in parts])
     t = segments.times(numbers) + canceller.delay / segments.prf
     width = config.image.size_px[1]
     if len(segments) == 1:

@@ -55,7 +55,7 @@ class Part(NamedTuple):
         return float(np.quantile(self.floor, QUARTILE))
 
 
-class Look(NamedTuple):
+class Excerpt(NamedTuple):
     """A few seconds of a recording.
 
     Attributes:
@@ -76,7 +76,7 @@ class Look(NamedTuple):
     track: TorsoTrack | None
     away: Bool
 
-    def empty(self) -> "Look":
+    def empty(self) -> "Excerpt":
         """The same, of which it turned out that nobody is there."""
         return self._replace(track=None, away=np.ones(self.bins.shape, bool))
 
@@ -84,12 +84,11 @@ class Look(NamedTuple):
         """(`smooth` without its mean while nobody is near, `away`) of the pulses between gaps."""
         count = np.maximum(self.away.sum(axis=1, keepdims=True), 1)
         moving = self.smooth - np.sum(self.smooth * self.away, axis=1, keepdims=True) / count
-        first = self.segments.first
-        for start, stop in zip(first, np.append(first[1:], self.segments.pulses), strict=True):
-            yield moving[:, start:stop], self.away[:, start:stop]
+        for one in self.segments.slices:
+            yield moving[:, one], self.away[:, one]
 
 
-def looks(paths: Sequence[Path]) -> Iterator[Look]:
+def excerpts(paths: Sequence[Path]) -> Iterator[Excerpt]:
     """Stretches of about PART_S, at most MAX_PARTS, spread over each recording."""
     for path in paths:
         with Recording(path) as recording:
@@ -99,10 +98,10 @@ def looks(paths: Sequence[Path]) -> Iterator[Look]:
                 stop = min(start + PART_S, length)
                 first, last, segments = pulses_between(recording, start, stop)
                 if not (recording.flags[first:last] & LOST).all():
-                    yield _look(recording, first, last, segments)
+                    yield _excerpt(recording, first, last, segments)
 
 
-def _look(recording: Recording, first: int, last: int, segments: Segments) -> Look:
+def _excerpt(recording: Recording, first: int, last: int, segments: Segments) -> Excerpt:
     w, lost = recording.info.waveform(), (recording.flags[first:last] & LOST).astype(bool)
     window = range_window(w.n_adc)
     bins, smooth = (
@@ -113,18 +112,17 @@ def _look(recording: Recording, first: int, last: int, segments: Segments) -> Lo
     if track is not None:
         at = track.ranges(segments.times(np.arange(last - first)))
         away = np.abs(w.range_axis()[:, None] - at) > REACH_M + MAIN_LOBE * w.range_step
-    return Look(w, segments, bins, smooth, float(np.sum(window**2)), track, away)
+    return Excerpt(w, segments, bins, smooth, float(np.sum(window**2)), track, away)
 
 
-def part_of(look: Look) -> tuple[Look, Part] | None:
+def part_of(excerpt: Excerpt) -> tuple[Excerpt, Part] | None:
     """Estimates from a stretch, `empty` where nobody is; None of one that holds no noise."""
-    w, moving = look.w, without_static(look.bins)
-    length = min(max(round(WINDOW_S * w.prf), 8), int(look.segments.lengths.max()))
+    w, moving = excerpt.w, without_static(excerpt.bins)
+    length = min(max(round(WINDOW_S * w.prf), 8), int(excerpt.segments.lengths.max()))
     window = np.hanning(length + 2)[1:-1]
     power, middle = [], []
-    first_of, lengths = look.segments.first.tolist(), look.segments.lengths.tolist()
-    for first, count in zip(first_of, lengths, strict=True):
-        for at in range(first, first + count - length + 1, length):
+    for one in excerpt.segments.slices:
+        for at in range(one.start, one.stop - length + 1, length):
             here = hann_in_range(moving[:, at : at + length])  # no sidelobes far off
             power.append(np.abs(scipy.fft.fft(here * window, axis=1)) ** 2)
             middle.append(at + length // 2)
@@ -141,42 +139,42 @@ def part_of(look: Look) -> tuple[Look, Part] | None:
     least = SLOW_MPS * 2 * w.f0 / SPEED_OF_LIGHT + 2 * w.prf / length  # beside Hann's main lobe
     fast = np.abs(np.fft.fftfreq(length, 1 / w.prf)) > least
     signal, quick = (
-        _of_the_person(maps[:, :, some].sum(axis=2), look, np.array(middle), noise * white * n)
+        _of_the_person(maps[:, :, some].sum(axis=2), excerpt, np.array(middle), noise * white * n)
         / (length * white * w.n_adc)
         for some, n in ((fast | True, length), (fast, np.count_nonzero(fast)))
     )
     found = signal > 0 and quick > FAST_SHARE * signal
-    look = look if found else look.empty()
-    room = returns(look.smooth, look.away, look.segments.first, w.prf, w.f0)
+    excerpt = excerpt if found else excerpt.empty()
+    room = returns(excerpt.smooth, excerpt.away, excerpt.segments.first, w.prf, w.f0)
     part = Part(np.nan, np.empty(0), np.nan, floor, np.nan, room)
-    if look.track is None:
-        return look, part
-    still = np.sum(np.abs(look.bins.mean(axis=1)) ** 2) / w.n_adc**2
-    return look, part._replace(
+    if excerpt.track is None:
+        return excerpt, part
+    still = np.sum(np.abs(excerpt.bins.mean(axis=1)) ** 2) / w.n_adc**2
+    return excerpt, part._replace(
         snr_db=10 * float(np.log10(signal / noise)),
-        ranges=look.track.range[look.track.confidence >= SURE],
-        spreading=float(np.mean(np.maximum(look.track.range, w.range_step) ** -4)),
+        ranges=excerpt.track.range[excerpt.track.confidence >= SURE],
+        spreading=float(np.mean(np.maximum(excerpt.track.range, w.range_step) ** -4)),
         static_db=10 * float(np.log10(max(still / signal, 1e-30))),
     )
 
 
-def _of_the_person(power: Float, look: Look, middle: Index, noise: float) -> float:
+def _of_the_person(power: Float, excerpt: Excerpt, middle: Index, noise: float) -> float:
     """Power of a frame that comes from within reach of the torso; 0 where there is none.
 
     Args:
         power: of the moving echo [frame, bin].
-        look: whose it is.
+        excerpt: of the recording.
         middle: pulse in the middle of each frame.
         noise: white noise in a bin; taken off where there is no bin without the person, else the
             median of these is, with all that lies at all ranges.
     """
-    if look.track is None:
+    if excerpt.track is None:
         return 0.0
-    at = look.track.ranges(look.segments.times(middle))
-    reach = REACH_M + 2 * look.w.range_step
-    near = np.abs(look.w.range_axis() - at[:, None]) <= reach
+    at = excerpt.track.ranges(excerpt.segments.times(middle))
+    reach = REACH_M + 2 * excerpt.w.range_step
+    near = np.abs(excerpt.w.range_axis() - at[:, None]) <= reach
     signal = 0.0
-    for bins, inside, free in zip(power, near, look.away[:, middle].T, strict=True):
+    for bins, inside, free in zip(power, near, excerpt.away[:, middle].T, strict=True):
         floor = float(np.median(bins[free])) if free.any() else noise
         signal += float(np.sum(bins[inside] - floor))
     return signal / len(power)

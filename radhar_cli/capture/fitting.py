@@ -15,8 +15,9 @@ from typing import Any
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.capture.fit_parts import SLOW_MPS, Part, looks, part_of
+from radhar_cli.capture.fit_parts import SLOW_MPS, Part, excerpts, part_of
 from radhar_cli.capture.noise_spectrum import (
+    WHITE,
     WINDOW_S,
     Colour,
     FoundLine,
@@ -45,6 +46,8 @@ from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 FEW = 3  # SNRs from which on a spread is fitted
 PAIR_HZ, PAIR_DB = 0.2, 3.0  # twice the error of a line
+MAX_SNR_DB = 100.0  # beyond which the floor is rounding, whose spectrum says nothing
+MIN_S = 0.5  # of the longest recording; somebody has to move in it
 LEAKAGE_BINS = 3  # the nearest, in which the antennas' leakage lies
 
 
@@ -167,14 +170,15 @@ def fit(paths: Sequence[Path]) -> Fit:
     """Read waveform, SNR, ranges, noise and what stands in the room off recordings of one radar.
 
     Raises:
-        CaptureError: they are of different radars, slow time, or nobody moves in any.
+        CaptureError: one is given twice or of another radar, they are slow time or too short, or
+            nobody moves in any.
         FolderError: one is not a recording.
     """
     waveform, seconds, length = _waveform(paths)
     spectrum = NoiseSpectrum(length, waveform.prf)
     every: list[Part | None] = []
-    for look in looks(paths):
-        seen = part_of(look)
+    for excerpt in excerpts(paths):
+        seen = part_of(excerpt)
         every.append(seen and seen[1])
         for moving, away in seen[0].stretches() if seen else ():
             spectrum.add(moving, away)
@@ -188,8 +192,10 @@ def fit(paths: Sequence[Path]) -> Fit:
         if one.residual > 0:
             beside = np.abs(waveform.range_axis() - one.range)
             spectrum.left_out |= beside < MAIN_LOBE * waveform.range_step
-    narrow = _with_times(lines(spectrum), paths, every, waveform.prf)
-    coloured = colour(spectrum, narrow)
+    narrow, coloured = list[FoundLine](), WHITE
+    if np.nanmedian([part.snr_db for part in parts]) < MAX_SNR_DB:
+        narrow = _with_times(lines(spectrum), paths, every, waveform.prf)
+        coloured = colour(spectrum, narrow)
     fitted = Fit(parts, waveform, seconds, spectrum, coloured, narrow, room, found, leakage)
     validated(Config, fitted.document, str(paths[0]), {})
     return fitted
@@ -202,20 +208,23 @@ def _with_times(
     if not found:
         return []
     times = [OnOff(line, prf) for line in found]
-    for look, part in zip(looks(paths), parts, strict=True):
+    for excerpt, part in zip(excerpts(paths), parts, strict=True):
         if part is None:
             continue
-        known = look if np.isfinite(part.snr_db) else look.empty()
+        known = excerpt if np.isfinite(part.snr_db) else excerpt.empty()
         for moving, away in known.stretches():
             for one in times:
-                one.add(moving, away, part.noise * look.gain)
+                one.add(moving, away, part.noise * excerpt.gain)
     return [one.line_with_times() for one in times]
 
 
 def _waveform(paths: Sequence[Path]) -> tuple[Waveform, float, int]:
     """The chirps of all recordings, how long they last (s), and pulses of a window in any."""
     waveform, seconds, lengths = None, [], []
-    for path in paths:
+    places = [path.resolve() for path in paths]
+    for number, path in enumerate(paths):
+        if places[number] in places[:number]:
+            raise CaptureError(f"{path}: is given twice; each recording counts once")
         with Recording(path) as recording:
             one = recording.info.waveform()
             if waveform is not None and _differs(one, waveform):
@@ -223,6 +232,11 @@ def _waveform(paths: Sequence[Path]) -> tuple[Waveform, float, int]:
             waveform = waveform or one
             seconds.append(recording.segments.duration)
             lengths.append(int(recording.segments.lengths.max()))
+    if max(seconds) < MIN_S:
+        raise CaptureError(
+            f"{paths[0]}: the longest recording lasts {max(seconds):.3g} s; it should "
+            f"last at least {MIN_S:g} s for somebody to be seen to move"
+        )
     assert waveform is not None
     return waveform, float(np.median(seconds)), min(round(WINDOW_S * waveform.prf), *lengths)
 

@@ -102,14 +102,18 @@ def _loaded(
     with refusing(str(path)), zipfile.ZipFile(path) as archive:
         shapes = check_npz(archive)
         wide = [name for name, (shape, kind) in shapes.items() if len(shape) == 3 and kind in "ub"]
+        wide = [name for name in wide if name in ("masks", "images")] or wide
         if len(wide) != 1 or "label" not in shapes:
-            raise ValueError("should hold one array of images [N, H, W], uint8 or bool, and label")
+            raise ValueError(
+                "should hold one array of images [N, H, W], uint8 or bool, called masks or images "
+                "if there are others, and label"
+            )
         if int(np.prod(shapes[wide[0]][0], dtype=object)) > MAX_NPZ:
             raise ValueError(f"holds more than {MAX_NPZ} bytes of images")
         with np.load(path, allow_pickle=False) as arrays:
-            values, label = arrays[wide[0]], arrays["label"].ravel()
-            classes = arrays["classes"].ravel() if "classes" in shapes else None
-            person = arrays["person"].ravel() if "person" in shapes else None
+            values, label = arrays[wide[0]], _as_text(arrays["label"].ravel())
+            classes = _as_text(arrays["classes"].ravel()) if "classes" in shapes else None
+            person = _as_text(arrays["person"].ravel()) if "person" in shapes else None
         if values.dtype not in (np.uint8, np.bool_):
             raise ValueError(f"{wide[0]} is of {values.dtype}; should be uint8 or bool")
         images = np.unpackbits(values.view(np.uint8), axis=2) if packed else values.view(np.uint8)
@@ -124,6 +128,11 @@ def _loaded(
         if person is not None and len(person) != len(images):
             raise ValueError(f"person should name who is in each of {len(images)} images")
     return images, label, person
+
+
+def _as_text(values: NDArray[Any]) -> NDArray[Any]:
+    """Bytes as text, anything else as it is."""
+    return np.char.decode(values, "ascii", "replace") if values.dtype.kind == "S" else values
 
 
 def read_image(folder: Path, file: str, size: tuple[int, int], packed: bool) -> Levels:

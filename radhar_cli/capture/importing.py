@@ -284,13 +284,7 @@ def _info(
     )
 
 
-def write_simulated(
-    out: Path,
-    beat: Complex,
-    waveform: Waveform,
-    label: Label,
-    found: Sequence[str] = (),
-) -> RecordingInfo:
+def write_simulated(out: Path, beat: Complex, waveform: Waveform, label: Label) -> RecordingInfo:
     """Write a simulated beat matrix [N_ADC, M] as a recording.
 
     Raises:
@@ -307,7 +301,7 @@ def write_simulated(
         pulses=pulses,
         receiver_delay_s=[0.0],
         labels=[label],
-        source=SourceNote(format="simulated", found=[*found]),
+        source=SourceNote(format="simulated"),
     )
     values = np.ascontiguousarray(beat).view(float).reshape(1, samples, pulses, 2)
     segments = Segments(np.zeros(1), np.zeros(1, np.int64), pulses, waveform.prf)

@@ -15,6 +15,7 @@ from radhar_cli.config.schema import Config
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.figures.maps_panel import Shown, draw_maps
 from radhar_cli.processing.torso_track import TorsoTrack
+from radhar_cli.replacing import replacing
 from radhar_cli.simulation.scene_file import write_map
 
 MAPS_FILE, FIGURE, UNFINISHED = "maps.h5", "maps.png", "maps.unfinished"
@@ -34,10 +35,10 @@ def write_maps(maps: Maps, config: Config, info: RecordingInfo, folder: Path) ->
     Raises:
         UnfinishedError: the folder cannot be written.
     """
-    path, unfinished = folder / MAPS_FILE, folder / UNFINISHED
+    path = folder / MAPS_FILE
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        with h5py.File(unfinished, "w") as file:
+        with replacing(path, UNFINISHED) as unfinished, h5py.File(unfinished, "w") as file:
             for name, power_map in maps.maps.items():
                 write_map(file, name, power_map)
             if maps.track is not None:
@@ -48,11 +49,8 @@ def write_maps(maps: Maps, config: Config, info: RecordingInfo, folder: Path) ->
             file.attrs["config"] = json.dumps(resolved(config))
             file.attrs["notes"] = json.dumps(maps.notes)
             file.attrs["radhar_version"] = __version__
-        unfinished.replace(path)
     except OSError as error:
         raise UnfinishedError(f"{error.filename or folder}: {error.strerror or error}") from None
-    finally:
-        unfinished.unlink(missing_ok=True)
     return [path]
 
 

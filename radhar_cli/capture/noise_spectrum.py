@@ -47,6 +47,9 @@ class Colour(NamedTuple):
         return self.white * (1 + raised)
 
 
+WHITE = Colour(1.0, 0.0, SLOPES[0])
+
+
 class FoundLine(NamedTuple):
     """A narrow line at all ranges.
 
@@ -184,7 +187,7 @@ def colour(spectrum: NoiseSpectrum, found: list[FoundLine]) -> Colour:
 
     both = spectrum.over_all_ranges()
     if both is None:
-        return Colour(1.0, 0.0, SLOPES[0])
+        return WHITE
     f, step = np.abs(spectrum.frequency), spectrum.prf / spectrum.length
     kept = f >= (LOWEST - 0.5) * step
     for line in found:
@@ -198,7 +201,7 @@ def colour(spectrum: NoiseSpectrum, found: list[FoundLine]) -> Colour:
         level.append(10 * np.log10(both[2][some].mean()))
     x, y = np.array(at), np.array(level)
     if x.size < 8:
-        return Colour(1.0, 0.0, SLOPES[0])
+        return WHITE
 
     def off(parameters: Float) -> Float:
         model = Colour(10 ** (parameters[0] / 10), 10 ** parameters[1], parameters[2])
@@ -212,7 +215,7 @@ def colour(spectrum: NoiseSpectrum, found: list[FoundLine]) -> Colour:
     gain = x.size * np.log(squares[0] / max(squares[1], 1e-12)) - 2 * np.log(x.size)
     rise = 10 * np.log10(1 + (10 ** best[1] / x[0]) ** (best[2] / 10))
     if gain < SURE_BIC or rise < MIN_RISE_DB:
-        return Colour(1.0, 0.0, SLOPES[0])
+        return WHITE
     return Colour(*(float(one) for one in (10 ** (best[0] / 10), 10 ** best[1], best[2])))
 
 

@@ -5,7 +5,7 @@ Beat signals follow radhar's sign: a target at range R lies at exp(-j 2 pi (fc t
 
 import json
 from collections.abc import Iterable
-from contextlib import suppress
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -21,6 +21,7 @@ from radhar_cli.capture.source import Parts
 from radhar_cli.dataset.untrusted_hdf5 import Samples, UntrustedFile
 from radhar_cli.errors import CaptureError, FolderError, UnfinishedError
 from radhar_cli.radar.waveform import Waveform
+from radhar_cli.replacing import replacing
 from radhar_cli.untrusted import Closing
 
 KIND, SCHEMA_VERSION = "radhar recording", 1
@@ -119,8 +120,13 @@ class Segments:
 
     @property
     def lengths(self) -> NDArray[np.int64]:
-        """Pulses of each."""
+        """How many pulses each has."""
         return np.diff(self.first, append=self.pulses)
+
+    @property
+    def slices(self) -> list[slice]:
+        """Pulses of each."""
+        return [slice(*edges) for edges in pairwise([*self.first.tolist(), self.pulses])]
 
     @property
     def duration(self) -> float:
@@ -157,7 +163,6 @@ def write_recording(
     Raises:
         UnfinishedError: it cannot be written.
     """
-    unfinished = path.with_name(f"{path.name}.unfinished")
     samples = info.samples or 1
     shape: tuple[int, ...] = (info.receivers, samples, info.pulses)
     dtype = _stored(number, parts)
@@ -167,7 +172,7 @@ def write_recording(
         shape, chunks = shape[::2], chunks[::2]
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with h5py.File(unfinished, "w") as file:
+        with replacing(path) as unfinished, h5py.File(unfinished, "w") as file:
             name = "slow_time" if info.samples is None else "beat"
             data = file.create_dataset(name, shape, dtype, chunks=chunks)
             data.attrs["axes"] = ["receiver", "fast time", "pulse"][:: 2 if len(shape) == 2 else 1]
@@ -190,14 +195,10 @@ def write_recording(
             file.attrs["schema_version"] = SCHEMA_VERSION
             file.attrs["recording"] = json.dumps(info.model_dump())
             file.attrs["radhar_version"] = __version__
-        unfinished.replace(path)
     except OSError as error:
         raise UnfinishedError(
             f"{error.filename or path}: {error.strerror or error}; nothing was written"
         ) from None
-    finally:
-        with suppress(OSError):
-            unfinished.unlink(missing_ok=True)
     return info
 
 

@@ -7,7 +7,6 @@ every other reader may ignore. Segments are captures, labels annotations.
 
 import hashlib
 import json
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +20,7 @@ from radhar_cli.capture.settings import CaptureSettings
 from radhar_cli.capture.source import PIECE_BYTES, Parts, Source
 from radhar_cli.config.reading import validated
 from radhar_cli.errors import CaptureError, MachineError, UnfinishedError
+from radhar_cli.replacing import replacing
 from radhar_cli.untrusted import read_json, regular_size
 
 META, DATA = ".sigmf-meta", ".sigmf-data"
@@ -162,29 +162,25 @@ def write_sigmf(recording: Recording, out: Path) -> list[Path]:
         UnfinishedError: they cannot be written.
     """
     meta, data = out.with_suffix(META), out.with_suffix(DATA)
-    unfinished = data.with_name(f"{data.name}.unfinished")
     info = recording.info
     digest = hashlib.sha512()
     pulse = info.receivers * (info.samples or 1) * 2 * recording.number.itemsize
     step = max(PIECE_BYTES // pulse, 1)
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
-        with unfinished.open("wb") as file:
-            for first in range(0, info.pulses, step):
-                values = recording.parts(first, min(first + step, info.pulses))
-                ordered = np.ascontiguousarray(values.transpose(2, 1, 0, 3))
-                block = ordered.astype(recording.number.newbyteorder("<")).tobytes()
-                digest.update(block)
-                file.write(block)
-        document = _metadata(recording, digest.hexdigest())
-        _validated(document, str(meta))
-        unfinished.replace(data)
+        with replacing(data) as unfinished:
+            with unfinished.open("wb") as file:
+                for first in range(0, info.pulses, step):
+                    values = recording.parts(first, min(first + step, info.pulses))
+                    ordered = np.ascontiguousarray(values.transpose(2, 1, 0, 3))
+                    block = ordered.astype(recording.number.newbyteorder("<")).tobytes()
+                    digest.update(block)
+                    file.write(block)
+            document = _metadata(recording, digest.hexdigest())
+            _validated(document, str(meta))
         meta.write_text(json.dumps(document, indent=2) + "\n")
     except OSError as error:
         raise UnfinishedError(f"{error.filename or out}: {error.strerror or error}") from None
-    finally:
-        with suppress(OSError):
-            unfinished.unlink(missing_ok=True)
     return [meta, data]
 
 

@@ -6,30 +6,18 @@ T_c = idle time + ramp end time. Transmitters that take turns have PRF = 1/(n T_
 starts later than the ramp: carrier = start frequency + slope times that.
 """
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import isfinite
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from radhar_cli.errors import CaptureError, did_you_mean
 from radhar_cli.untrusted import read_json, read_text
 
+T = TypeVar("T")
 MAX_CFG = 2**16
+MAX_CHIRPS = 512  # of a frame
 TRANSMIT = "txEnable"
-
-
-@dataclass(frozen=True)
-class Chirp:
-    """One chirp of the sequence that a frame repeats.
-
-    Attributes:
-        transmitters: mask of those that are on.
-        where: file and field, for messages.
-    """
-
-    transmitters: int
-    where: str
 
 
 def read_header(path: Path) -> dict[str, Any]:
@@ -112,11 +100,6 @@ def _studio(path: Path) -> dict[str, Any]:
         raise CaptureError(f"{rf['rlChirps'].where}: chirps should share one profile there is")
     profile = profiles[int(used.pop())]
     mask = rf["rlChanCfg_t"]["rxChannelEn"].whole()
-    output = form["b2AdcOutFmt"]
-    if output.whole() not in (0, 1, 2):
-        raise CaptureError(
-            f"{output.where} = {output.value!r}: should be 0 (real), 1 or 2 (complex)"
-        )
     interleaved = raw["rlDevDataFmtCfg_t"]["chInterleave"].whole() == 0
     lanes = raw["rlDevLaneEnable_t"]["laneEn"]
     count = lanes.whole().bit_count()
@@ -125,10 +108,9 @@ def _studio(path: Path) -> dict[str, Any]:
     packet = raw["rlDevDataPathCfg_t"]["transferFmtPkt0"]
     if packet.whole() != 1:
         raise CaptureError(f"{packet.where} = {packet.value!r}: should be 0x1, ADC samples alone")
-    bits = form["b2AdcBits"]
     return {
         **_timing(
-            [Chirp(one[TRANSMIT].whole(), one[TRANSMIT].where) for one in chirps],
+            [one[TRANSMIT] for one in chirps],
             start_ghz=profile["startFreqConst_GHz"].number(),
             slope=profile["freqSlopeConst_MHz_usec"],
             idle_us=profile["idleTimeConst_usec"].number(),
@@ -140,8 +122,8 @@ def _studio(path: Path) -> dict[str, Any]:
             frame=frame["framePeriodicity_msec"],
         ),
         **_receivers(mask),
-        "complex": output.whole() != 0,
-        "adc_bits": _bits(bits),
+        "complex": _is_complex(form["b2AdcOutFmt"]),
+        "adc_bits": _bits(form["b2AdcBits"]),
         "lanes": count,
         "interleaved": interleaved,
         "iq": "qi" if raw["rlDevDataFmtCfg_t"]["iqSwapSel"].whole() == 1 else "iq",
@@ -153,20 +135,41 @@ def _studio_chirps(rf: _Field, frame: _Field) -> list[_Field]:
     by_number: dict[int, _Field] = {}
     for one in rf["rlChirps"]:
         chirp = one["rlChirpCfg_t"]
-        for key in ("startFreqVar_MHz", "freqSlopeVar_KHz_usec", "idleTimeVar_usec"):
-            if key in chirp.value and chirp[key].number() != 0:
-                raise CaptureError(
-                    f"{chirp[key].where} = {chirp[key].value!r}: should be 0, all chirps alike"
-                )
-        numbers = range(chirp["chirpStartIdx"].whole(), min(chirp["chirpEndIdx"].whole(), 511) + 1)
-        by_number |= dict.fromkeys(numbers, chirp)
-    first, last = frame["chirpStartIdx"], frame["chirpEndIdx"]
+        variable = ("startFreqVar_MHz", "freqSlopeVar_KHz_usec", "idleTimeVar_usec")
+        _refuse_changes(chirp[key] for key in variable if key in chirp.value)
+        by_number |= dict.fromkeys(_numbers(chirp["chirpStartIdx"], chirp["chirpEndIdx"]), chirp)
+    return _of_frame(by_number, frame["chirpStartIdx"], frame["chirpEndIdx"], "rlChirps")
+
+
+def _refuse_changes(variable: Iterable[_Field]) -> None:
+    """Refuse chirps that differ from their profile."""
+    for field in variable:
+        if field.number() != 0:
+            raise CaptureError(f"{field.where} = {field.value!r}: should be 0, all chirps alike")
+
+
+def _numbers(first: _Field, last: _Field) -> range:
+    """Numbers of the chirps that a line of the header defines."""
+    return range(first.whole(), min(last.whole(), MAX_CHIRPS - 1) + 1)
+
+
+def _of_frame(by_number: Mapping[int, T], first: _Field, last: _Field, where: str) -> list[T]:
+    """The chirps of a frame, in order."""
     wanted = range(first.whole(), last.whole() + 1)
-    if not wanted or not by_number.keys() >= {*wanted[:512]} or len(wanted) > 512:
+    count = wanted.stop - wanted.start  # len() has a limit
+    if not 0 < count <= MAX_CHIRPS or not by_number.keys() >= {*wanted}:
         raise CaptureError(
-            f"{last.where} = {last.value!r}: a frame should be made of chirps that rlChirps defines"
+            f"{last.where} = {last.value!r}: a frame should be made of chirps that {where} defines"
         )
     return [by_number[number] for number in wanted]
+
+
+def _is_complex(output: _Field) -> bool:
+    if output.whole() > 2:
+        raise CaptureError(
+            f"{output.where} = {output.value!r}: should be 0 (real), 1 or 2 (complex)"
+        )
+    return output.whole() != 0
 
 
 def _bits(bits: _Field) -> int:
@@ -181,7 +184,7 @@ def _receivers(mask: int) -> dict[str, Any]:
 
 
 def _timing(
-    chirps: Sequence[Chirp],
+    transmitters: Sequence[_Field],
     *,
     start_ghz: float,
     slope: _Field,
@@ -193,9 +196,9 @@ def _timing(
     loops: int,
     frame: _Field,
 ) -> dict[str, Any]:
-    masks = [chirp.transmitters for chirp in chirps]
+    masks = [one.whole() for one in transmitters]
     if 0 in masks:
-        raise CaptureError(f"{chirps[masks.index(0)].where} = 0: should enable a transmitter")
+        raise CaptureError(f"{transmitters[masks.index(0)].where} = 0: should enable a transmitter")
     if not slope.number() > 0:
         raise CaptureError(f"{slope.where} = {slope.value!r}: should be above 0, a rising chirp")
     if not rate.number() > 0:
@@ -313,28 +316,14 @@ def _demo(path: Path) -> dict[str, Any]:
     by_number: dict[int, dict[str, _Field]] = {}
     for one in commands.all("chirpCfg"):
         chirp = commands.whole("chirpCfg", one)
-        for name in ("startFreqVar", "freqSlopeVar", "idleTimeVar", "adcStartTimeVar"):
-            if chirp[name].number() != 0:
-                raise CaptureError(
-                    f"{chirp[name].where} = {chirp[name].value!r}: should be 0, all chirps alike"
-                )
-        numbers = range(chirp["startIdx"].whole(), min(chirp["endIdx"].whole(), 511) + 1)
-        by_number |= dict.fromkeys(numbers, chirp)
-    last = frame["chirpEndIdx"]
-    wanted = range(frame["chirpStartIdx"].whole(), last.whole() + 1)
-    if not wanted or len(wanted) > 512 or not by_number.keys() >= {*wanted}:
-        raise CaptureError(
-            f"{last.where} = {last.value!r}: should be a chirp that chirpCfg defines"
-        )
+        variable = ("startFreqVar", "freqSlopeVar", "idleTimeVar", "adcStartTimeVar")
+        _refuse_changes(chirp[name] for name in variable)
+        by_number |= dict.fromkeys(_numbers(chirp["startIdx"], chirp["endIdx"]), chirp)
+    chirps = _of_frame(by_number, frame["chirpStartIdx"], frame["chirpEndIdx"], "chirpCfg")
     interleaved, swapped = _buffer(commands)
-    output = adc["adcOutputFmt"]
-    if output.whole() > 2:
-        raise CaptureError(
-            f"{output.where} = {output.value!r}: should be 0 (real), 1 or 2 (complex)"
-        )
     return {
         **_timing(
-            [Chirp(by_number[n][TRANSMIT].whole(), by_number[n][TRANSMIT].where) for n in wanted],
+            [one[TRANSMIT] for one in chirps],
             start_ghz=profile["startFreq"].number(),
             slope=profile["freqSlopeConst"],
             idle_us=profile["idleTime"].number(),
@@ -346,7 +335,7 @@ def _demo(path: Path) -> dict[str, Any]:
             frame=frame["framePeriodicity"],
         ),
         **_receivers(channels["rxChannelEn"].whole()),
-        "complex": output.whole() != 0,
+        "complex": _is_complex(adc["adcOutputFmt"]),
         "adc_bits": _bits(adc["numADCBits"]),
         "lanes": 4 if interleaved else 2,
         "interleaved": interleaved,

@@ -6,11 +6,11 @@ from typing import Any
 from tqdm import tqdm
 
 from radhar_cli.commands.tell import is_quiet, wanted
-from radhar_cli.untrusted import shown
+from radhar_cli.untrusted import Closing, shown
 
 
-class Bars:
-    """One bar at a time; none without a terminal, or with --quiet."""
+class Bars(Closing):
+    """One bar at a time, which `with` takes away; none without a terminal, or with --quiet."""
 
     def __init__(self) -> None:
         self._bar: tqdm[Any] | None = None

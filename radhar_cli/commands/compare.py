@@ -58,15 +58,12 @@ def compare(
     apart(out, [simulated, measured])
     names = read_classes(classes) if classes else {}
     options = Options(map_, names, resize, per_class, seed, zero, pictures)
-    progress = BarProgress("map")
-    try:
-        found = compared(simulated, measured, options, progress)
-    finally:
-        progress.close()
-    for warning in found.warnings:
+    with BarProgress("map") as progress:
+        comparison = compared(simulated, measured, options, progress)
+    for warning in comparison.warnings:
         tell(f"warning: {warning}", err=True)
-    files = write(found, out)
-    numbers = found.numbers()
+    files = write(comparison, out)
+    numbers = comparison.numbers()
     report(
         files=files,
         test=numbers["test"],
@@ -74,8 +71,8 @@ def compare(
         classes=numbers["classes"],
         warnings=numbers["warnings"],
     )
-    for one in found.classes:
-        _tell_class(found, one, numbers["classes"][one.name])
+    for one in comparison.classes:
+        _tell_class(comparison, one, numbers["classes"][one.name])
     if numbers["test"]:
         tell(f"\nall classes: {_test(numbers['test'])}; {100 * numbers['coverage']:.0f} % covered")
     tell(f"{files[0]}: {len(files) - 2} figures beside it")
@@ -89,21 +86,24 @@ def _test(test: dict[str, Any]) -> str:
     )
 
 
-def _tell_class(found: "Comparison", one: "ClassCompared", numbers: dict[str, Any]) -> None:
+def _tell_class(comparison: "Comparison", one: "ClassCompared", numbers: dict[str, Any]) -> None:
     from radhar_cli.two_sample.map_statistics import STATISTICS
 
     test = numbers["test"]
-    said = _test(test) if isinstance(test, dict) else "not tested"
-    tell(f"\n{one.name}: {said}; {100 * float((one.uncovered <= 1).mean()):.0f} % covered")
+    outcome = _test(test) if isinstance(test, dict) else "not tested"
+    tell(f"\n{one.name}: {outcome}; {100 * float((one.uncovered <= 1).mean()):.0f} % covered")
     tell(
         f"  {'mean (standard deviation)':<38} {'simulated':>18} {'measured':>18} {'distance':>9}"
         f" {'KS':>5} {'p':>7}"
     )
-    for name, apart in list(one.apart.items())[:SHOWN]:
-        unit = found.scale.unit(name)
+    for name, difference in list(one.differences.items())[:SHOWN]:
+        unit = comparison.scale.unit(name)
         words = STATISTICS[name].words + (f", {unit}" if unit else "")
-        cells = [f"{side.mean:.4g} ({side.sd:.2g})" for side in (apart.simulated, apart.measured)]
+        cells = [
+            f"{side.mean:.4g} ({side.sd:.2g})"
+            for side in (difference.simulated, difference.measured)
+        ]
         tell(
-            f"  {words:<38} {cells[0]:>18} {cells[1]:>18} {apart.distance:>9.2f}"
-            f" {apart.ks:>5.2f} {apart.p:>7.1g}"
+            f"  {words:<38} {cells[0]:>18} {cells[1]:>18} {difference.distance:>9.2f}"
+            f" {difference.ks:>5.2f} {difference.p:>7.1g}"
         )

@@ -35,10 +35,7 @@ def convert(
         raise RadharError(f"--to {to}: is not a format; {hint}")
     if to == "parquet":
         needs("formats", ("pyarrow",))
-    progress = BarProgress()
-    try:
+    with BarProgress() as progress:
         samples = write(dataset, out, to, progress)
-    finally:
-        progress.close()
     report(folder=out, samples=samples, format=to)
     tell(f"{out}: {samples} samples as {to}; {out / 'README.md'} says how to read them")

@@ -177,14 +177,14 @@ def _report(
     from radhar_cli.learning.machine import choose_device
     from radhar_cli.learning.report import evaluate
 
-    found = evaluate(runs, data, options, choose_device(device), StderrLog())
-    found.write(folder)
+    evaluation = evaluate(runs, data, options, choose_device(device), StderrLog())
+    evaluation.write(folder)
     accuracies = {
         run: {data: numbers["accuracy"] for data, numbers in about["data"].items()}
-        for run, about in found.numbers["runs"].items()
+        for run, about in evaluation.numbers["runs"].items()
     }
     report(page=folder / "report.html", numbers=folder / "report.json", accuracy=accuracies)
-    tell(f"{folder / 'report.html'}: {len(found.figures)} figures; numbers in report.json")
+    tell(f"{folder / 'report.html'}: {len(evaluation.figures)} figures; numbers in report.json")
 
 
 def _few_shots(

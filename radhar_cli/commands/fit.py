@@ -36,7 +36,7 @@ def fit(
     fitted = read_off(recordings)
     for key, value in fitted.numbers().items():
         tell(f"  {key:<16} {value:.4g}")
-    text = f"# Read off: {len(recordings)} recordings, of these {len(fitted.parts)} parts.\n"
+    text = f"# Fitted to stretches of recordings: {len(fitted.parts)}.\n"
     lines = [f"{key}: {json.dumps(value)}" for key, value in fitted.document.items()]
     out.parent.mkdir(parents=True, exist_ok=True)
     out.write_text(text + "\n".join(lines) + "\n")

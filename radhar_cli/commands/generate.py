@@ -67,19 +67,24 @@ def generate(
     ] = False,
 ) -> None:
     with resumable(f"what is finished in {out}"):
-        overrides = with_tolerance(set_, tolerance)
-        _generate(
-            config,
-            out,
-            overrides,
-            jobs,
-            batch,
-            dry_run,
-            overwrite,
-            recordings,
-            shard,
-            cluster,
-        )
+        from radhar_cli.config import load_config
+        from radhar_cli.dataset.workers import cores
+
+        loaded, jobs = load_config(config, with_tolerance(set_, tolerance)), jobs or cores()
+        if recordings is not None:
+            if shard is not None or cluster is not None:
+                raise ConfigError("--recordings: cannot be combined with --shard or --cluster")
+            _of_recordings(loaded, recordings, out, jobs, batch, dry_run, overwrite)
+        elif loaded.recordings is not None:
+            raise ConfigError(
+                f"{config}: recordings: --recordings MANIFEST should say where they lie"
+            )
+        elif dry_run:
+            from radhar_cli.commands.dry_run import print_plan
+
+            print_plan(loaded, jobs)
+        else:
+            _of_scenes(loaded, out, jobs, batch, shard, cluster, overwrite)
 
 
 def shard_named(arguments: list[str]) -> list[str]:
@@ -91,49 +96,27 @@ def shard_named(arguments: list[str]) -> list[str]:
     return named
 
 
-def _generate(
-    path: Path,
+def _of_scenes(
+    config: "Config",
     out: Path,
-    overrides: list[str],
-    jobs: int | None,
+    jobs: int,
     batch: int | None,
-    dry_run: bool,
-    overwrite: bool,
-    manifest: Path | None,
     shard: str | None,
     cluster: str | None,
+    overwrite: bool,
 ) -> None:
-    from radhar_cli.config import load_config
-    from radhar_cli.dataset.workers import cores, on_cluster
-
-    config = load_config(path, overrides)
-    jobs = jobs or cores()
-    if manifest is not None:
-        if shard is not None or cluster is not None:
-            raise ConfigError("--recordings: cannot be combined with --shard or --cluster")
-        _of_recordings(config, manifest, out, jobs, batch, dry_run, overwrite)
-        return
-    if config.recordings is not None:
-        raise ConfigError(f"{path}: recordings: --recordings MANIFEST should say where they lie")
-    if dry_run:
-        from radhar_cli.commands.dry_run import print_plan
-
-        print_plan(config, jobs)
-        return
     from radhar_cli.commands.terminal import BarProgress, print_outcome, print_part
     from radhar_cli.dataset.build import build, build_part
     from radhar_cli.dataset.parts import Part
+    from radhar_cli.dataset.workers import on_cluster
 
-    progress = BarProgress()
-    try:
-        with nullcontext(jobs) if cluster is None else on_cluster(cluster, jobs) as jobs:
-            if shard is None:
-                outcome = build(config, out, jobs, progress, overwrite, batch)
-            else:
-                part = Part.of_array_task(os.environ) if shard == ARRAY else Part.parse(shard)
-                outcome = build_part(config, out, part, jobs, progress, overwrite, batch)
-    finally:
-        progress.close()
+    where = nullcontext(jobs) if cluster is None else on_cluster(cluster, jobs)
+    with BarProgress() as progress, where as jobs:
+        if shard is None:
+            outcome = build(config, out, jobs, progress, overwrite, batch)
+        else:
+            part = Part.of_array_task(os.environ) if shard == ARRAY else Part.parse(shard)
+            outcome = build_part(config, out, part, jobs, progress, overwrite, batch)
     if shard is None:
         print_outcome(config, outcome)
     else:
@@ -164,11 +147,9 @@ def _of_recordings(
         tell("nothing was written")
         return
     folder = manifest if manifest.is_dir() else manifest.parent
-    progress, maker = BarProgress(), WindowMaker(folder.absolute())
-    try:
+    maker = WindowMaker(folder.absolute())
+    with BarProgress() as progress:
         outcome = build(measured, out, jobs, progress, overwrite, batch, maker)
-    finally:
-        progress.close()
     print_outcome(measured, outcome)
 
 

@@ -36,10 +36,6 @@ def merge(
     from radhar_cli.dataset.merge import merge as merge_parts
     from radhar_cli.dataset.workers import cores
 
-    progress = BarProgress()
-    with resumable("every part"):
-        try:
-            config, outcome = merge_parts(out, parts or [], jobs or cores(), progress, virtual)
-        finally:
-            progress.close()
+    with resumable("every part"), BarProgress() as progress:
+        config, outcome = merge_parts(out, parts or [], jobs or cores(), progress, virtual)
     print_outcome(config, outcome)

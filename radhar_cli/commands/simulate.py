@@ -168,10 +168,7 @@ def _draw(simulation: "Simulation", out: Path, overlay: bool) -> list[Path]:
     maps = out / MAPS
     maps_panel.draw_maps(maps_panel.of_simulation(simulation, overlay), maps)
     animation = out / ANIMATION
-    bars = Bars()
-    bars.open(animation.name, stickman.frame_count(simulation), "frame")
-    try:
+    with Bars() as bars:
+        bars.open(animation.name, stickman.frame_count(simulation), "frame")
         stickman.draw_stickman(simulation, animation, bars.advance)
-    finally:
-        bars.close()
     return [maps, animation]

@@ -46,19 +46,6 @@ def tradeoff(
     needs("tradeoff", ["skimage"])
     if train:
         needs_torch()
-    with resumable(f"what is measured in {out}"):
-        _tradeoff(config, out, quick, train, set_ or [], jobs, overwrite)
-
-
-def _tradeoff(
-    path: Path,
-    out: Path,
-    quick: bool,
-    train: bool,
-    overrides: list[str],
-    jobs: int | None,
-    overwrite: bool,
-) -> None:
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.dataset.folder import folder_lock
     from radhar_cli.tradeoff.folder import reserve
@@ -68,31 +55,28 @@ def _tradeoff(
     from radhar_cli.tradeoff.study import ROUNDS, run_sweep
     from radhar_cli.worker_process import prepare_process
 
-    scenes = Scenes(path, tuple(overrides), quick)
-    config = scenes.config()
+    scenes = Scenes(config, tuple(set_ or ()), quick)
+    loaded = scenes.config()
     command = " ".join(
-        ["radhar tradeoff", str(path), f"-o {out}"]
-        + [f"--set {each}" for each in overrides]
+        ["radhar tradeoff", str(config), f"-o {out}"]
+        + [f"--set {each}" for each in scenes.overrides]
         + ["--quick"] * quick
         + ["--train"] * train
     )
-    prepare_process()
-    progress = BarProgress("step")
-    with folder_lock(out):
-        reserve(out, config, overwrite)
+    with resumable(f"what is measured in {out}"), folder_lock(out):
+        prepare_process()
+        reserve(out, loaded, overwrite)
         cache = ResultCache(out)
-        try:
+        with BarProgress("step") as progress:
             rows = run_sweep(scenes, cache, progress)
-        finally:
-            progress.close()
         conditions: dict[str, Any] = {"scenes": len(scenes.names()), "rounds": ROUNDS[quick]}
         accuracies: list[Accuracy] = []
         if train:
             # The results so far stay on disk if the training fails.
-            write_report(out, path.stem, command, rows, [], conditions)
+            write_report(out, config.stem, command, rows, [], conditions)
             accuracies, learned = _accuracies(scenes, out, cache, jobs)
             conditions |= learned
-        written = write_report(out, path.stem, command, rows, accuracies, conditions)
+        written = write_report(out, config.stem, command, rows, accuracies, conditions)
     report(files=written)
     for file in written:
         tell(f"  {file}")
@@ -108,23 +92,20 @@ def _accuracies(
     from radhar_cli.tradeoff.settings import trials
     from radhar_cli.tradeoff.trial import FULL, QUICK, Experiment
 
-    progress = BarProgress()
     sizes = QUICK if scenes.quick else FULL
-    experiment = Experiment(
-        config=scenes.path,
-        folder=out / WORK / "accuracy",
-        cache=cache,
-        progress=progress,
-        jobs=jobs or cores(),
-        sizes=sizes,
-        overrides=scenes.overrides,
-    )
-    try:
+    with BarProgress() as progress:
+        experiment = Experiment(
+            config=scenes.path,
+            folder=out / WORK / "accuracy",
+            cache=cache,
+            progress=progress,
+            jobs=jobs or cores(),
+            sizes=sizes,
+            overrides=scenes.overrides,
+        )
         # Six samples per class teach nothing at any SNR: do not search for one.
         snr_db = CLEAN_DB if scenes.quick else find_snr(experiment)
         accuracies = measure(experiment, trials(scenes.config()), snr_db)
-    finally:
-        progress.close()
     learned = {
         "snr_db": snr_db,
         "train_per_class": sizes.train_per_class,

@@ -87,13 +87,9 @@ def train(
         raise FolderError("DATA is missing; should name a data set, or --stream a config")
     apart(out, [*data, *([init] if init else [])])
     names = read_classes(classes) if classes else {}
-    view = TrainingView(events)
-    with resumable(f"the last finished epoch in {out}"):
-        try:
-            samples = load_config(stream) if stream else None
-            outcome = training.train(settings, data, out, view, overwrite, names, init, samples)
-        finally:
-            view.close()
+    with resumable(f"the last finished epoch in {out}"), TrainingView(events) as view:
+        samples = load_config(stream) if stream else None
+        outcome = training.train(settings, data, out, view, overwrite, names, init, samples)
     view.print_outcome(outcome)
 
 

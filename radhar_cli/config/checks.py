@@ -495,7 +495,7 @@ def line_warnings(c: Config) -> list[str]:
 
 
 def timing_warnings(c: Config, activities: Iterable[Activity] | None = None) -> list[str]:
-    """Say which activities never reach their second phase within the recording."""
+    """Say which movements begin after the end of the recording."""
     from radhar_cli.config.schema import for_activity
 
     length = nominal(c.duration_s)
@@ -509,6 +509,6 @@ def timing_warnings(c: Config, activities: Iterable[Activity] | None = None) -> 
             if start >= length:
                 warnings.append(
                     f"{activity.label} {activity.slug}: timing.{key} = {start:g} s is not before "
-                    f"the end of the recording, {length:g} s: its second phase is never seen"
+                    f"the end of the recording, {length:g} s: what begins then is never seen"
                 )
     return warnings

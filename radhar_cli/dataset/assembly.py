@@ -5,6 +5,7 @@ rows but the list of shards: columns go into the file as shards are read.
 """
 
 import csv
+import errno
 import io
 import json
 from collections.abc import Callable, Iterator, Sequence
@@ -34,6 +35,7 @@ from radhar_cli.dataset.layout import (
     Rows,
     chunked,
     columns,
+    row_axis,
     row_bytes,
 )
 from radhar_cli.dataset.recorded import persons
@@ -68,6 +70,16 @@ LEVELS_TEXT = (
 
 
 @contextmanager
+def _written(path: Path, final: Path) -> Iterator[h5py.File]:
+    """A new HDF5 file, `final` later; one that a full disk does not take is an OSError."""
+    try:
+        with h5py.File(path, "w") as file:
+            yield file
+    except RuntimeError as error:  # of h5py, as it closes
+        raise OSError(errno.EIO, f"cannot be written, {error}", str(final)) from None
+
+
+@contextmanager
 def assembled(
     config: Config,
     folder: Path,
@@ -98,7 +110,7 @@ def assembled(
     unfinished.parent.mkdir(parents=True, exist_ok=True)
     try:
         with (
-            h5py.File(unfinished, "w") as file,
+            _written(unfinished, folder / DATASET) as file,
             table.open("w", newline="") as text,
             manifest.open("w") as held,
         ):
@@ -266,7 +278,7 @@ def _describe_map(
     """Attributes of a map of these extents; of more than one, two are enough."""
     same = len(extents) == 1
     start, stop, low, high = next(iter(extents)) if same else [np.nan] * 4
-    vertical = ("range", "m") if name == "rtm" else ("Doppler frequency", "Hz")
+    vertical = row_axis(name)
     attributes = file[f"maps/{name}"].attrs
     attributes["axes"] = ["sample", f"{vertical[0]} (row 0 is the highest)", "time"]
     attributes["row_quantity"], attributes["row_unit"] = vertical

@@ -10,7 +10,7 @@ import yaml
 
 from radhar_cli.config.schema import Config
 from radhar_cli.config.yaml_reader import parse_yaml
-from radhar_cli.dataset.layout import CARD, GALLERY, SPLITS, Rows, png_folder
+from radhar_cli.dataset.layout import CARD, GALLERY, SPLITS, Rows, png_folder, row_axis
 from radhar_cli.dataset.reading import BLOCK, Dataset
 from radhar_cli.dataset.scene_fields import ERROR
 from radhar_cli.dataset.table import number_names
@@ -50,15 +50,11 @@ BIBTEX = """\
 
 def png_files(data: Dataset) -> Files:
     """The configurations of a folder with PNGs: one a map."""
-    present = _splits(data)
+    present = data.present_splits
     return {
-        name: {SPLITS[n]: f"{png_folder(name, n).as_posix()}/**" for n in present}
+        name: {split: f"{png_folder(name, n).as_posix()}/**" for n, split in present.items()}
         for name in data.config.maps
     }
-
-
-def _splits(data: Dataset) -> list[int]:
-    return [number for number in range(len(SPLITS)) if (data.split == number).any()]
 
 
 def features(config: Config) -> list[dict[str, Any]]:
@@ -198,7 +194,7 @@ def _maps(data: Dataset) -> str:
     for name in data.config.maps:
         first, *steps = name.split("_")
         says = ", ".join([_KINDS[first], *(_STEPS[step] for step in steps)])
-        edges, unit = data.extent(name), "m" if name == "rtm" else "Hz"
+        edges, unit = data.extent(name), row_axis(name)[1]
         if edges is None:
             lines.append([f"`{name}`", says, "/extent", "/extent"])
             continue
@@ -226,7 +222,7 @@ def _maps(data: Dataset) -> str:
 
 
 def _classes(data: Dataset) -> str:
-    present = _splits(data)
+    present = data.present_splits
     lines = []
     for activity, rows in Rows.of(data.config).classes():
         counts = np.bincount(data.split[rows], minlength=len(SPLITS))
@@ -234,7 +230,7 @@ def _classes(data: Dataset) -> str:
     by = "sample: every sample was drawn on its own"
     if data.config.split.subjects is not None:
         by = f"person: none of the {data.config.split.subjects} is in two of its parts"
-    return table(["label", "class", *(SPLITS[n] for n in present)], lines) + f"\n\nSplit by {by}."
+    return table(["label", "class", *present.values()], lines) + f"\n\nSplit by {by}."
 
 
 def _numbers(data: Dataset) -> str:

@@ -5,13 +5,13 @@ from time import perf_counter
 
 import numpy as np
 
-from radhar_cli.arrays import Levels
+from radhar_cli.arrays import Float, Levels
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table, encode_png
-from radhar_cli.dataset.sample import synthesise
+from radhar_cli.dataset.sample import Sample, synthesise
 from radhar_cli.dataset.shards import encode_shard
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.validity import draw_valid_scene
@@ -51,17 +51,21 @@ def estimate(config: Config, jobs: int) -> Estimate:
     rows = Rows.of(config)
     probes = min(PROBES, len(rows))
     table = colour_table(config.image.colour_map) if config.output.png else None
-    hdf5_bytes = png_bytes = done = 0
-    _time_sample(config, 0, table)  # imports, tables and caches are not part of a sample
+    _probe(config, 0, table)  # imports, tables and caches are not part of a sample
+    samples, values, png_bytes = [], [], 0
     start = perf_counter()
     for probe in range(probes):
-        row = (2 * probe + 1) * len(rows) // (2 * probes)
-        shard, pngs = _time_sample(config, row, table)
-        hdf5_bytes += shard
+        sample, numbers, pngs = _probe(config, (2 * probe + 1) * len(rows) // (2 * probes), table)
+        samples.append(sample)
+        values.append(numbers)
         png_bytes += pngs
-        done += 1
         if perf_counter() - start > PROBE_SECONDS:
             break
+    done = len(samples)
+    flags = np.zeros(done, np.uint8)
+    shard = encode_shard(
+        config, identity_hash(identity(config)), 0, samples, np.stack(values), flags
+    )
     per_sample = (perf_counter() - start) / done
     if config.output.png:
         per_sample += FILE_WRITE_S * len(config.maps)
@@ -71,23 +75,20 @@ def estimate(config: Config, jobs: int) -> Estimate:
         samples=len(rows),
         probes=done,
         seconds_per_sample=per_sample,
-        hdf5_bytes=hdf5_bytes * len(rows) // done,
+        hdf5_bytes=len(shard) * len(rows) // done,
         png_bytes=png_bytes * len(rows) // done,
         seconds=seconds,
     )
 
 
-def _time_sample(config: Config, row: int, table: Levels | None) -> tuple[int, int]:
-    """Make one sample and encode it as a worker would; return bytes of (shard, PNGs)."""
+def _probe(config: Config, row: int, table: Levels | None) -> tuple[Sample, Float, int]:
+    """Make one sample as a worker would: it, numbers of its scene, bytes of its PNGs."""
     activity, index = Rows.of(config)[row]
     scene, _ = draw_valid_scene(config, activity, index)
     sample = synthesise(scene, plan_images(config))
-    columns = scene_fields.fields(config)
-    values = scene_fields.values(scene, columns, sample.error_db)[None]
-    own_hash = identity_hash(identity(config))
-    shard = encode_shard(config, own_hash, row, [sample], values, np.zeros(1, dtype=np.uint8))
+    numbers = scene_fields.values(scene, scene_fields.fields(config), sample.error_db)
     pngs = 0
     if table is not None:
         level = config.output.png_level
         pngs = sum(len(encode_png(i.levels, table, level)) for i in sample.images.values())
-    return len(shard), pngs
+    return sample, numbers, pngs

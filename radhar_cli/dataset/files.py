@@ -30,8 +30,10 @@ def write_whole(folder: Path, path: Path, data: bytes) -> None:
         unfinished.write_bytes(data)
         path.parent.mkdir(parents=True, exist_ok=True)
         unfinished.replace(path)
-    except BaseException:
+    except BaseException as error:
         unfinished.unlink(missing_ok=True)
+        if isinstance(error, OSError) and error.filename is None:  # a full disk
+            error.filename = str(path)
         raise
 
 

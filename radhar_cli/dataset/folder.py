@@ -33,7 +33,7 @@ from radhar_cli.dataset.layout import (
     WORK,
     is_incomplete,
 )
-from radhar_cli.errors import FolderError
+from radhar_cli.errors import FolderError, RadharError
 from radhar_cli.untrusted import read_json
 
 
@@ -96,27 +96,40 @@ def reserve(
         _clear(folder, new)
     old = stored_identity(folder)
     if old is None:
-        foreign_files = sorted(p.name for p in folder.iterdir() if p.name not in (WORK, *allowed))
-        if PARTS in foreign_files:
+        if PARTS not in allowed and (folder / PARTS).exists():
             raise FolderError(
                 f"{folder}: holds parts of a data set; `radhar merge {folder}` puts them together, "
                 "--shard K/N makes one"
             )
-        if foreign_files:
-            raise FolderError(
-                f"{folder}: holds {', '.join(foreign_files[:5])} but no radhar data set; "
-                "choose an empty folder"
-            )
+        refuse_foreign_files(folder, "radhar data set", allowed)
         _name(folder, new)
     else:
-        differing = differences(old, new)
-        if differing:
-            raise FolderError(
-                f"{folder}: holds another data set; it differs in\n  "
-                + "\n  ".join(differing)
-                + "\nchoose another folder, or --overwrite to start this one over"
-            )
+        refuse_differences(folder, "data set", differences(old, new))
     shutil.rmtree(folder / WORK / "unfinished", ignore_errors=True)
+
+
+def refuse_foreign_files(
+    folder: Path,
+    ours: str,
+    allowed: tuple[str, ...] = (),
+    error: type[RadharError] = FolderError,
+) -> None:
+    """Refuse a folder that holds something, but not what is `ours`; `allowed` are names of it."""
+    names = sorted(p.name for p in folder.iterdir() if p.name not in (WORK, *allowed))
+    if names:
+        raise error(f"{folder}: holds {', '.join(names[:5])} but no {ours}; choose an empty folder")
+
+
+def refuse_differences(
+    folder: Path, ours: str, differing: list[str], error: type[RadharError] = FolderError
+) -> None:
+    """Refuse a folder that holds another of `ours`, and say a line for each difference."""
+    if differing:
+        raise error(
+            f"{folder}: holds another {ours}; it differs in\n  "
+            + "\n  ".join(differing)
+            + "\nchoose another folder, or --overwrite to start this one over"
+        )
 
 
 def _name(folder: Path, named: dict[str, Any]) -> None:

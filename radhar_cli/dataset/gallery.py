@@ -7,7 +7,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from radhar_cli.arrays import Levels
-from radhar_cli.dataset.layout import Rows
+from radhar_cli.dataset.layout import Rows, row_axis
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset
 
@@ -60,8 +60,8 @@ def _described(data: Dataset, name: str) -> list[str]:
     """A map's name in pieces that fit the margin, and its axes."""
     pieces = name.split("_")
     extent = data.extent(name)
-    what = "range" if name == "rtm" else "Doppler"
-    unit = "m" if name == "rtm" else "Hz"
+    quantity, unit = row_axis(name)
+    what = quantity.split()[0]
     if extent is None:
         return [*pieces, f"up: {what}", "right: time"]
     left, right, bottom, top = extent

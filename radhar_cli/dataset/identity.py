@@ -12,6 +12,7 @@ from radhar_cli.config.schema import Config
 def versions() -> dict[str, str]:
     """Versions of everything that decides bytes."""
     import h5py
+    import isal
     import numpy as np
     import PIL
     import scipy
@@ -24,6 +25,7 @@ def versions() -> dict[str, str]:
         "scipy": scipy.__version__,
         "h5py": h5py.__version__,
         "pillow": PIL.__version__,
+        "isal": isal.__version__,
         "numba": numba_version() or "none",
     }
 

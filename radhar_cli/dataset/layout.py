@@ -64,6 +64,11 @@ def columns(config: Config) -> Parts:
     return parts
 
 
+def row_axis(name: str) -> tuple[str, str]:
+    """Quantity and unit of the rows of a map."""
+    return ("range", "m") if name == "rtm" else ("Doppler frequency", "Hz")
+
+
 def row_bytes(config: Config) -> int:
     """Bytes of the large datasets of one sample, before compression."""
     return sum(np.dtype(t).itemsize * prod(shape) for t, shape in chunked(config).values())

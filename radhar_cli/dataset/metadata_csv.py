@@ -5,7 +5,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from radhar_cli.dataset.files import refuse_links, unfinished_path
-from radhar_cli.dataset.layout import METADATA, SPLITS, Rows, png_folder
+from radhar_cli.dataset.layout import METADATA, Rows, png_folder
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.table import entries, number_names
 from radhar_cli.untrusted import regular_size
@@ -27,8 +27,11 @@ def _line(cells: Sequence[str]) -> bytes:
 
 def paths(data: Dataset) -> list[tuple[int, Path]]:
     """(split, path inside the output folder) of every file that there should be."""
-    present = [number for number in range(len(SPLITS)) if (data.split == number).any()]
-    return [(n, png_folder(name, n) / METADATA) for name in data.config.maps for n in present]
+    return [
+        (n, png_folder(name, n) / METADATA)
+        for name in data.config.maps
+        for n in data.present_splits
+    ]
 
 
 def write_metadata(data: Dataset, folder: Path) -> None:

@@ -1,14 +1,15 @@
 """PNG files of levels: the pixels are the levels, the palette is the colour map."""
 
-import io
+import struct
+import zlib
 from pathlib import Path
 
 import numpy as np
 from PIL import Image
-from PIL.PngImagePlugin import PngInfo
 
 from radhar_cli.arrays import Levels
 from radhar_cli.config.schema import DEFAULT_COLOUR_MAP
+from radhar_cli.dataset.deflate import deflated
 
 _DEFAULT_TABLE = Path(__file__).with_name(f"{DEFAULT_COLOUR_MAP}.rgb")  # Matplotlib starts slowly
 # Marks files whose palette indices are levels.
@@ -27,12 +28,21 @@ def colour_table(name: str) -> Levels:
 
 def encode_png(levels: Levels, table: Levels, compress_level: int) -> bytes:
     """PNG of levels [H, W] with a colour table [256, 3] as its palette."""
-    picture = Image.fromarray(levels)
-    picture.putpalette(table.tobytes())
-    mark, buffer = PngInfo(), io.BytesIO()
-    mark.add_text(*_MARK)
-    picture.save(buffer, "png", compress_level=compress_level, pnginfo=mark)
-    return buffer.getvalue()
+    height, width = levels.shape
+    lines = np.zeros((height, 1 + width), np.uint8)  # each after the number of its filter: none
+    lines[:, 1:] = levels
+    eight_bit_palette = (8, 3, 0, 0, 0)
+    chunks = (
+        (b"IHDR", struct.pack(">2I5B", width, height, *eight_bit_palette)),
+        (b"tEXt", b"\0".join(word.encode("latin-1") for word in _MARK)),
+        (b"PLTE", table.tobytes()),
+        (b"IDAT", deflated(lines.tobytes(), compress_level)),
+        (b"IEND", b""),
+    )
+    return b"\x89PNG\r\n\x1a\n" + b"".join(
+        len(data).to_bytes(4) + kind + data + zlib.crc32(data, zlib.crc32(kind)).to_bytes(4)
+        for kind, data in chunks
+    )
 
 
 def stored_levels(picture: Image.Image) -> Levels | None:

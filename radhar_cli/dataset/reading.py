@@ -103,6 +103,11 @@ class Dataset(Closing):
         return len(self.label)
 
     @property
+    def present_splits(self) -> dict[int, str]:
+        """{number: name} of the splits that have samples."""
+        return {n: name for n, name in enumerate(SPLITS) if (self.split == n).any()}
+
+    @property
     def warnings(self) -> list[dict[str, Any]]:
         """Warnings of its build: {kind, recordings, message}."""
         stored = self.file.json("warnings")

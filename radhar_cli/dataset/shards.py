@@ -16,6 +16,7 @@ import numpy as np
 
 from radhar_cli.arrays import Float, Levels
 from radhar_cli.config.schema import Config
+from radhar_cli.dataset.deflate import deflated
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.layout import COLUMN_LABEL, WORK, checksum_of, chunked
 from radhar_cli.dataset.sample import Sample
@@ -116,13 +117,16 @@ def encode_shard(
         flags: what there is to warn of in each row (`Flags`).
     """
     buffer = io.BytesIO()
-    with h5py.File(buffer, "w", libver="latest", userblock_size=USER_BLOCK) as file:
-        for name, (_, shape) in chunked(config).items():
+    # Not libver="latest", whose groups hold the time at which they were made.
+    with h5py.File(buffer, "w", userblock_size=USER_BLOCK) as file:
+        for name, (dtype, shape) in chunked(config).items():
             target, checksums = chunked_dataset(file, name, len(samples), config), []
+            level = config.output.hdf5_level
             for row, sample in enumerate(samples):
-                chunk = sample.chunk(name, shape)
-                target[row] = chunk
-                checksums.append(hashlib.sha256(chunk.tobytes()).hexdigest())
+                raw = np.asarray(sample.chunk(name, shape), dtype).tobytes()
+                stored = deflated(raw, level) if level else raw
+                target.id.write_direct_chunk((row, *(0 for _ in shape)), stored)
+                checksums.append(hashlib.sha256(raw).hexdigest())
             file[checksum_of(name)] = np.array(checksums, dtype="S64")
         for name in config.maps:
             images = [sample.images[name] for sample in samples]

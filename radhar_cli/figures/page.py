@@ -1,12 +1,16 @@
 """A figure and its bytes, without a display and without a date in it."""
 
 import io
+from collections.abc import Mapping, Sequence
+from typing import TypeVar
 
 from matplotlib import rcParams
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+T = TypeVar("T")
 DPI = 110
 rcParams["text.parse_math"] = False  # a class may be called $a$
 
@@ -17,6 +21,25 @@ def page(width: float, height: float, apart: float = 0.04) -> Figure:
     figure = Figure(figsize=(width, height), layout=layout)
     FigureCanvasAgg(figure)
     return figure
+
+
+def page_of_rows(
+    rows: Mapping[str, Sequence[T]], size: tuple[float, float], margin: tuple[float, float]
+) -> tuple[Figure, list[tuple[Axes, T]]]:
+    """A figure with a row of panels beside each name, and what each panel is to show.
+
+    `size` is that of a panel, `margin` what the figure has beside and above them, in inches.
+    """
+    columns = max(map(len, rows.values()))
+    figure = page(size[0] * columns + margin[0], size[1] * len(rows) + margin[1])
+    panels = figure.subplots(len(rows), columns, squeeze=False)
+    filled: list[tuple[Axes, T]] = []
+    for row, (name, shown) in zip(panels, rows.items(), strict=True):
+        for panel in row[len(shown) :]:
+            panel.set_axis_off()
+        row[0].set_ylabel(name, fontsize=7)
+        filled += zip(row, shown, strict=False)
+    return figure, filled
 
 
 def png_bytes(figure: Figure) -> bytes:

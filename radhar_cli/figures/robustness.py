@@ -54,5 +54,5 @@ def robustness_png(lines: Mapping[str, Sequence[Point]]) -> bytes:
     axes.set_ylabel("accuracy (%), 95 % interval")
     axes.set_ylim(0, 102)
     axes.grid(alpha=0.3)
-    axes.legend(fontsize=8)
+    figure.legend(loc="outside right center", fontsize=8)
     return png_bytes(figure)

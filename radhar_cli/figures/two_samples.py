@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from radhar_cli.arrays import Float, Levels
-from radhar_cli.figures.page import page, png_bytes
+from radhar_cli.figures.page import page, page_of_rows, png_bytes
 
 SIMULATED, MEASURED = "C1", "C0"
 ACROSS = 4  # distributions per row
@@ -97,27 +97,21 @@ def pictures_png(
         across: quantity and unit of the columns of a map.
         upwards: of its rows.
     """
-    columns = max(map(len, rows.values()))
-    figure = page(2.0 * columns + 1.2, 1.75 * len(rows) + 0.8)
-    panels = figure.subplots(len(rows), columns, squeeze=False)
-    for row, (name, pictures) in zip(panels, rows.items(), strict=True):
-        for panel in row[len(pictures) :]:
-            panel.set_axis_off()
-        for panel, one in zip(row, pictures, strict=False):
-            panel.imshow(
-                one.levels,
-                extent=one.extent,
-                aspect="auto",
-                cmap="viridis",
-                vmin=0,
-                vmax=255,
-                interpolation="nearest",
-            )
-            panel.set_title(one.words, fontsize=7)
-            panel.locator_params(nbins=4)
-            panel.tick_params(labelsize=6, length=2)
-            panel.label_outer()
-        row[0].set_ylabel(name, fontsize=8)
+    figure, panels = page_of_rows(rows, (2.0, 1.75), (1.2, 0.8))
+    for panel, one in panels:
+        panel.imshow(
+            one.levels,
+            extent=one.extent,
+            aspect="auto",
+            cmap="viridis",
+            vmin=0,
+            vmax=255,
+            interpolation="nearest",
+        )
+        panel.set_title(one.words, fontsize=7)
+        panel.locator_params(nbins=4)
+        panel.tick_params(labelsize=6, length=2)
+        panel.label_outer()
     figure.supxlabel(across, fontsize=8)
     figure.supylabel(upwards, fontsize=8)
     figure.suptitle(title, fontsize=10)

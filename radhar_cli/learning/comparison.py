@@ -32,15 +32,15 @@ def compare(
         report.tables.append(("robustness.csv", csv_text(head, rows)))
     if options.filters:
         filters = {run.name: magnitudes(run.model) for run in runs}
-        filters = {name: found for name, found in filters.items() if found}
+        filters = {name: weights for name, weights in filters.items() if weights}
         report.figure(
             "filters.png",
             "Magnitude of the global filters by spatial frequency, mean over channels; the zero "
             "frequency is in the middle.",
             filters_png(filters),
         )
-        tables = {name: table(found) for name, found in filters.items()}
+        tables = {name: table(weights) for name, weights in filters.items()}
         report.numbers["filters"] = tables
         keys = list(next(iter(tables.values()))[0])
-        every = ((name, *row.values()) for name, found in tables.items() for row in found)
+        every = ((name, *row.values()) for name, weights in tables.items() for row in weights)
         report.tables.append(("filters.csv", csv_text(["run", *keys], every)))

@@ -165,13 +165,13 @@ def predict(
     batch: int,
 ) -> Predictions:
     """Predictions of a model for rows of a labelled set."""
-    found = list(predict_batches(model, metadata, images, rows, device, batch))
+    batches = list(predict_batches(model, metadata, images, rows, device, batch))
     return Predictions(
         images=images,
         rows=rows,
         truth=labels_for(images, metadata.classes)[rows],
-        probabilities=np.concatenate([batch_probabilities for batch_probabilities, _ in found]),
-        features=np.concatenate([features for _, features in found]),
+        probabilities=np.concatenate([batch_probabilities for batch_probabilities, _ in batches]),
+        features=np.concatenate([features for _, features in batches]),
     )
 
 

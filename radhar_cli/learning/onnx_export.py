@@ -13,6 +13,7 @@ from torch.nn.functional import interpolate
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.batches import Normalisation
 from radhar_cli.learning.run_folder import RunError, RunMetadata, first_line, load_best
+from radhar_cli.replacing import replacing
 
 TOLERANCE = 1e-4
 
@@ -86,10 +87,8 @@ def export(run: Path, path: Path) -> float:
         )
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        unfinished = path.with_name(f".{path.name}.unfinished")
-        unfinished.unlink(missing_ok=True)  # a link would be written through
-        unfinished.write_bytes(content)
-        unfinished.replace(path)
+        with replacing(path) as unfinished:
+            unfinished.write_bytes(content)
     except OSError as error:
         raise FolderError(f"{path}: cannot be written ({error.strerror})") from None
     return worst

@@ -15,11 +15,10 @@ from radhar_cli.errors import RadharError
 
 @dataclass(frozen=True)
 class Group:
-    """The processes of one run: number of this one, how many, how many on this machine."""
+    """The processes of one run: number of this one, and how many."""
 
     rank: int = 0
     size: int = 1
-    local_size: int = 1
 
     @property
     def is_main(self) -> bool:
@@ -39,8 +38,7 @@ def process_group(device: torch.device) -> Iterator[Group]:
         torch.cuda.set_device(device)
     dist.init_process_group("nccl" if device.type == "cuda" else "gloo")
     try:
-        local = int(os.environ.get("LOCAL_WORLD_SIZE", dist.get_world_size()))
-        yield Group(dist.get_rank(), dist.get_world_size(), local)
+        yield Group(dist.get_rank(), dist.get_world_size())
     finally:
         dist.destroy_process_group()
 

@@ -18,7 +18,7 @@ def remove_others(folder: Path, kept: Iterable[str]) -> None:
 def _files_of(folder: Path) -> list[str]:
     """Files of the report that a folder holds, itself aside; those of another kind are not ours."""
     try:
-        found = read_json(folder / NUMBERS)["files"]
-        return [n for n in found if Path(n).name == n and Path(n).suffix in (".png", ".csv")]
+        names = read_json(folder / NUMBERS)["files"]
+        return [n for n in names if Path(n).name == n and Path(n).suffix in (".png", ".csv")]
     except (FolderError, KeyError, TypeError):
         return []

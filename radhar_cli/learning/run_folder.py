@@ -22,7 +22,7 @@ from typing_extensions import TypedDict
 
 from radhar_cli.config.schema import Section
 from radhar_cli.dataset.files import read_bytes, refuse_links, write_whole
-from radhar_cli.dataset.layout import WORK
+from radhar_cli.dataset.folder import refuse_differences, refuse_foreign_files
 from radhar_cli.errors import ModelError, RadharError
 from radhar_cli.learning.batches import Normalisation
 from radhar_cli.learning.models.build import build_model
@@ -178,21 +178,11 @@ def reserve_run(folder: Path, metadata: RunMetadata, overwrite: bool) -> None:
             (folder / name).unlink(missing_ok=True)
         remove_events(folder)
     if not (folder / ABOUT).exists():
-        foreign_files = sorted(p.name for p in folder.iterdir() if p.name != WORK)
-        if foreign_files and not ours:
-            raise RunError(
-                f"{folder}: holds {', '.join(foreign_files[:5])} but no training run; choose an "
-                "empty folder"
-            )
+        if not ours:
+            refuse_foreign_files(folder, "training run", error=RunError)
         write_whole(folder, folder / ABOUT, (metadata.model_dump_json(indent=2) + "\n").encode())
         return
-    differing = differences(read_metadata(folder), metadata)
-    if differing:
-        raise RunError(
-            f"{folder}: holds another run; it differs in\n  "
-            + "\n  ".join(differing)
-            + "\nchoose another folder, or --overwrite to start this one over"
-        )
+    refuse_differences(folder, "run", differences(read_metadata(folder), metadata), RunError)
 
 
 def remove_events(folder: Path) -> None:
@@ -356,10 +346,10 @@ def _opened(path: Path, file: Any) -> tuple[RunMetadata, nn.Module]:
         for name in wanted.keys() | stored.keys():
             if name not in stored or name not in wanted:
                 raise RuntimeError(f"{name} is {'too much' if name in stored else 'missing'}")
-            found = (tuple(stored[name].get_shape()), stored[name].get_dtype())
-            right = (tuple(wanted[name].shape), _TYPES.get(wanted[name].dtype))
-            if found != right:
-                raise RuntimeError(f"{name} is {found}, should be {right}")
+            actual = (tuple(stored[name].get_shape()), stored[name].get_dtype())
+            expected = (tuple(wanted[name].shape), _TYPES.get(wanted[name].dtype))
+            if actual != expected:
+                raise RuntimeError(f"{name} is {actual}, should be {expected}")
         weights = {name: file.get_tensor(name) for name in stored}
         for name, tensor in weights.items():
             if not tensor.isfinite().all():

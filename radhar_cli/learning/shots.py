@@ -36,7 +36,7 @@ from radhar_cli.learning.single_result import (
     seen_message,
 )
 from radhar_cli.learning.tables import csv_text
-from radhar_cli.learning.training import train_on
+from radhar_cli.learning.training import Task, train_on
 from radhar_cli.progress import Messages
 from radhar_cli.randomness import TRAINING, stream
 
@@ -146,17 +146,17 @@ class ShotCurve:
         """A line for each number at which fine-tuning is below what it should at least reach."""
         mixed = "" if self.about["mix"] else "; --mix shows on what the run learned from"
         scratch = {p.shots: p.accuracy for p in self.of(SCRATCH)}
-        found = []
+        lines = []
         for how, start in ((TUNED, AS_TRAINED), (ADAPTED, ADAPTED)):
             without = {p.shots: p.accuracy for p in self.of(start)}.get(0)
             for point in self.of(how):
                 for than, other in (("no labels", without), (SCRATCH, scratch.get(point.shots))):
                     if other is not None and point.accuracy < other:
-                        found.append(
+                        lines.append(
                             f"{point.shots} a class: {how} is below {than} "
                             f"({100 * point.accuracy:.1f} and {100 * other:.1f} %){mixed}"
                         )
-        return found
+        return lines
 
     def write(self, folder: Path) -> None:
         """Write NUMBERS, TABLE and FIGURE into a folder."""
@@ -273,10 +273,10 @@ def few_shots(
 
     def tested(one: Path, draw: Draw) -> float:
         about, model = load_best(one)
-        found = predict(
+        predictions = predict(
             model.to(device), about, measured.images, draw.tested, device, options.batch
         )
-        return float((found.predicted == found.truth).mean())
+        return float((predictions.predicted == predictions.truth).mean())
 
     def learned(k: int, repeat: int, draw: Draw) -> Iterator[tuple[str, Path]]:
         """What each way of learning makes of a draw: its name, and the folder of the run."""
@@ -287,7 +287,7 @@ def few_shots(
             labelled = measured.images.some(draw.labelled)
             images, weights = _learned_from(metadata, labelled, mix, MAX_SHOWN)
             settings = tuned.model_copy(update={"data_weights": weights, "seed": seed})
-            train_on(settings, images, tuned_run, _NoProgress(), shots.overwrite, run)
+            train_on(Task(settings, images, tuned_run, shots.overwrite, run), _NoProgress())
             mixed = Mixed(images, weights)
         yield TUNED if k else AS_TRAINED, tuned_run
         if shots.adapting:
@@ -297,7 +297,7 @@ def few_shots(
         if k:
             images, weights = _learned_from(metadata, labelled, [], SHOWN)
             settings = scratch.model_copy(update={"data_weights": weights, "seed": seed})
-            train_on(settings, images, here / "from_scratch", _NoProgress(), shots.overwrite)
+            train_on(Task(settings, images, here / "from_scratch", shots.overwrite), _NoProgress())
             yield SCRATCH, here / "from_scratch"
 
     for k in shots.shots:
@@ -365,11 +365,11 @@ def drawn(measured: EvalSet, k: int, seed: int, repeat: int) -> Draw:
 
 def most_shots(measured: EvalSet, seed: int, repeats: int) -> int:
     """The largest k that every class can give in all draws, with some left to test."""
-    apart, found = _persons(measured) is not None, []
+    apart, counts = _persons(measured) is not None, []
     for repeat in range(repeats):
         learned, tested = _counts(measured, drawn(measured, len(measured.images), seed, repeat))
-        found.append(learned.min() * tested.all() if apart else learned.min() - 1)
-    return max(0, int(min(found)))
+        counts.append(learned.min() * tested.all() if apart else learned.min() - 1)
+    return max(0, int(min(counts)))
 
 
 def _counts(measured: EvalSet, draw: Draw) -> tuple[Index, Index]:

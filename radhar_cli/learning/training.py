@@ -4,7 +4,7 @@ import math
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Protocol
 
@@ -145,32 +145,44 @@ def train(
         device = choose_device(config.device)
         workers = choose_execution_plan(config, device, synthesises=True).workers
         training_stream, images = stream_and_validation(config, stream, paths, names or {}, workers)
-    return train_on(config, images, folder, progress, overwrite, start, training_stream)
+    return train_on(Task(config, images, folder, overwrite, start, training_stream), progress)
 
 
-def train_on(
-    config: TrainConfig,
-    images: ImageSet,
-    folder: Path,
-    progress: TrainingProgress,
-    overwrite: bool = False,
-    start: Path | None = None,
-    stream: TrainingStream | None = None,
-) -> Outcome:
-    """As `train`, on images that are open already, with training and validation images."""
+@dataclass(frozen=True)
+class Task:
+    """What is learned, from which images.
+
+    Attributes:
+        config: model, optimiser, schedule.
+        images: of training and validation.
+        folder: of the run.
+        overwrite: start over in a folder that holds a run.
+        start: a run whose weights are the initial ones.
+        stream: of training samples, instead of the training images.
+    """
+
+    config: TrainConfig
+    images: ImageSet
+    folder: Path
+    overwrite: bool = False
+    start: Path | None = None
+    stream: TrainingStream | None = None
+
+
+def train_on(task: Task, progress: TrainingProgress) -> Outcome:
+    """As `train`, on images that are open already."""
+    config, images, folder = task.config, task.images, task.folder
     if config.threads != "auto":
         torch.set_num_threads(config.threads)
     device = choose_device(config.device)
     repeatable(device)
     with process_group(device) as group, folder_lock(folder) if group.is_main else nullcontext():
-        plan = choose_execution_plan(config, device, synthesises=stream is not None)
+        plan = choose_execution_plan(config, device, synthesises=task.stream is not None)
         images_a_pass = min(plan.micro_batch, -(-config.batch_size // group.size))
         step = Step(config, len(images.classes), images.size, images_a_pass, plan.precision)
         step.check(device)
         try:
-            return _Training.prepared(
-                config, images, folder, plan, group, progress, overwrite, start, stream
-            ).run()
+            return _Training.prepared(task, plan, group, progress).run()
         except RuntimeError as error:
             if not out_of_memory(error):
                 raise
@@ -210,32 +222,21 @@ def checked_images(
 
 @dataclass
 class _Training:
-    config: TrainConfig
-    images: ImageSet
+    task: Task
     metadata: RunMetadata
-    folder: Path
     plan: ExecutionPlan
     group: Group
     progress: TrainingProgress
     model: nn.Module
     optimiser: torch.optim.Optimizer
-    history: list[Epoch]
-    stream: TrainingStream | None = None
-    average: AveragedModel | None = None
+    average: AveragedModel | None
+    history: list[Epoch] = field(default_factory=list)
 
     @classmethod
     def prepared(
-        cls,
-        config: TrainConfig,
-        images: ImageSet,
-        folder: Path,
-        plan: ExecutionPlan,
-        group: Group,
-        progress: TrainingProgress,
-        overwrite: bool = False,
-        start: Path | None = None,
-        stream: TrainingStream | None = None,
+        cls, task: Task, plan: ExecutionPlan, group: Group, progress: TrainingProgress
     ) -> "_Training":
+        config, images, stream = task.config, task.images, task.stream
         minimum = MIN_PER_PROCESS * group.size
         if config.batch_size < minimum:
             raise ConfigError(
@@ -244,7 +245,7 @@ class _Training:
             )
         torch.manual_seed(config.seed)
         model = build_model(config.model, len(images.classes), images.size)
-        started = None if start is None else start_from(start, model, config, images)
+        started = None if task.start is None else start_from(task.start, model, config, images)
         if group.is_main:
             many = f"{len(images)} images of {len(images.classes)} classes"
             if stream is not None:
@@ -255,7 +256,7 @@ class _Training:
                 progress.say(f"warning: {warning}")
             for note in started.notes if started else ():
                 progress.say(note)
-        metadata, digests = _metadata(config, images, plan, group, started, stream)
+        metadata, digests = _metadata(task, plan, group, started)
         seen = streamed_scenes(metadata.data, images, images.rows("val"))
         if seen and group.is_main:
             progress.say(
@@ -264,47 +265,34 @@ class _Training:
             )
 
         def reserve() -> None:
-            run.reserve_run(folder, metadata, overwrite)
-            _write_trained_on(folder, images, digests)
+            run.reserve_run(task.folder, metadata, task.overwrite)
+            _write_trained_on(task.folder, images, digests)
 
         on_rank_zero(group, reserve)
         model.to(plan.device)
-        return cls(
-            config=config,
-            images=images,
-            metadata=metadata,
-            folder=folder,
-            plan=plan,
-            group=group,
-            progress=progress,
-            model=model,
-            optimiser=optimiser_for(config, model),
-            history=[],
-            stream=stream,
-            average=AveragedModel(model, use_buffers=True) if config.average_last else None,
-        )
+        average = AveragedModel(model, use_buffers=True) if config.average_last else None
+        optimiser = optimiser_for(config, model)
+        return cls(task, metadata, plan, group, progress, model, optimiser, average)
 
     def run(self) -> Outcome:
         resumed = self._restore()
         if self.group.is_main:
             self._announce(resumed)
-        network = distributed(self.model, self.plan.device, self.group)
-        augmentation = (
-            Augmentation(self.config.augment, self.config.seed)
-            if self.config.augment != AugmentConfig()
-            else None
-        )
-        pin = self.plan.device.type == "cuda"
-        if self.stream is None:
-            validation_reader = training_reader = Reader(
-                self.images, self.images.label, self.plan.workers, pin, augmentation
-            )
+        task, plan = self.task, self.plan
+        network = distributed(self.model, plan.device, self.group)
+        augmentation = None
+        if task.config.augment != AugmentConfig():
+            augmentation = Augmentation(task.config.augment, task.config.seed)
+        pin, label = plan.device.type == "cuda", task.images.label
+        if task.stream is None:
+            training_reader = Reader(task.images, label, plan.workers, pin, augmentation)
+            validation_reader = training_reader
         else:
-            validation_reader = Reader(self.images, self.images.label, 0, pin)
+            validation_reader = Reader(task.images, label, 0, pin)
             training_reader = Reader(
-                self.stream, self.stream.label, self.plan.workers, pin, augmentation
+                task.stream, task.stream.label, plan.workers, pin, augmentation
             )
-        for epoch in range(resumed, self.config.epochs):
+        for epoch in range(resumed, task.config.epochs):
             began = time.perf_counter()
             torch.manual_seed(self._epoch_seed(epoch))
             training = self._train_epoch(network, training_reader, epoch)
@@ -314,21 +302,21 @@ class _Training:
             else:
                 self.history.append(_row(epoch, 0.0, training, validation, 0.0))
         if self.group.is_main:
-            run.write_history(self.folder, self.history)
-            if resumed < self.config.epochs or not (self.folder / run_files.METRICS).exists():
+            run.write_history(task.folder, self.history)
+            if resumed < task.config.epochs or not (task.folder / run_files.METRICS).exists():
                 self._finish()
         barrier(self.group)
-        return Outcome(self.folder, self.history, resumed)
+        return Outcome(task.folder, self.history, resumed)
 
     @property
     def _train_step(self) -> TrainStep:
-        return TrainStep(self.config, self.metadata.normalisation, self.plan, self.group)
+        return TrainStep(self.task.config, self.metadata.normalisation, self.plan, self.group)
 
     def _restore(self) -> int:
-        checkpoint = run.read_last(self.folder)
+        checkpoint = run.read_last(self.task.folder)
         if checkpoint is None:
             return 0
-        path = self.folder / run_files.LAST
+        path = self.task.folder / run_files.LAST
         try:
             other = run.differences(
                 RunMetadata.model_validate_json(checkpoint["metadata"]), self.metadata
@@ -366,14 +354,14 @@ class _Training:
         """
         best = best_epoch(self.history)
         try:
-            run.load_best(self.folder)
+            run.load_best(self.task.folder)
         except run.RunError as error:
             if best is not self.history[-1]:
                 raise run.RunError(
                     f"{error}; the weights of epoch {best.epoch} cannot be recovered; --overwrite "
                     "starts the run over"
                 ) from None
-            run.write_best(self.folder, self.metadata, best, self._kept.state_dict())
+            run.write_best(self.task.folder, self.metadata, best, self._kept.state_dict())
 
     @property
     def _kept(self) -> nn.Module:
@@ -383,9 +371,9 @@ class _Training:
         return self.average.module
 
     def _announce(self, resumed: int) -> None:
-        plan, say, size = self.plan, self.progress.say, self.config.batch_size
+        plan, say, size = self.plan, self.progress.say, self.task.config.batch_size
         if resumed:
-            say(f"resuming: {resumed} of {self.config.epochs} epochs are done")
+            say(f"resuming: {resumed} of {self.task.config.epochs} epochs are done")
         share = -(-size // self.group.size)
         precision = plan.precision_name
         many = f", {self.group.size} processes" if self.group.size > 1 else ""
@@ -400,21 +388,21 @@ class _Training:
 
     def _epoch_seed(self, epoch: int) -> int:
         """Seed of dropout and the like for one epoch and process, so that a run can resume."""
-        rng = stream(self.config.seed, TRAINING, epoch, self.group.rank, name="layers")
+        rng = stream(self.task.config.seed, TRAINING, epoch, self.group.rank, name="layers")
         return int(rng.integers(2**63))
 
     def _epoch_rows(self, epoch: int) -> Index:
         """Rows of the training images of an epoch, in the order in which they are shown."""
-        if self.stream is not None:
-            return self.stream.rows(epoch)
-        rows, config = self.images.rows("train"), self.config
+        if self.task.stream is not None:
+            return self.task.stream.rows(epoch)
+        rows, config = self.task.images.rows("train"), self.task.config
         balanced = config.sampling == "balanced"
-        weights = sampling_weights(self.images, rows, config.data_weights, balanced)
+        weights = sampling_weights(self.task.images, rows, config.data_weights, balanced)
         return rows[epoch_order(weights, config.seed, epoch)]
 
     def _train_epoch(self, network: nn.Module, reader: Reader, epoch: int) -> tuple[float, float]:
         """One epoch of steps; returns mean loss and accuracy of its batches."""
-        config, group = self.config, self.group
+        config, group = self.task.config, self.group
         rows = self._epoch_rows(epoch)
         batches = epoch_batches(rows, config.batch_size, group.size)
         if group.is_main:
@@ -448,9 +436,9 @@ class _Training:
         broadcast_buffers(self.model, group)
         model = self._kept
         broadcast_buffers(model, group)
-        rows = self.images.rows("val")
+        rows = self.task.images.rows("val")
         mine = rows[group.rank :: group.size]
-        size = min(self.config.batch_size, self.plan.micro_batch)
+        size = min(self.task.config.batch_size, self.plan.micro_batch)
         model.eval()
         totals: Float = np.zeros(3)
         with torch.no_grad():
@@ -463,14 +451,15 @@ class _Training:
         return totals[0] / totals[2], totals[1] / totals[2]
 
     def _not_finite(self, where: str, loss: float) -> str:
+        rate_now = self.task.config.learning_rate
         kept = (
             f"{run_files.LAST} and {run_files.BEST} hold the epochs up to {len(self.history)}"
             if self.history
             else "no epoch was finished"
         )
         return (
-            f"{where}: the loss is {loss}; a lower learning_rate (now "
-            f"{self.config.learning_rate:g}), gradient_clip_norm or warmup_epochs may help; {kept}"
+            f"{where}: the loss is {loss}; a lower learning_rate (now {rate_now:g}), "
+            f"gradient_clip_norm or warmup_epochs may help; {kept}"
         )
 
     def _keep(
@@ -485,9 +474,9 @@ class _Training:
         self.history.append(row)
         best = best_epoch(self.history) is row
         if best:
-            run.write_best(self.folder, self.metadata, row, self._kept.state_dict())
+            run.write_best(self.task.folder, self.metadata, row, self._kept.state_dict())
         run.write_last(
-            self.folder,
+            self.task.folder,
             {
                 "metadata": self.metadata.model_dump_json(),
                 "model": self.model.state_dict(),
@@ -497,24 +486,20 @@ class _Training:
                 "random": torch.get_rng_state(),
             },
         )
-        run.write_history(self.folder, self.history)
+        run.write_history(self.task.folder, self.history)
         self.progress.epoch_done(row, best)
 
     def _finish(self) -> None:
         write_run_summary(
-            self.folder, self.metadata, self.history, self.model, self.plan, self.group
+            self.task.folder, self.metadata, self.history, self.model, self.plan, self.group
         )
 
 
 def _metadata(
-    config: TrainConfig,
-    images: ImageSet,
-    plan: ExecutionPlan,
-    group: Group,
-    started: StartingPoint | None,
-    stream: TrainingStream | None,
+    task: Task, plan: ExecutionPlan, group: Group, started: StartingPoint | None
 ) -> tuple[RunMetadata, dict[int, str]]:
     """Metadata of the run, and the digest of every stored training image by row."""
+    config, images, stream = task.config, task.images, task.stream
     rows = images.rows("train") if stream is None else np.zeros(0, np.intp)
     validating = images.rows("val")
     learned, checked = scan(images, rows), scan(images, validating)

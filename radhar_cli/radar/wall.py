@@ -91,7 +91,7 @@ def crossing(p: Float, antenna: tuple[float, float, float], wall: Wall) -> Cross
 def faces_met(p: Float, antenna: tuple[float, float, float], wall: Wall) -> tuple[Index, Index]:
     """Axes (0, 1, 2) [I, M] of the faces where the rays of `crossing` enter and leave the slab.
 
-    They mean something where as many faces are crossed; through an edge, the first axis counts.
+    Valid where `crossing` counts that many faces; at an edge the first axis is taken.
     """
     planes = list(_between_planes(p, antenna, wall))
     entered = np.argmax([near for _, _, near, _ in planes], axis=0)

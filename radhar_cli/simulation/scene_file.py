@@ -15,6 +15,7 @@ from radhar_cli.config.schema import Config
 from radhar_cli.errors import FolderError, UnfinishedError
 from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.processing.power_map import PowerMap
+from radhar_cli.replacing import replacing
 from radhar_cli.scene import Scene, scene_numbers
 from radhar_cli.simulation.simulate import Simulation
 
@@ -41,21 +42,16 @@ def refuse_foreign(folder: Path) -> None:
 
 
 def write_scene(simulation: Simulation, path: Path) -> None:
-    """Write scene.h5 under another name, then rename it into place."""
-    unfinished = path.with_name(UNFINISHED)
-    try:
-        with h5py.File(unfinished, "w") as file:
-            for name, power_map in simulation.maps.items():
-                write_map(file, name, power_map)
-            for name, signal in simulation.signals.items():
-                file[f"slow_time/{name}"] = signal.x
-            _write_truth(file, simulation)
-            file.attrs["scene"] = json.dumps(describe(simulation))
-            file.attrs["config"] = json.dumps(resolved(_alone(simulation.scene)))
-            file.attrs["radhar_version"] = __version__
-        unfinished.replace(path)
-    finally:
-        unfinished.unlink(missing_ok=True)
+    """Write scene.h5."""
+    with replacing(path, UNFINISHED) as unfinished, h5py.File(unfinished, "w") as file:
+        for name, power_map in simulation.maps.items():
+            write_map(file, name, power_map)
+        for name, signal in simulation.signals.items():
+            file[f"slow_time/{name}"] = signal.x
+        _write_truth(file, simulation)
+        file.attrs["scene"] = json.dumps(describe(simulation))
+        file.attrs["config"] = json.dumps(resolved(_alone(simulation.scene)))
+        file.attrs["radhar_version"] = __version__
 
 
 def write_map(file: h5py.File, name: str, power_map: PowerMap) -> None:

@@ -4,7 +4,6 @@ import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from math import inf
 from statistics import median, quantiles
 from typing import Any
 
@@ -126,10 +125,9 @@ def _times(scenes: Scenes, rows: Sequence[Row], cache: ResultCache, progress: Pr
 def _once(cache: ResultCache, key: str, measure: Callable[[], Any], kind: Any) -> Any:
     result = cache.get(key, kind)
     if result is None:
-        result = measure()
-        cache.put(key, _without_infinity(result))
+        cache.put(key, measure())
         result = cache.get(key, kind)
-    return _with_infinity(result)
+    return result
 
 
 def _key(kind: str, setting: Setting, what: str) -> str:
@@ -137,16 +135,3 @@ def _key(kind: str, setting: Setting, what: str) -> str:
     return json.dumps(
         [*parts, setting.overrides, setting.compared, setting.exact, setting.baseline]
     )
-
-
-def _without_infinity(value: Any) -> Any:
-    """JSON has no -inf, the error in dB of what is the same."""
-    if isinstance(value, dict):
-        return {key: _without_infinity(each) for key, each in value.items()}
-    return "-inf" if value == -inf else value
-
-
-def _with_infinity(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _with_infinity(each) for key, each in value.items()}
-    return -inf if value == "-inf" else value

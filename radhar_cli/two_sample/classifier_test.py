@@ -113,8 +113,8 @@ class Logistic:
             value = np.logaddexp(0, -margin).sum() + penalty @ weights[:-1] / 2
             return float(value), np.append(slope @ x + penalty, slope.sum())
 
-        found = minimize(loss, blank.weights, jac=True, method="L-BFGS-B")
-        return cls(mean, scale, found.x)
+        result = minimize(loss, blank.weights, jac=True, method="L-BFGS-B")
+        return cls(mean, scale, result.x)
 
     def standardised(self, features: Float) -> Float:
         """Features [N, D] of mean 0 and deviation 1, 0 where they are not known."""

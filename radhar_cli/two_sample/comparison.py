@@ -12,7 +12,7 @@ from radhar_cli.progress import Progress
 from radhar_cli.randomness import TRAINING, stream
 from radhar_cli.two_sample.classifier_test import Tested, held_out, interval
 from radhar_cli.two_sample.description import Described, Scale, describe, span
-from radhar_cli.two_sample.distances import Apart, apart, uncovered
+from radhar_cli.two_sample.distances import Difference, difference, uncovered
 from radhar_cli.two_sample.map_statistics import STATISTICS
 from radhar_cli.two_sample.sides import Side, open_sides
 
@@ -50,7 +50,7 @@ class ClassCompared:
     Attributes:
         name: of the class.
         simulated, measured: what was drawn of it.
-        apart: {statistic: how far it is apart}, what is most wrong first.
+        differences: {statistic: difference}, the largest first.
         tested: the classifier test, of as many maps of either side; None where a side has fewer
             than two persons or maps.
         surest: rows of simulated maps, what is told from measured ones most surely first.
@@ -62,7 +62,7 @@ class ClassCompared:
     name: str
     simulated: Described
     measured: Described
-    apart: dict[str, Apart]
+    differences: dict[str, Difference]
     tested: Tested | None
     surest: Index
     uncovered: Float
@@ -118,13 +118,13 @@ class Comparison:
                 name: {
                     "words": STATISTICS[name].words,
                     "unit": self.scale.unit(name),
-                    "simulated": found.simulated._asdict(),
-                    "measured": found.measured._asdict(),
-                    "distance": found.distance,
-                    "ks": found.ks,
-                    "p": found.p,
+                    "simulated": difference.simulated._asdict(),
+                    "measured": difference.measured._asdict(),
+                    "distance": difference.distance,
+                    "ks": difference.ks,
+                    "p": difference.p,
                 }
-                for name, found in one.apart.items()
+                for name, difference in one.differences.items()
             },
             "surest_simulated": [names[0][row] for row in one.surest[: self.options.pictures]],
             "least_covered": [names[1][row] for row in one.far[: self.options.pictures]],
@@ -157,14 +157,16 @@ def compare(simulated: Path, measured: Path, options: Options, progress: Progres
         name: [_drawn(side, name, n, options) for n, side in enumerate(sides)] for name in names
     }
     progress.stage("measuring", sum(rows.size for both in drawn.values() for rows in both), 0)
-    found: dict[str, tuple[Described, Described]] = {}
+    described: dict[str, tuple[Described, Described]] = {}
     for name, both in drawn.items():
         one, other = (describe(side, rows, scale) for side, rows in zip(sides, both, strict=True))
-        found[name] = one, other
+        described[name] = one, other
         progress.advance(one.rows.size + other.rows.size)
-    shown = span([one for both in found.values() for one in both])
-    classes = tuple(_class(name, found[name], sides, scale, shown, options.seed) for name in names)
-    fine = found[names[0]][0].fine.shape[1]
+    shown = span([one for both in described.values() for one in both])
+    classes = tuple(
+        _class(name, described[name], sides, scale, shown, options.seed) for name in names
+    )
+    fine = described[names[0]][0].fine.shape[1]
     return Comparison(
         sides,
         scale,
@@ -208,7 +210,7 @@ def _class(
     open_ = uncovered(*near)
     far = both[1].rows[np.argsort(-open_, kind="stable")]
     distances = {
-        key: apart(*(one.statistics[:, column] for one in both))
+        key: difference(*(one.statistics[:, column] for one in both))
         for column, key in enumerate(scale.names)
     }
     order = sorted(distances, key=lambda key: -np.nan_to_num(distances[key].distance, nan=-1))
@@ -254,49 +256,49 @@ def _warnings(
     classes: tuple[ClassCompared, ...],
 ) -> list[str]:
     """What a reader should know, in words."""
-    found = []
+    warnings = []
     for side in sides:
         if side.left_out:
             lost = ", ".join(f"{name} ({n})" for name, n in side.left_out.items())
-            found.append(f"{side.where}: left out, as it alone has them: {lost}")
+            warnings.append(f"{side.where}: left out, as it alone has them: {lost}")
     simulated, measured = sides
     if simulated.masks != measured.masks:
         kinds = ["masks" if side.masks else "grey levels" for side in sides]
-        found.append(
+        warnings.append(
             f"{simulated.where} has {kinds[0]}, {measured.where} {kinds[1]}: tells them apart"
         )
     unknown = [side for side in sides if not side.masks and side.dynamic_range_db is None]
-    found += [f"{side.where}: levels are taken for 40 dB; it does not say" for side in unknown]
+    warnings += [f"{side.where}: levels are taken for 40 dB; it does not say" for side in unknown]
     spans = [side.dynamic_range_db for side in sides]
     if None not in spans and spans[0] != spans[1]:
-        found.append(
+        warnings.append(
             f"levels span {spans[0]:g} dB in {simulated.where}, {spans[1]:g} dB in "
             f"{measured.where}: should be the same"
         )
     if not scale.axes:
         without = ", ".join(str(side.where) for side in sides if side.extent is None)
         middle = "" if scale.ranges else "; zero Doppler is taken to be the middle row"
-        found.append(f"{without}: has no axes, so all is counted in px{middle}")
+        warnings.append(f"{without}: has no axes, so all is counted in px{middle}")
     else:
-        found += _different_axes(sides, scale, drawn)
+        warnings += _different_axes(sides, scale, drawn)
     drawn_too = {h for one in classes for h in one.simulated.hashes if h is not None}
     same = sum(h in drawn_too for one in classes for h in one.measured.hashes)
     if same:
         every = sum(len(one.measured.hashes) for one in classes)
-        found.append(
+        warnings.append(
             f"{same} of {every} images of {measured.where} are the same, pixel by pixel, in "
             f"{simulated.where}: the sides should share none"
         )
     for one in classes:
         if one.tested is None:
-            found.append(f"{one.name}: no test; each side should have two persons or maps")
-    return found
+            warnings.append(f"{one.name}: no test; each side should have two persons or maps")
+    return warnings
 
 
 def _different_axes(
     sides: tuple[Side, Side], scale: Scale, drawn: dict[str, list[Index]]
 ) -> list[str]:
-    found = []
+    warnings = []
     for name, rows in drawn.items():
         edges = [
             np.median([scale.edges(side, int(row)) for row in some], axis=0)
@@ -309,5 +311,5 @@ def _different_axes(
                 f"{e[1] - e[0]:.4g} s, {e[2]:.4g} to {e[3]:.4g} {scale.units()['rows']}"
                 for e in edges
             ]
-            found.append(f"{name}: axes differ, {told[0]} simulated, {told[1]} measured")
-    return found
+            warnings.append(f"{name}: axes differ, {told[0]} simulated, {told[1]} measured")
+    return warnings

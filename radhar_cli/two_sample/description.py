@@ -126,8 +126,8 @@ def describe(side: Side, rows: Index, scale: Scale) -> Described:
     statistics, fine, hashes = [], [], list[bytes | None]()
     for row in rows:
         levels = side.levels(int(row))
-        found = measured(levels, side, int(row), scale)
-        statistics.append([found[name] for name in scale.names])
+        values = measured(levels, side, int(row), scale)
+        statistics.append([values[name] for name in scale.names])
         fine.append(_boxes(levels / np.float32(255), (FINE, COARSE[1])))
         blank = levels.min() == levels.max()
         hashes.append(None if blank else sha256(levels.tobytes()).digest())
@@ -150,10 +150,10 @@ def measured(levels: Levels, side: Side, row: int, scale: Scale) -> dict[str, fl
     if side.masks:
         return mask_statistics(levels >= 128, doppler, right - left, zero)
     one, beyond = PowerMap(side.power(levels), doppler), BEYOND * largest
-    found = mask_statistics(one.occupied(beyond), doppler, right - left, zero)
+    values = mask_statistics(one.occupied(beyond), doppler, right - left, zero)
     if any(STATISTICS[name].of_power for name in scale.names):
-        found |= power_statistics(one, zero, beyond, NEAR * largest, found["active"] > 0)
-    return found
+        values |= power_statistics(one, zero, beyond, NEAR * largest, values["active"] > 0)
+    return values
 
 
 def span(some: Sequence[Described]) -> slice:

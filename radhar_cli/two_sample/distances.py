@@ -28,7 +28,7 @@ class Spread(NamedTuple):
         return cls(float(values.mean()), float(values.std()), values.size)
 
 
-class Apart(NamedTuple):
+class Difference(NamedTuple):
     """Two samples of a number.
 
     Attributes:
@@ -46,19 +46,19 @@ class Apart(NamedTuple):
     p: float
 
 
-def apart(simulated: Float, measured: Float) -> Apart:
+def difference(simulated: Float, measured: Float) -> Difference:
     """Compare values [N] and [M]; NaN are left out, and all is NaN where nothing is left."""
     x, y = (values[np.isfinite(values)] for values in (simulated, measured))
     spreads = Spread.of(x), Spread.of(y)
     if not (x.size and y.size):
-        return Apart(*spreads, np.nan, np.nan, np.nan)
+        return Difference(*spreads, np.nan, np.nan, np.nan)
     scale = float(np.hypot(spreads[0].sd, spreads[1].sd) / np.sqrt(2))
     every = np.concatenate([x, y])
     if scale <= ROUNDING * np.abs(every).max():
         scale = Spread.of(every).sd or 1.0
     test = ks_2samp(x, y)
     distance = float(wasserstein_distance(x, y)) / scale
-    return Apart(*spreads, distance, float(test.statistic), float(test.pvalue))
+    return Difference(*spreads, distance, float(test.statistic), float(test.pvalue))
 
 
 def uncovered(simulated: Float, measured: Float) -> Float:

@@ -70,7 +70,7 @@ def power_statistics(
     limb = np.percentile(np.where(fast, clean, 0).max(axis=0), 75)
     at_zero = one.power[np.abs(one.doppler) <= zero].max(axis=0)
     low, high = np.percentile(torso, [5, 95])
-    found = {
+    values = {
         "limb_below_torso": decibel(float(np.median(clean.max(axis=0))), float(limb)),
         "fast_energy": float(clean[fast].sum() * share),
         "receding_energy": float(clean[one.doppler < -zero].sum() * share),
@@ -79,7 +79,7 @@ def power_statistics(
         "torso_median": float(np.median(torso)),
         "column_spread": float(np.median(spread)),
     }
-    return (found if body else dict.fromkeys(found, np.nan)) | {
+    return (values if body else dict.fromkeys(values, np.nan)) | {
         "peak_over_floor": decibel(float(clean.max()), floor),
         "noise_sd": float(np.std(10 * np.log10(np.maximum(noise, 1e-30)))),
         "zero_over_floor": decibel(float(np.median(at_zero)), floor),
@@ -141,8 +141,8 @@ def mask_statistics(
     active = counts > 0
     line: Bool = np.asarray(body.cells[np.abs(doppler) <= zero / 2].any(axis=0))
     quiet = body.cells[:, line & ~active]
-    found = dict.fromkeys((name for name, one in STATISTICS.items() if not one.of_power), np.nan)
-    found |= {
+    values = dict.fromkeys((name for name, one in STATISTICS.items() if not one.of_power), np.nan)
+    values |= {
         "occupied": 100 * float(beyond.sum() / max(1, (~at_zero).sum() * columns)),
         "stray": 100 * float(body.stray.sum() / max(1, (~at_zero).sum() * columns)),
         "active": float(active.sum() * column),
@@ -151,10 +151,10 @@ def mask_statistics(
         "zero_line_end": 100 * float(line[-max(1, columns // 5) :].mean()),
     }
     if quiet.size:
-        found["zero_line_width"] = float(np.median(quiet.sum(axis=0)) * row)
-        found["zero_line_offset"] = float((doppler @ quiet).sum() / quiet.sum())
+        values["zero_line_width"] = float(np.median(quiet.sum(axis=0)) * row)
+        values["zero_line_offset"] = float((doppler @ quiet).sum() / quiet.sum())
     if not active.any():
-        return found
+        return values
     whole = np.repeat(doppler, beyond.sum(axis=1))
     low, high = np.percentile(whole, [2.5, 97.5])
     times = np.flatnonzero(active)
@@ -164,7 +164,7 @@ def mask_statistics(
     step = np.abs(np.diff(doppler[top]))[np.diff(times) == 1]
     sign = np.sign(mean)
     slowest, fastest = np.percentile(mean, [5, 95])
-    return found | {
+    return values | {
         "receding": 100 * float((whole < 0).mean()),
         "width": float(high - low),
         "upper_envelope": float(np.percentile(doppler[top], 95)),

@@ -25,52 +25,55 @@ from radhar_cli.two_sample.map_statistics import STATISTICS
 DRAWN = 12  # statistics of a class, the most wrong first; statistics.csv has all
 
 
-def write(found: Comparison, folder: Path) -> list[Path]:
+def write(comparison: Comparison, folder: Path) -> list[Path]:
     """Write report.json, statistics.csv and the figures into a folder; return their paths.
 
     Files of an earlier comparison there are replaced or removed.
     """
-    files = {"statistics.csv": _table(found).encode(), "distances.png": _distances(found)}
-    for number, one in enumerate(found.classes, 1):
+    files = {"statistics.csv": _table(comparison).encode(), "distances.png": _distances(comparison)}
+    for number, one in enumerate(comparison.classes, 1):
         stem = f"{number:02d}_" + re.sub(r"[^\w-]", "_", one.name)
-        files[f"{stem}_statistics.png"] = _distributions(found, one)
-        files[f"{stem}_pictures.png"] = _pictures(found, one)
+        files[f"{stem}_statistics.png"] = _distributions(comparison, one)
+        files[f"{stem}_pictures.png"] = _pictures(comparison, one)
     remove_others(folder, files)
     for name, content in files.items():
         write_whole(folder, folder / name, content)
-    numbers = plain({**found.numbers(), "files": sorted(files)})
+    numbers = plain({**comparison.numbers(), "files": sorted(files)})
     write_whole(folder, folder / NUMBERS, (json.dumps(numbers, indent=2) + "\n").encode())
     return [folder / NUMBERS, *(folder / name for name in files)]
 
 
-def _table(found: Comparison) -> str:
+def _table(comparison: Comparison) -> str:
     head = ("class", "statistic", "unit", "simulated_mean", "simulated_sd", "measured_mean")
     rows = (
         (
             one.name,
             name,
-            found.scale.unit(name),
-            *(apart.simulated[:2]),
-            *(apart.measured[:2]),
-            apart.distance,
-            apart.ks,
-            apart.p,
+            comparison.scale.unit(name),
+            *(difference.simulated[:2]),
+            *(difference.measured[:2]),
+            difference.distance,
+            difference.ks,
+            difference.p,
         )
-        for one in found.classes
-        for name, apart in one.apart.items()
+        for one in comparison.classes
+        for name, difference in one.differences.items()
     )
     return csv_text([*head, "measured_sd", "distance", "ks", "p"], rows)
 
 
-def _distances(found: Comparison) -> bytes:
+def _distances(comparison: Comparison) -> bytes:
     """Statistics that any class has, of all classes, what is most wrong over all of them first."""
     table = np.array(
-        [[one.apart[name].distance for one in found.classes] for name in found.scale.names]
+        [
+            [one.differences[name].distance for one in comparison.classes]
+            for name in comparison.scale.names
+        ]
     )
     order = np.argsort(-np.nan_to_num(table).mean(axis=1), kind="stable")
     order = order[np.isfinite(table[order]).any(axis=1)]
-    columns = [one.name.replace("_", " ") + "\n" + how_sure(one) for one in found.classes]
-    rows = [STATISTICS[found.scale.names[number]].words for number in order]
+    columns = [one.name.replace("_", " ") + "\n" + how_sure(one) for one in comparison.classes]
+    rows = [STATISTICS[comparison.scale.names[number]].words for number in order]
     return distances_png(table[order], rows, columns)
 
 
@@ -81,19 +84,19 @@ def how_sure(one: ClassCompared) -> str:
     return f"{100 * one.tested.right / one.tested.truth.size:.0f} % told apart"
 
 
-def _distributions(found: Comparison, one: ClassCompared) -> bytes:
+def _distributions(comparison: Comparison, one: ClassCompared) -> bytes:
     some = []
-    for name, apart in list(one.apart.items())[:DRAWN]:
-        column = found.scale.names.index(name)
+    for name, difference in list(one.differences.items())[:DRAWN]:
+        column = comparison.scale.names.index(name)
         values = [side.statistics[:, column] for side in (one.simulated, one.measured)]
         x, y = (v[np.isfinite(v)] for v in values)
-        words = f"{STATISTICS[name].words}: {apart.distance:.2f}"
-        some.append(Distribution(words, x, y, found.scale.unit(name)))
+        words = f"{STATISTICS[name].words}: {difference.distance:.2f}"
+        some.append(Distribution(words, x, y, comparison.scale.unit(name)))
     return distributions_png(some, f"{one.name}: statistic and distance, the largest first")
 
 
-def _pictures(found: Comparison, one: ClassCompared) -> bytes:
-    count, (tested, far) = found.options.pictures, (one.tested, one.uncovered)
+def _pictures(comparison: Comparison, one: ClassCompared) -> bytes:
+    count, (tested, far) = comparison.options.pictures, (one.tested, one.uncovered)
     scores = dict(zip(one.measured.rows.tolist(), far.tolist(), strict=True))
     sure: dict[int, float] = {}
     if tested is not None:
@@ -111,13 +114,13 @@ def _pictures(found: Comparison, one: ClassCompared) -> bytes:
         return f"{scores[row]:.2f} radii away"
 
     rows = {
-        "simulated": _drawn(found, 0, _spread(one.typical[0], count), plain),
-        "measured": _drawn(found, 1, _spread(one.typical[1], count), plain),
-        "surest to be\nsimulated": _drawn(found, 0, one.surest[:count], surely),
-        "measured, least\ncovered": _drawn(found, 1, one.far[:count], away),
+        "simulated": _drawn(comparison, 0, _spread(one.typical[0], count), plain),
+        "measured": _drawn(comparison, 1, _spread(one.typical[1], count), plain),
+        "surest to be\nsimulated": _drawn(comparison, 0, one.surest[:count], surely),
+        "measured, least\ncovered": _drawn(comparison, 1, one.far[:count], away),
     }
-    units = found.scale.units()
-    quantity = "range" if found.scale.ranges else "Doppler"
+    units = comparison.scale.units()
+    quantity = "range" if comparison.scale.ranges else "Doppler"
     title = f"{one.name}: {how_sure(one)}, {100 * np.mean(far <= 1):.0f} % covered"
     return pictures_png(rows, title, f"time ({units['columns']})", f"{quantity} ({units['rows']})")
 
@@ -129,14 +132,14 @@ def _spread(rows: Index, count: int) -> Index:
 
 
 def _drawn(
-    found: Comparison, number: int, rows: Index, words: Callable[[int], str]
+    comparison: Comparison, number: int, rows: Index, words: Callable[[int], str]
 ) -> list[Picture]:
     """Maps of a side with the rows that are shown alone."""
-    side, (above, below), drawn = found.sides[number], found.shown, []
+    side, (above, below), drawn = comparison.sides[number], comparison.shown, []
     for row in rows.tolist():
         levels = side.levels(row)
         first, last = round(above * len(levels)), round(below * len(levels))
-        left, right, bottom, top = found.scale.edges(side, row)
+        left, right, bottom, top = comparison.scale.edges(side, row)
         step = (top - bottom) / len(levels)
         extent = (left, right, top - last * step, top - first * step)
         drawn.append(Picture(levels[first:last], extent, words(row)))

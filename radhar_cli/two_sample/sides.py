@@ -133,12 +133,12 @@ def _open(path: Path, map_name: str | None, resize: tuple[int, int] | None) -> I
 
 def _rows(images: ImageSet, names: Mapping[str, str | None]) -> dict[str, Index]:
     """{common name: rows}, in the order of the images' own classes."""
-    found: dict[str, list[int]] = {}
+    numbers: dict[str, list[int]] = {}
     for number, name in enumerate(images.classes):
         common = names.get(name, name)
         if common is not None:
-            found.setdefault(common, []).append(number)
-    return {name: np.flatnonzero(np.isin(images.label, own)) for name, own in found.items()}
+            numbers.setdefault(common, []).append(number)
+    return {name: np.flatnonzero(np.isin(images.label, own)) for name, own in numbers.items()}
 
 
 def _side(path: Path, images: ImageSet, classes: dict[str, Index]) -> Side:

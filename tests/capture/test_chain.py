@@ -18,7 +18,7 @@ from radhar_cli.errors import CaptureError
 from radhar_cli.processing.image import decibels
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.processing.range_compression import half_band_signal, range_compression
-from radhar_cli.simulation.simulate import simulate
+from radhar_cli.simulation.simulate import Simulation, simulate
 
 SCENE = """
 activities: [walking]
@@ -167,12 +167,18 @@ def test_doppler_of_imported_slow_time(tmp_path: Path) -> None:
             processed(tmp_path / "x.h5", config, name)
 
 
-def test_too_much_at_once_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    config = config_of(tmp_path)
+def recorded(folder: Path) -> tuple[Config, Simulation]:
+    """A config, and a simulation of it whose recording is r.h5."""
+    config = config_of(folder)
     scene = simulate(config, seed=3, raw=True, maps=("stft",))
     assert scene.beat is not None
-    write_simulated(tmp_path / "r.h5", scene.beat, scene.waveform, Label(label="walking"))
-    size = 16 * 50 * scene.beat.shape[1]
+    write_simulated(folder / "r.h5", scene.beat, scene.waveform, Label(label="walking"))
+    return config, scene
+
+
+def test_too_much_at_once_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    config, scene = recorded(tmp_path)
+    size = 16 * 50 * scene.waveform.n_pulses
     monkeypatch.setattr("radhar_cli.capture.chain.MAX_BYTES", size // 4)
     with pytest.raises(CaptureError, match=r"should choose at most 0\.5 s"):
         processed(tmp_path / "r.h5", config, "stft")
@@ -198,10 +204,7 @@ WRONG = [
 
 @pytest.mark.parametrize(("more", "expected"), WRONG)
 def test_wrong_use_is_refused_in_one_line(tmp_path: Path, more: list[str], expected: str) -> None:
-    config = config_of(tmp_path)
-    scene = simulate(config, seed=3, raw=True, maps=("stft",))
-    assert scene.beat is not None
-    write_simulated(tmp_path / "r.h5", scene.beat, scene.waveform, Label(label="walking"))
+    recorded(tmp_path)
     command = ("process", tmp_path / "r.h5", "--config", tmp_path / "scene.yaml")
     done = radhar(*command, *more, "-o", tmp_path / "out")
     assert done.returncode == 2
@@ -211,10 +214,7 @@ def test_wrong_use_is_refused_in_one_line(tmp_path: Path, more: list[str], expec
 
 
 def test_program_writes_maps_track_and_figure(tmp_path: Path) -> None:
-    config = config_of(tmp_path)
-    scene = simulate(config, seed=3, raw=True, maps=("stft",))
-    assert scene.beat is not None
-    write_simulated(tmp_path / "r.h5", scene.beat, scene.waveform, Label(label="walking"))
+    recorded(tmp_path)
     command = ("process", tmp_path / "r.h5", "--config", tmp_path / "scene.yaml")
     done = radhar(*command, "--maps", "rtm,stft", "-o", tmp_path / "out")
     assert done.returncode == 0, done.stderr

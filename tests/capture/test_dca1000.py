@@ -160,6 +160,7 @@ WRONG = [
     ({"framePeriodicity_msec": 20}, ["framePeriodicity_msec = 20", "at least 32 ms"]),
     ({"chirpEndIdx": 3}, ["chirpEndIdx = 3", "rlChirps defines"]),
     ({"freqSlopeConst_MHz_usec": -5}, ["freqSlopeConst_MHz_usec = -5", "above 0"]),
+    ({"chirpEndIdx": 2**70}, ["chirpEndIdx = 1180591620717411303424", "rlChirps defines"]),
     ({"digOutSampleRate": "fast"}, ["digOutSampleRate = 'fast'", "a number"]),
     ({"b2AdcOutFmt": 3}, ["b2AdcOutFmt = 3", "0 (real), 1 or 2 (complex)"]),
     ({"laneEn": "0x7"}, ["laneEn = '0x7'", "2 or 4 lanes"]),

@@ -221,6 +221,22 @@ def test_the_config_simulates_with_the_same_zero_line(tmp_path: Path) -> None:
     assert other == pytest.approx(one, abs=2)
 
 
+def test_a_recording_counts_once(tmp_path: Path) -> None:
+    path = recorded(tmp_path)
+    with pytest.raises(CaptureError, match="is given twice"):
+        fit([path, tmp_path / "." / path.name])
+
+
+def test_a_recording_too_short_for_anybody_to_move_is_refused_as_such(tmp_path: Path) -> None:
+    with pytest.raises(CaptureError, match=r"lasts 0\.2 s; it should last at least 0\.5 s"):
+        fit([recorded(tmp_path, "duration_s=0.2")])
+
+
+def test_without_noise_no_lines_or_colour_are_read_into_its_rounding(tmp_path: Path) -> None:
+    found = fit([recorded(tmp_path, "snr_db=null", "radar.carrier_hz=24e9", activity="walking")])
+    assert "receiver" not in found.document
+
+
 def test_recordings_of_two_radars_are_refused(tmp_path: Path) -> None:
     paths = [recorded(tmp_path), recorded(tmp_path, "radar.prf_hz=500")]
     with pytest.raises(CaptureError, match="another radar"):

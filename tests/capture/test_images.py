@@ -1,6 +1,7 @@
 """Images that exist already become a data set of the same contract."""
 
 import json
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,10 @@ import pytest
 from command_line import radhar
 from PIL import Image
 
+from radhar_cli.capture import images
+from radhar_cli.capture.images import listed
 from radhar_cli.dataset.reading import open_dataset
+from radhar_cli.errors import CaptureError
 
 CONFIG = """
 maps: [stft]
@@ -114,3 +118,30 @@ def test_missing_axes_are_asked_for(config: Path) -> None:
     done = radhar(*command, "--set", "recordings.rows=null")
     assert done.returncode == 2
     assert "recordings.rows=[low, high]" in done.stderr
+
+
+def test_an_npz_that_promises_or_holds_too_much_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = "{'descr': '|u1', 'fortran_order': False, 'shape': (999, 2048, 256), }".ljust(117)
+    header = b"\x93NUMPY\x01\x00" + len(text + "\n").to_bytes(2, "little") + f"{text}\n".encode()
+    with zipfile.ZipFile(tmp_path / "x.npz", "w") as archive:
+        archive.writestr("masks.npy", header)
+    with pytest.raises(CaptureError, match=r"x\.npz: .*holds less"):
+        listed(tmp_path / "x.npz", packed=False)
+    monkeypatch.setattr(images, "MAX_NPZ", 1000)
+    np.savez(tmp_path / "large.npz", masks=masks(), label=np.array(["a"] * 12))
+    with pytest.raises(CaptureError, match=r"large\.npz: .*more than 1000 bytes of images"):
+        listed(tmp_path / "large.npz", packed=False)
+
+
+def test_masks_are_taken_by_name_and_bytes_are_text(tmp_path: Path) -> None:
+    np.savez(
+        tmp_path / "x.npz",
+        masks=masks(),
+        noise=masks(),
+        label=np.array([b"falling"] * 12),
+        person=np.array([b"p1"] * 12),
+    )
+    part = listed(tmp_path / "x.npz", packed=False).parts[0]
+    assert (part["label"], part["person"]) == ("falling", "p1")

@@ -167,17 +167,21 @@ def test_second_run_on_a_live_folder_is_refused(tmp_path: Path) -> None:
     assert "another run is writing here" in done.stderr
 
 
-def test_full_disk_is_one_line_and_keeps_finished_samples(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("limit", "file"), [(6000, ""), (40_000, "dataset.h5: ")])
+def test_full_disk_is_one_line_and_keeps_finished_samples(
+    tmp_path: Path, limit: int, file: str
+) -> None:
     """A limit on the size of a file stands for a full disk: writing fails midway, as there."""
     config = small_config(tmp_path)
     limited = (
-        "import resource, sys; resource.setrlimit(resource.RLIMIT_FSIZE, (6000, 6000));"
+        f"import resource, sys; resource.setrlimit(resource.RLIMIT_FSIZE, ({limit}, {limit}));"
         "from radhar_cli.cli import main; sys.argv[0] = 'radhar'; main()"
     )
     command = ("generate", config, "-o", tmp_path / "set", "--jobs", 1)
     done = process("-c", limited, *command, "--batch", 1)
     assert done.returncode == 1, done.stdout + done.stderr
     assert "Traceback" not in done.stderr
+    assert file in done.stderr
     assert "is kept, and the same command resumes" in done.stderr
     assert not (tmp_path / "set/dataset.h5").exists()
     assert radhar(*command).returncode == 0

@@ -1,6 +1,7 @@
 """A shard names its content, and any other content is refused."""
 
 import io
+import time
 from pathlib import Path
 
 import h5py
@@ -57,6 +58,13 @@ def test_what_was_stored_is_read_and_hdf5(config: Config, tmp_path: Path) -> Non
             assert file["maps/stft"][:, 0, 0].tolist() == [4, 5, 6]
             assert file["entropy/stft"][:].tolist() == [4, 5, 6]
             assert file["flags"][:].tolist() == [4, 5, 6]
+
+
+def test_the_same_rows_give_the_same_bytes_at_another_time(config: Config) -> None:
+    """HDF5 counts in seconds."""
+    before = stub(config, 0, 2)
+    time.sleep(1.1)
+    assert stub(config, 0, 2) == before
 
 
 def test_every_changed_or_missing_byte_is_found(config: Config, tmp_path: Path) -> None:

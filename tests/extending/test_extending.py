@@ -17,9 +17,10 @@ from radhar_cli.dataset.build import build
 from radhar_cli.pipeline.physics import antennas_of, motion_of, waveform_of
 from radhar_cli.pipeline.plan import Product
 from radhar_cli.pipeline.run import process, record
-from radhar_cli.processing.canceller import Fir
+from radhar_cli.processing.canceller import Canceller, Fir
 from radhar_cli.processing.power_map import Axis, PowerMap
 from radhar_cli.processing.range_compression import range_bins
+from radhar_cli.processing.range_signals import RangeSignals
 from radhar_cli.processing.signal import Signal
 from radhar_cli.receiver.impairment import Impairment
 from radhar_cli.scene import Scene, nominal_scene
@@ -170,6 +171,39 @@ def test_a_recorded_signal_in_place_of_a_simulated_one() -> None:
     found = process(tone, CONFIG, ["stft", "fsst", "image:stft"])
     assert np.all(np.abs(ridge(found["stft"]) - 120) <= 2.5)
     assert found["image:stft"].levels.shape == (32, 32)
+
+
+def test_recorded_range_bins_and_a_gate() -> None:
+    """Of two tones in other bins a gate shows the one within it."""
+    prf, ranges = 1000.0, np.arange(64) * 0.25
+    t = np.arange(4000) / prf
+    bins = np.zeros((64, t.size), complex)
+    bins[20], bins[50] = (np.exp(2j * np.pi * f * t) for f in (120, -200))
+    recorded = RangeSignals(bins, ranges, 0.0, prf, 24e9)
+    gated = CONFIG.processing.model_copy(update={"doppler": "gate", "gate_m": 1.0})
+    torso = np.full(t.size, 2 * ranges[20] / C)
+    config = CONFIG.model_copy(update={"processing": gated})
+    found = process(recorded, config, ["stft"], torso_track=torso)
+    assert np.all(np.abs(ridge(found["stft"]) - 120) <= 2.5)
+    beside = np.abs(found["stft"].rows.values + 200) < 20
+    assert found["stft"].power[beside].max() < 1e-6 * found["stft"].power.max()
+
+
+class LessTheMedian(Canceller):
+    """What stands still is the median, which a person who moves changes less than the mean."""
+
+    removes_static = True
+
+    def __call__(self, s: Complex) -> Complex:
+        return s - (np.median(s.real, axis=-1) + 1j * np.median(s.imag, axis=-1))[..., None]
+
+
+def test_a_canceller_of_whole_recordings() -> None:
+    scene = walking()
+    raw = record(scene, ["slow_time"], canceller=Fir((1,)))["slow_time"].x
+    found = record(scene, ["signal"], canceller=LessTheMedian())["signal"].x
+    expected = LessTheMedian()(raw)
+    assert np.linalg.norm(found - expected) < 1e-3 * np.linalg.norm(expected)
 
 
 def test_another_canceller() -> None:

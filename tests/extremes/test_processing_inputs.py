@@ -200,17 +200,6 @@ def test_entropy_and_levels_do_not_see_the_scale(scale: float, kind: str) -> Non
     assert grey.max() == 255
 
 
-def test_closed_forms() -> None:
-    """A constant map has log2 of its pixels, an impulse none; the impulse is as wide as a pixel."""
-    assert entropy_bits(MAPS["constant"]) == pytest.approx(np.log2(1200), rel=1e-14)
-    assert entropy_bits(MAPS["impulse"]) == 0
-    assert entropy_bits(np.zeros((3, 3))) == 0
-    assert (levels(MAPS["constant"], (16, 20), 50.0) == 255).all()
-    grey = levels(MAPS["impulse"], (30, 40), 50.0)
-    assert np.count_nonzero(grey) == 1
-    assert not levels(np.zeros((3, 3)), (8, 8), 50.0).any()
-
-
 @pytest.mark.parametrize("dynamic_range", [5e-324, 1e-12, 300.0])
 @pytest.mark.parametrize("kind", MAPS)
 def test_levels_at_the_ends_of_the_dynamic_range(kind: str, dynamic_range: float) -> None:

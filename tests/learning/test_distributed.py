@@ -27,7 +27,7 @@ from radhar_cli.learning.batches import Reader
 from radhar_cli.learning.execution_plan import choose_execution_plan
 from radhar_cli.learning.gradient_step import TrainStep
 from radhar_cli.learning.process_group import Group, distributed, process_group
-from radhar_cli.learning.training import _Training, checked_images, train
+from radhar_cli.learning.training import Task, _Training, checked_images, train
 
 data, out, answer = map(Path, sys.argv[2:])
 torch.set_num_threads(1)
@@ -48,10 +48,10 @@ with process_group(cpu) as group:
         dist.barrier()
         images = checked_images(config, data)
         plan = choose_execution_plan(config, cpu)
-        work = _Training.prepared(config, images, place, plan, group, Watched())
-        rows = work.images.rows("train")[:count][::-1]
-        levels = np.stack([work.images.pixels.read(int(r)).transpose(2, 0, 1) for r in rows])
-        levels, labels = torch.from_numpy(levels), torch.from_numpy(work.images.label[rows].copy())
+        work = _Training.prepared(Task(config, images, place), plan, group, Watched())
+        rows = images.rows("train")[:count][::-1]
+        levels = np.stack([images.pixels.read(int(r)).transpose(2, 0, 1) for r in rows])
+        levels, labels = torch.from_numpy(levels), torch.from_numpy(images.label[rows].copy())
         mine = slice(group.rank, None, group.size)
         fresh = copy.deepcopy(work.model)
         network = distributed(work.model, cpu, group)
@@ -78,7 +78,7 @@ with process_group(cpu) as group:
         seen.append([whole, [hash(image.numpy().tobytes()) for image in levels]])
         return 0.0, 0
     TrainStep.step = look
-    work._train_epoch(network, Reader(work.images, work.images.label, 0, False), 0)
+    work._train_epoch(network, Reader(images, images.label, 0, False), 0)
     everyone = [None] * group.size
     dist.all_gather_object(everyone, seen)
     if group.is_main:

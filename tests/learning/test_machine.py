@@ -40,6 +40,6 @@ def test_a_single_process_without_torchrun(monkeypatch: pytest.MonkeyPatch) -> N
     for name in ("WORLD_SIZE", "TORCHELASTIC_RUN_ID"):
         monkeypatch.delenv(name, raising=False)
     with process_group(CPU) as group:
-        assert group == Group(0, 1, 1)
+        assert group == Group(0, 1)
         assert group.is_main
     assert not Group(1, 2).is_main

@@ -42,27 +42,22 @@ from radhar_cli.learning.images.scan import scan
 from radhar_cli.learning.models.build import build_model
 from radhar_cli.learning.process_group import Group
 from radhar_cli.learning.step_memory import Step
-from radhar_cli.learning.training import TrainingError, _Training, checked_images
+from radhar_cli.learning.training import Task, TrainingError, _Training, checked_images
 
 CPU = torch.device("cpu")
 
 
 def prepared(data: Path, out: Path, **changes: Any) -> _Training:
     out.mkdir()
-    return _Training.prepared(
-        settings(**changes),
-        checked_images(settings(**changes), data),
-        out,
-        choose_execution_plan(settings(**changes), CPU),
-        Group(),
-        Watched(),
-    )
+    config = settings(**changes)
+    task = Task(config, checked_images(config, data), out)
+    return _Training.prepared(task, choose_execution_plan(config, CPU), Group(), Watched())
 
 
 def first_batch(work: _Training, count: int = 6) -> tuple[torch.Tensor, torch.Tensor]:
-    rows = work.images.rows("train")[::2][:count]
-    levels = np.stack([work.images.pixels.read(int(row)).transpose(2, 0, 1) for row in rows])
-    return torch.from_numpy(levels), torch.from_numpy(work.images.label[rows])
+    rows = work.task.images.rows("train")[::2][:count]
+    levels = np.stack([work.task.images.pixels.read(int(row)).transpose(2, 0, 1) for row in rows])
+    return torch.from_numpy(levels), torch.from_numpy(work.task.images.label[rows])
 
 
 def gradients(model: nn.Module) -> list[torch.Tensor]:

@@ -121,75 +121,47 @@ def test_what_runs(maps, more, names):
             assert executed.index(need) < executed.index(product.name)
 
 
-class TestSpecificPromises:
-    """What the table says, for those who look for one promise."""
+def test_only_a_wall_is_crossed(monkeypatch):
+    crossed: list[str] = []
+    for module, name in (
+        (motion_paths, "transmission"),
+        (motion_paths, "wall_delay"),
+        (products, "wall_of"),
+    ):
+        original = getattr(module, name)
 
-    def names(self, maps: str, **more: object) -> list[str]:
-        return [product.name for product in plan_images(config_of(maps, more)).products]
+        def noted(*arguments, name=name, original=original):
+            found = original(*arguments)
+            crossed.extend([] if found is None else [name])
+            return found
 
-    def test_a_doppler_map_needs_no_range_profiles(self):
-        assert not {"beat_cube", "range_profiles"} & set(self.names("stft"))
-
-    def test_a_range_map_needs_no_slow_time_signal(self):
-        assert not {"echo", "slow_time", "signal"} & set(self.names("rtm"))
-
-    def test_an_image_needs_no_whole_map(self):
-        """Those of the Doppler maps are reduced block by block."""
-        assert not (set(MAP_NAMES) - {"rtm"}) & set(self.names(" ".join(MAP_NAMES)))
-
-    def test_only_compensation_takes_a_torso_track(self):
-        assert "torso_track" not in self.names("stft_denoised fsst rtm")
-        both = self.names("stft_compensated fsst_compensated_denoised")
-        assert both.count("torso_track") == 1
-
-    def test_only_a_wall_is_crossed(self, monkeypatch):
-        crossed: list[str] = []
-        for module, name in (
-            (motion_paths, "transmission"),
-            (motion_paths, "wall_delay"),
-            (products, "wall_of"),
-        ):
-            original = getattr(module, name)
-
-            def noted(*arguments, name=name, original=original):
-                found = original(*arguments)
-                crossed.extend([] if found is None else [name])
-                return found
-
-            monkeypatch.setattr(module, name, noted)
-        for wall, expected in (
-            ({}, set()),
-            (WALL, {"transmission", "wall_delay", "wall_of"}),
-        ):
-            crossed.clear()
-            config = config_of("stft_compensated rtm", wall)
-            run(plan_images(config), {"scene": scene_of(config)})
-            assert set(crossed) == expected
-
-    def test_only_noise_takes_random_numbers_and_power(self):
-        noise = {"signal_power", "noise"}
-        assert not noise & set(self.names(" ".join(MAP_NAMES), snr_db=None))
-        assert noise <= set(self.names(" ".join(MAP_NAMES)))
-
-    def test_the_beat_is_computed_once_for_all_maps(self):
-        assert self.names(" ".join(MAP_NAMES), **CUBE).count("beat_cube") == 1
-
-    @pytest.mark.parametrize("with_mti", [True, False])
-    def test_range_profiles_compute_only_the_pulses_shown(self, monkeypatch, with_mti):
-        asked: list[np.ndarray] = []
-        original = PaperBody.positions
-
-        def noted(body, t):
-            asked.append(t)
-            return original(body, t)
-
-        monkeypatch.setattr(PaperBody, "positions", noted)
-        config = config_of("rtm", QUIET | {"processing": {"mti": with_mti}})
+        monkeypatch.setattr(module, name, noted)
+    for wall, expected in (
+        ({}, set()),
+        (WALL, {"transmission", "wall_delay", "wall_of"}),
+    ):
+        crossed.clear()
+        config = config_of("stft_compensated rtm", wall)
         run(plan_images(config), {"scene": scene_of(config)})
-        kept = PULSES - with_mti
-        shown = {floor((j + 0.5) * kept / WIDTH) for j in range(WIDTH)}
-        needed = shown | {m + 1 for m in shown} if with_mti else shown
-        assert [t.tolist() for t in asked] == [[m / PULSES for m in sorted(needed)]]
+        assert set(crossed) == expected
+
+
+@pytest.mark.parametrize("with_mti", [True, False])
+def test_range_profiles_compute_only_the_pulses_shown(monkeypatch, with_mti):
+    asked: list[np.ndarray] = []
+    original = PaperBody.positions
+
+    def noted(body, t):
+        asked.append(t)
+        return original(body, t)
+
+    monkeypatch.setattr(PaperBody, "positions", noted)
+    config = config_of("rtm", QUIET | {"processing": {"mti": with_mti}})
+    run(plan_images(config), {"scene": scene_of(config)})
+    kept = PULSES - with_mti
+    shown = {floor((j + 0.5) * kept / WIDTH) for j in range(WIDTH)}
+    needed = shown | {m + 1 for m in shown} if with_mti else shown
+    assert [t.tolist() for t in asked] == [[m / PULSES for m in sorted(needed)]]
 
 
 def test_a_fast_radar_evaluates_the_body_at_its_knots(monkeypatch):

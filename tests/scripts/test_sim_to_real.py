@@ -1,10 +1,8 @@
 """scripts/sim_to_real.py at the smallest sizes, and on files that are not what it asks for."""
 
 import importlib.util
-import io
 import re
 import sys
-import zipfile
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -68,20 +66,12 @@ def test_names_are_matched_however_they_are_written(script: ModuleType, tmp_path
 
 
 HOSTILE: list[tuple[dict[str, Any], str]] = [
-    ({"masks": None}, "has no array 'masks'"),
-    ({"label": None}, "has no array 'label'"),
-    ({"classes": None}, "has no array 'classes'"),
-    ({"masks": arrays()["masks"].astype(float)}, "should be uint8"),
-    ({"masks": arrays()["masks"][0]}, "should be uint8"),
-    ({"masks": arrays(size=16)["masks"]}, "32 to 2048 px"),
-    ({"label": np.arange(11)}, "should be 12 integers"),
-    ({"label": np.linspace(0, 1, 12)}, "should be 12 integers"),
-    ({"label": np.full(12, 6)}, "reaches beyond the 6 classes"),
-    ({"label": np.full(12, -1)}, "reaches beyond the 6 classes"),
-    ({"classes": np.arange(6)}, "should be names"),
+    ({"masks": None}, "one array of images"),
+    ({"label": None}, "and label"),
+    ({"masks": arrays(size=16)["masks"]}, "should have 32 to 2048 a side"),
+    ({"label": np.full(12, 6)}, "numbers into classes"),
     ({"classes": np.array(["a", "b", "c", "d", "e", "f"])}, "has no map of walking"),
     ({"label": np.full(12, 5)}, "has no map of walking"),
-    ({"label": np.array([None] * 12)}, "cannot be read"),
 ]
 
 
@@ -95,45 +85,6 @@ def test_wrong_arrays_are_refused_in_one_line(
     assert str(error.value).startswith(f"{path}: ")
     assert expected in str(error.value)
     assert "\n" not in str(error.value)
-
-
-def npy_header(shape: str, kind: str = "|u1") -> bytes:
-    """An array that says it is that large, without its values."""
-    text = f"{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}".ljust(117) + "\n"
-    return b"\x93NUMPY\x01\x00" + len(text).to_bytes(2, "little") + text.encode()
-
-
-def test_files_that_are_no_npz_or_bombs_are_one_line(
-    script: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(script, "MAX_BYTES", 2**22)
-    good = written(tmp_path / "good.npz").read_bytes()
-    claims = io.BytesIO()
-    with zipfile.ZipFile(claims, "w") as archive:
-        archive.writestr("masks.npy", npy_header("(99999, 2048, 256)"))
-        archive.writestr("label.npy", npy_header("(99999,)", "<i8"))
-        archive.writestr("classes.npy", npy_header("(1,)", "<U8"))
-    bomb = io.BytesIO()
-    with zipfile.ZipFile(bomb, "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr("masks.npy", npy_header("(6, 1024, 1024)") + bytes(6 * 2**20))
-    large = tmp_path / "large.npz"
-    noise = np.random.default_rng(0).integers(0, 256, (5, 1024, 1024), dtype=np.uint8)
-    written(large, masks=noise, label=np.zeros(5, int))
-    files = {
-        "text": b"no archive",
-        "empty": b"",
-        "cut": good[: len(good) // 2],
-        "claims": claims.getvalue(),
-        "bomb": bomb.getvalue(),
-        "larger": large.read_bytes(),
-    }
-    for name, content in files.items():
-        path = tmp_path / f"{name}.npz"
-        path.write_bytes(content)
-        with pytest.raises(CaptureError) as error:
-            script.read_masks(path)
-        assert str(error.value).startswith(f"{path}: "), name
-        assert "\n" not in str(error.value)
 
 
 def measured(path: Path, config: Path, per_class: int) -> int:

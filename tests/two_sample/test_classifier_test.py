@@ -58,12 +58,12 @@ def test_features_that_identify_persons_tell_nothing() -> None:
     person = np.tile(np.repeat(np.arange(4), COUNT // 4), 2)
     who = rng.normal(size=(2, 4, 60))
     x = who[np.repeat([0, 1], COUNT), person] + 0.1 * rng.normal(size=(2 * COUNT, 60))
-    apart = held_out(x, TRUTH, person, rng)
+    difference = held_out(x, TRUTH, person, rng)
     mixed = held_out(x, TRUTH, np.arange(2 * COUNT), rng)
-    assert apart is not None
+    assert difference is not None
     assert mixed is not None
     assert interval([mixed])["accuracy"] == 1
-    assert interval([apart])["accuracy"] < 0.9
+    assert interval([difference])["accuracy"] < 0.9
 
 
 def test_one_person_cannot_be_held_out() -> None:

@@ -65,13 +65,15 @@ def test_the_largest_differences_come_first(tmp_path: Path) -> None:
     one = tree(tmp_path / "a", 1, lambda rng: mask(rng, 22), "walking")
     other = tree(tmp_path / "b", 2, mask, "walking")
     (found,) = compared(one, other).classes
-    first, *_ = found.apart
+    first, *_ = found.differences
     assert first in ("upper_envelope", "width", "column_height", "ripple")
-    distances = [value.distance for value in found.apart.values() if np.isfinite(value.distance)]
+    distances = [
+        value.distance for value in found.differences.values() if np.isfinite(value.distance)
+    ]
     assert distances == sorted(distances, reverse=True)
-    assert found.apart["upper_envelope"].simulated.mean == pytest.approx(22, abs=1)
-    assert found.apart["upper_envelope"].measured.mean == pytest.approx(12, abs=1)
-    assert found.apart["active"].distance < 0.6
+    assert found.differences["upper_envelope"].simulated.mean == pytest.approx(22, abs=1)
+    assert found.differences["upper_envelope"].measured.mean == pytest.approx(12, abs=1)
+    assert found.differences["active"].distance < 0.6
     assert found.tested is not None
     assert found.tested.right > 0.95 * 80
 
@@ -195,8 +197,10 @@ def test_axes_and_persons_of_a_data_set(recorded: Path) -> None:
     found = compared(recorded, recorded)
     (same,) = found.warnings
     assert "pixel by pixel" in same
-    assert found.classes[0].apart["active"].measured.mean == pytest.approx(13 / 64 * 5, rel=0.2)
-    assert found.classes[0].apart["upper_envelope"].measured.mean == pytest.approx(
+    assert found.classes[0].differences["active"].measured.mean == pytest.approx(
+        13 / 64 * 5, rel=0.2
+    )
+    assert found.classes[0].differences["upper_envelope"].measured.mean == pytest.approx(
         12 * 1000 / 64, rel=0.1
     )
 

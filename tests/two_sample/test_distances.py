@@ -3,33 +3,33 @@
 import numpy as np
 import pytest
 
-from radhar_cli.two_sample.distances import apart, uncovered
+from radhar_cli.two_sample.distances import difference, uncovered
 
 RNG = np.random.default_rng(0)
 
 
 def test_a_shift_of_a_standard_deviation_is_a_distance_of_one() -> None:
     x = RNG.normal(5, 2, 500)
-    found = apart(x + 2, x)
+    found = difference(x + 2, x)
     assert found.distance == pytest.approx(1, abs=0.08)
     assert found.p < 1e-6
     assert found.measured.mean == pytest.approx(5, abs=0.3)
-    same = apart(x, x)
+    same = difference(x, x)
     assert (same.distance, same.ks) == (0, 0)
 
 
 def test_missing_statistics_are_left_out() -> None:
-    found = apart(np.array([1.0, np.nan, 3.0]), np.array([1.0, 3.0]))
+    found = difference(np.array([1.0, np.nan, 3.0]), np.array([1.0, 3.0]))
     assert (found.simulated.known, found.measured.known, found.distance) == (2, 2, 0)
-    nothing = apart(np.array([np.nan]), np.array([1.0]))
+    nothing = difference(np.array([np.nan]), np.array([1.0]))
     assert np.isnan(nothing.distance)
 
 
 def test_constants() -> None:
-    assert apart(np.ones(3), np.ones(4)).distance == 0
-    assert apart(np.zeros(4), np.ones(4)).distance == pytest.approx(2)
+    assert difference(np.ones(3), np.ones(4)).distance == 0
+    assert difference(np.zeros(4), np.ones(4)).distance == pytest.approx(2)
     rounded = np.array([4.0, 4.0, np.nextafter(4.0, 5.0)])
-    assert apart(rounded, np.full(3, 3.0)).distance == pytest.approx(2)
+    assert difference(rounded, np.full(3, 3.0)).distance == pytest.approx(2)
 
 
 def test_coverage() -> None:

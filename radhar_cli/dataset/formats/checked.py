@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from radhar_cli.config.identity import as_yaml
 from radhar_cli.dataset.card import card, owner_licence
 from radhar_cli.dataset.gallery import gallery_png
-from radhar_cli.dataset.layout import CARD, CONFIG, GALLERY, SPLITS
+from radhar_cli.dataset.layout import CARD, CONFIG, GALLERY
 from radhar_cli.dataset.png import colour_table, encode_png
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.table import Entry, entries
@@ -60,11 +60,6 @@ def files_of_split(data: Dataset, split: int, maps: int) -> Iterator[tuple[int, 
     files = -(-count // most)
     for _ in range(files):
         yield files, islice(here, most)
-
-
-def present_splits(data: Dataset) -> list[tuple[int, str]]:
-    """(number, name) of the splits that have samples."""
-    return [(n, name) for n, name in enumerate(SPLITS) if (data.split == n).any()]
 
 
 def describe(data: Dataset, folder: Path, loading: Mapping[str, Any], reading: str) -> None:

@@ -10,7 +10,7 @@ import pyarrow.parquet as pq
 
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.card import configurations
-from radhar_cli.dataset.formats.checked import Samples, describe, files_of_split, present_splits
+from radhar_cli.dataset.formats.checked import Samples, describe, files_of_split
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.table import Entry, number_names
@@ -25,14 +25,14 @@ def write(data: Dataset, folder: Path, progress: Progress) -> None:
     group = max(1, min(GROUP, GROUP_BYTES // prod(data.config.image.size_px)))
     for name in data.config.maps:
         (folder / name).mkdir()
-        for split, part in present_splits(data):
+        for split, part in data.present_splits.items():
             for number, (files, here) in enumerate(files_of_split(data, split, 1)):
                 path = folder / name / f"{part}-{number:05d}-of-{files:05d}.parquet"
                 with pq.ParquetWriter(path, schema, use_dictionary=False) as file:
                     while some := list(islice(here, group)):
                         file.write_table(_table(data, name, some, samples, schema))
                         progress.advance(len(some) if name == data.config.maps[0] else 0)
-    parts = [part for _, part in present_splits(data)]
+    parts = [part for _, part in data.present_splits.items()]
     files_of = {n: {part: f"{n}/{part}-*.parquet" for part in parts} for n in data.maps}
     configs = configurations(data.config, files_of)
     describe(data, folder, {"configs": configs}, _reading(data))

@@ -8,7 +8,7 @@ from typing import Any
 
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.card import data_files, number_features
-from radhar_cli.dataset.formats.checked import Samples, describe, files_of_split, present_splits
+from radhar_cli.dataset.formats.checked import Samples, describe, files_of_split
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.table import Entry, number_names
@@ -18,7 +18,7 @@ from radhar_cli.progress import Progress
 def write(data: Dataset, folder: Path, progress: Progress) -> None:
     """Write <split>-<number>.tar with <class>-<index>.<map>.png, .cls and .json of each sample."""
     samples, rows, names = Samples(data), Rows.of(data.config), number_names(data.config)
-    for split, part in present_splits(data):
+    for split, part in data.present_splits.items():
         for number, (_, here) in enumerate(files_of_split(data, split, len(data.maps))):
             path = folder / f"{part}-{number:06d}.tar"
             with tarfile.open(path, "w", format=tarfile.USTAR_FORMAT) as tar:
@@ -29,7 +29,7 @@ def write(data: Dataset, folder: Path, progress: Progress) -> None:
                     _add(tar, f"{key}.cls", str(entry.number).encode())
                     _add(tar, f"{key}.json", json.dumps(as_json(entry, names)).encode())
                     progress.advance(1)
-    files = {"default": {part: f"{part}-*.tar" for _, part in present_splits(data)}}
+    files = {"default": {part: f"{part}-*.tar" for _, part in data.present_splits.items()}}
     loading = {
         "configs": data_files(files),
         "dataset_info": {"config_name": "default", "features": members(data.config)},

@@ -109,12 +109,12 @@ class ImageSet:
             return np.arange(len(self))
         if self.split is None:
             raise FolderError(f"{self.where}: is not split into train and val; --split all")
-        found = np.flatnonzero(self.split == SPLIT_NAMES[split])
-        if not found.size:
+        numbers = np.flatnonzero(self.split == SPLIT_NAMES[split])
+        if not numbers.size:
             counts = np.bincount(self.split, minlength=3)
             has = ", ".join(f"{n} {name}" for n, name in zip(counts, SPLITS, strict=True) if n)
             raise FolderError(f"{self.where}: has no {split} images (it has {has})")
-        return found
+        return numbers
 
     def renamed(self, names: Mapping[str, str | None]) -> "ImageSet":
         """The same images with some classes under other names; None leaves a class out.

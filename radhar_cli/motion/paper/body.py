@@ -118,15 +118,18 @@ class PaperBody:
         count = p.shape[2]
         ahead = np.zeros((len(JOINTS), count))
         aside = np.zeros((len(JOINTS), 1))
-        turned: list[Float | float] = [now.pitch + now.angles.get(JOINTS[TORSO], 0.0)]
+        angle = now.pitch + now.angles.get(JOINTS[TORSO], 0.0)
+        turned = [(angle, np.cos(angle), np.sin(angle))]
         for joint, parent in enumerate(PARENTS):
             if parent is None:
                 continue
             x, y, z = self.links[joint]
-            angle = turned[parent]
+            angle, cos, sin = turned[parent]
             own = now.angles.get(JOINTS[joint])
-            turned.append(angle if own is None else angle + own)
-            cos, sin = np.cos(turned[joint]), np.sin(turned[joint])
+            if own is not None:
+                angle = angle + own
+                cos, sin = np.cos(angle), np.sin(angle)
+            turned.append((angle, cos, sin))
             ahead[joint] = ahead[parent] + (x * cos + z * sin)
             aside[joint] = aside[parent] + y
             p[2, joint] = p[2, parent] + (z * cos - x * sin)

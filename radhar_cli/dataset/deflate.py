@@ -4,7 +4,7 @@ import zlib
 
 from isal import isal_zlib
 
-_FAST = 2  # of ISA-L's 0 to 3: as small as zlib's 1 (docs/benchmark.md)
+_FAST = 2  # of ISA-L's 0 to 3: about as small as zlib's 1
 
 
 def deflated(data: bytes, level: int) -> bytes:

@@ -116,16 +116,15 @@ def encode_shard(
         scene_values: [rows, fields].
         flags: what there is to warn of in each row (`Flags`).
     """
-    buffer = io.BytesIO()
+    buffer, level = io.BytesIO(), config.output.hdf5_level
     # Not libver="latest", whose groups hold the time at which they were made.
     with h5py.File(buffer, "w", userblock_size=USER_BLOCK) as file:
         for name, (dtype, shape) in chunked(config).items():
             target, checksums = chunked_dataset(file, name, len(samples), config), []
-            level = config.output.hdf5_level
             for row, sample in enumerate(samples):
                 raw = np.asarray(sample.chunk(name, shape), dtype).tobytes()
                 stored = deflated(raw, level) if level else raw
-                target.id.write_direct_chunk((row, *(0 for _ in shape)), stored)
+                target.id.write_direct_chunk((row, *[0] * len(shape)), stored)
                 checksums.append(hashlib.sha256(raw).hexdigest())
             file[checksum_of(name)] = np.array(checksums, dtype="S64")
         for name in config.maps:

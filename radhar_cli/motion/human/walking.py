@@ -214,7 +214,7 @@ class Walking:
         lane, v, begins = self.gait.lane, self.gait.speed, [0.0][:0]
         if lane is None:
             return np.array(begins)
-        least = v * self.ramp  # to slow down, or to gain speed
+        least = v * self.ramp  # to change speed between turns
         at = max(lane.first, v * self.start if self.from_rest else 0.0)
         # Way of who does not slow down: a turn begins in it when the walker is slow.
         lost = lane.slow / (1 - lane.slow) * self._arc

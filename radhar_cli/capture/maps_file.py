@@ -3,7 +3,6 @@
 import json
 from pathlib import Path
 
-import h5py
 import numpy as np
 from matplotlib.axes import Axes
 
@@ -14,6 +13,7 @@ from radhar_cli.config.identity import resolved
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.figures.maps_panel import Shown, draw_maps
+from radhar_cli.new_hdf5 import new_hdf5
 from radhar_cli.processing.torso_track import TorsoTrack
 from radhar_cli.replacing import replacing
 from radhar_cli.simulation.scene_file import write_map
@@ -38,7 +38,7 @@ def write_maps(maps: Maps, config: Config, info: RecordingInfo, folder: Path) ->
     path = folder / MAPS_FILE
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        with replacing(path, UNFINISHED) as unfinished, h5py.File(unfinished, "w") as file:
+        with replacing(path, UNFINISHED) as unfinished, new_hdf5(unfinished, path) as (file, _):
             for name, power_map in maps.maps.items():
                 write_map(file, name, power_map)
             if maps.track is not None:

@@ -9,7 +9,6 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any
 
-import h5py
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -20,6 +19,7 @@ from radhar_cli.capture.findings import CLIPPED, LOST
 from radhar_cli.capture.source import Parts
 from radhar_cli.dataset.untrusted_hdf5 import Samples, UntrustedFile
 from radhar_cli.errors import CaptureError, FolderError, UnfinishedError
+from radhar_cli.new_hdf5 import new_hdf5
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.replacing import replacing
 from radhar_cli.untrusted import Closing
@@ -172,7 +172,7 @@ def write_recording(
         shape, chunks = shape[::2], chunks[::2]
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with replacing(path) as unfinished, h5py.File(unfinished, "w") as file:
+        with replacing(path) as unfinished, new_hdf5(unfinished, path) as (file, check):
             name = "slow_time" if info.samples is None else "beat"
             data = file.create_dataset(name, shape, dtype, chunks=chunks)
             data.attrs["axes"] = ["receiver", "fast time", "pulse"][:: 2 if len(shape) == 2 else 1]
@@ -183,6 +183,7 @@ def write_recording(
                     data[:, first:stop] = block[:, 0]
                 else:
                     data[:, :, first:stop] = block
+                check()
             flags, findings = finished() if finished else (np.zeros(info.pulses, np.uint8), [])
             file["flags"] = flags
             file["flags"].attrs["meaning"] = [f"{LOST}: samples lost", f"{CLIPPED}: clipped"]

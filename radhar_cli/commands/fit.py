@@ -27,6 +27,7 @@ def fit(
     from radhar_cli.capture.fit_figure import draw
     from radhar_cli.capture.fitting import fit as read_off
     from radhar_cli.errors import FolderError
+    from radhar_cli.replacing import write_text
 
     if out.resolve() in {path.resolve() for path in recordings}:
         raise FolderError(f"{out}: is one of the recordings; -o should name another file")
@@ -39,7 +40,7 @@ def fit(
     text = f"# Fitted to stretches of recordings: {len(fitted.parts)}.\n"
     lines = [f"{key}: {json.dumps(value)}" for key, value in fitted.document.items()]
     out.parent.mkdir(parents=True, exist_ok=True)
-    out.write_text(text + "\n".join(lines) + "\n")
+    write_text(out, text + "\n".join(lines) + "\n")
     draw(fitted, out.with_suffix(".png"))
     report(files=[out, out.with_suffix(".png")], numbers=fitted.numbers(), parts=len(fitted.parts))
     for path in (out, out.with_suffix(".png")):

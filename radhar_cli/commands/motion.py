@@ -27,6 +27,7 @@ def motion(
     """
     from radhar_cli.config import load_config
     from radhar_cli.errors import ConfigError, UnfinishedError
+    from radhar_cli.replacing import write_text
     from radhar_cli.simulation.motion_file import scene_bvh
 
     if out.suffix.lower() != ".bvh":
@@ -36,7 +37,7 @@ def motion(
         load_config(config, set_ or []), activity, index=index, nominal=nominal, rate=rate
     )
     try:
-        out.write_text(text)
+        write_text(out, text)
     except OSError as error:
         raise UnfinishedError(f"{out}: {error.strerror}; nothing was written") from None
     report(file=out, frames=frames, rate_hz=rate)

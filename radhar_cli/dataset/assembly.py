@@ -5,7 +5,6 @@ rows but the list of shards: columns go into the file as shards are read.
 """
 
 import csv
-import errno
 import io
 import json
 from collections.abc import Callable, Iterator, Sequence
@@ -51,6 +50,7 @@ from radhar_cli.dataset.shards import (
 from radhar_cli.dataset.split import split_rows
 from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.errors import UnfinishedError
+from radhar_cli.new_hdf5 import new_hdf5
 from radhar_cli.pipeline.validity import Flags, warnings
 from radhar_cli.progress import Progress
 from radhar_cli.scene import subject_of
@@ -67,16 +67,6 @@ LEVELS_TEXT = (
     "level = floor(255 (dB / dynamic_range_db + 1) + 1/2), dB = 10 log10(power / largest power), "
     "clipped to [-dynamic_range_db, 0]; level 0 everywhere for an all-zero map"
 )
-
-
-@contextmanager
-def _written(path: Path, final: Path) -> Iterator[h5py.File]:
-    """A new HDF5 file, `final` later; one that a full disk does not take is an OSError."""
-    try:
-        with h5py.File(path, "w") as file:
-            yield file
-    except RuntimeError as error:  # of h5py, as it closes
-        raise OSError(errno.EIO, f"cannot be written, {error}", str(final)) from None
 
 
 @contextmanager
@@ -110,7 +100,7 @@ def assembled(
     unfinished.parent.mkdir(parents=True, exist_ok=True)
     try:
         with (
-            _written(unfinished, folder / DATASET) as file,
+            new_hdf5(unfinished, folder / DATASET) as (file, check),
             table.open("w", newline="") as text,
             manifest.open("w") as held,
         ):
@@ -118,7 +108,9 @@ def assembled(
             held.write(f'{{"identity": "{own_hash}", "rows": {count}, "shards": [\n')
             if virtual:
                 _refer_to_shards(file, config, folder, shards)
-            flags = _copy_shards(file, config, shards, own_hash, progress, text, held, virtual)
+            flags = _copy_shards(
+                file, check, config, shards, own_hash, progress, text, held, virtual
+            )
             held.write("]}\n")
             messages = warnings(config, flags)
             _root_attributes(file, config, messages)
@@ -138,6 +130,7 @@ def assembled(
 
 def _copy_shards(
     file: h5py.File,
+    check: Callable[[], None],
     config: Config,
     shards: Sequence[Shard],
     own_hash: str,
@@ -201,6 +194,7 @@ def _copy_shards(
                     target.write_direct_chunk((row, *corner), chunk, mask)
                 del chunks[name][:run]
             stored += run
+            check()
     for target in (*scene, *(target for target, _, _ in small.values())):
         target.flush()
     for name in config.maps:

@@ -2,6 +2,7 @@
 
 import io
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import TypeVar
 
 from matplotlib import rcParams
@@ -9,6 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+from radhar_cli.replacing import replacing
 
 T = TypeVar("T")
 DPI = 110
@@ -47,3 +50,9 @@ def png_bytes(figure: Figure) -> bytes:
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png", dpi=DPI, metadata={"Software": None})
     return buffer.getvalue()
+
+
+def write_png(figure: Figure, path: Path, dpi: float) -> None:
+    """Write a figure as a PNG file that appears when it is whole."""
+    with replacing(path) as unfinished:
+        figure.savefig(unfinished, format="png", dpi=dpi)

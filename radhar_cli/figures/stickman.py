@@ -13,6 +13,7 @@ from PIL import Image
 
 from radhar_cli.arrays import Float
 from radhar_cli.figures.maps_panel import draw_map, of_simulation, title
+from radhar_cli.replacing import replacing
 from radhar_cli.simulation.simulate import Simulation
 from radhar_cli.simulation.truth import WHOLE
 
@@ -59,9 +60,15 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Callable[[int], o
         palette = palette or picture.quantize(256, Image.Quantize.MAXCOVERAGE)
         frames.append(picture.quantize(palette=palette, dither=Image.Dither.NONE))
         advance(1)
-    frames[0].save(
-        path, save_all=True, append_images=frames[1:], duration=1000 // FRAMES_PER_SECOND, loop=0
-    )
+    with replacing(path) as unfinished:
+        frames[0].save(
+            unfinished,
+            format="GIF",
+            save_all=True,
+            append_images=frames[1:],
+            duration=1000 // FRAMES_PER_SECOND,
+            loop=0,
+        )
 
 
 def _cursor(figure: Figure, simulation: Simulation) -> list[Line2D]:

@@ -14,8 +14,9 @@ from radhar_cli.config.motion_files import alone
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import FolderError, UnfinishedError
 from radhar_cli.motion.files.motion import FileMotion
+from radhar_cli.new_hdf5 import new_hdf5
 from radhar_cli.processing.power_map import PowerMap
-from radhar_cli.replacing import replacing
+from radhar_cli.replacing import replacing, write_text
 from radhar_cli.scene import Scene, scene_numbers
 from radhar_cli.simulation.simulate import Simulation
 
@@ -43,7 +44,7 @@ def refuse_foreign(folder: Path) -> None:
 
 def write_scene(simulation: Simulation, path: Path) -> None:
     """Write scene.h5."""
-    with replacing(path, UNFINISHED) as unfinished, h5py.File(unfinished, "w") as file:
+    with replacing(path, UNFINISHED) as unfinished, new_hdf5(unfinished, path) as (file, _):
         for name, power_map in simulation.maps.items():
             write_map(file, name, power_map)
         for name, signal in simulation.signals.items():
@@ -177,8 +178,8 @@ def write_all(simulation: Simulation, folder: Path) -> list[Path]:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         write_scene(simulation, folder / SCENE_FILE)
-        (folder / SCENE_JSON).write_text(json.dumps(describe(simulation), indent=2) + "\n")
-        (folder / SCENE_YAML).write_text(_as_config(simulation.scene))
+        write_text(folder / SCENE_JSON, json.dumps(describe(simulation), indent=2) + "\n")
+        write_text(folder / SCENE_YAML, _as_config(simulation.scene))
         for drawn in (MAPS, ANIMATION):  # of an earlier scene
             (folder / drawn).unlink(missing_ok=True)
     except OSError as error:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from radhar_cli.dataset.formats.arrays import arrays
 from radhar_cli.dataset.formats.checked import describe
 from radhar_cli.dataset.reading import Dataset
+from radhar_cli.new_hdf5 import new_hdf5
 from radhar_cli.progress import Progress
 
 FILE = "dataset.mat"
@@ -24,7 +25,7 @@ def write(data: Dataset, folder: Path, progress: Progress) -> None:
     """Write dataset.mat: maps.<map> [H, W, N], label [1, N] and so on; the last axis is samples."""
     first, level = next(iter(data.large)), data.config.output.hdf5_level
     path = folder / FILE
-    with h5py.File(path, "w", userblock_size=USER_BLOCK) as file:
+    with new_hdf5(path, path, userblock_size=USER_BLOCK) as (file, check):
         for array in arrays(data):
             group, _, _ = array.name.rpartition("/")
             if group and group not in file:
@@ -46,6 +47,7 @@ def write(data: Dataset, folder: Path, progress: Progress) -> None:
             for piece in array.pieces:
                 stop = start + len(piece)
                 target[start:stop] = _turned(piece, kind).reshape(-1, *shape[1:])
+                check()
                 progress.advance(len(piece) if array.name == first else 0)
                 start = stop
         _texts(file, "class_slugs", data.class_slugs)

@@ -1,5 +1,6 @@
 """A data set in a format that other tools read; the new folder appears when it is whole."""
 
+import os
 import tempfile
 from collections.abc import Callable
 from importlib import import_module
@@ -8,7 +9,7 @@ from typing import TypeAlias
 
 from radhar_cli.dataset.card import owner_licence
 from radhar_cli.dataset.reading import Dataset, open_dataset
-from radhar_cli.errors import FolderError
+from radhar_cli.errors import FolderError, UnfinishedError
 from radhar_cli.progress import Progress
 
 FORMATS = ("webdataset", "parquet", "npy", "mat")
@@ -26,6 +27,7 @@ def convert(path: Path, out: Path, to: str, progress: Progress) -> int:
 
     Raises:
         FolderError: the data set cannot be read or is damaged, or there is something at `out`.
+        UnfinishedError: `out` cannot be written.
     """
     if out.exists() or out.is_symlink():
         raise FolderError(f"{out}: already exists; -o should name a new folder")
@@ -37,6 +39,10 @@ def convert(path: Path, out: Path, to: str, progress: Progress) -> int:
             unfinished = Path(scratch, "set")
             unfinished.mkdir()
             progress.stage(to, len(data), 0)
-            write(data, unfinished, progress)
+            try:
+                write(data, unfinished, progress)
+            except OSError as error:  # its name is one in the scratch folder, or none
+                why = os.strerror(error.errno) if error.errno else error
+                raise UnfinishedError(f"{out}: {why}; nothing was written") from None
             unfinished.rename(out)
         return len(data)

@@ -170,8 +170,8 @@ def fit(paths: Sequence[Path]) -> Fit:
     """Read waveform, SNR, ranges, noise and what stands in the room off recordings of one radar.
 
     Raises:
-        CaptureError: one is given twice or of another radar, they are slow time or too short, or
-            nobody moves in any.
+        CaptureError: one holds what another does or is of another radar, they are slow time or too
+            short, or nobody moves in any.
         FolderError: one is not a recording.
     """
     waveform, seconds, length = _waveform(paths)
@@ -221,14 +221,18 @@ def _with_times(
 def _waveform(paths: Sequence[Path]) -> tuple[Waveform, float, int]:
     """The chirps of all recordings, how long they last (s), and pulses of a window in any."""
     waveform, seconds, lengths = None, [], []
-    places = [path.resolve() for path in paths]
-    for number, path in enumerate(paths):
-        if places[number] in places[:number]:
-            raise CaptureError(f"{path}: is given twice; each recording counts once")
+    known: dict[bytes, Path] = {}
+    for path in paths:
         with Recording(path) as recording:
             one = recording.info.waveform()
             if waveform is not None and _differs(one, waveform):
                 raise CaptureError(f"{path}: is of another radar than {paths[0]}")
+            samples = recording.digest()
+            if samples in known:
+                raise CaptureError(
+                    f"{path}: has the samples of {known[samples]}; a recording counts once"
+                )
+            known[samples] = path
             waveform = waveform or one
             seconds.append(recording.segments.duration)
             lengths.append(int(recording.segments.lengths.max()))

@@ -3,6 +3,7 @@
 Beat signals follow radhar's sign: a target at range R lies at exp(-j 2 pi (fc tau + K tau t)).
 """
 
+import hashlib
 import json
 from collections.abc import Iterable
 from itertools import pairwise
@@ -16,7 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from radhar_cli import __version__
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.capture.findings import CLIPPED, LOST
-from radhar_cli.capture.source import Parts
+from radhar_cli.capture.source import PIECE_BYTES, Parts
 from radhar_cli.dataset.untrusted_hdf5 import Samples, UntrustedFile
 from radhar_cli.errors import CaptureError, FolderError, UnfinishedError
 from radhar_cli.new_hdf5 import new_hdf5
@@ -291,6 +292,15 @@ class Recording(Closing):
         if values.shape[3] == 2:
             out.imag = values[..., 1]
         return out
+
+    def digest(self) -> bytes:
+        """SHA-256 of the samples."""
+        found, info = hashlib.sha256(), self.info
+        pulse = info.receivers * (info.samples or 1) * self.number.itemsize * self._samples.parts
+        step = max(PIECE_BYTES // pulse, 1)
+        for first in range(0, info.pulses, step):
+            found.update(self.parts(first, min(first + step, info.pulses)).tobytes())
+        return found.digest()
 
     def close(self) -> None:
         """Close the file."""

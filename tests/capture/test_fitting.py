@@ -222,9 +222,12 @@ def test_the_config_simulates_with_the_same_zero_line(tmp_path: Path) -> None:
 
 
 def test_a_recording_counts_once(tmp_path: Path) -> None:
-    path = recorded(tmp_path)
-    with pytest.raises(CaptureError, match="is given twice"):
-        fit([path, tmp_path / "." / path.name])
+    path, other = recorded(tmp_path), recorded(tmp_path, seed=2)
+    (tmp_path / "link.h5").hardlink_to(path)
+    (tmp_path / "copy.h5").write_bytes(path.read_bytes())
+    for again in (path.name, "link.h5", "copy.h5"):
+        with pytest.raises(CaptureError, match=f"{again}: has the samples of {path};"):
+            fit([path, other, tmp_path / again])
 
 
 def test_a_recording_too_short_for_anybody_to_move_is_refused_as_such(tmp_path: Path) -> None:

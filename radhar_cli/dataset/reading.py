@@ -11,6 +11,7 @@ from radhar_cli.config.reading import validated
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.folder import stored_identity
+from radhar_cli.dataset.identity import versions
 from radhar_cli.dataset.layout import (
     COLUMN_LABEL,
     DATASET,
@@ -118,6 +119,15 @@ class Dataset(Closing):
             raise FolderError(f"{self.path}: attribute warnings: should be a list of messages")
         messages: list[dict[str, Any]] = stored
         return messages
+
+    @property
+    def versions(self) -> dict[str, str]:
+        """Versions of everything that decided its bytes; unknown where it does not say one."""
+        named = {library: f"{library}_version" for library in versions()}
+        return {
+            library: self.file.text(key) if self.file.has_attribute(key) else "unknown"
+            for library, key in named.items()
+        }
 
     def entropy(self, name: str) -> Float:
         """Entropies [N] of a map's power, bits."""

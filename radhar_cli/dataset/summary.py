@@ -10,7 +10,7 @@ from pydantic import BaseModel, ValidationError
 from radhar_cli.config.identity import config_hash
 from radhar_cli.config.schema import MAP_NAMES
 from radhar_cli.dataset.folder import stored_identity
-from radhar_cli.dataset.identity import identity_hash, versions
+from radhar_cli.dataset.identity import identity_hash
 from radhar_cli.dataset.layout import DATASET, SPLITS, Rows
 from radhar_cli.dataset.reading import Dataset, open_dataset, stored_config
 from radhar_cli.dataset.shards import check_shards, listed_shards
@@ -71,7 +71,7 @@ def _data_set(data: Dataset) -> dict[str, Any]:
         "bytes": data.path.stat().st_size,
         "seed": data.config.seed,
         "config_hash": config_hash(data.config),
-        "versions": {library: data.file.text(f"{library}_version") for library in versions()},
+        "versions": data.versions,
         "maps": {name: list(array.shape[1:]) for name, array in data.maps.items()},
         "classes": {
             slug: {

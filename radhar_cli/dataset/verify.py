@@ -85,7 +85,7 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Report:
 
 def _versions(data: Dataset, report: Report) -> None:
     for library, here in versions().items():
-        there = data.file.text(f"{library}_version")
+        there = data.versions[library]
         if there != here:
             report.other_versions.append(f"{library} {there} there, {here} here")
 

@@ -14,6 +14,7 @@ from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import load_config
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.png import colour_table, encode_png
+from radhar_cli.dataset.summary import summarise
 from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import FolderError
 
@@ -92,6 +93,19 @@ def test_other_versions_compare_within_one_level(whole: Path, tmp_path: Path) ->
     assert report.other_versions[0].startswith("numpy 1.0 there")
     assert report.problems == []
     assert report.worst_level == 1
+
+
+def test_a_version_that_is_not_named_is_another(whole: Path, tmp_path: Path) -> None:
+    """As isal's of what was built before it was used."""
+    shutil.copyfile(whole / "dataset.h5", tmp_path / "dataset.h5")
+    with h5py.File(tmp_path / "dataset.h5", "r+") as file:
+        here = file.attrs["isal_version"]
+        del file.attrs["isal_version"]
+    report = verify(tmp_path, 9)
+    assert report.other_versions == [f"isal unknown there, {here} here"]
+    assert report.problems == []
+    found = summarise(tmp_path)["versions"]
+    assert (found["isal"], found["numpy"]) == ("unknown", np.__version__)
 
 
 def test_changed_and_missing_pngs_are_found(whole: Path, tmp_path: Path) -> None:

@@ -283,8 +283,8 @@ def _cautions(data: Dataset) -> str:
 def _making(data: Dataset) -> str:
     config = data.config
     made = ", ".join(
-        f"{library} {data.file.text(f'{library}_version')}"
-        for library in ("radhar", "numpy", "scipy", "h5py", "pillow")
+        f"no {library}" if version == "none" else f"{library} {version}"
+        for library, version in data.versions.items()
     )
     if config.recorded is not None:
         return f"`radhar generate --recordings`, seed {config.seed}; {made}."

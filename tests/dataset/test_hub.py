@@ -19,6 +19,7 @@ from radhar_cli.config import Config, load_config
 from radhar_cli.dataset import layout
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.card import BIBTEX
+from radhar_cli.dataset.identity import versions
 from radhar_cli.dataset.verify import verify
 from radhar_cli.learning.images.opening import open_images
 
@@ -102,6 +103,8 @@ def test_the_card_describes_the_data_set(whole: Path) -> None:
     assert "none of the 3 is in two of its parts" in text
     assert "a joint moves faster than the Doppler PRF/2" in text
     assert "](gallery.png)" in text
+    for library, version in versions().items():
+        assert (f"no {library}" if version == "none" else f"{library} {version}") in text
     with Image.open(whole / "gallery.png") as picture:
         assert picture.width > 3 * 72
         colours = len(picture.convert("RGB").getcolors(2**16))

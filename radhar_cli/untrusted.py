@@ -40,7 +40,10 @@ def regular_size(path: str | os.PathLike[str]) -> int:
     Raises:
         OSError: there is none, or it is a folder, a FIFO, a socket or a device, which can block.
     """
-    status = Path(path).stat()
+    try:
+        status = Path(path).stat()
+    except FileNotFoundError as error:
+        raise FileNotFoundError(error.errno, "no such file", str(path)) from None
     if not stat.S_ISREG(status.st_mode):
         kind = "a folder" if stat.S_ISDIR(status.st_mode) else "a FIFO, a socket or a device"
         raise OSError(errno.EINVAL, f"is {kind}; should be a regular file", str(path))

@@ -68,7 +68,8 @@ def import_(
         for line in imported.found:
             tell(f"  {line}")
         info = imported.info
-        shape = f"{info.receivers} receivers, {info.samples or 'no'} samples a chirp, "
+        shape = f"{info.receivers} receiver{'s' * (info.receivers > 1)}, "
+        shape += f"{info.samples or 'no'} samples a chirp, "
         tell(
             f"{info.pulses} pulses at {info.prf_hz:.6g} Hz: {shape}{info.carrier_hz / 1e9:.6g} GHz"
         )

@@ -51,7 +51,7 @@ def process(
         info, gaps = opened.info, len(opened.segments) - 1
         made = maps_of(opened, loaded, names, start, stop, receiver)
     if gaps:
-        tell(f"{gaps} gaps: the stretches between are processed one by one")
+        tell(f"{gaps} gap{'s' * (gaps > 1)}: the stretches between are processed one by one")
     for note in [*unused_keys(loaded.model_copy(update={"maps": names})), *made.notes]:
         tell(f"warning: {note}", err=True)
     written = maps_file.write_maps(made, loaded, info, out)

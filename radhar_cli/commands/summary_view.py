@@ -67,7 +67,8 @@ def _data_set(console: Console, s: dict[str, Any]) -> None:
 def _recording(console: Console, s: dict[str, Any]) -> None:
     console.print(
         Text(s["path"], "bold"),
-        f" {s['duration_s']:.4g} s in {s['segments']} stretches, {s['bytes'] / 2**20:.1f} MiB",
+        f" {s['duration_s']:.4g} s in {s['segments']} stretch{'es' * (s['segments'] > 1)}, "
+        f"{s['bytes'] / 2**20:.1f} MiB",
     )
     table = _table("recording", "key")
     table.add_column("value", justify="right")

@@ -145,5 +145,5 @@ class Rows:
             each[count].append(activity.slug)
         usual, *others = sorted(each, key=lambda count: -len(each[count]))
         more = "".join(f", {', '.join(each[count])} x {count}" for count in others)
-        classes = len(self.activities) if not others else len(each[usual])
-        return f"{classes} class{'es' if classes > 1 else ''} x {usual}{more}"
+        same = each[usual]
+        return f"{f'{len(same)} classes' if len(same) > 1 else same[0]} x {usual}{more}"

@@ -111,7 +111,16 @@ def test_broken_configs_are_refused_in_one_message_with_status_2(
 
 
 def test_wrong_use_is_status_2(tmp_path: Path) -> None:
-    for arguments in (["generate", "none.yaml", "-o", tmp_path / "x"], ["verify", tmp_path / "no"]):
+    for arguments in (
+        ["generate", "none.yaml", "-o", tmp_path / "x"],
+        ["verify", tmp_path / "no"],
+        *(
+            ["import", f"none.{kind}", "-o", tmp_path / "x.h5"]
+            for kind in ("npy", "sigmf-data", "h5")
+        ),
+        ["import", "none.bin", "--radar", "none.cfg", "-o", tmp_path / "x.h5"],
+        ["fit", tmp_path / "no.h5", "-o", tmp_path / "x.yaml"],
+    ):
         done = radhar(*arguments)
         assert done.returncode == 2
         assert "Traceback" not in done.stderr

@@ -180,7 +180,7 @@ def _more(path: Path) -> None:
         ("README.md", lambda p: p.write_text("hello\n"), "configs"),
         ("README.md", lambda p: p.write_text(f"hello\n{p.read_text()}"), "configs"),
         ("README.md", lambda p: p.write_bytes(p.read_bytes().replace(b"\n", b"\r\n")), None),
-        ("README.md", Path.unlink, "cannot be read .No such file"),
+        ("README.md", Path.unlink, "cannot be read .no such file"),
         ("gallery.png", _cut, None),
         ("gallery.png", lambda p: p.write_bytes(b"no image"), "not an image"),
     ],

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from radhar_cli.activity import ACTIVITIES
 from radhar_cli.config import Config
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.split import TEST, TRAIN, VALIDATION, split_rows, split_warnings
@@ -157,3 +158,16 @@ def test_an_empty_split_is_warned_of() -> None:
     assert "no validation sample of any class" in warning
     for whole in (Config(samples_per_class=5), Config(split={"train": 1.0, "validation": 0.0})):
         assert split_warnings(whole, split_rows(whole)) == []
+
+
+@pytest.mark.parametrize(
+    ("counts", "said"),
+    [
+        ((4, 4, 4), "3 classes x 4"),
+        ((4,), "stationary x 4"),
+        ((4, 4, 9), "2 classes x 4, kicking x 9"),
+        ((22, 3), "stationary x 22, punching x 3"),
+    ],
+)
+def test_samples_of_classes_in_words(counts: tuple[int, ...], said: str) -> None:
+    assert Rows(tuple(ACTIVITIES[: len(counts)]), counts).counted == said

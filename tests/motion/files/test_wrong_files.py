@@ -190,7 +190,7 @@ def test_unknown_motion_files_are_refused(tmp_path: Path) -> None:
         ("x.fbx", "should be one of .bvh, .amc, .npz"),
         ("x.asf", "name its .amc files"),
         ("x.bvh", "is a folder"),
-        ("y.bvh", "No such file"),
+        ("y.bvh", "no such file"),
     ):
         with pytest.raises(MotionFileError, match=message):
             read_motion(tmp_path / name)

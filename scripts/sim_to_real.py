@@ -17,10 +17,12 @@ was stopped.
 import argparse
 import hashlib
 import json
+import re
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -28,11 +30,13 @@ import torch
 from PIL import Image
 from scipy import ndimage
 
-from radhar_cli.arrays import Bool, Index, Levels
+from radhar_cli.arrays import Bool, Float, Index, Levels
 from radhar_cli.capture.images import listed, read_image
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import CaptureError
+from radhar_cli.figures.two_samples import Picture, pictures_png
 from radhar_cli.learning.evaluation import open_for, predict
+from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.metrics import wilson
 from radhar_cli.learning.run_folder import load_best
 
@@ -50,16 +54,20 @@ CLASSES = {  # names in measured data: ours
 }
 SLUGS = tuple(dict.fromkeys(CLASSES.values()))
 LONG = "walking"  # its maps last twice as long as those of the others
-SIDE, BAND_HZ, SHOWN_HZ, LINE_HZ = 32, 500.0, 160.0, 24.0
+SIDE, BAND_HZ, SHOWN_HZ, LINE_HZ, SHOWN_S = 32, 500.0, 160.0, 24.0, 5
 MEDIAN, BLUR = (5, 5), 3  # cells of a mask, rows and columns of 39 ms; pixels of an image
+TOWARDS = (  # walks that begin towards the radar, one in five
+    "motion.angle_deg={uniform: [165, 195]}",
+    "motion.range_m={uniform: [7.4, 8.2]}",
+)
 PAPERS_MOTION = "motion.model=paper"
-WITHOUT = {  # what is left out: keys of the simulation
-    "human motion": (PAPERS_MOTION, "classes={}"),
-    "segments": ("body.scatterers=points",),
-    "gate": ("processing.doppler=half_band",),
-    "CFAR on decibels": ("image.cfar={on: power, edges: shrink}",),
-    "room": ("room.reflectors=0", "room.back_wall_m=null"),
-    "noise that is drawn": ("snr_db=30",),
+INSTEAD = {  # what else could be simulated, and its keys
+    "the paper's motion": (PAPERS_MOTION, "classes={}"),
+    "segments": ("body.scatterers=segments",),
+    "half of the band": ("processing.doppler=half_band",),
+    "CFAR on power": ("image.cfar={on: power, edges: shrink}",),
+    "an empty room": ("room.reflectors=0", "room.back_wall_m=null"),
+    "30 dB": ("snr_db=30",),
 }
 NO_AUGMENTATION = "augment={}"
 SEEDS = (1, 2, 3)
@@ -67,6 +75,7 @@ SHOTS, REPEATS = (0, 1, 5, 20, 100), 5
 ADAPTING = 20  # epochs without labels
 SHOT_EPOCHS = 40  # of who learns from a few labelled maps, which are soon gone through
 MAX_SIDE = 2048  # px of a mask
+CONFUSED, BESIDE = 6, 3  # pairs of classes and images of each that are drawn
 
 
 def network_image(mask: Bool, slug: str) -> Levels:
@@ -134,9 +143,11 @@ def simulated(out: Path, per_class: int, jobs: int, more: Sequence[str] = ()) ->
     if (out / "done").exists():
         return out / "images"
     in_place = ",".join(SLUGS[1:-1])
+    towards = per_class // 5
     standing = 0 if PAPERS_MOTION in more else 3 * per_class // 4  # the paper has no such falls
     for name, count, sets in (
-        ("walking", per_class, ["activities=[walking]", "duration_s=10"]),
+        ("walking_away", per_class - towards, ["activities=[walking]", "duration_s=10"]),
+        ("walking_towards", towards, ["activities=[walking]", "duration_s=10", *TOWARDS]),
         ("in_place", per_class, [f"activities=[{in_place}]"]),
         ("falling_walking", per_class - standing, ["activities=[walking_to_falling]"]),
         ("falling_standing", standing, ["activities=[falling]"]),
@@ -179,23 +190,35 @@ class Measured:
             write_image(network_image(mask, slug), folder / slug / f"{row:05d}.png")
         return cls(folder)
 
-    def correct(self, run: Path) -> "Correct":
-        """How a run does on them."""
+    def predicted(self, run: Path) -> "Predicted":
+        """What a run makes of them."""
         metadata, model = load_best(run)
         images = open_for(metadata, self.folder, None)
         result = predict(
             model, metadata, images, images.rows("all"), torch.device("cpu"), batch=128
         )
-        return Correct(result.truth, result.predicted, metadata.classes)
+        return Predicted(images, result.truth, result.probabilities, metadata.classes)
 
 
 @dataclass(frozen=True)
-class Correct:
-    """True and predicted classes [N]."""
+class Predicted:
+    """Measured images, their true classes [N], and probabilities [N, classes]."""
 
+    images: ImageSet
     truth: Index
-    predicted: Index
+    probabilities: Float
     classes: tuple[str, ...]
+
+    @property
+    def predicted(self) -> Index:
+        """Classes [N]."""
+        winners: Index = self.probabilities.argmax(1)
+        return winners
+
+    @property
+    def accuracy(self) -> float:
+        """Share of images whose class is found."""
+        return float((self.truth == self.predicted).mean())
 
     @property
     def confusion(self) -> str:
@@ -207,16 +230,12 @@ class Correct:
         return "\n".join(lines)
 
 
-def accuracy_line(what: str, some: Sequence[Correct]) -> str:
+def accuracy_line(what: str, some: Sequence[Predicted]) -> str:
     """Accuracy over all of some runs, with Wilson's interval of 95 % for the maps of one."""
-    share = float(np.mean([(one.truth == one.predicted).mean() for one in some]))
+    share = float(np.mean([one.accuracy for one in some]))
     count = some[0].truth.size
     low, high = wilson(round(share * count), count)
-    each = (
-        ""
-        if len(some) == 1
-        else " (" + ", ".join(f"{(one.truth == one.predicted).mean():.3f}" for one in some) + ")"
-    )
+    each = f" ({', '.join(f'{one.accuracy:.3f}' for one in some)})" if len(some) > 1 else ""
     return f"{what}: {share:.3f} ({low:.3f} to {high:.3f}), n = {count}{each}"
 
 
@@ -245,30 +264,30 @@ def main() -> None:
         sys.exit(f"sim_to_real: {error}")
     measured = Measured.written(masks, slugs, out / "measured")
     if not given.quick:
-        ablation(measured, images, out / "without", given)
+        ablation(measured, images, out / "instead", given)
         curve(measured, images, runs[0], out / "shots")
     report(measured, images, runs, out)
 
 
 def ablation(measured: Measured, images: Path, out: Path, given: argparse.Namespace) -> None:
-    """Print what three seeds reach without each piece of the simulation, one at a time."""
+    """Print what three seeds reach where one thing is simulated otherwise, or not augmented."""
     made: dict[str, tuple[Path, list[Path]]] = {}
-    for what, more in {**WITHOUT, "augmentation": (NO_AUGMENTATION,)}.items():
-        folder = out / what.replace(" ", "_")
+    for what, more in {**INSTEAD, "no augmentation": (NO_AUGMENTATION,)}.items():
+        folder = out / re.sub(r"\W+", "_", what)
         same = more == (NO_AUGMENTATION,)
         data = images if same else simulated(folder, given.per_class, given.jobs, more)
         runs = [
             trained(data, folder / f"seed_{seed}", seed, more if same else ()) for seed in SEEDS
         ]
         made[what] = data, runs
-        correct = [measured.correct(run) for run in runs]
-        print(accuracy_line(f"without {what}, as it is, three seeds", correct), flush=True)
+        correct = [measured.predicted(run) for run in runs]
+        print(accuracy_line(f"{what}, as it is, three seeds", correct), flush=True)
     for what, (data, runs) in made.items():
         correct = [
-            measured.correct(adapted(run, measured, data, run.parent / "adapted" / run.name))
+            measured.predicted(adapted(run, measured, data, run.parent / "adapted" / run.name))
             for run in runs
         ]
-        print(accuracy_line(f"without {what}, adapted, three seeds", correct), flush=True)
+        print(accuracy_line(f"{what}, adapted, three seeds", correct), flush=True)
 
 
 def curve(measured: Measured, images: Path, run: Path, out: Path) -> None:
@@ -293,15 +312,60 @@ def adapted(run: Path, measured: Measured, data: Path, out: Path) -> Path:
     return out
 
 
+def mistakes_png(found: Predicted, simulated: ImageSet) -> bytes | None:
+    """Draw measured images of the commonest errors beside simulated ones; None if all are right.
+
+    Of each of CONFUSED pairs of a true and a predicted class, BESIDE measured images, the surest
+    first; then the nearest simulated image of each, of the true and of the predicted class.
+    """
+    names, shown = found.classes, _grey(simulated, range(len(simulated)))
+    pairs = Counter(zip(found.truth.tolist(), found.predicted.tolist(), strict=True))
+    rows: dict[str, list[Picture]] = {}
+    for (true, taken), count in pairs.most_common():
+        if true == taken or len(rows) == CONFUSED:
+            continue
+        some = np.flatnonzero((found.truth == true) & (found.predicted == taken))
+        surest = np.argsort(-found.probabilities[some, taken], kind="stable")[:BESIDE]
+        levels = _grey(found.images, some[surest])
+        row = [
+            _picture(one, f"measured {Path(found.images.names[number]).name}")
+            for number, one in zip(some[surest], levels, strict=True)
+        ]
+        for slug in (names[true], names[taken]):
+            of_class = shown[simulated.label == simulated.classes.index(slug)]
+            apart = (np.abs(of_class.astype(np.int16) - one) for one in levels)
+            nearest = [one.sum((1, 2)).argmin() for one in apart]
+            row += [_picture(of_class[number], f"simulated {slug}") for number in nearest]
+        rows[f"{names[true]}\n{count} as\n{names[taken]}"] = row
+    title = "Measured images that are taken for another class, and the nearest simulated ones"
+    return pictures_png(rows, title, "time (s)", "Doppler (Hz)") if rows else None
+
+
+def _grey(images: ImageSet, rows: Iterable[int]) -> Levels:
+    """Levels [N, H, W] of some images."""
+    return np.stack([images.pixels.read(int(row))[..., 0] for row in rows])
+
+
+def _picture(levels: Levels, words: str) -> Picture:
+    return Picture(levels, (0, SHOWN_S, -SHOWN_HZ, SHOWN_HZ), words)
+
+
 def report(measured: Measured, images: Path, runs: Sequence[Path], out: Path) -> None:
     """Print what the runs make of measured maps, as they are and adapted; the first is the one."""
     fitted = [adapted(run, measured, images, out / "adapted" / run.name) for run in runs]
     result = {"as it is": runs, "adapted": fitted}
-    correct = {kind: [measured.correct(run) for run in some] for kind, some in result.items()}
+    correct = {kind: [measured.predicted(run) for run in some] for kind, some in result.items()}
     for kind, some in correct.items():
         print(f"\n{runs[0].name}, {kind}; rows are true classes\n{some[0].confusion}")
+        if drawn := mistakes_png(some[0], open_for(load_best(runs[0])[0], images, None)):
+            figure = out / f"mistakes_{kind.replace(' ', '_')}.png"
+            figure.write_bytes(drawn)
+            print(f"what it takes for something else, beside simulated maps: {figure}")
         if len(runs) > 1:
             print(accuracy_line(f"{kind}, three seeds", some))
+            mean = np.mean([one.probabilities for one in some], axis=0)
+            together = replace(some[0], probabilities=mean)
+            print(accuracy_line(f"{kind}, probabilities of three seeds averaged", [together]))
     print(accuracy_line("accuracy with unlabelled measured maps", correct["adapted"][:1]))
     print(accuracy_line("accuracy on measured", correct["as it is"][:1]), flush=True)
 

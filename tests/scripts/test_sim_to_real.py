@@ -14,6 +14,7 @@ from scipy import ndimage
 
 from radhar_cli import load_config, sample
 from radhar_cli.errors import CaptureError
+from radhar_cli.learning.images.opening import open_images
 
 SLUGS = ("walking", "sitting_down", "standing_up", "picking_up", "falling")
 OURS = ("walking", "sitting_down", "standing_up", "grabbing", "walking_to_falling")
@@ -113,7 +114,7 @@ def test_the_whole_experiment(
 ) -> None:
     """Generates, trains, fixes the network, tests; the last line is the result."""
     config, training = tmp_path / "people.yaml", tmp_path / "train.yaml"
-    config.write_text(f"base: {script.SIMULATED}\nbody: {{scatterers: points}}\n")
+    config.write_text(f"base: {script.SIMULATED}\n")
     training.write_text(f"base: {script.TRAINING}\nepochs: 3\nthreads: 1\n")
     commands: list[tuple[object, ...]] = []
     masks = tmp_path / "masks.npz"
@@ -149,8 +150,9 @@ def test_the_whole_experiment(
     assert lines[-2].startswith("accuracy with unlabelled measured maps: ")
     assert lines[-2].endswith(f", n = {count}")
     assert re.fullmatch(r"seed_1: best.safetensors has SHA-256 [0-9a-f]{64}", lines[0])
+    assert any(line.startswith("what it takes for something else") for line in lines)
     order = [command[0] for command in commands]
-    made = ["generate"] * 4 + ["train"]
+    made = ["generate"] * 5 + ["train"]
     assert order[:6] == [*made, "the masks"], "the network is fixed before they are opened"
     assert set(order[6:]) == {"adapt"}
     commands.clear()
@@ -192,3 +194,34 @@ def test_the_class_is_not_in_the_image(script: ModuleType) -> None:
     np.testing.assert_array_equal(seen, script.network_image(long, "walking"))
     assert seen.shape == (32, 32)
     assert 0 < seen.mean() < 255
+
+
+def test_mistakes_are_drawn_beside_the_nearest_simulated_images(
+    script: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for slug, level in (("grabbing", 10), ("grabbing", 60), ("walking", 90), ("walking", 200)):
+        for folder in ("simulated", "measured"):
+            image = np.full((32, 32), level + 5 * (folder == "measured"), np.uint8)
+            script.write_image(image, tmp_path / folder / slug / f"{level}.png")
+    simulated, measured = (
+        open_images(tmp_path / name, None, "gray") for name in ("simulated", "measured")
+    )
+    drawn: dict[str, list[Any]] = {}
+
+    def pictures_png(rows: dict[str, list[Any]], *_: str) -> bytes:
+        drawn.update(rows)
+        return b"PNG"
+
+    monkeypatch.setattr(script, "pictures_png", pictures_png)
+    right = np.eye(2)[measured.label]
+    found = script.Predicted(measured, measured.label, right, measured.classes)
+    assert found.accuracy == 1
+    assert script.mistakes_png(found, simulated) is None
+    wrong = right.copy()
+    wrong[list(measured.names).index("grabbing/60")] = 0.2, 0.8
+    found = script.Predicted(measured, measured.label, wrong, measured.classes)
+    assert found.accuracy == 0.75
+    assert script.mistakes_png(found, simulated) == b"PNG"
+    assert list(drawn) == ["grabbing\n1 as\nwalking"]
+    shown = [(one.words, int(one.levels[0, 0])) for one in drawn["grabbing\n1 as\nwalking"]]
+    assert shown == [("measured 60", 65), ("simulated grabbing", 60), ("simulated walking", 90)]

@@ -1,7 +1,7 @@
 """A new HDF5 file on a disk that may be full.
 
-HDF5 ends the interpreter by a signal if it cannot write what it holds when a dataset or file is
-closed. So it writes through a Python file that keeps the first error, and takes all that follows.
+HDF5 crashes the interpreter where it cannot write what it holds when a dataset or a file is closed.
+So it writes through a Python file that keeps the first error and discards everything after it.
 """
 
 import io
@@ -18,7 +18,8 @@ import h5py
 class _Disk(io.FileIO):
     """A file whose `write` never fails; `check` raises what it would have raised.
 
-    A handler of signals that raises does so in `write`, the first Python that runs: it is kept too.
+    An exception out of `write` crashes HDF5 too, and signal handlers may run and raise there: what
+    they raise is kept as well.
     """
 
     error: BaseException | None = None
@@ -45,7 +46,7 @@ class _Disk(io.FileIO):
 
     @contextmanager
     def keeping_signals(self) -> Iterator[None]:
-        """Meanwhile what handlers of SIGINT and SIGTERM raise is kept."""
+        """Keep what handlers of SIGINT and SIGTERM raise, for `check`."""
         numbers = (signal.SIGINT, signal.SIGTERM)
         in_main = threading.current_thread() is threading.main_thread()  # no other may set handlers
         before = {n: signal.getsignal(n) for n in numbers if in_main}

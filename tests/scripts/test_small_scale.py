@@ -100,7 +100,9 @@ def test_the_committed_tables_are_those_of_the_records() -> None:
 
 def test_committed_records_name_no_folder_and_no_stranger() -> None:
     names = {one.name for one in small_scale.EXPERIMENTS}
-    for file in sorted(RESULTS.glob("*.json")):
+    files = sorted(RESULTS.glob("*.json"))
+    assert files
+    for file in files:
         assert file.stem in names
         assert str(Path.home()) not in file.read_text()
         assert '"/' not in file.read_text(), "an absolute path"

@@ -143,8 +143,9 @@ def simulated(out: Path, per_class: int, jobs: int, more: Sequence[str] = ()) ->
     if (out / "done").exists():
         return out / "images"
     in_place = ",".join(SLUGS[1:-1])
-    towards = per_class // 5
-    standing = 0 if PAPERS_MOTION in more else 3 * per_class // 4  # the paper has no such falls
+    papers = PAPERS_MOTION in more  # who never turns round, nor falls from standing
+    towards = 0 if papers else per_class // 5
+    standing = 0 if papers else 3 * per_class // 4
     for name, count, sets in (
         ("walking_away", per_class - towards, ["activities=[walking]", "duration_s=10"]),
         ("walking_towards", towards, ["activities=[walking]", "duration_s=10", *TOWARDS]),

@@ -159,6 +159,8 @@ def test_the_whole_experiment(
     script.main()
     assert capsys.readouterr().out.splitlines() == lines, "again: the same"
     assert "generate" not in {command[0] for command in commands}, "what is made is kept"
+    script.simulated(out / "papers", 4, 1, script.INSTEAD["the paper's motion"])
+    assert (out / "papers/done").exists()
     script.curve(
         script.Measured(out / "measured"),
         out / "simulated/images",

@@ -153,14 +153,15 @@ def test_the_whole_experiment(
     assert any(line.startswith("what it takes for something else") for line in lines)
     order = [command[0] for command in commands]
     made = ["generate"] * 5 + ["train"]
-    assert order[:6] == [*made, "the masks"], "the network is fixed before they are opened"
-    assert set(order[6:]) == {"adapt"}
+    assert order[:7] == [*made, "the masks"], "the network is fixed before they are opened"
+    assert set(order[7:]) == {"adapt"}
     commands.clear()
     script.main()
     assert capsys.readouterr().out.splitlines() == lines, "again: the same"
     assert "generate" not in {command[0] for command in commands}, "what is made is kept"
-    script.simulated(out / "papers", 4, 1, script.INSTEAD["the paper's motion"])
-    assert (out / "papers/done").exists()
+    script.simulated(out / "papers", 5, 1, script.INSTEAD["the paper's motion"])
+    names = {path.name for path in (out / "papers").iterdir()}
+    assert names == {"walking_away", "in_place", "falling_walking", "images", "done"}
     script.curve(
         script.Measured(out / "measured"),
         out / "simulated/images",

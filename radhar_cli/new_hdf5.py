@@ -56,7 +56,8 @@ class _Disk(io.FileIO):
             try:
                 handlers[signal.Signals(number)](number, frame)
             except BaseException as error:
-                self.error = self.error or error
+                # its frames would keep h5py's objects past the end of HDF5, which then crashes
+                self.error = self.error or error.with_traceback(None)
 
         try:
             for number in handlers:

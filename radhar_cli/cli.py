@@ -109,7 +109,7 @@ def main() -> None:
         elif error.filename is None:
             raise
         else:
-            print(f"radhar: {shown(error.filename)}: {error.strerror}", file=sys.stderr)
+            print(f"radhar: {shown(error.filename)}: {error.strerror or error}", file=sys.stderr)
         sys.exit(1)
     finally:
         for number in (signal.SIGINT, signal.SIGTERM):

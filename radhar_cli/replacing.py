@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from errno import EINVAL
 from pathlib import Path
 
 
@@ -9,16 +10,22 @@ from pathlib import Path
 def replacing(path: Path, unfinished: str | None = None) -> Iterator[Path]:
     """Yield where to write what takes the place of `path` at the end, unless something fails.
 
-    The name of the `unfinished` file beside it is path.unfinished if none is given. An error of the
-    disk names `path`: a full one says no name.
+    The name of the `unfinished` file beside it is path.unfinished if none is given. Errors name
+    `path`, also of a full disk, which says no name.
+
+    Raises:
+        OSError: `path` is a folder or a device, or it cannot be written.
     """
+    if path.exists() and not path.is_file():
+        raise OSError(EINVAL, "is not a regular file", str(path))
     other = path.with_name(unfinished or f"{path.name}.unfinished")
-    other.unlink(missing_ok=True)  # a link would be written through
     try:
+        other.unlink(missing_ok=True)  # a link would be written through
         yield other
         other.replace(path)
     except OSError as error:
-        error.filename = error.filename or str(path)
+        if error.filename in (None, str(other)):
+            error.filename = str(path)
         raise
     finally:
         with suppress(OSError):

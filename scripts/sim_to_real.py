@@ -18,6 +18,7 @@ import argparse
 import hashlib
 import json
 import re
+import shutil
 import subprocess
 import sys
 from collections import Counter
@@ -71,6 +72,7 @@ INSTEAD = {  # what else could be simulated, and its keys
 }
 NO_AUGMENTATION = "augment={}"
 SEEDS = (1, 2, 3)
+MIN_PER_CLASS = 8  # fewer leave nothing to validate with
 SHOTS, REPEATS = (0, 1, 5, 20, 100), 5
 ADAPTING = 20  # epochs without labels
 SHOT_EPOCHS = 40  # of who learns from a few labelled maps, which are soon gone through
@@ -140,7 +142,10 @@ def radhar(*arguments: object) -> None:
 
 def simulated(out: Path, per_class: int, jobs: int, more: Sequence[str] = ()) -> Path:
     """A tree of simulated images for the network, in `out`; most falls from standing."""
+    settings = json.dumps([per_class, more, hashlib.sha256(SIMULATED.read_bytes()).hexdigest()])
     if (out / "done").exists():
+        if (out / "done").read_text() != settings:
+            sys.exit(f"sim_to_real: {out}: is of other settings; -o should name a new folder")
         return out / "images"
     in_place = ",".join(SLUGS[1:-1])
     papers = PAPERS_MOTION in more  # who never turns round, nor falls from standing
@@ -164,7 +169,7 @@ def simulated(out: Path, per_class: int, jobs: int, more: Sequence[str] = ()) ->
                 part = "val" if split[row] else "train"
                 image = network_image(masks[row] > 0, slug)
                 write_image(image, out / "images" / part / slug / f"{name}_{row:05d}.png")
-    (out / "done").touch()
+    (out / "done").write_text(settings)
     return out / "images"
 
 
@@ -186,7 +191,8 @@ class Measured:
 
     @classmethod
     def written(cls, masks: Bool, slugs: Sequence[str], folder: Path) -> "Measured":
-        """Write them."""
+        """Write them, in place of others."""
+        shutil.rmtree(folder, ignore_errors=True)
         for row, (mask, slug) in enumerate(zip(masks, slugs, strict=True)):
             write_image(network_image(mask, slug), folder / slug / f"{row:05d}.png")
         return cls(folder)
@@ -250,6 +256,8 @@ def main() -> None:
     parser.add_argument("--per-class", type=int, default=300, help="simulated maps of each class")
     parser.add_argument("--jobs", type=int, default=2, help="processes that generate")
     given = parser.parse_args()
+    if given.per_class < MIN_PER_CLASS:
+        parser.error(f"--per-class is {given.per_class}; should be at least {MIN_PER_CLASS}")
     if not given.masks.is_file():
         sys.exit(f"sim_to_real: {given.masks}: no such file")
     out: Path = given.out.resolve()

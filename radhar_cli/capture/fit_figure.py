@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from radhar_cli.capture.fitting import FEW, Fit
-from radhar_cli.figures.page import page, write_png
+from radhar_cli.figures.page import page, write_figure
 
 
 def draw(fit: Fit, path: Path) -> None:
@@ -38,7 +38,7 @@ def draw(fit: Fit, path: Path) -> None:
         snrs.axvline(snr.mean(), color="k", linestyle="--", label="fitted: constant")
     snrs.set(xlabel="SNR of a raw sample (dB)", ylabel="density")
     snrs.legend()
-    write_png(figure, path, 90)
+    write_figure(figure, path, 90)
 
 
 def _draw_spectrum(fit: Fit, axes: Any) -> None:

@@ -20,7 +20,7 @@ from radhar_cli.capture.settings import CaptureSettings
 from radhar_cli.capture.source import PIECE_BYTES, Parts, Source
 from radhar_cli.config.reading import validated
 from radhar_cli.errors import CaptureError, MachineError, UnfinishedError
-from radhar_cli.replacing import replacing, write_text
+from radhar_cli.replacing import replacing
 from radhar_cli.untrusted import read_json, regular_size
 
 META, DATA = ".sigmf-meta", ".sigmf-data"
@@ -168,7 +168,7 @@ def write_sigmf(recording: Recording, out: Path) -> list[Path]:
     step = max(PIECE_BYTES // pulse, 1)
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
-        with replacing(data) as unfinished:
+        with replacing(data) as unfinished, replacing(meta) as unfinished_meta:
             with unfinished.open("wb") as file:
                 for first in range(0, info.pulses, step):
                     values = recording.parts(first, min(first + step, info.pulses))
@@ -178,7 +178,7 @@ def write_sigmf(recording: Recording, out: Path) -> list[Path]:
                     file.write(block)
             document = _metadata(recording, digest.hexdigest())
             _validated(document, str(meta))
-        write_text(meta, json.dumps(document, indent=2) + "\n")
+            unfinished_meta.write_text(json.dumps(document, indent=2) + "\n")
     except OSError as error:
         raise UnfinishedError(f"{error.filename or out}: {error.strerror or error}") from None
     return [meta, data]

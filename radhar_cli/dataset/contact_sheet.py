@@ -8,7 +8,7 @@ import numpy as np
 from radhar_cli.arrays import Levels
 from radhar_cli.dataset.layout import row_axis
 from radhar_cli.dataset.reading import Dataset
-from radhar_cli.figures.page import DPI, page_of_rows, write_png
+from radhar_cli.figures.page import DPI, page_of_rows, write_figure
 
 MAX_SIDE = 1024  # px of a panel
 
@@ -39,7 +39,7 @@ def draw_contact_sheet(data: Dataset, name: str, per_class: int, path: Path) -> 
     power = f"power, {image.dynamic_range_db:g} dB down from the largest of each map"
     shown = "cells that the CFAR sets" if image.kind == "cfar" else power
     figure.suptitle(f"{name}: {shown}", fontsize=9)
-    write_png(figure, path, DPI)
+    write_figure(figure, path, DPI)
 
 
 def draw_image_sheet(classes: Mapping[str, Sequence[Levels]], title: str, path: Path) -> None:
@@ -50,4 +50,4 @@ def draw_image_sheet(classes: Mapping[str, Sequence[Levels]], title: str, path: 
         panel.imshow(image)
         panel.set(xticks=[], yticks=[])
     figure.suptitle(title, fontsize=9)
-    write_png(figure, path, DPI)
+    write_figure(figure, path, DPI)

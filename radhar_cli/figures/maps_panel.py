@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
 
 from radhar_cli.config.schema import ImageConfig
-from radhar_cli.figures.page import page, write_png
+from radhar_cli.figures.page import page, write_figure
 from radhar_cli.pipeline.motion_paths import point_delay
 from radhar_cli.processing.image import decibels
 from radhar_cli.processing.power_map import PowerMap
@@ -169,7 +169,7 @@ def draw_maps(shown: Shown, path: Path) -> None:
         bar = figure.colorbar(drawn, ax=panels, shrink=0.8, pad=0.01)
         bar.set_label("power (dB below the largest of each map)", fontsize=9)
     figure.suptitle(shown.title, fontsize=11)
-    write_png(figure, path, 90)
+    write_figure(figure, path, 90)
 
 
 def title(simulation: Simulation) -> str:

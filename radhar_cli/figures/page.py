@@ -52,7 +52,9 @@ def png_bytes(figure: Figure) -> bytes:
     return buffer.getvalue()
 
 
-def write_png(figure: Figure, path: Path, dpi: float) -> None:
-    """Write a figure as a PNG file that appears when it is whole."""
+def write_figure(figure: Figure, path: Path, dpi: float) -> None:
+    """Write a figure, as its suffix says or as PNG, into a file that appears when it is whole."""
+    kind = path.suffix[1:].lower()
+    known = kind in figure.canvas.get_supported_filetypes()
     with replacing(path) as unfinished:
-        figure.savefig(unfinished, format="png", dpi=dpi)
+        figure.savefig(unfinished, format=kind if known else "png", dpi=dpi)

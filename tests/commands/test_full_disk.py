@@ -10,7 +10,7 @@ import pytest
 from command_line import radhar
 from small import small_config
 
-from radhar_cli.figures.page import page, write_png
+from radhar_cli.figures.page import page, write_figure
 
 SHORT = "--set duration_s=1 --set image.size_px=32"
 RADAR = " ".join(
@@ -81,6 +81,6 @@ def test_a_figure_on_a_full_disk_is_named_and_the_earlier_one_stays(tmp_path: Pa
     path = tmp_path / "maps.png"
     path.write_text("earlier")
     with full_disk(100), pytest.raises(OSError, match="File too large") as error:
-        write_png(page(2, 2), path, 90)
+        write_figure(page(2, 2), path, 90)
     assert error.value.filename == str(path)
     assert [(one, one.read_text()) for one in tmp_path.iterdir()] == [(path, "earlier")]

@@ -99,7 +99,6 @@ def test_every_phase_of_the_twelve_has_a_number(model: str) -> None:
     for activity in ACTIVITIES:
         phases = motion_of(nominal_scene(config, activity)).phases
         assert phases[0][0] == -np.inf, "something is under way from the first instant on"
-        assert phases, activity.slug
         assert {name for _, name in phases} <= set(PHASES), activity.slug
 
 

@@ -8,11 +8,17 @@ import pytest
 from radhar_cli.replacing import replacing, write_text
 
 
+def interrupted(path: Path) -> None:
+    with replacing(path) as unfinished:
+        unfinished.write_text("half")
+        raise KeyboardInterrupt
+
+
 def test_what_was_there_stays_until_the_new_file_is_whole(tmp_path: Path) -> None:
     path = tmp_path / "a.txt"
     write_text(path, "old")
-    with pytest.raises(TypeError), replacing(path) as unfinished:
-        unfinished.write_bytes(b"half" + unfinished)
+    with pytest.raises(KeyboardInterrupt):
+        interrupted(path)
     assert path.read_text() == "old"
     write_text(path, "new")
     assert [(one.name, one.read_text()) for one in tmp_path.iterdir()] == [("a.txt", "new")]

@@ -142,10 +142,11 @@ def test_train_and_eval_accept_it(place: Path, tmp_path: Path) -> None:
     assert trained.returncode == 0, trained.stderr
     done = radhar("eval", tmp_path / "run", place / "out")
     assert done.returncode == 0, done.stderr
-    for command in (("preview", place / "out"), ("inspect", place / "out")):
+    sheet = tmp_path / "sheet.png"
+    for command in (("preview", place / "out", "-o", sheet), ("inspect", place / "out")):
         shown = radhar(*command)
         assert shown.returncode == 0, shown.stderr
-    shutil.rmtree(place / "out/preview_stft.png", ignore_errors=True)
+    assert sheet.is_file()
 
 
 def test_two_user_defined_classes_alone(place: Path, tmp_path: Path) -> None:

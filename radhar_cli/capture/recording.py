@@ -5,7 +5,7 @@ Beat signals follow radhar's sign: a target at range R lies at exp(-j 2 pi (fc t
 
 import hashlib
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any
@@ -293,13 +293,19 @@ class Recording(Closing):
             out.imag = values[..., 1]
         return out
 
-    def digest(self) -> bytes:
-        """SHA-256 of the samples."""
-        found, info = hashlib.sha256(), self.info
+    def pieces(self) -> Iterator[Parts]:
+        """All pulses as `parts`, some PIECE_BYTES at a time."""
+        info = self.info
         pulse = info.receivers * (info.samples or 1) * self.number.itemsize * self._samples.parts
         step = max(PIECE_BYTES // pulse, 1)
         for first in range(0, info.pulses, step):
-            found.update(self.parts(first, min(first + step, info.pulses)).tobytes())
+            yield self.parts(first, min(first + step, info.pulses))
+
+    def digest(self) -> bytes:
+        """SHA-256 of the samples."""
+        found = hashlib.sha256()
+        for piece in self.pieces():
+            found.update(piece.tobytes())
         return found.digest()
 
     def close(self) -> None:

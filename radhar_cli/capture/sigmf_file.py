@@ -17,7 +17,7 @@ from radhar_cli import __version__
 from radhar_cli.capture.array_files import MAX_RECEIVERS
 from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.settings import CaptureSettings
-from radhar_cli.capture.source import PIECE_BYTES, Parts, Source
+from radhar_cli.capture.source import Parts, Source
 from radhar_cli.config.reading import validated
 from radhar_cli.errors import CaptureError, MachineError, UnfinishedError
 from radhar_cli.replacing import replacing
@@ -162,16 +162,12 @@ def write_sigmf(recording: Recording, out: Path) -> list[Path]:
         UnfinishedError: they cannot be written.
     """
     meta, data = out.with_suffix(META), out.with_suffix(DATA)
-    info = recording.info
     digest = hashlib.sha512()
-    pulse = info.receivers * (info.samples or 1) * 2 * recording.number.itemsize
-    step = max(PIECE_BYTES // pulse, 1)
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
         with replacing(data) as unfinished, replacing(meta) as unfinished_meta:
             with unfinished.open("wb") as file:
-                for first in range(0, info.pulses, step):
-                    values = recording.parts(first, min(first + step, info.pulses))
+                for values in recording.pieces():
                     ordered = np.ascontiguousarray(values.transpose(2, 1, 0, 3))
                     block = ordered.astype(recording.number.newbyteorder("<")).tobytes()
                     digest.update(block)

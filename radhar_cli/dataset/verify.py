@@ -84,8 +84,9 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Report:
 
 
 def _versions(data: Dataset, report: Report) -> None:
+    stored = data.versions
     for library, here in versions().items():
-        there = data.versions[library]
+        there = stored[library]
         if there != here:
             report.other_versions.append(f"{library} {there} there, {here} here")
 

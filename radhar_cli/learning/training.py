@@ -42,7 +42,7 @@ from radhar_cli.learning.images.synthesised import (
     stream_data,
     streamed_scenes,
 )
-from radhar_cli.learning.machine import choose_device, out_of_memory, repeatable
+from radhar_cli.learning.machine import choose_device, out_of_memory, prepare_training
 from radhar_cli.learning.models.build import build_model
 from radhar_cli.learning.process_group import (
     Group,
@@ -175,7 +175,7 @@ def train_on(task: Task, progress: TrainingProgress) -> Outcome:
     if config.threads != "auto":
         torch.set_num_threads(config.threads)
     device = choose_device(config.device)
-    repeatable(device)
+    prepare_training(device)
     with process_group(device) as group, folder_lock(folder) if group.is_main else nullcontext():
         plan = choose_execution_plan(config, device, synthesises=task.stream is not None)
         images_a_pass = min(plan.micro_batch, -(-config.batch_size // group.size))

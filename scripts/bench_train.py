@@ -1,12 +1,12 @@
 """What each shortcut of a training step buys, as ratios of one run.
 
-    python scripts/bench_train.py [--px 128] [--batch 32] [--rounds 3]
-    python scripts/bench_train.py --models NAME ... [--json FILE]
+    python scripts/bench_train.py [--px 128] [--batch 128] [--rounds 3]
+    python scripts/bench_train.py --models NAME ... [--batch 32] [--json FILE]
 
 Every variant runs in a process of its own, in turn, and the rounds are interleaved; printed are the
-median step and its spread, and the ratio to the step as `radhar train` does it. With --models the
-steps of those networks are timed instead: processor time of one thread, which other work on the
-machine changes little.
+median step and its spread, the ratio to the step as `radhar train` does it, and the most memory a
+process had. With --models the steps of those networks are timed instead: processor time of one
+thread, which other work on the machine changes little.
 """
 
 import argparse
@@ -20,13 +20,15 @@ from reproduce_paper import as_text, commit, machine
 
 VARIANTS = {
     "as radhar train does it": (),
+    "memory returned after each array, as glibc does": ("returned",),
+    "memory filled before it is written": ("filled",),
     "full complex FFT instead of rfft2": ("complex",),
     "the other precision": ("precision",),
 }
 STEPS = 4
 
 STEP = """
-import sys, time, torch
+import resource, sys, time, torch
 from torch.nn.functional import cross_entropy
 from radhar_cli.learning import machine
 from radhar_cli.learning.models.build import build_model
@@ -38,7 +40,11 @@ if "complex" in without:
         k = torch.view_as_complex(self.weight)
         return torch.fft.ifft2(torch.fft.fft2(x.to(self.weight.dtype)) * k).real
     GlobalFilter.forward = full
+if "returned" in without:
+    machine.keep_memory = lambda: None
 device = machine.choose_device("auto")
+machine.prepare_training(device)
+torch.utils.deterministic.fill_uninitialized_memory = "filled" in without
 precision = machine.choose_precision("auto", device)
 if "precision" in without:
     precision = torch.float32 if precision == torch.bfloat16 else torch.bfloat16
@@ -59,16 +65,21 @@ for _ in range(steps):
         torch.cuda.synchronize()
     clock = "processor" in without
     times.append(time.process_time() - processor if clock else time.perf_counter() - start)
-print(device.type, str(precision).removeprefix("torch."), *times[1:])
+peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
+print(device.type, str(precision).removeprefix("torch."), peak, *times[1:])
 """
 
 
-def timed(model: str, px: int, batch: int, *without: str) -> tuple[str, list[float]]:
-    """Device and precision, and seconds of each step but the first, of a process of its own."""
+def timed(model: str, px: int, batch: int, *without: str) -> tuple[str, float, list[float]]:
+    """Steps of a process of its own.
+
+    Returns:
+        Device and precision; the most memory it had, GiB; seconds of each step but the first.
+    """
     line = [sys.executable, "-c", STEP, model, px, batch, STEPS, *without]
     done = subprocess.run(list(map(str, line)), stdout=subprocess.PIPE, text=True, check=True)
-    device, precision, *steps = done.stdout.split()
-    return f"{device}, {precision}", [float(step) for step in steps]
+    device, precision, peak, *steps = done.stdout.split()
+    return f"{device}, {precision}", float(peak), [float(step) for step in steps]
 
 
 def models(names: list[str], px: int, batch: int, path: Path | None) -> None:
@@ -76,7 +87,7 @@ def models(names: list[str], px: int, batch: int, path: Path | None) -> None:
     os.environ["OMP_NUM_THREADS"] = "1"
     times = {}
     for name in names:
-        kind, steps = timed(name, px, batch, "processor")
+        kind, _, steps = timed(name, px, batch, "processor")
         times[name] = round(statistics.median(steps), 2)
         print(f"{name:<36} {kind:<14} {times[name]:7.2f} s a step", flush=True)
     if path:
@@ -88,7 +99,7 @@ def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--px", type=int, default=128)
-    parser.add_argument("--batch", type=int, default=32)
+    parser.add_argument("--batch", type=int, default=128)
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--models", nargs="+", default=[], help="networks to time instead")
     parser.add_argument("--json", type=Path, help="where the times of --models are written")
@@ -97,18 +108,19 @@ def main() -> None:
         models(options.models, options.px, options.batch, options.json)
         return
     times: dict[str, list[float]] = {name: [] for name in VARIANTS}
-    kinds = {}
+    kinds, peaks = {}, {}
     for _ in range(options.rounds):
         for name, without in VARIANTS.items():
-            kinds[name], steps = timed("fftnet", options.px, options.batch, *without)
+            kinds[name], peaks[name], steps = timed("fftnet", options.px, options.batch, *without)
             times[name] += steps
     own = statistics.median(next(iter(times.values())))
     print(f"fftnet, {options.px} x {options.px} px, batch {options.batch}; {options.rounds} rounds")
     for name, steps in times.items():
         middle = statistics.median(steps)
         print(
-            f"{name:<36} {kinds[name]:<14} {middle:7.3f} s a step "
-            f"({min(steps):.3f} to {max(steps):.3f})  ratio {middle / own:.2f}"
+            f"{name:<48} {kinds[name]:<14} {middle:7.3f} s a step "
+            f"({min(steps):.3f} to {max(steps):.3f})  ratio {middle / own:5.2f}  "
+            f"{peaks[name]:.1f} GiB"
         )
 
 

@@ -3,6 +3,7 @@
 import json
 import shutil
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -123,6 +124,16 @@ def test_rows_accumulate_and_missing_runs_delete_none(
     apart = lines_of(quick, both, "| free space | 30 |")[-1]
     assert "not run" in apart
     assert apart != lines_of(quick, records, "| free space | 30 |")[-1]
+
+
+def test_runs_that_take_a_gpu_are_named_below_the_tables(
+    quick: Reproduction, records: dict[str, dict[str, Any]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(reproduce_paper.SCALES, "quick", replace(QUICK, on_gpu=True))
+    lines = reproduce_paper.tables("quick", {FIRST: records[FIRST]})
+    assert any(f"{FIRST}.json" in line for line in lines)
+    assert not any(line.startswith("| free space | -10 |") for line in lines)
+    assert f"Not reached without a GPU: {SECOND}, {APART}." in lines
 
 
 def test_a_deleted_run_keeps_its_record_and_figures(quick: Reproduction, tmp_path: Path) -> None:

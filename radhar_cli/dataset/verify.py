@@ -65,8 +65,10 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Report:
             stored config is not trusted to name files.
 
     Raises:
-        FolderError: there is no readable data set of radhar.
+        FolderError: there is no readable data set of radhar, or no such folder of motion files.
     """
+    if motion is not None and not motion.is_dir():
+        raise FolderError(f"{motion}: no such folder; should hold the motion files of the data set")
     prepare_process()
     beside = folder if folder.is_dir() else folder.parent
     with open_dataset(folder) as data:

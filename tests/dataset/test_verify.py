@@ -123,6 +123,11 @@ def test_changed_and_missing_pngs_are_found(whole: Path, tmp_path: Path) -> None
     assert any("cannot be read" in problem for problem in problems)
 
 
+def test_a_folder_of_motion_files_that_is_not_there_is_refused(whole: Path, tmp_path: Path) -> None:
+    with pytest.raises(FolderError, match="nowhere: no such folder"):
+        verify(whole, 0, tmp_path / "nowhere")
+
+
 def test_what_is_no_data_set_is_refused(whole: Path, tmp_path: Path) -> None:
     with pytest.raises(FolderError, match="no such file"):
         verify(tmp_path, 1)

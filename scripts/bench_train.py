@@ -33,6 +33,7 @@ from torch.nn.functional import cross_entropy
 from radhar_cli.learning import machine
 from radhar_cli.learning.models.build import build_model
 from radhar_cli.learning.models.fftnet import GlobalFilter
+from radhar_cli.worker_process import keep_memory
 name, px, batch, steps, *without = sys.argv[1:]
 px, batch, steps = int(px), int(batch), int(steps)
 if "complex" in without:
@@ -40,10 +41,10 @@ if "complex" in without:
         k = torch.view_as_complex(self.weight)
         return torch.fft.ifft2(torch.fft.fft2(x.to(self.weight.dtype)) * k).real
     GlobalFilter.forward = full
-if "returned" in without:
-    machine.keep_memory = lambda: None
 device = machine.choose_device("auto")
-machine.prepare_training(device)
+machine.repeatable(device)
+if "returned" not in without:
+    keep_memory()
 torch.utils.deterministic.fill_uninitialized_memory = "filled" in without
 precision = machine.choose_precision("auto", device)
 if "precision" in without:

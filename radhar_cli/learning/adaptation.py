@@ -29,13 +29,14 @@ from radhar_cli.learning.evaluation import open_for, rows_of, training_images
 from radhar_cli.learning.images.image_set import ImageSet, labels_for
 from radhar_cli.learning.images.joined import joined, sampling_weights
 from radhar_cli.learning.images.scan import content_hash, scan
-from radhar_cli.learning.machine import prepare_training
+from radhar_cli.learning.machine import repeatable
 from radhar_cli.learning.run_files import TRAINED_ON
 from radhar_cli.learning.run_folder import MAX_TABLE, RunMetadata, load_best
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.starting_point import is_of_last_layer
 from radhar_cli.progress import Messages
 from radhar_cli.randomness import TRAINING, stream
+from radhar_cli.worker_process import keep_memory
 
 MIN_IMAGES, BATCH = 16, 96
 MIXED = 32  # labelled images a step
@@ -134,7 +135,8 @@ def adapt_to(
         raise ConfigError(
             f"{images.where}: has {rows.size} images; should have at least {MIN_IMAGES}"
         )
-    prepare_training(device)
+    repeatable(device)
+    keep_memory()
     adapt_batch_norm(model.to(device), metadata, images, rows, device)
     if epochs:
         maximise_information(model, metadata, images, rows, device, epochs, mixed, progress)

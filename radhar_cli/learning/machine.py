@@ -5,19 +5,17 @@ import os
 import torch
 
 from radhar_cli.errors import MachineError
-from radhar_cli.worker_process import keep_memory
 
 
-def prepare_training(device: torch.device) -> None:
+def repeatable(device: torch.device) -> None:
     """Ask for algorithms that give the same bits each time; elsewhere than on the CPU, if it can.
 
-    cuBLAS needs its workspace fixed before its first use. Memory is kept from step to step, and
-    not filled with NaN before it is written, which PyTorch does to show reads of what nobody wrote.
+    cuBLAS needs its workspace fixed before its first use. Memory is not filled with NaN before it
+    is written, which PyTorch does to show reads of what nobody wrote: a fifth of a step.
     """
     os.environ.setdefault("CUBLAS_WORKSPACE_CONFIG", ":4096:8")
     torch.use_deterministic_algorithms(True, warn_only=device.type != "cpu")
     torch.utils.deterministic.fill_uninitialized_memory = False  # type: ignore[attr-defined]
-    keep_memory()
 
 
 def choose_device(wanted: str) -> torch.device:

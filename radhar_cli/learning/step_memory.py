@@ -16,6 +16,7 @@ from radhar_cli.learning.settings import TrainConfig
 FLOAT = 4  # bytes
 COPIES = {"adam": 4, "adamw": 4, "sgd": 3}  # weights, gradient, moments
 CGROUP_LIMIT = Path("/sys/fs/cgroup/memory.max")
+KEPT = 3  # times the least memory of a step; a process that keeps all of it has had 2.7 times
 MIN_SIDE = 32  # px; no network takes smaller images
 
 
@@ -79,6 +80,10 @@ class Step:
         if self.memory().of(self.images) > total:
             advice = self.advice(total)
             raise MachineError(f"{device.type} has {_gib(total)} of memory; {advice}")
+
+    def may_keep_memory(self, device: torch.device) -> bool:
+        """Whether a device has room for a process that returns no memory from step to step."""
+        return KEPT * self.memory().of(self.images) < total_memory(device)
 
     def advice(self, limit: float | None = None) -> str:
         """What the step needs, and the micro batch, or else the image size, that fits in `limit`.

@@ -42,7 +42,7 @@ from radhar_cli.learning.images.synthesised import (
     stream_data,
     streamed_scenes,
 )
-from radhar_cli.learning.machine import choose_device, out_of_memory, prepare_training
+from radhar_cli.learning.machine import choose_device, out_of_memory, repeatable
 from radhar_cli.learning.models.build import build_model
 from radhar_cli.learning.process_group import (
     Group,
@@ -61,6 +61,7 @@ from radhar_cli.learning.starting_point import StartingPoint, start_from
 from radhar_cli.learning.step_memory import Step
 from radhar_cli.progress import Messages
 from radhar_cli.randomness import TRAINING, stream
+from radhar_cli.worker_process import keep_memory
 
 # Not part of the identity of a run; precision and micro batch enter as chosen (RunMetadata.work).
 NOT_IDENTITY = ("device", "workers", "threads", "precision", "micro_batch")
@@ -175,12 +176,14 @@ def train_on(task: Task, progress: TrainingProgress) -> Outcome:
     if config.threads != "auto":
         torch.set_num_threads(config.threads)
     device = choose_device(config.device)
-    prepare_training(device)
+    repeatable(device)
     with process_group(device) as group, folder_lock(folder) if group.is_main else nullcontext():
         plan = choose_execution_plan(config, device, synthesises=task.stream is not None)
         images_a_pass = min(plan.micro_batch, -(-config.batch_size // group.size))
         step = Step(config, len(images.classes), images.size, images_a_pass, plan.precision)
         step.check(device)
+        if step.may_keep_memory(device):
+            keep_memory()
         try:
             return _Training.prepared(task, plan, group, progress).run()
         except RuntimeError as error:

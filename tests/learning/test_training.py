@@ -312,6 +312,20 @@ def test_a_network_larger_than_memory_is_refused_before_it_is_built(
     assert not (tmp_path / "run" / ".radhar" / "run.json").exists()
 
 
+@pytest.mark.parametrize("room", [False, True])
+def test_memory_is_kept_from_step_to_step_where_there_is_room(
+    data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, room: bool
+) -> None:
+    config = settings(batch_size=6)
+    images = checked_images(config, data)
+    step = Step(config, len(images.classes), images.size, 6, torch.float32).memory().of(6)
+    kept = list[bool]()
+    monkeypatch.setattr(step_memory, "total_memory", lambda device: (3.1 if room else 2.9) * step)
+    monkeypatch.setattr(training, "keep_memory", lambda: kept.append(True))
+    trained(data, tmp_path / "run", batch_size=6, precision="float32")
+    assert bool(kept) == room
+
+
 @pytest.mark.parametrize("name", ["fftnet", "smallnet"])
 def test_memory_of_a_step_is_what_autograd_keeps(name: str) -> None:
     """State: weights, gradient and two moments; images: each adds the same."""

@@ -91,12 +91,9 @@ def _with_output_options(app: "typer.Typer") -> None:
 
 def main() -> None:
     """Run the program; our errors end with their message and status."""
-    from radhar_cli.commands.generate import shard_named
-
     signal.signal(signal.SIGTERM, _terminate)
     try:
-        status = _run(shard_named(sys.argv[1:]))
-        sys.exit(status)
+        sys.exit(_run(sys.argv[1:]))
     except RadharError as error:
         if os.environ.get("RANK", "0") == "0":  # under torchrun all fail, and one reports it
             print(f"radhar: {shown(error)}", file=sys.stderr)
@@ -124,9 +121,11 @@ def _run(arguments: list[str]) -> int | None:
     """
     import typer
 
+    from radhar_cli.commands.generate import shard_named
+
     usage_error = typer.BadParameter.__mro__[1]  # of click, or of the copy that newer typers hold
     try:
-        return program()(arguments, prog_name="radhar", standalone_mode=False)  # type: ignore[no-any-return]
+        return program()(shard_named(arguments), prog_name="radhar", standalone_mode=False)  # type: ignore[no-any-return]
     except Exception as error:
         if not isinstance(error, usage_error):
             raise

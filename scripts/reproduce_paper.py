@@ -40,7 +40,7 @@ DRAWN_TESTED = (30, 20, 10, 0, -10, -20)
 UNKNOWN, NOT_RUN = "not recorded", "not run"
 ENDING = ["core hours", "commit", "record"]
 # What a commit has to say about a result; a change elsewhere is none of it.
-CODE = ("radhar_cli", "configs", "scripts/reproduce_paper.py")
+CODE = ("radhar_cli", "configs", "scripts")
 
 # Paper, Table III: validation accuracy (%), parameters (M), seconds with model loading.
 PAPER = {
@@ -300,7 +300,7 @@ class Reproduction:
                 **self._made(data),
                 **{key: metrics["data"][key] for key in ("hash", "train", "val")},
             },
-            "evaluation": {**_note(self._reports(run, "val")), "threads": own["threads"]},
+            "evaluation": {**read_note(self._reports(run, "val")), "threads": own["threads"]},
             "best_epoch": metrics["best_epoch"],
             "parameters": metrics["parameters"],
             "multiply_adds": metrics["multiply_adds"],
@@ -321,7 +321,7 @@ class Reproduction:
     def _made(self, folder: Path) -> dict[str, Any]:
         """Commits and machine at which a folder was made."""
         if _note_file(folder).exists() or self.made_at is None:
-            return _note(folder)
+            return read_note(folder)
         return {"commits": [{"commit": self.made_at, "dirty": None}], "machine": machine()}
 
     def _reports(self, run: Path, kind: str) -> Path:
@@ -451,7 +451,7 @@ def _note_file(folder: Path) -> Path:
     return folder.parent / f"{folder.name}.made.json"
 
 
-def _note(folder: Path) -> dict[str, Any]:
+def read_note(folder: Path) -> dict[str, Any]:
     """What is noted beside a folder; nothing is known of one without a note."""
     file = _note_file(folder)
     note: dict[str, Any] = {"commits": [], "machine": None}
@@ -460,7 +460,7 @@ def _note(folder: Path) -> dict[str, Any]:
 
 def write_note(folder: Path, **more: float) -> None:
     """Note beside a folder that work on it begins, or goes on, at this commit on this machine."""
-    commits = [known for known in _note(folder)["commits"] if known != commit()]
+    commits = [known for known in read_note(folder)["commits"] if known != commit()]
     folder.parent.mkdir(parents=True, exist_ok=True)
     note = {"commits": [*commits, commit()], "machine": machine(), **more}
     _note_file(folder).write_text(json.dumps(note, indent=1) + "\n")

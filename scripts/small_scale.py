@@ -10,6 +10,7 @@ docs/results/small/NAME.json, of which the tables are made; a row that has one i
 
 import argparse
 import re
+import shutil
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,11 +23,12 @@ from reproduce_paper import (
     ROOT,
     SCENARIOS,
     as_text,
-    commit,
     machine,
     radhar,
     read_json,
+    read_note,
     table,
+    write_note,
     write_page,
 )
 from snr_budget import read_budget, readings
@@ -48,6 +50,8 @@ SMALLNET = (
     "schedule.kind=cosine",
 )
 FFTNET = ("model=fftnet", "batch_size=32")  # and the paper's 20 epochs, rate and steps
+LONGER = (*SMALLNET, "epochs=60")
+CONSTANT = "schedule.kind=constant"
 ONE_THREAD = "threads=1"
 BOUND, CURVE, FACTORS, ADVICE, EVERY = "bound", "curve", "factors", "advice", "every"
 TABLES = {
@@ -115,6 +119,7 @@ LONG, PAPERS = "window of 0.8 s", "the paper's: stft, coherent sum of the bins"
 GATE = ("processing.doppler=gate",)
 ONE = "one network, trained at -20 to 30 dB"
 DRAWN = ("snr_db={uniform: [-20, 30]}",)
+NARROW = ("snr_db={uniform: [0, 30]}",)
 FIVE_HUNDRED = ("samples_per_class=500", "seed=2", "split={train: 0.8, validation: 0.2}")
 HARDEST = ((FREE, -10), (WALL, 10))  # where one network falls shortest of that of the SNR alone
 
@@ -150,6 +155,19 @@ EXPERIMENTS: tuple[Experiment, ...] = (
     ),
     Experiment(FACTORS, "fftnet, rate / 10 after 10 of 20 epochs", FREE, -10, train=FFTNET),
     Experiment(ADVICE, f"{GATED}, {MORE}", WALL, -10, GATE, learned=FIVE_HUNDRED),
+    Experiment(FACTORS, "fftnet, rate constant", FREE, -10, train=(*FFTNET, CONSTANT)),
+    Experiment(
+        FACTORS,
+        "fftnet, rate / 10 after 3 of 6 epochs",
+        FREE,
+        -10,
+        train=(*FFTNET, "epochs=6", "schedule.every_epochs=3"),
+    ),
+    Experiment(
+        ADVICE, "60 epochs, the steps of 15 on four times the maps", FREE, -10, train=LONGER
+    ),
+    Experiment(ADVICE, MORE, WALL, -10, learned=FIVE_HUNDRED),
+    Experiment(EVERY, "one network, trained at 0 to 30 dB", WALL, 10, learned=NARROW),
     *(
         Experiment(EVERY, label, scenario, snr, learned=learned)
         for scenario, snr in HARDEST
@@ -175,14 +193,18 @@ class Bench:
             radhar("generate", config, "-o", folder, "--jobs", 1, *words)
         return folder
 
+    def run(self, one: Experiment, seed: int) -> Path:
+        """Folder of the training with one seed."""
+        return self.out / "runs" / f"{one.name}_{seed}"
+
     def probabilities(self, one: Experiment, seed: int) -> tuple[Float, Index]:
         """Probabilities [N, 12] of the test maps after training with one seed, true classes [N]."""
         if one.of:
-            others = [f"{data_name(one)}_{plain(label)}" for label in one.of]
-            parts = [self.probabilities(named(name), seed) for name in others]
+            parts = [self.probabilities(other, seed) for other in averaged(one)]
             return np.mean([p for p, _ in parts], axis=0), parts[0][1]
-        run = self.out / "runs" / f"{one.name}_{seed}"
+        run = self.run(one, seed)
         if not (run / "metrics.json").exists():
+            write_note(run)
             words = _set([*one.train, f"seed={seed}", ONE_THREAD])
             radhar("train", self.maps(one, learned=True), "-o", run, *words)
         metadata, model = load_best(run)
@@ -192,15 +214,18 @@ class Bench:
         )
         return predictions.probabilities, predictions.truth
 
-    def record(self, one: Experiment) -> None:
-        """Run an experiment and write its record."""
+    def record(self, one: Experiment, again: bool = False) -> None:
+        """Run an experiment, training included where it is to be run again; write its record."""
+        runs = [self.run(part, seed) for part in averaged(one) or [one] for seed in one.seeds]
+        for run in runs if again else []:
+            shutil.rmtree(run, ignore_errors=True)
         answers = [self.probabilities(one, seed) for seed in one.seeds]
         truth = answers[0][1]
         correct = [int((p.argmax(1) == truth).sum()) for p, _ in answers]
         together = np.mean([p for p, _ in answers], axis=0).argmax(1)
         confusion = np.zeros((12, 12), int)
         np.add.at(confusion, (truth, together), 1)
-        runs = [self.out / "runs" / f"{one.name}_{seed}" / "metrics.json" for seed in one.seeds]
+        commits = [made for run in runs for made in read_note(run)["commits"]]
         contents = {
             "name": one.name,
             "scenario": one.scenario,
@@ -211,9 +236,9 @@ class Bench:
             "of": list(one.of),
             "seeds": list(one.seeds),
             "command": f"python scripts/small_scale.py --only {one.name}",
-            "commits": [commit()],
+            "commits": [made for n, made in enumerate(commits) if made not in commits[:n]],
             "machine": machine(),
-            "precision": [read_json(run)["precision"] for run in runs if run.exists()],
+            "precision": [read_json(run / "metrics.json")["precision"] for run in runs],
             "tested": int(truth.size),
             "correct": correct,
             "correct_together": int(np.trace(confusion)),
@@ -225,6 +250,11 @@ class Bench:
 
 def _set(words: list[str]) -> list[str]:
     return [part for word in words for part in ("--set", word)]
+
+
+def averaged(one: Experiment) -> list[Experiment]:
+    """The experiments whose probabilities one averages."""
+    return [named(f"{data_name(one)}_{plain(label)}") for label in one.of]
 
 
 def named(name: str) -> Experiment:
@@ -331,7 +361,7 @@ def main() -> None:
     bench = Bench(options.out.absolute(), results.absolute())
     for one in [] if options.report_only else wanted:
         if options.again or not (results / f"{one.name}.json").exists():
-            bench.record(one)
+            bench.record(one, options.again)
             write_page(options.page, page_text(results), BEGIN)
     write_page(options.page, page_text(results), BEGIN)
 

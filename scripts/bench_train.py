@@ -1,4 +1,4 @@
-"""What each shortcut of a training step buys, as ratios of one run.
+"""What the choices of a training step cost, as ratios of one run.
 
     python scripts/bench_train.py [--px 128] [--batch 128] [--rounds 3]
     python scripts/bench_train.py --models NAME ... [--batch 32] [--json FILE]
@@ -34,20 +34,20 @@ from radhar_cli.learning import machine
 from radhar_cli.learning.models.build import build_model
 from radhar_cli.learning.models.fftnet import GlobalFilter
 from radhar_cli.worker_process import keep_memory
-name, px, batch, steps, *without = sys.argv[1:]
+name, px, batch, steps, *changes = sys.argv[1:]
 px, batch, steps = int(px), int(batch), int(steps)
-if "complex" in without:
+if "complex" in changes:
     def full(self, x):
         k = torch.view_as_complex(self.weight)
         return torch.fft.ifft2(torch.fft.fft2(x.to(self.weight.dtype)) * k).real
     GlobalFilter.forward = full
 device = machine.choose_device("auto")
 machine.repeatable(device)
-if "returned" not in without:
+if "returned" not in changes:
     keep_memory()
-torch.utils.deterministic.fill_uninitialized_memory = "filled" in without
+torch.utils.deterministic.fill_uninitialized_memory = "filled" in changes
 precision = machine.choose_precision("auto", device)
-if "precision" in without:
+if "precision" in changes:
     precision = torch.float32 if precision == torch.bfloat16 else torch.bfloat16
 torch.manual_seed(0)
 model = build_model(name, 12, (px, px)).to(device)
@@ -64,20 +64,20 @@ for _ in range(steps):
     optimiser.zero_grad()
     if device.type == "cuda":
         torch.cuda.synchronize()
-    clock = "processor" in without
+    clock = "processor" in changes
     times.append(time.process_time() - processor if clock else time.perf_counter() - start)
 peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
 print(device.type, str(precision).removeprefix("torch."), peak, *times[1:])
 """
 
 
-def timed(model: str, px: int, batch: int, *without: str) -> tuple[str, float, list[float]]:
+def timed(model: str, px: int, batch: int, *changes: str) -> tuple[str, float, list[float]]:
     """Steps of a process of its own.
 
     Returns:
         Device and precision; the most memory it had, GiB; seconds of each step but the first.
     """
-    line = [sys.executable, "-c", STEP, model, px, batch, STEPS, *without]
+    line = [sys.executable, "-c", STEP, model, px, batch, STEPS, *changes]
     done = subprocess.run(list(map(str, line)), stdout=subprocess.PIPE, text=True, check=True)
     device, precision, peak, *steps = done.stdout.split()
     return f"{device}, {precision}", float(peak), [float(step) for step in steps]
@@ -111,8 +111,8 @@ def main() -> None:
     times: dict[str, list[float]] = {name: [] for name in VARIANTS}
     kinds, peaks = {}, {}
     for _ in range(options.rounds):
-        for name, without in VARIANTS.items():
-            kinds[name], peaks[name], steps = timed("fftnet", options.px, options.batch, *without)
+        for name, changes in VARIANTS.items():
+            kinds[name], peaks[name], steps = timed("fftnet", options.px, options.batch, *changes)
             times[name] += steps
     own = statistics.median(next(iter(times.values())))
     print(f"fftnet, {options.px} x {options.px} px, batch {options.batch}; {options.rounds} rounds")

@@ -204,7 +204,7 @@ def read_budget(file: Path) -> dict[str, Any]:
 
 
 def median_of(scenes: list[dict[str, Any]], key: str) -> float:
-    """Median of the scenes in which something moves."""
+    """Median of the scenes that have it: what is of the echo, those in which something moves."""
     return float(np.median([scene[key] for scene in scenes if scene[key] is not None]))
 
 

@@ -139,7 +139,7 @@ def test_runs_that_take_a_gpu_are_named_below_the_tables(
 def test_a_deleted_run_keeps_its_record_and_figures(quick: Reproduction, tmp_path: Path) -> None:
     shutil.copytree(quick.results, tmp_path / "results" / "quick")
     before = {file.name: file.read_bytes() for file in (tmp_path / "results/quick").iterdir()}
-    assert f"{FIRST}_confusion.png" in before
+    assert f"{FIRST}_tsne.png" in before
     elsewhere = Reproduction(
         "quick", QUICK, tmp_path / "data", tmp_path / "runs", tmp_path / "results" / "quick"
     )
@@ -161,6 +161,24 @@ def test_the_page_needs_no_run(quick: Reproduction, tmp_path: Path) -> None:
     for figure in (f"{FIRST}_confusion.png", f"{FIRST}_tsne.png", "free_space_snr.png"):
         assert f"](results/quick/{figure})" in text
         assert (tmp_path / "results" / "quick" / figure).exists()
+
+
+def test_confusion_is_shown_where_there_are_mistakes_on_the_fresh_seed(
+    tmp_path: Path, records: dict[str, dict[str, Any]]
+) -> None:
+    def drawn(accuracy: float, **more: Any) -> bool:
+        part = {**records[FIRST]["fresh"]["-10"], "accuracy": accuracy}
+        record = {**records[FIRST], "snr_db": -10, **more, "fresh": {"-10": part}}
+        (tmp_path / "quick").mkdir(exist_ok=True)
+        file = tmp_path / "quick" / "one_confusion.png"
+        file.unlink(missing_ok=True)
+        reproduce_paper.confusion_figures("quick", tmp_path, {"one": record})
+        return file.exists()
+
+    assert drawn(0.5)
+    assert not drawn(0.995)
+    assert drawn(0.5, snr_db=None, scenario="free_space")
+    assert not drawn(0.5, snr_db=None, scenario="through_wall")  # whose 10 dB it was not tested at
 
 
 def test_a_record_that_the_scale_does_not_name_has_a_row(

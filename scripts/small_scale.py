@@ -295,7 +295,8 @@ def page_text(results: Path) -> str:
         if key == FACTORS:
             rows += [one for one in EXPERIMENTS if one.name == f"{FREE}_-10dB_{SMALL}"]
         if key == EVERY:
-            rows += [named(f"{scenario}_{snr}dB_{SMALL}") for scenario, snr in HARDEST]
+            of_one_snr = {f"{scenario}_{snr}dB_{SMALL}" for scenario, snr in HARDEST}
+            rows += [one for one in EXPERIMENTS if one.name in of_one_snr]
         if key == ADVICE:
             rows = [one for one in rows if one.snr_db == -10]
         snr = [999 if one.snr_db is None else one.snr_db for one in rows]

@@ -10,12 +10,10 @@ from radhar_cli.errors import MachineError
 def repeatable(device: torch.device) -> None:
     """Ask for algorithms that give the same bits each time; elsewhere than on the CPU, if it can.
 
-    cuBLAS needs its workspace fixed before its first use. Memory is not filled with NaN before it
-    is written, which PyTorch does to show reads of what nobody wrote: a fifth of a step.
+    cuBLAS needs its workspace fixed before its first use.
     """
     os.environ.setdefault("CUBLAS_WORKSPACE_CONFIG", ":4096:8")
     torch.use_deterministic_algorithms(True, warn_only=device.type != "cpu")
-    torch.utils.deterministic.fill_uninitialized_memory = False  # type: ignore[attr-defined]
 
 
 def choose_device(wanted: str) -> torch.device:

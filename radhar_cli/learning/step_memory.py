@@ -16,7 +16,7 @@ from radhar_cli.learning.settings import TrainConfig
 FLOAT = 4  # bytes
 COPIES = {"adam": 4, "adamw": 4, "sgd": 3}  # weights, gradient, moments
 CGROUP_LIMIT = Path("/sys/fs/cgroup/memory.max")
-KEPT = 3  # times the least memory of a step; a process that keeps all of it has had 2.7 times
+KEPT = 3  # times the least memory of a step; a process that keeps all of it has had 2.8 times
 MIN_SIDE = 32  # px; no network takes smaller images
 
 

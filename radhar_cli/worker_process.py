@@ -12,6 +12,7 @@ _M_TRIM_THRESHOLD = -1
 _M_MMAP_THRESHOLD = -3
 _M_MMAP_MAX = -4
 _KEPT = 64 * 2**20
+_LARGEST_OLD_THRESHOLD = 32 * 2**20
 _THREADS = (
     "OMP_NUM_THREADS",
     "OPENBLAS_NUM_THREADS",
@@ -70,5 +71,7 @@ def keep_memory(up_to: int | None = None) -> None:
             libc.mallopt(_M_MMAP_MAX, 0)
             libc.mallopt(_M_TRIM_THRESHOLD, -1)
         else:
-            libc.mallopt(_M_MMAP_THRESHOLD, up_to)
+            # An older glibc refuses more than half of what it maps for a thread's arena.
+            if not libc.mallopt(_M_MMAP_THRESHOLD, up_to):
+                libc.mallopt(_M_MMAP_THRESHOLD, _LARGEST_OLD_THRESHOLD)
             libc.mallopt(_M_TRIM_THRESHOLD, 2 * up_to)

@@ -1,12 +1,16 @@
 """Memory of temporary arrays is kept, so that a process does not fault in its pages anew."""
 
+import ctypes
 import platform
 import subprocess
 import sys
 
 import pytest
 
+from radhar_cli.worker_process import keep_memory
+
 MIB = 2**20
+M_MMAP_THRESHOLD = -3
 FAULTS = """
 import resource, sys
 import numpy as np
@@ -43,6 +47,23 @@ def test_kept_memory_is_not_faulted_in_again(size: int) -> None:
 def test_memory_is_kept_up_to_a_size_only() -> None:
     assert faults("kept", 16 * MIB, up_to=64 * MIB) < 100
     assert faults("kept", 256 * MIB, up_to=64 * MIB) > 8
+
+
+def test_an_older_glibc_keeps_what_it_can(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = list[tuple[int, int]]()
+
+    class OlderGlibc:
+        def __init__(self, name: None) -> None:
+            pass
+
+        def mallopt(self, parameter: int, value: int) -> int:
+            asked.append((parameter, value))
+            return int(parameter != M_MMAP_THRESHOLD or value <= 32 * MIB)
+
+    monkeypatch.setattr(ctypes, "CDLL", OlderGlibc)
+    monkeypatch.delenv("MALLOC_MMAP_THRESHOLD_", raising=False)
+    keep_memory(64 * MIB)
+    assert [value for parameter, value in asked if parameter == M_MMAP_THRESHOLD][-1] == 32 * MIB
 
 
 def test_glibc_alone_faults_a_large_array_in_each_time() -> None:

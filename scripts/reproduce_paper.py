@@ -583,9 +583,8 @@ def tables(name: str, records: dict[str, dict[str, Any]]) -> list[str]:
     if apart:
         lines += _subjects(apart)
     lines += ["### Networks at 30 dB", "", *_networks(networks)]
-    noted = [row for row in rows if row.record and row.record.get("note")]
-    if noted:
-        lines += [f"- {row.name}: {row.record['note']}" for row in noted if row.record] + [""]
+    if noted := [row.record for row in rows if row.record and row.record["note"]]:
+        lines += [*(f"- {record['name']}: {record['note']}" for record in noted), ""]
     if left_out:
         lines += [f"Not reached without a GPU: {', '.join(left_out)}.", ""]
     return lines

@@ -217,7 +217,7 @@ class Bench:
     def record(self, one: Experiment, again: bool = False) -> None:
         """Run an experiment, training included where it is to be run again; write its record."""
         runs = [self.run(part, seed) for part in averaged(one) or [one] for seed in one.seeds]
-        for run in runs if again else []:
+        for run in runs if again and not one.of else []:
             shutil.rmtree(run, ignore_errors=True)
         answers = [self.probabilities(one, seed) for seed in one.seeds]
         truth = answers[0][1]

@@ -136,7 +136,8 @@ def adapt_to(
             f"{images.where}: has {rows.size} images; should have at least {MIN_IMAGES}"
         )
     repeatable(device)
-    keep_memory()
+    if device.type == "cpu":
+        keep_memory()
     adapt_batch_norm(model.to(device), metadata, images, rows, device)
     if epochs:
         maximise_information(model, metadata, images, rows, device, epochs, mixed, progress)

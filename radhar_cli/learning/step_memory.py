@@ -82,8 +82,8 @@ class Step:
             raise MachineError(f"{device.type} has {_gib(total)} of memory; {advice}")
 
     def may_keep_memory(self, device: torch.device) -> bool:
-        """Whether a device has room for a process that returns no memory from step to step."""
-        return KEPT * self.memory().of(self.images) < total_memory(device)
+        """Whether this is the CPU, with room for a process that returns no memory to the system."""
+        return device.type == "cpu" and KEPT * self.memory().of(self.images) < total_memory(device)
 
     def advice(self, limit: float | None = None) -> str:
         """What the step needs, and the micro batch, or else the image size, that fits in `limit`.

@@ -23,13 +23,6 @@ maps: [stft]
 image: {{size_px: 64}}
 split: {{train: 0.5, validation: 0.25, test: 0.25}}
 """
-TRAINING = """\
-model: smallnet
-epochs: {epochs}
-batch_size: 16
-learning_rate: 0.003
-schedule: {{kind: cosine}}
-"""
 
 
 def radhar(*words: object) -> Any:
@@ -41,14 +34,13 @@ def radhar(*words: object) -> Any:
 def main(folder: Path, samples: int = 40, epochs: int = 10) -> None:
     """Do it in a folder and print the matrix."""
     folder.mkdir(parents=True, exist_ok=True)
-    config, training = folder / "data.yaml", folder / "train.yaml"
+    config = folder / "data.yaml"
     config.write_text(CONFIG.format(samples=samples))
-    training.write_text(TRAINING.format(epochs=epochs))
     data, run = folder / "data", folder / "run"
 
     print(f"{radhar('generate', config, '-o', data)['samples']} samples in {data}")
     radhar("verify", data, "--samples", 3)
-    best = radhar("train", data, "-o", run, "--config", training)["best"]
+    best = radhar("train", data, "-o", run, "--set", f"epochs={epochs}")["best"]
     print(f"best epoch {best['epoch']}: validation accuracy {100 * best['val_accuracy']:.1f} %")
     report = radhar("eval", run, data, "--split", "test")
     print(f"test accuracy {100 * report['accuracy']['run']['data']:.1f} %; {report['page']}")

@@ -206,7 +206,8 @@ class Bench:
         if not (run / "metrics.json").exists():
             write_note(run)
             words = _set([*one.train, f"seed={seed}", ONE_THREAD])
-            radhar("train", self.maps(one, learned=True), "-o", run, *words)
+            paper = ROOT / "configs/train/paper.yaml"
+            radhar("train", self.maps(one, learned=True), "-o", run, "--config", paper, *words)
         metadata, model = load_best(run)
         images = open_for(metadata, self.maps(one), None)
         predictions = predict(

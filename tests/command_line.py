@@ -13,7 +13,6 @@ import pytest
 from radhar_cli.cli import main
 
 ROOT = Path(__file__).resolve().parents[1]
-OPERATORS = ROOT / "tests/torchvision_operators"
 Done = subprocess.CompletedProcess[str]
 
 
@@ -39,7 +38,7 @@ def radhar(*arguments: object) -> Done:
 
 def process(*arguments: object) -> Done:
     """Run ``python`` with some arguments."""
-    paths = os.pathsep.join([str(OPERATORS), str(ROOT), os.environ.get("PYTHONPATH", "")])
+    paths = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     return subprocess.run(
         [sys.executable, *map(str, arguments)],
         capture_output=True,

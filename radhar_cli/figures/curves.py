@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Protocol
 
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FormatStrFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from radhar_cli.figures.page import page, png_bytes
 
@@ -61,6 +61,10 @@ def curves_png(runs: Mapping[str, Sequence[EpochRow]], best: Mapping[str, int]) 
         axes.set_ylabel(what)
         axes.grid(alpha=0.3)
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    right.set_yscale("log")  # a spike leaves the rest of the curve its room
+    right.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    right.yaxis.set_major_formatter(FormatStrFormatter("%g"))
+    right.yaxis.set_minor_formatter(NullFormatter())
     left.legend(fontsize=8 if len(runs) < 4 else 6)
     figure.suptitle("star: the epoch that is kept", fontsize=9)
     return png_bytes(figure)

@@ -49,13 +49,13 @@ def choose_execution_plan(
         device: that computes.
         synthesises: the images are made while training.
     """
-    micro_batch = config.batch_size if config.micro_batch == "auto" else config.micro_batch
+    micro_batch = config.images_a_step if config.micro_batch == "auto" else config.micro_batch
     precision = choose_precision(config.precision, device)
-    workers = _workers(config, device, synthesises)
+    workers = reading_workers(config, device, synthesises)
     return ExecutionPlan(device, precision, micro_batch, workers)
 
 
-def _workers(config: TrainConfig, device: torch.device, synthesises: bool) -> int:
+def reading_workers(config: TrainConfig, device: torch.device, synthesises: bool) -> int:
     """Reading processes: none on the CPU, whose cores the network keeps busy.
 
     Samples of a stream take longer to synthesise than a step: every core gets a worker.

@@ -101,6 +101,7 @@ class RunMetadata(Section):
         versions: of radhar, torch, numpy.
         work: how it was computed, as far as the result depends on it: precision, micro batch,
             number of processes.
+        epoch: with weights, after which they were kept.
     """
 
     model: Name
@@ -114,6 +115,7 @@ class RunMetadata(Section):
     data: LearnedFrom
     versions: dict[str, str]
     work: dict[str, Any] = Field(default_factory=dict)
+    epoch: Annotated[int, Field(ge=1)] | None = None
 
     @field_validator("classes")
     @classmethod
@@ -299,7 +301,8 @@ def write_best(
     folder: Path, metadata: RunMetadata, epoch: Epoch, weights: Mapping[str, Tensor]
 ) -> None:
     """Write best.safetensors: weights and, as metadata, all that is needed to use them."""
-    header = {"radhar": metadata.model_dump_json(), "epoch": str(epoch.epoch)}
+    about = metadata.model_copy(update={"epoch": epoch.epoch})
+    header = {"radhar": about.model_dump_json()}  # one key: safetensors writes several in any order
     tensors = {name: tensor.detach().cpu().contiguous() for name, tensor in weights.items()}
     write_whole(folder, folder / BEST, safetensors_bytes(tensors, header))
 
@@ -329,7 +332,7 @@ def load_best(folder: Path) -> tuple[RunMetadata, nn.Module]:
             raise ValueError(f"it claims a header of {header} bytes")
         with safe_open(path, framework="pt") as file:
             return _opened(path, file)
-    except (SafetensorError, OSError, ValueError) as error:
+    except (SafetensorError, OSError, ValueError, MemoryError, RuntimeError) as error:
         raise RunError(f"{path}: is not a safetensors file, or is truncated ({error})") from None
 
 

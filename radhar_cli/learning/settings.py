@@ -1,5 +1,6 @@
 """The YAML file of `radhar train`: model, optimisation, augmentation, machine."""
 
+from math import log2
 from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -20,6 +21,8 @@ def _auto_or(least: int) -> BeforeValidator:
     return BeforeValidator(check)
 
 
+STEPS_AN_EPOCH, SMALLEST_BATCH, LARGEST_BATCH = 24, 4, 128  # of batch_size: auto
+
 Auto = Literal["auto"] | int
 Count = Annotated[int, Field(ge=1, le=1_000_000, strict=True)]
 Rate = Annotated[float, Field(gt=0, le=1e3, strict=True)]
@@ -34,7 +37,7 @@ class ScheduleConfig(Section):
     zero at the last step, `constant` leaves it.
     """
 
-    kind: Literal["step", "cosine", "constant"] = "step"
+    kind: Literal["step", "cosine", "constant"] = "cosine"
     """How the rate falls."""
     every_epochs: Count = 10
     """Of step."""
@@ -90,32 +93,35 @@ class StreamConfig(Section):
 
 
 class TrainConfig(Section):
-    """One training run; the defaults are the paper's Table II."""
+    """One training run; the defaults learn from some dozens of images a class as from thousands.
 
-    model: Annotated[str, Field(min_length=1)] = "fftnet"
-    """The paper's network, smallnet, or any name of timm's."""
+    The paper's Table II is configs/train/paper.yaml.
+    """
+
+    model: Annotated[str, Field(min_length=1)] = "smallnet"
+    """smallnet, the paper's network fftnet, or any name of timm's."""
     map: str | None = None
     """Which map; null is the first one."""
     input: Literal["rgb", "gray"] = "rgb"
     """Colours as in the PNGs, or one channel three times."""
     seed: Annotated[int, Field(ge=0, lt=2**63, strict=True)] = 1
     """Of first weights, order of the images, dropout."""
-    epochs: Count = 20
+    epochs: Count = 30
     """Passes over the training images."""
-    batch_size: Annotated[int, Field(ge=2, le=1_000_000, strict=True)] = 128
-    """Images a step, over all processes."""
+    batch_size: Annotated[Auto, _auto_or(2)] = "auto"
+    """Images a step, over all processes; auto makes some 24 steps an epoch, of 4 to 128 images."""
     micro_batch: Annotated[Auto, _auto_or(2)] = "auto"
     """Most images in one pass of a process; auto is the whole batch."""
-    optimiser: Literal["adam", "adamw", "sgd"] = "adam"
+    optimiser: Literal["adam", "adamw", "sgd"] = "adamw"
     """adamw has decoupled decay, sgd a momentum of 0.9."""
-    learning_rate: Rate = 0.00147
+    learning_rate: Rate = 0.003
     """The initial one."""
-    weight_decay: Annotated[float, Field(ge=0, le=1e3, strict=True)] = 1e-4
-    """L2, of weights; biases and norms are left free."""
+    weight_decay: Annotated[float, Field(ge=0, le=1e3, strict=True)] = 0.01
+    """Of weights, L2 but with adamw; biases and norms are left free."""
     label_smoothing: Annotated[float, Field(ge=0, lt=1, strict=True)] = 0.1
     """zeta: a label is y (1 - zeta) + zeta/K."""
     schedule: ScheduleConfig = ScheduleConfig()
-    warmup_epochs: Annotated[float, Field(ge=0, le=1e6, strict=True)] = 0.0
+    warmup_epochs: Annotated[float, Field(ge=0, le=1e6, strict=True)] = 1.0
     """Linear rise of the rate, step by step; may be a fraction."""
     gradient_clip_norm: Rate | None = None
     """Largest norm of the gradient; null is none."""
@@ -137,6 +143,20 @@ class TrainConfig(Section):
     """Reading processes."""
     threads: Annotated[Auto, _auto_or(1)] = "auto"
     """Of the CPU."""
+
+    def for_images(self, count: int) -> "TrainConfig":
+        """The same with a batch size for so many training images, where it is auto."""
+        if self.batch_size != "auto":
+            return self
+        fitting = 2 ** round(log2(max(count, 1) / STEPS_AN_EPOCH))
+        size = min(max(fitting, SMALLEST_BATCH), LARGEST_BATCH)
+        return self.model_copy(update={"batch_size": size})
+
+    @property
+    def images_a_step(self) -> int:
+        """The batch size, of a config that `for_images` made."""
+        assert self.batch_size != "auto"
+        return self.batch_size
 
     @model_validator(mode="after")
     def _fits(self) -> "TrainConfig":

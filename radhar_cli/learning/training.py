@@ -4,14 +4,14 @@ import math
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Protocol
 
 import numpy as np
 import torch
 from torch import nn
-from torch.optim.swa_utils import AveragedModel
+from torch.optim.swa_utils import AveragedModel, update_bn
 
 from radhar_cli import __version__
 from radhar_cli.arrays import Float, Index
@@ -29,7 +29,11 @@ from radhar_cli.learning.batches import (
     epoch_order,
     pieces,
 )
-from radhar_cli.learning.execution_plan import ExecutionPlan, choose_execution_plan
+from radhar_cli.learning.execution_plan import (
+    ExecutionPlan,
+    choose_execution_plan,
+    reading_workers,
+)
 from radhar_cli.learning.gradient_step import TrainStep, check_state, optimiser_for
 from radhar_cli.learning.images.classes import renamed
 from radhar_cli.learning.images.image_set import ImageSet
@@ -63,6 +67,8 @@ from radhar_cli.progress import Messages
 from radhar_cli.randomness import TRAINING, stream
 from radhar_cli.worker_process import keep_memory
 
+STATISTICS_IMAGES = 2048  # from which batch norm of averaged weights has its statistics
+FEW_STEPS = 10  # an epoch; fewer are warned of
 # Not part of the identity of a run; precision and micro batch enter as chosen (RunMetadata.work).
 NOT_IDENTITY = ("device", "workers", "threads", "precision", "micro_batch")
 
@@ -144,7 +150,7 @@ def train(
     else:
         paths = [data] if isinstance(data, Path) else list(data)
         device = choose_device(config.device)
-        workers = choose_execution_plan(config, device, synthesises=True).workers
+        workers = reading_workers(config, device, synthesises=True)
         training_stream, images = stream_and_validation(config, stream, paths, names or {}, workers)
     return train_on(Task(config, images, folder, overwrite, start, training_stream), progress)
 
@@ -172,14 +178,17 @@ class Task:
 
 def train_on(task: Task, progress: TrainingProgress) -> Outcome:
     """As `train`, on images that are open already."""
-    config, images, folder = task.config, task.images, task.folder
+    images, folder = task.images, task.folder
+    count = images.rows("train").size if task.stream is None else task.stream.per_epoch
+    config = task.config.for_images(count)
+    task = replace(task, config=config)
     if config.threads != "auto":
         torch.set_num_threads(config.threads)
     device = choose_device(config.device)
     repeatable(device)
     with process_group(device) as group, folder_lock(folder) if group.is_main else nullcontext():
         plan = choose_execution_plan(config, device, synthesises=task.stream is not None)
-        images_a_pass = min(plan.micro_batch, -(-config.batch_size // group.size))
+        images_a_pass = min(plan.micro_batch, -(-config.images_a_step // group.size))
         step = Step(config, len(images.classes), images.size, images_a_pass, plan.precision)
         step.check(device)
         if step.may_keep_memory(device):
@@ -241,7 +250,7 @@ class _Training:
     ) -> "_Training":
         config, images, stream = task.config, task.images, task.stream
         minimum = MIN_PER_PROCESS * group.size
-        if config.batch_size < minimum:
+        if config.images_a_step < minimum:
             raise ConfigError(
                 f"batch_size = {config.batch_size}: should be at least {minimum} for {group.size} "
                 "processes; batch norm needs two images in each"
@@ -255,7 +264,7 @@ class _Training:
                 many = f"{images.rows('val').size} validation images; {stream.per_epoch} samples "
                 many += f"an epoch are synthesised by {plan.workers or 'no'} workers"
             progress.say(f"reading {many}")
-            for warning in _unbalanced(images):
+            for warning in (*_unbalanced(images), *_few_steps(task, group)):
                 progress.say(f"warning: {warning}")
             for note in started.notes if started else ():
                 progress.say(note)
@@ -273,7 +282,7 @@ class _Training:
 
         on_rank_zero(group, reserve)
         model.to(plan.device)
-        average = AveragedModel(model, use_buffers=True) if config.average_last else None
+        average = AveragedModel(model) if config.average_last else None
         optimiser = optimiser_for(config, model)
         return cls(task, metadata, plan, group, progress, model, optimiser, average)
 
@@ -299,6 +308,7 @@ class _Training:
             began = time.perf_counter()
             torch.manual_seed(self._epoch_seed(epoch))
             training = self._train_epoch(network, training_reader, epoch)
+            self._statistics_of_average(training_reader, epoch)
             validation = self._validate(validation_reader, epoch)
             if self.group.is_main:
                 self._keep(epoch, training, validation, time.perf_counter() - began)
@@ -374,7 +384,7 @@ class _Training:
         return self.average.module
 
     def _announce(self, resumed: int) -> None:
-        plan, say, size = self.plan, self.progress.say, self.task.config.batch_size
+        plan, say, size = self.plan, self.progress.say, self.task.config.images_a_step
         if resumed:
             say(f"resuming: {resumed} of {self.task.config.epochs} epochs are done")
         share = -(-size // self.group.size)
@@ -407,7 +417,7 @@ class _Training:
         """One epoch of steps; returns mean loss and accuracy of its batches."""
         config, group = self.task.config, self.group
         rows = self._epoch_rows(epoch)
-        batches = epoch_batches(rows, config.batch_size, group.size)
+        batches = epoch_batches(rows, config.images_a_step, group.size)
         if group.is_main:
             self.progress.epoch(epoch + 1, config.epochs, len(batches))
         mine = [batch[group.rank :: group.size] for batch in batches]
@@ -433,6 +443,19 @@ class _Training:
         totals = all_reduce_sum(totals, group)
         return totals[0] / totals[2], totals[1] / totals[2]
 
+    def _statistics_of_average(self, reader: Reader, epoch: int) -> None:
+        """Take the batch-norm statistics of averaged weights from images as they are stored.
+
+        Those met in training are of other weights, and of augmented images.
+        """
+        if self._kept is self.model:
+            return
+        rows = self._epoch_rows(epoch)[:STATISTICS_IMAGES]
+        size = min(self.task.config.images_a_step, self.plan.micro_batch)
+        device, normalise = self.plan.device, self.metadata.normalisation
+        clean = (normalise(levels.to(device)) for levels, _ in reader(epoch_batches(rows, size, 1)))
+        update_bn(clean, self._kept)
+
     def _validate(self, reader: Reader, epoch: int) -> tuple[float, float]:
         """Mean loss and accuracy over the validation images, shared by the processes."""
         group = self.group
@@ -441,7 +464,7 @@ class _Training:
         broadcast_buffers(model, group)
         rows = self.task.images.rows("val")
         mine = rows[group.rank :: group.size]
-        size = min(self.task.config.batch_size, self.plan.micro_batch)
+        size = min(self.task.config.images_a_step, self.plan.micro_batch)
         model.eval()
         totals: Float = np.zeros(3)
         with torch.no_grad():
@@ -558,6 +581,19 @@ def _unbalanced(images: ImageSet) -> list[str]:
         f"the class {name!r} has no validation image; the best epoch is chosen without it"
         for index, name in enumerate(images.classes)
         if index not in checked
+    ]
+
+
+def _few_steps(task: Task, group: Group) -> list[str]:
+    """A warning where an epoch has few steps, and the network learns little in it."""
+    count = task.images.rows("train").size if task.stream is None else task.stream.per_epoch
+    size = task.config.images_a_step
+    steps = len(epoch_batches(np.arange(count), size, group.size))
+    if steps >= FEW_STEPS:
+        return []
+    return [
+        f"batch_size = {size}: {count} images make {steps} steps an epoch; should be "
+        f"{FEW_STEPS} or more, by a smaller batch, or else many more epochs"
     ]
 
 

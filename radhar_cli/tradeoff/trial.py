@@ -173,7 +173,10 @@ def _settings(sizes: Sizes, seed: int) -> "TrainConfig":
         seed=seed,
         epochs=sizes.epochs,
         batch_size=32,
+        optimiser="adam",
         learning_rate=3e-3,
+        weight_decay=1e-4,
+        warmup_epochs=0.0,
         schedule=ScheduleConfig(kind="cosine"),
         device="cpu",
         precision="float32",
@@ -196,7 +199,7 @@ def _train_and_test(
     training.train(settings, learned, run, _Epochs(experiment.progress, label))
     metadata, model = load_best(run)
     images = open_for(metadata, asked, None)
-    device, batch = choose_device(settings.device), settings.batch_size
+    device, batch = choose_device(settings.device), settings.images_a_step
     answers = predict(model, metadata, images, images.rows("all"), device, batch)
     return TestResult(int((answers.predicted == answers.truth).sum()), len(images))
 

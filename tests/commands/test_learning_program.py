@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from command_line import process, radhar
 from documented import KEYS
-from learning.patterns import BASE, load_timm, split_tree, trained, tree
+from learning.patterns import BASE, split_tree, trained, tree
 
 
 @pytest.fixture(scope="module")
@@ -91,7 +91,6 @@ def test_adapt_says_how_long(place: Path, tmp_path: Path, epochs: int, said: str
 
 
 def test_models_lists_our_networks_and_the_papers_rivals(place: Path) -> None:
-    load_timm()
     done = radhar("models")
     assert done.returncode == 0, done.stderr
     assert "6,496,012" in done.stdout
@@ -125,7 +124,6 @@ def test_models_lists_our_networks_and_the_papers_rivals(place: Path) -> None:
 def test_wrong_use_is_refused_in_one_line_with_status_2(
     place: Path, arguments: list[str], expected: list[str]
 ) -> None:
-    load_timm()
     if not (place / "alone").exists():
         tree(place / "alone", ("walking",), {"train": 2, "val": 1})
     done = radhar(*[a.replace("{}", str(place)) for a in arguments])

@@ -13,7 +13,11 @@ from typing import Any
 import datasets
 import numpy as np
 import webdataset
-from torchvision.datasets import ImageFolder
+
+from radhar_cli.learning.models.zoo import load_timm
+
+load_timm()  # torchvision's operators may be of another PyTorch
+from torchvision.datasets import ImageFolder  # noqa: E402
 
 
 def digest(levels: object) -> str:

@@ -15,7 +15,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 import yaml
-from command_line import OPERATORS, ROOT, radhar
+from command_line import ROOT, radhar
 from listener import Listener
 from scipy.io.matlab import matfile_version
 from small import fingerprint, small_config
@@ -85,12 +85,16 @@ def rows_of(h5: h5py.File, split: str) -> list[int]:
 
 
 def test_each_format_is_read_by_its_own_library(place: Path, h5: h5py.File, tmp_path: Path) -> None:
-    paths = os.pathsep.join([str(OPERATORS), str(ROOT)])
     done = subprocess.run(
         [sys.executable, READER, place],
         capture_output=True,
         text=True,
-        env={**os.environ, "PYTHONPATH": paths, "HF_HOME": str(tmp_path), "HF_HUB_OFFLINE": "1"},
+        env={
+            **os.environ,
+            "PYTHONPATH": str(ROOT),
+            "HF_HOME": str(tmp_path),
+            "HF_HUB_OFFLINE": "1",
+        },
     )
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)

@@ -4,7 +4,9 @@ from pathlib import Path
 
 import pytest
 import torch
-from learning.patterns import load_timm, split_tree, trained
+from learning.patterns import split_tree, trained
+
+from radhar_cli.learning.models.zoo import load_timm
 
 
 @pytest.fixture(autouse=True)

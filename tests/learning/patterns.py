@@ -1,10 +1,7 @@
 """Trees of images that a network learns in seconds, and training runs of a second."""
 
 import dataclasses
-import importlib.util
 import math
-import sys
-import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -22,14 +19,17 @@ from radhar_cli.learning.run_folder import Epoch
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.training import Outcome, train
 
-OPERATORS = Path(__file__).resolve().parents[1] / "torchvision_operators/sitecustomize.py"
 SIZE = 32
 CLASSES = ("kicking", "punching", "walking")  # S3, S2 and S8: not the order of the alphabet
 BASE = {
     "model": "smallnet",
     "epochs": 3,
     "batch_size": 6,
+    "optimiser": "adam",
     "learning_rate": 1e-3,
+    "weight_decay": 1e-4,
+    "schedule": {"kind": "step"},
+    "warmup_epochs": 0.0,
     "device": "cpu",
     "precision": "float32",
     "threads": 1,
@@ -160,18 +160,3 @@ def one_clear_line(error: RadharError, *words: object) -> None:
     assert error.status == 2
     for word in words:
         assert str(word) in str(error), str(error)
-
-
-def load_timm() -> None:
-    """Import timm, with the operators of torchvision declared where its build lacks them."""
-    if "timm" in sys.modules:
-        return
-    spec = importlib.util.spec_from_file_location("torchvision_operators", OPERATORS)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        spec.loader.exec_module(module)
-        importlib.import_module("timm")

@@ -80,11 +80,11 @@ def test_best_weights_are_those_of_the_best_epoch(run_dir: Path) -> None:
     from safetensors import safe_open
 
     with safe_open(run_dir / run_files.BEST, "pt") as file:
-        epoch = int(file.metadata()["epoch"])
-    assert epoch == best_epoch(run.read_history(run_dir)).epoch
+        assert file.metadata().keys() == {"radhar"}, "of several the order would be any"
     metadata, model = run.load_best(run_dir)
+    assert metadata.epoch == best_epoch(run.read_history(run_dir)).epoch
     assert not model.training
-    assert metadata == run.read_metadata(run_dir)
+    assert metadata.model_copy(update={"epoch": None}) == run.read_metadata(run_dir)
 
 
 def test_a_weights_file_alone_can_be_loaded(run_dir: Path, tmp_path: Path) -> None:

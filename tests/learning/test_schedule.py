@@ -1,6 +1,7 @@
 """The learning rate at every step."""
 
 import math
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -9,8 +10,11 @@ from hypothesis import settings as examples
 from hypothesis import strategies as st
 from learning.patterns import settings
 
+from radhar_cli.config.reading import load_section
 from radhar_cli.learning.schedule import rate
 from radhar_cli.learning.settings import TrainConfig
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def at(config: TrainConfig, epoch: int, done: float) -> float:
@@ -19,7 +23,7 @@ def at(config: TrainConfig, epoch: int, done: float) -> float:
 
 
 def test_the_papers_rate_falls_tenfold_every_ten_epochs() -> None:
-    paper = TrainConfig()
+    paper = load_section(TrainConfig, ROOT / "configs/train/paper.yaml")
     rates = [at(paper, epoch, 0.5) for epoch in range(20)]
     assert rates[:10] == [0.00147] * 10
     assert rates[10:] == pytest.approx([0.000147] * 10)

@@ -1,12 +1,16 @@
 """Networks of timm, the paper's rivals among them; needs the extra `zoo`."""
 
+import importlib
+import sys
 from typing import Any
 
 from torch import nn
+from torch.library import Library
 
 from radhar_cli.errors import ModelError, did_you_mean
 from radhar_cli.learning.models import fftnet, smallnet
 
+_OPERATORS: Any = Library("torchvision", "FRAGMENT")  # type: ignore[no-untyped-call]  # forgets what it defines when it is let go
 OURS = (fftnet.NAME, smallnet.NAME)
 
 
@@ -20,7 +24,7 @@ def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
     if ours:
         raise ModelError(f"model {name!r}: is unknown; {ours}")
     try:
-        import timm
+        timm = load_timm()
     except ImportError as error:
         raise ModelError(
             f"model {name!r}: is neither {' nor '.join(OURS)}, and timm, which has others, is not "
@@ -28,8 +32,8 @@ def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
         ) from None
     except RuntimeError as error:
         raise ModelError(
-            f"model {name!r}: timm does not load ({error}); its torchvision should be built for "
-            "the installed PyTorch"
+            f"model {name!r}: timm does not load ({error}); torchvision should be built for the "
+            "installed PyTorch"
         ) from None
     if not timm.is_model(name):
         hint = did_you_mean(name, timm.list_models(), "`radhar models` lists some")
@@ -47,3 +51,21 @@ def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
             f"model {name!r}: cannot take images of {size[0]} x {size[1]} px ({error})"
         ) from None
     return model
+
+
+def load_timm() -> Any:
+    """timm, which imports torchvision.
+
+    That refuses to load where its compiled operators were built for another PyTorch (there is no
+    CPU build beside ours). No classifier calls them, so they are declared and it is loaded again.
+    """
+    try:
+        return importlib.import_module("timm")
+    except RuntimeError as error:
+        if "operator torchvision::" not in str(error):
+            raise
+    for name in [name for name in sys.modules if name.partition(".")[0] in ("timm", "torchvision")]:
+        del sys.modules[name]
+    for name in ("nms", "qnms"):
+        _OPERATORS.define(f"{name}(Tensor dets, Tensor scores, float iou_threshold) -> Tensor")
+    return importlib.import_module("timm")

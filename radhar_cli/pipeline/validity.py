@@ -105,7 +105,7 @@ class SceneCheck:
         if Flags.WALL in self.flags:
             return "the body passes through the wall"
         if Flags.HALF_BAND in self.flags:
-            return "a scatterer leaves the range half-band (radar.bandwidth_hz, motion.range_m)"
+            return "a scatterer leaves the range half-band"
         return None
 
 
@@ -250,6 +250,8 @@ def _cure(config: Config, check: SceneCheck) -> str:
     """What would make another scene of this one."""
     if check.too_close and check.closest.joint.startswith("reflector "):
         return "room.reflectors should be elsewhere"
+    if config.on_invalid == "redraw" and check.flags & Flags.HALF_BAND and not check.too_close:
+        return "a smaller radar.bandwidth_hz has a longer half-band, a smaller motion.range_m room"
     if config.on_invalid == "redraw":
         return "motion.range_m and motion.angle_deg should leave people room"
     return "on_invalid: redraw draws such scenes again"

@@ -416,6 +416,14 @@ def test_a_scatterer_at_an_antenna_stops_unless_redrawn(on_invalid: str) -> None
     assert max(attempts) > 0
 
 
+def test_a_band_that_is_too_short_for_people_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Walkers who start 9 to 12 m away, with a half-band of 7.5 m."""
+    monkeypatch.setattr(module, "MAX_ATTEMPTS", 3)
+    config = Config(radar={"bandwidth_hz": 4e9})
+    with pytest.raises(SceneError, match=r"half-band; a smaller radar\.bandwidth_hz has a longer"):
+        draw_valid_scene(config, WALKING, 0)
+
+
 def test_no_valid_scene_ends_the_redraws(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "MAX_ATTEMPTS", 3)
     config = with_antenna_at("S1", np.array([2.0, 0.0, 1.51]), on_invalid="redraw")

@@ -158,6 +158,7 @@ class Drawer:
         self.maybe(document, 0.6, "snr_db", lambda: self.number(lambda: self.signed(1e-3, 300)))
         self.maybe(document, 0.2, "snr_db", lambda: None)
         self.maybe(document, 0.3, "snr_reference", lambda: self.pick(("free_space", "received")))
+        document["on_invalid"] = "keep"  # redrawing would refuse half of them
         self.maybe(document, 0.1, "on_invalid", lambda: self.pick(("keep", "error", "redraw")))
         self.maybe(document, 0.5, "maps", self.maps)
         self.maybe(document["image"], 0.4, "dynamic_range_db", lambda: self.log(1e-300, 300))

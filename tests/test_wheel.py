@@ -65,7 +65,7 @@ def test_it_works_without_the_repository(wheel: Path, tmp_path: Path) -> None:
     radhar = (sys.executable, "-P", "-c", program)
     more = {"folder": tmp_path, "PYTHONPATH": str(tmp_path / "installed")}
     run(*radhar, "config", "init", "mine.yaml", **more)
-    assert "prf_hz: 5000.0" in run(*radhar, "config", "show", "mine.yaml", **more)
+    assert "prf_hz: 10000.0" in run(*radhar, "config", "show", "mine.yaml", **more)
 
 
 @pytest.mark.slow

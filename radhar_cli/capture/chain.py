@@ -105,7 +105,7 @@ def maps_of(
     ranges = waveform.range_axis()
     turn = unit_phasor(np.arange(waveform.n_bins)[:, None] * (referred.n0 / waveform.n_fft))
     doppler = [name for name in names if name != "rtm"]
-    stretches = [*_stretches(segments, canceller, config, doppler, recording, notes)]
+    stretches = [*_stretches(segments, referred.f0, canceller, config, doppler, recording, notes)]
     powers: dict[str, list[list[PowerMap]]] = {name: [] for name in names}
     for one in bins:
         if "rtm" in names:
@@ -225,6 +225,7 @@ def _before(config: Config, prf: float, f0: float, x: Complex) -> tuple[Cancelle
 
 def _stretches(
     segments: Segments,
+    f0: float,
     canceller: Canceller,
     config: Config,
     names: Sequence[str],
@@ -232,7 +233,7 @@ def _stretches(
     notes: list[str],
 ) -> Iterator[tuple[slice, dict[str, Any]]]:
     """Pulses of every segment that holds a window, and the windows within it."""
-    wanted = frames_of(config, segments.duration, segments.prf)
+    wanted = frames_of(config, segments.duration, segments.prf, f0)
     usual = int(np.median(segments.lengths)) - canceller.lost
     length = min(wanted.length, usual)
     needed = config.processing.savgol.frame if any("denoised" in n for n in names) else 0
@@ -244,10 +245,10 @@ def _stretches(
     if length < wanted.length:
         notes.append(
             f"windows have the {length} pulses of a frame, not {wanted.length} "
-            "(processing.window_fraction)"
+            "(processing.window_s)"
         )
     skipped, hop = 0, min(wanted.hop, length)
-    fine = fsst_frames_of(config, segments.duration, segments.prf)
+    fine = fsst_frames_of(config, segments.duration, segments.prf, f0)
     for part in segments.slices:
         if part.stop - part.start - canceller.lost < length:
             skipped += 1
@@ -344,7 +345,7 @@ def _of_slow_time(
         )
     f0, prf = recording.info.carrier_hz, recording.info.prf_hz
     canceller, x = _before(config, prf, f0, x)
-    stretches = [*_stretches(segments, canceller, config, names, recording, notes)]
+    stretches = [*_stretches(segments, f0, canceller, config, names, recording, notes)]
     powers: dict[str, list[list[PowerMap]]] = {name: [] for name in names}
     for one in x:
         made = []

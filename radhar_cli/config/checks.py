@@ -141,7 +141,7 @@ def _signal_problems(c: Config) -> Iterator[Problem]:
     processing = c.processing
     duration, prf = support(c.duration_s), support(c.radar.prf_hz)
     pulses = half_up(duration[0], prf[0])
-    window = _window(c, duration[0], prf[0])
+    window = processing.window_pulses(duration[0], prf[0], _doppler_carrier(c, 1))
     most = half_up(duration[1], prf[1])
     if most > MAX_PULSES:
         yield Problem(
@@ -155,20 +155,21 @@ def _signal_problems(c: Config) -> Iterator[Problem]:
         yield Problem(
             "duration_s", c.duration_s, f"should hold at least 2 pulses (it holds {pulses})"
         )
-    shares = processing.window_s is None
+    share, seconds = processing.window_fraction, processing.window_s
+    of_recording = ("duration_s", c.duration_s)
+    of_window = ("processing.window_s", seconds)
     if doppler and window < MIN_WINDOW:
-        of = f"{processing.window_fraction:g} * duration_s" if shares else "window_s"
+        of = "window_s" if seconds is not None else f"{share:g} * duration_s"
         yield Problem(
-            "duration_s" if shares else "processing.window_s",
-            c.duration_s if shares else processing.window_s,
+            *(of_recording if seconds is None else of_window),
             f"should make the window of {of} * prf_hz at least {MIN_WINDOW} pulses "
             f"(it has {window}): radar.prf_hz may be {prf[0]:g}",
         )
     kept = pulses - 1 if processing.clutter == "difference" else pulses
     if doppler and window > kept:
+        of_share = of_recording if share is None else ("processing.window_fraction", share)
         yield Problem(
-            "processing.window_fraction" if shares else "processing.window_s",
-            processing.window_fraction if shares else processing.window_s,
+            *(of_share if seconds is None else of_window),
             f"should make the window at most the {kept} pulses there are (it has {window})",
         )
     if any("denoised" in name for name in doppler) and processing.savgol.frame > kept:
@@ -177,7 +178,7 @@ def _signal_problems(c: Config) -> Iterator[Problem]:
             processing.savgol.frame,
             f"should be at most the {kept} pulses there are",
         )
-    longest = _window(c, duration[1], prf[1])
+    longest = processing.window_pulses(duration[1], prf[1], _doppler_carrier(c, 0))
     if processing.stft_fft_length is not None and processing.stft_fft_length < longest:
         yield Problem(
             "processing.stft_fft_length",
@@ -191,13 +192,6 @@ def _signal_problems(c: Config) -> Iterator[Problem]:
             processing.stft_fft_length,
             f"should be null or at most {MAX_PADDING} times the window of {window} pulses",
         )
-
-
-def _window(c: Config, duration: float, prf: float) -> int:
-    """Pulses in the window of a recording (s, pulses per s)."""
-    if c.processing.window_s is not None:
-        return half_up(c.processing.window_s, prf)
-    return half_up(c.processing.window_fraction, duration, prf)
 
 
 def _clutter_problems(c: Config) -> Iterator[Problem]:
@@ -357,7 +351,7 @@ def _image_problems(c: Config) -> Iterator[Problem]:
             f"should be within the unambiguous band, -{fastest:.6g} to {fastest:.6g} m/s "
             f"(c prf_hz / 4 f0: radar.prf_hz may be {prf[0]:g})",
         )
-    window = _window(c, duration[0], prf[0])
+    window = c.processing.window_pulses(duration[0], prf[0], _doppler_carrier(c, 1))
     step = SPEED_OF_LIGHT * prf[0] / (2 * _doppler_carrier(c, 0) * max(window, 1))
     if limits[1] - limits[0] < 2 * step:
         yield Problem(

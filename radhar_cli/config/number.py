@@ -191,13 +191,15 @@ Number: TypeAlias = Annotated[
 ]
 
 
-def support(number: Number) -> tuple[float, float]:
-    """Return the smallest and the largest value that a number can take."""
+def support(number: Number | None) -> tuple[float, float]:
+    """Return the smallest and the largest value that a number can take, which is not null."""
+    assert number is not None
     return (number, number) if isinstance(number, (int, float)) else number.support
 
 
-def nominal(number: Number) -> float:
-    """Return the middle of a number: itself, a mid-point, a mean, the middle choice."""
+def nominal(number: Number | None) -> float:
+    """Return the middle of a number, not null: itself, a mid-point, a mean, the middle choice."""
+    assert number is not None
     return float(number) if isinstance(number, (int, float)) else number.nominal
 
 

@@ -28,6 +28,35 @@ Options: TypeAlias = dict[str, str]
 MAX_MISTAKES = 20
 MAX_VALUE, MAX_ADVICE = 120, 500  # characters of value and advice in a message
 
+_CHANNELS = (
+    "is not there: a scene has one receive channel; antennas= of record() simulates another "
+    "(docs/architecture.md), and `radhar import` reads captures of several"
+)
+_PEOPLE = (
+    "is not there: one person a scene; motions= of record() adds up several "
+    "(docs/architecture.md), split.subjects names how many persons a data set has"
+)
+_ROOMS = "is not there: a config has one room, under `room`; each of its numbers may be drawn"
+_DEVICE = (
+    "is not there: give the numbers of its data sheet (carrier_hz, bandwidth_hz, prf_hz, "
+    "adc_rate_hz, chirp_s), or have `radhar fit` read them off a recording of it"
+)
+_PROFILE = "is not there: `radhar import --radar FILE` reads it with a capture, then `radhar fit`"
+_ANGLES = "is not there: it takes angles, and a scene has one receive channel; maps are "
+_MAPS = "rtm, stft and fsst"
+# What people ask for and is not there, as a key or a map, and what to do instead.
+ABSENT = {
+    **dict.fromkeys(("receivers", "transmitters", "channels", "antennas", "mimo"), _CHANNELS),
+    **dict.fromkeys(("people", "persons", "targets", "subjects"), _PEOPLE),
+    **dict.fromkeys(("rooms", "environments"), _ROOMS),
+    **dict.fromkeys(("device", "chip", "board", "sensor"), _DEVICE),
+    **dict.fromkeys(("cfg", "profile"), _PROFILE),
+    **dict.fromkeys(("point_cloud", "range_angle", "doppler_angle"), _ANGLES + _MAPS),
+    "range_doppler": "is not there: maps are over time, rtm (range), stft and fsst (Doppler)",
+    **dict.fromkeys(("spectrogram", "micro_doppler", "doppler_time"), "is called stft"),
+    "range_time": "is called rtm",
+}
+
 
 def load_config(path: str | Path, overrides: Iterable[str] = ()) -> Config:
     """Read a data set's config file and apply overrides such as ``radar.prf_hz=128``.
@@ -45,6 +74,19 @@ def load_config(path: str | Path, overrides: Iterable[str] = ()) -> Config:
         )
 
     return with_files(config, Path(path).parent, refuse)
+
+
+def as_config(config: Config | str | Path) -> Config:
+    """A config, or the one in a file.
+
+    Raises:
+        ConfigError: it is neither, or as `load_config`.
+    """
+    if isinstance(config, (str, Path)):
+        return load_config(config)
+    if not isinstance(config, Config):
+        raise ConfigError(f"config = {config!r}: should be the path of a YAML file, or a Config")
+    return config
 
 
 def load_section(kind: type[S], path: Path | None, overrides: Iterable[str] = ()) -> S:
@@ -186,6 +228,8 @@ def _found(kind: type[BaseModel], error: ValidationError, document: Any) -> Iter
         key = ".".join(str(name) for name in names)
         if item["type"] == "extra_forbidden":
             yield Problem(key, item["input"], _unknown(kind, names))
+        elif names[:1] == ["maps"] and (absent := ABSENT.get(str(item["input"]))):
+            yield Problem(key, item["input"], absent)
         else:
             message = _WORDING.get(item["type"], item["msg"])
             if not message.startswith(("should", "'")):
@@ -218,6 +262,8 @@ def _document_path(location: tuple[int | str, ...], document: Any) -> list[int |
 
 
 def _unknown(kind: type[BaseModel], names: list[int | str]) -> str:
+    if kind is Config and (absent := ABSENT.get(str(names[-1]))):
+        return absent
     section: type[BaseModel] | None = kind
     for name in names[:-1]:
         field = section.model_fields.get(str(name)) if section else None

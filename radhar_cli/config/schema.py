@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
-from math import floor
+from math import floor, sqrt
 from pathlib import PurePosixPath
 from textwrap import dedent
 from typing import Annotated, Any, ClassVar, Generic, Literal, TypeAlias, TypeVar
@@ -37,7 +37,7 @@ from radhar_cli.activity import (
     is_new_slug,
     sequence_uses,
 )
-from radhar_cli.config.checks import problems
+from radhar_cli.config.checks import MIN_WINDOW, problems
 from radhar_cli.config.number import (
     Angle,
     AtLeastOne,
@@ -56,8 +56,10 @@ from radhar_cli.config.number import (
     within,
 )
 from radhar_cli.errors import did_you_mean
+from radhar_cli.light import SPEED_OF_LIGHT
 from radhar_cli.motion.files.names import WANTED
 from radhar_cli.motion.files.reading import SUFFIXES
+from radhar_cli.rounding import half_up
 
 Flag: TypeAlias = Annotated[bool, Field(strict=True)]
 
@@ -106,10 +108,10 @@ class RadarConfig(Section):
 
     carrier_hz: Annotated[Positive, within(1e6, 1e13, "Hz")] = 77e9
     """At the start of the chirp."""
-    bandwidth_hz: Annotated[Positive, within(1e3, 1e12, "Hz")] = 4e9
-    """Swept by a chirp."""
-    prf_hz: Annotated[Positive, within(1e-3, 1e7, "Hz")] = 5000.0
-    """Chirps per second."""
+    bandwidth_hz: Annotated[Positive, within(1e3, 1e12, "Hz")] | None = None
+    """Swept by a chirp; null is the model's: 1e9 of human, 4e9 of paper and file."""
+    prf_hz: Annotated[Positive, within(1e-3, 1e7, "Hz")] | None = None
+    """Chirps per second; null is the model's: 10000 of human, 5000 of paper and file."""
     adc_rate_hz: Annotated[Positive, within(1e-3, 1e13, "Hz")] = 10e6
     """Samples per second within a chirp."""
     chirp_s: Annotated[Positive, within(1e-12, 1e4, "s")] = 40e-6
@@ -704,11 +706,15 @@ class HighpassConfig(Section):
         return self
 
 
+LIMB_ACCELERATION = 2.0  # m/s^2 along the line of sight; gait and kicks are resolved at 2 to 77 GHz
+MAX_WINDOW_SHARE = 0.25
+
+
 class ProcessingConfig(Section):
     """Clutter, range compression, gate, windows and thresholds.
 
     `mti` is another spelling of `clutter`: true is `difference`, false is `none`. `window_s` goes
-    before `window_fraction`.
+    before `window_fraction`; without both the window follows from the wavelength.
     """
 
     clutter: Literal["difference", "mean", "highpass", "none"] = "difference"
@@ -726,10 +732,10 @@ class ProcessingConfig(Section):
     """Even, at least the samples of a chirp; null is found."""
     range_reference: Literal["centre", "start"] = "centre"
     """Where in the chirp the phase is taken."""
-    window_fraction: Annotated[float, Field(gt=0, lt=1, strict=True)] = 0.1
-    """Length of the window, as a fraction of the recording."""
+    window_fraction: Annotated[float, Field(gt=0, lt=1, strict=True)] | None = None
+    """Length of the window, as a fraction of the recording; null is the model's: 0.1 of paper."""
     window_s: Annotated[float, Field(gt=0, le=1e7, strict=True)] | None = None
-    """The window in s, before window_fraction."""
+    """The window in s, before window_fraction; without both as limbs need it at this wavelength."""
     overlap_fraction: Annotated[float, Field(ge=0, lt=1, strict=True)] = 0.9
     """Of consecutive windows, as a fraction of the window."""
     stft_fft_length: Annotated[int, Field(ge=8, strict=True)] | None = None
@@ -767,6 +773,25 @@ class ProcessingConfig(Section):
             object.__setattr__(self, "clutter", meant)
             object.__setattr__(self, "mti", None)
         return self
+
+    def window_pulses(self, duration: float, prf: float, f0: float) -> int:
+        """Length of the STFT's window in pulses.
+
+        Where nothing gives it, T = sqrt(2 lambda/a): a limb's Doppler then crosses the main lobe of
+        Hann's window, 4/T, in T. It has MIN_WINDOW pulses or more, and at most MAX_WINDOW_SHARE of
+        the recording.
+
+        Args:
+            duration: of the recording, s.
+            prf: pulses per second.
+            f0: frequency of the Doppler, Hz.
+        """
+        if self.window_s is not None:
+            return half_up(self.window_s, prf)
+        if self.window_fraction is not None:
+            return half_up(self.window_fraction, duration, prf)
+        seconds = sqrt(2 * SPEED_OF_LIGHT / f0 / LIMB_ACCELERATION)
+        return max(half_up(min(seconds, MAX_WINDOW_SHARE * duration), prf), MIN_WINDOW)
 
 
 DEFAULT_COLOUR_MAP = "viridis"
@@ -974,26 +999,28 @@ def possible_maps(processing: ProcessingConfig) -> tuple[MapName, ...]:
     return tuple(name for name in MAP_NAMES if not (gated and name.startswith("fsst")))
 
 
-# A walker starts far away, as 4 s of walking are 5 m, and passes the radar at 2 m; user-defined
-# classes may walk too. All within the half-band of 7.5 m of the default radar.
-_NEAR = (a.slug for a in ACTIVITIES if not a.walks)
+# People face the radar, and in 6 s walk 8 m towards it: they start far enough away, all within its
+# half-band of 30 m. Classes of one's own may walk all the time.
+_FAR, _MIDDLE, _NEAR = (Uniform(uniform=one) for one in ((9.0, 12.0), (5.0, 8.0), (2.0, 5.0)))
 _HUMAN_RANGE = PerActivity[Coordinate](
     per_activity={
-        DEFAULT: Uniform(uniform=(6.0, 6.8)),
-        **dict.fromkeys(_NEAR, Uniform(uniform=(2.0, 4.0))),
+        DEFAULT: _FAR,
+        **{a.slug: _MIDDLE if a.walks else _NEAR for a in ACTIVITIES if a.slug != "walking"},
     }
 )
 _FACING = Uniform(uniform=(150.0, 210.0))
-_HUMAN_ANGLE = PerActivity[Angle](
-    per_activity={
-        DEFAULT: _FACING,
-        "walking": Uniform(uniform=(205.0, 240.0)),
-    }
-)
+_OF_FOUR_SECONDS = {"duration_s": 4.0, "radar": {"bandwidth_hz": 4e9, "prf_hz": 5000.0}}
 
-MODEL_DEFAULTS: dict[str, dict[str, dict[str, Any]]] = {
-    "file": {"motion": {"range_m": Uniform(uniform=(2.0, 4.0)), "angle_deg": _FACING}},
+MODEL_DEFAULTS: dict[str, dict[str, Any]] = {
+    "file": {
+        **_OF_FOUR_SECONDS,
+        "on_invalid": "redraw",
+        "motion": {"range_m": Uniform(uniform=(2.0, 4.0)), "angle_deg": _FACING},
+    },
     "paper": {
+        **_OF_FOUR_SECONDS,
+        "on_invalid": "keep",
+        "processing": {"window_fraction": 0.1},
         "motion": {
             "range_m": Uniform(uniform=(1.0, 3.0)),
             "angle_deg": Uniform(uniform=(-30.0, 30.0)),
@@ -1008,9 +1035,12 @@ MODEL_DEFAULTS: dict[str, dict[str, dict[str, Any]]] = {
         },
     },
     "human": {
+        "duration_s": 6.0,
+        "on_invalid": "redraw",
+        "radar": {"bandwidth_hz": 1e9, "prf_hz": 1e4},  # +-9.7 m/s: a kick's foot reaches 7 to 9
         "motion": {
             "range_m": _HUMAN_RANGE,
-            "angle_deg": _HUMAN_ANGLE,
+            "angle_deg": _FACING,
             "speed_mps": Normal(normal=(1.3, 0.18), min=0.7, max=2.0),
         },
         "timing": {
@@ -1116,8 +1146,8 @@ class Config(Section):
     """Your own: {name: {sequence: [...]}} of movements, {name: [walk/*.bvh]} of files."""
     activities: Literal["all"] | tuple[str, ...] = "all"
     """The twelve and those of `classes`; or a list of slugs or labels, [walking, S12]."""
-    duration_s: Annotated[Positive, within(1e-9, 1e7, "s")] = 4.0
-    """Of a recording."""
+    duration_s: Annotated[Positive, within(1e-9, 1e7, "s")] | None = None
+    """Of a recording; null is the model's: 6 of human, 4 of paper and file."""
     radar: RadarConfig = RadarConfig()
     subject: SubjectConfig = SubjectConfig()
     motion: MotionConfig = MotionConfig()
@@ -1131,8 +1161,9 @@ class Config(Section):
     receiver: ReceiverConfig = ReceiverConfig()
     snr_reference: Literal["free_space", "received"] = "free_space"
     """Signal without the wall, or with its loss."""
-    on_invalid: Literal["keep", "redraw", "error"] = "keep"
-    """A body that meets the wall, a scatterer that leaves the range half-band."""
+    on_invalid: Literal["keep", "redraw", "error"] | None = None
+    """A body that meets the wall, a scatterer that leaves the range half-band; null is the model's:
+    keep of paper, redraw of human and file."""
     processing: ProcessingConfig = ProcessingConfig()
     image: ImageConfig = ImageConfig()
     maps: tuple[MapName, ...] = ("stft",)
@@ -1181,19 +1212,21 @@ class Config(Section):
             raise PydanticCustomError("maps", "should name each map once")
         return tuple(sorted(value, key=MAP_NAMES.index))
 
-    @model_validator(mode="after")
-    def _filled(self) -> "Config":
-        """What is null and has a default by model takes it."""
-        for section, defaults in MODEL_DEFAULTS[self.motion.model].items():
-            now = getattr(self, section)
-            unset = {key: value for key, value in defaults.items() if getattr(now, key) is None}
-            if unset:
-                object.__setattr__(self, section, now.model_copy(update=unset))
+    def filled(self) -> "Config":
+        """This config, in which what is null and has a default by model takes it."""
+        for name, default in MODEL_DEFAULTS[self.motion.model].items():
+            now = getattr(self, name)
+            if now is None:
+                object.__setattr__(self, name, default)
+            elif isinstance(default, dict):
+                unset = {key: one for key, one in default.items() if getattr(now, key) is None}
+                if unset:
+                    object.__setattr__(self, name, now.model_copy(update=unset))
         return self
 
     @model_validator(mode="after")
     def _consistent(self) -> "Config":
-        mistakes = list(problems(self))
+        mistakes = list(problems(self.filled()))
         if mistakes:
             raise PydanticCustomError("across", "{problems}", {"problems": mistakes})
         return self

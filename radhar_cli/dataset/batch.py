@@ -21,11 +21,13 @@ from radhar_cli.dataset.sample import Made, Maker, synthesise
 from radhar_cli.dataset.shards import encode_shard, write_shard
 from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.dataset.workers import NO_PARENT
-from radhar_cli.errors import MachineError
+from radhar_cli.errors import MachineError, SceneError
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.validity import Flags, draw_valid_scene
 from radhar_cli.scene import Scene, draw_scene
 from radhar_cli.worker_process import prepare_process
+
+DRY_RUN_SCENES = 120
 
 
 @dataclass(frozen=True)
@@ -60,10 +62,22 @@ class Batch:
         rows = Rows.of(self.config)
         for number, row in enumerate(range(self.start, self.stop)):
             if self.checked is None:
-                yield draw_valid_scene(self.config, *rows[row])
+                yield checked_scene(self.config, rows, row)
             else:
                 attempt, flags = self.checked[number].tolist()
                 yield draw_scene(self.config, *rows[row], attempt), flags
+
+
+def checked_scene(config: Config, rows: Rows, row: int) -> tuple[Scene, Flags]:
+    """`draw_valid_scene` of a row; a refusal says whether a dry run could have known of it."""
+    try:
+        return draw_valid_scene(config, *rows[row])
+    except SceneError as error:
+        tried = rows.spread(DRY_RUN_SCENES)
+        known = "this one too" if row in tried else "not this one"
+        raise SceneError(
+            f"{error}; generate --dry-run checks {len(tried)} of the {len(rows)} scenes, {known}"
+        ) from None
 
 
 def leave_if_orphaned(parent_pid: int) -> None:
@@ -144,7 +158,7 @@ def check_rows(config: Config, start: int, stop: int, parent_pid: int) -> tuple[
     rows = Rows.of(config)
     outcomes = np.empty(stop - start, dtype=OUTCOME)
     for number, row in enumerate(range(start, stop)):
-        scene, flags = draw_valid_scene(config, *rows[row])
+        scene, flags = checked_scene(config, rows, row)
         outcomes[number] = scene.attempt, flags
     return start, outcomes
 

@@ -49,13 +49,12 @@ def estimate(config: Config, jobs: int) -> Estimate:
     """Time samples spread over the classes and scale up; nothing is written."""
     prepare_process()
     rows = Rows.of(config)
-    probes = min(PROBES, len(rows))
     table = colour_table(config.image.colour_map) if config.output.png else None
     _probe(config, 0, table)  # imports, tables and caches are not part of a sample
     samples, values, png_bytes = [], [], 0
     start = perf_counter()
-    for probe in range(probes):
-        sample, numbers, pngs = _probe(config, (2 * probe + 1) * len(rows) // (2 * probes), table)
+    for row in rows.spread(PROBES):
+        sample, numbers, pngs = _probe(config, row, table)
         samples.append(sample)
         values.append(numbers)
         png_bytes += pngs

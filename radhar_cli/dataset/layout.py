@@ -112,6 +112,11 @@ class Rows:
         which = bisect_right(self.starts, row) - 1
         return self.activities[which], row - self.starts[which]
 
+    def spread(self, count: int) -> list[int]:
+        """So many rows, or all, spread evenly over the classes."""
+        count = min(count, len(self))
+        return [(2 * place + 1) * len(self) // (2 * count) for place in range(count)]
+
     def name(self, row: int) -> str:
         """A row's index within its class in digits, as many for all of a class: names sort."""
         activity, index = self[row]

@@ -8,11 +8,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from operator import index as whole_number
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from radhar_cli.activity import Activity, know_activities, own_activities
+from radhar_cli.config.reading import as_config
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.layout import COLUMN_LABEL, checksum_of, chunked, columns
@@ -35,7 +37,7 @@ _MADE_BY = {
 
 
 def sample(
-    config: Config,
+    config: Config | str | Path,
     activity: str | Activity | None,
     index: int = 0,
     fields: Iterable[str] | None = None,
@@ -44,7 +46,7 @@ def sample(
     """Synthesise one sample of a data set: the same as in a dataset.h5 of this config, bit for bit.
 
     Args:
-        config: of the data set.
+        config: of the data set, or its path.
         activity: slug, label or Activity; None where the config has but one.
         index: number of the sample within its class; may lie beyond `samples_per_class`.
         fields: names in dataset.h5 of what is asked for; nothing else is computed. None is all of
@@ -56,12 +58,12 @@ def sample(
 
     Raises:
         ConfigError: an unknown activity or field, an index or seed that is not a whole number from
-            0 to 2^63 - 1, no config, a config of measured data.
+            0 to 2^63 - 1, no config, a config of measured data, or as `load_config`.
         SceneError: a scene outside the model (`on_invalid`), or one that the direct engine does not
             reach its tolerance in.
     """
     seed = None if seed is None else whole("seed", seed)
-    make = _recipe(SameConfig(config), _named(fields), seed)
+    make = _recipe(SameConfig(as_config(config)), _named(fields), seed)
     return make(activity_of(activity, make.config), index)
 
 
@@ -79,15 +81,17 @@ class Recipe:
 
     @classmethod
     def of(
-        cls, config: Config, fields: Iterable[str] | None = None, seed: int | None = None
+        cls,
+        config: Config | str | Path,
+        fields: Iterable[str] | None = None,
+        seed: int | None = None,
     ) -> "Recipe":
         """The recipe for arguments as those of `sample`.
 
         Raises:
             ConfigError: as `sample`.
         """
-        if not isinstance(config, Config):
-            raise ConfigError(f"config = {config!r}: should be a Config, such as of load_config")
+        config = as_config(config)
         if config.recorded is not None:
             raise ConfigError("recordings: are measured; should be a config of scenes to simulate")
         if seed is not None:

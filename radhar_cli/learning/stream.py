@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Iterable, Iterator
+from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
@@ -34,7 +35,7 @@ class Samples(Dataset[dict[str, Any]]):
 
     def __init__(
         self,
-        config: Config,
+        config: Config | str | Path,
         seed: int | None = None,
         *,
         fields: Iterable[str] | None = None,
@@ -43,7 +44,7 @@ class Samples(Dataset[dict[str, Any]]):
         """The samples of a config.
 
         Args:
-            config: of the data set.
+            config: of the data set, or its path.
             seed: instead of the config's.
             fields: names in dataset.h5 of what an item has (`radhar_cli.sample`).
             split: train, val or test, for those rows alone.
@@ -92,7 +93,7 @@ class Stream(IterableDataset[dict[str, Any]]):
 
     def __init__(
         self,
-        config: Config,
+        config: Config | str | Path,
         seed: int | None = None,
         *,
         fields: Iterable[str] | None = None,
@@ -105,7 +106,7 @@ class Stream(IterableDataset[dict[str, Any]]):
         """A stream of a config.
 
         Args:
-            config: of the samples.
+            config: of the samples, or its path.
             seed: instead of the config's.
             fields: names in dataset.h5 of what an item has (`radhar_cli.sample`).
             split: "train" leaves out what the data set's split holds back.

@@ -69,7 +69,7 @@ def segment_paths(
     if not kept:
         return None
     config = scene.config
-    window = frames_of(config, waveform.duration, waveform.prf).length / waveform.prf
+    window = frames_of(config, waveform.duration, waveform.prf, waveform.f0).length / waveform.prf
     counts = point_counts(
         body,
         antennas,

@@ -248,17 +248,16 @@ def cfar_of(config: Config) -> CellAveraging:
     )
 
 
-def frames_of(config: Config, duration: float, prf: float) -> Frames:
-    """The frames of the STFT in a recording (s, pulses per s)."""
+def frames_of(config: Config, duration: float, prf: float, f0: float) -> Frames:
+    """The frames of the STFT in a recording (s, pulses per s), whose Doppler is one of f0 (Hz)."""
     processing = config.processing
-    if processing.window_s is not None:
-        return Frames.of(processing.window_s, processing.overlap_fraction, 1.0, prf)
-    return Frames.of(processing.window_fraction, processing.overlap_fraction, duration, prf)
+    length = processing.window_pulses(duration, prf, f0)
+    return Frames.of(length, processing.overlap_fraction)
 
 
-def fsst_frames_of(config: Config, duration: float, prf: float) -> Frames:
+def fsst_frames_of(config: Config, duration: float, prf: float, f0: float) -> Frames:
     """`frames_of`, with the hop of the FSST where it has its own."""
-    frames, hop = frames_of(config, duration, prf), config.processing.fsst_hop_pulses
+    frames, hop = frames_of(config, duration, prf, f0), config.processing.fsst_hop_pulses
     return frames if hop is None else Frames(frames.length, hop)
 
 

@@ -514,9 +514,14 @@ def _maps(c: Config, entropy: bool) -> Iterator[Product]:
     if masks:
         yield Product("cfar", ("scene",), lambda s: cfar_of(s.config), "threshold of the masks")
     yield Product("image:rtm", ("rtm", *masks), rtm_image, f"its {_shape(c, entropy)}")
-    yield Product("frames", ("waveform",), lambda w: frames_of(c, w.duration, w.prf), "of the STFT")
     yield Product(
-        "fsst_frames", ("waveform",), lambda w: fsst_frames_of(c, w.duration, w.prf), "of the FSST"
+        "frames", ("waveform",), lambda w: frames_of(c, w.duration, w.prf, w.f0), "of the STFT"
+    )
+    yield Product(
+        "fsst_frames",
+        ("waveform",),
+        lambda w: fsst_frames_of(c, w.duration, w.prf, w.f0),
+        "of the FSST",
     )
     for signal in SIGNALS:
         yield from _doppler_maps(c, signal, entropy)

@@ -76,8 +76,8 @@ def process(
     """
     duration = signal.x.shape[-1] / signal.prf
     given = {
-        "frames": frames_of(config, duration, signal.prf),
-        "fsst_frames": fsst_frames_of(config, duration, signal.prf),
+        "frames": frames_of(config, duration, signal.prf, signal.f0),
+        "fsst_frames": fsst_frames_of(config, duration, signal.prf, signal.f0),
         "canceller": canceller_of(config, signal.prf, signal.f0),
         **given,
     }

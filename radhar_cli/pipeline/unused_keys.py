@@ -9,11 +9,9 @@ from pydantic import BaseModel
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.config.number import support
 from radhar_cli.config.schema import (
-    MODEL_DEFAULTS,
     Config,
     MotionConfig,
     PerActivity,
-    TimingConfig,
     class_activities,
 )
 from radhar_cli.scene import FALL, depends_on, numbers
@@ -95,13 +93,7 @@ def _unused_numbers(config: Config) -> Iterator[tuple[str, str]]:
 
 def _defaults(config: Config) -> Config:
     """The default config with the defaults of this one's model of motion."""
-    default = Config()
-    model = MODEL_DEFAULTS[config.motion.model]
-    sections = {
-        name: kind.model_construct().model_copy(update=model.get(name, {}))
-        for name, kind in (("motion", MotionConfig), ("timing", TimingConfig))
-    }
-    return default.model_copy(update=sections)
+    return Config.model_construct(motion=MotionConfig(model=config.motion.model)).filled()
 
 
 def _drawn_from(value: Any, default: Any) -> bool:

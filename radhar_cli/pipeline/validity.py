@@ -238,11 +238,23 @@ def draw_valid_scene(config: Config, activity: Activity, index: int) -> tuple[Sc
     if config.on_invalid == "redraw":
         raise SceneError(
             f"sample {activity.slug}/{index}: no scene inside the model in {MAX_ATTEMPTS} draws "
-            f"(on_invalid: redraw); the last: {check.invalid}"
+            f"(on_invalid: redraw); the last: {check.invalid}; {_cure(config, check)}"
         )
     raise SceneError(
-        f"sample {activity.slug}/{index}: {check.invalid} (on_invalid: {config.on_invalid})"
+        f"sample {activity.slug}/{index}: {check.invalid} (on_invalid: {config.on_invalid}); "
+        f"{_cure(config, check)}"
     )
+
+
+def _cure(config: Config, check: SceneCheck) -> str:
+    """What would make another scene of this one."""
+    if check.too_close and check.closest.joint.startswith("reflector "):
+        return "room.reflectors should be elsewhere"
+    if config.on_invalid == "redraw" and check.flags & Flags.HALF_BAND and not check.too_close:
+        return "a smaller radar.bandwidth_hz has a longer half-band, a smaller motion.range_m room"
+    if config.on_invalid == "redraw":
+        return "motion.range_m and motion.angle_deg should leave people room"
+    return "on_invalid: redraw draws such scenes again"
 
 
 def config_warnings(config: Config) -> list[str]:
@@ -258,21 +270,24 @@ def scene_warnings(scene: Scene) -> list[str]:
     """
     check = check_scene(scene)
     if check.too_close:
-        raise SceneError(f"{scene.name}: {check.invalid}")
+        raise SceneError(f"{scene.name}: {check.invalid}; {_cure(scene.config, check)}")
     outside = [_WORDING[flag] for flag in Flags if flag in check.flags]
     return (
         outside + config_warnings(scene.config) + timing_warnings(scene.config, (scene.activity,))
     )
 
 
-def warnings(config: Config, counts: Mapping[Flags, int]) -> list[dict[str, Any]]:
+def warnings(
+    config: Config, counts: Mapping[Flags, int], recordings: int | None = None
+) -> list[dict[str, Any]]:
     """What to say once per run: [{kind, recordings, message}].
 
     Args:
         config: of the run.
         counts: how many of its recordings have each flag.
+        recordings: of so many; None is all.
     """
-    recordings = sum(map(config.samples_of, config.chosen_activities))
+    recordings = recordings or sum(map(config.samples_of, config.chosen_activities))
     messages: list[dict[str, Any]] = [
         {
             "kind": str(flag.name).lower(),

@@ -6,7 +6,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from radhar_cli.arrays import Complex, Float
-from radhar_cli.rounding import exact, half_up
+from radhar_cli.rounding import exact
 
 # Coefficients of a block of frames: 8 MiB in complex64. The paper's 90 frames of 2000 are a sixth.
 BLOCK_COEFFICIENTS = 2**20
@@ -20,14 +20,9 @@ class Frames:
     hop: int
 
     @classmethod
-    def of(
-        cls, window_fraction: float, overlap_fraction: float, duration: float, prf: float
-    ) -> "Frames":
-        """L = round(window_fraction T PRF), hop = round((1 - overlap_fraction) L), at least 1.
-
-        A window of so many seconds is that share of a recording of 1 s.
-        """
-        return _frames(window_fraction, overlap_fraction, duration, prf)
+    def of(cls, length: int, overlap_fraction: float) -> "Frames":
+        """Frames of L samples, hop = round((1 - overlap_fraction) L), at least 1."""
+        return _frames(length, overlap_fraction)
 
     def count(self, samples: int) -> int:
         """Number of whole frames in a signal."""
@@ -68,7 +63,6 @@ class Frames:
 
 
 @lru_cache(maxsize=4)  # with their windows, for all recordings of a data set
-def _frames(window_fraction: float, overlap_fraction: float, duration: float, prf: float) -> Frames:
-    length = half_up(window_fraction, duration, prf)
+def _frames(length: int, overlap_fraction: float) -> Frames:
     hop = int((1 - exact(overlap_fraction)) * length + exact(0.5))
     return Frames(length, max(hop, 1))

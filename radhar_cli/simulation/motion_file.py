@@ -1,9 +1,12 @@
 """The motion of a scene as a file."""
 
+from pathlib import Path
+
 import numpy as np
 
 from radhar_cli.activity import Activity
 from radhar_cli.arrays import Float
+from radhar_cli.config.reading import as_config
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import ConfigError
 from radhar_cli.motion.files.motion import FileMotion
@@ -13,8 +16,7 @@ from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.pipeline.physics import motion_of
-from radhar_cli.scene import draw_scene, nominal_scene
-from radhar_cli.simulation.simulate import activity_of
+from radhar_cli.simulation.simulate import activity_of, scene_of
 
 _HIP = JOINTS.index("hip")
 
@@ -37,7 +39,7 @@ def sampled(motion: Motion, t: Float) -> Float:
 
 
 def scene_bvh(
-    config: Config,
+    config: Config | str | Path,
     activity: str | Activity | None,
     *,
     index: int = 0,
@@ -48,9 +50,10 @@ def scene_bvh(
 
     Raises:
         ConfigError: unknown activity, too many frames, or a motion of other joints.
+        SceneError: no scene inside the model is drawn (`on_invalid: redraw`).
     """
-    one = activity_of(activity, config)
-    scene = nominal_scene(config, one) if nominal else draw_scene(config, one, index)
+    config = as_config(config)
+    scene = scene_of(config, activity_of(activity, config), index, nominal)
     assert isinstance(scene.config.duration_s, (int, float))
     frames = round(scene.config.duration_s * rate) + 1
     if frames > MAX_FRAMES:

@@ -1,11 +1,13 @@
 """Simulate one scene: every map, every signal, the truth behind them."""
 
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
 from radhar_cli.activity import Activity, activity_named
 from radhar_cli.arrays import Complex
+from radhar_cli.config.reading import ABSENT, as_config
 from radhar_cli.config.schema import MAP_NAMES, Config, MapName, possible_maps
 from radhar_cli.echo import cube
 from radhar_cli.echo.beat import beat_matrix
@@ -18,7 +20,7 @@ from radhar_cli.pipeline.physics import motion_of
 from radhar_cli.pipeline.plan import Product
 from radhar_cli.pipeline.products import SIGNALS, EchoAccuracy, Fallback
 from radhar_cli.pipeline.run import record
-from radhar_cli.pipeline.validity import MIN_DISTANCE_M, scene_warnings
+from radhar_cli.pipeline.validity import MIN_DISTANCE_M, draw_valid_scene, scene_warnings
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.processing.signal import Signal
 from radhar_cli.radar.propagation import Antennas
@@ -71,7 +73,7 @@ class Simulation:
 
 
 def simulate(
-    config: Config,
+    config: Config | str | Path,
     activity: str | Activity | None = None,
     seed: int | None = None,
     *,
@@ -84,7 +86,7 @@ def simulate(
     """Simulate one sample of one activity.
 
     Args:
-        config: ranges are drawn from it; `maps`, image and split are not used.
+        config: ranges are drawn from it; `maps`, image and split are not used. Or its path.
         activity: slug, label or Activity; None where the config has but one.
         seed: instead of the config's.
         index: number of the sample within its class.
@@ -94,10 +96,12 @@ def simulate(
         raw: compute the raw beat matrix too, static returns included.
 
     Raises:
-        ConfigError: unknown activity or joint, or a map that there cannot be.
-        SceneError: a scatterer comes within 5 cm of an antenna, or with `raw` the near face of the
-            wall within 5 cm of the antennas' midpoint.
+        ConfigError: unknown activity or joint, a map that there cannot be, or as `load_config`.
+        SceneError: a scatterer comes within 5 cm of an antenna (`on_invalid: redraw` draws such a
+            scene again), or with `raw` the near face of the wall within 5 cm of the antennas'
+            midpoint.
     """
+    config = as_config(config)
     activity = activity_of(activity, config)
     possible = possible_maps(config.processing)
     maps = possible if maps is None else maps
@@ -107,7 +111,7 @@ def simulate(
             f"phase; maps are {', '.join(possible)}"
         )
     config = config.model_copy(update={"maps": maps, **({} if seed is None else {"seed": seed})})
-    scene = nominal_scene(config, activity) if nominal else draw_scene(config, activity, index)
+    scene = scene_of(config, activity, index, nominal)
     warnings = scene_warnings(scene)
     motion = motion_of(scene)
     kept = motion if joint is None else Only(motion, (_joint(joint, motion.names),))
@@ -137,6 +141,19 @@ def simulate(
     )
 
 
+def scene_of(config: Config, activity: Activity, index: int, nominal: bool) -> Scene:
+    """Sample `index` as a data set has it, drawn again where `on_invalid` says so; or the middle.
+
+    Raises:
+        SceneError: no scene inside the model is drawn.
+    """
+    if nominal:
+        return nominal_scene(config, activity)
+    if config.on_invalid == "redraw":
+        return draw_valid_scene(config, activity, index)[0]
+    return draw_scene(config, activity, index)
+
+
 def map_names(chosen: list[str]) -> tuple[MapName, ...]:
     """The maps of these names, in our order.
 
@@ -147,7 +164,7 @@ def map_names(chosen: list[str]) -> tuple[MapName, ...]:
     for name in names:
         if name not in MAP_NAMES:
             hint = did_you_mean(name, MAP_NAMES, "there are " + ", ".join(MAP_NAMES))
-            raise ConfigError(f"{name!r} is not a map; {hint}")
+            raise ConfigError(f"{name!r} {ABSENT.get(name, f'is not a map; {hint}')}")
     return tuple(name for name in MAP_NAMES if name in names)
 
 

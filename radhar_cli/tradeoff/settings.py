@@ -2,7 +2,10 @@
 
 import json
 from dataclasses import dataclass
+from functools import reduce
+from operator import getitem
 
+from radhar_cli.config.identity import resolved
 from radhar_cli.config.number import nominal
 from radhar_cli.config.schema import MAP_NAMES, Config, EngineConfig
 from radhar_cli.tradeoff.trial import Trial
@@ -12,6 +15,17 @@ SIZES = (64, 128, 256, 512)
 CLUTTER = ("difference", "mean", "highpass", "none")
 SEGMENTS = ("body.scatterers=segments", "body.shadowing=true")
 WITHOUT_SHADOWS = ("body.scatterers=segments", "body.shadowing=false")
+# What has a default by model, and is not of the motion itself.
+KEPT = (
+    "duration_s",
+    "on_invalid",
+    "radar.bandwidth_hz",
+    "radar.prf_hz",
+    "motion.range_m",
+    "motion.angle_deg",
+    "processing.window_s",
+    "processing.window_fraction",
+)
 CUBE = ("engine.kind=cube",)
 DIRECT = ("engine.kind=direct", f"engine.tolerance_db={EngineConfig().tolerance_db:g}")
 
@@ -146,11 +160,19 @@ def trials(config: Config) -> list[Trial]:
 
 
 def _other_motion(config: Config) -> tuple[str, ...]:
-    """Name and overrides of the other model of motion, at the config's places and headings."""
+    """Name and overrides of the other model of motion; all else stays, whatever its defaults."""
     other = "paper" if config.motion.model == "human" else "human"
-    kept = config.motion.model_dump(mode="json", include={"range_m", "angle_deg"})
+    kept = resolved(config)
+    if config.processing.window_s is config.processing.window_fraction is None:
+        duration, prf = nominal(config.duration_s), nominal(config.radar.prf_hz)
+        pulses = config.processing.window_pulses(duration, prf, nominal(config.radar.carrier_hz))
+        kept["processing"]["window_s"] = pulses / prf
     name = f"motion: {other} instead of {config.motion.model}"
-    return name, f"motion.model={other}", *(f"motion.{key}={json.dumps(kept[key])}" for key in kept)
+    return (
+        name,
+        f"motion.model={other}",
+        *(f"{key}={json.dumps(reduce(getitem, key.split('.'), kept))}" for key in KEPT),
+    )
 
 
 def _other_scatterers(config: Config) -> tuple[str, ...]:

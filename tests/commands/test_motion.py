@@ -4,9 +4,11 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-from command_line import radhar
+import pytest
+from command_line import ROOT, radhar
 from recorded import frames, write_amc, write_npz
 
+from radhar_cli.activity import ACTIVITIES
 from radhar_cli.motion.files.clip import clip_of
 from radhar_cli.motion.files.reading import read_motion
 
@@ -47,6 +49,17 @@ def test_a_motion_is_exported_and_read_back(tmp_path: Path) -> None:
     shift = (p - q).mean(axis=(0, 1))
     found = np.abs(p - q - shift)[..., 2].max()
     assert found < 1e-3
+
+
+@pytest.mark.parametrize("activity", [activity.slug for activity in ACTIVITIES])
+def test_our_own_motion_of_the_demo_can_be_simulated(tmp_path: Path, activity: str) -> None:
+    """People come towards the radar: they start far enough away, or elsewhere."""
+    path, bvh = ROOT / "configs/quickstart.yaml", tmp_path / "w.bvh"
+    done = radhar("motion", path, "--activity", activity, "-o", bvh)
+    assert done.returncode == 0, done.stderr
+    shown = ["--no-figures", "--maps", "stft"]
+    done = radhar("simulate", path, "--motion", bvh, *shown, "-o", tmp_path / "scene")
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def clip_names() -> list[str]:

@@ -257,7 +257,7 @@ def test_config_init_refuses_to_overwrite(tmp_path: Path) -> None:
 def test_config_diff_compares_meaning_not_spelling(tmp_path: Path) -> None:
     one, other = tmp_path / "one.yaml", tmp_path / "other.yaml"
     one.write_text("seed: 1\nsnr_db: 30\nsubject: {height_m: {uniform: [1.6, 1.8]}}\n")
-    other.write_text("base: one.yaml\nradar: {prf_hz: 5000}\n")
+    other.write_text("base: one.yaml\nradar: {prf_hz: 10000}\n")
     same = radhar("config", "diff", one, other)
     assert (same.returncode, same.stdout) == (0, "")
     changes = "subject: {height_m: {uniform: [1.7, 1.8]}}\nwall: {eps_r: 4}\nradar: {prf_hz: 6e3}\n"
@@ -266,10 +266,10 @@ def test_config_diff_compares_meaning_not_spelling(tmp_path: Path) -> None:
     assert done.returncode == 1
     lines = done.stdout.splitlines()
     assert [line.split()[0] for line in lines] == ["radar.prf_hz", "subject.height_m", "wall"]
-    assert lines[0].endswith("  5000.0 -> 6000.0")
+    assert lines[0].endswith("  10000.0 -> 6000.0")
     assert lines[1].endswith('  {"uniform": [1.6, 1.8]} -> {"uniform": [1.7, 1.8]}')
     found = values(radhar("config", "diff", one, other, "--json"))["different"]
-    assert found["radar.prf_hz"] == [5000.0, 6000.0]
+    assert found["radar.prf_hz"] == [10000.0, 6000.0]
     assert found["wall"][0] is None
     assert radhar("config", "diff", one, tmp_path / "none.yaml").returncode == 2
     assert radhar("config", "diff", one, other, "--quiet").stdout == ""

@@ -57,6 +57,21 @@ def test_dry_run_prints_the_plan_and_writes_nothing(tmp_path: Path) -> None:
     assert sorted(p.name for p in tmp_path.iterdir()) == ["small.yaml"]
 
 
+def test_dry_run_refuses_what_the_build_would_refuse(tmp_path: Path) -> None:
+    """Where a scene of its sample is outside the model; with the cure it says how many are."""
+    changes = ["--set", "motion={model: paper, range_m: 28}", "--set", "on_invalid=error"]
+    command = ["generate", small_config(tmp_path), "-o", tmp_path / "set", *changes]
+    dry, built = radhar(*command, "--dry-run"), radhar(*command, "--jobs", 1)
+    assert (dry.returncode, dry.stdout) == (built.returncode, built.stdout) == (2, "")
+    assert dry.stderr == built.stderr
+    assert "walking/0: a scatterer leaves the range half-band" in dry.stderr
+    assert "on_invalid: redraw draws such scenes again; generate --dry-run checks 9" in dry.stderr
+    kept = radhar(*command[:-1], "on_invalid=keep", "--dry-run", "--json")
+    found = json.loads(kept.stdout)
+    assert (found["checked"], found["redrawn"]) == (9, 0)
+    assert any("of 9 recordings: a scatterer leaves" in one for one in found["warnings"])
+
+
 def test_dry_run_counts_points_and_range_bins(tmp_path: Path) -> None:
     own = ("body.scatterers=segments", "processing.doppler=gate", "processing.gate_m=0.5")
     more = (*own, "maps=[stft]", "activities=[walking]")

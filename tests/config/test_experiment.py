@@ -30,8 +30,8 @@ from radhar_cli.config.schema import (
 )
 
 
-def test_the_defaults_are_the_papers_free_space_data_set() -> None:
-    config = Config()
+def test_the_defaults_of_the_paper_are_its_free_space_data_set() -> None:
+    config = Config(motion={"model": "paper"})
     assert (config.samples_per_class, config.duration_s, config.snr_db) == (300, 4.0, 30.0)
     assert config.chosen_activities == ACTIVITIES
     radar = config.radar
@@ -42,6 +42,7 @@ def test_the_defaults_are_the_papers_free_space_data_set() -> None:
     assert config.wall is None
     assert config.snr_reference == "free_space"
     assert config.on_invalid == "keep"
+    assert (config.processing.window_fraction, config.processing.window_s) == (0.1, None)
 
 
 def test_activities_and_maps_have_a_canonical_order() -> None:
@@ -330,6 +331,6 @@ def test_activities_without_a_second_phase_are_never_too_short() -> None:
 
 
 def test_timing_warnings_follow_the_activity() -> None:
-    late = {"per_activity": {"default": 2.0, "S12": 5.0}}
+    late = {"per_activity": {"default": 2.0, "S12": 7.0}}
     messages = timing_warnings(Config(timing={"walk_stop_s": late}))
     assert [line.split()[0] for line in messages] == ["S12"]

@@ -57,7 +57,10 @@ def test_only_one_cutoff_is_given(given, right):
 )
 def test_a_cut_off_is_below_half_the_prf_and_above_what_float64_holds(highpass, key):
     """At 77 GHz and 5 kHz, PRF/2 is 4.74 m/s."""
-    ((found, right),) = refused(processing={"clutter": "highpass", "highpass": highpass})
+    radar = {"prf_hz": 5000}
+    ((found, right),) = refused(
+        radar=radar, processing={"clutter": "highpass", "highpass": highpass}
+    )
     assert found == f"processing.highpass.{key}"
     assert "below PRF/2 in every scene" in right
     assert Config(processing={"clutter": "mean", "highpass": highpass})  # which is not used
@@ -78,8 +81,9 @@ def test_a_gate_excludes_the_fsst():
 
 @pytest.mark.parametrize("gate_m", [4.0, [6.0, 8.0], [9.0, 10.0]])
 def test_a_gate_must_lie_within_the_half_band(gate_m):
-    """Of 7.49 m by default."""
-    ((key, right),) = refused(processing={"doppler": "gate", "gate_m": gate_m})
+    """Of 7.49 m at 4 GHz."""
+    processing = {"doppler": "gate", "gate_m": gate_m}
+    ((key, right),) = refused(radar={"bandwidth_hz": 4e9}, processing=processing)
     assert key == "processing.gate_m"
     assert "7.495 m" in right
     assert Config(processing={"gate_m": gate_m})  # which is not used

@@ -3,6 +3,7 @@
 import errno
 import json
 import os
+import re
 from pathlib import Path
 
 import h5py
@@ -13,6 +14,7 @@ from listener import Listener
 from PIL import Image
 from small import SMALL, fingerprint, small_config
 
+from radhar_cli.activity import Activity
 from radhar_cli.config import Config, load_config
 from radhar_cli.dataset import batch as batch_module
 from radhar_cli.dataset import build as build_module
@@ -261,8 +263,28 @@ def test_scene_too_close_to_an_antenna_stops_before_any_echo(
         small_config(tmp_path),
         ["radar.tx_m=[1.5, 0, 1.5]", "motion={model: paper, range_m: 1.5, angle_deg: 0}"],
     )
-    with pytest.raises(SceneError, match=r"sample .*/\d+: .* comes to .* cm from the transmitter"):
+    with pytest.raises(SceneError) as caught:
         make(near, tmp_path / "set")
+    assert re.search(r"sample .*/\d+: .* comes to .* cm from the transmitter", str(caught.value))
+    assert "generate --dry-run checks 9 of the 9 scenes, this one too" in str(caught.value)
+
+
+def test_a_refusal_says_where_a_dry_run_could_not_know(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of 240 scenes of one class a dry run checks every other, the first not among them."""
+
+    def refuse(_: Config, activity: Activity, index: int) -> None:
+        raise SceneError(f"sample {activity.slug}/{index}")
+
+    monkeypatch.setattr(batch_module, "draw_valid_scene", refuse)
+    config = load_config(small_config(tmp_path), ["activities=[S1]", "samples_per_class=240"])
+    rows = Rows.of(config)
+    assert rows.spread(120) == list(range(1, 240, 2))
+    with pytest.raises(SceneError, match="checks 120 of the 240 scenes, not this one"):
+        batch_module.checked_scene(config, rows, 0)
+    with pytest.raises(SceneError, match="checks 120 of the 240 scenes, this one too"):
+        batch_module.checked_scene(config, rows, 1)
 
 
 def test_physical_warnings_are_given_once_with_a_count_and_stored(

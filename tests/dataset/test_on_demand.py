@@ -188,12 +188,21 @@ def test_mistakes_are_refused_in_one_line(config: Config) -> None:
         ({"fields": [1]}, "fields = .1.: should be a list of names"),
         ({"fields": 1}, "fields = 1: should be a list of names"),
         ({"activity": 7}, "activity = 7: should be a slug"),
-        ({"config": "x"}, "config = 'x': should be a Config"),
+        ({"config": "x.yaml"}, r"x\.yaml: no such file"),
+        ({"config": 7}, "config = 7: should be the path of a YAML file, or a Config"),
     ):
         with pytest.raises(ConfigError, match=words):
             sample(**{"config": config, "activity": "walking", **more})
     with pytest.raises(ConfigError, match="'wlking' is not an activity"):
         sample(config, "wlking")
+
+
+def test_a_config_may_be_a_path(tmp_path: Path) -> None:
+    path = small_config(tmp_path)
+    right = sample(load_config(path), "punching", 1, ["maps/stft"])["maps/stft"]
+    for given in (path, str(path)):
+        assert np.array_equal(sample(given, "punching", 1, ["maps/stft"])["maps/stft"], right)
+        assert Recipe.of(given) == Recipe.of(load_config(path))
 
 
 def test_numpy_integers_are_accepted(config: Config) -> None:

@@ -245,7 +245,8 @@ class TestFewPulses:
 
     def test_a_window_longer_than_the_signal_is_refused(self) -> None:
         """A window of all 100 pulses, of which the MTI leaves 99."""
-        document = SCENE | {"duration_s": 0.02, "processing": {"window_fraction": 0.996}}
+        short = {"duration_s": 0.02, "processing": {"window_fraction": 0.996}}
+        document = SCENE | {"radar": {"prf_hz": 5000}} | short
         with pytest.raises(ConfigError, match=r"processing.window_fraction = 0.996: .*\b99 pulses"):
             validated(Config, document, "here", {})
 

@@ -157,6 +157,10 @@ def test_every_distribution_of_a_number_is_checked_against_its_range() -> None:
 FFTS = ("processing.range_fft_length", "processing.stft_fft_length", "processing.fsst_hop_pulses")
 # Null takes what the model of motion has.
 OF_THE_MODEL = (
+    "duration_s",
+    "radar.bandwidth_hz",
+    "radar.prf_hz",
+    "processing.window_fraction",
     "motion.range_m",
     "motion.angle_deg",
     "motion.speed_mps",

@@ -216,7 +216,8 @@ def test_mistakes_are_refused_in_one_line() -> None:
         (lambda: Stream(config(), batch_size=2.5), "batch_size = 2.5"),  # type: ignore[arg-type]
         (lambda: Stream(config(), seed=-1), "seed = -1: should be a whole number from 0 to 2"),
         (lambda: Samples(config(), 2**63), "seed = 9223372036854775808: should be"),
-        (lambda: Stream("x"), "config = 'x': should be a Config"),  # type: ignore[arg-type]
+        (lambda: Stream("x.yaml"), r"x\.yaml: no such file"),
+        (lambda: Samples(7), "config = 7: should be the path"),  # type: ignore[arg-type]
         *(
             (lambda shard=shard: Stream(config(), shard=shard), "shard = .*should be .rank, ranks")
             for shard in ((5, 2), (2, 2), (0, 0), (-1, 2), (0.5, 2), (1,), 3)

@@ -14,6 +14,7 @@ from radhar_cli.scene import draw_scene
 
 SLOW = {"carrier_hz": 2e9, "bandwidth_hz": 1e9, "prf_hz": 128}  # L = 51, odd
 FAST = {"carrier_hz": 24e9, "bandwidth_hz": 1e9, "prf_hz": 1000}  # L = 400, even
+PAPER = {"motion": {"model": "paper"}}
 
 
 def record(radar: dict, maps: tuple[str, ...], **more: object) -> Recording:
@@ -27,7 +28,7 @@ def record(radar: dict, maps: tuple[str, ...], **more: object) -> Recording:
     "processing", [{}, {"mti": False}, {"stft_fft_length": 512}, {"range_fft_length": 1000}]
 )
 def test_every_map_has_an_axis_value_a_row_and_column(radar, processing):
-    recording = record(radar, MAP_NAMES, processing=processing, duration_s=2.0)
+    recording = record(radar, MAP_NAMES, processing=processing, duration_s=2.0, **PAPER)
     for name in MAP_NAMES:
         found = recording[name]
         assert found.power.shape == (found.rows.values.size, found.columns.values.size)
@@ -38,7 +39,7 @@ def test_every_map_has_an_axis_value_a_row_and_column(radar, processing):
 @pytest.mark.parametrize("with_mti", [True, False])
 def test_settings_of_the_paper(with_mti):
     """77 GHz: 7.5 m in 200 bins, 2000 Doppler bins of 2.5 Hz, frames every 40 ms."""
-    recording = record({}, ("rtm", "stft"), processing={"mti": with_mti})
+    recording = record({}, ("rtm", "stft"), processing={"mti": with_mti}, **PAPER)
     late = 0.5e-4 * 2 if with_mti else 0.0  # half a pulse interval of 0.2 ms
     rtm, stft = recording["rtm"], recording["stft"]
     assert rtm.rows.values == pytest.approx(np.arange(200) * ref.C / 8e9)
@@ -53,12 +54,13 @@ def test_settings_of_the_paper(with_mti):
 
 
 def test_odd_windows_have_zero_doppler_in_the_middle():
-    stft = record(SLOW, ("fsst_denoised",))["fsst_denoised"]
+    stft = record(SLOW, ("fsst_denoised",), **PAPER)["fsst_denoised"]
     assert stft.rows.values == pytest.approx(np.arange(-25, 26) * 128 / 51)
 
 
 def test_stft_fft_length_is_of_the_stft_alone():
-    recording = record(SLOW, ("stft_compensated", "fsst"), processing={"stft_fft_length": 128})
+    processing = {"stft_fft_length": 128}
+    recording = record(SLOW, ("stft_compensated", "fsst"), processing=processing, **PAPER)
     assert recording["stft_compensated"].rows.values == pytest.approx(np.arange(-64, 64.0))
     assert recording["fsst"].rows.values.size == 51
 

@@ -25,9 +25,11 @@ from radhar_cli.processing.signal import Signal
 from radhar_cli.scene import Scene, draw_scene
 
 ROOT = Path(__file__).resolve().parents[2]
+WINDOW = {"window_s": 0.1}
 SMALL = {
     "radar": {"carrier_hz": 10e9, "bandwidth_hz": 1e9, "prf_hz": 500},
     "duration_s": 1.0,
+    "processing": WINDOW,
     "maps": MAP_NAMES,
     "image": {"size_px": 32},
 }
@@ -46,7 +48,7 @@ def scene_of(config: Config) -> Scene:
 @pytest.mark.parametrize("engine", ["direct", "cube"])
 @pytest.mark.parametrize("processing", [{}, {"mti": False, "fsst_hop_pulses": 1}])
 def test_blocks_and_chunks_change_nothing(monkeypatch, engine, processing):
-    document = SMALL | {"engine": {"kind": engine}, "processing": processing}
+    document = SMALL | {"engine": {"kind": engine}, "processing": WINDOW | processing}
     whole = recorded(document, *MAP_NAMES, *IMAGES)
     monkeypatch.setattr(frames_module, "BLOCK_COEFFICIENTS", 7 * 50)
     monkeypatch.setattr(products_module, "CHUNK", 37)
@@ -103,9 +105,9 @@ class TestHop:
     @pytest.mark.parametrize("hop", [1, 3, 449, 450, 2**24])
     @pytest.mark.parametrize("processing", [{}, {"stft_fft_length": 64}])
     def test_axes_follow(self, hop, processing):
-        document = SMALL | {"processing": processing | {"fsst_hop_pulses": hop}}
+        document = SMALL | {"processing": WINDOW | processing | {"fsst_hop_pulses": hop}}
         recording = recorded(document, "stft", "fsst", "fsst_compensated")
-        usual = recorded(SMALL | {"processing": processing}, "stft")
+        usual = recorded(SMALL | {"processing": WINDOW | processing}, "stft")
         assert np.array_equal(recording["stft"].power, usual["stft"].power)
         columns = (499 - 50) // hop + 1
         for name in ("fsst", "fsst_compensated"):
@@ -117,8 +119,9 @@ class TestHop:
             assert found.rows.values.size == 50
 
     def test_a_dense_map_holds_the_columns_of_the_usual_one(self):
-        usual = recorded(SMALL | {"processing": {"fsst_threshold": 0.0}}, "fsst")["fsst"]
-        processing = {"fsst_hop_pulses": 1, "fsst_threshold": 0.0}
+        processing = WINDOW | {"fsst_threshold": 0.0}
+        usual = recorded(SMALL | {"processing": processing}, "fsst")["fsst"]
+        processing |= {"fsst_hop_pulses": 1}
         dense = recorded(SMALL | {"processing": processing}, "fsst")["fsst"]
         assert np.array_equal(dense.power[:, ::5], usual.power)
 

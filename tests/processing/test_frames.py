@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import reference as ref
 
+from radhar_cli.config.schema import Config, ProcessingConfig
 from radhar_cli.processing.frames import Frames
 
 
@@ -14,7 +15,8 @@ from radhar_cli.processing.frames import Frames
 )
 def test_settings_of_the_paper(duration, prf, length, hop, kept, count):
     """L = round(0.1 T PRF), hop = round(0.1 L), floor((M - 1 - L)/hop) + 1 frames."""
-    frames = Frames.of(0.1, 0.9, duration, prf)
+    window = Config(motion={"model": "paper"}).processing.window_pulses(duration, prf, 77e9)
+    frames = Frames.of(window, 0.9)
     assert frames == Frames(length, hop)
     assert frames.count(kept) == count
 
@@ -25,15 +27,17 @@ def test_settings_of_the_paper(duration, prf, length, hop, kept, count):
 )
 def test_halves_are_rounded_up(pulses, length, hop):
     """45 -> 4.5 -> 5 and 25 -> 2.5 -> 3: neither to even, nor down as 0.1 * 45 would in binary."""
-    assert Frames.of(0.1, 0.9, 1.0, float(pulses)) == Frames(length, hop)
-    assert Frames.of(0.1, 0.9, pulses / 100, 100.0) == Frames(length, hop)
+    processing = ProcessingConfig(window_fraction=0.1)
+    for duration, prf in ((1.0, float(pulses)), (pulses / 100, 100.0)):
+        window = processing.window_pulses(duration, prf, 77e9)
+        assert Frames.of(window, 0.9) == Frames(length, hop)
 
 
 @pytest.mark.parametrize(
     ("overlap", "hop"), [(0.0, 80), (0.5, 40), (0.75, 20), (0.99, 1), (0.9999, 1)]
 )
 def test_hop_follows_the_overlap_and_is_never_zero(overlap, hop):
-    assert Frames.of(0.1, overlap, 4.0, 200.0) == Frames(80, hop)
+    assert Frames.of(80, overlap) == Frames(80, hop)
 
 
 @pytest.mark.parametrize(("length", "hop"), [(8, 1), (9, 4), (10, 13), (50, 50)])

@@ -30,7 +30,7 @@ engines = pytest.mark.parametrize("engine", ["cube", "direct"])
 def scene_of(
     engine: str = "direct", slug: str = "walking", index: int = 0, **more: object
 ) -> Scene:
-    document = {"radar": RADAR, "engine": {"kind": engine}} | more
+    document = {"radar": RADAR, "engine": {"kind": engine}, "duration_s": 4.0} | more
     return draw_scene(Config.model_validate(document), activity_named(slug), index)
 
 

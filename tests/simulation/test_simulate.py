@@ -7,18 +7,21 @@ import numpy as np
 import pytest
 
 import radhar_cli as radhar
+from radhar_cli.activity import activity_named
 from radhar_cli.config import MAP_NAMES, Config, load_config
 from radhar_cli.errors import ConfigError, SceneError
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.pipeline.run import record
+from radhar_cli.pipeline.validity import draw_valid_scene
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 from radhar_cli.scene import draw_scene
 from radhar_cli.simulation.scene_file import describe, write_all
-from radhar_cli.simulation.simulate import Simulation, map_names, simulate
+from radhar_cli.simulation.simulate import Simulation, map_names, scene_of, simulate
 
 ROOT = Path(__file__).resolve().parents[2]
 FREE = ROOT / "configs/paper/figures_free_space.yaml"
 WALL = ROOT / "configs/paper/figures_through_wall.yaml"
+QUICK = ROOT / "configs/quickstart.yaml"
 
 
 @pytest.fixture(scope="module")
@@ -193,8 +196,27 @@ def test_unknown_names_suggest_the_nearest(change: dict[str, str], expected: str
 
 def test_too_close_is_refused() -> None:
     config = load_config(WALL, ["wall=null", "motion.range_m=0.4", "radar.tx_m=[0.4, 0, 1.2]"])
-    with pytest.raises(SceneError, match="torso comes to"):
+    with pytest.raises(SceneError, match=r"torso comes to .*on_invalid: redraw draws such scenes"):
         simulate(config, "S1")
+
+
+def test_a_scene_is_the_one_of_the_data_set_drawn_again_or_not() -> None:
+    config = load_config(QUICK, ["motion.range_m={uniform: [1, 3]}"])
+    drawn = [draw_valid_scene(config, activity_named("walking"), index)[0] for index in range(8)]
+    index = next(scene.index for scene in drawn if scene.attempt > 0)
+    assert simulate(config, "walking", index=index, maps=("stft",)).truth.time.size > 0
+    assert scene_of(config, activity_named("walking"), index, nominal=False) == drawn[index]
+
+
+@pytest.mark.parametrize("config", [str(QUICK), QUICK])
+def test_a_config_may_be_a_path(config: str | Path) -> None:
+    found = radhar.simulate(config, "punching", maps=("stft",))
+    right = simulate(load_config(QUICK), "punching", maps=("stft",))
+    assert np.array_equal(found.maps["stft"].power, right.maps["stft"].power)
+    with pytest.raises(ConfigError, match=r"no\.yaml: no such file"):
+        radhar.simulate("no.yaml", "walking")
+    with pytest.raises(ConfigError, match="config = None: should be the path"):
+        radhar.simulate(None, "walking")
 
 
 def test_python_interface(tmp_path: Path) -> None:

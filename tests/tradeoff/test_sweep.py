@@ -257,6 +257,20 @@ class TestSettings:
         for key in ("motion.range_m", "motion.angle_deg", "subject.height_m"):
             assert one[key] == other[key]
 
+    @pytest.mark.parametrize("model", ["human", "paper"])
+    def test_the_other_motion_leaves_radar_duration_and_window(self, tmp_path, model):
+        """Where the config leaves them out they would be those of the other model."""
+        (tmp_path / "short.yaml").write_text(f"motion: {{model: {model}}}")
+        scenes = Scenes(tmp_path / "short.yaml", (), quick=True)
+        (row,) = (s for s in sweep(scenes.config()) if s.name.startswith("motion: "))
+        one, other = scenes.config(), scenes.config(row.overrides)
+        assert one.motion.model != other.motion.model
+        assert (one.duration_s, one.radar, one.on_invalid) == (
+            *(other.duration_s, other.radar, other.on_invalid),
+        )
+        windows = [c.processing.window_pulses(c.duration_s, 1e4, 77e9) for c in (one, other)]
+        assert windows[0] == windows[1]
+
     def test_the_other_body_setting_is_the_one_the_config_lacks(self, config):
         scenes = self.scenes(config, "body.scatterers=segments")
         names = [setting.name for setting in sweep(scenes.config())]

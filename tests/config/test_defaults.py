@@ -1,0 +1,122 @@
+"""What a config leaves out: defaults that fit together, by model of motion and by wavelength."""
+
+from math import sqrt
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from radhar_cli.config import Config, load_config
+from radhar_cli.config.schema import MODEL_DEFAULTS
+from radhar_cli.dataset.layout import Rows
+from radhar_cli.light import SPEED_OF_LIGHT
+from radhar_cli.pipeline.validity import Flags, draw_valid_scene, warnings
+
+ROOT = Path(__file__).resolve().parents[2]
+README_ONCE = """
+samples_per_class: 300
+radar: {carrier_hz: 24e9, bandwidth_hz: 250e6, prf_hz: 2000}
+subject: {height_m: {uniform: [1.5, 1.9]}}
+motion: {range_m: {uniform: [1, 3]}, speed_mps: {per_activity: {default: 1.5, S12: 1.0}}}
+snr_db: {choice: [30, 20, 10]}
+maps: [rtm, stft, fsst_compensated]
+"""
+
+
+def checked(config: Config, rows: list[int]) -> tuple[dict[Flags, int], int]:
+    """How many of these scenes have each flag, and how many were drawn again."""
+    found = [draw_valid_scene(config, *Rows.of(config)[row]) for row in rows]
+    counts = {flag: sum(flag in flags for _, flags in found) for flag in Flags}
+    return counts, sum(scene.attempt > 0 for scene, _ in found)
+
+
+@pytest.mark.parametrize(
+    ("model", "duration", "on_invalid", "bandwidth", "prf", "fraction"),
+    [
+        ("human", 6.0, "redraw", 1e9, 1e4, None),
+        ("paper", 4.0, "keep", 4e9, 5e3, 0.1),
+        ("file", 4.0, "redraw", 4e9, 5e3, None),
+    ],
+)
+def test_defaults_by_model(
+    model: str, duration: float, on_invalid: str, bandwidth: float, prf: float, fraction: Any
+) -> None:
+    config = Config(motion={"model": model}, classes={"wave": ["wave.bvh"]})
+    assert (config.duration_s, config.on_invalid) == (duration, on_invalid)
+    assert (config.radar.bandwidth_hz, config.radar.prf_hz) == (bandwidth, prf)
+    assert config.processing.window_fraction == fraction
+
+
+@pytest.mark.parametrize("model", list(MODEL_DEFAULTS))
+def test_what_is_said_goes_before_the_models_default(model: str) -> None:
+    said: dict[str, Any] = {
+        "classes": {"wave": ["wave.bvh"]},
+        "motion": {"model": model, "range_m": 3.0},
+        "radar": {"prf_hz": 3000.0},
+        "duration_s": 5.0,
+        "on_invalid": "error",
+        "processing": {"window_fraction": 0.2},
+    }
+    config = Config.model_validate(said)
+    assert (config.duration_s, config.on_invalid, config.radar.prf_hz) == (5.0, "error", 3000.0)
+    assert (config.motion.range_m, config.processing.window_fraction) == (3.0, 0.2)
+
+
+def test_people_of_the_defaults_stay_clear_of_the_radar_and_in_its_band() -> None:
+    """One kick in 60 is faster than the unambiguous band."""
+    config = Config(samples_per_class=300)
+    counts, redrawn = checked(config, Rows.of(config).spread(12 * 12))
+    assert counts.pop(Flags.ALIASING) <= 1
+    assert not any(counts.values())
+    assert redrawn == 0
+
+
+def test_the_demo_builds_without_a_warning() -> None:
+    config = load_config(ROOT / "configs/quickstart.yaml")
+    counts, _ = checked(config, [*range(len(Rows.of(config)))])
+    assert warnings(config, counts) == []
+
+
+def test_people_who_start_near_the_radar_pass_it(tmp_path: Path) -> None:
+    """The README's config once ended in a refusal: from 1 to 3 m people walk into the radar."""
+    (tmp_path / "readme.yaml").write_text(README_ONCE)
+    config = load_config(tmp_path / "readme.yaml")
+    counts, redrawn = checked(config, Rows.of(config).spread(120))
+    assert redrawn > 0
+    assert not counts[Flags.WALL] + counts[Flags.HALF_BAND]
+
+
+@pytest.mark.parametrize(("carrier", "seconds"), [(77e9, 0.062), (24e9, 0.112), (2e9, 0.387)])
+def test_the_window_follows_from_the_wavelength(carrier: float, seconds: float) -> None:
+    """A limb's Doppler, 2 a/lambda a second for 2 m/s^2, crosses the main lobe 4/T in T."""
+    processing = Config().processing
+    pulses = processing.window_pulses(6.0, 1e5, carrier)
+    assert pulses / 1e5 == pytest.approx(seconds, abs=5e-4)
+    assert 2 * 2.0 * carrier / SPEED_OF_LIGHT * (pulses / 1e5) ** 2 == pytest.approx(4, rel=1e-3)
+    assert processing.window_pulses(60.0, 1e5, carrier) == pulses
+
+
+@pytest.mark.parametrize(
+    ("duration", "prf", "carrier", "pulses"),
+    [(0.1, 1e4, 77e9, 250), (4.0, 1e3, 1e6, 1000), (6.0, 20.0, 77e9, 8), (0.002, 1e4, 77e9, 8)],
+)
+def test_the_window_is_a_quarter_of_the_recording_at_most_and_8_pulses_at_least(
+    duration: float, prf: float, carrier: float, pulses: int
+) -> None:
+    assert Config().processing.window_pulses(duration, prf, carrier) == pulses
+
+
+def test_a_window_that_is_given_is_taken() -> None:
+    given = Config(processing={"window_s": 0.3, "window_fraction": 0.2}).processing
+    assert given.window_pulses(4.0, 1000.0, 77e9) == 300
+    shares = Config(processing={"window_fraction": 0.2}).processing
+    assert shares.window_pulses(4.0, 1000.0, 77e9) == 800
+
+
+@pytest.mark.parametrize("prf", [80.0, 5000.0])
+def test_recordings_that_held_a_window_of_a_tenth_hold_the_default_one(prf: float) -> None:
+    for pulses in (75, 80, 100, 1000):
+        radar = {"prf_hz": prf, "chirp_s": 4e-5}
+        config = Config(duration_s=pulses / prf, radar=radar)
+        window = config.processing.window_pulses(pulses / prf, prf, 77e9)
+        assert 8 <= window <= max(8, pulses / 4 + 1, sqrt(0.004) * prf)

@@ -40,7 +40,8 @@ class Words:
         self.files = tuple(files)
         sizes = [_size(path) for path in files]
         self._starts = np.concatenate([[0], np.cumsum(sizes)])
-        self.count = int(self._starts[-1]) // WORD.itemsize
+        self.bytes = int(self._starts[-1])
+        self.count = self.bytes // WORD.itemsize
 
     def __getitem__(self, key: slice) -> NDArray[np.uint16]:
         """Words from key.start to key.stop."""
@@ -127,12 +128,12 @@ def open_dca1000(paths: Sequence[Path], settings: CaptureSettings, header: str) 
     )
     words = Words(files)
     unit, notes = settings.words_of_a_pulse, list[str]()
-    _check_length(words, settings, header)
     pulses, rest = divmod(words.count, unit)
     if pulses == 0:
         raise CaptureError(
-            f"{files[0]}: holds {words.count * 2} bytes; a pulse by {header} takes {unit * 2}"
+            f"{files[0]}: holds {words.bytes} bytes; a pulse by {header} takes {unit * 2}"
         )
+    _check_length(words, settings, header)
     if len(files) > 1:
         notes.append(f"{len(files)} files: {', '.join(path.name for path in files)}")
     if rest:

@@ -50,6 +50,17 @@ def regular_size(path: str | os.PathLike[str]) -> int:
     return status.st_size
 
 
+def refuse_outside(path: Path, folder: Path) -> None:
+    """Refuse what a file in `folder` names, or what was found there, where links lead out of it.
+
+    Raises:
+        FolderError: links lead out of the folder; names the link and where it leads.
+    """
+    target = os.path.realpath(path)
+    if not Path(target).is_relative_to(os.path.realpath(folder)):
+        raise FolderError(f"{path}: is a link to {target}, which lies outside of {folder}")
+
+
 def read_text(path: Path, most: int) -> str:
     """A regular file of at most `most` bytes as UTF-8.
 

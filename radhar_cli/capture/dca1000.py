@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from radhar_cli.capture.settings import CaptureSettings
 from radhar_cli.capture.source import Parts, Source
 from radhar_cli.errors import CaptureError
-from radhar_cli.untrusted import regular_size
+from radhar_cli.untrusted import refuse_outside, regular_size
 
 WORD = np.dtype("<u2")
 PROBED_WORDS = 2**20
@@ -82,6 +82,7 @@ def whole_capture(paths: Sequence[Path]) -> tuple[Path, ...]:
 
     Raises:
         CaptureError: one in between is missing.
+        FolderError: one of the others is a link that leads elsewhere.
     """
     numbered = _NUMBERED.fullmatch(paths[0].name)
     if len(paths) > 1 or numbered is None:
@@ -100,6 +101,9 @@ def whole_capture(paths: Sequence[Path]) -> tuple[Path, ...]:
             f"{paths[0].parent / f'{stem}{missing[0]}{suffix}'}: is missing; the capture goes on "
             f"in {numbers[max(numbers)].name}"
         )
+    for other in numbers.values():
+        if other != paths[0]:
+            refuse_outside(other, paths[0].parent)
     return tuple(numbers[n] for n in range(max(numbers) + 1))
 
 

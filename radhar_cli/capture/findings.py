@@ -231,5 +231,5 @@ def checked(raw: Parts, first: int, where: str, coding: Coding = PLAIN) -> tuple
             + ", a whole number, as the coding says"
             * coding.words
         )
-    gone: Bool = nan.any(axis=(0, 1, 3))
+    gone: Bool = np.asarray(nan.any(axis=(0, 1, 3)))
     return np.where(nan, raw.dtype.type(0), raw), gone

@@ -17,7 +17,7 @@ from radhar_cli.arrays import Levels
 from radhar_cli.capture.array_files import check_npz, refusing
 from radhar_cli.dataset.image_file import image_size, read_gray
 from radhar_cli.errors import CaptureError
-from radhar_cli.untrusted import regular_size
+from radhar_cli.untrusted import refuse_outside, regular_size
 
 SUFFIXES = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp")
 MAX_NPZ = 2**29  # bytes of its images, which are held
@@ -68,6 +68,7 @@ def _of_tree(path: Path) -> Listed:
         raise CaptureError(f"{path}: should hold a folder of images for each class")
     total = hashlib.sha256()
     for file in files:
+        refuse_outside(file, path)
         with file.open("rb") as data:
             total.update(hashlib.file_digest(data, "sha256").digest())
     parts = [

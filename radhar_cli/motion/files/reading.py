@@ -9,7 +9,7 @@ from radhar_cli.motion.files.amc import MAX_SKELETON, read_amc
 from radhar_cli.motion.files.bvh import read_bvh
 from radhar_cli.motion.files.npz import read_npz
 from radhar_cli.motion.files.recording import MAX_BYTES, Recording, wrong
-from radhar_cli.untrusted import regular_size
+from radhar_cli.untrusted import refuse_outside, regular_size
 
 SUFFIXES = (".bvh", ".amc", ".npz")
 
@@ -72,6 +72,7 @@ def skeleton_of(path: Path) -> Path:
 
     Raises:
         MotionFileError: there is none.
+        FolderError: it is a link that leads elsewhere.
     """
     named: list[Path] = [
         path.with_suffix(".asf"),
@@ -80,6 +81,7 @@ def skeleton_of(path: Path) -> Path:
     beside: list[Path] = sorted(path.parent.glob("*.asf"))[:2]
     for candidate in [*named, *beside] if len(beside) == 1 else named:
         if candidate.is_file():
+            refuse_outside(candidate, path.parent)
             return candidate
     names = " or ".join(dict.fromkeys(one.name for one in named))
     raise wrong(str(path), f"needs its skeleton: {names} beside it, or skeleton: FILE")

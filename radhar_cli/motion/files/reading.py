@@ -58,13 +58,13 @@ def read_motion(path: Path, skeleton: Path | None = None) -> MotionBytes:
     if suffix not in SUFFIXES:
         hint = "; name its .amc files" if suffix == ".asf" else ""
         raise wrong(str(path), f"should be one of {', '.join(SUFFIXES)}{hint}")
-    found = None
+    data, found = _bytes(path, MAX_BYTES), None
     if suffix == ".amc":
         asf = skeleton or skeleton_of(path)
         if asf.suffix.lower() != ".asf":
             raise wrong(str(asf), "should be an .asf file")
         found = (asf, _bytes(asf, MAX_SKELETON))
-    return MotionBytes(path, _bytes(path, MAX_BYTES), found)
+    return MotionBytes(path, data, found)
 
 
 def skeleton_of(path: Path) -> Path:

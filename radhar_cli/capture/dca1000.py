@@ -139,7 +139,7 @@ def open_dca1000(paths: Sequence[Path], settings: CaptureSettings, header: str) 
         )
     _check_length(words, settings, header)
     if len(files) > 1:
-        notes.append(f"{len(files)} files: {', '.join(path.name for path in files)}")
+        notes.append(f"{len(files)} files: {files[0].name} to {files[-1].name}")
     if rest:
         notes.append(f"the last {rest * 2} bytes are no whole pulse and are left out")
 

@@ -216,11 +216,10 @@ def checked(raw: Parts, first: int, where: str, coding: Coding = PLAIN) -> tuple
     Raises:
         CaptureError: a number is infinite, beyond LARGEST, or none of the coding; names it.
     """
-    whole = raw.dtype.kind in "iu"
-    if whole and (raw.dtype.itemsize <= 2 or not coding.words):
-        return raw, np.zeros(raw.shape[2], bool)
     raw = raw.astype(np.float32) if raw.dtype == np.float16 else raw
     low, high = (-(2**15), 2**16 - 1) if coding.words else (-LARGEST, LARGEST)
+    if raw.dtype.itemsize <= 2 or (not coding.words and raw.min() >= low and raw.max() <= high):
+        return raw, np.zeros(raw.shape[2], bool)
     nan = np.isnan(raw)
     wrong = ~((raw >= low) & (raw <= high) & (not coding.words or raw == np.floor(raw)) | nan)
     if wrong.any():

@@ -31,6 +31,7 @@ from radhar_cli.radar.waveform import Waveform
 TI_HEADERS = (".json", ".cfg")
 SIGMF = (".sigmf-meta", ".sigmf-data")
 GAP = 0.5  # of a pulse interval: what is longer between frames is a gap
+MAX_HZ = 1e15
 JITTER = 0.1  # of a pulse interval, beyond which it is told
 
 
@@ -252,6 +253,8 @@ def _timed(source: Source, times: Float, s: CaptureSettings, notes: list[str]) -
     lengths = np.diff(first, append=times.size)
     if s.prf_hz is None and (inside := int((lengths - 1).sum())):
         prf = inside / float(step[~gaps].sum())
+    if prf > MAX_HZ:
+        raise CaptureError(f"{source.name}: {prf:.3g} pulses/s; times should be in s")
     return Segments(times[first] - times[0], first, source.pulses, prf)
 
 

@@ -168,3 +168,10 @@ def test_a_few_bytes_are_no_capture(tmp_path: Path, size: int) -> None:
     assert done.stderr == (
         f"radhar: {tmp_path}/x.bin: holds {size} bytes; a pulse by --set takes 64\n"
     )
+
+
+def test_times_that_are_no_seconds_are_refused(tmp_path: Path) -> None:
+    np.savez(tmp_path / "x.npz", beat=cube(), t=1e-20 * np.arange(40))
+    settings = read_settings(None, [*RADAR[:3], "times=t", "dataset=beat"])
+    with pytest.raises(CaptureError, match=r"1e\+20 pulses/s; times should be in s"):
+        import_capture([tmp_path / "x.npz"], tmp_path / "o.h5", settings)

@@ -1,28 +1,37 @@
 """A file that appears when it is whole: written under another name, then renamed."""
 
+import fcntl
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from errno import EINVAL
 from pathlib import Path
+from uuid import uuid4
+
+UNFINISHED = ".radhar-unfinished-"
 
 
 @contextmanager
-def replacing(path: Path, unfinished: str | None = None) -> Iterator[Path]:
+def replacing(path: Path, unfinished: Path | None = None) -> Iterator[Path]:
     """Yield where to write what takes the place of `path` at the end, unless something fails.
 
-    The name of the `unfinished` file beside it is path.unfinished if none is given. Errors name
-    `path`, also of a full disk, which says no name.
+    That is `unfinished`, a name that no other process uses, on the same file system; if none is
+    given, a new one beside it, where what killed processes left goes. Errors name `path`, also of a
+    full disk, which says no name.
 
     Raises:
         OSError: `path` is a folder or a device, or it cannot be written.
     """
     if path.exists() and not path.is_file():
         raise OSError(EINVAL, "is not a regular file", str(path))
-    other = path.with_name(unfinished or f"{path.name}.unfinished")
+    other = unfinished or path.with_name(UNFINISHED + uuid4().hex)
     try:
-        other.unlink(missing_ok=True)  # a link would be written through
-        yield other
-        other.replace(path)
+        with other.open("xb") as held:
+            if unfinished is None:
+                with suppress(OSError):  # a file system without locks
+                    fcntl.flock(held, fcntl.LOCK_EX)
+                _remove_leftovers(path.parent)
+            yield other
+            other.replace(path)
     except OSError as error:
         if error.filename in (None, str(other)):
             error.filename = str(path)
@@ -30,6 +39,14 @@ def replacing(path: Path, unfinished: str | None = None) -> Iterator[Path]:
     finally:
         with suppress(OSError):
             other.unlink(missing_ok=True)
+
+
+def _remove_leftovers(folder: Path) -> None:
+    """Remove unfinished files that nobody holds."""
+    for left in folder.glob(f"{UNFINISHED}*"):
+        with suppress(OSError), left.open("rb") as file:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            left.unlink()
 
 
 def write_text(path: Path, text: str) -> None:

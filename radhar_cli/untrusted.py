@@ -38,7 +38,8 @@ def regular_size(path: str | os.PathLike[str]) -> int:
     """Size in bytes of a regular file; links are followed.
 
     Raises:
-        OSError: there is none, or it is a folder, a FIFO, a socket or a device, which can block.
+        OSError: there is none, it may not be read, or it is a folder, a FIFO, a socket or a device,
+            which can block.
     """
     try:
         status = Path(path).stat()
@@ -47,7 +48,20 @@ def regular_size(path: str | os.PathLike[str]) -> int:
     if not stat.S_ISREG(status.st_mode):
         kind = "a folder" if stat.S_ISDIR(status.st_mode) else "a FIFO, a socket or a device"
         raise OSError(errno.EINVAL, f"is {kind}; should be a regular file", str(path))
+    if not os.access(path, os.R_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
     return status.st_size
+
+
+def refuse_outside(path: Path, folder: Path) -> None:
+    """Refuse what a file in `folder` names, or what was found there, where links lead out of it.
+
+    Raises:
+        FolderError: links lead out of the folder; names the link and where it leads.
+    """
+    target = os.path.realpath(path)
+    if not Path(target).is_relative_to(os.path.realpath(folder)):
+        raise FolderError(f"{path}: is a link to {target}, which lies outside of {folder}")
 
 
 def read_text(path: Path, most: int) -> str:
@@ -69,13 +83,14 @@ def read_json(path: Path) -> Any:
     """The content of a JSON file.
 
     Raises:
-        FolderError: it is missing, damaged, or beyond the bounds of `parse_json`.
+        FolderError: it is missing, unreadable, damaged, or beyond the bounds of `parse_json`.
     """
     try:
         return parse_json(read_text(path, MAX_JSON))
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise FolderError(f"{path}: is damaged, or is not from radhar ({reason})") from None
+    except OSError as error:
+        raise FolderError(f"{path}: {error.strerror}") from None
+    except ValueError as error:
+        raise FolderError(f"{path}: is damaged, or is not JSON ({error})") from None
 
 
 def parse_json(text: str) -> Any:

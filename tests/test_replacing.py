@@ -1,11 +1,15 @@
 """Files that appear when they are whole."""
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
+from command_line import ROOT
 
-from radhar_cli.replacing import replacing, write_text
+from radhar_cli.replacing import UNFINISHED, replacing, write_text
+from radhar_cli.simulation.scene_file import refuse_foreign
 
 
 def interrupted(path: Path) -> None:
@@ -35,10 +39,48 @@ def test_a_folder_or_a_pipe_is_not_replaced(tmp_path: Path) -> None:
 
 
 def test_errors_name_the_file_and_not_the_unfinished_one(tmp_path: Path) -> None:
-    path = tmp_path / ("n" * 251)
+    path = tmp_path / ("n" * 256)
     with pytest.raises(OSError, match="File name too long") as error:
         write_text(path, "x")
     assert error.value.filename == str(path)
     with pytest.raises(FileNotFoundError) as error, replacing(tmp_path / "a.txt"):
         (tmp_path / "other").read_text()
     assert error.value.filename == str(tmp_path / "other")
+
+
+def test_two_that_write_the_same_file_at_the_same_time_do_not_mix(tmp_path: Path) -> None:
+    """Each has a file of its own; the last one to finish stays."""
+    path = tmp_path / "a.txt"
+    with replacing(path) as one:
+        one.write_text("the first, which is long")
+        with replacing(path) as other:
+            other.write_text("the second")
+        assert path.read_text() == "the second"
+    assert path.read_text() == "the first, which is long"
+    assert [one.name for one in tmp_path.iterdir()] == ["a.txt"]
+
+
+def test_what_a_killed_process_left_goes_and_what_another_writes_stays(tmp_path: Path) -> None:
+    code = (
+        "import os, sys, pathlib\n"
+        "from radhar_cli.replacing import replacing\n"
+        "with replacing(pathlib.Path(sys.argv[1])) as unfinished:\n"
+        "    unfinished.write_text('half')\n"
+        "    os.kill(os.getpid(), 9)\n"
+    )
+    path = tmp_path / "a.txt"
+    done = subprocess.run([sys.executable, "-c", code, path], cwd=ROOT, check=False)
+    assert done.returncode == -9
+    assert [one.read_text() for one in tmp_path.iterdir()] == ["half"]
+    with replacing(tmp_path / "b.txt") as held:
+        held.write_text("whole")
+        write_text(path, "new")
+    assert {one.name: one.read_text() for one in tmp_path.iterdir()} == {
+        "a.txt": "new",
+        "b.txt": "whole",
+    }
+
+
+def test_a_folder_with_nothing_but_leftovers_takes_a_scene(tmp_path: Path) -> None:
+    (tmp_path / f"{UNFINISHED}1").touch()
+    refuse_foreign(tmp_path)

@@ -81,7 +81,7 @@ def maps_of(
     lost = (recording.flags[first:last] & LOST).astype(bool)
     notes: list[str] = []
     if lost.all():
-        raise CaptureError(f"{recording.path}: every pulse from {start} to {stop} s lacks samples")
+        raise CaptureError(f"{recording.path}: each of its {lost.size} pulses there lacks samples")
     if lost.any():
         notes.append(
             f"{np.count_nonzero(lost)} pulses lack samples: filled in from their neighbours"

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from radhar_cli.capture.settings import CaptureSettings
 from radhar_cli.capture.source import Parts, Source
 from radhar_cli.errors import CaptureError
-from radhar_cli.untrusted import regular_size
+from radhar_cli.untrusted import refuse_outside, regular_size
 
 WORD = np.dtype("<u2")
 PROBED_WORDS = 2**20
@@ -40,7 +40,8 @@ class Words:
         self.files = tuple(files)
         sizes = [_size(path) for path in files]
         self._starts = np.concatenate([[0], np.cumsum(sizes)])
-        self.count = int(self._starts[-1]) // WORD.itemsize
+        self.bytes = int(self._starts[-1])
+        self.count = self.bytes // WORD.itemsize
 
     def __getitem__(self, key: slice) -> NDArray[np.uint16]:
         """Words from key.start to key.stop."""
@@ -81,6 +82,7 @@ def whole_capture(paths: Sequence[Path]) -> tuple[Path, ...]:
 
     Raises:
         CaptureError: one in between is missing.
+        FolderError: one of the others is a link that leads elsewhere.
     """
     numbered = _NUMBERED.fullmatch(paths[0].name)
     if len(paths) > 1 or numbered is None:
@@ -99,6 +101,9 @@ def whole_capture(paths: Sequence[Path]) -> tuple[Path, ...]:
             f"{paths[0].parent / f'{stem}{missing[0]}{suffix}'}: is missing; the capture goes on "
             f"in {numbers[max(numbers)].name}"
         )
+    for other in numbers.values():
+        if other != paths[0]:
+            refuse_outside(other, paths[0].parent)
     return tuple(numbers[n] for n in range(max(numbers) + 1))
 
 
@@ -127,14 +132,14 @@ def open_dca1000(paths: Sequence[Path], settings: CaptureSettings, header: str) 
     )
     words = Words(files)
     unit, notes = settings.words_of_a_pulse, list[str]()
-    _check_length(words, settings, header)
     pulses, rest = divmod(words.count, unit)
     if pulses == 0:
         raise CaptureError(
-            f"{files[0]}: holds {words.count * 2} bytes; a pulse by {header} takes {unit * 2}"
+            f"{files[0]}: holds {words.bytes} bytes; a pulse by {header} takes {unit * 2}"
         )
+    _check_length(words, settings, header)
     if len(files) > 1:
-        notes.append(f"{len(files)} files: {', '.join(path.name for path in files)}")
+        notes.append(f"{len(files)} files: {files[0].name} to {files[-1].name}")
     if rest:
         notes.append(f"the last {rest * 2} bytes are no whole pulse and are left out")
 

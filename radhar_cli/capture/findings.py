@@ -1,4 +1,4 @@
-"""Read off the samples themselves: offset binary, sign of the beat, clipping, lost packets."""
+"""Read off the samples themselves: their coding, sign of the beat, clipping, lost packets."""
 
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -6,7 +6,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from radhar_cli.arrays import Bool
 from radhar_cli.capture.source import Parts, Source
+from radhar_cli.errors import CaptureError
 
 PROBES, PROBED = 16, 64  # places that are looked at, and pulses of each
 SURE = 0.65  # share of the energy in one half of the spectrum
@@ -14,57 +16,85 @@ LOST_RUN = 32  # zero samples one after the other
 MIN_ZEROS = 4  # zero samples of a pulse beside a lost one
 RARE = 3  # samples at full scale that prove nothing
 LOST, CLIPPED = 1, 2  # flags of a pulse
+LARGEST = 1e15  # of a sample, which squares and sums keep finite
 
 
 def probe(source: Source) -> list[Parts]:
-    """Consecutive pulses from places all over a capture, each [receiver, sample, pulse, part]."""
+    """Consecutive pulses from places all over a capture, each [receiver, sample, pulse, part].
+
+    Raises:
+        CaptureError: as `checked`.
+    """
     length = min(PROBED, source.pulses)
     starts = np.unique(np.linspace(0, source.pulses - length, PROBES).astype(int))
-    return [source.read(int(first), int(first) + length) for first in starts]
+    return [checked(source.read(at, at + length), at, source.name)[0] for at in map(int, starts)]
 
 
-def offset_of(pieces: list[Parts]) -> int:
-    """What to subtract from whole numbers that are in offset binary; 0 of two's complement.
+class Coding(NamedTuple):
+    """How whole numbers stand for signed ones.
 
-    Offset binary of 16 bits that is read as two's complement jumps between the ends of the scale;
-    unsigned numbers lie around half their scale.
+    Attributes:
+        words: they are words of 16 bits, read as signed or unsigned.
+        offset: what offset binary is too large by; 0 of two's complement.
+    """
+
+    words: bool
+    offset: int = 0
+
+
+PLAIN = Coding(False)
+
+
+def coding_of(pieces: list[Parts], asked: str | None = None, bits: int = 16) -> Coding:
+    """The coding that makes numbers of any type small, or the one that is asked for.
+
+    Words that are read in another coding jump between the ends of the scale. Other unsigned numbers
+    lie around half their scale.
+
+    Raises:
+        ValueError: the numbers cannot be of the coding that is asked for.
     """
     dtype = pieces[0].dtype
-    if dtype.kind not in "iu":
-        return 0
-    values = np.concatenate([piece.ravel() for piece in pieces])
-    if dtype.kind == "u":
-        middle = float(np.median(values[values != 0])) if values.any() else 1.0
-        bits = [b for b in (8, 10, 12, 14, 16, 24, 32) if b <= 8 * dtype.itemsize]
-        return int(min((2 ** (b - 1) for b in bits), key=lambda half: abs(np.log2(middle / half))))
-    if dtype.itemsize != 2:
-        return 0
-    shifted = (values.view(np.uint16) ^ 0x8000).view(np.int16)  # as offset binary
-    seen = values != 0  # lost packets are zeros whatever the coding
-    signed, offset = (
-        (float(np.abs(v[seen].astype(float)).mean()) for v in (values, shifted))
-        if (seen.any())
-        else (0.0, 1.0)
-    )
-    return 2**15 if offset < 0.5 * signed else 0
+    values = np.concatenate([piece.ravel() for piece in pieces]).astype(float)
+    low, high, unsigned = float(values.min()), float(values.max()), dtype.kind == "u"
+    fits = low >= -(2**15) and high < (2**15 if low < 0 else 2**16)
+    words = fits and (dtype.kind in "iu" or bool((values == np.floor(values)).all()))
+    if asked and not words and dtype.kind != {"signed": "i", "offset": "u"}[asked]:
+        raise ValueError(f"numbers from {low:g} to {high:g}; should be whole ones of 16 bits")
+    native = dtype in (np.int16, np.uint16)
+    seen = values[values != 0]  # lost packets are zeros whatever the coding
+    if unsigned and asked != "signed" and seen.size and not (words and high >= 2**15):
+        middle = float(np.median(seen))
+        halves = (2 ** (b - 1) for b in (8, 10, 12, 14, 16, 24, 32) if b <= 8 * dtype.itemsize)
+        return Coding(False, min(halves, key=lambda half: abs(np.log2(middle / half))))
+    if asked == "offset":
+        return Coding(bits == 16, 1 << (bits - 1))
+    if not asked and words and seen.size:
+        signed, offset = (float(np.abs(decoded(seen, Coding(True, n))).mean()) for n in (0, 2**15))
+        if (not signed < 0.5 * offset) if unsigned else offset < 0.5 * signed:
+            return Coding(True, 2**15)
+    return Coding(words and (native or high >= 2**15))
 
 
-def without_offset(values: Parts, offset: int, bits: int) -> Parts:
-    """Signed numbers, the offset taken off, bits above the ADC's ones taken as the sign's."""
-    dtype = values.dtype
-    if dtype.kind not in "iu":
-        return values
-    if offset == 2**15 and dtype == np.int16:
-        return (values.view(np.uint16) ^ 0x8000).view(np.int16)
-    if offset:
-        wide = values.astype(np.int64) - offset
-        return wide.astype(np.int16) if offset <= 2**15 else wide.astype(float)
-    if bits < 16 and dtype == np.int16:
+def decoded(values: Parts, coding: Coding, bits: int = 16) -> Parts:
+    """Signed numbers; bits above the ADC's ones are taken as the sign's."""
+    dtype, (words, offset) = values.dtype, coding
+    if words and dtype in (np.int16, np.uint16):
+        signed = (values.view(np.uint16) ^ np.uint16(offset)).view(np.int16)
+    elif dtype.kind == "f":
+        return np.mod(values + (2**15 - offset), 2**16) - 2**15 if words else values - offset
+    elif dtype == np.uint8 and not offset:
+        return values.view(np.int8).astype(np.int16)
+    else:
+        wide = values.astype(np.int64)
+        wide = (wide + 2**15 - offset) % 2**16 - 2**15 if words else wide - offset
+        if not words and (offset > 2**15 or (not offset and dtype.itemsize > 1)):
+            return wide.astype(float)
+        signed = wide.astype(np.int16)
+    if bits < 16 and not offset:
         half = 1 << (bits - 1)
-        return (((values.astype(np.int32) + half) & (2 * half - 1)) - half).astype(np.int16)
-    if dtype.itemsize > 2 or dtype.kind == "u":
-        return values.astype(float)
-    return values.astype(np.int16, copy=False)
+        signed = (((signed.astype(np.int32) + half) & (2 * half - 1)) - half).astype(np.int16)
+    return signed
 
 
 class PositiveShare(NamedTuple):
@@ -129,8 +159,11 @@ class Damage:
     samples: int = 0
     flags: list[NDArray[np.uint8]] = field(default_factory=list)
 
-    def add(self, raw: Parts, values: Parts) -> None:
-        """Take in numbers [receiver, sample, pulse, part] as stored and as signed, in time."""
+    def add(self, raw: Parts, values: Parts, gone: Bool) -> None:
+        """Take in numbers [receiver, sample, pulse, part] as stored and as signed, in time.
+
+        Pulses that are `gone` [pulse] are known to be lost.
+        """
         flags = np.zeros(values.shape[2], np.uint8)
         if self.full_scale is not None:
             low, high = self.full_scale
@@ -138,11 +171,11 @@ class Damage:
             self.clipped += int(np.count_nonzero(clipped))
             flags[clipped.any(axis=(0, 1, 3))] |= CLIPPED
         self.samples += values.size
-        flags[lost(raw)] |= LOST
+        flags[lost(raw) | gone] |= LOST
         self.flags.append(flags)
 
 
-def lost(values: Parts) -> NDArray[np.bool_]:
+def lost(values: Parts) -> Bool:
     """Pulses [pulse] of which LOST_RUN samples in a row, or all of a shorter chirp, are zero.
 
     One zero of slow time proves nothing.
@@ -156,16 +189,46 @@ def lost(values: Parts) -> NDArray[np.bool_]:
     summed = np.cumsum(zero, axis=1, dtype=np.int32)
     inside = summed[:, run - 1 :].copy()
     inside[:, 1:] -= summed[:, :-run]
-    missing: NDArray[np.bool_] = (inside == run).any(axis=(0, 1))
+    missing: Bool = (inside == run).any(axis=(0, 1))
     # The rest of a gap that reaches into the pulse before or after.
     beside = np.convolve(missing, [1, 1, 1])[1:-1] > 0
     missing |= beside & (summed[:, -1].max(axis=0) >= MIN_ZEROS)
     return missing
 
 
-def full_scale(dtype: np.dtype[Any], offset: int, bits: int) -> tuple[int, int] | None:
-    """Lowest and highest number of a converter, the offset taken off."""
-    if dtype.kind not in "iu":
+def full_scale(dtype: np.dtype[Any], coding: Coding, bits: int) -> tuple[int, int] | None:
+    """Lowest and highest number of a converter, the offset taken off; None where none is known."""
+    if not any(coding) and (dtype.kind == "f" or dtype.itemsize > 2):
         return None
-    half = offset or 1 << (min(bits, 8 * dtype.itemsize) - 1)
+    half = coding.offset or 1 << (min(bits, 8 * dtype.itemsize) - 1)
     return -half, half - 1
+
+
+def checked(raw: Parts, first: int, where: str, coding: Coding = PLAIN) -> tuple[Parts, Bool]:
+    """Numbers [receiver, sample, pulse, part] with 0 for NaN, and which pulses [pulse] have some.
+
+    Args:
+        raw: the numbers.
+        first: number of the first pulse, for messages.
+        where: whose they are, for messages.
+        coding: as which they will be decoded.
+
+    Raises:
+        CaptureError: a number is infinite, beyond LARGEST, or none of the coding; names it.
+    """
+    raw = raw.astype(np.float32) if raw.dtype == np.float16 else raw
+    low, high = (-(2**15), 2**16 - 1) if coding.words else (-LARGEST, LARGEST)
+    if raw.dtype.itemsize <= 2 or (not coding.words and raw.min() >= low and raw.max() <= high):
+        return raw, np.zeros(raw.shape[2], bool)
+    nan = np.isnan(raw)
+    wrong = ~((raw >= low) & (raw <= high) & (not coding.words or raw == np.floor(raw)) | nan)
+    if wrong.any():
+        receiver, sample, pulse, part = np.argwhere(wrong)[0]
+        raise CaptureError(
+            f"{where}: receiver {receiver}, sample {sample}, pulse {first + pulse} is "
+            f"{raw[receiver, sample, pulse, part]:g}; should be from {low:g} to {high:g}"
+            + ", a whole number, as the coding says"
+            * coding.words
+        )
+    gone: Bool = np.asarray(nan.any(axis=(0, 1, 3)))
+    return np.where(nan, raw.dtype.type(0), raw), gone

@@ -17,7 +17,7 @@ from radhar_cli.arrays import Levels
 from radhar_cli.capture.array_files import check_npz, refusing
 from radhar_cli.dataset.image_file import image_size, read_gray
 from radhar_cli.errors import CaptureError
-from radhar_cli.untrusted import regular_size
+from radhar_cli.untrusted import refuse_outside, regular_size
 
 SUFFIXES = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp")
 MAX_NPZ = 2**29  # bytes of its images, which are held
@@ -54,7 +54,7 @@ def listed(path: Path, packed: bool) -> Listed:
     Raises:
         CaptureError, FolderError: there are none, or they cannot be read.
     """
-    return _of_npz(path, packed) if path.is_file() else _of_tree(path)
+    return _of_tree(path) if path.is_dir() else _of_npz(path, packed)
 
 
 def _of_tree(path: Path) -> Listed:
@@ -68,6 +68,7 @@ def _of_tree(path: Path) -> Listed:
         raise CaptureError(f"{path}: should hold a folder of images for each class")
     total = hashlib.sha256()
     for file in files:
+        refuse_outside(file, path)
         with file.open("rb") as data:
             total.update(hashlib.file_digest(data, "sha256").digest())
     parts = [
@@ -78,6 +79,8 @@ def _of_tree(path: Path) -> Listed:
 
 
 def _of_npz(path: Path, packed: bool) -> Listed:
+    with refusing(str(path)):
+        regular_size(path)
     images, label, person = _loaded(path, packed, path.stat().st_mtime_ns)
     with path.open("rb") as file:
         total = hashlib.file_digest(file, "sha256").hexdigest()
@@ -98,7 +101,6 @@ def _loaded(
 ) -> tuple[Levels, NDArray[Any], NDArray[Any] | None]:
     """(images [N, H, W], label [N], person [N] or None) of an .npz; packed columns are unpacked."""
     del changed
-    regular_size(path)
     with refusing(str(path)), zipfile.ZipFile(path) as archive:
         shapes = check_npz(archive)
         wide = [name for name, (shape, kind) in shapes.items() if len(shape) == 3 and kind in "ub"]

@@ -31,6 +31,7 @@ from radhar_cli.radar.waveform import Waveform
 TI_HEADERS = (".json", ".cfg")
 SIGMF = (".sigmf-meta", ".sigmf-data")
 GAP = 0.5  # of a pulse interval: what is longer between frames is a gap
+MAX_HZ = 1e15
 JITTER = 0.1  # of a pulse interval, beyond which it is told
 
 
@@ -109,23 +110,21 @@ def _opened(
 def _written(source: Source, out: Path, s: CaptureSettings, header: str) -> Imported:
     notes = [*source.notes]
     probed = findings.probe(source)
-    offset = _offset(probed, s, notes)
-    probed = [findings.without_offset(piece, offset, s.adc_bits) for piece in probed]
+    coding = _coding(probed, s, source.name, notes)
+    probed = [findings.decoded(piece, coding, s.adc_bits) for piece in probed]
     if s.iq == "qi" and source.parts == 2:
         notes.append("Q before I, as the header says")
         probed = [piece[..., ::-1] for piece in probed]
     turned = _turned(probed, source, s, notes)
     segments = _segments(source, s, header, notes)
     info = _info(source, s, segments, header, notes)
-    dtype = source.dtype
-    number = np.dtype("f4") if dtype == np.float16 else probed[0].dtype
-    damage = findings.Damage(findings.full_scale(dtype, offset, s.adc_bits))
+    damage = findings.Damage(findings.full_scale(source.dtype, coding, s.adc_bits))
 
     def pieces() -> Iterator[tuple[int, Parts]]:
         for first, stop in source.pieces():
-            raw = source.read(first, stop)
-            values = findings.without_offset(raw, offset, s.adc_bits)
-            damage.add(raw, values)
+            raw, gone = findings.checked(source.read(first, stop), first, source.name, coding)
+            values = findings.decoded(raw, coding, s.adc_bits)
+            damage.add(raw, values, gone)
             if source.parts == 2 and (s.iq == "qi" or turned):
                 values = _reordered(values, s.iq == "qi", turned)
             yield first, values
@@ -137,23 +136,30 @@ def _written(source: Source, out: Path, s: CaptureSettings, header: str) -> Impo
         told.extend(_damage(damage, flags))
         return flags, told
 
-    info = write_recording(out, info, number, source.parts, pieces(), segments, finished)
+    info = write_recording(out, info, probed[0].dtype, source.parts, pieces(), segments, finished)
     return Imported(info, [*notes, *told])
 
 
-def _offset(probed: list[Parts], s: CaptureSettings, notes: list[str]) -> int:
-    offset = findings.offset_of(probed)
-    kind = probed[0].dtype.kind
-    if s.coding is not None and kind in "iu":
-        told = "signed" if offset == 0 else "offset"
-        if told != s.coding and kind == "i":
+def _coding(
+    probed: list[Parts], s: CaptureSettings, name: str, notes: list[str]
+) -> findings.Coding:
+    try:
+        coding = findings.coding_of(probed, s.coding, s.adc_bits)
+    except ValueError as error:
+        raise CaptureError(f"{name}: coding = {s.coding}: {error}") from None
+    if s.coding is not None:
+        if (found := findings.coding_of(probed)) != coding:
+            told = "offset" if found.offset else "signed"
             notes.append(f"samples look {told}; read as {s.coding}, as asked")
-        return 0 if s.coding == "signed" else (offset or 1 << (s.adc_bits - 1))
-    if offset:
-        notes.append(f"offset binary: {offset} is taken off every sample (coding=signed to keep)")
-    elif kind in "iu":
+    elif coding.offset:
+        notes.append(
+            f"offset binary: {coding.offset} is taken off every sample (coding=signed to keep)"
+        )
+    elif coding.words and probed[0].dtype != np.int16:
+        notes.append("two's complement of 16 bits: 65536 is taken off samples from 32768 on")
+    elif probed[0].dtype.kind in "iu":
         notes.append("two's complement")
-    return offset
+    return coding
 
 
 def _turned(probed: list[Parts], source: Source, s: CaptureSettings, notes: list[str]) -> bool:
@@ -247,6 +253,8 @@ def _timed(source: Source, times: Float, s: CaptureSettings, notes: list[str]) -
     lengths = np.diff(first, append=times.size)
     if s.prf_hz is None and (inside := int((lengths - 1).sum())):
         prf = inside / float(step[~gaps].sum())
+    if prf > MAX_HZ:
+        raise CaptureError(f"{source.name}: {prf:.3g} pulses/s; times should be in s")
     return Segments(times[first] - times[0], first, source.pulses, prf)
 
 
@@ -314,7 +322,7 @@ def _damage(damage: findings.Damage, flags: NDArray[np.uint8]) -> list[str]:
     if lost:
         told.append(
             f"{lost} of {flags.size} pulses ({100 * lost / flags.size:.2g} %) lack samples, lost "
-            "on the way and filled with zeros; they are flagged"
+            "on the way (zeros, or NaN); they are flagged"
         )
     if damage.clipped > findings.RARE:
         pulses = int(np.count_nonzero(flags & findings.CLIPPED))

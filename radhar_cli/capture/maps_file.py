@@ -18,8 +18,7 @@ from radhar_cli.processing.torso_track import TorsoTrack
 from radhar_cli.replacing import replacing
 from radhar_cli.simulation.scene_file import write_map
 
-MAPS_FILE, FIGURE, UNFINISHED = "maps.h5", "maps.png", "maps.unfinished"
-FILES = (MAPS_FILE, FIGURE, UNFINISHED)
+FILES = MAPS_FILE, FIGURE = "maps.h5", "maps.png"
 SURE = 0.5  # confidence from which the track is drawn as found
 TRACK_UNITS = {
     "time": "s",
@@ -38,7 +37,7 @@ def write_maps(maps: Maps, config: Config, info: RecordingInfo, folder: Path) ->
     path = folder / MAPS_FILE
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        with replacing(path, UNFINISHED) as unfinished, new_hdf5(unfinished, path) as (file, _):
+        with replacing(path) as unfinished, new_hdf5(unfinished, path) as (file, _):
             for name, power_map in maps.maps.items():
                 write_map(file, name, power_map)
             if maps.track is not None:

@@ -16,7 +16,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from radhar_cli import __version__
 from radhar_cli.arrays import Complex, Float
-from radhar_cli.capture.findings import CLIPPED, LOST
+from radhar_cli.capture.findings import CLIPPED, LOST, checked
 from radhar_cli.capture.source import PIECE_BYTES, Parts
 from radhar_cli.dataset.untrusted_hdf5 import Samples, UntrustedFile
 from radhar_cli.errors import CaptureError, FolderError, UnfinishedError
@@ -278,11 +278,24 @@ class Recording(Closing):
         return self._samples.number
 
     def parts(self, first: int, stop: int) -> Parts:
-        """Numbers [receiver, sample, stop - first, part] as stored; one sample of slow time."""
+        """Numbers [receiver, sample, stop - first, part] as stored; one sample of slow time.
+
+        Raises:
+            CaptureError: one is infinite or beyond bounds, or NaN in a pulse not flagged as lost.
+        """
         receivers, samples = slice(0, self.info.receivers), self.info.samples
         if samples is None:
-            return self._samples.read((receivers, slice(first, stop)))[:, None]
-        return self._samples.read((receivers, slice(0, samples), slice(first, stop)))
+            values = self._samples.read((receivers, slice(first, stop)))[:, None]
+        else:
+            values = self._samples.read((receivers, slice(0, samples), slice(first, stop)))
+        values, gone = checked(values, first, str(self.path))
+        gone &= (self.flags[first:stop] & LOST) == 0
+        if gone.any():
+            raise CaptureError(
+                f"{self.path}: pulse {first + gone.argmax()} holds NaN; should have the flag "
+                f"{LOST} then, as `radhar import` sets it"
+            )
+        return values
 
     def beat(self, first: int, stop: int) -> Complex:
         """Complex samples [receiver, sample, stop - first]."""

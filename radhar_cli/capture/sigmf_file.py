@@ -21,7 +21,7 @@ from radhar_cli.capture.source import Parts, Source
 from radhar_cli.config.reading import validated
 from radhar_cli.errors import CaptureError, MachineError, UnfinishedError
 from radhar_cli.replacing import replacing
-from radhar_cli.untrusted import read_json, regular_size
+from radhar_cli.untrusted import read_json, refuse_outside, regular_size
 
 META, DATA = ".sigmf-meta", ".sigmf-data"
 SPECIFICATION = "1.2.6"
@@ -48,9 +48,10 @@ def open_sigmf(path: Path, settings: CaptureSettings) -> Source:
 
     Raises:
         CaptureError: it is not valid, or lacks what `settings` does not say either.
-        FolderError: the metadata are damaged.
+        FolderError: the metadata are damaged, or one of the two is a link that leads elsewhere.
     """
     meta, data = path.with_suffix(META), path.with_suffix(DATA)
+    refuse_outside(meta if path == data else data, path.parent)
     document = read_json(meta)
     _validated(document, str(meta))
     metadata, captures = document["global"], document["captures"]

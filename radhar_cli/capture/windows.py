@@ -27,7 +27,7 @@ from radhar_cli.pipeline.products import image_of
 from radhar_cli.pipeline.unused_keys import unused_keys
 from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.power_map import MapImage
-from radhar_cli.untrusted import read_text
+from radhar_cli.untrusted import read_text, refuse_outside
 
 MAX_MANIFEST = 2**20  # bytes
 MAX_CONFIG = 2**19  # characters of the resolved config: two of it lie beside the data set
@@ -96,7 +96,7 @@ def with_recordings(config: Config, manifest: Path) -> Config:
 
     Raises:
         ConfigError: the manifest, or what it asks for, is not as it should be.
-        FolderError: a recording is none.
+        FolderError: a recording is none, or a link that leads elsewhere.
     """
     if are_images(manifest):
         return _with_images(config, manifest)
@@ -111,6 +111,7 @@ def with_recordings(config: Config, manifest: Path) -> Config:
         name = part["file"]
         if name not in lengths:
             path = manifest.parent / name
+            refuse_outside(path, manifest.parent)
             with Recording(path) as recording:
                 lengths[name] = round(recording.segments.duration, 9)
                 if len(lengths) == 1:

@@ -47,6 +47,7 @@ def import_(
     said, and can be overruled: --set coding=signed, --set beat=positive. All keys: docs/measured.md
     """
     import json
+    from uuid import uuid4
 
     from radhar_cli.capture.importing import import_capture, read_settings
     from radhar_cli.capture.recording import Recording
@@ -62,7 +63,7 @@ def import_(
     for path in (out.with_suffix(META), out.with_suffix(DATA)) if sigmf else (out,):
         refuse_to_replace(path, overwrite, "walk.h5")
     header = str(radar) if radar else "--set"
-    written = out.with_suffix(".radhar-import.h5") if sigmf else out
+    written = out.with_name(f".radhar-{uuid4().hex}.h5") if sigmf else out
     try:
         imported = import_capture(captures, written, settings, header)
         for line in imported.found:

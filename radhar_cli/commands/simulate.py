@@ -133,21 +133,24 @@ def simulate(
 
 
 def _record(simulation: "Simulation", path: Path, sigmf: bool) -> list[Path]:
+    from uuid import uuid4
+
     from radhar_cli.capture.importing import write_simulated
     from radhar_cli.capture.recording import Label, Recording
 
     assert simulation.beat is not None
     label = Label(label=simulation.activity.slug)
-    write_simulated(path, simulation.beat, simulation.waveform, label)
+    written = path.with_name(f".radhar-{uuid4().hex}.h5") if sigmf else path
+    write_simulated(written, simulation.beat, simulation.waveform, label)
     if not sigmf:
         return [path]
     from radhar_cli.capture.sigmf_file import write_sigmf
 
     try:
-        with Recording(path) as recording:
+        with Recording(written) as recording:
             return write_sigmf(recording, path.with_suffix(""))
     finally:
-        path.unlink(missing_ok=True)
+        written.unlink(missing_ok=True)
 
 
 def _looking_at(motion: Path, slug: str) -> list[str]:

@@ -2,12 +2,13 @@
 
 from collections.abc import Callable, Iterator
 from glob import has_magic, iglob
-from itertools import islice
+from itertools import islice, takewhile
 from pathlib import Path
 
 from radhar_cli.config.schema import MAX_FILES, MAX_PATH_LENGTH, Config, FilesConfig
 from radhar_cli.errors import ConfigError, FolderError, MotionFileError
 from radhar_cli.motion.files.reading import read_motion
+from radhar_cli.untrusted import refuse_outside
 
 Refuse = Callable[[str, object, str], ConfigError]
 
@@ -25,6 +26,7 @@ def with_files(config: Config, folder: Path, refuse: Refuse) -> Config:
     Raises:
         ConfigError: no such file, too many, another checksum; names key and value.
         MotionFileError: a file that cannot be read.
+        FolderError: a pattern finds a link that leads out of the folder that it names.
     """
     classes = {slug: one for slug, one in config.classes.items() if isinstance(one, FilesConfig)}
     if not classes:
@@ -61,6 +63,7 @@ def _expanded(one: FilesConfig, root: Path, key: str, refuse: Refuse) -> Iterato
         if known or not has_magic(written) or (root / written).is_file():
             yield written, known
             continue
+        named = Path(*takewhile(lambda part: not has_magic(part), Path(written).parts))
         paths = sorted(islice(iglob(written, root_dir=root), MAX_FILES + 1))  # noqa: PTH207 - also absolute ones
         if not paths:
             raise refuse(key, written, f"should name files; there are none like it in {root}")
@@ -69,6 +72,7 @@ def _expanded(one: FilesConfig, root: Path, key: str, refuse: Refuse) -> Iterato
         for path in paths:
             if len(path) > MAX_PATH_LENGTH:
                 raise refuse(key, path, f"should have at most {MAX_PATH_LENGTH} characters")
+            refuse_outside(root / path, root / named)
             yield path, ""
 
 

@@ -53,6 +53,7 @@ from radhar_cli.errors import UnfinishedError
 from radhar_cli.new_hdf5 import new_hdf5
 from radhar_cli.pipeline.validity import Flags, warnings
 from radhar_cli.progress import Progress
+from radhar_cli.replacing import replacing
 from radhar_cli.scene import subject_of
 
 SCHEMA_VERSION = 2
@@ -96,36 +97,34 @@ def assembled(
     """
     count, own_hash, shards = len(Rows.of(config)), identity_hash(identity(config)), sorted(shards)
     require_tiling(folder, shards, count, remedy)
-    unfinished, table, manifest = (unfinished_path(folder) for _ in range(3))
-    unfinished.parent.mkdir(parents=True, exist_ok=True)
+    unfinished_path(folder).parent.mkdir(parents=True, exist_ok=True)
     try:
-        with (
-            new_hdf5(unfinished, folder / DATASET) as (file, check),
-            table.open("w", newline="") as text,
-            manifest.open("w") as held,
+        with (  # replaced from the last to the first: dataset.h5 comes when the others are there
+            replacing(folder / DATASET, unfinished_path(folder)) as unfinished,
+            replacing(folder / WORK / MANIFEST, unfinished_path(folder)) as manifest,
+            replacing(folder / SCENES, unfinished_path(folder)) as table,
         ):
-            _describe_samples(file, config)
-            held.write(f'{{"identity": "{own_hash}", "rows": {count}, "shards": [\n')
-            if virtual:
-                _refer_to_shards(file, config, folder, shards)
-            flags = _copy_shards(
-                file, check, config, shards, own_hash, progress, text, held, virtual
-            )
-            held.write("]}\n")
-            messages = warnings(config, flags)
-            _root_attributes(file, config, messages)
-        yield unfinished, messages
-        table.replace(folder / SCENES)
-        write_whole(folder, folder / CONFIG, (CONFIG_HEADING + as_yaml(config)).encode())
-        manifest.replace(folder / WORK / MANIFEST)
-        unfinished.replace(folder / DATASET)
+            with (
+                new_hdf5(unfinished, folder / DATASET) as (file, check),
+                table.open("w", newline="") as text,
+                manifest.open("w") as held,
+            ):
+                _describe_samples(file, config)
+                held.write(f'{{"identity": "{own_hash}", "rows": {count}, "shards": [\n')
+                if virtual:
+                    _refer_to_shards(file, config, folder, shards)
+                flags = _copy_shards(
+                    file, check, config, shards, own_hash, progress, text, held, virtual
+                )
+                held.write("]}\n")
+                messages = warnings(config, flags)
+                _root_attributes(file, config, messages)
+            yield unfinished, messages
+            write_whole(folder, folder / CONFIG, (CONFIG_HEADING + as_yaml(config)).encode())
     except ShardError as error:
         sound, unusable = check_shards(shards, own_hash)
         require_tiling(folder, sound, count, remedy, unusable)
         raise UnfinishedError(f"{folder}: {error}; the same command resumes") from None
-    finally:
-        for path in (unfinished, table, manifest):
-            path.unlink(missing_ok=True)
 
 
 def _copy_shards(

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from radhar_cli.dataset.layout import WORK
 from radhar_cli.errors import FolderError
+from radhar_cli.replacing import replacing
 from radhar_cli.untrusted import regular_size
 
 MAX_TEXT = 2**20
@@ -25,16 +26,10 @@ def write_whole(folder: Path, path: Path, data: bytes) -> None:
     unfinished = unfinished_path(folder)
     refuse_links(folder, unfinished.parent)
     refuse_links(folder, path.parent)
-    unfinished.parent.mkdir(parents=True, exist_ok=True)
-    try:
+    for one in (unfinished.parent, path.parent):
+        one.mkdir(parents=True, exist_ok=True)
+    with replacing(path, unfinished):
         unfinished.write_bytes(data)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        unfinished.replace(path)
-    except BaseException as error:
-        unfinished.unlink(missing_ok=True)
-        if isinstance(error, OSError) and error.filename is None:  # a full disk
-            error.filename = str(path)
-        raise
 
 
 def unfinished_path(folder: Path) -> Path:

@@ -88,8 +88,9 @@ def _opened(path: Path, size: tuple[int, int] | None) -> Iterator[Image.Image]:
     except FolderError:
         raise
     except Exception as error:  # Pillow raises whatever its parsers meet
-        reason = getattr(error, "strerror", None) or str(error).partition("\n")[0]
-        raise FolderError(f"{path}: is not an image, or is truncated ({reason})") from None
+        reason = str(error).partition("\n")[0]
+        damaged = f"is not an image, or is truncated ({reason})"
+        raise FolderError(f"{path}: {getattr(error, 'strerror', None) or damaged}") from None
 
 
 def _wrong(image: Image.Image, size: tuple[int, int] | None) -> str | None:

@@ -96,7 +96,8 @@ def _places(folders: Iterable[Path]) -> list[_Place]:
             if named is not None and isinstance(named.get("part"), str):
                 places[part] = _Place(Part.parse(named["part"], f"{part}: part"), part, named)
             elif not inner.is_dir():
-                raise FolderError(f"{part}: is not a part that `radhar generate --shard` made")
+                what = "is not a part that `radhar generate --shard` made"
+                raise FolderError(f"{part}: {what if part.is_dir() else 'no such folder'}")
     if not places:
         raise FolderError(
             f"{', '.join(map(str, folders))}: no part of a data set; "

@@ -8,6 +8,7 @@ from radhar_cli.dataset.files import refuse_links, unfinished_path
 from radhar_cli.dataset.layout import METADATA, Rows, png_folder
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.table import entries, number_names
+from radhar_cli.replacing import replacing
 from radhar_cli.untrusted import regular_size
 
 
@@ -39,22 +40,18 @@ def write_metadata(data: Dataset, folder: Path) -> None:
     missing = [(split, path) for split, path in paths(data) if not (folder / path).exists()]
     if not missing:
         return
-    unfinished = [unfinished_path(folder) for _ in missing]
-    unfinished[0].parent.mkdir(parents=True, exist_ok=True)
-    try:
-        with ExitStack() as stack:
-            files = [stack.enter_context(path.open("wb")) for path in unfinished]
-            for split, line in lines(data):
-                for (wanted, _), file in zip(missing, files, strict=True):
-                    if split in (None, wanted):
-                        file.write(line)
-        for source, (_, path) in zip(unfinished, missing, strict=True):
+    unfinished_path(folder).parent.mkdir(parents=True, exist_ok=True)
+    with ExitStack() as stack:
+        files = []
+        for wanted, path in missing:
             refuse_links(folder, (folder / path).parent)
             (folder / path).parent.mkdir(parents=True, exist_ok=True)
-            source.replace(folder / path)
-    finally:
-        for path in unfinished:
-            path.unlink(missing_ok=True)
+            other = stack.enter_context(replacing(folder / path, unfinished_path(folder)))
+            files.append((wanted, stack.enter_context(other.open("wb"))))
+        for split, line in lines(data):
+            for wanted, file in files:
+                if split in (None, wanted):
+                    file.write(line)
 
 
 def wrong_metadata(data: Dataset, folder: Path) -> list[str]:

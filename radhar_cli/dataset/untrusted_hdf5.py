@@ -143,12 +143,13 @@ class UntrustedFile(Closing):
         self._sources = _Sources() if virtual else None
         try:
             self._source = _HeapChecked(path if data is None else data)
+        except OSError as error:
+            raise FolderError(f"{path}: {error.strerror}") from None
+        try:
             self.bytes = self._source.size
             self._file = h5py.File(self._source, "r")
             if self._file.id.get_create_plist().get_sizes() != (8, 8):
                 raise ValueError("its addresses and lengths should have 8 bytes")
-        except FileNotFoundError:
-            raise FolderError(f"{path}: no such file") from None
         except _DAMAGED as error:
             raise FolderError(f"{path}: is not an HDF5 file, or is truncated ({error})") from None
 

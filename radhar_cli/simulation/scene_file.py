@@ -16,7 +16,7 @@ from radhar_cli.errors import FolderError, UnfinishedError
 from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.new_hdf5 import new_hdf5
 from radhar_cli.processing.power_map import PowerMap
-from radhar_cli.replacing import replacing, write_text
+from radhar_cli.replacing import UNFINISHED, replacing, write_text
 from radhar_cli.scene import Scene, scene_numbers
 from radhar_cli.simulation.simulate import Simulation
 
@@ -24,8 +24,7 @@ SCENE_FILE = "scene.h5"
 SCENE_JSON = "scene.json"
 SCENE_YAML = "scene.yaml"
 MAPS, ANIMATION = "maps.png", "stickman.gif"
-UNFINISHED = "scene.unfinished"
-FILES = (SCENE_FILE, SCENE_JSON, SCENE_YAML, MAPS, ANIMATION, UNFINISHED)
+FILES = (SCENE_FILE, SCENE_JSON, SCENE_YAML, MAPS, ANIMATION)
 
 
 def refuse_foreign(folder: Path) -> None:
@@ -34,7 +33,8 @@ def refuse_foreign(folder: Path) -> None:
     Raises:
         FolderError: names some of it.
     """
-    held = sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
+    names = sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
+    held = [name for name in names if not name.startswith(UNFINISHED)]
     if held and not set(held) & set(FILES):
         raise FolderError(
             f"{folder}: holds {', '.join(held[:5])} but no scene of radhar's; "
@@ -44,7 +44,7 @@ def refuse_foreign(folder: Path) -> None:
 
 def write_scene(simulation: Simulation, path: Path) -> None:
     """Write scene.h5."""
-    with replacing(path, UNFINISHED) as unfinished, new_hdf5(unfinished, path) as (file, _):
+    with replacing(path) as unfinished, new_hdf5(unfinished, path) as (file, _):
         for name, power_map in simulation.maps.items():
             write_map(file, name, power_map)
         for name, signal in simulation.signals.items():

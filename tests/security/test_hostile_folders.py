@@ -147,7 +147,7 @@ def test_preview_report_and_simulation_are_not_written_through_a_link(
     (run / "eval").symlink_to(outside)
     assert "eval: is a symbolic link" in radhar("eval", run, data)
     (tmp_path / "c.yaml").write_text(SET)
-    for name in ("scene.json", "maps.png", "stickman.gif", "scene.unfinished"):
+    for name in ("scene.json", "maps.png", "stickman.gif"):
         (tmp_path / name[:-4]).mkdir()
         (tmp_path / name[:-4] / name).symlink_to(outside / "lock")
         message = radhar("simulate", tmp_path / "c.yaml", "-a", "S8", "-o", tmp_path / name[:-4])

@@ -18,6 +18,7 @@ from radhar_cli.learning.images.image_set import (
     class_order,
     repeated,
 )
+from radhar_cli.untrusted import refuse_outside
 
 _WANTED = (
     "should be dataset.h5, a folder that `radhar generate` wrote, or a tree <class>/<image>.png or "
@@ -178,9 +179,7 @@ def _visible(folder: Path, inside: Path) -> Iterator[Path]:
         if path.name.startswith("."):
             continue
         if path.is_symlink() and (path.is_dir() or is_image(path)):
-            target = path.resolve()
-            if not target.is_relative_to(inside.resolve()):
-                raise FolderError(f"{path}: is a link to {target}, which lies outside of {inside}")
+            refuse_outside(path, inside)
         yield path
 
 

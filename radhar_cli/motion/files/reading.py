@@ -9,7 +9,7 @@ from radhar_cli.motion.files.amc import MAX_SKELETON, read_amc
 from radhar_cli.motion.files.bvh import read_bvh
 from radhar_cli.motion.files.npz import read_npz
 from radhar_cli.motion.files.recording import MAX_BYTES, Recording, wrong
-from radhar_cli.untrusted import regular_size
+from radhar_cli.untrusted import refuse_outside, regular_size
 
 SUFFIXES = (".bvh", ".amc", ".npz")
 
@@ -58,13 +58,13 @@ def read_motion(path: Path, skeleton: Path | None = None) -> MotionBytes:
     if suffix not in SUFFIXES:
         hint = "; name its .amc files" if suffix == ".asf" else ""
         raise wrong(str(path), f"should be one of {', '.join(SUFFIXES)}{hint}")
-    found = None
+    data, found = _bytes(path, MAX_BYTES), None
     if suffix == ".amc":
         asf = skeleton or skeleton_of(path)
         if asf.suffix.lower() != ".asf":
             raise wrong(str(asf), "should be an .asf file")
         found = (asf, _bytes(asf, MAX_SKELETON))
-    return MotionBytes(path, _bytes(path, MAX_BYTES), found)
+    return MotionBytes(path, data, found)
 
 
 def skeleton_of(path: Path) -> Path:
@@ -72,6 +72,7 @@ def skeleton_of(path: Path) -> Path:
 
     Raises:
         MotionFileError: there is none.
+        FolderError: it is a link that leads elsewhere.
     """
     named: list[Path] = [
         path.with_suffix(".asf"),
@@ -80,6 +81,7 @@ def skeleton_of(path: Path) -> Path:
     beside: list[Path] = sorted(path.parent.glob("*.asf"))[:2]
     for candidate in [*named, *beside] if len(beside) == 1 else named:
         if candidate.is_file():
+            refuse_outside(candidate, path.parent)
             return candidate
     names = " or ".join(dict.fromkeys(one.name for one in named))
     raise wrong(str(path), f"needs its skeleton: {names} beside it, or skeleton: FILE")

@@ -1,15 +1,49 @@
-"""What the documents say: fenced blocks, and the defaults of their tables."""
+"""What the documents say: fenced blocks, commands in the text, the defaults of their tables."""
 
 import json
 import re
 from collections.abc import Iterator
 from pathlib import Path
+from textwrap import dedent
 from typing import Any, NamedTuple, get_args
 
 from pydantic import BaseModel
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+class Block(NamedTuple):
+    """A fenced block: page and line of its fence, language, text."""
+
+    page: str
+    line: int
+    language: str
+    text: str
+
+    def __str__(self) -> str:
+        return f"{self.page}:{self.line}"
+
+
+def blocks(page: Path) -> list[Block]:
+    """The fenced blocks of a page, also those of a list's items."""
+    text = page.read_text()
+    return [
+        Block(page.name, text[: one.start()].count("\n") + 1, one[2], dedent(one[3]))
+        for one in re.finditer(r"^( *)```(\w*)\n(.*?)^\1```", text, re.MULTILINE | re.DOTALL)
+    ]
+
+
+def commands(page: Path) -> Iterator[list[str]]:
+    """Words of every `radhar ...` and `python scripts/...` of a page, in blocks or in the text."""
+    text = re.sub(r"^ *```.*?^ *```", "", page.read_text(), flags=re.MULTILINE | re.DOTALL)
+    lines = [" ".join(span.split()) for span in re.findall(r"`([^`]+)`", text)]
+    for block in blocks(page):
+        lines += block.text.replace("\\\n", " ").splitlines()
+    for line in lines:
+        found = re.search(r"(?:^|\s|['\"])((?:radhar|python scripts/\w+\.py)(?: .*)?$)", line)
+        if found:
+            yield re.split(r"\s#|[|;]", found[1])[0].split()
 
 
 class Row(NamedTuple):

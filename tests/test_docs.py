@@ -2,11 +2,14 @@
 
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
-from documents import PAGES, Row, leaves, rows, value_at, written
+from documents import PAGES, Row, commands, leaves, rows, value_at, written
 from pydantic import BaseModel
+from typer.main import get_command
 
+from radhar_cli.cli import program
 from radhar_cli.config import Config
 from radhar_cli.config.reading import load_section
 from radhar_cli.config.schema import FilesConfig, ReflectorConfig
@@ -21,6 +24,21 @@ def test_links_lead_somewhere(page: Path) -> None:
     for target in re.findall(r"\]\((?!https?:)([^)#]+)\)", text):
         assert (page.parent / target).exists(), target
     assert not re.search(r"TODO|FIXME|[A-Z]{4,}_TABLE", text)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_commands_and_their_options_exist(page: Path) -> None:
+    for program_, *words in commands(page):
+        options = [word.partition("=")[0].strip("\"'") for word in words if word.startswith("--")]
+        if program_ == "python":
+            text = (ROOT / words[0]).read_text()
+            assert all(f'"{option}"' in text for option in options), words
+            continue
+        known: Any = get_command(program())
+        for word in words:
+            known = getattr(known, "commands", {}).get(word, known)
+        there = {name for parameter in known.params for name in parameter.opts}
+        assert set(options) <= {*there, "--help"}, words
 
 
 def sections(model: type[BaseModel], prefix: str = "") -> list[str]:

@@ -3,6 +3,7 @@
 import os
 import signal
 import sys
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from radhar_cli.errors import INTERRUPTED, TERMINATED, RadharError
@@ -11,6 +12,7 @@ from radhar_cli.untrusted import shown
 if TYPE_CHECKING:
     import typer
 
+DATA_SETS = "Data sets"
 STATUSES = (
     "Exit status: 0 done; 1 something differs or is missing, or the machine failed the run; 2 what "
     "was given cannot be used; 130 after Ctrl-C, 143 after SIGTERM: what is finished is kept."
@@ -44,8 +46,10 @@ def program() -> "typer.Typer":
         verify,
         version,
     )
+    from radhar_cli.commands.headings import Headings
 
     app = typer.Typer(
+        cls=Headings,
         help="Labelled FMCW radar data sets for human activity recognition, from a YAML file.",
         epilog=STATUSES,
         no_args_is_help=True,
@@ -53,36 +57,30 @@ def program() -> "typer.Typer":
         rich_markup_mode=None,
     )
     app.callback()(version.options)
-    app.command()(generate.generate)
-    app.command()(merge.merge)
-    app.command()(convert.convert)
-    app.command()(simulate.simulate)
-    app.command("import")(import_.import_)
-    app.command()(process.process)
-    app.command()(fit.fit)
-    app.command()(motion.motion)
-    app.command()(verify.verify)
-    app.command()(train.train)
-    app.command("eval")(evaluate.evaluate)
-    app.command()(adapt.adapt)
-    app.command()(compare.compare)
-    app.command()(predict.predict)
-    app.command()(models.models)
-    app.command()(export.export)
-    app.command()(tradeoff.tradeoff)
-    app.command()(preview.preview)
-    app.command()(inspect.inspect)
-    app.add_typer(config.group(), name="config", no_args_is_help=True)
+    groups: dict[str, list[Callable[..., None]]] = {
+        DATA_SETS: [generate.generate, verify.verify, merge.merge, convert.convert],
+        "Look": [simulate.simulate, motion.motion, preview.preview, inspect.inspect],
+        "Real radars": [import_.import_, process.process, fit.fit, compare.compare],
+        "Learn": [train.train, evaluate.evaluate, predict.predict, adapt.adapt],
+        "Networks and settings": [models.models, export.export, tradeoff.tradeoff],
+    }
+    names = {import_.import_: "import", evaluate.evaluate: "eval"}
+    for heading, commands in groups.items():
+        for one in commands:
+            app.command(names.get(one), rich_help_panel=heading)(one)
+    app.add_typer(config.group(), name="config", no_args_is_help=True, rich_help_panel=DATA_SETS)
     _with_output_options(app)
     return app
 
 
 def _with_output_options(app: "typer.Typer") -> None:
-    """Give --json and --quiet to every command."""
+    """Give --json, --quiet and the completion of values to every command."""
+    from radhar_cli.commands.completion import complete_options
     from radhar_cli.commands.tell import with_output_options
 
     for command in app.registered_commands:
         assert command.callback is not None
+        complete_options(command.callback)
         command.callback = with_output_options(command.callback)
     for group in app.registered_groups:
         assert group.typer_instance is not None

@@ -2,19 +2,23 @@
 
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
+from documents import PAGES, Row, commands, leaves, rows, value_at, written
 from pydantic import BaseModel
+from typer.main import get_command
 
-from radhar_cli.config import Config, load_config
+from radhar_cli.cli import program
+from radhar_cli.config import Config
 from radhar_cli.config.reading import load_section
+from radhar_cli.config.schema import FilesConfig, ReflectorConfig
 from radhar_cli.learning.settings import TrainConfig
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGES = [*sorted(ROOT.glob("*.md")), *sorted((ROOT / "docs").glob("*.md"))]
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
+@pytest.mark.parametrize("page", [*ROOT.glob("*.md"), *PAGES], ids=lambda p: p.name)
 def test_links_lead_somewhere(page: Path) -> None:
     text = page.read_text()
     for target in re.findall(r"\]\((?!https?:)([^)#]+)\)", text):
@@ -22,12 +26,19 @@ def test_links_lead_somewhere(page: Path) -> None:
     assert not re.search(r"TODO|FIXME|[A-Z]{4,}_TABLE", text)
 
 
-def test_the_yaml_of_the_readme_is_a_config(tmp_path: Path) -> None:
-    blocks = re.findall(r"```yaml\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
-    assert blocks
-    for block in blocks:
-        (tmp_path / "readme.yaml").write_text(block)
-        load_config(tmp_path / "readme.yaml")
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_commands_and_their_options_exist(page: Path) -> None:
+    for program_, *words in commands(page):
+        options = [word.partition("=")[0].strip("\"'") for word in words if word.startswith("--")]
+        if program_ == "python":
+            text = (ROOT / words[0]).read_text()
+            assert all(f'"{option}"' in text for option in options), words
+            continue
+        known: Any = get_command(program())
+        for word in words:
+            known = getattr(known, "commands", {}).get(word, known)
+        there = {name for parameter in known.params for name in parameter.opts}
+        assert set(options) <= {*there, "--help"}, words
 
 
 def sections(model: type[BaseModel], prefix: str = "") -> list[str]:
@@ -46,6 +57,46 @@ def test_every_config_key_is_documented(kind: type[BaseModel], page: str) -> Non
     text = (ROOT / "docs" / page).read_text()
     missing = [key for key in sections(kind) if key not in text]
     assert not missing
+
+
+def by_model(model: str) -> Config:
+    """The defaults that people of this model have."""
+    of_files = {"classes": {"wave": ["wave.bvh"], "bow": ["bow.bvh"]}} if model == "file" else {}
+    return Config.model_validate({"motion": {"model": model}, **of_files})
+
+
+OF_FILES = FilesConfig(files=("wave.bvh",))
+DATA = tuple(map(by_model, ("human", "paper", "file")))
+TABLES: list[tuple[str, tuple[BaseModel, ...]]] = [
+    ("config.md", (*DATA, ReflectorConfig())),
+    ("training.md", (TrainConfig(),)),
+    ("motion_files.md", (OF_FILES,)),
+]
+ROWS = [(page, kinds, row) for page, kinds in TABLES for row in rows(ROOT / "docs" / page)]
+
+
+@pytest.mark.parametrize(
+    ("page", "kinds", "row"), ROWS, ids=[f"{p}-{r.keys[0]}" for p, _, r in ROWS]
+)
+def test_tables_have_the_defaults_of_the_schema(
+    page: str, kinds: tuple[BaseModel, ...], row: Row
+) -> None:
+    if not row.default:
+        return
+    known = [one for one in kinds if row.keys[0].split(".")[0] in type(one).model_fields]
+    if row.keys[0] in ("motion.model", "classes"):  # given above
+        known = [Config()]
+    words, in_table = {"null", "true", "false"}, written(row.default)
+    for key in row.keys:
+        values = [value_at(one, key) for one in known]
+        values = [value for value in values if value is not None] or values
+        expected = leaves(values, bounds=False)
+        missing = {one for one in expected if one in words or isinstance(one, float)} - in_table
+        assert not missing, key
+        assert all(one in row.default for one in expected - words if isinstance(one, str)), key
+    assert in_table <= leaves(
+        [value_at(one, key) for one in known for key in row.keys], bounds=True
+    )
 
 
 def test_the_papers_training_config_is_the_default() -> None:

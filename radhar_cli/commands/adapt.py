@@ -43,7 +43,9 @@ def adapt(
     ] = False,
     device: Annotated[str, typer.Option(help="auto, cpu, cuda or mps.")] = "auto",
 ) -> None:
-    """Fit a copy of a run to unlabelled images: its batch-norm statistics, and with --epochs more.
+    """Fit a copy of a run to another radar's images, without labels.
+
+    Its batch-norm statistics are taken from them, and with --epochs it learns from them.
 
     Example:
 

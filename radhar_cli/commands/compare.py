@@ -40,7 +40,9 @@ def compare(
     pictures: Annotated[int, typer.Option(min=1, max=20, help="Maps in a row of a figure.")] = 6,
     seed: Annotated[int, typer.Option(min=0, help="Of what is drawn.")] = 1,
 ) -> None:
-    """Compare simulated with measured maps: statistics, their distances, and a two-sample test.
+    """Say how far simulated maps are from measured ones.
+
+    Statistics, their distances, and a two-sample test.
 
     Example:
 

@@ -18,7 +18,7 @@ Training = Annotated[bool, typer.Option("--train", help="The file of train, not 
 def group() -> typer.Typer:
     """The subcommands."""
     app = typer.Typer(
-        help="""Start a config, show it resolved, compare two, or print the schema of the file.
+        help="""Start, show or compare configs, or print their schema.
 
         Example:
 
@@ -34,7 +34,7 @@ def init(
     out: Annotated[Path, typer.Argument(help="YAML file to write.")],
     train: Training = False,
 ) -> None:
-    """Write a config to start from: every key with its default and a line that says what it is.
+    """Write a config to start from: every key, default and meaning.
 
     Example:
 
@@ -61,7 +61,7 @@ def show(
     set_: Overrides = None,
     train: Training = False,
 ) -> None:
-    """Print the config with every default and its bases filled in, as YAML.
+    """Print a config with its defaults and bases filled in.
 
     Example:
 
@@ -80,7 +80,7 @@ def diff(
     other: Annotated[Path, typer.Argument(metavar="B", help="YAML file.")],
     train: Training = False,
 ) -> None:
-    """Print in which keys two configs differ, every default and base filled in.
+    """Print in which keys two configs differ, defaults filled in.
 
     Exit status 0 if they say the same, 1 if they differ.
 

@@ -15,7 +15,9 @@ def convert(
         str, typer.Option(metavar="FORMAT", help="webdataset, parquet, npy or mat (MATLAB 7.3).")
     ],
 ) -> None:
-    """Write a data set as WebDataset tar files, Parquet, .npy arrays or a MATLAB file.
+    """Write a data set in another format, such as Parquet.
+
+    WebDataset tar files, Parquet, .npy arrays or a MATLAB file.
 
     Example:
 

@@ -12,7 +12,7 @@ def export(
     run: Annotated[Path, typer.Argument(help="Folder that train wrote.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="File to write, such as model.onnx.")],
 ) -> None:
-    """Export the best epoch's network to ONNX, and check it with ONNX Runtime.
+    """Write a network as ONNX, checked with ONNX Runtime.
 
     Example:
 

@@ -14,7 +14,9 @@ def fit(
     out: Annotated[Path, typer.Option("-o", "--out", help="Config to write.")],
     overwrite: Replace = False,
 ) -> None:
-    """Read waveform, SNR, ranges, noise and what stands in the room into a config to simulate by.
+    """Read a config to simulate by off recordings.
+
+    It has their waveform, SNR, ranges, noise and what stands in the room.
 
     Example:
 

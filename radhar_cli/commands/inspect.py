@@ -11,7 +11,7 @@ from radhar_cli.commands.tell import report, talks
 def inspect(
     path: Annotated[Path, typer.Argument(help="What radhar wrote, or a tree of class folders.")],
 ) -> None:
-    """Summarise a data set, a half-built folder, a scene, a recording, or a tree of class folders.
+    """Summarise a data set, a scene, a recording or a tree of images.
 
     Example:
 

@@ -19,7 +19,9 @@ def motion(
     overwrite: Replace = False,
     set_: Overrides = None,
 ) -> None:
-    """Write the motion of one scene as BVH, for Blender and others: y up, cm, Mixamo's names.
+    """Write the motion of one scene as BVH, for Blender and others.
+
+    y is up, lengths are in cm, joints have Mixamo's names.
 
     Example:
 

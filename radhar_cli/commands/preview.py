@@ -25,7 +25,7 @@ def preview(
         Path | None, typer.Option("-o", "--out", help="PNG; preview_<map>.png next to the data.")
     ] = None,
 ) -> None:
-    """Draw a contact sheet of a data set by class, or of any tree of class folders.
+    """Draw a contact sheet of a data set or a tree of images.
 
     Example:
 

@@ -27,7 +27,9 @@ def process(
     ] = None,
     figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw maps.png.")] = True,
 ) -> None:
-    """Make maps of a recording: maps.h5 and maps.png, the torso's track among them.
+    """Make maps of a recording, and the torso's track.
+
+    Written are maps.h5 and maps.png.
 
     Example:
 

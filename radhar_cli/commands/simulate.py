@@ -54,11 +54,13 @@ def simulate(
         bool, typer.Option("--figures/--no-figures", help="Draw maps.png and the animation.")
     ] = True,
 ) -> None:
-    """Simulate one scene: scene.h5, scene.json, maps.png and an animated stickman.
+    """Simulate one scene: its maps, its truth and an animation.
+
+    Written are scene.h5, scene.json, maps.png and an animated stickman.
 
     Example:
 
-      radhar simulate configs/paper/free_space.yaml --activity walking --seed 7 -o out/walk
+      radhar simulate configs/quickstart.yaml --activity walking --seed 7 -o out/walk
     """
     from radhar_cli.commands.import_ import wants_sigmf
     from radhar_cli.config import load_config

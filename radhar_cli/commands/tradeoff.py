@@ -116,4 +116,4 @@ def _accuracies(
     return accuracies, learned
 
 
-tradeoff.__doc__ = "Measure what accuracy costs: budgets, engines, precision, physics.\n" + EXAMPLE
+tradeoff.__doc__ = "Measure what accuracy costs: tolerances, engines, physics.\n" + EXAMPLE

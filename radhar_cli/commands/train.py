@@ -12,7 +12,7 @@ from radhar_cli.errors import FolderError
 EXAMPLE = """
 Example:
 
-  radhar train datasets/quickstart -o runs/quickstart --set epochs=5
+  radhar train datasets/quickstart -o runs/quickstart
 
   radhar train datasets/measured -o runs/tuned --init runs/simulated --set learning_rate=1e-4
 

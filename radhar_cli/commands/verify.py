@@ -19,7 +19,9 @@ def verify(
         typer.Option("--motion", help="Folder that the paths of motion files are relative to."),
     ] = None,
 ) -> None:
-    """Check a data set: checksums, labels, counts, and samples synthesised anew.
+    """Check a data set, and synthesise some of its samples anew.
+
+    Checksums, labels and counts are compared.
 
     Exit status 0 if all is well, 1 if something differs.
 

@@ -1,0 +1,353 @@
+"""Every block of README.md and docs is run, page by page, at small size.
+
+The blocks of a page run in order in a folder laid out as a clone: YAML is built, Python executed,
+shell text given to bash as it stands, where this process answers for `radhar`. A YAML block whose
+first line is `# name.yaml` is written under that name instead, before the others run.
+"""
+
+import json
+import re
+import shutil
+import tomllib
+from collections.abc import Callable
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+import yaml
+from capture.dca1000_file import Radar, body, echo, words
+from command_line import ROOT, radhar
+from documents import PAGES, Block, blocks
+from learning.patterns import load_timm, tree
+from recorded import frames, write_amc, write_bvh, write_npz
+from shell import Answer, Call, run_shell
+from torch.utils.data import DataLoader
+from typer.main import get_command
+
+from radhar_cli.cli import program
+from radhar_cli.commands.generate import shard_named
+from radhar_cli.config import Config, load_config
+from radhar_cli.pipeline.validity import draw_valid_scene
+
+LANGUAGES = {"sh", "bash", "yaml", "python", "text"}  # text is not run
+# What no test can run, by a part of the block, and why.
+NOT_RUN = {
+    "dask_jobqueue": "needs SLURM",
+    "rule merge": "needs Snakemake",
+    "load_dataset": "tests/dataset/test_hub.py does, in a process of its own",
+}
+# Commands whose options alone are looked at, by a word of theirs, and why.
+OPTIONS_ONLY = {
+    "--cluster": "other machines; tests/dataset/test_cluster.py has some",
+    "tradeoff": "takes minutes; tests/tradeoff runs its parts",
+    "models": "builds seven networks; tests/learning/test_models.py does",
+}
+# What makes a config small, and a command: it stands after its own words.
+FEW = ["punching", "walking", "walking_to_falling"]
+SMALL_DATA = {"samples_per_class": 2, "split": {"train": 0.5, "validation": 0.5}}
+SMALL_IMAGE = {"size_px": 32}
+SMALL = {
+    "generate": {"--jobs": "1"},
+    "train": {"--set": "epochs=1 workers=0"},
+    "train --stream": {"--set": "stream.samples_per_epoch=12 stream.validation_per_class=1"},
+    "adapt": {"--epochs": "1"},
+    "eval --shots": {"--repeats": "1", "--set": "epochs=1"},
+    "verify": {"--samples": "1"},
+    "simulate": {"--set": "duration_s=3"},
+}
+# What SLURM would say.
+ENVIRONMENT = {
+    "SCRATCH": ".",
+    "SLURM_ARRAY_TASK_ID": "1",
+    "SLURM_ARRAY_TASK_MIN": "1",
+    "SLURM_ARRAY_TASK_MAX": "1",
+    "SLURM_ARRAY_TASK_COUNT": "1",
+    "SLURM_CPUS_PER_TASK": "1",
+}
+
+
+def ran(*words: object) -> None:
+    done = radhar(*words)
+    assert done.returncode == 0, done.stderr
+
+
+def small(document: dict[str, Any]) -> dict[str, Any]:
+    """A config of data or of training, made small."""
+    if "epochs" in document or "base" in document:
+        return {**document, "epochs": 1}
+    image = {**document.get("image", {}), **SMALL_IMAGE}
+    if "recordings" in document:
+        return {**document, "image": image}
+    few = {"activities": FEW} if document.get("activities", "all") == "all" else {}
+    return {**document, **SMALL_DATA, **few, "image": image}
+
+
+def clone(folder: Path) -> None:
+    """Configs made small, scripts and examples."""
+    for path in (ROOT / "configs").rglob("*.yaml"):
+        there = folder / path.relative_to(ROOT)
+        there.parent.mkdir(parents=True, exist_ok=True)
+        there.write_text(yaml.safe_dump(small(yaml.safe_load(path.read_text())), sort_keys=False))
+    for name in ("scripts", "examples", "Makefile", "pyproject.toml", "radhar_cli"):
+        (folder / name).symlink_to(ROOT / name)
+
+
+# Files that nobody has, made where a page asks for them.
+
+
+def data_set(path: Path) -> None:
+    ran("generate", "configs/quickstart.yaml", "-o", path, "--jobs", "1")
+
+
+def run(path: Path) -> None:
+    if not Path("datasets/quickstart").exists():
+        data_set(Path("datasets/quickstart"))
+    small = ("--model", "smallnet", "--set", "epochs=1", "--set", "workers=0")
+    ran("train", "datasets/quickstart", "-o", path, *small)
+
+
+def images(path: Path) -> None:
+    tree(path, FEW, {"train": 2, "val": 1})
+
+
+def one_image(path: Path) -> None:
+    tree(Path("of_somebody"), ["walking"], {"": 1})
+    shutil.copy("of_somebody/walking/000.png", path)
+
+
+def movement(path: Path) -> None:
+    path.parent.mkdir(exist_ok=True)
+    write = {".bvh": write_bvh, ".amc": write_amc, ".npz": write_npz}[path.suffix]
+    write(path, frames("punching", 4.0))
+
+
+def capture(path: Path, seed: int = 0) -> None:
+    """Of TI's card, and what Studio says of the radar."""
+    (path.parent / "setup.mmwave.json").write_text(json.dumps(CARD.studio()))
+    motion = {"range_m": 2, "angle_deg": 0, "speed_mps": 0.7}
+    walker = Config.model_validate({"duration_s": 4.2, "activities": ["S8"], "motion": motion})
+    beat = echo(CARD, body(walker), round(4.2e3 / CARD.period_ms), seed)
+    words(beat, len(CARD.transmitters)).tofile(path)
+
+
+CARD = Radar(samples=32, idle_us=2466.0, loops=8, period_ms=20.0, transmitters=(1,), receivers=0b1)
+
+
+def imported(path: Path) -> None:
+    capture(Path("second_Raw_0.bin"), seed=1)
+    ran("import", "second_Raw_0.bin", "--radar", "setup.mmwave.json", "-o", path)
+
+
+def recording(path: Path) -> None:
+    """What a simulated radar received from a walker."""
+    (path.parent / "lab.yaml").write_text(LAB)
+    to = ["--to", "sigmf"] if path.suffix == ".sigmf-meta" else []
+    ran("simulate", "lab.yaml", "-a", "S8", "-o", "lab", "--raw", "--no-figures", *MAPS, *to)
+    for made in Path("lab").glob("recording.*"):
+        shutil.move(made, path.with_suffix(made.suffix))
+
+
+LAB = """
+radar: {carrier_hz: 10e9, bandwidth_hz: 1e9, prf_hz: 300, adc_rate_hz: 2.5e6}
+motion: {range_m: 2, angle_deg: 0}
+duration_s: 6
+"""
+MAPS = ("--maps", "stft")
+
+
+def array(path: Path) -> None:
+    """Frames of a radar with two receivers."""
+    beat = np.random.default_rng(0).normal(size=(2, 10, 32, 2, 64)).astype(np.float32)
+    np.save(path, beat[0] + 1j * beat[1])
+
+
+def manifest(path: Path) -> None:
+    """Of eight persons who walked and fell, all in one recording."""
+    lines = [f"walk1.h5,{label},{n}" for n in range(8) for label in ("walking", "falling")]
+    path.write_text("\n".join(["file,label,person", *lines]))
+
+
+def masks(path: Path) -> None:
+    images = np.random.default_rng(0).random((8, 32, 32)) < 0.3
+    np.savez(path, images=images, label=np.array(["walking", "falling"] * 4))
+
+
+def few_samples(path: Path) -> None:
+    document = yaml.safe_load(Path("configs/quickstart.yaml").read_text())
+    path.write_text(yaml.safe_dump({**document, "samples_per_class": 3}))
+
+
+def idle(path: Path) -> None:
+    """A Python that does nothing."""
+    path.write_text("#!/bin/sh\n")
+    path.chmod(0o755)
+
+
+FILES: dict[str, dict[str, Callable[[Path], object]]] = {
+    "CONTRIBUTING.md": {".venv/bin/python": idle},
+    "README.md": {
+        "adc_data_Raw_0.bin": capture,
+        "my_images": images,
+        "measured": images,
+        "theirs": images,
+        "names.yaml": lambda path: path.write_text("their_walk: walking"),
+        "some_map.png": one_image,
+    },
+    "cluster.md": {"CONFIG": few_samples, "config.yaml": few_samples},
+    "config.md": {"lab.yaml": few_samples},
+    "measured.md": {
+        "adc_data_Raw_0.bin": capture,
+        "fall.h5": imported,
+        "walk.npy": array,
+        "walk.sigmf-meta": recording,
+        "measured/manifest.csv": manifest,
+        "datasets/simulated": data_set,
+        "runs/simulated": run,
+        "masks.npz": masks,
+        "masks": lambda path: tree(path, [*FEW[:2], "picking_up"]),
+        "names.yaml": lambda path: path.write_text("picking_up: grabbing"),
+    },
+    "motion_files.md": {
+        "wave.bvh": movement,
+        "wave/one.bvh": movement,
+        "cmu/02_01.amc": movement,
+        "cmu/02_02.amc": movement,
+        "beds/low.npz": movement,
+    },
+    "output.md": {"CONFIG": few_samples, "datasets/mine": data_set},
+    "stream.md": {"datasets/measured": data_set},
+    "training.md": {"datasets/quickstart": data_set},
+}
+
+
+def first_batch(stream: Any, batch_size: int, num_workers: int) -> object:
+    """What a loader of endless data gives first, without processes."""
+    return islice(DataLoader(stream, batch_size=4), 1)
+
+
+def tell(page: Path, folder: Path) -> None:
+    """Run every block of a page, as its reader would."""
+    clone(folder)
+    for name, make in FILES.get(page.name, {}).items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        make(Path(name))
+    told = blocks(page)
+    for block in told:
+        if name := config_name(block):
+            (folder / name).write_text(yaml.safe_dump(small(yaml.safe_load(block.text))))
+    for block in told:
+        if block.language != "text" and not any(part in block.text for part in NOT_RUN):
+            run_block(block, folder)
+
+
+def config_name(block: Block) -> str | None:
+    """The file that a block of YAML is, if it says so."""
+    named = re.match(r"# (\S+\.yaml)\n", block.text)
+    return named[1] if named else None
+
+
+def run_block(block: Block, folder: Path) -> None:
+    if block.language == "python":
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr("torch.utils.data.DataLoader", first_batch)
+            exec(compile(block.text, str(block), "exec"), {})
+        plt.close("all")
+    elif block.language != "yaml":
+        done = run_shell("jq() { cat; }\n" + block.text, folder, PROGRAMS)
+        assert done.returncode == 0, f"{block}: {done.stderr}"
+    elif config_name(block) is None:
+        path = folder / f"block_{block.line}.yaml"
+        path.write_text(block.text)
+        sets = as_sets({**SMALL_DATA, **{f"image.{key}": n for key, n in SMALL_IMAGE.items()}})
+        ran("generate", path, "-o", f"built/{block.line}", "--jobs", "1", *sets)
+
+
+def as_sets(values: dict[str, object]) -> list[str]:
+    return [word for key in values for word in ("--set", f"{key}={json.dumps(values[key])}")]
+
+
+def answer_radhar(call: Call) -> Answer:
+    """The command, made small."""
+    command, *words = call.words
+    if any(word in call.words for word in OPTIONS_ONLY):
+        get_command(program()).commands[command].make_context(command, shard_named(words))
+        return Answer()
+    for name, options in SMALL.items():
+        if {*name.split()} <= {*call.words}:
+            words += [
+                word
+                for option, values in options.items()
+                for value in values.split()
+                for word in (option, value)
+            ]
+    if command == "generate" and "--recordings" not in words:
+        document = yaml.safe_load(Path(words[0]).read_text())
+        if document.get("samples_per_class", 300) > 3:  # written by a command, not by this test
+            words += as_sets({**SMALL_DATA, "activities": FEW, "image.size_px": 32})
+    done = radhar(command, *words)
+    return Answer(done.returncode, done.stdout, done.stderr)
+
+
+def answer_make(call: Call) -> Answer:
+    """The commands of a target; how it sets up .venv aside."""
+    text = Path("Makefile").read_text()
+    for target in call.words:
+        recipe = re.search(rf"^{target}:.*\n((?:\t.*\n)*)", text, re.MULTILINE)
+        assert recipe, f"make {target}: there is none"
+        if target in ("test", "test-all", "bench", "install"):
+            continue
+        for command in re.findall(r"\$\(BIN\)/radhar (.*)", recipe[1]):
+            answer = answer_radhar(Call("radhar", command.split()))
+            assert answer.status == 0, answer.err
+    return Answer()
+
+
+def answer_pip(call: Call) -> Answer:
+    """What it would install is known."""
+    project = tomllib.loads(Path("pyproject.toml").read_text())["project"]
+    for extra in re.findall(r"radhar\[(\w+)\]", " ".join(call.words)):
+        assert extra in project["optional-dependencies"], extra
+    return Answer()
+
+
+def answer_python(call: Call) -> Answer:
+    """A script and its options are there; they take minutes to days."""
+    script, *words = call.words
+    if script != "-m":
+        text = Path(script).read_text()
+        assert all(f'"{word}"' in text for word in words if word.startswith("--")), call
+    return Answer()
+
+
+PROGRAMS = {
+    "radhar": answer_radhar,
+    "make": answer_make,
+    "pip": answer_pip,
+    "python": answer_python,
+    "dask": lambda call: Answer(),
+}
+
+
+@pytest.mark.parametrize("page", [*filter(blocks, PAGES)], ids=lambda page: page.name)
+def test_a_page_does_what_it_says(
+    page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert {block.language for block in blocks(page)} <= LANGUAGES, "a block without its language"
+    load_timm()
+    for name, value in ENVIRONMENT.items():
+        monkeypatch.setenv(name, value)
+    monkeypatch.chdir(tmp_path)
+    tell(page, tmp_path)
+
+
+@pytest.mark.slow
+def test_every_scene_of_the_readmes_data_set_can_be_drawn(tmp_path: Path) -> None:
+    (told,) = (block for block in blocks(ROOT / "README.md") if block.language == "yaml")
+    (tmp_path / "readme.yaml").write_text(told.text)
+    config = load_config(tmp_path / "readme.yaml")
+    for activity in config.chosen_activities:
+        for index in range(config.samples_of(activity)):
+            draw_valid_scene(config, activity, index)

@@ -13,7 +13,7 @@ from radhar_cli.cli import program
 from radhar_cli.config import Config
 from radhar_cli.config.reading import load_section
 from radhar_cli.config.schema import FilesConfig, ReflectorConfig
-from radhar_cli.learning.settings import TrainConfig
+from radhar_cli.learning.settings import ScheduleConfig, TrainConfig
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -99,5 +99,9 @@ def test_tables_have_the_defaults_of_the_schema(
     )
 
 
-def test_the_papers_training_config_is_the_default() -> None:
-    assert load_section(TrainConfig, ROOT / "configs/train/paper.yaml") == TrainConfig()
+def test_the_papers_training_config_is_its_table() -> None:
+    paper = load_section(TrainConfig, ROOT / "configs/train/paper.yaml")
+    assert (paper.model, paper.epochs, paper.batch_size) == ("fftnet", 20, 128)
+    assert (paper.optimiser, paper.learning_rate, paper.weight_decay) == ("adam", 0.00147, 1e-4)
+    assert paper.schedule == ScheduleConfig(kind="step", every_epochs=10, factor=0.1)
+    assert (paper.label_smoothing, paper.warmup_epochs, paper.average_last) == (0.1, 0, 0)

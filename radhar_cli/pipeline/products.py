@@ -37,6 +37,7 @@ from radhar_cli.pipeline.physics import (
     antennas_of,
     canceller_of,
     cfar_of,
+    channel_of,
     frames_of,
     fsst_frames_of,
     gate_of,
@@ -209,17 +210,23 @@ def _clutter(c: Config) -> str:
 
 
 def _receiver(c: Config) -> Iterator[Product]:
-    def noise(scene: Scene, power: float, w: Waveform) -> WhiteNoise:
+    def noise(scene: Scene, power: float, w: Waveform, channel: object) -> WhiteNoise:
         assert isinstance(scene.config.snr_db, (int, float))
         sigma = np.sqrt(noise_variance(power, scene.config.snr_db))
-        return WhiteNoise(float(sigma), w, lambda name: noise_stream(scene, name))
+        return WhiteNoise(float(sigma), w, partial(noise_stream, scene, channel=channel))
 
     if c.snr_db is None:
         yield Product("receiver", (), tuple, "nothing: snr_db is null")
         return
-    yield Product("noise", ("scene", "signal_power", "waveform"), noise, "white noise, by snr_db")
-    needs = ("scene", "noise")
-    yield Product("receiver", needs, lambda s, n: (n, *impairments_of(s, n)), "noise, interference")
+    yield Product("channel", ("scene", "antennas"), channel_of, "whose noise it is")
+    needs = ("scene", "signal_power", "waveform", "channel")
+    yield Product("noise", needs, noise, "white noise, by snr_db")
+    yield Product(
+        "receiver",
+        ("scene", "noise"),
+        lambda s, n: (n, *impairments_of(s, n)),
+        "noise, interference",
+    )
 
 
 def _direct(c: Config) -> Iterator[Product]:

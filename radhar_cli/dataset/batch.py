@@ -100,7 +100,8 @@ def _run_batch(batch: Batch) -> int:
                 write_whole(batch.folder, batch.folder / path, data)
         samples.append(sample)
         values[number] = made.values
-        flags[number] = found | (Flags.FALLBACK if sample.fell_back else 0)
+        black = not all(image.levels.any() for image in sample.images.values())
+        flags[number] = found | Flags.FALLBACK * sample.fell_back | Flags.BLACK * black
     data = encode_shard(config, batch.identity_hash, batch.start, samples, values, flags)
     write_shard(batch.folder, batch.start, batch.stop, data)
     return count

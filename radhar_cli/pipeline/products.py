@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from itertools import chain, repeat
-from math import ceil
+from math import ceil, inf
 from typing import Any, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
@@ -82,6 +82,7 @@ from radhar_cli.receiver.noise import WhiteNoise, noise_variance
 from radhar_cli.scene import Scene
 
 CHUNK = 2**18  # pulses per chunk of pulse-by-pulse work
+SMALLEST_POWER = float(np.finfo(float).tiny)  # below it squares lose their digits, or are 0
 SINGLE_RANGE_DB = 70.0  # of images in float32, in which a pixel in 1e5 differs by a level
 # In the order in which few are held at once: each follows the one it is made from.
 SIGNALS = ("signal", "signal_denoised", "signal_compensated", "signal_compensated_denoised")
@@ -212,6 +213,12 @@ def _clutter(c: Config) -> str:
 def _receiver(c: Config) -> Iterator[Product]:
     def noise(scene: Scene, power: float, w: Waveform, channel: object) -> WhiteNoise:
         assert isinstance(scene.config.snr_db, (int, float))
+        if not SMALLEST_POWER <= power < inf:
+            raise SceneError(
+                f"{scene.name}: the echo's power is {power:g}; snr_db = {scene.config.snr_db:g} "
+                f"needs one from {SMALLEST_POWER:.3g} on (wall.loss_tangent, radar.carrier_hz, "
+                "motion.range_m), or should be null"
+            )
         sigma = np.sqrt(noise_variance(power, scene.config.snr_db))
         return WhiteNoise(float(sigma), w, partial(noise_stream, scene, channel=channel))
 

@@ -6,13 +6,14 @@ import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from radhar_cli.arrays import Levels
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
-from radhar_cli.dataset.check_cache import OUTCOME, Outcomes
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.identity import identity, identity_hash, versions
 from radhar_cli.dataset.layout import IDENTITY, WORK, Rows
@@ -26,6 +27,10 @@ from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.validity import Flags, draw_valid_scene
 from radhar_cli.scene import Scene, draw_scene
 from radhar_cli.worker_process import prepare_process
+
+# Of each row: which draw is kept (`on_invalid: redraw`), and the Flags of its scene.
+OUTCOME = np.dtype([("attempt", "<u2"), ("flags", "u1")])
+Outcomes: TypeAlias = NDArray[Any]  # of OUTCOME
 
 
 @dataclass(frozen=True)

@@ -113,7 +113,7 @@ def spread(rows: list[dict[str, float]]) -> dict[str, tuple[float, float, float]
             max(values),
         )
         for name in rows[0]
-        for values in [[row[name] for row in rows]]
+        for values in [[row[name] for row in rows if np.isfinite(row[name])]]
     }
 
 
@@ -136,7 +136,7 @@ def outside(columns: dict[str, list[dict[str, float]]]) -> str:
     for name, (low, high) in BANDS.items():
         cells = []
         for rows in columns.values():
-            x = np.array([row[name] for row in rows])
+            x = np.array([row[name] for row in rows if np.isfinite(row[name])])
             out = np.count_nonzero((x < low) | (x > high))
             cells.append(f"{x.mean():.3g}, {x.std():.2g}, {out} of {x.size}")
         lines.append(f"| {name} | {low:g} to {high:g} | " + " | ".join(cells) + " |")

@@ -1,5 +1,7 @@
 """`radhar compare`: how far two data sets of maps are apart, class by class."""
 
+from collections import defaultdict
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -98,7 +100,8 @@ def _tell_class(comparison: "Comparison", one: "ClassCompared", numbers: dict[st
         f"  {'mean (standard deviation)':<38} {'simulated':>18} {'measured':>18} {'distance':>9}"
         f" {'KS':>5} {'p':>7}"
     )
-    for name, difference in list(one.differences.items())[:SHOWN]:
+    compared = {name: d for name, d in one.differences.items() if isfinite(d.distance)}
+    for name, difference in list(compared.items())[:SHOWN]:
         unit = comparison.scale.unit(name)
         words = STATISTICS[name].words + (f", {unit}" if unit else "")
         cells = [
@@ -108,4 +111,16 @@ def _tell_class(comparison: "Comparison", one: "ClassCompared", numbers: dict[st
         tell(
             f"  {words:<38} {cells[0]:>18} {cells[1]:>18} {difference.distance:>9.2f}"
             f" {difference.ks:>5.2f} {difference.p:>7.1g}"
+        )
+    counts = len(one.simulated.rows), len(one.measured.rows)
+    hidden = defaultdict[tuple[int, int], list[str]](list)
+    for name, difference in one.differences.items():
+        known = difference.simulated.known, difference.measured.known
+        if known != counts:
+            hidden[known].append(STATISTICS[name].words)
+    for known, names in hidden.items():
+        missing = [f"{n - k} of {n}" for n, k in zip(counts, known, strict=True)]
+        tell(
+            f"  left out in {missing[0]} simulated and {missing[1]} measured maps, as nothing "
+            f"moves or noise hides it: {'; '.join(names)}"
         )

@@ -6,13 +6,14 @@ import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from radhar_cli.arrays import Levels
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
-from radhar_cli.dataset.check_cache import OUTCOME, Outcomes
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.identity import identity, identity_hash, versions
 from radhar_cli.dataset.layout import IDENTITY, WORK, Rows
@@ -28,6 +29,9 @@ from radhar_cli.scene import Scene, draw_scene
 from radhar_cli.worker_process import prepare_process
 
 DRY_RUN_SCENES = 120
+# Of each row: which draw is kept (`on_invalid: redraw`), and the Flags of its scene.
+OUTCOME = np.dtype([("attempt", "<u2"), ("flags", "u1")])
+Outcomes: TypeAlias = NDArray[Any]  # of OUTCOME
 
 
 @dataclass(frozen=True)
@@ -114,7 +118,8 @@ def _run_batch(batch: Batch) -> int:
                 write_whole(batch.folder, batch.folder / path, data)
         samples.append(sample)
         values[number] = made.values
-        flags[number] = found | (Flags.FALLBACK if sample.fell_back else 0)
+        black = not all(image.levels.any() for image in sample.images.values())
+        flags[number] = found | Flags.FALLBACK * sample.fell_back | Flags.BLACK * black
     data = encode_shard(config, batch.identity_hash, batch.start, samples, values, flags)
     write_shard(batch.folder, batch.start, batch.stop, data)
     return count

@@ -16,9 +16,8 @@ import numpy as np
 from radhar_cli.arrays import Levels
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.assembly import assembled
-from radhar_cli.dataset.batch import Batch, check_rows, run_batch
-from radhar_cli.dataset.check_cache import OUTCOME, Outcomes, store_checks, stored_checks
-from radhar_cli.dataset.folder import clean_up, folder_lock, mark_built, remove_checks, reserve
+from radhar_cli.dataset.batch import OUTCOME, Batch, Outcomes, check_rows, run_batch
+from radhar_cli.dataset.folder import clean_up, folder_lock, mark_built, reserve
 from radhar_cli.dataset.hub import write_hub_files
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.layout import DATASET, MANIFEST, WORK, Rows, row_bytes
@@ -172,7 +171,6 @@ class _Build:
         rows = part.rows(len(self.split))
         shards, made, shown = self._shards(rows, batch_size)
         write_part_manifest(self.folder, part, rows, self.identity_hash, shards)
-        remove_checks(self.folder)
         return Outcome(self.folder, len(rows), made, 0, shown)
 
     def _write_beside(self, source: Path) -> int:
@@ -190,28 +188,27 @@ class _Build:
         shards = self._sound_shards(rows)
         gaps, _ = missing_and_repeated(shards, rows.stop, rows.start)
         few = self.maker is None and len(rows) <= MAX_CHECKED_FIRST
-        checked = self._check_scenes(rows) if few and gaps else None
-        shown = [] if checked is None else warnings(self.config, _counts(checked["flags"]))
+        checked = self._check_scenes(rows, gaps) if few and gaps else None
+        counts = {} if checked is None or shards else _counts(checked["flags"])
+        shown = warnings(self.config, counts) if counts else []
         say_warnings(self.progress, shown)
         made, left = self._batches(rows, gaps, checked, batch_size)
         return shards + made, left, shown
 
-    def _check_scenes(self, rows: range) -> Outcomes:
-        """Check every scene, but for those that an earlier run checked: an outcome a row."""
-        outcomes = np.empty(len(rows), dtype=OUTCOME)
-        tasks = []
-        for start in range(0, len(rows), CHECK_BATCH):
-            some, part = rows[start : start + CHECK_BATCH], outcomes[start : start + CHECK_BATCH]
-            kept = stored_checks(self.folder, self.identity_hash, some.start, len(some))
-            if kept is None:
-                tasks.append((self.config, some.start, some.stop, parent_pid()))
-            else:
-                part[:] = kept
-        left = sum(stop - start for _, start, stop, _ in tasks)
-        self.progress.stage("checking scenes", len(rows), len(rows) - left)
-        jobs = self.jobs if len(tasks) > 2 * self.jobs else 1
-        for start, found in run_tasks(check_rows, tasks, jobs):
-            store_checks(self.folder, self.identity_hash, start, found)
+    def _check_scenes(self, rows: range, gaps: Runs) -> Outcomes:
+        """Check the scenes of the rows in the gaps: an outcome a row."""
+        outcomes, left = (
+            np.zeros(len(rows), dtype=OUTCOME),
+            sum(stop - start for start, stop in gaps),
+        )
+        self.progress.stage("checking scenes", left, 0)
+        size = max(1, min(CHECK_BATCH, -(-left // (4 * self.jobs))))
+        tasks = [
+            (self.config, start, min(start + size, gap_stop), parent_pid())
+            for gap_start, gap_stop in gaps
+            for start in range(gap_start, gap_stop, size)
+        ]
+        for start, found in run_tasks(check_rows, tasks, self.jobs if len(tasks) > 1 else 1):
             outcomes[start - rows.start :][: found.size] = found
             self.progress.advance(found.size)
         return outcomes

@@ -28,6 +28,12 @@ _KINDS = {
     "stft": "Doppler over time, by a short-time Fourier transform",
     "fsst": "Doppler over time, by the synchrosqueezed short-time Fourier transform",
 }
+_NOISE_TELLS = (
+    "the less a person moves, the more noise an image shows: `snr_db` is that of the whole echo, "
+    "the canceller removes what hardly moves, and levels are relative to what is left. So the "
+    "noise alone tells `stationary` from most others; with `processing.clutter: mean`, which keeps "
+    "slow motion, it tells little"
+)
 _MEASURED = "measured: error of the simulated signal"
 _STEPS = {"compensated": "the torso's bulk Doppler taken off", "denoised": "denoised"}
 _SIZES = ((10**3, "n<1K"), (10**4, "1K<n<10K"), (10**5, "10K<n<100K"), (10**6, "100K<n<1M"),
@@ -270,8 +276,10 @@ def _reach(data: Dataset, name: str) -> tuple[float, float]:
 
 
 def _cautions(data: Dataset) -> str:
-    notes = [str(warning["message"]) for warning in data.warnings]
-    if data.config.recorded is None:
+    config, notes = data.config, [str(warning["message"]) for warning in data.warnings]
+    if config.recorded is None:
+        if config.snr_db is not None and config.processing.clutter in ("difference", "highpass"):
+            notes.append(_NOISE_TELLS)
         notes.append(
             "simulated data: a network that is accurate on them need not be so on a real radar"
         )

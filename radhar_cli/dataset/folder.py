@@ -21,7 +21,6 @@ from radhar_cli.dataset.files import (
 from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.dataset.layout import (
     CARD,
-    CHECKS,
     CONFIG,
     DATASET,
     GALLERY,
@@ -178,20 +177,11 @@ def clean_up(folder: Path) -> None:
 
 
 def _remove_batches(folder: Path) -> None:
-    """Remove shards and outcomes of checks; foreign files next to them stay."""
-    _remove(folder / WORK / "shards", "rows-*-*.h5")
-    remove_checks(folder)
-
-
-def remove_checks(folder: Path) -> None:
-    """Remove the outcomes of checks, for a folder whose rows are all made."""
-    _remove(folder / WORK / CHECKS, "*.bin")
-
-
-def _remove(place: Path, pattern: str) -> None:
+    """Remove shards; foreign files next to them stay."""
+    place = folder / WORK / "shards"
     with suppress(OSError):
         for name in os.listdir(place):  # noqa: PTH208 - names take less memory than paths
-            if fnmatch(name, pattern):
+            if fnmatch(name, "rows-*-*.h5"):
                 (place / name).unlink(missing_ok=True)
         place.rmdir()
 

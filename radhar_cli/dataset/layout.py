@@ -24,7 +24,6 @@ GALLERY = "gallery.png"
 WORK = ".radhar"
 IDENTITY = "identity.json"
 MANIFEST = "manifest.json"
-CHECKS = "checks"
 PARTS = "parts"
 COLUMN_LABEL = "column_label"
 PNGS_A_FOLDER = 10_000
@@ -76,7 +75,7 @@ def row_bytes(config: Config) -> int:
 
 def is_incomplete(folder: Path) -> bool:
     """Whether a build in this folder is unfinished."""
-    return any((folder / WORK / name).exists() for name in (IDENTITY, "shards", CHECKS))
+    return any((folder / WORK / name).exists() for name in (IDENTITY, "shards"))
 
 
 def png_folder(map_name: str, split: int) -> Path:

@@ -1,6 +1,7 @@
 """Unpack a scene into the objects of the physics: here alone are keys and units of scenes read."""
 
 from dataclasses import fields
+from functools import partial
 from math import radians
 from typing import Any, Literal
 
@@ -141,13 +142,16 @@ def reflectors_of(scene: Scene) -> Reflectors | None:
 
 
 def impairments_of(scene: Scene, noise: WhiteNoise) -> tuple[Impairment, ...]:
-    """What a receiver adds to white noise."""
+    """What a receiver adds to white noise.
+
+    Coloured noise is the channel's own, as white noise is. Interference comes from outside: lines
+    are the same in all channels, phases included.
+    """
     receiver, impairments = scene.config.receiver, list[Impairment]()
-    given = (noise.waveform, noise.stream)
     corner = _fixed(receiver.noise_corner_hz)
     if corner > 0:
         slope = _fixed(receiver.noise_slope_db)
-        impairments.append(FlickerNoise(noise.sigma, *given, corner, slope))
+        impairments.append(FlickerNoise(noise.sigma, noise.waveform, noise.stream, corner, slope))
     for number, line in enumerate(receiver.lines):
         amplitude = noise.sigma * 10 ** (_fixed(line.level_db) / 20)
         times = _fixed(line.on_s), _fixed(line.off_s)
@@ -155,7 +159,8 @@ def impairments_of(scene: Scene, noise: WhiteNoise) -> tuple[Impairment, ...]:
             Line(
                 amplitude,
                 _fixed(line.doppler_hz),
-                *given,
+                noise.waveform,
+                partial(noise_stream, scene),
                 f"line {number}",
                 *times,
                 line.both_sides,
@@ -261,7 +266,16 @@ def fsst_frames_of(config: Config, duration: float, prf: float, f0: float) -> Fr
     return frames if hop is None else Frames(frames.length, hop)
 
 
-def noise_stream(scene: Scene, name: str) -> np.random.Generator:
-    """The stream of unit noise of a scene with that name."""
+def channel_of(scene: Scene, antennas: Antennas) -> str:
+    """Name of a receive channel: empty for the antennas of the config, of others their numbers."""
+    if antennas == antennas_of(scene.config):
+        return ""
+    numbers = (*antennas.tx, *antennas.rx, antennas.gain, antennas.isolation_db)
+    return " ".join(str(float(number)) for number in numbers)
+
+
+def noise_stream(scene: Scene, name: str, channel: object = "") -> np.random.Generator:
+    """The stream of unit noise of a scene with that name, in a channel (`channel_of`)."""
     key = (scene.activity.index, scene.index)
+    name = f"{name} channel {channel}" if channel else name
     return stream(scene.config.seed, NOISE, *key, name=name)

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from itertools import chain, repeat
-from math import ceil
+from math import ceil, inf
 from typing import Any, NamedTuple, TypeAlias, TypeVar
 
 import numpy as np
@@ -37,6 +37,7 @@ from radhar_cli.pipeline.physics import (
     antennas_of,
     canceller_of,
     cfar_of,
+    channel_of,
     frames_of,
     fsst_frames_of,
     gate_of,
@@ -81,6 +82,7 @@ from radhar_cli.receiver.noise import WhiteNoise, noise_variance
 from radhar_cli.scene import Scene
 
 CHUNK = 2**18  # pulses per chunk of pulse-by-pulse work
+SMALLEST_POWER = float(np.finfo(float).tiny)  # below it squares lose their digits, or are 0
 SINGLE_RANGE_DB = 70.0  # of images in float32, in which a pixel in 1e5 differs by a level
 # In the order in which few are held at once: each follows the one it is made from.
 SIGNALS = ("signal", "signal_denoised", "signal_compensated", "signal_compensated_denoised")
@@ -209,17 +211,29 @@ def _clutter(c: Config) -> str:
 
 
 def _receiver(c: Config) -> Iterator[Product]:
-    def noise(scene: Scene, power: float, w: Waveform) -> WhiteNoise:
+    def noise(scene: Scene, power: float, w: Waveform, channel: object) -> WhiteNoise:
         assert isinstance(scene.config.snr_db, (int, float))
+        if not SMALLEST_POWER <= power < inf:
+            raise SceneError(
+                f"{scene.name}: the echo's power is {power:g}; snr_db = {scene.config.snr_db:g} "
+                f"needs one from {SMALLEST_POWER:.3g} on (wall.loss_tangent, radar.carrier_hz, "
+                "motion.range_m), or should be null"
+            )
         sigma = np.sqrt(noise_variance(power, scene.config.snr_db))
-        return WhiteNoise(float(sigma), w, lambda name: noise_stream(scene, name))
+        return WhiteNoise(float(sigma), w, partial(noise_stream, scene, channel=channel))
 
     if c.snr_db is None:
         yield Product("receiver", (), tuple, "nothing: snr_db is null")
         return
-    yield Product("noise", ("scene", "signal_power", "waveform"), noise, "white noise, by snr_db")
-    needs = ("scene", "noise")
-    yield Product("receiver", needs, lambda s, n: (n, *impairments_of(s, n)), "noise, interference")
+    yield Product("channel", ("scene", "antennas"), channel_of, "whose noise it is")
+    needs = ("scene", "signal_power", "waveform", "channel")
+    yield Product("noise", needs, noise, "white noise, by snr_db")
+    yield Product(
+        "receiver",
+        ("scene", "noise"),
+        lambda s, n: (n, *impairments_of(s, n)),
+        "noise, interference",
+    )
 
 
 def _direct(c: Config) -> Iterator[Product]:

@@ -54,7 +54,8 @@ def record(
         asked: names of products (`radhar_cli.pipeline.products`).
         more: further products, or others in place of those of the same name.
         given: products that are there already, instead of the scene's own: `motions=`, `antennas=`,
-            `paths=` and so on.
+            `paths=` and so on. Antennas other than the config's have noise of their own; equal ones
+            have it by `channel=1`, `channel=2`, ...
     """
     return _made(scene.config, asked, more, {"scene": scene, **given})
 

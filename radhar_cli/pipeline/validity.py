@@ -52,8 +52,13 @@ class Flags(IntFlag):
     FLOOR = 16
     GATE = 32
     RUNS_OUT = 64
+    BLACK = 128
 
 
+BLACK = (
+    "a map is black: nothing is left of the echo (after canceller, wall and distance), or nothing "
+    "above the CFAR's threshold"
+)
 _WORDING = {
     Flags.WALL: "the body passes through the wall",
     Flags.HALF_BAND: "a scatterer leaves the range half-band and its echo the kept bins",
@@ -63,6 +68,7 @@ _WORDING = {
     Flags.GATE: "the torso leaves the ranges of processing.gate_m",
     Flags.RUNS_OUT: "the motion file ends before the recording while a joint moves; "
     "joints go on at their last velocities (past_end: rest slows down instead; duration_s)",
+    Flags.BLACK: BLACK,
 }
 
 

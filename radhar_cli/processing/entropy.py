@@ -5,6 +5,7 @@ from math import log
 import numpy as np
 
 from radhar_cli.arrays import Float
+from radhar_cli.errors import RadharError
 
 
 class EntropySum:
@@ -37,7 +38,7 @@ def entropy_bits(power: Float) -> float:
     """H = -sum p log2 p of a whole map, p = power/sum(power); 0 for a map of zeros.
 
     Raises:
-        ValueError: the map has an infinity or a NaN.
+        RadharError: the map has an infinity or a NaN.
     """
     entropy, largest = EntropySum(), largest_power(power)
     if largest > 0:
@@ -49,9 +50,9 @@ def largest_power(power: Float) -> float:
     """The largest power of a map, 0 of none.
 
     Raises:
-        ValueError: the map has an infinity or a NaN.
+        RadharError: the map has an infinity or a NaN.
     """
     largest = float(power.max(initial=0.0))
     if not np.isfinite(largest):
-        raise ValueError(f"the power map should be finite; its largest value is {largest}")
+        raise RadharError(f"the power map should be finite; its largest value is {largest}")
     return largest

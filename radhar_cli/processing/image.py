@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from radhar_cli.arrays import Float, Half, Levels
+from radhar_cli.errors import RadharError
 from radhar_cli.processing.cfar import FLOOR_DB
 from radhar_cli.processing.entropy import EntropySum, largest_power
 
@@ -47,7 +48,7 @@ def reduced(
         entropy: whether it is asked for.
 
     Raises:
-        ValueError: the map has an infinity or a NaN.
+        RadharError: the map has an infinity or a NaN.
     """
     height, width = size
     cells, summed, first = np.zeros(size, np.float32), EntropySum(), 0
@@ -63,7 +64,7 @@ def reduced(
         first += len(block)
     total = summed.total if entropy else float(cells.sum())
     if not np.isfinite(total):
-        raise ValueError(f"the power map should be finite; it adds up to {total}")
+        raise RadharError(f"the power map should be finite; it adds up to {total}")
     return Reduced(cells[::-1], summed.bits if entropy else nan)
 
 

@@ -9,13 +9,20 @@ import numpy as np
 import scipy.fft
 
 from radhar_cli.arrays import Complex, Float
+from radhar_cli.errors import RadharError
 from radhar_cli.processing.frames import Frames
 
 
 def exponent_of(x: Complex) -> int:
-    """Binary exponent of the largest real or imaginary part of x."""
+    """Binary exponent of the largest real or imaginary part of x.
+
+    Raises:
+        RadharError: one is an infinity or a NaN.
+    """
     parts = x.real, x.imag
-    largest = max(abs(float(f(part))) for part in parts for f in (np.min, np.max))
+    largest = float(np.max([abs(f(part)) for part in parts for f in (np.min, np.max)]))
+    if not np.isfinite(largest):
+        raise RadharError(f"the signal should be finite; its largest part is {largest}")
     # 2^-exponent must be a double itself; denormal signals keep their digits at 2^1022.
     return max(int(np.frexp(largest)[1]), -1022)
 

@@ -20,7 +20,12 @@ from radhar_cli.pipeline.physics import motion_of
 from radhar_cli.pipeline.plan import Product
 from radhar_cli.pipeline.products import SIGNALS, EchoAccuracy, Fallback
 from radhar_cli.pipeline.run import record
-from radhar_cli.pipeline.validity import MIN_DISTANCE_M, draw_valid_scene, scene_warnings
+from radhar_cli.pipeline.validity import (
+    BLACK,
+    MIN_DISTANCE_M,
+    draw_valid_scene,
+    scene_warnings,
+)
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.processing.signal import Signal
 from radhar_cli.radar.propagation import Antennas
@@ -122,6 +127,8 @@ def simulate(
     accuracy: EchoAccuracy | None = recorded.products.get("accuracy")
     if isinstance(accuracy, Fallback):
         warnings.append(f"computed by the cube (engine.fallback): {accuracy.reason}")
+    black = [name for name in maps if not recorded[name].power.any()]
+    warnings += [f"{', '.join(black)}: {BLACK}"] if black else []
     return Simulation(
         scene=scene,
         waveform=recorded["waveform"],

@@ -10,6 +10,7 @@ from scipy.stats import ks_2samp, wasserstein_distance
 from radhar_cli.arrays import Float
 
 NEIGHBOURS = 5
+FEWEST = 5  # known values of a side, where it has as many maps
 ROUNDING = 1e-9  # of the largest value: a standard deviation below is none
 
 
@@ -47,10 +48,10 @@ class Difference(NamedTuple):
 
 
 def difference(simulated: Float, measured: Float) -> Difference:
-    """Compare values [N] and [M]; NaN are left out, and all is NaN where nothing is left."""
+    """Compare values [N] and [M]; NaN are left out, and all is NaN where fewer than 5 are left."""
     x, y = (values[np.isfinite(values)] for values in (simulated, measured))
     spreads = Spread.of(x), Spread.of(y)
-    if not (x.size and y.size):
+    if x.size < min(FEWEST, simulated.size) or y.size < min(FEWEST, measured.size):
         return Difference(*spreads, np.nan, np.nan, np.nan)
     scale = float(np.hypot(spreads[0].sd, spreads[1].sd) / np.sqrt(2))
     every = np.concatenate([x, y])

@@ -10,6 +10,7 @@ from radhar_cli.arrays import Bool, Float
 
 TALL = 0.04  # of all rows: a piece apart from the zero line that is as tall belongs to the body
 JOINED = 2  # cells between two pieces that are one
+SHORT = 0.02  # of the energy: rows may lack so much below the floor, where it is not white
 SLOW = 1.8  # times the torso: limbs are faster
 EIGHT = np.ones((3, 3), bool)  # neighbours of a cell
 
@@ -24,11 +25,14 @@ class PowerMap(NamedTuple):
         """Cells [some rows, columns] faster than `beyond`, where nobody is taken to be."""
         return self.power[np.abs(self.doppler) > beyond]
 
-    def occupied(self, beyond: float) -> Bool:
-        """Cells [rows, columns] above the noise: mean of 3 x 3 over its mean and 5 deviations."""
+    def threshold(self, beyond: float) -> float:
+        """Power above the noise: its mean and 5 deviations."""
         noise = self.noise(beyond)
-        threshold = max(2 * np.median(noise), noise.mean() + 5 * noise.std())
-        return np.asarray(uniform_filter(self.power, 3) > threshold)
+        return float(max(2 * np.median(noise), noise.mean() + 5 * noise.std()))
+
+    def occupied(self, beyond: float) -> Bool:
+        """Cells [rows, columns] above the noise, in the mean of 3 x 3."""
+        return np.asarray(uniform_filter(self.power, 3) > self.threshold(beyond))
 
     def without_noise(self, zero: float, beyond: float) -> Float:
         """Power [rows, columns] less the mean of the noise, 0 within `zero`: noise adds up to 0."""
@@ -50,7 +54,9 @@ def power_statistics(
 
     Of energy above the noise, the line at zero left out. A limb is the 75th percentile of the
     largest power of each column beyond 1.8 times the torso's Doppler, the torso the median of the
-    columns' peaks; ripple is 5 to 95 % of the torso's line.
+    columns' peaks; ripple is 5 to 95 % of the torso's line. What noise leaves undefined is
+    NaN: shares of an energy of which more than 2 % is missing in rows below the floor (after a
+    canceller noise is weaker near zero), a limb that does not stand out.
 
     Args:
         one: the map.
@@ -65,19 +71,26 @@ def power_statistics(
     fast = doppler * np.sign(torso) > SLOW * np.abs(torso)
     with np.errstate(divide="ignore", invalid="ignore"):
         mean = (doppler * clean).sum(axis=0) / columns
-        spread = np.sqrt(np.maximum(((doppler - mean) ** 2 * clean).sum(axis=0) / columns, 0))
-    share = 100 / total if total > 0 else np.nan
-    limb = np.percentile(np.where(fast, clean, 0).max(axis=0), 75)
+        variance = ((doppler - mean) ** 2 * clean).sum(axis=0) / columns
+    spread = np.sqrt(variance[(columns > 0) & (variance > 0)])
+    below = -np.minimum(clean.sum(axis=1), 0).sum()
+    known = total > 0 and below <= SHORT * total
+
+    def share(cells: Float) -> float:
+        return float(np.clip(100 * cells.sum() / total, 0, 100)) if known else np.nan
+
+    limb = float(np.percentile(np.where(fast, clean, 0).max(axis=0), 75))
+    limb = limb if limb + floor > one.threshold(beyond) else np.nan
     at_zero = one.power[np.abs(one.doppler) <= zero].max(axis=0)
     low, high = np.percentile(torso, [5, 95])
     values = {
-        "limb_below_torso": decibel(float(np.median(clean.max(axis=0))), float(limb)),
-        "fast_energy": float(clean[fast].sum() * share),
-        "receding_energy": float(clean[one.doppler < -zero].sum() * share),
-        "torso_energy": float(clean[np.abs(doppler - torso) <= near].sum() * share),
+        "limb_below_torso": decibel(float(np.median(clean.max(axis=0))), limb),
+        "fast_energy": share(clean[fast]),
+        "receding_energy": share(clean[one.doppler < -zero]),
+        "torso_energy": share(clean[np.abs(doppler - torso) <= near]),
         "torso_ripple": float(high - low),
         "torso_median": float(np.median(torso)),
-        "column_spread": float(np.median(spread)),
+        "column_spread": float(np.median(spread)) if known and spread.size else np.nan,
     }
     return (values if body else dict.fromkeys(values, np.nan)) | {
         "peak_over_floor": decibel(float(clean.max()), floor),

@@ -1,6 +1,7 @@
 """`radhar compare` as a user calls it."""
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -101,6 +102,26 @@ def test_repeated_compare_writes_the_same_bytes_and_removes_old_files(
     assert (other / "mine.png").exists()
     assert not (other / "old.png").exists()
     assert (tmp_path / "mine.txt").exists()
+
+
+def test_what_noise_leaves_undefined_is_left_out_and_named(place: Path, tmp_path: Path) -> None:
+    """At -10 dB nobody stands out of the noise in some maps, or in none."""
+    options = ("--set", "snr_db=-10", "--set", "samples_per_class=6", "--jobs", 1)
+    weak = tmp_path / "weak"
+    assert radhar("generate", place / "c.yaml", "-o", weak, *options).returncode == 0
+    done = radhar("compare", weak, place / "human", "-o", tmp_path / "out", "--map", "stft")
+    assert done.returncode == 0, done.stderr
+    assert "nan" not in done.stdout
+    assert re.search(
+        r"left out in [1-6] of 6 simulated and \d+ of 24 measured maps, as nothing moves or noise "
+        r"hides it: .*receding energy; energy near the torso line",
+        done.stdout,
+    )
+    statistics = json.loads((tmp_path / "out/report.json").read_text())["classes"]["walking"]
+    for name in ("fast_energy", "receding_energy", "torso_energy"):
+        for side in ("simulated", "measured"):
+            found = statistics["statistics"][name][side]
+            assert found["mean"] is None or 0 <= found["mean"] <= 100, name
 
 
 def test_a_range_time_map(place: Path, tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ import json
 import os
 import re
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -201,16 +202,43 @@ def test_overwrite_killed_midway_resumes(
         assert fingerprint(folder) == fingerprint(whole)
 
 
-def test_a_finished_check_of_scenes_is_not_repeated(
-    config: Config, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_scenes_are_checked_by_the_workers_and_only_of_what_is_missing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    folder = tmp_path / "set"
+    """The warnings of a resumed build count all its rows."""
+    text = SMALL.replace("seed: 7", "seed: 7\nwall: {}\non_invalid: keep")
+    config = load_config(small_config(tmp_path, text), ["motion.range_m={uniform: [1, 3]}"])
+    make(config, tmp_path / "whole")
+    checks: list[tuple[int, int, int]] = []
+
+    def noted(function: Any, tasks: Any, jobs: int) -> Any:
+        tasks = list(tasks)
+        if function is batch_module.check_rows:
+            checks.extend((start, stop, jobs) for _, start, stop, _ in tasks)
+        return run_tasks(function, tasks, 1)
+
     with monkeypatch.context() as patch:
-        patch.setattr(batch_module, "synthesise", lambda *_: 1 / 0)
+        patch.setattr(build_module, "run_tasks", noted)
+        made, stopped = [], batch_module.synthesise
+
+        def synthesise(*given: Any) -> Any:
+            made.append(given)
+            return 1 / 0 if len(made) > 4 else stopped(*given)
+
+        patch.setattr(batch_module, "synthesise", synthesise)
         with pytest.raises(ZeroDivisionError):
-            make(config, folder)
-    monkeypatch.setattr(batch_module, "draw_valid_scene", lambda *_: 1 / 0)
-    assert make(config, folder).made == 9
+            build(config, tmp_path / "set", 3, Listener(), batch_size=2)
+        assert [row for start, stop, _ in checks for row in range(start, stop)] == list(range(9))
+        assert {jobs for *_, jobs in checks} == {3}
+        patch.setattr(batch_module, "synthesise", stopped)
+        checks.clear()
+        again = Listener()
+        build(config, tmp_path / "set", 3, again, batch_size=2)
+        assert [row for start, stop, _ in checks for row in range(start, stop)] == list(range(4, 9))
+    (said,) = [one for one in again.messages if "passes through the wall" in one]
+    with h5py.File(tmp_path / "set/dataset.h5") as file:
+        assert said.removeprefix("warning: ") in file.attrs["warnings"]
+    assert fingerprint(tmp_path / "whole") == fingerprint(tmp_path / "set")
 
 
 def test_scenes_of_a_large_data_set_are_checked_by_the_workers(

@@ -111,6 +111,22 @@ def test_the_card_describes_the_data_set(whole: Path) -> None:
     assert colours > 20, "there are maps in it"
 
 
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ("seed=7", True),
+        ("processing={clutter: highpass, highpass: {cutoff_hz: 10}}", True),
+        ("processing.clutter=mean", False),
+        ("snr_db=null", False),
+    ],
+)
+def test_the_card_says_what_noise_alone_tells(change: str, said: bool, tmp_path: Path) -> None:
+    """Of a canceller that removes slow motion, where there is noise to be left."""
+    build(config(tmp_path, change), tmp_path / "set", 1, Listener())
+    found = "the noise alone tells `stationary`" in (tmp_path / "set/README.md").read_text()
+    assert found == said
+
+
 def test_the_citation_is_that_of_the_project() -> None:
     wanted = yaml.safe_load((ROOT / "CITATION.cff").read_text())
     paper = wanted["preferred-citation"]

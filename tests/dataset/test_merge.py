@@ -141,13 +141,10 @@ def test_damaged_shards_are_replaced_by_shards_of_other_rows(
     assert merged(out) == whole
 
 
-def test_a_finished_part_leaves_no_outcomes_of_checks_and_checks_nothing_again(
-    config: Config, out: Path
-) -> None:
+def test_a_finished_part_checks_nothing_again(config: Config, out: Path) -> None:
     notes = Listener()
     assert build_part(config, out, Part(4, 2), 1, notes).already_complete
     assert "checking scenes" not in notes.stages
-    assert not (out / "parts/2-of-4/.radhar/checks").exists()
 
 
 def test_parts_of_something_else_are_refused(config: Config, out: Path, tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import combinations
 from pathlib import Path
 
 import h5py
@@ -13,7 +14,10 @@ from radhar_cli import activity
 from radhar_cli.activity import activity_named, add_activity
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.config import Config
+from radhar_cli.config.schema import LineConfig, possible_maps
 from radhar_cli.dataset.build import build
+from radhar_cli.echo.half_band_sum import weights
+from radhar_cli.errors import RadharError
 from radhar_cli.pipeline.physics import antennas_of, motion_of, waveform_of
 from radhar_cli.pipeline.plan import Product
 from radhar_cli.pipeline.run import process, record
@@ -22,8 +26,10 @@ from radhar_cli.processing.power_map import Axis, PowerMap
 from radhar_cli.processing.range_compression import range_bins
 from radhar_cli.processing.range_signals import RangeSignals
 from radhar_cli.processing.signal import Signal
+from radhar_cli.radar.waveform import Waveform
 from radhar_cli.receiver.impairment import Impairment
 from radhar_cli.scene import Scene, nominal_scene
+from radhar_cli.simulation.simulate import RAW_ECHO
 
 C = 299_792_458.0
 RADAR = {"carrier_hz": 10e9, "bandwidth_hz": 1e9, "prf_hz": 500}
@@ -117,6 +123,63 @@ def test_a_second_receive_channel() -> None:
     assert 0.2 < angle < 0.6
 
 
+FORMS = {  # of the echo, by the product that shows its noise, and the config that has it
+    "raw": ("raw_echo", {}),
+    "slow time": ("signal", {"clutter": "none"}),
+    "range profiles": ("range_profiles", {}),
+    "range bins": ("range_signals", {"doppler": "gate", "gate_m": (1.0, 3.0)}),
+}
+
+
+def noise_of(scene: Scene, form: str, **given: object) -> Complex:
+    """What a scene with noise differs in from one without."""
+    product, processing = FORMS[form]
+    processing = scene.config.processing.model_copy(update=processing)
+    noisy = scene.config.model_copy(update={"processing": processing})
+    clean = noisy.model_copy(update={"snr_db": None})
+    made = [
+        record(replace(scene, config=config), [product], [RAW_ECHO], **given)[product]
+        for config in (noisy, clean)
+    ]
+    samples = [getattr(one, "x", getattr(one, "bins", one)) for one in made]
+    return (samples[0] - samples[1]).ravel()
+
+
+def correlation(x: Complex, y: Complex) -> float:
+    return float(abs(np.vdot(x, y)) / (np.linalg.norm(x) * np.linalg.norm(y)))
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("engine", ["direct", "cube"])
+@pytest.mark.parametrize("corner", [0.0, 1000.0])
+def test_channels_have_noise_of_their_own(engine: str, form: str, corner: float) -> None:
+    """Other antennas, or the same ones by another number, share no noise; again is the same."""
+    fast = CONFIG.radar.model_copy(update={"prf_hz": 20e3, "adc_rate_hz": 4e5})
+    kind = CONFIG.engine.model_copy(update={"kind": engine})
+    flicker = {"noise_corner_hz": corner, "noise_slope_db": 2.0}
+    receiver = CONFIG.receiver.model_copy(update=flicker)
+    wide = CONFIG.image.model_copy(update={"size_px": (32, 8192)})  # pulses of range profiles
+    scene = walking(radar=fast, engine=kind, snr_db=0, receiver=receiver, image=wide)
+    antennas = antennas_of(scene.config)
+    beside = replace(antennas, rx=(0.4, 0.115, 1.5))
+    channels = [
+        noise_of(scene, form, motions=(Ball(2.0),), antennas=one, **named)
+        for one, named in ((antennas, {}), (beside, {}), (antennas, {"channel": 1}))
+    ]
+    for one, other in combinations(channels, 2):
+        assert correlation(one, other) < 0.02
+    again = noise_of(scene, form, motions=(Ball(2.0),), antennas=replace(antennas))
+    assert np.array_equal(again, channels[0])
+
+
+def test_interference_comes_from_outside_and_is_the_same_in_all_channels() -> None:
+    line = LineConfig(doppler_hz=100.0, level_db=40.0)
+    receiver = CONFIG.receiver.model_copy(update={"lines": (line,)})
+    scene = walking(snr_db=0, receiver=receiver)
+    one, other = (noise_of(scene, "slow time", channel=n) for n in range(2))
+    assert correlation(one, other) > 0.99
+
+
 def test_a_product() -> None:
     """Range against Doppler over the whole recording, from the beat matrix."""
 
@@ -125,8 +188,6 @@ def test_a_product() -> None:
         doppler = np.fft.fftshift(np.fft.fftfreq(beat.shape[1], 1 / waveform.prf))
         rows = Axis("range", "m", waveform.range_axis())
         return PowerMap(np.abs(spectrum) ** 2, rows, Axis("frequency", "Hz", doppler))
-
-    from radhar_cli.simulation.simulate import RAW_ECHO
 
     row = Product("range_doppler", ("raw_echo", "waveform"), range_doppler, "range, Doppler")
     ball = Ball(2.0)
@@ -139,21 +200,30 @@ def test_a_product() -> None:
 
 @dataclass(frozen=True)
 class DcOffset(Impairment):
-    """A constant on every raw sample."""
+    """A constant on every raw sample: all that the cube needs to know."""
 
     offset: complex
+    waveform: Waveform
 
     def beat(self, blocks: Iterator[Complex]) -> Iterator[Complex]:
         return (block + self.offset for block in blocks)
 
+
+class DcOffsetOfSlowTime(DcOffset):
+    """What compression and the sum over bins make of it, for Doppler maps by the direct engine."""
+
     def slow_time(self, y: Complex) -> Complex:
-        return y + self.offset
+        return y + self.offset * weights(self.waveform).sum()
+
+
+def receiver_with(kind: type[DcOffset]) -> Product:
+    return Product("receiver", ("waveform",), lambda w: (kind(1.0, w),), "a DC offset")
 
 
 @pytest.mark.parametrize("engine", ["direct", "cube"])
 def test_an_impairment_between_echo_and_processing(engine: str) -> None:
     """A DC offset is a line at zero Doppler, which the canceller removes."""
-    offset = Product("receiver", (), lambda: (DcOffset(1.0),), "a DC offset")
+    offset = receiver_with(DcOffsetOfSlowTime)
     none = Fir((1,))
     with_engine = CONFIG.engine.model_copy(update={"kind": engine})
     scene = walking(engine=with_engine)
@@ -162,6 +232,38 @@ def test_an_impairment_between_echo_and_processing(engine: str) -> None:
     plain = record(scene, ["stft"], [offset], canceller=none)["stft"]
     assert np.all(np.abs(ridge(plain)) < 5)
     assert np.abs(cancelled.power - clean.power).max() < 1e-6 * clean.power.max()
+
+
+@pytest.mark.parametrize("gate", [False, True])
+@pytest.mark.parametrize("kind", [DcOffset, DcOffsetOfSlowTime])
+def test_an_impairment_is_in_every_map_or_refused(kind: type[DcOffset], gate: bool) -> None:
+    """Never left out: without the form that the direct engine needs for a map there is no map."""
+    processing = {"clutter": "none"} | ({"doppler": "gate", "gate_m": (0.0, 3.0)} if gate else {})
+    scenes = [
+        walking(
+            engine=CONFIG.engine.model_copy(update={"kind": engine}),
+            processing=CONFIG.processing.model_copy(update=processing),
+        )
+        for engine in ("direct", "cube")
+    ]
+    maps, acts = possible_maps(scenes[0].config.processing), kind is DcOffsetOfSlowTime and not gate
+    for name in maps:
+        cube = record(scenes[1], [name], [receiver_with(kind)])[name].power.sum()
+        assert cube > 100 * record(scenes[1], [name])[name].power.sum()
+        if acts and name != "rtm":
+            direct = record(scenes[0], [name], [receiver_with(kind)])[name].power.sum()
+            assert direct == pytest.approx(cube, rel=1e-3), name
+            continue
+        match = rf"{kind.__name__}: has no method \w+, .*engine.kind: cube"
+        with pytest.raises(RadharError, match=match):
+            record(scenes[0], [name], [receiver_with(kind)])
+
+
+def test_an_impairment_of_nothing_is_refused_by_the_cube_too() -> None:
+    bare = Product("receiver", (), lambda: (Impairment(),), "forgets to do anything")
+    for maps in (["raw_echo"], ["stft"], ["rtm"]):
+        with pytest.raises(RadharError, match="has no method"):
+            record(walking(), maps, [RAW_ECHO, bare])
 
 
 def test_a_recorded_signal_in_place_of_a_simulated_one() -> None:

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from radhar_cli.errors import RadharError
 from radhar_cli.processing import frames as frames_module
 from radhar_cli.processing import fsst, stft
 from radhar_cli.processing.entropy import entropy_bits
@@ -111,7 +112,7 @@ def test_a_silent_signal_is_a_map_of_zeros(kind, single):
 def test_a_broken_signal_is_refused(broken):
     x = noisy_chirp(100, 0)
     x[50] = broken
-    with np.errstate(invalid="ignore"), pytest.raises(ValueError, match="should be finite"):
+    with np.errstate(invalid="ignore"), pytest.raises(RadharError, match="should be finite"):
         reduced(power_blocks("stft", x, Frames(20, 2)), 41, (8, 8))
 
 

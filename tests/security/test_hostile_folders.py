@@ -72,7 +72,6 @@ LINKS = [
     linked(".radhar/identity.json", "identity.json"),
     linked(".radhar/sweep.json", "identity.json"),
     linked(".radhar/shards", "shards"),
-    linked(".radhar/checks", "shards"),
     linked(".radhar/unfinished"),
     linked(".radhar/measured"),
     linked(".radhar/accuracy"),

@@ -19,10 +19,13 @@ def test_a_shift_of_a_standard_deviation_is_a_distance_of_one() -> None:
 
 
 def test_missing_statistics_are_left_out() -> None:
-    found = difference(np.array([1.0, np.nan, 3.0]), np.array([1.0, 3.0]))
-    assert (found.simulated.known, found.measured.known, found.distance) == (2, 2, 0)
+    found = difference(np.array([1.0, np.nan, 3.0] * 4), np.array([1.0, 3.0]))
+    assert (found.simulated.known, found.measured.known, found.distance) == (8, 2, 0)
     nothing = difference(np.array([np.nan]), np.array([1.0]))
     assert np.isnan(nothing.distance)
+    few = difference(np.arange(40.0), np.where(np.arange(40) < 4, 100.0, np.nan))
+    assert np.isnan([few.distance, few.ks, few.p]).all(), "4 of 40 do not tell"
+    assert few.measured.known == 4
 
 
 def test_constants() -> None:

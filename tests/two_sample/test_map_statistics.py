@@ -151,6 +151,27 @@ def test_a_map_without_power() -> None:
     assert not PowerMap(np.zeros((ROWS, COLUMNS)), DOPPLER).occupied(430).any()
 
 
+@pytest.mark.parametrize("limb_db", [10, 30])
+def test_shares_of_an_energy_that_noise_hides_are_left_out(limb_db: float) -> None:
+    """Noise after a first difference is weaker near zero; a share is from 0 to 100 %, or none."""
+    noise = np.random.default_rng(2).exponential(1.0, (ROWS, COLUMNS))
+    noise *= np.sin(np.pi * DOPPLER / 1000)[:, None] ** 2
+    body = walker(limb_db).power
+    body[body < 50] = 0
+    shares = ("fast_energy", "receding_energy", "torso_energy")
+    known = []
+    for weaker in 10 ** np.arange(-2.0, 5.0, 0.25):
+        found = power_statistics(PowerMap(noise + body / weaker, DOPPLER), ZERO, 430, 20)
+        assert all(np.isnan(found[name]) or 0 <= found[name] <= 100 for name in shares)
+        assert len({bool(np.isnan(found[name])) for name in (*shares, "column_spread")}) == 1
+        known.append(np.isfinite(found["torso_energy"]))
+        if np.isfinite(found["limb_below_torso"]):
+            assert found["limb_below_torso"] == pytest.approx(limb_db, abs=1)
+    assert known[0]
+    assert not known[-1]
+    assert known == sorted(known, reverse=True)
+
+
 def test_where_nobody_is_seen_noise_is_no_torso() -> None:
     rng = np.random.default_rng(1)
     one = PowerMap(rng.exponential(size=(ROWS, COLUMNS)), DOPPLER)

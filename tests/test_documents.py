@@ -21,7 +21,7 @@ import yaml
 from capture.dca1000_file import Radar, body, echo, words
 from command_line import ROOT, radhar
 from documents import PAGES, Block, blocks
-from learning.patterns import load_timm, tree
+from learning.patterns import tree
 from recorded import frames, write_amc, write_bvh, write_npz
 from shell import Answer, Call, run_shell
 from torch.utils.data import DataLoader
@@ -336,7 +336,6 @@ def test_a_page_does_what_it_says(
     page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert {block.language for block in blocks(page)} <= LANGUAGES, "a block without its language"
-    load_timm()
     for name, value in ENVIRONMENT.items():
         monkeypatch.setenv(name, value)
     monkeypatch.chdir(tmp_path)

@@ -36,7 +36,9 @@ FRESH_SEED = 20261121
 SUBJECTS = 20
 PAPER_EPOCHS = 20
 PAGE_SCALES = ("cpu", "full")
-PAPERS, ROBUST = (ROOT / "configs" / "train" / name for name in ("paper.yaml", "robust.yaml"))
+PAPER_TRAINING, ROBUST = (
+    ROOT / "configs" / "train" / name for name in ("paper.yaml", "robust.yaml")
+)
 DRAWN_SNR = (-20, 30)
 DRAWN_TESTED = (30, 20, 10, 0, -10, -20)
 # Where the network of all SNRs falls short without failing: its confusion matrix is that one.
@@ -220,7 +222,7 @@ class Reproduction:
         data = self.generate(training.scenario, training.snr_db, _kind(training))
         write_note(run)
         settings = _set([*training.settings, *self.scale.train])
-        config = ROBUST if training.snr_db is None else PAPERS
+        config = ROBUST if training.snr_db is None else PAPER_TRAINING
         radhar("train", data, "-o", run, "--config", config, "--model", training.model, *settings)
 
     def record(self, training: Training) -> None:

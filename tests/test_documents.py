@@ -46,7 +46,7 @@ OPTIONS_ONLY = {
     "models": "builds seven networks; tests/learning/test_models.py does",
 }
 # What makes a config small, and a command: it stands after its own words.
-FEW = ["punching", "walking", "walking_to_falling"]
+FEW = ["stationary", "walking", "walking_to_falling"]
 SMALL_DATA = {"samples_per_class": 2, "split": {"train": 0.5, "validation": 0.5}}
 SMALL_IMAGE = {"size_px": 32}
 SMALL = {

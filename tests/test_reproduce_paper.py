@@ -222,7 +222,7 @@ def test_one_network_learns_from_a_drawn_snr_by_its_own_settings(
     assert "snr_db={uniform: [-20, 30]}" in drawn
     assert "snr_db=30" in fixed
     assert robust[robust.index("--config") + 1].endswith("robust.yaml")
-    assert "--config" not in plain
+    assert plain[plain.index("--config") + 1].endswith("paper.yaml")
     assert drawn[3] == robust[1] != fixed[3]
 
 

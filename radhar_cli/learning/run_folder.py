@@ -332,7 +332,9 @@ def load_best(folder: Path) -> tuple[RunMetadata, nn.Module]:
             raise ValueError(f"it claims a header of {header} bytes")
         with safe_open(path, framework="pt") as file:
             return _opened(path, file)
-    except (SafetensorError, OSError, ValueError, MemoryError, RuntimeError) as error:
+    except OSError as error:
+        raise RunError(f"{path}: {error.strerror or error}") from None
+    except (SafetensorError, ValueError, MemoryError, RuntimeError) as error:
         raise RunError(f"{path}: is not a safetensors file, or is truncated ({error})") from None
 
 

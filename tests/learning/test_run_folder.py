@@ -87,6 +87,27 @@ def test_best_weights_are_those_of_the_best_epoch(run_dir: Path) -> None:
     assert metadata.model_copy(update={"epoch": None}) == run.read_metadata(run_dir)
 
 
+def test_weights_larger_than_memory_are_refused_in_a_line(
+    copy: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A sparse file costs its sender nothing."""
+
+    def full(*_: object, **__: object) -> None:
+        raise MemoryError("Cannot allocate memory (os error 12)")
+
+    monkeypatch.setattr(run, "safe_open", full)
+    with pytest.raises(RunError, match=r"best\.safetensors: is not a safetensors file.*allocate"):
+        run.load_best(copy)
+
+
+def test_weights_that_may_not_be_read_are_not_called_damaged(
+    copy: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("os.access", lambda *_, **__: False)
+    with pytest.raises(RunError, match=r"best\.safetensors: Permission denied$"):
+        run.load_best(copy)
+
+
 def test_a_weights_file_alone_can_be_loaded(run_dir: Path, tmp_path: Path) -> None:
     shutil.copy(run_dir / run_files.BEST, tmp_path / "model.safetensors")
     metadata, model = run.load_best(tmp_path / "model.safetensors")

@@ -17,6 +17,7 @@ PACKAGES = (
     "arrays",
     "errors",
     "rounding",
+    "build_version",
     "light",
     "plain_json",
     "phasor",

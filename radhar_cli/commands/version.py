@@ -15,7 +15,7 @@ def _print(asked: bool) -> None:
     import platform
     from importlib.metadata import PackageNotFoundError, version
 
-    from radhar_cli import __version__
+    from radhar_cli.build_version import build_version
 
     versions = [f"Python {platform.python_version()}"]
     for library in LIBRARIES:
@@ -23,7 +23,7 @@ def _print(asked: bool) -> None:
             versions.append(f"{library} {version(library)}")
         except PackageNotFoundError:
             versions.append(f"no {library}")
-    tell(f"radhar {__version__}\n{', '.join(versions)}")
+    tell(f"radhar {build_version()}\n{', '.join(versions)}")
     raise typer.Exit
 
 

@@ -4,7 +4,7 @@ import hashlib
 import json
 from typing import Any
 
-from radhar_cli import __version__
+from radhar_cli.build_version import build_version
 from radhar_cli.config.identity import config_hash, flat, resolved
 from radhar_cli.config.schema import Config
 
@@ -20,7 +20,7 @@ def versions() -> dict[str, str]:
     from radhar_cli.echo.compiled import numba_version
 
     return {
-        "radhar": __version__,
+        "radhar": build_version(),
         "numpy": np.__version__,
         "scipy": scipy.__version__,
         "h5py": h5py.__version__,

@@ -233,3 +233,13 @@ def test_the_program_makes_killed_parts_of_an_array_whole(
         assert radhar(*arguments, shard).returncode == 0
     assert radhar("merge", out).returncode == 0
     assert merged(out) == whole
+
+
+def test_parts_of_two_builds_of_radhar_are_not_merged(
+    config: Config, out: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("radhar_cli.dataset.identity.build_version", lambda: "0.1.0+another")
+    part = Part(4, 2)
+    build_part(config, out, part, 1, Listener(), overwrite=True)
+    with pytest.raises(FolderError, match=r'versions\.radhar: "0\.1\.0\+[0-9a-f]{12}"'):
+        merge(out, [], 1, Listener())

@@ -15,11 +15,10 @@ from numpy.typing import NDArray
 
 from radhar_cli.arrays import Levels
 from radhar_cli.capture.array_files import check_npz, refusing
-from radhar_cli.dataset.image_file import image_size, read_gray
+from radhar_cli.dataset.image_file import SUFFIXES, image_size, read_gray
 from radhar_cli.errors import CaptureError
 from radhar_cli.untrusted import refuse_outside, regular_size
 
-SUFFIXES = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp")
 MAX_NPZ = 2**29  # bytes of its images, which are held
 
 

@@ -45,7 +45,12 @@ def differences(one: Section, other: Section) -> dict[str, tuple[Any, Any]]:
 
 
 def flat(config: Config) -> dict[str, Any]:
-    """Return {dotted key: value} of every key that decides bytes.
+    """Return {dotted key: value} of every key that decides bytes, as `flat_document`."""
+    return flat_document(resolved(config))
+
+
+def flat_document(document: dict[str, Any]) -> dict[str, Any]:
+    """{dotted key: value} of a resolved config, of every key that decides bytes.
 
     Whether PNGs are written at all is not among them, so that they can be added later; nor is the
     licence.
@@ -56,10 +61,15 @@ def flat(config: Config) -> dict[str, Any]:
             return [pair for k, v in value.items() for pair in walk(v, f"{key}.{k}" if key else k)]
         return [(key, value)]
 
-    return {k: v for k, v in walk(resolved(config), "") if k not in NOT_IDENTITY}
+    return {k: v for k, v in walk(document, "") if k not in NOT_IDENTITY}
 
 
 def config_hash(config: Config) -> str:
     """Return the SHA-256 of the keys that decide bytes, in hex."""
-    text = json.dumps(flat(config), sort_keys=True, separators=(",", ":"))
+    return document_hash(resolved(config))
+
+
+def document_hash(document: dict[str, Any]) -> str:
+    """`config_hash` of a resolved config as it is stored, maybe from before newer keys."""
+    text = json.dumps(flat_document(document), sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()

@@ -102,8 +102,10 @@ def reserve(
             )
         refuse_foreign_files(folder, "radhar data set", allowed)
         _name(folder, new)
-    else:
+    elif holds_samples(folder):
         refuse_differences(folder, "data set", differences(old, new))
+    else:
+        _name(folder, new)
     shutil.rmtree(folder / WORK / "unfinished", ignore_errors=True)
 
 
@@ -167,6 +169,13 @@ def checked_identity(value: Any, path: Path) -> dict[str, Any]:
         raise FolderError(f"{path}: is damaged: its identity should have keys and versions")
     identity_there: dict[str, Any] = value
     return identity_there
+
+
+def holds_samples(folder: Path) -> bool:
+    """Whether anything was made in a folder that a build has taken."""
+    shards = folder / WORK / "shards"
+    made = (folder / name for name in (DATASET, PNG))
+    return any(map(Path.exists, made)) or (shards.is_dir() and any(shards.iterdir()))
 
 
 def clean_up(folder: Path) -> None:

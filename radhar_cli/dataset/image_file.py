@@ -18,6 +18,8 @@ FORMATS = ("PNG", "JPEG", "BMP", "TIFF", "WEBP")
 MAX_SIDE = 8192  # px; largest image size of a config
 MAX_FILE = 4 * MAX_SIDE**2  # bytes
 
+SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp"}
+
 
 def image_size(path: Path) -> tuple[int, int]:
     """(H, W) of an image file, from its header.

@@ -10,7 +10,7 @@ from radhar_cli.arrays import Float, Levels
 from radhar_cli.config.reading import validated
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
-from radhar_cli.dataset.folder import stored_identity
+from radhar_cli.dataset.folder import holds_samples, stored_identity
 from radhar_cli.dataset.identity import versions
 from radhar_cli.dataset.layout import (
     COLUMN_LABEL,
@@ -93,6 +93,8 @@ class Dataset(Closing):
             for name, (dtype, shape) in columns(config).items()
         }
         self.sha256 = {name: small[checksum_of(name)] for name in self.large}
+        named = (f"scene/{field.name}" for field in self.fields)
+        self.small = small | dict(zip(named, self.scene.values(), strict=False))
         self._entropy = {name: small[f"entropy/{name}"] for name in names}
         self._extent = {name: small[f"extent/{name}"] for name in names}
         labelled = names if config.output.column_labels else ()
@@ -217,4 +219,6 @@ def _why_missing(path: Path) -> str:
     part = (stored_identity(path) or {}).get("part")
     if part is not None and (path / WORK / MANIFEST).exists():
         return f"{path} is part {part} alone; `radhar merge OUT` makes OUT of all parts"
+    if not holds_samples(path):
+        return f"no sample is made yet; `radhar generate CONFIG -o {path}` can build there"
     return "its build is unfinished; run `radhar generate` again"

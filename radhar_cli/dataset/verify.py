@@ -1,21 +1,27 @@
 """Check a finished data set: checksums, labels, counts, and samples synthesised anew."""
 
+import csv
 import hashlib
+import io
 from dataclasses import dataclass, field
+from itertools import zip_longest
+from math import isclose
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.config.identity import config_hash
+from radhar_cli.config.identity import as_yaml, document_hash
 from radhar_cli.config.motion_files import with_folder
 from radhar_cli.dataset import scene_fields
+from radhar_cli.dataset.assembly import CONFIG_HEADING, SceneTable
 from radhar_cli.dataset.column_labels import label_names
+from radhar_cli.dataset.files import read_bytes
 from radhar_cli.dataset.hub import wrong_hub_files
 from radhar_cli.dataset.identity import versions
-from radhar_cli.dataset.image_file import read_gray, read_rgb
-from radhar_cli.dataset.layout import COLUMN_LABEL, PNG, Rows
+from radhar_cli.dataset.image_file import SUFFIXES, read_gray, read_rgb
+from radhar_cli.dataset.layout import COLUMN_LABEL, CONFIG, PNG, SCENES, WORK, Rows, checksum_of
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.dataset.sample import synthesise
@@ -23,6 +29,7 @@ from radhar_cli.dataset.split import split_rows
 from radhar_cli.errors import FolderError
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.validity import draw_valid_scene
+from radhar_cli.untrusted import regular_size
 from radhar_cli.worker_process import prepare_process
 
 # Of a mask's pixels that may differ under other versions of the libraries.
@@ -81,6 +88,8 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Report:
                 _resynthesise(data, samples, report, motion)
             if (beside / PNG).is_dir():
                 _pngs(data, beside, report)
+            if (beside / WORK).is_dir():
+                _config_and_table(data, beside, report)
             report.problems += wrong_hub_files(data, beside)
         return report
 
@@ -105,7 +114,7 @@ def _structure(data: Dataset, report: Report) -> bool:
     ):
         if (stored != right).any():
             report.problems.append(f"/{name}: {np.count_nonzero(stored != right)} wrong values")
-    if config_hash(config) != data.file.text("config_hash"):
+    if document_hash(data.file.json("config")) != data.file.text("config_hash"):
         report.problems.append("the stored config does not have the stored hash")
     if config.seed != data.file.whole_number("seed"):
         report.problems.append("the stored seed is not the config's")
@@ -118,6 +127,56 @@ def _checksums(data: Dataset, report: Report) -> None:
         for row in range(len(data)):
             if hashlib.sha256(chunks[row].tobytes()).hexdigest().encode() != stored[row]:
                 report.problems.append(f"/{name}[{row}]: does not match its checksum")
+    if not data.file.has_attribute("columns_sha256"):
+        return  # of a build from before it
+    for name, column in data.small.items():
+        if name.startswith(checksum_of("")):
+            continue
+        digest = hashlib.sha256()
+        for start in range(0, len(data), ROWS):
+            digest.update(column.rows(start, start + ROWS).tobytes())
+        if data.file.json("columns_sha256").get(name) != digest.hexdigest():
+            report.problems.append(f"/{name}: does not match its checksum")
+
+
+def _config_and_table(data: Dataset, folder: Path, report: Report) -> None:
+    """Compare config.yaml and scenes.csv with what dataset.h5 says."""
+    for name in (CONFIG, SCENES):
+        if not (folder / name).exists():
+            report.problems.append(f"{name}: is missing")
+    if (folder / CONFIG).exists() and not report.other_versions:
+        right = (CONFIG_HEADING + as_yaml(data.config)).encode()
+        if read_bytes(folder / CONFIG) != right:
+            report.problems.append(f"{CONFIG}: is not the config in dataset.h5")
+    if (folder / SCENES).exists() and (wrong := _wrong_rows(data, folder / SCENES)):
+        report.problems.append(f"{SCENES}: {wrong} rows are not those of dataset.h5")
+
+
+def _wrong_rows(data: Dataset, path: Path) -> int:
+    """How many rows of a table of scenes are missing, too many, or not those of a data set."""
+    factors = np.array([field.factor for field in data.fields])
+    scene = np.stack([data.scene[field.name][:] for field in data.fields], axis=1) / factors
+    right, wrong = io.StringIO(), 0
+    SceneTable(data.config, right).write(0, scene)
+    right.seek(0)
+    regular_size(path)
+    with path.open(newline="", encoding="utf-8", errors="replace") as text:
+        try:
+            for there, row in zip_longest(csv.reader(text), csv.reader(right)):
+                wrong += there is None or row is None or not all(map(_alike, there, row))
+        except csv.Error:
+            wrong += 1
+    return wrong
+
+
+def _alike(there: str, right: str) -> bool:
+    """Whether two cells are the same text, or numbers but for the rounding of a unit."""
+    if there == right:
+        return True
+    try:
+        return isclose(float(there), float(right), rel_tol=1e-12)
+    except ValueError:
+        return False
 
 
 def _column_labels(data: Dataset, report: Report) -> None:
@@ -214,3 +273,7 @@ def _pngs(data: Dataset, folder: Path, report: Report) -> None:
             report.pngs += 1
             if not same:
                 report.problems.append(f"{path}: does not show /maps/{name}[{row}]")
+        own = {rows.png_path(name, split[row], row) for row in range(len(data))}
+        found = (path.relative_to(folder) for path in (folder / PNG / name).rglob("*"))
+        for path in sorted({path for path in found if path.suffix.lower() in SUFFIXES} - own):
+            report.problems.append(f"{path}: is no image of this data set")

@@ -17,6 +17,7 @@ from small import SMALL, fingerprint, small_config
 
 from radhar_cli.activity import Activity
 from radhar_cli.config import Config, load_config
+from radhar_cli.config.identity import resolved
 from radhar_cli.dataset import batch as batch_module
 from radhar_cli.dataset import build as build_module
 from radhar_cli.dataset import folder as folder_module
@@ -25,6 +26,7 @@ from radhar_cli.dataset.folder import folder_lock
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.shards import listed_shards
+from radhar_cli.dataset.verify import verify
 from radhar_cli.dataset.workers import run_tasks, warm_up
 from radhar_cli.errors import FolderError, SceneError, UnfinishedError
 
@@ -113,6 +115,18 @@ def test_other_config_is_refused_and_the_keys_named(config: Config, whole: Path)
     other = config.model_copy(update={"seed": 8, "snr_db": 5.0})
     with pytest.raises(FolderError, match=r"(?s)seed: 7 there, 8 here.*snr_db"):
         make(other, whole)
+
+
+def test_a_folder_without_samples_is_free(config: Config, tmp_path: Path) -> None:
+    """As after a build whose scenes were refused: another config may have it."""
+    far = {"motion": {"model": "paper", "range_m": 500.0}, "on_invalid": "error"}
+    refused = Config.model_validate({**resolved(config), **far})
+    with pytest.raises(SceneError):
+        make(refused, tmp_path)
+    with pytest.raises(FolderError, match="no sample is made yet; `radhar generate CONFIG -o"):
+        verify(tmp_path, 1)
+    make(config, tmp_path)
+    assert verify(tmp_path, 1).problems == []
 
 
 def test_other_versions_are_refused(

@@ -1,5 +1,6 @@
 """`verify` finds every change of a data set."""
 
+import json
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -7,11 +8,13 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from listener import Listener
 from PIL import Image
 from small import small_config
 
 from radhar_cli.commands.terminal import BarProgress
-from radhar_cli.config import load_config
+from radhar_cli.config import Config, load_config
+from radhar_cli.config.identity import document_hash
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.png import colour_table, encode_png
 from radhar_cli.dataset.summary import summarise
@@ -20,9 +23,14 @@ from radhar_cli.errors import FolderError
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def config(tmp_path_factory: pytest.TempPathFactory) -> Config:
+    return load_config(small_config(tmp_path_factory.mktemp("config")))
+
+
+@pytest.fixture(scope="module")
+def whole(config: Config, tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("verify")
-    build(load_config(small_config(place)), place / "set", 1, BarProgress())
+    build(config, place / "set", 1, BarProgress())
     return place / "set"
 
 
@@ -81,6 +89,83 @@ def test_damage_is_found(
     with h5py.File(tmp_path / "set/dataset.h5", "r+") as file:
         damage(file)
     assert any(expected in problem for problem in verify(tmp_path / "set", 9).problems)
+
+
+def _widen_an_extent(folder: Path) -> None:
+    with h5py.File(folder / "dataset.h5", "r+") as file:
+        file["extent/stft"][3, 1] += 0.5
+
+
+def _change_an_entropy(folder: Path) -> None:
+    with h5py.File(folder / "dataset.h5", "r+") as file:
+        file["entropy/stft"][3] += 0.5
+
+
+def _edit_the_table(folder: Path) -> None:
+    lines = (folder / "scenes.csv").read_text().splitlines()
+    cells = lines[2].split(",")
+    cells[-1] = "7.25"
+    (folder / "scenes.csv").write_text("\n".join([*lines[:2], ",".join(cells), *lines[3:], ""]))
+
+
+def _lose_the_table(folder: Path) -> None:
+    (folder / "scenes.csv").unlink()
+
+
+def _seed_the_config(folder: Path) -> None:
+    path = folder / "config.yaml"
+    path.write_text(path.read_text().replace("seed: ", "seed: 1"))
+
+
+def _add_an_image(folder: Path) -> None:
+    image = next((folder / "png/stft").rglob("*.png"))
+    shutil.copy(image, image.with_name("mine.png"))
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        (_widen_an_extent, "/extent/stft: does not match"),
+        (_change_an_entropy, "/entropy/stft: does not match"),
+        (_edit_the_table, "scenes.csv: 1 rows"),
+        (_lose_the_table, "scenes.csv: is missing"),
+        (_seed_the_config, "config.yaml: is not the config"),
+        (_add_an_image, "mine.png: is no image of this data set"),
+    ],
+)
+def test_what_follows_from_the_data_set_is_compared_with_it(
+    whole: Path, tmp_path: Path, change: Callable[[Path], None], expected: str
+) -> None:
+    shutil.copytree(whole, tmp_path / "set")
+    assert verify(tmp_path / "set", 0).problems == []
+    change(tmp_path / "set")
+    problems = verify(tmp_path / "set", 0).problems
+    assert any(expected in problem for problem in problems), problems
+
+
+def test_the_largest_decibels_are_checked(config: Config, tmp_path: Path) -> None:
+    output = config.output.model_copy(update={"power": "float16"})
+    build(config.model_copy(update={"output": output}), tmp_path, 1, Listener())
+    with h5py.File(tmp_path / "dataset.h5", "r+") as file:
+        file["largest_db/stft"][1] += 3
+    problems = verify(tmp_path, 0).problems
+    assert problems == ["/largest_db/stft: does not match its checksum"]
+
+
+def test_a_data_set_from_before_newer_keys_is_of_another_version_and_not_wrong(
+    whole: Path, tmp_path: Path
+) -> None:
+    shutil.copytree(whole, tmp_path / "set")
+    with h5py.File(tmp_path / "set/dataset.h5", "r+") as file:
+        stored = json.loads(file.attrs["config"])
+        del stored["room"]["back_wall_m"]
+        file.attrs["config"] = json.dumps(stored)
+        file.attrs["config_hash"] = document_hash(stored)
+        file.attrs["radhar_version"] = "0.1.0+before"
+        del file.attrs["columns_sha256"]
+    report = verify(tmp_path / "set", 2)
+    assert report.problems == []
+    assert report.other_versions[0].startswith("radhar 0.1.0+before there")
 
 
 def test_other_versions_compare_within_one_level(whole: Path, tmp_path: Path) -> None:

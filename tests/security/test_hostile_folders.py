@@ -171,6 +171,7 @@ def test_a_damaged_identity_is_refused(case: str, tmp_path: Path) -> None:
     place = tmp_path / "out/.radhar/identity.json"
     place.parent.mkdir(parents=True)
     place.write_bytes(IDENTITIES[case].encode("latin-1"))
+    (tmp_path / "out/png").mkdir()  # without samples the folder would be free
     assert str(tmp_path / "out") in radhar("inspect", tmp_path / "out")
     with pytest.raises(RadharError) as caught:
         program()(

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from security.bounded import Answer, answers, refused
 
-from radhar_cli import __version__
+from radhar_cli.build_version import build_version
 
 Change = Callable[[h5py.File, Path], None]
 COMMANDS = ("inspect", "preview", "verify", "eval")
@@ -356,7 +356,7 @@ def plain_chunks_in_a_gzip_dataset(file: h5py.File, _: Path) -> None:
 
 def circle(data: bytes) -> bytes:
     """A file with a free object of no size for a text: HDF5 itself reads it without end."""
-    text = __version__.encode()
+    text = build_version().encode()
     place = data.index(len(text).to_bytes(8, "little") + text)  # half way in an object's header
     return data[: place - 8] + bytes(16) + data[place + 8 :]
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from radhar_cli.arrays import Levels
-from radhar_cli.dataset.image_file import image_size, read_gray, read_rgb
+from radhar_cli.dataset.image_file import SUFFIXES, image_size, read_gray, read_rgb
 from radhar_cli.dataset.layout import CONFIG, PNG
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.images.image_set import (
@@ -25,7 +25,6 @@ _WANTED = (
     "<train|val|test>/<class>/<image>.png"
 )
 MAX_CLASSES = 128  # a confusion matrix of them can still be drawn
-SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp"}
 
 
 @dataclass(frozen=True)

@@ -3,9 +3,9 @@
     python scripts/bench_large.py [--rows 1e6] [--parts 4] [--batch 32] [--keep]
 
 Every shard is a copy of one but for its rows: an image of 8 x 8 px, the numbers of a scene, the
-checksums. What is left is bookkeeping: a build in one piece; the same in parts, their merge; samples
-read at random. Of each stage: seconds (of these of the
-assembly), user and system time, peak resident memory of the process, files and bytes it left.
+checksums. What is left is bookkeeping: a build in one piece; the same in parts, their merge;
+samples read at random. Of each stage: seconds (of these of the assembly), user and system time,
+peak resident memory of the process, files and bytes it left.
 """
 
 import argparse

@@ -35,4 +35,4 @@ def replacing(path: Path, unfinished: str | None = None) -> Iterator[Path]:
 def write_text(path: Path, text: str) -> None:
     """Write a text file that appears when it is whole."""
     with replacing(path) as unfinished:
-        unfinished.write_text(text)
+        unfinished.write_text(text, encoding="utf-8")

@@ -98,7 +98,7 @@ def assembled(
     try:
         with (
             new_hdf5(unfinished, folder / DATASET) as (file, check),
-            table.open("w", newline="") as text,
+            table.open("w", newline="", encoding="utf-8") as text,
             manifest.open("w") as held,
         ):
             _describe_samples(file, config)

@@ -4,6 +4,7 @@ import errno
 import json
 import os
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -48,6 +49,23 @@ def test_jobs_and_batch_size_change_no_byte(
     config: Config, whole: Path, tmp_path: Path, jobs: int, batch_size: int
 ) -> None:
     make(config, tmp_path / "set", jobs=jobs, batch_size=batch_size)
+    assert fingerprint(tmp_path / "set") == fingerprint(whole)
+
+
+def test_no_more_processes_than_batches_are_started(
+    config: Config, whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[int] = []
+
+    def here(function: Any, tasks: Any, jobs: int) -> Any:
+        asked.append(jobs)
+        return run_tasks(function, tasks, 1)
+
+    monkeypatch.setattr(build_module, "run_tasks", here)
+    notes = Listener()
+    build(config, tmp_path / "set", 3000, notes, batch_size=2)
+    assert max(asked) == 5
+    assert "5 of 3000 processes, one for each batch of samples" in notes.messages
     assert fingerprint(tmp_path / "set") == fingerprint(whole)
 
 

@@ -1,12 +1,14 @@
 """The `radhar` program: registers the commands, turns our errors into one message and a status."""
 
+import io
 import os
-import signal
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
-from radhar_cli.errors import INTERRUPTED, TERMINATED, RadharError
+from radhar_cli import interrupts
+from radhar_cli.errors import INTERRUPTED, RadharError
 from radhar_cli.untrusted import shown
 
 if TYPE_CHECKING:
@@ -89,26 +91,48 @@ def _with_output_options(app: "typer.Typer") -> None:
 
 def main() -> None:
     """Run the program; our errors end with their message and status."""
-    signal.signal(signal.SIGTERM, _terminate)
-    try:
-        sys.exit(_run(sys.argv[1:]))
-    except RadharError as error:
-        if os.environ.get("RANK", "0") == "0":  # under torchrun all fail, and one reports it
-            print(f"radhar: {shown(error)}", file=sys.stderr)
-        sys.exit(error.status)
-    except KeyboardInterrupt:
-        sys.exit(INTERRUPTED)
-    except OSError as error:
-        if isinstance(error, BrokenPipeError):
-            sys.stderr.close()
-        elif error.filename is None:
-            raise
-        else:
-            print(f"radhar: {shown(error.filename)}: {error.strerror or error}", file=sys.stderr)
-        sys.exit(1)
-    finally:
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, signal.SIG_IGN)  # the work is done; leave quietly
+    status: int | None = None
+    with interrupts.handled():
+        try:
+            _open_standard_streams()
+            status = _run(sys.argv[1:])
+            sys.stdout.flush()
+        except BaseException as error:
+            if interrupts.status() is None:
+                status = _tell(error)
+        sys.exit(interrupts.status() or status)
+
+
+def _tell(error: BaseException) -> int:
+    """Say in a line what ended the program, unless it is a mistake of ours; return the status."""
+    status, said = 1, ""
+    if isinstance(error, RadharError):
+        status, said = error.status, str(error)
+    elif isinstance(error, KeyboardInterrupt):
+        return INTERRUPTED
+    elif isinstance(error, MemoryError):
+        why = f" ({error})" if str(error) else ""
+        said = f"out of memory{why}; smaller images or fewer --jobs need less"
+    elif isinstance(error, OSError) and error.errno is not None:
+        with suppress(OSError, ValueError):  # or Python would write what it holds again at its end
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if not isinstance(error, BrokenPipeError):
+            said = f"{error.filename or 'output'}: {error.strerror}"
+    else:
+        raise error
+    if said and os.environ.get("RANK", "0") == "0":  # under torchrun all fail, and one reports it
+        print(f"radhar: {shown(said)}", file=sys.stderr)
+    return status
+
+
+def _open_standard_streams() -> None:
+    """Open to nothing what the shell closed, or pipes of ours take its place; print anywhere."""
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        if getattr(sys, name) is None:
+            os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)  # takes the lowest number
+            setattr(sys, name, os.fdopen(number, "w" if number else "r", closefd=False))
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")
 
 
 def _run(arguments: list[str]) -> int | None:
@@ -138,8 +162,3 @@ def _run(arguments: list[str]) -> int | None:
         context = error.ctx  # type: ignore[attr-defined]
         path = context.command_path if context else "radhar"
         raise RadharError(f"{message.rstrip('.')} ({path} --help)") from None
-
-
-def _terminate(number: int, frame: object) -> None:
-    """Unwind as Ctrl-C does, so that whatever is open is closed and workers end."""
-    raise SystemExit(TERMINATED)

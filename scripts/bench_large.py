@@ -3,9 +3,9 @@
     python scripts/bench_large.py [--rows 1e6] [--parts 4] [--batch 32] [--keep]
 
 Every shard is a copy of one but for its rows: an image of 8 x 8 px, the numbers of a scene, the
-checksums. What is left is bookkeeping: a build in one piece; the same in parts, a merge that copies
-and one that refers to them; samples read at random of both. Of each stage: seconds (of these of the
-assembly), user and system time, peak resident memory of the process, files and bytes it left.
+checksums. What is left is bookkeeping: a build in one piece; the same in parts, their merge;
+samples read at random. Of each stage: seconds (of these of the assembly), user and system time,
+peak resident memory of the process, files and bytes it left.
 """
 
 import argparse
@@ -32,7 +32,7 @@ from radhar_cli.processing.power_map import MapImage
 
 ROOT = Path(__file__).resolve().parents[1]
 SIZE, READS, CLASSES = 8, 1000, 12
-STAGES = ("build", "parts", "merge", "read", "merge --virtual", "read --virtual")
+STAGES = ("build", "parts", "merge", "read")
 
 
 def stub_shard(batch: Batch, size: int, made: dict[int, bytes]) -> int:
@@ -96,8 +96,8 @@ def stage(name: str, place: Path, rows: int, parts: int, batch: int | None) -> d
         elif name == "parts":
             for number in range(1, parts + 1):
                 build_module.build_part(config, cut, Part(parts, number), 1, notes, False, batch)
-        elif name.startswith("merge"):
-            merge(cut, [], 1, notes, "virtual" in name)
+        elif name == "merge":
+            merge(cut, [], 1, notes)
         else:
             return _read(cut)
     end = time.perf_counter()

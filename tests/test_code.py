@@ -16,6 +16,7 @@ PACKAGE = ROOT / "radhar_cli"
 PACKAGES = (
     "arrays",
     "errors",
+    "interrupts",
     "rounding",
     "build_version",
     "light",

@@ -5,6 +5,7 @@ from typing import Any
 
 from tqdm import tqdm
 
+from radhar_cli import interrupts
 from radhar_cli.commands.tell import is_quiet, wanted
 from radhar_cli.untrusted import Closing, shown
 
@@ -30,6 +31,7 @@ class Bars(Closing):
 
     def advance(self, count: int, note: str = "") -> None:
         """Some units are done."""
+        interrupts.check()
         if self._bar is not None:
             if note:
                 self._bar.set_postfix_str(note, False)

@@ -42,15 +42,12 @@ def init(
     """
     from radhar_cli.config.starting_file import as_commented_yaml
     from radhar_cli.errors import FolderError
+    from radhar_cli.replacing import write_text
 
-    text = as_commented_yaml(_kind(train))
-    try:
-        with out.open("x", encoding="utf-8") as file:
-            file.write(text)
-    except FileExistsError:
-        raise FolderError(f"{out}: exists already; should be a new file") from None
-    except OSError as error:
-        raise FolderError(f"{out}: {error.strerror}; should be a new file") from None
+    if out.exists() or out.is_symlink() or not out.parent.is_dir():
+        why = "exists already" if out.parent.is_dir() else "there is no such folder"
+        raise FolderError(f"{out}: {why}; should be a new file")
+    write_text(out, as_commented_yaml(_kind(train)))
     report(file=out)
     tell(f"{out}: all keys with their defaults; leave out what should stay as it is")
     tell(f"  then        radhar {'train DATA --config' if train else 'generate'} {out} -o OUT")

@@ -107,10 +107,12 @@ def _of_scenes(
 ) -> None:
     from radhar_cli.commands.terminal import BarProgress, print_outcome, print_part
     from radhar_cli.dataset.build import build, build_part
+    from radhar_cli.dataset.layout import Rows
     from radhar_cli.dataset.parts import Part
     from radhar_cli.dataset.workers import on_cluster
 
-    where = nullcontext(jobs) if cluster is None else on_cluster(cluster, jobs)
+    most = min(jobs, len(Rows.of(config)))
+    where = nullcontext(jobs) if cluster is None else on_cluster(cluster, most)
     with BarProgress() as progress, where as jobs:
         if shard is None:
             outcome = build(config, out, jobs, progress, overwrite, batch)

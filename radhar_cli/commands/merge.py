@@ -14,9 +14,6 @@ def merge(
         list[Path] | None,
         typer.Argument(help="Parts, or folders that hold parts, in addition to those below OUT."),
     ] = None,
-    virtual: Annotated[
-        bool, typer.Option("--virtual", help="Refer to the parts below OUT; copy no samples.")
-    ] = False,
     jobs: Annotated[
         int | None,
         typer.Option(
@@ -37,5 +34,5 @@ def merge(
     from radhar_cli.dataset.workers import cores
 
     with resumable("every part"), BarProgress() as progress:
-        config, outcome = merge_parts(out, parts or [], jobs or cores(), progress, virtual)
+        config, outcome = merge_parts(out, parts or [], jobs or cores(), progress)
     print_outcome(config, outcome)

@@ -8,8 +8,9 @@ from typing import Annotated, TypeAlias
 
 import typer
 
+from radhar_cli import interrupts
 from radhar_cli.commands.tell import tell
-from radhar_cli.errors import INTERRUPTED, TERMINATED, FolderError
+from radhar_cli.errors import INTERRUPTED, FolderError
 
 Overrides: TypeAlias = Annotated[
     list[str] | None,
@@ -34,18 +35,16 @@ def resumable(kept: str) -> Iterator[None]:
     """Say what is kept when Ctrl-C (status 130) or SIGTERM (status 143) ends the work."""
     try:
         yield
-    except KeyboardInterrupt:
-        _say_kept("interrupted", kept)
-        raise typer.Exit(INTERRUPTED) from None
-    except SystemExit as error:
-        if error.code == TERMINATED:
-            _say_kept("terminated", kept)
-        raise
-
-
-def _say_kept(how: str, kept: str) -> None:
-    if os.environ.get("RANK", "0") == "0":  # under torchrun all end alike; one should speak
-        tell(f"\n{how}: {kept} is kept; the same command resumes", err=True)
+        interrupts.check()
+    except BaseException as error:
+        by_hand = isinstance(error, KeyboardInterrupt)
+        status = interrupts.status() or (INTERRUPTED if by_hand else None)
+        if status is None:
+            raise
+        if os.environ.get("RANK", "0") == "0":  # under torchrun all end alike; one should speak
+            how = "interrupted" if status == INTERRUPTED else "terminated"
+            tell(f"\n{how}: {kept} is kept; the same command resumes", err=True)
+        raise typer.Exit(status) from None
 
 
 def refuse_to_replace(path: Path, replace: bool, example: str) -> None:

@@ -9,7 +9,7 @@ from rich.text import Text
 
 from radhar_cli.untrusted import shown
 
-BARS = " ▁▂▃▄▅▆▇█"
+BARS, ASCII_BARS = " ▁▂▃▄▅▆▇█", " .:-=+*%#"
 MAX_SIZES = 5
 
 
@@ -58,7 +58,13 @@ def _data_set(console: Console, s: dict[str, Any]) -> None:
             drawn.add_column(column, justify="right", no_wrap=True)
         for name, h in s["drawn"].items():
             numbers = [f"{h[key]:.4g}" for key in ("min", "mean", "max")]
-            drawn.add_row(name, h["unit"], *numbers, str(h["samples"]), _bars(h["counts"]))
+            drawn.add_row(
+                name,
+                h["unit"],
+                *numbers,
+                str(h["samples"]),
+                _bars(h["counts"], _bar_signs(console)),
+            )
         console.print(drawn)
     for warning in s["warnings"]:
         console.print(Text("warning", "yellow"), warning["message"])
@@ -110,9 +116,13 @@ def _versions(s: dict[str, Any]) -> str:
     return ", ".join(f"{library} {version}" for library, version in s["versions"].items())
 
 
-def _bars(counts: list[int]) -> str:
+def _bar_signs(console: Console) -> str:
+    return BARS if console.encoding.startswith("utf") else ASCII_BARS
+
+
+def _bars(counts: list[int], signs: str) -> str:
     largest = max(counts)
-    return "".join(BARS[-(-count * (len(BARS) - 1) // largest)] for count in counts)
+    return "".join(signs[-(-count * (len(signs) - 1) // largest)] for count in counts)
 
 
 def _unfinished(console: Console, s: dict[str, Any]) -> None:
@@ -120,14 +130,13 @@ def _unfinished(console: Console, s: dict[str, Any]) -> None:
     console.print(
         Text(s["path"], "bold"), f" unfinished: {s['finished']} of {s['samples']} samples"
     )
-    console.print(
-        f"{_progress(share)} {share:.0%}   seed {s['seed']}   config {s['config_hash'][:12]}"
-    )
+    progress = _progress(share, _bar_signs(console))
+    console.print(f"{progress} {share:.0%}   seed {s['seed']}   config {s['config_hash'][:12]}")
     console.print("the same `radhar generate` command resumes")
 
 
-def _progress(share: float, width: int = 40) -> str:
-    return "█" * int(share * width) + "░" * (width - int(share * width))
+def _progress(share: float, signs: str, width: int = 40) -> str:
+    return (signs[-1] * int(share * width)).ljust(width, signs[1])
 
 
 def _scene(console: Console, s: dict[str, Any]) -> None:

@@ -14,6 +14,7 @@ from typing import Annotated, Any
 
 import typer
 
+from radhar_cli import interrupts
 from radhar_cli.plain_json import plain
 from radhar_cli.untrusted import shown
 
@@ -57,6 +58,7 @@ def wanted(message: str) -> bool:
 
 def report(**values: object) -> None:
     """With --json, print an object of values on a line; docs/output.md lists all keys."""
+    interrupts.check()  # before it is called done
     if _output.json:
         typer.echo(json.dumps(plain(values), allow_nan=False))
 

@@ -78,7 +78,6 @@ def assembled(
     shards: Sequence[Shard],
     progress: Progress,
     remedy: Callable[[Runs], str] = resume_hint,
-    virtual: bool = False,
 ) -> Iterator[tuple[Path, list[dict[str, Any]]]]:
     """Assemble a data set; yield the path of the complete file and the warnings stored in it.
 
@@ -90,8 +89,6 @@ def assembled(
         shards: that hold every row once.
         progress: receives the rows that are copied.
         remedy: advice on rows that are missing, for the message.
-        virtual: refer to the large datasets of the shards, which lie below the folder, instead of
-            copying them.
 
     Raises:
         UnfinishedError: rows are missing, held twice, or in a shard that cannot be used.
@@ -107,16 +104,12 @@ def assembled(
         ):
             with (
                 new_hdf5(unfinished, folder / DATASET) as (file, check),
-                table.open("w", newline="") as text,
+                table.open("w", newline="", encoding="utf-8") as text,
                 manifest.open("w") as held,
             ):
                 _describe_samples(file, config)
                 held.write(f'{{"identity": "{own_hash}", "rows": {count}, "shards": [\n')
-                if virtual:
-                    _refer_to_shards(file, config, folder, shards)
-                flags = _copy_shards(
-                    file, check, config, shards, own_hash, progress, text, held, virtual
-                )
+                flags = _copy_shards(file, check, config, shards, own_hash, progress, text, held)
                 held.write("]}\n")
                 messages = warnings(config, flags)
                 _root_attributes(file, config, messages)
@@ -137,11 +130,8 @@ def _copy_shards(
     progress: Progress,
     table: io.TextIOBase,
     manifest: io.TextIOBase,
-    virtual: bool,
 ) -> dict[Flags, int]:
     """Copy maps and columns, each shard read and checked once, and write down what each held.
-
-    Virtual maps stay where they are.
 
     Chunks are stored in runs of RUN rows, or of RUN_BYTES, dataset after dataset: the file's layout
     does not depend on how shards cut the rows, and who reads one map reads long stretches.
@@ -150,10 +140,7 @@ def _copy_shards(
         How many rows have each flag.
     """
     count, stored = shards[-1].stop, 0
-    run, large = (
-        max(1, min(RUN, RUN_BYTES // row_bytes(config))),
-        {} if virtual else chunked(config),
-    )
+    run, large = max(1, min(RUN, RUN_BYTES // row_bytes(config))), chunked(config)
     targets = {name: chunked_dataset(file, name, count, config).id for name in large}
     small = {
         name: (_Column(file.create_dataset(name, (count, *shape), dtype)), np.dtype(dtype), shape)
@@ -230,18 +217,6 @@ class _Column:
             self._target[self._start : self._stop] = np.concatenate(self._held)
             self._start = self._stop
             self._held.clear()
-
-
-def _refer_to_shards(
-    file: h5py.File, config: Config, folder: Path, shards: Sequence[Shard]
-) -> None:
-    """Make each large dataset a virtual one whose parts are those of the shards."""
-    for name, (dtype, shape) in chunked(config).items():
-        layout = h5py.VirtualLayout((shards[-1].stop, *shape), dtype)
-        for start, stop, place in shards:
-            path = Shard(start, stop, place).path.relative_to(folder).as_posix()
-            layout[start:stop] = h5py.VirtualSource(path, name, (stop - start, *shape), dtype)
-        file.create_virtual_dataset(name, layout)
 
 
 def _describe_samples(file: h5py.File, config: Config) -> None:

@@ -179,7 +179,7 @@ def png_rows(
     """Write the PNGs of (row, split) pairs from a data set's HDF5 file."""
     order = Rows.of(config)
     shape = (len(order), *config.image.size_px)
-    with UntrustedFile(source, virtual=True, folder=folder) as file:
+    with UntrustedFile(source) as file:
         images = {name: file.chunks(f"maps/{name}", np.uint8, shape) for name in config.maps}
         for row, split in rows:
             leave_if_orphaned(parent_pid)

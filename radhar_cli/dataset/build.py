@@ -245,7 +245,10 @@ class _Build:
                         ),
                     )
 
-        for samples in run_tasks(run_batch, batches(), self.jobs if left > size else 1):
+        count = sum(-(-(stop - start) // size) for start, stop in gaps)
+        if 0 < count < self.jobs:
+            self.progress.say(f"{count} of {self.jobs} processes, one for each batch of samples")
+        for samples in run_tasks(run_batch, batches(), max(1, min(self.jobs, count))):
             self.progress.advance(samples)
         return shards, left
 

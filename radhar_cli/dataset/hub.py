@@ -22,7 +22,7 @@ def write_hub_files(source: Path, folder: Path, png: bool) -> None:
         folder: the output folder.
         png: whether the folder has images.
     """
-    with Dataset(source, folder) as data:
+    with Dataset(source) as data:
         if png:
             write_metadata(data, folder)
         for name in (GALLERY, CARD):

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.assembly import assembled
 from radhar_cli.dataset.build import Outcome, disk_error, say_warnings
-from radhar_cli.dataset.files import refuse_foreign_work, refuse_links
+from radhar_cli.dataset.files import refuse_foreign_work
 from radhar_cli.dataset.folder import clean_up, folder_lock, mark_built, reserve, stored_identity
 from radhar_cli.dataset.hub import write_hub_files
 from radhar_cli.dataset.identity import differences, identity
@@ -30,7 +30,7 @@ class _Place(NamedTuple):
 
 
 def merge(
-    out: Path, folders: Sequence[Path], jobs: int, progress: Progress, virtual: bool = False
+    out: Path, folders: Sequence[Path], jobs: int, progress: Progress
 ) -> tuple[Config, Outcome]:
     """Make the data set in `out` of its parts, which are only read.
 
@@ -39,7 +39,6 @@ def merge(
         folders: of parts, or that hold parts, in addition to those below `out`.
         jobs: processes, for PNGs that no part has.
         progress: receives progress and messages.
-        virtual: dataset.h5 refers to the parts, all below `out`, instead of copying them.
 
     Raises:
         FolderError: parts differ, or are none.
@@ -56,9 +55,6 @@ def merge(
         return f"make them with `radhar generate` and {again}, then merge again"
 
     shards = _shards(places, count)
-    if virtual:
-        for place in places:
-            _refuse_outside(out, place.folder)
     require_tiling(out, shards, count, run_again)
     split = split_rows(config)
     for message in split_warnings(config, split):
@@ -67,7 +63,7 @@ def merge(
         with folder_lock(out):
             reserve(out, config, overwrite=False, allowed=(PARTS,))
             progress.stage("merging", count, 0)
-            with assembled(config, out, shards, progress, run_again, virtual) as (
+            with assembled(config, out, shards, progress, run_again) as (
                 unfinished,
                 stored,
             ):
@@ -136,12 +132,3 @@ def _shards(places: Sequence[_Place], count: int) -> list[Shard]:
         if not shards or shard.start >= shards[-1].stop:
             shards.append(shard)
     return shards
-
-
-def _refuse_outside(out: Path, folder: Path) -> None:
-    if not folder.is_relative_to(out) or "%" in str(folder.relative_to(out)):
-        raise FolderError(
-            f"{folder}: --virtual refers to parts below {out}, without % in their names; merge "
-            "without it to copy"
-        )
-    refuse_links(out, folder)

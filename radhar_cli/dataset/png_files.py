@@ -53,7 +53,7 @@ def write_missing_pngs(
         )
         for first in range(0, missing.size, ROWS)
     )
-    for written in run_tasks(png_rows, tasks, jobs if missing.size > ROWS else 1):
+    for written in run_tasks(png_rows, tasks, max(1, min(jobs, -(-missing.size // ROWS)))):
         progress.advance(written)
     return missing.size * len(config.maps)
 

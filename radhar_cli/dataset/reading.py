@@ -40,7 +40,6 @@ class Dataset(Closing):
 
     Args:
         path: of dataset.h5, or of what is going to be it.
-        folder: the output folder then.
 
     Attributes:
         path: of dataset.h5.
@@ -60,9 +59,9 @@ class Dataset(Closing):
         FolderError: it is not a data set of radhar, or is damaged; names file and field.
     """
 
-    def __init__(self, path: Path, folder: Path | None = None) -> None:
+    def __init__(self, path: Path) -> None:
         self.path = path
-        self.file = UntrustedFile(path, virtual=True, folder=folder)
+        self.file = UntrustedFile(path)
         self.splits = SPLITS
         try:
             self.config = stored_config(self.file.json("config"), str(path))

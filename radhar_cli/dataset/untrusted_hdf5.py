@@ -1,10 +1,8 @@
 """HDF5 files that anyone may have written: the one place that opens them.
 
 Only what is asked for by name is read; the rest of the file does not matter. Each link on the
-way is a hard one and each dataset lies in the file itself, so nothing leads to another file, but
-for virtual datasets whose sources lie in the folder of the file or below: HDF5 is never asked for
-their samples, the sources are opened here by the same rules. Types, shapes and stored bytes are
-checked before anything is read. Compressed images are inflated here, up
+way is a hard one and each dataset lies in the file itself, so nothing leads to another file. Types,
+shapes and stored bytes are checked before anything is read. Compressed images are inflated here, up
 to the size that they should have: HDF5 would inflate them to any.
 """
 
@@ -12,15 +10,14 @@ import os
 import struct
 import weakref
 import zlib
-from bisect import bisect_right
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import KW_ONLY, dataclass, field
+from dataclasses import dataclass, field
 from functools import partial
 from itertools import islice
 from math import prod
-from pathlib import Path, PurePosixPath
-from typing import Any, NamedTuple
+from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -42,7 +39,6 @@ _DAMAGED = (
 )
 _HEAP = b"GCOL\x01"
 MAX_TEXT = 2**20
-MAX_SOURCES = 64  # open files per virtual data set
 MIN_HEAP, MAX_HEAP = 4096, 2**24  # bytes; the minimum is HDF5's
 MAX_CHUNK = 2**27  # bytes of a chunk
 _DEFLATE, _SHUFFLE = h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE
@@ -123,24 +119,15 @@ class UntrustedFile(Closing):
     Args:
         path: of the file.
         data: its bytes, where they have been read already.
-        virtual: samples may lie in other files of its folder (`radhar merge --virtual`).
-        folder: its folder, where it is going to be another than that of `path`.
 
     Raises:
         FolderError: it is not a regular file, or not HDF5. So do all methods, for whatever is not
             as it should be; the message names file and field.
     """
 
-    def __init__(
-        self,
-        path: Path,
-        data: bytes | None = None,
-        virtual: bool = False,
-        folder: Path | None = None,
-    ) -> None:
-        self.path, self._folder = path, folder or path.parent
+    def __init__(self, path: Path, data: bytes | None = None) -> None:
+        self.path = path
         self._claimed = 0
-        self._sources = _Sources() if virtual else None
         try:
             self._source = _HeapChecked(path if data is None else data)
         except OSError as error:
@@ -214,22 +201,10 @@ class UntrustedFile(Closing):
         """Samples [N, ...], each in a chunk of its own, plain or gzip."""
         where, one, wanted = f"{self.path}: /{name}", (1, *shape[1:]), np.dtype(dtype)
         with _refusing_damage(where):
-            dataset = self._dataset(name, where, wanted, shape, self._sources is not None)
+            dataset = self._dataset(name, where, wanted, shape)
             if dataset.dtype != wanted:
                 raise FolderError(f"{where}: is of the type {dataset.dtype.str}; not {wanted.str}")
             creation = dataset.id.get_create_plist()
-            if self._sources is not None and creation.get_layout() == h5py.h5d.VIRTUAL:
-                parts = list(_parts(creation, where, name, shape, self._folder))
-                return VirtualChunks(
-                    where,
-                    dataset,
-                    wanted,
-                    shape,
-                    _deflated=False,
-                    name=name,
-                    parts=parts,
-                    sources=self._sources,
-                )
             filters = [creation.get_filter(i)[0] for i in range(creation.get_nfilters())]
             if dataset.chunks != one:
                 raise FolderError(f"{where}: has chunks of {dataset.chunks}; should be {one}")
@@ -294,7 +269,6 @@ class UntrustedFile(Closing):
         where: str,
         dtype: np.dtype[Any] | None,
         shape: tuple[int, ...] | None,
-        virtual: bool = False,
     ) -> h5py.Dataset:
         place: Any = self._file
         for part in name.split("/"):
@@ -308,8 +282,8 @@ class UntrustedFile(Closing):
             raise FolderError(f"{where}: should be a dataset")
         # First of all: to know the shape of a virtual dataset HDF5 may open its sources.
         creation = place.id.get_create_plist()
-        elsewhere = creation.get_layout() == h5py.h5d.VIRTUAL and not virtual
-        if elsewhere or creation.get_external_count():
+        virtual = creation.get_layout() == h5py.h5d.VIRTUAL
+        if virtual or creation.get_external_count():
             raise FolderError(f"{where}: lies in another file; should be stored in this file")
         if shape is not None and place.shape != shape:
             raise FolderError(f"{where}: has the shape {place.shape}; should have {shape}")
@@ -319,8 +293,6 @@ class UntrustedFile(Closing):
 
     def close(self) -> None:
         """Close the file."""
-        if self._sources is not None:
-            self._sources.close()
         self._file.close()
         self._source.close()
 
@@ -411,103 +383,6 @@ class Chunks:
         if len(chunk) != raw:
             raise FolderError(f"{self.where}[{row}]: is {len(chunk)} bytes; should be {raw}")
         return np.frombuffer(chunk, self.dtype).reshape(self.shape[1:]).copy()
-
-
-class _Part(NamedTuple):
-    """Rows start .. stop - 1 of a virtual dataset, all of the same dataset in another file."""
-
-    start: int
-    stop: int
-    path: Path
-
-
-@dataclass
-class VirtualChunks(Chunks):
-    """Samples [N, ...] that lie in other files, checked as those are opened."""
-
-    _: KW_ONLY
-    name: str
-    parts: list[_Part]
-    sources: "_Sources"
-
-    def stored(self, row: int) -> tuple[int, bytes]:
-        """Filter mask and bytes of a row's chunk as they lie in the other file."""
-        part, chunks = self._at(row)
-        return chunks.stored(row - part.start)
-
-    def _sample(self, row: int) -> NDArray[Any]:
-        part, chunks = self._at(row)
-        return chunks[row - part.start]
-
-    def _at(self, row: int) -> tuple[_Part, Chunks]:
-        part = self.parts[bisect_right(self.parts, row, key=lambda part: part.start) - 1]
-        shape = (part.stop - part.start, *self.shape[1:])
-        return part, self.sources.chunks(part.path, self.name, self.dtype, shape)
-
-
-class _Sources:
-    """Files that virtual datasets refer to; the last few stay open."""
-
-    def __init__(self) -> None:
-        self._open: dict[Path, tuple[UntrustedFile, dict[str, Chunks]]] = {}
-
-    def chunks(self, path: Path, name: str, dtype: DTypeLike, shape: tuple[int, ...]) -> Chunks:
-        """A dataset of a file."""
-        if path not in self._open and len(self._open) >= MAX_SOURCES:
-            self._open.pop(next(iter(self._open)))[0].close()
-        if path not in self._open:
-            self._open[path] = UntrustedFile(path), {}
-        file, known = self._open[path] = self._open.pop(path)  # to the end
-        if name not in known:
-            known[name] = file.chunks(name, dtype, shape)
-        return known[name]
-
-    def close(self) -> None:
-        """Close them."""
-        for file, _ in self._open.values():
-            file.close()
-        self._open.clear()
-
-
-def _parts(
-    creation: h5py.h5p.PropDCID, where: str, name: str, shape: tuple[int, ...], folder: Path
-) -> Iterator[_Part]:
-    """What a virtual dataset is made of: whole datasets of its own name, one after the other."""
-    count, row = creation.get_virtual_count(), 0
-    if count > shape[0]:
-        raise FolderError(f"{where}: refers to {count} parts, more than samples")
-    resolved = folder.resolve()
-    for number in range(count):
-        source = creation.get_virtual_filename(number)
-        start, stop = _rows(creation.get_virtual_vspace(number), where, shape)
-        path = folder / source
-        if (
-            PurePosixPath(source).is_absolute()
-            or {"..", "%"} & {*PurePosixPath(source).parts, *source}
-            or path.resolve() != resolved / source
-        ):
-            raise FolderError(
-                f"{where}: lies in another file, {source}; should be one below {folder}, no link"
-            )
-        if creation.get_virtual_srcspace(number).get_select_type() != h5py.h5s.SEL_ALL:
-            raise FolderError(f"{where}: refers to a piece of {source}; should be all of it")
-        if start != row:
-            raise FolderError(f"{where}: refers to rows from {start} on; should be from {row} on")
-        if creation.get_virtual_dsetname(number).lstrip("/") != name:
-            raise FolderError(f"{where}: refers to another dataset of {source}; should be {name}")
-        row = stop
-        yield _Part(start, stop, path)
-    if row != shape[0]:
-        raise FolderError(f"{where}: refers to {row} samples; should be {shape[0]}")
-
-
-def _rows(space: h5py.h5s.SpaceID, where: str, shape: tuple[int, ...]) -> tuple[int, int]:
-    """First row and past-last row of a selection, which should be whole rows without gaps."""
-    (start, *low), (last, *high) = space.get_select_bounds()
-    whole = low == [0] * len(shape[1:]) and high == [size - 1 for size in shape[1:]]
-    if not whole or space.get_select_npoints() != (last + 1 - start) * prod(shape[1:]):
-        raise FolderError(f"{where}: refers to pieces of samples; should be whole ones")
-    return int(start), int(last) + 1
 
 
 @dataclass(frozen=True)

@@ -46,6 +46,8 @@ def run_tasks(
             own = own_activities()
             results = pool(delayed(_with_activities)(own, function, *task) for task in tasks)
         yield from results
+    except UnboundLocalError as error:  # of loky, on its way out where it finds no more files
+        raise error.__context__ or error from None
     except TerminatedWorkerError:
         raise UnfinishedError(
             "a worker process was killed (by hand, or out of memory); what was finished is "

@@ -84,3 +84,11 @@ def test_a_figure_on_a_full_disk_is_named_and_the_earlier_one_stays(tmp_path: Pa
         write_figure(page(2, 2), path, 90)
     assert error.value.filename == str(path)
     assert [(one, one.read_text()) for one in tmp_path.iterdir()] == [(path, "earlier")]
+
+
+def test_config_init_on_a_full_disk_leaves_no_file(tmp_path: Path) -> None:
+    out = tmp_path / "new.yaml"
+    with full_disk(1000):
+        done = radhar("config", "init", out)
+    assert (done.returncode, done.stderr) == (1, f"radhar: {out}: File too large\n")
+    assert not [*tmp_path.iterdir()]

@@ -71,6 +71,50 @@ def test_sigterm_of_tradeoff_says_what_is_kept(
     assert f"terminated: what is measured in {tmp_path / 'out'} is kept" in capsys.readouterr().err
 
 
+class Swallowing:
+    """Gets SIGTERM where Python prints exceptions and goes on, as in HDF5's weak references."""
+
+    def __del__(self) -> None:
+        terminate()
+
+
+def swallow_in_assembly(self: BarProgress, name: str, total: int, done: int) -> None:
+    if name == "assembling":
+        Swallowing()
+
+
+def swallow_at_the_end(*_: object) -> None:
+    Swallowing()
+
+
+@pytest.mark.parametrize(
+    ("place", "swallow", "finished"),
+    [
+        ("radhar_cli.commands.terminal.BarProgress.stage", swallow_in_assembly, False),
+        ("radhar_cli.dataset.build.clean_up", swallow_at_the_end, True),
+    ],
+)
+def test_a_signal_that_python_swallows_ends_the_build_all_the_same(
+    place: str,
+    swallow: Callable[..., None],
+    finished: bool,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    command = ["generate", small_config(tmp_path), "-o", tmp_path / "set", "--jobs", 1]
+    with monkeypatch.context() as patched:
+        patched.setattr(place, swallow)
+        assert status(patched, *command) == TERMINATED
+    printed = capsys.readouterr()
+    assert (printed.out, "Traceback" in printed.err) == ("", False)
+    assert printed.err.strip().splitlines()[-1] == (
+        f"terminated: what is finished in {tmp_path / 'set'} is kept; the same command resumes"
+    )
+    assert (tmp_path / "set/dataset.h5").exists() == finished
+    assert not status(monkeypatch, *command)
+
+
 def processes(group: int) -> dict[int, bytes]:
     """Command lines of a group's processes, but of those that have ended and wait to be buried."""
     found = {}

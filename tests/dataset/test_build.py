@@ -56,6 +56,23 @@ def test_jobs_and_batch_size_change_no_byte(
     assert fingerprint(tmp_path / "set") == fingerprint(whole)
 
 
+def test_no_more_processes_than_batches_are_started(
+    config: Config, whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[int] = []
+
+    def here(function: Any, tasks: Any, jobs: int) -> Any:
+        asked.append(jobs)
+        return run_tasks(function, tasks, 1)
+
+    monkeypatch.setattr(build_module, "run_tasks", here)
+    notes = Listener()
+    build(config, tmp_path / "set", 3000, notes, batch_size=2)
+    assert max(asked) == 5
+    assert "5 of 3000 processes, one for each batch of samples" in notes.messages
+    assert fingerprint(tmp_path / "set") == fingerprint(whole)
+
+
 def test_batch_size_by_number_of_rows() -> None:
     def size(left: int, jobs: int, one: int = 10**4) -> int:
         return build_module._batch_size(left, jobs, one)

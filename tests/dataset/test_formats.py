@@ -23,8 +23,10 @@ from small import fingerprint, small_config
 from radhar_cli.config import load_config
 from radhar_cli.dataset import layout
 from radhar_cli.dataset.build import build
+from radhar_cli.dataset.folder import folder_lock
 from radhar_cli.dataset.formats import checked, parquet
 from radhar_cli.dataset.formats.convert import FORMATS, convert
+from radhar_cli.errors import FolderError
 
 READER = Path(__file__).with_name("read_by_others.py")
 CONFIG = """
@@ -234,6 +236,23 @@ def test_the_licence_that_an_owner_chose_goes_along(place: Path, tmp_path: Path)
     done = radhar("convert", h5, "-o", tmp_path / "no", "--to", "npy")
     assert done.returncode == 2
     assert "README.md: license: should be text" in done.stderr.splitlines()[-1]
+
+
+def test_what_a_killed_run_left_is_cleared_and_a_run_at_work_is_not(
+    place: Path, tmp_path: Path
+) -> None:
+    left = tmp_path / ".npy.unfinished"
+    (left / "set").mkdir(parents=True)
+    (left / "set/half.npy").write_bytes(b"half")
+    with folder_lock(left), pytest.raises(FolderError, match="another run is writing here"):
+        convert(place / "set", tmp_path / "npy", "npy", Listener())
+    assert (left / "set/half.npy").exists()
+    convert(place / "set", tmp_path / "npy", "npy", Listener())
+    assert [path.name for path in tmp_path.iterdir()] == ["npy"]
+    assert not (tmp_path / "npy/half.npy").exists()
+    (tmp_path / ".mat.unfinished").symlink_to(tmp_path / "npy")
+    with pytest.raises(FolderError, match="is a symbolic link"):
+        convert(place / "set", tmp_path / "mat", "mat", Listener())
 
 
 @pytest.mark.parametrize("name", FORMATS)

@@ -9,8 +9,6 @@ import sys
 import time
 from pathlib import Path
 
-import h5py
-import numpy as np
 import pytest
 from command_line import radhar
 from listener import Listener
@@ -87,25 +85,6 @@ def test_unmerged_folders_are_reported_as_parts(out: Path) -> None:
         open_dataset(part)
 
 
-def test_a_virtual_data_set_reads_the_same_and_refuses_a_missing_part(
-    out: Path, whole: dict[str, str]
-) -> None:
-    merge(out, [], 1, Listener(), virtual=True)
-    found = merged(out)
-    assert found.pop("dataset.h5") != whole["dataset.h5"]
-    assert found == {name: sha for name, sha in whole.items() if name != "dataset.h5"}
-    assert verify(out, 2).problems == []
-    with h5py.File(out / "dataset.h5") as file, open_dataset(out) as ours:
-        assert file["maps/stft"].is_virtual
-        np.testing.assert_array_equal(file["maps/stft"][:], ours.maps["stft"][:])
-    merge(out, [], 1, Listener())
-    assert merged(out) == whole
-    merge(out, [], 1, Listener(), virtual=True)
-    listed_shards(out / "parts/3-of-4")[0].path.unlink()
-    with open_dataset(out) as ours, pytest.raises(FolderError, match="parts/3-of-4"):
-        ours.maps["stft"][:]
-
-
 def test_gaps_and_damage_name_the_parts_to_run_again(
     config: Config, out: Path, whole: dict[str, str]
 ) -> None:
@@ -160,8 +139,6 @@ def test_parts_of_something_else_are_refused(config: Config, out: Path, tmp_path
     build_part(other, tmp_path / "other", Part(4, 2), 1, Listener())
     with pytest.raises(FolderError, match="seed: 7 there, 8 here"):
         merge(out, [tmp_path / "other"], 1, Listener())
-    with pytest.raises(FolderError, match="--virtual refers to parts below"):
-        merge(tmp_path / "new", [out], 1, Listener(), virtual=True)
     with pytest.raises(FolderError, match="no such folder"):
         merge(tmp_path / "nothing", [], 1, Listener())
 

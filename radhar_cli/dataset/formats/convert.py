@@ -1,13 +1,15 @@
 """A data set in a format that other tools read; the new folder appears when it is whole."""
 
 import os
-import tempfile
+import shutil
 from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 from typing import TypeAlias
 
 from radhar_cli.dataset.card import owner_licence
+from radhar_cli.dataset.files import refuse_links
+from radhar_cli.dataset.folder import folder_lock
 from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.errors import FolderError, UnfinishedError
 from radhar_cli.progress import Progress
@@ -26,7 +28,8 @@ def convert(path: Path, out: Path, to: str, progress: Progress) -> int:
         progress: receives progress.
 
     Raises:
-        FolderError: the data set cannot be read or is damaged, or there is something at `out`.
+        FolderError: the data set cannot be read or is damaged, there is something at `out`, or
+            another run is making it.
         UnfinishedError: `out` cannot be written.
     """
     if out.exists() or out.is_symlink():
@@ -34,15 +37,19 @@ def convert(path: Path, out: Path, to: str, progress: Progress) -> int:
     write: Writer = import_module(f"radhar_cli.dataset.formats.{to}").write
     with open_dataset(path) as data:
         owner_licence(data.path.parent)  # refused before anything is written
-        out.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix=f".{out.name}.", dir=out.parent) as scratch:
-            unfinished = Path(scratch, "set")
-            unfinished.mkdir()
-            progress.stage(to, len(data), 0)
+        scratch = out.absolute().with_name(f".{out.name}.unfinished")
+        refuse_links(scratch.parent, scratch)
+        unfinished = scratch / "set"
+        with folder_lock(scratch):
+            shutil.rmtree(unfinished, ignore_errors=True)  # of a run that was killed
             try:
+                unfinished.mkdir()
+                progress.stage(to, len(data), 0)
                 write(data, unfinished, progress)
+                unfinished.rename(out)
             except OSError as error:  # its name is one in the scratch folder, or none
                 why = os.strerror(error.errno) if error.errno else error
                 raise UnfinishedError(f"{out}: {why}; nothing was written") from None
-            unfinished.rename(out)
+            finally:
+                shutil.rmtree(scratch, ignore_errors=True)
         return len(data)

@@ -1,0 +1,58 @@
+"""Ctrl-C and SIGTERM of the program: raised, and remembered, as Python may swallow what is raised.
+
+What a handler raises within a `__del__` or a weakref callback is printed and forgotten, and some
+libraries turn it into errors of their own.
+"""
+
+import signal
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from radhar_cli.errors import INTERRUPTED, TERMINATED
+
+_STATUS = {signal.SIGINT: INTERRUPTED, signal.SIGTERM: TERMINATED}
+_received: list[int] = []
+
+
+@contextmanager
+def handled() -> Iterator[None]:
+    """Handle both signals meanwhile; afterwards they are ignored, as the work is done."""
+    hook = sys.unraisablehook
+    _received.clear()
+    signal.signal(signal.SIGTERM, _receive)
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # not of a background job
+        signal.signal(signal.SIGINT, _receive)
+    sys.unraisablehook = lambda swallowed: None if _received else hook(swallowed)
+    try:
+        yield
+    finally:
+        for number in _STATUS:
+            signal.signal(number, signal.SIG_IGN)
+        sys.unraisablehook = hook
+        _received.clear()
+
+
+def status() -> int | None:
+    """Exit status for the first signal that came, or None."""
+    return _STATUS[signal.Signals(_received[0])] if _received else None
+
+
+def check() -> None:
+    """Raise for a signal that came, also if that was done before and swallowed.
+
+    Raises:
+        KeyboardInterrupt: Ctrl-C.
+        SystemExit: SIGTERM, with its status.
+    """
+    if status() == INTERRUPTED:
+        raise KeyboardInterrupt
+    if _received:
+        raise SystemExit(status())
+
+
+def _receive(number: int, frame: Any) -> None:
+    """Unwind, so that whatever is open is closed and workers end."""
+    _received.append(number)
+    check()

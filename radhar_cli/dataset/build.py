@@ -34,7 +34,7 @@ from radhar_cli.dataset.shards import (
     missing_and_repeated,
 )
 from radhar_cli.dataset.split import split_rows, split_warnings
-from radhar_cli.dataset.workers import parent_pid, run_tasks
+from radhar_cli.dataset.workers import cores, parent_pid, run_tasks
 from radhar_cli.errors import FolderError, UnfinishedError
 from radhar_cli.pipeline.validity import Flags, warnings
 from radhar_cli.progress import Progress
@@ -43,6 +43,7 @@ from radhar_cli.progress import Progress
 # no more than 1/64 of a worker's share, as much as a kill may lose.
 BATCH, MAX_BATCH, SHARE, BATCH_BYTES = 32, 1024, 64, 2**28
 CHECK_BATCH = 64
+PROCESSES_A_CORE = 8  # more would do nothing but take memory
 MAX_CHECKED_FIRST = 100_000  # rows; with more, workers check their own
 
 
@@ -195,6 +196,10 @@ class _Build:
         made, left = self._batches(rows, gaps, checked, batch_size)
         return shards + made, left, shown
 
+    def _processes(self, tasks: int) -> int:
+        """As many as were asked for, but no more than there are tasks, nor than memory bears."""
+        return max(1, min(self.jobs, tasks, PROCESSES_A_CORE * cores()))
+
     def _check_scenes(self, rows: range, gaps: Runs) -> Outcomes:
         """Check the scenes of the rows in the gaps: an outcome a row."""
         outcomes, left = (
@@ -208,7 +213,7 @@ class _Build:
             for gap_start, gap_stop in gaps
             for start in range(gap_start, gap_stop, size)
         ]
-        for start, found in run_tasks(check_rows, tasks, self.jobs if len(tasks) > 1 else 1):
+        for start, found in run_tasks(check_rows, tasks, self._processes(len(tasks))):
             outcomes[start - rows.start :][: found.size] = found
             self.progress.advance(found.size)
         return outcomes
@@ -246,9 +251,11 @@ class _Build:
                     )
 
         count = sum(-(-(stop - start) // size) for start, stop in gaps)
-        if 0 < count < self.jobs:
-            self.progress.say(f"{count} of {self.jobs} processes, one for each batch of samples")
-        for samples in run_tasks(run_batch, batches(), max(1, min(self.jobs, count))):
+        processes = self._processes(count)
+        if count > 0 and processes < self.jobs:
+            why = "one for each batch of samples" if processes == count else f"on {cores()} cores"
+            self.progress.say(f"{processes} of {self.jobs} processes, {why}")
+        for samples in run_tasks(run_batch, batches(), processes):
             self.progress.advance(samples)
         return shards, left
 

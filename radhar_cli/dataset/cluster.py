@@ -1,9 +1,11 @@
 """Run tasks on the workers of a dask cluster, on other machines or on this one."""
 
 import logging
+import signal
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from itertools import islice
+from multiprocessing import resource_tracker
 from typing import Any, TypeVar
 
 from radhar_cli.errors import MachineError, UnfinishedError
@@ -87,10 +89,16 @@ def connected(address: str, jobs: int) -> Iterator[Cluster]:
     for name in ("distributed", "distributed.client", "tornado", "asyncio"):
         logging.getLogger(name).setLevel(logging.CRITICAL)
     own = {"n_workers": jobs, "threads_per_worker": 1, "dashboard_address": None}
+    own["silence_logs"] = logging.CRITICAL
+    # Dask's thread, and so its workers, inherit that Ctrl-C is blocked: it is ours to end them.
+    resource_tracker.ensure_running()  # or its start, in that thread, would unblock it
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         with dask.config.set(QUIET):
             client = Client(**own) if address == LOCAL else Client(address, timeout=10)
     except (OSError, ValueError) as error:
         raise MachineError(f"--cluster {address}: no dask scheduler answers ({error})") from None
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
     with client:
         yield Cluster(client)

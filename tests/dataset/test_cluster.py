@@ -3,6 +3,7 @@
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -131,3 +132,25 @@ def test_a_build_survives_a_killed_worker_and_names_a_killed_scheduler(
     made = build(config, tmp_path / "set", 1, Listener()).made
     assert 0 < made < 18
     assert fingerprint(tmp_path / "set") == fingerprint(tmp_path / "whole")
+
+
+def test_ctrl_c_ends_local_workers_in_one_line(tmp_path: Path) -> None:
+    """Of the whole group, as a terminal sends it; workers have nothing to say."""
+    (tmp_path / "many.yaml").write_text("base: small.yaml\nsamples_per_class: 3000\n")
+    small_config(tmp_path)
+    command = [sys.executable, "-m", "radhar_cli", "generate", tmp_path / "many.yaml"]
+    run = subprocess.Popen(
+        [*command, "-o", tmp_path / "set", "--cluster", "local", "--jobs", "2", "--quiet"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        cwd=ROOT,
+        start_new_session=True,
+    )
+    while run.poll() is None and not listed_shards(tmp_path / "set"):
+        time.sleep(0.01)
+    os.killpg(run.pid, signal.SIGINT)
+    output, _ = run.communicate(timeout=100)
+    assert run.returncode == 130, output
+    (line,) = [line for line in output.splitlines() if line and "warning" not in line]
+    assert line.startswith("interrupted: ")

@@ -21,18 +21,18 @@ _SIT = (
     "motion.seat_height",
     "motion.lean_deg",
     "motion.recline_deg",
-    "motion.lap",
-    "motion.stagger",
+    "motion.hands_on_lap",
+    "motion.joint_lag",
 )
 _FALL = ("motion.fall", "motion.kneel_s", "motion.heels_deg")
 _GRAB = (
     "motion.bend_deg",
     "motion.dwell_s",
-    "motion.haste",
+    "motion.rise_overlap",
     "motion.squat",
     "motion.reach_deg",
     "motion.free_arm",
-    "motion.stagger",
+    "motion.joint_lag",
 )
 _STRIDE = (
     "motion.speed_mps",
@@ -42,9 +42,9 @@ _STRIDE = (
     "motion.trunk_pitch_deg",
     "motion.step_width",
     "motion.step_asymmetry",
-    "motion.surge",
-    "motion.surge_asymmetry",
-    "motion.ragged_speed",
+    "motion.speed_ripple",
+    "motion.speed_ripple_asymmetry",
+    "motion.speed_variation",
     "motion.stride_jitter",
     "motion.width_jitter_m",
     "motion.lane_m",

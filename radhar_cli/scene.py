@@ -55,8 +55,8 @@ PERSONAL = (
     "motion.trunk_pitch_deg",
     "motion.step_width",
     "motion.step_asymmetry",
-    "motion.surge",
-    "motion.surge_asymmetry",
+    "motion.speed_ripple",
+    "motion.speed_ripple_asymmetry",
     "motion.strike_scale",
     "motion.lean_deg",
 )
@@ -79,11 +79,11 @@ OF_PEOPLE = (
     *(key for key in PERSONAL if key.startswith("subject.") and key not in _BODY),
     "motion.fidget_hz",
     "motion.fidget_size",
-    "motion.idle_from_s",
+    "motion.idle_phase_s",
 )
 # What is not repeated exactly; 0 in nominal scenes.
 UNSTEADY = (
-    "motion.ragged_speed",
+    "motion.speed_variation",
     "motion.stride_jitter",
     "motion.width_jitter_m",
     "motion.tempo_jitter",
@@ -93,7 +93,7 @@ UNSTEADY = (
     "motion.step_m",
     "motion.look_deg",
     "motion.settle_size",
-    "motion.stagger",
+    "motion.joint_lag",
     "motion.kneel_s",
     "motion.heels_deg",
 )
@@ -274,7 +274,7 @@ def depends_on(config: Config, activity: Activity, key: str) -> bool:
     return not key.startswith(REDRAWN) or key in PLACE or key in activity.uses(model)
 
 
-class SameConfig:
+class ByIdentity:
     """A config as a key: equal to itself alone, whatever it holds."""
 
     def __init__(self, config: Config) -> None:
@@ -284,11 +284,11 @@ class SameConfig:
         return id(self.config)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, SameConfig) and self.config is other.config
+        return isinstance(other, ByIdentity) and self.config is other.config
 
 
 @lru_cache(maxsize=64)
-def _fixed_and_drawn(same: SameConfig, activity: Activity) -> tuple[Config, dict[str, Any]]:
+def _fixed_and_drawn(same: ByIdentity, activity: Activity) -> tuple[Config, dict[str, Any]]:
     """The config of an activity with all at its middle, and {dotted key: number} to be drawn."""
     config, drawn = same.config, dict[str, Any]()
 
@@ -304,7 +304,7 @@ def _fixed_and_drawn(same: SameConfig, activity: Activity) -> tuple[Config, dict
 
 def _fixed(config: Config, activity: Activity, draw: Draw) -> Config:
     """The config of one scene; numbers that its activity does not depend on are at their middle."""
-    fixed, drawn = _fixed_and_drawn(SameConfig(config), activity)
+    fixed, drawn = _fixed_and_drawn(ByIdentity(config), activity)
     values = {key: draw(key, number) for key, number in drawn.items()}
     if fixed.subject.weight_kg is None:
         height: Any = values.get("subject.height_m", fixed.subject.height_m)

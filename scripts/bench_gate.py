@@ -21,10 +21,10 @@ from radhar_cli.scene import Scene, nominal_scene
 WAYS = {
     "half-band, direct": {},
     "half-band, cube": {"engine": {"kind": "cube"}},
-    "gate +-0.5 m, direct": {"processing": {"doppler": "gate", "gate_m": 0.5}},
-    "gate +-1 m, direct": {"processing": {"doppler": "gate"}},
-    "gate +-1 m, high-pass, direct": {"processing": {"doppler": "gate", "clutter": "highpass"}},
-    "gate +-1 m, cube": {"processing": {"doppler": "gate"}, "engine": {"kind": "cube"}},
+    "gate +-0.5 m, direct": {"processing": {"range_sum": "gated", "gate_m": 0.5}},
+    "gate +-1 m, direct": {"processing": {"range_sum": "gated"}},
+    "gate +-1 m, high-pass, direct": {"processing": {"range_sum": "gated", "clutter": "highpass"}},
+    "gate +-1 m, cube": {"processing": {"range_sum": "gated"}, "engine": {"kind": "cube"}},
 }
 
 

@@ -65,8 +65,8 @@ PAPERS_MOTION = "motion.model=paper"
 INSTEAD = {  # what else could be simulated, and its keys
     "the paper's motion": (PAPERS_MOTION, "classes={}"),
     "segments": ("body.scatterers=segments",),
-    "half of the band": ("processing.doppler=half_band",),
-    "CFAR on power": ("image.cfar={on: power, edges: shrink}",),
+    "half of the band": ("processing.range_sum=coherent",),
+    "CFAR on power": ("image.cfar={domain: power, edges: shrink}",),
     "an empty room": ("room.reflectors=0", "room.back_wall_m=null"),
     "30 dB": ("snr_db=30",),
 }

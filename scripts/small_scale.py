@@ -116,7 +116,7 @@ FREE, WALL = SCENARIOS
 SMALL, GATED, MORE = "smallnet", "gate of 1 m about the torso", "400 maps a class to learn from"
 FIXED = "all bins from 0.5 to 8 m, powers summed"
 LONG, PAPERS = "window of 0.8 s", "the paper's: stft, coherent sum of the bins"
-GATE = ("processing.doppler=gate",)
+GATE = ("processing.range_sum=gated",)
 ONE = "one network, trained at -20 to 30 dB"
 DRAWN = ("snr_db={uniform: [-20, 30]}",)
 NARROW = ("snr_db={uniform: [0, 30]}",)

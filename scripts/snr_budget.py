@@ -29,7 +29,7 @@ from radhar_cli.scene import Scene, draw_scene
 
 BEGIN = "<!-- tables: scripts/snr_budget.py -->"
 SNRS = (30, 20, 10, 0, -10, -20)
-GATE = ("processing.doppler=gate",)  # of 1 m to both sides of the torso
+GATE = ("processing.range_sum=gated",)  # of 1 m to both sides of the torso
 BODY = 0.9  # share of the echo's energy that the body's cells hold
 STILL_DB = -60.0  # after the canceller: less is rounding
 

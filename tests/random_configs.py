@@ -186,7 +186,7 @@ class Drawer:
         )
         cfar[draw[0]] = self.number(draw[1])
         self.maybe(cfar, 0.5, "floor_db", lambda: self.number(lambda: self.log(1e-3, 200)))
-        self.maybe(cfar, 0.5, "on", lambda: "power")
+        self.maybe(cfar, 0.5, "domain", lambda: "power")
         self.maybe(cfar, 0.5, "edges", lambda: "shrink")
         return cfar
 

@@ -100,7 +100,7 @@ def maps_of(
     track = track_torso(without_static(bins), segments, waveform)
     if track is None:
         notes.append("nothing moves: no torso was found")
-    referred = replace(waveform, centred=waveform.centred or processing.doppler == "gate")
+    referred = replace(waveform, centred=waveform.centred or processing.range_sum == "gated")
     canceller, bins = _before(config, info.prf_hz, referred.f0, bins)
     ranges = waveform.range_axis()
     turn = unit_phasor(np.arange(waveform.n_bins)[:, None] * (referred.n0 / waveform.n_fft))
@@ -337,11 +337,11 @@ def _of_slow_time(
 ) -> Maps:
     """Maps of a radar without ranges: neither a range-time map, nor a torso, nor a gate."""
     wrong = [name for name in names if name == "rtm" or "compensated" in name]
-    if wrong or config.processing.doppler == "gate":
+    if wrong or config.processing.range_sum == "gated":
         raise CaptureError(
             f"{recording.path}: is slow time without ranges; {wrong[0] if wrong else 'a gate'} "
             "cannot be made of it (maps: stft, fsst, stft_denoised, fsst_denoised; "
-            "processing.doppler: half_band)"
+            "processing.range_sum: coherent)"
         )
     f0, prf = recording.info.carrier_hz, recording.info.prf_hz
     canceller, x = _before(config, prf, f0, x)

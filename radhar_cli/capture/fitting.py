@@ -160,7 +160,7 @@ class Fit:
             receiver["noise_corner_hz"] = float(f"{self.colour.corner:.4g}")
             receiver["noise_slope_db"] = round(self.colour.slope, 1)
         if self.lines:
-            receiver["lines"] = line_keys(self.lines)
+            receiver["tones"] = line_keys(self.lines)
         if receiver:
             document["receiver"] = receiver
         return document

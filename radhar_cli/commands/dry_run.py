@@ -32,7 +32,7 @@ def print_plan(config: Config, jobs: int) -> None:
         tell("points a segment, in nominal scenes:")
         for activity in config.chosen_activities:
             tell(f"  {activity.label:<3} {_points(config, activity)}")
-    if config.processing.doppler == "gate":
+    if config.processing.range_sum == "gated":
         tell("range bins of the gate, in nominal scenes:")
         for activity in config.chosen_activities:
             tell(f"  {activity.label:<3} {_bins(config, activity)}")

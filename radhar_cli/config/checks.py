@@ -225,14 +225,14 @@ def _clutter_problems(c: Config) -> Iterator[Problem]:
 
 def _gate_problems(c: Config) -> Iterator[Problem]:
     processing = c.processing
-    if processing.doppler != "gate":
+    if processing.range_sum != "gated":
         return
     fsst = [name for name in c.maps if name.startswith("fsst")]
     if fsst:
         yield Problem(
             "maps",
             fsst,
-            "should be stft maps and rtm with processing.doppler: gate, which adds up powers of "
+            "should be stft maps and rtm with processing.range_sum: gated, which adds up powers of "
             "bins: the fsst moves coefficients by their phase",
         )
     within = processing.gate_m
@@ -254,7 +254,7 @@ def _gate_problems(c: Config) -> Iterator[Problem]:
             f"half-band of {half_band:.4g} m",
         )
     bins = (processing.range_fft_length or _max_samples(c) + 1) // 2
-    yield from _too_many(c, bins, "processing.doppler", "gate", "the gate")
+    yield from _too_many(c, bins, "processing.range_sum", "gated", "the gate")
 
 
 def _too_many(c: Config, bins: int, key: str, value: object, what: str) -> Iterator[Problem]:
@@ -323,7 +323,7 @@ def _flickers(c: Config) -> bool:
 
 
 def _image_problems(c: Config) -> Iterator[Problem]:
-    for key, extra in (("lines", c.receiver.lines), ("noise_corner_hz", _flickers(c))):
+    for key, extra in (("tones", c.receiver.tones), ("noise_corner_hz", _flickers(c))):
         if extra and c.snr_db is None:
             yield Problem(
                 "snr_db", None, f"should be a number: receiver.{key} is relative to the noise"
@@ -395,9 +395,9 @@ HUMAN_LIMITS: tuple[tuple[str, float, float], ...] = (
     ("motion.trunk_pitch_deg", -5.0, 15.0),
     ("motion.step_width", 0.02, 0.1),
     ("motion.step_asymmetry", -0.05, 0.05),
-    ("motion.surge", 0.0, 0.2),
-    ("motion.surge_asymmetry", -0.1, 0.1),
-    ("motion.ragged_speed", 0.0, 0.06),
+    ("motion.speed_ripple", 0.0, 0.2),
+    ("motion.speed_ripple_asymmetry", -0.1, 0.1),
+    ("motion.speed_variation", 0.0, 0.06),
     ("motion.stride_jitter", 0.0, 0.03),
     ("motion.width_jitter_m", 0.0, 0.02),
     ("motion.lane_m", 0.0, 1000.0),
@@ -412,16 +412,16 @@ HUMAN_LIMITS: tuple[tuple[str, float, float], ...] = (
     ("motion.size_jitter", 0.0, 0.15),
     ("motion.bend_deg", 30.0, 85.0),
     ("motion.dwell_s", 0.0, 60.0),
-    ("motion.haste", 0.0, 0.6),
+    ("motion.rise_overlap", 0.0, 0.6),
     ("motion.seat_height", 0.24, 0.33),
     ("motion.lean_deg", 0.0, 60.0),
     ("motion.recline_deg", -10.0, 45.0),
     ("motion.recline_from", 0.0, 1.0),
-    ("motion.lap", 0.0, 1.0),
+    ("motion.hands_on_lap", 0.0, 1.0),
     ("motion.squat", -1.0, 1.0),
     ("motion.reach_deg", -10.0, 60.0),
     ("motion.free_arm", -0.5, 1.0),
-    ("motion.stagger", 0.0, 0.6),
+    ("motion.joint_lag", 0.0, 0.6),
     ("motion.step_m", 0.0, 0.5),
     ("motion.look_deg", -60.0, 60.0),
     ("motion.settle_size", 0.0, 3.0),
@@ -475,14 +475,14 @@ def _human_problems(c: Config) -> Iterator[Problem]:
 
 
 def line_warnings(c: Config) -> list[str]:
-    """Say which interference lines alias."""
+    """Say which interference tones alias."""
     warnings = []
     prf = support(c.radar.prf_hz)[0]
-    for number, line in enumerate(c.receiver.lines):
+    for number, line in enumerate(c.receiver.tones):
         least, most = support(line.doppler_hz)
         if max(-least, most) > prf / 2:
             warnings.append(
-                f"receiver.lines.{number}.doppler_hz reaches beyond PRF/2 = {prf / 2:g} Hz: the "
+                f"receiver.tones.{number}.doppler_hz reaches beyond PRF/2 = {prf / 2:g} Hz: the "
                 "line aliases, to that frequency less a multiple of the PRF"
             )
     return warnings

@@ -309,11 +309,11 @@ class MotionConfig(Section):
     """Of a walker, relative to the stature."""
     step_asymmetry: SignedBy = Normal(normal=(0.0, 0.02), min=-0.05, max=0.05)
     """Of left relative to right steps."""
-    surge: RatioBy = Normal(normal=(0.125, 0.015), min=0.09, max=0.17)
+    speed_ripple: RatioBy = Normal(normal=(0.125, 0.015), min=0.09, max=0.17)
     """Amplitude of the hip's speed within each step, relative to the mean speed."""
-    surge_asymmetry: SignedBy = Normal(normal=(0.0, 0.05), min=-0.1, max=0.1)
+    speed_ripple_asymmetry: SignedBy = Normal(normal=(0.0, 0.05), min=-0.1, max=0.1)
     """Of the right step's surge relative to the left one's."""
-    ragged_speed: RatioBy = Uniform(uniform=(0.0, 0.06))
+    speed_variation: RatioBy = Uniform(uniform=(0.0, 0.06))
     """Standard deviation of the speed over time, relative to the speed."""
     stride_jitter: RatioBy = Uniform(uniform=(0.0, 0.03))
     """Standard deviation of the stride time, relative to it."""
@@ -339,7 +339,7 @@ class MotionConfig(Section):
     """S4: pitch of the trunk."""
     dwell_s: SecondsBy = Uniform(uniform=(0.2, 0.6))
     """S4: time at the floor."""
-    haste: RatioBy = 0.0
+    rise_overlap: RatioBy = 0.0
     """S4: share of the way down before whose end people come up."""
     seat_height: RatioBy = Normal(normal=(0.285, 0.015), min=0.25, max=0.32)
     """Height of the seated hip, relative to the stature."""
@@ -347,7 +347,7 @@ class MotionConfig(Section):
     """Trunk ahead while rising."""
     recline_deg: AngleBy = 0.0
     """Trunk backwards in the seat."""
-    lap: RatioBy = 1.0
+    hands_on_lap: RatioBy = 1.0
     """How far the hands of who sits are on the lap (1); 0 is beside the seat."""
     recline_from: RatioBy = 0.7
     """S5: share of the duration from which on the trunk leans back."""
@@ -357,7 +357,7 @@ class MotionConfig(Section):
     """S4: of the right arm ahead of the vertical."""
     free_arm: SignedBy = 0.55
     """S4: what the left arm does of what the right one does; below 0 it swings back."""
-    stagger: RatioBy = 0.0
+    joint_lag: RatioBy = 0.0
     """S4 to S6: share of the movement by which some joints lead and others lag."""
     step_m: RatioBy = Uniform(uniform=(0.0, 0.5))
     """Steps back before sitting down (S5), ahead after standing up (S6), around picking up (S4)."""
@@ -377,7 +377,7 @@ class MotionConfig(Section):
     """Size of the fidgets, relative to the usual one."""
     shuffle_hz: FrequencyBy = Uniform(uniform=(0.0, 0.2))
     """Steps of some centimetres, S1 and after S4."""
-    idle_from_s: SecondsBy = Uniform(uniform=(0.0, 1000.0))
+    idle_phase_s: SecondsBy = Uniform(uniform=(0.0, 1000.0))
     """Time at 0 s of the processes of sway, breath, pulse and ragged speed."""
 
 
@@ -631,7 +631,7 @@ class RoomConfig(Section):
         return (ReflectorConfig(),) * value
 
 
-class LineConfig(Section):
+class ToneConfig(Section):
     """Interference at a fixed Doppler; its level is over the white noise, of a raw sample.
 
     on_s, off_s: mean times for which it is on and off; always on where off_s is 0.
@@ -657,7 +657,7 @@ class ReceiverConfig(Section):
     """Doppler at which noise that grows towards zero equals the white noise; 0 is none."""
     noise_slope_db: Annotated[NotNegative, within(1, 20, "dB per decade")] = 10.0
     """Its slope."""
-    lines: Annotated[tuple[LineConfig, ...], Field(max_length=16)] = ()
+    tones: Annotated[tuple[ToneConfig, ...], Field(max_length=16)] = ()
     """Interference: a list of {doppler_hz, level_db}."""
 
 
@@ -722,7 +722,7 @@ class ProcessingConfig(Section):
     mti: Annotated[Flag | None, Field(exclude=True)] = None
     """Another spelling: true is `clutter: difference`, false is `none`."""
     highpass: HighpassConfig = HighpassConfig()
-    doppler: Literal["half_band", "gate"] = "half_band"
+    range_sum: Literal["coherent", "gated"] = "coherent"
     """The coherent sum of the kept bins, or STFTs of those around the torso."""
     gate_m: float | tuple[float, float] = 1.0
     """How far the gate reaches to both sides of the torso, or [from, to]."""
@@ -806,7 +806,7 @@ class CfarConfig(Section):
     """Cell-averaging CFAR of `image.kind: cfar`; cells are pixels, (rows, columns) on each side.
 
     Exactly one of pfa, factor and threshold_db is the threshold; pfa is 0.31 where none is given.
-    With `on: decibel` the map's median is put at floor_db, as a factor of decibels needs a zero.
+    With `domain: decibel` the map's median is put at floor_db: a factor of decibels needs a zero.
     """
 
     guard: tuple[Cells, Cells] = (10, 2)
@@ -819,7 +819,7 @@ class CfarConfig(Section):
     """Threshold: factor of the mean."""
     threshold_db: Decibel | None = None
     """Threshold: dB above the mean."""
-    on: Literal["power", "decibel"] = "decibel"
+    domain: Literal["power", "decibel"] = "decibel"
     """What is averaged and compared."""
     floor_db: Annotated[Decibel, within(0, 200, "dB")] = Uniform(uniform=(10.0, 30.0))
     """With decibels, where the map's median is put."""
@@ -843,7 +843,7 @@ class CfarConfig(Section):
     def uses(self, key: str) -> bool:
         """Whether masks depend on the number of that key."""
         if key == "floor_db":
-            return self.on == "decibel" and self.threshold_db is None
+            return self.domain == "decibel" and self.threshold_db is None
         return True
 
 
@@ -995,7 +995,7 @@ MAP_NAMES: tuple[MapName, ...] = MapName.__args__  # type: ignore[attr-defined]
 
 def possible_maps(processing: ProcessingConfig) -> tuple[MapName, ...]:
     """The maps that there can be: no FSST of a gate, whose bins are summed without their phase."""
-    gated = processing.doppler == "gate"
+    gated = processing.range_sum == "gated"
     return tuple(name for name in MAP_NAMES if not (gated and name.startswith("fsst")))
 
 

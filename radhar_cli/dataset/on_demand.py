@@ -23,7 +23,7 @@ from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.pipeline.plan import Plan
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.validity import draw_valid_scene
-from radhar_cli.scene import SameConfig, Scene
+from radhar_cli.scene import ByIdentity, Scene
 from radhar_cli.simulation.simulate import activity_of
 from radhar_cli.worker_process import one_thread
 
@@ -63,7 +63,7 @@ def sample(
             reach its tolerance in.
     """
     seed = None if seed is None else whole("seed", seed)
-    make = _recipe(SameConfig(as_config(config)), _named(fields), seed)
+    make = _recipe(ByIdentity(as_config(config)), _named(fields), seed)
     return make(activity_of(activity, make.config), index)
 
 
@@ -216,7 +216,7 @@ def _named(fields: Iterable[str] | None) -> tuple[str, ...] | None:
 
 
 @lru_cache(maxsize=16)
-def _recipe(same: SameConfig, fields: tuple[str, ...] | None, seed: int | None) -> Recipe:
+def _recipe(same: ByIdentity, fields: tuple[str, ...] | None, seed: int | None) -> Recipe:
     return Recipe.of(same.config, fields, seed)
 
 

@@ -5,7 +5,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from radhar_cli.config.schema import Config, RecordedPart
-from radhar_cli.scene import SameConfig
+from radhar_cli.scene import ByIdentity
 
 
 class RecordedWindow(NamedTuple):
@@ -24,11 +24,11 @@ class RecordedWindow(NamedTuple):
 
 def windows(config: Config) -> list[RecordedWindow]:
     """The windows of a data set of recordings: class by class, each in the manifest's order."""
-    return _windows(SameConfig(config))
+    return _windows(ByIdentity(config))
 
 
 @lru_cache(maxsize=2)
-def _windows(same: SameConfig) -> list[RecordedWindow]:
+def _windows(same: ByIdentity) -> list[RecordedWindow]:
     config = same.config
     return [one for a in config.chosen_activities for one in _of_class(config, a.slug)]
 

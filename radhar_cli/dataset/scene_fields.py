@@ -39,7 +39,7 @@ class Field(NamedTuple):
 # Sections whose columns are named after them.
 PREFIXES = {"wall": "wall", "image.cfar": "cfar"}
 # And those of lists, with the number in the list.
-LISTS = {"room.reflectors": "reflector", "receiver.lines": "line"}
+LISTS = {"room.reflectors": "reflector", "receiver.tones": "tone"}
 # The one number of a scene that is measured, not drawn.
 ERROR = Field("error_db", "error_db", "dB", 1.0)
 

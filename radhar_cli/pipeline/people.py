@@ -199,7 +199,9 @@ def _repertoire(scene: Scene, duration: float | None, place: int = 0) -> Reperto
     """How this person moves; `duration` (s) is that of a movement that has one."""
     motion = scene.config.motion
     seat = Seat(
-        height=_f(motion.seat_height), recline=radians(_f(motion.recline_deg)), lap=_f(motion.lap)
+        height=_f(motion.seat_height),
+        recline=radians(_f(motion.recline_deg)),
+        lap=_f(motion.hands_on_lap),
     )
     rise = Rise(lean=radians(_f(motion.lean_deg)))
     scale, steps = _f(motion.strike_scale), ceil(3 * _f(scene.config.duration_s)) + 8
@@ -230,7 +232,7 @@ def _repertoire(scene: Scene, duration: float | None, place: int = 0) -> Reperto
             reach=radians(_f(motion.reach_deg)),
             other_arm=_f(motion.free_arm),
             squat=_f(motion.squat),
-            haste=_f(motion.haste),
+            haste=_f(motion.rise_overlap),
             lowering=lags[0],
             rising=lags[1],
         ),
@@ -255,8 +257,8 @@ def _lasting(duration: float | None, movement: M) -> M:
 
 def _lags(scene: Scene, place: int) -> tuple[Lags, Lags]:
     """Which joints lead, going down and coming up."""
-    rng = _draws(scene, f"motion.stagger/{place}")
-    share, channels = _f(scene.config.motion.stagger), (*LEGS_AND_TRUNK, *SHOULDERS, *ELBOWS)
+    rng = _draws(scene, f"motion.joint_lag/{place}")
+    share, channels = _f(scene.config.motion.joint_lag), (*LEGS_AND_TRUNK, *SHOULDERS, *ELBOWS)
     down, up = (
         Lags(share, dict(zip(channels, rng.random(len(channels)).tolist(), strict=True)))
         for _ in range(2)
@@ -290,11 +292,11 @@ def _gait(scene: Scene, place: int) -> Gait:
         arm_swing=_f(motion.arm_swing),
         trunk_pitch=radians(_f(motion.trunk_pitch_deg)),
         half_width=_f(motion.step_width) / 2,
-        surge=_f(motion.surge),
-        surge_asymmetry=_f(motion.surge_asymmetry),
+        surge=_f(motion.speed_ripple),
+        surge_asymmetry=_f(motion.speed_ripple_asymmetry),
         start=_f(motion.speed_up),
         asymmetry=_f(motion.step_asymmetry),
-        ragged=_waves(motion, _f(motion.ragged_speed), RAGGED_HZ, 0.7),
+        ragged=_waves(motion, _f(motion.speed_variation), RAGGED_HZ, 0.7),
         jitter=_some(np.clip(jitter, -0.03, 0.03)),
         widths=_some(np.clip(_f(motion.width_jitter_m) * widths, -0.02, 0.03)),
         lane=_lane(scene, place),
@@ -326,16 +328,16 @@ def _repetitions(scene: Scene, count: int, place: int) -> tuple[Float, Float]:
 
 
 def _waves(motion: MotionConfig, deviation: float, rates: Iterable[float], first: float) -> Waves:
-    """Low-pass waves that have been going on for `motion.idle_from_s`."""
+    """Low-pass waves that have been going on for `motion.idle_phase_s`."""
     f = tuple(rates)
-    phases = np.array(spread_phases(len(f), first)) + 2 * pi * np.array(f) * _f(motion.idle_from_s)
+    phases = np.array(spread_phases(len(f), first)) + 2 * pi * np.array(f) * _f(motion.idle_phase_s)
     return Waves.low_pass(deviation, tuple(phases % (2 * pi)), f) if deviation else Waves()
 
 
 def _idle(scene: Scene, person: Person, movements: tuple[Movement, ...]) -> Idle:
     subject: SubjectConfig = scene.config.subject
     motion = scene.config.motion
-    since = _f(motion.idle_from_s)
+    since = _f(motion.idle_phase_s)
     sway = Sway(
         _waves(motion, _f(subject.sway_ahead_m), _SWAY_HZ, 0.0),
         _waves(motion, _f(subject.sway_aside_m), _SWAY_HZ, 0.3),

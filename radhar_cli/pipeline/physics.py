@@ -152,7 +152,7 @@ def impairments_of(scene: Scene, noise: WhiteNoise) -> tuple[Impairment, ...]:
     if corner > 0:
         slope = _fixed(receiver.noise_slope_db)
         impairments.append(FlickerNoise(noise.sigma, noise.waveform, noise.stream, corner, slope))
-    for number, line in enumerate(receiver.lines):
+    for number, line in enumerate(receiver.tones):
         amplitude = noise.sigma * 10 ** (_fixed(line.level_db) / 20)
         times = _fixed(line.on_s), _fixed(line.off_s)
         impairments.append(
@@ -247,7 +247,7 @@ def cfar_of(config: Config) -> CellAveraging:
         training=cfar.training,
         threshold=threshold,
         value=_fixed(value),
-        decibel=cfar.on == "decibel",
+        decibel=cfar.domain == "decibel",
         floor_db=_fixed(cfar.floor_db),
         wrap=cfar.edges == "wrap",
     )

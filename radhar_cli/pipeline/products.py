@@ -2,7 +2,7 @@
 
 Order (paper, figure "Signal processing overflow"): canceller -> range compression -> [range-time
 map] -> sum over the kept bins -> [compensation] -> [denoising] -> STFT or FSST. With
-`processing.doppler: gate` the sum comes last, over the powers of some bins.
+`processing.range_sum: gated` the sum comes last, over the powers of some bins.
 
     scene      what is simulated                     paths     delay and amplitude over time
     slow_time  y[m], noiseless, before the canceller signal    x[m], what the Doppler maps show
@@ -195,7 +195,7 @@ def _echo(c: Config) -> Iterator[Product]:
 
 
 def _gated(c: Config) -> bool:
-    return c.processing.doppler == "gate"
+    return c.processing.range_sum == "gated"
 
 
 def _clutter(c: Config) -> str:

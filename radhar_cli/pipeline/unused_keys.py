@@ -18,8 +18,8 @@ from radhar_cli.scene import FALL, depends_on, numbers
 
 # A key, the one that decides about it, and the value with which it has an effect.
 USED_ONLY_WITH = (
-    ("processing.gate_m", "processing.doppler", "gate"),
-    ("processing.gate_sum", "processing.doppler", "gate"),
+    ("processing.gate_m", "processing.range_sum", "gated"),
+    ("processing.gate_sum", "processing.range_sum", "gated"),
     ("processing.highpass", "processing.clutter", "highpass"),
     ("processing.window_fraction", "processing.window_s", None),
     ("image.cfar", "image.kind", "cfar"),
@@ -35,7 +35,7 @@ USED_ONLY_BY_MAPS = {
     "fsst": ("processing.fsst_hop_pulses", "processing.fsst_threshold"),
     "stft": ("processing.stft_fft_length",),
     "st": (
-        "processing.doppler",
+        "processing.range_sum",
         "processing.window_fraction",
         "processing.window_s",
         "processing.overlap_fraction",
@@ -84,7 +84,7 @@ def _unused_numbers(config: Config) -> Iterator[tuple[str, str]]:
         "timing": _entry(config, "motion.model"),
     }
     if config.image.kind == "cfar":
-        reasons["image"] = "image.cfar.on: power or a threshold_db"
+        reasons["image"] = "image.cfar.domain: power or a threshold_db"
     for key in (*(key for key, _ in numbers(config)), FALL):
         reason = reasons.get(key.partition(".")[0])
         if reason and not any(depends_on(config, activity, key) for activity in activities):

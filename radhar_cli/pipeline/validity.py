@@ -143,7 +143,7 @@ def _check(scene: Scene, motion: Motion) -> SceneCheck:
     for block in blocks:
         flags |= block.flags
     processing = scene.config.processing
-    if processing.doppler == "gate" and isinstance(processing.gate_m, tuple):
+    if processing.range_sum == "gated" and isinstance(processing.gate_m, tuple):
         low, high = processing.gate_m
         torso = point_delay(motion.torso(waveform.times(pulses.astype(float))), antennas, wall)
         distance = torso * (SPEED_OF_LIGHT / 2)

@@ -97,7 +97,7 @@ def simulate(
         index: number of the sample within its class.
         nominal: take the middle of every range instead of drawing.
         joint: keep this scatterer alone.
-        maps: which to compute; None is all that `processing.doppler` allows, of the nine.
+        maps: which to compute; None is all that `processing.range_sum` allows, of the nine.
         raw: compute the raw beat matrix too, static returns included.
 
     Raises:
@@ -112,7 +112,7 @@ def simulate(
     maps = possible if maps is None else maps
     if not set(maps) <= set(possible):
         raise ConfigError(
-            "there is no fsst with processing.doppler: gate, whose bins are summed without their "
+            "there is no fsst with processing.range_sum: gated, which sums bins without their "
             f"phase; maps are {', '.join(possible)}"
         )
     config = config.model_copy(update={"maps": maps, **({} if seed is None else {"seed": seed})})

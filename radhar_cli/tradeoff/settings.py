@@ -185,10 +185,10 @@ def _other_scatterers(config: Config) -> tuple[str, ...]:
 def _gate() -> Setting:
     """Sums of powers over a gate of range bins; maps of the STFT alone have it."""
     on, off = (
-        ("maps=[stft]", "processing.doppler=gate"),
-        ("maps=[stft]", "processing.doppler=half_band"),
+        ("maps=[stft]", "processing.range_sum=gated"),
+        ("maps=[stft]", "processing.range_sum=coherent"),
     )
-    return _over("doppler: gate instead of half_band", on, off, "the half_band's STFT", False)
+    return _over("range_sum: gated instead of coherent", on, off, "the coherent STFT", False)
 
 
 def _clutter(config: Config) -> list[Setting]:
@@ -212,7 +212,7 @@ def _receiver(config: Config) -> list[Setting]:
     prf = nominal(config.radar.prf_hz)
     impairments = {
         "noise corner at PRF/20": f"receiver.noise_corner_hz={prf / 20:g}",
-        "interference line at PRF/8": f"receiver.lines=[{{doppler_hz: {prf / 8:g}}}]",
+        "interference line at PRF/8": f"receiver.tones=[{{doppler_hz: {prf / 8:g}}}]",
     }
     return [
         Setting("switch", name, (*DIRECT, on), DIRECT, (*DIRECT, on), noisy=True)

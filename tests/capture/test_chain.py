@@ -53,7 +53,7 @@ def apart(one: PowerMap, other: PowerMap, depth: float = 40.0) -> float:
         ["processing.clutter=highpass"],
         ["processing.range_reference=start"],
         ["processing.range_fft_length=128"],
-        ["processing.doppler=gate"],
+        ["processing.range_sum=gated"],
     ],
     ids=lambda o: "-".join(o) or "paper",
 )

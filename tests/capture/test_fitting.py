@@ -95,13 +95,13 @@ def test_colour_and_lines_come_back_beside_reflectors(
     tmp_path: Path, corner: float, slope: float
 ) -> None:
     lines = [{"doppler_hz": 120.3, "level_db": -10}, {"doppler_hz": -233, "level_db": -20}]
-    colour = f"receiver={{noise_corner_hz: {corner}, noise_slope_db: {slope}, lines: {lines}}}"
+    colour = f"receiver={{noise_corner_hz: {corner}, noise_slope_db: {slope}, tones: {lines}}}"
     found = fit([recorded(tmp_path, "snr_db=10", ROOM, colour, seed=n) for n in (1, 2)])
     receiver = found.document["receiver"]
     assert receiver["noise_corner_hz"] == pytest.approx(corner, rel=0.25)
     assert receiver["noise_slope_db"] == pytest.approx(slope, abs=2)
-    assert len(receiver["lines"]) == 2
-    for one, true in zip(receiver["lines"], lines, strict=True):
+    assert len(receiver["tones"]) == 2
+    for one, true in zip(receiver["tones"], lines, strict=True):
         assert one.keys() == {"doppler_hz", "level_db"}, "always there"
         assert one["doppler_hz"] == pytest.approx(true["doppler_hz"], abs=0.1)
         assert one["level_db"] == pytest.approx(true["level_db"], abs=1.5)

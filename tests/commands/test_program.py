@@ -73,7 +73,7 @@ def test_dry_run_refuses_what_the_build_would_refuse(tmp_path: Path) -> None:
 
 
 def test_dry_run_counts_points_and_range_bins(tmp_path: Path) -> None:
-    own = ("body.scatterers=segments", "processing.doppler=gate", "processing.gate_m=0.5")
+    own = ("body.scatterers=segments", "processing.range_sum=gated", "processing.gate_m=0.5")
     more = (*own, "maps=[stft]", "activities=[walking]")
     changes = [part for one in more for part in ("--set", one)]
     config = small_config(tmp_path)

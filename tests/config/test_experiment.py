@@ -20,13 +20,13 @@ from radhar_cli.config import (
 )
 from radhar_cli.config.number import Uniform
 from radhar_cli.config.schema import (
-    LineConfig,
     MotionConfig,
     RecordingsConfig,
     ReflectorConfig,
     Section,
     SequenceConfig,
     SubjectConfig,
+    ToneConfig,
 )
 
 
@@ -189,7 +189,7 @@ CHANGES: dict[str, object] = {
     "room.back_wall_reflection_db": -6.0,
     "receiver.noise_corner_hz": 3.0,
     "receiver.noise_slope_db": 20.0,
-    "receiver.lines": (LineConfig(doppler_hz=100.0),),
+    "receiver.tones": (ToneConfig(doppler_hz=100.0),),
     "snr_reference": "received",
     "on_invalid": "redraw",
     "processing.clutter": "mean",
@@ -199,7 +199,7 @@ CHANGES: dict[str, object] = {
     "processing.highpass.cutoff_fraction": 0.01,
     "processing.highpass.zero_phase": True,
     "processing.highpass.remove_mean": False,
-    "processing.doppler": "gate",
+    "processing.range_sum": "gated",
     "processing.gate_m": 0.5,
     "processing.gate_sum": "magnitude",
     "processing.range_fft_length": 512,
@@ -222,7 +222,7 @@ CHANGES: dict[str, object] = {
     "image.cfar.pfa": 0.1,
     "image.cfar.factor": 2.0,
     "image.cfar.threshold_db": 3.0,
-    "image.cfar.on": "power",
+    "image.cfar.domain": "power",
     "image.cfar.floor_db": 20.0,
     "image.cfar.edges": "shrink",
     "maps": ("rtm",),

@@ -74,7 +74,7 @@ def test_the_lowest_drawable_prf_limits_the_cutoff():
 
 
 def test_a_gate_excludes_the_fsst():
-    ((key, right),) = refused(processing={"doppler": "gate"}, maps=["stft", "fsst_denoised"])
+    ((key, right),) = refused(processing={"range_sum": "gated"}, maps=["stft", "fsst_denoised"])
     assert key == "maps"
     assert "by their phase" in right
 
@@ -82,7 +82,7 @@ def test_a_gate_excludes_the_fsst():
 @pytest.mark.parametrize("gate_m", [4.0, [6.0, 8.0], [9.0, 10.0]])
 def test_a_gate_must_lie_within_the_half_band(gate_m):
     """Of 7.49 m at 4 GHz."""
-    processing = {"doppler": "gate", "gate_m": gate_m}
+    processing = {"range_sum": "gated", "gate_m": gate_m}
     ((key, right),) = refused(radar={"bandwidth_hz": 4e9}, processing=processing)
     assert key == "processing.gate_m"
     assert "7.495 m" in right
@@ -90,7 +90,7 @@ def test_a_gate_must_lie_within_the_half_band(gate_m):
 
 
 @pytest.mark.parametrize(
-    ("processing", "maps"), [({"doppler": "gate"}, "stft"), ({"clutter": "mean"}, "rtm")]
+    ("processing", "maps"), [({"range_sum": "gated"}, "stft"), ({"clutter": "mean"}, "rtm")]
 )
 def test_recordings_whose_bins_no_memory_holds_are_refused(processing, maps):
     ((key, right),) = refused(

@@ -231,7 +231,7 @@ BROKEN = [
     ),
     *(
         Broken(
-            f"processing: {{doppler: gate, gate_m: {wrong}}}",
+            f"processing: {{range_sum: gated, gate_m: {wrong}}}",
             f"1: processing.gate_m = {wrong}",
             "above 0, or [from, to]",
         )

@@ -18,7 +18,7 @@ from radhar_cli.simulation.simulate import simulate
 
 ENGINES = pytest.mark.parametrize("engine", ["direct", "cube"])
 OPAQUE = {"wall": {"loss_tangent": 1}, "snr_reference": "received"}  # 77 GHz: 1e-170 or less
-GATED = {"processing": {"doppler": "gate"}}
+GATED = {"processing": {"range_sum": "gated"}}
 MASKS = {"image": {"size_px": 32, "kind": "cfar", "cfar": {"guard": [1, 1], "training": [2, 2]}}}
 
 

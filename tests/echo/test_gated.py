@@ -93,7 +93,7 @@ def random_config(rng: np.random.Generator) -> dict:
             "residual_video_phase": bool(rng.random() < 0.2),
         },
         "processing": {
-            "doppler": "gate",
+            "range_sum": "gated",
             "gate_m": fixed if rng.random() < 0.3 else float(rng.uniform(0.01, 0.45) * half_band),
             "clutter": clutter,
             "highpass": {

@@ -14,7 +14,7 @@ from radhar_cli import activity
 from radhar_cli.activity import activity_named, add_activity
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.config import Config
-from radhar_cli.config.schema import LineConfig, possible_maps
+from radhar_cli.config.schema import ToneConfig, possible_maps
 from radhar_cli.dataset.build import build
 from radhar_cli.echo.half_band_sum import weights
 from radhar_cli.errors import RadharError
@@ -127,7 +127,7 @@ FORMS = {  # of the echo, by the product that shows its noise, and the config th
     "raw": ("raw_echo", {}),
     "slow time": ("signal", {"clutter": "none"}),
     "range profiles": ("range_profiles", {}),
-    "range bins": ("range_signals", {"doppler": "gate", "gate_m": (1.0, 3.0)}),
+    "range bins": ("range_signals", {"range_sum": "gated", "gate_m": (1.0, 3.0)}),
 }
 
 
@@ -173,8 +173,8 @@ def test_channels_have_noise_of_their_own(engine: str, form: str, corner: float)
 
 
 def test_interference_comes_from_outside_and_is_the_same_in_all_channels() -> None:
-    line = LineConfig(doppler_hz=100.0, level_db=40.0)
-    receiver = CONFIG.receiver.model_copy(update={"lines": (line,)})
+    line = ToneConfig(doppler_hz=100.0, level_db=40.0)
+    receiver = CONFIG.receiver.model_copy(update={"tones": (line,)})
     scene = walking(snr_db=0, receiver=receiver)
     one, other = (noise_of(scene, "slow time", channel=n) for n in range(2))
     assert correlation(one, other) > 0.99
@@ -238,7 +238,9 @@ def test_an_impairment_between_echo_and_processing(engine: str) -> None:
 @pytest.mark.parametrize("kind", [DcOffset, DcOffsetOfSlowTime])
 def test_an_impairment_is_in_every_map_or_refused(kind: type[DcOffset], gate: bool) -> None:
     """Never left out: without the form that the direct engine needs for a map there is no map."""
-    processing = {"clutter": "none"} | ({"doppler": "gate", "gate_m": (0.0, 3.0)} if gate else {})
+    processing = {"clutter": "none"} | (
+        {"range_sum": "gated", "gate_m": (0.0, 3.0)} if gate else {}
+    )
     scenes = [
         walking(
             engine=CONFIG.engine.model_copy(update={"kind": engine}),
@@ -282,7 +284,7 @@ def test_recorded_range_bins_and_a_gate() -> None:
     bins = np.zeros((64, t.size), complex)
     bins[20], bins[50] = (np.exp(2j * np.pi * f * t) for f in (120, -200))
     recorded = RangeSignals(bins, ranges, 0.0, prf, 24e9)
-    gated = CONFIG.processing.model_copy(update={"doppler": "gate", "gate_m": 1.0})
+    gated = CONFIG.processing.model_copy(update={"range_sum": "gated", "gate_m": 1.0})
     torso = np.full(t.size, 2 * ranges[20] / C)
     config = CONFIG.model_copy(update={"processing": gated})
     found = process(recorded, config, ["stft"], torso_track=torso)

@@ -32,7 +32,7 @@ clutters = pytest.mark.parametrize("clutter", CLUTTER)
 
 
 def scene_of(engine: str = "cube", slug: str = "walking", **more: object) -> Scene:
-    processing = {"doppler": "gate"} | dict(more.pop("processing", {}))
+    processing = {"range_sum": "gated"} | dict(more.pop("processing", {}))
     document = BASE | {"engine": {"kind": engine}, "processing": processing} | more
     return draw_scene(Config.model_validate(document), activity_named(slug), 0)
 
@@ -234,7 +234,7 @@ class TestPlan:
         assert "torso_track" in self.names(["stft"])
 
     def test_without_a_gate_no_gated_product_is_made(self):
-        names = self.names(["stft", "fsst"], processing={"doppler": "half_band"})
+        names = self.names(["stft", "fsst"], processing={"range_sum": "coherent"})
         assert not {"gate", "range_signals", "range_axis"} & names
 
 
@@ -243,7 +243,7 @@ def test_a_scene_has_the_half_band_sum_beside_gated_maps():
     found = simulate(scene.config, "walking")
     assert set(found.maps) == {"rtm", *(n for n in found.maps if n.startswith("stft"))}
     assert len(found.maps) == 5
-    right = record("direct", "signal", processing={"doppler": "half_band"})["signal"].x
+    right = record("direct", "signal", processing={"range_sum": "coherent"})["signal"].x
     assert np.array_equal(found.signals["raw"].x, right)
-    with pytest.raises(ConfigError, match=r"no fsst with processing\.doppler: gate"):
+    with pytest.raises(ConfigError, match=r"no fsst with processing\.range_sum: gated"):
         simulate(scene.config, "walking", maps=map_names(["fsst"]))

@@ -42,10 +42,10 @@ def image_of(image: dict[str, Any], name: str = "stft", **more: Any) -> Any:
 
 
 @pytest.mark.parametrize("name", ALL)
-@pytest.mark.parametrize("on", ["power", "decibel"])
-def test_masks_are_binary_at_any_size_and_show_the_walker(name, on):
+@pytest.mark.parametrize("domain", ["power", "decibel"])
+def test_masks_are_binary_at_any_size_and_show_the_walker(name, domain):
     for size in ([48, 40], [33, 200]):
-        mask = image_of(MASKS | {"size_px": size, "cfar": WINDOW | {"on": on}}, name)
+        mask = image_of(MASKS | {"size_px": size, "cfar": WINDOW | {"domain": domain}}, name)
         assert mask.levels.shape == tuple(size)
         assert set(np.unique(mask.levels)) == {0, 255}
 
@@ -58,7 +58,7 @@ def test_the_entropy_and_the_extent_are_those_of_the_map():
 
 def test_a_higher_threshold_sets_fewer_cells():
     def share(**threshold: Any) -> float:
-        mask = image_of(MASKS | {"cfar": WINDOW | {"on": "power"} | threshold})
+        mask = image_of(MASKS | {"cfar": WINDOW | {"domain": "power"} | threshold})
         return float(np.mean(mask.levels == 255))
 
     for key, values in {
@@ -86,7 +86,7 @@ def test_the_threshold_is_a_number_of_the_scene():
 
 
 def test_a_floor_is_a_number_only_where_it_decides():
-    for cfar, there in (({}, True), ({"threshold_db": 3}, False), ({"on": "power"}, False)):
+    for cfar, there in (({}, True), ({"threshold_db": 3}, False), ({"domain": "power"}, False)):
         scene = draw_scene(config(MASKS | {"cfar": WINDOW | cfar}), activity_named("walking"), 0)
         assert ("image.cfar.floor_db" in scene_numbers(scene)) == there
 

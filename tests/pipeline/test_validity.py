@@ -262,8 +262,8 @@ def test_a_recording_that_ends_before_the_second_phase_is_warned_of() -> None:
     [
         (
             {"processing": {"gate_m": 2.0}},
-            "processing.gate_m has no effect with processing.doppler: half_band; it needs "
-            "processing.doppler: gate",
+            "processing.gate_m has no effect with processing.range_sum: coherent; it needs "
+            "processing.range_sum: gated",
         ),
         ({"processing": {"gate_sum": "magnitude"}}, "processing.gate_sum has no effect"),
         ({"processing": {"highpass": {"order": 2}}}, "processing.highpass has no effect"),
@@ -294,7 +294,7 @@ def test_a_recording_that_ends_before_the_second_phase_is_warned_of() -> None:
             {"motion": {"model": "paper"}, "subject": {"chest_m": 0.01}},
             "subject.chest_m has no effect with motion.model: paper",
         ),
-        ({"receiver": {"lines": [{"doppler_hz": -6000}]}}, "receiver.lines.0.doppler_hz reaches"),
+        ({"receiver": {"tones": [{"doppler_hz": -6000}]}}, "receiver.tones.0.doppler_hz reaches"),
     ],
 )
 def test_keys_without_effect_and_aliased_lines_are_warned_of(document: Any, key: str) -> None:
@@ -321,13 +321,13 @@ def test_no_warning_for_defaults(model: str) -> None:
 def test_no_warning_for_keys_with_effect() -> None:
     config = Config(
         processing={
-            "doppler": "gate",
+            "range_sum": "gated",
             "gate_m": 2.0,
             "clutter": "highpass",
             "highpass": {"order": 2},
         },
         image={"kind": "cfar", "cfar": {"pfa": 0.2}},
-        receiver={"lines": [{"doppler_hz": 2000}]},
+        receiver={"tones": [{"doppler_hz": 2000}]},
     )
     assert config_warnings(config) == []
     assert config_warnings(config_from_json(config.model_dump_json(), "here")) == []
@@ -460,7 +460,7 @@ def test_a_torso_that_leaves_a_fixed_gate_is_warned_of(gate_m, leaves):
         {
             "duration_s": 3.0,
             "motion": motion,
-            "processing": {"doppler": "gate", "gate_m": gate_m},
+            "processing": {"range_sum": "gated", "gate_m": gate_m},
         }
     )
     messages = module.scene_warnings(draw_scene(config, activity_named("walking"), 0))

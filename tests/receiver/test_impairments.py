@@ -166,12 +166,12 @@ def scene_of(index: int = 0, **more: object) -> Scene:
 @pytest.mark.parametrize("engine", ["direct", "cube"])
 def test_lines_lie_at_their_doppler(engine):
     """Approaching is positive; each sample has its own draw, which is a number of the scene."""
-    scene = scene_of(receiver={"lines": LINES}, engine={"kind": engine}, snr_db=-20)
-    drawn = scene_numbers(scene)["receiver.lines.1.doppler_hz"]
+    scene = scene_of(receiver={"tones": LINES}, engine={"kind": engine}, snr_db=-20)
+    drawn = scene_numbers(scene)["receiver.tones.1.doppler_hz"]
     assert 200 <= drawn <= 300
     assert (
         drawn
-        != scene_numbers(scene_of(1, receiver={"lines": LINES}))["receiver.lines.1.doppler_hz"]
+        != scene_numbers(scene_of(1, receiver={"tones": LINES}))["receiver.tones.1.doppler_hz"]
     )
     stft = record(scene, ["stft"])["stft"]
     profile, f = stft.power.mean(axis=1), stft.rows.values
@@ -184,11 +184,11 @@ def test_lines_lie_at_their_doppler(engine):
 def test_lines_leave_the_white_noise_unchanged():
     plain, more = (
         record(scene_of(receiver=receiver), ["noise", "signal"])
-        for receiver in ({}, {"noise_corner_hz": 10, "lines": LINES})
+        for receiver in ({}, {"noise_corner_hz": 10, "tones": LINES})
     )
     assert plain["noise"].sigma == more["noise"].sigma
     assert not np.array_equal(plain["signal"].x, more["signal"].x)
-    again = record(scene_of(receiver={"noise_corner_hz": 10, "lines": LINES}), ["signal"])
+    again = record(scene_of(receiver={"noise_corner_hz": 10, "tones": LINES}), ["signal"])
     assert np.array_equal(again["signal"].x, more["signal"].x)
 
 

@@ -31,7 +31,11 @@ image: {size_px: 48, cfar: {guard: [2, 1], training: [10, 5]}}
 TRIED = (
     *("-40 dB", "-60 dB", "-80 dB", "-100 dB", "-120 dB", "cube", "double", "64 px", "fsst"),
     *("residual video phase", "FSST at every sample", "refracted rays"),
-    *("scatterers: segments instead of points", "shadowing", "doppler: gate instead of half_band"),
+    *(
+        "scatterers: segments instead of points",
+        "shadowing",
+        "range_sum: gated instead of coherent",
+    ),
     *("cfar", "clutter: mean instead of difference", "room: 3 reflectors"),
     *("noise corner at PRF/20", "interference line at PRF/8"),
 )
@@ -133,7 +137,7 @@ class TestCommand:
         shadows = rows["shadowing"]
         assert -60 < shadows["signal_error_db"] < body["signal_error_db"]
         assert shadows["time_over"] == "segments without shadowing"
-        gate = rows["doppler: gate instead of half_band"]
+        gate = rows["range_sum: gated instead of coherent"]
         assert gate["signal_error_db"] < -60  # the half-band's sum stays what it is
         assert gate["map_error_db"] > 0.1
         assert gate["echo_ratio"] > 0
@@ -280,7 +284,7 @@ class TestSettings:
     def test_gates_are_compared_without_maps_that_forbid_them(self, config):
         scenes = self.scenes(config, "maps=[stft, fsst]")
         names = [setting.name for setting in study._possible(scenes, Listener())]
-        assert "doppler: gate instead of half_band" in names
+        assert "range_sum: gated instead of coherent" in names
 
     def test_sequences_have_no_trial_under_the_papers_motion(self, config):
         own = "classes={home: {sequence: [walking]}}"

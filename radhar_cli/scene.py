@@ -265,7 +265,8 @@ def depends_on(config: Config, activity: Activity, key: str) -> bool:
     if key == "room.back_wall_reflection_db":
         return config.room.back_wall_m is not None
     if key.startswith("image.cfar."):
-        return config.image.kind == "cfar" and config.image.cfar.uses(key.rpartition(".")[2])
+        floor = key == "image.cfar.floor_db" and config.image.cfar.domain != "decibel"
+        return config.image.kind == "cfar" and not floor
     if key.startswith("classes."):
         return key.startswith(f"classes.{activity.slug}.")
     if key in OF_PEOPLE:

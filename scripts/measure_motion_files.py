@@ -36,7 +36,7 @@ CONFIG = {
     "subject": {"height_m": 1.75, "chest_m": 0, "heart_m": 0},
     "motion": {"range_m": 5, "angle_deg": 180, "speed_mps": 1.2},
     "snr_db": None,
-    "processing": {"window_fraction": 0.03},
+    "processing": {"window_s": 0.06},
 }
 ANKLE = 10
 RATES, NOISES, LOW_PASSES = (30.0, 60.0, 120.0), (0.0, 0.5, 1.0, 10.0), (None, 8.0, 6.0, 3.0)

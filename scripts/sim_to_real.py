@@ -67,7 +67,7 @@ INSTEAD = {  # what else could be simulated, and its keys
     "segments": ("body.scatterers=segments",),
     "half of the band": ("processing.range_sum=coherent",),
     "CFAR on power": ("image.cfar={domain: power, edges: shrink}",),
-    "an empty room": ("room.reflectors=0", "room.back_wall_m=null"),
+    "an empty room": ("room.reflectors=[]", "room.back_wall_m=null"),
     "30 dB": ("snr_db=30",),
 }
 NO_AUGMENTATION = "augment={}"

@@ -21,7 +21,6 @@ SCENE: dict[str, Any] = {
     "image": {"size_px": 32},
     "subject": {"height_m": 1.8},
     "motion": {"range_m": 2.0, "angle_deg": 20.0},
-    "processing": {"window_fraction": 0.25},
 }
 
 
@@ -32,6 +31,9 @@ ENGINES = {"cube": {"kind": "cube"}, "direct": {"kind": "direct", "tolerance_db"
 def config_of(engine: str = "cube", radar: dict[str, Any] | None = None, **more: Any) -> Config:
     """The scene above with other sections; `radar` changes single keys."""
     document = SCENE | {"radar": RADAR | (radar or {}), "engine": ENGINES[engine]} | more
+    length = document["duration_s"]
+    if not isinstance(length, dict):
+        document["processing"] = {"window_s": length / 4} | document.get("processing", {})
     document["motion"] = {"model": "paper"} | document["motion"]
     return Config.model_validate(document)
 

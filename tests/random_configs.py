@@ -177,14 +177,7 @@ class Drawer:
             "guard": guard,
             "training": [int(self.rng.integers(1, 8 - max(guard)))] * 2,
         }
-        draw = self.pick(
-            (
-                ("pfa", lambda: self.log(1e-12, 0.999)),
-                ("factor", lambda: self.log(1e-3, 1e12)),
-                ("threshold_db", lambda: self.signed(1e-3, 300)),
-            )
-        )
-        cfar[draw[0]] = self.number(draw[1])
+        cfar["pfa"] = self.number(lambda: self.log(1e-12, 0.999))
         self.maybe(cfar, 0.5, "floor_db", lambda: self.number(lambda: self.log(1e-3, 200)))
         self.maybe(cfar, 0.5, "domain", lambda: "power")
         self.maybe(cfar, 0.5, "edges", lambda: "shrink")
@@ -213,10 +206,9 @@ class Drawer:
 
     def processing(self, pulses: int, samples: int, prf: float) -> Document:
         share = float(self.rng.uniform(9 / pulses, 0.96))
-        processing: Document = {"window_fraction": share}
-        self.maybe(processing, 0.2, "window_s", lambda: share * pulses / prf)
+        processing: Document = {"window_s": share * pulses / prf}
         self.maybe(processing, 0.5, "overlap_fraction", lambda: float(self.rng.uniform(0, 0.999)))
-        self.maybe(processing, 0.3, "mti", lambda: self.chance(0.5))
+        self.maybe(processing, 0.3, "clutter", lambda: "none")
         self.maybe(
             processing, 0.3, "range_fft_length", lambda: 2 * int(self.rng.integers(samples, 64))
         )

@@ -90,7 +90,7 @@ def test_a_scene_is_the_same_in_whatever_order_it_is_drawn() -> None:
         ({"wall": {**DRAWN["wall"], "rays": "refracted", "fresnel": "parallel"}}, set()),
         ({"engine": {"kind": "cube", "precision": "double"}}, set()),
         ({"maps": ("rtm", "fsst_denoised")}, set()),
-        ({"processing": {"mti": False, "range_fft_length": 512}}, set()),
+        ({"processing": {"clutter": "none", "range_fft_length": 512}}, set()),
         ({"image": {"size_px": 64}}, set()),
         ({"output": {"png": False}}, set()),
         ({"split": {"train": 0.5, "validation": 0.5}}, set()),

@@ -220,7 +220,7 @@ def _before(config: Config, prf: float, f0: float, x: Complex) -> tuple[Cancelle
     """What is left of the clutter filter for each stretch, and samples after what is global."""
     if config.processing.clutter == "mean":
         return NO_CANCELLER, without_static(x)
-    return canceller_of(config, prf, f0), x
+    return canceller_of(config, prf), x
 
 
 def _stretches(

@@ -192,11 +192,8 @@ def _refuse_what_cannot_be(config: Config, manifest: Path) -> None:
         raise ConfigError("output.slow_time: should be false; recordings hold it themselves")
     if config.output.power is not None and is_image(config.recorded.parts[0].file):
         raise ConfigError("output.power: should be null; images have no power behind them")
-    numbers = config.image.cfar
-    for key in ("pfa", "factor", "threshold_db"):
-        value = getattr(numbers, key)
-        if config.image.kind == "cfar" and value is not None and not isinstance(value, float | int):
-            raise ConfigError(f"image.cfar.{key}: should be one number; nothing is drawn here")
+    if config.image.kind == "cfar" and not isinstance(config.image.cfar.pfa, float | int):
+        raise ConfigError("image.cfar.pfa: should be one number; nothing is drawn here")
 
 
 def warnings_of(config: Config) -> list[str]:

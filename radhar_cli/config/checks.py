@@ -155,21 +155,19 @@ def _signal_problems(c: Config) -> Iterator[Problem]:
         yield Problem(
             "duration_s", c.duration_s, f"should hold at least 2 pulses (it holds {pulses})"
         )
-    share, seconds = processing.window_fraction, processing.window_s
-    of_recording = ("duration_s", c.duration_s)
-    of_window = ("processing.window_s", seconds)
+    of_window: tuple[str, object] = ("processing.window_s", processing.window_s)
+    if "window_s" not in processing.model_fields_set:
+        of_window = ("duration_s", c.duration_s)
     if doppler and window < MIN_WINDOW:
-        of = "window_s" if seconds is not None else f"{share:g} * duration_s"
         yield Problem(
-            *(of_recording if seconds is None else of_window),
-            f"should make the window of {of} * prf_hz at least {MIN_WINDOW} pulses "
+            *of_window,
+            f"should make the window of window_s * prf_hz at least {MIN_WINDOW} pulses "
             f"(it has {window}): radar.prf_hz may be {prf[0]:g}",
         )
     kept = pulses - 1 if processing.clutter == "difference" else pulses
     if doppler and window > kept:
-        of_share = of_recording if share is None else ("processing.window_fraction", share)
         yield Problem(
-            *(of_share if seconds is None else of_window),
+            *of_window,
             f"should make the window at most the {kept} pulses there are (it has {window})",
         )
     if any("denoised" in name for name in doppler) and processing.savgol.frame > kept:
@@ -195,29 +193,17 @@ def _signal_problems(c: Config) -> Iterator[Problem]:
 
 
 def _clutter_problems(c: Config) -> Iterator[Problem]:
-    processing, highpass = c.processing, c.processing.highpass
-    if processing.clutter == "highpass":
-        prf = support(c.radar.prf_hz)
-        f0 = _mid_chirp(c)
-        for key, given, to_hz in (
-            ("cutoff_hz", highpass.cutoff_hz, (1.0, 1.0)),
-            ("cutoff_mps", highpass.cutoff_mps, tuple(2 * f / SPEED_OF_LIGHT for f in f0)),
-            ("cutoff_fraction", highpass.cutoff_fraction, None),
-        ):
-            if given is None:
-                continue
-            least, most = (
-                (given, given)
-                if to_hz is None
-                else (2 * given * to_hz[0] / prf[1], 2 * given * to_hz[1] / prf[0])
+    processing, prf = c.processing, support(c.radar.prf_hz)
+    given = processing.highpass.cutoff_hz
+    if processing.clutter == "highpass" and given is not None:
+        least, most = 2 * given / prf[1], 2 * given / prf[0]
+        if most >= 1 or least < MIN_CUTOFF:
+            yield Problem(
+                "processing.highpass.cutoff_hz",
+                given,
+                f"should be from {MIN_CUTOFF:g} times PRF/2 to below PRF/2 in every scene "
+                f"(it is {least:g} to {most:g} times PRF/2)",
             )
-            if most >= 1 or least < MIN_CUTOFF:
-                yield Problem(
-                    f"processing.highpass.{key}",
-                    given,
-                    f"should be from {MIN_CUTOFF:g} times PRF/2 to below PRF/2 in every scene "
-                    f"(it is {least:g} to {most:g} times PRF/2)",
-                )
     if "rtm" in c.maps and processing.clutter in ("mean", "highpass"):
         bins = (processing.range_fft_length or _max_samples(c) + 1) // 2
         yield from _too_many(c, bins, "processing.clutter", processing.clutter, "the rtm")
@@ -267,12 +253,6 @@ def _too_many(c: Config, bins: int, key: str, value: object, what: str) -> Itera
             f"should not go with {pulses} pulses of {bins} range bins: for {what} they are held "
             f"at once, {MAX_BIN_SAMPLES} samples at most",
         )
-
-
-def _mid_chirp(c: Config) -> tuple[float, float]:
-    """Least and largest fc + B/2, Hz."""
-    carrier, bandwidth = support(c.radar.carrier_hz), support(c.radar.bandwidth_hz)
-    return carrier[0] + bandwidth[0] / 2, carrier[1] + bandwidth[1] / 2
 
 
 def _max_samples(c: Config) -> int:

@@ -52,6 +52,7 @@ from radhar_cli.config.number import (
     Uniform,
     Vary,
     Vector,
+    nominal,
     support,
     within,
 )
@@ -610,25 +611,14 @@ MAX_REFLECTORS = 32
 
 
 class RoomConfig(Section):
-    """What stands in the room: a list, or a number of reflectors of one distribution."""
+    """What stands in the room: reflectors, and a wall behind people."""
 
     reflectors: Annotated[tuple[ReflectorConfig, ...], Field(max_length=MAX_REFLECTORS)] = ()
-    """A list of {position_m, rcs_dbsm, residual_m, highest_hz}, or how many of the default ones."""
+    """A list of {position_m, rcs_dbsm, residual_m, highest_hz}; `[{}, {}]` is two default ones."""
     back_wall_m: Annotated[Number, within(0, 1e4, "m")] | None = None
     """Range of a wall behind people, in which they are seen once more; null is none."""
     back_wall_reflection_db: Annotated[Number, within(-120, 0, "dB")] = -8.0
     """What it reflects, over what meets it; the mirrored echo meets it twice."""
-
-    @field_validator("reflectors", mode="before")
-    @classmethod
-    def _so_many(cls, value: Any) -> Any:
-        if not isinstance(value, int) or isinstance(value, bool):
-            return value
-        if not 0 <= value <= MAX_REFLECTORS:
-            raise PydanticCustomError(
-                "number", "should be a list, or a number from 0 to {most}", {"most": MAX_REFLECTORS}
-            )
-        return (ReflectorConfig(),) * value
 
 
 class ToneConfig(Section):
@@ -679,48 +669,33 @@ class SavgolConfig(Section):
 
 
 class HighpassConfig(Section):
-    """The Butterworth filter of `clutter: highpass`; its cut-off is given once, in any unit."""
+    """The Butterworth filter of `clutter: highpass`."""
 
     order: Annotated[int, Field(ge=1, le=10, strict=True)] = 4
     """Of the filter."""
     cutoff_hz: Annotated[float, Field(gt=0, le=1e7, strict=True)] | None = None
-    """The cut-off; or one of the next two instead."""
-    cutoff_mps: Annotated[float, Field(gt=0, le=1e4, strict=True)] | None = None
-    """The same as a speed."""
-    cutoff_fraction: Annotated[float, Field(gt=0, lt=1, strict=True)] | None = None
-    """The same as a fraction of PRF/2."""
+    """The cut-off; null is 0.00375 of the PRF."""
     zero_phase: Flag = False
     """Filter both ways."""
     remove_mean: Flag = True
     """Take out the mean first; without it static echoes ring, as with MATLAB's `filter`."""
 
-    @model_validator(mode="after")
-    def _one_cutoff(self) -> "HighpassConfig":
-        given = [self.cutoff_hz, self.cutoff_mps, self.cutoff_fraction]
-        if sum(one is not None for one in given) > 1:
-            raise PydanticCustomError(
-                "cutoff", "should have one of cutoff_hz, cutoff_mps and cutoff_fraction"
-            )
-        if given == [None, None, None]:
-            object.__setattr__(self, "cutoff_fraction", 0.0075)
-        return self
+    def cutoff(self, prf: float) -> float:
+        """The cut-off as a fraction of PRF/2."""
+        return DEFAULT_CUTOFF if self.cutoff_hz is None else 2 * self.cutoff_hz / prf
 
 
+DEFAULT_CUTOFF = 0.0075  # of PRF/2
 LIMB_ACCELERATION = 2.0  # m/s^2 along the line of sight; gait and kicks are resolved at 2 to 77 GHz
 MAX_WINDOW_SHARE = 0.25
+PAPER_WINDOW = 0.1  # of the recording
 
 
 class ProcessingConfig(Section):
-    """Clutter, range compression, gate, windows and thresholds.
-
-    `mti` is another spelling of `clutter`: true is `difference`, false is `none`. `window_s` goes
-    before `window_fraction`; without both the window follows from the wavelength.
-    """
+    """Clutter, range compression, gate, windows and thresholds."""
 
     clutter: Literal["difference", "mean", "highpass", "none"] = "difference"
     """s[m + 1] - s[m], the paper's MTI; less the mean; the filter below."""
-    mti: Annotated[Flag | None, Field(exclude=True)] = None
-    """Another spelling: true is `clutter: difference`, false is `none`."""
     highpass: HighpassConfig = HighpassConfig()
     range_sum: Literal["coherent", "gated"] = "coherent"
     """The coherent sum of the kept bins, or STFTs of those around the torso."""
@@ -732,10 +707,8 @@ class ProcessingConfig(Section):
     """Even, at least the samples of a chirp; null is found."""
     range_reference: Literal["centre", "start"] = "centre"
     """Where in the chirp the phase is taken."""
-    window_fraction: Annotated[float, Field(gt=0, lt=1, strict=True)] | None = None
-    """Length of the window, as a fraction of the recording; null is the model's: 0.1 of paper."""
     window_s: Annotated[float, Field(gt=0, le=1e7, strict=True)] | None = None
-    """The window in s, before window_fraction; without both as limbs need it at this wavelength."""
+    """The window; null: of paper a tenth of duration_s, else as limbs need it."""
     overlap_fraction: Annotated[float, Field(ge=0, lt=1, strict=True)] = 0.9
     """Of consecutive windows, as a fraction of the window."""
     stft_fft_length: Annotated[int, Field(ge=8, strict=True)] | None = None
@@ -759,21 +732,6 @@ class ProcessingConfig(Section):
             )
         return value
 
-    @model_validator(mode="after")
-    def _one_spelling(self) -> "ProcessingConfig":
-        if self.mti is not None:
-            meant = "difference" if self.mti else "none"
-            if "clutter" in self.model_fields_set and self.clutter != meant:
-                raise PydanticCustomError(
-                    "mti",
-                    "should not have mti: {mti}, which means clutter: {meant}, "
-                    "beside clutter: {clutter}",
-                    {"mti": str(self.mti).lower(), "meant": meant, "clutter": self.clutter},
-                )
-            object.__setattr__(self, "clutter", meant)
-            object.__setattr__(self, "mti", None)
-        return self
-
     def window_pulses(self, duration: float, prf: float, f0: float) -> int:
         """Length of the STFT's window in pulses.
 
@@ -788,8 +746,6 @@ class ProcessingConfig(Section):
         """
         if self.window_s is not None:
             return half_up(self.window_s, prf)
-        if self.window_fraction is not None:
-            return half_up(self.window_fraction, duration, prf)
         seconds = sqrt(2 * SPEED_OF_LIGHT / f0 / LIMB_ACCELERATION)
         return max(half_up(min(seconds, MAX_WINDOW_SHARE * duration), prf), MIN_WINDOW)
 
@@ -799,13 +755,11 @@ Pixels = Annotated[int, Field(ge=2, le=8192, strict=True)]
 
 
 Cells = Annotated[int, Field(ge=0, le=4096, strict=True)]
-ExceedingRate = Annotated[Positive, within(1e-12, 0.999)]
 
 
 class CfarConfig(Section):
     """Cell-averaging CFAR of `image.kind: cfar`; cells are pixels, (rows, columns) on each side.
 
-    Exactly one of pfa, factor and threshold_db is the threshold; pfa is 0.31 where none is given.
     With `domain: decibel` the map's median is put at floor_db: a factor of decibels needs a zero.
     """
 
@@ -813,12 +767,8 @@ class CfarConfig(Section):
     """Pixels on each side, [rows, columns], left out."""
     training: tuple[Cells, Cells] = (50, 10)
     """Pixels on each side, [rows, columns], averaged."""
-    pfa: ExceedingRate | None = None
-    """False alarm rate; null where another is the threshold."""
-    factor: Annotated[Positive, within(1e-3, 1e12)] | None = None
-    """Threshold: factor of the mean."""
-    threshold_db: Decibel | None = None
-    """Threshold: dB above the mean."""
+    pfa: Annotated[Positive, within(1e-12, 0.999)] = 0.31
+    """Threshold: the false alarm rate in exponentially distributed power."""
     domain: Literal["power", "decibel"] = "decibel"
     """What is averaged and compared."""
     floor_db: Annotated[Decibel, within(0, 200, "dB")] = Uniform(uniform=(10.0, 30.0))
@@ -826,31 +776,11 @@ class CfarConfig(Section):
     edges: Literal["wrap", "shrink"] = "wrap"
     """Beyond an edge: the cells of the opposite edge, or none."""
 
-    @model_validator(mode="after")
-    def _one_threshold(self) -> "CfarConfig":
-        given = [key for key in ("pfa", "factor", "threshold_db") if getattr(self, key) is not None]
-        if len(given) > 1:
-            raise PydanticCustomError(
-                "threshold",
-                "should have one of pfa, factor and threshold_db; set the others to null (it has "
-                "{given})",
-                {"given": " and ".join(given)},
-            )
-        if not given:
-            object.__setattr__(self, "pfa", 0.31)
-        return self
-
-    def uses(self, key: str) -> bool:
-        """Whether masks depend on the number of that key."""
-        if key == "floor_db":
-            return self.domain == "decibel" and self.threshold_db is None
-        return True
-
 
 class ImageConfig(Section):
     """Size (height, width; one number means square), what pixels show, colour map, Doppler limits.
 
-    Doppler limits are speeds, positive approaching: one number v is [-v, v].
+    Doppler limits are speeds, positive approaching.
     """
 
     size_px: tuple[Pixels, Pixels] = (256, 256)
@@ -863,21 +793,13 @@ class ImageConfig(Section):
     colour_map: str = DEFAULT_COLOUR_MAP
     """Any Matplotlib name; of PNGs and figures, as dataset.h5 holds grey levels."""
     doppler_limits_mps: tuple[Real, Real] | None = None
-    """v for -v to v, or [low, high], approaching positive; null is all."""
-
-    @field_validator("doppler_limits_mps", mode="before")
-    @classmethod
-    def _both_sides(cls, value: Any) -> Any:
-        number = isinstance(value, (int, float)) and not isinstance(value, bool)
-        return (-value, value) if number else value
+    """[low, high], approaching positive; null is all."""
 
     @field_validator("doppler_limits_mps")
     @classmethod
     def _ordered(cls, value: tuple[float, float] | None) -> tuple[float, float] | None:
         if value is not None and not value[0] < value[1]:
-            raise PydanticCustomError(
-                "limits", "should be a speed above 0, or [low, high] with low < high"
-            )
+            raise PydanticCustomError("limits", "should be [low, high] with low < high")
         return value
 
     @field_validator("size_px", mode="before")
@@ -1020,7 +942,6 @@ MODEL_DEFAULTS: dict[str, dict[str, Any]] = {
     "paper": {
         **_OF_FOUR_SECONDS,
         "on_invalid": "keep",
-        "processing": {"window_fraction": 0.1},
         "motion": {
             "range_m": Uniform(uniform=(1.0, 3.0)),
             "angle_deg": Uniform(uniform=(-30.0, 30.0)),
@@ -1222,6 +1143,10 @@ class Config(Section):
                 unset = {key: one for key, one in default.items() if getattr(now, key) is None}
                 if unset:
                     object.__setattr__(self, name, now.model_copy(update=unset))
+        if self.motion.model == "paper" and self.processing.window_s is None:
+            processing = self.processing.model_copy()  # which does not say that it was given
+            object.__setattr__(processing, "window_s", PAPER_WINDOW * nominal(self.duration_s))
+            object.__setattr__(self, "processing", processing)
         return self
 
     @model_validator(mode="after")

@@ -3,7 +3,7 @@
 from dataclasses import fields
 from functools import partial
 from math import radians
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -30,7 +30,7 @@ from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.gate import Gate, around, interval
 from radhar_cli.radar.propagation import Antennas, behind_mirror
 from radhar_cli.radar.wall import Wall
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
+from radhar_cli.radar.waveform import Waveform
 from radhar_cli.randomness import NOISE, stream
 from radhar_cli.receiver.flicker import FlickerNoise
 from radhar_cli.receiver.impairment import Impairment
@@ -191,8 +191,8 @@ def _paper_body(scene: Scene) -> PaperBody:
     )
 
 
-def canceller_of(config: Config, prf: float, f0: float) -> Canceller:
-    """The canceller of a config, for pulses per second and the frequency of the Doppler (Hz)."""
+def canceller_of(config: Config, prf: float) -> Canceller:
+    """The canceller of a config, for pulses per second."""
     given = config.processing.highpass
     match config.processing.clutter:
         case "difference":
@@ -201,14 +201,7 @@ def canceller_of(config: Config, prf: float, f0: float) -> Canceller:
             return MeanRemoval()
         case "none":
             return NO_CANCELLER
-    if given.cutoff_fraction is not None:
-        cutoff = given.cutoff_fraction
-    elif given.cutoff_hz is not None:
-        cutoff = 2 * given.cutoff_hz / prf
-    else:
-        assert given.cutoff_mps is not None
-        cutoff = 4 * given.cutoff_mps * f0 / SPEED_OF_LIGHT / prf
-    return HighPass(given.order, cutoff, given.zero_phase, given.remove_mean)
+    return HighPass(given.order, given.cutoff(prf), given.zero_phase, given.remove_mean)
 
 
 def gate_of(config: Config, ranges: Float, torso: Float | None) -> Gate:
@@ -236,17 +229,10 @@ def max_samples(config: Config) -> int:
 def cfar_of(config: Config) -> CellAveraging:
     """The CFAR of a scene's config."""
     cfar = config.image.cfar
-    kinds: tuple[tuple[Any, Literal["pfa", "factor", "db"]], ...] = (
-        (cfar.pfa, "pfa"),
-        (cfar.factor, "factor"),
-        (cfar.threshold_db, "db"),
-    )
-    value, threshold = next((number, kind) for number, kind in kinds if number is not None)
     return CellAveraging(
         guard=cfar.guard,
         training=cfar.training,
-        threshold=threshold,
-        value=_fixed(value),
+        pfa=_fixed(cfar.pfa),
         decibel=cfar.domain == "decibel",
         floor_db=_fixed(cfar.floor_db),
         wrap=cfar.edges == "wrap",

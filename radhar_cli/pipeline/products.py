@@ -185,7 +185,7 @@ def _echo(c: Config) -> Iterator[Product]:
             x = impairment.slow_time(x)
         return y.with_samples(canceller(x), canceller.delay)
 
-    yield Product("canceller", ("waveform",), lambda w: canceller_of(c, w.prf, w.f0), _clutter(c))
+    yield Product("canceller", ("waveform",), lambda w: canceller_of(c, w.prf), _clutter(c))
     yield from _receiver(c)
     yield from _cube(c) if c.engine.kind == "cube" else _direct(c)
     if c.engine.kind == "direct":

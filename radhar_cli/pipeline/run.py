@@ -79,7 +79,7 @@ def process(
     given = {
         "frames": frames_of(config, duration, signal.prf, signal.f0),
         "fsst_frames": fsst_frames_of(config, duration, signal.prf, signal.f0),
-        "canceller": canceller_of(config, signal.prf, signal.f0),
+        "canceller": canceller_of(config, signal.prf),
         **given,
     }
     if config.image.kind == "cfar":

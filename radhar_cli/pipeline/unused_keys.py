@@ -21,7 +21,6 @@ USED_ONLY_WITH = (
     ("processing.gate_m", "processing.range_sum", "gated"),
     ("processing.gate_sum", "processing.range_sum", "gated"),
     ("processing.highpass", "processing.clutter", "highpass"),
-    ("processing.window_fraction", "processing.window_s", None),
     ("image.cfar", "image.kind", "cfar"),
     ("body.points_per_segment", "body.scatterers", "segments"),
     ("body.shadowing", "body.scatterers", "segments"),
@@ -36,7 +35,6 @@ USED_ONLY_BY_MAPS = {
     "stft": ("processing.stft_fft_length",),
     "st": (
         "processing.range_sum",
-        "processing.window_fraction",
         "processing.window_s",
         "processing.overlap_fraction",
         "image.doppler_limits_mps",
@@ -84,7 +82,7 @@ def _unused_numbers(config: Config) -> Iterator[tuple[str, str]]:
         "timing": _entry(config, "motion.model"),
     }
     if config.image.kind == "cfar":
-        reasons["image"] = "image.cfar.domain: power or a threshold_db"
+        reasons["image"] = "image.cfar.domain: power"
     for key in (*(key for key, _ in numbers(config)), FALL):
         reason = reasons.get(key.partition(".")[0])
         if reason and not any(depends_on(config, activity, key) for activity in activities):

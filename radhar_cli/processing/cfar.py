@@ -6,7 +6,6 @@ section 6.5.
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Literal
 
 import numpy as np
 
@@ -23,8 +22,7 @@ class CellAveraging:
     Attributes:
         guard: cells on each side that are left out, (rows, columns).
         training: cells on each side beyond those, whose mean is the background.
-        threshold: what `value` is: a false alarm rate, a factor of the mean, or decibels above it.
-        value: the threshold.
+        pfa: false alarm rate in exponentially distributed power, which makes the threshold.
         decibel: whether cells are compared in decibels; in power otherwise.
         floor_db: where the median of a map in decibels is put, so that a factor means something.
         wrap: whether training cells beyond an edge are those of the opposite edge; otherwise
@@ -33,8 +31,7 @@ class CellAveraging:
 
     guard: tuple[int, int]
     training: tuple[int, int]
-    threshold: Literal["pfa", "factor", "db"]
-    value: float
+    pfa: float
     decibel: bool = False
     floor_db: float = 0.0
     wrap: bool = False
@@ -49,14 +46,7 @@ class CellAveraging:
         """Whether each cell [rows, columns] exceeds its threshold; never without training cells."""
         count = self.training_cells(cells.shape)
         mean = self._training_sum(cells.astype(float, copy=False)) / np.maximum(count, 1)
-        if self.threshold == "db" and self.decibel:
-            level = mean + self.value
-        elif self.threshold == "db":
-            level = mean * 10 ** (self.value / 10)
-        elif self.threshold == "factor":
-            level = mean * self.value
-        else:
-            level = mean * false_alarm_factor(self.value, np.maximum(count, 1))
+        level = mean * false_alarm_factor(self.pfa, np.maximum(count, 1))
         exceeds: Bool = (cells > level) & (count > 0)
         return exceeds
 

@@ -24,7 +24,6 @@ KEPT = (
     "motion.range_m",
     "motion.angle_deg",
     "processing.window_s",
-    "processing.window_fraction",
 )
 CUBE = ("engine.kind=cube",)
 DIRECT = ("engine.kind=direct", f"engine.tolerance_db={EngineConfig().tolerance_db:g}")
@@ -105,7 +104,7 @@ def _switches(config: Config) -> list[Setting]:
         _over("shadowing", SEGMENTS, WITHOUT_SHADOWS, "segments without shadowing"),
         _gate(),
         *_clutter(config),
-        _switch("room: 3 reflectors", "room.reflectors=3"),
+        _switch("room: 3 reflectors", "room.reflectors=[{}, {}, {}]"),
         *_receiver(config),
         _switch("residual video phase", "radar.residual_video_phase=true"),
         Setting(
@@ -163,7 +162,7 @@ def _other_motion(config: Config) -> tuple[str, ...]:
     """Name and overrides of the other model of motion; all else stays, whatever its defaults."""
     other = "paper" if config.motion.model == "human" else "human"
     kept = resolved(config)
-    if config.processing.window_s is config.processing.window_fraction is None:
+    if config.processing.window_s is None:
         duration, prf = nominal(config.duration_s), nominal(config.radar.prf_hz)
         pulses = config.processing.window_pulses(duration, prf, nominal(config.radar.carrier_hz))
         kept["processing"]["window_s"] = pulses / prf

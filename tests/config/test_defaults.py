@@ -31,20 +31,20 @@ def checked(config: Config, rows: list[int]) -> tuple[dict[Flags, int], int]:
 
 
 @pytest.mark.parametrize(
-    ("model", "duration", "on_invalid", "bandwidth", "prf", "fraction"),
+    ("model", "duration", "on_invalid", "bandwidth", "prf", "window"),
     [
         ("human", 6.0, "redraw", 1e9, 1e4, None),
-        ("paper", 4.0, "keep", 4e9, 5e3, 0.1),
+        ("paper", 4.0, "keep", 4e9, 5e3, 0.4),
         ("file", 4.0, "redraw", 4e9, 5e3, None),
     ],
 )
 def test_defaults_by_model(
-    model: str, duration: float, on_invalid: str, bandwidth: float, prf: float, fraction: Any
+    model: str, duration: float, on_invalid: str, bandwidth: float, prf: float, window: Any
 ) -> None:
     config = Config(motion={"model": model}, classes={"wave": ["wave.bvh"]})
     assert (config.duration_s, config.on_invalid) == (duration, on_invalid)
     assert (config.radar.bandwidth_hz, config.radar.prf_hz) == (bandwidth, prf)
-    assert config.processing.window_fraction == fraction
+    assert config.processing.window_s == window
 
 
 @pytest.mark.parametrize("model", list(MODEL_DEFAULTS))
@@ -55,11 +55,11 @@ def test_what_is_said_goes_before_the_models_default(model: str) -> None:
         "radar": {"prf_hz": 3000.0},
         "duration_s": 5.0,
         "on_invalid": "error",
-        "processing": {"window_fraction": 0.2},
+        "processing": {"window_s": 0.2},
     }
     config = Config.model_validate(said)
     assert (config.duration_s, config.on_invalid, config.radar.prf_hz) == (5.0, "error", 3000.0)
-    assert (config.motion.range_m, config.processing.window_fraction) == (3.0, 0.2)
+    assert (config.motion.range_m, config.processing.window_s) == (3.0, 0.2)
 
 
 def test_people_of_the_defaults_stay_clear_of_the_radar_and_in_its_band() -> None:
@@ -107,10 +107,8 @@ def test_the_window_is_a_quarter_of_the_recording_at_most_and_8_pulses_at_least(
 
 
 def test_a_window_that_is_given_is_taken() -> None:
-    given = Config(processing={"window_s": 0.3, "window_fraction": 0.2}).processing
+    given = Config(processing={"window_s": 0.3}).processing
     assert given.window_pulses(4.0, 1000.0, 77e9) == 300
-    shares = Config(processing={"window_fraction": 0.2}).processing
-    assert shares.window_pulses(4.0, 1000.0, 77e9) == 800
 
 
 @pytest.mark.parametrize("prf", [80.0, 5000.0])

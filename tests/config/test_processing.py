@@ -1,10 +1,9 @@
-"""Clutter and gate: two spellings, one meaning; what cannot be is refused in words."""
+"""Clutter and gate: what cannot be is refused in words."""
 
 import pytest
 from pydantic import ValidationError
 
 from radhar_cli.config import Config
-from radhar_cli.config.identity import as_yaml, config_hash, resolved
 
 
 def refused(**document: object) -> list[tuple[str, str]]:
@@ -13,46 +12,11 @@ def refused(**document: object) -> list[tuple[str, str]]:
     return [(p.key, p.right) for p in error.value.errors()[0]["ctx"]["problems"]]
 
 
-@pytest.mark.parametrize(("mti", "clutter"), [(True, "difference"), (False, "none")])
-def test_mti_is_an_alias_of_clutter(mti, clutter):
-    spellings = [
-        Config.model_validate({"processing": processing})
-        for processing in ({"mti": mti}, {"clutter": clutter}, {"mti": mti, "clutter": clutter})
-    ]
-    assert {one.processing.clutter for one in spellings} == {clutter}
-    assert len({config_hash(one) for one in spellings}) == 1
-    assert spellings[0] == spellings[1] == spellings[2]
-    assert "mti" not in as_yaml(spellings[0])
-    assert Config.model_validate(resolved(spellings[0])) == spellings[0]
-
-
-@pytest.mark.parametrize("mti", [True, False])
-def test_mti_alone_sets_the_canceller(mti):
-    assert Config(processing={"mti": mti}).processing.clutter == ("difference" if mti else "none")
-
-
-@pytest.mark.parametrize(
-    ("given", "right"),
-    [
-        ({}, (None, None, 0.0075)),
-        ({"cutoff_hz": 3}, (3, None, None)),
-        ({"cutoff_mps": 0.2}, (None, 0.2, None)),
-    ],
-)
-def test_only_one_cutoff_is_given(given, right):
-    config = Config.model_validate({"processing": {"clutter": "highpass", "highpass": given}})
-    found = config.processing.highpass
-    assert (found.cutoff_hz, found.cutoff_mps, found.cutoff_fraction) == right
-    assert Config.model_validate(resolved(config)) == config
-
-
 @pytest.mark.parametrize(
     ("highpass", "key"),
     [
         ({"cutoff_hz": 2500.0}, "cutoff_hz"),
-        ({"cutoff_mps": 5.0}, "cutoff_mps"),
         ({"cutoff_hz": 0.1}, "cutoff_hz"),
-        ({"cutoff_fraction": 1e-5}, "cutoff_fraction"),
     ],
 )
 def test_a_cut_off_is_below_half_the_prf_and_above_what_float64_holds(highpass, key):

@@ -48,7 +48,7 @@ def random_config(rng: np.random.Generator) -> dict:
         },
         "processing": {
             "range_reference": "centre" if rng.random() < 0.8 else "start",
-            "window_fraction": 0.5,
+            "window_s": pulses / prf / 2,
         },
         "motion": {
             "model": "paper",
@@ -115,7 +115,7 @@ def test_without_mti_it_is_that_of_the_whole_signal():
     rng, found = np.random.default_rng(7), []
     for number in range(24):
         tolerance_db, drawn = float(rng.uniform(-120, -20)), random_config(rng)
-        drawn["processing"]["mti"] = False
+        drawn["processing"]["clutter"] = "none"
         found.append(within(drawn, ACTIVITIES[number % 12], tolerance_db))
     assert sum(error is not None and np.isfinite(error) for error in found) >= 20
 
@@ -152,7 +152,7 @@ class TestRefusal:
 
     @pytest.mark.parametrize("mti", [True, False])
     def test_falls_back_to_the_cube_itself(self, mti):
-        processing = {"processing": {"mti": mti}}
+        processing = {"processing": {"clutter": "difference" if mti else "none"}}
         right = self.signal(CUBE, **processing)
         found = self.signal({"tolerance_db": -300, "fallback": "cube"}, **processing)
         assert ref.error_db(found, right) < -280  # the cube cancels before it compresses

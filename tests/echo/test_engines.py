@@ -100,7 +100,7 @@ def test_engines_agree(case, activity):
 def test_engines_agree_without_mti(case, slug, tolerance_db):
     """Then what stands still counts too, and the tolerance is that of the whole signal."""
     activity = next(a for a in ACTIVITIES if a.slug == slug)
-    processing, direct = {"mti": False}, {"kind": "direct", "tolerance_db": tolerance_db}
+    processing, direct = {"clutter": "none"}, {"kind": "direct", "tolerance_db": tolerance_db}
     right, found = (
         signal(activity, config_of(case, engine, processing=processing))
         for engine in ({"kind": "cube"}, direct)

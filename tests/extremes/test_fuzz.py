@@ -156,7 +156,7 @@ def test_direct_keeps_its_promise_or_refuses(block: int) -> None:
     worst = -math.inf
     for _ in range(AGREEING):
         document = drawer.document() | {"snr_db": None}
-        document["processing"]["mti"] = True
+        document["processing"]["clutter"] = "difference"
         found = []
         try:
             for kind in ("cube", "direct"):

@@ -160,7 +160,7 @@ class TestSnr:
             engine,
             {"prf_hz": 20000, "adc_rate_hz": 2e5},
             snr_db=snr_db,
-            processing={"mti": False, "window_fraction": 0.25},
+            processing={"clutter": "none"},
         )
 
     @pytest.mark.parametrize("engine", ["cube", "direct"])
@@ -207,7 +207,7 @@ class TestFewPulses:
             engine,
             duration_s=0.1,
             processing={
-                "window_fraction": fraction,
+                "window_s": 0.1 * fraction,
                 "savgol": {"order": 3, "frame": 99},
                 **processing,
             },
@@ -245,9 +245,9 @@ class TestFewPulses:
 
     def test_a_window_longer_than_the_signal_is_refused(self) -> None:
         """A window of all 100 pulses, of which the MTI leaves 99."""
-        short = {"duration_s": 0.02, "processing": {"window_fraction": 0.996}}
+        short = {"duration_s": 0.02, "processing": {"window_s": 0.02}}
         document = SCENE | {"radar": {"prf_hz": 5000}} | short
-        with pytest.raises(ConfigError, match=r"processing.window_fraction = 0.996: .*\b99 pulses"):
+        with pytest.raises(ConfigError, match=r"processing.window_s = 0.02: .*\b99 pulses"):
             validated(Config, document, "here", {})
 
 
@@ -260,7 +260,7 @@ class TestEverythingAliases:
             | {
                 "radar": {"prf_hz": 20, "adc_rate_hz": 5e5},
                 "duration_s": {"uniform": [4, 8]},
-                "processing": {"window_fraction": 0.1},
+                "processing": {"window_s": 0.4},
                 "engine": {"kind": engine},
             }
         )

@@ -51,7 +51,6 @@ LIMITS: dict[str, tuple[Any, Any, Any, Any]] = {
     "wall.loss_tangent": (0, 1e12, -1, 1.1e12),
     "snr_db": (-300, 300, -301, 301),
     "processing.range_fft_length": (400, 25600, 398, 25602),
-    "processing.window_fraction": (4e-4, 0.9999, 3.6e-4, 1),
     "processing.window_s": (0.0016, 3.9998, 0.0014, 4.0),
     "body.points_per_segment": (1, 1000, 0, 1001),
     "processing.overlap_fraction": (0, 0.9999, -0.1, 1),
@@ -93,8 +92,6 @@ def document(key: str, value: Any) -> dict[str, Any]:
         made["maps"] = ["stft_denoised"]
     if key == "wall.size_m.0":  # a thick wall that has no antenna inside
         made["wall"]["center_m"] = [1e6, 0.0, 1.25]
-    if key == "processing.window_fraction" and value == 3.6e-4:
-        made["radar"] = {"prf_hz": 5000}
     return made
 
 
@@ -113,8 +110,6 @@ def test_limits_are_accepted_and_values_beyond_are_refused_by_key(key: str) -> N
         text = str(caught.value)
         section = key.rpartition(".")[0] if key.startswith("processing.savgol") else key
         named = [line for line in text.splitlines() if f"here.yaml: {section}" in line]
-        if key == "processing.window_fraction" and value < 4e-4:
-            named = [text]  # the window it makes is named with the duration
         assert named, text
         assert any(shown(value) in line for line in named), text
         assert "should" in named[0]
@@ -160,7 +155,6 @@ OF_THE_MODEL = (
     "duration_s",
     "radar.bandwidth_hz",
     "radar.prf_hz",
-    "processing.window_fraction",
     "motion.range_m",
     "motion.angle_deg",
     "motion.speed_mps",

@@ -45,7 +45,7 @@ def test_a_motionless_scene_is_black(engine: str, wall: dict | None) -> None:
 
 @pytest.mark.parametrize("engine", ["cube", "direct"])
 def test_a_motionless_scene_without_mti_is_not(engine: str) -> None:
-    config = config_of(engine, processing={"mti": False, "window_fraction": 0.25})
+    config = config_of(engine, processing={"clutter": "none"})
     found = record(config, *ALL, activity="stationary")
     for name in MAP_NAMES:
         assert np.isfinite(found[name].power).all()

@@ -25,7 +25,7 @@ def record(radar: dict, maps: tuple[str, ...], **more: object) -> Recording:
 
 @pytest.mark.parametrize("radar", [SLOW, FAST], ids=["odd window", "even window"])
 @pytest.mark.parametrize(
-    "processing", [{}, {"mti": False}, {"stft_fft_length": 512}, {"range_fft_length": 1000}]
+    "processing", [{}, {"clutter": "none"}, {"stft_fft_length": 512}, {"range_fft_length": 1000}]
 )
 def test_every_map_has_an_axis_value_a_row_and_column(radar, processing):
     recording = record(radar, MAP_NAMES, processing=processing, duration_s=2.0, **PAPER)
@@ -39,7 +39,9 @@ def test_every_map_has_an_axis_value_a_row_and_column(radar, processing):
 @pytest.mark.parametrize("with_mti", [True, False])
 def test_settings_of_the_paper(with_mti):
     """77 GHz: 7.5 m in 200 bins, 2000 Doppler bins of 2.5 Hz, frames every 40 ms."""
-    recording = record({}, ("rtm", "stft"), processing={"mti": with_mti}, **PAPER)
+    recording = record(
+        {}, ("rtm", "stft"), processing={"clutter": "difference" if with_mti else "none"}, **PAPER
+    )
     late = 0.5e-4 * 2 if with_mti else 0.0  # half a pulse interval of 0.2 ms
     rtm, stft = recording["rtm"], recording["stft"]
     assert rtm.rows.values == pytest.approx(np.arange(200) * ref.C / 8e9)
@@ -116,7 +118,11 @@ def test_time_axis_is_the_centre_of_the_frames(name, with_mti):
         (name,),
         subject={"height_m": 1.8},
         motion=motion,
-        processing={"mti": with_mti, "window_fraction": 0.05, "overlap_fraction": 0.98},
+        processing={
+            "clutter": "difference" if with_mti else "none",
+            "window_s": 0.2,
+            "overlap_fraction": 0.98,
+        },
     )
     power = recording[name].power
     frequency, time = recording[name].rows.values, recording[name].columns.values

@@ -46,7 +46,7 @@ def scene_of(config: Config) -> Scene:
 
 
 @pytest.mark.parametrize("engine", ["direct", "cube"])
-@pytest.mark.parametrize("processing", [{}, {"mti": False, "fsst_hop_pulses": 1}])
+@pytest.mark.parametrize("processing", [{}, {"clutter": "none", "fsst_hop_pulses": 1}])
 def test_blocks_and_chunks_change_nothing(monkeypatch, engine, processing):
     document = SMALL | {"engine": {"kind": engine}, "processing": WINDOW | processing}
     whole = recorded(document, *MAP_NAMES, *IMAGES)

@@ -67,8 +67,8 @@ REQUESTS: list[tuple[str, dict, str]] = [
     ("stft fsst", LONG_FFT | QUIET, f"{SIGNAL} frames fsst_frames"),
     ("stft fsst", OWN_HOP, f"{NOISY} frames fsst_frames"),
     ("stft", OWN_HOP | QUIET, f"{SIGNAL} frames"),
-    ("stft", {"processing": {"mti": False}}, f"{NOISY} frames"),
-    ("rtm", {"processing": {"mti": False}} | QUIET, PROFILES),
+    ("stft", {"processing": {"clutter": "none"}}, f"{NOISY} frames"),
+    ("rtm", {"processing": {"clutter": "none"}} | QUIET, PROFILES),
     ("stft", CUBE, f"{CUBED} {NOISE} signal frames"),
     ("stft", CUBE | QUIET, f"{CUBED} signal frames"),
     ("rtm", CUBE, f"{CUBED} {NOISE} range_profiles rtm"),
@@ -156,7 +156,9 @@ def test_range_profiles_compute_only_the_pulses_shown(monkeypatch, with_mti):
         return original(body, t)
 
     monkeypatch.setattr(PaperBody, "positions", noted)
-    config = config_of("rtm", QUIET | {"processing": {"mti": with_mti}})
+    config = config_of(
+        "rtm", QUIET | {"processing": {"clutter": "difference" if with_mti else "none"}}
+    )
     run(plan_images(config), {"scene": scene_of(config)})
     kept = PULSES - with_mti
     shown = {floor((j + 0.5) * kept / WIDTH) for j in range(WIDTH)}

@@ -269,10 +269,9 @@ def test_a_recording_that_ends_before_the_second_phase_is_warned_of() -> None:
         ({"processing": {"highpass": {"order": 2}}}, "processing.highpass has no effect"),
         ({"image": {"cfar": {"pfa": 0.2}}}, "image.cfar has no effect"),
         (
-            {"image": {"kind": "cfar", "cfar": {"floor_db": 40.0, "threshold_db": 5.0}}},
+            {"image": {"kind": "cfar", "cfar": {"floor_db": 40.0, "domain": "power"}}},
             "image.cfar.floor_db has no effect",
         ),
-        ({"processing": {"window_s": 0.2, "window_fraction": 0.2}}, "processing.window_fraction"),
         ({"processing": {"savgol": {"order": 3}}}, "processing.savgol has no effect with maps"),
         ({"processing": {"fsst_threshold": 0.1}}, "processing.fsst_threshold has no effect"),
         ({"maps": ["rtm"], "processing": {"window_s": 0.2}}, "processing.window_s has no effect"),

@@ -31,12 +31,11 @@ def training_cells(cells: np.ndarray, row: int, column: int, window: CellAveragi
     return found
 
 
-@given(CELLS, PAIR, PAIR, st.booleans(), st.sampled_from(["pfa", "factor", "db"]), st.booleans())
+@given(CELLS, PAIR, PAIR, st.booleans(), st.booleans())
 @settings(max_examples=150, deadline=None)
-def test_as_a_loop_over_every_cell(cells, guard, training, wrap, threshold, decibel):
+def test_as_a_loop_over_every_cell(cells, guard, training, wrap, decibel):
     """Windows larger than the map, without training cells and with all of them beyond the edges."""
-    value = {"pfa": 0.2, "factor": 1.3, "db": 1.5}[threshold]
-    window = CellAveraging(guard, training, threshold, value, decibel=decibel, wrap=wrap)
+    window = CellAveraging(guard, training, 0.2, decibel=decibel, wrap=wrap)
     found = window.is_set(cells)
     for place, cell in np.ndenumerate(cells):
         around = training_cells(cells, *place, window)
@@ -45,9 +44,7 @@ def test_as_a_loop_over_every_cell(cells, guard, training, wrap, threshold, deci
             assert not found[place]
             continue
         count = len(around)
-        factor = {"pfa": count * (0.2 ** (-1 / count) - 1), "factor": 1.3, "db": 10**0.15}
-        mean = sum(around) / count
-        level = mean + 1.5 if decibel and threshold == "db" else factor[threshold] * mean
+        level = count * (0.2 ** (-1 / count) - 1) * sum(around) / count
         if abs(cell - level) > 1e-9:  # on the border either is right
             assert found[place] == (cell > level)
 
@@ -57,7 +54,7 @@ def test_as_a_loop_over_every_cell(cells, guard, training, wrap, threshold, deci
 def test_false_alarms_of_white_noise(pfa, wrap):
     """Exponentially distributed cells exceed their threshold as often as asked, at edges too."""
     power = np.random.default_rng(1).exponential(size=(600, 500))
-    alarms = CellAveraging((2, 1), (4, 3), "pfa", pfa, wrap=wrap).is_set(power)
+    alarms = CellAveraging((2, 1), (4, 3), pfa, wrap=wrap).is_set(power)
     for part in (alarms, alarms[:, :5], alarms[:8]):
         # Neighbours share training cells, so their alarms are not independent: 6 sd and a margin.
         sd = np.sqrt(pfa / part.size)
@@ -66,7 +63,7 @@ def test_false_alarms_of_white_noise(pfa, wrap):
 
 def test_the_factor_of_the_public_masks():
     """Guard [10, 2] and training [50, 10] are 2920 cells; P_fa = 0.31 makes them 1.171."""
-    window = CellAveraging((10, 2), (50, 10), "pfa", 0.31, wrap=True)
+    window = CellAveraging((10, 2), (50, 10), 0.31, wrap=True)
     count = window.training_cells((256, 256))
     assert (count == 121 * 25 - 21 * 5).all()
     assert false_alarm_factor(0.31, count) == pytest.approx(1.1714, abs=1e-4)
@@ -78,10 +75,9 @@ def test_the_factor_is_that_of_the_formula(pfa, count):
     assert false_alarm_factor(pfa, np.array(count)) == pytest.approx(right, rel=1e-6)
 
 
-@pytest.mark.parametrize("threshold", [("pfa", 0.1), ("factor", 2.0), ("db", 3.0)])
-def test_power_of_any_scale_gives_the_same_mask(threshold):
+def test_power_of_any_scale_gives_the_same_mask():
     power = np.random.default_rng(2).exponential(size=(60, 50))
-    window = CellAveraging((1, 1), (5, 4), *threshold)
+    window = CellAveraging((1, 1), (5, 4), 0.1)
     right = window.levels(power)
     assert set(np.unique(right)) == {0, 255}
     for scale in (2.0**-120, 2.0**90):
@@ -89,16 +85,15 @@ def test_power_of_any_scale_gives_the_same_mask(threshold):
 
 
 def test_a_floor_makes_the_factor_of_decibels_independent_of_the_scale():
-    """A higher floor is a higher threshold; decibels above the mean depend on no floor."""
+    """A higher floor is a higher threshold."""
     cells = decibels_of(np.random.default_rng(3).exponential(size=(60, 50)))
 
-    def share(threshold, value, floor_db, shift=0.0):
-        window = CellAveraging((1, 1), (5, 4), threshold, value, decibel=True, floor_db=floor_db)
+    def share(floor_db, shift=0.0):
+        window = CellAveraging((1, 1), (5, 4), 0.3, decibel=True, floor_db=floor_db)
         return np.mean(window.levels(cells + shift) == 255)
 
-    assert share("factor", 1.2, 20, shift=-90) == pytest.approx(share("factor", 1.2, 20), abs=1e-3)
-    assert share("factor", 1.2, 10) > share("factor", 1.2, 20) > share("factor", 1.2, 30) > 0
-    assert share("db", 3.0, 10) == pytest.approx(share("db", 3.0, 30), abs=1e-3)
+    assert share(20, shift=-90) == pytest.approx(share(20), abs=1e-3)
+    assert share(10) > share(20) > share(30) > 0
 
 
 def test_a_strong_cell_does_not_raise_distant_thresholds():
@@ -106,7 +101,7 @@ def test_a_strong_cell_does_not_raise_distant_thresholds():
     noise = np.random.default_rng(4).exponential(size=(200, 64))
     strong = noise.copy()
     strong[100, 30] = 1e10
-    window = CellAveraging((2, 2), (6, 6), "pfa", 0.1)
+    window = CellAveraging((2, 2), (6, 6), 0.1)
     far = np.abs(np.arange(200) - 100) > 8
     assert np.array_equal(window.is_set(strong)[far], window.is_set(noise)[far])
 

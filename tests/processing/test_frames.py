@@ -27,9 +27,8 @@ def test_settings_of_the_paper(duration, prf, length, hop, kept, count):
 )
 def test_halves_are_rounded_up(pulses, length, hop):
     """45 -> 4.5 -> 5 and 25 -> 2.5 -> 3: neither to even, nor down as 0.1 * 45 would in binary."""
-    processing = ProcessingConfig(window_fraction=0.1)
-    for duration, prf in ((1.0, float(pulses)), (pulses / 100, 100.0)):
-        window = processing.window_pulses(duration, prf, 77e9)
+    for seconds, prf in ((0.1, float(pulses)), (pulses / 1000, 100.0)):
+        window = ProcessingConfig(window_s=seconds).window_pulses(1.0, prf, 77e9)
         assert Frames.of(window, 0.9) == Frames(length, hop)
 
 

@@ -156,7 +156,7 @@ class TestSlowTime:
 
     @engines
     def test_before_mti(self, engine):
-        v, sigma = noise_of("signal", engine, processing={"mti": False})
+        v, sigma = noise_of("signal", engine, processing={"clutter": "none"})
         assert v.size == PULSES
         # |v|^2 is exponential: its standard deviation is its mean.
         assert np.mean(np.abs(v) ** 2) == pytest.approx(sigma**2 * gain(), rel=self.error)
@@ -200,7 +200,9 @@ class TestSlowTime:
     def test_engines_have_the_same_law(self, mti):
         """Every other sample: after MTI those are independent."""
         both = [
-            noise_of("signal", engine, processing={"mti": mti})[0][::2]
+            noise_of("signal", engine, processing={"clutter": "difference" if mti else "none"})[0][
+                ::2
+            ]
             for engine in ("cube", "direct")
         ]
         for view in (np.real, np.imag, np.abs):
@@ -216,7 +218,7 @@ class TestRangeProfiles:
 
     @pytest.mark.parametrize("mti", [True, False])
     def test_variance_and_whiteness_over_the_bins(self, mti):
-        noise, sigma = self.noise(2000, processing={"mti": mti})
+        noise, sigma = self.noise(2000, processing={"clutter": "difference" if mti else "none"})
         assert noise.shape == (SAMPLES // 2, 2000)
         error = SIGMAS * np.sqrt(1.5 / noise.size)
         right = (1 + mti) * sigma**2 * SAMPLES

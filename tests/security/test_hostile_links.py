@@ -57,7 +57,7 @@ def recording_of_a_manifest(folder: Path) -> Case:
 def image_of_a_tree(folder: Path) -> Case:
     _images(folder / "tree")
     text = "maps: [stft]\nrecordings: {window_s: 1, rows: [-1, 1]}\n"
-    (folder / "c.yaml").write_text(text + "processing: {window_fraction: 0.5}\n")
+    (folder / "c.yaml").write_text(text + "processing: {window_s: 0.5}\n")
     config = load_config(folder / "c.yaml")
     return folder / "tree/a/0.png", lambda: with_recordings(config, folder / "tree")
 

@@ -1,4 +1,4 @@
-"""The activities: label, slug, class number and the numbers each one depends on."""
+"""The activities: label, slug, class number and the movements of people each one consists of."""
 
 import difflib
 from collections.abc import Callable, Iterable, Mapping
@@ -8,76 +8,26 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from radhar_cli.motion.protocol import Motion
 
-_GAIT = ("motion.gait_hz", "motion.thigh_deg", "motion.calf_deg", "motion.arm_deg")
-_WALK = ("motion.speed_mps", *_GAIT)
-_SEAT = ("timing.seat_start_s", "timing.seat_duration_s")
-_RISE = ("timing.rise_start_s", "timing.rise_duration_s", "timing.walk_start_s")
-_STOP = ("timing.walk_stop_s", "timing.overlap_s")
-
-# What each movement of people depends on, besides body, place and fidgets.
-_UNEVEN = ("motion.tempo_jitter", "motion.size_jitter")
-_STRIKE = ("motion.cycle_phase", "motion.strike_scale", *_UNEVEN)
-_SIT = (
-    "motion.seat_height",
-    "motion.lean_deg",
-    "motion.recline_deg",
-    "motion.hands_on_lap",
-    "motion.joint_lag",
-)
-_FALL = ("motion.fall", "motion.kneel_s", "motion.heels_deg")
-_GRAB = (
-    "motion.bend_deg",
-    "motion.dwell_s",
-    "motion.rise_overlap",
-    "motion.squat",
-    "motion.reach_deg",
-    "motion.free_arm",
-    "motion.joint_lag",
-)
-_STRIDE = (
-    "motion.speed_mps",
-    "motion.period_scale",
-    "motion.cycle_phase",
-    "motion.arm_swing",
-    "motion.trunk_pitch_deg",
-    "motion.step_width",
-    "motion.step_asymmetry",
-    "motion.speed_ripple",
-    "motion.speed_ripple_asymmetry",
-    "motion.speed_variation",
-    "motion.stride_jitter",
-    "motion.width_jitter_m",
-    "motion.lane_m",
-    "motion.lane_start",
-    "motion.speed_up",
-)
-
 
 class Movement(NamedTuple):
-    """A movement of people: states it begins and ends in, its usual duration (s), its numbers."""
+    """A movement of people: states it begins and ends in, its usual duration (s)."""
 
     before: str
     after: str
     seconds: float | None  # None: as long as it is asked for
-    uses: tuple[str, ...] = ()
 
 
 # What sequences are made of (`classes:`).
 MOVEMENTS = {
     "stationary": Movement("standing", "standing", None),
-    "punching": Movement("standing", "standing", None, ("motion.punch_hz", *_STRIKE)),
-    "kicking": Movement("standing", "standing", None, ("motion.kick_hz", *_STRIKE)),
-    "grabbing": Movement("standing", "standing", 2.5, _GRAB),
-    "sitting_down": Movement("standing", "seated", 2.0, (*_SIT, "motion.recline_from")),
-    "standing_up": Movement("seated", "standing", 1.8, _SIT),
-    "body_rotating": Movement(
-        "standing",
-        "standing",
-        None,
-        ("motion.rotation_hz", "motion.turn_deg", "motion.cycle_phase", *_UNEVEN),
-    ),
-    "walking": Movement("standing", "standing", None, _STRIDE),
-    "falling": Movement("standing", "lying", 1.1, _FALL),
+    "punching": Movement("standing", "standing", None),
+    "kicking": Movement("standing", "standing", None),
+    "grabbing": Movement("standing", "standing", 2.5),
+    "sitting_down": Movement("standing", "seated", 2.0),
+    "standing_up": Movement("seated", "standing", 1.8),
+    "body_rotating": Movement("standing", "standing", None),
+    "walking": Movement("standing", "standing", None),
+    "falling": Movement("standing", "lying", 1.1),
     "getting_up": Movement("lying", "standing", 3.0),
     "turning_around": Movement("standing", "standing", 1.8),
 }
@@ -90,17 +40,16 @@ class Activity:
     Attributes:
         number: 1 to 12, the paper's S number; 13 and more for user-defined classes.
         slug: name used in folders and on the command line.
-        paper: dotted config keys of the motion and timing numbers this activity depends on,
-            besides the position and the heading, which all of them use; of the paper's model.
-        human: the same of the human model.
+        movements: of people, one after the other; config keys say which of them use a number.
         motion: makes the motion of a Scene; None for what `motion:` decides about.
+        uses: keys of `motion:` and `timing:` that such a motion depends on, besides the place.
     """
 
     number: int
     slug: str
-    paper: tuple[str, ...] = ()
-    human: tuple[str, ...] = ()
+    movements: tuple[str, ...] = ()
     motion: "Callable[..., Motion] | None" = None
+    uses: tuple[str, ...] = ()
 
     @property
     def label(self) -> str:
@@ -115,66 +64,22 @@ class Activity:
     @property
     def walks(self) -> bool:
         """Whether the torso moves along the motion angle."""
-        return "motion.speed_mps" in self.paper
-
-    def uses(self, model: str) -> tuple[str, ...]:
-        """The keys that the activity depends on under a model of motion."""
-        return self.human if model == "human" else self.paper
+        return 8 <= self.number <= 12
 
 
-def sequence_uses(names: Iterable[str]) -> tuple[str, ...]:
-    """The keys that a sequence of movements depends on."""
-    return tuple(dict.fromkeys(key for name in names for key in MOVEMENTS[name].uses))
-
-
-def _activity(number: int, slug: str, paper: tuple[str, ...], *more: str) -> Activity:
-    """One of the twelve: `more` are movements of S9 to S12, or keys beside the movement's own."""
-    keys = tuple(key for key in more if "." in key)
-    human = sequence_uses([name for name in more if "." not in name] or [slug])
-    return Activity(number, slug, paper, (*human, *(key for key in keys if key not in human)))
-
-
-_AROUND = ("motion.step_m", "motion.settle_size")
-_SITTING = (*_SIT, *_SEAT, *_AROUND)
 ACTIVITIES: tuple[Activity, ...] = (
-    _activity(1, "stationary", (), "stationary", "motion.shuffle_hz"),
-    _activity(2, "punching", ("motion.gait_hz", "motion.calf_deg", "motion.arm_deg")),
-    _activity(3, "kicking", ("motion.gait_hz", "motion.thigh_deg", "motion.calf_deg")),
-    _activity(
-        4,
-        "grabbing",
-        ("motion.gait_hz",),
-        *("grabbing", "timing.grab_start_s", "timing.grab_duration_s", "motion.shuffle_hz"),
-        *_AROUND,
-    ),
-    Activity(5, "sitting_down", _SEAT, (*_SITTING, "motion.recline_from", "motion.look_deg")),
-    Activity(6, "standing_up", _SEAT, _SITTING),
-    _activity(7, "body_rotating", ("motion.gait_hz", "motion.turn_deg")),
-    _activity(8, "walking", _WALK, "walking", "timing.walk_begin_s"),
-    _activity(
-        9,
-        "sitting_to_walking",
-        (*_WALK, *_RISE, "timing.blend_s"),
-        *("standing_up", "walking", *_RISE, "timing.overlap_s"),
-    ),
-    _activity(
-        10,
-        "walking_to_sitting",
-        (*_WALK, "timing.walk_stop_s", "timing.sit_duration_s", "timing.blend_s"),
-        *("walking", "sitting_down", *_STOP, "timing.sit_duration_s"),
-    ),
-    _activity(
-        11,
-        "falling_to_walking",
-        (*_WALK, *_RISE, "timing.blend_s"),
-        *("getting_up", "walking", *_RISE, "timing.overlap_s"),
-    ),
-    _activity(
-        12,
-        "walking_to_falling",
-        (*_WALK, "timing.walk_stop_s", "timing.fall_duration_s", "timing.blend_s"),
-        *("walking", "falling", *_STOP, "timing.fall_duration_s"),
-    ),
+    Activity(1, "stationary", ("stationary",)),
+    Activity(2, "punching", ("punching",)),
+    Activity(3, "kicking", ("kicking",)),
+    Activity(4, "grabbing", ("grabbing",)),
+    Activity(5, "sitting_down", ("sitting_down",)),
+    Activity(6, "standing_up", ("standing_up",)),
+    Activity(7, "body_rotating", ("body_rotating",)),
+    Activity(8, "walking", ("walking",)),
+    Activity(9, "sitting_to_walking", ("standing_up", "walking")),
+    Activity(10, "walking_to_sitting", ("walking", "sitting_down")),
+    Activity(11, "falling_to_walking", ("getting_up", "walking")),
+    Activity(12, "walking_to_falling", ("walking", "falling")),
 )
 
 DEFAULT = "default"  # in `per_activity`: what holds for activities that it does not name
@@ -208,7 +113,7 @@ def add_activity(
     """
     if not is_new_slug(slug):
         raise ValueError(f"{slug!r} should be a new name of lower-case letters, digits and _")
-    _OWN[slug] = Activity(len(ACTIVITIES) + 1, slug, uses, uses, motion)
+    _OWN[slug] = Activity(len(ACTIVITIES) + 1, slug, (), motion, uses)
     return _OWN[slug]
 
 
@@ -221,7 +126,7 @@ def know_activities(own: Iterable[Activity]) -> None:
     """Register the user-defined classes of another process."""
     for activity in own:
         if activity.motion is not None and activity not in own_activities():
-            add_activity(activity.slug, activity.motion, activity.paper)
+            add_activity(activity.slug, activity.motion, activity.uses)
 
 
 def is_new_slug(slug: str) -> bool:

@@ -1,21 +1,16 @@
 """(config, class, index) -> one scene: a config with nothing left to draw."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from math import nan
-from typing import Any, TypeAlias, TypeVar, cast
+from typing import Any, TypeAlias
 
 from radhar_cli.activity import Activity
-from radhar_cli.config.number import Number, is_fixed, nominal, quantile, support
-from radhar_cli.config.schema import (
-    FALLS,
-    Config,
-    Falls,
-    PerActivity,
-    Section,
-    for_activity,
-)
+from radhar_cli.config.annotations import Mark, of_kind
+from radhar_cli.config.number import Number, is_fixed, nominal, quantile
+from radhar_cli.config.paths import at, changed, each_number
+from radhar_cli.config.schema import FALLS, Config, Falls, for_activity
 from radhar_cli.motion.skeleton import default_weight
 from radhar_cli.randomness import PERSON, SCENE, stream
 
@@ -33,38 +28,13 @@ SCENE_KEYS = (
     "receiver",
     "image.cfar",
 )
-_BODY = ("subject.height_m", "subject.weight_kg")
-# What stays with a person whatever they do: body and gait.
-PERSONAL = (
-    "subject.height_m",
-    "subject.weight_kg",
-    "motion.speed_mps",
-    "motion.gait_hz",
-    "motion.thigh_deg",
-    "motion.calf_deg",
-    "motion.arm_deg",
-    "motion.turn_deg",
-    "subject.sway_ahead_m",
-    "subject.sway_aside_m",
-    "subject.breathing_hz",
-    "subject.chest_m",
-    "subject.pulse_hz",
-    "subject.heart_m",
-    "motion.period_scale",
-    "motion.arm_swing",
-    "motion.trunk_pitch_deg",
-    "motion.step_width",
-    "motion.step_asymmetry",
-    "motion.speed_ripple",
-    "motion.speed_ripple_asymmetry",
-    "motion.strike_scale",
-    "motion.lean_deg",
+# What stays with a person whatever they do, and what is not repeated exactly.
+PERSONAL, UNSTEADY = (
+    tuple(key for key, one in of_kind(Config, Mark) if one is mark) for mark in Mark
 )
 # Redrawing a scene outside the model changes what the person does, not the radar or the person.
 REDRAWN = ("motion.", "timing.", "classes.")
 FALL = "motion.fall"
-# Numbers of `motion:` that every activity depends on.
-PLACE = ("motion.range_m", "motion.cross_range_m", "motion.angle_deg")
 # What a walk may overlap, by at most MAX_OVERLAP of its duration, as low down no legs are long
 # enough for a step; falls to the side not at all, as their feet are not planted.
 OVERLAPPED = {
@@ -74,31 +44,6 @@ OVERLAPPED = {
     "walking_to_falling": "fall_duration_s",
 }
 MAX_OVERLAP = 0.3
-# Numbers besides `uses` that people always depend on, whatever they do.
-OF_PEOPLE = (
-    *(key for key in PERSONAL if key.startswith("subject.") and key not in _BODY),
-    "motion.fidget_hz",
-    "motion.fidget_size",
-    "motion.idle_phase_s",
-)
-# What is not repeated exactly; 0 in nominal scenes.
-UNSTEADY = (
-    "motion.speed_variation",
-    "motion.stride_jitter",
-    "motion.width_jitter_m",
-    "motion.tempo_jitter",
-    "motion.size_jitter",
-    "motion.fidget_hz",
-    "motion.shuffle_hz",
-    "motion.step_m",
-    "motion.look_deg",
-    "motion.settle_size",
-    "motion.joint_lag",
-    "motion.kneel_s",
-    "motion.heels_deg",
-)
-
-T = TypeVar("T")
 Draw: TypeAlias = Callable[[str, Number], float]
 
 
@@ -146,7 +91,7 @@ def draw_scene(config: Config, activity: Activity, index: int, attempt: int = 0)
     fixed = _fixed(config, activity, draw)
     if isinstance(fixed.motion.fall, Falls):
         u = stream(config.seed, SCENE, activity.index, index, attempt, name=FALL).random()
-        fixed = _with(fixed, {FALL: fixed.motion.fall.drawn(u)})
+        fixed = changed(fixed, {FALL: fixed.motion.fall.drawn(u)})
     if config.files_of(activity) is not None:
         name = f"classes.{activity.slug}.file"
         u = stream(config.seed, SCENE, activity.index, index, attempt, name=name).random()
@@ -157,9 +102,9 @@ def draw_scene(config: Config, activity: Activity, index: int, attempt: int = 0)
 def nominal_scene(config: Config, activity: Activity) -> Scene:
     """The scene with every number at its middle, and nothing that people do not repeat."""
     fixed = _fixed(config, activity, lambda key, number: nominal(number))
-    fixed = _with(fixed, dict.fromkeys(UNSTEADY, 0.0))
+    fixed = changed(fixed, dict.fromkeys(UNSTEADY, 0.0))
     if isinstance(fixed.motion.fall, Falls):
-        fixed = _with(fixed, {FALL: fixed.motion.fall.drawn(0.5)})
+        fixed = changed(fixed, {FALL: fixed.motion.fall.drawn(0.5)})
     fixed = _with_file(fixed, activity, 0.5, None)
     return Scene(_with_possible_overlap(fixed, activity), activity, 0)
 
@@ -176,7 +121,7 @@ def _with_possible_overlap(config: Config, activity: Activity) -> Config:
     if key == "rise_duration_s" and timing.walk_start_s is not None:
         earliest = timing.rise_start_s + timing.rise_duration_s - most
         capped["timing.walk_start_s"] = max(timing.walk_start_s, earliest)
-    return _with(config, capped)
+    return changed(config, capped)
 
 
 def _with_file(config: Config, activity: Activity, u: float, subject: int | None) -> Config:
@@ -192,7 +137,7 @@ def _with_file(config: Config, activity: Activity, u: float, subject: int | None
     if subject is not None:
         files = files[subject :: config.split.subjects] or files
     drawn = files[min(int(u * len(files)), len(files) - 1)]
-    return _with(config, {f"classes.{activity.slug}.file": drawn})
+    return changed(config, {f"classes.{activity.slug}.file": drawn})
 
 
 def subject_of(config: Config, index: int) -> int | None:
@@ -212,7 +157,7 @@ def numbers(config: Config) -> list[tuple[str, Any]]:
         return number
 
     for key in SCENE_KEYS:
-        _each_number(_part(config, key), key, note)
+        each_number(at(config, key), key, note)
     return found
 
 
@@ -221,15 +166,8 @@ def number_at(scene: Scene, key: str) -> float:
 
     `motion.fall` is its place in FALLS.
     """
-    place: Any = scene.config
-    for name in _path(key):
-        if place is None:
-            return nan
-        if isinstance(place, tuple):
-            place = place[int(name)]
-        else:
-            place = place[name] if isinstance(place, dict) else getattr(place, name)
-    if place is None or not depends_on(scene.config, scene.activity, key):
+    place = at(scene.config, key)
+    if place is None or not scene.config.depends_on(scene.activity, key):
         return nan
     return float(FALLS.index(place)) if key == FALL else float(place)
 
@@ -241,38 +179,14 @@ def file_keys(config: Config) -> tuple[str, ...]:
     )
 
 
-@lru_cache(maxsize=1024)
-def _path(key: str) -> tuple[str, ...]:
-    return tuple(key.split("."))
-
-
 def scene_numbers(scene: Scene) -> dict[str, float]:
     """{dotted key: number} of all that a scene depends on, in the units of the keys.
 
     `motion.fall` is its place in FALLS.
     """
     keys = (*(key for key, _ in numbers(scene.config)), FALL, *file_keys(scene.config))
-    return {
-        key: number_at(scene, key) for key in keys if depends_on(scene.config, scene.activity, key)
-    }
-
-
-def depends_on(config: Config, activity: Activity, key: str) -> bool:
-    """Whether scenes of an activity depend on the number of this dotted key."""
-    model = config.motion.model
-    if key.startswith("receiver.noise_"):
-        return support(config.receiver.noise_corner_hz)[1] > 0
-    if key == "room.back_wall_reflection_db":
-        return config.room.back_wall_m is not None
-    if key.startswith("image.cfar."):
-        floor = key == "image.cfar.floor_db" and config.image.cfar.domain != "decibel"
-        return config.image.kind == "cfar" and not floor
-    if key.startswith("classes."):
-        return key.startswith(f"classes.{activity.slug}.")
-    if key in OF_PEOPLE:
-        from_model = activity.motion is None and config.files_of(activity) is None
-        return model == "human" and from_model
-    return not key.startswith(REDRAWN) or key in PLACE or key in activity.uses(model)
+    used = (key for key in keys if scene.config.depends_on(scene.activity, key))
+    return {key: number_at(scene, key) for key in used}
 
 
 class ByIdentity:
@@ -295,12 +209,12 @@ def _fixed_and_drawn(same: ByIdentity, activity: Activity) -> tuple[Config, dict
 
     def fix(key: str, number: Any) -> float:
         one = for_activity(number, activity)
-        if depends_on(config, activity, key) and not is_fixed(one):
+        if config.depends_on(activity, key) and not is_fixed(one):
             drawn[key] = one
         return nominal(one)
 
-    sections = {key: _each_number(_part(config, key), key, fix) for key in SCENE_KEYS}
-    return _with(config, sections | {"activities": (activity.slug,)}), drawn
+    sections = {key: each_number(at(config, key), key, fix) for key in SCENE_KEYS}
+    return changed(config, sections | {"activities": (activity.slug,)}), drawn
 
 
 def _fixed(config: Config, activity: Activity, draw: Draw) -> Config:
@@ -310,52 +224,4 @@ def _fixed(config: Config, activity: Activity, draw: Draw) -> Config:
     if fixed.subject.weight_kg is None:
         height: Any = values.get("subject.height_m", fixed.subject.height_m)
         values["subject.weight_kg"] = default_weight(height)
-    return _with(fixed, values)
-
-
-def _part(config: Section, key: str) -> Any:
-    """What stands under a dotted key of sections."""
-    place: Any = config
-    for name in key.split("."):
-        place = getattr(place, name)
-    return place
-
-
-def _with(value: T, parts: Mapping[str, Any]) -> T:
-    """A config, or part of one, with other values under some of the dotted keys inside it."""
-    inside = dict[str, dict[str, Any]]()
-    for key, part in parts.items():
-        name, _, rest = key.partition(".")
-        inside.setdefault(name, {})[rest] = part
-
-    def changed(name: str, old: Any) -> Any:
-        new = inside.get(name)
-        return old if new is None else new[""] if "" in new else _with(old, new)
-
-    found: Any
-    if isinstance(value, Section):
-        found = value.model_copy(update={n: changed(n, getattr(value, n)) for n in inside})
-    elif isinstance(value, dict):
-        found = {name: changed(name, old) for name, old in value.items()}
-    else:
-        assert isinstance(value, tuple)
-        found = tuple(changed(str(place), old) for place, old in enumerate(value))
-    return cast(T, found)
-
-
-def _each_number(value: Any, key: str, change: Callable[[str, Any], Any]) -> Any:
-    """A value of a config with change(dotted key, number) in place of every number."""
-    if value is None or isinstance(value, (int, str)):  # whole numbers are no quantities
-        return value
-    if isinstance(value, tuple):
-        return tuple(_each_number(one, f"{key}.{axis}", change) for axis, one in enumerate(value))
-    if isinstance(value, dict):
-        return {name: _each_number(one, f"{key}.{name}", change) for name, one in value.items()}
-    if isinstance(value, Section) and not isinstance(value, PerActivity):
-        fields = getattr(value, "NUMBERS", type(value).model_fields)
-        return value.model_copy(
-            update={
-                name: _each_number(getattr(value, name), f"{key}.{name}", change) for name in fields
-            }
-        )
-    return change(key, value)
+    return changed(fixed, values)

@@ -13,10 +13,9 @@ from pydantic import BaseModel
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.config import MAP_NAMES, Config
 from radhar_cli.config.checks import HUMAN_LIMITS
-from radhar_cli.config.schema import PerActivity
 
 Document = dict[str, Any]
-MAX_SECONDS = next(high for key, _, high in HUMAN_LIMITS if key == "duration_s")
+_, MAX_SECONDS = HUMAN_LIMITS["duration_s"]
 
 
 def dotted_keys(model: type[BaseModel] = Config, prefix: str = "") -> Iterator[str]:
@@ -31,7 +30,7 @@ def dotted_keys(model: type[BaseModel] = Config, prefix: str = "") -> Iterator[s
 
 def is_number(model: type[BaseModel]) -> bool:
     """Whether this is a form of a number of a scene, and no section."""
-    return model.__module__.endswith(".number") or issubclass(model, PerActivity)
+    return model.__module__.endswith(".number")
 
 
 KEYS = tuple(dict.fromkeys(dotted_keys()))
@@ -243,7 +242,7 @@ class Drawer:
     def people(self, document: Document) -> None:
         """Make the document one of people: what they use within what people do."""
         sections: dict[str, Document] = {"subject": {}, "motion": {"model": "human"}, "timing": {}}
-        for key, low, high in HUMAN_LIMITS:
+        for key, (low, high) in HUMAN_LIMITS.items():
             section, _, name = key.rpartition(".")
             if section:
                 draw = lambda low=low, high=high: float(self.rng.uniform(low, high))  # noqa: E731
@@ -252,7 +251,7 @@ class Drawer:
         self.maybe(sections["motion"], 0.4, "fall", lambda: fall)
         for section, numbers in sections.items():
             document[section] = document.get(section, {}) | numbers
-        for key, _, _ in HUMAN_LIMITS:  # what was drawn for the paper's model is no people's
+        for key in HUMAN_LIMITS:  # what was drawn for the paper's model is no people's
             section, _, name = key.rpartition(".")
             if section and name not in sections[section]:
                 document[section].pop(name, None)

@@ -12,10 +12,7 @@ from radhar_cli.activity import ACTIVITIES, activity_named
 from radhar_cli.config import Config
 from radhar_cli.config.number import is_fixed, nominal, support
 from radhar_cli.scene import (
-    OF_PEOPLE,
     PERSONAL,
-    PLACE,
-    depends_on,
     draw_scene,
     nominal_scene,
     numbers,
@@ -67,7 +64,7 @@ def variable_keys(config: Config) -> set[str]:
     return {
         key
         for key, number in numbers(config)
-        if depends_on(config, FALLING, key) and not is_fixed(number)
+        if config.depends_on(FALLING, key) and not is_fixed(number)
     }
 
 
@@ -143,7 +140,7 @@ def test_draws_lie_within_their_support(seed: int, activity: Any, index: int) ->
     for key, number in numbers(config):
         low, high = support(number)
         assert low <= drawn_numbers[key] <= high, key
-        if is_fixed(number) or not depends_on(config, activity, key):
+        if is_fixed(number) or not config.depends_on(activity, key):
             assert drawn_numbers[key] == nominal(number), key
 
 
@@ -160,22 +157,22 @@ def test_draws_follow_their_distribution() -> None:
     assert abs(together[0, 1]) < 5 / np.sqrt(1000)
 
 
-@pytest.mark.parametrize("model", ["paper", "human"])
-def test_a_scene_holds_what_its_activity_uses(model: str) -> None:
-    config = Config(motion={"model": model}, timing={"walk_start_s": 2.0, "walk_begin_s": 0.5})
-    everybody = (*PLACE, *(key for key in OF_PEOPLE if model == "human"))
-    for activity in ACTIVITIES:
-        keys = set(scene_numbers(draw_scene(config, activity, 0)))
-        assert {k for k in keys if k.startswith("timing.")} == {
-            k for k in activity.uses(model) if k.startswith("timing.")
-        }
-        assert {k for k in keys if k.startswith("motion.")} == {
-            k for k in (*everybody, *activity.uses(model)) if k.startswith("motion.")
-        }
-        assert not any(k.startswith("wall.") for k in keys)
-    assert {"wall.size_m.0", "wall.eps_r"} <= set(
-        scene_numbers(draw_scene(Config(wall={}), WALKING, 0))
-    )
+@pytest.mark.parametrize(
+    ("slug", "paper", "human"),
+    [
+        ("stationary", set(), {"motion.shuffle_hz"}),
+        ("kicking", {"motion.thigh_deg"}, {"motion.kick_hz", "motion.strike_scale"}),
+        ("sitting_down", {"timing.seat_start_s"}, {"motion.look_deg", "timing.seat_start_s"}),
+        ("walking_to_falling", {"timing.blend_s"}, {"motion.kneel_s", "timing.overlap_s"}),
+    ],
+)
+def test_a_scene_holds_what_its_activity_uses(slug: str, paper: set[str], human: set[str]) -> None:
+    for model, some, others in (("paper", paper, human - paper), ("human", human, paper - human)):
+        config = Config(motion={"model": model}, wall={})
+        keys = set(scene_numbers(draw_scene(config, activity_named(slug), 0)))
+        assert some | {"motion.range_m", "motion.angle_deg", "wall.eps_r"} <= keys
+        assert not others & keys
+        assert ("motion.fidget_hz" in keys) == ("subject.pulse_hz" in keys) == (model == "human")
 
 
 def test_numbers_may_differ_by_activity() -> None:

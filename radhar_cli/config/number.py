@@ -4,7 +4,7 @@ Every form is read through its quantile function, so one uniform variate per fie
 draw and two distributions of the same field stay comparable sample by sample.
 """
 
-import math
+from dataclasses import dataclass
 from typing import Annotated, Any, TypeAlias
 
 from pydantic import (
@@ -13,10 +13,11 @@ from pydantic import (
     ConfigDict,
     Discriminator,
     Field,
+    GetCoreSchemaHandler,
     Tag,
     model_validator,
 )
-from pydantic_core import PydanticCustomError
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 MAX_NUMBER = 1e30
 NORMAL_CUT = 6.0
@@ -33,6 +34,14 @@ Real = Annotated[float, Field(strict=True, allow_inf_nan=False), AfterValidator(
 
 class _Form(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+    @property
+    def support(self) -> tuple[float, float]:
+        raise NotImplementedError
+
+    def quantile(self, u: float) -> float:
+        low, high = self.support
+        return min(low + (high - low) * u, high)
 
 
 class Uniform(_Form):
@@ -53,10 +62,6 @@ class Uniform(_Form):
     @property
     def nominal(self) -> float:
         return 0.5 * (self.uniform[0] + self.uniform[1])
-
-    def quantile(self, u: float) -> float:
-        low, high = self.uniform
-        return min(low + (high - low) * u, high)
 
 
 class Normal(_Form):
@@ -155,9 +160,17 @@ class Vary(_Form):
     def nominal(self) -> float:
         return self.vary[0]
 
-    def quantile(self, u: float) -> float:
-        low, high = self.support
-        return min(low + (high - low) * u, high)
+
+def uniform(low: float, high: float) -> Uniform:
+    return Uniform(uniform=(low, high))
+
+
+def normal(mean: float, sd: float, low: float, high: float) -> Normal:
+    return Normal(normal=(mean, sd), min=low, max=high)
+
+
+def vary(middle: float, fraction: float) -> Vary:
+    return Vary(vary=(middle, fraction))
 
 
 FORMS = ("uniform", "normal", "choice", "vary")
@@ -214,28 +227,43 @@ def quantile(number: Number, u: float) -> float:
     return float(number) if isinstance(number, (int, float)) else number.quantile(u)
 
 
-def _bound(low: float, high: float, wording: str, open_low: bool) -> AfterValidator:
-    def check(number: Number) -> Number:
+@dataclass(frozen=True)
+class Bounds:
+    """Annotation of a Number, or null, whose every draw shall lie from low to high."""
+
+    low: float
+    high: float
+    unit: str = ""
+    wording: str = ""
+    open_low: bool = False
+
+    def __get_pydantic_core_schema__(
+        self, source: object, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        return core_schema.no_info_after_validator_function(self, handler(source))
+
+    def __call__(self, number: Number | None) -> Number | None:
+        if number is None:
+            return None
         least, most = support(number)
-        if least < low or most > high or (open_low and least <= low) or math.isnan(least):
+        if least < self.low or most > self.high or (self.open_low and least <= self.low):
+            wording = self.wording or f"from {self.low:g} to {self.high:g} {self.unit}".rstrip()
             reach = "" if least == most else f" (this one reaches from {least:g} to {most:g})"
             raise PydanticCustomError("bounds", "{what}", {"what": f"should be {wording}{reach}"})
         return number
 
-    return AfterValidator(check)
+
+def within(low: float, high: float, unit: str = "") -> Bounds:
+    """Bounds of a number's draws, with the unit that messages and docs/limits.md give."""
+    return Bounds(low, high, unit)
 
 
-def within(low: float, high: float, unit: str = "") -> AfterValidator:
-    """Validator of a Number whose every draw shall lie from low to high (docs/limits.md)."""
-    return _bound(low, high, f"from {low:g} to {high:g} {unit}".rstrip(), open_low=False)
-
-
-Positive: TypeAlias = Annotated[Number, _bound(0, MAX_NUMBER, "above 0", open_low=True)]
-NotNegative: TypeAlias = Annotated[Number, _bound(0, MAX_NUMBER, "0 or more", open_low=False)]
-AtLeastOne: TypeAlias = Annotated[Number, _bound(1, MAX_NUMBER, "1 or more", open_low=False)]
-Angle: TypeAlias = Annotated[Number, _bound(-360, 360, "from -360 to 360 degrees", open_low=False)]
-Decibel: TypeAlias = Annotated[Number, _bound(-300, 300, "from -300 to 300 dB", open_low=False)]
+Positive: TypeAlias = Annotated[Number, Bounds(0, MAX_NUMBER, wording="above 0", open_low=True)]
+NotNegative: TypeAlias = Annotated[Number, Bounds(0, MAX_NUMBER, wording="0 or more")]
+AtLeastOne: TypeAlias = Annotated[Number, Bounds(1, MAX_NUMBER, wording="1 or more")]
+Angle: TypeAlias = Annotated[Number, within(-360, 360, "degrees")]
+Decibel: TypeAlias = Annotated[Number, within(-300, 300, "dB")]
 Coordinate: TypeAlias = Annotated[
-    Number, _bound(-1e6, 1e6, "within 1e6 m of the origin", open_low=False)
+    Number, Bounds(-1e6, 1e6, "m", wording="within 1e6 m of the origin")
 ]
 Vector = tuple[Coordinate, Coordinate, Coordinate]

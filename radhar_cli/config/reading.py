@@ -226,7 +226,7 @@ def _found(kind: type[BaseModel], error: ValidationError, document: Any) -> Iter
             continue
         names = _document_path(item["loc"], document)
         key = ".".join(str(name) for name in names)
-        if item["type"] == "extra_forbidden":
+        if item["type"] in ("extra_forbidden", "unexpected_keyword_argument"):
             yield Problem(key, item["input"], _unknown(kind, names))
         elif names[:1] == ["maps"] and (absent := ABSENT.get(str(item["input"]))):
             yield Problem(key, item["input"], absent)

@@ -6,26 +6,27 @@ Units stand in the keys. Every number of a scene (`SCENE_KEYS`) may be fixed or 
 import ast
 import inspect
 from collections.abc import Mapping
-from dataclasses import replace
-from functools import cached_property
+from dataclasses import dataclass, replace
+from functools import cache, cached_property
 from itertools import pairwise
 from math import floor, sqrt
 from pathlib import PurePosixPath
 from textwrap import dedent
-from typing import Annotated, Any, ClassVar, Generic, Literal, TypeAlias, TypeVar
+from typing import Annotated, Any, ClassVar, Literal, TypeAlias, TypeVar
 
 from pydantic import (
     BaseModel,
     ConfigDict,
     Discriminator,
     Field,
+    GetCoreSchemaHandler,
     GetJsonSchemaHandler,
     Tag,
     ValidationInfo,
     field_validator,
     model_validator,
 )
-from pydantic_core import CoreSchema, PydanticCustomError
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from radhar_cli.activity import (
     ACTIVITIES,
@@ -35,25 +36,34 @@ from radhar_cli.activity import (
     Activity,
     activity_named,
     is_new_slug,
-    sequence_uses,
 )
-from radhar_cli.config.checks import MIN_WINDOW, problems
+from radhar_cli.config.annotations import (
+    PERSONAL,
+    UNSTEADY,
+    ByModel,
+    Limits,
+    Needs,
+    OnlyMaps,
+    Paper,
+    People,
+    of_kind,
+)
 from radhar_cli.config.number import (
     Angle,
     AtLeastOne,
     Choice,
     Coordinate,
     Decibel,
-    Normal,
     NotNegative,
     Number,
     Positive,
     Real,
-    Uniform,
-    Vary,
     Vector,
     nominal,
+    normal,
     support,
+    uniform,
+    vary,
     within,
 )
 from radhar_cli.errors import did_you_mean
@@ -78,10 +88,7 @@ class Section(BaseModel):
     @classmethod
     def descriptions(cls) -> dict[str, str]:
         """What stands under each field in the source; Pydantic would read it at every start."""
-        try:
-            body = ast.parse(dedent(inspect.getsource(cls))).body[0]
-        except OSError:  # PerActivity[...] is written nowhere
-            return {}
+        body = ast.parse(dedent(inspect.getsource(cls))).body[0]
         assert isinstance(body, ast.ClassDef)
         return {
             ast.unparse(field.target): inspect.cleandoc(text.value.value)
@@ -104,15 +111,83 @@ class Section(BaseModel):
         return document
 
 
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class PerActivity:
+    """``{per_activity: {default: 2.0, walking: 1.0, S9: 1.0}}``: a number by activity.
+
+    Names that are none of the twelve's are a config's own classes, which `Config` knows.
+    """
+
+    per_activity: dict[str, Any]
+
+
+class _Either:
+    """Annotation of a number that may also differ by activity."""
+
+    def __get_pydantic_core_schema__(
+        self, source: object, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        one = handler(source)
+        numbers = core_schema.no_info_after_validator_function(
+            _by_slug, core_schema.dict_schema(core_schema.str_schema(), one)
+        )
+        fields = core_schema.dataclass_args_schema(
+            "PerActivity",
+            [core_schema.dataclass_field("per_activity", numbers)],
+        )
+        strict = core_schema.CoreConfig(extra_fields_behavior="forbid")
+        many = core_schema.dataclass_schema(PerActivity, fields, ["per_activity"], config=strict)
+        return core_schema.tagged_union_schema({"same": one, "per_activity": many}, _kind)
+
+
+def _kind(value: Any) -> str:
+    per_activity = isinstance(value, PerActivity) or (
+        isinstance(value, dict) and "per_activity" in value
+    )
+    return "per_activity" if per_activity else "same"
+
+
+def _by_slug(value: dict[str, Any]) -> dict[str, Any]:
+    numbers = dict[str, Any]()
+    for name, number in value.items():
+        slug = TWELVE.get(name.strip().lower(), name)
+        if slug in numbers:
+            raise PydanticCustomError("activity", "should name {slug} once", {"slug": slug})
+        numbers[slug] = number
+    if DEFAULT not in numbers:
+        raise PydanticCustomError(
+            "activity", "should have a 'default' beside the activities it names"
+        )
+    return numbers
+
+
+By: TypeAlias = Annotated[T, _Either()]
+
+
+def for_activity(value: Any, activity: Activity) -> Any:
+    """Return the number that holds for one activity."""
+    if isinstance(value, PerActivity):
+        numbers = value.per_activity
+        return numbers[activity.slug if activity.slug in numbers else DEFAULT]
+    return value
+
+
 class RadarConfig(Section):
     """Waveform, antenna positions and gains; every number may be drawn."""
 
     carrier_hz: Annotated[Positive, within(1e6, 1e13, "Hz")] = 77e9
     """At the start of the chirp."""
-    bandwidth_hz: Annotated[Positive, within(1e3, 1e12, "Hz")] | None = None
-    """Swept by a chirp; null is the model's: 1e9 of human, 4e9 of paper and file."""
-    prf_hz: Annotated[Positive, within(1e-3, 1e7, "Hz")] | None = None
-    """Chirps per second; null is the model's: 10000 of human, 5000 of paper and file."""
+    bandwidth_hz: Annotated[
+        Positive | None, within(1e3, 1e12, "Hz"), ByModel(human=1e9, paper=4e9, file=4e9)
+    ] = None
+    """Swept by a chirp; with the default chirp 1 and 4 GHz have a half-band of 30 and 7.5 m."""
+    prf_hz: Annotated[
+        Positive | None, within(1e-3, 1e7, "Hz"), ByModel(human=1e4, paper=5e3, file=5e3)
+    ] = None
+    """Chirps per second; 10 kHz is +-9.7 m/s at 77 GHz, and a kick's foot reaches 7 to 9."""
     adc_rate_hz: Annotated[Positive, within(1e-3, 1e13, "Hz")] = 10e6
     """Samples per second within a chirp."""
     chirp_s: Annotated[Positive, within(1e-12, 1e4, "s")] = 40e-6
@@ -129,124 +204,36 @@ class RadarConfig(Section):
     """Keep the term pi K tau^2."""
 
 
-T = TypeVar("T")
-
-
-class PerActivity(Section, Generic[T]):
-    """``{per_activity: {default: 2.0, walking: 1.0, S9: 1.0}}``: a number by activity.
-
-    Names that are none of the twelve's are a config's own classes, which `Config` knows.
-    """
-
-    per_activity: dict[str, T]
-
-    @classmethod
-    def model_parametrized_name(cls, params: tuple[Any, ...]) -> str:
-        """Such as PerActivity[Speed], by which pickle finds the class again in any process.
-
-        Raises:
-            TypeError: the number has no name in this module before the class is made of it.
-        """
-        for name, kind in globals().items():
-            if kind is params[0]:
-                return f"{cls.__name__}[{name}]"
-        raise TypeError(f"{params[0]}: should have a name in {__name__}")
-
-    @field_validator("per_activity")
-    @classmethod
-    def _by_slug(cls, value: dict[str, T]) -> dict[str, T]:
-        numbers: dict[str, T] = {}
-        for name, number in value.items():
-            slug = TWELVE.get(name.strip().lower(), name)
-            if slug in numbers:
-                raise PydanticCustomError("activity", "should name {slug} once", {"slug": slug})
-            numbers[slug] = number
-        if DEFAULT not in numbers:
-            raise PydanticCustomError(
-                "activity", "should have a 'default' beside the activities it names"
-            )
-        return numbers
-
-
-def _kind(value: Any) -> str:
-    per_activity = isinstance(value, PerActivity) or (
-        isinstance(value, dict) and "per_activity" in value
-    )
-    return "per_activity" if per_activity else "same"
-
-
-# One alias a constraint: pydantic cannot substitute a type variable inside an Annotated union.
-_Either = Discriminator(_kind)
-Speed = Annotated[NotNegative, within(0, 1e4, "m/s")]
-Frequency = Annotated[NotNegative, within(0, 1e3, "Hz")]
-Seconds = Annotated[NotNegative, within(0, 1e7, "s")]
-SpeedBy: TypeAlias = Annotated[
-    Annotated[Speed, Tag("same")] | Annotated[PerActivity[Speed], Tag("per_activity")], _Either
-]
-FrequencyBy: TypeAlias = Annotated[
-    Annotated[Frequency, Tag("same")] | Annotated[PerActivity[Frequency], Tag("per_activity")],
-    _Either,
-]
-SecondsBy: TypeAlias = Annotated[
-    Annotated[Seconds, Tag("same")] | Annotated[PerActivity[Seconds], Tag("per_activity")], _Either
-]
-AngleBy: TypeAlias = Annotated[
-    Annotated[Angle, Tag("same")] | Annotated[PerActivity[Angle], Tag("per_activity")], _Either
-]
-CoordinateBy: TypeAlias = Annotated[
-    Annotated[Coordinate, Tag("same")] | Annotated[PerActivity[Coordinate], Tag("per_activity")],
-    _Either,
-]
-
-
-def for_activity(value: T | PerActivity[T], activity: Activity) -> T:
-    """Return the number that holds for one activity."""
-    if isinstance(value, PerActivity):
-        numbers: dict[str, T] = value.per_activity
-        return numbers[activity.slug if activity.slug in numbers else DEFAULT]
-    return value
-
-
-Samples = Annotated[int, Field(ge=1, le=10_000_000, strict=True)]
-SamplesBy: TypeAlias = Annotated[
-    Annotated[Samples, Tag("same")] | Annotated[PerActivity[Samples], Tag("per_activity")], _Either
-]
-
-# Under `motion.model: human` numbers have narrower limits yet: checks.HUMAN_LIMITS.
 Metres = Annotated[NotNegative, within(0, 1, "m")]
 Rate = Annotated[NotNegative, within(0, 20, "Hz")]
 Ratio = Annotated[NotNegative, within(0, 10)]
 Signed = Annotated[Number, within(-1, 1)]
-RatioBy: TypeAlias = Annotated[
-    Annotated[Ratio, Tag("same")] | Annotated[PerActivity[Ratio], Tag("per_activity")], _Either
-]
-SignedBy: TypeAlias = Annotated[
-    Annotated[Signed, Tag("same")] | Annotated[PerActivity[Signed], Tag("per_activity")], _Either
-]
+Speed = Annotated[NotNegative, within(0, 1e4, "m/s")]
+Frequency = Annotated[NotNegative, within(0, 1e3, "Hz")]
+Seconds = Annotated[NotNegative, within(0, 1e7, "s")]
+Samples = Annotated[int, Field(ge=1, le=10_000_000, strict=True)]
 
 
 class SubjectConfig(Section):
-    """The person; without a weight it is 26 kg/m^2 times the height squared.
+    """The person: body; of the human model also sway, breathing (chest) and pulse (heart)."""
 
-    Of the human model alone, standard deviations of the sway, amplitude and rate of breathing
-    (chest) and of the pulse (heart).
-    """
-
-    height_m: Annotated[Positive, within(0.1, 10, "m")] = Uniform(uniform=(1.5, 1.9))
+    height_m: Annotated[Positive, within(0.1, 10, "m"), Limits(1.5, 2.1), PERSONAL] = uniform(
+        1.5, 1.9
+    )
     """Stature."""
-    weight_kg: Annotated[Positive, within(1e-3, 1e6, "kg")] | None = None
+    weight_kg: Annotated[Positive | None, within(1e-3, 1e6, "kg"), PERSONAL] = None
     """null is 26 kg/m^2 times the height squared."""
-    sway_ahead_m: Metres = Uniform(uniform=(0.002, 0.006))
+    sway_ahead_m: Annotated[Metres, People("", 0, 0.01), PERSONAL] = uniform(0.002, 0.006)
     """Standard deviation of a standing person's sway."""
-    sway_aside_m: Metres = Uniform(uniform=(0.0015, 0.0035))
+    sway_aside_m: Annotated[Metres, People("", 0, 0.01), PERSONAL] = uniform(0.0015, 0.0035)
     """The same to the side."""
-    breathing_hz: Rate = Normal(normal=(0.25, 0.04), min=0.15, max=0.4)
+    breathing_hz: Annotated[Rate, People("", 0, 2), PERSONAL] = normal(0.25, 0.04, 0.15, 0.4)
     """Rate of breathing."""
-    chest_m: Metres = Uniform(uniform=(0.002, 0.006))
+    chest_m: Annotated[Metres, People("", 0, 0.01), PERSONAL] = uniform(0.002, 0.006)
     """Amplitude of breathing."""
-    pulse_hz: Rate = Normal(normal=(1.15, 0.12), min=0.8, max=1.8)
+    pulse_hz: Annotated[Rate, People("", 0, 4), PERSONAL] = normal(1.15, 0.12, 0.8, 1.8)
     """Heart rate."""
-    heart_m: Metres = Uniform(uniform=(0.0001, 0.0004))
+    heart_m: Annotated[Metres, People("", 0, 0.002), PERSONAL] = uniform(0.0001, 0.0004)
     """Amplitude of the pulse."""
 
 
@@ -265,155 +252,247 @@ class Falls(Section):
         return ordered[min(int(u * len(ordered)), len(ordered) - 1)]
 
 
-class MotionConfig(Section):
-    """Where people stand, where they head and how they move.
+# People face the radar, and in 6 s walk 8 m towards it: they start far enough away, all within its
+# half-band of 30 m. Classes of one's own may walk all the time.
+_HUMAN_RANGE = PerActivity(
+    per_activity={
+        DEFAULT: uniform(9.0, 12.0),
+        **{
+            a.slug: uniform(5.0, 8.0) if a.walks else uniform(2.0, 5.0)
+            for a in ACTIVITIES
+            if a.slug != "walking"
+        },
+    }
+)
+_FACING = uniform(150.0, 210.0)
+_GAIT = "S8 S9 S10 S11 S12"
 
-    range_m to angle_deg: all. speed_mps: not of files. gait_hz to turn_deg: the paper's. turn_deg
-    on: the human model's. What another model alone knows is ignored; what is null takes the value
-    of the model (MODEL_DEFAULTS, docs/motion.md). folder: paths of files are relative to it; it is
-    not part of a data set's identity.
+
+class MotionConfig(Section):
+    """Where people stand, where they head and how they move, under each model of motion.
+
+    What another model alone knows is ignored; what is null takes the value of the model.
     """
 
     model: Literal["human", "paper", "file"] = "human"
-    """Of people, of the paper, or motion files for every class."""
+    """Of people, of the paper, or motion files for every class; see motion.md."""
     folder: Annotated[str | None, Field(exclude=True, max_length=1000)] = None
     """Folder that paths of motion files are relative to; not part of a data set's identity."""
-    range_m: CoordinateBy | None = None
-    """Where people are: the torso (paper), the feet at first (human); null is the model's."""
-    cross_range_m: CoordinateBy = 0.0
+    range_m: Annotated[
+        By[Coordinate] | None,
+        ByModel(human=_HUMAN_RANGE, paper=uniform(1.0, 3.0), file=uniform(2.0, 4.0)),
+    ] = None
+    """Where people are: the torso (paper), the feet at first (human)."""
+    cross_range_m: By[Coordinate] = 0.0
     """The same across."""
-    angle_deg: AngleBy | None = None
-    """Heading; 0 faces away from the radar, 180 faces it; null is the model's."""
-    speed_mps: SpeedBy | None = None
-    """Of walking; null is the model's."""
-    gait_hz: FrequencyBy = 1.0
-    """paper: strides per second."""
-    thigh_deg: AngleBy = Vary(vary=(30.0, 0.2))
-    """paper: amplitude."""
-    calf_deg: AngleBy = Vary(vary=(45.0, 0.2))
-    """paper: amplitude."""
-    arm_deg: AngleBy = Vary(vary=(35.0, 0.2))
-    """paper: amplitude."""
-    turn_deg: AngleBy = Vary(vary=(45.0, 0.2))
+    angle_deg: Annotated[
+        By[Angle] | None, ByModel(human=_FACING, paper=uniform(-30.0, 30.0), file=_FACING)
+    ] = None
+    """Heading; 0 faces away from the radar, 180 faces it."""
+    speed_mps: Annotated[
+        By[Speed] | None,
+        People("walking", 0.3, 2.8),
+        Paper(_GAIT),
+        PERSONAL,
+        ByModel(human=normal(1.3, 0.18, 0.7, 2.0), paper=1.5),
+    ] = None
+    """Of walking."""
+    gait_hz: Annotated[By[Frequency], Paper(f"S2 S3 S4 S7 {_GAIT}"), PERSONAL] = 1.0
+    """Strides per second."""
+    thigh_deg: Annotated[By[Angle], Paper(f"S3 {_GAIT}"), PERSONAL] = vary(30.0, 0.2)
+    """Amplitude."""
+    calf_deg: Annotated[By[Angle], Paper(f"S2 S3 {_GAIT}"), PERSONAL] = vary(45.0, 0.2)
+    """Amplitude."""
+    arm_deg: Annotated[By[Angle], Paper(f"S2 {_GAIT}"), PERSONAL] = vary(35.0, 0.2)
+    """Amplitude."""
+    turn_deg: Annotated[By[Angle], People("body_rotating", -90, 90), Paper("S7"), PERSONAL] = vary(
+        45.0, 0.2
+    )
     """How far S7 turns to each side."""
-    rotation_hz: FrequencyBy = Vary(vary=(0.45, 0.2))
-    """human: turns to both sides per second."""
-    period_scale: RatioBy = Normal(normal=(0.95, 0.04), min=0.85, max=1.05)
+    rotation_hz: Annotated[By[Frequency], People("body_rotating", 0, 1)] = vary(0.45, 0.2)
+    """Turns to both sides per second."""
+    period_scale: Annotated[By[Ratio], People("walking", 0.85, 1.05), PERSONAL] = normal(
+        0.95, 0.04, 0.85, 1.05
+    )
     """Stride time relative to Boulic and Thalmann's."""
-    cycle_phase: SignedBy = Uniform(uniform=(-0.5, 0.5))
-    """Where in their cycle steady walks, punches, kicks and turns are at 0 s."""
-    arm_swing: RatioBy = Uniform(uniform=(0.6, 1.3))
+    cycle_phase: Annotated[By[Signed], People("punching kicking body_rotating walking", -1, 1)] = (
+        uniform(-0.5, 0.5)
+    )
+    """Initial phase of steady walks, punches, kicks and turns, in cycles."""
+    arm_swing: Annotated[By[Ratio], People("walking", 0, 2), PERSONAL] = uniform(0.6, 1.3)
     """Relative to Boulic and Thalmann's."""
-    trunk_pitch_deg: AngleBy = Normal(normal=(3.0, 2.0), min=-2.0, max=8.0)
+    trunk_pitch_deg: Annotated[By[Angle], People("walking", -5, 15), PERSONAL] = normal(
+        3.0, 2.0, -2.0, 8.0
+    )
     """Forward pitch of a walker's trunk."""
-    step_width: RatioBy = Normal(normal=(0.063, 0.011), min=0.03, max=0.1)
-    """Of a walker, relative to the stature."""
-    step_asymmetry: SignedBy = Normal(normal=(0.0, 0.02), min=-0.05, max=0.05)
+    step_width: Annotated[By[Ratio], People("walking", 0.02, 0.1), PERSONAL] = normal(
+        0.063, 0.011, 0.03, 0.1
+    )
+    """Between a walker's feet, relative to the stature."""
+    step_asymmetry: Annotated[By[Signed], People("walking", -0.05, 0.05), PERSONAL] = normal(
+        0.0, 0.02, -0.05, 0.05
+    )
     """Of left relative to right steps."""
-    speed_ripple: RatioBy = Normal(normal=(0.125, 0.015), min=0.09, max=0.17)
+    speed_ripple: Annotated[By[Ratio], People("walking", 0, 0.2), PERSONAL] = normal(
+        0.125, 0.015, 0.09, 0.17
+    )
     """Amplitude of the hip's speed within each step, relative to the mean speed."""
-    speed_ripple_asymmetry: SignedBy = Normal(normal=(0.0, 0.05), min=-0.1, max=0.1)
-    """Of the right step's surge relative to the left one's."""
-    speed_variation: RatioBy = Uniform(uniform=(0.0, 0.06))
+    speed_ripple_asymmetry: Annotated[By[Signed], People("walking", -0.1, 0.1), PERSONAL] = normal(
+        0.0, 0.05, -0.1, 0.1
+    )
+    """Of the right step's ripple relative to the left one's."""
+    speed_variation: Annotated[By[Ratio], People("walking", 0, 0.06), UNSTEADY] = uniform(0.0, 0.06)
     """Standard deviation of the speed over time, relative to the speed."""
-    stride_jitter: RatioBy = Uniform(uniform=(0.0, 0.03))
+    stride_jitter: Annotated[By[Ratio], People("walking", 0, 0.03), UNSTEADY] = uniform(0.0, 0.03)
     """Standard deviation of the stride time, relative to it."""
-    width_jitter_m: RatioBy = Uniform(uniform=(0.0, 0.02))
+    width_jitter_m: Annotated[By[Ratio], People("walking", 0, 0.02), UNSTEADY] = uniform(0.0, 0.02)
     """Standard deviation of half the step width from stride to stride, m."""
-    lane_m: CoordinateBy = 0.0
-    """Walkers turn round whenever they have gone so far; 0 is never."""
-    lane_start: RatioBy = Uniform(uniform=(0.0, 1.0))
+    lane_m: Annotated[By[Coordinate], People("walking", 0, 1000)] = 0.0
+    """Distance after which walkers turn round, every time again; 0 is never."""
+    lane_start: Annotated[By[Ratio], People("walking", 0, 1)] = uniform(0.0, 1.0)
     """Share of the first lane that lies behind them at 0 s."""
-    speed_up: RatioBy = 0.6
+    speed_up: Annotated[By[Ratio], People("walking", 0.4, 2)] = 0.6
     """Strides in which a walker gains speed from rest."""
-    punch_hz: FrequencyBy = Vary(vary=(0.7, 0.15))
+    punch_hz: Annotated[By[Frequency], People("punching", 0.05, 1.1)] = vary(0.7, 0.15)
     """Pairs of punches, right and left, per second."""
-    kick_hz: FrequencyBy = Vary(vary=(0.45, 0.1))
+    kick_hz: Annotated[By[Frequency], People("kicking", 0.05, 0.6)] = vary(0.45, 0.1)
     """Kicks per second."""
-    strike_scale: RatioBy = Normal(normal=(1.0, 0.12), min=0.8, max=1.25)
+    strike_scale: Annotated[By[Ratio], People("punching kicking", 0.8, 1.25), PERSONAL] = normal(
+        1.0, 0.12, 0.8, 1.25
+    )
     """Duration of a punch or kick, relative to the usual one."""
-    tempo_jitter: RatioBy = Uniform(uniform=(0.0, 0.1))
-    """Relative standard deviation of the time from one punch or kick to the next."""
-    size_jitter: RatioBy = Uniform(uniform=(0.0, 0.1))
-    """Relative standard deviation of the size from one punch or kick to the next."""
-    bend_deg: AngleBy = Normal(normal=(72.0, 5.0), min=60.0, max=85.0)
-    """S4: pitch of the trunk."""
-    dwell_s: SecondsBy = Uniform(uniform=(0.2, 0.6))
-    """S4: time at the floor."""
-    rise_overlap: RatioBy = 0.0
-    """S4: share of the way down before whose end people come up."""
-    seat_height: RatioBy = Normal(normal=(0.285, 0.015), min=0.25, max=0.32)
+    tempo_jitter: Annotated[
+        By[Ratio], People("punching kicking body_rotating", 0, 0.2), UNSTEADY
+    ] = uniform(0.0, 0.1)
+    """Relative standard deviation of the time from one punch, kick or turn to the next."""
+    size_jitter: Annotated[
+        By[Ratio], People("punching kicking body_rotating", 0, 0.15), UNSTEADY
+    ] = uniform(0.0, 0.1)
+    """Relative standard deviation of the size from one punch, kick or turn to the next."""
+    bend_deg: Annotated[By[Angle], People("grabbing", 30, 85)] = normal(72.0, 5.0, 60.0, 85.0)
+    """Pitch of the trunk."""
+    dwell_s: Annotated[By[Seconds], People("grabbing", 0, 60)] = uniform(0.2, 0.6)
+    """Time at the floor."""
+    rise_overlap: Annotated[By[Ratio], People("grabbing", 0, 0.6)] = 0.0
+    """Fraction of the descent overlapped by the rise."""
+    seat_height: Annotated[By[Ratio], People("sitting_down standing_up", 0.24, 0.33)] = normal(
+        0.285, 0.015, 0.25, 0.32
+    )
     """Height of the seated hip, relative to the stature."""
-    lean_deg: AngleBy = Normal(normal=(42.0, 8.0), min=25.0, max=58.0)
+    lean_deg: Annotated[By[Angle], People("sitting_down standing_up", 0, 60), PERSONAL] = normal(
+        42.0, 8.0, 25.0, 58.0
+    )
     """Trunk ahead while rising."""
-    recline_deg: AngleBy = 0.0
+    recline_deg: Annotated[By[Angle], People("sitting_down standing_up", -10, 45)] = 0.0
     """Trunk backwards in the seat."""
-    hands_on_lap: RatioBy = 1.0
-    """How far the hands of who sits are on the lap (1); 0 is beside the seat."""
-    recline_from: RatioBy = 0.7
-    """S5: share of the duration from which on the trunk leans back."""
-    squat: SignedBy = Uniform(uniform=(-1.0, 1.0))
-    """S4: from over straight legs (-1) to deep in the knees (1)."""
-    reach_deg: AngleBy = 12.0
-    """S4: of the right arm ahead of the vertical."""
-    free_arm: SignedBy = 0.55
-    """S4: what the left arm does of what the right one does; below 0 it swings back."""
-    joint_lag: RatioBy = 0.0
-    """S4 to S6: share of the movement by which some joints lead and others lag."""
-    step_m: RatioBy = Uniform(uniform=(0.0, 0.5))
+    hands_on_lap: Annotated[By[Ratio], People("sitting_down standing_up", 0, 1)] = 1.0
+    """0 is beside the seat, 1 on the lap."""
+    recline_from: Annotated[By[Ratio], People("sitting_down", 0, 1)] = 0.7
+    """Share of the duration from which on the trunk leans back."""
+    squat: Annotated[By[Signed], People("grabbing", -1, 1)] = uniform(-1.0, 1.0)
+    """From over straight legs (-1) to deep in the knees (1)."""
+    reach_deg: Annotated[By[Angle], People("grabbing", -10, 60)] = 12.0
+    """Of the right arm ahead of the vertical."""
+    free_arm: Annotated[By[Signed], People("grabbing", -0.5, 1)] = 0.55
+    """Motion of the left arm relative to the right one; below 0 it swings back."""
+    joint_lag: Annotated[
+        By[Ratio], People("grabbing sitting_down standing_up", 0, 0.6), UNSTEADY
+    ] = 0.0
+    """Share of the movement by which some joints lead and others lag, in each recording others."""
+    step_m: Annotated[By[Ratio], People("S4 S5 S6", 0, 0.5), UNSTEADY] = uniform(0.0, 0.5)
     """Steps back before sitting down (S5), ahead after standing up (S6), around picking up (S4)."""
-    look_deg: AngleBy = Uniform(uniform=(-40.0, 40.0))
-    """S5: turn of the trunk to look behind."""
-    settle_size: RatioBy = Uniform(uniform=(0.0, 3.0))
-    """S4 to S6: size of the fidgets around the end."""
-    kneel_s: SecondsBy = Uniform(uniform=(0.0, 0.6))
+    look_deg: Annotated[By[Angle], People("S5", -60, 60), UNSTEADY] = uniform(-40.0, 40.0)
+    """Turn of the trunk to look behind."""
+    settle_size: Annotated[By[Ratio], People("S4 S5 S6", 0, 3), UNSTEADY] = uniform(0.0, 3.0)
+    """Size of the fidgets around the end."""
+    kneel_s: Annotated[By[Seconds], People("falling", 0, 3), UNSTEADY] = uniform(0.0, 0.6)
     """Pause on the knees in a forward fall."""
-    heels_deg: AngleBy = 0.0
+    heels_deg: Annotated[By[Angle], People("falling", 0, 90), UNSTEADY] = 0.0
     """How far the shanks swing up as people land on their knees in a forward fall."""
-    fall: FallName | Falls = "forward"
+    fall: Annotated[FallName | Falls, People("falling")] = "forward"
     """Direction, or drawn: {choice: [forward, forward, sideways]}."""
-    fidget_hz: FrequencyBy = Uniform(uniform=(0.0, 0.4))
+    fidget_hz: Annotated[By[Frequency], People("", 0, 2), UNSTEADY] = uniform(0.0, 0.4)
     """How often a standing or seated person fidgets."""
-    fidget_size: RatioBy = Uniform(uniform=(0.5, 1.5))
+    fidget_size: Annotated[By[Ratio], People("", 0, 2)] = uniform(0.5, 1.5)
     """Size of the fidgets, relative to the usual one."""
-    shuffle_hz: FrequencyBy = Uniform(uniform=(0.0, 0.2))
+    shuffle_hz: Annotated[By[Frequency], People("S1 S4", 0, 0.5), UNSTEADY] = uniform(0.0, 0.2)
     """Steps of some centimetres, S1 and after S4."""
-    idle_phase_s: SecondsBy = Uniform(uniform=(0.0, 1000.0))
-    """Time at 0 s of the processes of sway, breath, pulse and ragged speed."""
+    idle_phase_s: Annotated[By[Seconds], People("")] = uniform(0.0, 1000.0)
+    """Time offset of sway, breathing, pulse and speed variation."""
 
 
 class TimingConfig(Section):
     """When the phases of an activity begin and how long they last.
 
-    What is null takes the value of the model (MODEL_DEFAULTS).
+    What is null takes the value of the model.
     """
 
-    seat_start_s: SecondsBy = 0.5
-    """S5, S6."""
-    seat_duration_s: SecondsBy | None = None
-    """S5, S6; null is the model's."""
-    grab_start_s: SecondsBy = 0.5
-    """S4."""
-    grab_duration_s: SecondsBy = Normal(normal=(2.5, 0.5), min=1.6, max=3.6)
-    """S4, down and up together."""
-    rise_start_s: SecondsBy = 0.5
-    """S9, S11."""
-    rise_duration_s: SecondsBy | None = None
-    """S9, S11; null is the model's."""
-    walk_begin_s: SecondsBy | None = None
-    """human: S8 stands until then; null: walks all the time."""
-    walk_start_s: SecondsBy | None = None
-    """S9, S11; null is the model's: of people, when risen."""
-    walk_stop_s: SecondsBy = 2.0
-    """S10, S12."""
-    sit_duration_s: SecondsBy | None = None
-    """S10; null is the model's."""
-    fall_duration_s: SecondsBy | None = None
-    """S12; null is the model's."""
-    blend_s: SecondsBy = 0.3
-    """paper: raised-cosine ramps of the gait, in and out; 0 is a hard switch."""
-    overlap_s: SecondsBy = 0.0
-    """human: the second movement of S9 to S12 begins so long before the first rests."""
+    seat_start_s: Annotated[By[Seconds], People("S5 S6"), Paper("S5 S6")] = 0.5
+    """When sitting down or standing up begins."""
+    seat_duration_s: Annotated[
+        By[Seconds] | None,
+        People("S5 S6", 1, 60),
+        Paper("S5 S6"),
+        ByModel(
+            human=PerActivity(
+                per_activity={
+                    "default": normal(2.0, 0.4, 1.3, 3.0),
+                    "standing_up": normal(1.8, 0.4, 1.2, 3.0),
+                }
+            ),
+            paper=2.0,
+        ),
+    ] = None
+    """How long it lasts."""
+    grab_start_s: Annotated[By[Seconds], People("S4")] = 0.5
+    """When picking up begins."""
+    grab_duration_s: Annotated[By[Seconds], People("S4", 1, 60)] = normal(2.5, 0.5, 1.6, 3.6)
+    """Down and up together."""
+    rise_start_s: Annotated[By[Seconds], People("S9 S11"), Paper("S9 S11")] = 0.5
+    """When standing or getting up begins."""
+    rise_duration_s: Annotated[
+        By[Seconds] | None,
+        People("S9 S11", 1, 60),
+        Paper("S9 S11"),
+        ByModel(
+            human=PerActivity(
+                per_activity={
+                    "default": normal(1.8, 0.25, 1.2, 3.0),
+                    "falling_to_walking": normal(3.0, 0.5, 2.2, 4.5),
+                }
+            ),
+            paper=1.5,
+        ),
+    ] = None
+    """How long it lasts."""
+    walk_begin_s: Annotated[By[Seconds] | None, People("S8", 0, 600)] = None
+    """S8 stands until then; null: is under way at 0 s."""
+    walk_start_s: Annotated[
+        By[Seconds] | None, People("S9 S11", 0, 600), Paper("S9 S11"), ByModel(paper=2.0)
+    ] = None
+    """When walking begins; null of people: when risen, less overlap_s."""
+    walk_stop_s: Annotated[By[Seconds], People("S10 S12", 0.5, 600), Paper("S10 S12")] = 2.0
+    """When walking ends."""
+    sit_duration_s: Annotated[
+        By[Seconds] | None,
+        People("S10", 1, 60),
+        Paper("S10"),
+        ByModel(human=normal(2.0, 0.25, 1.3, 3.0), paper=1.5),
+    ] = None
+    """How long sitting down lasts."""
+    fall_duration_s: Annotated[
+        By[Seconds] | None,
+        People("S12", 0.7, 10),
+        Paper("S12"),
+        ByModel(human=normal(1.1, 0.4, 0.9, 2.0), paper=0.8),
+    ] = None
+    """How long the fall lasts."""
+    blend_s: Annotated[By[Seconds], Paper("S9 S10 S11 S12")] = 0.3
+    """Raised-cosine ramps of the gait, in and out; 0 is a hard switch."""
+    overlap_s: Annotated[By[Seconds], People("S9 S10 S11 S12", 0, 0.8)] = 0.0
+    """The second movement starts this long before the first ends, unless walk_start_s says when.
+    A scene gets at most 0.3 of the duration of rising, sitting down or falling, and nothing of a
+    fall to the side: its number is what it got."""
 
 
 MIN_MOVEMENT_S = 0.3
@@ -488,9 +567,9 @@ class FilesConfig(Section):
     """What happens where a file is shorter than the recording."""
     file: Annotated[int, Field(ge=0, strict=True)] | None = None
     """Number of the one file that is used; null is drawn."""
-    start: Share01 = Uniform(uniform=(0.0, 1.0))
+    start: Share01 = uniform(0.0, 1.0)
     """Where in the section a recording begins, 0 at the earliest, 1 at the latest."""
-    playback_speed: Annotated[Number, within(0.25, 4)] = Uniform(uniform=(0.9, 1.1))
+    playback_speed: Annotated[Number, within(0.25, 4)] = uniform(0.9, 1.1)
     """Seconds of the file a second."""
     mirror: Share01 = Choice(choice=(0, 1))
     """1 exchanges left and right."""
@@ -575,6 +654,9 @@ class WallConfig(Section):
     """Loss of the faces: at normal incidence, or the ray's with the field so to its plane."""
 
 
+_SEGMENTS = Needs("body.scatterers", "segments")
+
+
 class BodyConfig(Section):
     """What of a person scatters: the joints as points, or the segments between them.
 
@@ -584,9 +666,9 @@ class BodyConfig(Section):
 
     scatterers: Literal["points", "segments"] = "points"
     """The 13 joints, or ellipsoids between them."""
-    points_per_segment: Annotated[int, Field(ge=1, le=1000, strict=True)] = 20
+    points_per_segment: Annotated[int, Field(ge=1, le=1000, strict=True), _SEGMENTS] = 20
     """At most so many on a segment."""
-    shadowing: Flag = True
+    shadowing: Annotated[Flag, _SEGMENTS] = True
     """Of segments: trunk and thighs hide what is behind them."""
 
 
@@ -594,14 +676,14 @@ class ReflectorConfig(Section):
     """Something that stands in the room, with a residual motion along the line of sight."""
 
     position_m: Vector = (
-        Uniform(uniform=(1.0, 6.0)),
-        Uniform(uniform=(-3.0, 3.0)),
-        Uniform(uniform=(0.0, 2.5)),
+        uniform(1.0, 6.0),
+        uniform(-3.0, 3.0),
+        uniform(0.0, 2.5),
     )
     """Range, cross-range, height."""
-    rcs_dbsm: Annotated[Number, within(-120, 120, "dBsm")] = Uniform(uniform=(-10.0, 10.0))
+    rcs_dbsm: Annotated[Number, within(-120, 120, "dBsm")] = uniform(-10.0, 10.0)
     """Its radar cross-section."""
-    residual_m: Annotated[NotNegative, within(0, 0.01, "m")] = Uniform(uniform=(5e-5, 5e-4))
+    residual_m: Annotated[NotNegative, within(0, 0.01, "m")] = uniform(5e-5, 5e-4)
     """Standard deviation of its small motion along the line of sight."""
     highest_hz: Annotated[Positive, within(1e-3, 100, "Hz")] = 10.0
     """Highest frequency of that motion."""
@@ -688,7 +770,12 @@ class HighpassConfig(Section):
 DEFAULT_CUTOFF = 0.0075  # of PRF/2
 LIMB_ACCELERATION = 2.0  # m/s^2 along the line of sight; gait and kicks are resolved at 2 to 77 GHz
 MAX_WINDOW_SHARE = 0.25
+MIN_WINDOW = 8
 PAPER_WINDOW = 0.1  # of the recording
+
+
+_GATED = Needs("processing.range_sum", "gated")
+_SPECTRA = OnlyMaps("st")  # of stft and fsst
 
 
 class ProcessingConfig(Section):
@@ -696,27 +783,29 @@ class ProcessingConfig(Section):
 
     clutter: Literal["difference", "mean", "highpass", "none"] = "difference"
     """s[m + 1] - s[m], the paper's MTI; less the mean; the filter below."""
-    highpass: HighpassConfig = HighpassConfig()
-    range_sum: Literal["coherent", "gated"] = "coherent"
+    highpass: Annotated[HighpassConfig, Needs("processing.clutter", "highpass")] = HighpassConfig()
+    range_sum: Annotated[Literal["coherent", "gated"], _SPECTRA] = "coherent"
     """The coherent sum of the kept bins, or STFTs of those around the torso."""
-    gate_m: float | tuple[float, float] = 1.0
+    gate_m: Annotated[float | tuple[float, float], _GATED] = 1.0
     """How far the gate reaches to both sides of the torso, or [from, to]."""
-    gate_sum: Literal["power", "magnitude"] = "power"
+    gate_sum: Annotated[Literal["power", "magnitude"], _GATED] = "power"
     """Powers are added up, or (sum of the magnitudes)^2."""
     range_fft_length: Annotated[int, Field(ge=2, multiple_of=2, strict=True)] | None = None
     """Even, at least the samples of a chirp; null is found."""
     range_reference: Literal["centre", "start"] = "centre"
     """Where in the chirp the phase is taken."""
-    window_s: Annotated[float, Field(gt=0, le=1e7, strict=True)] | None = None
+    window_s: Annotated[float | None, Field(gt=0, le=1e7, strict=True), _SPECTRA] = None
     """The window; null: of paper a tenth of duration_s, else as limbs need it."""
-    overlap_fraction: Annotated[float, Field(ge=0, lt=1, strict=True)] = 0.9
+    overlap_fraction: Annotated[float, Field(ge=0, lt=1, strict=True), _SPECTRA] = 0.9
     """Of consecutive windows, as a fraction of the window."""
-    stft_fft_length: Annotated[int, Field(ge=8, strict=True)] | None = None
+    stft_fft_length: Annotated[int | None, Field(ge=8, strict=True), OnlyMaps("stft")] = None
     """At least the window; null is found."""
-    savgol: SavgolConfig = SavgolConfig()
-    fsst_hop_pulses: Annotated[int, Field(ge=1, le=2**24, strict=True)] | None = None
+    savgol: Annotated[SavgolConfig, OnlyMaps("denoised")] = SavgolConfig()
+    fsst_hop_pulses: Annotated[int | None, Field(ge=1, le=2**24, strict=True), OnlyMaps("fsst")] = (
+        None
+    )
     """Of the fsst maps; 1 is every sample; null is the STFT's."""
-    fsst_threshold: Annotated[float, Field(ge=0, lt=1, strict=True)] = 1e-3
+    fsst_threshold: Annotated[float, Field(ge=0, lt=1, strict=True), OnlyMaps("fsst")] = 1e-3
     """Coefficients below this share of the map's largest are left out."""
 
     @field_validator("gate_m", mode="before")
@@ -771,7 +860,9 @@ class CfarConfig(Section):
     """Threshold: the false alarm rate in exponentially distributed power."""
     domain: Literal["power", "decibel"] = "decibel"
     """What is averaged and compared."""
-    floor_db: Annotated[Decibel, within(0, 200, "dB")] = Uniform(uniform=(10.0, 30.0))
+    floor_db: Annotated[Decibel, within(0, 200, "dB"), Needs("image.cfar.domain", "decibel")] = (
+        uniform(10.0, 30.0)
+    )
     """With decibels, where the map's median is put."""
     edges: Literal["wrap", "shrink"] = "wrap"
     """Beyond an edge: the cells of the opposite edge, or none."""
@@ -789,10 +880,10 @@ class ImageConfig(Section):
     """Grey levels, or binary masks of what exceeds its background."""
     dynamic_range_db: Annotated[float, Field(gt=0, le=300, strict=True)] = 50.0
     """Grey levels reach so far below the largest power (`kind: decibel`)."""
-    cfar: CfarConfig = CfarConfig()
+    cfar: Annotated[CfarConfig, Needs("image.kind", "cfar")] = CfarConfig()
     colour_map: str = DEFAULT_COLOUR_MAP
     """Any Matplotlib name; of PNGs and figures, as dataset.h5 holds grey levels."""
-    doppler_limits_mps: tuple[Real, Real] | None = None
+    doppler_limits_mps: Annotated[tuple[Real, Real] | None, _SPECTRA] = None
     """[low, high], approaching positive; null is all."""
 
     @field_validator("doppler_limits_mps")
@@ -858,6 +949,9 @@ class SplitConfig(Section):
 MAX_TOLERANCE_DB = -6.0
 
 
+_DIRECT = Needs("engine.kind", "direct")
+
+
 class EngineConfig(Section):
     """`cube` is the exact float64 reference; `direct` the closed form, within a tolerance.
 
@@ -869,11 +963,13 @@ class EngineConfig(Section):
 
     kind: Literal["direct", "cube"] = "direct"
     """The closed form within the tolerance, or the exact reference."""
-    tolerance_db: Annotated[float, Field(ge=-400, le=MAX_TOLERANCE_DB, strict=True)] = -80.0
+    tolerance_db: Annotated[
+        float, Field(ge=-400, le=MAX_TOLERANCE_DB, strict=True), _DIRECT
+    ] = -80.0
     """Relative L2 error of the noiseless signal after MTI, -400 to -6."""
-    fallback: Literal["refuse", "cube"] = "refuse"
+    fallback: Annotated[Literal["refuse", "cube"], _DIRECT] = "refuse"
     """What to do with a scene in which `direct` misses the tolerance."""
-    precision: Literal["auto", "double"] = "auto"
+    precision: Annotated[Literal["auto", "double"], _DIRECT] = "auto"
     """double: float64 whatever the tolerance."""
     motion_in_chirp: Flag = False
     """Of `cube`: paths go on moving during a chirp."""
@@ -919,69 +1015,6 @@ def possible_maps(processing: ProcessingConfig) -> tuple[MapName, ...]:
     """The maps that there can be: no FSST of a gate, whose bins are summed without their phase."""
     gated = processing.range_sum == "gated"
     return tuple(name for name in MAP_NAMES if not (gated and name.startswith("fsst")))
-
-
-# People face the radar, and in 6 s walk 8 m towards it: they start far enough away, all within its
-# half-band of 30 m. Classes of one's own may walk all the time.
-_FAR, _MIDDLE, _NEAR = (Uniform(uniform=one) for one in ((9.0, 12.0), (5.0, 8.0), (2.0, 5.0)))
-_HUMAN_RANGE = PerActivity[Coordinate](
-    per_activity={
-        DEFAULT: _FAR,
-        **{a.slug: _MIDDLE if a.walks else _NEAR for a in ACTIVITIES if a.slug != "walking"},
-    }
-)
-_FACING = Uniform(uniform=(150.0, 210.0))
-_OF_FOUR_SECONDS = {"duration_s": 4.0, "radar": {"bandwidth_hz": 4e9, "prf_hz": 5000.0}}
-
-MODEL_DEFAULTS: dict[str, dict[str, Any]] = {
-    "file": {
-        **_OF_FOUR_SECONDS,
-        "on_invalid": "redraw",
-        "motion": {"range_m": Uniform(uniform=(2.0, 4.0)), "angle_deg": _FACING},
-    },
-    "paper": {
-        **_OF_FOUR_SECONDS,
-        "on_invalid": "keep",
-        "motion": {
-            "range_m": Uniform(uniform=(1.0, 3.0)),
-            "angle_deg": Uniform(uniform=(-30.0, 30.0)),
-            "speed_mps": 1.5,
-        },
-        "timing": {
-            "seat_duration_s": 2.0,
-            "rise_duration_s": 1.5,
-            "walk_start_s": 2.0,
-            "sit_duration_s": 1.5,
-            "fall_duration_s": 0.8,
-        },
-    },
-    "human": {
-        "duration_s": 6.0,
-        "on_invalid": "redraw",
-        "radar": {"bandwidth_hz": 1e9, "prf_hz": 1e4},  # +-9.7 m/s: a kick's foot reaches 7 to 9
-        "motion": {
-            "range_m": _HUMAN_RANGE,
-            "angle_deg": _FACING,
-            "speed_mps": Normal(normal=(1.3, 0.18), min=0.7, max=2.0),
-        },
-        "timing": {
-            "seat_duration_s": PerActivity[Seconds](
-                per_activity={
-                    "default": Normal(normal=(2.0, 0.4), min=1.3, max=3.0),
-                    "standing_up": Normal(normal=(1.8, 0.4), min=1.2, max=3.0),
-                }
-            ),
-            "rise_duration_s": PerActivity[Seconds](
-                per_activity={
-                    "default": Normal(normal=(1.8, 0.25), min=1.2, max=3.0),
-                    "falling_to_walking": Normal(normal=(3.0, 0.5), min=2.2, max=4.5),
-                }
-            ),
-            "sit_duration_s": Normal(normal=(2.0, 0.25), min=1.3, max=3.0),
-            "fall_duration_s": Normal(normal=(1.1, 0.4), min=0.9, max=2.0),
-        },
-    },
-}
 
 
 MAX_WINDOWS = 1_000_000
@@ -1061,14 +1094,19 @@ class Config(Section):
 
     seed: Annotated[int, Field(ge=0, lt=2**63, strict=True)] = 1
     """0 to 2^63 - 1."""
-    samples_per_class: SamplesBy = 300
+    samples_per_class: By[Samples] = 300
     """May differ: {per_activity: {default: 300, walking: 100}}."""
     classes: Annotated[dict[str, ClassConfig], Field(max_length=200)] = {}  # labels are uint8
     """Your own: {name: {sequence: [...]}} of movements, {name: [walk/*.bvh]} of files."""
     activities: Literal["all"] | tuple[str, ...] = "all"
     """The twelve and those of `classes`; or a list of slugs or labels, [walking, S12]."""
-    duration_s: Annotated[Positive, within(1e-9, 1e7, "s")] | None = None
-    """Of a recording; null is the model's: 6 of human, 4 of paper and file."""
+    duration_s: Annotated[
+        Positive | None,
+        within(1e-9, 1e7, "s"),
+        Limits(0, 600),
+        ByModel(human=6.0, paper=4.0, file=4.0),
+    ] = None
+    """Of a recording."""
     radar: RadarConfig = RadarConfig()
     subject: SubjectConfig = SubjectConfig()
     motion: MotionConfig = MotionConfig()
@@ -1082,9 +1120,12 @@ class Config(Section):
     receiver: ReceiverConfig = ReceiverConfig()
     snr_reference: Literal["free_space", "received"] = "free_space"
     """Signal without the wall, or with its loss."""
-    on_invalid: Literal["keep", "redraw", "error"] | None = None
-    """A body that meets the wall, a scatterer that leaves the range half-band; null is the model's:
-    keep of paper, redraw of human and file."""
+    on_invalid: Annotated[
+        Literal["keep", "redraw", "error"] | None,
+        ByModel(human="redraw", paper="keep", file="redraw"),
+    ] = None
+    """A body that meets the wall, a scatterer that leaves the range half-band. One that comes
+    within 5 cm of an antenna is drawn again with `redraw`, and refused otherwise."""
     processing: ProcessingConfig = ProcessingConfig()
     image: ImageConfig = ImageConfig()
     maps: tuple[MapName, ...] = ("stft",)
@@ -1135,14 +1176,15 @@ class Config(Section):
 
     def filled(self) -> "Config":
         """This config, in which what is null and has a default by model takes it."""
-        for name, default in MODEL_DEFAULTS[self.motion.model].items():
-            now = getattr(self, name)
-            if now is None:
-                object.__setattr__(self, name, default)
-            elif isinstance(default, dict):
-                unset = {key: one for key, one in default.items() if getattr(now, key) is None}
-                if unset:
-                    object.__setattr__(self, name, now.model_copy(update=unset))
+        changed = dict[str, dict[str, Any]]()
+        for key, default in of_kind(Config, ByModel):
+            name, _, rest = key.rpartition(".")
+            if getattr(getattr(self, name) if name else self, rest) is None:
+                changed.setdefault(name, {})[rest] = default.values.get(self.motion.model)
+        for name, value in changed.pop("", {}).items():
+            object.__setattr__(self, name, value)
+        for name, values in changed.items():
+            object.__setattr__(self, name, getattr(self, name).model_copy(update=values))
         if self.motion.model == "paper" and self.processing.window_s is None:
             processing = self.processing.model_copy()  # which does not say that it was given
             object.__setattr__(processing, "window_s", PAPER_WINDOW * nominal(self.duration_s))
@@ -1151,6 +1193,8 @@ class Config(Section):
 
     @model_validator(mode="after")
     def _consistent(self) -> "Config":
+        from radhar_cli.config.checks import problems  # which knows this schema
+
         mistakes = list(problems(self.filled()))
         if mistakes:
             raise PydanticCustomError("across", "{problems}", {"problems": mistakes})
@@ -1160,7 +1204,8 @@ class Config(Section):
         """How many samples of an activity there are."""
         if self.recorded is not None:
             return self.recorded.counts.get(activity.slug, 0)
-        return for_activity(self.samples_per_class, activity)
+        samples: int = for_activity(self.samples_per_class, activity)
+        return samples
 
     @property
     def recorded(self) -> RecordingsConfig | None:
@@ -1197,10 +1242,40 @@ class Config(Section):
             *(replace(a, number=after + n) for n, a in enumerate(added)),
         )
 
+    def depends_on(self, activity: Activity, key: str) -> bool:
+        """Whether scenes of an activity depend on the number of this dotted key."""
+        if key.startswith("receiver.noise_"):
+            return support(self.receiver.noise_corner_hz)[1] > 0
+        if key == "room.back_wall_reflection_db":
+            return self.room.back_wall_m is not None
+        if key.startswith("image.cfar."):
+            floor = key == "image.cfar.floor_db" and self.image.cfar.domain != "decibel"
+            return self.image.kind == "cfar" and not floor
+        if key.startswith("classes."):
+            return key.startswith(f"classes.{activity.slug}.")
+        uses = _uses().get(key)
+        if uses is None or activity.motion is not None:
+            return uses is None or key in activity.uses
+        names = uses.get(self.motion.model)
+        if names is None or self.files_of(activity) is not None:
+            return False
+        return not names or not names.isdisjoint((activity.label, *activity.movements))
+
     def files_of(self, activity: Activity) -> FilesConfig | None:
         """The files of an activity, None where a model makes its motion."""
         one = self.classes.get(activity.slug)
         return one if isinstance(one, FilesConfig) else None
+
+
+@cache
+def _uses() -> dict[str, dict[str, frozenset[str]]]:
+    """{dotted key: {model: who uses it}} of the keys that not everybody uses."""
+    found = dict[str, dict[str, frozenset[str]]]()
+    for key, one in of_kind(Config, People):
+        found.setdefault(key, {})["human"] = frozenset(one.names.split())
+    for key, other in of_kind(Config, Paper):
+        found.setdefault(key, {})["paper"] = frozenset(other.names.split())
+    return found
 
 
 def class_activities(classes: Mapping[str, ClassConfig]) -> dict[str, Activity]:
@@ -1210,9 +1285,9 @@ def class_activities(classes: Mapping[str, ClassConfig]) -> dict[str, Activity]:
     number = len(ACTIVITIES)
     for slug, one in classes.items():
         if slug in twelve:
-            activities[slug] = replace(twelve[slug], paper=(), human=())
+            activities[slug] = replace(twelve[slug], movements=())
             continue
         number += 1
-        uses = sequence_uses(one.sequence) if isinstance(one, SequenceConfig) else ()
-        activities[slug] = Activity(number, slug, human=uses)
+        movements = one.sequence if isinstance(one, SequenceConfig) else ()
+        activities[slug] = Activity(number, slug, movements)
     return activities

@@ -7,7 +7,7 @@ import numpy as np
 
 from radhar_cli.arrays import Float
 from radhar_cli.config.schema import Config
-from radhar_cli.scene import FALL, Scene, depends_on, file_keys, number_at, numbers
+from radhar_cli.scene import FALL, Scene, file_keys, number_at, numbers
 
 _UNITS = {
     "m": ("m", 1.0),
@@ -62,12 +62,12 @@ def fields(config: Config) -> tuple[Field, ...]:
     keys = [
         key
         for key, _ in numbers(config)
-        if any(depends_on(config, activity, key) for activity in config.chosen_activities)
+        if any(config.depends_on(activity, key) for activity in config.chosen_activities)
     ]
     keys += [
         key
         for key in (FALL, *file_keys(config))
-        if any(depends_on(config, activity, key) for activity in config.chosen_activities)
+        if any(config.depends_on(activity, key) for activity in config.chosen_activities)
     ]
     if "subject.weight_kg" not in keys:
         keys.insert(keys.index("subject.height_m") + 1, "subject.weight_kg")

@@ -136,7 +136,7 @@ def test_file_classes_work_with_any_model(place: Path) -> None:
     human = load_config(place / "x.yaml", ["motion.model=human"])
     numbers = {a.slug: a for a in human.chosen_activities}
     assert numbers["walking"].index == activity_named("walking").index
-    assert numbers["walking"].human == ()
+    assert numbers["walking"].movements == ()
     assert numbers["my_class"].index == 12
 
 

@@ -8,7 +8,7 @@ import pytest
 from radhar_cli.activity import ACTIVITIES, activity_named
 from radhar_cli.config import Config
 from radhar_cli.dataset.scene_fields import fields, values
-from radhar_cli.scene import depends_on, draw_scene, numbers, scene_numbers
+from radhar_cli.scene import draw_scene, numbers, scene_numbers
 
 EVERYTHING = Config(motion={"model": "paper"}, wall={})
 
@@ -49,7 +49,7 @@ def test_every_number_of_every_activity_has_one_column() -> None:
     keys = {
         key
         for key, _ in numbers(EVERYTHING)
-        if any(depends_on(EVERYTHING, activity, key) for activity in ACTIVITIES)
+        if any(EVERYTHING.depends_on(activity, key) for activity in ACTIVITIES)
     }
     assert {field.key for field in columns} == keys | {"subject.weight_kg", "error_db"}
     assert len({field.name for field in columns}) == len(columns)

@@ -88,8 +88,6 @@ def leaves(value: object, bounds: bool) -> set[object]:
     """
     if isinstance(value, BaseModel):
         value = value.model_dump()
-    if hasattr(value, "per_activity"):
-        value = [one.model_dump() for one in value.per_activity.values()]
     if isinstance(value, dict):
         kept = [inner for key, inner in value.items() if bounds or key not in ("min", "max")]
         value = [inner for inner in kept if inner is not None]

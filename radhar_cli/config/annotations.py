@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from enum import Enum
 from functools import cache
 from types import MappingProxyType
-from typing import Any, TypeVar, get_args
+from typing import Any, Literal, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
@@ -101,13 +101,10 @@ def of_kind(kind: type[BaseModel], wanted: type[A]) -> Iterator[tuple[str, A]]:
 def section(field: FieldInfo) -> type[BaseModel] | None:
     """The section that a field holds, maybe instead of null; None of values, lists, mappings."""
     kinds = [field.annotation, *get_args(field.annotation)]
-    return next(
-        (k for k in kinds if isinstance(k, type) and issubclass(k, BaseModel) and _nested(k)), None
-    )
-
-
-def _nested(kind: type[BaseModel]) -> bool:
-    return not kind.__module__.endswith(".number")
+    if any(get_origin(kind) is Literal for kind in kinds):  # a value, or drawn
+        return None
+    found = (k for k in kinds if isinstance(k, type) and issubclass(k, BaseModel))
+    return next((k for k in found if not k.__module__.endswith(".number")), None)
 
 
 def _flat(about: Any) -> Iterator[Any]:

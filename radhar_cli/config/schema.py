@@ -667,7 +667,7 @@ class BodyConfig(Section):
     scatterers: Literal["points", "segments"] = "points"
     """The 13 joints, or ellipsoids between them."""
     points_per_segment: Annotated[int, Field(ge=1, le=1000, strict=True), _SEGMENTS] = 20
-    """At most so many on a segment."""
+    """Most points of a segment."""
     shadowing: Annotated[Flag, _SEGMENTS] = True
     """Of segments: trunk and thighs hide what is behind them."""
 
@@ -696,41 +696,41 @@ class RoomConfig(Section):
     """What stands in the room: reflectors, and a wall behind people."""
 
     reflectors: Annotated[tuple[ReflectorConfig, ...], Field(max_length=MAX_REFLECTORS)] = ()
-    """A list of {position_m, rcs_dbsm, residual_m, highest_hz}; `[{}, {}]` is two default ones."""
+    """Up to 32 of {position_m, rcs_dbsm, residual_m, highest_hz}; `[{}, {}]`: two default ones."""
     back_wall_m: Annotated[Number, within(0, 1e4, "m")] | None = None
-    """Range of a wall behind people, in which they are seen once more; null is none."""
+    """Range of a rear wall, beyond people, which mirrors them (image source); null is none."""
     back_wall_reflection_db: Annotated[Number, within(-120, 0, "dB")] = -8.0
-    """What it reflects, over what meets it; the mirrored echo meets it twice."""
+    """Its reflection loss, applied twice to the mirrored echo."""
 
 
 class ToneConfig(Section):
-    """Interference at a fixed Doppler; its level is over the white noise, of a raw sample.
+    """Interference at a fixed Doppler.
 
     on_s, off_s: mean times for which it is on and off; always on where off_s is 0.
     """
 
     doppler_hz: Annotated[Number, within(-1e7, 1e7, "Hz")]
-    """Doppler frequency of the line."""
+    """Doppler frequency of the tone."""
     level_db: Decibel = -10.0
-    """Over the white noise of a raw sample."""
+    """Relative to the white noise of a raw sample."""
     on_s: Annotated[Positive, within(1e-3, 1e7, "s")] = 1.0
     """Mean time for which it is on."""
     off_s: Annotated[NotNegative, within(0, 1e7, "s")] = 0.0
     """Mean time for which it is off; 0: always on."""
     both_sides: Flag = False
     """As strong at the opposite Doppler, at the same times: amplitude modulation, real samples.
-    At 0 Hz the two are one line of 6 dB more."""
+    At 0 Hz the two are one tone of 6 dB more."""
 
 
 class ReceiverConfig(Section):
-    """Noise that grows towards zero Doppler, and interference lines; both over the white noise."""
+    """Noise that grows towards zero Doppler, and interference tones, beside the white noise."""
 
     noise_corner_hz: Annotated[NotNegative, within(0, 1e7, "Hz")] = 0.0
     """Doppler at which noise that grows towards zero equals the white noise; 0 is none."""
     noise_slope_db: Annotated[NotNegative, within(1, 20, "dB per decade")] = 10.0
-    """Its slope."""
+    """Slope of that noise, dB per decade."""
     tones: Annotated[tuple[ToneConfig, ...], Field(max_length=16)] = ()
-    """Interference: a list of {doppler_hz, level_db}."""
+    """Interference: up to 16 of {doppler_hz, level_db, on_s, off_s, both_sides}."""
 
 
 class SavgolConfig(Section):
@@ -760,7 +760,7 @@ class HighpassConfig(Section):
     zero_phase: Flag = False
     """Filter both ways."""
     remove_mean: Flag = True
-    """Take out the mean first; without it static echoes ring, as with MATLAB's `filter`."""
+    """Take out the mean first; false starts from rest as MATLAB's `filter`: static echoes ring."""
 
     def cutoff(self, prf: float) -> float:
         """The cut-off as a fraction of PRF/2."""
@@ -782,12 +782,12 @@ class ProcessingConfig(Section):
     """Clutter, range compression, gate, windows and thresholds."""
 
     clutter: Literal["difference", "mean", "highpass", "none"] = "difference"
-    """s[m + 1] - s[m], the paper's MTI; less the mean; the filter below."""
+    """s[m + 1] - s[m], the paper's MTI; less the mean of the recording; the filter below."""
     highpass: Annotated[HighpassConfig, Needs("processing.clutter", "highpass")] = HighpassConfig()
     range_sum: Annotated[Literal["coherent", "gated"], _SPECTRA] = "coherent"
-    """The coherent sum of the kept bins, or STFTs of those around the torso."""
+    """The coherent sum of the kept bins, or STFTs of those in the gate, summed incoherently."""
     gate_m: Annotated[float | tuple[float, float], _GATED] = 1.0
-    """How far the gate reaches to both sides of the torso, or [from, to]."""
+    """How far (m) the gate reaches to both sides of the torso, or [from, to]: fixed ranges."""
     gate_sum: Annotated[Literal["power", "magnitude"], _GATED] = "power"
     """Powers are added up, or (sum of the magnitudes)^2."""
     range_fft_length: Annotated[int, Field(ge=2, multiple_of=2, strict=True)] | None = None
@@ -795,7 +795,7 @@ class ProcessingConfig(Section):
     range_reference: Literal["centre", "start"] = "centre"
     """Where in the chirp the phase is taken."""
     window_s: Annotated[float | None, Field(gt=0, le=1e7, strict=True), _SPECTRA] = None
-    """The window; null: of paper a tenth of duration_s, else as limbs need it."""
+    """The window; null: of paper a tenth of duration_s, else by the wavelength, as limbs need."""
     overlap_fraction: Annotated[float, Field(ge=0, lt=1, strict=True), _SPECTRA] = 0.9
     """Of consecutive windows, as a fraction of the window."""
     stft_fft_length: Annotated[int | None, Field(ge=8, strict=True), OnlyMaps("stft")] = None
@@ -863,7 +863,7 @@ class CfarConfig(Section):
     floor_db: Annotated[Decibel, within(0, 200, "dB"), Needs("image.cfar.domain", "decibel")] = (
         uniform(10.0, 30.0)
     )
-    """With decibels, where the map's median is put."""
+    """With decibels, where the map's median is put: the threshold is then a factor of decibels."""
     edges: Literal["wrap", "shrink"] = "wrap"
     """Beyond an edge: the cells of the opposite edge, or none."""
 
@@ -879,7 +879,7 @@ class ImageConfig(Section):
     kind: Literal["decibel", "cfar"] = "decibel"
     """Grey levels, or binary masks of what exceeds its background."""
     dynamic_range_db: Annotated[float, Field(gt=0, le=300, strict=True)] = 50.0
-    """Grey levels reach so far below the largest power (`kind: decibel`)."""
+    """How far grey levels reach below the largest power (`kind: decibel`)."""
     cfar: Annotated[CfarConfig, Needs("image.kind", "cfar")] = CfarConfig()
     colour_map: str = DEFAULT_COLOUR_MAP
     """Any Matplotlib name; of PNGs and figures, as dataset.h5 holds grey levels."""
@@ -966,7 +966,7 @@ class EngineConfig(Section):
     tolerance_db: Annotated[
         float, Field(ge=-400, le=MAX_TOLERANCE_DB, strict=True), _DIRECT
     ] = -80.0
-    """Relative L2 error of the noiseless signal after MTI, -400 to -6."""
+    """Relative L2 error of the noiseless signal after MTI, measured in every scene."""
     fallback: Annotated[Literal["refuse", "cube"], _DIRECT] = "refuse"
     """What to do with a scene in which `direct` misses the tolerance."""
     precision: Annotated[Literal["auto", "double"], _DIRECT] = "auto"
@@ -1095,9 +1095,9 @@ class Config(Section):
     seed: Annotated[int, Field(ge=0, lt=2**63, strict=True)] = 1
     """0 to 2^63 - 1."""
     samples_per_class: By[Samples] = 300
-    """May differ: {per_activity: {default: 300, walking: 100}}."""
+    """May differ: `{per_activity: {default: 300, walking: 100}}`."""
     classes: Annotated[dict[str, ClassConfig], Field(max_length=200)] = {}  # labels are uint8
-    """Your own: {name: {sequence: [...]}} of movements, {name: [walk/*.bvh]} of files."""
+    """Your own: `{name: {sequence: [...]}}` of movements, `{name: [walk/*.bvh]}` of files."""
     activities: Literal["all"] | tuple[str, ...] = "all"
     """The twelve and those of `classes`; or a list of slugs or labels, [walking, S12]."""
     duration_s: Annotated[
@@ -1129,7 +1129,8 @@ class Config(Section):
     processing: ProcessingConfig = ProcessingConfig()
     image: ImageConfig = ImageConfig()
     maps: tuple[MapName, ...] = ("stft",)
-    """Of rtm, stft, fsst; the latter two with _denoised, _compensated, _compensated_denoised."""
+    """Of `rtm`, `stft`, `fsst`; the latter two with `_denoised`, `_compensated`,
+    `_compensated_denoised`."""
     split: SplitConfig = SplitConfig()
     engine: EngineConfig = EngineConfig()
     output: OutputConfig = OutputConfig()

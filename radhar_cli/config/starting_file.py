@@ -55,7 +55,8 @@ def _comment(members: list[Any], description: str) -> str:
     choices = [get_args(one) for one in members if get_origin(one) is Literal]
     if get_origin(members[0]) is tuple or sum(map(len, choices)) < 2:
         return description
-    return f"{' | '.join(_text(value) for one in choices for value in one)}. {description}".strip()
+    values = " | ".join(as_text(value) for one in choices for value in one)
+    return f"{values}. {description}".strip()
 
 
 def _comment_lines(text: str) -> Iterator[str]:
@@ -63,19 +64,19 @@ def _comment_lines(text: str) -> Iterator[str]:
 
 
 def _key(name: str, value: object, comment: str) -> Iterator[str]:
-    line = f"{name}: {_text(value)}"
+    line = f"{name}: {as_text(value)}"
     if comment and len(line) + len(comment) + 8 > WIDTH:
         yield from _comment_lines(comment)
         comment = ""
     yield f"{line}  # {comment}" if comment else line
 
 
-def _text(value: object) -> str:
+def as_text(value: object) -> str:
     """A value in YAML, on a line; numbers as engineers write them, 77e9."""
     if isinstance(value, dict):
-        return "{" + ", ".join(f"{_text(k)}: {_text(v)}" for k, v in value.items()) + "}"
+        return "{" + ", ".join(f"{as_text(k)}: {as_text(v)}" for k, v in value.items()) + "}"
     if isinstance(value, list):
-        return f"[{', '.join(map(_text, value))}]"
+        return f"[{', '.join(map(as_text, value))}]"
     if isinstance(value, float):
         number = Decimal(repr(value)).normalize().to_eng_string()
         return number.lower().replace("e+", "e")

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from scipy.special import expit
 
 from radhar_cli.arrays import Index
 from radhar_cli.dataset.files import write_whole
@@ -101,7 +102,7 @@ def _pictures(comparison: Comparison, one: ClassCompared) -> bytes:
     sure: dict[int, float] = {}
     if tested is not None:
         odds = np.sort(tested.score[tested.truth])[::-1]
-        chance = 1 / (1 + np.exp(-odds))
+        chance = expit(odds)
         sure = dict(zip(one.surest.tolist(), chance.tolist(), strict=True))
 
     def plain(row: int) -> str:

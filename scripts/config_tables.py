@@ -1,0 +1,154 @@
+"""Write the tables of config keys into docs/config.md and docs/limits.md, out of the schema.
+
+    python scripts/config_tables.py
+
+A table stands between `<!-- keys: SECTIONS -->` or `<!-- limits -->` and `<!-- end -->`; `-` is
+what lies in no section. What stands around them is written by hand.
+"""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, Literal, get_args, get_origin
+
+from annotated_types import Ge, Gt, Le, Lt
+from pydantic import BaseModel
+
+from radhar_cli.config import schema
+from radhar_cli.config.annotations import ByModel, Mark, Paper, People, annotations, section
+from radhar_cli.config.checks import HUMAN_LIMITS
+from radhar_cli.config.number import MAX_NUMBER, Bounds, Choice, Normal, Uniform, Vary
+from radhar_cli.config.schema import Config, PerActivity, Section
+from radhar_cli.config.starting_file import as_text
+
+DOCS = Path(__file__).resolve().parents[1] / "docs"
+PLACE = re.compile(r"(<!-- (keys: [^>]*|limits) -->\n).*?(<!-- end -->)", re.DOTALL)
+
+
+def written(page: str) -> str:
+    """A page with its tables as the schema has them."""
+
+    def table(place: re.Match[str]) -> str:
+        kind, _, names = place[2].partition(": ")
+        lines = _limits() if kind == "limits" else _keys(names.split())
+        return f"{place[1]}{chr(10).join(lines)}\n{place[3]}"
+
+    return PLACE.sub(table, page)
+
+
+def _keys(names: list[str]) -> Iterator[str]:
+    """Rows of some sections: sections of Config, others by the names of their classes."""
+    yield "| key | default | meaning |"
+    yield "| --- | --- | --- |"
+    for name in names:
+        kind, prefix = (Config, "") if name == "-" else (getattr(schema, name, None), "")
+        if kind is None:
+            kind, prefix = section(Config.model_fields[name]), f"{name}."
+        yield from _rows(kind, prefix)
+
+
+def _rows(kind: type[Section], prefix: str) -> Iterator[str]:
+    texts, about = kind.descriptions(), annotations(kind)
+    for name, field in kind.model_fields.items():
+        inner, many = section(field), get_origin(field.annotation) is tuple
+        if inner is None or many:
+            words = " ".join(texts.get(name, "").split())
+            parts = _choices(field.annotation), words, _users(about[name])
+            meaning = " ".join(filter(None, parts))
+            default = "" if field.is_required() else _default(field.default, about[name])
+            yield f"| `{prefix}{name}` | {default} | {meaning} |"
+        if inner is not None and prefix and inner.descriptions():
+            yield from _rows(inner, f"{prefix}{name}.{'N.' if many else ''}")
+
+
+def _choices(kind: Any) -> str:
+    literals = [k for k in (kind, *get_args(kind)) if get_origin(k) is Literal]
+    found = [f"`{one}`" for k in literals for one in get_args(k)]
+    return ", ".join(found) + "." if len(found) > 1 and get_origin(kind) is not tuple else ""
+
+
+def _users(about: tuple[Any, ...]) -> str:
+    """Whether it is a number that may be drawn, who uses it, and how it is drawn, in brackets."""
+    number = ["number"] if any(isinstance(one, Bounds) for one in about) else []
+    used = [
+        f"{type(one).__name__.lower()}: {', '.join(one.names.split()) or 'all'}"
+        for one in about
+        if isinstance(one, People | Paper)
+    ]
+    marks = [one.value for one in about if isinstance(one, Mark)]
+    words = "; ".join((*number, *used, *marks))
+    return words and f"({words})"
+
+
+def _default(value: Any, about: tuple[Any, ...]) -> str:
+    values = next((one.values for one in about if isinstance(one, ByModel)), None)
+    if values is None:
+        return _shown(value)
+    return _grouped(values)
+
+
+def _grouped(values: dict[str, Any]) -> str:
+    names = dict[str, list[str]]()
+    for name, value in values.items():
+        names.setdefault(_shown(value), []).append(name)
+    return "; ".join(f"{', '.join(some)}: {value}" for value, some in names.items())
+
+
+def _shown(value: Any) -> str:
+    match value:
+        case PerActivity():
+            return f"({_grouped(value.per_activity)})"
+        case Uniform():
+            return "uniform {} to {}".format(*map(as_text, value.uniform))
+        case Normal():
+            mean, sd, low, high = map(as_text, (*value.normal, *value.support))
+            return f"normal {mean} +- {sd}, {low} to {high}"
+        case Vary():
+            return f"{as_text(value.vary[0])} +-{100 * value.vary[1]:g} %"
+        case Choice():
+            return " or ".join(map(as_text, value.choice))
+        case tuple() | list():
+            return f"[{', '.join(map(_shown, value))}]"
+        case BaseModel():
+            return as_text(value.model_dump())
+    return as_text(value)
+
+
+def _limits() -> Iterator[str]:
+    yield "| key | from .. to | people: from .. to |"
+    yield "| --- | --- | --- |"
+    for key, about in annotations(Config).items():
+        limits, human = _range(about), HUMAN_LIMITS.get(key)
+        if limits or human:
+            yield f"| `{key}` | {limits} | {'{:g} to {:g}'.format(*human) if human else ''} |"
+
+
+def _range(about: tuple[Any, ...]) -> str:
+    """The tightest bounds of a key, in its unit."""
+    bounds = [one for one in about if isinstance(one, Bounds)]
+    if bounds:
+        low, high = max(one.low for one in bounds), min(one.high for one in bounds)
+        unit = next((f" {one.unit}" for one in reversed(bounds) if one.unit), "")
+        return f"{low:g} to {high:g}{unit}" if high < MAX_NUMBER else f"{low:g} or more"
+    words = dict[str, None]()
+    for one in about:
+        match one:
+            case Gt():
+                words[f"above {one.gt:g}"] = None
+            case Ge():
+                words[f"{one.ge:g}"] = None
+            case Lt():
+                words[f"to below {one.lt:g}"] = None
+            case Le():
+                words[f"to {one.le:g}"] = None
+    return " ".join(words) + (" or more" if len(words) == 1 else "")
+
+
+def main() -> None:
+    """Write both pages."""
+    for page in (DOCS / "config.md", DOCS / "limits.md"):
+        page.write_text(written(page.read_text()))
+
+
+if __name__ == "__main__":
+    main()

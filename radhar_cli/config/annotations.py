@@ -92,10 +92,15 @@ def annotations(kind: type[BaseModel], prefix: str = "") -> Mapping[str, tuple[A
     return MappingProxyType(found)
 
 
-def of_kind(kind: type[BaseModel], wanted: type[A]) -> Iterator[tuple[str, A]]:
+@cache
+def of_kind(kind: type[BaseModel], wanted: type[A]) -> tuple[tuple[str, A], ...]:
     """(dotted key, annotation) of all annotations of a class."""
-    for key, found in annotations(kind).items():
-        yield from ((key, one) for one in found if isinstance(one, wanted))
+    return tuple(
+        (key, one)
+        for key, found in annotations(kind).items()
+        for one in found
+        if isinstance(one, wanted)
+    )
 
 
 def section(field: FieldInfo) -> type[BaseModel] | None:

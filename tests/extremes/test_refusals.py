@@ -8,48 +8,34 @@ from typing import Any
 import pytest
 
 from radhar_cli.config import Config
+from radhar_cli.config.annotations import ByModel, annotations, of_kind
+from radhar_cli.config.number import Bounds
 from radhar_cli.config.reading import validated
 from radhar_cli.errors import ConfigError
 
-# key: (least, most) that is taken, then (too little, too much); None where there is no such side.
-LIMITS: dict[str, tuple[Any, Any, Any, Any]] = {
+WALL = ("wall.center_m", "wall.size_m")
+Limits = dict[str, tuple[Any, Any, Any, Any]]
+
+
+def of_the_schema() -> Limits:
+    """{key of a number: (least, most) that is taken, then (too little, too much)}."""
+    found: Limits = {}
+    for key, about in annotations(Config).items():
+        bounds = [one for one in about if isinstance(one, Bounds)]
+        if bounds and not key.startswith(("room.", "receiver.", "image.")):
+            low, high = max(one.low for one in bounds), min(one.high for one in bounds)
+            below = low * (0.9 if low > 0 else 1.1) or -1
+            axis = (
+                ".0" if key in ("radar.tx_m", "radar.rx_m", "wall.center_m", "wall.size_m") else ""
+            )
+            found[key + axis] = (low, high, below, high * 1.1)
+    return found
+
+
+# What other keys limit, and whole numbers.
+LIMITS: Limits = of_the_schema() | {
     "seed": (0, 2**63 - 1, -1, 2**63),
     "samples_per_class": (1, 10_000_000, 0, 10_000_001),
-    "duration_s": (1e-9, 1e7, 9e-10, 1.1e7),
-    "radar.carrier_hz": (1e6, 1e13, 9e5, 1.1e13),
-    "radar.bandwidth_hz": (1e3, 1e12, 9e2, 1.1e12),
-    "radar.prf_hz": (1e-3, 1e7, 9e-4, 1.1e7),
-    "radar.adc_rate_hz": (1e-3, 1e13, 9e-4, 1.1e13),
-    "radar.chirp_s": (1e-12, 1e4, 9e-13, 1.1e4),
-    "radar.tx_m.0": (-1e6, 1e6, -1.1e6, 1.1e6),
-    "radar.rx_m.2": (-1e6, 1e6, -1.1e6, 1.1e6),
-    "radar.antenna_gain_dbi": (-150, 150, -151, 151),
-    "radar.antenna_isolation_db": (-300, 300, -301, 301),
-    "subject.height_m": (0.1, 10, 0.09, 11),
-    "subject.weight_kg": (1e-3, 1e6, 9e-4, 1.1e6),
-    "motion.range_m": (-1e6, 1e6, -1.1e6, 1.1e6),
-    "motion.cross_range_m": (-1e6, 1e6, -1.1e6, 1.1e6),
-    "motion.angle_deg": (-360, 360, -361, 361),
-    "motion.speed_mps": (0, 1e4, -1, 1.1e4),
-    "motion.gait_hz": (0, 1e3, -1, 1.1e3),
-    "motion.thigh_deg": (-360, 360, -361, 361),
-    "motion.calf_deg": (-360, 360, -361, 361),
-    "motion.arm_deg": (-360, 360, -361, 361),
-    "motion.turn_deg": (-360, 360, -361, 361),
-    "timing.seat_start_s": (0, 1e7, -1, 1.1e7),
-    "timing.seat_duration_s": (0, 1e7, -1, 1.1e7),
-    "timing.rise_start_s": (0, 1e7, -1, 1.1e7),
-    "timing.rise_duration_s": (0, 1e7, -1, 1.1e7),
-    "timing.walk_start_s": (0, 1e7, -1, 1.1e7),
-    "timing.walk_stop_s": (0, 1e7, -1, 1.1e7),
-    "timing.sit_duration_s": (0, 1e7, -1, 1.1e7),
-    "timing.fall_duration_s": (0, 1e7, -1, 1.1e7),
-    "timing.blend_s": (0, 1e7, -1, 1.1e7),
-    "wall.center_m.0": (-1e6, 1e6, -1.1e6, 1.1e6),
-    "wall.size_m.0": (1e-6, 1e6, 9e-7, 1.1e6),
-    "wall.eps_r": (1, 1e6, 0.9, 1.1e6),
-    "wall.loss_tangent": (0, 1e12, -1, 1.1e12),
-    "snr_db": (-300, 300, -301, 301),
     "processing.range_fft_length": (400, 25600, 398, 25602),
     "processing.window_s": (0.0016, 3.9998, 0.0014, 4.0),
     "body.points_per_segment": (1, 1000, 0, 1001),
@@ -151,20 +137,15 @@ def test_every_distribution_of_a_number_is_checked_against_its_range() -> None:
 
 FFTS = ("processing.range_fft_length", "processing.stft_fft_length", "processing.fsst_hop_pulses")
 # Null takes what the model of motion has.
-OF_THE_MODEL = (
-    "duration_s",
-    "radar.bandwidth_hz",
-    "radar.prf_hz",
-    "motion.range_m",
-    "motion.angle_deg",
-    "motion.speed_mps",
-    "timing.seat_duration_s",
-    "timing.rise_duration_s",
-    "timing.walk_start_s",
-    "timing.sit_duration_s",
-    "timing.fall_duration_s",
+OF_THE_MODEL = tuple(key for key, _ in of_kind(Config, ByModel))
+NULLABLE = (
+    "processing.window_s",
+    "snr_db",
+    "subject.weight_kg",
+    "timing.walk_begin_s",
+    *OF_THE_MODEL,
+    *FFTS,
 )
-NULLABLE = ("processing.window_s", "snr_db", "subject.weight_kg", *OF_THE_MODEL, *FFTS)
 
 
 def spoilt(key: str, value: Any) -> dict[str, Any]:

@@ -22,6 +22,7 @@ from statistics import median
 from typing import Any
 
 import numpy as np
+from radhar_cli.echo.range_profiles import beat_at, shown_pulses
 
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.config import MAP_NAMES, Config, load_config
@@ -33,7 +34,6 @@ from radhar_cli.dataset.sample import Sample, synthesise
 from radhar_cli.dataset.shards import encode_shard, write_shard
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.paths import PathSource
-from radhar_cli.echo.range_profiles import beat_at, shown_pulses
 from radhar_cli.pipeline.plan import Plan, Product, plan
 from radhar_cli.pipeline.products import RangeProfiles, plan_images, products
 from radhar_cli.pipeline.run import record, run

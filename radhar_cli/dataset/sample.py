@@ -74,7 +74,7 @@ def synthesise(scene: Scene, plan: Plan) -> Sample:
         motion = recording["motions"][0]
         labels = {name: column_labels(scene, motion, image) for name, image in images.items()}
     accuracy: EchoAccuracy | None = recording.products.get("accuracy")
-    slow_time = recording["signal"].x if scene.config.output.slow_time else None
+    slow_time = recording["signal"].x[0, 0] if scene.config.output.slow_time else None
     if accuracy is None or isinstance(accuracy, Fallback):
         return Sample(images, nan, isinstance(accuracy, Fallback), labels, slow_time)
     error_db = accuracy.error_db if isfinite(accuracy.error_db) else nan

@@ -141,7 +141,7 @@ def reflectors_of(scene: Scene) -> Reflectors | None:
     )
 
 
-def impairments_of(scene: Scene, noise: WhiteNoise) -> tuple[Impairment, ...]:
+def impairments_of(scene: Scene, noise: WhiteNoise, w: Waveform) -> tuple[Impairment, ...]:
     """What a receiver adds to white noise.
 
     Coloured noise is the channel's own, as white noise is. Interference comes from outside: lines
@@ -151,7 +151,7 @@ def impairments_of(scene: Scene, noise: WhiteNoise) -> tuple[Impairment, ...]:
     corner = _fixed(receiver.noise_corner_hz)
     if corner > 0:
         slope = _fixed(receiver.noise_slope_db)
-        impairments.append(FlickerNoise(noise.sigma, noise.waveform, noise.stream, corner, slope))
+        impairments.append(FlickerNoise(noise.sigma, noise.stream, corner, slope))
     for number, line in enumerate(receiver.lines):
         amplitude = noise.sigma * 10 ** (_fixed(line.level_db) / 20)
         times = _fixed(line.on_s), _fixed(line.off_s)
@@ -159,7 +159,7 @@ def impairments_of(scene: Scene, noise: WhiteNoise) -> tuple[Impairment, ...]:
             Line(
                 amplitude,
                 _fixed(line.doppler_hz),
-                noise.waveform,
+                w,
                 partial(noise_stream, scene),
                 f"line {number}",
                 *times,

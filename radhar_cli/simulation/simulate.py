@@ -9,9 +9,9 @@ from radhar_cli.activity import Activity, activity_named
 from radhar_cli.arrays import Complex
 from radhar_cli.config.reading import ABSENT, as_config
 from radhar_cli.config.schema import MAP_NAMES, Config, MapName, possible_maps
-from radhar_cli.echo import cube
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.direct import Accuracy
+from radhar_cli.echo.exact import beat_blocks
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.echo.static_returns import leakage, near_face_distance, wall_echo
 from radhar_cli.errors import ConfigError, SceneError, did_you_mean
@@ -188,9 +188,7 @@ def raw_echo(
     Raises:
         SceneError: the wall's near face is within 5 cm of the antennas' midpoint.
     """
-    blocks = cube.beat_blocks(paths, waveform, scene.config.engine.motion_in_chirp)
-    for impairment in receiver:
-        blocks = impairment.beat(blocks)
+    blocks = beat_blocks(paths, waveform, receiver, scene.config.engine.motion_in_chirp)
     beat = np.concatenate(list(blocks), axis=1)
     static = [leakage(antennas)]
     if wall is not None:

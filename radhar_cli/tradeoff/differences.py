@@ -70,7 +70,7 @@ class SceneDifferences:
         accuracy = products.get("accuracy")
         measured = accuracy.error_db if isinstance(accuracy, Accuracy) else None
         return Sample(
-            products["signal"].x,
+            products["signal"].x[0, 0],
             products[name].power,
             products[f"image:{name}"].levels,
             config.image.dynamic_range_db,

@@ -6,8 +6,8 @@ from math import floor
 import numpy as np
 import pytest
 import reference as ref
-
 from radhar_cli.echo.range_profiles import beat_at, shown_pulses
+
 from radhar_cli.radar.waveform import Waveform
 
 

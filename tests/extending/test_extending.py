@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 import pytest
 from listener import Listener
+from radhar_cli.processing.range_signals import RangeSignals
 
 from radhar_cli import activity
 from radhar_cli.activity import activity_named, add_activity
@@ -24,7 +25,6 @@ from radhar_cli.pipeline.run import process, record
 from radhar_cli.processing.canceller import Canceller, Fir
 from radhar_cli.processing.power_map import Axis, PowerMap
 from radhar_cli.processing.range_compression import range_bins
-from radhar_cli.processing.range_signals import RangeSignals
 from radhar_cli.processing.signal import Signal
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.receiver.impairment import Impairment

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import reference as ref
+from radhar_cli.processing.range_signals import RangeSignals
 from scipy.signal import butter, sosfilt
 
 from radhar_cli.activity import activity_named
@@ -13,7 +14,6 @@ from radhar_cli.errors import ConfigError
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.run import Recording, process
 from radhar_cli.pipeline.run import record as record_scene
-from radhar_cli.processing.range_signals import RangeSignals
 from radhar_cli.receiver.noise import WhiteNoise
 from radhar_cli.scene import Scene, draw_scene
 from radhar_cli.simulation.simulate import map_names, simulate

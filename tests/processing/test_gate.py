@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from radhar_cli.processing.range_signals import RangeSignals
 
 from radhar_cli.processing import frames as frames_module
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.gate import Gate, GatedPower, around, interval
-from radhar_cli.processing.range_signals import RangeSignals
 
 FRAMES = Frames(32, 5)
 

@@ -1,0 +1,259 @@
+"""What is looked at of an echo: a functional W of fast time, at some pulses of slow time.
+
+    x[k, m] = sum_n W[k, n] sum_j taps[j] s[n, p_m + j]
+
+of the beat matrix s. W [K, N_ADC] has one row for the coherent sum over range, one a bin for range
+bins, and is the identity for a raw recording. White noise of unit variance a raw sample has the
+covariance W W^H in x.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache
+from typing import Any
+
+import numpy as np
+
+from radhar_cli.arrays import Complex, Float, Index
+from radhar_cli.processing.range_compression import range_compression
+from radhar_cli.radar.waveform import Waveform
+
+BLOCK = 2**13  # pulses of a slow-time process made at once
+
+
+class FastTime(ABC):
+    """A linear functional of fast time: W [rows, N_ADC]."""
+
+    waveform: Waveform
+
+    @property
+    @abstractmethod
+    def rows(self) -> int:
+        """K."""
+
+    @property
+    def white(self) -> bool:
+        """Whether rows of W are orthogonal: white noise is independent from row to row of x."""
+        return True
+
+    @property
+    def rank(self) -> int:
+        """Independent processes that white noise is made of in x."""
+        return self.rows
+
+    @abstractmethod
+    def __call__(self, s: Complex) -> Complex:
+        """W s [K, M] of a beat matrix s [N_ADC, M]."""
+
+    @abstractmethod
+    def colour(self, v: Complex) -> Complex:
+        """L v [K, M] of v [rank, M], L L^H = W W^H."""
+
+
+@dataclass(frozen=True)
+class RawSamples(FastTime):
+    """The samples themselves."""
+
+    waveform: Waveform
+
+    @property
+    def rows(self) -> int:
+        return self.waveform.n_adc
+
+    def __call__(self, s: Complex) -> Complex:
+        return s
+
+    def colour(self, v: Complex) -> Complex:
+        return v
+
+
+@dataclass(frozen=True)
+class RangeSum(FastTime):
+    """The coherent sum over the kept range bins: W = D[n], one row."""
+
+    waveform: Waveform
+
+    @property
+    def rows(self) -> int:
+        return 1
+
+    def __call__(self, s: Complex) -> Complex:
+        return weights(self.waveform)[None] @ s
+
+    def colour(self, v: Complex) -> Complex:
+        coloured: Complex = np.sqrt(noise_gain(self.waveform)) * v
+        return coloured
+
+
+@dataclass(frozen=True)
+class RangeBins(FastTime):
+    """Range bins, all of the kept ones or some consecutive of them, referred to as the waveform is.
+
+    Attributes:
+        waveform: the radar.
+        bins: of the N_FFT/2; None is all.
+    """
+
+    waveform: Waveform
+    bins: slice | None = None
+
+    @property
+    def rows(self) -> int:
+        return len(range(self.waveform.n_bins)[self._bins])
+
+    @property
+    def white(self) -> bool:
+        """A transform is orthogonal unless it is padded."""
+        return self.waveform.n_fft == self.waveform.n_adc
+
+    @property
+    def rank(self) -> int:
+        if self.white:
+            return self.rows
+        return self.waveform.n_adc if self.bins is None else self._colour.shape[1]
+
+    def __call__(self, s: Complex) -> Complex:
+        return range_compression(s, self.waveform, self._bins)
+
+    def colour(self, v: Complex) -> Complex:
+        if self.white:
+            coloured: Complex = np.sqrt(self.waveform.n_adc) * v
+            return coloured
+        return self(v) if self.bins is None else self._colour @ v
+
+    @property
+    def _bins(self) -> slice:
+        return slice(None) if self.bins is None else self.bins
+
+    @property
+    def _colour(self) -> Complex:
+        assert self.bins is not None
+        return _colour(self.waveform, self.bins.start, self.bins.stop)
+
+
+@lru_cache(maxsize=4)
+def _colour(waveform: Waveform, first: int, stop: int) -> Complex:
+    """W W^H [k, k'] = sum_n exp(j 2 pi (k - k')(n - n0)/N_FFT); with W^H = Q R it is R^H R."""
+    n = np.arange(waveform.n_adc) - waveform.n0
+    w = np.exp(2j * np.pi * np.mod(np.outer(np.arange(first, stop), n) / waveform.n_fft, 1))
+    colour: Complex = np.linalg.qr(w.conj().T).R.conj().T
+    return colour
+
+
+@lru_cache(maxsize=4)
+def weights(waveform: Waveform) -> Complex:
+    """D[n] = sum_k exp(+j 2 pi k (n - n0)/N_FFT) [N_ADC], k over the kept bins."""
+    n = np.arange(waveform.n_adc) - waveform.n0
+    # A geometric series; its ratio is 1 where n - n0 = 0 mod N_FFT.
+    angle = np.pi * n / waveform.n_fft
+    whole = np.isclose(np.sin(angle), 0, atol=1e-12)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        series = np.exp(1j * (waveform.n_bins - 1) * angle) * (
+            np.sin(waveform.n_bins * angle) / np.sin(angle)
+        )
+    d: Complex = np.where(whole, waveform.n_bins, series)
+    return d
+
+
+def noise_gain(waveform: Waveform) -> float:
+    """Variance gain sum_n |D[n]|^2 of white noise through compression and the sum over bins."""
+    return float(np.sum(np.abs(weights(waveform)) ** 2))
+
+
+def circular_gaussian(rng: np.random.Generator, shape: tuple[int, ...]) -> Complex:
+    """Unit-variance circular Gaussian numbers: real and imaginary parts of variance 1/2."""
+    pairs = rng.standard_normal((*shape, 2))
+    pairs *= np.sqrt(0.5)
+    return pairs.view(np.complex128)[..., 0]
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """x[k, m], as the module has it.
+
+    Attributes:
+        name: of the look, and of its random streams.
+        fast: W.
+        pulses: p_m [M], rising.
+        taps: of a canceller that x is seen after.
+        spans: where rows are drawn one after the other, the pulses of each that count.
+        memory: what impairments keep from one block of pulses to the next.
+    """
+
+    name: str
+    fast: FastTime
+    pulses: Index
+    taps: tuple[float, ...] = (1.0,)
+    spans: Sequence[slice] | None = None
+    memory: dict[str, Any] = field(default_factory=dict)
+
+    @classmethod
+    def of_all(
+        cls,
+        name: str,
+        fast: FastTime,
+        taps: tuple[float, ...] = (1.0,),
+        spans: Sequence[slice] | None = None,
+    ) -> "Look":
+        """At all pulses of the waveform."""
+        return cls(name, fast, np.arange(fast.waveform.n_pulses - len(taps) + 1), taps, spans)
+
+    def part(self, first: int, stop: int) -> "Look":
+        """Some consecutive columns, with the same memory."""
+        return replace(self, pulses=self.pulses[first:stop])
+
+    @cached_property
+    def t(self) -> Float:
+        """Times of the pulses p_m [M], s."""
+        return self.fast.waveform.times(self.pulses.astype(float))
+
+    def white(self, rng: np.random.Generator) -> Complex:
+        """White noise of unit variance a raw sample, as x shows it [K, M].
+
+        Where no two columns share a pulse, they are independent, of variance sum taps^2, and drawn
+        as such; else the pulses that they need are drawn and cancelled.
+        """
+        rank, reach = self.fast.rank, len(self.taps) - 1
+        if self.spans is not None and self.fast.white:
+            v = np.zeros((rank, self.pulses.size), complex)
+            for row, span in zip(v, self.spans, strict=True):
+                row[span] = circular_gaussian(rng, row[span].shape)
+        elif self.spans is not None:
+            v = circular_gaussian(rng, (rank, self.pulses.size))
+        elif self.pulses.size == 1 or np.all(np.diff(self.pulses) > reach):
+            v = circular_gaussian(rng, (self.pulses.size, rank)).T
+            if reach:
+                v *= np.sqrt(np.sum(np.square(self.taps)))
+        else:
+            needed = np.unique(self.pulses + np.arange(reach + 1)[:, None])
+            drawn = circular_gaussian(rng, (needed.size, rank)).T
+            v = self.taken(lambda pulses: drawn[:, np.searchsorted(needed, pulses)])
+        return self.fast.colour(v)
+
+    def taken(self, process: Callable[[Index], Complex]) -> Complex:
+        """sum_j taps[j] v[..., p_m + j] of a process v that any pulses may be asked of."""
+        taken: Complex = self.taps[0] * process(self.pulses)
+        for lag, tap in enumerate(self.taps[1:], 1):
+            taken += tap * process(self.pulses + lag)
+        return taken
+
+    def in_order(self, following: Callable[[int], Complex]) -> Complex:
+        """`taken` of a process [rank, pulses] that is made in the order of the pulses.
+
+        Args:
+            following: makes as many of the next pulses as it is asked for.
+        """
+        reach = len(self.taps) - 1
+        if reach == 0 and self.pulses.size == self.pulses[-1] - self.pulses[0] + 1:
+            return following(self.pulses.size)
+        x = np.zeros((self.fast.rank, self.pulses.size), complex)
+        held, stop = np.empty((len(x), 0), complex), int(self.pulses[-1]) + reach + 1
+        for first in range(0, stop, BLOCK):
+            held = np.concatenate([held, following(min(BLOCK, stop - first))], axis=1)
+            begin = min(first + BLOCK, stop) - held.shape[1]
+            here = slice(*np.searchsorted(self.pulses, [begin, begin + held.shape[1] - reach]))
+            for lag, tap in enumerate(self.taps):
+                x[:, here] += tap * held[:, self.pulses[here] - begin + lag]
+            held = held[:, held.shape[1] - reach :]
+        return x

@@ -47,8 +47,8 @@ class FastTime(ABC):
         """W s [K, M] of a beat matrix s [N_ADC, M]."""
 
     @abstractmethod
-    def colour(self, v: Complex) -> Complex:
-        """L v [K, M] of v [rank, M], L L^H = W W^H."""
+    def colour(self, v: Complex, scale: float = 1.0) -> Complex:
+        """scale L v [K, M] of v [rank, M], L L^H = W W^H; v is lost."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,8 @@ class RawSamples(FastTime):
     def __call__(self, s: Complex) -> Complex:
         return s
 
-    def colour(self, v: Complex) -> Complex:
+    def colour(self, v: Complex, scale: float = 1.0) -> Complex:
+        v *= scale
         return v
 
 
@@ -81,9 +82,9 @@ class RangeSum(FastTime):
     def __call__(self, s: Complex) -> Complex:
         return weights(self.waveform)[None] @ s
 
-    def colour(self, v: Complex) -> Complex:
-        coloured: Complex = np.sqrt(noise_gain(self.waveform)) * v
-        return coloured
+    def colour(self, v: Complex, scale: float = 1.0) -> Complex:
+        v *= scale * np.sqrt(noise_gain(self.waveform))
+        return v
 
 
 @dataclass(frozen=True)
@@ -116,10 +117,11 @@ class RangeBins(FastTime):
     def __call__(self, s: Complex) -> Complex:
         return range_compression(s, self.waveform, self._bins)
 
-    def colour(self, v: Complex) -> Complex:
+    def colour(self, v: Complex, scale: float = 1.0) -> Complex:
         if self.white:
-            coloured: Complex = np.sqrt(self.waveform.n_adc) * v
-            return coloured
+            v *= scale * np.sqrt(self.waveform.n_adc)
+            return v
+        v *= scale
         return self(v) if self.bins is None else self._colour @ v
 
     @property
@@ -208,8 +210,8 @@ class Look:
         """Times of the pulses p_m [M], s."""
         return self.fast.waveform.times(self.pulses.astype(float))
 
-    def white(self, rng: np.random.Generator) -> Complex:
-        """White noise of unit variance a raw sample, as x shows it [K, M].
+    def white(self, rng: np.random.Generator, sigma: float = 1.0) -> Complex:
+        """White noise of standard deviation sigma a raw sample, as x shows it [K, M].
 
         Where no two columns share a pulse, they are independent, of variance sum taps^2, and drawn
         as such; else the pulses that they need are drawn and cancelled.
@@ -218,8 +220,9 @@ class Look:
         if self.spans is not None and self.fast.white:
             v = np.zeros((rank, self.pulses.size), complex)
             for row, span in zip(v, self.spans, strict=True):
-                row[span] = circular_gaussian(rng, row[span].shape)
-        elif self.spans is not None:
+                row[span] = self.fast.colour(circular_gaussian(rng, row[span].shape), sigma)
+            return v
+        if self.spans is not None:
             v = circular_gaussian(rng, (rank, self.pulses.size))
         elif self.pulses.size == 1 or np.all(np.diff(self.pulses) > reach):
             v = circular_gaussian(rng, (self.pulses.size, rank)).T
@@ -229,7 +232,7 @@ class Look:
             needed = np.unique(self.pulses + np.arange(reach + 1)[:, None])
             drawn = circular_gaussian(rng, (needed.size, rank)).T
             v = self.taken(lambda pulses: drawn[:, np.searchsorted(needed, pulses)])
-        return self.fast.colour(v)
+        return self.fast.colour(v, sigma)
 
     def taken(self, process: Callable[[Index], Complex]) -> Complex:
         """sum_j taps[j] v[..., p_m + j] of a process v that any pulses may be asked of."""

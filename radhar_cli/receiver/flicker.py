@@ -39,10 +39,9 @@ class FlickerNoise(Impairment):
             poles = self.processes(look.fast.waveform)
             rngs = [self.stream(f"flicker {look.name} {k}") for k in range(len(poles[0]))]
             look.memory["flicker"] = _Processes(rngs, *poles, look.fast.rank)
-        noise = look.fast.colour(look.in_order(look.memory["flicker"]))
-        noise *= self.sigma
-        noise += x
-        return noise
+        noisy = look.fast.colour(look.in_order(look.memory["flicker"]), self.sigma)
+        noisy += x
+        return noisy
 
     def processes(self, waveform: Waveform) -> tuple[Float, Float]:
         """Pole and standard deviation of each process, for white noise of variance 1."""

@@ -31,7 +31,6 @@ class WhiteNoise(Impairment):
         """x + sigma v, v of covariance W W^H: of raw samples blocks of any length give the same."""
         if "white noise" not in look.memory:
             look.memory["white noise"] = self.stream(look.name)
-        noisy = look.white(look.memory["white noise"])
-        noisy *= self.sigma
+        noisy = look.white(look.memory["white noise"], self.sigma)
         noisy += x
         return noisy

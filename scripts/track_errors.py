@@ -10,15 +10,16 @@ radial velocity, the mean confidence, and in how many seeds no torso was found.
 
 import argparse
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.capture.recording import Segments
 from radhar_cli.capture.tracking import track_torso, without_static
 from radhar_cli.config import load_config
 from radhar_cli.pipeline.motion_paths import point_delay
-from radhar_cli.processing.range_compression import range_bins
+from radhar_cli.processing.pulse_times import PulseTimes
+from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 from radhar_cli.simulation.simulate import simulate
 
@@ -37,8 +38,9 @@ def errors(config: str, overrides: list[str], activity: str, seed: int) -> Float
     scene = simulate(load_config(config, overrides), activity, seed, maps=("stft",), raw=True)
     assert scene.beat is not None
     w = scene.waveform
-    segments = Segments(np.zeros(1), np.zeros(1, np.int64), w.n_pulses, w.prf)
-    track = track_torso(without_static(range_bins(scene.beat, w)[None]), segments, w)
+    segments = PulseTimes(np.zeros(1), np.zeros(1, np.int64), w.n_pulses, w.prf)
+    bins = range_compression(scene.beat, replace(w, centred=False))
+    track = track_torso(without_static(bins[None]), segments, w)
     if track is None:
         return np.full(3, np.nan)
     t = np.arange(SKIPPED_S, w.duration - SKIPPED_S, 0.01)

@@ -43,7 +43,7 @@ def record(config: Config, *products: str, activity: str = "walking") -> Recordi
 
 def signal(config: Config, activity: str = "walking") -> np.ndarray:
     """The slow-time signal x[m]."""
-    return np.asarray(record(config, "signal", activity=activity)["signal"].x)
+    return np.asarray(record(config, "signal", activity=activity)["signal"].x[0, 0])
 
 
 def radar_of(config: Config) -> ref.Radar:

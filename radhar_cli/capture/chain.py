@@ -11,7 +11,7 @@ import numpy as np
 
 from radhar_cli.arrays import Bool, Complex, Float
 from radhar_cli.capture.findings import LOST
-from radhar_cli.capture.recording import Recording, Segments
+from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.tracking import track_torso, without_static
 from radhar_cli.config.schema import Config, MapName
 from radhar_cli.errors import CaptureError
@@ -21,6 +21,7 @@ from radhar_cli.pipeline.run import process
 from radhar_cli.processing.canceller import NO_CANCELLER, Canceller
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.power_map import PowerMap
+from radhar_cli.processing.pulse_times import PulseTimes
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.signal import Signal, nearest
 from radhar_cli.processing.torso_track import TorsoTrack
@@ -86,13 +87,13 @@ def maps_of(
             f"{recording.path}: has {len(segments)} stretches with gaps between; "
             "processing.clutter should be mean or difference, a high-pass would ring in each"
         )
-    t, prf = segments.times(np.arange(segments.pulses)), segments.prf
+    prf = segments.prf
     track: TorsoTrack | None = None
     if recording.info.samples is None:
         _refuse_without_ranges(recording, config, names)
         _refuse_too_much(recording, 1, receivers, first, last)
         x = filled(recording.beat(first, last)[list(chosen), :1], lost)
-        signal = Signal(x, t, prf, recording.info.carrier_hz)
+        signal = Signal(x, segments, recording.info.carrier_hz)
     else:
         processing = config.processing
         centred = processing.range_reference == "centre" or processing.doppler == "gate"
@@ -104,7 +105,7 @@ def maps_of(
         track = track_torso(without_static(x), segments, waveform)
         notes += [] if track else ["nothing moves: no torso was found"]
         x *= unit_phasor(np.arange(waveform.n_bins)[:, None] * (waveform.n0 / waveform.n_fft))
-        signal = Signal(x, t, prf, waveform.f0, waveform.range_axis())
+        signal = Signal(x, segments, waveform.f0, waveform.range_axis())
     # What is global to a recording is done here; difference and windows cross no gap.
     canceller = NO_CANCELLER if clutter == "mean" else canceller_of(config, prf, signal.f0)
     signal = signal.with_samples(without_static(signal.x)) if clutter == "mean" else signal
@@ -135,7 +136,7 @@ def maps_of(
 
 def pulses_between(
     recording: Recording, start: float | None, stop: float | None
-) -> tuple[int, int, Segments]:
+) -> tuple[int, int, PulseTimes]:
     """(first, last + 1) of the pulses from start to stop, s, and their segments.
 
     Raises:
@@ -156,11 +157,11 @@ def pulses_between(
     return first, last, _within(recording.segments, first, last)
 
 
-def _within(segments: Segments, first: int, last: int) -> Segments:
+def _within(segments: PulseTimes, first: int, last: int) -> PulseTimes:
     """The segments of pulses first .. last - 1, counted anew; times stay those of the recording."""
     inside = (segments.first > first) & (segments.first < last)
     numbers = np.concatenate([[first], segments.first[inside]])
-    return Segments(segments.times(numbers), numbers - first, last - first, segments.prf)
+    return PulseTimes(segments.times(numbers), numbers - first, last - first, segments.prf)
 
 
 def filled(x: Complex, lost: Bool) -> Complex:
@@ -229,7 +230,7 @@ def _windows(
     """The stretches that hold a window, and the windows."""
     duration = signal.pulses / signal.prf
     wanted = frames_of(config, duration, signal.prf, signal.f0)
-    lengths = [one.stop - one.start - canceller.lost for one in signal.stretches]
+    lengths = signal.times.lengths - canceller.lost
     usual = int(np.median(lengths))
     length = min(wanted.length, usual)
     needed = config.processing.savgol.frame if any("denoised" in n for n in names) else 0
@@ -243,12 +244,10 @@ def _windows(
             f"windows have the {length} pulses of a frame, not {wanted.length} "
             "(processing.window_s)"
         )
-    short = sum(one < length for one in lengths)
+    short = np.count_nonzero(lengths < length)
     if short:
         notes.append(f"{short} stretches are shorter than a window and are left out")
-        kept = zip(signal.stretches, lengths, strict=True)
-        pulses = [np.arange(one.start, one.stop) for one, n in kept if n >= length]
-        signal = signal.at(np.concatenate(pulses))
+        signal = signal.stretches(length + canceller.lost)
     fine = fsst_frames_of(config, duration, signal.prf, signal.f0)
     return signal, tuple(Frames(length, min(one.hop, length)) for one in (wanted, fine))
 

@@ -15,9 +15,10 @@ import scipy.fft
 from radhar_cli.arrays import Bool, Complex, Float, Index
 from radhar_cli.capture.chain import bins_of_part, filled, pulses_between
 from radhar_cli.capture.findings import LOST
-from radhar_cli.capture.recording import Recording, Segments
+from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.room_returns import MAIN_LOBE, QUARTILE, Returns, range_window, returns
 from radhar_cli.capture.tracking import WINDOW_S, track_torso, without_static
+from radhar_cli.processing.pulse_times import PulseTimes
 from radhar_cli.processing.torso_track import TorsoTrack, hann_in_range
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
@@ -69,7 +70,7 @@ class Excerpt(NamedTuple):
     """
 
     w: Waveform
-    segments: Segments
+    segments: PulseTimes
     bins: Complex
     smooth: Complex
     gain: float
@@ -101,7 +102,7 @@ def excerpts(paths: Sequence[Path]) -> Iterator[Excerpt]:
                     yield _excerpt(recording, first, last, segments)
 
 
-def _excerpt(recording: Recording, first: int, last: int, segments: Segments) -> Excerpt:
+def _excerpt(recording: Recording, first: int, last: int, segments: PulseTimes) -> Excerpt:
     w, lost = recording.info.waveform(), (recording.flags[first:last] & LOST).astype(bool)
     window = range_window(w.n_adc)
     bins, smooth = (

@@ -17,7 +17,6 @@ from radhar_cli.capture.recording import (
     MAX_PULSE,
     Label,
     RecordingInfo,
-    Segments,
     SourceNote,
     write_recording,
 )
@@ -26,6 +25,7 @@ from radhar_cli.capture.source import Parts, Source
 from radhar_cli.capture.ti_header import read_header
 from radhar_cli.config.reading import load_mapping, validated, with_overrides
 from radhar_cli.errors import CaptureError
+from radhar_cli.processing.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform
 
 TI_HEADERS = (".json", ".cfg")
@@ -197,12 +197,12 @@ def _reordered(values: Parts, swapped: bool, turned: bool) -> Parts:
     return out
 
 
-def _segments(source: Source, s: CaptureSettings, header: str, notes: list[str]) -> Segments:
+def _segments(source: Source, s: CaptureSettings, header: str, notes: list[str]) -> PulseTimes:
     if source.times is not None:
         return _timed(source, source.times, s, notes)
     if s.prf_hz is None:
         raise CaptureError(f"{header}: prf_hz is missing; --set prf_hz=..., or times=NAME")
-    whole = Segments(np.zeros(1), np.zeros(1, np.int64), source.pulses, s.prf_hz)
+    whole = PulseTimes(np.zeros(1), np.zeros(1, np.int64), source.pulses, s.prf_hz)
     if s.frame_pulses is None and s.frame_s is None:
         return whole
     for key in ("frame_pulses", "frame_s"):
@@ -219,18 +219,18 @@ def _segments(source: Source, s: CaptureSettings, header: str, notes: list[str])
     if gap * s.prf_hz <= GAP:
         prf = s.frame_pulses / s.frame_s
         notes.append(f"frames without gaps: slow time is uniform, {prf:.6g} pulses/s")
-        return Segments(whole.start, whole.first, source.pulses, prf)
+        return PulseTimes(whole.start, whole.first, source.pulses, prf)
     first = np.arange(0, source.pulses, s.frame_pulses)
     notes.append(
         f"slow time is not uniform: {first.size} frames of {s.frame_pulses} pulses "
         f"({s.frame_pulses / s.prf_hz * 1e3:.4g} ms) every {s.frame_s * 1e3:.4g} ms, "
         f"{gap * 1e3:.4g} ms of each without a pulse"
     )
-    return Segments(np.arange(first.size) * s.frame_s, first, source.pulses, s.prf_hz)
+    return PulseTimes(np.arange(first.size) * s.frame_s, first, source.pulses, s.prf_hz)
 
 
-def _timed(source: Source, times: Float, s: CaptureSettings, notes: list[str]) -> Segments:
-    """Segments from the times of the pulses."""
+def _timed(source: Source, times: Float, s: CaptureSettings, notes: list[str]) -> PulseTimes:
+    """Stretches from the times of the pulses."""
     if times.size != source.pulses:
         raise CaptureError(f"{source.name}: {times.size} times; should be {source.pulses}, a pulse")
     if times.size < 2 or not np.isfinite(times).all() or not (np.diff(times) > 0).all():
@@ -255,11 +255,11 @@ def _timed(source: Source, times: Float, s: CaptureSettings, notes: list[str]) -
         prf = inside / float(step[~gaps].sum())
     if prf > MAX_HZ:
         raise CaptureError(f"{source.name}: {prf:.3g} pulses/s; times should be in s")
-    return Segments(times[first] - times[0], first, source.pulses, prf)
+    return PulseTimes(times[first] - times[0], first, source.pulses, prf)
 
 
 def _info(
-    source: Source, s: CaptureSettings, segments: Segments, header: str, notes: list[str]
+    source: Source, s: CaptureSettings, segments: PulseTimes, header: str, notes: list[str]
 ) -> RecordingInfo:
     needed = ["carrier_hz"] + (["bandwidth_hz", "adc_rate_hz"] if source.samples else [])
     for key in needed:
@@ -312,7 +312,7 @@ def write_simulated(out: Path, beat: Complex, waveform: Waveform, label: Label) 
         source=SourceNote(format="simulated"),
     )
     values = np.ascontiguousarray(beat).view(float).reshape(1, samples, pulses, 2)
-    segments = Segments(np.zeros(1), np.zeros(1, np.int64), pulses, waveform.prf)
+    segments = PulseTimes(np.zeros(1), np.zeros(1, np.int64), pulses, waveform.prf)
     return write_recording(out, info, values.dtype, 2, [(0, values)], segments)
 
 

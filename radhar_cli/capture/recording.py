@@ -6,7 +6,6 @@ Beat signals follow radhar's sign: a target at range R lies at exp(-j 2 pi (fc t
 import hashlib
 import json
 from collections.abc import Iterable, Iterator
-from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -15,12 +14,13 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from radhar_cli import __version__
-from radhar_cli.arrays import Complex, Float
+from radhar_cli.arrays import Complex
 from radhar_cli.capture.findings import CLIPPED, LOST, checked
 from radhar_cli.capture.source import PIECE_BYTES, Parts
 from radhar_cli.dataset.untrusted_hdf5 import Samples, UntrustedFile
 from radhar_cli.errors import CaptureError, FolderError, UnfinishedError
 from radhar_cli.new_hdf5 import new_hdf5
+from radhar_cli.processing.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.replacing import replacing
 from radhar_cli.untrusted import Closing
@@ -103,50 +103,13 @@ class RecordingInfo(_Part):
         )
 
 
-class Segments:
-    """Stretches of pulses without a gap.
-
-    Attributes:
-        start: of each, s [S].
-        first: number of its first pulse [S].
-        pulses: of all.
-        prf: within each, Hz.
-    """
-
-    def __init__(self, start: Float, first: NDArray[np.int64], pulses: int, prf: float) -> None:
-        self.start, self.first, self.pulses, self.prf = start, first, pulses, prf
-
-    def __len__(self) -> int:
-        return self.first.size
-
-    @property
-    def lengths(self) -> NDArray[np.int64]:
-        """How many pulses each has."""
-        return np.diff(self.first, append=self.pulses)
-
-    @property
-    def slices(self) -> list[slice]:
-        """Pulses of each."""
-        return [slice(*edges) for edges in pairwise([*self.first.tolist(), self.pulses])]
-
-    @property
-    def duration(self) -> float:
-        """From the first pulse to the end of the last, s."""
-        return float(self.start[-1] - self.start[0] + self.lengths[-1] / self.prf)
-
-    def times(self, pulses: NDArray[Any]) -> Float:
-        """Times (s) of pulse numbers [...]."""
-        at = np.searchsorted(self.first, pulses, side="right") - 1
-        return np.asarray(self.start[at] + (pulses - self.first[at]) / self.prf)
-
-
 def write_recording(
     path: Path,
     info: RecordingInfo,
     number: np.dtype[Any],
     parts: int,
     pieces: Iterable[tuple[int, Parts]],
-    segments: Segments,
+    segments: PulseTimes,
     finished: Any = None,
 ) -> RecordingInfo:
     """Write a recording under another name, then rename it into place.
@@ -253,7 +216,7 @@ class Recording(Closing):
             self._file.close()
             raise
 
-    def _read_segments(self) -> Segments:
+    def _read_segments(self) -> PulseTimes:
         shape = (self.info.segments,)
         start = self._file.column("segment_start", "f8", shape)[:]
         first = self._file.column("segment_first", "i8", shape)[:]
@@ -265,7 +228,7 @@ class Recording(Closing):
             or (np.diff(start) <= 0).any()
         ):
             raise FolderError(f"{self.path}: /segment_first: segments should follow one another")
-        return Segments(start, first, self.info.pulses, self.info.prf_hz)
+        return PulseTimes(start, first, self.info.pulses, self.info.prf_hz)
 
     @property
     def is_complex(self) -> bool:

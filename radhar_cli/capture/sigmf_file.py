@@ -2,7 +2,7 @@
 
 A recording of ours is one stream of channels (receivers), chirp after chirp, at the rate within a
 chirp. What SigMF has no word for, such as the PRF, stands in keys of the extension `radhar`, which
-every other reader may ignore. Segments are captures, labels annotations.
+every other reader may ignore. Stretches are captures, labels annotations.
 """
 
 import hashlib

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from radhar_cli.arrays import Complex
-from radhar_cli.capture.recording import Segments
+from radhar_cli.processing.pulse_times import PulseTimes
 from radhar_cli.processing.torso_track import (
     RangeDoppler,
     TorsoTrack,
@@ -20,7 +20,7 @@ WINDOW_S = 0.16  # of the tracker's frames
 OVERLAP = 0.5
 
 
-def track_torso(bins: Complex, segments: Segments, waveform: Waveform) -> TorsoTrack | None:
+def track_torso(bins: Complex, segments: PulseTimes, waveform: Waveform) -> TorsoTrack | None:
     """Find the torso in range bins [receiver, bin, pulse] from which what stands still was removed.
 
     Frames of the tracker have 0.16 s, less where segments are shorter, and never cross a gap. None

@@ -77,7 +77,7 @@ def exact_echo(
         motion_in_chirp: whether paths go on moving during a chirp.
     """
     waveform, taps = looks[0].fast.waveform, looks[0].taps
-    found = [np.empty((look.fast.rows, look.pulses.size), complex) for look in looks]
+    found = [np.empty((look.fast.rows, look.count), complex) for look in looks]
     canceller, first, still = Fir(taps), 0, None
     carried: Complex = np.empty((waveform.n_adc, 0), complex)
     for block in beat_blocks(source, waveform, receiver, motion_in_chirp):
@@ -90,6 +90,9 @@ def exact_echo(
             continue
         cancelled = canceller(wide)
         for look, x in zip(looks, found, strict=True):
+            if isinstance(look.pulses, range):
+                x[:, first : first + cancelled.shape[1]] = look.fast(cancelled)
+                continue
             here = slice(*np.searchsorted(look.pulses, [first, first + cancelled.shape[1]]))
             x[:, here] = look.fast(cancelled[:, look.pulses[here] - first])
         first += cancelled.shape[1]

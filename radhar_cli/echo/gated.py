@@ -103,7 +103,9 @@ class GatedEcho(DirectEcho):
     @property
     def look(self) -> Look:
         """What of the echo this is."""
-        spans = self.spans or [slice(0, self.waveform.n_pulses)] * (self.bins.stop - self.bins.start)
+        spans = self.spans or [slice(0, self.waveform.n_pulses)] * (
+            self.bins.stop - self.bins.start
+        )
         bins = RangeBins(replace(self.waveform, centred=True), self.bins)
         return Look.of_all("range_signals", bins, spans=spans)
 

@@ -64,6 +64,7 @@ from radhar_cli.processing.image import (
 )
 from radhar_cli.processing.look import Look, RangeBins, RangeSum
 from radhar_cli.processing.power_map import Axis, MapImage, PowerMap
+from radhar_cli.processing.pulse_times import PulseTimes
 from radhar_cli.processing.signal import Signal, shown_pulses
 from radhar_cli.processing.stft import Stft
 from radhar_cli.radar.propagation import Antennas
@@ -224,11 +225,15 @@ SEEN = ("paths", "waveform", "canceller", "receiver")
 
 def signal_of_look(x: Complex, look: Look) -> Signal:
     """The signal of one channel [K, M]; times are those in the middle of the taps."""
-    w, t = look.fast.waveform, look.t + (len(look.taps) - 1) / 2 / look.fast.waveform.prf
+    w, later = look.fast.waveform, (len(look.taps) - 1) / 2
+    times = PulseTimes.even(look.count, w.prf, later / w.prf)
+    if not isinstance(look.pulses, range):
+        each = (look.pulses + later) / w.prf
+        times = PulseTimes(each, np.arange(look.count), look.count, w.prf)
     if not isinstance(look.fast, RangeBins):
-        return Signal(x[None], t, w.prf, w.f0)
+        return Signal(x[None], times, w.f0)
     bins = look.fast.bins or slice(0, w.n_bins)
-    return Signal(x[None], t, w.prf, w.f0, w.range_axis()[bins], bins.start)
+    return Signal(x[None], times, w.f0, w.range_axis()[bins], bins.start)
 
 
 def received(
@@ -294,7 +299,7 @@ def _direct(c: Config) -> Iterator[Product]:
         if not isinstance(seen.canceller, Fir):
             (x,) = exact_echo(seen.paths, [look], static=not seen.canceller.removes_static)
             return received(x, look, seen.receiver, seen.canceller).columns(width)
-        x = look.fast(beat_at(seen.paths, seen.waveform, look.pulses, look.taps))
+        x = look.fast(beat_at(seen.paths, seen.waveform, np.asarray(look.pulses), look.taps))
         return received(x, look, seen.receiver)
 
     yield Product("direct", SEEN[:3], direct, "closed form of the echo at knots")
@@ -413,7 +418,7 @@ def _signals(c: Config) -> Iterator[Product]:
     def denoised(x: Signal) -> Signal:
         given = c.processing.savgol
         smooth = partial(savgol, order=given.order, frame=given.frame)
-        parts = [np.apply_along_axis(smooth, -1, x.x[..., part]) for part in x.stretches]
+        parts = [np.apply_along_axis(smooth, -1, x.x[..., part]) for part in x.times.slices]
         return x.with_samples(parts[0] if len(parts) == 1 else np.concatenate(parts, axis=-1))
 
     for raw in ("signal", *(["range_signals"] if _gated(c) else [])):

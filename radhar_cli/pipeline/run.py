@@ -101,8 +101,10 @@ def process(
         later = after.t + canceller.lost / 2 / signal.prf
         given["torso_track"] = np.interp(later, signal.t, track)
         if gated:
-            middle = Stft(after, given["frames"]).time.values
-            torso = np.interp(middle, signal.t, track) * (SPEED_OF_LIGHT / 2)
+            middle = np.interp(
+                Stft(after, given["frames"]).time.values, signal.t, range(track.size)
+            )
+            torso = track[np.rint(np.round(middle, 6)).astype(np.intp)] * (SPEED_OF_LIGHT / 2)
             given["gate"] = gate_of(config, signal.ranges, torso)
     profiles = after.columns(config.image.size_px[1])
     made = {"signal": after.summed(), "range_signals": after, "range_profiles": profiles}

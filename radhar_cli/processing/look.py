@@ -10,12 +10,12 @@ covariance W W^H in x.
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Float, Index
+from radhar_cli.arrays import Complex, Index
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.radar.waveform import Waveform
 
@@ -163,13 +163,6 @@ def noise_gain(waveform: Waveform) -> float:
     return float(np.sum(np.abs(weights(waveform)) ** 2))
 
 
-def circular_gaussian(rng: np.random.Generator, shape: tuple[int, ...]) -> Complex:
-    """Unit-variance circular Gaussian numbers: real and imaginary parts of variance 1/2."""
-    pairs = rng.standard_normal((*shape, 2))
-    pairs *= np.sqrt(0.5)
-    return pairs.view(np.complex128)[..., 0]
-
-
 @dataclass(frozen=True, eq=False)
 class Look:
     """x[k, m], as the module has it.
@@ -185,7 +178,7 @@ class Look:
 
     name: str
     fast: FastTime
-    pulses: Index
+    pulses: Index | range
     taps: tuple[float, ...] = (1.0,)
     spans: Sequence[slice] | None = None
     memory: dict[str, Any] = field(default_factory=dict)
@@ -199,46 +192,23 @@ class Look:
         spans: Sequence[slice] | None = None,
     ) -> "Look":
         """At all pulses of the waveform."""
-        return cls(name, fast, np.arange(fast.waveform.n_pulses - len(taps) + 1), taps, spans)
+        return cls(name, fast, range(fast.waveform.n_pulses - len(taps) + 1), taps, spans)
+
+    @property
+    def count(self) -> int:
+        """M."""
+        return len(self.pulses)
 
     def part(self, first: int, stop: int) -> "Look":
         """Some consecutive columns, with the same memory."""
         return replace(self, pulses=self.pulses[first:stop])
 
-    @cached_property
-    def t(self) -> Float:
-        """Times of the pulses p_m [M], s."""
-        return self.fast.waveform.times(self.pulses.astype(float))
-
-    def white(self, rng: np.random.Generator, sigma: float = 1.0) -> Complex:
-        """White noise of standard deviation sigma a raw sample, as x shows it [K, M].
-
-        Where no two columns share a pulse, they are independent, of variance sum taps^2, and drawn
-        as such; else the pulses that they need are drawn and cancelled.
-        """
-        rank, reach = self.fast.rank, len(self.taps) - 1
-        if self.spans is not None and self.fast.white:
-            v = np.zeros((rank, self.pulses.size), complex)
-            for row, span in zip(v, self.spans, strict=True):
-                row[span] = self.fast.colour(circular_gaussian(rng, row[span].shape), sigma)
-            return v
-        if self.spans is not None:
-            v = circular_gaussian(rng, (rank, self.pulses.size))
-        elif self.pulses.size == 1 or np.all(np.diff(self.pulses) > reach):
-            v = circular_gaussian(rng, (self.pulses.size, rank)).T
-            if reach:
-                v *= np.sqrt(np.sum(np.square(self.taps)))
-        else:
-            needed = np.unique(self.pulses + np.arange(reach + 1)[:, None])
-            drawn = circular_gaussian(rng, (needed.size, rank)).T
-            v = self.taken(lambda pulses: drawn[:, np.searchsorted(needed, pulses)])
-        return self.fast.colour(v, sigma)
-
     def taken(self, process: Callable[[Index], Complex]) -> Complex:
         """sum_j taps[j] v[..., p_m + j] of a process v that any pulses may be asked of."""
-        taken: Complex = self.taps[0] * process(self.pulses)
+        pulses = np.asarray(self.pulses)
+        taken: Complex = self.taps[0] * process(pulses)
         for lag, tap in enumerate(self.taps[1:], 1):
-            taken += tap * process(self.pulses + lag)
+            taken += tap * process(pulses + lag)
         return taken
 
     def in_order(self, following: Callable[[int], Complex]) -> Complex:
@@ -247,16 +217,16 @@ class Look:
         Args:
             following: makes as many of the next pulses as it is asked for.
         """
-        reach = len(self.taps) - 1
-        if reach == 0 and self.pulses.size == self.pulses[-1] - self.pulses[0] + 1:
-            return following(self.pulses.size)
-        x = np.zeros((self.fast.rank, self.pulses.size), complex)
-        held, stop = np.empty((len(x), 0), complex), int(self.pulses[-1]) + reach + 1
+        pulses, reach = np.asarray(self.pulses), len(self.taps) - 1
+        if reach == 0 and self.count == pulses[-1] - pulses[0] + 1:
+            return following(self.count)
+        x = np.zeros((self.fast.rank, self.count), complex)
+        held, stop = np.empty((len(x), 0), complex), int(pulses[-1]) + reach + 1
         for first in range(0, stop, BLOCK):
             held = np.concatenate([held, following(min(BLOCK, stop - first))], axis=1)
             begin = min(first + BLOCK, stop) - held.shape[1]
-            here = slice(*np.searchsorted(self.pulses, [begin, begin + held.shape[1] - reach]))
+            here = slice(*np.searchsorted(pulses, [begin, begin + held.shape[1] - reach]))
             for lag, tap in enumerate(self.taps):
-                x[:, here] += tap * held[:, self.pulses[here] - begin + lag]
+                x[:, here] += tap * held[:, pulses[here] - begin + lag]
             held = held[:, held.shape[1] - reach :]
         return x

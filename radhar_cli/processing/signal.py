@@ -3,12 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 
 from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.processing.canceller import Canceller
+from radhar_cli.processing.pulse_times import PulseTimes
 
 
 def shown_pulses(count: int, width: int) -> Index:
@@ -30,16 +30,14 @@ class Signal:
 
     Attributes:
         x: [channel, row, pulse]; rows are range bins, or one coherent sum over them.
-        t: times of the pulses [M], s; rising, 1/PRF apart but for gaps.
-        prf: pulses per second between gaps, Hz.
+        times: of the pulses.
         f0: frequency at which the Doppler is read, Hz.
         ranges: of the rows, m; None of a sum over range.
         first: number of the first row's range bin, as a `Gate` counts them.
     """
 
     x: Complex
-    t: Float
-    prf: float
+    times: PulseTimes
     f0: float
     ranges: Float | None = None
     first: int = 0
@@ -47,34 +45,50 @@ class Signal:
     @property
     def pulses(self) -> int:
         """M."""
-        return self.t.size
+        return int(self.x.shape[-1])
+
+    @property
+    def prf(self) -> float:
+        """Pulses per second between gaps, Hz."""
+        return self.times.prf
 
     @cached_property
-    def stretches(self) -> list[slice]:
-        """Consecutive pulses without a gap between them."""
-        gaps = np.flatnonzero(np.diff(self.t) > 1.5 / self.prf) + 1
-        edges = [0, *gaps.tolist(), self.pulses]
-        return [slice(*pair) for pair in pairwise(edges)]
+    def t(self) -> Float:
+        """Times of the pulses [M], s."""
+        return self.times.times(np.arange(self.pulses))
 
     def with_samples(self, x: Complex) -> "Signal":
         """The same with other samples."""
         return replace(self, x=x)
 
-    def at(self, pulses: Index) -> "Signal":
-        """Some of the pulses."""
-        return replace(self, x=self.x[..., pulses], t=self.t[pulses])
+    def at(self, pulses: Index, t: Float | None = None) -> "Signal":
+        """Some of the pulses, under their own times or others (s)."""
+        t = self.times.times(pulses) if t is None else t
+        each = PulseTimes(t, np.arange(pulses.size), pulses.size, self.prf)
+        return replace(self, x=self.x[..., pulses], times=each)
 
     def summed(self) -> "Signal":
         """The coherent sum over the rows."""
         return replace(self, x=self.x.sum(axis=1, keepdims=True), ranges=None, first=0)
 
     def columns(self, width: int) -> "Signal":
-        """The pulses that a range-time map shows: `shown_pulses`, or over gaps nearest to even
-        times, which they are given."""
-        if len(self.stretches) == 1:
+        """The pulses that a range-time map shows: `shown_pulses`, or with gaps those nearest to
+        even times, under these."""
+        if len(self.times) == 1:
             return self.at(shown_pulses(self.pulses, width))
-        even = self.t[0] + (np.arange(width) + 0.5) / width * (self.t[-1] - self.t[0])
-        return replace(self.at(nearest(self.t, even)), t=even)
+        first, last = self.times.times(np.array([0, self.pulses - 1]))
+        even = first + (np.arange(width) + 0.5) / width * (last - first)
+        return self.at(nearest(self.t, even), even)
+
+    def stretches(self, least: int) -> "Signal":
+        """The stretches that have so many pulses."""
+        kept = self.times.lengths >= least
+        if kept.all():
+            return self
+        parts = [
+            self.x[..., part] for part, one in zip(self.times.slices, kept, strict=True) if one
+        ]
+        return replace(self, x=np.concatenate(parts, axis=-1), times=self.times.only(kept))
 
     def cancelled(self, canceller: Canceller, spans: Sequence[slice] | None = None) -> "Signal":
         """The same after a canceller, stretch by stretch; those too short for it are left out.
@@ -83,16 +97,15 @@ class Signal:
             canceller: along the pulses.
             spans: pulses of each row that count, of a signal without gaps; the others become 0.
         """
+        whole = self.stretches(canceller.lost + 1)
+        times = whole.times.shortened(canceller.lost, canceller.delay)
         if spans is not None:
-            x = np.zeros((*self.x.shape[:-1], self.pulses - canceller.lost), self.x.dtype)
+            x = np.zeros((*self.x.shape[:-1], times.pulses), self.x.dtype)
             for row, span in enumerate(spans):
                 if span.stop - span.start > canceller.lost:
                     some = slice(span.start, span.stop - canceller.lost)
                     x[:, row, some] = canceller(self.x[:, row, span])
-            kept = [slice(self.pulses)]
         else:
-            kept = [part for part in self.stretches if part.stop - part.start > canceller.lost]
-            parts = [canceller(self.x[..., part]) for part in kept]
+            parts = [canceller(whole.x[..., part]) for part in whole.times.slices]
             x = parts[0] if len(parts) == 1 else np.concatenate(parts, axis=-1)
-        t = np.concatenate([self.t[part.start : part.stop - canceller.lost] for part in kept])
-        return replace(self, x=x, t=t + canceller.delay / self.prf)
+        return replace(self, x=x, times=times)

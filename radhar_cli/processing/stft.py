@@ -50,7 +50,7 @@ class Stft:
     @cached_property
     def starts(self) -> Index:
         """First sample of every frame."""
-        return self.frames.starts(self.signal.stretches)
+        return self.frames.starts(self.signal.times.slices)
 
     @cached_property
     def frequency(self) -> Axis:
@@ -63,7 +63,7 @@ class Stft:
     def time(self) -> Axis:
         """Middle of every frame, s."""
         later = (self.frames.length - 1) / 2 / self.signal.prf
-        return Axis("time", "s", self.signal.t[self.starts] + later)
+        return Axis("time", "s", self.signal.times.times(self.starts) + later)
 
     @cached_property
     def exponent(self) -> int:

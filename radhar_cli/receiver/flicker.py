@@ -7,9 +7,10 @@ from functools import lru_cache
 import numpy as np
 
 from radhar_cli.arrays import Complex, Float
-from radhar_cli.processing.look import Look, circular_gaussian
+from radhar_cli.processing.look import Look
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.receiver.impairment import Impairment
+from radhar_cli.receiver.noise import circular_gaussian
 
 POLES_A_DECADE = 2
 

@@ -15,6 +15,38 @@ def noise_variance(signal_power: float, snr_db: float) -> float:
     return signal_power / 10 ** (snr_db / 10)
 
 
+def circular_gaussian(rng: np.random.Generator, shape: tuple[int, ...]) -> Complex:
+    """Unit-variance circular Gaussian numbers: real and imaginary parts of variance 1/2."""
+    pairs = rng.standard_normal((*shape, 2))
+    pairs *= np.sqrt(0.5)
+    return pairs.view(np.complex128)[..., 0]
+
+
+def white_noise(look: Look, rng: np.random.Generator, sigma: float = 1.0) -> Complex:
+    """White noise of standard deviation sigma a raw sample, as a look shows it [K, M].
+
+    Where no two columns share a pulse, they are independent, of variance sum taps^2, and drawn as
+    such; else the pulses that they need are drawn and cancelled.
+    """
+    fast, rank, reach = look.fast, look.fast.rank, len(look.taps) - 1
+    if look.spans is not None and fast.white:
+        v = np.zeros((rank, look.count), complex)
+        for row, span in zip(v, look.spans, strict=True):
+            row[span] = fast.colour(circular_gaussian(rng, row[span].shape), sigma)
+        return v
+    if look.spans is not None:
+        v = circular_gaussian(rng, (rank, look.count))
+    elif look.count == 1 or reach == 0 or np.all(np.diff(look.pulses) > reach):
+        v = circular_gaussian(rng, (look.count, rank)).T
+        if reach:
+            v *= np.sqrt(np.sum(np.square(look.taps)))
+    else:
+        needed = np.unique(np.asarray(look.pulses) + np.arange(reach + 1)[:, None])
+        drawn = circular_gaussian(rng, (needed.size, rank)).T
+        v = look.taken(lambda pulses: drawn[:, np.searchsorted(needed, pulses)])
+    return fast.colour(v, sigma)
+
+
 @dataclass(frozen=True)
 class WhiteNoise(Impairment):
     """White noise of one receive channel.
@@ -31,6 +63,6 @@ class WhiteNoise(Impairment):
         """x + sigma v, v of covariance W W^H: of raw samples blocks of any length give the same."""
         if "white noise" not in look.memory:
             look.memory["white noise"] = self.stream(look.name)
-        noisy = look.white(look.memory["white noise"], self.sigma)
+        noisy = white_noise(look, look.memory["white noise"], self.sigma)
         noisy += x
         return noisy

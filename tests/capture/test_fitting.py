@@ -13,10 +13,11 @@ from radhar_cli.activity import ACTIVITIES
 from radhar_cli.capture.fitting import Fit, fit, line_keys
 from radhar_cli.capture.importing import write_simulated
 from radhar_cli.capture.noise_spectrum import FoundLine, OnOff
-from radhar_cli.capture.recording import Label, RecordingInfo, Segments, SourceNote, write_recording
+from radhar_cli.capture.recording import Label, RecordingInfo, SourceNote, write_recording
 from radhar_cli.capture.room_returns import Returns, peaks
 from radhar_cli.config import load_config
 from radhar_cli.errors import CaptureError
+from radhar_cli.processing.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.receiver.interference import Line
 from radhar_cli.simulation.simulate import Simulation, simulate
@@ -181,7 +182,7 @@ def test_frames_with_gaps_between(tmp_path: Path) -> None:
         receiver_delay_s=[0.0],
         source=SourceNote(format="test"),
     )
-    segments = Segments(kept[:, 0] / 600, np.arange(len(kept)) * 64, kept.size, 600.0)
+    segments = PulseTimes(kept[:, 0] / 600, np.arange(len(kept)) * 64, kept.size, 600.0)
     path = tmp_path / "frames.h5"
     write_recording(path, info, values.dtype, 2, [(0, values)], segments)
     found = fit([path])

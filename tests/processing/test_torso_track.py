@@ -1,11 +1,13 @@
 """Tracking the torso in range-Doppler maps: gaps, ambiguous velocities, limbs."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.echo.beat import beat_matrix
-from radhar_cli.processing.range_compression import range_bins
+from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.torso_track import (
     RangeDoppler,
     TorsoTrack,
@@ -29,7 +31,8 @@ def bins_of(
     beat = beat_matrix(delay, amplitude, w)
     rng = np.random.default_rng(seed)
     pairs = rng.standard_normal((2, *beat.shape))
-    return range_bins(beat + noise * (pairs[0] + 1j * pairs[1]), w)[None]
+    noisy = beat + noise * (pairs[0] + 1j * pairs[1])
+    return range_compression(noisy, replace(w, centred=False))[None]
 
 
 def track(bins: Complex, w: Waveform = WAVEFORM) -> TorsoTrack | None:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from radhar_cli.arrays import Bool, Complex, Float
+from radhar_cli.arrays import Bool, Complex
 from radhar_cli.capture.findings import LOST
 from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.tracking import track_torso, without_static
@@ -192,7 +192,6 @@ def bins_of_part(
     chosen: Sequence[int],
     first: int,
     last: int,
-    window: Float | None = None,
 ) -> Complex:
     """Range bins [receiver, K, M] of pulses first .. last - 1, referred to the chirp's start.
 
@@ -201,7 +200,6 @@ def bins_of_part(
         w: its chirps.
         chosen: receivers.
         first, last: pulses.
-        window: over the samples of a chirp [N_ADC]; None is none.
 
     Raises:
         CaptureError: they are more than MAX_BYTES.
@@ -212,8 +210,6 @@ def bins_of_part(
     step = max(PIECE_SAMPLES // (w.n_fft * recording.info.receivers), 1)
     for at in range(first, last, step):
         beat = recording.beat(at, min(at + step, last))
-        if window is not None:
-            beat *= window[:, None]
         for row, number in enumerate(chosen):
             x[row, :, at - first : at - first + beat.shape[2]] = range_compression(beat[number], w)
     return x

@@ -16,13 +16,13 @@ def fit(
 ) -> None:
     """Read a config to simulate by off recordings.
 
-    It has their waveform, SNR, ranges, noise and what stands in the room.
+    It has their waveform, SNR and ranges; the noise floor is printed.
 
     Example:
 
       radhar fit walk.h5 fall.h5 -o measured.yaml
 
-    A figure of measured and fitted values is written next to the config, as .png.
+    A figure of noise floor and SNRs is written next to the config, as .png.
     """
     import json
 
@@ -38,7 +38,7 @@ def fit(
     refuse_to_replace(out, overwrite, "measured.yaml")
     fitted = read_off(recordings)
     for key, value in fitted.numbers().items():
-        tell(f"  {key:<16} {value:.4g}")
+        tell(f"  {key:<19} {value:.4g}")
     text = f"# Fitted to stretches of recordings: {len(fitted.parts)}.\n"
     lines = [f"{key}: {json.dumps(value)}" for key, value in fitted.document.items()]
     out.parent.mkdir(parents=True, exist_ok=True)

@@ -8,7 +8,6 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from radhar_cli.figures.page import page, png_bytes
-from radhar_cli.tradeoff.accuracy import Accuracy
 from radhar_cli.tradeoff.study import Row
 from radhar_cli.tradeoff.text import ENGINES
 
@@ -47,12 +46,11 @@ def frontier(points: Sequence[CostPoint]) -> list[CostPoint]:
     return best
 
 
-def tradeoff_png(title: str, rows: Sequence[Row], accuracies: Sequence[Accuracy]) -> bytes:
-    """Draw time against error, the switches, and accuracies where there are any."""
+def tradeoff_png(title: str, rows: Sequence[Row]) -> bytes:
+    """Draw time against error, and the switches."""
     engines = [row for row in rows if row.setting.group in ENGINES and row.times]
-    count = 3 + bool(accuracies)
-    figure = page(5.2 * count, 4.8)
-    panels = figure.subplots(1, count)
+    figure = page(15.6, 4.8)
+    panels = figure.subplots(1, 3)
     figure.suptitle(title)
     for axes, part, column in (
         (panels[0], "echo alone", "echo_ratio"),
@@ -61,8 +59,6 @@ def tradeoff_png(title: str, rows: Sequence[Row], accuracies: Sequence[Accuracy]
         points = [CostPoint.of(row, column) for row in engines]
         _draw_costs(axes, points, f"{part}: time over the default's")
     _draw_switches(panels[2], rows)
-    if accuracies:
-        _draw_accuracies(panels[3], accuracies)
     return png_bytes(figure)
 
 
@@ -132,19 +128,6 @@ def _draw_switches(axes: Axes, rows: Sequence[Row]) -> None:
     axes.set_xlim(-100, 15)
     axes.axvline(0, color="0.5", lw=0.8)
     axes.set_xlabel("what is missed without it (dB of the signal), median")
-
-
-def _draw_accuracies(axes: Axes, accuracies: Sequence[Accuracy]) -> None:
-    rows = range(len(accuracies))
-    mean = [100 * a.mean for a in accuracies]
-    interval = [
-        [100 * max(0, a.mean - a.low) for a in accuracies],
-        [100 * max(0, a.high - a.mean) for a in accuracies],
-    ]
-    axes.errorbar(mean, list(rows), xerr=interval, fmt="o", capsize=3)
-    axes.set_yticks(rows, [a.name for a in accuracies], fontsize=8)
-    axes.set_xlabel("accuracy on the reference (%), 95 % interval")
-    axes.grid(alpha=0.3)
 
 
 def _error(point: CostPoint, exact: float) -> float:

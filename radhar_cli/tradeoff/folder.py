@@ -26,8 +26,7 @@ def reserve(folder: Path, config: Config, overwrite: bool) -> None:
     if old is None:
         refuse_foreign_files(folder, "sweep")
     elif overwrite:
-        for part in ("measured", "accuracy"):
-            shutil.rmtree(folder / WORK / part, ignore_errors=True)
+        shutil.rmtree(folder / WORK / "measured", ignore_errors=True)
     else:
         refuse_differences(folder, "config's sweep", differences(old, new))
     write_whole(folder, path, json.dumps(new).encode())

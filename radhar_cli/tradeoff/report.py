@@ -2,14 +2,12 @@
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict
 from math import inf
 from pathlib import Path
 from typing import Any
 
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.learning.tables import csv_text
-from radhar_cli.tradeoff.accuracy import Accuracy
 from radhar_cli.tradeoff.figure import tradeoff_png
 from radhar_cli.tradeoff.study import Row
 from radhar_cli.tradeoff.text import markdown
@@ -53,19 +51,17 @@ def write_report(
     title: str,
     command: str,
     rows: Sequence[Row],
-    accuracies: Sequence[Accuracy],
     conditions: dict[str, Any],
 ) -> list[Path]:
     """Write the four files; return their paths."""
     records = [record(row) for row in rows]
-    accuracy = {"accuracy": [asdict(each) for each in accuracies]} if accuracies else {}
-    numbers = {"command": command, **conditions, "settings": records, **accuracy}
+    numbers = {"command": command, **conditions, "settings": records}
     header = list(records[0])
     files = {
         CSV: csv_text(header, ([one[name] for name in header] for one in records)).encode(),
         JSON: (json.dumps(_finite(numbers), indent=2) + "\n").encode(),
-        FIGURE: tradeoff_png(title, rows, accuracies),
-        TEXT: markdown(title, command, FIGURE, records, accuracies, conditions).encode(),
+        FIGURE: tradeoff_png(title, rows),
+        TEXT: markdown(title, command, FIGURE, records, conditions).encode(),
     }
     for name, data in files.items():
         write_whole(folder, folder / name, data)

@@ -8,7 +8,6 @@ from operator import getitem
 from radhar_cli.config.identity import resolved
 from radhar_cli.config.number import nominal
 from radhar_cli.config.schema import MAP_NAMES, Config, EngineConfig
-from radhar_cli.tradeoff.trial import Trial
 
 BUDGETS = (-20, -30, -40, -50, -60, -70, -80, -100, -120)
 SIZES = (64, 128, 256, 512)
@@ -126,37 +125,6 @@ def _switches(config: Config) -> list[Setting]:
             _switch("Fresnel, parallel", "wall.fresnel=parallel"),
         ]
     return switches
-
-
-def trials(config: Config) -> list[Trial]:
-    """What a network is trained on, and the reference it is tested on.
-
-    Physics that is left out: trained without it and with it, tested on data that have it. Motion
-    within the chirp is not among them: its data sets would take hours.
-    """
-    budgets = sorted({-20, -40, -60, -100, round(EngineConfig().tolerance_db)}, reverse=True)
-    rows = [Trial(f"{db} dB", budget(db), CUBE) for db in budgets]
-    rows.append(Trial("cube", CUBE, CUBE))
-    for more in ("image.size_px=32", "maps=[fsst]"):
-        name = more.partition("=")[2].strip("[]") + (" px" if "size" in more else "")
-        rows.append(Trial(name, (*DIRECT, more), (*CUBE, more)))
-    switches: dict[str, tuple[str, ...]] = {
-        "residual video phase": ("radar.residual_video_phase=true",)
-    }
-    if not config.classes:  # the paper has no sequences
-        name, *on = _other_motion(config)
-        switches[name] = tuple(on)
-    if config.wall is not None:
-        switches |= {
-            "refraction": ("wall.rays=refracted",),
-            "Fresnel by angle": ("wall.fresnel=perpendicular",),
-        }
-    for name, overrides in switches.items():
-        rows += [
-            Trial(f"without {name}, tested with it", DIRECT, (*CUBE, *overrides)),
-            Trial(f"with {name}", (*DIRECT, *overrides), (*CUBE, *overrides)),
-        ]
-    return rows
 
 
 def _other_motion(config: Config) -> tuple[str, ...]:

@@ -4,8 +4,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import inf
 from typing import Any
 
-from radhar_cli.tradeoff.accuracy import Accuracy
-
 Record = Mapping[str, Any]
 Column = tuple[str, Callable[[Record], str]]
 ENGINES = ("budget", "precision", "engine")
@@ -16,7 +14,6 @@ def markdown(
     command: str,
     figure: str,
     records: Sequence[Record],
-    accuracies: Sequence[Accuracy],
     conditions: Mapping[str, Any],
 ) -> str:
     """The whole report."""
@@ -37,12 +34,6 @@ def markdown(
             _IMAGE, (one for one in records if one["group"] in ("image size", "image kind", "map"))
         ),
     ]
-    if accuracies:
-        parts += [
-            "## What a network makes of it",
-            _learned(conditions),
-            _rows(("trained on", "accuracy %", "interval %", "seeds %"), map(_score, accuracies)),
-        ]
     return "\n\n".join(parts) + "\n"
 
 
@@ -57,19 +48,6 @@ def _conditions(conditions: Mapping[str, Any]) -> str:
         "everything from the scene to levels and entropy; its echo is paths and slow-time signal "
         "alone."
     )
-
-
-def _learned(conditions: Mapping[str, Any]) -> str:
-    text = (
-        f"smallnet at 64 px, {conditions['epochs']} epochs on {conditions['train_per_class']} "
-        f"samples a class at {conditions['snr_db']:g} dB SNR, tested on "
-        f"{conditions['test_per_class']} a class of exact data from another seed; mean over the "
-        "training seeds, Wilson's 95 % interval for the number of test images. Trials share "
-        "scenes and test images: differences between them are surer than the intervals."
-    )
-    if conditions["smoke_run"]:
-        text += " **A smoke run: this little data teaches nothing, and the numbers mean nothing.**"
-    return text
 
 
 def _number(name: str, digits: int) -> Callable[[Record], str]:
@@ -133,20 +111,7 @@ _IMAGE: tuple[Column, ...] = (
 )
 
 
-def _score(accuracy: Accuracy) -> Sequence[str]:
-    return (
-        accuracy.name,
-        f"{100 * accuracy.mean:.1f}",
-        f"{100 * accuracy.low:.1f} to {100 * accuracy.high:.1f}",
-        ", ".join(f"{100 * seed:.1f}" for seed in accuracy.seeds),
-    )
-
-
 def _table(columns: Sequence[Column], records: Iterable[Record]) -> str:
     rows = ([text(one) for _, text in columns] for one in records)
-    return _rows([name for name, _ in columns], rows)
-
-
-def _rows(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    lines = [header, ["---"] * len(header), *rows]
+    lines = [[name for name, _ in columns], ["---"] * len(columns), *rows]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)

@@ -18,7 +18,7 @@ from radhar_cli.tradeoff import study
 from radhar_cli.tradeoff.figure import CostPoint, frontier
 from radhar_cli.tradeoff.result_cache import ResultCache
 from radhar_cli.tradeoff.scenes import Scenes
-from radhar_cli.tradeoff.settings import sweep, trials
+from radhar_cli.tradeoff.settings import sweep
 
 CONFIG = """
 motion: {model: paper}
@@ -282,16 +282,6 @@ class TestSettings:
         names = [setting.name for setting in study._possible(scenes, Listener())]
         assert "doppler: gate instead of half_band" in names
 
-    def test_sequences_have_no_trial_under_the_papers_motion(self, config):
-        own = "classes={home: {sequence: [walking]}}"
-        human = self.scenes(config, "motion.model=human").config()
-        with_own = self.scenes(config, "motion.model=human", own).config()
-        names = [{trial.name for trial in trials(each)} for each in (human, with_own)]
-        assert names[0] - names[1] == {
-            "with motion: paper instead of human",
-            "without motion: paper instead of human, tested with it",
-        }
-
 
 class TestFrontier:
     def point(self, name, time, error_db):
@@ -306,27 +296,3 @@ class TestFrontier:
             self.point("good", 2, -60),
         ]
         assert [p.name for p in frontier(points)] == ["fast and bad", "good", "exact"]
-
-
-@pytest.mark.usefixtures("few")
-def test_train_warns_that_few_trials_mean_little(config, tmp_path, monkeypatch):
-    """The whole way with --train, on two trials."""
-    monkeypatch.setattr("radhar_cli.tradeoff.settings.trials", lambda c: trials(c)[:2])
-    out, short = tmp_path / "out", ("--set", "activities=[punching, walking]")
-    outcome = tradeoff(config, out, "--train", "--jobs", "1", *short)
-    assert outcome.exit_code == 0, outcome.output
-    found = json.loads((out / "tradeoff.json").read_text())
-    assert [one["name"] for one in found["accuracy"]] == ["-20 dB", "-40 dB"]
-    assert all(one["low"] <= one["mean"] <= one["high"] for one in found["accuracy"])
-    assert found["smoke_run"]
-    assert "smoke run" in (out / "tradeoff.md").read_text()
-    assert not (out / ".radhar" / "accuracy" / "data").exists()
-
-
-def test_every_trial_is_a_config(config):
-    scenes = Scenes(config, ("wall={}",), quick=False)
-    chosen = trials(scenes.config())
-    assert len({trial.name for trial in chosen}) == len(chosen)
-    for trial in chosen:
-        assert scenes.config(trial.train).engine.kind in ("direct", "cube")
-        assert scenes.config(trial.test).engine.kind == "cube"

@@ -195,7 +195,7 @@ def test_only_one_module_prints() -> None:
 
 def test_hdf5_is_opened_for_reading_in_one_place_and_for_writing_in_two() -> None:
     door, in_memory = "dataset/untrusted_hdf5.py", "dataset/shards.py"
-    fillers = {"dataset/assembly.py", "dataset/formats/mat.py", "simulation/scene_file.py"}
+    fillers = {"dataset/assembly.py", "simulation/scene_file.py"}
     for path in files():
         name = str(path.relative_to(PACKAGE))
         if "h5py" in imports(path):

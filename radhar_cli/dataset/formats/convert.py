@@ -14,7 +14,7 @@ from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.errors import FolderError, UnfinishedError
 from radhar_cli.progress import Progress
 
-FORMATS = ("webdataset", "parquet", "npy", "mat")
+FORMATS = ("webdataset", "parquet")
 Writer: TypeAlias = Callable[[Dataset, Path, Progress], None]
 
 

@@ -44,7 +44,6 @@ from radhar_cli.learning.images.synthesised import (
     TrainingStream,
     stream_and_validation,
     stream_data,
-    streamed_scenes,
 )
 from radhar_cli.learning.machine import choose_device, out_of_memory, repeatable
 from radhar_cli.learning.models.build import build_model
@@ -270,12 +269,6 @@ class _Training:
             for note in started.notes if started else ():
                 progress.say(note)
         metadata, digests = _metadata(task, plan, group, started)
-        seen = streamed_scenes(metadata.data, images, images.rows("val"))
-        if seen and group.is_main:
-            progress.say(
-                f"warning: {seen} of the validation images show the person and motion of samples "
-                "of the stream; validate on data of another seed"
-            )
 
         def reserve() -> None:
             run.reserve_run(task.folder, metadata, task.overwrite)

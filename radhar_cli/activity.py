@@ -93,7 +93,7 @@ class Activity:
         paper: dotted config keys of the motion and timing numbers this activity depends on,
             besides the position and the heading, which all of them use; of the paper's model.
         human: the same of the human model.
-        motion: makes the motion of a Scene; None for what `motion:` decides about.
+        motion: makes the motion of a `scene.Person`; None for what `motion:` decides about.
     """
 
     number: int
@@ -199,7 +199,7 @@ def add_activity(
 
     Args:
         slug: lower-case letters, digits and underscores.
-        motion: makes the motion of a Scene from the numbers of `Scene.config`. A data set built by
+        motion: makes the motion of a `scene.Person` from their numbers. A data set built by
             several processes needs a function that can be pickled.
         uses: keys of `motion:` and `timing:` beside the place; other numbers are not drawn.
 

@@ -42,7 +42,7 @@ def scene_of(radar: tuple[float, int, float], activity: str, scatterers: str) ->
 def point_counts(scene: Scene) -> list[int]:
     """Points of each segment."""
     antennas, waveform = antennas_of(scene.config), waveform_of(scene.config)
-    paths = segment_paths(scene, motion_of(scene), antennas, None, waveform)
+    paths = segment_paths(scene.people[0], motion_of(scene.people[0]), antennas, None, waveform)
     assert paths is not None
     return [points.share.size for points in paths.points]
 

@@ -36,7 +36,7 @@ def scene_of(way: dict[str, Any]) -> Scene:
 
 def bodies(scene: Scene, count: int) -> tuple[Motion, ...]:
     """Bodies side by side."""
-    one: Any = motion_of(scene)
+    one: Any = motion_of(scene.people[0])
     return tuple(replace(one, start=(2.0 + 0.013 * n, 0.05 * n)) for n in range(count))
 
 

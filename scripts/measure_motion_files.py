@@ -71,7 +71,7 @@ class Walk:
 def walk() -> Walk:
     config = Config.model_validate(CONFIG)
     scene = nominal_scene(config, activity_named("walking"))
-    return Walk(scene, motion_of(scene))
+    return Walk(scene, motion_of(scene.people[0]))
 
 
 def from_file(known: Walk, rate: float, noise_mm: float, low_pass: float | None, draw: int,

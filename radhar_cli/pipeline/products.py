@@ -145,7 +145,9 @@ def _physics(c: Config) -> Iterator[Product]:
     yield Product("waveform", ("scene",), lambda s: waveform_of(s.config), "chirps and pulses")
     yield Product("antennas", ("scene",), lambda s: antennas_of(s.config), "positions and gains")
     yield Product("wall", ("scene",), lambda s: wall_of(s.config), "the slab, or none")
-    yield Product("motions", ("scene",), lambda s: (motion_of(s),), "scatterers that move")
+    yield Product(
+        "motions", ("scene",), lambda s: tuple(map(motion_of, s.people)), "scatterers that move"
+    )
     room = ("room",) if c.room.reflectors else ()
     if room:
         yield Product("room", ("scene",), reflectors_of, "what stands in the room")

@@ -118,7 +118,7 @@ def simulate(
     config = config.model_copy(update={"maps": maps, **({} if seed is None else {"seed": seed})})
     scene = scene_of(config, activity, index, nominal)
     warnings = scene_warnings(scene)
-    motion = motion_of(scene)
+    motion = motion_of(scene.people[0])
     kept = motion if joint is None else Only(motion, (_joint(joint, motion.names),))
     asked = [*SIGNALS, *maps, "waveform", "antennas", "wall"]
     asked += ["accuracy"] if config.engine.kind == "direct" else []

@@ -144,7 +144,7 @@ class TestRefusal:
         """Feet that stand still to an ulp, alone: what moves is rounding, in either engine."""
         config = Config.model_validate(CONFIG | {"duration_s": 2.0})
         scene = draw_scene(config, ACTIVITIES[5], 0)
-        foot = Only(motion_of(scene), (JOINTS.index("right_ankle"),))
+        foot = Only(motion_of(scene.people[0]), (JOINTS.index("right_ankle"),))
         with pytest.raises(
             SceneError, match=r"no tolerance can be kept here .* engine\.fallback: cube"
         ):

@@ -25,7 +25,7 @@ from radhar_cli.processing.look import Look
 from radhar_cli.processing.power_map import Axis, PowerMap
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.receiver.impairment import Impairment
-from radhar_cli.scene import Scene, nominal_scene
+from radhar_cli.scene import Person, Scene, nominal_scene
 from radhar_cli.simulation.simulate import RAW_ECHO
 
 C = 299_792_458.0
@@ -76,9 +76,9 @@ class Ball:
     torso = positions
 
 
-def swinging(scene: Scene) -> Ball:
-    """A user-defined class: it reads what it needs off the config of the scene."""
-    return Ball(scene.config.motion.range_m)
+def swinging(person: Person) -> Ball:
+    """A user-defined class: it reads what it needs off the numbers of the person."""
+    return Ball(person.motion.range_m)
 
 
 def test_a_motion_with_other_joints() -> None:
@@ -94,7 +94,7 @@ def test_a_motion_with_other_joints() -> None:
 
 def test_a_second_person() -> None:
     scene = walking()
-    first = motion_of(scene)
+    first = motion_of(scene.people[0])
     second = replace(first, start=(3.0, 1.0), angle=np.pi)
     alone = [record(scene, ["signal"], motions=(one,))["signal"].x for one in (first, second)]
     both = record(scene, ["signal"], motions=(first, second))["signal"].x
@@ -109,7 +109,7 @@ def test_a_second_receive_channel() -> None:
     apart = C / waveform.f0 / 2
     x, y, z = antennas.rx
     beside = replace(antennas, rx=(x, y + apart, z))
-    left = replace(motion_of(scene), start=(3.0, 1.5), angle=0.0)
+    left = replace(motion_of(scene.people[0]), start=(3.0, 1.5), angle=0.0)
     channels = [
         record(scene, ["signal"], motions=(left,), antennas=one)["signal"].x
         for one in (antennas, beside)

@@ -141,7 +141,7 @@ def test_rcs_from_1e_12_to_1e12() -> None:
 def test_persons_scale(height: float) -> None:
     """Every link keeps its length, h/1.8 of the reference person's, at every time."""
     config = config_of(subject={"height_m": height})
-    motion = motion_of(nominal_scene(config, ACTIVITIES[7]))
+    motion = motion_of(nominal_scene(config, ACTIVITIES[7]).people[0])
     p = motion.positions(np.linspace(0, 2, 50))
     for joint, parent in enumerate(PARENTS):
         if parent is not None:

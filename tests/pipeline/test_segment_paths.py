@@ -307,7 +307,7 @@ class TestOneJoint:
     def test_one_joint_echoes_alone_in_the_shadow_of_the_whole_body(self):
         scene = scene_of("walking")
         whole = record(scene, ["paths"])["paths"]
-        person = motion_of(scene)
+        person = motion_of(scene.people[0])
         one = Only(person, (JOINTS.index("right_ankle"),))
         kept = record(scene, ["paths"], motions=(one,))["paths"]
         names = [part.name for part in SEGMENTS]
@@ -356,7 +356,7 @@ def test_joints_without_a_segment_stay_points():
 
 def test_two_people_do_not_have_the_same_points():
     scene = scene_of("walking")
-    one = motion_of(scene)
+    one = motion_of(scene.people[0])
     both = record(scene, ["paths"], motions=(one, replace(one, start=(6.0, 1.0))))["paths"]
     assert len(both.sources) == 2
     shares = [source.points[6].share for source in both.sources]
@@ -412,4 +412,4 @@ def test_no_segments_no_paths():
     found = record(scene, ["antennas", "waveform"])
     ball = replace(WithSword(None, None))
     only = Only(ball, (3,))
-    assert segment_paths(scene, only, found["antennas"], None, found["waveform"]) is None
+    assert segment_paths(scene.people[0], only, found["antennas"], None, found["waveform"]) is None

@@ -84,7 +84,7 @@ def gain() -> float:
 
 def free_space_power(scene: Scene) -> float:
     """Mean over the pulses of sum_i G^2 lambda^2 sigma_i/((4 pi)^3 R_tx^2 R_rx^2)."""
-    motion, v = motion_of(scene), scene_numbers(scene)
+    motion, v = motion_of(scene.people[0]), scene_numbers(scene)
     t = np.arange(round(v["duration_s"] * v["radar.prf_hz"])) / v["radar.prf_hz"]
     p = motion.positions(t)
     legs2 = [

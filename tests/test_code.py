@@ -18,6 +18,7 @@ PACKAGES = (
     "errors",
     "interrupts",
     "rounding",
+    "registry",
     "build_version",
     "light",
     "plain_json",

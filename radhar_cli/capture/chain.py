@@ -13,7 +13,7 @@ from radhar_cli.arrays import Bool, Complex
 from radhar_cli.capture.findings import LOST
 from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.tracking import track_torso, without_static
-from radhar_cli.config.schema import Config, MapName
+from radhar_cli.config.schema import Config
 from radhar_cli.errors import CaptureError
 from radhar_cli.phasor import unit_phasor
 from radhar_cli.pipeline.physics import canceller_of, frames_of, fsst_frames_of
@@ -52,7 +52,7 @@ class Maps:
 def maps_of(
     recording: Recording,
     config: Config,
-    names: Sequence[MapName],
+    names: Sequence[str],
     start: float | None = None,
     stop: float | None = None,
     receiver: int | None = None,

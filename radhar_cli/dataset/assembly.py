@@ -10,6 +10,7 @@ import io
 import json
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from math import prod
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ from numpy.typing import NDArray
 
 from radhar_cli.arrays import Float
 from radhar_cli.config.identity import as_yaml, config_hash, resolved
-from radhar_cli.config.schema import Config
+from radhar_cli.config.schema import MAP_NAMES, Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.column_labels import label_names
 from radhar_cli.dataset.files import unfinished_path, write_whole
@@ -35,6 +36,7 @@ from radhar_cli.dataset.layout import (
     Rows,
     chunked,
     columns,
+    count_of,
     row_axis,
     row_bytes,
 )
@@ -49,7 +51,7 @@ from radhar_cli.dataset.shards import (
     resume_hint,
 )
 from radhar_cli.dataset.split import split_rows
-from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
+from radhar_cli.dataset.untrusted_hdf5 import Samples, UntrustedFile
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.new_hdf5 import new_hdf5
 from radhar_cli.pipeline.validity import Flags, warnings
@@ -59,7 +61,7 @@ from radhar_cli.scene import subject_of
 
 SCHEMA_VERSION = 2
 RUN, RUN_BYTES = 128, 2**28
-COLUMN_RUN = 4096
+COLUMN_RUN, CHUNK_BYTES = 4096, 2**16
 CONFIG_HEADING = "# The resolved config of this data set, every default filled in.\n"
 CFAR_TEXT = (
     "255 where a pixel exceeds its threshold over the mean of the training cells around it, else 0 "
@@ -149,6 +151,7 @@ def _copy_shards(
     chunks: dict[str, list[tuple[int, bytes]]] = {name: [] for name in large}
     fields = scene_fields.fields(config)
     scene = [_Column(file[f"scene/{field.name}"]) for field in fields]
+    products = {name: _Ragged(file, config, name) for name in config.output.products}
     rows_csv = SceneTable(config, table)
     flags = dict.fromkeys(Flags, 0)
     extents: dict[str, set[tuple[float, ...]]] = {f"extent/{name}": set() for name in config.maps}
@@ -163,6 +166,9 @@ def _copy_shards(
             for name, (dtype, shape) in large.items():
                 source = part.chunks(name, dtype, (rows, *shape))
                 chunks[name] += [source.stored(row) for row in range(rows)]
+            for name in config.output.products:
+                if part.column(count_of(name), np.int64, (rows,))[:].any():
+                    products[name].append(part.samples(f"products/{name}"))
             for column, (target, kind, shape) in small.items():
                 found = part.column(column, kind, (rows, *shape))[:]
                 target.append(found)
@@ -194,6 +200,33 @@ def _copy_shards(
     if config.output.slow_time:
         _describe_slow_time(file["slow_time"].attrs)
     return flags
+
+
+class _Ragged:
+    """An array of all samples one after the other along its first axis."""
+
+    def __init__(self, file: h5py.File, config: Config, name: str) -> None:
+        self._file, self._name = file, f"products/{name}"
+        self._level = config.output.hdf5_level
+
+    def append(self, part: Samples) -> None:
+        """Add the rows of the next samples."""
+        values = part.whole()
+        if self._name not in self._file:
+            size = max(1, values.dtype.itemsize * prod(values.shape[1:]))
+            self._file.create_dataset(
+                self._name,
+                (0, *values.shape[1:]),
+                values.dtype,
+                maxshape=(None, *values.shape[1:]),
+                chunks=(max(1, CHUNK_BYTES // size), *values.shape[1:]),
+                compression="gzip" if self._level else None,
+                compression_opts=self._level or None,
+            )
+        target = self._file[self._name]
+        start = len(target)
+        target.resize(start + len(values), axis=0)
+        target[start:] = values
 
 
 class _Column:
@@ -258,7 +291,9 @@ def _describe_map(
     attributes["axes"] = ["sample", f"{vertical[0]} (row 0 is the highest)", "time"]
     attributes["row_quantity"], attributes["row_unit"] = vertical
     attributes["row_top"], attributes["row_bottom"] = high, low
-    attributes["column_quantity"], attributes["column_unit"] = "slow time", "s"
+    own = name not in MAP_NAMES
+    attributes["column_quantity"] = "columns of the product" if own else "slow time"
+    attributes["column_unit"] = "1" if own else "s"
     attributes["column_left"], attributes["column_right"] = start, stop
     attributes["kind"] = config.image.kind
     if config.image.kind == "decibel":

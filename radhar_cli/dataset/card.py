@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import yaml
 
-from radhar_cli.config.schema import Config
+from radhar_cli.config.schema import MAP_NAMES, Config
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.dataset.layout import CARD, GALLERY, SPLITS, Rows, png_folder, row_axis
 from radhar_cli.dataset.reading import BLOCK, Dataset
@@ -199,7 +199,9 @@ def _maps(data: Dataset) -> str:
     lines = []
     for name in data.config.maps:
         first, *steps = name.split("_")
-        says = ", ".join([_KINDS[first], *(_STEPS[step] for step in steps)])
+        says = "a product of its builder's own"
+        if name in MAP_NAMES:
+            says = ", ".join([_KINDS[first], *(_STEPS[step] for step in steps)])
         edges, unit = data.extent(name), row_axis(name)[1]
         if edges is None:
             lines.append([f"`{name}`", says, "/extent", "/extent"])

@@ -5,8 +5,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from radhar_cli.arrays import Float, Levels
+from radhar_cli.arrays import Float, Index, Levels
 from radhar_cli.config.reading import validated
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
@@ -23,10 +24,12 @@ from radhar_cli.dataset.layout import (
     checksum_of,
     chunked,
     columns,
+    count_of,
     is_incomplete,
 )
-from radhar_cli.dataset.untrusted_hdf5 import Column, UntrustedFile
+from radhar_cli.dataset.untrusted_hdf5 import Column, Samples, UntrustedFile
 from radhar_cli.errors import ConfigError, FolderError, did_you_mean
+from radhar_cli.registry import any_name
 from radhar_cli.untrusted import Closing
 
 MAX_ENTROPY_BITS = 64.0
@@ -51,6 +54,7 @@ class Dataset(Closing):
         fields: what the fields of `scene` are.
         large: {name: [N, ...]}, all datasets with a sample a chunk, the maps among them.
         sha256: {name of a large dataset: [N]}.
+        products: {name: an array of each sample}, of `output.products`.
         column_label: {map name: uint8 [N, W]}, numbers in `column_labels.label_names`; empty where
             they were not asked for.
         class_slugs: slug of every label.
@@ -94,6 +98,11 @@ class Dataset(Closing):
         self.sha256 = {name: small[checksum_of(name)] for name in self.large}
         named = (f"scene/{field.name}" for field in self.fields)
         self.small = small | dict(zip(named, self.scene.values(), strict=False))
+        self.products = {
+            name: Ragged(file.samples(f"products/{name}"), small[count_of(name)][:])
+            for name in config.output.products
+            if small[count_of(name)][:].any()
+        }
         self._entropy = {name: small[f"entropy/{name}"] for name in names}
         self._extent = {name: small[f"extent/{name}"] for name in names}
         labelled = names if config.output.column_labels else ()
@@ -177,6 +186,22 @@ class Dataset(Closing):
         self.file.close()
 
 
+class Ragged:
+    """An array of each sample: rows of one array that holds them one after the other."""
+
+    def __init__(self, samples: Samples, counts: Index) -> None:
+        if (counts < 0).any() or counts.sum() != samples.shape[0]:
+            raise FolderError(f"{samples.where}: has not as many rows as its counts say")
+        self._samples, self._stops = samples, np.cumsum(counts)
+
+    def __len__(self) -> int:
+        return self._stops.size
+
+    def __getitem__(self, row: int) -> NDArray[Any]:
+        stop = int(self._stops[row])
+        return self._samples.rows(int(self._stops[row - 1]) if row else 0, stop)
+
+
 def _small(column: Column, below: int) -> Levels:
     values: Levels = column[:]
     if values.max(initial=0) >= below:
@@ -191,7 +216,8 @@ def stored_config(document: Any, where: str) -> Config:
         FolderError: it is not a config.
     """
     try:
-        return validated(Config, document, f"{where}: the stored config", {})
+        with any_name():
+            return validated(Config, document, f"{where}: the stored config", {})
     except ConfigError as error:
         raise FolderError(str(error).splitlines()[0]) from None
 

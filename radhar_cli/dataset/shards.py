@@ -18,9 +18,9 @@ from radhar_cli.arrays import Float, Levels
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.deflate import deflated
 from radhar_cli.dataset.files import write_whole
-from radhar_cli.dataset.layout import COLUMN_LABEL, WORK, checksum_of, chunked
+from radhar_cli.dataset.layout import COLUMN_LABEL, WORK, checksum_of, chunked, count_of
 from radhar_cli.dataset.sample import Sample
-from radhar_cli.errors import UnfinishedError
+from radhar_cli.errors import SceneError, UnfinishedError
 
 USER_BLOCK = 512
 RUNS_NAMED = 10
@@ -135,6 +135,12 @@ def encode_shard(
                 file[f"largest_db/{name}"] = np.array([i.largest_db for i in images])
             if config.output.column_labels:
                 file[f"{COLUMN_LABEL}/{name}"] = np.stack([s.column_labels[name] for s in samples])
+        for name in config.output.products:
+            arrays = [sample.products[name] for sample in samples]
+            if len({(array.dtype, array.shape[1:]) for array in arrays}) > 1:
+                raise SceneError(f"output.products: {name}: should differ in its first axis alone")
+            file[f"products/{name}"] = np.concatenate(arrays)
+            file[count_of(name)] = np.array([len(array) for array in arrays])
         file["scene"] = scene_values
         file["flags"] = flags
     stop = start + len(samples)

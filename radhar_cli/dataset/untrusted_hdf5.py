@@ -409,6 +409,18 @@ class Samples:
         """Shape of what is stored together."""
         return self._dataset.chunks or (1,) * len(self.shape)
 
+    def whole(self) -> NDArray[Any]:
+        """All of the numbers, complex ones as such."""
+        return self.rows(0, self.shape[0])
+
+    def rows(self, start: int, stop: int) -> NDArray[Any]:
+        """Rows start .. stop - 1 of the first axis, complex numbers as such."""
+        if stop == start:
+            return np.empty((0, *self.shape[1:]), self._dataset.dtype)
+        key = (slice(start, stop), *(slice(0, n) for n in self.shape[1:]))
+        found: NDArray[Any] = self.read(key).view(self._dataset.dtype.newbyteorder("="))[..., 0]
+        return found
+
     def read(self, key: tuple[slice, ...]) -> NDArray[Any]:
         """A block [..., part] of the numbers; slices have a start and a stop within the shape."""
         with _refusing_damage(self.where):

@@ -221,6 +221,12 @@ def _resynthesise(data: Dataset, samples: int, report: Report, motion: Path | No
                 right = made.chunk(name, stored.shape[1:])
                 if not _same(stored[row], right, exactly=not report.other_versions):
                     report.problems.append(f"/{name}[{row}] ({scene.name}): differs")
+        for name, right in made.products.items():
+            there = data.products[name][row] if name in data.products else right[:0]
+            if right.shape != there.shape or not _same(
+                there, right, exactly=not report.other_versions
+            ):
+                report.problems.append(f"/products/{name}[{row}] ({scene.name}): differs")
         for name, labels in made.column_labels.items():
             wrong = int(np.count_nonzero(data.column_label[name].rows(row, row + 1)[0] != labels))
             # Under other versions a phase may begin a column later: rounding.

@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 from radhar_cli.activity import Activity, know_activities, own_activities
 from radhar_cli.dataset.cluster import Cluster, connected
 from radhar_cli.errors import UnfinishedError
+from radhar_cli.registry import know_products, own_products
 from radhar_cli.worker_process import prepare_process
 
 T = TypeVar("T")
@@ -27,8 +28,8 @@ def run_tasks(
     """
     cluster = _CLUSTER.get()
     if cluster is not None:
-        own = own_activities()
-        yield from cluster.run(_with_activities, ((own, function, *task) for task in tasks))
+        own = own_activities(), own_products()
+        yield from cluster.run(_with_own, ((own, function, *task) for task in tasks))
         return
     if jobs == 1:
         prepare_process()
@@ -43,8 +44,8 @@ def run_tasks(
     )
     try:
         with _interrupts_blocked():
-            own = own_activities()
-            results = pool(delayed(_with_activities)(own, function, *task) for task in tasks)
+            own = own_activities(), own_products()
+            results = pool(delayed(_with_own)(own, function, *task) for task in tasks)
         yield from results
     except UnboundLocalError as error:  # of loky, on its way out where it finds no more files
         raise error.__context__ or error from None
@@ -55,9 +56,12 @@ def run_tasks(
         ) from None
 
 
-def _with_activities(own: tuple[Activity, ...], function: Callable[..., T], *task: Any) -> T:
-    """Run a task in a worker that knows the classes its parent knows."""
-    know_activities(own)
+def _with_own(
+    own: tuple[tuple[Activity, ...], tuple[Any, ...]], function: Callable[..., T], *task: Any
+) -> T:
+    """Run a task in a worker that knows the classes and products its parent knows."""
+    know_activities(own[0])
+    know_products(own[1])
     return function(*task)
 
 

@@ -72,6 +72,7 @@ from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.receiver.impairment import Impairment
 from radhar_cli.receiver.noise import WhiteNoise, noise_variance
+from radhar_cli.registry import own_products
 from radhar_cli.scene import Scene
 
 CHUNK = 2**18  # pulses per chunk of pulse-by-pulse work
@@ -103,10 +104,13 @@ def plan_images(config: Config, entropy: bool = True) -> Plan:
         config: of the data set.
         entropy: whether the maps' entropies are asked for.
     """
-    maps = sorted(config.maps, key=lambda name: SIGNALS.index(signal_of(name)))
-    asked = [f"image:{name}" for name in maps]
+    own = {product.name for product in own_products()}
+    of_signals = [name for name in config.maps if name not in own]
+    maps = sorted(of_signals, key=lambda name: SIGNALS.index(signal_of(name)))
+    asked = [f"image:{name}" for name in (*maps, *(n for n in config.maps if n in own))]
     if config.engine.kind == "direct" and set(maps) - {"rtm"}:
         asked.append("accuracy")
+    asked += config.output.products
     if config.output.slow_time:
         asked.append("signal")
     if config.output.column_labels:
@@ -117,7 +121,7 @@ def plan_images(config: Config, entropy: bool = True) -> Plan:
 def products(config: Config, entropy: bool = True) -> dict[str, Product]:
     """Every product there could be under a config, by name; images with or without entropy."""
     rows = (*_physics(config), *_echo(config), *_signals(config), *_maps(config, entropy))
-    return {row.name: row for row in rows}
+    return {row.name: row for row in (*rows, *own_products())}
 
 
 def _physics(c: Config) -> Iterator[Product]:
@@ -460,14 +464,15 @@ def _maps(c: Config, entropy: bool) -> Iterator[Product]:
         power = (x.real**2 + x.imag**2).sum(axis=0)
         return PowerMap(power, Axis("range", "m", ranges), Axis("time", "s", profiles.t))
 
-    def rtm_image(power_map: PowerMap, cfar: CellAveraging | None = None) -> MapImage:
+    def map_image(power_map: PowerMap, cfar: CellAveraging | None = None) -> MapImage:
         small = partial(reduced_map, power_map.power, size, entropy=entropy)
         return _image(c, cfar, small, power_map.extent, binary_exponent(power_map.power))
 
     yield Product("rtm", ("range_profiles",), rtm, "power of the range profiles")
     if masks:
         yield Product("cfar", ("scene",), lambda s: cfar_of(s.config), "threshold of the masks")
-    yield Product("image:rtm", ("rtm", *masks), rtm_image, f"its {_shape(c, entropy)}")
+    for name in ("rtm", *(product.name for product in own_products())):
+        yield Product(f"image:{name}", (name, *masks), map_image, f"its {_shape(c, entropy)}")
     for name, of in ("frames", frames_of), ("fsst_frames", fsst_frames_of):
         make = partial(_frames, c, of)
         yield Product(name, ("waveform",), make, f"of the {'FSST' if 'fsst' in name else 'STFT'}")

@@ -8,7 +8,7 @@ import numpy as np
 from radhar_cli.activity import Activity, activity_named
 from radhar_cli.arrays import Complex
 from radhar_cli.config.reading import ABSENT, as_config
-from radhar_cli.config.schema import MAP_NAMES, Config, MapName, possible_maps
+from radhar_cli.config.schema import MAP_NAMES, Config, possible_maps
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.direct import Accuracy
 from radhar_cli.echo.exact import beat_blocks
@@ -85,7 +85,7 @@ def simulate(
     index: int = 0,
     nominal: bool = False,
     joint: str | None = None,
-    maps: tuple[MapName, ...] | None = None,
+    maps: tuple[str, ...] | None = None,
     raw: bool = False,
 ) -> Simulation:
     """Simulate one sample of one activity.
@@ -161,7 +161,7 @@ def scene_of(config: Config, activity: Activity, index: int, nominal: bool) -> S
     return draw_scene(config, activity, index)
 
 
-def map_names(chosen: list[str]) -> tuple[MapName, ...]:
+def map_names(chosen: list[str]) -> tuple[str, ...]:
     """The maps of these names, in our order.
 
     Raises:

@@ -4,27 +4,37 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 from pathlib import Path
 
+import command_line
 import h5py
 import numpy as np
 import pytest
 from listener import Listener
+from pydantic import ValidationError
 from signals import signal
 
-from radhar_cli import activity
+from radhar_cli import activity, registry
 from radhar_cli.activity import activity_named, add_activity
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.config import Config
 from radhar_cli.config.schema import LineConfig, possible_maps
 from radhar_cli.dataset.build import build
+from radhar_cli.dataset.reading import open_dataset
+from radhar_cli.dataset.sample import synthesise
+from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import RadharError, SceneError
-from radhar_cli.pipeline.physics import antennas_of, motion_of, waveform_of
+from radhar_cli.pipeline.physics import antennas_of, impairments_of, motion_of, waveform_of
 from radhar_cli.pipeline.plan import Product
+from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.run import process, record
+from radhar_cli.pipeline.validity import draw_valid_scene
 from radhar_cli.processing.canceller import Canceller, Fir
 from radhar_cli.processing.look import Look
 from radhar_cli.processing.power_map import Axis, PowerMap
 from radhar_cli.processing.range_compression import range_compression
+from radhar_cli.processing.signal import Signal
+from radhar_cli.radar.waveform import Waveform
 from radhar_cli.receiver.impairment import Impairment
+from radhar_cli.receiver.noise import WhiteNoise
 from radhar_cli.scene import Person, Scene, nominal_scene
 from radhar_cli.simulation.simulate import RAW_ECHO
 
@@ -177,15 +187,15 @@ def test_interference_comes_from_outside_and_is_the_same_in_all_channels() -> No
     assert correlation(one, other) > 0.99
 
 
+def range_doppler(beat: Complex, w: Waveform) -> PowerMap:
+    """Range against Doppler over the whole recording."""
+    spectrum = np.fft.fftshift(np.fft.fft(range_compression(beat, w), axis=1), axes=1)
+    doppler = np.fft.fftshift(np.fft.fftfreq(beat.shape[1], 1 / w.prf))
+    rows = Axis("range", "m", w.range_axis())
+    return PowerMap(np.abs(spectrum) ** 2, rows, Axis("frequency", "Hz", doppler))
+
+
 def test_a_product() -> None:
-    """Range against Doppler over the whole recording, from the beat matrix."""
-
-    def range_doppler(beat: Complex, waveform) -> PowerMap:
-        spectrum = np.fft.fftshift(np.fft.fft(range_compression(beat, waveform), axis=1), axes=1)
-        doppler = np.fft.fftshift(np.fft.fftfreq(beat.shape[1], 1 / waveform.prf))
-        rows = Axis("range", "m", waveform.range_axis())
-        return PowerMap(np.abs(spectrum) ** 2, rows, Axis("frequency", "Hz", doppler))
-
     row = Product("range_doppler", ("raw_echo", "waveform"), range_doppler, "range, Doppler")
     ball = Ball(2.0)
     found = record(walking(), ["range_doppler"], [RAW_ECHO, row], motions=(ball,))["range_doppler"]
@@ -310,6 +320,119 @@ def test_another_canceller() -> None:
     assert three.pulses == two.pulses - 1
     assert three.t[0] == pytest.approx(1 / 500)
     assert np.linalg.norm(three.x - np.diff(two.x)) < 1e-4 * np.linalg.norm(three.x)
+
+
+def points(signal: Signal) -> Float:
+    """As many rows as pulses are stronger than the mean: time (s), power."""
+    power = np.abs(signal.x[0, 0]) ** 2
+    strong = power > power.mean()
+    return np.stack([signal.t[strong], power[strong]], axis=1).astype(np.float32)
+
+
+def offset_and_noise(scene: Scene, noise: WhiteNoise, w: Waveform) -> tuple[Impairment, ...]:
+    return noise, *impairments_of(scene, noise, w), DcOffset()
+
+
+@pytest.fixture
+def own(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(registry, "_PRODUCTS", {})
+
+
+OWN = {
+    "a map": Product("range_doppler", ("raw_echo", "waveform"), range_doppler, "range, Doppler"),
+    "its echo": RAW_ECHO,
+    "points": Product("points", ("signal",), points, "strong pulses"),
+    "antennas": Product(
+        "antennas", ("scene",), lambda s: replace(antennas_of(s.config), gain=9.0), ""
+    ),
+    "receiver": Product("receiver", ("scene", "noise", "waveform"), offset_and_noise, "an offset"),
+}
+
+
+@pytest.mark.usefixtures("own")
+@pytest.mark.parametrize("engine", ["direct", "cube"])
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_products_of_ones_own_reach_a_data_set(tmp_path: Path, engine: str, jobs: int) -> None:
+    """A map, an array with another number of rows a sample, antennas and an impairment, with noise;
+    the same with workers, and synthesised anew."""
+    for product in OWN.values():
+        registry.add_product(product)
+    document = {
+        "activities": ["punching", "walking"],
+        "samples_per_class": 2,
+        "maps": ["stft", "range_doppler"],
+        "output": {"products": ["points"]},
+        "engine": {"kind": engine},
+        "processing": {"clutter": "none"},
+        "snr_db": 20.0,
+    }
+    config = Config.model_validate(CONFIG.model_dump() | document)
+    build(config, tmp_path, jobs, Listener(), batch_size=1)
+    scene = draw_valid_scene(config, activity_named("walking"), 1)[0]
+    right = record(scene, ["image:range_doppler", "points"])
+    with open_dataset(tmp_path) as data:
+        assert np.array_equal(data.maps["range_doppler"][3], right["image:range_doppler"].levels)
+        assert np.array_equal(data.products["points"][3], right["points"])
+        sizes = {len(data.products["points"][row]) for row in range(4)}
+    assert len(sizes) > 1
+    assert not verify(tmp_path, 4).problems
+    plain = record(scene, ["stft"], [Product("receiver", (), tuple, "nothing")])["stft"]
+    ours = record(scene, ["stft"])["stft"].power.sum(axis=1)
+    assert ours.argmax() == len(plain.rows.values) // 2, "the offset is at zero Doppler"
+
+
+@pytest.mark.usefixtures("own")
+def test_a_data_set_is_read_where_its_products_are_not_known(tmp_path: Path) -> None:
+    registry.add_product(RAW_ECHO)
+    registry.add_product(OWN["a map"])
+    config = Config.model_validate(
+        CONFIG.model_dump() | {"maps": ["range_doppler"], "samples_per_class": 1}
+    )
+    build(config, tmp_path, 1, Listener())
+    registry._PRODUCTS.clear()
+    with open_dataset(tmp_path) as data:
+        assert data.maps["range_doppler"][0].any()
+    with pytest.raises(ValidationError, match="'range_doppler' is not a map"):
+        Config.model_validate({"maps": ["range_doppler"]})
+
+
+@pytest.mark.usefixtures("own")
+def test_products_that_cannot_be_stored_are_refused() -> None:
+    registry.add_product(Product("words", (), lambda: "text", ""))
+    scene = walking(output=CONFIG.output.model_copy(update={"products": ("words",)}))
+    with pytest.raises(SceneError, match="words is str; should be an array"):
+        synthesise(scene, plan_images(scene.config))
+    with pytest.raises(ValueError, match="should be a name"):
+        registry.add_product(Product("a b", (), tuple, ""))
+
+
+def test_the_commands_import_modules_of_ones_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "my_radar.py").write_text(
+        "from radhar_cli.pipeline.plan import Product\n"
+        "from radhar_cli.registry import add_product\n"
+        "add_product(Product('middle', ('signal',), lambda s: s.x[0, 0, 9:19], 'ten pulses'))\n"
+    )
+    sets = (
+        "output.products=[middle]",
+        "samples_per_class=1",
+        "activities=[walking]",
+        "duration_s=1",
+    )
+    command = ("generate", "configs/smoke.yaml", "-o", tmp_path / "set", "--jobs", 2)
+    monkeypatch.setenv("RADHAR_EXTENSIONS", "my_radar")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    done = command_line.process(
+        "-m", "radhar_cli", *command, *(x for one in sets for x in ("--set", one))
+    )
+    assert done.returncode == 0, done.stderr
+    with h5py.File(tmp_path / "set/dataset.h5") as file:
+        assert file["products/middle"].shape == (10,)
+    monkeypatch.setenv("RADHAR_EXTENSIONS", "none_such")
+    missing = command_line.process("-m", "radhar_cli", *command)
+    assert missing.returncode == 2
+    assert "RADHAR_EXTENSIONS: none_such cannot be imported" in missing.stderr
 
 
 @pytest.fixture

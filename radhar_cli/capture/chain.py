@@ -13,7 +13,7 @@ import numpy as np
 from radhar_cli.arrays import Bool, Complex, Float, Index
 from radhar_cli.capture.findings import LOST
 from radhar_cli.capture.recording import Recording, Segments
-from radhar_cli.capture.tracking import track_torso, without_static
+from radhar_cli.capture.tracking import TorsoTrack, track_torso, without_static
 from radhar_cli.config.schema import Config, MapName
 from radhar_cli.echo.range_profiles import shown_pulses
 from radhar_cli.errors import CaptureError
@@ -26,7 +26,6 @@ from radhar_cli.processing.power_map import Axis, PowerMap
 from radhar_cli.processing.range_compression import range_bins, range_power
 from radhar_cli.processing.range_signals import RangeSignals
 from radhar_cli.processing.signal import Signal
-from radhar_cli.processing.torso_track import TorsoTrack
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 MAX_BYTES = 3 * 2**29  # of range bins that are held at once

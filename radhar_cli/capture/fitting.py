@@ -19,12 +19,11 @@ from radhar_cli.arrays import Bool, Complex, Float, Index
 from radhar_cli.capture.chain import bins_of_part, filled, pulses_between
 from radhar_cli.capture.findings import LOST
 from radhar_cli.capture.recording import Recording, Segments
-from radhar_cli.capture.tracking import WINDOW_S, track_torso, without_static
+from radhar_cli.capture.tracking import WINDOW_S, hann_in_range, track_torso, without_static
 from radhar_cli.config.number import nominal
 from radhar_cli.config.reading import validated
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import CaptureError
-from radhar_cli.processing.torso_track import hann_in_range
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 RADAR = {  # key: attribute of a waveform

@@ -9,12 +9,12 @@ from matplotlib.axes import Axes
 from radhar_cli import __version__
 from radhar_cli.capture.chain import Maps
 from radhar_cli.capture.recording import RecordingInfo
+from radhar_cli.capture.tracking import TorsoTrack
 from radhar_cli.config.identity import resolved
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.figures.maps_panel import Shown, draw_maps
 from radhar_cli.new_hdf5 import new_hdf5
-from radhar_cli.processing.torso_track import TorsoTrack
 from radhar_cli.replacing import replacing
 from radhar_cli.simulation.scene_file import write_map
 

@@ -150,13 +150,14 @@ class Damage:
     """Clipping and losses, counted piece by piece.
 
     Attributes:
-        full_scale: numbers that only a clipped sample reaches, lowest and highest; None of floats.
-        clipped, samples: how many of how many.
+        full_scale: lowest and highest number of the converter, reached by clipped samples only;
+            None of floats.
+        clipped: number of clipped samples.
+        flags: of the pulses, uint8 [pulse] of each piece.
     """
 
     full_scale: tuple[int, int] | None
     clipped: int = 0
-    samples: int = 0
     flags: list[NDArray[np.uint8]] = field(default_factory=list)
 
     def add(self, raw: Parts, values: Parts, gone: Bool) -> None:
@@ -170,9 +171,24 @@ class Damage:
             clipped = (values <= low) | (values >= high)
             self.clipped += int(np.count_nonzero(clipped))
             flags[clipped.any(axis=(0, 1, 3))] |= CLIPPED
-        self.samples += values.size
         flags[lost(raw) | gone] |= LOST
         self.flags.append(flags)
+
+    def findings(self) -> list[str]:
+        """What was counted, in words."""
+        flags, words = np.concatenate(self.flags), []
+        if lost := int(np.count_nonzero(flags & LOST)):
+            words.append(
+                f"{lost} of {flags.size} pulses ({100 * lost / flags.size:.2g} %) lack samples "
+                "(zeros, or NaN); they are flagged"
+            )
+        if self.clipped > RARE:
+            pulses = int(np.count_nonzero(flags & CLIPPED))
+            words.append(
+                f"{self.clipped} samples in {pulses} of {flags.size} pulses are at full scale: the "
+                "receiver was saturated; they are flagged"
+            )
+        return words
 
 
 def lost(values: Parts) -> Bool:

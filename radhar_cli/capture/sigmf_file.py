@@ -7,7 +7,10 @@ every other reader may ignore. Segments are captures, labels annotations.
 
 import hashlib
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -156,6 +159,20 @@ def _check_sum(wanted: str | None, data: Path) -> None:
         raise CaptureError(f"{data}: core:sha512: the file is not the one that was described")
 
 
+@contextmanager
+def recording_or_sigmf(out: Path, sigmf: bool) -> Iterator[tuple[Path, list[Path]]]:
+    """(where to write a recording, files that there are afterwards); SigMF is converted from it."""
+    files = [out]
+    if not sigmf:
+        yield out, files
+        return
+    out.parent.mkdir(parents=True, exist_ok=True)
+    with TemporaryDirectory(prefix=f".{out.name}.", dir=out.parent) as folder:
+        yield (target := Path(folder) / "recording.h5"), files
+        with Recording(target) as recording:
+            files[:] = write_sigmf(recording, out)
+
+
 def write_sigmf(recording: Recording, out: Path) -> list[Path]:
     """Write a recording as out.sigmf-meta and out.sigmf-data; return their paths.
 
@@ -170,7 +187,7 @@ def write_sigmf(recording: Recording, out: Path) -> list[Path]:
             with unfinished.open("wb") as file:
                 for values in recording.pieces():
                     ordered = np.ascontiguousarray(values.transpose(2, 1, 0, 3))
-                    block = ordered.astype(recording.number.newbyteorder("<")).tobytes()
+                    block = ordered.astype(recording.samples.number.newbyteorder("<")).tobytes()
                     digest.update(block)
                     file.write(block)
             document = _metadata(recording, digest.hexdigest())
@@ -184,14 +201,13 @@ def write_sigmf(recording: Recording, out: Path) -> list[Path]:
 def _metadata(recording: Recording, sha512: str) -> dict[str, Any]:
     info, segments = recording.info, recording.segments
     samples = info.samples or 1
-    kind = "c" if recording.is_complex else "r"
-    number = recording.number
+    number, kind = recording.samples.number, "rc"[recording.samples.parts - 1]
     radhar = {
         "carrier_hz": info.carrier_hz,
         "bandwidth_hz": info.bandwidth_hz,
         "prf_hz": info.prf_hz,
         "samples": info.samples,
-        "beat": "negative" if recording.is_complex and info.samples else None,
+        "beat": "negative" if kind == "c" and info.samples else None,
         "segment_start_s": segments.start.tolist() if len(segments) > 1 else None,
         "receiver_delay_s": info.receiver_delay_s if any(info.receiver_delay_s) else None,
     }

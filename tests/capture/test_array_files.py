@@ -153,7 +153,7 @@ def test_gaps_follow_from_the_times(tmp_path: Path) -> None:
     np.savez(tmp_path / "x.npz", beat=x, t=times)
     out = tmp_path / "out.h5"
     given_settings = read_settings(None, [*RADAR[:3], "times=t", "dataset=beat"])
-    told = import_capture([tmp_path / "x.npz"], out, given_settings).found
+    told = import_capture([tmp_path / "x.npz"], out, given_settings).source.found
     assert any("not uniform: 2 stretches" in line for line in told)
     with Recording(out) as recording:
         assert recording.info.prf_hz == pytest.approx(500)
@@ -165,7 +165,7 @@ WRONG = [
     ("x.npy", cube(), ["axes=[sample, pulse]"], "has 3 axes, [3, 16, 40]"),
     ("x.npy", cube()[None, None], [], "has 5 axes"),
     ("x.npy", cube()[:, :1], [], "sample should have 2 or more"),
-    ("x.npy", cube(), ["frame_pulses=4"], "frame_s is missing"),
+    ("x.npy", cube(), ["frame_pulses=4"], "must be given together"),
     ("x.npy", cube(), ["frame_pulses=4", "frame_s=0.001"], "frame_s = 0.001: should be at least"),
     ("x.npy", cube().astype("U9"), [], "is of the type"),
     ("x.npz", cube(), ["dataset=baet"], "did you mean 'beat'"),

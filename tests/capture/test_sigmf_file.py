@@ -187,7 +187,7 @@ class TestHostileRecording:
 def test_a_file_that_is_no_recording_is_refused(tmp_path: Path) -> None:
     (tmp_path / "x.h5").write_bytes(b"nothing")
     assert not is_recording(tmp_path / "x.h5")
-    with pytest.raises(CaptureError, match="not a capture that radhar reads"):
+    with pytest.raises(CaptureError, match="unknown format"):
         import_capture([tmp_path / "x.h5"], tmp_path / "y.h5", read_settings(None, RADAR))
 
 

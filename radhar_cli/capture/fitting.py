@@ -24,6 +24,7 @@ from radhar_cli.config.number import nominal
 from radhar_cli.config.reading import validated
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import CaptureError
+from radhar_cli.figures.page import page, write_figure
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 RADAR = {  # key: attribute of a waveform
@@ -245,3 +246,19 @@ def _power_near(power: Float, near: Bool, noise: float) -> float:
         floor = noise if inside.all() else float(np.median(bins[~inside]))
         signal += float(np.sum(bins[inside] - floor))
     return signal / len(power)
+
+
+def draw(fit: Fit, path: Path) -> None:
+    """Write a figure of the noise floor over range and of the SNRs."""
+    figure = page(10.0, 3.5)
+    floor, snrs = figure.subplots(1, 2)
+    floor.plot(fit.waveform.range_axis(), fit.floor_db, label="measured")
+    floor.axhline(0, color="k", linestyle="--", linewidth=0.8, label="fitted: the same everywhere")
+    floor.set(xlabel="range (m)", ylabel="noise floor (dB over its median)")
+    floor.legend()
+    snr = fit.snr_db
+    snrs.hist(snr, bins=min(20, max(3, snr.size // 2)), label="measured")
+    snrs.axvline(snr.mean(), color="k", linestyle="--", label="mean")
+    snrs.set(xlabel="SNR of a raw sample (dB)", ylabel="parts")
+    snrs.legend()
+    write_figure(figure, path, 90)

@@ -1,7 +1,7 @@
-"""Images that exist already as samples: a tree of class folders, or an .npz of images or masks.
+"""Existing images as samples: a tree of class folders, or an .npz of images or masks.
 
 An .npz has one array of images [N, H, W] (uint8 or bool; masks of 0 and 1 become 0 and 255),
-`label` [N], numbers into `classes` or texts, and if wanted `person` [N].
+`label` [N], indices into `classes` or texts, and optionally `person` [N].
 """
 
 import hashlib
@@ -106,8 +106,8 @@ def _loaded(
         wide = [name for name in wide if name in ("masks", "images")] or wide
         if len(wide) != 1 or "label" not in shapes:
             raise ValueError(
-                "should hold one array of images [N, H, W], uint8 or bool, called masks or images "
-                "if there are others, and label"
+                "should hold one array of images [N, H, W], uint8 or bool (named masks or images "
+                "if there are others), and label"
             )
         if int(np.prod(shapes[wide[0]][0], dtype=object)) > MAX_NPZ:
             raise ValueError(f"holds more than {MAX_NPZ} bytes of images")
@@ -122,12 +122,12 @@ def _loaded(
             images = images * np.uint8(255)
         if label.dtype.kind in "iu":
             if classes is None or not ((label >= 0) & (label < classes.size)).all():
-                raise ValueError("label should be numbers into classes, or texts")
+                raise ValueError("label should be indices into classes, or texts")
             label = classes[label]
         if label.dtype.kind != "U" or len(label) != len(images):
             raise ValueError(f"label should name the class of each of {len(images)} images")
         if person is not None and len(person) != len(images):
-            raise ValueError(f"person should name who is in each of {len(images)} images")
+            raise ValueError(f"person should name the person in each of {len(images)} images")
     return images, label, person
 
 
@@ -137,7 +137,7 @@ def _as_text(values: NDArray[Any]) -> NDArray[Any]:
 
 
 def read_image(folder: Path, file: str, size: tuple[int, int], packed: bool) -> Levels:
-    """Levels [H, W] of a part's file.
+    """Levels [H, W] of a part's image.
 
     Raises:
         CaptureError, FolderError: it cannot be read, or has another size.

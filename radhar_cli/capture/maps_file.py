@@ -54,7 +54,7 @@ def write_maps(maps: Maps, config: Config, info: RecordingInfo, folder: Path) ->
 
 
 def draw(maps: Maps, config: Config, title: str, path: Path) -> None:
-    """Write maps.png: every map, the torso's track over the range-time map and its Doppler."""
+    """Write maps.png: every map, with the torso's track over the range-time map."""
     track = maps.track
     last = max((one.rows.values[-1] for name, one in maps.maps.items() if name == "rtm"), default=1)
     far = last if track is None else 1.3 * float(track.range.max()) + 0.5

@@ -1,4 +1,4 @@
-"""The recording file: what one radar received of one scene (docs/measured.md).
+"""The recording file: the samples that one radar received (docs/measured.md).
 
 Beat signals follow radhar's sign: a target at range R lies at exp(-j 2 pi (fc tau + K tau t)).
 """
@@ -40,7 +40,7 @@ class _Part(BaseModel):
 
 
 class Label(_Part):
-    """What a person does from start to stop, s; None is the whole recording."""
+    """Activity and person from start to stop, s; None is the whole recording."""
 
     label: Text
     person: Text | None = None
@@ -49,7 +49,7 @@ class Label(_Part):
 
 
 class SourceNote(_Part):
-    """Where a recording came from: format, files, and what was found in them."""
+    """Origin of a recording: format, files, and findings on import."""
 
     format: Text
     files: Annotated[list[Text], Field(max_length=1000)] = []
@@ -60,14 +60,14 @@ class RecordingInfo(_Part):
     """The attribute `recording` of a recording file.
 
     Attributes:
-        carrier_hz: at the first sample of a chirp; of slow time, where the Doppler is read.
+        carrier_hz: at the first sample of a chirp; of slow time, the frequency of its Doppler.
         prf_hz: pulses per second of one receiver within a segment.
         bandwidth_hz, adc_rate_hz, samples: of a chirp; None of slow time.
         receivers, pulses: shape of the samples.
         segments: stretches of pulses without a gap.
-        receiver_delay_s: how much later each receiver's pulses are, of transmitters in turn.
+        receiver_delay_s: delay of each receiver's pulses, if transmitters take turns.
         start_time: of the first pulse, ISO 8601.
-        labels, source: see there.
+        labels, source: see `Label` and `SourceNote`.
     """
 
     carrier_hz: Hertz
@@ -84,13 +84,13 @@ class RecordingInfo(_Part):
     source: SourceNote
 
     def waveform(self, fft_length: int | None = None, centred: bool = True) -> Waveform:
-        """The chirps; `duration` is that of the pulses without the gaps.
+        """The waveform; `duration` leaves out the gaps.
 
         Raises:
-            CaptureError: it is slow time.
+            CaptureError: the recording is slow time.
         """
         if self.samples is None or self.adc_rate_hz is None or self.bandwidth_hz is None:
-            raise CaptureError("the recording is slow time; it has no ranges")
+            raise CaptureError("the recording is slow time, which has no ranges")
         return Waveform(
             fc=self.carrier_hz,
             bandwidth=self.bandwidth_hz,
@@ -121,7 +121,7 @@ class Segments:
 
     @property
     def lengths(self) -> NDArray[np.int64]:
-        """How many pulses each has."""
+        """Number of pulses of each."""
         return np.diff(self.first, append=self.pulses)
 
     @property
@@ -261,7 +261,7 @@ class Recording(Closing):
             or (lengths < 1).any()
             or (np.diff(start) <= 0).any()
         ):
-            raise FolderError(f"{self.path}: /segment_first: segments should follow one another")
+            raise FolderError(f"{self.path}: /segment_first: segments should be in order")
         return Segments(start, first, self.info.pulses, self.info.prf_hz)
 
     def parts(self, first: int, stop: int) -> Parts:
@@ -279,8 +279,8 @@ class Recording(Closing):
         gone &= (self.flags[first:stop] & LOST) == 0
         if gone.any():
             raise CaptureError(
-                f"{self.path}: pulse {first + gone.argmax()} holds NaN; should have the flag "
-                f"{LOST} then, as `radhar import` sets it"
+                f"{self.path}: pulse {first + gone.argmax()} holds NaN; should be flagged as lost "
+                f"({LOST}), as by `radhar import`"
             )
         return values
 

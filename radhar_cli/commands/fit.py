@@ -24,7 +24,7 @@ def fit(
     """
     import json
 
-    from radhar_cli.capture.fit_figure import draw
+    from radhar_cli.capture.fitting import draw
     from radhar_cli.capture.fitting import fit as fit_recordings
     from radhar_cli.errors import FolderError
     from radhar_cli.replacing import write_text

@@ -66,7 +66,7 @@ def test_what_was_decided_is_said(tmp_path: Path) -> None:
 @pytest.mark.parametrize("coding", ["signed", "offset"])
 def test_a_coding_of_what_is_no_word_is_refused(tmp_path: Path, x: np.ndarray, coding: str) -> None:
     path = save(tmp_path / "x.npy", x)
-    with pytest.raises(CaptureError, match=rf"x.npy: coding = {coding}: .*should be whole ones"):
+    with pytest.raises(CaptureError, match=rf"x.npy: coding = {coding}: .*should be whole numbers"):
         imported(path, f"coding={coding}")
 
 

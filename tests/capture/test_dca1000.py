@@ -118,7 +118,7 @@ def test_capture_split_at_any_byte(tmp_path: Path, beat: np.ndarray) -> None:
         told = recording.info.source.found
     assert np.abs(found - beat[..., :-1]).max() < 1 / 8000
     assert told[0] == "3 files: adc_data_Raw_0.bin to adc_data_Raw_2.bin"
-    assert "are no whole pulse" in told[1]
+    assert "incomplete pulse" in told[1]
     (tmp_path / "adc_data_Raw_1.bin").unlink()
     with pytest.raises(CaptureError, match=r"adc_data_Raw_1\.bin: is missing"):
         imported(tmp_path)

@@ -91,7 +91,7 @@ def test_a_tree_of_images(config: Path) -> None:
 
 
 WRONG = [
-    ({"masks": masks(), "label": np.arange(12)}, "numbers into classes"),
+    ({"masks": masks(), "label": np.arange(12)}, "indices into classes"),
     ({"masks": masks(), "label": np.array(["a"] * 5)}, "each of 12 images"),
     ({"masks": masks().astype(float), "label": np.array(["a"] * 12)}, "one array of images"),
     ({"masks": masks()}, "and label"),

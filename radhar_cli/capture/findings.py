@@ -97,31 +97,11 @@ def decoded(values: Parts, coding: Coding, bits: int = 16) -> Parts:
     return signed
 
 
-class PositiveShare(NamedTuple):
-    """Share of the energy at positive beat frequencies, 0 to 1.
+def positive_share(pieces: list[Parts]) -> tuple[float, float]:
+    """Share of the energy of complex chirps at positive beat frequencies, 0 to 1.
 
-    Attributes:
-        moving: of the differences from pulse to pulse.
-        still: of everything.
-    """
-
-    moving: float
-    still: float
-
-    @property
-    def sign(self) -> str | None:
-        """`positive`, `negative`, or None where neither share is clear."""
-        for share in self:
-            if abs(share - 0.5) >= SURE - 0.5:
-                return "positive" if share > 0.5 else "negative"
-        return None
-
-
-def positive_share(pieces: list[Parts]) -> PositiveShare:
-    """The half of the spectrum of complex chirps that contains the targets.
-
-    The noise floor, the median over the bins, is subtracted. Hann's window keeps the direct echo in
-    the lowest bins, which are left out.
+    Of the differences from pulse to pulse, and of everything. The noise floor, the median over the
+    bins, is subtracted. Hann's window keeps the direct echo in the lowest bins, which are left out.
     """
     moving = still = np.zeros(pieces[0].shape[1])
     for piece in pieces:
@@ -129,13 +109,11 @@ def positive_share(pieces: list[Parts]) -> PositiveShare:
         window = np.hanning(x.shape[1] + 2)[1:-1, None]
         spectrum = np.fft.fft(x * window, axis=1)
         still = still + (np.abs(spectrum) ** 2).sum(axis=(0, 2))
-        if x.shape[2] > 1:
-            moving = moving + (np.abs(np.diff(spectrum, axis=2)) ** 2).sum(axis=(0, 2))
-    return PositiveShare(_share(moving), _share(still))
+        moving = moving + (np.abs(np.diff(spectrum, axis=2)) ** 2).sum(axis=(0, 2))
+    return _share(moving), _share(still)
 
 
 def _share(power: NDArray[np.float64]) -> float:
-    """Share of the energy at positive frequencies, the lowest bins and the floor left out."""
     count = power.size
     above = np.maximum(power - np.median(power), 0)
     lowest = max(2, count // 64)

@@ -53,31 +53,8 @@ def listed(path: Path, packed: bool) -> Listed:
     Raises:
         CaptureError, FolderError: there are none, or they cannot be read.
     """
-    return _of_tree(path) if path.is_dir() else _of_npz(path, packed)
-
-
-def _of_tree(path: Path) -> Listed:
-    files = [
-        file
-        for folder in sorted(one for one in path.iterdir() if one.is_dir())
-        for file in sorted(folder.iterdir())
-        if file.suffix.lower() in SUFFIXES
-    ]
-    if not files:
-        raise CaptureError(f"{path}: should hold a folder of images for each class")
-    total = hashlib.sha256()
-    for file in files:
-        refuse_outside(file, path)
-        with file.open("rb") as data:
-            total.update(hashlib.file_digest(data, "sha256").digest())
-    parts = [
-        {"file": f"{file.parent.name}/{file.name}", "label": file.parent.name, "person": None}
-        for file in files
-    ]
-    return Listed(parts, {path.name: total.hexdigest()}, image_size(files[0]))
-
-
-def _of_npz(path: Path, packed: bool) -> Listed:
+    if path.is_dir():
+        return _of_tree(path)
     with refusing(str(path)):
         regular_size(path)
     images, label, person = _loaded(path, packed, path.stat().st_mtime_ns)
@@ -92,6 +69,21 @@ def _of_npz(path: Path, packed: bool) -> Listed:
         for number in range(len(images))
     ]
     return Listed(parts, {path.name: total}, (images.shape[1], images.shape[2]))
+
+
+def _of_tree(path: Path) -> Listed:
+    files = sorted(one for one in path.glob("*/*") if one.suffix.lower() in SUFFIXES)
+    if not files:
+        raise CaptureError(f"{path}: should hold a folder of images for each class")
+    total = hashlib.sha256()
+    parts = []
+    for file in files:
+        refuse_outside(file, path)
+        with file.open("rb") as data:
+            total.update(hashlib.file_digest(data, "sha256").digest())
+        label = file.parent.name
+        parts.append({"file": f"{label}/{file.name}", "label": label, "person": None})
+    return Listed(parts, {path.name: total.hexdigest()}, image_size(files[0]))
 
 
 @lru_cache(maxsize=2)

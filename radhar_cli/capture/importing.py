@@ -148,12 +148,11 @@ def _conjugated(probed: list[Parts], source: Source, s: CaptureSettings, notes: 
     """Whether samples have to be conjugated for radhar's sign of the beat."""
     if source.parts == 1 or source.samples is None:
         return source.parts == 2 and s.beat == "positive"
-    share = findings.positive_share(probed)
-    told = (
-        f"{100 * share.moving:.0f} % of what moves, {100 * share.still:.0f} % of all lies at "
-        "positive beat frequencies"
-    )
-    sign = s.beat or share.sign
+    shares = findings.positive_share(probed)
+    moving, still = (f"{100 * share:.0f} %" for share in shares)
+    told = f"{moving} of what moves, {still} of all lies at positive beat frequencies"
+    clear = [share > 0.5 for share in shares if abs(share - 0.5) >= findings.SURE - 0.5]
+    sign: str | None = s.beat or (("negative", "positive")[clear[0]] if clear else None)
     if s.beat is not None:
         notes.append(f"beat {s.beat}, as asked ({told})")
     elif sign is None:

@@ -12,7 +12,7 @@ import numpy as np
 from radhar_cli.arrays import Bool, Complex
 from radhar_cli.capture.findings import LOST
 from radhar_cli.capture.recording import Recording
-from radhar_cli.capture.tracking import track_torso, without_static
+from radhar_cli.capture.tracking import TorsoTrack, track_torso, without_static
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import CaptureError
 from radhar_cli.phasor import unit_phasor
@@ -24,7 +24,6 @@ from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.processing.pulse_times import PulseTimes
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.signal import Signal, nearest
-from radhar_cli.processing.torso_track import TorsoTrack
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 MAX_BYTES = 3 * 2**29  # of range bins that are held at once

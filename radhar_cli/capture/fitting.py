@@ -1,24 +1,32 @@
-"""Estimate a config to simulate by from recordings: waveform, SNR, ranges and noise floor.
+"""Estimate a simulation config from recordings: waveform, SNR, ranges and noise floor.
 
-A receiver's noise is the floor of its range-Doppler maps; the person is what moves above it.
+A receiver's noise is the floor of its range-Doppler maps; the person is what moves above it. With
+range bins S_k = sum_n s[n] exp(...) of N samples, white noise of variance sigma^2 has
+|S_k|^2 = N sigma^2 and a path of amplitude A has sum_k |S_k|^2 = N^2 A^2: SNR = P_s/sigma^2 as in
+model.md.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+import scipy.fft
 
-from radhar_cli.arrays import Float
-from radhar_cli.capture.fit_parts import QUARTILE, SLOW_MPS, Part, parts_of
+from radhar_cli.arrays import Bool, Complex, Float, Index
+from radhar_cli.capture.chain import bins_of_part, filled, pulses_between
+from radhar_cli.capture.findings import LOST
 from radhar_cli.capture.recording import Recording
+from radhar_cli.capture.tracking import WINDOW_S, hann_in_range, track_torso, without_static
 from radhar_cli.config.number import nominal
 from radhar_cli.config.reading import validated
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import CaptureError
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.figures.page import page, write_figure
+from radhar_cli.processing.pulse_times import PulseTimes
+from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 RADAR = {  # key: attribute of a waveform
     "carrier_hz": "fc",
@@ -27,8 +35,35 @@ RADAR = {  # key: attribute of a waveform
     "adc_rate_hz": "adc_rate",
     "prf_hz": "prf",
 }
-FEW = 3  # SNRs from which on a spread is fitted
-MIN_S = 0.5  # of the longest recording; somebody has to move in it
+MIN_SNRS = 3  # SNRs needed to fit a spread
+MIN_S = 0.5  # shortest duration of the longest recording
+PART_S = 4.0  # length of a part, which gives one SNR
+MAX_PARTS = 50  # parts of a recording
+SURE = 0.5  # least confidence of the track at ranges that are used
+HANN_GAIN = 0.5**2 + 2 * 0.25**2  # gain of white noise in hann_in_range
+QUARTILE = 0.25
+SLOW_MPS = 0.15  # slower movement does not count as a person's
+FAST_SHARE = 0.02  # least share of a person's power that moves faster
+REACH_M = 1.2  # limbs from the torso
+
+
+class Part(NamedTuple):
+    """Estimates from a few seconds of a recording.
+
+    Attributes:
+        snr_db: moving echo within reach of the torso, per raw sample; NaN if nobody is found.
+        ranges: of the torso where its track is reliable, m.
+        floor: noise in each range bin, as variance of a raw sample [K].
+    """
+
+    snr_db: float
+    ranges: Float
+    floor: Float
+
+    @property
+    def noise(self) -> float:
+        """Variance of a raw sample."""
+        return float(np.quantile(self.floor, QUARTILE))
 
 
 @dataclass(frozen=True)
@@ -36,9 +71,9 @@ class Fit:
     """Estimates from all recordings.
 
     Attributes:
-        parts: what it rests on.
-        waveform: of all.
-        seconds: that half of the recordings last at least.
+        parts: the estimates of each part.
+        waveform: common to all recordings.
+        seconds: median duration of the recordings.
     """
 
     parts: list[Part]
@@ -47,21 +82,21 @@ class Fit:
 
     @property
     def snr_db(self) -> Float:
-        """Of the parts in which somebody moves."""
+        """SNR of each part in which somebody moves."""
         snr = np.array([part.snr_db for part in self.parts])
         return np.asarray(snr[np.isfinite(snr)])
 
     @property
     def floor_db(self) -> Float:
-        """Noise floor over its median [K], of parts in which nobody stands in that bin."""
+        """Noise floor relative to its median [K]; a lower quartile over parts leaves people out."""
         floor = np.quantile([part.floor for part in self.parts], QUARTILE, axis=0)
         return np.asarray(10 * np.log10(floor / np.median(floor)))
 
     def numbers(self) -> dict[str, float]:
-        """What the keys rest on, and the noise floor, which no key says.
+        """Summary of the estimates, and the noise floor, for which the config has no key.
 
-        noise_floor_db is the variance of a raw sample as recorded; noise_over_range_db how much the
-        floor rises from the nearest range bin to the farthest (Theil and Sen's slope).
+        noise_floor_db is the variance of a raw sample as recorded; noise_over_range_db is the rise
+        of the floor from the nearest range bin to the farthest (Theil-Sen slope).
         """
         from scipy.stats import theilslopes  # slow to import
 
@@ -77,11 +112,12 @@ class Fit:
     def document(self) -> dict[str, Any]:
         """Keys of a config."""
         w, snr, usual = self.waveform, self.snr_db, Config().radar
-        middle, spread = round(float(snr.mean()), 2), round(float(snr.std()), 2)
+        middle = round(float(snr.mean()), 2)
+        spread = round(float(snr.std()), 2) if snr.size >= MIN_SNRS else 0
         document: dict[str, Any] = {
             "duration_s": round(self.seconds, 3),
             "radar": {key: float(f"{getattr(w, name):.9g}") for key, name in RADAR.items()},
-            "snr_db": {"normal": [middle, spread]} if snr.size >= FEW and spread > 0 else middle,
+            "snr_db": {"normal": [middle, spread]} if spread > 0 else middle,
         }
         ranges = np.concatenate([part.ranges for part in self.parts])
         if ranges.size:
@@ -92,45 +128,43 @@ class Fit:
 
 
 def fit(paths: Sequence[Path]) -> Fit:
-    """Read waveform, SNR, ranges and noise floor off recordings of one radar.
+    """Estimate waveform, SNR, ranges and noise floor from recordings of one radar.
 
     Raises:
-        CaptureError: one holds what another does or is of another radar, they are slow time or too
-            short, or nobody moves in any.
-        FolderError: one is not a recording.
+        CaptureError: two hold the same samples or differ in radar, they are slow time or too short,
+            or nobody moves in any.
+        FolderError: a file is not a recording.
     """
     waveform, seconds = _waveform(paths)
     parts = [part for path in paths for part in parts_of(path)]
     if not any(np.isfinite(part.snr_db) for part in parts):
-        raise CaptureError(
-            f"{paths[0]}: nobody is seen to move faster than {SLOW_MPS} m/s in any recording"
-        )
+        raise CaptureError(f"{paths[0]}: nobody moves faster than {SLOW_MPS} m/s in any recording")
     fitted = Fit(parts, waveform, seconds)
     validated(Config, fitted.document, str(paths[0]), {})
     return fitted
 
 
 def _waveform(paths: Sequence[Path]) -> tuple[Waveform, float]:
-    """The chirps of all recordings, and how long they last (s)."""
+    """The common waveform of all recordings, and their median duration (s)."""
     waveform, seconds = None, []
     known: dict[bytes, Path] = {}
     for path in paths:
         with Recording(path) as recording:
             one = recording.info.waveform()
             if waveform is not None and _differs(one, waveform):
-                raise CaptureError(f"{path}: is of another radar than {paths[0]}")
+                raise CaptureError(f"{path}: differs in radar from {paths[0]}")
             samples = recording.digest()
             if samples in known:
                 raise CaptureError(
-                    f"{path}: has the samples of {known[samples]}; a recording counts once"
+                    f"{path}: has the same samples as {known[samples]}; should be given once"
                 )
             known[samples] = path
             waveform = waveform or one
             seconds.append(recording.segments.duration)
     if max(seconds) < MIN_S:
         raise CaptureError(
-            f"{paths[0]}: the longest recording lasts {max(seconds):.3g} s; it should "
-            f"last at least {MIN_S:g} s for somebody to be seen to move"
+            f"{paths[0]}: the longest recording lasts {max(seconds):.3g} s; should last at least "
+            f"{MIN_S:g} s"
         )
     assert waveform is not None
     return waveform, float(np.median(seconds))
@@ -138,3 +172,96 @@ def _waveform(paths: Sequence[Path]) -> tuple[Waveform, float]:
 
 def _differs(one: Waveform, other: Waveform) -> bool:
     return any(abs(getattr(one, n) / getattr(other, n) - 1) > 1e-3 for n in RADAR.values())
+
+
+def parts_of(path: Path) -> Iterator[Part]:
+    """Estimates from parts of about PART_S, at most MAX_PARTS, spread over a recording.
+
+    Parts without noise, or without a complete pulse, are left out.
+    """
+    with Recording(path) as recording:
+        w, length = recording.info.waveform(), recording.segments.duration
+        count = min(max(int(length / PART_S), 1), MAX_PARTS)
+        for start in np.linspace(0, max(length - PART_S, 0), count).tolist():
+            first, last, segments = pulses_between(recording, start, min(start + PART_S, length))
+            lost = (recording.flags[first:last] & LOST).astype(bool)
+            if lost.all():
+                continue
+            bins = filled(bins_of_part(recording, w, [0], first, last), lost)[0]
+            part = _part(without_static(bins), segments, w)
+            if part.noise > 0:
+                yield part
+
+
+def _part(moving: Complex, segments: PulseTimes, w: Waveform) -> Part:
+    """Estimates from range bins [K, M] with static echoes removed."""
+    maps, middle, white = _range_doppler(moving, segments, w)
+    length = maps.shape[2]
+    # |.|^2 of noise is exponential; the lower quartile of a frame contains little of the person,
+    # and the median over frames little of those in which a person fills the bin.
+    floor = np.median(np.quantile(maps, QUARTILE, axis=2), axis=0)
+    nobody = Part(np.nan, np.empty(0), floor / (-np.log(1 - QUARTILE) * white))
+    track = track_torso(moving[None], segments, w)
+    if track is None or not nobody.noise > 0:
+        return nobody
+    at = track.ranges(segments.times(middle))
+    near = np.abs(w.range_axis() - at[:, None]) <= REACH_M + 2 * w.range_step
+    # Curtains and fans move slowly, and would be mistaken for a person.
+    least = SLOW_MPS * 2 * w.f0 / SPEED_OF_LIGHT + 2 * w.prf / length  # beside Hann's main lobe
+    fast = np.abs(np.fft.fftfreq(length, 1 / w.prf)) > least
+    cell = nobody.noise * white
+    signal = _power_near(maps.sum(axis=2), near, cell * length)
+    quick = _power_near(maps[:, :, fast].sum(axis=2), near, cell * np.count_nonzero(fast))
+    if not (signal > 0 and quick > FAST_SHARE * signal):
+        return nobody
+    snr = signal / (length * white * w.n_adc) / nobody.noise
+    sure = track.range[track.confidence >= SURE]
+    return nobody._replace(snr_db=10 * float(np.log10(snr)), ranges=sure)
+
+
+def _range_doppler(
+    moving: Complex, segments: PulseTimes, w: Waveform
+) -> tuple[Float, Index, float]:
+    """Power [frame, bin, Doppler], the pulse in the middle of each frame, and the noise's gain.
+
+    Frames cross no gap. The gain is the power in a cell of white noise of variance 1.
+    """
+    length = min(max(round(WINDOW_S * w.prf), 8), int(segments.lengths.max()))
+    window = np.hanning(length + 2)[1:-1]
+    starts = np.concatenate(
+        [np.arange(one.start, one.stop - length + 1, length) for one in segments.slices]
+    )
+    frames = (hann_in_range(moving[:, at : at + length]) * window for at in starts.tolist())
+    maps = np.stack([np.abs(scipy.fft.fft(frame, axis=1)) ** 2 for frame in frames])
+    return maps, starts + length // 2, HANN_GAIN * w.n_adc * float(np.sum(window**2))
+
+
+def _power_near(power: Float, near: Bool, noise: float) -> float:
+    """Mean power of a frame in the bins near the torso, less the median of its other bins.
+
+    Args:
+        power: of the moving echo [frame, bin].
+        near: whether a bin is near the torso [frame, bin].
+        noise: white noise in a bin, for frames in which all bins are near.
+    """
+    signal = 0.0
+    for bins, inside in zip(power, near, strict=True):
+        floor = noise if inside.all() else float(np.median(bins[~inside]))
+        signal += float(np.sum(bins[inside] - floor))
+    return signal / len(power)
+
+
+def draw(fit: Fit, path: Path) -> None:
+    """Write a figure of the noise floor over range and of the SNRs."""
+    figure = page(10.0, 3.5)
+    floor, snrs = figure.subplots(1, 2)
+    floor.plot(fit.waveform.range_axis(), fit.floor_db, label="measured")
+    floor.axhline(0, color="k", linestyle="--", linewidth=0.8, label="fitted: the same everywhere")
+    floor.set(xlabel="range (m)", ylabel="noise floor (dB over its median)")
+    floor.legend()
+    snr = fit.snr_db
+    snrs.hist(snr, bins=min(20, max(3, snr.size // 2)), label="measured")
+    snrs.axvline(snr.mean(), color="k", linestyle="--", label="mean")
+    snrs.set(xlabel="SNR of a raw sample (dB)", ylabel="parts")
+    snrs.legend()
+    write_figure(figure, path, 90)

@@ -81,7 +81,7 @@ def simulate(
     loaded = load_config(config, overrides)
     sigmf = wants_sigmf(to)
     if sigmf and not raw:
-        raise RadharError("--to sigmf: should stand with --raw, whose recording it writes")
+        raise RadharError("--to sigmf requires --raw")
     chosen = None if maps is None else map_names(maps.split(","))
     refuse_file(out)
     scene_file.refuse_foreign(out)
@@ -135,24 +135,15 @@ def simulate(
 
 
 def _record(simulation: "Simulation", path: Path, sigmf: bool) -> list[Path]:
-    from uuid import uuid4
-
     from radhar_cli.capture.importing import write_simulated
-    from radhar_cli.capture.recording import Label, Recording
+    from radhar_cli.capture.recording import Label
+    from radhar_cli.capture.sigmf_file import recording_or_sigmf
 
     assert simulation.beat is not None
     label = Label(label=simulation.activity.slug)
-    written = path.with_name(f".radhar-{uuid4().hex}.h5") if sigmf else path
-    write_simulated(written, simulation.beat, simulation.waveform, label)
-    if not sigmf:
-        return [path]
-    from radhar_cli.capture.sigmf_file import write_sigmf
-
-    try:
-        with Recording(written) as recording:
-            return write_sigmf(recording, path.with_suffix(""))
-    finally:
-        written.unlink(missing_ok=True)
+    with recording_or_sigmf(path, sigmf) as (target, files):
+        write_simulated(target, simulation.beat, simulation.waveform, label)
+    return files
 
 
 def _looking_at(motion: Path, slug: str) -> list[str]:

@@ -145,7 +145,7 @@ def test_lost_pulses_leave_no_bright_line(tmp_path: Path) -> None:
     keys = [f"carrier_hz={w.fc}", f"bandwidth_hz={w.bandwidth}", f"adc_rate_hz={w.adc_rate}"]
     keys += [f"prf_hz={w.prf}", "axes=[receiver, sample, pulse, iq]"]
     told = import_capture([tmp_path / "x.npy"], tmp_path / "x.h5", read_settings(None, keys))
-    assert any("10 of 2000 pulses" in line for line in told.found)
+    assert any("10 of 2000 pulses" in line for line in told.source.found)
     found = processed(tmp_path / "x.h5", config, "stft").maps["stft"]
     assert apart(found, scene.maps["stft"]) < 0.5
     with h5py.File(tmp_path / "x.h5", "r+") as file:

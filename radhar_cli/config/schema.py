@@ -15,6 +15,7 @@ from textwrap import dedent
 from typing import Annotated, Any, ClassVar, Generic, Literal, TypeAlias, TypeVar
 
 from pydantic import (
+    AfterValidator,
     BaseModel,
     ConfigDict,
     Discriminator,
@@ -993,6 +994,17 @@ MAP_NAMES = (
 )
 
 
+def _known_map(name: str) -> str:
+    if name not in MAP_NAMES and not is_known(name):
+        names = (*MAP_NAMES, *(product.name for product in own_products()))
+        right = " or ".join(filter(None, (", ".join(map(repr, names[:-1])), repr(names[-1]))))
+        raise PydanticCustomError("map", "should be {right}", {"right": right})
+    return name
+
+
+MapName = Annotated[str, AfterValidator(_known_map)]
+
+
 def possible_maps(processing: ProcessingConfig) -> tuple[str, ...]:
     """The maps that there can be: no FSST of a gate, whose bins are summed without their phase."""
     gated = processing.doppler == "gate"
@@ -1166,7 +1178,7 @@ class Config(Section):
     keep of paper, redraw of human and file."""
     processing: ProcessingConfig = ProcessingConfig()
     image: ImageConfig = ImageConfig()
-    maps: tuple[str, ...] = ("stft",)
+    maps: tuple[MapName, ...] = ("stft",)
     """Of rtm, stft, fsst; the latter two with _denoised, _compensated, _compensated_denoised."""
     split: SplitConfig = SplitConfig()
     engine: EngineConfig = EngineConfig()
@@ -1210,13 +1222,6 @@ class Config(Section):
             raise PydanticCustomError("maps", "should name at least 1 map")
         if len(set(value)) != len(value):
             raise PydanticCustomError("maps", "should name each map once")
-        known = (*MAP_NAMES, *(product.name for product in own_products()))
-        for name in value:
-            if name not in MAP_NAMES and not is_known(name):
-                hint = did_you_mean(name, known, f"there are {', '.join(known)}")
-                raise PydanticCustomError(
-                    "maps", "{what}", {"what": f"{name!r} is not a map; {hint}"}
-                )
         own = [name for name in value if name not in MAP_NAMES]
         return (*sorted(set(value) - set(own), key=MAP_NAMES.index), *own)
 

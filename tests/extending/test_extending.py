@@ -392,7 +392,7 @@ def test_a_data_set_is_read_where_its_products_are_not_known(tmp_path: Path) -> 
     registry._PRODUCTS.clear()
     with open_dataset(tmp_path) as data:
         assert data.maps["range_doppler"][0].any()
-    with pytest.raises(ValidationError, match="'range_doppler' is not a map"):
+    with pytest.raises(ValidationError, match="should be 'rtm'"):
         Config.model_validate({"maps": ["range_doppler"]})
 
 

@@ -33,9 +33,6 @@ def simulate(
     ] = None,
     set_: Overrides = None,
     tolerance: Tolerance = None,
-    engine: Annotated[
-        str | None, typer.Option(help="cube or direct, instead of the config's.")
-    ] = None,
     maps: Annotated[str | None, typer.Option(help="Comma-separated maps; default: all.")] = None,
     joint: Annotated[
         str | None, typer.Option(help="Keep this scatterer alone, such as right_ankle.")
@@ -71,10 +68,7 @@ def simulate(
     from radhar_cli.simulation.simulate import map_names
     from radhar_cli.simulation.simulate import simulate as simulate_scene
 
-    overrides = [
-        *with_tolerance(set_, tolerance),
-        *([f"--engine engine.kind={engine}"] if engine else []),
-    ]
+    overrides = with_tolerance(set_, tolerance)
     if motion is not None:
         activity = activity or FROM_FILE
         overrides = [*_looking_at(motion, activity), *overrides]
@@ -97,17 +91,14 @@ def simulate(
         maps=chosen,
         raw=raw,
     )
-    samples = loaded.samples_of(simulation.activity)
+    samples, warnings = loaded.samples_of(simulation.activity), list[str]()
     if index >= samples and not nominal:
-        tell(
-            f"warning: --index {index}: a data set of this config has the samples 0 to "
-            f"{samples - 1} of {simulation.activity.slug}; this one is drawn from its own "
-            "stream in the same way",
-            err=True,
+        warnings.append(
+            f"--index {index}: a data set of this config has the samples 0 to {samples - 1} of "
+            f"{simulation.activity.slug}; this one is drawn from its own stream in the same way"
         )
-    for warning in simulation.warnings:
+    for warning in (*warnings, *simulation.warnings):
         tell(f"warning: {warning}", err=True)
-
     written = scene_file.write_all(simulation, out)
     for name in RECORDINGS:  # of an earlier scene
         (out / name).unlink(missing_ok=True)
@@ -115,6 +106,13 @@ def simulate(
         written += _record(simulation, out / RECORDING, sigmf)
     if figures:
         written += _draw(simulation, out, overlay)
+    _say(simulation, written)
+
+
+def _say(simulation: "Simulation", written: list[Path]) -> None:
+    """Print what was simulated and where it lies."""
+    from radhar_cli.simulation.scene_file import describe
+
     took = sum(simulation.seconds.values())
     report(
         activity=simulation.activity.slug,
@@ -124,7 +122,7 @@ def simulate(
         files=written,
     )
     tell(f"{simulation.activity.label} {simulation.activity.slug}: synthesised in {took:.2f} s")
-    file = scene_file.describe(simulation)["motion_file"]
+    file = describe(simulation)["motion_file"]
     if file is not None:
         tell(
             f"  motion: {file['path']}, {file['begin_s']:.2f} to {file['end_s']:.2f} s of its "

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import h5py
 import pytest
-from bench_large import stub_shard
 from listener import Listener
 from PIL import ImageFont
 from small import small_config
+from stub_shards import stub_shard
 
 from radhar_cli.config import load_config
 from radhar_cli.dataset import build as build_module

@@ -52,13 +52,14 @@ def compare(
 
     50 % told apart: nobody can tell simulated from measured.
     """
-    from radhar_cli.commands.learning_options import apart
+    from radhar_cli.commands.learning_options import apart, needs
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.learning.images.classes import read_classes
     from radhar_cli.two_sample.comparison import Options
     from radhar_cli.two_sample.comparison import compare as compared
     from radhar_cli.two_sample.report import write
 
+    needs("train", ["sklearn"])
     apart(out, [simulated, measured])
     names = read_classes(classes) if classes else {}
     options = Options(map_, names, resize, per_class, seed, zero, pictures)

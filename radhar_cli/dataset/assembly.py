@@ -211,7 +211,7 @@ class _Ragged:
 
     def append(self, part: Samples) -> None:
         """Add the rows of the next samples."""
-        values = part.whole()
+        values = part[:]
         if self._name not in self._file:
             size = max(1, values.dtype.itemsize * prod(values.shape[1:]))
             self._file.create_dataset(

@@ -34,6 +34,7 @@ from radhar_cli.dataset.shards import (
     missing_and_repeated,
 )
 from radhar_cli.dataset.split import split_rows, split_warnings
+from radhar_cli.dataset.untrusted_hdf5 import try_files
 from radhar_cli.dataset.workers import cores, parent_pid, run_tasks
 from radhar_cli.errors import FolderError, UnfinishedError
 from radhar_cli.pipeline.validity import Flags, warnings
@@ -272,6 +273,7 @@ class _Build:
                 shard.path.rename(shard.path.with_suffix(f".foreign-{uuid.uuid4().hex}"))
             else:
                 shard.path.unlink(missing_ok=True)
+        try_files([shard.path for shard in sound])
         return sound
 
 

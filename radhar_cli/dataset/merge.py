@@ -19,6 +19,7 @@ from radhar_cli.dataset.png_files import take_over_pngs, write_missing_pngs
 from radhar_cli.dataset.reading import stored_config
 from radhar_cli.dataset.shards import Runs, Shard, listed_shards, require_tiling
 from radhar_cli.dataset.split import split_rows, split_warnings
+from radhar_cli.dataset.untrusted_hdf5 import try_files
 from radhar_cli.errors import FolderError
 from radhar_cli.progress import Progress
 
@@ -56,6 +57,7 @@ def merge(
 
     shards = _shards(places, count)
     require_tiling(out, shards, count, run_again)
+    try_files([shard.path for shard in shards])
     split = split_rows(config)
     for message in split_warnings(config, split):
         progress.say(f"warning: {message}")

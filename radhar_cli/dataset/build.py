@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.arrays import Levels
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.assembly import assembled
 from radhar_cli.dataset.batch import OUTCOME, Batch, Outcomes, check_rows, run_batch
@@ -150,9 +149,10 @@ class _Build:
     def __post_init__(self) -> None:
         self.identity_hash = identity_hash(identity(self.config))
         self.split = split_rows(self.config)
+        self.png = self.config.output.png
 
     def whole(self, batch_size: int | None) -> Outcome:
-        config, count = self.config, len(Rows.of(self.config))
+        config, count = self.config, len(self.split)
         if (self.folder / DATASET).exists():
             pngs = self._write_beside(self.folder / DATASET)
             clean_up(self.folder)
@@ -169,8 +169,8 @@ class _Build:
         return Outcome(self.folder, count, made, pngs, stored)
 
     def part(self, part: Part, batch_size: int | None) -> Outcome:
-        """Make the shards of a part; they stay, for others to put together."""
-        rows = part.rows(len(self.split))
+        """Make the shards of a part; they stay, for others to put together and write the PNGs."""
+        rows, self.png = part.rows(len(self.split)), False
         shards, made, shown = self._shards(rows, batch_size)
         write_part_manifest(self.folder, part, rows, self.identity_hash, shards)
         return Outcome(self.folder, len(rows), made, 0, shown)
@@ -191,30 +191,22 @@ class _Build:
         gaps, _ = missing_and_repeated(shards, rows.stop, rows.start)
         few = self.maker is None and len(rows) <= MAX_CHECKED_FIRST
         checked = self._check_scenes(rows, gaps) if few and gaps else None
-        counts = {} if checked is None or shards else _counts(checked["flags"])
-        shown = warnings(self.config, counts) if counts else []
+        shown: list[dict[str, Any]] = []
+        if checked is not None and not shards:
+            flags = checked["flags"]
+            counts = {flag: int(np.count_nonzero(flags & flag)) for flag in Flags}
+            shown = warnings(self.config, counts)
         say_warnings(self.progress, shown)
         made, left = self._batches(rows, gaps, checked, batch_size)
         return shards + made, left, shown
 
-    def _processes(self, tasks: int) -> int:
-        """As many as were asked for, but no more than there are tasks, nor than memory bears."""
-        return max(1, min(self.jobs, tasks, PROCESSES_A_CORE * cores()))
-
     def _check_scenes(self, rows: range, gaps: Runs) -> Outcomes:
         """Check the scenes of the rows in the gaps: an outcome a row."""
-        outcomes, left = (
-            np.zeros(len(rows), dtype=OUTCOME),
-            sum(stop - start for start, stop in gaps),
-        )
+        outcomes, left = np.zeros(len(rows), OUTCOME), sum(stop - start for start, stop in gaps)
         self.progress.stage("checking scenes", left, 0)
         size = max(1, min(CHECK_BATCH, -(-left // (4 * self.jobs))))
-        tasks = [
-            (self.config, start, min(start + size, gap_stop), parent_pid())
-            for gap_start, gap_stop in gaps
-            for start in range(gap_start, gap_stop, size)
-        ]
-        for start, found in run_tasks(check_rows, tasks, self._processes(len(tasks))):
+        tasks = [(self.config, *cut, parent_pid()) for cut in _cuts(gaps, size)]
+        for start, found in run_tasks(check_rows, tasks, _processes(self.jobs, len(tasks))):
             outcomes[start - rows.start :][: found.size] = found
             self.progress.advance(found.size)
         return outcomes
@@ -228,31 +220,20 @@ class _Build:
         left = sum(stop - start for start, stop in gaps)
         self.progress.stage("samples", len(rows), len(rows) - left)
         size = batch_size or _batch_size(left, self.jobs, row_bytes(config))
-        table = colour_table(config.image.colour_map) if config.output.png else None
+        table = colour_table(config.image.colour_map) if self.png else None
+
+        cuts = _cuts(gaps, size)
 
         def batches() -> Iterator[tuple[Batch]]:
-            for gap_start, gap_stop in gaps:
-                for start in range(gap_start, gap_stop, size):
-                    stop = min(start + size, gap_stop)
-                    shards.append(Shard(start, stop, self.folder))
-                    own = slice(start - rows.start, stop - rows.start)
-                    yield (
-                        Batch(
-                            config,
-                            self.identity_hash,
-                            self.folder,
-                            start,
-                            stop,
-                            None if checked is None else checked[own],
-                            self.split[start:stop],
-                            table,
-                            parent_pid(),
-                            self.maker,
-                        ),
-                    )
+            for start, stop in cuts:
+                shards.append(Shard(start, stop, self.folder))
+                own = None if checked is None else checked[start - rows.start : stop - rows.start]
+                where = (config, self.identity_hash, self.folder, start, stop)
+                split = self.split[start:stop]
+                yield (Batch(*where, own, split, table, parent_pid(), self.maker),)
 
-        count = sum(-(-(stop - start) // size) for start, stop in gaps)
-        processes = self._processes(count)
+        count = len(cuts)
+        processes = _processes(self.jobs, count)
         if count > 0 and processes < self.jobs:
             why = "one for each batch of samples" if processes == count else f"on {cores()} cores"
             self.progress.say(f"{processes} of {self.jobs} processes, {why}")
@@ -277,6 +258,11 @@ class _Build:
         return sound
 
 
+def _cuts(gaps: Runs, size: int) -> list[tuple[int, int]]:
+    """Runs of rows cut into pieces of at most `size`."""
+    return [(a, min(a + size, stop)) for start, stop in gaps for a in range(start, stop, size)]
+
+
 def _batch_size(left: int, jobs: int, one: int) -> int:
     """Samples a batch, of `left` samples of `one` bytes each for `jobs` processes."""
     most = min(max(BATCH, left // (SHARE * jobs)), MAX_BATCH, BATCH_BYTES // one)
@@ -289,8 +275,9 @@ def say_warnings(progress: Progress, messages: list[dict[str, Any]]) -> None:
         progress.say(f"warning: {warning['message']}")
 
 
-def _counts(flags: Levels) -> dict[Flags, int]:
-    return {flag: int(np.count_nonzero(flags & flag)) for flag in Flags}
+def _processes(jobs: int, tasks: int) -> int:
+    """As many as were asked for, but no more than there are tasks, nor than memory bears."""
+    return max(1, min(jobs, tasks, PROCESSES_A_CORE * cores()))
 
 
 def disk_error(folder: Path, error: OSError) -> UnfinishedError:

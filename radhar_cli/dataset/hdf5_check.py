@@ -5,41 +5,60 @@ the numbers of datasets, within limits of memory and time. It imports nothing of
 """
 
 import sys
-from contextlib import suppress
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
+from typing import Any
 
 import h5py
 
 MEMORY, SECONDS = 2 * 2**30, 10  # address space, CPU time of a run
 
 
-def walk(path: str) -> None:
+@contextmanager
+def harmless() -> Iterator[None]:
+    """Pass over errors that who reads the file will meet again, but for a lack of memory."""
+    try:
+        yield
+    except Exception as error:
+        if isinstance(error, MemoryError) or "alloc" in str(error):
+            sys.exit(" ".join(str(error).split()) or "it takes too much memory")
+
+
+def walk(file: h5py.File) -> None:
     """Read the texts and numbers among a file's attributes; open all its groups and datasets.
 
     Links to other files are not followed.
     """
-    with h5py.File(path, "r") as file:
-        for name in file.attrs:
+    for name in _names(file.attrs):
+        with harmless():
             attribute = file.attrs.get_id(name)
-            with suppress(TypeError, ValueError):  # of what is not read then either
-                text = h5py.check_string_dtype(attribute.dtype) is not None
-                if attribute.shape == () and (text or attribute.dtype.kind in "iuf"):
-                    file.attrs[name]
-        seen, left = set(), [file.id]
-        while left:
-            found = left.pop()
-            if isinstance(found, h5py.h5d.DatasetID):
-                creation = found.get_create_plist()
-                if creation.get_layout() == h5py.h5d.CHUNKED:
-                    found.get_num_chunks()
-                continue
-            for name in found:
-                if found.links.get_info(name).type != h5py.h5l.TYPE_HARD:
+            text = h5py.check_string_dtype(attribute.dtype) is not None
+            if attribute.shape == () and (text or attribute.dtype.kind in "iuf"):
+                file.attrs[name]
+    seen, left = set(), [file.id]
+    while left:
+        group = left.pop()
+        for name in _names(group):
+            with harmless():
+                if group.links.get_info(name).type != h5py.h5l.TYPE_HARD:
                     continue
-                child = h5py.h5o.open(found, name)
-                place = h5py.h5o.get_info(child).addr
-                if isinstance(child, h5py.h5g.GroupID | h5py.h5d.DatasetID) and place not in seen:
+                found = h5py.h5o.open(group, name)
+                place = h5py.h5o.get_info(found).addr
+                if isinstance(found, h5py.h5g.GroupID) and place not in seen:
                     seen.add(place)
-                    left.append(child)
+                    left.append(found)
+                elif (
+                    isinstance(found, h5py.h5d.DatasetID)
+                    and found.get_create_plist().get_layout() == h5py.h5d.CHUNKED
+                ):
+                    found.get_num_chunks()
+
+
+def _names(group: Iterable[Any]) -> list[Any]:
+    names: list[Any] = []
+    with harmless():
+        names.extend(group)
+    return names
 
 
 def main() -> None:
@@ -53,10 +72,8 @@ def main() -> None:
     for number, path in enumerate(sys.stdin.buffer.read().split(b"\0")[:-1]):
         sys.stdout.write(f"{number}\n")
         sys.stdout.flush()
-        try:
-            walk(path.decode(errors="surrogateescape"))
-        except Exception as error:
-            sys.exit(" ".join(str(error).split()) or type(error).__name__)
+        with harmless(), h5py.File(path.decode(errors="surrogateescape"), "r") as file:
+            walk(file)
 
 
 if __name__ == "__main__":

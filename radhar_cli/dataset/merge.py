@@ -15,7 +15,7 @@ from radhar_cli.dataset.hub import write_hub_files
 from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.dataset.layout import PARTS, Rows
 from radhar_cli.dataset.parts import Part, rows_by_part
-from radhar_cli.dataset.png_files import take_over_pngs, write_missing_pngs
+from radhar_cli.dataset.png_files import write_missing_pngs
 from radhar_cli.dataset.reading import stored_config
 from radhar_cli.dataset.shards import Runs, Shard, listed_shards, require_tiling
 from radhar_cli.dataset.split import split_rows, split_warnings
@@ -38,7 +38,7 @@ def merge(
     Args:
         out: the output folder.
         folders: of parts, or that hold parts, in addition to those below `out`.
-        jobs: processes, for PNGs that no part has.
+        jobs: processes, for PNGs.
         progress: receives progress and messages.
 
     Raises:
@@ -65,14 +65,8 @@ def merge(
         with folder_lock(out):
             reserve(out, config, overwrite=False, allowed=(PARTS,))
             progress.stage("merging", count, 0)
-            with assembled(config, out, shards, progress, run_again) as (
-                unfinished,
-                stored,
-            ):
+            with assembled(config, out, shards, progress, run_again) as (unfinished, stored):
                 say_warnings(progress, stored)
-                if config.output.png:
-                    parts = [(place.part.rows(count), place.folder) for place in places]
-                    take_over_pngs(config, out, split, parts)
                 pngs = write_missing_pngs(config, out, split, unfinished, jobs, progress)
                 write_hub_files(unfinished, out, config.output.png)
             mark_built(out)

@@ -1,7 +1,7 @@
 """Parts of a data set, built separately and merged by `radhar merge`.
 
 Part K of N holds the rows from (K - 1) rows/N to K rows/N, rounded down, in a folder of its own:
-lock, identity, shards, manifest and PNGs are as in a build, so a part that was killed resumes.
+lock, identity, shards and manifest are as in a build, so a part that was killed resumes.
 """
 
 import json

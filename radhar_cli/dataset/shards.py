@@ -16,9 +16,9 @@ import numpy as np
 
 from radhar_cli.arrays import Float, Levels
 from radhar_cli.config.schema import Config
-from radhar_cli.dataset.deflate import deflated
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.layout import COLUMN_LABEL, WORK, checksum_of, chunked, count_of
+from radhar_cli.dataset.png import deflated
 from radhar_cli.dataset.sample import Sample
 from radhar_cli.errors import SceneError, UnfinishedError
 

@@ -59,7 +59,7 @@ def try_files(paths: Sequence[Path]) -> None:
     """Read the structure of files in another process.
 
     Raises:
-        FolderError: HDF5 refuses one, crashes on it, or takes too much time or memory.
+        FolderError: HDF5 crashes on one, or takes too much time or memory.
     """
     if not paths:
         return
@@ -78,7 +78,7 @@ def try_files(paths: Sequence[Path]) -> None:
         why = f"takes HDF5 more than {hdf5_check.SECONDS} s to open"
     elif done.returncode < 0:
         why = f"HDF5 crashes on it, {signal.Signals(-done.returncode).name}"
-    raise FolderError(f"{path}: is not an HDF5 file, or is truncated ({why})")
+    raise FolderError(f"{path}: cannot be read, the file is damaged ({why})")
 
 
 def _try_once(path: Path) -> None:
@@ -111,8 +111,10 @@ class UntrustedFile(Closing):
                 _try_once(path)
         except OSError as error:
             raise FolderError(f"{path}: {error.strerror}") from None
-        with _refusing_damage(str(path)):
+        try:
             self._file = h5py.File(path if data is None else io.BytesIO(data), "r")
+        except _DAMAGED as error:
+            raise FolderError(f"{path}: is not an HDF5 file, or is truncated ({error})") from None
 
     def has_attribute(self, name: str) -> bool:
         """Whether the file itself has an attribute of that name."""

@@ -79,8 +79,12 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Report:
     prepare_process()
     beside = folder if folder.is_dir() else folder.parent
     with open_dataset(folder) as data:
-        report = Report(len(data))
-        _versions(data, report)
+        report, stored = Report(len(data)), data.versions
+        report.other_versions += [
+            f"{library} {stored[library]} there, {here} here"
+            for library, here in versions().items()
+            if stored[library] != here
+        ]
         if _structure(data, report):
             _checksums(data, report)
             _column_labels(data, report)
@@ -92,14 +96,6 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Report:
                 _config_and_table(data, beside, report)
             report.problems += wrong_hub_files(data, beside)
         return report
-
-
-def _versions(data: Dataset, report: Report) -> None:
-    stored = data.versions
-    for library, here in versions().items():
-        there = stored[library]
-        if there != here:
-            report.other_versions.append(f"{library} {there} there, {here} here")
 
 
 def _structure(data: Dataset, report: Report) -> bool:

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from radhar_cli.dataset.deflate import deflated
+from radhar_cli.dataset.png import deflated
 
 LEVELS = [0, 1, 2, 6, 9]
 

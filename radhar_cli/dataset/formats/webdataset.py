@@ -8,7 +8,7 @@ from typing import Any
 
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.card import data_files, number_features
-from radhar_cli.dataset.formats.checked import Samples, describe, files_of_split
+from radhar_cli.dataset.formats.convert import Samples, describe, files_of_split
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.table import Entry, number_names

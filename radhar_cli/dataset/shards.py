@@ -213,16 +213,11 @@ def missing_and_repeated(
     return missing, repeated
 
 
-def resume_hint(missing: Runs) -> str:
-    """Advice on rows that a build lacks."""
-    return "the rest is kept, and the same command resumes"
-
-
 def require_tiling(
     folder: Path,
     shards: Sequence[Shard],
     count: int,
-    remedy: Callable[[Runs], str] = resume_hint,
+    remedy: Callable[[Runs], str] | None = None,
     unusable: Sequence[tuple[Shard, ShardError]] = (),
 ) -> None:
     """Refuse shards that do not hold each of `count` rows once.
@@ -231,7 +226,7 @@ def require_tiling(
         folder: the output folder.
         shards: of the data set.
         count: rows.
-        remedy: what to do about rows.
+        remedy: what to do about rows, if not to run the same command again.
         unusable: shards that were left out, and why.
 
     Raises:
@@ -244,7 +239,8 @@ def require_tiling(
         if runs:
             raise UnfinishedError(
                 f"{folder}: rows {_rows(runs)} ({sum(b - a for a, b in runs)} of {count}) are "
-                f"{fault} the finished shards{why}; {remedy(runs)}"
+                f"{fault} the finished shards{why}; "
+                + (remedy(runs) if remedy else "the rest is kept, and the same command resumes")
             )
 
 

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from radhar_cli.arrays import Float
 from radhar_cli.capture.settings import USUAL_AXES, AxisName, CaptureSettings
 from radhar_cli.capture.source import Parts, Source
-from radhar_cli.dataset.untrusted_hdf5 import Samples, UntrustedFile
+from radhar_cli.dataset.untrusted_hdf5 import Numbers, UntrustedFile
 from radhar_cli.errors import CaptureError, FolderError, did_you_mean
 from radhar_cli.untrusted import regular_size
 
@@ -323,7 +323,7 @@ def _hdf5(path: Path, settings: CaptureSettings, of_matlab: bool) -> tuple[Array
     return _stored(file.samples(name), of_matlab), times
 
 
-def _stored(samples: Samples, turned: bool) -> Array:
+def _stored(samples: Numbers, turned: bool) -> Array:
     if not turned:
         return Array(
             samples.where, samples.shape, samples.number, samples.parts, samples.read, samples.chunk

@@ -17,7 +17,7 @@ from radhar_cli import __version__
 from radhar_cli.arrays import Complex
 from radhar_cli.capture.findings import CLIPPED, LOST, checked
 from radhar_cli.capture.source import PIECE_BYTES, Parts
-from radhar_cli.dataset.untrusted_hdf5 import Samples, UntrustedFile
+from radhar_cli.dataset.untrusted_hdf5 import Numbers, UntrustedFile
 from radhar_cli.errors import CaptureError, FolderError, UnfinishedError
 from radhar_cli.new_hdf5 import new_hdf5
 from radhar_cli.processing.pulse_times import PulseTimes
@@ -310,7 +310,7 @@ def _info(document: Any, path: Path) -> RecordingInfo:
     return info
 
 
-def _refuse_other_shape(samples: Samples, shape: tuple[int, ...]) -> None:
+def _refuse_other_shape(samples: Numbers, shape: tuple[int, ...]) -> None:
     if samples.shape != shape:
         raise FolderError(f"{samples.where}: has the shape {samples.shape}; should have {shape}")
     if samples.number.str[1:] not in NUMBERS:

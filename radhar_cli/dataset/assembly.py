@@ -50,7 +50,7 @@ from radhar_cli.dataset.shards import (
     require_tiling,
 )
 from radhar_cli.dataset.split import split_rows
-from radhar_cli.dataset.untrusted_hdf5 import Samples, UntrustedFile
+from radhar_cli.dataset.untrusted_hdf5 import Numbers, UntrustedFile
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.new_hdf5 import new_hdf5
 from radhar_cli.pipeline.validity import Flags, warnings
@@ -209,7 +209,7 @@ class _Ragged:
         self._file, self._name = file, f"products/{name}"
         self._level = config.output.hdf5_level
 
-    def append(self, part: Samples) -> None:
+    def append(self, part: Numbers) -> None:
         """Add the rows of the next samples."""
         values = part[:]
         if self._name not in self._file:

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.assembly import assembled
-from radhar_cli.dataset.build import Outcome, disk_error, say_warnings
+from radhar_cli.dataset.build import BuildOutcome, disk_error, say_warnings
 from radhar_cli.dataset.files import refuse_foreign_work
-from radhar_cli.dataset.folder import clean_up, folder_lock, mark_built, reserve, stored_identity
+from radhar_cli.dataset.folder import clean_up, folder_lock, reserve, stored_identity
 from radhar_cli.dataset.hub import write_hub_files
 from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.dataset.layout import PARTS, Rows
@@ -32,7 +32,7 @@ class _Place(NamedTuple):
 
 def merge(
     out: Path, folders: Sequence[Path], jobs: int, progress: Progress
-) -> tuple[Config, Outcome]:
+) -> tuple[Config, BuildOutcome]:
     """Make the data set in `out` of its parts, which are only read.
 
     Args:
@@ -69,11 +69,10 @@ def merge(
                 say_warnings(progress, stored)
                 pngs = write_missing_pngs(config, out, split, unfinished, jobs, progress)
                 write_hub_files(unfinished, out, config.output.png)
-            mark_built(out)
             clean_up(out)
     except OSError as error:
         raise disk_error(out, error) from error
-    return config, Outcome(out, count, count, pngs, stored)
+    return config, BuildOutcome(out, count, count, pngs, stored)
 
 
 def _places(folders: Iterable[Path]) -> list[_Place]:

@@ -189,7 +189,7 @@ class UntrustedFile(Closing):
                 )
         return Chunks(where, dataset, wanted, shape, filters)
 
-    def samples(self, name: str) -> "Samples":
+    def samples(self, name: str) -> "Numbers":
         """Real or complex numbers of any shape, plain or gzip, read in pieces."""
         where = f"{self.path}: /{name}"
         with _refusing_damage(where):
@@ -210,7 +210,7 @@ class UntrustedFile(Closing):
                     raise FolderError(f"{where}: lacks pieces; it is unfinished or damaged")
             if not filters and size > self.bytes:
                 raise FolderError(f"{where}: is larger than the file; it is damaged or truncated")
-        return Samples(where, dataset, dataset.dtype, dataset.shape, filters, number, parts)
+        return Numbers(where, dataset, dataset.dtype, dataset.shape, filters, number, parts)
 
     def numeric_names(self) -> list[str]:
         """Names of the datasets of numbers at the top of the file, at most 1000."""
@@ -336,7 +336,7 @@ class Chunks(Column):
 
 
 @dataclass(frozen=True)
-class Samples(Column):
+class Numbers(Column):
     """Numbers that were checked and are read in pieces.
 
     Attributes:

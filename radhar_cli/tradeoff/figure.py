@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from radhar_cli.figures.page import page, png_bytes
-from radhar_cli.tradeoff.study import Row
+from radhar_cli.tradeoff.study import Record
 
 ENGINES = ("budget", "precision", "engine")
 
@@ -33,7 +33,7 @@ def frontier(points: Sequence[CostPoint]) -> list[CostPoint]:
     return best
 
 
-def tradeoff_png(title: str, rows: Sequence[Row]) -> bytes:
+def tradeoff_png(title: str, rows: Sequence[Record]) -> bytes:
     """Draw time against error, and the switches."""
     engines = [row for row in rows if row["group"] in ENGINES and row["time_ratio"] is not None]
     errors = [row["signal_error_db"] for row in engines]
@@ -100,7 +100,7 @@ def _draw_costs(axes: Axes, points: Sequence[CostPoint], floor: float, label: st
     axes.grid(alpha=0.3)
 
 
-def _draw_switches(axes: Axes, rows: Sequence[Row]) -> None:
+def _draw_switches(axes: Axes, rows: Sequence[Record]) -> None:
     names = list[str]()
     for row in rows:
         change_db, ratio = row["signal_error_median_db"], row["time_ratio"]

@@ -75,7 +75,7 @@ def image_scores(compared: Levels, exact: Levels) -> dict[str, float | None]:
     }
 
 
-class Sample(NamedTuple):
+class SettingData(NamedTuple):
     """One scene under one setting.
 
     Attributes:
@@ -115,13 +115,13 @@ class SceneDifferences:
         return row | image_scores(compared.levels, right.levels)
 
 
-def _sample(scenes: Scenes, slug: str, overrides: tuple[str, ...]) -> Sample:
+def _sample(scenes: Scenes, slug: str, overrides: tuple[str, ...]) -> SettingData:
     config = scenes.config(overrides)
     name = config.maps[0]
     asked = ["signal", name, f"image:{name}"] + ["accuracy"] * (config.engine.kind == "direct")
     products = record(scenes.draw(slug, config), asked).products
     accuracy = products.get("accuracy")
-    return Sample(
+    return SettingData(
         products["signal"].x[0, 0],
         products[name].power,
         products[f"image:{name}"].levels,

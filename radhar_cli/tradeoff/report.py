@@ -9,7 +9,7 @@ from typing import Any
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.learning.tables import csv_text
 from radhar_cli.tradeoff.figure import ENGINES, tradeoff_png
-from radhar_cli.tradeoff.study import Row
+from radhar_cli.tradeoff.study import Record
 
 CSV, JSON, FIGURE, TEXT = "tradeoff.csv", "tradeoff.json", "pareto.png", "tradeoff.md"
 TIME = "{time_ratio:.2f} ({time_ratio_low:.2f} to {time_ratio_high:.2f})"
@@ -49,7 +49,7 @@ IMAGE = {
 
 
 def write_report(
-    folder: Path, title: str, command: str, rows: Sequence[Row], conditions: Mapping[str, Any]
+    folder: Path, title: str, command: str, rows: Sequence[Record], conditions: Mapping[str, Any]
 ) -> list[Path]:
     """Write the four files; return their paths. JSON has null for the error of what is exact."""
     finite = [{key: None if value == -inf else value for key, value in row.items()} for row in rows]
@@ -65,7 +65,9 @@ def write_report(
     return [folder / name for name in files]
 
 
-def markdown(title: str, command: str, rows: Sequence[Row], conditions: Mapping[str, Any]) -> str:
+def markdown(
+    title: str, command: str, rows: Sequence[Record], conditions: Mapping[str, Any]
+) -> str:
     """The whole report."""
     count, rounds = conditions["scenes"], conditions["rounds"]
     scenes = "1 scene" if count == 1 else f"{count} scenes, one an activity,"
@@ -101,7 +103,7 @@ Images of another size are resized to the config's before they are compared.
 """
 
 
-def _table(columns: Mapping[str, str], rows: Sequence[Row], groups: Sequence[str]) -> str:
+def _table(columns: Mapping[str, str], rows: Sequence[Record], groups: Sequence[str]) -> str:
     cells = [
         [_cell(name, form, row) for name, form in columns.items()]
         for row in rows
@@ -111,7 +113,7 @@ def _table(columns: Mapping[str, str], rows: Sequence[Row], groups: Sequence[str
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
-def _cell(name: str, form: str, row: Row) -> str:
+def _cell(name: str, form: str, row: Record) -> str:
     changed = row["pixels_changed"]
     values = {
         **row,

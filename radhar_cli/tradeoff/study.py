@@ -25,7 +25,7 @@ from radhar_cli.untrusted import read_json
 
 ROUNDS = {True: 3, False: 7}
 NAME = "sweep.json"
-Row: TypeAlias = dict[str, Any]  # a setting in plain numbers, None where there is none
+Record: TypeAlias = dict[str, Any]  # a setting in plain numbers, None where there is none
 
 
 def reserve(folder: Path, config: Config, overwrite: bool) -> None:
@@ -46,7 +46,7 @@ def reserve(folder: Path, config: Config, overwrite: bool) -> None:
     write_whole(folder, path, json.dumps(new).encode())
 
 
-def run_sweep(scenes: Scenes, folder: Path, progress: Progress) -> list[Row]:
+def run_sweep(scenes: Scenes, folder: Path, progress: Progress) -> list[Record]:
     """Measure what has not been measured yet; return a row for every setting."""
     settings, names, rounds = possible(scenes, progress), scenes.names(), ROUNDS[scenes.quick]
     found: dict[Setting, list[dict[str, Any]]] = {setting: [] for setting in settings}
@@ -102,7 +102,7 @@ def _once(folder: Path, setting: Setting, what: str, measure: Callable[[], Any],
         raise FolderError(f"{path}: is damaged ({first}); delete it") from None
 
 
-def _row(setting: Setting, times: Sequence[Times], found: Sequence[dict[str, Any]]) -> Row:
+def _row(setting: Setting, times: Sequence[Times], found: Sequence[dict[str, Any]]) -> Record:
     """Medians and quartiles over the rounds, worst or median differences over the scenes."""
 
     def every(name: str) -> list[float]:

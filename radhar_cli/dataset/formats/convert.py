@@ -64,7 +64,7 @@ def convert(path: Path, out: Path, to: str, progress: Progress) -> int:
         return len(data)
 
 
-class Samples:
+class CheckedPngs:
     """The maps of a data set as PNGs, each compared with its checksum."""
 
     def __init__(self, data: Dataset) -> None:

@@ -10,7 +10,7 @@ import pyarrow.parquet as pq
 
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.card import configurations, number_features
-from radhar_cli.dataset.formats.convert import Samples, describe, files_of_split
+from radhar_cli.dataset.formats.convert import CheckedPngs, describe, files_of_split
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.table import Entry
@@ -21,7 +21,7 @@ GROUP, GROUP_BYTES = 256, 2**26  # samples and bytes of pixels per row group
 
 def write(data: Dataset, folder: Path, progress: Progress) -> None:
     """Write <map>/<split>-<number>-of-<files>.parquet."""
-    schema, samples = schema_of(data.config), Samples(data)
+    schema, samples = schema_of(data.config), CheckedPngs(data)
     group = max(1, min(GROUP, GROUP_BYTES // prod(data.config.image.size_px)))
     for name in data.config.maps:
         (folder / name).mkdir()
@@ -54,7 +54,7 @@ def schema_of(config: Config) -> pa.Schema:
 
 
 def _table(
-    data: Dataset, name: str, here: list[Entry], samples: Samples, schema: pa.Schema
+    data: Dataset, name: str, here: list[Entry], samples: CheckedPngs, schema: pa.Schema
 ) -> pa.Table:
     rows, numbers = Rows.of(data.config), zip(*(entry.values for entry in here), strict=True)
     images = [

@@ -50,7 +50,7 @@ from radhar_cli.dataset.shards import (
     require_tiling,
 )
 from radhar_cli.dataset.split import split_rows
-from radhar_cli.dataset.untrusted_hdf5 import Numbers, UntrustedFile
+from radhar_cli.dataset.untrusted_hdf5 import Numbers, UntrustedFile, remember
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.new_hdf5 import new_hdf5
 from radhar_cli.pipeline.validity import Flags, warnings
@@ -118,6 +118,7 @@ def assembled(
                 held.write("]}\n")
                 messages = warnings(config, flags)
                 _root_attributes(file, config, messages)
+            remember(unfinished)
             yield unfinished, messages
             write_whole(folder, folder / CONFIG, (CONFIG_HEADING + as_yaml(config)).encode())
     except ShardError as error:

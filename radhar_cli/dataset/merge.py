@@ -113,8 +113,8 @@ def _config(places: Sequence[_Place]) -> Config:
     differing = differences(first.identity, identity(config))
     if differing:
         raise FolderError(
-            f"{first.folder}: should be merged by what made the parts; this differs in\n  "
-            + "\n  ".join(differing)
+            f"{first.folder}: merge with the radhar version that built the parts; it differs "
+            "in\n  " + "\n  ".join(differing)
         )
     return config
 

@@ -81,13 +81,19 @@ def try_files(paths: Sequence[Path]) -> None:
     raise FolderError(f"{path}: cannot be read, the file is damaged ({why})")
 
 
-def _try_once(path: Path) -> None:
-    status = path.stat()
+def remember(path: Path, tried: bool = True) -> None:
+    """Know a file as written here or tried, also in processes that are started later.
+
+    Args:
+        path: of the file.
+        tried: whether it was; if not it is, unless it is known.
+    """
+    status, known = path.stat(), os.environ.get(_TRIED, "").split()
     name = f"{status.st_dev}:{status.st_ino}:{status.st_size}:{status.st_ctime_ns}"
-    tried = os.environ.get(_TRIED, "").split()
-    if name not in tried:
-        try_files([path])
-        os.environ[_TRIED] = " ".join([*tried[-99:], name])
+    if name not in known:
+        if not tried:
+            try_files([path])
+        os.environ[_TRIED] = " ".join([*known[-99:], name])
 
 
 class UntrustedFile(Closing):
@@ -108,7 +114,7 @@ class UntrustedFile(Closing):
         try:
             self.bytes = regular_size(path) if data is None else len(data)
             if data is None:
-                _try_once(path)
+                remember(path, tried=False)
         except OSError as error:
             raise FolderError(f"{path}: {error.strerror}") from None
         try:

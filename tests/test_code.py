@@ -100,7 +100,7 @@ LIBRARIES: dict[str, set[str]] = {
     "sigmf": {"capture"},
     "torch": {"learning"},
     "timm": {"learning"},
-    "sklearn": {"learning"},
+    "sklearn": {"learning", "two_sample"},
     "tensorboard": {"learning"},
     "skimage": {"tradeoff"},
 }

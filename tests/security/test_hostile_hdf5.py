@@ -15,6 +15,9 @@ import pytest
 from security.bounded import Answer, answers, refused
 
 from radhar_cli.build_version import build_version
+from radhar_cli.dataset import hdf5_check
+from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
+from radhar_cli.errors import FolderError
 
 Change = Callable[[h5py.File, Path], None]
 COMMANDS = ("inspect", "preview", "verify", "eval")
@@ -455,3 +458,21 @@ def test_harmless_changes_have_no_effect(told: dict[str, Answer], case: str, nam
     if name == "eval":
         accuracy = [line for line in answer.err.splitlines() if "%" in line]
         assert accuracy == [line for line in right.err.splitlines() if "%" in line]
+
+
+@pytest.mark.parametrize(
+    ("program", "expected"),
+    [
+        ("import os; print(0, flush=True); os.abort()", "HDF5 crashes on it, SIGABRT"),
+        ("import sys; print(0); sys.exit('unable to allocate')", "unable to allocate"),
+    ],
+)
+def test_a_crash_of_hdf5_is_one_line(
+    program: str, expected: str, good_set: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "crashing.py").write_text(program)
+    monkeypatch.setattr(hdf5_check, "__file__", str(tmp_path / "crashing.py"))
+    file = Path(shutil.copy(good_set / "dataset.h5", tmp_path))
+    with pytest.raises(FolderError, match=expected) as error:
+        UntrustedFile(file)
+    assert str(error.value).startswith(f"{file}: cannot be read")

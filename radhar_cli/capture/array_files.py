@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from radhar_cli.arrays import Float
 from radhar_cli.capture.settings import USUAL_AXES, AxisName, CaptureSettings
 from radhar_cli.capture.source import Parts, Source
-from radhar_cli.dataset.untrusted_hdf5 import Samples, UntrustedFile
+from radhar_cli.dataset.untrusted_hdf5 import Numbers, UntrustedFile
 from radhar_cli.errors import CaptureError, FolderError, did_you_mean
 from radhar_cli.untrusted import regular_size
 
@@ -34,7 +34,7 @@ _ORDER: tuple[AxisName, ...] = ("transmitter", "receiver", "sample", "frame", "p
 
 
 class Array:
-    """An array that `load` maps or returns, read in blocks like `Samples`.
+    """An array that `load` maps or returns, read in blocks like `Numbers`.
 
     Raises:
         CaptureError: it cannot be read, is empty, or holds something other than numbers.
@@ -93,11 +93,11 @@ def open_arrays(path: Path, settings: CaptureSettings, scratch: Path) -> Source:
     return as_source(path, arrays[0], settings, times, of_matlab)
 
 
-def _npy(path: Path, where: str) -> Array | Samples:
+def _npy(path: Path, where: str) -> Array | Numbers:
     return Array(where, partial(np.load, path, mmap_mode="r", allow_pickle=False))
 
 
-def _npz(path: Path, settings: CaptureSettings, scratch: Path) -> list[Array | Samples]:
+def _npz(path: Path, settings: CaptureSettings, scratch: Path) -> list[Array | Numbers]:
     with refusing(str(path)), zipfile.ZipFile(path) as archive:
         shapes = {n: shape for n, (shape, kind) in check_npz(archive).items() if kind in "iufc"}
         files = {name.removesuffix(".npy"): name for name in archive.namelist()}
@@ -131,14 +131,14 @@ def check_npz(archive: zipfile.ZipFile) -> dict[str, tuple[tuple[int, ...], str]
     return arrays
 
 
-def _hdf5(path: Path, settings: CaptureSettings) -> list[Array | Samples]:
+def _hdf5(path: Path, settings: CaptureSettings) -> list[Array | Numbers]:
     file = UntrustedFile(path)
     asked = [name for name in (settings.dataset, settings.times) if name is not None]
     shapes = {name: tuple(file.shape(name.strip("/"))) for name in [*file.numeric_names(), *asked]}
     return [file.samples(name.strip("/")) for name in _chosen(path, shapes, settings)]
 
 
-def _mat5(path: Path, settings: CaptureSettings) -> list[Array | Samples]:
+def _mat5(path: Path, settings: CaptureSettings) -> list[Array | Numbers]:
     from scipy.io import loadmat, whosmat
 
     with refusing(str(path)):
@@ -195,7 +195,7 @@ def _chosen(path: Path, shapes: dict[str, tuple[int, ...]], settings: CaptureSet
     return [*large, *asked]
 
 
-def _times(array: Array | Samples) -> Float:
+def _times(array: Array | Numbers) -> Float:
     if prod(array.shape) > MAX_TIMES or array.parts != 1:
         raise CaptureError(f"{array.where}: should be times, a real number for every pulse")
     return array.read(tuple(slice(0, n) for n in array.shape)).astype(float).ravel()
@@ -203,7 +203,7 @@ def _times(array: Array | Samples) -> Float:
 
 def as_source(
     path: Path,
-    array: Array | Samples,
+    array: Array | Numbers,
     settings: CaptureSettings,
     times: Float | None = None,
     of_matlab: bool = False,
@@ -279,7 +279,7 @@ def _by_frame(low: int, high: int, per_frame: int) -> Iterator[tuple[slice, slic
         low += whole * per_frame or stop - at
 
 
-def _axes(array: Array | Samples, s: CaptureSettings, of_matlab: bool) -> tuple[AxisName, ...]:
+def _axes(array: Array | Numbers, s: CaptureSettings, of_matlab: bool) -> tuple[AxisName, ...]:
     """Names of the axes as they lie in the file.
 
     Raises:

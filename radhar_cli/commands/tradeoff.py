@@ -34,11 +34,9 @@ def tradeoff(
     needs("tradeoff", ["skimage"])
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.dataset.folder import folder_lock
-    from radhar_cli.tradeoff.folder import reserve
     from radhar_cli.tradeoff.report import write_report
-    from radhar_cli.tradeoff.result_cache import ResultCache
-    from radhar_cli.tradeoff.scenes import Scenes
-    from radhar_cli.tradeoff.study import ROUNDS, run_sweep
+    from radhar_cli.tradeoff.settings import Scenes
+    from radhar_cli.tradeoff.study import ROUNDS, reserve, run_sweep
     from radhar_cli.worker_process import prepare_process
 
     scenes = Scenes(config, tuple(set_ or ()), quick)
@@ -51,9 +49,8 @@ def tradeoff(
     with resumable(f"what is measured in {out}"), folder_lock(out):
         prepare_process()
         reserve(out, loaded, overwrite)
-        cache = ResultCache(out)
         with BarProgress("step") as progress:
-            rows = run_sweep(scenes, cache, progress)
+            rows = run_sweep(scenes, out, progress)
         conditions: dict[str, Any] = {"scenes": len(scenes.names()), "rounds": ROUNDS[quick]}
         written = write_report(out, config.stem, command, rows, conditions)
     report(files=written)

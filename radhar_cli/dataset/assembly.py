@@ -48,10 +48,9 @@ from radhar_cli.dataset.shards import (
     check_shards,
     chunked_dataset,
     require_tiling,
-    resume_hint,
 )
 from radhar_cli.dataset.split import split_rows
-from radhar_cli.dataset.untrusted_hdf5 import Samples, UntrustedFile
+from radhar_cli.dataset.untrusted_hdf5 import Numbers, UntrustedFile, remember
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.new_hdf5 import new_hdf5
 from radhar_cli.pipeline.validity import Flags, warnings
@@ -71,6 +70,10 @@ LEVELS_TEXT = (
     "level = floor(255 (dB / dynamic_range_db + 1) + 1/2), dB = 10 log10(power / largest power), "
     "clipped to [-dynamic_range_db, 0]; level 0 everywhere for an all-zero map"
 )
+SLOW_TIME_TEXT = (
+    "x[m] after receiver and canceller, for unit transmit power; NaN after the last pulse of "
+    "a recording that is shorter than others"
+)
 
 
 @contextmanager
@@ -79,7 +82,7 @@ def assembled(
     folder: Path,
     shards: Sequence[Shard],
     progress: Progress,
-    remedy: Callable[[Runs], str] = resume_hint,
+    remedy: Callable[[Runs], str] | None = None,
 ) -> Iterator[tuple[Path, list[dict[str, Any]]]]:
     """Assemble a data set; yield the path of the complete file and the warnings stored in it.
 
@@ -90,7 +93,7 @@ def assembled(
         folder: the output folder.
         shards: that hold every row once.
         progress: receives the rows that are copied.
-        remedy: advice on rows that are missing, for the message.
+        remedy: advice on rows that are missing, if not to run the same command again.
 
     Raises:
         UnfinishedError: rows are missing, held twice, or in a shard that cannot be used.
@@ -115,6 +118,7 @@ def assembled(
                 held.write("]}\n")
                 messages = warnings(config, flags)
                 _root_attributes(file, config, messages)
+            remember(unfinished)
             yield unfinished, messages
             write_whole(folder, folder / CONFIG, (CONFIG_HEADING + as_yaml(config)).encode())
     except ShardError as error:
@@ -188,17 +192,14 @@ def _copy_shards(
                 del chunks[name][:run]
             stored += run
             check()
-    for target in (*scene, *(target for target, _, _ in small.values())):
-        target.flush()
     named = zip((f"scene/{field.name}" for field in fields), scene, strict=True)
-    digests = {name: target.digest.hexdigest() for name, target in named}
-    for name, (target, _, _) in small.items():
-        digests[name] = target.digest.hexdigest()
+    columns_there = {**dict(named), **{name: target for name, (target, _, _) in small.items()}}
+    digests = {name: target.finished() for name, target in columns_there.items()}
     file.attrs["columns_sha256"] = json.dumps(digests)
     for name in config.maps:
         _describe_map(file, config, name, extents[f"extent/{name}"])
     if config.output.slow_time:
-        _describe_slow_time(file["slow_time"].attrs)
+        file["slow_time"].attrs.update({"axes": ["sample", "pulse"], "meaning": SLOW_TIME_TEXT})
     return flags
 
 
@@ -209,9 +210,9 @@ class _Ragged:
         self._file, self._name = file, f"products/{name}"
         self._level = config.output.hdf5_level
 
-    def append(self, part: Samples) -> None:
+    def append(self, part: Numbers) -> None:
         """Add the rows of the next samples."""
-        values = part.whole()
+        values = part[:]
         if self._name not in self._file:
             size = max(1, values.dtype.itemsize * prod(values.shape[1:]))
             self._file.create_dataset(
@@ -233,23 +234,24 @@ class _Column:
     """A small dataset, written COLUMN_RUN rows at a time: a write takes h5py 0.1 ms."""
 
     def __init__(self, target: h5py.Dataset) -> None:
-        self._target, self._start, self._stop, self.digest = target, 0, 0, hashlib.sha256()
+        self._target, self._start, self._stop, self._digest = target, 0, 0, hashlib.sha256()
         self._held: list[NDArray[Any]] = []
 
     def append(self, values: NDArray[Any]) -> None:
         """Add the next rows."""
         self._held.append(values)
-        self.digest.update(values.astype(self._target.dtype).tobytes())
+        self._digest.update(values.astype(self._target.dtype).tobytes())
         self._stop += len(values)
         if self._stop - self._start >= COLUMN_RUN:
-            self.flush()
+            self.finished()
 
-    def flush(self) -> None:
-        """Write what is held."""
+    def finished(self) -> str:
+        """Write what is held; return the checksum of all rows."""
         if self._held:
             self._target[self._start : self._stop] = np.concatenate(self._held)
             self._start = self._stop
             self._held.clear()
+        return self._digest.hexdigest()
 
 
 def _describe_samples(file: h5py.File, config: Config) -> None:
@@ -286,27 +288,26 @@ def _describe_map(
     """Attributes of a map of these extents; of more than one, two are enough."""
     same = len(extents) == 1
     start, stop, low, high = next(iter(extents)) if same else [np.nan] * 4
-    vertical = row_axis(name)
-    attributes = file[f"maps/{name}"].attrs
-    attributes["axes"] = ["sample", f"{vertical[0]} (row 0 is the highest)", "time"]
-    attributes["row_quantity"], attributes["row_unit"] = vertical
-    attributes["row_top"], attributes["row_bottom"] = high, low
-    own = name not in MAP_NAMES
-    attributes["column_quantity"] = "columns of the product" if own else "slow time"
-    attributes["column_unit"] = "1" if own else "s"
-    attributes["column_left"], attributes["column_right"] = start, stop
-    attributes["kind"] = config.image.kind
-    if config.image.kind == "decibel":
-        attributes["dynamic_range_db"] = config.image.dynamic_range_db
-    attributes["levels"] = LEVELS_TEXT if config.image.kind == "decibel" else CFAR_TEXT
-    if not same:
-        attributes["edges"] = "differ from sample to sample: see /extent"
-    file[f"extent/{name}"].attrs["columns"] = [
-        "time left (s)",
-        "time right (s)",
-        f"{vertical[0]} bottom ({vertical[1]})",
-        f"{vertical[0]} top ({vertical[1]})",
-    ]
+    (rows, unit), image = row_axis(name), config.image
+    own, decibel = name not in MAP_NAMES, image.kind == "decibel"
+    described = {
+        "axes": ["sample", f"{rows} (row 0 is the highest)", "time"],
+        "row_quantity": rows,
+        "row_unit": unit,
+        "row_top": high,
+        "row_bottom": low,
+        "column_quantity": "columns of the product" if own else "slow time",
+        "column_unit": "1" if own else "s",
+        "column_left": start,
+        "column_right": stop,
+        "kind": image.kind,
+        **({"dynamic_range_db": image.dynamic_range_db} if decibel else {}),
+        "levels": LEVELS_TEXT if decibel else CFAR_TEXT,
+        **({} if same else {"edges": "differ from sample to sample: see /extent"}),
+    }
+    file[f"maps/{name}"].attrs.update(described)
+    edges = ["time left (s)", "time right (s)", f"{rows} bottom ({unit})", f"{rows} top ({unit})"]
+    file[f"extent/{name}"].attrs["columns"] = edges
     file[f"entropy/{name}"].attrs["unit"] = "bit"
     if config.output.power is not None:
         file[f"power/{name}"].attrs["unit"] = f"dB below /largest_db/{name}"
@@ -318,28 +319,21 @@ def _describe_map(
         labels["meaning"] = "number in names of what is under way at the middle of each column"
 
 
-def _describe_slow_time(attributes: h5py.AttributeManager) -> None:
-    attributes["axes"] = ["sample", "pulse"]
-    attributes["meaning"] = (
-        "x[m] after receiver and canceller, for unit transmit power; NaN after the last pulse of "
-        "a recording that is shorter than others"
-    )
-
-
 def _root_attributes(file: h5py.File, config: Config, messages: list[dict[str, Any]]) -> None:
-    file.attrs["schema_version"] = SCHEMA_VERSION
-    file.attrs["config"] = json.dumps(resolved(config))
-    file.attrs["config_hash"] = config_hash(config)
     named = identity(config)
-    file.attrs["identity"] = json.dumps(
-        {part: named[part] for part in ("keys", "versions", "hash")}, sort_keys=True
-    )
-    file.attrs["seed"] = config.seed
-    file.attrs["class_names"] = [activity.label for activity in config.every_class]
-    file.attrs["class_slugs"] = [activity.slug for activity in config.every_class]
-    file.attrs["warnings"] = json.dumps(messages)
-    for library, version in versions().items():
-        file.attrs[f"{library}_version"] = version
+    named = {part: named[part] for part in ("keys", "versions", "hash")}
+    described = {
+        "schema_version": SCHEMA_VERSION,
+        "config": json.dumps(resolved(config)),
+        "config_hash": config_hash(config),
+        "identity": json.dumps(named, sort_keys=True),
+        "seed": config.seed,
+        "class_names": [activity.label for activity in config.every_class],
+        "class_slugs": [activity.slug for activity in config.every_class],
+        "warnings": json.dumps(messages),
+        **{f"{library}_version": version for library, version in versions().items()},
+    }
+    file.attrs.update(described)
 
 
 class SceneTable:

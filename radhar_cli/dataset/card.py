@@ -34,7 +34,6 @@ _NOISE_TELLS = (
     "noise alone tells `stationary` from most others; with `processing.clutter: mean`, which keeps "
     "slow motion, it tells little"
 )
-_MEASURED = "measured: error of the simulated signal"
 _STEPS = {"compensated": "the torso's bulk Doppler taken off", "denoised": "denoised"}
 _SIZES = ((10**3, "n<1K"), (10**4, "1K<n<10K"), (10**5, "10K<n<100K"), (10**6, "100K<n<1M"),
           (10**7, "1M<n<10M"), (10**8, "10M<n<100M"))  # fmt: skip
@@ -75,8 +74,8 @@ def features(config: Config) -> list[dict[str, Any]]:
 
 def number_features(config: Config) -> list[dict[str, Any]]:
     """The columns of numbers among them: index, and what was drawn."""
-    kinds = {name: "int64" if name == "subject" else "float64" for name in number_names(config)}
-    return [{"name": n, "dtype": kind} for n, kind in {"index": "int64", **kinds}.items()]
+    whole, names = ("index", "subject"), ["index", *number_names(config)]
+    return [{"name": name, "dtype": "int64" if name in whole else "float64"} for name in names]
 
 
 def data_files(files: Files) -> list[dict[str, Any]]:
@@ -243,15 +242,19 @@ def _classes(data: Dataset) -> str:
 
 def _numbers(data: Dataset) -> str:
     """What was drawn, from where to where, and what all samples share."""
-    keys = {field.name: (field.unit, f"`{field.key}`") for field in data.fields}
-    keys |= {"subject": ("1", "number of the person"), ERROR.name: (ERROR.unit, _MEASURED)}
+    units = {field.name: "" if field.unit == "1" else field.unit for field in data.fields}
+    keys = {field.name: (units[field.name], f"`{field.key}`") for field in data.fields}
+    keys |= {
+        "subject": ("", "number of the person"),
+        ERROR.name: (ERROR.unit, "measured: error of the simulated signal"),
+    }
     drawn, shared = [], []
     for name in number_names(data.config):
         (low, high), (unit, key) = _reach(data, name), keys[name]
         if low < high:
-            drawn.append([f"`{name}`", f"{low:.6g}", f"{high:.6g}", _unit(unit), key])
+            drawn.append([f"`{name}`", f"{low:.6g}", f"{high:.6g}", unit, key])
         elif low == high:
-            shared.append([f"`{name}`", f"{low:.6g}", _unit(unit), key])
+            shared.append([f"`{name}`", f"{low:.6g}", unit, key])
     parts = [
         "Columns beside the label, in SI units; empty where a number does not apply to the "
         "activity. `index` counts the samples of a class: label and index name a sample in every "
@@ -261,10 +264,6 @@ def _numbers(data: Dataset) -> str:
         table(["column", "value", "unit", "config.yaml"], shared),
     ]
     return "\n\n".join(parts if shared else parts[:2])
-
-
-def _unit(unit: str) -> str:
-    return "" if unit == "1" else unit
 
 
 def _reach(data: Dataset, name: str) -> tuple[float, float]:

@@ -27,7 +27,7 @@ from radhar_cli.dataset.layout import (
     count_of,
     is_incomplete,
 )
-from radhar_cli.dataset.untrusted_hdf5 import Column, Samples, UntrustedFile
+from radhar_cli.dataset.untrusted_hdf5 import Column, Numbers, UntrustedFile
 from radhar_cli.errors import ConfigError, FolderError, did_you_mean
 from radhar_cli.registry import any_name
 from radhar_cli.untrusted import Closing
@@ -121,13 +121,11 @@ class Dataset(Closing):
     @property
     def warnings(self) -> list[dict[str, Any]]:
         """Warnings of its build: {kind, recordings, message}."""
-        stored = self.file.json("warnings")
-        right = isinstance(stored, list) and all(
-            isinstance(one, dict) and isinstance(one.get("message"), str) for one in stored
-        )
-        if not right:
+        messages: list[dict[str, Any]] = self.file.json("warnings")
+        if not isinstance(messages, list) or not all(
+            isinstance(one, dict) and isinstance(one.get("message"), str) for one in messages
+        ):
             raise FolderError(f"{self.path}: attribute warnings: should be a list of messages")
-        messages: list[dict[str, Any]] = stored
         return messages
 
     @property
@@ -149,11 +147,10 @@ class Dataset(Closing):
 
     def extent(self, name: str) -> tuple[float, float, float, float] | None:
         """Edges (time left, right in s; bottom, top in Hz or m) that all images of a map share."""
-        first, same = self._extent[name].rows(0, 1), True
-        for edges in self._edges(name):
-            same &= bool((edges == first).all())
+        first = self._extent[name].rows(0, 1)
+        same = [bool((edges == first).all()) for edges in self._edges(name)]
         left, right, bottom, top = map(float, first[0])
-        return (left, right, bottom, top) if same else None
+        return (left, right, bottom, top) if all(same) else None
 
     def extents(self, name: str) -> Float:
         """Edges [N, 4] of every image of a map."""
@@ -189,7 +186,7 @@ class Dataset(Closing):
 class Ragged:
     """An array of each sample: rows of one array that holds them one after the other."""
 
-    def __init__(self, samples: Samples, counts: Index) -> None:
+    def __init__(self, samples: Numbers, counts: Index) -> None:
         if (counts < 0).any() or counts.sum() != samples.shape[0]:
             raise FolderError(f"{samples.where}: has not as many rows as its counts say")
         self._samples, self._stops = samples, np.cumsum(counts)

@@ -54,7 +54,7 @@ class Sample(NamedTuple):
         return padded
 
 
-class Made(NamedTuple):
+class Row(NamedTuple):
     """A sample that was not simulated.
 
     Attributes:
@@ -67,7 +67,7 @@ class Made(NamedTuple):
 
 
 # Makes a row of a data set that is not simulated; what it holds can be pickled.
-Maker: TypeAlias = Callable[[Config, int], Made]
+RowFactory: TypeAlias = Callable[[Config, int], Row]
 
 
 def synthesise(scene: Scene, plan: Plan) -> Sample:

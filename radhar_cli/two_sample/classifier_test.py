@@ -15,7 +15,7 @@ from radhar_cli.learning.metrics import wilson
 
 FOLDS = 5
 SHARED = 1.7  # times the variance of independent tests: the folds' classifiers share samples
-PENALTY = 10.0  # of the squared weights, against the sum of losses of standardised features
+PENALTY = 10.0  # of the squared weights, relative to the sum of losses
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ def held_out(features: Float, truth: Bool, group: Index, rng: np.random.Generato
     """Test every sample by a classifier that has learned from others.
 
     Args:
-        features: [N, D]; NaN is taken for the mean.
+        features: [N, D]; what is not finite counts as the mean.
         truth: [N] kind of each.
         group: [N]; samples of one kind and group are held out together.
         rng: shares them out.
@@ -58,18 +58,17 @@ def held_out(features: Float, truth: Bool, group: Index, rng: np.random.Generato
     count = min(FOLDS, *(np.unique(group[truth == kind]).size for kind in (True, False)))
     if count < 2:
         return None
-    classifier = make_pipeline(
-        SimpleImputer(keep_empty_features=True),
-        StandardScaler(),
-        LogisticRegression(C=1 / PENALTY, max_iter=1000),
-    )
-    folds = StratifiedGroupKFold(count, shuffle=True, random_state=int(rng.integers(2**32)))
+    known = np.where(np.isfinite(features), features, np.nan)
     score = cross_val_predict(
-        classifier,
-        np.where(np.isfinite(features), features, np.nan),
+        make_pipeline(
+            SimpleImputer(keep_empty_features=True),
+            StandardScaler(),
+            LogisticRegression(C=1 / PENALTY, max_iter=1000),
+        ),
+        known,
         truth,
         groups=2 * group + truth,
-        cv=folds,
+        cv=StratifiedGroupKFold(count, shuffle=True, random_state=int(rng.integers(2**31))),
         method="decision_function",
     )
     return Tested(truth, np.asarray(score))

@@ -22,7 +22,8 @@ from radhar_cli.config import load_config
 from radhar_cli.dataset import layout
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.folder import folder_lock
-from radhar_cli.dataset.formats import checked, parquet
+from radhar_cli.dataset.formats import convert as checked
+from radhar_cli.dataset.formats import parquet
 from radhar_cli.dataset.formats.convert import FORMATS, convert
 from radhar_cli.errors import FolderError
 

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 from pathlib import Path
 from shutil import copytree
 
@@ -16,9 +17,7 @@ from radhar_cli.errors import FolderError
 from radhar_cli.scene import scene_numbers
 from radhar_cli.tradeoff import study
 from radhar_cli.tradeoff.figure import CostPoint, frontier
-from radhar_cli.tradeoff.result_cache import ResultCache
-from radhar_cli.tradeoff.scenes import Scenes
-from radhar_cli.tradeoff.settings import sweep
+from radhar_cli.tradeoff.settings import Scenes, sweep
 
 CONFIG = """
 motion: {model: paper}
@@ -49,7 +48,7 @@ def config(tmp_path) -> Path:
 def few(monkeypatch):
     """Three settings are enough to see what is measured when."""
     monkeypatch.setattr(study, "sweep", lambda config: [s for s in sweep(config) if s.name in FEW])
-    monkeypatch.setattr("radhar_cli.tradeoff.timing.SECONDS", 0.0)
+    monkeypatch.setattr("radhar_cli.tradeoff.measures.SECONDS", 0.0)
 
 
 def tried(config):
@@ -64,7 +63,7 @@ def done(tmp_path_factory) -> tuple[Path, Path]:
     path.write_text(CONFIG)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(study, "sweep", tried)
-        patch.setattr("radhar_cli.tradeoff.timing.SECONDS", 0.0)
+        patch.setattr("radhar_cli.tradeoff.measures.SECONDS", 0.0)
         outcome = tradeoff(path, place / "out")
     assert outcome.exit_code == 0, outcome.output
     return path, place / "out"
@@ -199,13 +198,15 @@ class TestCommand:
         assert "thesis.tex" in str(refused)
 
 
-class TestResultCache:
-    def test_keeps_what_it_was_given(self, tmp_path):
-        cache = ResultCache(tmp_path)
-        assert cache.get("a") is None
-        cache.put("a", {"b": [1, None, "c"]})
-        assert ResultCache(tmp_path).get("a") == {"b": [1, None, "c"]}
-        assert ResultCache(tmp_path).get("b") is None
+@pytest.mark.usefixtures("few")
+@pytest.mark.parametrize("text", ["{", "[" * 10**5, "[1]", "3"])
+def test_a_damaged_result_is_refused(text, done, tmp_path):
+    copytree(done[1], tmp_path / "out")
+    for kept in (tmp_path / "out/.radhar/measured").iterdir():
+        kept.write_text(text)
+    refused = tradeoff(done[0], tmp_path / "out").exception
+    assert isinstance(refused, FolderError)
+    assert re.search(r"measured.* is damaged", str(refused))
 
 
 class TestSettings:
@@ -228,7 +229,7 @@ class TestSettings:
         """A filter longer than the recording: the denoised maps cannot be, the others can."""
         listener = Listener()
         scenes = self.scenes(config, "processing.savgol={order: 1, frame: 1001}")
-        possible = study._possible(scenes, listener)
+        possible = study.possible(scenes, listener)
         assert not any("denoised" in setting.name for setting in possible)
         assert len(listener.messages) == 4
         assert all("processing.savgol.frame" in message for message in listener.messages)
@@ -279,7 +280,7 @@ class TestSettings:
 
     def test_gates_are_compared_without_maps_that_forbid_them(self, config):
         scenes = self.scenes(config, "maps=[stft, fsst]")
-        names = [setting.name for setting in study._possible(scenes, Listener())]
+        names = [setting.name for setting in study.possible(scenes, Listener())]
         assert "doppler: gate instead of half_band" in names
 
 
@@ -289,7 +290,7 @@ class TestFrontier:
 
     def test_keeps_undominated_settings(self):
         points = [
-            self.point("exact", 30, None),
+            self.point("exact", 30, -np.inf),
             self.point("slow and bad", 3, -20),
             self.point("fast and bad", 1, -20),
             self.point("fast and as bad", 1.1, -20),

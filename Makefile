@@ -36,6 +36,7 @@ install: $(DEV) ## Create .venv and install radhar, its extras and its tools int
 
 .PHONY: demo
 demo: $(PLAIN) ## Build configs/quickstart.yaml into datasets/quickstart and check it
+	rm -rf datasets/quickstart # libraries that were installed since may give other bytes
 	$(BIN)/radhar generate configs/quickstart.yaml -o datasets/quickstart
 	$(BIN)/radhar verify datasets/quickstart
 

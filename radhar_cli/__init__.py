@@ -65,3 +65,7 @@ def __getattr__(name: str) -> object:
         if (error.name or "").partition(".")[0] != "torch":
             raise
         raise ImportError(f"radhar.{name} needs PyTorch: pip install 'radhar[train]'") from None
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_INTERFACE})

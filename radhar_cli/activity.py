@@ -41,7 +41,7 @@ class Activity:
         number: 1 to 12, the paper's S number; 13 and more for user-defined classes.
         slug: name used in folders and on the command line.
         movements: of people, one after the other; config keys say which of them use a number.
-        motion: makes the motion of a Scene; None for what `motion:` decides about.
+        motion: makes the motion of a `scene.Person`; None for what `motion:` decides about.
         uses: keys of `motion:` and `timing:` that such a motion depends on, besides the place.
     """
 
@@ -104,7 +104,7 @@ def add_activity(
 
     Args:
         slug: lower-case letters, digits and underscores.
-        motion: makes the motion of a Scene from the numbers of `Scene.config`. A data set built by
+        motion: makes the motion of a `scene.Person` from their numbers. A data set built by
             several processes needs a function that can be pickled.
         uses: keys of `motion:` and `timing:` beside the place; other numbers are not drawn.
 

@@ -16,13 +16,9 @@ import h5py
 
 
 class _Disk(io.FileIO):
-    """A file whose `write` never fails; `check` raises what it would have raised.
+    """A file whose `write` never fails, which would crash HDF5 too, but keeps the first error."""
 
-    An exception out of `write` crashes HDF5 too, and signal handlers may run and raise there: what
-    they raise is kept as well.
-    """
-
-    error: BaseException | None = None
+    error: OSError | None = None
 
     def write(self, data: Any) -> int:
         rest = memoryview(data)
@@ -40,55 +36,43 @@ class _Disk(io.FileIO):
             self.error = error
             return 0
 
-    def check(self) -> None:
-        if self.error is not None:
-            raise self.error
-
-    @contextmanager
-    def keeping_signals(self) -> Iterator[None]:
-        """Keep what handlers of SIGINT and SIGTERM raise, for `check`."""
-        numbers = (signal.SIGINT, signal.SIGTERM)
-        in_main = threading.current_thread() is threading.main_thread()  # no other may set handlers
-        before = {n: signal.getsignal(n) for n in numbers if in_main}
-        handlers = {n: handler for n, handler in before.items() if callable(handler)}
-
-        def keep(number: int, frame: Any) -> None:
-            try:
-                handlers[signal.Signals(number)](number, frame)
-            except BaseException as error:
-                # its frames would keep h5py's objects past the end of HDF5, which then crashes
-                self.error = self.error or error.with_traceback(None)
-
-        try:
-            for number in handlers:
-                signal.signal(number, keep)
-            yield
-        finally:
-            for number, handler in handlers.items():
-                signal.signal(number, handler)
-
 
 @contextmanager
-def new_hdf5(
-    path: Path, final: Path, **options: Any
-) -> Iterator[tuple[h5py.File, Callable[[], None]]]:
+def new_hdf5(path: Path, final: Path) -> Iterator[tuple[h5py.File, Callable[[], None]]]:
     """Yield a new HDF5 file and a check, to be called now and then, that it could be written.
+
+    SIGINT and SIGTERM wait for the check: what their handlers raise within a `write` crashes HDF5.
 
     Args:
         path: of the file; one that is there is replaced.
         final: the name that errors give.
-        options: of `h5py.File`.
 
     Raises:
         OSError: it cannot be written; by the check, or at the end.
     """
+    received: list[int] = []
+    before: dict[int, Any] = {}
+    if threading.current_thread() is threading.main_thread():  # no other may set handlers
+        for number in (signal.SIGINT, signal.SIGTERM):
+            if callable(handler := signal.getsignal(number)):
+                before[number] = handler
+                signal.signal(number, lambda number, _: received.append(number))
     try:
         with _Disk(path, "w+") as disk:
+
+            def check() -> None:
+                if disk.error is not None:
+                    raise disk.error
+                if received:
+                    before[received[0]](received.pop(), None)
+
             try:
-                with disk.keeping_signals(), h5py.File(disk, "w", **options) as file:
-                    yield file, disk.check
+                with h5py.File(disk, "w") as file:
+                    yield file, check
             finally:
-                disk.check()  # before what came of it
+                for one, handler in before.items():
+                    signal.signal(one, handler)
+                check()  # before what came of it
     except OSError as error:
         error.filename = error.filename or str(final)
         raise

@@ -2,15 +2,17 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from math import nan
 from typing import Any, TypeAlias
 
+import numpy as np
+
 from radhar_cli.activity import Activity
 from radhar_cli.config.annotations import Mark, of_kind
-from radhar_cli.config.number import Number, is_fixed, nominal, quantile
+from radhar_cli.config.number import Distribution, Number, is_fixed, nominal, quantile
 from radhar_cli.config.paths import at, changed, each_number
-from radhar_cli.config.schema import FALLS, Config, Falls, for_activity
+from radhar_cli.config.schema import FALLS, Config, Falls, PerActivity, Section, for_activity
 from radhar_cli.motion.skeleton import default_weight
 from radhar_cli.randomness import PERSON, SCENE, stream
 
@@ -47,6 +49,79 @@ MAX_OVERLAP = 0.3
 Draw: TypeAlias = Callable[[str, Number], float]
 
 
+class Numbers:
+    """A section of a scene's config, with its numbers as floats.
+
+    Raises:
+        TypeError: a number is still to be drawn.
+    """
+
+    def __init__(self, section: Section) -> None:
+        self._section = section
+
+    def __getattr__(self, name: str) -> Any:
+        return _plain(getattr(self._section, name))
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return float(value)
+    if isinstance(value, (Distribution, PerActivity)):
+        raise TypeError(f"{value!r} should have been drawn; this is not the config of a scene")
+    if isinstance(value, tuple):
+        return tuple(map(_plain, value))
+    return Numbers(value) if isinstance(value, Section) else value
+
+
+@dataclass(frozen=True)
+class Person:
+    """One person of a scene.
+
+    Attributes:
+        scene: in which they are.
+        activity: what they do.
+        config: whose `subject`, `motion`, `timing` and `classes` are theirs.
+        prefix: of the names of their random streams.
+    """
+
+    scene: "Scene"
+    activity: Activity
+    config: Config
+    prefix: str = ""
+
+    @property
+    def seconds(self) -> float:
+        """Of the recording."""
+        return float(_plain(self.scene.config.duration_s))
+
+    @cached_property
+    def subject(self) -> Numbers:
+        """Numbers of the body."""
+        return Numbers(self.config.subject)
+
+    @cached_property
+    def motion(self) -> Numbers:
+        """Numbers of the motion."""
+        return Numbers(self.config.motion)
+
+    @cached_property
+    def timing(self) -> Numbers:
+        """Numbers of the timing."""
+        return Numbers(self.config.timing)
+
+    def stream(self, name: str) -> np.random.Generator:
+        """The random stream of a name for what this person does in this scene."""
+        seed, index, name = self.scene.config.seed, self.scene.index, self.prefix + name
+        return stream(seed, SCENE, self.scene.activity.index, index, 0, name=name)
+
+    def own_stream(self, name: str) -> np.random.Generator:
+        """That of a name for the body, the same in all scenes of a named person."""
+        scene, name = self.scene, self.prefix + name
+        if scene.subject is not None:
+            return stream(scene.config.seed, PERSON, scene.subject, name=name)
+        return stream(scene.config.seed, SCENE, scene.activity.index, scene.index, name=name)
+
+
 @dataclass(frozen=True)
 class Scene:
     """One recording to be simulated.
@@ -70,6 +145,11 @@ class Scene:
     def name(self) -> str:
         """How messages call this sample."""
         return f"{self.activity.slug}/{self.index}"
+
+    @property
+    def people(self) -> tuple[Person, ...]:
+        """Everybody in the scene, the sample's own person first."""
+        return (Person(self, self.activity, self.config),)
 
 
 def draw_scene(config: Config, activity: Activity, index: int, attempt: int = 0) -> Scene:

@@ -24,6 +24,7 @@ from typing import Any
 import numpy as np
 
 from radhar_cli.activity import ACTIVITIES
+from radhar_cli.arrays import Complex
 from radhar_cli.config import MAP_NAMES, Config, load_config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.files import write_whole
@@ -32,12 +33,14 @@ from radhar_cli.dataset.png import colour_table, encode_png
 from radhar_cli.dataset.sample import Sample, synthesise
 from radhar_cli.dataset.shards import encode_shard, write_shard
 from radhar_cli.echo.beat import beat_matrix
+from radhar_cli.echo.exact import beat_at
 from radhar_cli.echo.paths import PathSource
-from radhar_cli.echo.range_profiles import beat_at, shown_pulses
 from radhar_cli.pipeline.plan import Plan, Product, plan
-from radhar_cli.pipeline.products import RangeProfiles, plan_images, products
+from radhar_cli.pipeline.products import plan_images, products, signal_of_look
 from radhar_cli.pipeline.run import record, run
-from radhar_cli.processing.range_compression import range_bins
+from radhar_cli.processing.canceller import Fir
+from radhar_cli.processing.look import Look, RangeBins
+from radhar_cli.processing.signal import Signal, shown_pulses
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene import Scene, draw_scene
 from radhar_cli.worker_process import prepare_process
@@ -125,12 +128,16 @@ class Floor:
         self.table["range_profiles"] = Product(
             "range_profiles",
             ("beat", "waveform", "canceller"),
-            lambda beat, w, canceller: RangeProfiles(
-                range_bins(beat, w), shown_pulses(w.n_pulses - canceller.lost, beat.shape[1])
-            ),
+            self.profiles,
             "of the beat that is ready",
         )
         self.plan: Plan | None = None
+
+    @staticmethod
+    def profiles(beat: Complex, w: Waveform, canceller: Fir) -> Signal:
+        shown = shown_pulses(w.n_pulses - canceller.lost, beat.shape[1])
+        look = Look("", RangeBins(w), shown, canceller.taps)
+        return signal_of_look(look.fast(beat), look)
 
     def sample(self, ready: dict[str, Any]) -> Sample:
         """The image alone, as a sample."""
@@ -191,8 +198,8 @@ def rows(rounds: int) -> dict[str, Any]:
     errors = {"cube_against_naive": 0.0, "direct_after_mti_db": -np.inf}
     for number in range(12):
         reference = record(scene(exact, number), ["signal", "paths", "waveform"])
-        x = reference["signal"].x
-        y = record(scene(closed, number), ["signal"])["signal"].x
+        x = reference["signal"].x[0, 0]
+        y = record(scene(closed, number), ["signal"])["signal"].x[0, 0]
         if number in (1, 7):
             paths, w = reference["paths"], reference["waveform"]
             beat, at = naive_beat(paths, w), np.arange(0, w.n_pulses, 97)

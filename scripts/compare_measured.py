@@ -24,7 +24,7 @@ from radhar_cli.config import load_config
 from radhar_cli.config.schema import Config
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 from radhar_cli.simulation.simulate import simulate
-from radhar_cli.two_sample.map_statistics import PowerMap, power_statistics
+from radhar_cli.two_sample.map_statistics import DopplerMap, power_statistics
 
 ROOT = Path(__file__).resolve().parents[1]
 CONFIG = ROOT / "configs" / "measured" / "mmrgait_77GHz.yaml"
@@ -84,7 +84,7 @@ def simulated(config: Config, seed: int) -> Map:
 
 def statistics(one: Map) -> dict[str, float]:
     """What a radar engineer looks at in the map of a walker, in the units of the names."""
-    v, power = one.speed, PowerMap(one.power, one.speed)
+    v, power = one.speed, DopplerMap(one.power, one.speed)
     numbers = power_statistics(power, ZERO_MPS, NOISE_MPS, NEAR_MPS)
     occupied, band = power.occupied(NOISE_MPS), (v >= 0.2) & (v <= 4.5)
     envelope = v[np.argmax(occupied & (v < NOISE_MPS)[:, None], axis=0)]

@@ -79,7 +79,7 @@ def draw_people(config: Config, index: int, out: Path) -> None:
     stills = np.linspace(0.2, seconds - 0.1, FRAMES)
     moving, rows = [], []
     for activity in ACTIVITIES:
-        motion = motion_of(draw_scene(config, activity, index))
+        motion = motion_of(draw_scene(config, activity, index).people[0])
         assert isinstance(motion, HumanMotion)
         moving.append(frames(motion, film, activity.label))
         rows.append(frames(motion, stills, activity.slug.replace("_", " ")))

@@ -54,7 +54,7 @@ COLUMNS = ("active s", "width m/s", "receding", "approach m/s", "recede m/s")
 
 def range_bins(scene: Scene, rng: np.random.Generator) -> Complex:
     """Slow time of 21 range bins about the person [21, M], with clutter and noise."""
-    motion, t = motion_of(scene), np.arange(0, SECONDS, 1 / PRF)
+    motion, t = motion_of(scene.people[0]), np.arange(0, SECONDS, 1 / PRF)
     p = motion.positions(t)
     r = np.sqrt(((p - RADAR_M) ** 2).sum(axis=0))
     a = np.sqrt(motion.cross_sections(t)) / r**2

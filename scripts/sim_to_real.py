@@ -28,6 +28,7 @@ from pathlib import Path
 
 import numpy as np
 import torch
+from few_shots import few_shots
 from PIL import Image
 from scipy import ndimage
 
@@ -301,17 +302,8 @@ def ablation(measured: Measured, images: Path, out: Path, given: argparse.Namesp
 
 def curve(measured: Measured, images: Path, run: Path, out: Path) -> None:
     """Print accuracy with k labelled maps a class: fine-tuned, adapted as well, from scratch."""
-    shots = ",".join(map(str, SHOTS))
-    more = ("--repeats", REPEATS, "--mix", images, "--adapt", ADAPTING, "-o", out)
-    epochs = ("--set", f"epochs={SHOT_EPOCHS}")
-    radhar("eval", run, measured.folder, "--shots", shots, *more, *epochs)
-    for point in json.loads((out / "shots.json").read_text())["points"]:
-        low, high = point["accuracy_95"]
-        print(
-            f"{point['shots']} labelled a class, {point['learned']}: {point['accuracy']:.3f} "
-            f"({low:.3f} to {high:.3f}), {len(point['accuracies'])} repeats",
-            flush=True,
-        )
+    more = (f"epochs={SHOT_EPOCHS}",)
+    few_shots(run, measured.folder, out, SHOTS, REPEATS, (images,), ADAPTING, more)
 
 
 def adapted(run: Path, measured: Measured, data: Path, out: Path) -> Path:

@@ -45,7 +45,7 @@ def record(config: Config, *products: str, activity: str = "walking") -> Recordi
 
 def signal(config: Config, activity: str = "walking") -> np.ndarray:
     """The slow-time signal x[m]."""
-    return np.asarray(record(config, "signal", activity=activity)["signal"].x)
+    return np.asarray(record(config, "signal", activity=activity)["signal"].x[0, 0])
 
 
 def radar_of(config: Config) -> ref.Radar:
@@ -66,7 +66,7 @@ def radar_of(config: Config) -> ref.Radar:
 def free_space_paths(config: Config, activity: str = "walking") -> tuple[np.ndarray, np.ndarray]:
     """Delays and amplitudes [13, M] without a wall, geometry and phases in extended precision."""
     scene = nominal_scene(config, activity_named(activity))
-    motion, v, t = motion_of(scene), scene_numbers(scene), radar_of(config).times
+    motion, v, t = motion_of(scene.people[0]), scene_numbers(scene), radar_of(config).times
     p = motion.positions(t).astype(np.longdouble)
     legs = []
     for antenna in ("tx", "rx"):

@@ -42,7 +42,7 @@ def frames(activity: str = "walking", seconds: float = 3.0, rate: float = 120.0)
             "motion": {"range_m": 2, "angle_deg": 0},
         }
     )
-    motion = motion_of(nominal_scene(config, activity_named(activity)))
+    motion = motion_of(nominal_scene(config, activity_named(activity)).people[0])
     return sampled(motion, np.arange(round(seconds * rate) + 1) / rate)
 
 

@@ -54,7 +54,6 @@ SMALL = {
     "train": {"--set": "epochs=1 workers=0"},
     "train --stream": {"--set": "stream.samples_per_epoch=12 stream.validation_per_class=1"},
     "adapt": {"--epochs": "1"},
-    "eval --shots": {"--repeats": "1", "--set": "epochs=1"},
     "verify": {"--samples": "1"},
     "simulate": {"--set": "duration_s=3"},
 }

@@ -1,32 +1,29 @@
-"""From a recording to its maps: the stages of a simulation, without the simulator.
+"""From a recording to its maps, through the chain of simulated signals.
 
-Slow time with gaps is handled stretch by stretch: no difference and no window crosses a gap. The
-columns of a map are then put on an even grid of times. Maps of several receivers are added up.
+No difference and no window crosses a gap. The columns of a map are then put on an even grid of
+times. Powers of several receivers are added up.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
-from radhar_cli.arrays import Bool, Complex, Float, Index
+from radhar_cli.arrays import Bool, Complex
 from radhar_cli.capture.findings import LOST
-from radhar_cli.capture.recording import Recording, Segments
-from radhar_cli.capture.tracking import track_torso, without_static
-from radhar_cli.config.schema import Config, MapName
-from radhar_cli.echo.range_profiles import shown_pulses
+from radhar_cli.capture.recording import Recording
+from radhar_cli.capture.tracking import TorsoTrack, track_torso, without_static
+from radhar_cli.config.schema import Config
 from radhar_cli.errors import CaptureError
 from radhar_cli.phasor import unit_phasor
 from radhar_cli.pipeline.physics import canceller_of, frames_of, fsst_frames_of
 from radhar_cli.pipeline.run import process
 from radhar_cli.processing.canceller import NO_CANCELLER, Canceller
 from radhar_cli.processing.frames import Frames
-from radhar_cli.processing.power_map import Axis, PowerMap
-from radhar_cli.processing.range_compression import range_bins, range_power
-from radhar_cli.processing.range_signals import RangeSignals
-from radhar_cli.processing.signal import Signal
-from radhar_cli.processing.torso_track import TorsoTrack
+from radhar_cli.processing.power_map import PowerMap
+from radhar_cli.processing.pulse_times import PulseTimes
+from radhar_cli.processing.range_compression import range_compression
+from radhar_cli.processing.signal import Signal, nearest
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 MAX_BYTES = 3 * 2**29  # of range bins that are held at once
@@ -54,7 +51,7 @@ class Maps:
 def maps_of(
     recording: Recording,
     config: Config,
-    names: Sequence[MapName],
+    names: Sequence[str],
     start: float | None = None,
     stop: float | None = None,
     receiver: int | None = None,
@@ -71,70 +68,74 @@ def maps_of(
     Raises:
         CaptureError: the part is empty or too long, or the recording cannot be processed so.
     """
-    info = recording.info
-    if receiver is not None and not 0 <= receiver < info.receivers:
-        raise CaptureError(
-            f"{recording.path}: receiver {receiver}: should be below {info.receivers}"
-        )
-    chosen = range(info.receivers) if receiver is None else [receiver]
+    receivers = recording.info.receivers
+    if receiver is not None and not 0 <= receiver < receivers:
+        raise CaptureError(f"{recording.path}: receiver {receiver}: should be below {receivers}")
+    chosen = range(receivers) if receiver is None else [receiver]
     first, last, segments = pulses_between(recording, start, stop)
     lost = (recording.flags[first:last] & LOST).astype(bool)
     notes: list[str] = []
     if lost.all():
         raise CaptureError(f"{recording.path}: each of its {lost.size} pulses there lacks samples")
     if lost.any():
-        notes.append(
-            f"{np.count_nonzero(lost)} pulses lack samples: filled in from their neighbours"
+        count = np.count_nonzero(lost)
+        notes.append(f"{count} pulses lack samples: filled in from their neighbours")
+    clutter = config.processing.clutter
+    if clutter == "highpass" and len(segments) > 1:
+        raise CaptureError(
+            f"{recording.path}: has {len(segments)} stretches with gaps between; "
+            "processing.clutter should be mean or difference, a high-pass would ring in each"
         )
-    _refuse_highpass_over_gaps(config, segments, recording)
-    if info.samples is None:
-        _refuse_too_much(recording, 1, info.receivers, first, last)
-        signals = filled(recording.beat(first, last)[list(chosen), 0], lost)
-        return _of_slow_time(recording, config, names, signals, segments, notes)
-    processing = config.processing
-    waveform = replace(
-        info.waveform(processing.range_fft_length, processing.range_reference == "centre"),
-        duration=segments.pulses / info.prf_hz,
-    )
-    bins = filled(bins_of_part(recording, waveform, chosen, first, last), lost)
-    track = track_torso(without_static(bins), segments, waveform)
-    if track is None:
-        notes.append("nothing moves: no torso was found")
-    referred = replace(waveform, centred=waveform.centred or processing.range_sum == "gated")
-    canceller, bins = _before(config, info.prf_hz, referred.f0, bins)
-    ranges = waveform.range_axis()
-    turn = unit_phasor(np.arange(waveform.n_bins)[:, None] * (referred.n0 / waveform.n_fft))
+    prf = segments.prf
+    track: TorsoTrack | None = None
+    if recording.info.samples is None:
+        _refuse_without_ranges(recording, config, names)
+        _refuse_too_much(recording, 1, receivers, first, last)
+        x = filled(recording.beat(first, last)[list(chosen), :1], lost)
+        signal = Signal(x, segments, recording.info.carrier_hz)
+    else:
+        processing = config.processing
+        centred = processing.range_reference == "centre" or processing.range_sum == "gated"
+        waveform = replace(
+            recording.info.waveform(processing.range_fft_length, centred),
+            duration=segments.pulses / prf,
+        )
+        x = filled(bins_of_part(recording, waveform, chosen, first, last), lost)
+        track = track_torso(without_static(x), segments, waveform)
+        notes += [] if track else ["nothing moves: no torso was found"]
+        x *= unit_phasor(np.arange(waveform.n_bins)[:, None] * (waveform.n0 / waveform.n_fft))
+        signal = Signal(x, segments, waveform.f0, waveform.range_axis())
+    # What is global to a recording is done here; difference and windows cross no gap.
+    canceller = NO_CANCELLER if clutter == "mean" else canceller_of(config, prf)
+    signal = signal.with_samples(without_static(signal.x)) if clutter == "mean" else signal
+    made: dict[str, PowerMap] = {}
+    if "rtm" in names:
+        made["rtm"] = process(signal, config, ["rtm"], canceller=canceller)["rtm"]
     doppler = [name for name in names if name != "rtm"]
-    stretches = [*_stretches(segments, referred.f0, canceller, config, doppler, recording, notes)]
-    powers: dict[str, list[list[PowerMap]]] = {name: [] for name in names}
-    for one in bins:
-        if "rtm" in names:
-            powers["rtm"].append([_range_time(one, segments, ranges, canceller, config)])
-        made = []
-        for part, frames in stretches if doppler else []:
-            t = segments.times(np.arange(part.start, part.stop))
-            tau = np.full(t.size, ranges.mean() * 2 / SPEED_OF_LIGHT) if track is None else None
-            signal = RangeSignals(
-                one[:, part] * turn, ranges, float(t[0]), info.prf_hz, referred.f0
-            )
-            made.append(
-                process(
-                    signal,
-                    config,
-                    doppler,
-                    canceller=canceller,
-                    torso_track=tau if track is None else track.delays(t),
-                    **frames,
-                )
-            )
-        for name in doppler:
-            powers[name].append([maps[name] for maps in made])
-    return Maps(_joined(powers), track, referred.f0, list(dict.fromkeys(notes)))
+    if doppler:
+        signal, (frames, fine) = _windows(signal, canceller, config, doppler, recording, notes)
+        if signal.ranges is None:
+            signal = signal.cancelled(canceller)
+            tau = None
+        else:
+            far = np.full(signal.pulses, signal.ranges.mean() * 2 / SPEED_OF_LIGHT)
+            tau = track.delays(signal.t) if track else far
+        maps = process(
+            signal,
+            config,
+            doppler,
+            canceller=canceller,
+            torso_track=tau,
+            frames=frames,
+            fsst_frames=fine,
+        )
+        made |= {name: _even(maps[name]) for name in doppler}
+    return Maps({name: made[name] for name in names}, track, signal.f0, list(dict.fromkeys(notes)))
 
 
 def pulses_between(
     recording: Recording, start: float | None, stop: float | None
-) -> tuple[int, int, Segments]:
+) -> tuple[int, int, PulseTimes]:
     """(first, last + 1) of the pulses from start to stop, s, and their segments.
 
     Raises:
@@ -155,11 +156,11 @@ def pulses_between(
     return first, last, _within(recording.segments, first, last)
 
 
-def _within(segments: Segments, first: int, last: int) -> Segments:
+def _within(segments: PulseTimes, first: int, last: int) -> PulseTimes:
     """The segments of pulses first .. last - 1, counted anew; times stay those of the recording."""
     inside = (segments.first > first) & (segments.first < last)
     numbers = np.concatenate([[first], segments.first[inside]])
-    return Segments(segments.times(numbers), numbers - first, last - first, segments.prf)
+    return PulseTimes(segments.times(numbers), numbers - first, last - first, segments.prf)
 
 
 def filled(x: Complex, lost: Bool) -> Complex:
@@ -190,7 +191,6 @@ def bins_of_part(
     chosen: Sequence[int],
     first: int,
     last: int,
-    window: Float | None = None,
 ) -> Complex:
     """Range bins [receiver, K, M] of pulses first .. last - 1, referred to the chirp's start.
 
@@ -199,42 +199,34 @@ def bins_of_part(
         w: its chirps.
         chosen: receivers.
         first, last: pulses.
-        window: over the samples of a chirp [N_ADC]; None is none.
 
     Raises:
         CaptureError: they are more than MAX_BYTES.
     """
     _refuse_too_much(recording, w.n_bins, len(chosen), first, last)
+    w = replace(w, centred=False)
     x = np.empty((len(chosen), w.n_bins, last - first), dtype=complex)
     step = max(PIECE_SAMPLES // (w.n_fft * recording.info.receivers), 1)
     for at in range(first, last, step):
         beat = recording.beat(at, min(at + step, last))
-        if window is not None:
-            beat *= window[:, None]
         for row, number in enumerate(chosen):
-            x[row, :, at - first : at - first + beat.shape[2]] = range_bins(beat[number], w)
+            x[row, :, at - first : at - first + beat.shape[2]] = range_compression(beat[number], w)
     return x
 
 
-def _before(config: Config, prf: float, f0: float, x: Complex) -> tuple[Canceller, Complex]:
-    """What is left of the clutter filter for each stretch, and samples after what is global."""
-    if config.processing.clutter == "mean":
-        return NO_CANCELLER, without_static(x)
-    return canceller_of(config, prf), x
-
-
-def _stretches(
-    segments: Segments,
-    f0: float,
+def _windows(
+    signal: Signal,
     canceller: Canceller,
     config: Config,
     names: Sequence[str],
     recording: Recording,
     notes: list[str],
-) -> Iterator[tuple[slice, dict[str, Any]]]:
-    """Pulses of every segment that holds a window, and the windows within it."""
-    wanted = frames_of(config, segments.duration, segments.prf, f0)
-    usual = int(np.median(segments.lengths)) - canceller.lost
+) -> tuple[Signal, tuple[Frames, ...]]:
+    """The stretches that hold a window, and the windows."""
+    duration = signal.pulses / signal.prf
+    wanted = frames_of(config, duration, signal.prf, signal.f0)
+    lengths = signal.times.lengths - canceller.lost
+    usual = int(np.median(lengths))
     length = min(wanted.length, usual)
     needed = config.processing.savgol.frame if any("denoised" in n for n in names) else 0
     if length < max(MIN_FRAME_PULSES, needed):
@@ -247,95 +239,28 @@ def _stretches(
             f"windows have the {length} pulses of a frame, not {wanted.length} "
             "(processing.window_s)"
         )
-    skipped, hop = 0, min(wanted.hop, length)
-    fine = fsst_frames_of(config, segments.duration, segments.prf, f0)
-    for part in segments.slices:
-        if part.stop - part.start - canceller.lost < length:
-            skipped += 1
-            continue
-        yield (
-            part,
-            {"frames": Frames(length, hop), "fsst_frames": Frames(length, min(fine.hop, length))},
-        )
-    if skipped:
-        notes.append(f"{skipped} stretches are shorter than a window and are left out")
+    short = np.count_nonzero(lengths < length)
+    if short:
+        notes.append(f"{short} stretches are shorter than a window and are left out")
+        signal = signal.stretches(length + canceller.lost)
+    fine = fsst_frames_of(config, duration, signal.prf, signal.f0)
+    return signal, tuple(Frames(length, min(one.hop, length)) for one in (wanted, fine))
 
 
-def _range_time(
-    bins: Complex, segments: Segments, ranges: Float, canceller: Canceller, config: Config
-) -> PowerMap:
-    """The range-time map: pulses of even times, as many as the image has columns."""
-    parts = [one for one in segments.slices if one.stop - one.start > canceller.lost]
-    pieces = [canceller(bins[:, one]) for one in parts]
-    x = pieces[0] if len(pieces) == 1 else np.concatenate(pieces, axis=1)
-    numbers = np.concatenate([np.arange(one.start, one.stop - canceller.lost) for one in parts])
-    t = segments.times(numbers) + canceller.delay / segments.prf
-    width = config.image.size_px[1]
-    if len(segments) == 1:
-        shown = shown_pulses(x.shape[1], width)
-    else:
-        grid = t[0] + (np.arange(width) + 0.5) / width * (t[-1] - t[0])
-        shown = _nearest(t, grid)
-        t = t.copy()
-        t[shown] = grid
-    return PowerMap(
-        range_power(x[:, shown]), Axis("range", "m", ranges), Axis("time", "s", t[shown])
-    )
-
-
-def _nearest(values: Float, wanted: Float) -> Index:
-    """Numbers of the rising values nearest to those wanted."""
-    after = np.clip(np.searchsorted(values, wanted), 1, max(values.size - 1, 1))
-    before = after - 1
-    if values.size == 1:
-        return np.zeros(wanted.size, np.intp)
-    nearer = wanted - values[before] <= values[after] - wanted
-    return np.where(nearer, before, after).astype(np.intp)
-
-
-def _joined(powers: dict[str, list[list[PowerMap]]]) -> dict[str, PowerMap]:
-    """Powers of all receivers added up, stretches one after the other on an even grid of times."""
-    joined = {}
-    for name, receivers in powers.items():
-        summed = [
-            PowerMap(sum(one.power for one in same), same[0].rows, same[0].columns)
-            for same in zip(*receivers, strict=True)
-        ]
-        joined[name] = _even(summed)
-    return joined
-
-
-def _even(maps: list[PowerMap]) -> PowerMap:
-    """Maps of stretches as one; where no column is near, the power is 0."""
-    if len(maps) == 1:
-        return maps[0]
-    power = np.concatenate([one.power for one in maps], axis=1)
-    t = np.concatenate([one.columns.values for one in maps])
+def _even(power_map: PowerMap) -> PowerMap:
+    """A map of stretches on even times; where no column is near, the power is 0."""
+    t = power_map.columns.values
     step = float(np.median(np.diff(t))) if t.size > 1 else 1.0
     grid = t[0] + step * np.arange(round((t[-1] - t[0]) / step) + 1)
-    nearest = _nearest(t, grid)
-    there = np.abs(t[nearest] - grid) <= step
-    columns = replace(maps[0].columns, values=grid)
-    return PowerMap(power[:, nearest] * there, maps[0].rows, columns)
+    if grid.size == t.size:
+        return power_map
+    columns = nearest(t, grid)
+    there = np.abs(t[columns] - grid) <= step
+    even = replace(power_map.columns, values=grid)
+    return PowerMap(power_map.power[:, columns] * there, power_map.rows, even)
 
 
-def _refuse_highpass_over_gaps(config: Config, segments: Segments, recording: Recording) -> None:
-    if config.processing.clutter == "highpass" and len(segments) > 1:
-        raise CaptureError(
-            f"{recording.path}: has {len(segments)} stretches with gaps between; "
-            "processing.clutter should be mean or difference, a high-pass would ring in each"
-        )
-
-
-def _of_slow_time(
-    recording: Recording,
-    config: Config,
-    names: Sequence[MapName],
-    x: Complex,
-    segments: Segments,
-    notes: list[str],
-) -> Maps:
-    """Maps of a radar without ranges: neither a range-time map, nor a torso, nor a gate."""
+def _refuse_without_ranges(recording: Recording, config: Config, names: Sequence[str]) -> None:
     wrong = [name for name in names if name == "rtm" or "compensated" in name]
     if wrong or config.processing.range_sum == "gated":
         raise CaptureError(
@@ -343,15 +268,3 @@ def _of_slow_time(
             "cannot be made of it (maps: stft, fsst, stft_denoised, fsst_denoised; "
             "processing.range_sum: coherent)"
         )
-    f0, prf = recording.info.carrier_hz, recording.info.prf_hz
-    canceller, x = _before(config, prf, f0, x)
-    stretches = [*_stretches(segments, f0, canceller, config, names, recording, notes)]
-    powers: dict[str, list[list[PowerMap]]] = {name: [] for name in names}
-    for one in x:
-        made = []
-        for part, frames in stretches:
-            t0 = float(segments.times(np.array([part.start]))[0]) + canceller.delay / prf
-            made.append(process(Signal(canceller(one[part]), t0, prf, f0), config, names, **frames))
-        for name in names:
-            powers[name].append([maps[name] for maps in made])
-    return Maps(_joined(powers), None, f0, list(dict.fromkeys(notes)))

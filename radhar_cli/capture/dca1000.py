@@ -12,9 +12,9 @@ Capture", sections on DCA1000, and rawDataReader.m of mmWave Studio):
 The card splits a capture into files of 1 GiB anywhere, and fills lost packets with zeros.
 """
 
-import os
 import re
 from collections.abc import Sequence
+from itertools import pairwise
 from math import ceil, floor
 from pathlib import Path
 
@@ -29,52 +29,39 @@ from radhar_cli.untrusted import refuse_outside, regular_size
 WORD = np.dtype("<u2")
 PROBED_WORDS = 2**20
 SHORTEST_CHIRP = 32  # words
-REPEATS, ALIKE = 0.6, 0.7  # correlation from which something repeats; share of it to be right
+REPEATS = 0.6  # least correlation of a repetition
+ALIKE = 0.7  # least share of the best correlation at the length that the header gives
 _NUMBERED = re.compile(r"(.*_)(\d+)(\.bin)", re.IGNORECASE)
 
 
 class Words:
-    """Files of words as one: where one ends in the middle of a chirp, the next goes on."""
+    """Files of words as one stream, cut anywhere."""
 
     def __init__(self, files: Sequence[Path]) -> None:
-        self.files = tuple(files)
-        sizes = [_size(path) for path in files]
-        self._starts = np.concatenate([[0], np.cumsum(sizes)])
-        self.bytes = int(self._starts[-1])
+        self.files, self._ends = files, [0]
+        for path in files:
+            try:
+                size = regular_size(path)
+            except OSError as error:
+                raise CaptureError(f"{path}: {error.strerror}") from None
+            if size == 0:
+                raise CaptureError(f"{path}: holds 0 bytes; should hold samples of 16 bits")
+            self._ends.append(self._ends[-1] + size)
+        self.bytes = self._ends[-1]
         self.count = self.bytes // WORD.itemsize
 
     def __getitem__(self, key: slice) -> NDArray[np.uint16]:
         """Words from key.start to key.stop."""
         start, stop = key.start * WORD.itemsize, key.stop * WORD.itemsize
-        data = bytearray(stop - start)
-        view = memoryview(data)
-        for number, path in enumerate(self.files):
-            low, high = int(self._starts[number]), int(self._starts[number + 1])
-            first, last = max(start, low), min(stop, high)
-            if first < last:
-                _read_into(path, first - low, view[first - start : last - start])
-        return np.frombuffer(data, WORD)
-
-
-def _size(path: Path) -> int:
-    try:
-        size = regular_size(path)
-    except OSError as error:
-        raise CaptureError(f"{path}: {error.strerror}") from None
-    if size == 0:
-        raise CaptureError(f"{path}: holds 0 bytes; should hold samples of 16 bits")
-    return size
-
-
-def _read_into(path: Path, offset: int, view: memoryview) -> None:
-    with path.open("rb", buffering=0) as file:
-        file.seek(offset, os.SEEK_SET)
-        done = 0
-        while done < len(view):
-            more = file.readinto(view[done:])
-            if not more:
-                raise CaptureError(f"{path}: ended while it was read")
-            done += more
+        blocks = [
+            np.fromfile(path, np.uint8, min(stop, high) - first, offset=first - low)
+            for path, (low, high) in zip(self.files, pairwise(self._ends), strict=True)
+            if (first := max(start, low)) < min(stop, high)
+        ]
+        data = np.concatenate(blocks)
+        if data.size < stop - start:
+            raise CaptureError(f"{self.files[0]}: became shorter while it was read")
+        return data.view(WORD)
 
 
 def whole_capture(paths: Sequence[Path]) -> tuple[Path, ...]:
@@ -85,7 +72,7 @@ def whole_capture(paths: Sequence[Path]) -> tuple[Path, ...]:
         FolderError: one of the others is a link that leads elsewhere.
     """
     numbered = _NUMBERED.fullmatch(paths[0].name)
-    if len(paths) > 1 or numbered is None:
+    if len(paths) > 1 or numbered is None or int(numbered[2]) != 0:
         return tuple(paths)
     stem, _, suffix = numbered.groups()
     numbers = {
@@ -93,18 +80,14 @@ def whole_capture(paths: Sequence[Path]) -> tuple[Path, ...]:
         for other in paths[0].parent.iterdir()
         if (match := _NUMBERED.fullmatch(other.name)) and (match[1], match[3]) == (stem, suffix)
     }
-    if int(numbered[2]) != 0:
-        return tuple(paths)
-    missing = [n for n in range(max(numbers)) if n not in numbers]
-    if missing:
-        raise CaptureError(
-            f"{paths[0].parent / f'{stem}{missing[0]}{suffix}'}: is missing; the capture goes on "
-            f"in {numbers[max(numbers)].name}"
-        )
-    for other in numbers.values():
-        if other != paths[0]:
-            refuse_outside(other, paths[0].parent)
-    return tuple(numbers[n] for n in range(max(numbers) + 1))
+    for n in range(1, max(numbers) + 1):
+        if n not in numbers:
+            raise CaptureError(
+                f"{paths[0].parent / f'{stem}{n}{suffix}'}: is missing; the capture continues in "
+                f"{numbers[max(numbers)].name}"
+            )
+        refuse_outside(numbers[n], paths[0].parent)
+    return (paths[0], *(numbers[n] for n in range(1, max(numbers) + 1)))
 
 
 def open_dca1000(paths: Sequence[Path], settings: CaptureSettings, header: str) -> Source:
@@ -113,7 +96,7 @@ def open_dca1000(paths: Sequence[Path], settings: CaptureSettings, header: str) 
     Args:
         paths: its files, or the first of those that are numbered.
         settings: its header.
-        header: what the header was read from, for messages.
+        header: file of the header, for messages.
 
     Raises:
         CaptureError: the header lacks something, or does not fit the files.
@@ -122,7 +105,7 @@ def open_dca1000(paths: Sequence[Path], settings: CaptureSettings, header: str) 
     for key in ("samples", "receivers"):
         if getattr(settings, key) is None:
             raise CaptureError(
-                f"{header}: {key}: is missing; --radar FILE or --set {key}=N says it"
+                f"{header}: {key} is missing; give it by --radar FILE or --set {key}=N"
             )
     settings = settings.model_copy(
         update={
@@ -141,7 +124,7 @@ def open_dca1000(paths: Sequence[Path], settings: CaptureSettings, header: str) 
     if len(files) > 1:
         notes.append(f"{len(files)} files: {files[0].name} to {files[-1].name}")
     if rest:
-        notes.append(f"the last {rest * 2} bytes are no whole pulse and are left out")
+        notes.append(f"the last {rest * 2} bytes (an incomplete pulse) are left out")
 
     def read(first: int, stop: int) -> Parts:
         return decode(words[first * unit : stop * unit], settings)
@@ -180,7 +163,7 @@ def decode(words: NDArray[np.uint16], s: CaptureSettings) -> Parts:
 def _check_length(words: Words, s: CaptureSettings, header: str) -> None:
     """Refuse a header whose chirps are not those of the file.
 
-    What stands still sends the same echo in every chirp: words repeat at the length of a chirp.
+    Static echoes are the same in every chirp: words repeat after the length of a chirp.
     """
     assert s.samples is not None
     start = max((words.count - PROBED_WORDS) // 2, 0)
@@ -192,7 +175,7 @@ def _check_length(words: Words, s: CaptureSettings, header: str) -> None:
     best = float(correlation.max())
     if best < REPEATS or correlation[own] >= ALIKE * best:
         return
-    # What repeats may be one receiver's chirp, a chirp of all, or a turn of the transmitters.
+    # One receiver's chirp may repeat, a chirp of all, or a cycle of the transmitters.
     lag = int(np.flatnonzero(correlation >= 0.95 * best)[0])
     per_sample = (1 + s.complex, (1 + s.complex) * s.stored_receivers, own // s.samples)
     fitting = {lag // words_each for words_each in per_sample if lag % words_each == 0}

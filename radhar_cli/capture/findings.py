@@ -1,4 +1,4 @@
-"""Read off the samples themselves: their coding, sign of the beat, clipping, lost packets."""
+"""Estimates from the samples: coding, sign of the beat, clipping, lost packets."""
 
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -10,17 +10,17 @@ from radhar_cli.arrays import Bool
 from radhar_cli.capture.source import Parts, Source
 from radhar_cli.errors import CaptureError
 
-PROBES, PROBED = 16, 64  # places that are looked at, and pulses of each
-SURE = 0.65  # share of the energy in one half of the spectrum
-LOST_RUN = 32  # zero samples one after the other
+PROBES, PROBED = 16, 64  # places that are examined, and pulses of each
+SURE = 0.65  # share of the energy in one half of the spectrum that decides
+LOST_RUN = 32  # consecutive zero samples
 MIN_ZEROS = 4  # zero samples of a pulse beside a lost one
-RARE = 3  # samples at full scale that prove nothing
+RARE = 3  # samples at full scale that are ignored
 LOST, CLIPPED = 1, 2  # flags of a pulse
-LARGEST = 1e15  # of a sample, which squares and sums keep finite
+LARGEST = 1e15  # sample whose squares and sums remain finite
 
 
 def probe(source: Source) -> list[Parts]:
-    """Consecutive pulses from places all over a capture, each [receiver, sample, pulse, part].
+    """Consecutive pulses from places spread over a capture, each [receiver, sample, pulse, part].
 
     Raises:
         CaptureError: as `checked`.
@@ -31,11 +31,11 @@ def probe(source: Source) -> list[Parts]:
 
 
 class Coding(NamedTuple):
-    """How whole numbers stand for signed ones.
+    """How whole numbers encode signed samples.
 
     Attributes:
-        words: they are words of 16 bits, read as signed or unsigned.
-        offset: what offset binary is too large by; 0 of two's complement.
+        words: whether they are words of 16 bits, read as signed or unsigned.
+        offset: of offset binary; 0 of two's complement.
     """
 
     words: bool
@@ -46,13 +46,13 @@ PLAIN = Coding(False)
 
 
 def coding_of(pieces: list[Parts], asked: str | None = None, bits: int = 16) -> Coding:
-    """The coding that makes numbers of any type small, or the one that is asked for.
+    """The coding in which the samples are smallest, or the one that is asked for.
 
-    Words that are read in another coding jump between the ends of the scale. Other unsigned numbers
-    lie around half their scale.
+    Words in another coding jump between the ends of the scale. Other unsigned numbers lie around
+    half their scale.
 
     Raises:
-        ValueError: the numbers cannot be of the coding that is asked for.
+        ValueError: the numbers cannot have the coding that is asked for.
     """
     dtype = pieces[0].dtype
     values = np.concatenate([piece.ravel() for piece in pieces]).astype(float)
@@ -60,7 +60,7 @@ def coding_of(pieces: list[Parts], asked: str | None = None, bits: int = 16) -> 
     fits = low >= -(2**15) and high < (2**15 if low < 0 else 2**16)
     words = fits and (dtype.kind in "iu" or bool((values == np.floor(values)).all()))
     if asked and not words and dtype.kind != {"signed": "i", "offset": "u"}[asked]:
-        raise ValueError(f"numbers from {low:g} to {high:g}; should be whole ones of 16 bits")
+        raise ValueError(f"numbers from {low:g} to {high:g}; should be whole numbers of 16 bits")
     native = dtype in (np.int16, np.uint16)
     seen = values[values != 0]  # lost packets are zeros whatever the coding
     if unsigned and asked != "signed" and seen.size and not (words and high >= 2**15):
@@ -77,7 +77,7 @@ def coding_of(pieces: list[Parts], asked: str | None = None, bits: int = 16) -> 
 
 
 def decoded(values: Parts, coding: Coding, bits: int = 16) -> Parts:
-    """Signed numbers; bits above the ADC's ones are taken as the sign's."""
+    """Signed numbers; bits above the ADC's resolution are replaced by its sign."""
     dtype, (words, offset) = values.dtype, coding
     if words and dtype in (np.int16, np.uint16):
         signed = (values.view(np.uint16) ^ np.uint16(offset)).view(np.int16)
@@ -97,31 +97,11 @@ def decoded(values: Parts, coding: Coding, bits: int = 16) -> Parts:
     return signed
 
 
-class PositiveShare(NamedTuple):
-    """Which share of the energy lies at positive beat frequencies, 0 to 1.
+def positive_share(pieces: list[Parts]) -> tuple[float, float]:
+    """Share of the energy of complex chirps at positive beat frequencies, 0 to 1.
 
-    Attributes:
-        moving: of what differs from pulse to pulse.
-        still: of everything.
-    """
-
-    moving: float
-    still: float
-
-    @property
-    def sign(self) -> str | None:
-        """`positive`, `negative`, or None where neither share is clear."""
-        for share in self:
-            if abs(share - 0.5) >= SURE - 0.5:
-                return "positive" if share > 0.5 else "negative"
-        return None
-
-
-def positive_share(pieces: list[Parts]) -> PositiveShare:
-    """In which half of the spectrum of complex chirps the targets lie.
-
-    The white noise of a bin, its median over the bins, is taken off. Hann's window keeps the direct
-    echo in the lowest bins, which are left out.
+    Of the differences from pulse to pulse, and of everything. The noise floor, the median over the
+    bins, is subtracted. Hann's window keeps the direct echo in the lowest bins, which are left out.
     """
     moving = still = np.zeros(pieces[0].shape[1])
     for piece in pieces:
@@ -129,13 +109,11 @@ def positive_share(pieces: list[Parts]) -> PositiveShare:
         window = np.hanning(x.shape[1] + 2)[1:-1, None]
         spectrum = np.fft.fft(x * window, axis=1)
         still = still + (np.abs(spectrum) ** 2).sum(axis=(0, 2))
-        if x.shape[2] > 1:
-            moving = moving + (np.abs(np.diff(spectrum, axis=2)) ** 2).sum(axis=(0, 2))
-    return PositiveShare(_share(moving), _share(still))
+        moving = moving + (np.abs(np.diff(spectrum, axis=2)) ** 2).sum(axis=(0, 2))
+    return _share(moving), _share(still)
 
 
 def _share(power: NDArray[np.float64]) -> float:
-    """Share of the energy at positive frequencies, the lowest bins and the floor left out."""
     count = power.size
     above = np.maximum(power - np.median(power), 0)
     lowest = max(2, count // 64)
@@ -150,17 +128,18 @@ class Damage:
     """Clipping and losses, counted piece by piece.
 
     Attributes:
-        full_scale: numbers that only a clipped sample reaches, lowest and highest; None of floats.
-        clipped, samples: how many of how many.
+        full_scale: lowest and highest number of the converter, reached by clipped samples only;
+            None of floats.
+        clipped: number of clipped samples.
+        flags: of the pulses, uint8 [pulse] of each piece.
     """
 
     full_scale: tuple[int, int] | None
     clipped: int = 0
-    samples: int = 0
     flags: list[NDArray[np.uint8]] = field(default_factory=list)
 
     def add(self, raw: Parts, values: Parts, gone: Bool) -> None:
-        """Take in numbers [receiver, sample, pulse, part] as stored and as signed, in time.
+        """Count damage in numbers [receiver, sample, pulse, part], as stored and as signed.
 
         Pulses that are `gone` [pulse] are known to be lost.
         """
@@ -170,15 +149,30 @@ class Damage:
             clipped = (values <= low) | (values >= high)
             self.clipped += int(np.count_nonzero(clipped))
             flags[clipped.any(axis=(0, 1, 3))] |= CLIPPED
-        self.samples += values.size
         flags[lost(raw) | gone] |= LOST
         self.flags.append(flags)
 
+    def findings(self) -> list[str]:
+        """What was counted, in words."""
+        flags, words = np.concatenate(self.flags), []
+        if lost := int(np.count_nonzero(flags & LOST)):
+            words.append(
+                f"{lost} of {flags.size} pulses ({100 * lost / flags.size:.2g} %) lack samples "
+                "(zeros, or NaN); they are flagged"
+            )
+        if self.clipped > RARE:
+            pulses = int(np.count_nonzero(flags & CLIPPED))
+            words.append(
+                f"{self.clipped} samples in {pulses} of {flags.size} pulses are at full scale: the "
+                "receiver was saturated; they are flagged"
+            )
+        return words
+
 
 def lost(values: Parts) -> Bool:
-    """Pulses [pulse] of which LOST_RUN samples in a row, or all of a shorter chirp, are zero.
+    """Pulses [pulse] with LOST_RUN consecutive zero samples, or all of a shorter chirp.
 
-    One zero of slow time proves nothing.
+    Single zeros of slow time are not taken for losses.
     """
     if values.shape[1] == 1:
         return np.zeros(values.shape[2], bool)
@@ -190,14 +184,14 @@ def lost(values: Parts) -> Bool:
     inside = summed[:, run - 1 :].copy()
     inside[:, 1:] -= summed[:, :-run]
     missing: Bool = (inside == run).any(axis=(0, 1))
-    # The rest of a gap that reaches into the pulse before or after.
+    # The rest of a loss that extends into the pulse before or after.
     beside = np.convolve(missing, [1, 1, 1])[1:-1] > 0
     missing |= beside & (summed[:, -1].max(axis=0) >= MIN_ZEROS)
     return missing
 
 
 def full_scale(dtype: np.dtype[Any], coding: Coding, bits: int) -> tuple[int, int] | None:
-    """Lowest and highest number of a converter, the offset taken off; None where none is known."""
+    """Lowest and highest number of the converter without its offset; None if unknown."""
     if not any(coding) and (dtype.kind == "f" or dtype.itemsize > 2):
         return None
     half = coding.offset or 1 << (min(bits, 8 * dtype.itemsize) - 1)
@@ -210,11 +204,11 @@ def checked(raw: Parts, first: int, where: str, coding: Coding = PLAIN) -> tuple
     Args:
         raw: the numbers.
         first: number of the first pulse, for messages.
-        where: whose they are, for messages.
-        coding: as which they will be decoded.
+        where: file, for messages.
+        coding: in which they will be decoded.
 
     Raises:
-        CaptureError: a number is infinite, beyond LARGEST, or none of the coding; names it.
+        CaptureError: a number is infinite, beyond LARGEST, or invalid in the coding; names it.
     """
     raw = raw.astype(np.float32) if raw.dtype == np.float16 else raw
     low, high = (-(2**15), 2**16 - 1) if coding.words else (-LARGEST, LARGEST)
@@ -227,8 +221,7 @@ def checked(raw: Parts, first: int, where: str, coding: Coding = PLAIN) -> tuple
         raise CaptureError(
             f"{where}: receiver {receiver}, sample {sample}, pulse {first + pulse} is "
             f"{raw[receiver, sample, pulse, part]:g}; should be from {low:g} to {high:g}"
-            + ", a whole number, as the coding says"
-            * coding.words
+            + (", a whole number, as the coding says" if coding.words else "")
         )
     gone: Bool = np.asarray(nan.any(axis=(0, 1, 3)))
     return np.where(nan, raw.dtype.type(0), raw), gone

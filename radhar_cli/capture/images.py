@@ -1,7 +1,7 @@
-"""Images that exist already as samples: a tree of class folders, or an .npz of images or masks.
+"""Existing images as samples: a tree of class folders, or an .npz of images or masks.
 
 An .npz has one array of images [N, H, W] (uint8 or bool; masks of 0 and 1 become 0 and 255),
-`label` [N], numbers into `classes` or texts, and if wanted `person` [N].
+`label` [N], indices into `classes` or texts, and optionally `person` [N].
 """
 
 import hashlib
@@ -53,31 +53,8 @@ def listed(path: Path, packed: bool) -> Listed:
     Raises:
         CaptureError, FolderError: there are none, or they cannot be read.
     """
-    return _of_tree(path) if path.is_dir() else _of_npz(path, packed)
-
-
-def _of_tree(path: Path) -> Listed:
-    files = [
-        file
-        for folder in sorted(one for one in path.iterdir() if one.is_dir())
-        for file in sorted(folder.iterdir())
-        if file.suffix.lower() in SUFFIXES
-    ]
-    if not files:
-        raise CaptureError(f"{path}: should hold a folder of images for each class")
-    total = hashlib.sha256()
-    for file in files:
-        refuse_outside(file, path)
-        with file.open("rb") as data:
-            total.update(hashlib.file_digest(data, "sha256").digest())
-    parts = [
-        {"file": f"{file.parent.name}/{file.name}", "label": file.parent.name, "person": None}
-        for file in files
-    ]
-    return Listed(parts, {path.name: total.hexdigest()}, image_size(files[0]))
-
-
-def _of_npz(path: Path, packed: bool) -> Listed:
+    if path.is_dir():
+        return _of_tree(path)
     with refusing(str(path)):
         regular_size(path)
     images, label, person = _loaded(path, packed, path.stat().st_mtime_ns)
@@ -94,6 +71,21 @@ def _of_npz(path: Path, packed: bool) -> Listed:
     return Listed(parts, {path.name: total}, (images.shape[1], images.shape[2]))
 
 
+def _of_tree(path: Path) -> Listed:
+    files = sorted(one for one in path.glob("*/*") if one.suffix.lower() in SUFFIXES)
+    if not files:
+        raise CaptureError(f"{path}: should hold a folder of images for each class")
+    total = hashlib.sha256()
+    parts = []
+    for file in files:
+        refuse_outside(file, path)
+        with file.open("rb") as data:
+            total.update(hashlib.file_digest(data, "sha256").digest())
+        label = file.parent.name
+        parts.append({"file": f"{label}/{file.name}", "label": label, "person": None})
+    return Listed(parts, {path.name: total.hexdigest()}, image_size(files[0]))
+
+
 @lru_cache(maxsize=2)
 def _loaded(
     path: Path, packed: bool, changed: int
@@ -106,8 +98,8 @@ def _loaded(
         wide = [name for name in wide if name in ("masks", "images")] or wide
         if len(wide) != 1 or "label" not in shapes:
             raise ValueError(
-                "should hold one array of images [N, H, W], uint8 or bool, called masks or images "
-                "if there are others, and label"
+                "should hold one array of images [N, H, W], uint8 or bool (named masks or images "
+                "if there are others), and label"
             )
         if int(np.prod(shapes[wide[0]][0], dtype=object)) > MAX_NPZ:
             raise ValueError(f"holds more than {MAX_NPZ} bytes of images")
@@ -122,12 +114,12 @@ def _loaded(
             images = images * np.uint8(255)
         if label.dtype.kind in "iu":
             if classes is None or not ((label >= 0) & (label < classes.size)).all():
-                raise ValueError("label should be numbers into classes, or texts")
+                raise ValueError("label should be indices into classes, or texts")
             label = classes[label]
         if label.dtype.kind != "U" or len(label) != len(images):
             raise ValueError(f"label should name the class of each of {len(images)} images")
         if person is not None and len(person) != len(images):
-            raise ValueError(f"person should name who is in each of {len(images)} images")
+            raise ValueError(f"person should name the person in each of {len(images)} images")
     return images, label, person
 
 
@@ -137,7 +129,7 @@ def _as_text(values: NDArray[Any]) -> NDArray[Any]:
 
 
 def read_image(folder: Path, file: str, size: tuple[int, int], packed: bool) -> Levels:
-    """Levels [H, W] of a part's file.
+    """Levels [H, W] of a part's image.
 
     Raises:
         CaptureError, FolderError: it cannot be read, or has another size.

@@ -2,12 +2,10 @@
 
 import tempfile
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.capture import findings
@@ -17,7 +15,6 @@ from radhar_cli.capture.recording import (
     MAX_PULSE,
     Label,
     RecordingInfo,
-    Segments,
     SourceNote,
     write_recording,
 )
@@ -26,26 +23,14 @@ from radhar_cli.capture.source import Parts, Source
 from radhar_cli.capture.ti_header import read_header
 from radhar_cli.config.reading import load_mapping, validated, with_overrides
 from radhar_cli.errors import CaptureError
+from radhar_cli.processing.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform
 
 TI_HEADERS = (".json", ".cfg")
 SIGMF = (".sigmf-meta", ".sigmf-data")
-GAP = 0.5  # of a pulse interval: what is longer between frames is a gap
+GAP = 0.5  # shortest gap between frames, in pulse intervals
 MAX_HZ = 1e15
-JITTER = 0.1  # of a pulse interval, beyond which it is told
-
-
-@dataclass(frozen=True)
-class Imported:
-    """The outcome of an import.
-
-    Attributes:
-        info: of the recording.
-        found: what was detected and decided, in words.
-    """
-
-    info: RecordingInfo
-    found: list[str]
+JITTER = 0.1  # in pulse intervals, above which it is reported
 
 
 def read_settings(header: Path | None, overrides: Sequence[str]) -> CaptureSettings:
@@ -64,14 +49,14 @@ def read_settings(header: Path | None, overrides: Sequence[str]) -> CaptureSetti
 
 def import_capture(
     paths: Sequence[Path], out: Path, settings: CaptureSettings, header: str = "--set"
-) -> Imported:
-    """Read a capture in pieces and write it as a recording file.
+) -> RecordingInfo:
+    """Read a capture in pieces and write it as a recording; findings are in `source.found`.
 
     Args:
         paths: its files, or the first of those that are numbered.
         out: the recording to write.
         settings: its header.
-        header: where the header came from, for messages.
+        header: file of the header, for messages.
 
     Raises:
         CaptureError, FolderError: the capture cannot be read, or does not fit its header.
@@ -100,22 +85,23 @@ def _opened(
     if 16 * source.receivers * (source.samples or 1) > MAX_PULSE:
         raise CaptureError(
             f"{source.name}: a pulse of {source.receivers} receivers and {source.samples} samples "
-            f"should take at most {MAX_PULSE} bytes, 16 of a sample"
+            f"should take at most {MAX_PULSE} bytes, 16 per sample"
         )
     known = {key: value for key, value in source.settings.items() if getattr(settings, key) is None}
     document = settings.model_dump(exclude_none=True) | known
     return source, validated(CaptureSettings, document, source.name, {})
 
 
-def _written(source: Source, out: Path, s: CaptureSettings, header: str) -> Imported:
+def _written(source: Source, out: Path, s: CaptureSettings, header: str) -> RecordingInfo:
     notes = [*source.notes]
     probed = findings.probe(source)
     coding = _coding(probed, s, source.name, notes)
     probed = [findings.decoded(piece, coding, s.adc_bits) for piece in probed]
-    if s.iq == "qi" and source.parts == 2:
+    swapped = s.iq == "qi" and source.parts == 2
+    if swapped:
         notes.append("Q before I, as the header says")
         probed = [piece[..., ::-1] for piece in probed]
-    turned = _turned(probed, source, s, notes)
+    conjugated = _conjugated(probed, source, s, notes)
     segments = _segments(source, s, header, notes)
     info = _info(source, s, segments, header, notes)
     damage = findings.Damage(findings.full_scale(source.dtype, coding, s.adc_bits))
@@ -125,19 +111,15 @@ def _written(source: Source, out: Path, s: CaptureSettings, header: str) -> Impo
             raw, gone = findings.checked(source.read(first, stop), first, source.name, coding)
             values = findings.decoded(raw, coding, s.adc_bits)
             damage.add(raw, values, gone)
-            if source.parts == 2 and (s.iq == "qi" or turned):
-                values = _reordered(values, s.iq == "qi", turned)
+            values = values[..., ::-1] if swapped else values
+            if conjugated:
+                values = values.copy()
+                if values.dtype == np.int16:
+                    np.maximum(values[..., 1], -32767, out=values[..., 1])  # -32768 has no negative
+                values[..., 1] *= -1
             yield first, values
 
-    told: list[str] = []
-
-    def finished() -> tuple[NDArray[np.uint8], list[str]]:
-        flags = np.concatenate(damage.flags)
-        told.extend(_damage(damage, flags))
-        return flags, told
-
-    info = write_recording(out, info, probed[0].dtype, source.parts, pieces(), segments, finished)
-    return Imported(info, [*notes, *told])
+    return write_recording(out, info, probed[0].dtype, source.parts, pieces(), segments, damage)
 
 
 def _coding(
@@ -153,63 +135,46 @@ def _coding(
             notes.append(f"samples look {told}; read as {s.coding}, as asked")
     elif coding.offset:
         notes.append(
-            f"offset binary: {coding.offset} is taken off every sample (coding=signed to keep)"
+            f"offset binary: {coding.offset} is subtracted from samples (coding=signed to keep)"
         )
     elif coding.words and probed[0].dtype != np.int16:
-        notes.append("two's complement of 16 bits: 65536 is taken off samples from 32768 on")
+        notes.append("two's complement of 16 bits: 65536 is subtracted from samples above 32767")
     elif probed[0].dtype.kind in "iu":
         notes.append("two's complement")
     return coding
 
 
-def _turned(probed: list[Parts], source: Source, s: CaptureSettings, notes: list[str]) -> bool:
+def _conjugated(probed: list[Parts], source: Source, s: CaptureSettings, notes: list[str]) -> bool:
     """Whether samples have to be conjugated for radhar's sign of the beat."""
     if source.parts == 1 or source.samples is None:
-        if s.beat is not None and source.parts == 2:
-            return s.beat == "positive"
-        return False
-    share = findings.positive_share(probed)
-    percent = f"{100 * share.moving:.0f} % of what moves, {100 * share.still:.0f} % of all"
-    told = f"{percent} lies at positive beat frequencies"
-    sign = s.beat or share.sign
+        return source.parts == 2 and s.beat == "positive"
+    shares = findings.positive_share(probed)
+    moving, still = (f"{100 * share:.0f} %" for share in shares)
+    told = f"{moving} of what moves, {still} of all lies at positive beat frequencies"
+    clear = [share > 0.5 for share in shares if abs(share - 0.5) >= findings.SURE - 0.5]
+    sign: str | None = s.beat or (("negative", "positive")[clear[0]] if clear else None)
     if s.beat is not None:
         notes.append(f"beat {s.beat}, as asked ({told})")
     elif sign is None:
         sign = "positive" if source.files[0].suffix.lower() == ".bin" else "negative"
-        notes.append(
-            f"{told}: that does not tell the sign of the beat; taken as {sign} (beat=... says it)"
-        )
+        notes.append(f"{told}: the sign of the beat is unclear; {sign} assumed (set beat=...)")
     else:
         notes.append(f"beat {sign}: {told}")
     if sign == "positive":
-        notes.append("samples are conjugated, for radhar's beat is negative")
+        notes.append("samples are conjugated, as radhar's beat is negative")
     return sign == "positive"
 
 
-def _reordered(values: Parts, swapped: bool, turned: bool) -> Parts:
-    """I before Q, conjugated where asked; -32768 becomes 32767."""
-    out = values[..., ::-1].copy() if swapped else values.copy()
-    if turned:
-        q = out[..., 1]
-        if q.dtype == np.int16:
-            np.maximum(q, -32767, out=q)
-        np.negative(q, out=q)
-    return out
-
-
-def _segments(source: Source, s: CaptureSettings, header: str, notes: list[str]) -> Segments:
+def _segments(source: Source, s: CaptureSettings, header: str, notes: list[str]) -> PulseTimes:
     if source.times is not None:
         return _timed(source, source.times, s, notes)
     if s.prf_hz is None:
         raise CaptureError(f"{header}: prf_hz is missing; --set prf_hz=..., or times=NAME")
-    whole = Segments(np.zeros(1), np.zeros(1, np.int64), source.pulses, s.prf_hz)
+    whole = PulseTimes(np.zeros(1), np.zeros(1, np.int64), source.pulses, s.prf_hz)
     if s.frame_pulses is None and s.frame_s is None:
         return whole
-    for key in ("frame_pulses", "frame_s"):
-        if getattr(s, key) is None:
-            raise CaptureError(f"{header}: {key} is missing beside the other of frames")
-    assert s.frame_pulses is not None
-    assert s.frame_s is not None
+    if s.frame_pulses is None or s.frame_s is None:
+        raise CaptureError(f"{header}: frame_pulses and frame_s must be given together")
     if s.frame_pulses / s.prf_hz > s.frame_s * (1 + 1e-6):
         raise CaptureError(
             f"{header}: frame_s = {s.frame_s:g}: should be at least {s.frame_pulses / s.prf_hz:g}, "
@@ -219,22 +184,24 @@ def _segments(source: Source, s: CaptureSettings, header: str, notes: list[str])
     if gap * s.prf_hz <= GAP:
         prf = s.frame_pulses / s.frame_s
         notes.append(f"frames without gaps: slow time is uniform, {prf:.6g} pulses/s")
-        return Segments(whole.start, whole.first, source.pulses, prf)
+        return PulseTimes(whole.start, whole.first, source.pulses, prf)
     first = np.arange(0, source.pulses, s.frame_pulses)
     notes.append(
         f"slow time is not uniform: {first.size} frames of {s.frame_pulses} pulses "
         f"({s.frame_pulses / s.prf_hz * 1e3:.4g} ms) every {s.frame_s * 1e3:.4g} ms, "
         f"{gap * 1e3:.4g} ms of each without a pulse"
     )
-    return Segments(np.arange(first.size) * s.frame_s, first, source.pulses, s.prf_hz)
+    return PulseTimes(np.arange(first.size) * s.frame_s, first, source.pulses, s.prf_hz)
 
 
-def _timed(source: Source, times: Float, s: CaptureSettings, notes: list[str]) -> Segments:
-    """Segments from the times of the pulses."""
+def _timed(source: Source, times: Float, s: CaptureSettings, notes: list[str]) -> PulseTimes:
+    """Stretches from the times of the pulses (s)."""
     if times.size != source.pulses:
-        raise CaptureError(f"{source.name}: {times.size} times; should be {source.pulses}, a pulse")
+        raise CaptureError(
+            f"{source.name}: {times.size} times; should be {source.pulses}, one per pulse"
+        )
     if times.size < 2 or not np.isfinite(times).all() or not (np.diff(times) > 0).all():
-        raise CaptureError(f"{source.name}: times should rise from pulse to pulse")
+        raise CaptureError(f"{source.name}: times should increase from pulse to pulse")
     step = np.diff(times)
     interval = float(np.median(step))
     gaps = step > 1.5 * interval
@@ -246,35 +213,34 @@ def _timed(source: Source, times: Float, s: CaptureSettings, notes: list[str]) -
             f"{source.name}: prf_hz = {s.prf_hz:g}: the times have {1 / interval:.6g} pulses/s"
         )
     if jitter > JITTER:
-        notes.append(f"pulses are up to {100 * jitter:.0f} % of their interval early or late")
+        notes.append(f"pulse times deviate by up to {100 * jitter:.0f} % of the interval")
     if first.size > 1:
         notes.append(f"slow time is not uniform: {first.size} stretches with gaps between")
-    # Within a stretch pulses count as evenly spaced; the mean rate keeps them from drifting apart.
+    # Pulses of a stretch are taken as evenly spaced; the mean rate avoids a drift.
     lengths = np.diff(first, append=times.size)
     if s.prf_hz is None and (inside := int((lengths - 1).sum())):
         prf = inside / float(step[~gaps].sum())
     if prf > MAX_HZ:
         raise CaptureError(f"{source.name}: {prf:.3g} pulses/s; times should be in s")
-    return Segments(times[first] - times[0], first, source.pulses, prf)
+    return PulseTimes(times[first] - times[0], first, source.pulses, prf)
 
 
 def _info(
-    source: Source, s: CaptureSettings, segments: Segments, header: str, notes: list[str]
+    source: Source, s: CaptureSettings, segments: PulseTimes, header: str, notes: list[str]
 ) -> RecordingInfo:
     needed = ["carrier_hz"] + (["bandwidth_hz", "adc_rate_hz"] if source.samples else [])
     for key in needed:
         if getattr(s, key) is None:
             raise CaptureError(
-                f"{header}: {key} is missing; --radar FILE or --set {key}=... says it"
+                f"{header}: {key} is missing; give it by --radar FILE or --set {key}=..."
             )
     if s.transmitters > 1:
         notes.append(
-            f"{s.transmitters} transmitters take turns: {segments.prf:.6g} pulses/s of each, "
+            f"{s.transmitters} transmitters take turns: {segments.prf:.6g} pulses/s each, "
             f"{source.receivers} virtual receivers"
         )
     per_turn = source.receivers // s.transmitters
     chirp = 1 / (segments.prf * s.transmitters)
-    label = None if s.label is None else Label(label=s.label, person=s.person)
     name = source.files[0].suffix.lower().lstrip(".")
     return RecordingInfo(
         carrier_hz=s.carrier_hz or 0,
@@ -287,8 +253,8 @@ def _info(
         segments=len(segments),
         receiver_delay_s=[n // per_turn * chirp for n in range(source.receivers)],
         start_time=s.start_time,
-        labels=[] if label is None else [label],
-        source=SourceNote(format=name, files=[path.name for path in source.files], found=notes[:]),
+        labels=[] if s.label is None else [Label(label=s.label, person=s.person)],
+        source=SourceNote(format=name, files=[path.name for path in source.files], found=notes),
     )
 
 
@@ -312,22 +278,5 @@ def write_simulated(out: Path, beat: Complex, waveform: Waveform, label: Label) 
         source=SourceNote(format="simulated"),
     )
     values = np.ascontiguousarray(beat).view(float).reshape(1, samples, pulses, 2)
-    segments = Segments(np.zeros(1), np.zeros(1, np.int64), pulses, waveform.prf)
+    segments = PulseTimes(np.zeros(1), np.zeros(1, np.int64), pulses, waveform.prf)
     return write_recording(out, info, values.dtype, 2, [(0, values)], segments)
-
-
-def _damage(damage: findings.Damage, flags: NDArray[np.uint8]) -> list[str]:
-    told = []
-    lost = int(np.count_nonzero(flags & findings.LOST))
-    if lost:
-        told.append(
-            f"{lost} of {flags.size} pulses ({100 * lost / flags.size:.2g} %) lack samples, lost "
-            "on the way (zeros, or NaN); they are flagged"
-        )
-    if damage.clipped > findings.RARE:
-        pulses = int(np.count_nonzero(flags & findings.CLIPPED))
-        told.append(
-            f"{damage.clipped} samples in {pulses} of {flags.size} pulses are at full scale: the "
-            "receiver was saturated; they are flagged"
-        )
-    return told

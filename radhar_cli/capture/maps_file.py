@@ -9,12 +9,12 @@ from matplotlib.axes import Axes
 from radhar_cli import __version__
 from radhar_cli.capture.chain import Maps
 from radhar_cli.capture.recording import RecordingInfo
+from radhar_cli.capture.tracking import TorsoTrack
 from radhar_cli.config.identity import resolved
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.figures.maps_panel import Shown, draw_maps
 from radhar_cli.new_hdf5 import new_hdf5
-from radhar_cli.processing.torso_track import TorsoTrack
 from radhar_cli.replacing import replacing
 from radhar_cli.simulation.scene_file import write_map
 
@@ -54,7 +54,7 @@ def write_maps(maps: Maps, config: Config, info: RecordingInfo, folder: Path) ->
 
 
 def draw(maps: Maps, config: Config, title: str, path: Path) -> None:
-    """Write maps.png: every map, the torso's track over the range-time map and its Doppler."""
+    """Write maps.png: every map, with the torso's track over the range-time map."""
     track = maps.track
     last = max((one.rows.values[-1] for name, one in maps.maps.items() if name == "rtm"), default=1)
     far = last if track is None else 1.3 * float(track.range.max()) + 0.5

@@ -1,4 +1,4 @@
-"""The recording file: what one radar received of one scene (docs/measured.md).
+"""The recording file: the samples that one radar received (docs/measured.md).
 
 Beat signals follow radhar's sign: a target at range R lies at exp(-j 2 pi (fc tau + K tau t)).
 """
@@ -6,7 +6,6 @@ Beat signals follow radhar's sign: a target at range R lies at exp(-j 2 pi (fc t
 import hashlib
 import json
 from collections.abc import Iterable, Iterator
-from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -15,12 +14,13 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from radhar_cli import __version__
-from radhar_cli.arrays import Complex, Float
-from radhar_cli.capture.findings import CLIPPED, LOST, checked
+from radhar_cli.arrays import Complex
+from radhar_cli.capture.findings import CLIPPED, LOST, Damage, checked
 from radhar_cli.capture.source import PIECE_BYTES, Parts
-from radhar_cli.dataset.untrusted_hdf5 import Samples, UntrustedFile
+from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.errors import CaptureError, FolderError, UnfinishedError
 from radhar_cli.new_hdf5 import new_hdf5
+from radhar_cli.processing.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.replacing import replacing
 from radhar_cli.untrusted import Closing
@@ -40,7 +40,7 @@ class _Part(BaseModel):
 
 
 class Label(_Part):
-    """What a person does from start to stop, s; None is the whole recording."""
+    """Activity and person from start to stop, s; None is the whole recording."""
 
     label: Text
     person: Text | None = None
@@ -49,7 +49,7 @@ class Label(_Part):
 
 
 class SourceNote(_Part):
-    """Where a recording came from: format, files, and what was found in them."""
+    """Origin of a recording: format, files, and findings on import."""
 
     format: Text
     files: Annotated[list[Text], Field(max_length=1000)] = []
@@ -60,14 +60,14 @@ class RecordingInfo(_Part):
     """The attribute `recording` of a recording file.
 
     Attributes:
-        carrier_hz: at the first sample of a chirp; of slow time, where the Doppler is read.
+        carrier_hz: at the first sample of a chirp; of slow time, the frequency of its Doppler.
         prf_hz: pulses per second of one receiver within a segment.
         bandwidth_hz, adc_rate_hz, samples: of a chirp; None of slow time.
         receivers, pulses: shape of the samples.
         segments: stretches of pulses without a gap.
-        receiver_delay_s: how much later each receiver's pulses are, of transmitters in turn.
+        receiver_delay_s: delay of each receiver's pulses, if transmitters take turns.
         start_time: of the first pulse, ISO 8601.
-        labels, source: see there.
+        labels, source: see `Label` and `SourceNote`.
     """
 
     carrier_hz: Hertz
@@ -84,13 +84,13 @@ class RecordingInfo(_Part):
     source: SourceNote
 
     def waveform(self, fft_length: int | None = None, centred: bool = True) -> Waveform:
-        """The chirps; `duration` is that of the pulses without the gaps.
+        """The waveform; `duration` leaves out the gaps.
 
         Raises:
-            CaptureError: it is slow time.
+            CaptureError: the recording is slow time.
         """
         if self.samples is None or self.adc_rate_hz is None or self.bandwidth_hz is None:
-            raise CaptureError("the recording is slow time; it has no ranges")
+            raise CaptureError("the recording is slow time, which has no ranges")
         return Waveform(
             fc=self.carrier_hz,
             bandwidth=self.bandwidth_hz,
@@ -103,51 +103,14 @@ class RecordingInfo(_Part):
         )
 
 
-class Segments:
-    """Stretches of pulses without a gap.
-
-    Attributes:
-        start: of each, s [S].
-        first: number of its first pulse [S].
-        pulses: of all.
-        prf: within each, Hz.
-    """
-
-    def __init__(self, start: Float, first: NDArray[np.int64], pulses: int, prf: float) -> None:
-        self.start, self.first, self.pulses, self.prf = start, first, pulses, prf
-
-    def __len__(self) -> int:
-        return self.first.size
-
-    @property
-    def lengths(self) -> NDArray[np.int64]:
-        """How many pulses each has."""
-        return np.diff(self.first, append=self.pulses)
-
-    @property
-    def slices(self) -> list[slice]:
-        """Pulses of each."""
-        return [slice(*edges) for edges in pairwise([*self.first.tolist(), self.pulses])]
-
-    @property
-    def duration(self) -> float:
-        """From the first pulse to the end of the last, s."""
-        return float(self.start[-1] - self.start[0] + self.lengths[-1] / self.prf)
-
-    def times(self, pulses: NDArray[Any]) -> Float:
-        """Times (s) of pulse numbers [...]."""
-        at = np.searchsorted(self.first, pulses, side="right") - 1
-        return np.asarray(self.start[at] + (pulses - self.first[at]) / self.prf)
-
-
 def write_recording(
     path: Path,
     info: RecordingInfo,
     number: np.dtype[Any],
     parts: int,
     pieces: Iterable[tuple[int, Parts]],
-    segments: Segments,
-    finished: Any = None,
+    segments: PulseTimes,
+    damage: Damage | None = None,
 ) -> RecordingInfo:
     """Write a recording under another name, then rename it into place.
 
@@ -158,34 +121,32 @@ def write_recording(
         parts: 2 of complex numbers, 1 of real ones.
         pieces: (first pulse, numbers [receiver, sample, pulse, part]).
         segments: of the pulses.
-        finished: called without arguments after the last piece; returns flags uint8 [pulse] and
-            further findings, in words. None: no flags.
+        damage: filled while the pieces are made; None: no flags.
 
     Raises:
         UnfinishedError: it cannot be written.
     """
-    samples = info.samples or 1
-    shape: tuple[int, ...] = (info.receivers, samples, info.pulses)
-    dtype = _stored(number, parts)
+    dtype = number
+    if parts == 2:
+        pair = [("r", "<i2"), ("i", "<i2")]
+        dtype = np.dtype({"f4": "c8", "f8": "c16"}.get(number.str[1:], pair))
+    samples, kept = info.samples or 1, slice(None, None, 1 if info.samples else 2)
+    shape = (info.receivers, samples, info.pulses)
     length = max(CHUNK_BYTES // (samples * dtype.itemsize), 1)
-    chunks: tuple[int, ...] = (1, samples, min(length, info.pulses))
-    if info.samples is None:
-        shape, chunks = shape[::2], chunks[::2]
+    chunks = (1, samples, min(length, info.pulses))
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with replacing(path) as unfinished, new_hdf5(unfinished, path) as (file, check):
             name = "slow_time" if info.samples is None else "beat"
-            data = file.create_dataset(name, shape, dtype, chunks=chunks)
-            data.attrs["axes"] = ["receiver", "fast time", "pulse"][:: 2 if len(shape) == 2 else 1]
+            data = file.create_dataset(name, shape[kept], dtype, chunks=chunks[kept])
+            data.attrs["axes"] = ["receiver", "fast time", "pulse"][kept]
             for first, values in pieces:
                 block = np.ascontiguousarray(values, dtype=number).view(dtype)[..., 0]
                 stop = first + block.shape[2]
-                if info.samples is None:
-                    data[:, first:stop] = block[:, 0]
-                else:
-                    data[:, :, first:stop] = block
+                data[..., first:stop] = block if info.samples else block[:, 0]
                 check()
-            flags, findings = finished() if finished else (np.zeros(info.pulses, np.uint8), [])
+            flags = np.concatenate(damage.flags) if damage else np.zeros(info.pulses, np.uint8)
+            findings = damage.findings() if damage else []
             file["flags"] = flags
             file["flags"].attrs["meaning"] = [f"{LOST}: samples lost", f"{CLIPPED}: clipped"]
             file["segment_start"] = segments.start.astype("f8")
@@ -204,14 +165,8 @@ def write_recording(
     return info
 
 
-def _stored(number: np.dtype[Any], parts: int) -> np.dtype[Any]:
-    if parts == 1:
-        return number
-    return np.dtype({"f4": "c8", "f8": "c16"}.get(number.str[1:]) or [("r", "<i2"), ("i", "<i2")])
-
-
 def is_recording(path: Path) -> bool:
-    """Whether a file says that it is a recording."""
+    """Whether a file describes itself as a recording."""
     try:
         with UntrustedFile(path) as file:
             return file.has_attribute("kind") and file.text("kind") == KIND
@@ -224,11 +179,12 @@ class Recording(Closing):
 
     Attributes:
         info: its description.
+        samples: [receiver, sample, pulse], of slow time [receiver, pulse].
         segments: of the pulses.
         flags: uint8 [pulse]: 1 samples lost, 2 clipped.
 
     Raises:
-        FolderError: it is none, or damaged; names file and field.
+        FolderError: it is not a recording, or damaged; names file and field.
     """
 
     def __init__(self, path: Path) -> None:
@@ -244,16 +200,20 @@ class Recording(Closing):
                 raise FolderError(f"{path}: schema_version = {version}: should be {SCHEMA_VERSION}")
             self.info = info = _info(self._file.json("recording"), path)
             name = "slow_time" if info.samples is None else "beat"
-            self._samples = self._file.samples(name)
-            shape = (info.receivers, info.samples or 1, info.pulses)
-            _refuse_other_shape(self._samples, shape if info.samples else shape[::2])
+            self.samples = self._file.samples(name)
+            shape = (info.receivers, info.samples or 1, info.pulses)[:: 1 if info.samples else 2]
+            where, number = self.samples.where, self.samples.number
+            if self.samples.shape != shape:
+                raise FolderError(f"{where}: has the shape {self.samples.shape}; should be {shape}")
+            if number.str[1:] not in NUMBERS:
+                raise FolderError(f"{where}: is of the type {number}; should be one of {NUMBERS}")
             self.flags: NDArray[np.uint8] = self._file.column("flags", "u1", (info.pulses,))[:]
             self.segments = self._read_segments()
         except BaseException:
             self._file.close()
             raise
 
-    def _read_segments(self) -> Segments:
+    def _read_segments(self) -> PulseTimes:
         shape = (self.info.segments,)
         start = self._file.column("segment_start", "f8", shape)[:]
         first = self._file.column("segment_first", "i8", shape)[:]
@@ -264,18 +224,8 @@ class Recording(Closing):
             or (lengths < 1).any()
             or (np.diff(start) <= 0).any()
         ):
-            raise FolderError(f"{self.path}: /segment_first: segments should follow one another")
-        return Segments(start, first, self.info.pulses, self.info.prf_hz)
-
-    @property
-    def is_complex(self) -> bool:
-        """Whether samples are complex."""
-        return self._samples.parts == 2
-
-    @property
-    def number(self) -> np.dtype[Any]:
-        """Type of the numbers."""
-        return self._samples.number
+            raise FolderError(f"{self.path}: /segment_first: segments should be in order")
+        return PulseTimes(start, first, self.info.pulses, self.info.prf_hz)
 
     def parts(self, first: int, stop: int) -> Parts:
         """Numbers [receiver, sample, stop - first, part] as stored; one sample of slow time.
@@ -285,15 +235,15 @@ class Recording(Closing):
         """
         receivers, samples = slice(0, self.info.receivers), self.info.samples
         if samples is None:
-            values = self._samples.read((receivers, slice(first, stop)))[:, None]
+            values = self.samples.read((receivers, slice(first, stop)))[:, None]
         else:
-            values = self._samples.read((receivers, slice(0, samples), slice(first, stop)))
+            values = self.samples.read((receivers, slice(0, samples), slice(first, stop)))
         values, gone = checked(values, first, str(self.path))
         gone &= (self.flags[first:stop] & LOST) == 0
         if gone.any():
             raise CaptureError(
-                f"{self.path}: pulse {first + gone.argmax()} holds NaN; should have the flag "
-                f"{LOST} then, as `radhar import` sets it"
+                f"{self.path}: pulse {first + gone.argmax()} holds NaN; should be flagged as lost "
+                f"({LOST}), as by `radhar import`"
             )
         return values
 
@@ -309,7 +259,9 @@ class Recording(Closing):
     def pieces(self) -> Iterator[Parts]:
         """All pulses as `parts`, some PIECE_BYTES at a time."""
         info = self.info
-        pulse = info.receivers * (info.samples or 1) * self.number.itemsize * self._samples.parts
+        pulse = (
+            info.receivers * (info.samples or 1) * self.samples.number.itemsize * self.samples.parts
+        )
         step = max(PIECE_BYTES // pulse, 1)
         for first in range(0, info.pulses, step):
             yield self.parts(first, min(first + step, info.pulses))
@@ -347,8 +299,27 @@ def _info(document: Any, path: Path) -> RecordingInfo:
     return info
 
 
-def _refuse_other_shape(samples: Samples, shape: tuple[int, ...]) -> None:
-    if samples.shape != shape:
-        raise FolderError(f"{samples.where}: has the shape {samples.shape}; should have {shape}")
-    if samples.number.str[1:] not in NUMBERS:
-        raise FolderError(f"{samples.where}: is of {samples.number}; should be one of {NUMBERS}")
+def summarise_recording(path: Path) -> dict[str, Any]:
+    """Summarise a recording for `radhar inspect`.
+
+    Raises:
+        FolderError: it is not a recording, or damaged.
+    """
+    with Recording(path) as one:
+        info, flags = one.info, one.flags
+        summary: dict[str, Any] = {
+            "kind": "recording",
+            "path": str(path),
+            "bytes": path.stat().st_size,
+            **info.model_dump(exclude={"receiver_delay_s"}),
+            "duration_s": one.segments.duration,
+            "complex": one.samples.parts == 2,
+            "lost_pulses": int(np.count_nonzero(flags & LOST)),
+            "clipped_pulses": int(np.count_nonzero(flags & CLIPPED)),
+        }
+        if info.samples is not None:
+            waveform = info.waveform()
+            summary["half_band_range_m"] = waveform.half_band_range
+            summary["range_step_m"] = waveform.range_step
+            summary["highest_speed_mps"] = waveform.highest_speed
+        return summary

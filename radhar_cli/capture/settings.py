@@ -1,4 +1,4 @@
-"""What must be known to read a capture: from its header, or given by hand."""
+"""Settings needed to read a capture, from its header or given by hand."""
 
 from math import prod
 from typing import Annotated, Literal, TypeAlias
@@ -21,10 +21,10 @@ USUAL_AXES: dict[int, tuple[AxisName, ...]] = {
 
 
 class CaptureSettings(Section):
-    """The header of a capture; None is unknown, and asked for where it is needed.
+    """The header of a capture; None is unknown, and requested where it is needed.
 
     Attributes:
-        carrier_hz: at the first sample of a chirp; of slow time, where the Doppler is read.
+        carrier_hz: at the first sample of a chirp; of slow time, the frequency of its Doppler.
         bandwidth_hz: swept while the samples are taken.
         adc_rate_hz: samples per second within a chirp.
         prf_hz: pulses per second of one transmitter: 1/(transmitters times chirp interval).
@@ -36,11 +36,11 @@ class CaptureSettings(Section):
         iq: which part comes first.
         complex: whether samples have two parts.
         adc_bits: of a sample.
-        coding: of whole numbers, two's complement or offset binary; found where None.
-        beat: which half of the spectrum holds targets: `negative` is radhar's exp(-j 2 pi K tau t),
-            `positive` TI's; found where None.
+        coding: of whole numbers, two's complement or offset binary; detected if None.
+        beat: half of the spectrum with the targets: `negative` is radhar's exp(-j 2 pi K tau t),
+            `positive` TI's; detected if None.
         dataset, times: names of the samples, and of the pulses' times (s), within the file.
-        axes: of an array, outermost first, as the program that wrote it counts them.
+        axes: of an array, outermost first, in the order of the program that wrote it.
         start_time: ISO 8601.
         label, person: of the whole recording.
     """
@@ -73,12 +73,12 @@ class CaptureSettings(Section):
     @classmethod
     def _each_once(cls, value: tuple[AxisName, ...] | None) -> tuple[AxisName, ...] | None:
         if value is not None and (len(set(value)) != len(value) or "pulse" not in value):
-            raise PydanticCustomError("axes", "should name each axis once, and pulse among them")
+            raise PydanticCustomError("axes", "should name each axis once, including pulse")
         return value
 
     @property
     def words_of_a_pulse(self) -> int:
-        """Words of 16 bits in which one pulse of every transmitter lies in TI's stream."""
+        """Words of 16 bits for one pulse of every transmitter in TI's stream."""
         sizes = self.transmitters, self.stored_receivers, self.samples or 1, 1 + self.complex
         return prod(sizes)
 

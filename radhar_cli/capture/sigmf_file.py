@@ -1,13 +1,16 @@
 """SigMF, the open format of recordings of radio signals, in and out (sigmf.org, version 1.2).
 
-A recording of ours is one stream of channels (receivers), chirp after chirp, at the rate within a
-chirp. What SigMF has no word for, such as the PRF, stands in keys of the extension `radhar`, which
-every other reader may ignore. Segments are captures, labels annotations.
+A recording becomes one stream of channels (receivers), chirp after chirp, at the rate within a
+chirp. Fields that SigMF lacks, such as the PRF, are keys of the optional extension `radhar`.
+Stretches are captures, labels annotations.
 """
 
 import hashlib
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -47,13 +50,15 @@ def open_sigmf(path: Path, settings: CaptureSettings) -> Source:
     """Open a SigMF recording by its .sigmf-meta or .sigmf-data file.
 
     Raises:
-        CaptureError: it is not valid, or lacks what `settings` does not say either.
-        FolderError: the metadata are damaged, or one of the two is a link that leads elsewhere.
+        CaptureError: it is not valid, or lacks fields that `settings` lacks too.
+        FolderError: the metadata are damaged, or one of the two is a link to outside the folder.
     """
     meta, data = path.with_suffix(META), path.with_suffix(DATA)
     refuse_outside(meta if path == data else data, path.parent)
     document = read_json(meta)
     _validated(document, str(meta))
+    from sigmf.sigmffile import dtype_info
+
     metadata, captures = document["global"], document["captures"]
     if len(captures) > MAX_CAPTURES:
         raise CaptureError(f"{meta}: captures: has {len(captures)}; at most {MAX_CAPTURES}")
@@ -62,13 +67,16 @@ def open_sigmf(path: Path, settings: CaptureSettings) -> Source:
             raise CaptureError(f"{meta}: {key} = {metadata[key]!r}: should be data in {data.name}")
     if any(one.get("core:header_bytes") for one in captures):
         raise CaptureError(f"{meta}: core:header_bytes: should be 0; headers are not read")
-    dtype, parts = _datatype(metadata["core:datatype"], str(meta))
+    found = dtype_info(metadata["core:datatype"])
+    dtype, parts = np.dtype(found["component_dtype"]), 1 + found["is_complex"]
+    if dtype.kind not in "iuf":
+        raise CaptureError(
+            f"{meta}: core:datatype = {metadata['core:datatype']}: should be numbers"
+        )
     given = _given(metadata, captures, settings)
     validated(CaptureSettings, given, str(meta), {})
-    samples, channels = (
-        given.get("samples") or settings.samples,
-        metadata.get("core:num_channels", 1),
-    )
+    samples = given.get("samples") or settings.samples
+    channels = metadata.get("core:num_channels", 1)
     if channels > MAX_RECEIVERS:
         raise CaptureError(
             f"{meta}: core:num_channels = {channels}: should be at most {MAX_RECEIVERS}"
@@ -83,7 +91,10 @@ def open_sigmf(path: Path, settings: CaptureSettings) -> Source:
         raise CaptureError(
             f"{data}: holds {size} bytes; a pulse by {meta.name} takes {pulse * dtype.itemsize}"
         )
-    _check_sum(metadata.get("core:sha512"), data)
+    if wanted := metadata.get("core:sha512"):
+        with data.open("rb") as file:
+            if hashlib.file_digest(file, "sha512").hexdigest() != wanted.lower():
+                raise CaptureError(f"{data}: differs from the core:sha512 in {meta.name}")
     number = dtype.newbyteorder("=")
 
     def read(first: int, stop: int) -> Parts:
@@ -91,25 +102,17 @@ def open_sigmf(path: Path, settings: CaptureSettings) -> Source:
         values = np.fromfile(data, dtype, count, offset=offset).astype(number, copy=False)
         return values.reshape(stop - first, samples or 1, channels, parts).transpose(2, 1, 0, 3)
 
-    notes = [f"the last {rest} bytes are no whole pulse and are left out"] if rest else []
+    notes = [f"the last {rest} bytes (an incomplete pulse) are left out"] if rest else []
     starts = metadata.get(f"{EXTENSION}:segment_start_s")
     times = None
     if starts is not None and "prf_hz" in given:
         first = [one["core:sample_start"] // (samples or 1) for one in captures]
         times = _times(starts, first, pulses, given["prf_hz"], str(meta))
     return Source(
-        (data, meta), channels, samples, pulses, number, parts, read, times, settings=given,
+        *((data, meta), channels, samples, pulses, number, parts, read, times),
+        settings=given,
         notes=tuple(notes),
-    )  # fmt: skip
-
-
-def _datatype(text: str, where: str) -> tuple[np.dtype[Any], int]:
-    from sigmf.sigmffile import dtype_info
-
-    found = dtype_info(text)
-    if found["component_dtype"].kind not in "iuf":
-        raise CaptureError(f"{where}: core:datatype = {text}: should be real or complex numbers")
-    return np.dtype(found["component_dtype"]), 1 + found["is_complex"]
+    )
 
 
 def _given(
@@ -133,7 +136,7 @@ def _given(
 def _times(
     starts: Any, first: list[int], pulses: int, prf: float, where: str
 ) -> NDArray[np.float64]:
-    """Times of the pulses, from when segments start and which pulse is their first."""
+    """Times (s) of the pulses, from the start and the first pulse of each segment."""
     good = isinstance(starts, list) and len(starts) == len(first) and first[0] == 0
     try:
         if not good or first[-1] >= pulses:
@@ -141,19 +144,24 @@ def _times(
         start = np.array([float(one) for one in starts])
     except (ValueError, TypeError, OverflowError):
         raise CaptureError(
-            f"{where}: {EXTENSION}:segment_start_s: should have a time for each of captures"
+            f"{where}: {EXTENSION}:segment_start_s: should have one time per capture"
         ) from None
     at = np.searchsorted(first, np.arange(pulses), side="right") - 1
     return np.asarray(start[at] + (np.arange(pulses) - np.array(first)[at]) / prf)
 
 
-def _check_sum(wanted: str | None, data: Path) -> None:
-    if wanted is None:
+@contextmanager
+def recording_or_sigmf(out: Path, sigmf: bool) -> Iterator[tuple[Path, list[Path]]]:
+    """(where to write a recording, files that there are afterwards); SigMF is converted from it."""
+    files = [out]
+    if not sigmf:
+        yield out, files
         return
-    with data.open("rb") as file:
-        digest = hashlib.file_digest(file, "sha512").hexdigest()
-    if digest != wanted.lower():
-        raise CaptureError(f"{data}: core:sha512: the file is not the one that was described")
+    out.parent.mkdir(parents=True, exist_ok=True)
+    with TemporaryDirectory(prefix=f".{out.name}.", dir=out.parent) as folder:
+        yield (target := Path(folder) / "recording.h5"), files
+        with Recording(target) as recording:
+            files[:] = write_sigmf(recording, out)
 
 
 def write_sigmf(recording: Recording, out: Path) -> list[Path]:
@@ -170,7 +178,7 @@ def write_sigmf(recording: Recording, out: Path) -> list[Path]:
             with unfinished.open("wb") as file:
                 for values in recording.pieces():
                     ordered = np.ascontiguousarray(values.transpose(2, 1, 0, 3))
-                    block = ordered.astype(recording.number.newbyteorder("<")).tobytes()
+                    block = ordered.astype(recording.samples.number.newbyteorder("<")).tobytes()
                     digest.update(block)
                     file.write(block)
             document = _metadata(recording, digest.hexdigest())
@@ -184,14 +192,13 @@ def write_sigmf(recording: Recording, out: Path) -> list[Path]:
 def _metadata(recording: Recording, sha512: str) -> dict[str, Any]:
     info, segments = recording.info, recording.segments
     samples = info.samples or 1
-    kind = "c" if recording.is_complex else "r"
-    number = recording.number
+    number, kind = recording.samples.number, "rc"[recording.samples.parts - 1]
     radhar = {
         "carrier_hz": info.carrier_hz,
         "bandwidth_hz": info.bandwidth_hz,
         "prf_hz": info.prf_hz,
         "samples": info.samples,
-        "beat": "negative" if recording.is_complex and info.samples else None,
+        "beat": "negative" if kind == "c" and info.samples else None,
         "segment_start_s": segments.start.tolist() if len(segments) > 1 else None,
         "receiver_delay_s": info.receiver_delay_s if any(info.receiver_delay_s) else None,
     }
@@ -218,19 +225,18 @@ def _metadata(recording: Recording, sha512: str) -> dict[str, Any]:
 
 
 def _annotations(recording: Recording, samples: int) -> list[dict[str, Any]]:
-    info, segments = recording.info, recording.segments
-    times = segments.times(np.arange(info.pulses))
+    info = recording.info
+    times = recording.segments.times(np.arange(info.pulses))
     annotations = []
     for one in info.labels:
         first = 0 if one.start_s is None else int(np.searchsorted(times, one.start_s))
         stop = info.pulses if one.stop_s is None else int(np.searchsorted(times, one.stop_s))
-        comment = {} if one.person is None else {"core:comment": f"person {one.person}"}
-        annotations.append(
-            {
-                "core:sample_start": first * samples,
-                "core:sample_count": max(stop - first, 1) * samples,
-                "core:label": one.label,
-                **comment,
-            }
-        )
+        annotation = {
+            "core:sample_start": first * samples,
+            "core:sample_count": max(stop - first, 1) * samples,
+            "core:label": one.label,
+        }
+        if one.person is not None:
+            annotation["core:comment"] = f"person {one.person}"
+        annotations.append(annotation)
     return sorted(annotations, key=lambda one: one["core:sample_start"])

@@ -1,4 +1,4 @@
-"""A capture of any format, opened: numbers that are read in blocks of pulses."""
+"""An open capture of any format, read in blocks of pulses."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -16,21 +16,21 @@ PIECE_BYTES = 2**24
 
 @dataclass(frozen=True)
 class Source:
-    """A capture that was opened.
+    """An open capture.
 
     Attributes:
-        files: which it is read from.
-        receivers: virtual ones: transmitters times receivers.
+        files: its files.
+        receivers: virtual receivers: transmitters times receivers.
         samples: of a chirp; None of slow time.
         pulses: of each virtual receiver.
         dtype: of the numbers.
         parts: 2 of complex samples, 1 of real ones.
         read: numbers [receiver, sample, stop - first, part] of pulses first .. stop - 1, one
             sample of slow time.
-        times: of the pulses [pulses], s, where the capture says.
+        times: of the pulses [pulses], s, if the capture contains them.
         step: pulses that are best read together.
-        settings: what the capture itself says of the radar, as `CaptureSettings` has it.
-        notes: what was found on opening it, in words.
+        settings: fields of `CaptureSettings` that the capture itself contains.
+        notes: findings on opening it, in words.
     """
 
     files: tuple[Path, ...]

@@ -1,50 +1,271 @@
-"""The torso of a recording: its range bins, frame by frame, and the track through them."""
+"""Where the torso is, found in range-Doppler maps of a recording.
 
-from collections.abc import Iterator
+The strongest peaks of each frame's power over range and Doppler are candidates. Dynamic programming
+(Viterbi) chooses the ridge: strong candidates, each within reach of the one before by its range and
+radial velocity, with an acceleration that a torso can have; limbs are faster and change faster.
+Frames without such a candidate are bridged. A Kalman filter with the smoother of Rauch, Tung and
+Striebel (AIAA Journal 3, 1965) then weighs ranges and velocities of the ridge.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
+import scipy.fft
+from scipy.ndimage import maximum_filter, uniform_filter
+from scipy.special import gammainccinv
 
-from radhar_cli.arrays import Complex
-from radhar_cli.capture.recording import Segments
-from radhar_cli.processing.torso_track import (
-    RangeDoppler,
-    TorsoTrack,
-    find_torso,
-    hann_in_range,
-    range_doppler,
-    velocities,
-)
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.arrays import Complex, Float, Index
+from radhar_cli.processing.pulse_times import PulseTimes
+from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 WINDOW_S = 0.16  # of the tracker's frames
 OVERLAP = 0.5
+CANDIDATES = 8
+ACCELERATION = 4.0  # standard deviation of a torso's, m/s^2: the ripple of a gait
+CHANGE_MPS = 1.5  # standard deviation of the change of velocity after any time
+MAX_SPEED_MPS = 3.0  # of a torso
+MAX_GAP_S = 1.0  # longest gap that is bridged
+RANGE_SD_M = 0.1  # of a peak about the middle of a torso, in addition to the resolution
+SMOOTHED_MPS = 0.1  # half width of the smoothing over velocity: a torso is extended
+NEAR_M = 1.0  # distance from the track within which power counts as the person's
+FALSE_ALARMS = 1e-6  # probability per cell of white noise
+MIN_FRAMES, MIN_SHARE = 2, 0.05  # frames of a ridge, and their share of all
+MISS = 3.0  # cost of a frame without a candidate on the ridge: that of a jump by 2.4 deviations
+REWARD_DB = 5.0  # decibels that outweigh a jump by 1.4 deviations
+MAX_DB = 60.0
 
 
-def track_torso(bins: Complex, segments: Segments, waveform: Waveform) -> TorsoTrack | None:
-    """Find the torso in range bins [receiver, bin, pulse] from which what stands still was removed.
+class Peaks(NamedTuple):
+    """Candidates of a frame, strongest first, each [C].
 
-    Frames of the tracker have 0.16 s, less where segments are shorter, and never cross a gap. None
-    where nothing moves.
+    Attributes:
+        range: m.
+        velocity: radial, receding, m/s.
+        snr: power relative to the floor.
     """
-    length = min(max(round(WINDOW_S * segments.prf), 8), int(segments.lengths.max()))
-    speeds = velocities(length, segments.prf, waveform.f0)
-    window = np.hanning(length + 2)[1:-1]
-    hop = max(round((1 - OVERLAP) * length), 1)
 
-    def frames() -> Iterator[RangeDoppler]:
-        for start, first, count in zip(
-            segments.start, segments.first, segments.lengths, strict=True
-        ):
-            for at in range(0, int(count) - length + 1, hop):
-                middle = start + (at + (length - 1) / 2) / segments.prf
-                part = bins[:, :, first + at : first + at + length]
-                part = hann_in_range(part) if waveform.n_fft == waveform.n_adc else part
-                yield range_doppler(part, window, float(middle))
+    range: Float
+    velocity: Float
+    snr: Float
 
-    return find_torso(frames(), waveform.range_axis(), speeds, len(bins))
+
+@dataclass(frozen=True)
+class TorsoTrack:
+    """The track of the torso.
+
+    Attributes:
+        time: middles of the frames [F], s.
+        range: m [F].
+        velocity: radial, receding, m/s [F].
+        confidence: 0 to 1 [F]: the share of the frame's moving power, above the floor, within a
+            metre of the track; 0 in a frame that was bridged.
+    """
+
+    time: Float
+    range: Float
+    velocity: Float
+    confidence: Float
+
+    def ranges(self, t: Float) -> Float:
+        """Range (m) at times t (s): cubic between frames, straight beyond them."""
+        from scipy.interpolate import CubicHermiteSpline
+
+        inside = np.clip(t, self.time[0], self.time[-1])
+        found = np.full(t.shape, self.range[0])
+        if self.time.size > 1:
+            found = CubicHermiteSpline(self.time, self.range, self.velocity)(inside)
+        edge = np.where(t < self.time[0], self.velocity[0], self.velocity[-1])
+        return np.asarray(found + edge * (t - inside), dtype=float)
+
+    def delays(self, t: Float) -> Float:
+        """Two-way delay (s) at times t (s)."""
+        delays: Float = self.ranges(t) * (2 / SPEED_OF_LIGHT)
+        return delays
 
 
 def without_static(bins: Complex) -> Complex:
     """Range bins [..., pulse] less their mean over the recording."""
     moving: Complex = bins - bins.mean(axis=-1, keepdims=True)
     return moving
+
+
+def hann_in_range(bins: Complex) -> Complex:
+    """Range bins [..., bin, pulse] as if Hann's window had been applied to the chirp.
+
+    x_k/2 - (x_(k-1) + x_(k+1))/4, of bins referred to the chirp's start and not padded: without it
+    the sidelobes of a strong torso are candidates all along the range.
+    """
+    out = 0.5 * bins
+    out[..., 1:, :] -= 0.25 * bins[..., :-1, :]
+    out[..., :-1, :] -= 0.25 * bins[..., 1:, :]
+    return out
+
+
+def track_torso(bins: Complex, segments: PulseTimes, waveform: Waveform) -> TorsoTrack | None:
+    """Track the torso through a recording; None if nothing moves.
+
+    Frames have 0.16 s, less where segments are shorter, and never cross a gap.
+
+    Args:
+        bins: range bins [receiver, bin, pulse] with static echoes removed.
+        segments: of the pulses.
+        waveform: its range axis is that of the bins.
+    """
+    length = min(max(round(WINDOW_S * segments.prf), 8), int(segments.lengths.max()))
+    hop = max(round((1 - OVERLAP) * length), 1)
+    window = np.hanning(length + 2)[1:-1]
+    doppler = np.fft.fftshift(np.fft.fftfreq(length, 1 / segments.prf))[::-1]
+    speeds = -doppler * SPEED_OF_LIGHT / (2 * waveform.f0)
+    ranges = waveform.range_axis()
+    found, time, profiles = list[Peaks](), list[float](), list[Float]()
+    for part in segments.slices:
+        for at in range(part.start, part.stop - length + 1, hop):
+            frame = bins[:, :, at : at + length]
+            frame = hann_in_range(frame) if waveform.n_fft == waveform.n_adc else frame
+            power = np.square(np.abs(scipy.fft.fft(frame * window, axis=2))).sum(axis=0)
+            # Approaching is positive Doppler, receding positive velocity: the axis is reversed.
+            power = np.fft.fftshift(power, axes=1)[:, ::-1]
+            found.append(peaks(power, ranges, speeds, len(bins)))
+            profiles.append(np.maximum(power - 2 * np.median(power), 0).sum(axis=1))
+            time.append(float(segments.times(np.array(at))) + (length - 1) / 2 / segments.prf)
+    times = np.array(time)
+    spacing = float(ranges[1] - ranges[0]) if ranges.size > 1 else RANGE_SD_M
+    range_sd = float(np.hypot(spacing / 2, RANGE_SD_M))
+    ridge = _ridge(found, times, range_sd)
+    if np.count_nonzero(ridge >= 0) < max(MIN_FRAMES, MIN_SHARE * ridge.size):
+        return None
+    measured = np.array(
+        [
+            (p.range[c], p.velocity[c]) if c >= 0 else (np.nan, np.nan)
+            for p, c in zip(found, ridge, strict=True)
+        ]
+    )
+    sd = range_sd, max(float(speeds[1] - speeds[0]) / 2, 0.02)
+    position, velocity = _smoothed(measured, times, sd)
+    profile = np.array(profiles)
+    near = np.where(np.abs(ranges - position[:, None]) <= NEAR_M, profile, 0).sum(axis=1)
+    total = profile.sum(axis=1)
+    share = np.where((ridge >= 0) & (total > 0), near / np.where(total > 0, total, 1), 0.0)
+    return TorsoTrack(times, position, velocity, share)
+
+
+def peaks(power: Float, ranges: Float, speeds: Float, looks: int = 1) -> Peaks:
+    """The strongest peaks of a frame's power relative to its floor, the median of all cells.
+
+    Args:
+        power: [range, velocity], the sum of `looks` receivers.
+        ranges, speeds: of rows and columns.
+        looks: number of receivers, whose noise is independent.
+    """
+    step = speeds[1] - speeds[0] if speeds.size > 1 else 1.0
+    wide = 2 * round(SMOOTHED_MPS / step) + 1
+    smooth = uniform_filter(power, (1, min(wide, speeds.size)), mode=("nearest", "wrap"))
+    floor = float(np.median(smooth))
+    # The mean of n cells of white noise has a gamma distribution; Hann's window halves n.
+    shape = looks * max(wide / 2, 1)
+    least = floor * gammainccinv(shape, FALSE_ALARMS) / gammainccinv(shape, 0.5)
+    top = (smooth == maximum_filter(smooth, (3, max(wide, 3)), mode=("nearest", "wrap"))) & (
+        smooth > least
+    )
+    rows, columns = np.nonzero(top)
+    order = np.argsort(smooth[rows, columns])[::-1][:CANDIDATES]
+    rows, columns = rows[order], columns[order]
+    between = _vertex(smooth, rows, columns)
+    spacing = ranges[1] - ranges[0] if ranges.size > 1 else 0.0
+    snr = smooth[rows, columns] / floor if floor > 0 else np.full(rows.size, 10 ** (MAX_DB / 10))
+    # A velocity is known except for multiples of PRF lambda/2.
+    turns = round(MAX_SPEED_MPS / (step * speeds.size) + 0.5)
+    velocity = np.add.outer(np.arange(-turns, turns + 1) * step * speeds.size, speeds[columns])
+    turn, peak = np.nonzero(np.abs(velocity) <= MAX_SPEED_MPS)
+    return Peaks((ranges[rows] + between * spacing)[peak], velocity[turn, peak], snr[peak])
+
+
+def _vertex(power: Float, rows: Index, columns: Index) -> Float:
+    """Offset (rows) of the vertex of the parabola through each peak in dB and its neighbours."""
+    last, least = len(power) - 1, np.finfo(float).tiny
+    low, mid, high = (
+        np.log(np.maximum(power[np.clip(rows + shift, 0, last), columns], least))
+        for shift in (-1, 0, 1)
+    )
+    curve = low - 2 * mid + high
+    inside = (rows > 0) & (rows < last) & (curve < 0)
+    shift = np.where(inside, 0.5 * (low - high) / np.where(curve < 0, curve, 1), 0)
+    return np.clip(shift, -0.5, 0.5)
+
+
+def _ridge(found: list[Peaks], time: Float, range_sd: float) -> Index:
+    """Number of the chosen candidate of each frame [F], -1 where it is bridged."""
+    scores: list[Float] = []
+    came: list[list[tuple[int, int]]] = []
+    best, at = 0.0, (-1, -1)
+    for f, now in enumerate(found):
+        reward = np.minimum(10 * np.log10(np.maximum(now.snr, 1)), MAX_DB) / REWARD_DB
+        score = reward.copy()  # the ridge may begin here
+        previous = [(-1, -1)] * reward.size
+        for back in range(f - 1, -1, -1):
+            dt = time[f] - time[back]
+            if dt > MAX_GAP_S and back < f - 1:
+                break
+            before = found[back]
+            if not before.range.size or not reward.size:
+                continue
+            cost = _cost(before, now, dt, range_sd) + MISS * (f - 1 - back)
+            total = scores[back][:, None] - cost
+            chosen = total.argmax(axis=0)
+            through = total[chosen, np.arange(reward.size)] + reward
+            for c in np.flatnonzero(through > score).tolist():
+                score[c], previous[c] = through[c], (back, int(chosen[c]))
+        scores.append(score)
+        came.append(previous)
+        for c, value in enumerate(score.tolist()):
+            if value > best:
+                best, at = value, (f, c)
+    ridge = np.full(len(found), -1)
+    while at[0] >= 0:
+        ridge[at[0]] = at[1]
+        at = came[at[0]][at[1]]
+    return ridge
+
+
+def _cost(before: Peaks, now: Peaks, dt: float, range_sd: float) -> Float:
+    """Half the squared deviations in range and velocity [before, now], in standard deviations.
+
+    Infinite where nobody walks that fast.
+    """
+    change = now.velocity - before.velocity[:, None]
+    mean = before.velocity[:, None] + change / 2
+    way = now.range - before.range[:, None]
+    off = way - mean * dt
+    faster = min(ACCELERATION * dt, CHANGE_MPS)
+    spread = np.hypot(range_sd, faster * dt / 2)
+    cost: Float = (off / spread) ** 2 + (change / np.hypot(faster, 0.1)) ** 2
+    too_far = np.abs(way) > MAX_SPEED_MPS * dt + 3 * range_sd
+    return np.where(too_far, np.inf, cost / 2)
+
+
+def _smoothed(measured: Float, time: Float, sd: tuple[float, float]) -> tuple[Float, Float]:
+    """(range, velocity) [F] by filter and smoother; rows of NaN were not measured."""
+    first = int(np.flatnonzero(np.isfinite(measured[:, 0]))[0])
+    state, spread, noise = measured[first], np.eye(2), np.diag(np.square(sd))
+    states, spreads, ahead, ahead_spreads, steps = [], [], [], [], []
+    for f in range(first, len(time)):
+        dt = time[f] - time[f - 1] if f > first else 0.0
+        step = np.array([[1.0, dt], [0.0, 1.0]])
+        grown = ACCELERATION**2 * np.array([[dt**4 / 4, dt**3 / 2], [dt**3 / 2, dt**2]])
+        state, spread = step @ state, step @ spread @ step.T + grown
+        steps.append(step)
+        ahead.append(state)
+        ahead_spreads.append(spread)
+        if np.isfinite(measured[f, 0]):
+            gain = spread @ np.linalg.inv(spread + noise)
+            state = state + gain @ (measured[f] - state)
+            spread = (np.eye(2) - gain) @ spread
+        states.append(state)
+        spreads.append(spread)
+    for n in range(len(states) - 2, -1, -1):
+        gain = spreads[n] @ steps[n + 1].T @ np.linalg.inv(ahead_spreads[n + 1])
+        states[n] = states[n] + gain @ (states[n + 1] - ahead[n + 1])
+    position, velocity = np.array(states).T
+    before = position[0] + velocity[0] * (time[:first] - time[first])
+    return np.append(before, position), np.append(np.full(first, velocity[0]), velocity)

@@ -21,7 +21,7 @@ from radhar_cli.config.reading import validated
 from radhar_cli.config.schema import Config, RecordingsConfig
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.dataset.recorded import windows
-from radhar_cli.dataset.sample import Made, Sample
+from radhar_cli.dataset.sample import Row, Sample
 from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.pipeline.products import image_of
 from radhar_cli.pipeline.unused_keys import unused_keys
@@ -221,7 +221,7 @@ def warnings_of(config: Config) -> list[str]:
 
 
 @dataclass(frozen=True)
-class WindowMaker:
+class WindowFactory:
     """Makes the rows of a data set of recordings.
 
     Attributes:
@@ -230,13 +230,13 @@ class WindowMaker:
 
     folder: Path
 
-    def __call__(self, config: Config, row: int) -> Made:
+    def __call__(self, config: Config, row: int) -> Row:
         """Sample and values of a row."""
         recorded = config.recorded
         assert recorded is not None
         number, part, start = windows(config)[row]
         if is_image(part.file):
-            return Made(self._image(config, part.file), np.array([number, start, nan]))
+            return Row(self._image(config, part.file), np.array([number, start, nan]))
         with Recording(self.folder / part.file) as recording:
             made = maps_of(
                 recording, config, config.maps, start, start + recorded.window_s, recorded.receiver
@@ -247,7 +247,7 @@ class WindowMaker:
             columns = replace(one.columns, values=one.columns.values - start)
             images[name] = image_of(config, replace(one, columns=columns))
         sure = nan if made.track is None else float(made.track.confidence.mean())
-        return Made(Sample(images, nan, False, {}), np.array([number, start, sure]))
+        return Row(Sample(images, nan, False, {}), np.array([number, start, sure]))
 
     def _image(self, config: Config, file: str) -> Sample:
         recorded = config.recorded

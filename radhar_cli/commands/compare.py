@@ -31,12 +31,15 @@ def compare(
     ] = False,
     per_class: Annotated[
         int,
-        typer.Option(min=2, max=5000, help="Maps of a class and side, drawn if there are more."),
+        typer.Option(
+            min=2, max=5000, help="Maximum maps per class and data set (a random subset)."
+        ),
     ] = 200,
     zero: Annotated[
         float | None,
         typer.Option(
-            min=0, help="Half the width of the zero line, Hz; 5 % of the largest Doppler if none."
+            min=0,
+            help="Half-width of the zero-Doppler line, Hz (default: 5 % of the largest Doppler).",
         ),
     ] = None,
     pictures: Annotated[int, typer.Option(min=1, max=20, help="Maps in a row of a figure.")] = 6,
@@ -52,7 +55,9 @@ def compare(
 
     50 % told apart: nobody can tell simulated from measured.
     """
-    from radhar_cli.commands.learning_options import apart
+    from radhar_cli.commands.learning_options import apart, needs
+
+    needs("train", ("sklearn",))
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.learning.images.classes import read_classes
     from radhar_cli.two_sample.comparison import Options

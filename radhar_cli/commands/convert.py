@@ -11,13 +11,9 @@ from radhar_cli.commands.tell import report, tell
 def convert(
     dataset: Annotated[Path, typer.Argument(help="Folder that `generate` wrote, or dataset.h5.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder to make.")],
-    to: Annotated[
-        str, typer.Option(metavar="FORMAT", help="webdataset, parquet, npy or mat (MATLAB 7.3).")
-    ],
+    to: Annotated[str, typer.Option(metavar="FORMAT", help="webdataset or parquet.")],
 ) -> None:
-    """Write a data set in another format, such as Parquet.
-
-    WebDataset tar files, Parquet, .npy arrays or a MATLAB file.
+    """Write a data set as WebDataset tar files or as Parquet.
 
     Example:
 

@@ -71,7 +71,9 @@ def _points(config: Config, activity: Activity) -> str:
     """How many points the whole body has, and each of its segments."""
     scene = nominal_scene(config, activity)
     one, waveform = scene.config, waveform_of(scene.config)
-    found = segment_paths(scene, motion_of(scene), antennas_of(one), None, waveform)
+    found = segment_paths(
+        scene.people[0], motion_of(scene.people[0]), antennas_of(one), None, waveform
+    )
     if found is None:
         return "none: no joints of a person"
     most = dict[str, int]()  # of the two sides

@@ -1,4 +1,4 @@
-"""`radhar fit`: a config to simulate by, read off recordings."""
+"""`radhar fit`: estimate a simulation config from recordings."""
 
 from pathlib import Path
 from typing import Annotated
@@ -14,32 +14,30 @@ def fit(
     out: Annotated[Path, typer.Option("-o", "--out", help="Config to write.")],
     overwrite: Replace = False,
 ) -> None:
-    """Read a config to simulate by off recordings.
+    """Estimate a simulation config from recordings: waveform, SNR and ranges.
 
-    It has their waveform, SNR, ranges, noise and what stands in the room.
+    The noise floor is printed, and drawn with the SNRs next to the config, as .png.
 
     Example:
 
       radhar fit walk.h5 fall.h5 -o measured.yaml
-
-    A figure of measured and fitted values is written next to the config, as .png.
     """
     import json
 
-    from radhar_cli.capture.fit_figure import draw
-    from radhar_cli.capture.fitting import fit as read_off
+    from radhar_cli.capture.fitting import draw
+    from radhar_cli.capture.fitting import fit as fit_recordings
     from radhar_cli.errors import FolderError
     from radhar_cli.replacing import write_text
 
     if out.resolve() in {path.resolve() for path in recordings}:
         raise FolderError(f"{out}: is one of the recordings; -o should name another file")
     if out.suffix == ".png":
-        raise FolderError(f"{out}: is where the figure goes; -o should end in .yaml")
+        raise FolderError(f"{out}: .png is for the figure; -o should end in .yaml")
     refuse_to_replace(out, overwrite, "measured.yaml")
-    fitted = read_off(recordings)
+    fitted = fit_recordings(recordings)
     for key, value in fitted.numbers().items():
-        tell(f"  {key:<16} {value:.4g}")
-    text = f"# Fitted to stretches of recordings: {len(fitted.parts)}.\n"
+        tell(f"  {key:<19} {value:.4g}")
+    text = f"# Fitted to {len(fitted.parts)} parts of recordings.\n"
     lines = [f"{key}: {json.dumps(value)}" for key, value in fitted.document.items()]
     out.parent.mkdir(parents=True, exist_ok=True)
     write_text(out, text + "\n".join(lines) + "\n")

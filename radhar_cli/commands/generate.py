@@ -134,7 +134,7 @@ def _of_recordings(
     dry_run: bool,
     overwrite: bool,
 ) -> None:
-    from radhar_cli.capture.windows import WindowMaker, warnings_of, with_recordings
+    from radhar_cli.capture.windows import WindowFactory, warnings_of, with_recordings
     from radhar_cli.commands.terminal import BarProgress, class_counts, print_outcome
     from radhar_cli.dataset.build import build
     from radhar_cli.dataset.layout import Rows
@@ -149,9 +149,9 @@ def _of_recordings(
         tell("nothing was written")
         return
     folder = manifest if manifest.is_dir() else manifest.parent
-    maker = WindowMaker(folder.absolute())
+    factory = WindowFactory(folder.absolute())
     with BarProgress() as progress:
-        outcome = build(measured, out, jobs, progress, overwrite, batch, maker)
+        outcome = build(measured, out, jobs, progress, overwrite, batch, factory)
     print_outcome(measured, outcome)
 
 

@@ -14,26 +14,24 @@ def import_(
         list[Path],
         typer.Argument(
             metavar="CAPTURE...",
-            help=".bin of a DCA1000 (the first of several will do), .npy, .npz, .mat, HDF5, SigMF.",
+            help=".bin of a DCA1000 (the first is enough), .npy, .npz, .mat, HDF5 or SigMF.",
         ),
     ],
     out: Annotated[Path, typer.Option("-o", "--out", help="Recording to write, such as walk.h5.")],
     radar: Annotated[
         Path | None,
         typer.Option(
-            metavar="FILE", help="Header: mmWave Studio's JSON, a .cfg, or YAML of our keys."
+            metavar="FILE", help="Header: mmWave Studio's JSON, a .cfg, or YAML of radhar's keys."
         ),
     ] = None,
     set_: Annotated[
         list[str] | None,
-        typer.Option(
-            "--set", metavar="KEY=VALUE", help="A key of the header, or another value; may repeat."
-        ),
+        typer.Option("--set", metavar="KEY=VALUE", help="Override a header field; may repeat."),
     ] = None,
-    label: Annotated[str | None, typer.Option(help="What is done in it.")] = None,
-    person: Annotated[str | None, typer.Option(help="Who does it.")] = None,
+    label: Annotated[str | None, typer.Option(help="Activity label.")] = None,
+    person: Annotated[str | None, typer.Option(help="Subject ID.")] = None,
     to: Annotated[
-        str | None, typer.Option("--to", help="sigmf: write that instead of a recording file.")
+        str | None, typer.Option("--to", help="sigmf: write SigMF instead of a recording file.")
     ] = None,
     overwrite: Replace = False,
 ) -> None:
@@ -43,15 +41,13 @@ def import_(
 
       radhar import adc_data_Raw_0.bin --radar setup.mmwave.json --label walking -o walk.h5
 
-    What is found in the samples (offset binary, sign of the beat, gaps, losses, saturation) is
-    said, and can be overruled: --set coding=signed, --set beat=positive. All keys: docs/measured.md
+    Findings in the samples (offset binary, sign of the beat, gaps, losses, saturation) are printed
+    and can be overridden: --set coding=signed, --set beat=positive. All keys: docs/measured.md
     """
     import json
-    from uuid import uuid4
 
     from radhar_cli.capture.importing import import_capture, read_settings
-    from radhar_cli.capture.recording import Recording
-    from radhar_cli.capture.sigmf_file import DATA, META
+    from radhar_cli.capture.sigmf_file import DATA, META, recording_or_sigmf
     from radhar_cli.errors import FolderError
 
     sigmf = wants_sigmf(to)
@@ -62,38 +58,25 @@ def import_(
         raise FolderError(f"{out}: is the capture itself; -o should name another file")
     for path in (out.with_suffix(META), out.with_suffix(DATA)) if sigmf else (out,):
         refuse_to_replace(path, overwrite, "walk.h5")
-    header = str(radar) if radar else "--set"
-    written = out.with_name(f".radhar-{uuid4().hex}.h5") if sigmf else out
-    try:
-        imported = import_capture(captures, written, settings, header)
-        for line in imported.found:
+    with recording_or_sigmf(out, sigmf) as (target, files):
+        info = import_capture(captures, target, settings, str(radar) if radar else "--set")
+        for line in info.source.found:
             tell(f"  {line}")
-        info = imported.info
         shape = f"{info.receivers} receiver{'s' * (info.receivers > 1)}, "
         shape += f"{info.samples or 'no'} samples a chirp, "
         tell(
             f"{info.pulses} pulses at {info.prf_hz:.6g} Hz: {shape}{info.carrier_hz / 1e9:.6g} GHz"
         )
-        if sigmf:
-            from radhar_cli.capture.sigmf_file import write_sigmf
-
-            with Recording(written) as recording:
-                paths = write_sigmf(recording, out)
-        else:
-            paths = [out]
-    finally:
-        if sigmf:
-            written.unlink(missing_ok=True)
     report(
-        files=paths,
-        found=imported.found,
+        files=files,
+        found=info.source.found,
         receivers=info.receivers,
         samples_per_chirp=info.samples,
         pulses=info.pulses,
         prf_hz=info.prf_hz,
         carrier_hz=info.carrier_hz,
     )
-    for path in paths:
+    for path in files:
         tell(f"  {path}")
 
 
@@ -101,14 +84,14 @@ def wants_sigmf(to: str | None) -> bool:
     """Whether `--to` asks for SigMF.
 
     Raises:
-        RadharError: it asks for something else, or sigmf is not installed.
+        RadharError: it names another format, or sigmf is not installed.
     """
     from radhar_cli.errors import RadharError
 
     if to is None:
         return False
     if to != "sigmf":
-        raise RadharError(f"--to {to}: should be sigmf; without --to a recording file is written")
+        raise RadharError(f"--to {to}: should be sigmf; without --to a recording is written")
     from radhar_cli.commands.learning_options import needs
 
     needs("capture", ("sigmf",))

@@ -17,8 +17,7 @@ def inspect(
 
       radhar inspect datasets/quickstart
     """
-    from radhar_cli.capture.overview import summarise_recording
-    from radhar_cli.capture.recording import is_recording
+    from radhar_cli.capture.recording import is_recording, summarise_recording
     from radhar_cli.dataset.summary import summarise
     from radhar_cli.learning.images.opening import is_tree
     from radhar_cli.learning.images.overview import summarise_tree

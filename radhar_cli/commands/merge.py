@@ -16,9 +16,7 @@ def merge(
     ] = None,
     jobs: Annotated[
         int | None,
-        typer.Option(
-            "--jobs", "-j", min=1, help="Processes that write PNGs missing from the parts."
-        ),
+        typer.Option("--jobs", "-j", min=1, help="Processes that write PNGs."),
     ] = None,
 ) -> None:
     """Merge the parts of a data set, which are only read.

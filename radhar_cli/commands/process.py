@@ -1,4 +1,4 @@
-"""`radhar process`: the maps of a recording, by the stages of a config."""
+"""`radhar process`: the maps of a recording, processed as a config describes."""
 
 from pathlib import Path
 from typing import Annotated
@@ -10,7 +10,9 @@ from radhar_cli.commands.tell import report, tell
 
 
 def process(
-    recording: Annotated[Path, typer.Argument(help="File that import or simulate --raw wrote.")],
+    recording: Annotated[
+        Path, typer.Argument(help="Recording written by import or simulate --raw.")
+    ],
     config: Annotated[
         Path, typer.Option(help="YAML file whose processing, image and maps are used.")
     ],
@@ -19,17 +21,17 @@ def process(
     maps: Annotated[
         str | None, typer.Option(help="Comma-separated maps, instead of the config's.")
     ] = None,
-    start: Annotated[float | None, typer.Option(min=0, help="From here on, s.")] = None,
-    stop: Annotated[float | None, typer.Option(min=0, help="Up to here, s.")] = None,
+    start: Annotated[float | None, typer.Option(min=0, help="Start time, s.")] = None,
+    stop: Annotated[float | None, typer.Option(min=0, help="Stop time, s.")] = None,
     receiver: Annotated[
         int | None,
-        typer.Option(min=0, help="This one alone; default: the sum of all receivers' powers."),
+        typer.Option(min=0, help="Use only this receiver; default: the sum of all powers."),
     ] = None,
     figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw maps.png.")] = True,
 ) -> None:
-    """Make maps of a recording, and the torso's track.
+    """Compute the maps of a recording and track the torso.
 
-    Written are maps.h5 and maps.png.
+    Writes maps.h5 and maps.png.
 
     Example:
 
@@ -53,7 +55,7 @@ def process(
         info, gaps = opened.info, len(opened.segments) - 1
         made = maps_of(opened, loaded, names, start, stop, receiver)
     if gaps:
-        tell(f"{gaps} gap{'s' * (gaps > 1)}: the stretches between are processed one by one")
+        tell(f"{gaps} gap{'s' * (gaps > 1)}: the stretches between are processed separately")
     for note in [*unused_keys(loaded.model_copy(update={"maps": names})), *made.notes]:
         tell(f"warning: {note}", err=True)
     written = maps_file.write_maps(made, loaded, info, out)

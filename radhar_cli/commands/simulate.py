@@ -33,9 +33,6 @@ def simulate(
     ] = None,
     set_: Overrides = None,
     tolerance: Tolerance = None,
-    engine: Annotated[
-        str | None, typer.Option(help="cube or direct, instead of the config's.")
-    ] = None,
     maps: Annotated[str | None, typer.Option(help="Comma-separated maps; default: all.")] = None,
     joint: Annotated[
         str | None, typer.Option(help="Keep this scatterer alone, such as right_ankle.")
@@ -71,17 +68,14 @@ def simulate(
     from radhar_cli.simulation.simulate import map_names
     from radhar_cli.simulation.simulate import simulate as simulate_scene
 
-    overrides = [
-        *with_tolerance(set_, tolerance),
-        *([f"--engine engine.kind={engine}"] if engine else []),
-    ]
+    overrides = with_tolerance(set_, tolerance)
     if motion is not None:
         activity = activity or FROM_FILE
         overrides = [*_looking_at(motion, activity), *overrides]
     loaded = load_config(config, overrides)
     sigmf = wants_sigmf(to)
     if sigmf and not raw:
-        raise RadharError("--to sigmf: should stand with --raw, whose recording it writes")
+        raise RadharError("--to sigmf requires --raw")
     chosen = None if maps is None else map_names(maps.split(","))
     refuse_file(out)
     scene_file.refuse_foreign(out)
@@ -97,17 +91,14 @@ def simulate(
         maps=chosen,
         raw=raw,
     )
-    samples = loaded.samples_of(simulation.activity)
+    samples, warnings = loaded.samples_of(simulation.activity), list[str]()
     if index >= samples and not nominal:
-        tell(
-            f"warning: --index {index}: a data set of this config has the samples 0 to "
-            f"{samples - 1} of {simulation.activity.slug}; this one is drawn from its own "
-            "stream in the same way",
-            err=True,
+        warnings.append(
+            f"--index {index}: a data set of this config has the samples 0 to {samples - 1} of "
+            f"{simulation.activity.slug}; this one is drawn from its own stream in the same way"
         )
-    for warning in simulation.warnings:
+    for warning in (*warnings, *simulation.warnings):
         tell(f"warning: {warning}", err=True)
-
     written = scene_file.write_all(simulation, out)
     for name in RECORDINGS:  # of an earlier scene
         (out / name).unlink(missing_ok=True)
@@ -115,6 +106,13 @@ def simulate(
         written += _record(simulation, out / RECORDING, sigmf)
     if figures:
         written += _draw(simulation, out, overlay)
+    _say(simulation, written)
+
+
+def _say(simulation: "Simulation", written: list[Path]) -> None:
+    """Print what was simulated and where it lies."""
+    from radhar_cli.simulation.scene_file import describe
+
     took = sum(simulation.seconds.values())
     report(
         activity=simulation.activity.slug,
@@ -124,7 +122,7 @@ def simulate(
         files=written,
     )
     tell(f"{simulation.activity.label} {simulation.activity.slug}: synthesised in {took:.2f} s")
-    file = scene_file.describe(simulation)["motion_file"]
+    file = describe(simulation)["motion_file"]
     if file is not None:
         tell(
             f"  motion: {file['path']}, {file['begin_s']:.2f} to {file['end_s']:.2f} s of its "
@@ -135,24 +133,15 @@ def simulate(
 
 
 def _record(simulation: "Simulation", path: Path, sigmf: bool) -> list[Path]:
-    from uuid import uuid4
-
     from radhar_cli.capture.importing import write_simulated
-    from radhar_cli.capture.recording import Label, Recording
+    from radhar_cli.capture.recording import Label
+    from radhar_cli.capture.sigmf_file import recording_or_sigmf
 
     assert simulation.beat is not None
     label = Label(label=simulation.activity.slug)
-    written = path.with_name(f".radhar-{uuid4().hex}.h5") if sigmf else path
-    write_simulated(written, simulation.beat, simulation.waveform, label)
-    if not sigmf:
-        return [path]
-    from radhar_cli.capture.sigmf_file import write_sigmf
-
-    try:
-        with Recording(written) as recording:
-            return write_sigmf(recording, path.with_suffix(""))
-    finally:
-        written.unlink(missing_ok=True)
+    with recording_or_sigmf(path, sigmf) as (target, files):
+        write_simulated(target, simulation.beat, simulation.waveform, label)
+    return files
 
 
 def _looking_at(motion: Path, slug: str) -> list[str]:

@@ -11,7 +11,7 @@ from radhar_cli.dataset.layout import DATASET, PNG, SPLITS, Rows
 from radhar_cli.dataset.split import split_rows
 
 if TYPE_CHECKING:
-    from radhar_cli.dataset.build import Outcome
+    from radhar_cli.dataset.build import BuildOutcome
 
 
 class BarProgress(Bars):
@@ -33,7 +33,7 @@ def class_counts(rows: Rows) -> dict[str, int]:
     return {one.slug: count for one, count in zip(rows.activities, rows.counts, strict=True)}
 
 
-def print_outcome(config: Config, outcome: "Outcome") -> None:
+def print_outcome(config: Config, outcome: "BuildOutcome") -> None:
     """Print what was written and where."""
     folder = outcome.folder
     rows, split = Rows.of(config), Counter(int(part) for part in split_rows(config))
@@ -65,7 +65,7 @@ def print_outcome(config: Config, outcome: "Outcome") -> None:
     tell(f"  check it    radhar verify {folder}")
 
 
-def print_part(outcome: "Outcome", out: Path, part: str) -> None:
+def print_part(outcome: "BuildOutcome", out: Path, part: str) -> None:
     """Print what a part holds and how to merge it."""
     report(folder=outcome.folder, part=part, samples=outcome.samples, made=outcome.made)
     tell(

@@ -40,7 +40,8 @@ def train(
         ),
     ] = None,
     config: Annotated[
-        Path | None, typer.Option(help="YAML file; the paper's settings if not given.")
+        Path | None,
+        typer.Option(help="YAML file; settings that suit small data sets if not given."),
     ] = None,
     set_: Overrides = None,
     map_: Annotated[

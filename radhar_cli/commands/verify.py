@@ -8,7 +8,7 @@ import typer
 from radhar_cli.commands.tell import report, tell
 
 if TYPE_CHECKING:
-    from radhar_cli.dataset.verify import Report
+    from radhar_cli.dataset.verify import Verification
 
 
 def verify(
@@ -54,7 +54,7 @@ def verify(
         )
 
 
-def _anew(outcome: "Report") -> str:
+def _anew(outcome: "Verification") -> str:
     within = (
         f"within {outcome.worst_level} grey level" if outcome.other_versions else "byte for byte"
     )

@@ -32,7 +32,7 @@ def _checked(value: float) -> float:
 Real = Annotated[float, Field(strict=True, allow_inf_nan=False), AfterValidator(_checked)]
 
 
-class _Form(BaseModel):
+class Distribution(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     @property
@@ -44,7 +44,7 @@ class _Form(BaseModel):
         return min(low + (high - low) * u, high)
 
 
-class Uniform(_Form):
+class Uniform(Distribution):
     """``{uniform: [low, high]}``: any value between the two, equally likely."""
 
     uniform: tuple[Real, Real]
@@ -64,7 +64,7 @@ class Uniform(_Form):
         return 0.5 * (self.uniform[0] + self.uniform[1])
 
 
-class Normal(_Form):
+class Normal(Distribution):
     """``{normal: [mean, sd], min: a, max: b}``: Gaussian, cut at the bounds.
 
     Without a bound it is cut at 6 standard deviations.
@@ -113,7 +113,7 @@ class Normal(_Form):
         return min(max(mean + sd * z, low), high)
 
 
-class Choice(_Form):
+class Choice(Distribution):
     """``{choice: [a, b, c]}``: one of the values, equally likely."""
 
     choice: tuple[Real, ...]
@@ -138,7 +138,7 @@ class Choice(_Form):
         return sorted(self.choice)[min(int(u * len(self.choice)), len(self.choice) - 1)]
 
 
-class Vary(_Form):
+class Vary(Distribution):
     """``{vary: [nominal, fraction]}``: uniform within plus or minus a fraction of the nominal."""
 
     vary: tuple[Real, Real]

@@ -15,6 +15,7 @@ from textwrap import dedent
 from typing import Annotated, Any, ClassVar, Literal, TypeAlias, TypeVar
 
 from pydantic import (
+    AfterValidator,
     BaseModel,
     ConfigDict,
     Discriminator,
@@ -70,6 +71,7 @@ from radhar_cli.errors import did_you_mean
 from radhar_cli.light import SPEED_OF_LIGHT
 from radhar_cli.motion.files.names import WANTED
 from radhar_cli.motion.files.reading import SUFFIXES
+from radhar_cli.registry import is_known, own_products
 from radhar_cli.rounding import half_up
 
 Flag: TypeAlias = Annotated[bool, Field(strict=True)]
@@ -976,6 +978,7 @@ class EngineConfig(Section):
 
 
 Level = Annotated[int, Field(ge=0, le=9, strict=True)]
+Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]{0,62}$")]
 
 
 class OutputConfig(Section):
@@ -993,25 +996,34 @@ class OutputConfig(Section):
     """float16: store the decibels behind every image, not clipped."""
     slow_time: Flag = False
     """Store the complex slow-time signal."""
+    products: tuple[Name, ...] = ()
+    """Further products to store as arrays, those of your own too (`radhar_cli.registry`)."""
     license: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9.+-]{0,60}$")] | None = None
     """Of the data card, as the Hugging Face Hub calls it: cc-by-4.0, mit."""
 
 
-MapName = Literal[
+MAP_NAMES = (
     "rtm",
-    "stft",
-    "stft_denoised",
-    "stft_compensated",
-    "stft_compensated_denoised",
-    "fsst",
-    "fsst_denoised",
-    "fsst_compensated",
-    "fsst_compensated_denoised",
-]
-MAP_NAMES: tuple[MapName, ...] = MapName.__args__  # type: ignore[attr-defined]
+    *(
+        f"{kind}{suffix}"
+        for kind in ("stft", "fsst")
+        for suffix in ("", "_denoised", "_compensated", "_compensated_denoised")
+    ),
+)
 
 
-def possible_maps(processing: ProcessingConfig) -> tuple[MapName, ...]:
+def _known_map(name: str) -> str:
+    if name not in MAP_NAMES and not is_known(name):
+        names = (*MAP_NAMES, *(product.name for product in own_products()))
+        right = " or ".join(filter(None, (", ".join(map(repr, names[:-1])), repr(names[-1]))))
+        raise PydanticCustomError("map", "should be {right}", {"right": right})
+    return name
+
+
+MapName = Annotated[str, AfterValidator(_known_map)]
+
+
+def possible_maps(processing: ProcessingConfig) -> tuple[str, ...]:
     """The maps that there can be: no FSST of a gate, whose bins are summed without their phase."""
     gated = processing.range_sum == "gated"
     return tuple(name for name in MAP_NAMES if not (gated and name.startswith("fsst")))
@@ -1168,12 +1180,13 @@ class Config(Section):
 
     @field_validator("maps")
     @classmethod
-    def _each_once(cls, value: tuple[MapName, ...]) -> tuple[MapName, ...]:
+    def _each_once(cls, value: tuple[str, ...]) -> tuple[str, ...]:
         if not value:
             raise PydanticCustomError("maps", "should name at least 1 map")
         if len(set(value)) != len(value):
             raise PydanticCustomError("maps", "should name each map once")
-        return tuple(sorted(value, key=MAP_NAMES.index))
+        own = [name for name in value if name not in MAP_NAMES]
+        return (*sorted(set(value) - set(own), key=MAP_NAMES.index), *own)
 
     def filled(self) -> "Config":
         """This config, in which what is null and has a default by model takes it."""

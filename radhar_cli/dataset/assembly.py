@@ -10,6 +10,7 @@ import io
 import json
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from math import prod
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ from numpy.typing import NDArray
 
 from radhar_cli.arrays import Float
 from radhar_cli.config.identity import as_yaml, config_hash, resolved
-from radhar_cli.config.schema import Config
+from radhar_cli.config.schema import MAP_NAMES, Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.column_labels import label_names
 from radhar_cli.dataset.files import unfinished_path, write_whole
@@ -35,6 +36,7 @@ from radhar_cli.dataset.layout import (
     Rows,
     chunked,
     columns,
+    count_of,
     row_axis,
     row_bytes,
 )
@@ -46,10 +48,9 @@ from radhar_cli.dataset.shards import (
     check_shards,
     chunked_dataset,
     require_tiling,
-    resume_hint,
 )
 from radhar_cli.dataset.split import split_rows
-from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
+from radhar_cli.dataset.untrusted_hdf5 import Numbers, UntrustedFile, remember
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.new_hdf5 import new_hdf5
 from radhar_cli.pipeline.validity import Flags, warnings
@@ -59,7 +60,7 @@ from radhar_cli.scene import subject_of
 
 SCHEMA_VERSION = 2
 RUN, RUN_BYTES = 128, 2**28
-COLUMN_RUN = 4096
+COLUMN_RUN, CHUNK_BYTES = 4096, 2**16
 CONFIG_HEADING = "# The resolved config of this data set, every default filled in.\n"
 CFAR_TEXT = (
     "255 where a pixel exceeds its threshold over the mean of the training cells around it, else 0 "
@@ -69,6 +70,10 @@ LEVELS_TEXT = (
     "level = floor(255 (dB / dynamic_range_db + 1) + 1/2), dB = 10 log10(power / largest power), "
     "clipped to [-dynamic_range_db, 0]; level 0 everywhere for an all-zero map"
 )
+SLOW_TIME_TEXT = (
+    "x[m] after receiver and canceller, for unit transmit power; NaN after the last pulse of "
+    "a recording that is shorter than others"
+)
 
 
 @contextmanager
@@ -77,7 +82,7 @@ def assembled(
     folder: Path,
     shards: Sequence[Shard],
     progress: Progress,
-    remedy: Callable[[Runs], str] = resume_hint,
+    remedy: Callable[[Runs], str] | None = None,
 ) -> Iterator[tuple[Path, list[dict[str, Any]]]]:
     """Assemble a data set; yield the path of the complete file and the warnings stored in it.
 
@@ -88,7 +93,7 @@ def assembled(
         folder: the output folder.
         shards: that hold every row once.
         progress: receives the rows that are copied.
-        remedy: advice on rows that are missing, for the message.
+        remedy: advice on rows that are missing, if not to run the same command again.
 
     Raises:
         UnfinishedError: rows are missing, held twice, or in a shard that cannot be used.
@@ -113,6 +118,7 @@ def assembled(
                 held.write("]}\n")
                 messages = warnings(config, flags)
                 _root_attributes(file, config, messages)
+            remember(unfinished)
             yield unfinished, messages
             write_whole(folder, folder / CONFIG, (CONFIG_HEADING + as_yaml(config)).encode())
     except ShardError as error:
@@ -149,6 +155,7 @@ def _copy_shards(
     chunks: dict[str, list[tuple[int, bytes]]] = {name: [] for name in large}
     fields = scene_fields.fields(config)
     scene = [_Column(file[f"scene/{field.name}"]) for field in fields]
+    products = {name: _Ragged(file, config, name) for name in config.output.products}
     rows_csv = SceneTable(config, table)
     flags = dict.fromkeys(Flags, 0)
     extents: dict[str, set[tuple[float, ...]]] = {f"extent/{name}": set() for name in config.maps}
@@ -163,6 +170,9 @@ def _copy_shards(
             for name, (dtype, shape) in large.items():
                 source = part.chunks(name, dtype, (rows, *shape))
                 chunks[name] += [source.stored(row) for row in range(rows)]
+            for name in config.output.products:
+                if part.column(count_of(name), np.int64, (rows,))[:].any():
+                    products[name].append(part.samples(f"products/{name}"))
             for column, (target, kind, shape) in small.items():
                 found = part.column(column, kind, (rows, *shape))[:]
                 target.append(found)
@@ -182,41 +192,66 @@ def _copy_shards(
                 del chunks[name][:run]
             stored += run
             check()
-    for target in (*scene, *(target for target, _, _ in small.values())):
-        target.flush()
     named = zip((f"scene/{field.name}" for field in fields), scene, strict=True)
-    digests = {name: target.digest.hexdigest() for name, target in named}
-    for name, (target, _, _) in small.items():
-        digests[name] = target.digest.hexdigest()
+    columns_there = {**dict(named), **{name: target for name, (target, _, _) in small.items()}}
+    digests = {name: target.finished() for name, target in columns_there.items()}
     file.attrs["columns_sha256"] = json.dumps(digests)
     for name in config.maps:
         _describe_map(file, config, name, extents[f"extent/{name}"])
     if config.output.slow_time:
-        _describe_slow_time(file["slow_time"].attrs)
+        file["slow_time"].attrs.update({"axes": ["sample", "pulse"], "meaning": SLOW_TIME_TEXT})
     return flags
+
+
+class _Ragged:
+    """An array of all samples one after the other along its first axis."""
+
+    def __init__(self, file: h5py.File, config: Config, name: str) -> None:
+        self._file, self._name = file, f"products/{name}"
+        self._level = config.output.hdf5_level
+
+    def append(self, part: Numbers) -> None:
+        """Add the rows of the next samples."""
+        values = part[:]
+        if self._name not in self._file:
+            size = max(1, values.dtype.itemsize * prod(values.shape[1:]))
+            self._file.create_dataset(
+                self._name,
+                (0, *values.shape[1:]),
+                values.dtype,
+                maxshape=(None, *values.shape[1:]),
+                chunks=(max(1, CHUNK_BYTES // size), *values.shape[1:]),
+                compression="gzip" if self._level else None,
+                compression_opts=self._level or None,
+            )
+        target = self._file[self._name]
+        start = len(target)
+        target.resize(start + len(values), axis=0)
+        target[start:] = values
 
 
 class _Column:
     """A small dataset, written COLUMN_RUN rows at a time: a write takes h5py 0.1 ms."""
 
     def __init__(self, target: h5py.Dataset) -> None:
-        self._target, self._start, self._stop, self.digest = target, 0, 0, hashlib.sha256()
+        self._target, self._start, self._stop, self._digest = target, 0, 0, hashlib.sha256()
         self._held: list[NDArray[Any]] = []
 
     def append(self, values: NDArray[Any]) -> None:
         """Add the next rows."""
         self._held.append(values)
-        self.digest.update(values.astype(self._target.dtype).tobytes())
+        self._digest.update(values.astype(self._target.dtype).tobytes())
         self._stop += len(values)
         if self._stop - self._start >= COLUMN_RUN:
-            self.flush()
+            self.finished()
 
-    def flush(self) -> None:
-        """Write what is held."""
+    def finished(self) -> str:
+        """Write what is held; return the checksum of all rows."""
         if self._held:
             self._target[self._start : self._stop] = np.concatenate(self._held)
             self._start = self._stop
             self._held.clear()
+        return self._digest.hexdigest()
 
 
 def _describe_samples(file: h5py.File, config: Config) -> None:
@@ -253,25 +288,26 @@ def _describe_map(
     """Attributes of a map of these extents; of more than one, two are enough."""
     same = len(extents) == 1
     start, stop, low, high = next(iter(extents)) if same else [np.nan] * 4
-    vertical = row_axis(name)
-    attributes = file[f"maps/{name}"].attrs
-    attributes["axes"] = ["sample", f"{vertical[0]} (row 0 is the highest)", "time"]
-    attributes["row_quantity"], attributes["row_unit"] = vertical
-    attributes["row_top"], attributes["row_bottom"] = high, low
-    attributes["column_quantity"], attributes["column_unit"] = "slow time", "s"
-    attributes["column_left"], attributes["column_right"] = start, stop
-    attributes["kind"] = config.image.kind
-    if config.image.kind == "decibel":
-        attributes["dynamic_range_db"] = config.image.dynamic_range_db
-    attributes["levels"] = LEVELS_TEXT if config.image.kind == "decibel" else CFAR_TEXT
-    if not same:
-        attributes["edges"] = "differ from sample to sample: see /extent"
-    file[f"extent/{name}"].attrs["columns"] = [
-        "time left (s)",
-        "time right (s)",
-        f"{vertical[0]} bottom ({vertical[1]})",
-        f"{vertical[0]} top ({vertical[1]})",
-    ]
+    (rows, unit), image = row_axis(name), config.image
+    own, decibel = name not in MAP_NAMES, image.kind == "decibel"
+    described = {
+        "axes": ["sample", f"{rows} (row 0 is the highest)", "time"],
+        "row_quantity": rows,
+        "row_unit": unit,
+        "row_top": high,
+        "row_bottom": low,
+        "column_quantity": "columns of the product" if own else "slow time",
+        "column_unit": "1" if own else "s",
+        "column_left": start,
+        "column_right": stop,
+        "kind": image.kind,
+        **({"dynamic_range_db": image.dynamic_range_db} if decibel else {}),
+        "levels": LEVELS_TEXT if decibel else CFAR_TEXT,
+        **({} if same else {"edges": "differ from sample to sample: see /extent"}),
+    }
+    file[f"maps/{name}"].attrs.update(described)
+    edges = ["time left (s)", "time right (s)", f"{rows} bottom ({unit})", f"{rows} top ({unit})"]
+    file[f"extent/{name}"].attrs["columns"] = edges
     file[f"entropy/{name}"].attrs["unit"] = "bit"
     if config.output.power is not None:
         file[f"power/{name}"].attrs["unit"] = f"dB below /largest_db/{name}"
@@ -283,28 +319,21 @@ def _describe_map(
         labels["meaning"] = "number in names of what is under way at the middle of each column"
 
 
-def _describe_slow_time(attributes: h5py.AttributeManager) -> None:
-    attributes["axes"] = ["sample", "pulse"]
-    attributes["meaning"] = (
-        "x[m] after receiver and canceller, for unit transmit power; NaN after the last pulse of "
-        "a recording that is shorter than others"
-    )
-
-
 def _root_attributes(file: h5py.File, config: Config, messages: list[dict[str, Any]]) -> None:
-    file.attrs["schema_version"] = SCHEMA_VERSION
-    file.attrs["config"] = json.dumps(resolved(config))
-    file.attrs["config_hash"] = config_hash(config)
     named = identity(config)
-    file.attrs["identity"] = json.dumps(
-        {part: named[part] for part in ("keys", "versions", "hash")}, sort_keys=True
-    )
-    file.attrs["seed"] = config.seed
-    file.attrs["class_names"] = [activity.label for activity in config.every_class]
-    file.attrs["class_slugs"] = [activity.slug for activity in config.every_class]
-    file.attrs["warnings"] = json.dumps(messages)
-    for library, version in versions().items():
-        file.attrs[f"{library}_version"] = version
+    named = {part: named[part] for part in ("keys", "versions", "hash")}
+    described = {
+        "schema_version": SCHEMA_VERSION,
+        "config": json.dumps(resolved(config)),
+        "config_hash": config_hash(config),
+        "identity": json.dumps(named, sort_keys=True),
+        "seed": config.seed,
+        "class_names": [activity.label for activity in config.every_class],
+        "class_slugs": [activity.slug for activity in config.every_class],
+        "warnings": json.dumps(messages),
+        **{f"{library}_version": version for library, version in versions().items()},
+    }
+    file.attrs.update(described)
 
 
 class SceneTable:

@@ -18,7 +18,7 @@ from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.identity import identity, identity_hash, versions
 from radhar_cli.dataset.layout import IDENTITY, WORK, Rows
 from radhar_cli.dataset.png import encode_png
-from radhar_cli.dataset.sample import Made, Maker, synthesise
+from radhar_cli.dataset.sample import Row, RowFactory, synthesise
 from radhar_cli.dataset.shards import encode_shard, write_shard
 from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.dataset.workers import NO_PARENT
@@ -47,7 +47,7 @@ class Batch:
         split: split number of each row.
         table: colour table [256, 3], or None without PNGs.
         parent_pid: process that asked; a worker that outlives it stops. NO_PARENT: on a cluster.
-        maker: makes the rows where they are no scenes.
+        factory: makes the rows where they are no scenes.
     """
 
     config: Config
@@ -59,7 +59,7 @@ class Batch:
     split: Levels
     table: Levels | None
     parent_pid: int
-    maker: Maker | None = None
+    factory: RowFactory | None = None
 
     def scenes(self) -> Iterator[tuple[Scene, int]]:
         """Each row's scene and Flags."""
@@ -94,17 +94,17 @@ def leave_if_orphaned(parent_pid: int) -> None:
 
 def run_batch(batch: Batch) -> int:
     """Make a batch; return its number of samples. The shard is renamed into place last."""
+    prepare_process()
+    if batch.parent_pid == NO_PARENT:
+        _check_machine(batch)
     try:
-        return _run_batch(batch)
+        return _write(batch)
     except OSError:
         leave_if_orphaned(batch.parent_pid)
         raise
 
 
-def _run_batch(batch: Batch) -> int:
-    prepare_process()
-    if batch.parent_pid == NO_PARENT:
-        _check_machine(batch)
+def _write(batch: Batch) -> int:
     config, count, rows = batch.config, batch.stop - batch.start, Rows.of(batch.config)
     samples = []
     values = np.empty((count, len(scene_fields.fields(config))))
@@ -141,19 +141,19 @@ def _check_machine(batch: Batch) -> None:
         raise MachineError(f"the worker on {platform.node()} does not see {batch.folder}")
 
 
-def _made(batch: Batch) -> Iterator[tuple[Made, int]]:
+def _made(batch: Batch) -> Iterator[tuple[Row, int]]:
     """Each row, and its Flags."""
     config = batch.config
-    if batch.maker is not None:
+    if batch.factory is not None:
         for row in range(batch.start, batch.stop):
             leave_if_orphaned(batch.parent_pid)
-            yield batch.maker(config, row), 0
+            yield batch.factory(config, row), 0
         return
     plan, columns = plan_images(config), scene_fields.fields(config)
     for scene, flags in batch.scenes():
         leave_if_orphaned(batch.parent_pid)
         sample = synthesise(scene, plan)
-        yield Made(sample, scene_fields.values(scene, columns, sample.error_db)), flags
+        yield Row(sample, scene_fields.values(scene, columns, sample.error_db)), flags
 
 
 def check_rows(config: Config, start: int, stop: int, parent_pid: int) -> tuple[int, Outcomes]:

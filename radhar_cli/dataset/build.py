@@ -13,18 +13,17 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.arrays import Levels
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.assembly import assembled
 from radhar_cli.dataset.batch import OUTCOME, Batch, Outcomes, check_rows, run_batch
-from radhar_cli.dataset.folder import clean_up, folder_lock, mark_built, reserve
+from radhar_cli.dataset.folder import clean_up, folder_lock, reserve
 from radhar_cli.dataset.hub import write_hub_files
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.layout import DATASET, MANIFEST, WORK, Rows, row_bytes
 from radhar_cli.dataset.parts import Part, refuse_other_cuts, write_part_manifest
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.png_files import write_missing_pngs
-from radhar_cli.dataset.sample import Maker
+from radhar_cli.dataset.sample import RowFactory
 from radhar_cli.dataset.shards import (
     ForeignShardError,
     Runs,
@@ -34,6 +33,7 @@ from radhar_cli.dataset.shards import (
     missing_and_repeated,
 )
 from radhar_cli.dataset.split import split_rows, split_warnings
+from radhar_cli.dataset.untrusted_hdf5 import try_files
 from radhar_cli.dataset.workers import cores, parent_pid, run_tasks
 from radhar_cli.errors import FolderError, UnfinishedError
 from radhar_cli.pipeline.validity import Flags, warnings
@@ -48,7 +48,7 @@ MAX_CHECKED_FIRST = 100_000  # rows; with more, workers check their own
 
 
 @dataclass(frozen=True)
-class Outcome:
+class BuildOutcome:
     """What a build did.
 
     Attributes:
@@ -78,8 +78,8 @@ def build(
     progress: Progress,
     overwrite: bool = False,
     batch_size: int | None = None,
-    maker: Maker | None = None,
-) -> Outcome:
+    factory: RowFactory | None = None,
+) -> BuildOutcome:
     """Build `config` into `folder`, or resume it; nothing to do where it is complete.
 
     Args:
@@ -89,7 +89,7 @@ def build(
         progress: receives progress and messages.
         overwrite: start over.
         batch_size: samples a shard; it changes no byte of the result.
-        maker: makes the rows of a data set that is not simulated.
+        factory: makes the rows of a data set that is not simulated.
 
     Raises:
         FolderError: the folder is in use or holds something else.
@@ -98,9 +98,9 @@ def build(
             MAX_CHECKED_FIRST rows.
     """
 
-    def work(folder: Path) -> Outcome:
+    def work(folder: Path) -> BuildOutcome:
         reserve(folder, config, overwrite)
-        return _Build(config, folder, jobs, progress, maker).whole(batch_size)
+        return _Build(config, folder, jobs, progress, factory).whole(batch_size)
 
     return _with_lock(folder.absolute(), work)
 
@@ -113,7 +113,7 @@ def build_part(
     progress: Progress,
     overwrite: bool = False,
     batch_size: int | None = None,
-) -> Outcome:
+) -> BuildOutcome:
     """Build one part of `config` in its folder below `out`, or resume it.
 
     Arguments and errors are those of `build`.
@@ -123,14 +123,14 @@ def build_part(
         raise FolderError(f"--shard {part}: there are {count} samples; should be at most K/{count}")
     refuse_other_cuts(out, part)
 
-    def work(folder: Path) -> Outcome:
+    def work(folder: Path) -> BuildOutcome:
         reserve(folder, config, overwrite, str(part))
         return _Build(config, folder, jobs, progress).part(part, batch_size)
 
     return _with_lock(part.folder(out.absolute()), work)
 
 
-def _with_lock(folder: Path, work: Callable[[Path], Outcome]) -> Outcome:
+def _with_lock(folder: Path, work: Callable[[Path], BuildOutcome]) -> BuildOutcome:
     try:
         with folder_lock(folder):
             return work(folder)
@@ -144,18 +144,19 @@ class _Build:
     folder: Path
     jobs: int
     progress: Progress
-    maker: Maker | None = None
+    factory: RowFactory | None = None
 
     def __post_init__(self) -> None:
         self.identity_hash = identity_hash(identity(self.config))
         self.split = split_rows(self.config)
+        self.png = self.config.output.png
 
-    def whole(self, batch_size: int | None) -> Outcome:
-        config, count = self.config, len(Rows.of(self.config))
+    def whole(self, batch_size: int | None) -> BuildOutcome:
+        config, count = self.config, len(self.split)
         if (self.folder / DATASET).exists():
             pngs = self._write_beside(self.folder / DATASET)
             clean_up(self.folder)
-            return Outcome(self.folder, count, 0, pngs)
+            return BuildOutcome(self.folder, count, 0, pngs)
         for message in split_warnings(config, self.split):
             self.progress.say(f"warning: {message}")
         shards, made, shown = self._shards(range(count), batch_size)
@@ -163,16 +164,15 @@ class _Build:
         with assembled(config, self.folder, shards, self.progress) as (unfinished, stored):
             say_warnings(self.progress, [warning for warning in stored if warning not in shown])
             pngs = self._write_beside(unfinished)
-        mark_built(self.folder)
         clean_up(self.folder)
-        return Outcome(self.folder, count, made, pngs, stored)
+        return BuildOutcome(self.folder, count, made, pngs, stored)
 
-    def part(self, part: Part, batch_size: int | None) -> Outcome:
-        """Make the shards of a part; they stay, for others to put together."""
-        rows = part.rows(len(self.split))
+    def part(self, part: Part, batch_size: int | None) -> BuildOutcome:
+        """Make the shards of a part; they stay, for others to put together and write the PNGs."""
+        rows, self.png = part.rows(len(self.split)), False
         shards, made, shown = self._shards(rows, batch_size)
         write_part_manifest(self.folder, part, rows, self.identity_hash, shards)
-        return Outcome(self.folder, len(rows), made, 0, shown)
+        return BuildOutcome(self.folder, len(rows), made, 0, shown)
 
     def _write_beside(self, source: Path) -> int:
         """Write the missing files next to dataset.h5; return the number of PNGs among them."""
@@ -188,32 +188,24 @@ class _Build:
         """Shards of the rows, number of rows that this run made, and warnings."""
         shards = self._sound_shards(rows)
         gaps, _ = missing_and_repeated(shards, rows.stop, rows.start)
-        few = self.maker is None and len(rows) <= MAX_CHECKED_FIRST
+        few = self.factory is None and len(rows) <= MAX_CHECKED_FIRST
         checked = self._check_scenes(rows, gaps) if few and gaps else None
-        counts = {} if checked is None or shards else _counts(checked["flags"])
-        shown = warnings(self.config, counts) if counts else []
+        shown: list[dict[str, Any]] = []
+        if checked is not None and not shards:
+            flags = checked["flags"]
+            counts = {flag: int(np.count_nonzero(flags & flag)) for flag in Flags}
+            shown = warnings(self.config, counts)
         say_warnings(self.progress, shown)
         made, left = self._batches(rows, gaps, checked, batch_size)
         return shards + made, left, shown
 
-    def _processes(self, tasks: int) -> int:
-        """As many as were asked for, but no more than there are tasks, nor than memory bears."""
-        return max(1, min(self.jobs, tasks, PROCESSES_A_CORE * cores()))
-
     def _check_scenes(self, rows: range, gaps: Runs) -> Outcomes:
         """Check the scenes of the rows in the gaps: an outcome a row."""
-        outcomes, left = (
-            np.zeros(len(rows), dtype=OUTCOME),
-            sum(stop - start for start, stop in gaps),
-        )
+        outcomes, left = np.zeros(len(rows), OUTCOME), sum(stop - start for start, stop in gaps)
         self.progress.stage("checking scenes", left, 0)
         size = max(1, min(CHECK_BATCH, -(-left // (4 * self.jobs))))
-        tasks = [
-            (self.config, start, min(start + size, gap_stop), parent_pid())
-            for gap_start, gap_stop in gaps
-            for start in range(gap_start, gap_stop, size)
-        ]
-        for start, found in run_tasks(check_rows, tasks, self._processes(len(tasks))):
+        tasks = [(self.config, *cut, parent_pid()) for cut in _cuts(gaps, size)]
+        for start, found in run_tasks(check_rows, tasks, _processes(self.jobs, len(tasks))):
             outcomes[start - rows.start :][: found.size] = found
             self.progress.advance(found.size)
         return outcomes
@@ -227,31 +219,20 @@ class _Build:
         left = sum(stop - start for start, stop in gaps)
         self.progress.stage("samples", len(rows), len(rows) - left)
         size = batch_size or _batch_size(left, self.jobs, row_bytes(config))
-        table = colour_table(config.image.colour_map) if config.output.png else None
+        table = colour_table(config.image.colour_map) if self.png else None
+
+        cuts = _cuts(gaps, size)
 
         def batches() -> Iterator[tuple[Batch]]:
-            for gap_start, gap_stop in gaps:
-                for start in range(gap_start, gap_stop, size):
-                    stop = min(start + size, gap_stop)
-                    shards.append(Shard(start, stop, self.folder))
-                    own = slice(start - rows.start, stop - rows.start)
-                    yield (
-                        Batch(
-                            config,
-                            self.identity_hash,
-                            self.folder,
-                            start,
-                            stop,
-                            None if checked is None else checked[own],
-                            self.split[start:stop],
-                            table,
-                            parent_pid(),
-                            self.maker,
-                        ),
-                    )
+            for start, stop in cuts:
+                shards.append(Shard(start, stop, self.folder))
+                own = None if checked is None else checked[start - rows.start : stop - rows.start]
+                where = (config, self.identity_hash, self.folder, start, stop)
+                split = self.split[start:stop]
+                yield (Batch(*where, own, split, table, parent_pid(), self.factory),)
 
-        count = sum(-(-(stop - start) // size) for start, stop in gaps)
-        processes = self._processes(count)
+        count = len(cuts)
+        processes = _processes(self.jobs, count)
         if count > 0 and processes < self.jobs:
             why = "one for each batch of samples" if processes == count else f"on {cores()} cores"
             self.progress.say(f"{processes} of {self.jobs} processes, {why}")
@@ -272,7 +253,13 @@ class _Build:
                 shard.path.rename(shard.path.with_suffix(f".foreign-{uuid.uuid4().hex}"))
             else:
                 shard.path.unlink(missing_ok=True)
+        try_files([shard.path for shard in sound])
         return sound
+
+
+def _cuts(gaps: Runs, size: int) -> list[tuple[int, int]]:
+    """Runs of rows cut into pieces of at most `size`."""
+    return [(a, min(a + size, stop)) for start, stop in gaps for a in range(start, stop, size)]
 
 
 def _batch_size(left: int, jobs: int, one: int) -> int:
@@ -287,8 +274,11 @@ def say_warnings(progress: Progress, messages: list[dict[str, Any]]) -> None:
         progress.say(f"warning: {warning['message']}")
 
 
-def _counts(flags: Levels) -> dict[Flags, int]:
-    return {flag: int(np.count_nonzero(flags & flag)) for flag in Flags}
+def _processes(jobs: int, tasks: int) -> int:
+    """As many as were asked for, but no more than there are tasks, nor than memory bears."""
+    wanted = max(1, min(jobs, tasks))
+    # Counting cores loads joblib: 70 ms, for nothing where the build is one process.
+    return wanted if wanted == 1 else min(wanted, PROCESSES_A_CORE * cores())
 
 
 def disk_error(folder: Path, error: OSError) -> UnfinishedError:

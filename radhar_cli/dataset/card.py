@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import yaml
 
-from radhar_cli.config.schema import Config
+from radhar_cli.config.schema import MAP_NAMES, Config
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.dataset.layout import CARD, GALLERY, SPLITS, Rows, png_folder, row_axis
 from radhar_cli.dataset.reading import BLOCK, Dataset
@@ -34,7 +34,6 @@ _NOISE_TELLS = (
     "noise alone tells `stationary` from most others; with `processing.clutter: mean`, which keeps "
     "slow motion, it tells little"
 )
-_MEASURED = "measured: error of the simulated signal"
 _STEPS = {"compensated": "the torso's bulk Doppler taken off", "denoised": "denoised"}
 _SIZES = ((10**3, "n<1K"), (10**4, "1K<n<10K"), (10**5, "10K<n<100K"), (10**6, "100K<n<1M"),
           (10**7, "1M<n<10M"), (10**8, "10M<n<100M"))  # fmt: skip
@@ -75,8 +74,8 @@ def features(config: Config) -> list[dict[str, Any]]:
 
 def number_features(config: Config) -> list[dict[str, Any]]:
     """The columns of numbers among them: index, and what was drawn."""
-    kinds = {name: "int64" if name == "subject" else "float64" for name in number_names(config)}
-    return [{"name": n, "dtype": kind} for n, kind in {"index": "int64", **kinds}.items()]
+    whole, names = ("index", "subject"), ["index", *number_names(config)]
+    return [{"name": name, "dtype": "int64" if name in whole else "float64"} for name in names]
 
 
 def data_files(files: Files) -> list[dict[str, Any]]:
@@ -199,7 +198,9 @@ def _maps(data: Dataset) -> str:
     lines = []
     for name in data.config.maps:
         first, *steps = name.split("_")
-        says = ", ".join([_KINDS[first], *(_STEPS[step] for step in steps)])
+        says = "a product of its builder's own"
+        if name in MAP_NAMES:
+            says = ", ".join([_KINDS[first], *(_STEPS[step] for step in steps)])
         edges, unit = data.extent(name), row_axis(name)[1]
         if edges is None:
             lines.append([f"`{name}`", says, "/extent", "/extent"])
@@ -241,15 +242,19 @@ def _classes(data: Dataset) -> str:
 
 def _numbers(data: Dataset) -> str:
     """What was drawn, from where to where, and what all samples share."""
-    keys = {field.name: (field.unit, f"`{field.key}`") for field in data.fields}
-    keys |= {"subject": ("1", "number of the person"), ERROR.name: (ERROR.unit, _MEASURED)}
+    units = {field.name: "" if field.unit == "1" else field.unit for field in data.fields}
+    keys = {field.name: (units[field.name], f"`{field.key}`") for field in data.fields}
+    keys |= {
+        "subject": ("", "number of the person"),
+        ERROR.name: (ERROR.unit, "measured: error of the simulated signal"),
+    }
     drawn, shared = [], []
     for name in number_names(data.config):
         (low, high), (unit, key) = _reach(data, name), keys[name]
         if low < high:
-            drawn.append([f"`{name}`", f"{low:.6g}", f"{high:.6g}", _unit(unit), key])
+            drawn.append([f"`{name}`", f"{low:.6g}", f"{high:.6g}", unit, key])
         elif low == high:
-            shared.append([f"`{name}`", f"{low:.6g}", _unit(unit), key])
+            shared.append([f"`{name}`", f"{low:.6g}", unit, key])
     parts = [
         "Columns beside the label, in SI units; empty where a number does not apply to the "
         "activity. `index` counts the samples of a class: label and index name a sample in every "
@@ -259,10 +264,6 @@ def _numbers(data: Dataset) -> str:
         table(["column", "value", "unit", "config.yaml"], shared),
     ]
     return "\n\n".join(parts if shared else parts[:2])
-
-
-def _unit(unit: str) -> str:
-    return "" if unit == "1" else unit
 
 
 def _reach(data: Dataset, name: str) -> tuple[float, float]:

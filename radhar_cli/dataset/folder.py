@@ -162,13 +162,10 @@ def checked_identity(value: Any, path: Path) -> dict[str, Any]:
     Raises:
         FolderError: it is none.
     """
-    right = isinstance(value, dict) and all(
-        isinstance(value.get(part), dict) for part in ("keys", "versions")
-    )
-    if not right:
+    parts = ("keys", "versions")
+    if not isinstance(value, dict) or not all(isinstance(value.get(p), dict) for p in parts):
         raise FolderError(f"{path}: is damaged: its identity should have keys and versions")
-    identity_there: dict[str, Any] = value
-    return identity_there
+    return value
 
 
 def holds_samples(folder: Path) -> bool:
@@ -179,7 +176,8 @@ def holds_samples(folder: Path) -> bool:
 
 
 def clean_up(folder: Path) -> None:
-    """Remove what only an unfinished build needs."""
+    """Mark a folder as built (dataset.h5 may be damaged later); remove what only a build needs."""
+    (folder / WORK / "built").touch()
     _remove_batches(folder)
     shutil.rmtree(folder / WORK / "unfinished", ignore_errors=True)
     (folder / WORK / IDENTITY).unlink(missing_ok=True)
@@ -223,8 +221,3 @@ def _clear(folder: Path, new: dict[str, Any]) -> None:
     _remove_batches(folder)
     _name(folder, new)
     (folder / DATASET).unlink(missing_ok=True)
-
-
-def mark_built(folder: Path) -> None:
-    """Mark the folder as built by radhar, also for when dataset.h5 is damaged or deleted."""
-    (folder / WORK / "built").touch()

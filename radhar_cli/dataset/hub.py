@@ -7,8 +7,8 @@ from radhar_cli.dataset.files import refuse_links, write_whole
 from radhar_cli.dataset.gallery import gallery_png
 from radhar_cli.dataset.image_file import image_size
 from radhar_cli.dataset.layout import CARD, GALLERY, PNG
-from radhar_cli.dataset.metadata_csv import write_metadata, wrong_metadata
 from radhar_cli.dataset.reading import Dataset
+from radhar_cli.dataset.table import write_metadata, wrong_metadata
 from radhar_cli.errors import FolderError
 
 

@@ -7,6 +7,7 @@ from typing import Any
 from radhar_cli.build_version import build_version
 from radhar_cli.config.identity import config_hash, flat, resolved
 from radhar_cli.config.schema import Config
+from radhar_cli.registry import own_digest
 
 
 def versions() -> dict[str, str]:
@@ -27,6 +28,7 @@ def versions() -> dict[str, str]:
         "pillow": PIL.__version__,
         "isal": isal.__version__,
         "numba": numba_version() or "none",
+        **({} if own_digest() is None else {"own": f"{own_digest()}"}),
     }
 
 

@@ -12,7 +12,7 @@ from typing import TypeAlias
 import numpy as np
 
 from radhar_cli.activity import Activity
-from radhar_cli.config.schema import Config
+from radhar_cli.config.schema import MAP_NAMES, Config
 
 DATASET = "dataset.h5"
 CONFIG = "config.yaml"
@@ -51,9 +51,15 @@ def checksum_of(name: str) -> str:
     return f"sha256/{name.removeprefix('maps/')}"
 
 
+def count_of(name: str) -> str:
+    """Where it lies how many rows of /products/<name> each sample has."""
+    return f"products/{name}_count"
+
+
 def columns(config: Config) -> Parts:
     """The small datasets that a shard has beside the large ones and the scenes."""
     parts: Parts = {checksum_of(name): ("S64", ()) for name in chunked(config)}
+    parts |= {count_of(name): ("i8", ()) for name in config.output.products}
     for name in config.maps:
         parts |= {f"entropy/{name}": ("f4", ()), f"extent/{name}": ("f8", (4,))}
         if config.output.power is not None:
@@ -64,7 +70,9 @@ def columns(config: Config) -> Parts:
 
 
 def row_axis(name: str) -> tuple[str, str]:
-    """Quantity and unit of the rows of a map."""
+    """Quantity and unit of the rows of a map; of a user's own, what the product says."""
+    if name not in MAP_NAMES:
+        return "rows of the product", "1"
     return ("range", "m") if name == "rtm" else ("Doppler frequency", "Hz")
 
 

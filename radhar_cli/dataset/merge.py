@@ -8,17 +8,18 @@ from typing import Any, NamedTuple
 
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.assembly import assembled
-from radhar_cli.dataset.build import Outcome, disk_error, say_warnings
+from radhar_cli.dataset.build import BuildOutcome, disk_error, say_warnings
 from radhar_cli.dataset.files import refuse_foreign_work
-from radhar_cli.dataset.folder import clean_up, folder_lock, mark_built, reserve, stored_identity
+from radhar_cli.dataset.folder import clean_up, folder_lock, reserve, stored_identity
 from radhar_cli.dataset.hub import write_hub_files
 from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.dataset.layout import PARTS, Rows
 from radhar_cli.dataset.parts import Part, rows_by_part
-from radhar_cli.dataset.png_files import take_over_pngs, write_missing_pngs
+from radhar_cli.dataset.png_files import write_missing_pngs
 from radhar_cli.dataset.reading import stored_config
 from radhar_cli.dataset.shards import Runs, Shard, listed_shards, require_tiling
 from radhar_cli.dataset.split import split_rows, split_warnings
+from radhar_cli.dataset.untrusted_hdf5 import try_files
 from radhar_cli.errors import FolderError
 from radhar_cli.progress import Progress
 
@@ -31,13 +32,13 @@ class _Place(NamedTuple):
 
 def merge(
     out: Path, folders: Sequence[Path], jobs: int, progress: Progress
-) -> tuple[Config, Outcome]:
+) -> tuple[Config, BuildOutcome]:
     """Make the data set in `out` of its parts, which are only read.
 
     Args:
         out: the output folder.
         folders: of parts, or that hold parts, in addition to those below `out`.
-        jobs: processes, for PNGs that no part has.
+        jobs: processes, for PNGs.
         progress: receives progress and messages.
 
     Raises:
@@ -56,6 +57,7 @@ def merge(
 
     shards = _shards(places, count)
     require_tiling(out, shards, count, run_again)
+    try_files([shard.path for shard in shards])
     split = split_rows(config)
     for message in split_warnings(config, split):
         progress.say(f"warning: {message}")
@@ -63,21 +65,14 @@ def merge(
         with folder_lock(out):
             reserve(out, config, overwrite=False, allowed=(PARTS,))
             progress.stage("merging", count, 0)
-            with assembled(config, out, shards, progress, run_again) as (
-                unfinished,
-                stored,
-            ):
+            with assembled(config, out, shards, progress, run_again) as (unfinished, stored):
                 say_warnings(progress, stored)
-                if config.output.png:
-                    parts = [(place.part.rows(count), place.folder) for place in places]
-                    take_over_pngs(config, out, split, parts)
                 pngs = write_missing_pngs(config, out, split, unfinished, jobs, progress)
                 write_hub_files(unfinished, out, config.output.png)
-            mark_built(out)
             clean_up(out)
     except OSError as error:
         raise disk_error(out, error) from error
-    return config, Outcome(out, count, count, pngs, stored)
+    return config, BuildOutcome(out, count, count, pngs, stored)
 
 
 def _places(folders: Iterable[Path]) -> list[_Place]:
@@ -118,8 +113,8 @@ def _config(places: Sequence[_Place]) -> Config:
     differing = differences(first.identity, identity(config))
     if differing:
         raise FolderError(
-            f"{first.folder}: should be merged by what made the parts; this differs in\n  "
-            + "\n  ".join(differing)
+            f"{first.folder}: merge with the radhar version that built the parts; it differs "
+            "in\n  " + "\n  ".join(differing)
         )
     return config
 

@@ -1,7 +1,7 @@
 """Parts of a data set, built separately and merged by `radhar merge`.
 
 Part K of N holds the rows from (K - 1) rows/N to K rows/N, rounded down, in a folder of its own:
-lock, identity, shards, manifest and PNGs are as in a build, so a part that was killed resumes.
+lock, identity, shards and manifest are as in a build, so a part that was killed resumes.
 """
 
 import json
@@ -105,9 +105,9 @@ def write_part_manifest(
 
 def rows_by_part(runs: Sequence[tuple[int, int]], of: int, count: int) -> list[Part]:
     """The parts, of so many, in which runs (first row, past-last row) lie."""
-    parts = (Part(of, number) for number in range(1, of + 1))
+    parts = {number: Part(of, number).rows(count) for number in range(1, of + 1)}
     return [
-        part
-        for part in parts
-        if any(a < part.rows(count).stop and b > part.rows(count).start for a, b in runs)
+        Part(of, number)
+        for number, rows in parts.items()
+        if any(a < rows.stop and b > rows.start for a, b in runs)
     ]

@@ -1,8 +1,6 @@
-"""The PNG files of a data set: find missing ones, and write or link them."""
+"""The PNG files of a data set: find missing ones, and write them."""
 
 import os
-import shutil
-from collections.abc import Iterable
 from itertools import product
 from pathlib import Path
 
@@ -12,7 +10,6 @@ from radhar_cli.arrays import Bool, Index, Levels
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import layout
 from radhar_cli.dataset.batch import png_rows
-from radhar_cli.dataset.files import refuse_links, unfinished_path
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.workers import parent_pid, run_tasks
@@ -56,36 +53,6 @@ def write_missing_pngs(
     for written in run_tasks(png_rows, tasks, max(1, min(jobs, -(-missing.size // ROWS)))):
         progress.advance(written)
     return missing.size * len(config.maps)
-
-
-def take_over_pngs(
-    config: Config, folder: Path, split: Levels, places: Iterable[tuple[range, Path]]
-) -> None:
-    """Link, or where that cannot be copy, the PNGs that are missing.
-
-    Args:
-        config: the data set's.
-        folder: the output folder.
-        split: split number of each row.
-        places: rows and the folder that may have their PNGs.
-    """
-    order, unfinished = Rows.of(config), unfinished_path(folder)
-    missing = rows_without_png(config, folder, split)
-    unfinished.parent.mkdir(parents=True, exist_ok=True)
-    for rows, place in places:
-        for row in missing[(missing >= rows.start) & (missing < rows.stop)].tolist():
-            for name in config.maps:
-                path = order.png_path(name, int(split[row]), row)
-                refuse_links(folder, folder / path)
-                refuse_links(place, place / path)
-                if (folder / path).exists() or not (place / path).is_file():
-                    continue
-                (folder / path).parent.mkdir(parents=True, exist_ok=True)
-                try:
-                    os.link(place / path, unfinished)
-                except OSError:  # another file system
-                    shutil.copyfile(place / path, unfinished)
-                unfinished.replace(folder / path)
 
 
 def rows_without_png(config: Config, folder: Path, split: Levels) -> Index:

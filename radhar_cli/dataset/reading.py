@@ -5,8 +5,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from radhar_cli.arrays import Float, Levels
+from radhar_cli.arrays import Float, Index, Levels
 from radhar_cli.config.reading import validated
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
@@ -23,10 +24,12 @@ from radhar_cli.dataset.layout import (
     checksum_of,
     chunked,
     columns,
+    count_of,
     is_incomplete,
 )
-from radhar_cli.dataset.untrusted_hdf5 import Column, UntrustedFile
+from radhar_cli.dataset.untrusted_hdf5 import Column, Numbers, UntrustedFile
 from radhar_cli.errors import ConfigError, FolderError, did_you_mean
+from radhar_cli.registry import any_name
 from radhar_cli.untrusted import Closing
 
 MAX_ENTROPY_BITS = 64.0
@@ -51,6 +54,7 @@ class Dataset(Closing):
         fields: what the fields of `scene` are.
         large: {name: [N, ...]}, all datasets with a sample a chunk, the maps among them.
         sha256: {name of a large dataset: [N]}.
+        products: {name: an array of each sample}, of `output.products`.
         column_label: {map name: uint8 [N, W]}, numbers in `column_labels.label_names`; empty where
             they were not asked for.
         class_slugs: slug of every label.
@@ -94,6 +98,11 @@ class Dataset(Closing):
         self.sha256 = {name: small[checksum_of(name)] for name in self.large}
         named = (f"scene/{field.name}" for field in self.fields)
         self.small = small | dict(zip(named, self.scene.values(), strict=False))
+        self.products = {
+            name: Ragged(file.samples(f"products/{name}"), small[count_of(name)][:])
+            for name in config.output.products
+            if small[count_of(name)][:].any()
+        }
         self._entropy = {name: small[f"entropy/{name}"] for name in names}
         self._extent = {name: small[f"extent/{name}"] for name in names}
         labelled = names if config.output.column_labels else ()
@@ -112,13 +121,11 @@ class Dataset(Closing):
     @property
     def warnings(self) -> list[dict[str, Any]]:
         """Warnings of its build: {kind, recordings, message}."""
-        stored = self.file.json("warnings")
-        right = isinstance(stored, list) and all(
-            isinstance(one, dict) and isinstance(one.get("message"), str) for one in stored
-        )
-        if not right:
+        messages: list[dict[str, Any]] = self.file.json("warnings")
+        if not isinstance(messages, list) or not all(
+            isinstance(one, dict) and isinstance(one.get("message"), str) for one in messages
+        ):
             raise FolderError(f"{self.path}: attribute warnings: should be a list of messages")
-        messages: list[dict[str, Any]] = stored
         return messages
 
     @property
@@ -140,11 +147,10 @@ class Dataset(Closing):
 
     def extent(self, name: str) -> tuple[float, float, float, float] | None:
         """Edges (time left, right in s; bottom, top in Hz or m) that all images of a map share."""
-        first, same = self._extent[name].rows(0, 1), True
-        for edges in self._edges(name):
-            same &= bool((edges == first).all())
+        first = self._extent[name].rows(0, 1)
+        same = [bool((edges == first).all()) for edges in self._edges(name)]
         left, right, bottom, top = map(float, first[0])
-        return (left, right, bottom, top) if same else None
+        return (left, right, bottom, top) if all(same) else None
 
     def extents(self, name: str) -> Float:
         """Edges [N, 4] of every image of a map."""
@@ -177,6 +183,22 @@ class Dataset(Closing):
         self.file.close()
 
 
+class Ragged:
+    """An array of each sample: rows of one array that holds them one after the other."""
+
+    def __init__(self, samples: Numbers, counts: Index) -> None:
+        if (counts < 0).any() or counts.sum() != samples.shape[0]:
+            raise FolderError(f"{samples.where}: has not as many rows as its counts say")
+        self._samples, self._stops = samples, np.cumsum(counts)
+
+    def __len__(self) -> int:
+        return self._stops.size
+
+    def __getitem__(self, row: int) -> NDArray[Any]:
+        stop = int(self._stops[row])
+        return self._samples.rows(int(self._stops[row - 1]) if row else 0, stop)
+
+
 def _small(column: Column, below: int) -> Levels:
     values: Levels = column[:]
     if values.max(initial=0) >= below:
@@ -191,7 +213,8 @@ def stored_config(document: Any, where: str) -> Config:
         FolderError: it is not a config.
     """
     try:
-        return validated(Config, document, f"{where}: the stored config", {})
+        with any_name():
+            return validated(Config, document, f"{where}: the stored config", {})
     except ConfigError as error:
         raise FolderError(str(error).splitlines()[0]) from None
 

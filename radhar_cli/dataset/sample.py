@@ -1,7 +1,8 @@
 """One sample of a data set: the image of every map, and how exact they are."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from math import isfinite, nan
+from types import MappingProxyType
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -10,6 +11,8 @@ from numpy.typing import NDArray
 from radhar_cli.arrays import Complex, Float, Levels
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.column_labels import column_labels
+from radhar_cli.echo.direct import Accuracy
+from radhar_cli.errors import SceneError
 from radhar_cli.pipeline.plan import Plan
 from radhar_cli.pipeline.products import EchoAccuracy, Fallback
 from radhar_cli.pipeline.run import run
@@ -26,6 +29,7 @@ class Sample(NamedTuple):
         fell_back: the cube made the signal, as the direct engine could not (`engine.fallback`).
         column_labels: {map name: [width]}, where asked for (`output.column_labels`).
         slow_time: x[m] after the canceller, where it is stored (`output.slow_time`).
+        products: {name: array}, where they are stored (`output.products`).
     """
 
     images: dict[str, MapImage]
@@ -33,6 +37,7 @@ class Sample(NamedTuple):
     fell_back: bool
     column_labels: dict[str, Levels]
     slow_time: Complex | None = None
+    products: Mapping[str, NDArray[Any]] = MappingProxyType({})
 
     def chunk(self, name: str, shape: tuple[int, ...]) -> NDArray[Any]:
         """What a large dataset (`layout.chunked`) holds of this sample, in its shape."""
@@ -49,7 +54,7 @@ class Sample(NamedTuple):
         return padded
 
 
-class Made(NamedTuple):
+class Row(NamedTuple):
     """A sample that was not simulated.
 
     Attributes:
@@ -62,7 +67,7 @@ class Made(NamedTuple):
 
 
 # Makes a row of a data set that is not simulated; what it holds can be pickled.
-Maker: TypeAlias = Callable[[Config, int], Made]
+RowFactory: TypeAlias = Callable[[Config, int], Row]
 
 
 def synthesise(scene: Scene, plan: Plan) -> Sample:
@@ -74,8 +79,17 @@ def synthesise(scene: Scene, plan: Plan) -> Sample:
         motion = recording["motions"][0]
         labels = {name: column_labels(scene, motion, image) for name, image in images.items()}
     accuracy: EchoAccuracy | None = recording.products.get("accuracy")
-    slow_time = recording["signal"].x if scene.config.output.slow_time else None
-    if accuracy is None or isinstance(accuracy, Fallback):
-        return Sample(images, nan, isinstance(accuracy, Fallback), labels, slow_time)
-    error_db = accuracy.error_db if isfinite(accuracy.error_db) else nan
-    return Sample(images, error_db, False, labels, slow_time)
+    slow_time = recording["signal"].x[0, 0] if scene.config.output.slow_time else None
+    fell_back, error_db = isinstance(accuracy, Fallback), nan
+    if isinstance(accuracy, Accuracy) and isfinite(accuracy.error_db):
+        error_db = accuracy.error_db
+    own = {name: _array(recording[name], name) for name in scene.config.output.products}
+    return Sample(images, error_db, fell_back, labels, slow_time, own)
+
+
+def _array(value: Any, name: str) -> NDArray[Any]:
+    """A product as it is stored: the power of a map, the samples of a signal, or an array."""
+    array = np.asarray(getattr(value, "power", getattr(value, "x", value)))
+    if array.ndim == 0 or array.dtype.kind not in "iufc":
+        raise SceneError(f"output.products: {name} is {type(value).__name__}; should be an array")
+    return array

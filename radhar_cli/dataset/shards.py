@@ -16,11 +16,11 @@ import numpy as np
 
 from radhar_cli.arrays import Float, Levels
 from radhar_cli.config.schema import Config
-from radhar_cli.dataset.deflate import deflated
 from radhar_cli.dataset.files import write_whole
-from radhar_cli.dataset.layout import COLUMN_LABEL, WORK, checksum_of, chunked
+from radhar_cli.dataset.layout import COLUMN_LABEL, WORK, checksum_of, chunked, count_of
+from radhar_cli.dataset.png import deflated
 from radhar_cli.dataset.sample import Sample
-from radhar_cli.errors import UnfinishedError
+from radhar_cli.errors import SceneError, UnfinishedError
 
 USER_BLOCK = 512
 RUNS_NAMED = 10
@@ -135,6 +135,12 @@ def encode_shard(
                 file[f"largest_db/{name}"] = np.array([i.largest_db for i in images])
             if config.output.column_labels:
                 file[f"{COLUMN_LABEL}/{name}"] = np.stack([s.column_labels[name] for s in samples])
+        for name in config.output.products:
+            arrays = [sample.products[name] for sample in samples]
+            if len({(array.dtype, array.shape[1:]) for array in arrays}) > 1:
+                raise SceneError(f"output.products: {name}: should differ in its first axis alone")
+            file[f"products/{name}"] = np.concatenate(arrays)
+            file[count_of(name)] = np.array([len(array) for array in arrays])
         file["scene"] = scene_values
         file["flags"] = flags
     stop = start + len(samples)
@@ -207,16 +213,11 @@ def missing_and_repeated(
     return missing, repeated
 
 
-def resume_hint(missing: Runs) -> str:
-    """Advice on rows that a build lacks."""
-    return "the rest is kept, and the same command resumes"
-
-
 def require_tiling(
     folder: Path,
     shards: Sequence[Shard],
     count: int,
-    remedy: Callable[[Runs], str] = resume_hint,
+    remedy: Callable[[Runs], str] | None = None,
     unusable: Sequence[tuple[Shard, ShardError]] = (),
 ) -> None:
     """Refuse shards that do not hold each of `count` rows once.
@@ -225,7 +226,7 @@ def require_tiling(
         folder: the output folder.
         shards: of the data set.
         count: rows.
-        remedy: what to do about rows.
+        remedy: what to do about rows, if not to run the same command again.
         unusable: shards that were left out, and why.
 
     Raises:
@@ -238,7 +239,8 @@ def require_tiling(
         if runs:
             raise UnfinishedError(
                 f"{folder}: rows {_rows(runs)} ({sum(b - a for a, b in runs)} of {count}) are "
-                f"{fault} the finished shards{why}; {remedy(runs)}"
+                f"{fault} the finished shards{why}; "
+                + (remedy(runs) if remedy else "the rest is kept, and the same command resumes")
             )
 
 

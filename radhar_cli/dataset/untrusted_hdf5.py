@@ -1,19 +1,21 @@
 """HDF5 files that anyone may have written: the one place that opens them.
 
-Only what is asked for by name is read; the rest of the file does not matter. Each link on the
-way is a hard one and each dataset lies in the file itself, so nothing leads to another file. Types,
-shapes and stored bytes are checked before anything is read. Compressed images are inflated here, up
-to the size that they should have: HDF5 would inflate them to any.
+A file is tried in a process of its own first (`hdf5_check`), where HDF5 may crash, loop or take
+memory. Then only what is asked for by name is read; the rest of the file does not matter. Each link
+on the way is a hard one and each dataset lies in the file itself, so nothing leads to another file.
+Types and shapes are checked before anything is read, and compressed pieces are inflated here, up to
+the size that they should have: HDF5 would inflate them to any.
 """
 
+import io
 import os
-import struct
-import weakref
+import signal
+import subprocess
+import sys
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
-from functools import partial
+from dataclasses import dataclass
 from itertools import islice
 from math import prod
 from pathlib import Path
@@ -23,6 +25,7 @@ import h5py
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
+from radhar_cli.dataset import hdf5_check
 from radhar_cli.errors import FolderError
 from radhar_cli.untrusted import Closing, parse_json, regular_size
 
@@ -36,12 +39,12 @@ _DAMAGED = (
     RuntimeError,
     TypeError,
     ValueError,
+    zlib.error,
 )
-_HEAP = b"GCOL\x01"
 MAX_TEXT = 2**20
-MIN_HEAP, MAX_HEAP = 4096, 2**24  # bytes; the minimum is HDF5's
 MAX_CHUNK = 2**27  # bytes of a chunk
 _DEFLATE, _SHUFFLE = h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE
+_TRIED = "RADHAR_TRIED_HDF5"  # files that this process, or one that started it, has tried
 
 
 @contextmanager
@@ -52,65 +55,45 @@ def _refusing_damage(where: str) -> Iterator[None]:
         raise FolderError(f"{where}: cannot be read, the file is damaged ({error})") from None
 
 
-class _HeapChecked:
-    """What HDF5 reads from: a file whose global heaps, where texts lie, are checked as they pass.
+def try_files(paths: Sequence[Path]) -> None:
+    """Read the structure of files in another process.
 
-    On a heap with a free object of size 0 HDF5 would loop forever.
+    Raises:
+        FolderError: HDF5 crashes on one, or takes too much time or memory.
     """
+    if not paths:
+        return
+    names = b"".join(os.fsencode(path) + b"\0" for path in paths)
+    done = subprocess.run(
+        [sys.executable, "-P", hdf5_check.__file__],
+        input=names,
+        capture_output=True,
+        env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
+    )
+    if done.returncode == 0:
+        return
+    path = paths[len(done.stdout.split()) - 1]
+    why = done.stderr.decode(errors="replace").strip().rpartition("\n")[2]
+    if done.returncode == -signal.SIGXCPU:
+        why = f"takes HDF5 more than {hdf5_check.SECONDS} s to open"
+    elif done.returncode < 0:
+        why = f"HDF5 crashes on it, {signal.Signals(-done.returncode).name}"
+    raise FolderError(f"{path}: cannot be read, the file is damaged ({why})")
 
-    def __init__(self, source: Path | bytes) -> None:
-        self.close: Callable[[], object]
-        if isinstance(source, bytes):
-            self.size, self.close = len(source), lambda: None
-            self._at: Callable[[int, int], bytes] = lambda count, at: source[at : at + count]
-        else:
-            self.size = regular_size(source)
-            number = os.open(source, os.O_RDONLY)
-            self._at = partial(os.pread, number)
-            self.close = weakref.finalize(self, os.close, number)
-        self._place = 0
 
-    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
-        """Choose where to read, from the start or from the end."""
-        self._place = offset + (self.size if whence == os.SEEK_END else 0)
-        return self._place
+def remember(path: Path, tried: bool = True) -> None:
+    """Know a file as written here or tried, also in processes that are started later.
 
-    def tell(self) -> int:
-        """Where the next byte is read."""
-        return self._place
-
-    def read(self, count: int) -> bytes:
-        """Read so many bytes, or what there is."""
-        before = min(self._place, len(_HEAP) - 1)
-        start = self._place - before
-        data = self._at(before + count, start)
-        at = data.find(_HEAP)
-        while at >= 0:
-            self._check_heap(start + at)
-            at = data.find(_HEAP, at + 1)
-        self._place = start + len(data)
-        return data[before:]
-
-    def readinto(self, buffer: memoryview) -> int:
-        """Fill a buffer."""
-        data = self.read(len(buffer))
-        buffer[: len(data)] = data
-        return len(data)
-
-    def _check_heap(self, place: int) -> None:
-        """Walk a global heap: a header of 16 bytes, objects of 16 bytes and theirs, free space."""
-        size = int.from_bytes(self._at(8, place + 8), "little")
-        if not MIN_HEAP <= size <= self.size - place:
-            return  # HDF5 refuses it, if it is one
-        if size > MAX_HEAP:
-            raise OSError(f"a heap of {size} bytes")
-        heap, at = self._at(size - 16, place + 16), 0
-        while at + 16 <= len(heap):
-            index, _, length = struct.unpack_from("<HHxxxxQ", heap, at)
-            need = 16 + -(-length // 8) * 8 if index else length
-            if need < 8 or at + need > len(heap):
-                raise OSError("a heap with an object of an impossible size")
-            at += need
+    Args:
+        path: of the file.
+        tried: whether it was; if not it is, unless it is known.
+    """
+    status, known = path.stat(), os.environ.get(_TRIED, "").split()
+    name = f"{status.st_dev}:{status.st_ino}:{status.st_size}:{status.st_ctime_ns}"
+    if name not in known:
+        if not tried:
+            try_files([path])
+        os.environ[_TRIED] = " ".join([*known[-99:], name])
 
 
 class UntrustedFile(Closing):
@@ -118,7 +101,7 @@ class UntrustedFile(Closing):
 
     Args:
         path: of the file.
-        data: its bytes, where they have been read already.
+        data: its bytes, of a file that was made here or tried already.
 
     Raises:
         FolderError: it is not a regular file, or not HDF5. So do all methods, for whatever is not
@@ -129,14 +112,13 @@ class UntrustedFile(Closing):
         self.path = path
         self._claimed = 0
         try:
-            self._source = _HeapChecked(path if data is None else data)
+            self.bytes = regular_size(path) if data is None else len(data)
+            if data is None:
+                remember(path, tried=False)
         except OSError as error:
             raise FolderError(f"{path}: {error.strerror}") from None
         try:
-            self.bytes = self._source.size
-            self._file = h5py.File(self._source, "r")
-            if self._file.id.get_create_plist().get_sizes() != (8, 8):
-                raise ValueError("its addresses and lengths should have 8 bytes")
+            self._file = h5py.File(path if data is None else io.BytesIO(data), "r")
         except _DAMAGED as error:
             raise FolderError(f"{path}: is not an HDF5 file, or is truncated ({error})") from None
 
@@ -189,13 +171,13 @@ class UntrustedFile(Closing):
         where, wanted = f"{self.path}: /{name}", np.dtype(dtype)
         with _refusing_damage(where):
             dataset = self._dataset(name, where, wanted, shape)
-            size = wanted.itemsize * int(np.prod(shape, dtype=object))
+            size = wanted.itemsize * prod(shape)
             if dataset.chunks is not None or dataset.id.get_storage_size() != size:
                 raise FolderError(f"{where}: should be stored in one piece of {size} bytes")
         self._claimed += size
         if self._claimed > self.bytes:
             raise FolderError(f"{where}: is larger than the file; it is damaged or truncated")
-        return Column(where, dataset, wanted, shape)
+        return Column(where, dataset, wanted, shape, [])
 
     def chunks(self, name: str, dtype: DTypeLike, shape: tuple[int, ...]) -> "Chunks":
         """Samples [N, ...], each in a chunk of its own, plain or gzip."""
@@ -204,45 +186,37 @@ class UntrustedFile(Closing):
             dataset = self._dataset(name, where, wanted, shape)
             if dataset.dtype != wanted:
                 raise FolderError(f"{where}: is of the type {dataset.dtype.str}; not {wanted.str}")
-            creation = dataset.id.get_create_plist()
-            filters = [creation.get_filter(i)[0] for i in range(creation.get_nfilters())]
             if dataset.chunks != one:
                 raise FolderError(f"{where}: has chunks of {dataset.chunks}; should be {one}")
-            if filters not in ([], [_DEFLATE]):
-                raise FolderError(f"{where}: is stored through filters {filters}; should be gzip")
+            filters = _filters(dataset, where, [], [_DEFLATE])
             if dataset.id.get_num_chunks() != shape[0]:
                 raise FolderError(
                     f"{where}: holds {dataset.id.get_num_chunks()} samples; should hold {shape[0]}"
                 )
-        return Chunks(where, dataset, wanted, shape, bool(filters))
+        return Chunks(where, dataset, wanted, shape, filters)
 
-    def samples(self, name: str) -> "Samples":
+    def samples(self, name: str) -> "Numbers":
         """Real or complex numbers of any shape, plain or gzip, read in pieces."""
         where = f"{self.path}: /{name}"
         with _refusing_damage(where):
             dataset = self._dataset(name, where, None, None)
             number, parts = _numbers(dataset.dtype, where)
-            creation = dataset.id.get_create_plist()
-            filters = [creation.get_filter(i)[0] for i in range(creation.get_nfilters())]
-            size = dataset.dtype.itemsize * int(np.prod(dataset.shape, dtype=object))
+            filters = _filters(dataset, where, [], [_DEFLATE], [_SHUFFLE, _DEFLATE])
+            size, chunk = dataset.dtype.itemsize * prod(dataset.shape), dataset.chunks
             if not dataset.shape or size == 0:
                 raise FolderError(f"{where}: has the shape {dataset.shape}; should hold numbers")
-            if filters not in ([], [_DEFLATE], [_SHUFFLE, _DEFLATE]):
-                raise FolderError(f"{where}: is stored through filters {filters}; should be gzip")
-            chunk = dataset.chunks
             if chunk is None and dataset.id.get_storage_size() != size:
                 raise FolderError(f"{where}: should be stored in {size} bytes; it is truncated")
             if chunk is not None:
-                one = dataset.dtype.itemsize * int(np.prod(chunk, dtype=object))
+                one = dataset.dtype.itemsize * prod(chunk)
+                grid = prod(-(-n // c) for n, c in zip(dataset.shape, chunk, strict=True))
                 if one > MAX_CHUNK:
                     raise FolderError(f"{where}: has chunks of {one} bytes; at most {MAX_CHUNK}")
-                if dataset.id.get_num_chunks() != _grid(dataset.shape, chunk):
+                if dataset.id.get_num_chunks() != grid:
                     raise FolderError(f"{where}: lacks pieces; it is unfinished or damaged")
             if not filters and size > self.bytes:
                 raise FolderError(f"{where}: is larger than the file; it is damaged or truncated")
-        return Samples(
-            where, dataset, dataset.shape, number, parts, _SHUFFLE in filters, bool(filters)
-        )
+        return Numbers(where, dataset, dataset.dtype, dataset.shape, filters, number, parts)
 
     def numeric_names(self) -> list[str]:
         """Names of the datasets of numbers at the top of the file, at most 1000."""
@@ -294,7 +268,6 @@ class UntrustedFile(Closing):
     def close(self) -> None:
         """Close the file."""
         self._file.close()
-        self._source.close()
 
 
 @dataclass(frozen=True)
@@ -305,6 +278,7 @@ class Column:
     _dataset: h5py.Dataset
     dtype: np.dtype[Any]
     shape: tuple[int, ...]
+    _filters: list[int]
 
     def __len__(self) -> int:
         return self.shape[0]
@@ -315,78 +289,60 @@ class Column:
             values: NDArray[Any] = self._dataset[start:stop]
         return values.astype(self.dtype, copy=False)
 
-    def __getitem__(self, key: Any) -> Any:
-        with _refusing_damage(self.where):
-            values: NDArray[Any] = self._dataset[()]
-        return values.astype(self.dtype, copy=False)[key]
-
-
-@dataclass
-class Chunks:
-    """Samples [N, ...] that were checked and are read when they are indexed."""
-
-    where: str
-    _dataset: h5py.Dataset
-    dtype: np.dtype[Any]
-    shape: tuple[int, ...]
-    _deflated: bool
-    _sizes: NDArray[np.uint32] | None = field(default=None, repr=False)
-
-    def __len__(self) -> int:
-        return self.shape[0]
-
     def __getitem__(self, key: Any) -> NDArray[Any]:
-        rows = np.arange(len(self))[key]
-        return self._sample(int(rows)) if rows.ndim == 0 else np.stack([*map(self._sample, rows)])
+        found: NDArray[Any] = self.rows(0, len(self))[key]
+        return found
 
-    @property
-    def _bytes(self) -> int:
-        """Of a sample, inflated."""
-        return self.dtype.itemsize * prod(self.shape[1:])
+    def _stored(self, corner: tuple[int, ...]) -> tuple[int, bytes]:
+        """Deflate makes nothing longer by more than a thousandth: h5py refuses what is."""
+        raw = self.dtype.itemsize * prod(self._dataset.chunks)
+        room = bytearray(raw + (raw // 1000 + 64 if self._filters else 0))
+        mask, data = self._dataset.id.read_direct_chunk(corner, out=room)
+        return mask, bytes(data)
 
-    def stored(self, row: int) -> tuple[int, bytes]:
-        """Filter mask and bytes of a row's chunk as they lie in the file."""
-        if self._sizes is None:
-            self._sizes = self._stored_sizes()
-        with _refusing_damage(f"{self.where}[{row}]"):
-            mask, chunk = self._dataset.id.read_direct_chunk((row, *(0,) * (len(self.shape) - 1)))
-        return mask, chunk
-
-    def _stored_sizes(self) -> NDArray[np.uint32]:
-        """Stored bytes of every row; deflate makes nothing longer by more than a thousandth."""
-        raw = self._bytes
-        most = raw + raw // 1000 + 64 if self._deflated else raw
-        sizes = np.zeros(len(self), np.uint32)
-
-        def note(chunk: Any) -> None:
-            if chunk.chunk_offset[0] < len(sizes):
-                sizes[chunk.chunk_offset[0]] = min(chunk.size, 2**32 - 1)
-
-        with _refusing_damage(self.where):
-            self._dataset.id.chunk_iter(note)
-        if (sizes > most).any():
-            row = int(np.argmax(sizes > most))
-            raise FolderError(f"{self.where}[{row}]: is stored in {sizes[row]} bytes, too many")
-        if not sizes.all():
-            raise FolderError(f"{self.where}: lacks samples; it is damaged")
-        return sizes
-
-    def _sample(self, row: int) -> NDArray[Any]:
-        raw = self._bytes
-        mask, chunk = self.stored(row)
-        if self._deflated and not mask & 1:
-            with _inflating(f"{self.where}[{row}]"):
+    def _piece(self, corner: tuple[int, ...], name: object) -> NDArray[Any]:
+        """The chunk at a corner, inflated up to its size."""
+        raw = self.dtype.itemsize * prod(self._dataset.chunks)
+        with _refusing_damage(f"{self.where}[{name}]"):
+            mask, data = self._stored(corner)
+            for place, kind in reversed([*enumerate(self._filters)]):
+                if mask >> place & 1:
+                    continue
+                if kind == _SHUFFLE:
+                    data = np.frombuffer(data, "u1").reshape(self.dtype.itemsize, -1).T.tobytes()
+                    continue
                 reader = zlib.decompressobj()
-                chunk = reader.decompress(chunk, raw + 1)
+                data = reader.decompress(data, raw + 1)
                 if not reader.eof:
                     raise zlib.error("too long or truncated")
-        if len(chunk) != raw:
-            raise FolderError(f"{self.where}[{row}]: is {len(chunk)} bytes; should be {raw}")
-        return np.frombuffer(chunk, self.dtype).reshape(self.shape[1:]).copy()
+            if len(data) != raw:
+                raise ValueError(f"is {len(data)} bytes; should be {raw}")
+            whole: NDArray[Any] = np.frombuffer(data, self.dtype).reshape(self._dataset.chunks)
+        return whole.copy()
 
 
 @dataclass(frozen=True)
-class Samples:
+class Chunks(Column):
+    """Samples [N, ...], of which those that are indexed are read."""
+
+    def __getitem__(self, key: Any) -> NDArray[Any]:
+        rows = np.arange(len(self))[key]
+        if rows.ndim:
+            return np.stack([self[row] for row in rows.tolist()])
+        sample: NDArray[Any] = self._piece(self._corner(int(rows)), rows)[0]
+        return sample
+
+    def stored(self, row: int) -> tuple[int, bytes]:
+        """Filter mask and bytes of a row's chunk as they lie in the file."""
+        with _refusing_damage(f"{self.where}[{row}]"):
+            return self._stored(self._corner(row))
+
+    def _corner(self, row: int) -> tuple[int, ...]:
+        return row, *(0,) * (len(self.shape) - 1)
+
+
+@dataclass(frozen=True)
+class Numbers(Column):
     """Numbers that were checked and are read in pieces.
 
     Attributes:
@@ -396,59 +352,52 @@ class Samples:
         parts: 2 of complex numbers, 1 of real ones.
     """
 
-    where: str
-    _dataset: h5py.Dataset
-    shape: tuple[int, ...]
     number: np.dtype[Any]
     parts: int
-    _shuffled: bool
-    _deflated: bool
 
     @property
     def chunk(self) -> tuple[int, ...]:
         """Shape of what is stored together."""
         return self._dataset.chunks or (1,) * len(self.shape)
 
+    def rows(self, start: int, stop: int) -> NDArray[Any]:
+        """Rows start .. stop - 1 of the first axis, complex numbers as such."""
+        if stop == start:
+            return np.empty((0, *self.shape[1:]), self.dtype)
+        key = (slice(start, stop), *(slice(0, n) for n in self.shape[1:]))
+        found: NDArray[Any] = self.read(key).view(self.dtype.newbyteorder("="))[..., 0]
+        return found
+
     def read(self, key: tuple[slice, ...]) -> NDArray[Any]:
         """A block [..., part] of the numbers; slices have a start and a stop within the shape."""
         with _refusing_damage(self.where):
-            if not self._deflated:
+            if not self._filters:
                 return self._in_parts(self._dataset[key])
-            out = np.empty([one.stop - one.start for one in key], self._dataset.dtype)
-            first = [s.start // c for s, c in zip(key, self.chunk, strict=True)]
-            counts = [-(-s.stop // c) - f for s, c, f in zip(key, self.chunk, first, strict=True)]
-            for place in np.ndindex(*counts):
-                corner = [(f + p) * c for f, p, c in zip(first, place, self.chunk, strict=True)]
-                inside, outside = [], []
-                for start, side, wanted in zip(corner, self.chunk, key, strict=True):
-                    low, high = max(start, wanted.start), min(start + side, wanted.stop)
-                    inside.append(slice(low - start, high - start))
-                    outside.append(slice(low - wanted.start, high - wanted.start))
-                out[tuple(outside)] = self._inflated(tuple(corner))[tuple(inside)]
+            out = np.empty([one.stop - one.start for one in key], self.dtype)
+            for piece in self._dataset.iter_chunks(key):
+                corner = tuple(s.start // c * c for s, c in zip(piece, self.chunk, strict=True))
+                inside = [
+                    slice(s.start - c, s.stop - c) for s, c in zip(piece, corner, strict=True)
+                ]
+                starts = [one.start for one in key]
+                here = [slice(s.start - k, s.stop - k) for s, k in zip(piece, starts, strict=True)]
+                out[tuple(here)] = self._piece(corner, corner)[tuple(inside)]
             return self._in_parts(out)
-
-    def _inflated(self, corner: tuple[int, ...]) -> NDArray[Any]:
-        dtype = self._dataset.dtype
-        raw = dtype.itemsize * int(np.prod(self.chunk))
-        if self._dataset.id.get_chunk_info_by_coord(corner).size > raw + raw // 1000 + 64:
-            raise FolderError(f"{self.where}: a piece is stored in too many bytes")
-        mask, data = self._dataset.id.read_direct_chunk(corner)
-        if not mask & (2 if self._shuffled else 1):
-            with _inflating(f"{self.where}[{corner}]"):
-                data = zlib.decompressobj().decompress(data, raw + 1)
-        if len(data) != raw:
-            raise FolderError(f"{self.where}: a piece is {len(data)} bytes; should be {raw}")
-        flat = np.frombuffer(data, np.uint8)
-        if self._shuffled and not mask & 1:
-            flat = flat.reshape(dtype.itemsize, -1).T.ravel()
-        whole: NDArray[Any] = flat.view(dtype).reshape(self.chunk)
-        return whole
 
     def _in_parts(self, values: NDArray[Any]) -> NDArray[Any]:
         """[...] as [..., part], two of complex and compound numbers."""
         values = np.ascontiguousarray(values)
         flat = values.view(self.number.newbyteorder(_order(values.dtype)))
         return flat.astype(self.number, copy=False).reshape(*values.shape, self.parts)
+
+
+def _filters(dataset: h5py.Dataset, where: str, *right: list[int]) -> list[int]:
+    """Numbers of the filters that a dataset is stored through."""
+    creation = dataset.id.get_create_plist()
+    found = [creation.get_filter(i)[0] for i in range(creation.get_nfilters())]
+    if found not in right:
+        raise FolderError(f"{where}: is stored through filters {found}; should be gzip")
+    return found
 
 
 def _order(dtype: np.dtype[Any]) -> Any:
@@ -467,15 +416,3 @@ def _numbers(dtype: np.dtype[Any], where: str) -> tuple[np.dtype[Any], int]:
         if first == second and first.kind in "iuf" and dtype.itemsize == 2 * first.itemsize <= 16:
             return first.newbyteorder("="), 2
     raise FolderError(f"{where}: is of the type {dtype}; should be real or complex numbers")
-
-
-def _grid(shape: tuple[int, ...], chunk: tuple[int, ...]) -> int:
-    return int(np.prod([-(-n // c) for n, c in zip(shape, chunk, strict=True)], dtype=object))
-
-
-@contextmanager
-def _inflating(where: str) -> Iterator[None]:
-    try:
-        yield
-    except zlib.error as error:
-        raise FolderError(f"{where}: cannot be read, its gzip data are damaged ({error})") from None

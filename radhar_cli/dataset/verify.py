@@ -40,7 +40,7 @@ ROWS = 4096  # rows of column labels read at once
 
 
 @dataclass
-class Report:
+class Verification:
     """What verification found.
 
     Attributes:
@@ -62,7 +62,7 @@ class Report:
     problems: list[str] = field(default_factory=list)
 
 
-def verify(folder: Path, samples: int, motion: Path | None = None) -> Report:
+def verify(folder: Path, samples: int, motion: Path | None = None) -> Verification:
     """Verify the data set in `folder` (or the dataset.h5 itself).
 
     Args:
@@ -79,8 +79,12 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Report:
     prepare_process()
     beside = folder if folder.is_dir() else folder.parent
     with open_dataset(folder) as data:
-        report = Report(len(data))
-        _versions(data, report)
+        report, stored = Verification(len(data)), data.versions
+        report.other_versions += [
+            f"{library} {stored[library]} there, {here} here"
+            for library, here in versions().items()
+            if stored[library] != here
+        ]
         if _structure(data, report):
             _checksums(data, report)
             _column_labels(data, report)
@@ -94,15 +98,7 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Report:
         return report
 
 
-def _versions(data: Dataset, report: Report) -> None:
-    stored = data.versions
-    for library, here in versions().items():
-        there = stored[library]
-        if there != here:
-            report.other_versions.append(f"{library} {there} there, {here} here")
-
-
-def _structure(data: Dataset, report: Report) -> bool:
+def _structure(data: Dataset, report: Verification) -> bool:
     config = data.config
     rows = Rows.of(config)
     label = np.repeat([a.index for a in rows.activities], rows.counts)
@@ -121,7 +117,7 @@ def _structure(data: Dataset, report: Report) -> bool:
     return not report.problems
 
 
-def _checksums(data: Dataset, report: Report) -> None:
+def _checksums(data: Dataset, report: Verification) -> None:
     for name, chunks in data.large.items():
         stored = data.sha256[name][:]
         for row in range(len(data)):
@@ -139,7 +135,7 @@ def _checksums(data: Dataset, report: Report) -> None:
             report.problems.append(f"/{name}: does not match its checksum")
 
 
-def _config_and_table(data: Dataset, folder: Path, report: Report) -> None:
+def _config_and_table(data: Dataset, folder: Path, report: Verification) -> None:
     """Compare config.yaml and scenes.csv with what dataset.h5 says."""
     for name in (CONFIG, SCENES):
         if not (folder / name).exists():
@@ -179,19 +175,17 @@ def _alike(there: str, right: str) -> bool:
         return False
 
 
-def _column_labels(data: Dataset, report: Report) -> None:
+def _column_labels(data: Dataset, report: Verification) -> None:
     known = len(label_names(data.config))
     for name, column in data.column_label.items():
-        for start in range(0, len(data), ROWS):
-            largest = column.rows(start, start + ROWS).max(initial=0)
-            if largest >= known:
-                report.problems.append(
-                    f"/{COLUMN_LABEL}/{name}: holds {largest}; should be 0 to {known - 1}"
-                )
-                break
+        blocks = (column.rows(start, start + ROWS) for start in range(0, len(data), ROWS))
+        largest = max(block.max(initial=0) for block in blocks)
+        if largest >= known:
+            where = f"/{COLUMN_LABEL}/{name}"
+            report.problems.append(f"{where}: holds {largest}; should be 0 to {known - 1}")
 
 
-def _resynthesise(data: Dataset, samples: int, report: Report, motion: Path | None) -> None:
+def _resynthesise(data: Dataset, samples: int, report: Verification, motion: Path | None) -> None:
     config = data.config if motion is None else with_folder(data.config, motion)
     rows, plan = Rows.of(config), plan_images(config)
     columns = data.fields
@@ -221,6 +215,10 @@ def _resynthesise(data: Dataset, samples: int, report: Report, motion: Path | No
                 right = made.chunk(name, stored.shape[1:])
                 if not _same(stored[row], right, exactly=not report.other_versions):
                     report.problems.append(f"/{name}[{row}] ({scene.name}): differs")
+        for name, right in made.products.items():
+            there = data.products[name][row] if name in data.products else right[:0]
+            if not _same(there, right, exactly=not report.other_versions):
+                report.problems.append(f"/products/{name}[{row}] ({scene.name}): differs")
         for name, labels in made.column_labels.items():
             wrong = int(np.count_nonzero(data.column_label[name].rows(row, row + 1)[0] != labels))
             # Under other versions a phase may begin a column later: rounding.
@@ -242,8 +240,8 @@ def _resynthesise(data: Dataset, samples: int, report: Report, motion: Path | No
 
 def _same(there: NDArray[Any], right: NDArray[Any], exactly: bool) -> bool:
     """Whether a sample is the one made anew, or nearly, as other versions of libraries round it."""
-    if exactly:
-        return there.tobytes() == right.tobytes()
+    if exactly or there.shape != right.shape:
+        return there.shape == right.shape and there.tobytes() == right.tobytes()
     if there.dtype.kind == "f":  # decibels; cells far below the others are rounding
         off = np.abs(there.astype(float) - right) > POWER_DB
         return bool(np.mean(off) <= MASK_SHARE)
@@ -253,7 +251,7 @@ def _same(there: NDArray[Any], right: NDArray[Any], exactly: bool) -> bool:
     return near and np.array_equal(np.isnan(there), gone)
 
 
-def _pngs(data: Dataset, folder: Path, report: Report) -> None:
+def _pngs(data: Dataset, folder: Path, report: Verification) -> None:
     config = data.config
     rows, split = Rows.of(config), split_rows(config)
     table = colour_table(config.image.colour_map)

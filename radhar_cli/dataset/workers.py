@@ -1,20 +1,31 @@
-"""Run tasks in joblib worker processes, quietly and within bounds."""
+"""Run tasks in joblib worker processes or on a dask cluster, quietly and within bounds."""
 
+import logging
 import os
 import signal
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from itertools import islice
+from multiprocessing import resource_tracker
 from typing import Any, TypeVar
 
 from radhar_cli.activity import Activity, know_activities, own_activities
-from radhar_cli.dataset.cluster import Cluster, connected
-from radhar_cli.errors import UnfinishedError
+from radhar_cli.errors import MachineError, UnfinishedError
+from radhar_cli.registry import know_products, own_products
 from radhar_cli.worker_process import prepare_process
 
 T = TypeVar("T")
 NO_PARENT = 0  # parent of workers on other machines, which end with their scheduler
-_CLUSTER: ContextVar[Cluster | None] = ContextVar("cluster", default=None)
+LOCAL = "local"
+TASKS_A_CORE = 2
+# For workers of our own: dask measures itself 100 times a second, a fifth of a worker's time.
+QUIET = {
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.tick.interval": "1s",
+    "distributed.admin.system-monitor.interval": "10s",
+}
+_CLIENT: ContextVar[Any] = ContextVar("client", default=None)  # of dask
 
 
 def run_tasks(
@@ -25,10 +36,9 @@ def run_tasks(
     Tasks are taken from the iterable only as fast as they are finished. With one job everything
     runs here; within `on_cluster` all runs there.
     """
-    cluster = _CLUSTER.get()
-    if cluster is not None:
-        own = own_activities()
-        yield from cluster.run(_with_activities, ((own, function, *task) for task in tasks))
+    own, client = (own_activities(), own_products()), _CLIENT.get()
+    if client is not None:
+        yield from _run_on(client, ((own, function, *task) for task in tasks))
         return
     if jobs == 1:
         prepare_process()
@@ -43,8 +53,7 @@ def run_tasks(
     )
     try:
         with _interrupts_blocked():
-            own = own_activities()
-            results = pool(delayed(_with_activities)(own, function, *task) for task in tasks)
+            results = pool(delayed(_with_own)(own, function, *task) for task in tasks)
         yield from results
     except UnboundLocalError as error:  # of loky, on its way out where it finds no more files
         raise error.__context__ or error from None
@@ -55,10 +64,53 @@ def run_tasks(
         ) from None
 
 
-def _with_activities(own: tuple[Activity, ...], function: Callable[..., T], *task: Any) -> T:
-    """Run a task in a worker that knows the classes its parent knows."""
-    know_activities(own)
+def _with_own(
+    own: tuple[tuple[Activity, ...], tuple[Any, ...]], function: Callable[..., T], *task: Any
+) -> T:
+    """Run a task in a worker that knows the classes and products its parent knows."""
+    know_activities(own[0])
+    know_products(own[1])
     return function(*task)
+
+
+def _run_on(client: Any, tasks: Iterable[tuple[Any, ...]]) -> Iterator[Any]:
+    """Yield _with_own(*task) for every task, in any order; tasks of a lost worker are run again.
+
+    Raises:
+        UnfinishedError: the scheduler is gone, or one task lost several workers.
+    """
+    from distributed import as_completed
+    from distributed.client import FutureCancelledError
+    from distributed.comm import CommClosedError
+    from distributed.scheduler import KilledWorker
+
+    left, running = iter(tasks), as_completed()
+
+    def fill() -> None:
+        for task in islice(left, max(0, TASKS_A_CORE * _cores(client) - running.count())):
+            running.add(client.submit(_with_own, *task, pure=False))
+
+    try:
+        fill()
+        for done in running:
+            yield done.result()
+            fill()
+    except KilledWorker:
+        fault = "several workers were lost with the same task, perhaps out of memory"
+    except (FutureCancelledError, CommClosedError):
+        fault = "the scheduler is gone"
+    except OSError:
+        if client.status == "running":
+            raise  # the task's own
+        fault = "the scheduler is gone"
+    else:
+        return
+    raise UnfinishedError(f"dask: {fault}; what was finished is kept, and the same command resumes")
+
+
+def _cores(client: Any) -> int:
+    """Threads of all workers of a dask cluster that are there now."""
+    return max(1, int(sum(client.ncores().values())))
 
 
 @contextmanager
@@ -66,20 +118,43 @@ def on_cluster(address: str, jobs: int) -> Iterator[int]:
     """Context in which a dask cluster runs the tasks; yields its number of cores.
 
     Args:
-        address: of the scheduler, or `local`.
+        address: of the scheduler, such as tcp://host:8786, or `local`: workers on this machine.
         jobs: processes of `local`.
+
+    Raises:
+        MachineError: no scheduler answers, or dask is not installed.
     """
-    with connected(address, jobs) as cluster:
-        token = _CLUSTER.set(cluster)
+    try:
+        import dask
+        from distributed import Client
+    except ImportError:
+        raise MachineError("--cluster: needs dask; `pip install 'radhar[cluster]'`") from None
+    # They log tracebacks of lost connections.
+    for name in ("distributed", "distributed.client", "tornado", "asyncio"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)
+    own = {"n_workers": jobs, "threads_per_worker": 1, "dashboard_address": None}
+    own["silence_logs"] = logging.CRITICAL
+    # Dask's thread, and so its workers, inherit that Ctrl-C is blocked: it is ours to end them.
+    resource_tracker.ensure_running()  # or its start, in that thread, would unblock it
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        with dask.config.set(QUIET):
+            client = Client(**own) if address == LOCAL else Client(address, timeout=10)
+    except (OSError, ValueError) as error:
+        raise MachineError(f"--cluster {address}: no dask scheduler answers ({error})") from None
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    with client:
+        token = _CLIENT.set(client)
         try:
-            yield cluster.cores
+            yield _cores(client)
         finally:
-            _CLUSTER.reset(token)
+            _CLIENT.reset(token)
 
 
 def parent_pid() -> int:
     """The process without which workers should stop; NO_PARENT on a cluster."""
-    return os.getpid() if _CLUSTER.get() is None else NO_PARENT
+    return os.getpid() if _CLIENT.get() is None else NO_PARENT
 
 
 def warm_up(jobs: int) -> None:
@@ -114,8 +189,6 @@ def _start_trackers() -> None:
 
     Started later, they would unblock the signals again before the workers are there.
     """
-    from multiprocessing import resource_tracker
-
     from joblib.externals.loky.backend import resource_tracker as loky_tracker
 
     old = os.environ.get("PYTHONWARNINGS")

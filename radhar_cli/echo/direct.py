@@ -40,6 +40,7 @@ from radhar_cli.echo.paths import Paths, PathSource
 from radhar_cli.echo.phase_recurrence import nodes, phasors_between_knots
 from radhar_cli.phasor import unit_phasor
 from radhar_cli.processing.canceller import FIRST_DIFFERENCE, Canceller, Fir
+from radhar_cli.processing.look import Look, RangeSum
 from radhar_cli.radar.waveform import Waveform
 
 # Values at work at once, which stay in the cache: at knots and at pulses; of phasors, of which some
@@ -88,6 +89,16 @@ class DirectEcho:
     def signal_power(self) -> float:
         """P_s = mean over the pulses of sum_i A_i^2."""
         return self._motion.power
+
+    @property
+    def look(self) -> Look:
+        """What of the echo this is."""
+        return Look.of_all("slow_time", RangeSum(self.waveform))
+
+    def rows(self) -> tuple[Complex, Accuracy]:
+        """`slow_time` as `look` has it [1, M]."""
+        y, accuracy = self.slow_time()
+        return y[None], accuracy
 
     def slow_time(self) -> tuple[Complex, Accuracy]:
         """y[m] [M] before the canceller, less what that removes exactly; and its accuracy.

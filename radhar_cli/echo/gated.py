@@ -7,7 +7,7 @@ nodes instead of N_ADC samples, and one small matrix takes those to the bins (do
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from math import ceil, inf, isqrt
 from typing import NamedTuple
@@ -19,13 +19,14 @@ from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.echo.accuracy import Settings, probed_pulses, relative_db
 from radhar_cli.echo.beat import powers, start_phase
 from radhar_cli.echo.direct import Accuracy, DirectEcho
+from radhar_cli.echo.exact import beat_at
 from radhar_cli.echo.interpolation import AFTER, BEFORE, upsample
 from radhar_cli.echo.knots import Knots, Motion
 from radhar_cli.echo.paths import Paths
-from radhar_cli.echo.range_profiles import beat_at
 from radhar_cli.phasor import unit_phasor
 from radhar_cli.processing.canceller import NO_CANCELLER, Fir
-from radhar_cli.processing.range_compression import range_bins
+from radhar_cli.processing.look import Look, RangeBins
+from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.radar.waveform import Waveform
 
 SEGMENTS = 32  # knot intervals per block, in which the body hardly moves
@@ -92,12 +93,23 @@ class GatedEcho(DirectEcho):
         bins: those that are made.
         needed: (first [M], last + 1 [M]): which of them count, pulse by pulse; others may be zero.
             None is all.
+        spans: the pulses of each bin that count; None is all.
     """
 
     bins: slice = field(default_factory=lambda: slice(0, 0))
     needed: tuple[Index, Index] | None = None
+    spans: list[slice] | None = None
 
-    def range_bins(self) -> tuple[Complex, Accuracy]:
+    @property
+    def look(self) -> Look:
+        """What of the echo this is."""
+        spans = self.spans or [slice(0, self.waveform.n_pulses)] * (
+            self.bins.stop - self.bins.start
+        )
+        bins = RangeBins(replace(self.waveform, centred=True), self.bins)
+        return Look.of_all("range_signals", bins, spans=spans)
+
+    def rows(self) -> tuple[Complex, Accuracy]:
         """y_k[m] [K, M] before the canceller, less what that removes exactly; and its accuracy.
 
         The error is that of all bins that count, together.
@@ -156,8 +168,8 @@ class GatedEcho(DirectEcho):
         probes, density, total = probed_pulses(power)
         if total == 0:
             return -inf
-        right = range_bins(beat_at(exact, w, probes, shown.taps), w)[self.bins]
-        right = right * unit_phasor(k * (w.n_adc / 2 / w.n_fft)) / unit
+        centred = replace(w, centred=True)
+        right = range_compression(beat_at(exact, w, probes, shown.taps), centred, self.bins) / unit
         for lag, c in enumerate(shown.taps):
             right -= c * y[:, probes + lag]
         right *= _between(low[probes], k, high[probes])

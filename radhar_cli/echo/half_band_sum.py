@@ -12,40 +12,10 @@ import numpy as np
 import scipy.fft
 
 from radhar_cli.arrays import Complex, Float
+from radhar_cli.processing.look import weights
 from radhar_cli.radar.waveform import Waveform
 
 MAX_CELLS = 2**22  # size of a table; a cell has 64 bytes
-
-
-@lru_cache(maxsize=4)
-def weights(waveform: Waveform) -> Complex:
-    """D[n] [N_ADC]: what range compression and the sum over bins do to fast-time sample n."""
-    n = np.arange(waveform.n_adc) - waveform.n0
-    kept = np.zeros(waveform.n_fft)
-    kept[: waveform.n_bins] = 1
-    # sum_k exp(+j 2 pi k n'/N_FFT) is a geometric series; its ratio is 1 where n' = 0 mod N_FFT.
-    angle = np.pi * n / waveform.n_fft
-    whole = np.isclose(np.sin(angle), 0, atol=1e-12)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        series = np.exp(1j * (waveform.n_bins - 1) * angle) * (
-            np.sin(waveform.n_bins * angle) / np.sin(angle)
-        )
-    d: Complex = np.where(whole, kept.sum(), series)
-    return d
-
-
-def noise_gain(waveform: Waveform) -> float:
-    """Variance gain sum_n |D[n]|^2 of white noise through compression and the sum over bins."""
-    return float(np.sum(np.abs(weights(waveform)) ** 2))
-
-
-def half_band_sum(u: Float, waveform: Waveform) -> Complex:
-    """G(u) [...] by its definition: N_ADC terms a value."""
-    n = np.arange(waveform.n_adc) - waveform.n0
-    out = np.zeros(u.shape, dtype=complex)
-    for sample, weight in zip(n, weights(waveform), strict=True):
-        out += weight * np.exp(-2j * np.pi * np.mod(sample * u, 1))
-    return out
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ The only package that imports PyTorch; `pip install 'radhar[train]'` installs it
     images/         labelled images of dataset.h5, of a tree of class folders, or synthesised
     batches         which images make a step, the same for any number of processes; augmentation
     models/         one network per file; zoo: those of timm
-    machine         device and precision; execution_plan, step_memory: what fits and how it runs
+    machine         device and precision; execution_plan: how it runs
     process_group   several processes that train one network
     gradient_step   logits, loss, gradient, update; schedule: the learning rate
     training        epochs, validation, the best one, resuming; starting_point: --init

@@ -69,10 +69,9 @@ class RunError(RadharError):
 
 
 class Streamed(TypedDict):
-    """Config of the samples, whether classes came equally often, how many were learned from."""
+    """Config of the samples, and how many were learned from."""
 
     config: dict[str, Any]
-    balanced: bool
     samples: Annotated[int, Field(ge=0)]
 
 

@@ -20,7 +20,6 @@ from radhar_cli.learning import metrics
 from radhar_cli.learning.evaluation import Predictions, open_for, predict, rows_of
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.scan import scan
-from radhar_cli.learning.images.synthesised import streamed_scenes
 from radhar_cli.learning.models.fftnet import NAME
 from radhar_cli.learning.report_files import Report
 from radhar_cli.learning.run_folder import (
@@ -159,8 +158,7 @@ def seen_in_training(run: Run, images: ImageSet, rows: Index) -> dict[str, int]:
     digests = scan(images, rows).digests if pixels else ()
     return {
         "images": sum(p in pixels for p in digests),
-        "scenes": (sum(images.scenes[row] in scenes for row in rows) if images.scenes else 0)
-        + streamed_scenes(run.metadata.data, images, rows),
+        "scenes": sum(images.scenes[row] in scenes for row in rows) if images.scenes else 0,
     }
 
 

@@ -75,12 +75,12 @@ class Samples(Dataset[dict[str, Any]]):
 
 
 class Stream(IterableDataset[dict[str, Any]]):
-    """Samples without end, for a DataLoader: each (seed, class, index) once, classes mixed.
+    """Samples without end, for a DataLoader: each (seed, class, index) once, classes in turn.
 
     Workers and ranks take batches in turn. With `batch_size` the DataLoader's, the batches of a
-    rank are the same for any number of workers; samples are the same in any case, and the first of
-    them are those of the config's data set (`StreamOrder`). A stream is iterated over once; to go
-    on with it later, `start` counts what was seen: batches * batch_size * ranks.
+    rank are the same for any number of workers; samples are the same in any case. A stream is
+    iterated over once; to go on with it later, `start` counts what was seen: batches * batch_size
+    * ranks.
 
     A scene outside the model is kept, drawn again or ends the stream, as `on_invalid` says.
 
@@ -98,7 +98,6 @@ class Stream(IterableDataset[dict[str, Any]]):
         *,
         fields: Iterable[str] | None = None,
         split: Literal["all", "train"] = "all",
-        balanced: bool = False,
         batch_size: int = 1,
         start: int = 0,
         shard: tuple[int, int] | None = None,
@@ -110,7 +109,6 @@ class Stream(IterableDataset[dict[str, Any]]):
             seed: instead of the config's.
             fields: names in dataset.h5 of what an item has (`radhar_cli.sample`).
             split: "train" leaves out what the data set's split holds back.
-            balanced: every class equally often, whatever `samples_per_class` says.
             batch_size: the DataLoader's.
             start: number of the first sample.
             shard: (rank, ranks), if not those of torch.distributed or torchrun.
@@ -124,7 +122,7 @@ class Stream(IterableDataset[dict[str, Any]]):
             raise ConfigError(
                 f"split = {split!r}: should be all or train; the other splits are finite"
             )
-        self._order = StreamOrder(self.config, split, balanced)
+        self._order = StreamOrder(self.config, split)
         self._batch_size, self.start = whole("batch_size", batch_size, 1), whole("start", start)
         self._shard = None if shard is None else _checked_shard(shard)
         self.class_slugs = self._recipe.class_slugs

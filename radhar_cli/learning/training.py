@@ -44,7 +44,6 @@ from radhar_cli.learning.images.synthesised import (
     TrainingStream,
     stream_and_validation,
     stream_data,
-    streamed_scenes,
 )
 from radhar_cli.learning.machine import choose_device, out_of_memory, repeatable
 from radhar_cli.learning.models.build import build_model
@@ -62,7 +61,6 @@ from radhar_cli.learning.run_summary import write_run_summary
 from radhar_cli.learning.schedule import rate
 from radhar_cli.learning.settings import AugmentConfig, TrainConfig
 from radhar_cli.learning.starting_point import StartingPoint, start_from
-from radhar_cli.learning.step_memory import Step
 from radhar_cli.progress import Messages
 from radhar_cli.randomness import TRAINING, stream
 from radhar_cli.worker_process import keep_memory
@@ -188,17 +186,19 @@ def train_on(task: Task, progress: TrainingProgress) -> Outcome:
     repeatable(device)
     with process_group(device) as group, folder_lock(folder) if group.is_main else nullcontext():
         plan = choose_execution_plan(config, device, synthesises=task.stream is not None)
-        images_a_pass = min(plan.micro_batch, -(-config.images_a_step // group.size))
-        step = Step(config, len(images.classes), images.size, images_a_pass, plan.precision)
-        step.check(device)
-        if step.may_keep_memory(device):
+        if device.type == "cpu":
             keep_memory()
         try:
             return _Training.prepared(task, plan, group, progress).run()
         except RuntimeError as error:
             if not out_of_memory(error):
                 raise
-            raise TrainingError(f"out of memory on {device.type}: {step.advice()}") from None
+            height, width = images.size
+            count = min(plan.micro_batch, -(-config.images_a_step // group.size))
+            raise TrainingError(
+                f"out of memory on {device.type} in a step of {count} images of {height} x {width} "
+                f"px; should be fewer: --set micro_batch={max(1, count // 2)}"
+            ) from None
 
 
 def checked_images(
@@ -269,12 +269,6 @@ class _Training:
             for note in started.notes if started else ():
                 progress.say(note)
         metadata, digests = _metadata(task, plan, group, started)
-        seen = streamed_scenes(metadata.data, images, images.rows("val"))
-        if seen and group.is_main:
-            progress.say(
-                f"warning: {seen} of the validation images show the person and motion of samples "
-                "of the stream; validate on data of another seed"
-            )
 
         def reserve() -> None:
             run.reserve_run(task.folder, metadata, task.overwrite)

@@ -14,8 +14,7 @@ from radhar_cli.pipeline.segment_paths import Points, SegmentPaths, draw_points,
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.randomness import PERSON, SCENE, stream
-from radhar_cli.scene import Scene
+from radhar_cli.scene import Person, Scene
 
 
 def paths_of(
@@ -32,10 +31,12 @@ def paths_of(
     With a wall behind them (`room.back_wall_m`) people are there twice, unless not `mirrored`.
     """
     sources: list[SegmentPaths | MotionPaths] = []
+    people = scene.people
     for number, motion in enumerate(motions):
         rest: Motion | None = motion
         if scene.config.body.scatterers == "segments":
-            segments = segment_paths(scene, motion, antennas, wall, waveform, number)
+            whose = people[min(number, len(people) - 1)]
+            segments = segment_paths(whose, motion, antennas, wall, waveform, number)
             sources += [segments] if segments else []
             rest = _without_segments(motion)
         if rest is not None:
@@ -49,7 +50,7 @@ def paths_of(
 
 
 def segment_paths(
-    scene: Scene,
+    person: Person,
     motion: Motion,
     antennas: Antennas,
     wall: Wall | None,
@@ -59,16 +60,16 @@ def segment_paths(
     """The paths of a motion's segments, or None where its joints have none.
 
     Args:
-        scene: whose body and processing settings hold.
+        person: whose body it is, and the processing settings of whose scene hold.
         motion: whole, or `Only` some joints of one.
         antennas, wall, waveform: what it is seen with.
         number: of the motion among several.
     """
-    body = body_of(scene, motion)
+    body = body_of(person, motion)
     kept = [n for joint in motion.names for n in covered(joint, body.segments)]
     if not kept:
         return None
-    config = scene.config
+    config = person.scene.config
     window = frames_of(config, waveform.duration, waveform.prf, waveform.f0).length / waveform.prf
     counts = point_counts(
         body,
@@ -79,7 +80,7 @@ def segment_paths(
         config.body.points_per_segment,
     )
     points = tuple(
-        _tapered(draw_points(count, _stream(scene, f"body/{number}/{one.name}")))
+        _tapered(draw_points(count, person.own_stream(f"body/{number}/{one.name}")))
         for one, count in zip(body.segments, counts, strict=True)
     )
     shadowing = config.body.shadowing
@@ -102,10 +103,3 @@ def _without_segments(motion: Motion) -> Motion | None:
     if len(alone) == len(whole.names):
         return motion
     return Only(whole, alone) if alone else None
-
-
-def _stream(scene: Scene, name: str) -> np.random.Generator:
-    seed, subject = scene.config.seed, scene.subject
-    if subject is not None:
-        return stream(seed, PERSON, subject, name=name)
-    return stream(seed, SCENE, scene.activity.index, scene.index, name=name)

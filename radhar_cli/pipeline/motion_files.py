@@ -10,55 +10,50 @@ from radhar_cli.errors import MotionFileError
 from radhar_cli.motion.files.clip import Clip, clip_of
 from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.motion.files.reading import read_motion
-from radhar_cli.scene import Scene
+from radhar_cli.scene import Numbers, Person
 
 KEPT_BYTES = 2**26  # size of the cache of clips in a process
 _clips: OrderedDict[tuple[Any, ...], Clip] = OrderedDict()
 
 
-def file_motion(scene: Scene) -> FileMotion:
-    """The motion of a scene whose class has files.
+def file_motion(person: Person) -> FileMotion:
+    """The motion of a person whose class has files.
 
     Raises:
         MotionFileError: the file cannot be used; names file, line and what is missing or odd.
     """
-    config = scene.config
-    one = config.files_of(scene.activity)
+    one, slug, folder = (
+        person.config.files_of(person.activity),
+        person.activity.slug,
+        person.motion.folder,
+    )
     assert one is not None
     assert one.file is not None
+    numbers = Numbers(one)
     path, checksum = [*one.files.items()][one.file]
-    if config.motion.folder is None:
-        raise MotionFileError(
-            f"{path}: where the files of {scene.activity.slug} lie is not known: motion.folder"
-        )
-    clip = _clip(one, Path(config.motion.folder), path, checksum)
+    if folder is None:
+        raise MotionFileError(f"{path}: where the files of {slug} lie is not known: motion.folder")
+    clip = _clip(one, Path(folder), path, checksum)
     begin, end = one.section_s or (0.0, clip.seconds)
     end = min(end, clip.seconds)
     if begin >= end:
         raise MotionFileError(
-            f"{path}: lasts {clip.seconds:.3g} s; classes.{scene.activity.slug}.section_s "
-            f"begins at {begin:g} s"
+            f"{path}: lasts {clip.seconds:.3g} s; classes.{slug}.section_s begins at {begin:g} s"
         )
-    seconds, speed = _f(config.duration_s), _f(one.playback_speed)
+    seconds, speed = person.seconds, numbers.playback_speed
     return FileMotion(
         clip=clip,
-        stature=_f(config.subject.height_m),
-        weight=_f(config.subject.weight_kg),
-        start=(_f(config.motion.range_m), _f(config.motion.cross_range_m)),
-        heading=radians(_f(config.motion.angle_deg)),
+        stature=person.subject.height_m,
+        weight=person.subject.weight_kg,
+        start=(person.motion.range_m, person.motion.cross_range_m),
+        heading=radians(person.motion.angle_deg),
         seconds=seconds,
-        begin=begin + _f(one.start) * max(0.0, end - begin - speed * seconds),
+        begin=begin + numbers.start * max(0.0, end - begin - speed * seconds),
         end=end,
         speed=speed,
-        mirrored=_f(one.mirror) >= 0.5,
+        mirrored=numbers.mirror >= 0.5,
         rests=one.past_end == "rest",
     )
-
-
-def _f(number: object) -> float:
-    """A number of a scene's config, none left to draw."""
-    assert isinstance(number, (int, float)), number
-    return float(number)
 
 
 def _clip(one: FilesConfig, folder: Path, path: str, checksum: str) -> Clip:

@@ -3,7 +3,6 @@
 from dataclasses import fields
 from functools import partial
 from math import radians
-from typing import Any
 
 import numpy as np
 
@@ -37,35 +36,19 @@ from radhar_cli.receiver.impairment import Impairment
 from radhar_cli.receiver.interference import Line
 from radhar_cli.receiver.noise import WhiteNoise
 from radhar_cli.rounding import half_up
-from radhar_cli.scene import Scene
-
-
-def _fixed(number: Any) -> float:
-    """A number of a scene's config.
-
-    Raises:
-        TypeError: it is still to be drawn.
-    """
-    if not isinstance(number, (int, float)):
-        raise TypeError(f"{number!r} should have been drawn; this is not the config of a scene")
-    return float(number)
-
-
-def _vector(numbers: tuple[Any, Any, Any]) -> tuple[float, float, float]:
-    x, y, z = numbers
-    return _fixed(x), _fixed(y), _fixed(z)
+from radhar_cli.scene import Numbers, Person, Scene
 
 
 def waveform_of(config: Config) -> Waveform:
     """The waveform of a scene's config."""
-    radar = config.radar
+    radar = Numbers(config.radar)
     return Waveform(
-        fc=_fixed(radar.carrier_hz),
-        bandwidth=_fixed(radar.bandwidth_hz),
-        chirp=_fixed(radar.chirp_s),
-        adc_rate=_fixed(radar.adc_rate_hz),
-        prf=_fixed(radar.prf_hz),
-        duration=_fixed(config.duration_s),
+        fc=radar.carrier_hz,
+        bandwidth=radar.bandwidth_hz,
+        chirp=radar.chirp_s,
+        adc_rate=radar.adc_rate_hz,
+        prf=radar.prf_hz,
+        duration=Numbers(config).duration_s,
         fft_length=config.processing.range_fft_length,
         centred=config.processing.range_reference == "centre",
         residual_video_phase=radar.residual_video_phase,
@@ -74,92 +57,90 @@ def waveform_of(config: Config) -> Waveform:
 
 def antennas_of(config: Config) -> Antennas:
     """The antennas of a scene's config."""
-    radar = config.radar
+    radar = Numbers(config.radar)
     return Antennas(
-        tx=_vector(radar.tx_m),
-        rx=_vector(radar.rx_m),
-        gain=10 ** (_fixed(radar.antenna_gain_dbi) / 10),
-        isolation_db=_fixed(radar.antenna_isolation_db),
+        tx=radar.tx_m,
+        rx=radar.rx_m,
+        gain=10 ** (radar.antenna_gain_dbi / 10),
+        isolation_db=radar.antenna_isolation_db,
     )
 
 
 def wall_of(config: Config) -> Wall | None:
     """The wall of a scene's config, if there is one."""
-    wall = config.wall
-    if wall is None:
+    if config.wall is None:
         return None
+    wall = Numbers(config.wall)
     return Wall(
-        center=_vector(wall.center_m),
-        size=_vector(wall.size_m),
-        eps_r=_fixed(wall.eps_r),
-        loss_tangent=_fixed(wall.loss_tangent),
+        center=wall.center_m,
+        size=wall.size_m,
+        eps_r=wall.eps_r,
+        loss_tangent=wall.loss_tangent,
         rays=wall.rays,
         fresnel=wall.fresnel,
     )
 
 
-def motion_of(scene: Scene) -> Motion:
-    """The motion of a scene: the activity's own, from its files, or of the model in `motion:`."""
-    if scene.activity.motion is not None:
-        return scene.activity.motion(scene)
-    if scene.config.files_of(scene.activity) is not None:
-        return file_motion(scene)
-    return human_motion(scene) if scene.config.motion.model == "human" else _paper_body(scene)
+def motion_of(person: Person) -> Motion:
+    """How a person moves: as the activity's own function, its files, or the model in `motion:`."""
+    if person.activity.motion is not None:
+        return person.activity.motion(person)
+    if person.config.files_of(person.activity) is not None:
+        return file_motion(person)
+    return human_motion(person) if person.motion.model == "human" else _paper_body(person)
 
 
-def body_of(scene: Scene, motion: Motion) -> Body:
-    """The person of a scene who moves like this, with such segments as the joints have."""
+def body_of(person: Person, motion: Motion) -> Body:
+    """The body of a person who moves like this, with such segments as the joints have."""
     whole = motion.motion if isinstance(motion, Only) else motion
-    subject = scene.config.subject
-    stature, weight = _fixed(subject.height_m), _fixed(subject.weight_kg)
+    stature, weight = person.subject.height_m, person.subject.weight_kg
     return Body(whole, found_segments(landmarks_of(whole)), stature, thickness(stature, weight))
 
 
 def antennas_behind_mirror(config: Config, antennas: Antennas) -> Antennas | None:
     """The antennas as the wall behind people mirrors them; None without one."""
-    if config.room.back_wall_m is None:
+    room = Numbers(config.room)
+    if room.back_wall_m is None:
         return None
-    reflectance = 10 ** (_fixed(config.room.back_wall_reflection_db) / 10)
-    return behind_mirror(antennas, _fixed(config.room.back_wall_m), reflectance)
+    return behind_mirror(antennas, room.back_wall_m, 10 ** (room.back_wall_reflection_db / 10))
 
 
 def reflectors_of(scene: Scene) -> Reflectors | None:
     """What stands in the room of a scene, if anything does."""
-    config, each = scene.config, scene.config.room.reflectors
+    each, antennas = Numbers(scene.config.room).reflectors, antennas_of(scene.config)
     if not each:
         return None
-    antennas = antennas_of(config)
     rng = noise_stream(scene, "room.reflectors")
     return Reflectors(
-        places=np.array([_vector(one.position_m) for one in each]),
-        rcs=10 ** (np.array([_fixed(one.rcs_dbsm) for one in each]) / 10),
-        sd=np.array([_fixed(one.residual_m) for one in each]),
-        fastest=np.array([_fixed(one.highest_hz) for one in each]),
+        places=np.array([one.position_m for one in each]),
+        rcs=10 ** (np.array([one.rcs_dbsm for one in each]) / 10),
+        sd=np.array([one.residual_m for one in each]),
+        fastest=np.array([one.highest_hz for one in each]),
         fractions=rng.random((len(each), TONES)),
         phases=rng.random((len(each), TONES)),
         towards=(np.array(antennas.tx) + np.array(antennas.rx)) / 2,
     )
 
 
-def impairments_of(scene: Scene, noise: WhiteNoise) -> tuple[Impairment, ...]:
+def impairments_of(scene: Scene, noise: WhiteNoise, w: Waveform) -> tuple[Impairment, ...]:
     """What a receiver adds to white noise.
 
     Coloured noise is the channel's own, as white noise is. Interference comes from outside: lines
     are the same in all channels, phases included.
     """
-    receiver, impairments = scene.config.receiver, list[Impairment]()
-    corner = _fixed(receiver.noise_corner_hz)
+    receiver, impairments = Numbers(scene.config.receiver), list[Impairment]()
+    corner = receiver.noise_corner_hz
     if corner > 0:
-        slope = _fixed(receiver.noise_slope_db)
-        impairments.append(FlickerNoise(noise.sigma, noise.waveform, noise.stream, corner, slope))
+        slope = receiver.noise_slope_db
+        impairments.append(FlickerNoise(noise.sigma, noise.stream, corner, slope))
     for number, line in enumerate(receiver.tones):
-        amplitude = noise.sigma * 10 ** (_fixed(line.level_db) / 20)
-        times = _fixed(line.on_s), _fixed(line.off_s)
+        amplitude = noise.sigma * 10 ** (line.level_db / 20)
+        times = line.on_s, line.off_s
         impairments.append(
             Line(
                 amplitude,
-                _fixed(line.doppler_hz),
-                noise.waveform,
+                line.doppler_hz,
+                w,
                 partial(noise_stream, scene),
                 f"line {number}",
                 *times,
@@ -169,24 +150,24 @@ def impairments_of(scene: Scene, noise: WhiteNoise) -> tuple[Impairment, ...]:
     return tuple(impairments)
 
 
-def _paper_body(scene: Scene) -> PaperBody:
-    subject, motion, timing = scene.config.subject, scene.config.motion, scene.config.timing
+def _paper_body(person: Person) -> PaperBody:
+    subject, motion, timing = person.subject, person.motion, person.timing
     return PaperBody(
-        activity=scene.activity.slug,
-        height=_fixed(subject.height_m),
-        weight=_fixed(subject.weight_kg),
-        start=(_fixed(motion.range_m), _fixed(motion.cross_range_m)),
-        angle=radians(_fixed(motion.angle_deg)),
+        activity=person.activity.slug,
+        height=subject.height_m,
+        weight=subject.weight_kg,
+        start=(motion.range_m, motion.cross_range_m),
+        angle=radians(motion.angle_deg),
         gait=Gait(
-            frequency=_fixed(motion.gait_hz),
-            thigh=radians(_fixed(motion.thigh_deg)),
-            calf=radians(_fixed(motion.calf_deg)),
-            arm=radians(_fixed(motion.arm_deg)),
-            turn=radians(_fixed(motion.turn_deg)),
-            speed=_fixed(motion.speed_mps),
+            frequency=motion.gait_hz,
+            thigh=radians(motion.thigh_deg),
+            calf=radians(motion.calf_deg),
+            arm=radians(motion.arm_deg),
+            turn=radians(motion.turn_deg),
+            speed=motion.speed_mps,
         ),
         timing=Timing(
-            **{field.name: _fixed(getattr(timing, f"{field.name}_s")) for field in fields(Timing)}
+            **{field.name: getattr(timing, f"{field.name}_s") for field in fields(Timing)}
         ),
     )
 
@@ -229,12 +210,13 @@ def max_samples(config: Config) -> int:
 def cfar_of(config: Config) -> CellAveraging:
     """The CFAR of a scene's config."""
     cfar = config.image.cfar
+    numbers = Numbers(cfar)
     return CellAveraging(
         guard=cfar.guard,
         training=cfar.training,
-        pfa=_fixed(cfar.pfa),
+        pfa=numbers.pfa,
         decibel=cfar.domain == "decibel",
-        floor_db=_fixed(cfar.floor_db),
+        floor_db=numbers.floor_db,
         wrap=cfar.edges == "wrap",
     )
 

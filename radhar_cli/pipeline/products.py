@@ -5,8 +5,8 @@ map] -> sum over the kept bins -> [compensation] -> [denoising] -> STFT or FSST.
 `processing.range_sum: gated` the sum comes last, over the powers of some bins.
 
     scene      what is simulated                     paths     delay and amplitude over time
-    slow_time  y[m], noiseless, before the canceller signal    x[m], what the Doppler maps show
-    range_signals  those of the gate's bins
+    slow_time  noiseless, before the canceller       signal    what the Doppler maps show
+    range_signals  of the gate's bins                range_profiles  what the range-time map shows
     <map>      PowerMap                              image:<map>  MapImage
 """
 
@@ -15,22 +15,20 @@ from dataclasses import replace
 from functools import partial
 from itertools import chain, repeat
 from math import ceil, inf
-from typing import Any, NamedTuple, TypeAlias, TypeVar
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
 from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.config.schema import MAX_TOLERANCE_DB, Config
-from radhar_cli.echo import cube
 from radhar_cli.echo.accuracy import AccuracyError
 from radhar_cli.echo.direct import Accuracy, DirectEcho
+from radhar_cli.echo.exact import beat_at, exact_echo, signal_power
 from radhar_cli.echo.gated import GatedEcho
 from radhar_cli.echo.knots import mean_power
 from radhar_cli.echo.paths import PathSource
-from radhar_cli.echo.range_profiles import beat_at, shown_pulses
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.protocol import Motion
-from radhar_cli.phasor import unit_phasor
 from radhar_cli.pipeline.bodies import paths_of
 from radhar_cli.pipeline.motion_paths import point_delay
 from radhar_cli.pipeline.physics import (
@@ -49,13 +47,13 @@ from radhar_cli.pipeline.physics import (
     waveform_of,
 )
 from radhar_cli.pipeline.plan import Plan, Product, plan
-from radhar_cli.processing import fsst, stft
-from radhar_cli.processing.canceller import NO_CANCELLER, Canceller, Fir
+from radhar_cli.processing import fsst
+from radhar_cli.processing.canceller import Canceller, Fir
 from radhar_cli.processing.cfar import CellAveraging, decibels_of
 from radhar_cli.processing.denoising import savgol
 from radhar_cli.processing.doppler_compensation import compensate
 from radhar_cli.processing.frames import Frames
-from radhar_cli.processing.gate import Gate, GatedPower
+from radhar_cli.processing.gate import Gate
 from radhar_cli.processing.image import (
     Reduced,
     binary_exponent,
@@ -64,21 +62,17 @@ from radhar_cli.processing.image import (
     reduced_map,
     unclipped,
 )
+from radhar_cli.processing.look import Look, RangeBins, RangeSum
 from radhar_cli.processing.power_map import Axis, MapImage, PowerMap
-from radhar_cli.processing.range_compression import (
-    half_band_signal,
-    range_bins,
-    range_compression,
-    range_power,
-)
-from radhar_cli.processing.range_signals import RangeSignals
-from radhar_cli.processing.signal import Signal
-from radhar_cli.processing.stft import Spectra
+from radhar_cli.processing.pulse_times import PulseTimes
+from radhar_cli.processing.signal import Signal, shown_pulses
+from radhar_cli.processing.stft import Stft
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.receiver.impairment import Impairment
 from radhar_cli.receiver.noise import WhiteNoise, noise_variance
+from radhar_cli.registry import own_products
 from radhar_cli.scene import Scene
 
 CHUNK = 2**18  # pulses per chunk of pulse-by-pulse work
@@ -97,13 +91,6 @@ class Fallback(NamedTuple):
 EchoAccuracy: TypeAlias = Accuracy | Fallback
 
 
-class RangeProfiles(NamedTuple):
-    """Range bins [N_FFT/2, some M] after the canceller, and the first pulse of each column."""
-
-    bins: Complex
-    pulses: Index
-
-
 def signal_of(map_name: str) -> str:
     """Which of SIGNALS a Doppler-time map shows."""
     suffix = map_name.partition("_")[2]
@@ -117,10 +104,13 @@ def plan_images(config: Config, entropy: bool = True) -> Plan:
         config: of the data set.
         entropy: whether the maps' entropies are asked for.
     """
-    maps = sorted(config.maps, key=lambda name: SIGNALS.index(signal_of(name)))
-    asked = [f"image:{name}" for name in maps]
+    own = {product.name for product in own_products()}
+    of_signals = [name for name in config.maps if name not in own]
+    maps = sorted(of_signals, key=lambda name: SIGNALS.index(signal_of(name)))
+    asked = [f"image:{name}" for name in (*maps, *(n for n in config.maps if n in own))]
     if config.engine.kind == "direct" and set(maps) - {"rtm"}:
         asked.append("accuracy")
+    asked += config.output.products
     if config.output.slow_time:
         asked.append("signal")
     if config.output.column_labels:
@@ -131,9 +121,7 @@ def plan_images(config: Config, entropy: bool = True) -> Plan:
 def products(config: Config, entropy: bool = True) -> dict[str, Product]:
     """Every product there could be under a config, by name; images with or without entropy."""
     rows = (*_physics(config), *_echo(config), *_signals(config), *_maps(config, entropy))
-    if _gated(config):
-        rows = (*rows, *_gate(config))
-    return {row.name: row for row in rows}
+    return {row.name: row for row in (*rows, *own_products())}
 
 
 def _physics(c: Config) -> Iterator[Product]:
@@ -161,7 +149,9 @@ def _physics(c: Config) -> Iterator[Product]:
     yield Product("waveform", ("scene",), lambda s: waveform_of(s.config), "chirps and pulses")
     yield Product("antennas", ("scene",), lambda s: antennas_of(s.config), "positions and gains")
     yield Product("wall", ("scene",), lambda s: wall_of(s.config), "the slab, or none")
-    yield Product("motions", ("scene",), lambda s: (motion_of(s),), "scatterers that move")
+    yield Product(
+        "motions", ("scene",), lambda s: tuple(map(motion_of, s.people)), "scatterers that move"
+    )
     room = ("room",) if c.room.reflectors else ()
     if room:
         yield Product("room", ("scene",), reflectors_of, "what stands in the room")
@@ -179,19 +169,10 @@ def _snr_of_other_paths(c: Config) -> bool:
 
 
 def _echo(c: Config) -> Iterator[Product]:
-    def signal(y: Signal, canceller: Canceller, receiver: tuple[Impairment, ...]) -> Signal:
-        x = y.x
-        for impairment in receiver:
-            x = impairment.slow_time(x)
-        return y.with_samples(canceller(x), canceller.delay)
-
     yield Product("canceller", ("waveform",), lambda w: canceller_of(c, w.prf), _clutter(c))
     yield from _receiver(c)
-    yield from _cube(c) if c.engine.kind == "cube" else _direct(c)
-    if c.engine.kind == "direct":
-        yield Product(
-            "signal", ("slow_time", "canceller", "receiver"), signal, "receiver, then canceller"
-        )
+    yield from _gate(c) if _gated(c) else ()
+    yield from _direct(c) if c.engine.kind == "direct" else _exact(c)
 
 
 def _gated(c: Config) -> bool:
@@ -220,7 +201,7 @@ def _receiver(c: Config) -> Iterator[Product]:
                 "motion.range_m), or should be null"
             )
         sigma = np.sqrt(noise_variance(power, scene.config.snr_db))
-        return WhiteNoise(float(sigma), w, partial(noise_stream, scene, channel=channel))
+        return WhiteNoise(float(sigma), partial(noise_stream, scene, channel=channel))
 
     if c.snr_db is None:
         yield Product("receiver", (), tuple, "nothing: snr_db is null")
@@ -230,213 +211,126 @@ def _receiver(c: Config) -> Iterator[Product]:
     yield Product("noise", needs, noise, "white noise, by snr_db")
     yield Product(
         "receiver",
-        ("scene", "noise"),
-        lambda s, n: (n, *impairments_of(s, n)),
+        ("scene", "noise", "waveform"),
+        lambda s, n, w: (n, *impairments_of(s, n, w)),
         "noise, interference",
     )
 
 
+class Seen(NamedTuple):
+    """What products of an echo are made with, in the order in which they need it."""
+
+    paths: PathSource
+    waveform: Waveform
+    canceller: Canceller
+    receiver: tuple[Impairment, ...]
+
+
+SEEN = ("paths", "waveform", "canceller", "receiver")
+
+
+def signal_of_look(x: Complex, look: Look) -> Signal:
+    """The signal of one channel [K, M]; times are those in the middle of the taps."""
+    w, later = look.fast.waveform, (len(look.taps) - 1) / 2
+    times = PulseTimes.even(look.count, w.prf, later / w.prf)
+    if not isinstance(look.pulses, range):
+        each = (look.pulses + later) / w.prf
+        times = PulseTimes(each, np.arange(look.count), look.count, w.prf)
+    if not isinstance(look.fast, RangeBins):
+        return Signal(x[None], times, w.f0)
+    bins = look.fast.bins or slice(0, w.n_bins)
+    return Signal(x[None], times, w.f0, w.range_axis()[bins], bins.start)
+
+
+def received(
+    x: Complex, look: Look, receiver: tuple[Impairment, ...], canceller: Canceller | None = None
+) -> Signal:
+    """What a receiver adds to an echo [K, M] as one look shows it, and the canceller after it.
+
+    Raises:
+        SceneError: an impairment does more than add.
+    """
+    for impairment in receiver:
+        if not impairment.additive:
+            raise SceneError(
+                f"{type(impairment).__name__}: is not additive, which engine.kind: direct needs; "
+                "should be engine.kind: cube"
+            )
+        x = impairment.apply(x, look)
+    signal = signal_of_look(x, look)
+    return signal if canceller is None else signal.cancelled(canceller, look.spans)
+
+
+def _exactly(c: Config, seen: Seen, looks: list[Look]) -> list[Signal]:
+    """Signals after the canceller from raw samples, in one pass; a `Fir` is applied to those."""
+    fir = isinstance(seen.canceller, Fir)
+    static = fir or not seen.canceller.removes_static
+    made = exact_echo(seen.paths, looks, seen.receiver, static, c.engine.motion_in_chirp)
+    signals = [signal_of_look(x, look) for x, look in zip(made, looks, strict=True)]
+    return signals if fir else [one.cancelled(seen.canceller) for one in signals]
+
+
+def _taps(canceller: Canceller) -> tuple[float, ...]:
+    """Those of a canceller that acts before W; (1,) of one that acts on the whole recording."""
+    return canceller.taps if isinstance(canceller, Fir) else (1.0,)
+
+
+def _profile_look(c: Config, w: Waveform, canceller: Canceller) -> Look:
+    """The pulses that a range-time map shows, after a `Fir`; all of them before another."""
+    if not isinstance(canceller, Fir):
+        return Look.of_all("range_signals", RangeBins(w), spans=[slice(0, w.n_pulses)] * w.n_bins)
+    shown = shown_pulses(w.n_pulses - canceller.lost, c.image.size_px[1])
+    from_start = replace(w, centred=False)  # of which the power is the same, for a product less
+    return Look("range_profiles", RangeBins(from_start), shown, canceller.taps)
+
+
 def _direct(c: Config) -> Iterator[Product]:
-    engine = c.engine
+    engine, width = c.engine, c.image.size_px[1]
 
     def direct(source: PathSource, w: Waveform, canceller: Canceller) -> DirectEcho:
         double = engine.precision == "double"
         return DirectEcho(source, w, engine.tolerance_db, double, canceller)
 
-    def echo(direct: DirectEcho, scene: Scene) -> tuple[Complex, EchoAccuracy]:
-        try:
-            return direct.slow_time()
-        except AccuracyError as error:
-            if engine.fallback == "refuse":
-                raise SceneError(_refusal(scene.name, engine.tolerance_db, error)) from None
-            blocks = cube.beat_blocks(direct.source, direct.waveform)
-            y = [half_band_signal(range_compression(block, direct.waveform)) for block in blocks]
-            return np.concatenate(y), Fallback(str(error))
-
-    def slow_time(echo: tuple[Complex, EchoAccuracy], w: Waveform) -> Signal:
-        return Signal(echo[0], 0.0, w.prf, w.f0)
-
-    def range_profiles(
-        paths: PathSource,
-        w: Waveform,
+    def signal(
+        echo: tuple[Complex, EchoAccuracy],
+        made_by: DirectEcho,
         canceller: Canceller,
         receiver: tuple[Impairment, ...],
-    ) -> RangeProfiles:
-        shown = shown_pulses(w.n_pulses - canceller.lost, c.image.size_px[1])
-        if not isinstance(canceller, Fir):
-            x = _range_bins(c, paths, w, canceller, ())
-            for impairment in receiver:
-                x = impairment.range_signals(x, slice(0, w.n_bins))
-            return RangeProfiles(canceller(x)[:, shown], shown)
-        bins = range_bins(beat_at(paths, w, shown, canceller.taps), w)
-        for impairment in receiver:
-            bins = impairment.range_bins(bins, shown, canceller)
-        return RangeProfiles(bins, shown)
+    ) -> Signal:
+        return received(echo[0], made_by.look, receiver, canceller)
 
-    seen = ("waveform", "canceller")
-    yield Product("direct", ("paths", *seen), direct, "closed form of the echo at knots")
+    def range_profiles(*given: Any) -> Signal:
+        seen = Seen(*given)
+        look = _profile_look(c, seen.waveform, seen.canceller)
+        if not isinstance(seen.canceller, Fir):
+            (x,) = exact_echo(seen.paths, [look], static=not seen.canceller.removes_static)
+            return received(x, look, seen.receiver, seen.canceller).columns(width)
+        x = look.fast(beat_at(seen.paths, seen.waveform, np.asarray(look.pulses), look.taps))
+        return received(x, look, seen.receiver)
+
+    yield Product("direct", SEEN[:3], direct, "closed form of the echo at knots")
+    yield Product("echo", ("direct", "scene"), partial(_echo_of, c), f"{ECHO_IS} sum over range")
+    yield Product(
+        "slow_time",
+        ("echo", "direct"),
+        lambda echo, direct: signal_of_look(echo[0], direct.look),
+        "slow-time signal without noise",
+    )
+    needs = ("echo", "direct", "canceller", "receiver")
+    yield Product("signal", needs, signal, "receiver, then canceller")
+    does = "range profiles at the pulses that the range-time map shows"
+    yield Product("range_profiles", SEEN, range_profiles, does)
+    made = "gated" if _gated(c) else "direct"  # from the knots that are there anyway
     if _snr_of_other_paths(c):
         yield Product("signal_power", ("snr_paths", "waveform"), mean_power, "P_s, for snr_db")
     else:
-        yield Product("signal_power", ("direct",), DirectEcho.signal_power, "P_s, for snr_db")
-    yield Product("echo", ("direct", "scene"), echo, "slow-time samples and their measured error")
-    yield Product("slow_time", ("echo", "waveform"), slow_time, "slow-time signal without noise")
-    yield Product(
-        "accuracy",
-        ("gated_echo" if _gated(c) else "echo",),
-        lambda echo: echo[1],
-        "its measured error",
-    )
-    yield Product(
-        "range_profiles",
-        ("paths", "waveform", "canceller", "receiver"),
-        range_profiles,
-        "range profiles at the pulses that the range-time map shows",
-    )
+        yield Product("signal_power", (made,), DirectEcho.signal_power, "P_s, for snr_db")
+    echo = "gated_echo" if _gated(c) else "echo"
+    yield Product("accuracy", (echo,), lambda echo: echo[1], "its measured error")
+    if not _gated(c):
+        return
 
-
-def _refusal(name: str, tolerance_db: float, error: AccuracyError) -> str:
-    what = f"sample {name}: engine.tolerance_db = {tolerance_db:g}: "
-    if error.limit_db > MAX_TOLERANCE_DB:
-        return what + f"no tolerance can be kept here ({error}); set engine.fallback: cube"
-    return what + (
-        f"should be {ceil(error.limit_db)} or more, which is what the direct engine reaches here, "
-        "or engine.fallback: cube"
-    )
-
-
-def _cube(c: Config) -> Iterator[Product]:
-    needs = ("paths", "waveform", "canceller", "receiver")
-
-    def beat_cube(
-        paths: PathSource, w: Waveform, canceller: Canceller, receiver: tuple[Impairment, ...]
-    ) -> tuple[Signal, RangeProfiles | None]:
-        x, bins = np.empty(w.n_pulses - canceller.lost, dtype=complex), []
-        shown = shown_pulses(x.size, c.image.size_px[1])
-        for first, block in _blocks(c, paths, w, canceller, receiver):
-            x[first : first + block.shape[1]] = half_band_signal(range_compression(block, w))
-            here = shown[(shown >= first) & (shown < first + block.shape[1])]
-            if isinstance(canceller, Fir):
-                bins.append(range_bins(block[:, here - first], w))
-        t0 = canceller.delay / w.prf
-        if not isinstance(canceller, Fir):
-            return Signal(canceller(x), t0, w.prf, w.f0), None
-        return (
-            Signal(x, t0, w.prf, w.f0),
-            RangeProfiles(np.concatenate(bins, axis=1), shown),
-        )
-
-    def range_profiles(
-        both: tuple[Signal, RangeProfiles | None],
-        paths: PathSource,
-        w: Waveform,
-        canceller: Canceller,
-        receiver: tuple[Impairment, ...],
-    ) -> RangeProfiles:
-        if both[1] is not None:
-            return both[1]
-        shown = shown_pulses(w.n_pulses, c.image.size_px[1])
-        x = canceller(_range_bins(c, paths, w, canceller, receiver))
-        return RangeProfiles(x[:, shown], shown)
-
-    power_of = "snr_paths" if _snr_of_other_paths(c) else "paths"
-    yield Product("signal_power", (power_of, "waveform"), cube.signal_power, "P_s, for snr_db")
-    yield Product("beat_cube", needs, beat_cube, "the whole beat matrix, cancelled, compressed")
-    yield Product("signal", ("beat_cube",), lambda both: both[0], "its sum over the kept bins")
-    yield Product("range_profiles", ("beat_cube", *needs), range_profiles, "its range bins")
-
-
-def _blocks(
-    c: Config,
-    paths: PathSource,
-    w: Waveform,
-    canceller: Canceller,
-    receiver: tuple[Impairment, ...],
-) -> Iterator[tuple[int, Complex]]:
-    """(first pulse, beat matrix), block by block: after a `Fir`; before another canceller.
-
-    What that removes for certain, the first pulse, is then taken out of every one: of an echo that
-    stands still, however strong, nothing is left for range compression to round.
-    """
-    blocks = cube.beat_blocks(paths, w, c.engine.motion_in_chirp)
-    for impairment in receiver:
-        blocks = impairment.beat(blocks)
-    carried, first, still = np.empty((w.n_adc, 0), dtype=complex), 0, None
-    for block in blocks:
-        if not isinstance(canceller, Fir):
-            still = block[:, :1] if still is None else still
-            yield first, block - still if canceller.removes_static else block
-            first += block.shape[1]
-            continue
-        wide = np.concatenate([carried, block], axis=1) if carried.size else block
-        carried = wide[:, wide.shape[1] - canceller.lost :]
-        if wide.shape[1] > canceller.lost:
-            cancelled = canceller(wide)
-            yield first, cancelled
-            first += cancelled.shape[1]
-
-
-def _range_bins(
-    c: Config,
-    paths: PathSource,
-    w: Waveform,
-    canceller: Canceller,
-    receiver: tuple[Impairment, ...],
-    bins: slice = slice(None),
-) -> Complex:
-    """Range bins [K, M] of all pulses, from `_blocks`, referred to mid-chirp."""
-    k = np.arange(w.n_bins)[bins, None]
-    x = np.empty((k.size, w.n_pulses - canceller.lost), dtype=complex)
-    for first, block in _blocks(c, paths, w, canceller, receiver):
-        x[:, first : first + block.shape[1]] = range_bins(block, w)[bins]
-    x *= unit_phasor(k * (w.n_adc / 2 / w.n_fft))
-    return x
-
-
-Samples = TypeVar("Samples", Signal, RangeSignals)
-
-
-def _signals(c: Config) -> Iterator[Product]:
-    def compensated(x: Samples, torso_track: Float) -> Samples:
-        return x.with_samples(compensate(x.x, torso_track, x.f0))
-
-    def denoised(x: Samples) -> Samples:
-        given = c.processing.savgol
-        return x.with_samples(
-            np.apply_along_axis(savgol, -1, x.x, order=given.order, frame=given.frame)
-        )
-
-    for raw in ("signal", *(["range_signals"] if _gated(c) else [])):
-        smooth = "Savitzky-Golay filter"
-        yield Product(f"{raw}_denoised", (raw,), denoised, smooth)
-        yield Product(
-            f"{raw}_compensated", (raw, "torso_track"), compensated, "bulk Doppler compensation"
-        )
-        yield Product(f"{raw}_compensated_denoised", (f"{raw}_compensated",), denoised, smooth)
-
-
-def _gate(c: Config) -> Iterator[Product]:
-    """The bins of the gate, and their echo."""
-    engine, within = c.engine, c.processing.gate_m
-    needs = ("paths", "waveform", "canceller", "gate")
-
-    def gate(ranges: Float, frames: Frames, canceller: Canceller, torso_track: Float) -> Gate:
-        starts = frames.starts(torso_track.size - canceller.lost)
-        middle = np.rint(starts + (frames.length - 1) / 2 + canceller.delay).astype(np.intp)
-        return gate_of(c, ranges, torso_track[middle] * (SPEED_OF_LIGHT / 2))
-
-    def from_cube(
-        paths: PathSource,
-        w: Waveform,
-        canceller: Canceller,
-        gate: Gate,
-        receiver: tuple[Impairment, ...],
-    ) -> RangeSignals:
-        x = _range_bins(c, paths, w, canceller, receiver, gate.bins)
-        x = x if isinstance(canceller, Fir) else canceller(x)
-        return range_signals(x, w, gate).with_samples(x, canceller.delay)
-
-    def needed_of(
+    def needed(
         gate: Gate, frames: Frames, w: Waveform, canceller: Canceller
     ) -> tuple[Index, Index] | None:
         if not isinstance(canceller, Fir):
@@ -450,35 +344,106 @@ def _gate(c: Config) -> Iterator[Product]:
         gate: Gate,
         needed: tuple[Index, Index] | None,
     ) -> GatedEcho:
-        double = engine.precision == "double"
-        return GatedEcho(paths, w, engine.tolerance_db, double, canceller, gate.bins, needed)
+        double, spans = engine.precision == "double", None if needed is None else gate.spans(needed)
+        tolerance = engine.tolerance_db
+        return GatedEcho(paths, w, tolerance, double, canceller, gate.bins, needed, spans)
 
-    def gated_echo(echo: GatedEcho, scene: Scene) -> tuple[Complex, EchoAccuracy]:
-        try:
-            return echo.range_bins()
-        except AccuracyError as error:
-            if engine.fallback == "refuse":
-                raise SceneError(_refusal(scene.name, engine.tolerance_db, error)) from None
-            before = NO_CANCELLER if isinstance(echo.canceller, Fir) else echo.canceller
-            bins = _range_bins(c, echo.source, echo.waveform, before, (), echo.bins)
-            return bins, Fallback(str(error))
+    of_frames = ("gate", "frames", "waveform", "canceller")
+    yield Product("gate_needed", of_frames, needed, "its bins that frames show, pulse by pulse")
+    of_gate = (*SEEN[:3], "gate", "gate_needed")
+    yield Product("gated", of_gate, gated, "closed form of them at knots")
+    needs = ("gated_echo", "gated", "canceller", "receiver")
+    yield Product("gated_echo", ("gated", "scene"), partial(_echo_of, c), f"{ECHO_IS} gate's bins")
+    yield Product("range_signals", needs, signal, "receiver, then canceller, of the gate's bins")
 
-    def from_echo(
-        echo: tuple[Complex, EchoAccuracy],
-        w: Waveform,
-        canceller: Canceller,
-        gate: Gate,
-        needed: tuple[Index, Index] | None,
-        receiver: tuple[Impairment, ...],
-    ) -> RangeSignals:
-        x, spans = echo[0], None if needed is None else gate.spans(needed)
-        for impairment in receiver:
-            x = impairment.range_signals(x, gate.bins, spans)
-        return range_signals(x, w, gate).cancelled(canceller, spans)
 
-    def range_signals(x: Complex, w: Waveform, gate: Gate) -> RangeSignals:
-        f0 = replace(w, centred=True).f0
-        return RangeSignals(x, w.range_axis()[gate.bins], 0.0, w.prf, f0, gate.bins.start)
+ECHO_IS = "samples and their measured error, of the"
+
+
+def _echo_of(c: Config, echo: DirectEcho, scene: Scene) -> tuple[Complex, EchoAccuracy]:
+    """x [K, M] of the direct engine, or of the exact one where that cannot keep the tolerance."""
+    try:
+        return echo.rows()
+    except AccuracyError as error:
+        if c.engine.fallback == "refuse":
+            raise SceneError(_refusal(scene.name, c.engine.tolerance_db, error)) from None
+        static = not echo.canceller.removes_static
+        return exact_echo(echo.source, [echo.look], static=static)[0], Fallback(str(error))
+
+
+def _refusal(name: str, tolerance_db: float, error: AccuracyError) -> str:
+    what = f"sample {name}: engine.tolerance_db = {tolerance_db:g}: "
+    if error.limit_db > MAX_TOLERANCE_DB:
+        return what + f"no tolerance can be kept here ({error}); set engine.fallback: cube"
+    return what + (
+        f"should be {ceil(error.limit_db)} or more, which is what the direct engine reaches here, "
+        "or engine.fallback: cube"
+    )
+
+
+def _exact(c: Config) -> Iterator[Product]:
+    """Everything from raw samples, the receiver's included."""
+
+    def beat_cube(*given: Any) -> list[Signal]:
+        seen = Seen(*given)
+        w, taps = seen.waveform, _taps(seen.canceller)
+        looks = [Look.of_all("slow_time", RangeSum(w), taps)]
+        if isinstance(seen.canceller, Fir):
+            looks.append(_profile_look(c, w, seen.canceller))
+        return _exactly(c, seen, looks)
+
+    def range_profiles(signals: list[Signal], *given: Any) -> Signal:
+        if len(signals) > 1:
+            return signals[1]
+        seen = Seen(*given)
+        look = _profile_look(c, seen.waveform, seen.canceller)
+        return _exactly(c, seen, [look])[0].columns(c.image.size_px[1])
+
+    def range_signals(gate: Gate, *given: Any) -> Signal:
+        seen = Seen(*given)
+        bins = RangeBins(replace(seen.waveform, centred=True), gate.bins)
+        look = Look.of_all("range_signals", bins, _taps(seen.canceller))
+        return _exactly(c, seen, [look])[0]
+
+    power_of = "snr_paths" if _snr_of_other_paths(c) else "paths"
+    yield Product("signal_power", (power_of, "waveform"), signal_power, "P_s, for snr_db")
+    yield Product("beat_cube", SEEN, beat_cube, "the whole beat matrix, cancelled, compressed")
+    yield Product(
+        "signal", ("beat_cube",), lambda signals: signals[0], "its sum over the kept bins"
+    )
+    yield Product("range_profiles", ("beat_cube", *SEEN), range_profiles, "its range bins")
+    if _gated(c):
+        does = "the beat matrix, compressed, of the gate's bins"
+        yield Product("range_signals", ("gate", *SEEN), range_signals, does)
+
+
+def _signals(c: Config) -> Iterator[Product]:
+    def compensated(x: Signal, torso_track: Float) -> Signal:
+        return x.with_samples(compensate(x.x, torso_track, x.f0))
+
+    def denoised(x: Signal) -> Signal:
+        given = c.processing.savgol
+        smooth = partial(savgol, order=given.order, frame=given.frame)
+        parts = [np.apply_along_axis(smooth, -1, x.x[..., part]) for part in x.times.slices]
+        return x.with_samples(parts[0] if len(parts) == 1 else np.concatenate(parts, axis=-1))
+
+    for raw in ("signal", *(["range_signals"] if _gated(c) else [])):
+        smooth = "Savitzky-Golay filter"
+        yield Product(f"{raw}_denoised", (raw,), denoised, smooth)
+        yield Product(
+            f"{raw}_compensated", (raw, "torso_track"), compensated, "bulk Doppler compensation"
+        )
+        yield Product(f"{raw}_compensated_denoised", (f"{raw}_compensated",), denoised, smooth)
+
+
+def _gate(c: Config) -> Iterator[Product]:
+    """Which bins a gate shows."""
+    within = c.processing.gate_m
+
+    def gate(ranges: Float, frames: Frames, canceller: Canceller, torso_track: Float) -> Gate:
+        starts = frames.starts([slice(0, torso_track.size - canceller.lost)])
+        middle = np.rint(starts + (frames.length - 1) / 2 + canceller.delay).astype(np.intp)
+        return gate_of(c, ranges, torso_track[middle] * (SPEED_OF_LIGHT / 2))
 
     yield Product("range_axis", ("waveform",), Waveform.range_axis, "ranges of the bins")
     if isinstance(within, tuple):
@@ -486,59 +451,37 @@ def _gate(c: Config) -> Iterator[Product]:
         yield Product("gate", ("range_axis",), lambda ranges: gate_of(c, ranges, None), place)
     else:
         place = f"range bins within {within:g} m of the torso, frame by frame"
-        needs_of_gate = ("range_axis", "frames", "canceller", "torso_track")
-        yield Product("gate", needs_of_gate, gate, place)
-    if engine.kind == "cube":
-        does = "the beat matrix, compressed, of the gate's bins"
-        yield Product("range_signals", (*needs, "receiver"), from_cube, does)
-    else:
-        yield Product(
-            "gate_needed",
-            ("gate", "frames", "waveform", "canceller"),
-            needed_of,
-            "its bins that frames show, pulse by pulse",
-        )
-        yield Product("gated", (*needs, "gate_needed"), gated, "closed form of them at knots")
-        if not _snr_of_other_paths(c):
-            power = DirectEcho.signal_power  # from the knots that the bins are made of
-            yield Product("signal_power", ("gated",), power, "P_s, for snr_db")
-        does = "its bins and their measured error"
-        yield Product("gated_echo", ("gated", "scene"), gated_echo, does)
-        yield Product(
-            "range_signals",
-            ("gated_echo", *needs[1:], "gate_needed", "receiver"),
-            from_echo,
-            "receiver, then canceller, of the gate's bins",
-        )
+        needs = ("range_axis", "frames", "canceller", "torso_track")
+        yield Product("gate", needs, gate, place)
 
 
 def _maps(c: Config, entropy: bool) -> Iterator[Product]:
     size, masks = c.image.size_px, ("cfar",) if c.image.kind == "cfar" else ()
 
-    def rtm(profiles: RangeProfiles, w: Waveform, canceller: Canceller) -> PowerMap:
-        time = Axis("time", "s", (profiles.pulses + canceller.delay) / w.prf)
-        return PowerMap(range_power(profiles.bins), Axis("range", "m", w.range_axis()), time)
+    def rtm(profiles: Signal) -> PowerMap:
+        x, ranges = profiles.x, profiles.ranges
+        assert ranges is not None
+        power = (x.real**2 + x.imag**2).sum(axis=0)
+        return PowerMap(power, Axis("range", "m", ranges), Axis("time", "s", profiles.t))
 
-    def rtm_image(power_map: PowerMap, cfar: CellAveraging | None = None) -> MapImage:
+    def map_image(power_map: PowerMap, cfar: CellAveraging | None = None) -> MapImage:
         small = partial(reduced_map, power_map.power, size, entropy=entropy)
         return _image(c, cfar, small, power_map.extent, binary_exponent(power_map.power))
 
-    needs = ("range_profiles", "waveform", "canceller")
-    yield Product("rtm", needs, rtm, "power of the range profiles")
+    yield Product("rtm", ("range_profiles",), rtm, "power of the range profiles")
     if masks:
         yield Product("cfar", ("scene",), lambda s: cfar_of(s.config), "threshold of the masks")
-    yield Product("image:rtm", ("rtm", *masks), rtm_image, f"its {_shape(c, entropy)}")
-    yield Product(
-        "frames", ("waveform",), lambda w: frames_of(c, w.duration, w.prf, w.f0), "of the STFT"
-    )
-    yield Product(
-        "fsst_frames",
-        ("waveform",),
-        lambda w: fsst_frames_of(c, w.duration, w.prf, w.f0),
-        "of the FSST",
-    )
+    for name in ("rtm", *(product.name for product in own_products())):
+        yield Product(f"image:{name}", (name, *masks), map_image, f"its {_shape(c, entropy)}")
+    for name, of in ("frames", frames_of), ("fsst_frames", fsst_frames_of):
+        make = partial(_frames, c, of)
+        yield Product(name, ("waveform",), make, f"of the {'FSST' if 'fsst' in name else 'STFT'}")
     for signal in SIGNALS:
         yield from _doppler_maps(c, signal, entropy)
+
+
+def _frames(c: Config, of: Callable[..., Frames], w: Waveform) -> Frames:
+    return of(c, w.duration, w.prf, w.f0)
 
 
 class DopplerPower(NamedTuple):
@@ -560,36 +503,46 @@ def _doppler_maps(c: Config, signal: str, entropy: bool) -> Iterator[Product]:
     Images of the STFT come from float32. Those of the FSST do not: a coefficient that lies within
     float32's rounding of the border between two bins would move its power to another pixel.
     """
-    suffix, threshold = signal.removeprefix("signal"), c.processing.fsst_threshold
+    suffix = signal.removeprefix("signal")
     masks = ("cfar",) if c.image.kind == "cfar" else ()
     shallow = c.image.dynamic_range_db <= SINGLE_RANGE_DB and not (masks or c.output.power)
-    single = c.engine.precision == "auto" and shallow
-    bins, squeezed = c.processing.stft_fft_length, partial(fsst.power_blocks, threshold=threshold)
-    kinds: dict[str, tuple[tuple[str, ...], MakePower, bool, str]] = {
-        "stft": ((signal, "frames"), partial(_power, c, stft.power_blocks, bins), single, "STFT"),
-        "fsst": (
-            (signal, "fsst_frames"),
-            partial(_power, c, squeezed, None),
-            False,
-            "STFT, synchrosqueezed",
-        ),
-    }
+    kinds: dict[str, tuple[tuple[str, ...], str]]
+    kinds = {"stft": ((signal, "frames"), "STFT"), "fsst": ((signal, "fsst_frames"), "FSST")}
     if _gated(c):
-        magnitudes = c.processing.gate_sum == "magnitude"
-        what = f"STFTs, {'magnitudes' if magnitudes else 'powers'} summed over the gate"
+        summed = "magnitudes" if c.processing.gate_sum == "magnitude" else "powers"
         from_bins = (f"range_signals{suffix}", "frames", "gate")
-        kinds = {"stft": (from_bins, partial(_gated_power, c, magnitudes, bins), single, what)}
-    for name, (needs, power, is_single, does) in kinds.items():
-        yield Product(name + suffix, needs, partial(_doppler_map, power), f"power of the {does}")
+        kinds = {"stft": (from_bins, f"STFTs, {summed} summed over the gate")}
+    for kind, (needs, does) in kinds.items():
+        power = partial(_doppler_power, c, kind)
+        single = kind == "stft" and c.engine.precision == "auto" and shallow
+        yield Product(kind + suffix, needs, partial(_doppler_map, power), f"power of the {does}")
         yield Product(
-            f"image:{name}{suffix}",
+            f"image:{kind}{suffix}",
             (*masks, *needs),
-            partial(_doppler_mask if masks else _doppler_image, c, power, is_single, entropy),
-            f"power of the {does}{', in float32' * is_single}; its {_shape(c, entropy)}",
+            partial(_doppler_mask if masks else _doppler_image, c, power, single, entropy),
+            f"power of the {does}{', in float32' * single}; its {_shape(c, entropy)}",
         )
 
 
 MakePower: TypeAlias = Callable[..., DopplerPower]
+
+
+def _doppler_power(
+    c: Config, kind: str, single: bool, x: Signal, frames: Frames, gate: Gate | None = None
+) -> DopplerPower:
+    """Power at the bins whose middle lies within `image.doppler_limits_mps`, with its axes."""
+    bins = c.processing.stft_fft_length if kind == "stft" else None
+    stft = Stft(x, frames, bins, single, gate, c.processing.gate_sum == "magnitude")
+    power = stft.power_blocks()
+    if kind == "fsst":
+        power = fsst.power_blocks(stft, c.processing.fsst_threshold)
+    kept, frequency = slice(None), stft.frequency
+    if c.image.doppler_limits_mps is not None:
+        limits = np.array(c.image.doppler_limits_mps) * 2 * x.f0 / SPEED_OF_LIGHT
+        limits += 1e-9 * np.array([-1, 1]) * x.prf
+        kept = slice(*np.searchsorted(frequency.values, limits).tolist())
+    rows = replace(frequency, values=frequency.values[kept])
+    return DopplerPower((block[:, kept] for block in power), stft.exponent, rows, stft.time)
 
 
 def _shape(c: Config, entropy: bool) -> str:
@@ -631,31 +584,6 @@ def _image(
     return replace(image, decibels=stored, largest_db=largest_db)
 
 
-def _power(
-    c: Config,
-    blocks: Callable[[Spectra], Iterator[Float]],
-    bins: int | None,
-    single: bool,
-    x: Signal,
-    frames: Frames,
-) -> DopplerPower:
-    spectra = Spectra(x.x, frames, bins or frames.length, single)
-    return _cropped(c, blocks(spectra), spectra.exponent, x, frames, spectra.bins)
-
-
-def _gated_power(
-    c: Config,
-    magnitudes: bool,
-    bins: int | None,
-    single: bool,
-    x: RangeSignals,
-    frames: Frames,
-    gate: Gate,
-) -> DopplerPower:
-    gated = GatedPower(x, gate, frames, bins or frames.length, magnitudes, single)
-    return _cropped(c, iter(gated), gated.exponent, x, frames, gated.bins)
-
-
 def _doppler_map(make: MakePower, *given: Any) -> PowerMap:
     doppler = make(False, *given)
     power = np.concatenate(list(doppler.blocks), dtype=float)
@@ -686,27 +614,3 @@ def _doppler_image(
 
     extent = (*doppler.columns.edges, *doppler.rows.edges)
     return _image(c, cfar, small, extent, 2 * doppler.exponent)
-
-
-def _cropped(
-    c: Config,
-    blocks: Iterator[Float],
-    exponent: int,
-    x: Signal | RangeSignals,
-    frames: Frames,
-    bins: int,
-) -> DopplerPower:
-    """Power at the bins whose middle lies within `image.doppler_limits_mps`, with its axes."""
-    kept = slice(None)
-    frequency = np.fft.fftshift(np.fft.fftfreq(bins, 1 / x.prf))
-    if c.image.doppler_limits_mps is not None:
-        limits = np.array(c.image.doppler_limits_mps) * 2 * x.f0 / SPEED_OF_LIGHT
-        first, stop = np.searchsorted(frequency, limits + 1e-9 * np.array([-1, 1]) * x.prf)
-        kept = slice(int(first), int(stop))
-    centres = x.times(frames.starts(x.x.shape[-1]) + (frames.length - 1) / 2)
-    return DopplerPower(
-        (block[:, kept] for block in blocks),
-        exponent,
-        Axis("frequency", "Hz", frequency[kept]),
-        Axis("time", "s", centres),
-    )

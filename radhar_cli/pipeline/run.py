@@ -5,13 +5,21 @@ from dataclasses import dataclass, field
 from time import process_time
 from typing import Any
 
+import numpy as np
+
 from radhar_cli.config.schema import Config
-from radhar_cli.pipeline.physics import canceller_of, cfar_of, frames_of, fsst_frames_of
+from radhar_cli.pipeline.physics import (
+    canceller_of,
+    cfar_of,
+    frames_of,
+    fsst_frames_of,
+    gate_of,
+)
 from radhar_cli.pipeline.plan import Plan, Product, plan
 from radhar_cli.pipeline.products import products
-from radhar_cli.processing.range_compression import half_band_signal
-from radhar_cli.processing.range_signals import RangeSignals
 from radhar_cli.processing.signal import Signal
+from radhar_cli.processing.stft import Stft
+from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 from radhar_cli.scene import Scene
 
 
@@ -61,13 +69,14 @@ def record(
 
 
 def process(
-    signal: Signal | RangeSignals,
+    signal: Signal,
     config: Config,
     asked: Iterable[str],
     more: Iterable[Product] = (),
     **given: Any,
 ) -> Recording:
-    """Make products of a signal after the canceller, or range bins before it, that were recorded.
+    """Make products of a recorded signal: a sum over range after the canceller, or range bins
+    before it. Powers of its channels are added up.
 
     As `record`, without a scene. Compensated maps need `torso_track=`, its delay [M] in s, and so
     does a gate that follows the torso.
@@ -75,7 +84,7 @@ def process(
     Raises:
         KeyError: a product would need a scene.
     """
-    duration = signal.x.shape[-1] / signal.prf
+    duration = signal.pulses / signal.prf
     given = {
         "frames": frames_of(config, duration, signal.prf, signal.f0),
         "fsst_frames": fsst_frames_of(config, duration, signal.prf, signal.f0),
@@ -84,12 +93,22 @@ def process(
     }
     if config.image.kind == "cfar":
         given.setdefault("cfar", cfar_of(config))
-    if isinstance(signal, Signal):
+    if signal.ranges is None:
         return _made(config, asked, more, {"signal": signal, **given})
-    after = signal.cancelled(given["canceller"])
-    half_band = Signal(half_band_signal(after.x), after.t0, after.prf, after.f0)
-    bins = {"signal": half_band, "range_signals": after, "range_axis": signal.ranges}
-    return _made(config, asked, more, {**bins, **given})
+    canceller, gated = given["canceller"], config.processing.range_sum == "gated"
+    after, track = signal.cancelled(canceller), given.get("torso_track")
+    if track is not None:
+        later = after.t + canceller.lost / 2 / signal.prf
+        given["torso_track"] = np.interp(later, signal.t, track)
+        if gated:
+            middle = np.interp(
+                Stft(after, given["frames"]).time.values, signal.t, range(track.size)
+            )
+            torso = track[np.rint(np.round(middle, 6)).astype(np.intp)] * (SPEED_OF_LIGHT / 2)
+            given["gate"] = gate_of(config, signal.ranges, torso)
+    profiles = after.columns(config.image.size_px[1])
+    made = {"signal": after.summed(), "range_signals": after, "range_profiles": profiles}
+    return _made(config, asked, more, {**made, "range_axis": signal.ranges, **given})
 
 
 def _made(

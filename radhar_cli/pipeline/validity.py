@@ -29,7 +29,7 @@ from radhar_cli.pipeline.unused_keys import unused_keys
 from radhar_cli.radar.propagation import Antennas, bistatic_delay, leg
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
-from radhar_cli.scene import Scene, draw_scene
+from radhar_cli.scene import Person, Scene, draw_scene
 
 MIN_DISTANCE_M = 0.05
 REACH_M = 1.0  # distance of a segment's surface from its joints, at most
@@ -122,18 +122,27 @@ def check_scene(scene: Scene) -> SceneCheck:
         SceneError: no body can do this.
     """
     try:
-        return _check(scene, motion_of(scene))
+        checks = [_check(scene, person, motion_of(person)) for person in scene.people]
     except OutOfReachError as error:
         raise SceneError(f"{scene.name}: {error} (motion.*, timing.*)") from None
+    flags, closest = checks[0].flags, min(check.closest for check in checks)
+    for check in checks[1:]:
+        flags |= check.flags & ~Flags.GATE  # which follows the sample's own person
+    room = reflectors_of(scene)
+    if room is not None:  # reflectors move by millimetres: one instant will do
+        p, start, antennas = room.positions(np.zeros(1)), np.zeros(1), antennas_of(scene.config)
+        legs = leg(p, antennas.tx), leg(p, antennas.rx)
+        closest = min(closest, _nearest(room.names, start, *legs))
+    return SceneCheck(closest, flags)
 
 
-def _check(scene: Scene, motion: Motion) -> SceneCheck:
+def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
     antennas = antennas_of(scene.config)
     wall, waveform = wall_of(scene.config), waveform_of(scene.config)
     rate = max(GRID_HZ, GRID_PER_CYCLE * motion.highest_frequency)
     step = max(1, int(waveform.prf / rate))
     pulses = np.append(np.arange(0, waveform.n_pulses - 1, step), waveform.n_pulses - 1)
-    body = body_of(scene, motion) if scene.config.body.scatterers == "segments" else None
+    body = body_of(person, motion) if scene.config.body.scatterers == "segments" else None
     blocks = [  # consecutive ones share a pulse, so that no step between two is missed
         _check_block(motion, body, antennas, wall, waveform, pulses[first : first + GRID_CHUNK + 1])
         for first in range(0, pulses.size - 1, GRID_CHUNK)
@@ -149,13 +158,7 @@ def _check(scene: Scene, motion: Motion) -> SceneCheck:
         distance = torso * (SPEED_OF_LIGHT / 2)
         if distance.min() < low or distance.max() > high:
             flags |= Flags.GATE
-    closest = min(block.closest for block in blocks)
-    room = reflectors_of(scene)
-    if room is not None:  # reflectors move by millimetres: one instant will do
-        p, start = room.positions(np.zeros(1)), np.zeros(1)
-        names, legs = room.names, (leg(p, antennas.tx), leg(p, antennas.rx))
-        closest = min(closest, _nearest(names, start, *legs))
-    return SceneCheck(closest, flags)
+    return SceneCheck(min(block.closest for block in blocks), flags)
 
 
 def _check_block(

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from radhar_cli.arrays import Complex, Float
-from radhar_cli.processing.stft import Spectra
+from radhar_cli.processing.stft import Stft
 
 
 def synchrosqueeze(v: Complex, slope: Complex, least: float) -> tuple[Float, Float]:
@@ -43,18 +43,31 @@ def synchrosqueeze(v: Complex, slope: Complex, least: float) -> tuple[Float, Flo
     return real.astype(float, copy=False), imag.astype(float, copy=False)
 
 
-def power_blocks(spectra: Spectra, threshold: float) -> Iterator[Float]:
-    """|T|^2 [some frames, frequency], laid out as the map of the STFT.
+def power_blocks(stft: Stft, threshold: float) -> Iterator[Float]:
+    """|T|^2 summed over the channels of a signal of one row [some frames, frequency].
 
     Args:
-        spectra: of the signal, with N = L.
+        stft: of the signal, with N = L.
         threshold: coefficients below it times the largest |V| of the whole map are dropped.
     """
-    least = threshold * max(float(np.abs(v).max()) for v in spectra) if threshold else 0.0
-    for block, v in zip(spectra.blocks, spectra, strict=True):
-        slope = spectra.transform(block, spectra.frames.window_slope)
-        power, imag = synchrosqueeze(v, slope, least)
-        power *= power
-        imag *= imag
-        power += imag
-        yield np.fft.fftshift(power.astype(v.real.dtype), axes=1)
+    rows, frames = stft.signal.x[:, 0], stft.frames
+
+    def coefficients(block: slice) -> list[Complex]:
+        return [stft.transform(x, block, frames.window) for x in rows]
+
+    kept = [coefficients(block) for block in stft.blocks[:1]] if len(stft.blocks) == 1 else None
+    least = 0.0
+    if threshold:
+        passes = kept or map(coefficients, stft.blocks)
+        least = threshold * max(float(np.abs(v).max()) for block in passes for v in block)
+    for number, block in enumerate(stft.blocks):
+        total: Float | None = None
+        each = kept[number] if kept else coefficients(block)
+        for x, v in zip(rows, each, strict=True):
+            power, imag = synchrosqueeze(v, stft.transform(x, block, frames.window_slope), least)
+            power *= power
+            imag *= imag
+            power += imag
+            total = power if total is None else total + power
+        assert total is not None
+        yield np.fft.fftshift(total.astype(each[0].real.dtype), axes=1)

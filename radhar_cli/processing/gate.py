@@ -4,17 +4,13 @@ What public data sets show, where the paper adds up all bins coherently before t
 bins of a frame are fixed, so that no bin's signal is switched on or off within one.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
 from math import floor
 
 import numpy as np
 
 from radhar_cli.arrays import Float, Index
 from radhar_cli.processing.frames import Frames
-from radhar_cli.processing.range_signals import RangeSignals
-from radhar_cli.processing.stft import exponent_of, transform
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,65 +86,3 @@ def bins_within(within: float, step: float) -> int:
 
 def _step(ranges: Float) -> float:
     return float(ranges[1] - ranges[0]) if ranges.size > 1 else 1.0
-
-
-@dataclass(frozen=True, eq=False)
-class GatedPower:
-    """sum_k |X_k|^2 or (sum_k |X_k|)^2 over the gate of every frame, in blocks of frames.
-
-    X_k is the transform of `stft` of bin k. Iterating yields [some frames, N], the lowest frequency
-    first; all of it is that of 2^-exponent x, as in `stft.Spectra`.
-
-    Attributes:
-        signals: of every bin that the gate shows.
-        gate: which a frame shows.
-        frames: window length L and hop.
-        bins: N, at least L.
-        magnitudes: whether magnitudes are summed instead of powers.
-        single: whether coefficients are complex64; complex128 otherwise.
-    """
-
-    signals: RangeSignals
-    gate: Gate
-    frames: Frames
-    bins: int
-    magnitudes: bool = False
-    single: bool = False
-
-    @cached_property
-    def exponent(self) -> int:
-        """Binary exponent of the largest real or imaginary part of any bin."""
-        return exponent_of(self.signals.x)
-
-    @property
-    def count(self) -> int:
-        """Number of frames."""
-        return self.frames.count(self.signals.x.shape[1])
-
-    def __iter__(self) -> Iterator[Float]:
-        first = np.broadcast_to(self.gate.first - self.signals.first, self.count)
-        for block in self.frames.blocks(self.signals.x.shape[1], self.bins):
-            real = np.float32 if self.single else np.float64
-            total = np.zeros((block.stop - block.start, self.bins), real)
-            lowest, highest = first[block].min(), first[block].max() + self.gate.count
-            for k in range(lowest, highest):
-                shown = (first[block] <= k) & (k < first[block] + self.gate.count)
-                self._add(total, k, block.start, np.flatnonzero(shown))
-            if self.magnitudes:
-                total *= total
-            yield np.fft.fftshift(total, axes=1)
-
-    def _add(self, total: Float, k: int, start: int, shown: Index) -> None:
-        """Add bin k in some frames, counted from `start`, to their sums."""
-        if not shown.size:
-            return
-        span = self.frames.span(slice(start + int(shown[0]), start + int(shown[-1]) + 1))
-        x = self.signals.x[k, span] * 2.0**-self.exponent
-        spectrum = transform(x, self.frames, self.frames.window, self.bins, self.single)
-        size = np.abs(spectrum)
-        if not self.magnitudes:
-            size *= size
-        if shown.size == len(size):  # the usual case: frames without a gap
-            total[shown[0] : shown[-1] + 1] += size
-        else:
-            total[shown] += size[shown - shown[0]]

@@ -1,30 +1,111 @@
-"""A slow-time signal, simulated or recorded."""
+"""Slow-time signals of channels and range bins, simulated or recorded."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
-from radhar_cli.arrays import Complex, Float
+import numpy as np
+
+from radhar_cli.arrays import Complex, Float, Index
+from radhar_cli.processing.canceller import Canceller
+from radhar_cli.processing.pulse_times import PulseTimes
+
+
+def shown_pulses(count: int, width: int) -> Index:
+    """Columns of a range-time map: m_j = floor((j + 1/2) count/width), all if count < width."""
+    if count <= width:
+        return np.arange(count)
+    return (2 * np.arange(width) + 1) * count // (2 * width)
+
+
+def nearest(values: Float, wanted: Float) -> Index:
+    """Numbers of the rising values nearest to those wanted."""
+    middles = (values[1:] + values[:-1]) / 2
+    return np.searchsorted(middles, wanted)
 
 
 @dataclass(frozen=True)
 class Signal:
-    """One complex sample a pulse.
+    """Complex samples of receive channels and range bins, pulse by pulse.
 
     Attributes:
-        x: [M].
-        t0: time of x[0], s.
-        prf: pulses per second, Hz.
+        x: [channel, row, pulse]; rows are range bins, or one coherent sum over them.
+        times: of the pulses.
         f0: frequency at which the Doppler is read, Hz.
+        ranges: of the rows, m; None of a sum over range.
+        first: number of the first row's range bin, as a `Gate` counts them.
     """
 
     x: Complex
-    t0: float
-    prf: float
+    times: PulseTimes
     f0: float
+    ranges: Float | None = None
+    first: int = 0
 
-    def times(self, samples: Float) -> Float:
-        """Times (s) of sample numbers, which need not be whole."""
-        return self.t0 + samples / self.prf
+    @property
+    def pulses(self) -> int:
+        """M."""
+        return int(self.x.shape[-1])
 
-    def with_samples(self, x: Complex, later: float = 0.0) -> "Signal":
-        """The same with other samples, `later` pulse intervals after these."""
-        return replace(self, x=x, t0=self.t0 + later / self.prf)
+    @property
+    def prf(self) -> float:
+        """Pulses per second between gaps, Hz."""
+        return self.times.prf
+
+    @cached_property
+    def t(self) -> Float:
+        """Times of the pulses [M], s."""
+        return self.times.times(np.arange(self.pulses))
+
+    def with_samples(self, x: Complex) -> "Signal":
+        """The same with other samples."""
+        return replace(self, x=x)
+
+    def at(self, pulses: Index, t: Float | None = None) -> "Signal":
+        """Some of the pulses, under their own times or others (s)."""
+        t = self.times.times(pulses) if t is None else t
+        each = PulseTimes(t, np.arange(pulses.size), pulses.size, self.prf)
+        return replace(self, x=self.x[..., pulses], times=each)
+
+    def summed(self) -> "Signal":
+        """The coherent sum over the rows."""
+        return replace(self, x=self.x.sum(axis=1, keepdims=True), ranges=None, first=0)
+
+    def columns(self, width: int) -> "Signal":
+        """The pulses that a range-time map shows: `shown_pulses`, or with gaps those nearest to
+        even times, under these."""
+        if len(self.times) == 1:
+            return self.at(shown_pulses(self.pulses, width))
+        first, last = self.times.times(np.array([0, self.pulses - 1]))
+        even = first + (np.arange(width) + 0.5) / width * (last - first)
+        return self.at(nearest(self.t, even), even)
+
+    def stretches(self, least: int) -> "Signal":
+        """The stretches that have so many pulses."""
+        kept = self.times.lengths >= least
+        if kept.all():
+            return self
+        parts = [
+            self.x[..., part] for part, one in zip(self.times.slices, kept, strict=True) if one
+        ]
+        return replace(self, x=np.concatenate(parts, axis=-1), times=self.times.only(kept))
+
+    def cancelled(self, canceller: Canceller, spans: Sequence[slice] | None = None) -> "Signal":
+        """The same after a canceller, stretch by stretch; those too short for it are left out.
+
+        Args:
+            canceller: along the pulses.
+            spans: pulses of each row that count, of a signal without gaps; the others become 0.
+        """
+        whole = self.stretches(canceller.lost + 1)
+        times = whole.times.shortened(canceller.lost, canceller.delay)
+        if spans is not None:
+            x = np.zeros((*self.x.shape[:-1], times.pulses), self.x.dtype)
+            for row, span in enumerate(spans):
+                if span.stop - span.start > canceller.lost:
+                    some = slice(span.start, span.stop - canceller.lost)
+                    x[:, row, some] = canceller(self.x[:, row, span])
+        else:
+            parts = [canceller(whole.x[..., part]) for part in whole.times.slices]
+            x = parts[0] if len(parts) == 1 else np.concatenate(parts, axis=-1)
+        return replace(self, x=x, times=times)

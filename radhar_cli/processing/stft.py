@@ -8,101 +8,132 @@ from typing import Any
 import numpy as np
 import scipy.fft
 
-from radhar_cli.arrays import Complex, Float
+from radhar_cli.arrays import Bool, Complex, Float, Index
 from radhar_cli.errors import RadharError
 from radhar_cli.processing.frames import Frames
+from radhar_cli.processing.gate import Gate
+from radhar_cli.processing.power_map import Axis
+from radhar_cli.processing.signal import Signal
 
-
-def exponent_of(x: Complex) -> int:
-    """Binary exponent of the largest real or imaginary part of x.
-
-    Raises:
-        RadharError: one is an infinity or a NaN.
-    """
-    parts = x.real, x.imag
-    largest = float(np.max([abs(f(part)) for part in parts for f in (np.min, np.max)]))
-    if not np.isfinite(largest):
-        raise RadharError(f"the signal should be finite; its largest part is {largest}")
-    # 2^-exponent must be a double itself; denormal signals keep their digits at 2^1022.
-    return max(int(np.frexp(largest)[1]), -1022)
-
-
-def transform(x: Complex, frames: Frames, window: Float, bins: int, single: bool) -> Complex:
-    """X[l, k] = sum_n x[l hop + n] g[n] exp(-j 2 pi k (n - L//2)/N) [frames of x, N].
-
-    Args:
-        x: [M].
-        frames: window length L and hop.
-        window: g [L].
-        bins: N, at least L.
-        single: whether to compute in complex64.
-    """
-    dtype: Any = np.complex64 if single else np.complex128
-    cut = frames.cut(x.astype(dtype))
-    g = window.astype(cut.real.dtype)
-    middle = frames.length // 2
-    # Sample L//2 comes first: that refers the phase to it.
-    framed = np.zeros((len(cut), bins), dtype)
-    np.multiply(cut[:, middle:], g[middle:], out=framed[:, : g.size - middle])
-    np.multiply(cut[:, :middle], g[:middle], out=framed[:, bins - middle :])
-    return np.asarray(scipy.fft.fft(framed, axis=1, overwrite_x=True))
+# Coefficients of a block of frames: 8 MiB in complex64. The paper's 90 frames of 2000 are a sixth.
+BLOCK_COEFFICIENTS = 2**20
 
 
 @dataclass(frozen=True, eq=False)
-class Spectra:
-    """X[l, k] = sum_n x[l hop + n] g[n] exp(-j 2 pi k (n - L//2)/N), in blocks of frames.
+class Stft:
+    """X[l, k] = sum_n x[l hop + n] g[n] exp(-j 2 pi k (n - L//2)/N) of a signal, and its axes.
 
-    Iterating yields the blocks [some frames, N]. A recording of one block keeps it; those of a
-    longer one are computed anew in every pass. Coefficients are those of 2^-exponent x, whose
+    Frames come in blocks that bound the memory. Coefficients are those of 2^-exponent x, whose
     largest part is 1/2 to 1, so that no power of them overflows or vanishes, in float32 either.
 
     Attributes:
-        x: slow-time signal [M].
+        signal: without its gaps, in which no frame lies.
         frames: window length L and hop.
-        bins: N, at least L.
+        bins: N, at least L; None is L.
         single: whether coefficients are complex64; complex128 otherwise.
+        gate: which rows of the signal a frame shows; None is all.
+        magnitudes: whether magnitudes are summed over the rows instead of powers.
     """
 
-    x: Complex
+    signal: Signal
     frames: Frames
-    bins: int
+    bins: int | None = None
     single: bool = False
+    gate: Gate | None = None
+    magnitudes: bool = False
+
+    @property
+    def size(self) -> int:
+        """N."""
+        return self.bins or self.frames.length
+
+    @cached_property
+    def starts(self) -> Index:
+        """First sample of every frame."""
+        return self.frames.starts(self.signal.times.slices)
+
+    @cached_property
+    def frequency(self) -> Axis:
+        """Doppler frequency of the rows of a map, Hz, rising."""
+        return Axis(
+            "frequency", "Hz", np.fft.fftshift(np.fft.fftfreq(self.size, 1 / self.signal.prf))
+        )
+
+    @cached_property
+    def time(self) -> Axis:
+        """Middle of every frame, s."""
+        later = (self.frames.length - 1) / 2 / self.signal.prf
+        return Axis("time", "s", self.signal.times.times(self.starts) + later)
 
     @cached_property
     def exponent(self) -> int:
-        """Binary exponent of the largest real or imaginary part of x."""
-        return exponent_of(self.x)
+        """Binary exponent of the largest real or imaginary part of the signal.
 
-    @property
-    def count(self) -> int:
-        """Number of frames."""
-        return self.frames.count(self.x.size)
+        Raises:
+            RadharError: one is an infinity or a NaN.
+        """
+        x = self.signal.x
+        largest = float(
+            np.max([abs(f(part)) for part in (x.real, x.imag) for f in (np.min, np.max)])
+        )
+        if not np.isfinite(largest):
+            raise RadharError(f"the signal should be finite; its largest part is {largest}")
+        # 2^-exponent must be a double itself; denormal signals keep their digits at 2^1022.
+        return max(int(np.frexp(largest)[1]), -1022)
 
     @cached_property
     def blocks(self) -> list[slice]:
-        """Frames of every block."""
-        return self.frames.blocks(self.x.size, self.bins)
+        """Frames of every block: BLOCK_COEFFICIENTS of them, or one frame."""
+        count, most = self.starts.size, max(1, BLOCK_COEFFICIENTS // self.size)
+        return [slice(first, min(first + most, count)) for first in range(0, count, most)]
 
-    def transform(self, block: slice, window: Float) -> Complex:
-        """The sum above with another window [L], over a slice of frames."""
-        part: Complex = self.x[self.frames.span(block)] * 2.0**-self.exponent
-        return transform(part, self.frames, window, self.bins, self.single)
+    def transform(self, row: Complex, frames: slice, window: Float) -> Complex:
+        """X [some frames, N] of a row [M] of the signal, with a window [L]."""
+        starts, length = self.starts[frames], self.frames.length
+        dtype: Any = np.complex64 if self.single else np.complex128
+        x = (row[starts[0] : starts[-1] + length] * 2.0**-self.exponent).astype(dtype)
+        cut = np.lib.stride_tricks.sliding_window_view(x, length)
+        gapless = starts[-1] - starts[0] == (starts.size - 1) * self.frames.hop
+        cut = cut[:: self.frames.hop] if gapless else cut[starts - starts[0]]
+        g, middle = window.astype(cut.real.dtype), length // 2
+        # Sample L//2 comes first: that refers the phase to it.
+        framed = np.zeros((len(cut), self.size), dtype)
+        np.multiply(cut[:, middle:], g[middle:], out=framed[:, : length - middle])
+        np.multiply(cut[:, :middle], g[:middle], out=framed[:, self.size - middle :])
+        return np.asarray(scipy.fft.fft(framed, axis=1, overwrite_x=True))
 
-    @cached_property
-    def _only(self) -> Complex:
-        return self.transform(self.blocks[0], self.frames.window)
-
-    def __iter__(self) -> Iterator[Complex]:
-        if len(self.blocks) == 1:
-            yield self._only
-            return
+    def power_blocks(self) -> Iterator[Float]:
+        """sum |X|^2 over channels and rows, or (sum |X|)^2 [some frames, N], rising frequency."""
         for block in self.blocks:
-            yield self.transform(block, self.frames.window)
+            total: Float | None = None
+            for channel in self.signal.x:
+                for row, x in enumerate(channel):
+                    shown = self._shown(row, block)
+                    some = np.flatnonzero(shown)
+                    if not some.size:
+                        continue
+                    first, last = block.start + int(some[0]), block.start + int(some[-1]) + 1
+                    size = np.abs(self.transform(x, slice(first, last), self.frames.window))
+                    if not self.magnitudes:
+                        size *= size
+                    if total is None and some.size == shown.size:
+                        total = size
+                        continue
+                    if total is None:
+                        total = np.zeros((shown.size, self.size), size.dtype)
+                    if some.size == len(size):  # the usual case: frames without a gap
+                        total[some[0] : some[-1] + 1] += size
+                    else:
+                        total[some] += size[some - some[0]]
+            assert total is not None, "a gate shows at least one row of every frame"
+            if self.magnitudes:
+                total *= total
+            yield np.fft.fftshift(total, axes=1)
 
-
-def power_blocks(spectra: Spectra) -> Iterator[Float]:
-    """|X|^2 [some frames, frequency], the lowest frequency first, zero Doppler in the middle."""
-    for x in spectra:
-        power = np.abs(x)
-        power *= power
-        yield np.fft.fftshift(power, axes=1)
+    def _shown(self, row: int, block: slice) -> Bool:
+        """Which frames of a block show a row."""
+        if self.gate is None:
+            return np.ones(block.stop - block.start, bool)
+        first = np.broadcast_to(self.gate.first - self.signal.first, self.starts.size)[block]
+        shown: Bool = (first <= row) & (row < first + self.gate.count)
+        return shown

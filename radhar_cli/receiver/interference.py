@@ -1,16 +1,14 @@
 """Interference at fixed Doppler frequencies: lines from end to end of a map, or in parts of it."""
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from radhar_cli.arrays import Complex, Float, Index
-from radhar_cli.echo.half_band_sum import weights
 from radhar_cli.phasor import unit_phasor
-from radhar_cli.processing.canceller import Fir
-from radhar_cli.processing.range_compression import range_bins, range_compression
+from radhar_cli.processing.look import Look
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.receiver.impairment import Impairment
 
@@ -73,29 +71,7 @@ class Line(Impairment):
             at = float(times[-1][-1])
         return np.concatenate([[-np.inf] if already else [], *times])
 
-    def beat(self, blocks: Iterator[Complex]) -> Iterator[Complex]:
-        """Of a beat matrix in blocks."""
-        first = 0
-        for block in blocks:
-            pulses = np.arange(first, first + block.shape[1])
-            yield block + np.outer(self.code, self.tone(pulses))
-            first += block.shape[1]
-
-    def slow_time(self, y: Complex) -> Complex:
-        """What compression and the sum over bins make of it."""
-        noisy: Complex = y + (weights(self.waveform) @ self.code) * self.tone(np.arange(y.size))
+    def apply(self, x: Complex, look: Look) -> Complex:
+        """x + W c[n] times the tone, seen after the canceller."""
+        noisy: Complex = x + look.fast(self.code[:, None]) * look.taken(self.tone)
         return noisy
-
-    def range_bins(self, bins: Complex, pulses: Index, canceller: Fir) -> Complex:
-        """Of some pulses, after the canceller."""
-        tone = canceller(self.tone(pulses[:, None] + np.arange(canceller.lost + 1)))[:, 0]
-        found: Complex = bins + range_bins(self.code[:, None], self.waveform) * tone
-        return found
-
-    def range_signals(
-        self, x: Complex, bins: slice, spans: Sequence[slice] | None = None
-    ) -> Complex:
-        """Of range bins of all pulses."""
-        compressed = range_compression(self.code[:, None], replace(self.waveform, centred=True))
-        found: Complex = x + compressed[bins] * self.tone(np.arange(x.shape[1]))
-        return found

@@ -58,4 +58,4 @@ def scene_bvh(
     frames = round(scene.config.duration_s * rate) + 1
     if frames > MAX_FRAMES:
         raise ConfigError(f"{frames} frames; should be at most {MAX_FRAMES}: --rate, duration_s")
-    return bvh_text(sampled(motion_of(scene), np.arange(frames) / rate), rate), frames
+    return bvh_text(sampled(motion_of(scene.people[0]), np.arange(frames) / rate), rate), frames

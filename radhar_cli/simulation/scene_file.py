@@ -48,7 +48,7 @@ def write_scene(simulation: Simulation, path: Path) -> None:
         for name, power_map in simulation.maps.items():
             write_map(file, name, power_map)
         for name, signal in simulation.signals.items():
-            file[f"slow_time/{name}"] = signal.x
+            file[f"slow_time/{name}"] = signal.x[0, 0]
         _write_truth(file, simulation)
         file.attrs["scene"] = json.dumps(describe(simulation))
         file.attrs["config"] = json.dumps(resolved(_alone(simulation.scene)))

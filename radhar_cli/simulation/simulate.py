@@ -8,10 +8,10 @@ import numpy as np
 from radhar_cli.activity import Activity, activity_named
 from radhar_cli.arrays import Complex
 from radhar_cli.config.reading import ABSENT, as_config
-from radhar_cli.config.schema import MAP_NAMES, Config, MapName, possible_maps
-from radhar_cli.echo import cube
+from radhar_cli.config.schema import MAP_NAMES, Config, possible_maps
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.direct import Accuracy
+from radhar_cli.echo.exact import beat_blocks
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.echo.static_returns import leakage, near_face_distance, wall_echo
 from radhar_cli.errors import ConfigError, SceneError, did_you_mean
@@ -85,7 +85,7 @@ def simulate(
     index: int = 0,
     nominal: bool = False,
     joint: str | None = None,
-    maps: tuple[MapName, ...] | None = None,
+    maps: tuple[str, ...] | None = None,
     raw: bool = False,
 ) -> Simulation:
     """Simulate one sample of one activity.
@@ -118,7 +118,7 @@ def simulate(
     config = config.model_copy(update={"maps": maps, **({} if seed is None else {"seed": seed})})
     scene = scene_of(config, activity, index, nominal)
     warnings = scene_warnings(scene)
-    motion = motion_of(scene)
+    motion = motion_of(scene.people[0])
     kept = motion if joint is None else Only(motion, (_joint(joint, motion.names),))
     asked = [*SIGNALS, *maps, "waveform", "antennas", "wall"]
     asked += ["accuracy"] if config.engine.kind == "direct" else []
@@ -161,7 +161,7 @@ def scene_of(config: Config, activity: Activity, index: int, nominal: bool) -> S
     return draw_scene(config, activity, index)
 
 
-def map_names(chosen: list[str]) -> tuple[MapName, ...]:
+def map_names(chosen: list[str]) -> tuple[str, ...]:
     """The maps of these names, in our order.
 
     Raises:
@@ -188,9 +188,7 @@ def raw_echo(
     Raises:
         SceneError: the wall's near face is within 5 cm of the antennas' midpoint.
     """
-    blocks = cube.beat_blocks(paths, waveform, scene.config.engine.motion_in_chirp)
-    for impairment in receiver:
-        blocks = impairment.beat(blocks)
+    blocks = beat_blocks(paths, waveform, receiver, scene.config.engine.motion_in_chirp)
     beat = np.concatenate(list(blocks), axis=1)
     static = [leakage(antennas)]
     if wall is not None:

@@ -1,97 +1,90 @@
 """pareto.png: time against error with the frontier, and what physics left out changes."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import inf
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 
 from radhar_cli.figures.page import page, png_bytes
-from radhar_cli.tradeoff.accuracy import Accuracy
-from radhar_cli.tradeoff.study import Row
-from radhar_cli.tradeoff.text import ENGINES
+from radhar_cli.tradeoff.study import Record
+
+ENGINES = ("budget", "precision", "engine")
 
 
-@dataclass(frozen=True)
-class CostPoint:
-    """A setting: its time over the default's with quartiles, and its error in dB (None: exact)."""
+class CostPoint(NamedTuple):
+    """A setting: time relative to the default's with quartiles, error in dB (-inf: exact)."""
 
     name: str
     time: float
     low: float
     high: float
-    error_db: float | None
+    error_db: float
     default: bool
-
-    @classmethod
-    def of(cls, row: Row, column: str) -> "CostPoint":
-        """A row of the sweep, with the time of a column of its `Times`."""
-        middle, spread = row.middle(column), row.spread(column)
-        assert middle is not None
-        assert spread is not None
-        error = row.worst("signal_error_db")
-        exact = error in (None, -inf)
-        return cls(
-            row.setting.name, middle, *spread, None if exact else error, row.setting.is_default
-        )
 
 
 def frontier(points: Sequence[CostPoint]) -> list[CostPoint]:
     """The settings that no other one beats in both time and error, the fastest first."""
     best: list[CostPoint] = []
-    exact = float("-inf")
-    for point in sorted(points, key=lambda p: (p.time, _error(p, exact))):
-        if not best or _error(point, exact) < _error(best[-1], exact):
+    for point in sorted(points, key=lambda p: (p.time, p.error_db)):
+        if not best or point.error_db < best[-1].error_db:
             best.append(point)
     return best
 
 
-def tradeoff_png(title: str, rows: Sequence[Row], accuracies: Sequence[Accuracy]) -> bytes:
-    """Draw time against error, the switches, and accuracies where there are any."""
-    engines = [row for row in rows if row.setting.group in ENGINES and row.times]
-    count = 3 + bool(accuracies)
-    figure = page(5.2 * count, 4.8)
-    panels = figure.subplots(1, count)
+def tradeoff_png(title: str, rows: Sequence[Record]) -> bytes:
+    """Draw time against error, and the switches."""
+    engines = [row for row in rows if row["group"] in ENGINES and row["time_ratio"] is not None]
+    errors = [row["signal_error_db"] for row in engines]
+    floor = min((e for e in errors if e is not None and e > -inf), default=-100.0) - 20
+    figure = page(15.6, 4.8)
+    panels = figure.subplots(1, 3)
     figure.suptitle(title)
     for axes, part, column in (
         (panels[0], "echo alone", "echo_ratio"),
-        (panels[1], "whole sample", "ratio"),
+        (panels[1], "whole sample", "time_ratio"),
     ):
-        points = [CostPoint.of(row, column) for row in engines]
-        _draw_costs(axes, points, f"{part}: time over the default's")
+        points = [
+            CostPoint(
+                row["setting"] + (" (default)" if row["default"] else ""),
+                row[column],
+                row[f"{column}_low"],
+                row[f"{column}_high"],
+                max(floor, -inf if error is None else error),
+                row["default"],
+            )
+            for row, error in zip(engines, errors, strict=True)
+        ]
+        _draw_costs(axes, points, floor, f"{part}: time relative to the default's")
     _draw_switches(panels[2], rows)
-    if accuracies:
-        _draw_accuracies(panels[3], accuracies)
     return png_bytes(figure)
 
 
-def _draw_costs(axes: Axes, points: Sequence[CostPoint], label: str) -> None:
-    least = min((p.error_db for p in points if p.error_db is not None), default=-100.0)
-    floor = least - 20
-    for point in points:
+def _draw_costs(axes: Axes, points: Sequence[CostPoint], floor: float, label: str) -> None:
+    """Errors at `floor` are those of what is exact."""
+    groups: list[list[CostPoint]] = []  # points so close that their names would lie on each other
+    for point in sorted(points, key=lambda p: -p.error_db):
         axes.errorbar(
             point.time,
-            _error(point, floor),
+            point.error_db,
             xerr=[[max(0, point.time - point.low)], [max(0, point.high - point.time)]],
             fmt="D" if point.default else "o",
             color="C3" if point.default else "C0",
             capsize=2,
             zorder=4 if point.default else 3,
         )
-    for group in _level(points, floor):
-        names = ", ".join(f"{p.name} (default)" if p.default else p.name for p in group)
-        place = (max(p.time for p in group), _error(group[0], floor))
+        if groups and groups[-1][0].error_db - point.error_db < 4:
+            groups[-1].append(point)
+        else:
+            groups.append([point])
+    for group in groups:
+        place = (max(p.time for p in group), group[0].error_db)
+        names = ", ".join(p.name for p in group)
         axes.annotate(names, place, (7, 4), textcoords="offset points", fontsize=7.5)
     line = frontier(points)
-    axes.step(
-        [p.time for p in line],
-        [_error(p, floor) for p in line],
-        where="post",
-        color="0.6",
-        lw=1,
-        label="frontier",
-    )
+    times, errors = [p.time for p in line], [p.error_db for p in line]
+    axes.step(times, errors, where="post", color="0.6", lw=1, label="frontier")
     axes.set_xscale("log")
     longest = max(p.high for p in points)
     axes.set_xlim(right=2.5 * longest)
@@ -100,52 +93,24 @@ def _draw_costs(axes: Axes, points: Sequence[CostPoint], label: str) -> None:
     axes.minorticks_off()
     steps = np.arange(20 * (int(floor) // 20 + 2), 1, 20)
     axes.set_yticks([floor, *steps], ["exact", *(f"{step:g}" for step in steps)])
-    axes.set_ylim(floor - 8, max(_error(p, floor) for p in points) + 10)
+    axes.set_ylim(floor - 8, max(p.error_db for p in points) + 10)
     axes.set_xlabel(label)
     axes.set_ylabel("error of the slow-time signal (dB), worst scene")
     axes.legend(fontsize=8, loc="upper right")
     axes.grid(alpha=0.3)
 
 
-def _level(points: Sequence[CostPoint], floor: float) -> list[list[CostPoint]]:
-    """Points whose errors are so close that their names would lie on each other."""
-    groups: list[list[CostPoint]] = []
-    for point in sorted(points, key=lambda p: -_error(p, floor)):
-        if groups and _error(groups[-1][0], floor) - _error(point, floor) < 4:
-            groups[-1].append(point)
-        else:
-            groups.append([point])
-    return groups
-
-
-def _draw_switches(axes: Axes, rows: Sequence[Row]) -> None:
+def _draw_switches(axes: Axes, rows: Sequence[Record]) -> None:
     names = list[str]()
     for row in rows:
-        setting, change_db = row.setting, row.usual("signal_error_db")
-        if setting.group != "switch" or not setting.of_signal or change_db is None or not row.times:
+        change_db, ratio = row["signal_error_median_db"], row["time_ratio"]
+        if row["group"] != "switch" or not row["of_signal"] or None in (change_db, ratio):
             continue
         axes.barh(len(names), change_db + 100, left=-100, color="C1")
-        text = f"{change_db:.0f} dB, {row.middle('ratio'):.1f} times {setting.baseline_name}"
+        text = f"{change_db:.0f} dB, {ratio:.1f} times {row['time_over']}"
         axes.text(-98, len(names), text, va="center", fontsize=8)
-        names.append(setting.name)
+        names.append(row["setting"])
     axes.set_yticks(range(len(names)), names, fontsize=8)
     axes.set_xlim(-100, 15)
     axes.axvline(0, color="0.5", lw=0.8)
     axes.set_xlabel("what is missed without it (dB of the signal), median")
-
-
-def _draw_accuracies(axes: Axes, accuracies: Sequence[Accuracy]) -> None:
-    rows = range(len(accuracies))
-    mean = [100 * a.mean for a in accuracies]
-    interval = [
-        [100 * max(0, a.mean - a.low) for a in accuracies],
-        [100 * max(0, a.high - a.mean) for a in accuracies],
-    ]
-    axes.errorbar(mean, list(rows), xerr=interval, fmt="o", capsize=3)
-    axes.set_yticks(rows, [a.name for a in accuracies], fontsize=8)
-    axes.set_xlabel("accuracy on the reference (%), 95 % interval")
-    axes.grid(alpha=0.3)
-
-
-def _error(point: CostPoint, exact: float) -> float:
-    return exact if point.error_db is None else point.error_db

@@ -1,14 +1,27 @@
-"""How far data are from a reference: as a signal, as a power map, as an image."""
+"""What a setting costs: errors of signal, map and image, against exact data; time of a sample."""
 
+from functools import cache, partial
 from math import inf, log10
-from typing import Any
+from time import process_time
+from typing import Any, NamedTuple
 
 import numpy as np
 from PIL import Image
 
 from radhar_cli.arrays import Complex, Float, Levels
+from radhar_cli.echo.direct import Accuracy
+from radhar_cli.pipeline.products import plan_images
+from radhar_cli.pipeline.run import record, run
 from radhar_cli.processing.image import decibels
+from radhar_cli.tradeoff.settings import Scenes, Setting
 
+QUIET = "snr_db=null"
+# How long a setting is timed in a round, at most this and one scene more.
+SECONDS = 0.6
+ECHO = (
+    *("motions", "paths", "direct", "echo", "signal_power", "slow_time", "signal"),
+    *("room", "snr_paths", "beat_cube", "range_profiles", "gate", "gated_echo", "range_signals"),
+)
 SSIM_WINDOW = 7
 
 
@@ -60,3 +73,99 @@ def image_scores(compared: Levels, exact: Levels) -> dict[str, float | None]:
         else float(metrics.peak_signal_noise_ratio(exact, compared, data_range=255)),
         "pixels_changed": float(np.mean(compared != exact)),
     }
+
+
+class SettingData(NamedTuple):
+    """One scene under one setting.
+
+    Attributes:
+        signal: x [M] after the canceller.
+        power: the first map of the config.
+        levels: its image.
+        dynamic_range_db: of the image.
+        engine_db: the error that the direct engine measured itself, dB; None of the cube.
+    """
+
+    signal: Complex
+    power: Float
+    levels: Levels
+    dynamic_range_db: float
+    engine_db: float | None
+
+
+class SceneDifferences:
+    """All settings in one scene; what several of them refer to is made once."""
+
+    def __init__(self, scenes: Scenes, slug: str) -> None:
+        self._sample = cache(partial(_sample, scenes, slug))
+
+    def of(self, setting: Setting) -> dict[str, float | None]:
+        """How far the setting's data are from its reference, without noise."""
+        quiet = () if setting.noisy else (QUIET,)
+        compared, right = (
+            self._sample((*setting.compared, *quiet)),
+            self._sample((*setting.exact, *quiet)),
+        )
+        row: dict[str, float | None] = {"measured_error_db": compared.engine_db}
+        if compared.signal.shape == right.signal.shape:
+            row["signal_error_db"] = relative_db(compared.signal, right.signal)
+        if compared.power.shape == right.power.shape:
+            error, worst = map_error_db(compared.power, right.power, right.dynamic_range_db)
+            row |= {"map_error_db": error, "map_error_max_db": worst}
+        return row | image_scores(compared.levels, right.levels)
+
+
+def _sample(scenes: Scenes, slug: str, overrides: tuple[str, ...]) -> SettingData:
+    config = scenes.config(overrides)
+    name = config.maps[0]
+    asked = ["signal", name, f"image:{name}"] + ["accuracy"] * (config.engine.kind == "direct")
+    products = record(scenes.draw(slug, config), asked).products
+    accuracy = products.get("accuracy")
+    return SettingData(
+        products["signal"].x[0, 0],
+        products[name].power,
+        products[f"image:{name}"].levels,
+        config.image.dynamic_range_db,
+        accuracy.error_db if isinstance(accuracy, Accuracy) else None,
+    )
+
+
+class Times(NamedTuple):
+    """One round of one setting.
+
+    Attributes:
+        sample_ms: from scene to levels and entropy, a sample.
+        echo_ms: of that, paths and echo.
+        ratio, echo_ratio: the same over those of the baseline.
+    """
+
+    sample_ms: float
+    echo_ms: float
+    ratio: float
+    echo_ratio: float
+
+
+def time_setting(scenes: Scenes, setting: Setting, turn: int) -> Times:
+    """Time a setting and its baseline in turns, scene by scene, for a fraction of a second."""
+    names = scenes.names()
+    own, usual = [0.0, 0.0], [0.0, 0.0]
+    count = 0
+    for step in range(len(names)):
+        slug = names[(turn + step) % len(names)]
+        both = [(setting.baseline, usual), (setting.overrides, own)]
+        for overrides, spent in both if (turn + step) % 2 else reversed(both):
+            for part, seconds in enumerate(_seconds(scenes, slug, overrides)):
+                spent[part] += seconds
+        count += 1
+        if own[0] + usual[0] > SECONDS:
+            break
+    return Times(1e3 * own[0] / count, 1e3 * own[1] / count, own[0] / usual[0], own[1] / usual[1])
+
+
+def _seconds(scenes: Scenes, slug: str, overrides: tuple[str, ...]) -> tuple[float, float]:
+    config = scenes.config(overrides)
+    scene, plan = scenes.draw(slug, config), plan_images(config)
+    start = process_time()
+    recording = run(plan, {"scene": scene})
+    whole = process_time() - start
+    return whole, sum(t for name, t in recording.seconds.items() if name in ECHO)

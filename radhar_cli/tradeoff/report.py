@@ -1,80 +1,126 @@
-"""tradeoff.csv, tradeoff.json, pareto.png and tradeoff.md."""
+"""tradeoff.csv, tradeoff.json, pareto.png and tradeoff.md of the rows of a sweep."""
 
 import json
-from collections.abc import Sequence
-from dataclasses import asdict
+from collections.abc import Mapping, Sequence
 from math import inf
 from pathlib import Path
 from typing import Any
 
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.learning.tables import csv_text
-from radhar_cli.tradeoff.accuracy import Accuracy
-from radhar_cli.tradeoff.figure import tradeoff_png
-from radhar_cli.tradeoff.study import Row
-from radhar_cli.tradeoff.text import markdown
+from radhar_cli.tradeoff.figure import ENGINES, tradeoff_png
+from radhar_cli.tradeoff.study import Record
 
 CSV, JSON, FIGURE, TEXT = "tradeoff.csv", "tradeoff.json", "pareto.png", "tradeoff.md"
-
-
-def record(row: Row) -> dict[str, Any]:
-    """One row in plain numbers; JSON has null for the error of what is exact."""
-    time, echo = row.spread("ratio"), row.spread("echo_ratio")
-    return {
-        "group": row.setting.group,
-        "setting": row.setting.name,
-        "default": row.setting.is_default,
-        "overrides": " ".join(row.setting.overrides),
-        "time_over": row.setting.baseline_name,
-        "sample_ms": row.middle("sample_ms"),
-        "time_ratio": row.middle("ratio"),
-        "time_ratio_low": time and time[0],
-        "time_ratio_high": time and time[1],
-        "echo_ms": row.middle("echo_ms"),
-        "echo_ratio": row.middle("echo_ratio"),
-        "echo_ratio_low": echo and echo[0],
-        "echo_ratio_high": echo and echo[1],
-        "exact": row.worst("signal_error_db") == -inf,
-        "signal_error_db": row.worst("signal_error_db"),
-        "signal_error_median_db": row.usual("signal_error_db"),
-        "map_error_db": row.worst("map_error_db"),
-        "map_error_max_db": row.worst("map_error_max_db"),
-        "ssim": min(row.values("ssim"), default=None),
-        "psnr_db": min(row.values("psnr_db"), default=None),
-        "pixels_changed": row.worst("pixels_changed"),
-        "measured_error_db": row.worst("measured_error_db"),
-        "scenes": len(row.differences),
-        "refused": len(row.refused),
-    }
+TIME = "{time_ratio:.2f} ({time_ratio_low:.2f} to {time_ratio_high:.2f})"
+ECHO = TIME.replace("time_", "echo_")
+ENGINE = {
+    "setting": "{setting}{marked}",
+    "sample ms": "{sample_ms:.1f}",
+    "time": TIME,
+    "echo time": ECHO,
+    "signal error dB": "{signal_error_db:.1f}",
+    "median dB": "{signal_error_median_db:.1f}",
+    "measured dB": "{measured_error_db:.1f}",
+    "map error dB": "{map_error_db:.4f}",
+    "SSIM": "{ssim:.6f}",
+    "pixels changed": "{percent_changed:.3g} %",
+}
+SWITCH = {
+    "switch": "{setting}",
+    "time": TIME,
+    "relative to": "{time_over}",
+    "signal dB, median": "{signal_error_median_db:.1f}",
+    "worst": "{signal_error_db:.1f}",
+    "map dB": "{map_error_db:.2f}",
+    "SSIM": "{ssim:.4f}",
+    "PSNR dB": "{psnr_db:.1f}",
+    "pixels changed": "{percent_changed:.3g} %",
+}
+IMAGE = {
+    "group": "{group}",
+    "setting": "{setting}",
+    "sample ms": "{sample_ms:.1f}",
+    "time": TIME,
+    "SSIM": "{ssim:.6f}",
+    "PSNR dB": "{psnr_db:.1f}",
+    "pixels changed": "{percent_changed:.3g} %",
+}
 
 
 def write_report(
-    folder: Path,
-    title: str,
-    command: str,
-    rows: Sequence[Row],
-    accuracies: Sequence[Accuracy],
-    conditions: dict[str, Any],
+    folder: Path, title: str, command: str, rows: Sequence[Record], conditions: Mapping[str, Any]
 ) -> list[Path]:
-    """Write the four files; return their paths."""
-    records = [record(row) for row in rows]
-    accuracy = {"accuracy": [asdict(each) for each in accuracies]} if accuracies else {}
-    numbers = {"command": command, **conditions, "settings": records, **accuracy}
-    header = list(records[0])
+    """Write the four files; return their paths. JSON has null for the error of what is exact."""
+    finite = [{key: None if value == -inf else value for key, value in row.items()} for row in rows]
+    numbers = {"command": command, **conditions, "settings": finite}
     files = {
-        CSV: csv_text(header, ([one[name] for name in header] for one in records)).encode(),
-        JSON: (json.dumps(_finite(numbers), indent=2) + "\n").encode(),
-        FIGURE: tradeoff_png(title, rows, accuracies),
-        TEXT: markdown(title, command, FIGURE, records, accuracies, conditions).encode(),
+        CSV: csv_text([*rows[0]], (row.values() for row in rows)).encode(),
+        JSON: (json.dumps(numbers, indent=2) + "\n").encode(),
+        FIGURE: tradeoff_png(title, rows),
+        TEXT: markdown(title, command, rows, conditions).encode(),
     }
     for name, data in files.items():
         write_whole(folder, folder / name, data)
     return [folder / name for name in files]
 
 
-def _finite(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _finite(each) for key, each in value.items()}
-    if isinstance(value, list):
-        return [_finite(each) for each in value]
-    return None if value == -inf else value
+def markdown(
+    title: str, command: str, rows: Sequence[Record], conditions: Mapping[str, Any]
+) -> str:
+    """The whole report."""
+    count, rounds = conditions["scenes"], conditions["rounds"]
+    scenes = "1 scene" if count == 1 else f"{count} scenes, one an activity,"
+    return f"""\
+# What accuracy costs: {title}
+
+`{command}`
+
+![time against error]({FIGURE})
+
+{scenes} drawn from the config; errors without noise against the exact cube in \
+float64, the worst scene's unless it says median. Times of one process, {rounds} rounds \
+interleaved; ratios to the default (or what is named) on the same scenes in the same moment, with \
+quartiles. A sample is everything from the scene to levels and entropy; its echo is paths and \
+slow-time signal alone.
+
+## Engine, budget, precision
+
+{_table(ENGINE, rows, ENGINES)}
+
+## Physics and transforms that are left out
+
+Time is that of the switch on; errors are those of data without it against data with it. Noise \
+corner and interference line are added to the config's noise, on both sides.
+
+{_table(SWITCH, rows, ("switch",))}
+
+## Image size and kind of map
+
+Images of another size are resized to the config's before they are compared.
+
+{_table(IMAGE, rows, ("image size", "image kind", "map"))}
+"""
+
+
+def _table(columns: Mapping[str, str], rows: Sequence[Record], groups: Sequence[str]) -> str:
+    cells = [
+        [_cell(name, form, row) for name, form in columns.items()]
+        for row in rows
+        if row["group"] in groups
+    ]
+    lines = [[*columns], ["---"] * len(columns), *cells]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def _cell(name: str, form: str, row: Record) -> str:
+    changed = row["pixels_changed"]
+    values = {
+        **row,
+        "marked": " (default)" if row["default"] else "",
+        "percent_changed": None if changed is None else 100 * changed,
+    }
+    try:
+        return form.format(**values).replace("-inf", "exact")
+    except TypeError:  # there is no such number
+        return "refused" if name.endswith("time") else ""

@@ -1,20 +1,26 @@
-"""The settings of the sweep, each with its baseline for time and its exact data for error."""
+"""Scenes of the sweep; settings, each with a baseline for time and exact data for error."""
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import reduce
+from functools import cache, reduce
 from operator import getitem
+from pathlib import Path
 
+from radhar_cli.config import load_config
 from radhar_cli.config.identity import resolved
 from radhar_cli.config.number import nominal
 from radhar_cli.config.schema import MAP_NAMES, Config, EngineConfig
-from radhar_cli.tradeoff.trial import Trial
+from radhar_cli.pipeline.validity import draw_valid_scene
+from radhar_cli.scene import Scene
+
+# Of what differs most: a standing person's arms, a walk, a fall.
+QUICK = ("punching", "walking", "walking_to_falling")
+
 
 BUDGETS = (-20, -30, -40, -50, -60, -70, -80, -100, -120)
 SIZES = (64, 128, 256, 512)
 CLUTTER = ("difference", "mean", "highpass", "none")
-SEGMENTS = ("body.scatterers=segments", "body.shadowing=true")
-WITHOUT_SHADOWS = ("body.scatterers=segments", "body.shadowing=false")
 # What has a default by model, and is not of the motion itself.
 KEPT = (
     "duration_s",
@@ -27,6 +33,41 @@ KEPT = (
 )
 CUBE = ("engine.kind=cube",)
 DIRECT = ("engine.kind=direct", f"engine.tolerance_db={EngineConfig().tolerance_db:g}")
+
+
+@dataclass(frozen=True)
+class Scenes:
+    """Samples 0 of the activities of a config file.
+
+    Attributes:
+        path: of the config file.
+        overrides: of the command line; a setting's come after them.
+        quick: whether three activities are enough.
+    """
+
+    path: Path
+    overrides: tuple[str, ...]
+    quick: bool
+
+    def config(self, more: Sequence[str] = ()) -> Config:
+        """The config under further overrides."""
+        return _config(self.path, (*self.overrides, *more))
+
+    def names(self) -> list[str]:
+        """The activities, by slug."""
+        chosen = [activity.slug for activity in self.config().chosen_activities]
+        few = [slug for slug in chosen if slug in QUICK] or chosen[: len(QUICK)]
+        return few if self.quick else chosen
+
+    def draw(self, slug: str, config: Config) -> Scene:
+        """Sample 0 of an activity; settings of engine, maps and image leave it as it is."""
+        activity = next(a for a in config.chosen_activities if a.slug == slug)
+        return draw_valid_scene(config, activity, 0)[0]
+
+
+@cache
+def _config(path: Path, overrides: tuple[str, ...]) -> Config:
+    return load_config(path, overrides)
 
 
 @dataclass(frozen=True)
@@ -61,62 +102,73 @@ class Setting:
         return self.group == "budget" and self.overrides == DIRECT
 
 
-def budget(tolerance_db: float) -> tuple[str, ...]:
-    """Overrides for a budget of the direct engine."""
-    return ("engine.kind=direct", f"engine.tolerance_db={tolerance_db:g}")
-
-
 def sweep(config: Config) -> list[Setting]:
     """The settings that make sense for a config."""
     return [*_engines(), *_images(config), *_switches(config)]
 
 
 def _engines() -> list[Setting]:
-    rows = [
-        Setting("budget", f"{db} dB", budget(db), budget(db), CUBE)
-        for db in sorted({*BUDGETS, round(EngineConfig().tolerance_db)}, reverse=True)
-    ]
-    double = (*DIRECT, "engine.precision=double")
-    rows.append(Setting("precision", "double", double, double, CUBE))
-    rows.append(Setting("engine", "cube", CUBE, CUBE, CUBE))
-    return rows
+    budgets = sorted({*BUDGETS, round(EngineConfig().tolerance_db)}, reverse=True)
+    rows: dict[tuple[str, str], tuple[str, ...]] = {
+        ("budget", f"{db} dB"): ("engine.kind=direct", f"engine.tolerance_db={db:g}")
+        for db in budgets
+    }
+    rows["precision", "double"] = (*DIRECT, "engine.precision=double")
+    rows["engine", "cube"] = CUBE
+    return [Setting(*named, on, on, CUBE) for named, on in rows.items()]
 
 
 def _images(config: Config) -> list[Setting]:
-    rows = []
-    for size in SIZES:
-        sized = (*DIRECT, f"image.size_px={size}")
-        rows.append(Setting("image size", f"{size} px", sized, sized, CUBE))
+    sizes = {f"{size} px": (*DIRECT, f"image.size_px={size}") for size in SIZES}
     kind = "cfar" if config.image.kind == "decibel" else "decibel"
-    on = f"image.kind={kind}"
-    rows.append(Setting("image kind", kind, (*DIRECT, on), (*DIRECT, on), (*CUBE, on)))
-    for name in MAP_NAMES:
-        one = f"maps=[{name}]"
-        rows.append(Setting("map", name, (*DIRECT, one), (*DIRECT, one), (*CUBE, one)))
-    return rows
+    others = {("image kind", kind): f"image.kind={kind}"}
+    others |= {("map", name): f"maps=[{name}]" for name in MAP_NAMES}
+    return [
+        *(Setting("image size", name, sized, sized, CUBE) for name, sized in sizes.items()),
+        *(
+            Setting(*named, (*DIRECT, on), (*DIRECT, on), (*CUBE, on))
+            for named, on in others.items()
+        ),
+    ]
 
 
 def _switches(config: Config) -> list[Setting]:
-    fsst, dense = "maps=[fsst]", "processing.fsst_hop_pulses=1"
+    """Physics and transforms that a config may leave out; clutter changes the length."""
+    own, clutter = config.body.scatterers, config.processing.clutter
+    other = "points" if own == "segments" else "segments"
+    dense, turning = "processing.fsst_hop_pulses=1", (*CUBE, "engine.motion_in_chirp=true")
+    bodies = [f"body.scatterers=segments body.shadowing={on}".split() for on in ("true", "false")]
+    gates = [("maps=[stft]", f"processing.range_sum={kind}") for kind in ("gated", "coherent")]
+    prf = nominal(config.radar.prf_hz)
+    noises = {  # on the same white noise: no two engines draw the same
+        "noise corner at PRF/20": (*DIRECT, f"receiver.noise_corner_hz={prf / 20:g}"),
+        "interference line at PRF/8": (*DIRECT, f"receiver.tones=[{{doppler_hz: {prf / 8:g}}}]"),
+    }
     switches = [
         _switch(*_other_motion(config)),
-        _switch(*_other_scatterers(config)),
-        _over("shadowing", SEGMENTS, WITHOUT_SHADOWS, "segments without shadowing"),
-        _gate(),
-        *_clutter(config),
-        _switch("room: 3 reflectors", "room.reflectors=[{}, {}, {}]"),
-        *_receiver(config),
-        _switch("residual video phase", "radar.residual_video_phase=true"),
-        Setting(
-            "switch",
-            "motion within the chirp",
-            (*CUBE, "engine.motion_in_chirp=true"),
-            CUBE,
-            (*CUBE, "engine.motion_in_chirp=true"),
-            CUBE,
-            "the cube",
+        _switch(f"scatterers: {other} instead of {own}", f"body.scatterers={other}"),
+        _over("shadowing", bodies, "segments without shadowing"),
+        _over("range_sum: gated instead of coherent", gates, "the coherent STFT", False),
+        *(
+            _over(
+                f"clutter: {kind} instead of {clutter}",
+                [(f"processing.clutter={one}",) for one in (kind, clutter)],
+                "the default",
+                False,
+            )
+            for kind in CLUTTER
+            if kind != clutter
         ),
-        _over("FSST at every sample", (fsst, dense), (fsst,), "the FSST at the STFT's hop", False),
+        _switch("room: 3 reflectors", "room.reflectors=[{}, {}, {}]"),
+        *(Setting("switch", name, on, DIRECT, on, noisy=True) for name, on in noises.items()),
+        _switch("residual video phase", "radar.residual_video_phase=true"),
+        Setting("switch", "motion within the chirp", turning, CUBE, turning, CUBE, "the cube"),
+        _over(
+            "FSST at every sample",
+            [("maps=[fsst]", dense), ("maps=[fsst]",)],
+            "the FSST at the STFT's hop",
+            False,
+        ),
     ]
     if config.wall is not None:
         switches += [
@@ -125,37 +177,6 @@ def _switches(config: Config) -> list[Setting]:
             _switch("Fresnel, parallel", "wall.fresnel=parallel"),
         ]
     return switches
-
-
-def trials(config: Config) -> list[Trial]:
-    """What a network is trained on, and the reference it is tested on.
-
-    Physics that is left out: trained without it and with it, tested on data that have it. Motion
-    within the chirp is not among them: its data sets would take hours.
-    """
-    budgets = sorted({-20, -40, -60, -100, round(EngineConfig().tolerance_db)}, reverse=True)
-    rows = [Trial(f"{db} dB", budget(db), CUBE) for db in budgets]
-    rows.append(Trial("cube", CUBE, CUBE))
-    for more in ("image.size_px=32", "maps=[fsst]"):
-        name = more.partition("=")[2].strip("[]") + (" px" if "size" in more else "")
-        rows.append(Trial(name, (*DIRECT, more), (*CUBE, more)))
-    switches: dict[str, tuple[str, ...]] = {
-        "residual video phase": ("radar.residual_video_phase=true",)
-    }
-    if not config.classes:  # the paper has no sequences
-        name, *on = _other_motion(config)
-        switches[name] = tuple(on)
-    if config.wall is not None:
-        switches |= {
-            "refraction": ("wall.rays=refracted",),
-            "Fresnel by angle": ("wall.fresnel=perpendicular",),
-        }
-    for name, overrides in switches.items():
-        rows += [
-            Trial(f"without {name}, tested with it", DIRECT, (*CUBE, *overrides)),
-            Trial(f"with {name}", (*DIRECT, *overrides), (*CUBE, *overrides)),
-        ]
-    return rows
 
 
 def _other_motion(config: Config) -> tuple[str, ...]:
@@ -174,55 +195,11 @@ def _other_motion(config: Config) -> tuple[str, ...]:
     )
 
 
-def _other_scatterers(config: Config) -> tuple[str, ...]:
-    """Name and overrides of the other model of what scatters."""
-    own = config.body.scatterers
-    other = "points" if own == "segments" else "segments"
-    return f"scatterers: {other} instead of {own}", f"body.scatterers={other}"
-
-
-def _gate() -> Setting:
-    """Sums of powers over a gate of range bins; maps of the STFT alone have it."""
-    on, off = (
-        ("maps=[stft]", "processing.range_sum=gated"),
-        ("maps=[stft]", "processing.range_sum=coherent"),
-    )
-    return _over("range_sum: gated instead of coherent", on, off, "the coherent STFT", False)
-
-
-def _clutter(config: Config) -> list[Setting]:
-    """The other clutter filters; they give signals of other lengths, so images are compared."""
-    own = config.processing.clutter
-    return [
-        _over(
-            f"clutter: {other} instead of {own}",
-            (f"processing.clutter={other}",),
-            (f"processing.clutter={own}",),
-            "the default",
-            False,
-        )
-        for other in CLUTTER
-        if other != own
-    ]
-
-
-def _receiver(config: Config) -> list[Setting]:
-    """Noise that is not white, on the same white noise: no two engines draw the same."""
-    prf = nominal(config.radar.prf_hz)
-    impairments = {
-        "noise corner at PRF/20": f"receiver.noise_corner_hz={prf / 20:g}",
-        "interference line at PRF/8": f"receiver.tones=[{{doppler_hz: {prf / 8:g}}}]",
-    }
-    return [
-        Setting("switch", name, (*DIRECT, on), DIRECT, (*DIRECT, on), noisy=True)
-        for name, on in impairments.items()
-    ]
-
-
 def _over(
-    name: str, on: tuple[str, ...], off: tuple[str, ...], off_name: str, of_signal: bool = True
+    name: str, on_off: Sequence[Sequence[str]], off_name: str, of_signal: bool = True
 ) -> Setting:
     """A switch that is compared with something other than the default."""
+    on, off = on_off
     without, exact = (*DIRECT, *off), (*CUBE, *on)
     return Setting("switch", name, (*DIRECT, *on), without, exact, without, off_name, of_signal)
 

@@ -1,80 +1,74 @@
-"""The whole sweep: every unit of work measured once, kept, and put together into rows."""
+"""The whole sweep: what is measured once is kept, and put together into rows."""
 
+import hashlib
 import json
+import shutil
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
 from functools import partial
+from math import inf
+from pathlib import Path
 from statistics import median, quantiles
-from typing import Any
+from typing import Any, TypeAlias
 
-from radhar_cli.errors import RadharError
+from pydantic import TypeAdapter, ValidationError
+
+from radhar_cli.config.schema import Config
+from radhar_cli.dataset.files import write_whole
+from radhar_cli.dataset.folder import checked_identity, refuse_differences, refuse_foreign_files
+from radhar_cli.dataset.identity import differences, identity
+from radhar_cli.dataset.layout import WORK
+from radhar_cli.errors import FolderError, RadharError
 from radhar_cli.progress import Progress
-from radhar_cli.tradeoff.differences import SceneDifferences
-from radhar_cli.tradeoff.result_cache import ResultCache
-from radhar_cli.tradeoff.scenes import Scenes
-from radhar_cli.tradeoff.settings import Setting, sweep
-from radhar_cli.tradeoff.timing import Times, time_setting
+from radhar_cli.tradeoff.measures import SceneDifferences, Times, time_setting
+from radhar_cli.tradeoff.settings import Scenes, Setting, sweep
+from radhar_cli.untrusted import read_json
 
 ROUNDS = {True: 3, False: 7}
+NAME = "sweep.json"
+Record: TypeAlias = dict[str, Any]  # a setting in plain numbers, None where there is none
 
 
-@dataclass(frozen=True)
-class Row:
-    """One setting, measured.
+def reserve(folder: Path, config: Config, overwrite: bool) -> None:
+    """Make a folder, whose lock is held, this config's sweep, or refuse.
 
-    Attributes:
-        setting: what was measured.
-        times: round by round.
-        differences: {activity: what differs from the reference}; a scene that the engine refused
-            has the reason under `refused`.
+    Raises:
+        FolderError: it holds something else, or the sweep of another config.
     """
-
-    setting: Setting
-    times: list[Times] = field(default_factory=list)
-    differences: dict[str, dict[str, Any]] = field(default_factory=dict)
-
-    def middle(self, name: str) -> float | None:
-        """Median of a column of `Times` over the rounds."""
-        values = [getattr(times, name) for times in self.times]
-        return median(values) if values else None
-
-    def spread(self, name: str) -> tuple[float, float] | None:
-        """First and third quartile of a column of `Times`."""
-        values = [getattr(times, name) for times in self.times]
-        if len(values) < 2:
-            return (values[0], values[0]) if values else None
-        first, _, third = quantiles(values, n=4, method="inclusive")
-        return first, third
-
-    def values(self, name: str) -> list[float]:
-        """A difference in every scene that has it."""
-        differences = [row.get(name) for row in self.differences.values()]
-        return [float(value) for value in differences if value is not None]
-
-    def worst(self, name: str) -> float | None:
-        """The largest value of a difference over the scenes."""
-        return max(self.values(name), default=None)
-
-    def usual(self, name: str) -> float | None:
-        """The median of a difference over the scenes."""
-        values = self.values(name)
-        return median(values) if values else None
-
-    @property
-    def refused(self) -> list[str]:
-        """Why scenes could not be computed."""
-        return [row["refused"] for row in self.differences.values() if "refused" in row]
+    path = folder / WORK / NAME
+    old = checked_identity(read_json(path), path) if path.exists() else None
+    new = {"keys": identity(config)["keys"], "versions": identity(config)["versions"]}
+    if old is None:
+        refuse_foreign_files(folder, "sweep")
+    elif overwrite:
+        shutil.rmtree(folder / WORK / "measured", ignore_errors=True)
+    else:
+        refuse_differences(folder, "config's sweep", differences(old, new))
+    write_whole(folder, path, json.dumps(new).encode())
 
 
-def run_sweep(scenes: Scenes, cache: ResultCache, progress: Progress) -> list[Row]:
-    """Measure what has not been measured yet; return all rows."""
-    rows = [Row(setting) for setting in _possible(scenes, progress)]
-    _differences(scenes, rows, cache, progress)
-    _times(scenes, rows, cache, progress)
-    return rows
+def run_sweep(scenes: Scenes, folder: Path, progress: Progress) -> list[Record]:
+    """Measure what has not been measured yet; return a row for every setting."""
+    settings, names, rounds = possible(scenes, progress), scenes.names(), ROUNDS[scenes.quick]
+    found: dict[Setting, list[dict[str, Any]]] = {setting: [] for setting in settings}
+    progress.stage("errors", len(names) * len(settings), 0)
+    for slug in names:
+        scene = SceneDifferences(scenes, slug)
+        for setting in settings:
+            what, kind = f"difference {slug}", dict[str, float | str | None]
+            found[setting].append(_once(folder, setting, what, partial(_of, scene, setting), kind))
+            progress.advance(1)
+    timed = [setting for setting in settings if not any("refused" in one for one in found[setting])]
+    times: dict[Setting, list[Times]] = {setting: [] for setting in settings}
+    progress.stage("times", rounds * len(timed), 0)
+    for turn in range(rounds):
+        for setting in timed:
+            what, measure = f"time {turn} {names}", partial(time_setting, scenes, setting, turn)
+            times[setting].append(_once(folder, setting, what, measure, Times))
+            progress.advance(1)
+    return [_row(setting, times[setting], found[setting]) for setting in settings]
 
 
-def _possible(scenes: Scenes, progress: Progress) -> list[Setting]:
+def possible(scenes: Scenes, progress: Progress) -> list[Setting]:
     """The settings that the config allows; the others are named, with the reason."""
     settings = []
     for setting in sweep(scenes.config()):
@@ -88,50 +82,67 @@ def _possible(scenes: Scenes, progress: Progress) -> list[Setting]:
     return settings
 
 
-def _differences(
-    scenes: Scenes, rows: Sequence[Row], cache: ResultCache, progress: Progress
-) -> None:
-    names = scenes.names()
-    progress.stage("errors", len(names) * len(rows), 0)
-    for slug in names:
-        scene = SceneDifferences(scenes, slug)
-        for row in rows:
-            key = _key("difference", row.setting, slug)
-            row.differences[slug] = _once(
-                cache, key, partial(_of, scene, row), dict[str, float | str | None]
-            )
-            progress.advance(1)
-
-
-def _of(scene: SceneDifferences, row: Row) -> dict[str, Any]:
+def _of(scene: SceneDifferences, setting: Setting) -> dict[str, Any]:
     try:
-        return scene.of(row.setting)
+        return scene.of(setting)
     except RadharError as error:
         return {"refused": str(error)}
 
 
-def _times(scenes: Scenes, rows: Sequence[Row], cache: ResultCache, progress: Progress) -> None:
-    rounds, names = ROUNDS[scenes.quick], " ".join(scenes.names())
-    possible = [row for row in rows if not row.refused]
-    progress.stage("times", rounds * len(possible), 0)
-    for turn in range(rounds):
-        for row in possible:
-            key = _key("time", row.setting, f"{turn} {names}")
-            measure = partial(time_setting, scenes, row.setting, turn)
-            row.times.append(Times(*_once(cache, key, measure, tuple[float, float, float, float])))
-            progress.advance(1)
+def _once(folder: Path, setting: Setting, what: str, measure: Callable[[], Any], kind: Any) -> Any:
+    """What was measured before and lies in the folder, or is measured now and kept there."""
+    key = hashlib.sha256(f"{what} {setting}".encode()).hexdigest()[:32]
+    path = folder / WORK / "measured" / f"{key}.json"
+    if not path.exists():
+        write_whole(folder, path, json.dumps(measure()).encode())
+    try:
+        return TypeAdapter(kind).validate_python(read_json(path))
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]["msg"]
+        raise FolderError(f"{path}: is damaged ({first}); delete it") from None
 
 
-def _once(cache: ResultCache, key: str, measure: Callable[[], Any], kind: Any) -> Any:
-    result = cache.get(key, kind)
-    if result is None:
-        cache.put(key, measure())
-        result = cache.get(key, kind)
-    return result
+def _row(setting: Setting, times: Sequence[Times], found: Sequence[dict[str, Any]]) -> Record:
+    """Medians and quartiles over the rounds, worst or median differences over the scenes."""
 
+    def every(name: str) -> list[float]:
+        return [float(one[name]) for one in found if one.get(name) is not None]
 
-def _key(kind: str, setting: Setting, what: str) -> str:
-    parts = [kind, setting.group, setting.name, what]
-    return json.dumps(
-        [*parts, setting.overrides, setting.compared, setting.exact, setting.baseline]
-    )
+    def worst(name: str) -> float | None:
+        return max(every(name), default=None)
+
+    def quartiles(name: str) -> list[float | None]:
+        values = [getattr(one, name) for one in times]
+        if len(values) < 2:
+            return 3 * (values or [None])
+        return list(quantiles(values, n=4, method="inclusive"))
+
+    errors = every("signal_error_db")
+    (low, ratio, high), (echo_low, echo, echo_high) = quartiles("ratio"), quartiles("echo_ratio")
+    return {
+        "group": setting.group,
+        "setting": setting.name,
+        "default": setting.is_default,
+        "overrides": " ".join(setting.overrides),
+        "of_signal": setting.of_signal,
+        "time_over": setting.baseline_name,
+        "sample_ms": quartiles("sample_ms")[1],
+        "time_ratio": ratio,
+        "time_ratio_low": low,
+        "time_ratio_high": high,
+        "echo_ms": quartiles("echo_ms")[1],
+        "echo_ratio": echo,
+        "echo_ratio_low": echo_low,
+        "echo_ratio_high": echo_high,
+        "exact": worst("signal_error_db") == -inf,
+        "signal_error_db": worst("signal_error_db"),
+        "signal_error_median_db": median(errors) if errors else None,
+        "map_error_db": worst("map_error_db"),
+        "map_error_max_db": worst("map_error_max_db"),
+        "ssim": min(every("ssim"), default=None),
+        "psnr_db": min(every("psnr_db"), default=None),
+        "pixels_changed": worst("pixels_changed"),
+        "measured_error_db": worst("measured_error_db"),
+        "scenes": len(found),
+        "refused": sum("refused" in one for one in found),
+    }

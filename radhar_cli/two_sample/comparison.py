@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.arrays import Bool, Float, Index
+from radhar_cli.arrays import Float, Index
 from radhar_cli.progress import Progress
 from radhar_cli.randomness import TRAINING, stream
 from radhar_cli.two_sample.classifier_test import Tested, held_out, interval
@@ -118,11 +118,9 @@ class Comparison:
                 name: {
                     "words": STATISTICS[name].words,
                     "unit": self.scale.unit(name),
+                    **difference._asdict(),
                     "simulated": difference.simulated._asdict(),
                     "measured": difference.measured._asdict(),
-                    "distance": difference.distance,
-                    "ks": difference.ks,
-                    "p": difference.p,
                 }
                 for name, difference in one.differences.items()
             },
@@ -232,10 +230,8 @@ def _comparable(features: Float, measured: Float, statistics: int) -> Float:
 
     Statistics end at 5 standard deviations; what is not known is the mean.
     """
-    known: Bool = np.isfinite(measured)
-    count = np.maximum(known.sum(axis=0), 1)
-    mean = np.where(known, measured, 0).sum(axis=0) / count
-    variance = np.where(known, (measured - mean) ** 2, 0).sum(axis=0) / count
+    known = np.ma.masked_invalid(measured)
+    mean, variance = known.mean(axis=0).filled(0), known.var(axis=0).filled(0)
     away = np.nan_to_num(features - mean, nan=0.0)
     sd = np.sqrt(variance[:statistics])
     numbers = np.clip(away[:, :statistics] / np.where(sd > 0, sd, 1), -FARTHEST, FARTHEST)
@@ -265,10 +261,11 @@ def _warnings(
     if simulated.masks != measured.masks:
         kinds = ["masks" if side.masks else "grey levels" for side in sides]
         warnings.append(
-            f"{simulated.where} has {kinds[0]}, {measured.where} {kinds[1]}: tells them apart"
+            f"{simulated.where} has {kinds[0]}, {measured.where} {kinds[1]}: a classifier can use "
+            "that alone"
         )
     unknown = [side for side in sides if not side.masks and side.dynamic_range_db is None]
-    warnings += [f"{side.where}: levels are taken for 40 dB; it does not say" for side in unknown]
+    warnings += [f"{side.where}: dynamic range unknown, 40 dB assumed" for side in unknown]
     spans = [side.dynamic_range_db for side in sides]
     if None not in spans and spans[0] != spans[1]:
         warnings.append(

@@ -11,7 +11,7 @@ from radhar_cli.arrays import Float, Index, Levels
 from radhar_cli.errors import RadharError
 from radhar_cli.two_sample.map_statistics import (
     STATISTICS,
-    PowerMap,
+    DopplerMap,
     mask_statistics,
     power_statistics,
 )
@@ -149,7 +149,7 @@ def measured(levels: Levels, side: Side, row: int, scale: Scale) -> dict[str, fl
         zero = max(zero, 1.001 * height)  # has a row on either side
     if side.masks:
         return mask_statistics(levels >= 128, doppler, right - left, zero)
-    one, beyond = PowerMap(side.power(levels), doppler), BEYOND * largest
+    one, beyond = DopplerMap(side.power(levels), doppler), BEYOND * largest
     values = mask_statistics(one.occupied(beyond), doppler, right - left, zero)
     if any(STATISTICS[name].of_power for name in scale.names):
         values |= power_statistics(one, zero, beyond, NEAR * largest, values["active"] > 0)

@@ -15,7 +15,7 @@ ROUNDING = 1e-9  # of the largest value: a standard deviation below is none
 
 
 class Spread(NamedTuple):
-    """Mean and standard deviation of the finite ones of some numbers, and how many there are."""
+    """Mean and standard deviation of some numbers, NaN of none, and how many there are."""
 
     mean: float
     sd: float
@@ -23,10 +23,9 @@ class Spread(NamedTuple):
 
     @classmethod
     def of(cls, values: Float) -> "Spread":
-        """Of values [N]; NaN where none is finite."""
-        if not values.size:
-            return cls(np.nan, np.nan, 0)
-        return cls(float(values.mean()), float(values.std()), values.size)
+        """Of values [N]."""
+        mean, sd = (values.mean(), values.std()) if values.size else (np.nan, np.nan)
+        return cls(float(mean), float(sd), values.size)
 
 
 class Difference(NamedTuple):

@@ -15,7 +15,7 @@ SLOW = 1.8  # times the torso: limbs are faster
 EIGHT = np.ones((3, 3), bool)  # neighbours of a cell
 
 
-class PowerMap(NamedTuple):
+class DopplerMap(NamedTuple):
     """Power [rows, columns] over Doppler [rows], Hz or m/s, descending."""
 
     power: Float
@@ -48,7 +48,7 @@ class PowerMap(NamedTuple):
 
 
 def power_statistics(
-    one: PowerMap, zero: float, beyond: float, near: float, body: bool = True
+    one: DopplerMap, zero: float, beyond: float, near: float, body: bool = True
 ) -> dict[str, float]:
     """Statistics of power, under the names of `STATISTICS`.
 

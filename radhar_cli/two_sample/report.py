@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Callable
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -45,22 +45,13 @@ def write(comparison: Comparison, folder: Path) -> list[Path]:
 
 
 def _table(comparison: Comparison) -> str:
-    head = ("class", "statistic", "unit", "simulated_mean", "simulated_sd", "measured_mean")
+    means = [f"{side}_{name}" for side in ("simulated", "measured") for name in ("mean", "sd")]
     rows = (
-        (
-            one.name,
-            name,
-            comparison.scale.unit(name),
-            *(difference.simulated[:2]),
-            *(difference.measured[:2]),
-            difference.distance,
-            difference.ks,
-            difference.p,
-        )
+        (one.name, name, comparison.scale.unit(name), *d.simulated[:2], *d.measured[:2], *d[2:])
         for one in comparison.classes
-        for name, difference in one.differences.items()
+        for name, d in one.differences.items()
     )
-    return csv_text([*head, "measured_sd", "distance", "ks", "p"], rows)
+    return csv_text(["class", "statistic", "unit", *means, "distance", "ks", "p"], rows)
 
 
 def _distances(comparison: Comparison) -> bytes:
@@ -97,28 +88,19 @@ def _distributions(comparison: Comparison, one: ClassCompared) -> bytes:
 
 
 def _pictures(comparison: Comparison, one: ClassCompared) -> bytes:
-    count, (tested, far) = comparison.options.pictures, (one.tested, one.uncovered)
-    scores = dict(zip(one.measured.rows.tolist(), far.tolist(), strict=True))
-    sure: dict[int, float] = {}
-    if tested is not None:
-        odds = np.sort(tested.score[tested.truth])[::-1]
-        chance = expit(odds)
-        sure = dict(zip(one.surest.tolist(), chance.tolist(), strict=True))
-
-    def plain(row: int) -> str:
-        return ""
-
-    def surely(row: int) -> str:
-        return f"{100 * sure[row]:.1f} % simulated" if row in sure else ""
-
-    def away(row: int) -> str:
-        return f"{scores[row]:.2f} radii away"
-
+    count, tested, far = comparison.options.pictures, one.tested, one.uncovered
+    away = zip(one.measured.rows.tolist(), far.tolist(), strict=True)
+    odds = np.empty(0) if tested is None else np.sort(tested.score[tested.truth])[::-1]
+    sure = zip(one.surest.tolist(), expit(odds).tolist(), strict=False)
+    words = [
+        {row: f"{100 * chance:.1f} % simulated" for row, chance in sure},
+        {row: f"{distance:.2f} radii away" for row, distance in away},
+    ]
     rows = {
-        "simulated": _drawn(comparison, 0, _spread(one.typical[0], count), plain),
-        "measured": _drawn(comparison, 1, _spread(one.typical[1], count), plain),
-        "surest to be\nsimulated": _drawn(comparison, 0, one.surest[:count], surely),
-        "measured, least\ncovered": _drawn(comparison, 1, one.far[:count], away),
+        "simulated": _drawn(comparison, 0, _spread(one.typical[0], count), {}),
+        "measured": _drawn(comparison, 1, _spread(one.typical[1], count), {}),
+        "surest to be\nsimulated": _drawn(comparison, 0, one.surest[:count], words[0]),
+        "measured, least\ncovered": _drawn(comparison, 1, one.far[:count], words[1]),
     }
     units = comparison.scale.units()
     quantity = "range" if comparison.scale.ranges else "Doppler"
@@ -133,7 +115,7 @@ def _spread(rows: Index, count: int) -> Index:
 
 
 def _drawn(
-    comparison: Comparison, number: int, rows: Index, words: Callable[[int], str]
+    comparison: Comparison, number: int, rows: Index, words: Mapping[int, str]
 ) -> list[Picture]:
     """Maps of a side with the rows that are shown alone."""
     side, (above, below), drawn = comparison.sides[number], comparison.shown, []
@@ -143,5 +125,5 @@ def _drawn(
         left, right, bottom, top = comparison.scale.edges(side, row)
         step = (top - bottom) / len(levels)
         extent = (left, right, top - last * step, top - first * step)
-        drawn.append(Picture(levels[first:last], extent, words(row)))
+        drawn.append(Picture(levels[first:last], extent, words.get(row, "")))
     return drawn

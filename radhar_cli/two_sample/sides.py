@@ -93,9 +93,10 @@ def open_sides(
         )
     sizes = [one.size for one in given]
     if sizes[0] != sizes[1] and not resize:
+        here, there = (f"{height} x {width} px" for height, width in sizes)
         raise FolderError(
-            f"{simulated}: images are {_px(sizes[0])}, those of {measured} {_px(sizes[1])}; "
-            "--resize brings them to one size"
+            f"{simulated}: images are {here}, those of {measured} {there}; --resize brings them to "
+            "one size"
         )
     size = (min(sizes[1][0], MAX_SIDE), min(sizes[1][1], MAX_SIDE))
     if resize or size != sizes[1]:
@@ -117,10 +118,6 @@ def open_sides(
         for path, one, mine in zip(paths, given, rows, strict=True)
     )
     return first, second
-
-
-def _px(size: tuple[int, int]) -> str:
-    return f"{size[0]} x {size[1]} px"
 
 
 def _open(path: Path, map_name: str | None, resize: tuple[int, int] | None) -> ImageSet:
@@ -177,19 +174,14 @@ def _of_dataset(data: Dataset, name: str) -> dict[str, Any]:
         who = np.asarray(data.scene["subject"][:], np.intp)
     elif config.recorded is not None:
         who = np.array(persons(config))
-    group = np.where(who >= 0, who, who.max(initial=-1) + 1 + _recordings(data))
+    recording = np.arange(count)  # of simulated maps, each its own
+    if config.recorded is not None:
+        files = {part.file: number for number, part in enumerate(config.recorded.parts)}
+        recording = np.array([files[window.part.file] for window in windows(config)])
+    group = np.where(who >= 0, who, who.max(initial=-1) + 1 + recording)
     return {
         "extent": data.extents(name),
         "group": group,
         "persons": bool((who >= 0).all()),
         "dynamic_range_db": None if own else config.image.dynamic_range_db,
     }
-
-
-def _recordings(data: Dataset) -> Index:
-    """A number [N] for every recording; of simulated maps, each its own."""
-    recorded = data.config.recorded
-    if recorded is None:
-        return np.arange(len(data))
-    files = {part.file: number for number, part in enumerate(recorded.parts)}
-    return np.array([files[window.part.file] for window in windows(data.config)])

@@ -125,7 +125,7 @@ profileCfg 0 {self.start_ghz} {self.idle_us} {self.adc_us} {self.ramp_us} 0 0 {s
 
 def body(config: Config, activity: str = "walking") -> Motion:
     """The motion of the middle scene of a config."""
-    return motion_of(nominal_scene(config, config.chosen_activities[0]))
+    return motion_of(nominal_scene(config, config.chosen_activities[0]).people[0])
 
 
 def echo(radar: Radar, motion: Motion, frames: int, seed: int = 0) -> Complex:

@@ -43,7 +43,7 @@ def imported(path: Path, *overrides: str) -> np.ndarray:
         return recording.beat(0, recording.info.pulses)
 
 
-def save(path: Path, x: np.ndarray) -> Path:
+def save(path: Path, x: np.ndarray, chunks: tuple[int, ...] | None = (7, 5, 2)) -> Path:
     """Write an array in the format of the suffix; `.mat73` is what MATLAB's -v7.3 makes."""
     if path.suffix == ".npy":
         np.save(path, x)
@@ -61,7 +61,7 @@ def save(path: Path, x: np.ndarray) -> Path:
             turned = x.T.astype(complex)
             values = np.empty(turned.shape, pair)
             values["real"], values["imag"] = turned.real, turned.imag
-            file.create_dataset("beat", data=values, chunks=(7, 5, 2), compression="gzip")
+            file.create_dataset("beat", data=values, chunks=chunks, compression="gzip")
         with path.open("r+b") as file:
             file.write(b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(116))
     return path
@@ -114,12 +114,12 @@ def test_any_range_of_pulses_is_read(first: int, count: int, frame: int) -> None
     x = np.arange(40 * 2 * 3.0).reshape(40 // frame, frame, 2, 3)
     read: list[int] = []
 
-    def block(key: tuple[slice, ...]) -> np.ndarray:
-        read.append(x[key].size)
-        return x[key][..., None]
+    class Counting(Array):
+        def read(self, key: tuple[slice, ...]) -> np.ndarray:
+            read.append(x[key].size)
+            return super().read(key)
 
-    array = Array("x", x.shape, x.dtype, 1, block, (1,) * 4)
-    source = as_source(Path("x"), array, CaptureSettings())
+    source = as_source(Path("x"), Counting("x", lambda: x), CaptureSettings())
     stop = min(first + count, 40)
     found = source.read(first, stop)
     assert np.array_equal(found[..., 0], x.reshape(40, 2, 3).transpose(1, 2, 0)[:, :, first:stop])
@@ -133,14 +133,17 @@ def test_chirps_of_transmitters_in_turn_are_told_apart(tmp_path: Path) -> None:
     assert np.array_equal(found, np.concatenate([x[:, :, ::2], x[:, :, 1::2]]))
 
 
-def test_slow_time_is_imported(tmp_path: Path) -> None:
+@pytest.mark.parametrize("suffix", [".npy", ".mat", ".mat73"])
+def test_slow_time_is_imported(tmp_path: Path, suffix: str) -> None:
+    """MATLAB's vectors are rows or columns."""
     x = np.exp(2j * np.pi * 0.1 * np.arange(1000))
-    np.save(tmp_path / "x.npy", x)
-    out = tmp_path / "out.h5"
-    import_capture([tmp_path / "x.npy"], out, read_settings(None, RADAR[:1] + RADAR[3:]))
-    with Recording(out) as recording:
-        assert recording.info.samples is None
-        assert np.array_equal(recording.beat(0, 1000)[0, 0], x)
+    path, out = tmp_path / f"x{suffix}", tmp_path / "out.h5"
+    for shape in ((1000,),) if suffix == ".npy" else ((1, 1000), (1000, 1)):
+        save(path, x.reshape(shape), (1, 1) if suffix == ".mat73" else None)
+        import_capture([path], out, read_settings(None, RADAR[:1] + RADAR[3:]))
+        with Recording(out) as recording:
+            assert recording.info.samples is None
+            assert np.array_equal(recording.beat(0, 1000)[0, 0], x)
 
 
 def test_gaps_follow_from_the_times(tmp_path: Path) -> None:
@@ -150,7 +153,7 @@ def test_gaps_follow_from_the_times(tmp_path: Path) -> None:
     np.savez(tmp_path / "x.npz", beat=x, t=times)
     out = tmp_path / "out.h5"
     given_settings = read_settings(None, [*RADAR[:3], "times=t", "dataset=beat"])
-    told = import_capture([tmp_path / "x.npz"], out, given_settings).found
+    told = import_capture([tmp_path / "x.npz"], out, given_settings).source.found
     assert any("not uniform: 2 stretches" in line for line in told)
     with Recording(out) as recording:
         assert recording.info.prf_hz == pytest.approx(500)
@@ -158,11 +161,11 @@ def test_gaps_follow_from_the_times(tmp_path: Path) -> None:
 
 
 WRONG = [
-    ("x.npy", cube(), ["samples=40"], "the axis named pulse has 40 would fit"),
+    ("x.npy", cube(), ["samples=40"], "sample should have 40"),
     ("x.npy", cube(), ["axes=[sample, pulse]"], "has 3 axes, [3, 16, 40]"),
     ("x.npy", cube()[None, None], [], "has 5 axes"),
-    ("x.npy", cube()[:, :1], [], "2 samples or more"),
-    ("x.npy", cube(), ["frame_pulses=4"], "frame_s is missing"),
+    ("x.npy", cube()[:, :1], [], "sample should have 2 or more"),
+    ("x.npy", cube(), ["frame_pulses=4"], "must be given together"),
     ("x.npy", cube(), ["frame_pulses=4", "frame_s=0.001"], "frame_s = 0.001: should be at least"),
     ("x.npy", cube().astype("U9"), [], "is of the type"),
     ("x.npz", cube(), ["dataset=baet"], "did you mean 'beat'"),
@@ -221,7 +224,7 @@ class TestHostile:
             data, {"descr": "<c16", "fortran_order": False, "shape": (2**20, 2**20)}
         )
         (tmp_path / "x.npy").write_bytes(data.getvalue() + bytes(100))
-        with pytest.raises(CaptureError, match="does not fit the file"):
+        with pytest.raises(CaptureError, match="cannot be read"):
             imported(tmp_path / "x.npy")
 
     def test_decompression_bombs_are_refused(self, tmp_path: Path) -> None:
@@ -237,7 +240,7 @@ class TestHostile:
         np.save(data, cube())
         with zipfile.ZipFile(tmp_path / "x.npz", "w", zipfile.ZIP_LZMA) as archive:
             archive.writestr("beat.npy", data.getvalue())
-        with pytest.raises(CaptureError, match="packed in a way"):
+        with pytest.raises(CaptureError, match="compressed in a way"):
             imported(tmp_path / "x.npz")
 
     def test_objects_of_matlab_are_refused(self, tmp_path: Path) -> None:
@@ -260,7 +263,7 @@ class TestHostile:
             data[:] = 0
             bomb = zlib.compress(bytes(100_000), 9)
             data.id.write_direct_chunk((0, 0, 0), bomb)
-        with pytest.raises(FolderError, match="should be"):
+        with pytest.raises(FolderError, match="too long"):
             imported(tmp_path / "x.h5")
 
     @settings(
@@ -290,7 +293,6 @@ class TestHostile:
 GROWTH = """
 import resource, sys
 from pathlib import Path
-from radhar_cli.capture.array_files import Array, as_source
 from radhar_cli.capture.importing import import_capture, read_settings
 from radhar_cli.capture.recording import Recording
 import numpy, scipy.io, h5py

@@ -11,13 +11,14 @@ from command_line import radhar
 from radhar_cli.arrays import Complex
 from radhar_cli.capture.chain import Maps, maps_of
 from radhar_cli.capture.importing import import_capture, read_settings, write_simulated
-from radhar_cli.capture.recording import Label, Recording, Segments
+from radhar_cli.capture.recording import Label, Recording
 from radhar_cli.config import load_config
 from radhar_cli.config.schema import Config, possible_maps
 from radhar_cli.errors import CaptureError
 from radhar_cli.processing.image import decibels
+from radhar_cli.processing.look import RangeSum
 from radhar_cli.processing.power_map import PowerMap
-from radhar_cli.processing.range_compression import half_band_signal, range_compression
+from radhar_cli.processing.pulse_times import PulseTimes
 from radhar_cli.simulation.simulate import Simulation, simulate
 
 SCENE = """
@@ -79,7 +80,7 @@ def stft_of_frames(beat: Complex, times: np.ndarray, length: int) -> PowerMap:
     """The paper's chain written anew: difference, compression, sum, one Hann window a frame."""
     from radhar_cli.processing.power_map import Axis
 
-    x = half_band_signal(range_compression(beat, RADAR.waveform))
+    x = RangeSum(RADAR.waveform)(beat)[0]
     frames = np.diff(x.reshape(FRAMES, RADAR.loops), axis=1)[:, :length]
     window = np.sin(np.pi * (np.arange(length) + 0.5) / length) ** 2
     power = np.abs(np.fft.fftshift(np.fft.fft(frames * window, axis=1), axes=1)) ** 2
@@ -144,7 +145,7 @@ def test_lost_pulses_leave_no_bright_line(tmp_path: Path) -> None:
     keys = [f"carrier_hz={w.fc}", f"bandwidth_hz={w.bandwidth}", f"adc_rate_hz={w.adc_rate}"]
     keys += [f"prf_hz={w.prf}", "axes=[receiver, sample, pulse, iq]"]
     told = import_capture([tmp_path / "x.npy"], tmp_path / "x.h5", read_settings(None, keys))
-    assert any("10 of 2000 pulses" in line for line in told.found)
+    assert any("10 of 2000 pulses" in line for line in told.source.found)
     found = processed(tmp_path / "x.h5", config, "stft").maps["stft"]
     assert apart(found, scene.maps["stft"]) < 0.5
     with h5py.File(tmp_path / "x.h5", "r+") as file:
@@ -188,7 +189,7 @@ def test_too_much_at_once_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyP
 def test_segments_of_a_part_keep_their_times() -> None:
     from radhar_cli.capture.chain import _within
 
-    segments = Segments(np.array([0.0, 1.0, 2.0]), np.array([0, 100, 200]), 300, 1000.0)
+    segments = PulseTimes(np.array([0.0, 1.0, 2.0]), np.array([0, 100, 200]), 300, 1000.0)
     part = _within(segments, 150, 250)
     assert part.first.tolist() == [0, 50]
     assert part.start.tolist() == [1.05, 2.0]

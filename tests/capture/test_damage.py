@@ -57,8 +57,8 @@ def test_every_type_of_words_is_decoded(
 
 def test_what_was_decided_is_said(tmp_path: Path) -> None:
     path = save(tmp_path / "x.npy", wrapped(counts()))
-    told = import_capture([path], tmp_path / "o.h5", read_settings(None, RADAR)).found
-    assert "65536 is taken off samples from 32768 on" in told[0]
+    told = import_capture([path], tmp_path / "o.h5", read_settings(None, RADAR)).source.found
+    assert "65536 is subtracted from samples above 32767" in told[0]
     assert told[1].startswith("beat negative")
 
 
@@ -66,7 +66,7 @@ def test_what_was_decided_is_said(tmp_path: Path) -> None:
 @pytest.mark.parametrize("coding", ["signed", "offset"])
 def test_a_coding_of_what_is_no_word_is_refused(tmp_path: Path, x: np.ndarray, coding: str) -> None:
     path = save(tmp_path / "x.npy", x)
-    with pytest.raises(CaptureError, match=rf"x.npy: coding = {coding}: .*should be whole ones"):
+    with pytest.raises(CaptureError, match=rf"x.npy: coding = {coding}: .*should be whole numbers"):
         imported(path, f"coding={coding}")
 
 
@@ -81,7 +81,7 @@ def test_pulses_that_are_not_a_number_are_lost(tmp_path: Path, suffix: str) -> N
     x[0, 3, 7], x[2, :, 20:23] = np.nan, np.nan * 1j
     told = import_capture(
         [save(tmp_path / f"x{suffix}", x)], tmp_path / "o.h5", read_settings(None, RADAR)
-    ).found
+    ).source.found
     assert any(line.startswith("4 of 400 pulses (1 %) lack samples") for line in told)
     with Recording(tmp_path / "o.h5") as recording:
         assert np.flatnonzero(recording.flags & LOST).tolist() == [7, 20, 21, 22]

@@ -55,7 +55,6 @@ def full_disk(limit: int) -> Iterator[None]:
         (SCENE, 500_000, "/recording.h5", ["scene.h5", "scene.json", "scene.yaml"]),
         (f"import capture.npy {RADAR}", 10_000, "", []),
         *((f"convert set --to {form}", 10_000, "", []) for form in ("webdataset", "parquet")),
-        *((f"convert set --to {form}", 10_000, "", []) for form in ("npy", "mat")),
     ],
 )
 def test_full_disk_is_one_line(

@@ -29,7 +29,16 @@ def test_simulate_for_scripts(tmp_path: Path) -> None:
     out = tmp_path / "out"
     done = radhar(
         *("simulate", small_config(tmp_path), "-a", "walking", "-o", out, "--no-figures"),
-        *("--engine", "cube", "--maps", "stft,rtm", "--raw", "--joint", "head", "--nominal"),
+        *(
+            "--set",
+            "engine.kind=cube",
+            "--maps",
+            "stft,rtm",
+            "--raw",
+            "--joint",
+            "head",
+            "--nominal",
+        ),
     )
     assert done.returncode == 0, done.stderr
     files = {"recording.h5", "scene.h5", "scene.json", "scene.yaml"}
@@ -81,7 +90,10 @@ def test_preview_and_inspect(tmp_path: Path) -> None:
         (["simulate", "CONFIG", "-a", "walkin", "-o", "OUT"], "did you mean 'walking'"),
         (["simulate", "CONFIG", "-a", "S8", "-o", "OUT", "--joint", "rite_hand"], "'right_hand'"),
         (["simulate", "CONFIG", "-a", "S8", "-o", "OUT", "--maps", "sftf"], "did you mean"),
-        (["simulate", "CONFIG", "-a", "S8", "-o", "OUT", "--engine", "cubic"], "engine.kind"),
+        (
+            ["simulate", "CONFIG", "-a", "S8", "-o", "OUT", "--set", "engine.kind=cubic"],
+            "engine.kind",
+        ),
         (["preview", "OUT"], "no such file"),
         (["inspect", "OUT"], "no such file"),
         (["inspect", "CONFIG"], "not an HDF5 file"),

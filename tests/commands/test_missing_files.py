@@ -26,7 +26,7 @@ OTHERS = [
     ["simulate", "x.yaml"],
     ["simulate", "c.yaml", "--motion", "x.bvh"],
     ["simulate", "c.yaml", "--motion", "x.amc"],
-    ["convert", "x.h5", "--to", "npy"],
+    ["convert", "x.h5", "--to", "webdataset"],
     ["merge", "x.parts"],
 ]
 
@@ -67,7 +67,7 @@ def test_a_folder_is_no_file(words: list[str], place: Path) -> None:
     ("words", "file"),
     [
         (OTHERS[5], "x.h5"),
-        (["convert", "data", "--to", "npy"], "data/dataset.h5"),
+        (["convert", "data", "--to", "webdataset"], "data/dataset.h5"),
         (
             ["generate", "c.yaml", "--recordings", "tree", "--set", "recordings.rows=[-1,1]"],
             "tree/a/0.png",

@@ -237,6 +237,7 @@ CHANGES: dict[str, object] = {
     "output.hdf5_level": 9,
     "output.power": "float16",
     "output.slow_time": True,
+    "output.products": ("torso_track",),
     "output.license": "cc-by-4.0",
     "recordings": RecordingsConfig(window_s=2.0),
 }

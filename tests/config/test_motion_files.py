@@ -68,13 +68,13 @@ def test_folders_of_motion_files_are_no_part_of_a_config(place: Path) -> None:
     assert resolved(stored) == resolved(here)
     scene = nominal_scene(stored, stored.chosen_activities[0])
     with pytest.raises(MotionFileError, match=r"walk/1\.bvh: where the files .*motion\.folder"):
-        file_motion(scene)
+        file_motion(scene.people[0])
 
 
 def test_another_file_of_the_same_name_is_another_data_set(place: Path) -> None:
     config = load_config(place / "x.yaml")
     scene = nominal_scene(config, config.chosen_activities[0])
-    file_motion(scene)
+    file_motion(scene.people[0])
     known = config.model_dump()["classes"]["walking"]["files"]
     (place / "walk/1.bvh").write_bytes((place / "walk/2.bvh").read_bytes())
     assert flat(load_config(place / "x.yaml")) != flat(config)
@@ -88,7 +88,7 @@ def test_another_file_of_the_same_name_is_another_data_set(place: Path) -> None:
     text_of = place / "walk/0.bvh"
     text_of.write_text(text_of.read_text() + "\n")
     with pytest.raises(MotionFileError, match=r"0\.bvh: is not the file it was"):
-        file_motion(changed)
+        file_motion(changed.people[0])
 
 
 @pytest.mark.parametrize(

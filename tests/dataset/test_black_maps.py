@@ -84,6 +84,6 @@ def test_a_motion_that_is_no_number_is_refused(
 ) -> None:
     config = config_of(engine, snr_db=snr_db)
     scene = draw_scene(config, config.chosen_activities[0], 0)
-    nowhere = replace(motion_of(scene), start=(np.nan, 0.0))
+    nowhere = replace(motion_of(scene.people[0]), start=(np.nan, 0.0))
     with pytest.raises(RadharError, match=r"power is nan|should be finite"):
         record(scene, [map_name], motions=(nowhere,))

@@ -21,7 +21,7 @@ from radhar_cli.config.identity import resolved
 from radhar_cli.dataset import batch as batch_module
 from radhar_cli.dataset import build as build_module
 from radhar_cli.dataset import folder as folder_module
-from radhar_cli.dataset.build import Outcome, build
+from radhar_cli.dataset.build import BuildOutcome, build
 from radhar_cli.dataset.folder import folder_lock
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
@@ -31,7 +31,7 @@ from radhar_cli.dataset.workers import run_tasks, warm_up
 from radhar_cli.errors import FolderError, SceneError, UnfinishedError
 
 
-def make(config: Config, folder: Path, **options: object) -> Outcome:
+def make(config: Config, folder: Path, **options: object) -> BuildOutcome:
     return build(config, folder, options.pop("jobs", 1), Listener(), **options)
 
 

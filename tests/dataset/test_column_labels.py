@@ -97,7 +97,7 @@ def test_verify_finds_a_changed_label(whole: Path, tmp_path: Path, number: int, 
 def test_every_phase_of_the_twelve_has_a_number(model: str) -> None:
     config = Config(motion={"model": model})
     for activity in ACTIVITIES:
-        phases = motion_of(nominal_scene(config, activity)).phases
+        phases = motion_of(nominal_scene(config, activity).people[0]).phases
         assert phases[0][0] == -np.inf, "something is under way from the first instant on"
         assert {name for _, name in phases} <= set(PHASES), activity.slug
 
@@ -107,7 +107,7 @@ def test_every_phase_of_a_sequence_has_a_number() -> None:
     own = {f"own_{name}": one for name, one in classes.items()}
     config = Config(classes=own, activities=list(own))
     for activity in config.chosen_activities:
-        phases = motion_of(nominal_scene(config, activity)).phases
+        phases = motion_of(nominal_scene(config, activity).people[0]).phases
         assert {name for _, name in phases} <= set(PHASES), activity.slug
 
 
@@ -117,5 +117,5 @@ def test_a_motion_without_phases_is_labelled_with_its_class(config: Config) -> N
 
     scene = nominal_scene(config, config.chosen_activities[-1])
     image = MapImage(np.zeros((4, 6), np.uint8), 0.0, (0.0, 1.0, 0.0, 1.0))
-    found = column_labels(scene, Silent(motion_of(scene), (0,)), image)
+    found = column_labels(scene, Silent(motion_of(scene.people[0]), (0,)), image)
     assert [label_names(config)[number] for number in found] == ["coming_home"] * 6

@@ -3,7 +3,6 @@
 import hashlib
 import json
 import os
-import re
 import subprocess
 import sys
 import tarfile
@@ -17,14 +16,14 @@ import pytest
 import yaml
 from command_line import ROOT, radhar
 from listener import Listener
-from scipy.io.matlab import matfile_version
 from small import fingerprint, small_config
 
 from radhar_cli.config import load_config
 from radhar_cli.dataset import layout
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.folder import folder_lock
-from radhar_cli.dataset.formats import checked, parquet
+from radhar_cli.dataset.formats import convert as checked
+from radhar_cli.dataset.formats import parquet
 from radhar_cli.dataset.formats.convert import FORMATS, convert
 from radhar_cli.errors import FolderError
 
@@ -163,46 +162,6 @@ LARGE = ("maps/rtm", "maps/stft", "power/rtm", "power/stft", "slow_time")
 SMALL = ("label", "split", "sample_key", "column_label/stft", "scene/range", "scene/subject")
 
 
-def test_npy_has_every_array(place: Path, h5: h5py.File) -> None:
-    for name in (*LARGE, *SMALL, *(f"scene/{name}" for name in h5["scene"])):
-        _same(np.load(place / f"npy/{name}.npy", mmap_mode="r"), h5[name][:])
-    slugs = np.load(place / "npy/class_slugs.npy")
-    assert slugs.tolist() == list(h5.attrs["class_slugs"])
-
-
-def test_matlab_has_every_array_with_its_axes_turned(place: Path, h5: h5py.File) -> None:
-    path = place / "mat/dataset.mat"
-    assert matfile_version(path) == (2, 0)
-    assert path.read_bytes()[124:128] == b"\x00\x02IM"
-    with h5py.File(path) as file:
-        for name in ("maps/rtm", "maps/stft", *SMALL, *(f"scene/{name}" for name in h5["scene"])):
-            right = h5[name][:]
-            turned = file[name][:].reshape(right.shape[:1] + right.shape[:0:-1])
-            _same(np.moveaxis(turned.T, -1, 0), right)
-        matlab = {name: file[name].attrs["MATLAB_class"] for name in (*LARGE, *SMALL, "maps")}
-        assert matlab["maps"] == b"struct"
-        assert {matlab[f"maps/{name}"] for name in ("rtm", "stft")} == {b"uint8"}
-        assert (matlab["scene/range"], matlab["sample_key"]) == (b"double", b"int64")
-        power = np.moveaxis(file["power/stft"][:].T, -1, 0)
-        _same(power, h5["power/stft"][:].astype("f4"))
-        assert matlab["power/stft"] == matlab["slow_time"] == b"single"
-        assert file["slow_time"].dtype.names == ("real", "imag")
-        _same(file["slow_time"][:].view("c8"), h5["slow_time"][:])
-        cells = [file[one][:, 0].astype(np.uint8).tobytes() for one in file["class_slugs"][0]]
-        assert [cell.decode() for cell in cells] == list(h5.attrs["class_slugs"])
-
-
-def test_the_matlab_readme_shows_how_to_read_one_map(place: Path, h5: h5py.File) -> None:
-    code = r"h5read\('dataset.mat', '(.+)', \[1 1 n\], \[(\d+) (\d+) 1\]\)"
-    found = re.search(code, (place / "mat/README.md").read_text())
-    assert found is not None
-    name, height, width = found[1], int(found[2]), int(found[3])
-    with h5py.File(place / "mat/dataset.mat") as file:
-        one = file[name][3:4, :width, :height]  # MATLAB's order of axes is the reverse
-        assert file[name].shape[1:] == one.shape[1:]
-    _same(one[0].T, h5[name][3])
-
-
 @pytest.mark.parametrize("name", FORMATS)
 def test_every_format_has_a_card_and_the_same_bytes_again(
     place: Path, tmp_path: Path, name: str
@@ -227,13 +186,13 @@ def test_the_licence_that_an_owner_chose_goes_along(place: Path, tmp_path: Path)
     text = (place / "set/README.md").read_text()
     chosen = "license: other\nlicense_name: radar-lab-1\n"
     card.write_text(text.replace("license: unknown\n", chosen))
-    convert(h5.parent, tmp_path / "npy", "npy", Listener())
-    made = (tmp_path / "npy/README.md").read_text()
+    convert(h5.parent, tmp_path / "webdataset", "webdataset", Listener())
+    made = (tmp_path / "webdataset/README.md").read_text()
     front = yaml.safe_load(made.split("---\n")[1])
     assert (front["license"], front["license_name"]) == ("other", "radar-lab-1")
     assert "Licence: other." in made
     card.write_text(text.replace("license: unknown\n", "license: [mit, 3]\n"))
-    done = radhar("convert", h5, "-o", tmp_path / "no", "--to", "npy")
+    done = radhar("convert", h5, "-o", tmp_path / "no", "--to", "webdataset")
     assert done.returncode == 2
     assert "README.md: license: should be text" in done.stderr.splitlines()[-1]
 
@@ -241,18 +200,18 @@ def test_the_licence_that_an_owner_chose_goes_along(place: Path, tmp_path: Path)
 def test_what_a_killed_run_left_is_cleared_and_a_run_at_work_is_not(
     place: Path, tmp_path: Path
 ) -> None:
-    left = tmp_path / ".npy.unfinished"
+    left = tmp_path / ".webdataset.unfinished"
     (left / "set").mkdir(parents=True)
-    (left / "set/half.npy").write_bytes(b"half")
+    (left / "set/half.tar").write_bytes(b"half")
     with folder_lock(left), pytest.raises(FolderError, match="another run is writing here"):
-        convert(place / "set", tmp_path / "npy", "npy", Listener())
-    assert (left / "set/half.npy").exists()
-    convert(place / "set", tmp_path / "npy", "npy", Listener())
-    assert [path.name for path in tmp_path.iterdir()] == ["npy"]
-    assert not (tmp_path / "npy/half.npy").exists()
-    (tmp_path / ".mat.unfinished").symlink_to(tmp_path / "npy")
+        convert(place / "set", tmp_path / "webdataset", "webdataset", Listener())
+    assert (left / "set/half.tar").exists()
+    convert(place / "set", tmp_path / "webdataset", "webdataset", Listener())
+    assert [path.name for path in tmp_path.iterdir()] == ["webdataset"]
+    assert not (tmp_path / "webdataset/half.tar").exists()
+    (tmp_path / ".parquet.unfinished").symlink_to(tmp_path / "webdataset")
     with pytest.raises(FolderError, match="is a symbolic link"):
-        convert(place / "set", tmp_path / "mat", "mat", Listener())
+        convert(place / "set", tmp_path / "parquet", "parquet", Listener())
 
 
 @pytest.mark.parametrize("name", FORMATS)
@@ -269,11 +228,17 @@ def test_damaged_data_sets_are_not_converted(place: Path, tmp_path: Path, name: 
 
 def test_impossible_conversions_are_refused_in_one_line(place: Path, tmp_path: Path) -> None:
     for arguments, expected in (
-        ((place / "set", "-o", place / "npy", "--to", "npy"), "npy: already exists"),
+        (
+            (place / "set", "-o", place / "webdataset", "--to", "webdataset"),
+            "webdataset: already exists",
+        ),
         ((place / "set", "-o", tmp_path / "x", "--to", "parket"), "did you mean 'parquet'?"),
-        ((place / "no", "-o", tmp_path / "x", "--to", "npy"), "no such file"),
-        ((place / "set/png", "-o", tmp_path / "x", "--to", "npy"), "no such file"),
-        ((place / "set/config.yaml", "-o", tmp_path / "x", "--to", "mat"), "is not an HDF5 file"),
+        ((place / "no", "-o", tmp_path / "x", "--to", "webdataset"), "no such file"),
+        ((place / "set/png", "-o", tmp_path / "x", "--to", "webdataset"), "no such file"),
+        (
+            (place / "set/config.yaml", "-o", tmp_path / "x", "--to", "parquet"),
+            "is not an HDF5 file",
+        ),
     ):
         done = radhar("convert", *arguments)
         assert (done.returncode, len(done.stderr.splitlines())) == (2, 1), done.stderr

@@ -8,18 +8,18 @@ from pathlib import Path
 
 import h5py
 import pytest
-from bench_large import stub_shard
 from listener import Listener
 from PIL import ImageFont
 from small import small_config
+from stub_shards import stub_shard
 
 from radhar_cli.config import load_config
 from radhar_cli.dataset import build as build_module
 from radhar_cli.dataset.batch import Batch
 from radhar_cli.dataset.build import build
-from radhar_cli.dataset.metadata_csv import write_metadata, wrong_metadata
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset
+from radhar_cli.dataset.table import write_metadata, wrong_metadata
 
 ROWS, MANY, FEW, SIZE, BATCH = 150_000, 15_000, 9_000, 16, 32
 BYTES_A_ROW = 16

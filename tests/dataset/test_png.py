@@ -1,13 +1,18 @@
-"""PNG files of levels with the colour map as palette."""
+"""PNG files of levels with the colour map as palette; the compression of PNG and HDF5."""
 
 import io
+import zlib
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from matplotlib import colormaps
 from PIL import Image
 
-from radhar_cli.dataset.png import colour_table, encode_png, stored_levels
+from radhar_cli.dataset.png import colour_table, deflated, encode_png, stored_levels
+
+LEVELS = [0, 1, 2, 6, 9]
 
 
 def levels() -> np.ndarray:
@@ -54,3 +59,26 @@ def test_few_levels_keep_their_numbers():
     two[0] = 200
     with Image.open(io.BytesIO(encode_png(two, colour_table("viridis"), 1))) as picture:
         assert np.array_equal(stored_levels(picture), two)
+
+
+@pytest.mark.parametrize("level", LEVELS)
+@given(data=st.binary(max_size=2000), repeats=st.integers(1, 40))
+def test_zlib_reads_it_and_equal_data_give_equal_bytes(level, data, repeats):
+    data *= repeats
+    stored = deflated(data, level)
+    assert zlib.decompress(stored) == data
+    assert deflated(data, level) == stored
+
+
+@pytest.mark.parametrize("level", LEVELS)
+@pytest.mark.parametrize("size", [0, 1, 65_535, 65_536, 1_000_000])
+def test_noise_hardly_grows(level, size):
+    """A data set whose chunks are larger than this is refused as a foreign file's trick."""
+    noise = np.random.default_rng(size).bytes(size)
+    assert len(deflated(noise, level)) <= size + size // 1000 + 64
+
+
+def test_fast_is_about_as_small():
+    rng = np.random.default_rng(0)
+    levels = rng.gamma(2, 12, (256, 256)).astype(np.uint8).tobytes()
+    assert len(deflated(levels, 1)) < 1.1 * len(zlib.compress(levels, 1))

@@ -81,7 +81,7 @@ def within(drawn: dict, activity: Activity, tolerance_db: float) -> float | None
     """The true error (dB) of a random scene, which keeps its tolerance; None where refused."""
     scene = draw_scene(Config.model_validate(drawn | {"engine": CUBE}), activity, 0)
     cube = record(scene, ["signal", "paths", "waveform", "canceller"])
-    right, waveform, canceller = cube["signal"].x, cube["waveform"], cube["canceller"]
+    right, waveform, canceller = cube["signal"].x[0, 0], cube["waveform"], cube["canceller"]
     direct = DirectEcho(cube["paths"], waveform, tolerance_db, canceller=canceller)
     try:
         y, accuracy = direct.slow_time()
@@ -132,7 +132,7 @@ CONFIG = {
 class TestRefusal:
     def signal(self, engine: dict, **more: object) -> np.ndarray:
         config = Config.model_validate(CONFIG | {"engine": engine} | more)
-        return record(draw_scene(config, ACTIVITIES[7], 0), ["signal"])["signal"].x
+        return record(draw_scene(config, ACTIVITIES[7], 0), ["signal"])["signal"].x[0, 0]
 
     def test_names_sample_key_value_and_what_would_do(self):
         with pytest.raises(
@@ -144,7 +144,7 @@ class TestRefusal:
         """Feet that stand still to an ulp, alone: what moves is rounding, in either engine."""
         config = Config.model_validate(CONFIG | {"duration_s": 2.0})
         scene = draw_scene(config, ACTIVITIES[5], 0)
-        foot = Only(motion_of(scene), (JOINTS.index("right_ankle"),))
+        foot = Only(motion_of(scene.people[0]), (JOINTS.index("right_ankle"),))
         with pytest.raises(
             SceneError, match=r"no tolerance can be kept here .* engine\.fallback: cube"
         ):

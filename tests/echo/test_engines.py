@@ -71,7 +71,7 @@ def config_of(case: str, engine: dict, **more: object) -> Config:
 
 
 def signal(activity: Activity, config: Config) -> np.ndarray:
-    return record(draw_scene(config, activity, 0), ["signal"])["signal"].x
+    return record(draw_scene(config, activity, 0), ["signal"])["signal"].x[0, 0]
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 import reference as ref
 
-from radhar_cli.echo.range_profiles import beat_at, shown_pulses
+from radhar_cli.echo.exact import beat_at
+from radhar_cli.processing.signal import shown_pulses
 from radhar_cli.radar.waveform import Waveform
 
 

@@ -1,34 +1,41 @@
 """What the field adds next is added through public names, in about 20 lines each."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import combinations
 from pathlib import Path
 
+import command_line
 import h5py
 import numpy as np
 import pytest
 from listener import Listener
+from pydantic import ValidationError
+from signals import signal
 
-from radhar_cli import activity
+from radhar_cli import activity, registry
 from radhar_cli.activity import activity_named, add_activity
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.config import Config
 from radhar_cli.config.schema import ToneConfig, possible_maps
 from radhar_cli.dataset.build import build
-from radhar_cli.echo.half_band_sum import weights
-from radhar_cli.errors import RadharError
-from radhar_cli.pipeline.physics import antennas_of, motion_of, waveform_of
+from radhar_cli.dataset.reading import open_dataset
+from radhar_cli.dataset.sample import synthesise
+from radhar_cli.dataset.verify import verify
+from radhar_cli.errors import RadharError, SceneError
+from radhar_cli.pipeline.physics import antennas_of, impairments_of, motion_of, waveform_of
 from radhar_cli.pipeline.plan import Product
+from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.run import process, record
+from radhar_cli.pipeline.validity import draw_valid_scene
 from radhar_cli.processing.canceller import Canceller, Fir
+from radhar_cli.processing.look import Look
 from radhar_cli.processing.power_map import Axis, PowerMap
-from radhar_cli.processing.range_compression import range_bins
-from radhar_cli.processing.range_signals import RangeSignals
+from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.signal import Signal
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.receiver.impairment import Impairment
-from radhar_cli.scene import Scene, nominal_scene
+from radhar_cli.receiver.noise import WhiteNoise
+from radhar_cli.scene import Person, Scene, nominal_scene
 from radhar_cli.simulation.simulate import RAW_ECHO
 
 C = 299_792_458.0
@@ -79,9 +86,9 @@ class Ball:
     torso = positions
 
 
-def swinging(scene: Scene) -> Ball:
-    """A user-defined class: it reads what it needs off the config of the scene."""
-    return Ball(scene.config.motion.range_m)
+def swinging(person: Person) -> Ball:
+    """A user-defined class: it reads what it needs off the numbers of the person."""
+    return Ball(person.motion.range_m)
 
 
 def test_a_motion_with_other_joints() -> None:
@@ -97,7 +104,7 @@ def test_a_motion_with_other_joints() -> None:
 
 def test_a_second_person() -> None:
     scene = walking()
-    first = motion_of(scene)
+    first = motion_of(scene.people[0])
     second = replace(first, start=(3.0, 1.0), angle=np.pi)
     alone = [record(scene, ["signal"], motions=(one,))["signal"].x for one in (first, second)]
     both = record(scene, ["signal"], motions=(first, second))["signal"].x
@@ -112,7 +119,7 @@ def test_a_second_receive_channel() -> None:
     apart = C / waveform.f0 / 2
     x, y, z = antennas.rx
     beside = replace(antennas, rx=(x, y + apart, z))
-    left = replace(motion_of(scene), start=(3.0, 1.5), angle=0.0)
+    left = replace(motion_of(scene.people[0]), start=(3.0, 1.5), angle=0.0)
     channels = [
         record(scene, ["signal"], motions=(left,), antennas=one)["signal"].x
         for one in (antennas, beside)
@@ -125,7 +132,7 @@ def test_a_second_receive_channel() -> None:
 
 FORMS = {  # of the echo, by the product that shows its noise, and the config that has it
     "raw": ("raw_echo", {}),
-    "slow time": ("signal", {"clutter": "none"}),
+    "coherent sum": ("signal", {"clutter": "none"}),
     "range profiles": ("range_profiles", {}),
     "range bins": ("range_signals", {"range_sum": "gated", "gate_m": (1.0, 3.0)}),
 }
@@ -141,7 +148,7 @@ def noise_of(scene: Scene, form: str, **given: object) -> Complex:
         record(replace(scene, config=config), [product], [RAW_ECHO], **given)[product]
         for config in (noisy, clean)
     ]
-    samples = [getattr(one, "x", getattr(one, "bins", one)) for one in made]
+    samples = [getattr(one, "x", one) for one in made]
     return (samples[0] - samples[1]).ravel()
 
 
@@ -176,19 +183,19 @@ def test_interference_comes_from_outside_and_is_the_same_in_all_channels() -> No
     line = ToneConfig(doppler_hz=100.0, level_db=40.0)
     receiver = CONFIG.receiver.model_copy(update={"tones": (line,)})
     scene = walking(snr_db=0, receiver=receiver)
-    one, other = (noise_of(scene, "slow time", channel=n) for n in range(2))
+    one, other = (noise_of(scene, "coherent sum", channel=n) for n in range(2))
     assert correlation(one, other) > 0.99
 
 
+def range_doppler(beat: Complex, w: Waveform) -> PowerMap:
+    """Range against Doppler over the whole recording."""
+    spectrum = np.fft.fftshift(np.fft.fft(range_compression(beat, w), axis=1), axes=1)
+    doppler = np.fft.fftshift(np.fft.fftfreq(beat.shape[1], 1 / w.prf))
+    rows = Axis("range", "m", w.range_axis())
+    return PowerMap(np.abs(spectrum) ** 2, rows, Axis("frequency", "Hz", doppler))
+
+
 def test_a_product() -> None:
-    """Range against Doppler over the whole recording, from the beat matrix."""
-
-    def range_doppler(beat: Complex, waveform) -> PowerMap:
-        spectrum = np.fft.fftshift(np.fft.fft(range_bins(beat, waveform), axis=1), axes=1)
-        doppler = np.fft.fftshift(np.fft.fftfreq(beat.shape[1], 1 / waveform.prf))
-        rows = Axis("range", "m", waveform.range_axis())
-        return PowerMap(np.abs(spectrum) ** 2, rows, Axis("frequency", "Hz", doppler))
-
     row = Product("range_doppler", ("raw_echo", "waveform"), range_doppler, "range, Doppler")
     ball = Ball(2.0)
     found = record(walking(), ["range_doppler"], [RAW_ECHO, row], motions=(ball,))["range_doppler"]
@@ -198,35 +205,38 @@ def test_a_product() -> None:
     assert found.extent[2] < 1.6 < found.extent[3]
 
 
-@dataclass(frozen=True)
 class DcOffset(Impairment):
-    """A constant on every raw sample: all that the cube needs to know."""
+    """A constant on every raw sample."""
 
-    offset: complex
-    waveform: Waveform
-
-    def beat(self, blocks: Iterator[Complex]) -> Iterator[Complex]:
-        return (block + self.offset for block in blocks)
+    def apply(self, x: Complex, look: Look) -> Complex:
+        ones = look.fast(np.ones((look.fast.waveform.n_adc, 1), complex))
+        return x + ones * look.taken(lambda pulses: np.ones(pulses.shape, complex))
 
 
-class DcOffsetOfSlowTime(DcOffset):
-    """What compression and the sum over bins make of it, for Doppler maps by the direct engine."""
+class Saturation(Impairment):
+    """An amplifier that takes a tenth off the strongest echo."""
 
-    def slow_time(self, y: Complex) -> Complex:
-        return y + self.offset * weights(self.waveform).sum()
+    additive = False
+
+    def apply(self, x: Complex, look: Look) -> Complex:
+        return x / (1 + 0.1 * np.abs(x) / np.abs(x).max())
 
 
-def receiver_with(kind: type[DcOffset]) -> Product:
-    return Product("receiver", ("waveform",), lambda w: (kind(1.0, w),), "a DC offset")
+def receiver_with(impairment: Impairment) -> Product:
+    return Product("receiver", (), lambda: (impairment,), "an impairment")
+
+
+def with_engine(kind: str, **processing: object) -> Scene:
+    return walking(
+        engine=CONFIG.engine.model_copy(update={"kind": kind}),
+        processing=CONFIG.processing.model_copy(update=processing),
+    )
 
 
 @pytest.mark.parametrize("engine", ["direct", "cube"])
 def test_an_impairment_between_echo_and_processing(engine: str) -> None:
     """A DC offset is a line at zero Doppler, which the canceller removes."""
-    offset = receiver_with(DcOffsetOfSlowTime)
-    none = Fir((1,))
-    with_engine = CONFIG.engine.model_copy(update={"kind": engine})
-    scene = walking(engine=with_engine)
+    scene, offset, none = with_engine(engine), receiver_with(DcOffset()), Fir((1,))
     clean = record(scene, ["stft"])["stft"]
     cancelled = record(scene, ["stft"], [offset])["stft"]
     plain = record(scene, ["stft"], [offset], canceller=none)["stft"]
@@ -234,44 +244,37 @@ def test_an_impairment_between_echo_and_processing(engine: str) -> None:
     assert np.abs(cancelled.power - clean.power).max() < 1e-6 * clean.power.max()
 
 
-@pytest.mark.parametrize("gate", [False, True])
-@pytest.mark.parametrize("kind", [DcOffset, DcOffsetOfSlowTime])
-def test_an_impairment_is_in_every_map_or_refused(kind: type[DcOffset], gate: bool) -> None:
-    """Never left out: without the form that the direct engine needs for a map there is no map."""
-    processing = {"clutter": "none"} | (
-        {"range_sum": "gated", "gate_m": (0.0, 3.0)} if gate else {}
-    )
-    scenes = [
-        walking(
-            engine=CONFIG.engine.model_copy(update={"kind": engine}),
-            processing=CONFIG.processing.model_copy(update=processing),
+@pytest.mark.parametrize("processing", [{}, {"range_sum": "gated", "gate_m": (0.0, 3.0)}])
+def test_an_impairment_is_in_every_map_of_every_engine(processing: dict[str, object]) -> None:
+    scenes = [with_engine(kind, clutter="none", **processing) for kind in ("direct", "cube")]
+    for name in possible_maps(scenes[0].config.processing):
+        direct, cube = (
+            record(scene, [name], [receiver_with(DcOffset())])[name].power.sum() for scene in scenes
         )
-        for engine in ("direct", "cube")
-    ]
-    maps, acts = possible_maps(scenes[0].config.processing), kind is DcOffsetOfSlowTime and not gate
-    for name in maps:
-        cube = record(scenes[1], [name], [receiver_with(kind)])[name].power.sum()
         assert cube > 100 * record(scenes[1], [name])[name].power.sum()
-        if acts and name != "rtm":
-            direct = record(scenes[0], [name], [receiver_with(kind)])[name].power.sum()
-            assert direct == pytest.approx(cube, rel=1e-3), name
-            continue
-        match = rf"{kind.__name__}: has no method \w+, .*engine.kind: cube"
-        with pytest.raises(RadharError, match=match):
-            record(scenes[0], [name], [receiver_with(kind)])
+        assert direct == pytest.approx(cube, rel=1e-3), name
 
 
-def test_an_impairment_of_nothing_is_refused_by_the_cube_too() -> None:
-    bare = Product("receiver", (), lambda: (Impairment(),), "forgets to do anything")
-    for maps in (["raw_echo"], ["stft"], ["rtm"]):
-        with pytest.raises(RadharError, match="has no method"):
-            record(walking(), maps, [RAW_ECHO, bare])
+def test_an_impairment_that_does_not_add_needs_the_exact_engine() -> None:
+    scene, image = with_engine("cube", clutter="none"), receiver_with(Saturation())
+    found, right = (record(scene, ["signal"], more)["signal"].x for more in ([image], []))
+    assert np.linalg.norm(found - right) > 0.02 * np.linalg.norm(right)
+    for asked in ("signal", "rtm"):
+        with pytest.raises(SceneError, match=r"Saturation: is not additive, .*engine.kind: cube"):
+            record(with_engine("direct"), [asked], [image])
+
+
+@pytest.mark.parametrize("engine", ["direct", "cube"])
+def test_an_impairment_without_apply_is_refused(engine: str) -> None:
+    for asked in ("raw_echo", "stft", "rtm"):
+        with pytest.raises(RadharError, match="has no method apply"):
+            record(with_engine(engine), [asked], [RAW_ECHO, receiver_with(Impairment())])
 
 
 def test_a_recorded_signal_in_place_of_a_simulated_one() -> None:
     prf = 1000.0
     t = np.arange(4000) / prf
-    tone = Signal(np.exp(2j * np.pi * 120 * t), 0.0, prf, 24e9)
+    tone = signal(np.exp(2j * np.pi * 120 * t), prf, 24e9)
     found = process(tone, CONFIG, ["stft", "fsst", "image:stft"])
     assert np.all(np.abs(ridge(found["stft"]) - 120) <= 2.5)
     assert found["image:stft"].levels.shape == (32, 32)
@@ -279,13 +282,12 @@ def test_a_recorded_signal_in_place_of_a_simulated_one() -> None:
 
 def test_recorded_range_bins_and_a_gate() -> None:
     """Of two tones in other bins a gate shows the one within it."""
-    prf, ranges = 1000.0, np.arange(64) * 0.25
-    t = np.arange(4000) / prf
+    prf, t = 1000.0, np.arange(4000) / 1000.0
     bins = np.zeros((64, t.size), complex)
     bins[20], bins[50] = (np.exp(2j * np.pi * f * t) for f in (120, -200))
-    recorded = RangeSignals(bins, ranges, 0.0, prf, 24e9)
+    recorded = signal(bins, prf, 24e9, 0.25)
     gated = CONFIG.processing.model_copy(update={"range_sum": "gated", "gate_m": 1.0})
-    torso = np.full(t.size, 2 * ranges[20] / C)
+    torso = np.full(t.size, 2 * 5.0 / C)
     config = CONFIG.model_copy(update={"processing": gated})
     found = process(recorded, config, ["stft"], torso_track=torso)
     assert np.all(np.abs(ridge(found["stft"]) - 120) <= 2.5)
@@ -315,9 +317,122 @@ def test_another_canceller() -> None:
     scene = walking()
     three = record(scene, ["signal"], canceller=Fir((1, -2, 1)))["signal"]
     two = record(scene, ["signal"])["signal"]
-    assert three.x.size == two.x.size - 1
-    assert three.t0 == pytest.approx(1 / 500)
+    assert three.pulses == two.pulses - 1
+    assert three.t[0] == pytest.approx(1 / 500)
     assert np.linalg.norm(three.x - np.diff(two.x)) < 1e-4 * np.linalg.norm(three.x)
+
+
+def points(signal: Signal) -> Float:
+    """As many rows as pulses are stronger than the mean: time (s), power."""
+    power = np.abs(signal.x[0, 0]) ** 2
+    strong = power > power.mean()
+    return np.stack([signal.t[strong], power[strong]], axis=1).astype(np.float32)
+
+
+def offset_and_noise(scene: Scene, noise: WhiteNoise, w: Waveform) -> tuple[Impairment, ...]:
+    return noise, *impairments_of(scene, noise, w), DcOffset()
+
+
+@pytest.fixture
+def own(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(registry, "_PRODUCTS", {})
+
+
+OWN = {
+    "a map": Product("range_doppler", ("raw_echo", "waveform"), range_doppler, "range, Doppler"),
+    "its echo": RAW_ECHO,
+    "points": Product("points", ("signal",), points, "strong pulses"),
+    "antennas": Product(
+        "antennas", ("scene",), lambda s: replace(antennas_of(s.config), gain=9.0), ""
+    ),
+    "receiver": Product("receiver", ("scene", "noise", "waveform"), offset_and_noise, "an offset"),
+}
+
+
+@pytest.mark.usefixtures("own")
+@pytest.mark.parametrize("engine", ["direct", "cube"])
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_products_of_ones_own_reach_a_data_set(tmp_path: Path, engine: str, jobs: int) -> None:
+    """A map, an array with another number of rows a sample, antennas and an impairment, with noise;
+    the same with workers, and synthesised anew."""
+    for product in OWN.values():
+        registry.add_product(product)
+    document = {
+        "activities": ["punching", "walking"],
+        "samples_per_class": 2,
+        "maps": ["stft", "range_doppler"],
+        "output": {"products": ["points"]},
+        "engine": {"kind": engine},
+        "processing": {"clutter": "none"},
+        "snr_db": 20.0,
+    }
+    config = Config.model_validate(CONFIG.model_dump() | document)
+    build(config, tmp_path, jobs, Listener(), batch_size=1)
+    scene = draw_valid_scene(config, activity_named("walking"), 1)[0]
+    right = record(scene, ["image:range_doppler", "points"])
+    with open_dataset(tmp_path) as data:
+        assert np.array_equal(data.maps["range_doppler"][3], right["image:range_doppler"].levels)
+        assert np.array_equal(data.products["points"][3], right["points"])
+        sizes = {len(data.products["points"][row]) for row in range(4)}
+    assert len(sizes) > 1
+    assert not verify(tmp_path, 4).problems
+    plain = record(scene, ["stft"], [Product("receiver", (), tuple, "nothing")])["stft"]
+    ours = record(scene, ["stft"])["stft"].power.sum(axis=1)
+    assert ours.argmax() == len(plain.rows.values) // 2, "the offset is at zero Doppler"
+
+
+@pytest.mark.usefixtures("own")
+def test_a_data_set_is_read_where_its_products_are_not_known(tmp_path: Path) -> None:
+    registry.add_product(RAW_ECHO)
+    registry.add_product(OWN["a map"])
+    config = Config.model_validate(
+        CONFIG.model_dump() | {"maps": ["range_doppler"], "samples_per_class": 1}
+    )
+    build(config, tmp_path, 1, Listener())
+    registry._PRODUCTS.clear()
+    with open_dataset(tmp_path) as data:
+        assert data.maps["range_doppler"][0].any()
+    with pytest.raises(ValidationError, match="should be 'rtm'"):
+        Config.model_validate({"maps": ["range_doppler"]})
+
+
+@pytest.mark.usefixtures("own")
+def test_products_that_cannot_be_stored_are_refused() -> None:
+    registry.add_product(Product("words", (), lambda: "text", ""))
+    scene = walking(output=CONFIG.output.model_copy(update={"products": ("words",)}))
+    with pytest.raises(SceneError, match="words is str; should be an array"):
+        synthesise(scene, plan_images(scene.config))
+    with pytest.raises(ValueError, match="should be a name"):
+        registry.add_product(Product("a b", (), tuple, ""))
+
+
+def test_the_commands_import_modules_of_ones_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "my_radar.py").write_text(
+        "from radhar_cli.pipeline.plan import Product\n"
+        "from radhar_cli.registry import add_product\n"
+        "add_product(Product('middle', ('signal',), lambda s: s.x[0, 0, 9:19], 'ten pulses'))\n"
+    )
+    sets = (
+        "output.products=[middle]",
+        "samples_per_class=1",
+        "activities=[walking]",
+        "duration_s=1",
+    )
+    command = ("generate", "configs/smoke.yaml", "-o", tmp_path / "set", "--jobs", 2)
+    monkeypatch.setenv("RADHAR_EXTENSIONS", "my_radar")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    done = command_line.process(
+        "-m", "radhar_cli", *command, *(x for one in sets for x in ("--set", one))
+    )
+    assert done.returncode == 0, done.stderr
+    with h5py.File(tmp_path / "set/dataset.h5") as file:
+        assert file["products/middle"].shape == (10,)
+    monkeypatch.setenv("RADHAR_EXTENSIONS", "none_such")
+    missing = command_line.process("-m", "radhar_cli", *command)
+    assert missing.returncode == 2
+    assert "RADHAR_EXTENSIONS: none_such cannot be imported" in missing.stderr
 
 
 @pytest.fixture

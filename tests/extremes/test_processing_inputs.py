@@ -10,21 +10,20 @@ from typing import Any
 
 import numpy as np
 import pytest
+from signals import signal
 
-from radhar_cli.config.schema import SavgolConfig
+from radhar_cli.config.schema import Config, SavgolConfig
 from radhar_cli.errors import RadharError
-from radhar_cli.processing import fsst, image, stft
+from radhar_cli.pipeline.products import products
+from radhar_cli.processing import fsst, image
 from radhar_cli.processing.canceller import FIRST_DIFFERENCE
 from radhar_cli.processing.denoising import savgol
 from radhar_cli.processing.doppler_compensation import compensate
 from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.frames import Frames
-from radhar_cli.processing.range_compression import (
-    half_band_signal,
-    range_bins,
-    range_compression,
-    range_power,
-)
+from radhar_cli.processing.look import RangeSum
+from radhar_cli.processing.range_compression import range_compression
+from radhar_cli.processing.stft import Stft
 from radhar_cli.radar.waveform import Waveform
 
 Function = Callable[[np.ndarray], np.ndarray]
@@ -35,14 +34,18 @@ FRAMES = Frames(24, 5)
 TRACK = 2e-8 + 1e-11 * np.arange(PULSES)
 
 
-def spectra(x: np.ndarray, bins: int = FRAMES.length) -> stft.Spectra:
-    return stft.Spectra(x, FRAMES, bins, single=x.dtype == np.complex64)
+def transformed(
+    x: np.ndarray, window: np.ndarray, bins: int | None = None
+) -> tuple[np.ndarray, int]:
+    """X [frames, N] with a window, in units of 2^exponent, and that exponent."""
+    stft = Stft(signal(x), FRAMES, bins, single=x.dtype == np.complex64)
+    (block,) = stft.blocks
+    return stft.transform(x, block, window), stft.exponent
 
 
-def spectrum(x: np.ndarray, bins: int = FRAMES.length) -> np.ndarray:
+def spectrum(x: np.ndarray, bins: int | None = None) -> np.ndarray:
     """X [frames, N] in the scale of x."""
-    (v,) = (found := spectra(x, bins))
-    return rescaled(v, found.exponent)
+    return rescaled(*transformed(x, FRAMES.window, bins))
 
 
 def rescaled(v: np.ndarray, exponent: int) -> np.ndarray:
@@ -51,10 +54,15 @@ def rescaled(v: np.ndarray, exponent: int) -> np.ndarray:
 
 def squeezed(x: np.ndarray, threshold: float = 1e-3) -> np.ndarray:
     """T [frames, L] in the scale of x."""
-    (v,), (block,) = (found := spectra(x)), found.blocks
-    slope = found.transform(block, FRAMES.window_slope)
+    (v, exponent), (slope, _) = (transformed(x, g) for g in (FRAMES.window, FRAMES.window_slope))
     real, imag = fsst.synchrosqueeze(v, slope, threshold * float(np.abs(v).max()))
-    return rescaled(real + 1j * imag, found.exponent)
+    return rescaled(real + 1j * imag, exponent)
+
+
+def range_power(bins: np.ndarray) -> np.ndarray:
+    """|S|^2 as the range-time map has it."""
+    rtm = products(Config())["rtm"].make(signal(bins))
+    return rtm.power
 
 
 def levels(power: np.ndarray, size: tuple[int, int], dynamic_range_db: float) -> np.ndarray:
@@ -65,14 +73,13 @@ def levels(power: np.ndarray, size: tuple[int, int], dynamic_range_db: float) ->
 LINEAR: dict[str, Function] = {
     "canceller": FIRST_DIFFERENCE,
     "range_compression": lambda s: range_compression(s, WAVEFORM),
-    "range_bins": lambda s: range_bins(s, WAVEFORM),
-    "half_band_signal": half_band_signal,
+    "coherent sum": lambda s: RangeSum(WAVEFORM)(s),
     "compensate": lambda x: compensate(x, TRACK, 24e9),
     "savgol": lambda x: savgol(x, 5, 11),
     "spectrum": spectrum,
     "padded spectrum": lambda x: spectrum(x, 64),
 }
-MATRIX = ("range_compression", "range_bins", "half_band_signal")
+MATRIX = ("range_compression", "coherent sum")
 
 
 def shape_of(name: str) -> tuple[int, ...]:

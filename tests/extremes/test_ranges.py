@@ -23,7 +23,7 @@ from extreme_scenes import (
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.config import MAP_NAMES, Config
 from radhar_cli.config.reading import validated
-from radhar_cli.echo import cube
+from radhar_cli.echo.exact import beat_blocks
 from radhar_cli.errors import ConfigError, SceneError
 from radhar_cli.motion.skeleton import JOINTS, PARENTS, SKELETON
 from radhar_cli.pipeline.physics import motion_of
@@ -106,7 +106,7 @@ def test_gains_are_linear(engine: str, gain: float) -> None:
     products = ("signal", "image:stft", "image:fsst")
     at_0 = record(config_of(engine, {"antenna_gain_dbi": 0}), *products)
     here = record(config_of(engine, {"antenna_gain_dbi": gain}), *products)
-    error = relative(here["signal"].x / 10 ** (gain / 10), at_0["signal"].x)
+    error = relative(here["signal"].x[0, 0] / 10 ** (gain / 10), at_0["signal"].x[0, 0])
     print(f"gain {gain} dBi, {engine}: off a straight line by {error:.1e}")
     assert error < {"direct": 10 ** (DIRECT_DB / 20), "cube": 1e-12}[engine]
     for name in products[1:]:
@@ -124,7 +124,7 @@ def test_rcs_from_1e_12_to_1e12() -> None:
     def beat(*rcs: float) -> np.ndarray:
         ranges = np.array([2.0, 3.1])[: len(rcs), None]
         source = ref.Points(lambda t: ranges + 0.3 * t, np.sqrt(np.array(rcs)))
-        return np.hstack([*cube.beat_blocks(source, waveform)])
+        return np.hstack([*beat_blocks(source, waveform)])
 
     unit = beat(1.0)
     for rcs in (1e-12, 1e12):
@@ -141,7 +141,7 @@ def test_rcs_from_1e_12_to_1e12() -> None:
 def test_persons_scale(height: float) -> None:
     """Every link keeps its length, h/1.8 of the reference person's, at every time."""
     config = config_of(subject={"height_m": height})
-    motion = motion_of(nominal_scene(config, ACTIVITIES[7]))
+    motion = motion_of(nominal_scene(config, ACTIVITIES[7]).people[0])
     p = motion.positions(np.linspace(0, 2, 50))
     for joint, parent in enumerate(PARENTS):
         if parent is not None:
@@ -171,7 +171,7 @@ class TestSnr:
         variance = float(power) / 10 ** (snr_db / 10)
         gain = np.sum(np.abs(ref.sample_weights(radar_of(clean))) ** 2)
         recording = record(noisy, "noise", "signal")
-        noise = recording["signal"].x - signal(clean)
+        noise = recording["signal"].x[0, 0] - signal(clean)
         measured = np.mean(np.abs(noise) ** 2) / gain
         off_db = 10 * np.log10(measured / variance)
         print(f"SNR {snr_db} dB, {engine}: measured noise off by {off_db:+.2f} dB")
@@ -186,7 +186,7 @@ class TestSnr:
         recording = record(self.config(engine, 300), "noise", "signal")
         assert recording["noise"].sigma > 0
         clean = signal(self.config(engine, None))
-        assert relative(recording["signal"].x, clean) < 1e-13
+        assert relative(recording["signal"].x[0, 0], clean) < 1e-13
 
     @pytest.mark.parametrize("engine", ["cube", "direct"])
     def test_snr_null_adds_no_noise(self, engine: str) -> None:
@@ -221,7 +221,7 @@ class TestFewPulses:
         names = [n for n in MAP_NAMES if n != "rtm"]
         images = [f"image:{name}" for name in MAP_NAMES]
         found = record(config, "signal", *MAP_NAMES, *images)
-        x = found["signal"].x
+        x = found["signal"].x[0, 0]
         assert x.size == 99
         assert all(found[name].power.shape == (99, 1) for name in names)
         right = ref.stft(x, 99, 1)
@@ -236,10 +236,10 @@ class TestFewPulses:
     def test_a_filter_as_long_as_the_signal_is_one_cubic(self, engine: str) -> None:
         config = self.config(engine, 0.5)
         found = record(config, "signal", "signal_denoised")
-        x, t = found["signal"].x, np.linspace(-1, 1, 99)
+        x, t = found["signal"].x[0, 0], np.linspace(-1, 1, 99)
         for part in (np.real, np.imag):
             fit = np.polynomial.Polynomial.fit(t, part(x), 3)(t)
-            assert part(found["signal_denoised"].x) == pytest.approx(
+            assert part(found["signal_denoised"].x[0, 0]) == pytest.approx(
                 fit, rel=1e-9, abs=1e-10 * np.abs(x).max()
             )
 
@@ -275,7 +275,7 @@ class TestEverythingAliases:
             recording = record_scene(scene, asked)
             assert 8 <= recording["frames"].length <= 16
             assert recording["image:fsst"].levels.max() == 255
-            found.append(recording["signal"].x)
+            found.append(recording["signal"].x[0, 0])
         error = ref.error_db(found[1], found[0])
         print(f"PRF 20 Hz, {found[0].size} pulses drawn: direct {error:.0f} dB")
         assert error < DIRECT_DB

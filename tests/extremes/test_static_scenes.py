@@ -6,19 +6,16 @@ from extreme_scenes import config_of, record
 
 from radhar_cli.activity import activity_named
 from radhar_cli.config import MAP_NAMES, Config
-from radhar_cli.echo import cube
+from radhar_cli.echo.exact import beat_blocks
 from radhar_cli.echo.static_returns import leakage, wall_echo
 from radhar_cli.errors import SceneError
 from radhar_cli.pipeline.products import SIGNALS
 from radhar_cli.pipeline.run import process
 from radhar_cli.pipeline.run import record as record_scene
 from radhar_cli.processing.entropy import entropy_bits
-from radhar_cli.processing.range_compression import (
-    half_band_signal,
-    range_bins,
-    range_compression,
-    range_power,
-)
+from radhar_cli.processing.look import RangeSum
+from radhar_cli.processing.pulse_times import PulseTimes
+from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.signal import Signal
 from radhar_cli.scene import nominal_scene
 from radhar_cli.simulation.simulate import RAW_ECHO, simulate
@@ -62,11 +59,13 @@ def maps_of(beat: np.ndarray, config: Config) -> dict[str, np.ndarray]:
     given = record(config, "waveform", "canceller", "torso_track")
     waveform, canceller = given["waveform"], given["canceller"]
     moving = canceller(beat)
-    x = half_band_signal(range_compression(moving, waveform))
-    signal = Signal(x, canceller.delay / waveform.prf, waveform.prf, waveform.f0)
+    x = RangeSum(waveform)(moving)[None]
+    times = PulseTimes.even(moving.shape[1], waveform.prf, canceller.delay / waveform.prf)
     doppler = [name for name in MAP_NAMES if name != "rtm"]
-    found = process(signal, config, doppler, torso_track=given["torso_track"])
-    return {"rtm": range_power(range_bins(moving, waveform))} | {
+    found = process(
+        Signal(x, times, waveform.f0), config, doppler, torso_track=given["torso_track"]
+    )
+    return {"rtm": np.abs(range_compression(moving, waveform)) ** 2} | {
         name: found[name].power for name in doppler
     }
 
@@ -80,10 +79,7 @@ def test_leakage_and_wall_echo_leave_no_trace(snr_db: float | None) -> None:
     asked = ["paths", "waveform", "antennas", "wall", "receiver", "raw_echo"]
     recording = record_scene(scene, asked, [RAW_ECHO])
     paths, waveform, raw = recording["paths"], recording["waveform"], recording["raw_echo"]
-    blocks = cube.beat_blocks(paths, waveform)
-    for impairment in recording["receiver"]:
-        blocks = impairment.beat(blocks)
-    body = np.hstack([*blocks])
+    body = np.hstack([*beat_blocks(paths, waveform, recording["receiver"])])
     power = np.mean(np.sum(paths(waveform.times(np.arange(200.0))).amplitude ** 2, axis=0))
     for name, static in (
         ("leakage", leakage(recording["antennas"])),

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from command_line import radhar
 from hypothesis import given
 from hypothesis import settings as examples
 from hypothesis import strategies as st
@@ -382,3 +383,36 @@ def test_an_unknown_split_is_refused_with_a_suggestion() -> None:
     assert split_named("all") == "all"
     with pytest.raises(FolderError, match="did you mean 'train'"):
         split_named("trian")
+
+
+def test_persons_come_from_data_sets(tmp_path: Path) -> None:
+    by_person = "split={by: subject, subjects: 3, train: 0.34, validation: 0.33, test: 0.33}"
+    sets = ("samples_per_class=5", "activities=[walking, punching]", "maps=[stft]", by_person)
+    out, plain = tmp_path / "set", tmp_path / "plain"
+    command = ("generate", "configs/quickstart.yaml", "--jobs", 1, "--set", "image.size_px=32")
+    command = (*command, "--set", "output.png=false", "--set", "duration_s=1")
+    assert radhar(*command, "-o", out, *(x for s in sets for x in ("--set", s))).returncode == 0
+    done = radhar(*command, "-o", plain, *(x for s in sets[:3] for x in ("--set", s)))
+    assert done.returncode == 0, done.stderr
+    images = open_images(out, None, "gray")
+    assert images.persons == tuple("01201") * 2
+    walking = images.renamed({"punching": None})
+    assert walking.persons == tuple("01201")
+    assert open_images(plain, None, "gray").persons is None
+
+
+@pytest.mark.parametrize("named", [True, False])
+def test_persons_or_recordings_come_from_recorded_sets(tmp_path: Path, named: bool) -> None:
+    x = (np.random.default_rng(0).random((6, 32, 32)) < 0.3).astype(np.uint8)
+    who = {"person": np.array(list("aabbcc"))} if named else {}
+    np.savez(tmp_path / "m.npz", masks=x, label=np.array(["walking", "falling"] * 3), **who)
+    (tmp_path / "c.yaml").write_text(
+        "maps: [stft]\nrecordings: {window_s: 5, rows: [-500, 500]}\n"
+        "split: {train: 0.5, validation: 0.5}\n"
+    )
+    out = tmp_path / "set"
+    done = radhar("generate", tmp_path / "c.yaml", "--recordings", tmp_path / "m.npz", "-o", out)
+    assert done.returncode == 0, done.stderr
+    persons = open_images(out, None, "gray").persons
+    assert persons is not None
+    assert set(persons) == (set("abc") if named else {f"file m.npz/{n}" for n in range(6)})

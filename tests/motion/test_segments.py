@@ -28,7 +28,7 @@ NAMES = [one.name for one in SEGMENTS]
 def motion(model: str, slug: str = "walking") -> Motion:
     people = {"model": model, "range_m": 4.0, "angle_deg": 180.0}
     config = Config.model_validate({"subject": {"height_m": STATURE}, "motion": people})
-    return motion_of(nominal_scene(config, activity_named(slug)))
+    return motion_of(nominal_scene(config, activity_named(slug)).people[0])
 
 
 def times(count: int = 801, seconds: float = 4.0) -> np.ndarray:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import reference as ref
 from scipy.signal import butter, sosfilt
+from signals import signal
 
 from radhar_cli.activity import activity_named
 from radhar_cli.config.schema import Config
@@ -13,8 +14,8 @@ from radhar_cli.errors import ConfigError
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.run import Recording, process
 from radhar_cli.pipeline.run import record as record_scene
-from radhar_cli.processing.range_signals import RangeSignals
-from radhar_cli.receiver.noise import WhiteNoise
+from radhar_cli.processing.look import Look, RangeBins
+from radhar_cli.receiver.noise import white_noise
 from radhar_cli.scene import Scene, draw_scene
 from radhar_cli.simulation.simulate import map_names, simulate
 
@@ -135,7 +136,7 @@ class TestRecording:
         found = record_scene(scene, ["stft", "image:stft", "signal", "torso_track", "waveform"])
         w = found["waveform"]
         bins = compressed(beat_of(scene), w.n_fft)
-        signals = RangeSignals(bins, w.range_axis(), 0.0, w.prf, w.f0)
+        signals = signal(bins, w.prf, w.f0, w.range_step)
         track = found["torso_track"]
         again = process(signals, scene.config, ["stft", "image:stft"], torso_track=track)
         right = found["stft"].power
@@ -146,7 +147,7 @@ class TestRecording:
 
     def test_a_fixed_gate_needs_no_track(self):
         x = np.random.default_rng(0).standard_normal((64, 500, 2)).view(complex)[..., 0]
-        signals = RangeSignals(x, np.arange(64) * 0.375, 0.0, 500.0, 5.8e9)
+        signals = signal(x, 500.0, 5.8e9, 0.375)
         wide = {"radar": RADAR | {"bandwidth_hz": 4e8}}
         gate = {"gate_m": [3.75, 11.25], "gate_sum": "magnitude"}
         config = scene_of(processing=gate, **wide).config
@@ -166,7 +167,7 @@ class TestNoise:
         for engine in ("cube", "direct"):
             noisy = record(engine, "range_signals", "noise", "waveform", **more)
             clean = record(engine, "range_signals", **more | {"snr_db": None})
-            v = noisy["range_signals"].x - clean["range_signals"].x
+            v = (noisy["range_signals"].x - clean["range_signals"].x)[0]
             sigma, w = noisy["noise"].sigma, noisy["waveform"]
             k, n = np.arange(len(v)), np.arange(w.n_adc) - w.n_adc / 2
             f = np.exp(2j * np.pi * np.outer(k, n) / w.n_fft)
@@ -181,8 +182,8 @@ class TestNoise:
         """64 times as many bins as samples: the covariance has the rank of the samples."""
         w = record("direct", "waveform", processing={"range_fft_length": 640})["waveform"]
         w = replace(w, adc_rate=2.5e5)
-        white = WhiteNoise(1.0, w, lambda name: np.random.default_rng(3))
-        v = white.range_signals(np.zeros((320, 4000), complex), slice(0, 320))
+        look = Look("", RangeBins(w, slice(0, 320)), np.arange(4000), spans=[slice(0, 4000)] * 320)
+        v = white_noise(look, np.random.default_rng(3))
         assert np.mean(np.abs(v) ** 2) == pytest.approx(10, rel=0.03)
         assert np.linalg.matrix_rank(v, tol=1e-6) <= 10
 
@@ -199,7 +200,7 @@ class TestNoise:
         asked = ("range_signals", "gate", "gate_needed", "noise", "waveform")
         more = {"processing": {"gate_m": 0.3, "clutter": clutter}, "snr_db": -60}
         found = record("direct", *asked, **more)
-        x, gate = found["range_signals"].x, found["gate"]
+        x, gate = found["range_signals"].x[0], found["gate"]
         lost = int(clutter == "difference")
         low, high = (each[: x.shape[1]] for each in found["gate_needed"])
         k = np.arange(gate.bins.start, gate.bins.stop)[:, None]

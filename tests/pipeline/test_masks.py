@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 import reference as ref
+from signals import signal
 from small import SMALL, small_config
 
 from radhar_cli.activity import activity_named
@@ -16,7 +17,6 @@ from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import ConfigError
 from radhar_cli.pipeline.run import process, record
-from radhar_cli.processing.signal import Signal
 from radhar_cli.scene import draw_scene, scene_numbers
 
 RADAR = {"carrier_hz": 10e9, "bandwidth_hz": 1e9, "prf_hz": 500}
@@ -88,7 +88,7 @@ def test_a_floor_is_a_number_only_where_it_decides():
 def test_recorded_signals_become_masks_too():
     rng = np.random.default_rng(0)
     noise = rng.standard_normal((2000, 2)) @ [1, 1j]
-    recorded = Signal(noise, 0.0, 500.0, F0)
+    recorded = signal(noise, 500.0, F0)
     mask = process(recorded, config(MASKS | {"cfar": WINDOW | {"floor_db": 20}}), ["image:stft"])
     assert set(np.unique(mask["image:stft"].levels)) == {0, 255}
 

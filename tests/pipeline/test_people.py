@@ -47,7 +47,7 @@ HOME = {
 
 
 def moving(scene: Scene) -> HumanMotion:
-    motion = motion_of(scene)
+    motion = motion_of(scene.people[0])
     assert isinstance(motion, HumanMotion)
     return motion
 
@@ -342,7 +342,9 @@ def test_keys_of_the_other_model_are_ignored() -> None:
         )
         a, b = (draw_scene(config, walking, 0) for config in (plain, more))
         assert scene_numbers(a) == scene_numbers(b)
-        np.testing.assert_array_equal(motion_of(a).positions(t), motion_of(b).positions(t))
+        np.testing.assert_array_equal(
+            motion_of(a.people[0]).positions(t), motion_of(b.people[0]).positions(t)
+        )
         assert not {f"motion.{key}" for key in keys} & set(scene_numbers(a))
 
 

@@ -23,7 +23,7 @@ OWN_HOP = {"processing": {"fsst_hop_pulses": 1}}
 # What runs besides the images themselves. Written by hand: change it only where the physics needs
 # another product.
 SCENE = "waveform antennas wall motions paths canceller receiver"
-SIGNAL = f"{SCENE} direct echo accuracy slow_time signal"
+SIGNAL = f"{SCENE} direct echo accuracy signal"
 NOISE = "channel signal_power noise"
 NOISY = f"{SIGNAL} {NOISE}"
 PROFILES = f"{SCENE} range_profiles rtm"

@@ -208,10 +208,10 @@ CASES = {
 def test_the_direct_engine_keeps_its_tolerance(slug, tolerance_db):
     """Sigmoids of shadows and flashes of limbs included."""
     more = CASES[slug]
-    right = record(scene_of(slug, **more, **CUBE), ["signal"])["signal"].x
+    right = record(scene_of(slug, **more, **CUBE), ["signal"])["signal"].x[0, 0]
     engine = {"engine": {"tolerance_db": tolerance_db}}
     found = record(scene_of(slug, **more, **engine), ["signal", "accuracy"])
-    error_db = ref.error_db(found["signal"].x, right)
+    error_db = ref.error_db(found["signal"].x[0, 0], right)
     assert error_db < tolerance_db
     assert error_db == pytest.approx(found["accuracy"].error_db, abs=10)
 
@@ -220,7 +220,7 @@ def test_a_motionless_person_cancels_exactly():
     """The paper's S1 has no sway: in neither engine is anything left."""
     for engine in ({}, CUBE):
         scene = scene_of("stationary", **PAPER, **engine)
-        assert not record(scene, ["signal"])["signal"].x.any()
+        assert not record(scene, ["signal"])["signal"].x[0, 0].any()
 
 
 def test_points_are_as_strong_as_the_ellipsoid_is_wide():
@@ -241,7 +241,9 @@ def test_points_are_as_strong_as_the_ellipsoid_is_wide():
 
 class TestDeterminism:
     def test_the_same_scene_has_the_same_points(self):
-        first, second = (record(scene_of("walking"), ["signal"])["signal"].x for _ in range(2))
+        first, second = (
+            record(scene_of("walking"), ["signal"])["signal"].x[0, 0] for _ in range(2)
+        )
         assert np.array_equal(first, second)
 
     def test_points_are_the_persons_and_differ_between_samples(self):
@@ -305,7 +307,7 @@ class TestOneJoint:
     def test_one_joint_echoes_alone_in_the_shadow_of_the_whole_body(self):
         scene = scene_of("walking")
         whole = record(scene, ["paths"])["paths"]
-        person = motion_of(scene)
+        person = motion_of(scene.people[0])
         one = Only(person, (JOINTS.index("right_ankle"),))
         kept = record(scene, ["paths"], motions=(one,))["paths"]
         names = [part.name for part in SEGMENTS]
@@ -354,7 +356,7 @@ def test_joints_without_a_segment_stay_points():
 
 def test_two_people_do_not_have_the_same_points():
     scene = scene_of("walking")
-    one = motion_of(scene)
+    one = motion_of(scene.people[0])
     both = record(scene, ["paths"], motions=(one, replace(one, start=(6.0, 1.0))))["paths"]
     assert len(both.sources) == 2
     shares = [source.points[6].share for source in both.sources]
@@ -410,4 +412,4 @@ def test_no_segments_no_paths():
     found = record(scene, ["antennas", "waveform"])
     ball = replace(WithSword(None, None))
     only = Only(ball, (3,))
-    assert segment_paths(scene, only, found["antennas"], None, found["waveform"]) is None
+    assert segment_paths(scene.people[0], only, found["antennas"], None, found["waveform"]) is None

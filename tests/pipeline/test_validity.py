@@ -54,7 +54,7 @@ def at_every_pulse(scene: Scene) -> np.ndarray:
     """Positions [3, 13, M]."""
     v = scene_numbers(scene)
     pulses = np.arange(round(v["duration_s"] * v["radar.prf_hz"]))
-    return motion_of(scene).positions(pulses / v["radar.prf_hz"])
+    return motion_of(scene.people[0]).positions(pulses / v["radar.prf_hz"])
 
 
 def antenna(scene: Scene, name: str) -> np.ndarray:
@@ -77,7 +77,9 @@ def brute_closest(scene: Scene) -> Approach:
 
 def distance_at(scene: Scene, approach: Approach) -> float:
     """How far the named joint is from the named antenna at the named time."""
-    p = motion_of(scene).positions(np.array([approach.time]))[:, JOINTS.index(approach.joint), 0]
+    p = motion_of(scene.people[0]).positions(np.array([approach.time]))[
+        :, JOINTS.index(approach.joint), 0
+    ]
     at = antenna(scene, {"transmitter": "tx", "receiver": "rx"}[approach.antenna])
     return float(np.linalg.norm(p - at))
 
@@ -115,7 +117,7 @@ def test_a_scatterer_within_5_cm_of_an_antenna_is_found(
     label: str, joint: str, time: float, offset: tuple[float, float, float], name: str
 ) -> None:
     """The antenna is beside the path of a joint, often nearest between two times of the grid."""
-    body = motion_of(scene_of(Config(**PERSON, activities=(label,))))
+    body = motion_of(scene_of(Config(**PERSON, activities=(label,))).people[0])
     beside = body.positions(np.array([time]))[:, JOINTS.index(joint), 0] + offset
     config = with_antenna_at(label, beside, name)
     scene = scene_of(config)
@@ -129,7 +131,7 @@ def test_a_scatterer_within_5_cm_of_an_antenna_is_found(
 def test_a_fast_ankle_is_found_between_grid_times() -> None:
     """At 6.2 m/s an ankle goes 3 cm in 5 ms: nearest at 4.5 cm, it is 5.4 cm away on the grid."""
     time = 0.425  # half-way between two times of the grid, 10 ms apart
-    body = motion_of(scene_of(Config(**PERSON, activities=("S8",))))
+    body = motion_of(scene_of(Config(**PERSON, activities=("S8",))).people[0])
     aside = np.array([0.0, 0.045, 0.0])
     config = with_antenna_at("S8", body.positions(np.array([time]))[:, 10, 0] + aside)
     scene = scene_of(config)

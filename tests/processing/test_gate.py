@@ -1,21 +1,25 @@
 """A range gate: which bins a frame shows, and the incoherent sum over them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from signals import signal
 
-from radhar_cli.processing import frames as frames_module
+from radhar_cli.processing import stft as stft_module
 from radhar_cli.processing.frames import Frames
-from radhar_cli.processing.gate import Gate, GatedPower, around, interval
-from radhar_cli.processing.range_signals import RangeSignals
+from radhar_cli.processing.gate import Gate, around, interval
+from radhar_cli.processing.signal import Signal
+from radhar_cli.processing.stft import Stft
 
-FRAMES = Frames(32, 5)
+FRAMES, COUNT = Frames(32, 5), 34
 
 
-def noise(bins: int, pulses: int = 200) -> RangeSignals:
+def noise(bins: int, pulses: int = 200) -> Signal:
     x = np.random.default_rng(bins).standard_normal((bins, pulses, 2)).view(complex)[..., 0]
-    return RangeSignals(x, np.arange(bins) * 0.5, 0.0, 100.0, 1e9)
+    return signal(x, 100.0)
 
 
 def by_definition(x: np.ndarray, gate: Gate, length: int, magnitudes: bool) -> np.ndarray:
@@ -35,31 +39,42 @@ def by_definition(x: np.ndarray, gate: Gate, length: int, magnitudes: bool) -> n
 @pytest.mark.parametrize("single", [False, True])
 def test_the_sum_over_the_bins_of_each_frame(monkeypatch, magnitudes, length, block, single):
     """The bins wander: up, down, and at the end far away at once."""
-    monkeypatch.setattr(frames_module, "BLOCK_COEFFICIENTS", block)
-    signals, count = noise(20), FRAMES.count(200)
-    first = np.clip(np.rint(8 + 8 * np.sin(np.arange(count) / 4)), 0, 16).astype(int)
+    monkeypatch.setattr(stft_module, "BLOCK_COEFFICIENTS", block)
+    signals = noise(20)
+    first = np.clip(np.rint(8 + 8 * np.sin(np.arange(COUNT) / 4)), 0, 16).astype(int)
     first[-3:] = 0
     gate = Gate(first, 4)
-    found = GatedPower(signals, gate, FRAMES, length, magnitudes, single)
-    power = np.concatenate(list(found)) * 4.0**found.exponent
-    right = by_definition(signals.x, gate, length, magnitudes)
+    found = Stft(signals, FRAMES, length, single, gate, magnitudes)
+    power = np.concatenate(list(found.power_blocks())) * 4.0**found.exponent
+    right = by_definition(signals.x[0], gate, length, magnitudes)
     assert power == pytest.approx(right, rel=1e-4 if single else 1e-10, abs=1e-6 * right.max())
 
 
 def test_only_the_bins_that_are_shown_need_be_there():
-    signals, gate = noise(20), Gate(np.full(FRAMES.count(200), 7), 5)
-    some = RangeSignals(signals.x[gate.bins], signals.ranges[gate.bins], 0.0, 100.0, 1e9, 7)
-    whole, part = (GatedPower(s, gate, FRAMES, 32) for s in (signals, some))
+    signals, gate = noise(20), Gate(np.full(COUNT, 7), 5)
+    some = replace(signals, x=signals.x[:, gate.bins], ranges=signals.ranges[gate.bins], first=7)
+    whole, part = (Stft(s, FRAMES, gate=gate) for s in (signals, some))
     scale = 4.0 ** (whole.exponent - part.exponent)
-    assert np.concatenate([*part]) == pytest.approx(scale * np.concatenate([*whole]), rel=1e-12)
+    found, right = (np.concatenate([*one.power_blocks()]) for one in (part, whole))
+    assert found == pytest.approx(scale * right, rel=1e-12)
+
+
+def test_powers_of_channels_are_added_up():
+    signals, other, gate = noise(20), noise(21), Gate(np.full(COUNT, 7), 5)
+    both = replace(signals, x=np.concatenate([signals.x, other.x[:, :20]]))
+    powers = []
+    for one in (both, signals, replace(other, x=other.x[:, :20])):
+        stft = Stft(one, FRAMES, gate=gate)
+        powers.append(np.concatenate([*stft.power_blocks()]) * 4.0**stft.exponent)
+    assert powers[0] == pytest.approx(powers[1] + powers[2], rel=1e-12)
 
 
 def test_one_bin_for_all_frames_is_its_own_stft():
     signals, gate = noise(3), Gate(np.array([1]), 1)
-    found = GatedPower(signals, gate, FRAMES, 32)
-    power = np.concatenate(list(found)) * 4.0**found.exponent
-    every = Gate(np.ones(found.count, int), 1)
-    assert power == pytest.approx(by_definition(signals.x, every, 32, False))
+    found = Stft(signals, FRAMES, gate=gate)
+    power = np.concatenate(list(found.power_blocks())) * 4.0**found.exponent
+    every = Gate(np.ones(COUNT, int), 1)
+    assert power == pytest.approx(by_definition(signals.x[0], every, 32, False))
 
 
 @given(

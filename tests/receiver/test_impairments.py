@@ -1,5 +1,7 @@
 """Coloured noise and interference lines: their spectrum, and that every form of the echo agrees."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -8,15 +10,13 @@ from hypothesis import strategies as st
 from radhar_cli.activity import activity_named
 from radhar_cli.config.schema import Config
 from radhar_cli.pipeline.run import record
-from radhar_cli.processing.canceller import FIRST_DIFFERENCE, NO_CANCELLER
-from radhar_cli.processing.range_compression import (
-    half_band_signal,
-    range_bins,
-    range_compression,
-)
+from radhar_cli.processing import look as look_module
+from radhar_cli.processing.canceller import Fir
+from radhar_cli.processing.look import FastTime, Look, RangeBins, RangeSum, RawSamples
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.randomness import NOISE, stream
 from radhar_cli.receiver.flicker import FlickerNoise
+from radhar_cli.receiver.impairment import Impairment
 from radhar_cli.receiver.interference import Line
 from radhar_cli.scene import Scene, draw_scene, scene_numbers
 
@@ -31,8 +31,14 @@ def named(name: str) -> np.random.Generator:
     return stream(7, NOISE, 0, 0, name=name)
 
 
-def flicker(pulses: int, corner: float, slope: float = 10.0, **more: int) -> FlickerNoise:
-    return FlickerNoise(1.0, waveform(pulses, **more), named, corner, slope)
+def flicker(corner: float, slope: float = 10.0) -> FlickerNoise:
+    return FlickerNoise(1.0, named, corner, slope)
+
+
+def alone(impairment: Impairment, fast: FastTime, name: str = "any", **more: object) -> np.ndarray:
+    """What an impairment adds to an echo of zero, as all pulses show it [K, M]."""
+    look = Look.of_all(name, fast, **more)
+    return impairment.apply(np.zeros((fast.rows, look.count), complex), look)
 
 
 def spectrum(x: np.ndarray, band: tuple[float, float]) -> float:
@@ -45,8 +51,7 @@ def spectrum(x: np.ndarray, band: tuple[float, float]) -> float:
 @pytest.mark.parametrize("slope", [5.0, 10.0, 20.0])
 def test_the_spectrum_of_coloured_noise(slope):
     """The model's own spectrum is the one asked for, from 1/T to PRF/2, within 1 dB."""
-    noise = flicker(4000, 20.0, slope)
-    pole, sd = noise.processes
+    pole, sd = flicker(20.0, slope).processes(waveform(4000))
     f = np.geomspace(1 / 4.0, PRF / 3, 50)[:, None]
     turn = np.exp(-2j * np.pi * f / PRF)
     found = np.sum(sd**2 * (1 - pole**2) / np.abs(1 - pole * turn) ** 2, axis=1)
@@ -57,12 +62,11 @@ def test_the_spectrum_of_coloured_noise(slope):
 
 def test_every_form_has_that_spectrum():
     """As strong as white noise at the corner, 10 dB stronger at a tenth of it: 5 sd of the mean."""
-    noise, pulses = flicker(4000, 50.0), 4000
-    bins = np.zeros((8, pulses), complex)
+    noise, w = flicker(50.0), waveform(4000)
     forms = {
-        "range_signals": noise.range_signals(bins, slice(0, 8)) / np.sqrt(SAMPLES),
-        "range_bins": noise.range_bins(bins, np.arange(pulses), NO_CANCELLER) / np.sqrt(SAMPLES),
-        "beat": np.concatenate(list(noise.beat(iter([np.zeros((SAMPLES, pulses), complex)])))),
+        "some bins": alone(noise, RangeBins(w, slice(0, 8))) / np.sqrt(SAMPLES),
+        "all bins": alone(noise, RangeBins(w)) / np.sqrt(SAMPLES),
+        "raw": alone(noise, RawSamples(w)),
     }
     for name, x in forms.items():
         for band, right in (((45.0, 55.0), 1.0), ((4.5, 5.5), 10.0), ((300.0, 400.0), 0.145)):
@@ -71,22 +75,14 @@ def test_every_form_has_that_spectrum():
 
 
 def test_the_sum_over_the_bins_amplifies_coloured_noise_as_it_does_white():
-    noise, w = flicker(200, 50.0), waveform(200)
-    variance = np.sum(noise.processes[1] ** 2)
+    w, coherent = waveform(200), RangeSum(waveform(200))
     trials = [
-        FlickerNoise(1.0, w, lambda name, n=n: stream(n, NOISE, name=name), 50.0, 10.0)
+        FlickerNoise(1.0, lambda name, n=n: stream(n, NOISE, name=name), 50.0, 10.0)
         for n in range(300)
     ]
-    direct = np.mean([np.abs(one.slow_time(np.zeros(200, complex))) ** 2 for one in trials])
-    empty = np.zeros((SAMPLES, 200), complex)
-    cube = np.mean(
-        [
-            np.abs(half_band_signal(range_compression(next(one.beat(iter([empty]))), w))) ** 2
-            for one in trials
-        ]
-    )
+    direct = np.mean([np.abs(alone(one, coherent)) ** 2 for one in trials])
+    cube = np.mean([np.abs(coherent(alone(one, RawSamples(w)))) ** 2 for one in trials])
     assert direct == pytest.approx(cube, rel=0.2)
-    assert direct / variance == pytest.approx(cube / variance, rel=0.2)
 
 
 @given(st.lists(st.integers(1, 40), min_size=1, max_size=6))
@@ -94,34 +90,46 @@ def test_the_sum_over_the_bins_amplifies_coloured_noise_as_it_does_white():
 def test_blocks_of_any_length_give_the_same(lengths):
     total = sum(lengths)
     for impairment in (
-        flicker(total + 2, 30.0),
+        flicker(30.0),
         Line(0.3, 123.0, waveform(total), named, "line 0"),
         Line(0.3, 123.0, waveform(total), named, "line 0", on=0.01, off=0.01),
     ):
-        empty = np.zeros((SAMPLES, total), complex)
-        (whole,) = impairment.beat(iter([empty]))
-        cuts = np.split(empty, np.cumsum(lengths)[:-1], axis=1)
-        assert np.concatenate(list(impairment.beat(iter(cuts))), axis=1) == pytest.approx(whole)
+        raw = RawSamples(waveform(total))
+        whole, look = alone(impairment, raw), Look.of_all("any", raw)
+        edges = np.cumsum([0, *lengths])
+        blocks = [
+            impairment.apply(np.zeros((SAMPLES, stop - first), complex), look.part(first, stop))
+            for first, stop in pairwise(edges)
+        ]
+        assert np.concatenate(blocks, axis=1) == pytest.approx(whole)
+
+
+@pytest.mark.parametrize("taps", [(1.0,), (-1.0, 1.0), (1.0, -2.0, 1.0)])
+def test_coloured_noise_at_some_pulses_is_that_of_all(taps, monkeypatch):
+    """Also where the pulses come in several blocks."""
+    monkeypatch.setattr(look_module, "BLOCK", 50)
+    bins, pulses = RangeBins(waveform(400)), np.array([0, 7, 49, 50, 51, 99, 380])
+    look = Look("any", bins, pulses, taps)
+    found = flicker(30.0).apply(np.zeros((bins.rows, pulses.size), complex), look)
+    assert found == pytest.approx(Fir(taps)(alone(flicker(30.0), bins))[:, pulses])
 
 
 @pytest.mark.parametrize("fft_length", [None, 64])
-@pytest.mark.parametrize("canceller", [NO_CANCELLER, FIRST_DIFFERENCE])
+@pytest.mark.parametrize("taps", [(1.0,), (-1.0, 1.0)])
 @pytest.mark.parametrize("off", [0.0, 0.02])
-def test_a_line_is_the_same_in_every_form(canceller, fft_length, off):
+def test_a_line_is_the_same_in_every_form(taps, fft_length, off):
     w = waveform(120, fft_length)
     line = Line(0.3, 123.0, w, named, "line 0", on=0.02, off=off)
-    (beat,) = line.beat(iter([np.zeros((SAMPLES, 120), complex)]))
+    beat = alone(line, RawSamples(w))
     there = np.abs(line.tone(np.arange(120)))
     assert np.abs(beat) == pytest.approx(np.tile(0.3 * there, (SAMPLES, 1)))
     assert off or beat.all()
-    compressed = range_compression(beat, w)
-    assert line.slow_time(np.zeros(120, complex)) == pytest.approx(half_band_signal(compressed))
-    kept = slice(2, 6)
-    found = line.range_signals(np.zeros((4, 120), complex), kept)
-    assert found == pytest.approx(compressed[kept])
-    pulses = np.array([0, 7, 50, 118])
-    bins = line.range_bins(np.zeros((w.n_bins, 4), complex), pulses, canceller)
-    assert bins == pytest.approx(range_bins(canceller(beat)[:, pulses], w))
+    for fast in (RangeSum(w), RangeBins(w), RangeBins(w, slice(2, 6))):
+        assert alone(line, fast) == pytest.approx(fast(beat))
+        pulses = np.array([0, 7, 50, 118])
+        look = Look("any", fast, pulses, taps)
+        found = line.apply(np.zeros((fast.rows, 4), complex), look)
+        assert found == pytest.approx(fast(Fir(taps)(beat)[:, pulses]))
 
 
 def test_a_real_line_is_on_both_sides_at_the_same_times():

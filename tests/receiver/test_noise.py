@@ -14,9 +14,20 @@ from radhar_cli.pipeline.physics import motion_of
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.run import Recording, run
 from radhar_cli.pipeline.run import record as record_scene
-from radhar_cli.processing.canceller import NO_CANCELLER, Fir
+from radhar_cli.processing.look import (
+    FastTime,
+    Look,
+    RangeBins,
+    RangeSum,
+    RawSamples,
+)
 from radhar_cli.radar.waveform import Waveform
-from radhar_cli.receiver.noise import WhiteNoise, circular_gaussian, noise_at, noise_variance
+from radhar_cli.receiver.noise import (
+    WhiteNoise,
+    circular_gaussian,
+    noise_variance,
+    white_noise,
+)
 from radhar_cli.scene import Scene, draw_scene, scene_numbers
 
 # 20 samples a chirp and 20 000 pulses: enough for statistics, little to compute.
@@ -47,11 +58,14 @@ def noise_of(product: str, engine: str, **more: object) -> tuple[np.ndarray, flo
     """What noise adds to a product, and the standard deviation sigma of the raw noise."""
     noisy = record(engine, product, "noise", **more)
     clean = record(engine, product, **more | {"snr_db": None})
-    found, right = (
-        one[product].bins if product == "range_profiles" else one[product].x
-        for one in (noisy, clean)
-    )
-    return found - right, noisy["noise"].sigma
+    noise = (noisy[product].x - clean[product].x)[0]
+    return noise if product == "range_profiles" else noise[0], noisy["noise"].sigma
+
+
+def alone(white: WhiteNoise, fast: FastTime, name: str = "any") -> np.ndarray:
+    """What noise adds to an echo of zero, as all pulses show it [K, M]."""
+    look = Look.of_all(name, fast)
+    return white.apply(np.zeros((fast.rows, look.count), complex), look)
 
 
 def correlation(x: np.ndarray, lag: int) -> complex:
@@ -60,13 +74,17 @@ def correlation(x: np.ndarray, lag: int) -> complex:
     return complex(np.mean(later * earlier.conj()) / np.mean(np.abs(x) ** 2))
 
 
+def waveform() -> Waveform:
+    return Waveform(**asdict(ref.Radar(adc_rate=5e5, duration=4.0)))
+
+
 def gain() -> float:
     return float(np.sum(np.abs(ref.sample_weights(ref.Radar(adc_rate=5e5))) ** 2))
 
 
 def free_space_power(scene: Scene) -> float:
     """Mean over the pulses of sum_i G^2 lambda^2 sigma_i/((4 pi)^3 R_tx^2 R_rx^2)."""
-    motion, v = motion_of(scene), scene_numbers(scene)
+    motion, v = motion_of(scene.people[0]), scene_numbers(scene)
     t = np.arange(round(v["duration_s"] * v["radar.prf_hz"])) / v["radar.prf_hz"]
     p = motion.positions(t)
     legs2 = [
@@ -133,11 +151,11 @@ class TestPower:
         """Per sample sigma^2; white in fast time and slow time, in blocks of any length."""
 
         def noise(length):
-            white = WhiteNoise(
-                0.7, Waveform(**asdict(ref.Radar())), lambda name: np.random.default_rng(7)
-            )
-            blocks = [np.zeros((SAMPLES, length), complex)] * (5000 // length)
-            return np.hstack([*white.beat(iter(blocks))])
+            white = WhiteNoise(0.7, lambda name: np.random.default_rng(7))
+            waveform = Waveform(**asdict(ref.Radar(adc_rate=5e5, duration=1.0)))
+            look, empty = Look.of_all("any", RawSamples(waveform)), np.zeros((SAMPLES, length))
+            firsts = range(0, 5000, length)
+            return np.hstack([white.apply(empty, look.part(at, at + length)) for at in firsts])
 
         whole = noise(5000)
         assert whole.shape == (SAMPLES, 5000)
@@ -180,8 +198,8 @@ class TestSlowTime:
     def test_gain_of_compression_and_sum(self, radar):
         """sum |D[n]|^2, which is N_ADC N_FFT/2 only where N_FFT is N_ADC."""
         waveform = Waveform(**asdict(radar))
-        white = WhiteNoise(1.0, waveform, lambda name: np.random.default_rng(8))
-        v = white.slow_time(np.zeros(waveform.n_pulses, complex))
+        white = WhiteNoise(1.0, lambda name: np.random.default_rng(8))
+        v = alone(white, RangeSum(waveform))[0]
         right = np.sum(np.abs(ref.sample_weights(radar)) ** 2)
         assert abs(right / (radar.n_adc * radar.n_fft / 2) - 1) > 2 * self.error
         assert np.mean(np.abs(v) ** 2) == pytest.approx(right, rel=self.error)
@@ -245,8 +263,8 @@ class TestRangeProfiles:
     @pytest.mark.parametrize("taps", [(1, -2, 1), (-1, 0, 1), (1, 1, 1, 1)])
     def test_outputs_of_any_canceller_that_share_pulses_are_correlated(self, taps):
         """By sum_k c[k] c[k + lag]/sum c^2; apart, they have its gain alone."""
-        c, rng = Fir(taps), np.random.default_rng(9)
-        every, apart = (noise_at(rng, SAMPLES, np.arange(5000) * step, c) for step in (1, 4))
+        raw, rng = RawSamples(Waveform(**asdict(ref.Radar(adc_rate=5e5)))), np.random.default_rng(9)
+        every, apart = (white_noise(Look("", raw, np.arange(5000) * k, taps), rng) for k in (1, 4))
         error = SIGMAS * np.sqrt(3 / every.size)
         power = np.sum(np.square(taps))
         right = np.append(np.correlate(taps, taps, "full")[len(taps) :], 0) / power
@@ -299,7 +317,7 @@ class TestStreams:
 
     def test_samples_and_classes_have_their_own(self):
         drawn = [
-            noise.slow_time(np.zeros(PULSES, complex)) / noise.sigma
+            alone(noise, RangeSum(waveform()))[0] / noise.sigma
             for noise in (self.noise(), self.noise(index=1), self.noise("punching"))
         ]
         for a, b in combinations(drawn, 2):
@@ -307,12 +325,11 @@ class TestStreams:
 
     def test_purposes_have_their_own(self):
         """The Doppler maps and the range-time map do not share their random numbers."""
-        noise, bins = self.noise(), SAMPLES // 2
-        count = PULSES // bins
+        noise, w = self.noise(), waveform()
         drawn = [
-            noise.slow_time(np.zeros(PULSES, complex)),
-            noise.range_bins(np.zeros((bins, count)), np.arange(count), NO_CANCELLER).T.ravel(),
-            next(noise.beat(iter([np.zeros((bins, count))]))).T.ravel(),
+            alone(noise, RangeSum(w), "slow_time")[0],
+            alone(noise, RangeBins(w), "range_profiles").T.ravel()[:PULSES],
+            alone(noise, RawSamples(w), "beat").T.ravel()[:PULSES],
         ]
         for one, other in combinations([v / np.std(v) for v in drawn], 2):
             assert abs(np.mean(one * other.conj())) < SIGMAS / np.sqrt(PULSES)

@@ -70,7 +70,7 @@ HOSTILE: list[tuple[dict[str, Any], str]] = [
     ({"masks": None}, "one array of images"),
     ({"label": None}, "and label"),
     ({"masks": arrays(size=16)["masks"]}, "should have 32 to 2048 a side"),
-    ({"label": np.full(12, 6)}, "numbers into classes"),
+    ({"label": np.full(12, 6)}, "indices into classes"),
     ({"classes": np.array(["a", "b", "c", "d", "e", "f"])}, "has no map of walking"),
     ({"label": np.full(12, 5)}, "has no map of walking"),
 ]

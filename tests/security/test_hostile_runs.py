@@ -17,9 +17,8 @@ from safetensors.torch import load_file, save_file
 from security.bounded import limited
 
 from radhar_cli.cli import program
-from radhar_cli.errors import FolderError, RadharError
+from radhar_cli.errors import RadharError
 from radhar_cli.learning.run_folder import load_best, read_history, read_metadata, read_trained_on
-from radhar_cli.tradeoff.result_cache import ResultCache
 
 Change = Callable[[dict[str, Any]], object]
 
@@ -235,19 +234,6 @@ def test_invalid_tables_are_refused(name: str, kind: str, run: Path) -> None:
     readers = {"history.csv": read_history, "trained_on.csv": read_trained_on}
     reader = readers.get(name, read_metadata)
     one_line(lambda: reader(run), name)
-
-
-@pytest.mark.parametrize("text", ["{", "[" * 10**5, '{"right": "x", "images": 3}', "[1]", "3"])
-def test_a_result_cache_that_is_damaged_is_refused(text: str, tmp_path: Path) -> None:
-    from radhar_cli.tradeoff.trial import TestResult
-
-    cache = ResultCache(tmp_path)
-    cache.put("a", {"right": 1, "images": 3})
-    assert cache.get("a", TestResult) == TestResult(1, 3)
-    for kept in (tmp_path / ".radhar/measured").iterdir():
-        kept.write_text(text)
-    with pytest.raises(FolderError, match=r"measured.* is damaged"):
-        cache.get("a", TestResult)
 
 
 def test_a_sweep_with_a_damaged_name_is_refused(tmp_path: Path, good_set: Path) -> None:

@@ -37,7 +37,7 @@ def test_every_product_is_there_with_its_axes(walking: Simulation) -> None:
         assert np.all(np.diff(one.rows.values) > 0)
         assert np.all(np.diff(one.columns.values) > 0)
         assert one.entropy > 0
-    assert {signal.x.shape for signal in walking.signals.values()} == {(pulses - 1,)}
+    assert {signal.x.shape for signal in walking.signals.values()} == {(1, 1, pulses - 1)}
     assert walking.truth.positions.shape == (pulses, 13, 3)
     assert walking.truth.radial_velocity.shape == (pulses, 13)
 

@@ -6,7 +6,7 @@ import pytest
 from radhar_cli.arrays import Bool, Float
 from radhar_cli.two_sample.map_statistics import (
     STATISTICS,
-    PowerMap,
+    DopplerMap,
     mask_statistics,
     power_statistics,
 )
@@ -103,7 +103,7 @@ def test_a_range_time_map_has_no_line_at_zero() -> None:
     assert found["active"] == SECONDS
 
 
-def walker(limb_db: float, ripple: float = 0.0) -> PowerMap:
+def walker(limb_db: float, ripple: float = 0.0) -> DopplerMap:
     """A torso near 100 Hz, 40 dB over exponential noise, a limb at 300 Hz, a zero line."""
     rng = np.random.default_rng(0)
     power = rng.exponential(1.0, (ROWS, COLUMNS))
@@ -113,7 +113,7 @@ def walker(limb_db: float, ripple: float = 0.0) -> PowerMap:
         power[row - 2 : row + 3, column] += 1e4 * np.array([0.25, 0.5, 1, 0.5, 0.25])
     power[np.abs(DOPPLER - 305).argmin()] += 1e4 * 10 ** (-limb_db / 10)
     power[49] += 100
-    return PowerMap(power, DOPPLER)
+    return DopplerMap(power, DOPPLER)
 
 
 def test_power_of_a_walker() -> None:
@@ -139,16 +139,16 @@ def test_a_brighter_limb_and_a_torso_that_ripples() -> None:
 
 def test_a_receding_walker_has_the_same_limbs() -> None:
     one = walker(15)
-    away = power_statistics(PowerMap(one.power[::-1], DOPPLER), ZERO, 430, 20)
+    away = power_statistics(DopplerMap(one.power[::-1], DOPPLER), ZERO, 430, 20)
     assert away["limb_below_torso"] == pytest.approx(15, abs=0.2)
     assert away["torso_median"] == pytest.approx(-105)
     assert away["receding_energy"] > 99
 
 
 def test_a_map_without_power() -> None:
-    found = power_statistics(PowerMap(np.zeros((ROWS, COLUMNS)), DOPPLER), ZERO, 430, 20)
+    found = power_statistics(DopplerMap(np.zeros((ROWS, COLUMNS)), DOPPLER), ZERO, 430, 20)
     assert np.isnan(found["fast_energy"])
-    assert not PowerMap(np.zeros((ROWS, COLUMNS)), DOPPLER).occupied(430).any()
+    assert not DopplerMap(np.zeros((ROWS, COLUMNS)), DOPPLER).occupied(430).any()
 
 
 @pytest.mark.parametrize("limb_db", [10, 30])
@@ -161,7 +161,7 @@ def test_shares_of_an_energy_that_noise_hides_are_left_out(limb_db: float) -> No
     shares = ("fast_energy", "receding_energy", "torso_energy")
     known = []
     for weaker in 10 ** np.arange(-2.0, 5.0, 0.25):
-        found = power_statistics(PowerMap(noise + body / weaker, DOPPLER), ZERO, 430, 20)
+        found = power_statistics(DopplerMap(noise + body / weaker, DOPPLER), ZERO, 430, 20)
         assert all(np.isnan(found[name]) or 0 <= found[name] <= 100 for name in shares)
         assert len({bool(np.isnan(found[name])) for name in (*shares, "column_spread")}) == 1
         known.append(np.isfinite(found["torso_energy"]))
@@ -174,7 +174,7 @@ def test_shares_of_an_energy_that_noise_hides_are_left_out(limb_db: float) -> No
 
 def test_where_nobody_is_seen_noise_is_no_torso() -> None:
     rng = np.random.default_rng(1)
-    one = PowerMap(rng.exponential(size=(ROWS, COLUMNS)), DOPPLER)
+    one = DopplerMap(rng.exponential(size=(ROWS, COLUMNS)), DOPPLER)
     cells = mask_statistics(one.occupied(430), DOPPLER, SECONDS, ZERO)
     assert cells["active"] == 0
     found = power_statistics(one, ZERO, 430, 15, cells["active"] > 0)

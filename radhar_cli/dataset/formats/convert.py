@@ -1,20 +1,29 @@
 """A data set in a format that other tools read; the new folder appears when it is whole."""
 
+import hashlib
 import os
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from importlib import import_module
+from itertools import islice
+from math import prod
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
-from radhar_cli.dataset.card import owner_licence
+from radhar_cli.config.identity import as_yaml
+from radhar_cli.dataset.card import card, owner_licence
 from radhar_cli.dataset.files import refuse_links
 from radhar_cli.dataset.folder import folder_lock
+from radhar_cli.dataset.gallery import gallery_png
+from radhar_cli.dataset.layout import CARD, CONFIG, GALLERY
+from radhar_cli.dataset.png import colour_table, encode_png
 from radhar_cli.dataset.reading import Dataset, open_dataset
+from radhar_cli.dataset.table import Entry, entries
 from radhar_cli.errors import FolderError, UnfinishedError
 from radhar_cli.progress import Progress
 
-FORMATS = ("webdataset", "parquet", "npy", "mat")
+FORMATS = ("webdataset", "parquet")
+FILE_BYTES = 2**28  # of pixels per file
 Writer: TypeAlias = Callable[[Dataset, Path, Progress], None]
 
 
@@ -53,3 +62,55 @@ def convert(path: Path, out: Path, to: str, progress: Progress) -> int:
             finally:
                 shutil.rmtree(scratch, ignore_errors=True)
         return len(data)
+
+
+class CheckedPngs:
+    """The maps of a data set as PNGs, each compared with its checksum."""
+
+    def __init__(self, data: Dataset) -> None:
+        self._data = data
+        self._table = colour_table(data.config.image.colour_map)
+
+    def png(self, map_name: str, row: int) -> bytes:
+        """The PNG file of a sample, as `generate` writes it.
+
+        Raises:
+            FolderError: its levels are not those that were stored.
+        """
+        data, name = self._data, f"maps/{map_name}"
+        levels = data.large[name][row]
+        stored = data.sha256[name].rows(row, row + 1)[0]
+        if hashlib.sha256(levels.tobytes()).hexdigest().encode() != stored:
+            raise FolderError(f"{data.path}: /{name}[{row}]: does not match its checksum")
+        return encode_png(levels, self._table, data.config.output.png_level)
+
+
+def files_of_split(data: Dataset, split: int, maps: int) -> Iterator[tuple[int, Iterator[Entry]]]:
+    """The files that a split is cut into: how many there are, and the samples of each.
+
+    Args:
+        data: the data set.
+        split: number of it.
+        maps: images of each sample in a file.
+    """
+    count = int((data.split == split).sum())
+    most = max(1, FILE_BYTES // (maps * prod(data.config.image.size_px)))
+    here = (entry for entry in entries(data) if entry.split == split)
+    files = -(-count // most)
+    for _ in range(files):
+        yield files, islice(here, most)
+
+
+def describe(data: Dataset, folder: Path, loading: Mapping[str, Any], reading: str) -> None:
+    """Write the card of a converted data set, its picture and the resolved config.
+
+    Args:
+        data: the data set; its own card says the licence.
+        folder: to write to.
+        loading: front matter that `load_dataset` reads; none where that cannot read the format.
+        reading: Markdown, how to read the files next to the card.
+    """
+    front = {**loading, **owner_licence(data.path.parent)}
+    (folder / CARD).write_text(card(data, front, reading), encoding="utf-8")
+    (folder / GALLERY).write_bytes(gallery_png(data))
+    (folder / CONFIG).write_text(as_yaml(data.config), encoding="utf-8")

@@ -9,11 +9,11 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from radhar_cli.config.schema import Config
-from radhar_cli.dataset.card import configurations
-from radhar_cli.dataset.formats.checked import Samples, describe, files_of_split
+from radhar_cli.dataset.card import configurations, number_features
+from radhar_cli.dataset.formats.convert import CheckedPngs, describe, files_of_split
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.reading import Dataset
-from radhar_cli.dataset.table import Entry, number_names
+from radhar_cli.dataset.table import Entry
 from radhar_cli.progress import Progress
 
 GROUP, GROUP_BYTES = 256, 2**26  # samples and bytes of pixels per row group
@@ -21,7 +21,7 @@ GROUP, GROUP_BYTES = 256, 2**26  # samples and bytes of pixels per row group
 
 def write(data: Dataset, folder: Path, progress: Progress) -> None:
     """Write <map>/<split>-<number>-of-<files>.parquet."""
-    schema, samples = schema_of(data.config), Samples(data)
+    schema, samples = schema_of(data.config), CheckedPngs(data)
     group = max(1, min(GROUP, GROUP_BYTES // prod(data.config.image.size_px)))
     for name in data.config.maps:
         (folder / name).mkdir()
@@ -32,7 +32,7 @@ def write(data: Dataset, folder: Path, progress: Progress) -> None:
                     while some := list(islice(here, group)):
                         file.write_table(_table(data, name, some, samples, schema))
                         progress.advance(len(some) if name == data.config.maps[0] else 0)
-    parts = [part for _, part in data.present_splits.items()]
+    parts = data.present_splits.values()
     files_of = {n: {part: f"{n}/{part}-*.parquet" for part in parts} for n in data.maps}
     configs = configurations(data.config, files_of)
     describe(data, folder, {"configs": configs}, _reading(data))
@@ -40,22 +40,21 @@ def write(data: Dataset, folder: Path, progress: Progress) -> None:
 
 def schema_of(config: Config) -> pa.Schema:
     """Columns, and what `datasets` makes of them."""
-    names = number_names(config)
-    kinds = {name: "int64" if name == "subject" else "float64" for name in names}
+    kinds = {one["name"]: one["dtype"] for one in number_features(config)}
     image = pa.struct([("bytes", pa.binary()), ("path", pa.string())])
-    numbers = [(name, pa.type_for_alias(kind)) for name, kind in kinds.items()]
+    columns = [("image", image), ("label", pa.int64())]
     features = {
         "image": {"_type": "Image"},
         "label": {"names": [a.slug for a in config.every_class], "_type": "ClassLabel"},
-        **{n: {"dtype": k, "_type": "Value"} for n, k in {"index": "int64", **kinds}.items()},
+        **{name: {"dtype": kind, "_type": "Value"} for name, kind in kinds.items()},
     }
-    columns = [("image", image), ("label", pa.int64()), ("index", pa.int64()), *numbers]
     metadata = json.dumps({"info": {"features": features}})
-    return pa.schema(columns, metadata={"huggingface": metadata})
+    numbers = [(name, pa.type_for_alias(kind)) for name, kind in kinds.items()]
+    return pa.schema([*columns, *numbers], metadata={"huggingface": metadata})
 
 
 def _table(
-    data: Dataset, name: str, here: list[Entry], samples: Samples, schema: pa.Schema
+    data: Dataset, name: str, here: list[Entry], samples: CheckedPngs, schema: pa.Schema
 ) -> pa.Table:
     rows, numbers = Rows.of(data.config), zip(*(entry.values for entry in here), strict=True)
     images = [

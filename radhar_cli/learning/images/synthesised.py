@@ -12,18 +12,15 @@ from radhar_cli.activity import Activity
 from radhar_cli.arrays import Index, Levels
 from radhar_cli.config.identity import resolved
 from radhar_cli.config.schema import Config
-from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.on_demand import Recipe
 from radhar_cli.dataset.png import colour_table
-from radhar_cli.dataset.reading import stored_config
 from radhar_cli.dataset.split import TRAIN, VALIDATION, split_rows
 from radhar_cli.dataset.stream_order import StreamOrder
-from radhar_cli.errors import ConfigError, FolderError, RadharError, did_you_mean
+from radhar_cli.errors import ConfigError, FolderError, did_you_mean
 from radhar_cli.learning.batches import Reader, pieces
 from radhar_cli.learning.images.classes import renamed
-from radhar_cli.learning.images.h5 import fingerprint, who_and_how
 from radhar_cli.learning.images.image_set import ImageSet, class_order, labels_for, repeated
 from radhar_cli.learning.images.joined import joined
 from radhar_cli.learning.images.opening import open_images
@@ -31,12 +28,9 @@ from radhar_cli.learning.images.scan import Scan, scan
 from radhar_cli.learning.run_folder import LearnedFrom
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.stream import prepare_worker
-from radhar_cli.scene import draw_scene
 
 NORMALISED_BY = 256  # first images of a stream, whose mean and deviation all are normalised by
 PIECE = 8
-MAX_ROWS = 10_000_000
-REDRAWN = 4  # draws of a scene that are looked at
 GREY = repeated(np.arange(256, dtype=np.uint8))
 
 
@@ -149,7 +143,7 @@ def stream_and_validation(
     if len(classes) < 2:
         raise ConfigError(f"activities: is {classes[0]!r} alone in --stream; should have two")
     table = colour_table(stream.image.colour_map) if config.input == "rgb" else GREY
-    order = StreamOrder(stream, "train", config.sampling == "balanced")
+    order = StreamOrder(stream, "train")
     split = split_rows(stream)
     per_epoch = config.stream.samples_per_epoch or int(np.count_nonzero(split == TRAIN))
     if per_epoch < 2:
@@ -184,55 +178,14 @@ def stream_data(stream: TrainingStream, validation: LearnedFrom, epochs: int) ->
         epochs: of the run.
     """
     order, count = stream.order, stream.per_epoch * epochs
-    own = [identity_hash(identity(order.config)), order.balanced, validation["hash"]]
+    own = [identity_hash(identity(order.config)), validation["hash"]]
     return {
         "path": f"a stream, validated on {validation['path']}",
         "hash": hashlib.sha256(json.dumps(own).encode()).hexdigest(),
         "train": count,
         "val": validation["val"],
-        "stream": {
-            "config": resolved(order.config),
-            "balanced": order.balanced,
-            "samples": count,
-        },
+        "stream": {"config": resolved(order.config), "samples": count},
     }
-
-
-def streamed_scenes(learned: LearnedFrom, images: ImageSet, rows: Index) -> int:
-    """How many of these images show a person and motion that a run on a stream has trained on.
-
-    Scenes are drawn anew from the stream's config, those of the same class and number.
-    """
-    streamed = learned.get("stream")
-    if streamed is None or images.scenes is None:
-        return 0
-    try:
-        config = stored_config(streamed["config"], "the run")
-        if config.recorded is not None or len(Rows.of(config)) > MAX_ROWS:
-            return 0  # the run may come from elsewhere
-        order = StreamOrder(config, "train", streamed["balanced"])
-    except RadharError:
-        return 0  # such as classes that are not known here
-    known = {activity.slug: activity for activity in order.activities}
-    columns = who_and_how(scene_fields.fields(config))
-    factors = np.array([field.factor for field in columns])
-    attempts = range(REDRAWN if config.on_invalid == "redraw" else 1)
-
-    def seen(row: int) -> bool:
-        slug, _, index = images.names[row].partition("/")
-        if slug not in known or not index.isdecimal():
-            return False
-        number = order.number(known[slug], int(index))
-        if number is None or number >= streamed["samples"]:
-            return False
-        scenes = (draw_scene(config, known[slug], int(index), attempt) for attempt in attempts)
-        there = images.scenes[row] if images.scenes else ""
-        return any(
-            fingerprint(slug, scene_fields.values(one, tuple(columns)) * factors) == there
-            for one in scenes
-        )
-
-    return sum(seen(int(row)) for row in rows)
 
 
 def _given(

@@ -3,7 +3,7 @@
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Axes
 from radhar_cli.motion.human.two_link import two_link
 
@@ -44,7 +44,7 @@ def directed(trunk: Axes, hands: Float, poles: Float, arm: float) -> tuple[Float
     return upper, fore
 
 
-def hanging(body: Person, shoulder: Float, elbow: Float) -> tuple[Float, Float]:
+def hanging(body: Physique, shoulder: Float, elbow: Float) -> tuple[Float, Float]:
     """Hands of `swung` arms relative to the shoulders, and to where their elbows bend [3, 2, M].
 
     Both in the trunk's frame; flexion of shoulders and elbows [2, M], rad.
@@ -57,7 +57,7 @@ def hanging(body: Person, shoulder: Float, elbow: Float) -> tuple[Float, Float]:
 
 
 def supported(
-    body: Person,
+    body: Physique,
     trunk: Axes,
     shoulders: Float,
     flexion: tuple[Float, Float],

@@ -9,7 +9,7 @@ from math import acos, cos, radians, sin
 
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import STANDING, Phase
-from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import (
     ELBOWS,
     SHOULDERS,
@@ -38,7 +38,7 @@ class Prone:
     trunk: float = radians(88)
     hands: tuple[float, float] = (0.12, 0.05)
 
-    def posture(self, person: Person) -> dict[str, float]:
+    def posture(self, person: Physique) -> dict[str, float]:
         """The posture on the floor."""
         shank = acos((self.knee_height - person.ankle) / person.leg)
         lying = posture(shank, self.thigh, self.trunk, 0.0, person.elbow, upright=0.0)
@@ -68,7 +68,7 @@ class FallForward:
     kneel: float = 0.0
     heels: float = 0.0
 
-    def part(self, person: Person, begin: float, horizon: float = 0.0) -> Planted:
+    def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
         """The movement from `begin` (s) on."""
         rest, prone = at_rest(person), self.prone.posture(person)
         change = {channel: prone[channel] - rest[channel] for channel in rest}
@@ -102,7 +102,7 @@ class Supine:
     shoulder: float = radians(15)
     elbow: float = radians(25)
 
-    def posture(self, person: Person) -> dict[str, float]:
+    def posture(self, person: Physique) -> dict[str, float]:
         """The posture on the floor, knees up."""
         rise = (self.hip_height - person.ankle) / person.leg - cos(self.shank)
         return posture(self.shank, -acos(rise), self.trunk, self.shoulder, self.elbow, upright=0.0)
@@ -123,7 +123,7 @@ class FallBackward:
     bow: float = radians(28)
     arms: float = radians(55)
 
-    def part(self, person: Person, begin: float, horizon: float = 0.0) -> Planted:
+    def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
         """The movement from `begin` (s) on."""
         rest, supine = at_rest(person), self.supine.posture(person)
         change = {channel: supine[channel] - rest[channel] for channel in rest}
@@ -140,7 +140,7 @@ class FallBackward:
 
 
 def _falling(
-    person: Person,
+    person: Physique,
     begin: float,
     duration: float,
     rest: dict[str, float],

@@ -11,7 +11,7 @@ from radhar_cli.motion.human.arms import supported
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import STANDING, Phase, Place
-from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import HAND, timed
 from radhar_cli.motion.human.pose import SIDES, Pose, axes, shoulder_points
 from radhar_cli.motion.human.two_link import AHEAD, two_link
@@ -41,7 +41,7 @@ class FallSideways:
     arms: float = radians(55)
     hands: tuple[float, float] = (0.20, 0.20)
 
-    def part(self, person: Person, begin: float, horizon: float = 0.0) -> "FallingSideways":
+    def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "FallingSideways":
         """The movement from `begin` (s) on."""
         return FallingSideways(person, self, begin)
 
@@ -50,7 +50,7 @@ class FallSideways:
 class FallingSideways:
     """A fall of a person; see `part.Part`."""
 
-    person: Person
+    person: Physique
     fall: FallSideways
     begin: float
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.physique import Physique
 
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly
@@ -54,7 +54,7 @@ class FootTrack:
         lag: how far the foot is behind in mid-swing, over the length of the step.
     """
 
-    person: Person
+    person: Physique
     falls: Footfalls
     roll: float
     lift: float

@@ -9,7 +9,7 @@ from math import radians
 from radhar_cli.motion.human.falling import PRONE, Prone
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import STANDING, Phase
-from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import Planted, at_rest, timed
 
 
@@ -31,7 +31,7 @@ class GetUp:
     thigh: float = radians(-70)
     trunk: float = radians(50)
 
-    def part(self, person: Person, begin: float, horizon: float = 0.0) -> Planted:
+    def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
         """The movement from `begin` (s) on."""
         prone, rest = self.prone.posture(person), at_rest(person)
         push = self.hands * person.stature

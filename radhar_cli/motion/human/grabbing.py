@@ -5,7 +5,7 @@ from math import radians
 
 from radhar_cli.motion.human.minimum_jerk import Course, Lags, Step
 from radhar_cli.motion.human.part import Phase
-from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import Planted, at_rest
 
 # Further angles of shanks, thighs, trunk and reach of who squats, and of who stoops, over the
@@ -39,7 +39,7 @@ class Grab:
     lowering: Lags = field(default_factory=Lags)
     rising: Lags = field(default_factory=Lags)
 
-    def part(self, person: Person, begin: float, horizon: float = 0.0) -> Planted:
+    def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
         """The movement from `begin` (s) on."""
         rest = at_rest(person)
         shank, thigh, trunk, reach = (

@@ -12,7 +12,7 @@ import numpy as np
 
 from radhar_cli.arrays import Float
 from radhar_cli.motion.human.minimum_jerk import Course, Step
-from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.physique import Physique
 
 CENTRE_OF_MASS = 0.56  # height over stature
 SWAY_HZ = tuple(np.linspace(0.05, 0.9, 8).tolist())
@@ -185,7 +185,7 @@ class IdleState:
 class Idle:
     """A body's own movements: sway, breath and pulse, fidgets."""
 
-    person: Person
+    person: Physique
     sway: Sway = field(default_factory=Sway)
     breath: Breath = field(default_factory=Breath)
     fidgets: tuple[Fidget, ...] = ()

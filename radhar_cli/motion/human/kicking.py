@@ -11,7 +11,7 @@ from radhar_cli.motion.human.arms import swung
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.pelvis import swayed
-from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Pose, axes
 from radhar_cli.motion.human.repetitions import Striking, repetitions
 from radhar_cli.motion.human.two_link import AHEAD, two_link
@@ -51,7 +51,7 @@ class Kick:
     paces: tuple[float, ...] = ()
     sizes: tuple[float, ...] = ()
 
-    def part(self, person: Person, begin: float, horizon: float = 0.0) -> "Kicking":
+    def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Kicking":
         """The movement from `begin` (s) on, with kicks until `horizon` (s)."""
         return Kicking(person, self, begin, horizon)
 

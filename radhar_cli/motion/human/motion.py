@@ -13,7 +13,7 @@ from radhar_cli.arrays import Float
 from radhar_cli.motion import skeleton
 from radhar_cli.motion.human.idle import Idle
 from radhar_cli.motion.human.part import LYING, SEATED, STANDING, Part, Phase, Place
-from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import Planted
 from radhar_cli.motion.human.pose import Pose
 from radhar_cli.motion.human.walking import Walking
@@ -25,7 +25,7 @@ BLOCK = 1024  # instants at once: what a block needs stays in the cache
 class Movement(Protocol):
     """What makes a part: the dataclasses of the activities."""
 
-    def part(self, person: Person, begin: float, horizon: float) -> Part:
+    def part(self, person: Physique, begin: float, horizon: float) -> Part:
         """The part that begins at `begin` (s); what goes on is worked out until `horizon` (s)."""
         ...
 
@@ -46,7 +46,7 @@ class HumanMotion:
         idle: sway, breath and fidgets.
     """
 
-    person: Person
+    person: Physique
     movements: tuple[Movement, ...]
     start: tuple[float, float]
     heading: float

@@ -3,11 +3,11 @@
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES
 
 
-def hip_joints(person: Person, yaw: Float, roll: Float) -> Float:
+def hip_joints(person: Physique, yaw: Float, roll: Float) -> Float:
     """Hip joints, right and left, relative to the hip point [3, 2, M].
 
     Args:
@@ -21,7 +21,7 @@ def hip_joints(person: Person, yaw: Float, roll: Float) -> Float:
 
 
 def hip_height(
-    person: Person,
+    person: Physique,
     standing: Float | float,
     hip: Float,
     aside: Float,
@@ -59,7 +59,7 @@ def swayed(height: Float | float, lean: Float, roll: Float) -> Float:
 
 
 def swayed_hip(
-    person: Person,
+    person: Physique,
     standing: Float | float,
     hip: Float,
     aside: Float,

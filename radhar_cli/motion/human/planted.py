@@ -14,7 +14,7 @@ from radhar_cli.motion.human.arms import supported, swung
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import STANDING, Phase, Place
-from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Axes, Pose, axes, shoulder_points
 
 LEGS_AND_TRUNK = ("shank", "thigh", "trunk")
@@ -56,7 +56,7 @@ def posture(
     }
 
 
-def at_rest(person: Person) -> dict[str, float]:
+def at_rest(person: Physique) -> dict[str, float]:
     """The posture from which and to which standing people move."""
     return posture(person.rest_lean, -person.rest_lean, 0.0, 0.0, person.elbow, standing=1.0)
 
@@ -77,7 +77,7 @@ def timed(steps: Iterable[Step], begin: float, unit: float) -> list[Step]:
 class Planted:
     """A part on planted feet; see `part.Part`."""
 
-    person: Person
+    person: Physique
     course: Course
     begin: float
     end: float
@@ -124,7 +124,7 @@ class Planted:
 
 
 def legs(
-    person: Person, shank: Float, thigh: Float, lean: Float, roll: Float
+    person: Physique, shank: Float, thigh: Float, lean: Float, roll: Float
 ) -> tuple[Float, Float]:
     """Knee and hip [3, M] above the ankle, m, of legs leaned ahead and rolled to the left, rad."""
     s, h = shank + lean, thigh + lean
@@ -136,7 +136,7 @@ def legs(
 
 
 def arms_down(
-    person: Person,
+    person: Physique,
     hip: Float,
     trunk: Axes,
     flexion: tuple[Float, Float],

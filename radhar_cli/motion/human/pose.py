@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.physique import Physique
 
 SIDES = np.array([[-1.0], [1.0]])  # right, left: the sign of y
 
@@ -70,13 +70,13 @@ class Pose:
         trunk = Axes(*(vectors.pop(name) for name in vars(self.trunk)))
         return Pose(**(vectors | {"trunk": trunk}))
 
-    def torso(self, person: Person, p: Float) -> None:
+    def torso(self, person: Physique, p: Float) -> None:
         """Fill in the position p [3, M] of the torso."""
         np.multiply(self.trunk.up, person.trunk, out=p)
         p += self.hip
         p += self.breath * self.trunk.ahead
 
-    def joints(self, person: Person, p: Float) -> None:
+    def joints(self, person: Physique, p: Float) -> None:
         """Fill in positions p [3, 13, M], in the order of `radhar_cli.motion.skeleton`."""
         up = self.trunk.up
         self.torso(person, p[:, 0])
@@ -89,7 +89,7 @@ class Pose:
         p[:, 10:13:2] = self.ankles
 
 
-def shoulder_points(person: Person, hip: Float, trunk: Axes) -> Float:
+def shoulder_points(person: Physique, hip: Float, trunk: Axes) -> Float:
     """Right and left shoulder [3, 2, M] above a hip [3, M], m."""
     neck = hip + (person.trunk + person.shoulder) * trunk.up
     points: Float = neck[:, None] + person.shoulder * (SIDES * trunk.left[:, None])

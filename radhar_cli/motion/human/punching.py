@@ -15,7 +15,7 @@ from radhar_cli.motion.human.arms import OUTWARDS, directed, hanging
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.pelvis import hip_joints, swayed, swayed_hip
-from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Pose, axes
 from radhar_cli.motion.human.repetitions import Striking, repetitions
 from radhar_cli.motion.human.two_link import AHEAD, two_link
@@ -66,7 +66,7 @@ class Punch:
     paces: tuple[float, ...] = ()
     sizes: tuple[float, ...] = ()
 
-    def part(self, person: Person, begin: float, horizon: float = 0.0) -> "Punching":
+    def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Punching":
         """The movement from `begin` (s) on, with punches until `horizon` (s)."""
         return Punching(person, self, begin, horizon)
 

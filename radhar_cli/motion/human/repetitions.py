@@ -8,7 +8,7 @@ from typing import Generic, NamedTuple, Protocol, TypeVar
 
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import STANDING, Phase, Place
-from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.physique import Physique
 
 
 class Repetition(NamedTuple):
@@ -73,7 +73,7 @@ class Striking(Generic[S]):
         horizon: until when there are blows, s.
     """
 
-    person: Person
+    person: Physique
     strikes: S
     begin: float
     horizon: float

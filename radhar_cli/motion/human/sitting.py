@@ -9,7 +9,7 @@ from math import acos, cos, radians
 
 from radhar_cli.motion.human.minimum_jerk import Course, Lags, Step, mirrored
 from radhar_cli.motion.human.part import SEATED, STANDING, Phase
-from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import (
     ELBOWS,
     SHOULDERS,
@@ -37,7 +37,7 @@ class Seat:
     recline: float = 0.0
     lap: float = 1.0
 
-    def posture(self, person: Person) -> dict[str, float]:
+    def posture(self, person: Physique) -> dict[str, float]:
         """The posture on the seat."""
         rise = self.height * person.stature - person.ankle - person.leg * cos(self.shank)
         thigh = -acos(rise / person.leg)
@@ -59,7 +59,7 @@ class Rise:
     swing: float = radians(20)
     shin: float = radians(14)
 
-    def steps(self, person: Person, seat: Seat) -> list[Step]:
+    def steps(self, person: Physique, seat: Seat) -> list[Step]:
         """From seat to standing, in units of the duration."""
         seated, rest = seat.posture(person), at_rest(person)
 
@@ -90,7 +90,7 @@ class StandUp:
     rise: Rise = field(default_factory=Rise)
     lags: Lags = field(default_factory=Lags)
 
-    def part(self, person: Person, begin: float, horizon: float = 0.0) -> Planted:
+    def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
         """The movement from `begin` (s) on."""
         steps = timed(self.lags(self.rise.steps(person, self.seat)), begin, self.duration)
         course = Course.of(self.seat.posture(person), steps)
@@ -114,7 +114,7 @@ class SitDown:
     recline: tuple[float, float] = (0.7, 1.0)
     lags: Lags = field(default_factory=Lags)
 
-    def part(self, person: Person, begin: float, horizon: float = 0.0) -> Planted:
+    def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
         """The movement from `begin` (s) on."""
         upright = replace(self.seat, recline=0.0)
         steps = self.lags(mirrored(self.rise.steps(person, upright), 1.0))

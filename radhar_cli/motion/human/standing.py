@@ -5,7 +5,7 @@ from math import inf
 
 from radhar_cli.motion.human.minimum_jerk import Course
 from radhar_cli.motion.human.part import Phase
-from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import Planted, at_rest
 
 
@@ -15,7 +15,7 @@ class Stand:
 
     duration: float = inf
 
-    def part(self, person: Person, begin: float, horizon: float = 0.0) -> Planted:
+    def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
         """The movement from `begin` (s) on."""
         course = Course.of(at_rest(person), ())
         return Planted(person, course, begin, begin + self.duration, (Phase(begin, "standing"),))

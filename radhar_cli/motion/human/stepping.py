@@ -15,7 +15,7 @@ from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import STANDING, Phase, Place
 from radhar_cli.motion.human.pelvis import hip_joints, swayed, swayed_hip
-from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Axes, Pose, axes, turned
 from radhar_cli.motion.human.two_link import two_link
 
@@ -44,7 +44,7 @@ class StepTo:
         if self.steps < 2:
             raise ValueError(f"a stance is reached within at least 2 steps, not {self.steps}")
 
-    def part(self, person: Person, begin: float, horizon: float = 0.0) -> "Stepping":
+    def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Stepping":
         """The movement from `begin` (s) on."""
         return Stepping(person, self, begin)
 
@@ -53,7 +53,7 @@ class StepTo:
 class Stepping:
     """Steps of a person; see `part.Part`."""
 
-    person: Person
+    person: Physique
     step: StepTo
     begin: float
 

@@ -12,7 +12,7 @@ from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step, minimum_jerk_integral
 from radhar_cli.motion.human.part import STANDING, Phase, Place
 from radhar_cli.motion.human.pelvis import hip_joints, swayed, swayed_hip
-from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Pose, axes
 from radhar_cli.motion.human.two_link import AHEAD, two_link
 
@@ -43,7 +43,7 @@ class Turn:
     paces: tuple[float, ...] = ()
     sizes: tuple[float, ...] = ()
 
-    def part(self, person: Person, begin: float, horizon: float = 0.0) -> "Turning":
+    def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Turning":
         """The movement from `begin` (s) on, its turns different until `horizon` (s)."""
         return Turning(person, self, begin, horizon)
 
@@ -52,7 +52,7 @@ class Turn:
 class Turning:
     """A person who turns; see `part.Part`."""
 
-    person: Person
+    person: Physique
     turn: Turn
     begin: float
     horizon: float

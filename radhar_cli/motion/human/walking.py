@@ -23,7 +23,7 @@ from radhar_cli.motion.human.minimum_jerk import (
 )
 from radhar_cli.motion.human.part import STANDING, Phase, Place
 from radhar_cli.motion.human.pelvis import hip_height, hip_joints, swayed_hip
-from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import (
     ELBOWS,
     SHOULDERS,
@@ -57,7 +57,7 @@ class Gait:
         surge_asymmetry: of the right step's surge over the left one's, over twice the speed.
         sidewards: of the hip from side to side, m.
         sink: of the standing height while walking, fraction of the stature.
-        softness: of the pelvis's height (`Person.softness`) while walking, 1/m.
+        softness: of the pelvis's height (`Physique.softness`) while walking, 1/m.
         touch_down, heel_off: phases between which the foot lies flat.
         below: phase at which the body is above the foothold.
         roll: of the foot about its ball until toe-off, rad.
@@ -110,7 +110,7 @@ class Walk:
     duration: float = inf
     from_rest: bool = True
 
-    def part(self, person: Person, begin: float, horizon: float = 0.0) -> "Walking":
+    def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Walking":
         """The movement from `begin` (s) on, with steps until `horizon` (s)."""
         return Walking(person, self.gait, begin, begin + self.duration, self.from_rest, horizon)
 
@@ -128,7 +128,7 @@ class Walking:
             before it ends.
     """
 
-    person: Person
+    person: Physique
     gait: Gait
     begin: float
     stop: float

@@ -15,7 +15,7 @@ from radhar_cli.motion.human.idle import Breath, Fidget, Idle, Sway, Waves
 from radhar_cli.motion.human.kicking import Kick
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.motion import HumanMotion, Movement
-from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.punching import Punch
 from radhar_cli.motion.human.sitting import SitDown, StandUp
 from radhar_cli.motion.human.turning import Turn
@@ -29,13 +29,13 @@ def joint(name: str) -> int:
     return JOINTS.index(name)
 
 
-def still(person: Person) -> Idle:
+def still(person: Physique) -> Idle:
     none = Waves()
     return Idle(person, Sway(none, none), Breath(chest=0.0, heart=0.0))
 
 
 def positions(movement: Movement, seconds: float, stature: float = 1.75) -> np.ndarray:
-    person = Person(stature)
+    person = Physique(stature)
     motion = HumanMotion(person, (movement,), (0.0, 0.0), 0.0, 0.0, seconds, still(person))
     return motion.positions(np.arange(0, seconds, DT))
 
@@ -63,7 +63,7 @@ def test_ankles_are_fastest_late_and_before_them_knees() -> None:
     """CMU: the ankle at u = 0.88. Boulic and Thalmann's hip curve: the knee at 1.9 times v."""
     v, walk = 1.2, Walk(Gait(1.2), from_rest=False)
     velocity = np.diff(positions(walk, 4.0)[0], axis=1) / DT / v
-    stride = walk.part(Person(1.75), 0.0, 4.0).stride
+    stride = walk.part(Physique(1.75), 0.0, 4.0).stride
     one = velocity[:, round(stride / DT) : round(2 * stride / DT)]
     peak = one[joint("right_ankle")].argmax() / one.shape[1]
     assert 0.85 < peak < 0.93
@@ -74,7 +74,7 @@ def test_surges_differ_from_right_to_left() -> None:
     """What the right step gains, the left one loses."""
     walk = Walk(Gait(1.2, surge_asymmetry=0.05), from_rest=False)
     torso = np.diff(positions(walk, 4.0)[0, joint("torso")]) / DT / 1.2
-    stride = walk.part(Person(1.75), 0.0, 4.0).stride
+    stride = walk.part(Physique(1.75), 0.0, 4.0).stride
     fastest = [
         torso[round((1 + u) * stride / DT) :][: round(0.3 * stride / DT)].max()
         for u in (0.89, 1.39)
@@ -85,7 +85,7 @@ def test_surges_differ_from_right_to_left() -> None:
 
 def test_knee_angles_of_a_walker() -> None:
     """Swing 65 to 73 degrees, stance about 20: the contract of the gait."""
-    person = Person(1.75)
+    person = Physique(1.75)
     walk = Walk(Gait(1.2), from_rest=False)
     motion = HumanMotion(person, (walk,), (0.0, 0.0), 0.0, 0.0, 3.0, still(person))
     t = np.arange(0, 2, DT)
@@ -102,12 +102,12 @@ def test_knee_angles_of_a_walker() -> None:
 
 def test_steps_a_minute() -> None:
     for v, steps in ((0.8, 83), (1.2, 101), (1.5, 113), (2.0, 131)):
-        stride = Walk(Gait(v)).part(Person(1.75), 0.0, 3.0).stride
+        stride = Walk(Gait(v)).part(Physique(1.75), 0.0, 3.0).stride
         assert 120 / stride == pytest.approx(steps, abs=1.05)
 
 
 def test_starting_takes_two_steps() -> None:
-    walking = Walk(Gait(1.2)).part(Person(1.75), 0.0, 5.0)
+    walking = Walk(Gait(1.2)).part(Physique(1.75), 0.0, 5.0)
     first = [track.falls.after[0, 0] - track.falls.before[0, 0] for track in walking._feet]
     assert first[0] == pytest.approx(0.64, abs=0.02)
     assert first[1] == pytest.approx(0.64 + 0.72, abs=0.03)
@@ -115,7 +115,7 @@ def test_starting_takes_two_steps() -> None:
 
 def test_stopping_takes_one_to_one_and_a_half_seconds() -> None:
     for phase in (0.0, 0.3, 0.6, 0.9):
-        walking = Walk(Gait(1.2, phase=phase), 2.0, from_rest=False).part(Person(1.75), 0.0, 5.0)
+        walking = Walk(Gait(1.2, phase=phase), 2.0, from_rest=False).part(Physique(1.75), 0.0, 5.0)
         assert 0.95 < walking.end - 2.0 < 1.55
 
 
@@ -186,7 +186,7 @@ def test_people_get_up_over_hands_and_knees() -> None:
 
 def test_arms_swung_as_a_prototype_did_would_get_up_through_the_floor() -> None:
     """Shoulders from 165 to 70 degrees while the trunk is down: hands 7 cm below the floor."""
-    person, up = Person(1.75), GetUp()
+    person, up = Physique(1.75), GetUp()
     course = up.part(person, 0.0).course
     steps = [
         Step(channel, to - start, at, length)
@@ -249,7 +249,7 @@ def test_turns_of_the_trunk_vary() -> None:
 
 
 def test_no_elbow_bends_backwards() -> None:
-    idle = Idle(Person(1.75), fidgets=(Fidget("left_elbow", -0.3, 0.0, 1.0),))
+    idle = Idle(Physique(1.75), fidgets=(Fidget("left_elbow", -0.3, 0.0, 1.0),))
     with pytest.raises(ValueError, match="no elbow bends backwards"):
         _ = idle(np.zeros(1)).lean
 
@@ -261,8 +261,8 @@ def test_a_gait_needs_a_speed_above_0(gait: dict[str, float]) -> None:
 
 
 def test_movements_start_from_a_common_rest_pose() -> None:
-    """At rest everybody stands as `Person` says, whatever comes next."""
-    person = Person(1.8)
+    """At rest everybody stands as `Physique` says, whatever comes next."""
+    person = Physique(1.8)
     pose = positions(Grab(), 0.01, 1.8)[..., 0]
     for movement in (Kick(from_rest=True), Punch(from_rest=True), Turn(from_rest=True)):
         np.testing.assert_allclose(positions(movement, 0.01, 1.8)[..., 0], pose, atol=1e-12)

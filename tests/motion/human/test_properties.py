@@ -18,7 +18,7 @@ from radhar_cli.motion.human.lane import Lane, along
 from radhar_cli.motion.human.minimum_jerk import Lags
 from radhar_cli.motion.human.motion import HumanMotion, Movement
 from radhar_cli.motion.human.part import Place
-from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.punching import Punch
 from radhar_cli.motion.human.sitting import Seat, SitDown, StandUp
 from radhar_cli.motion.human.standing import Stand
@@ -122,7 +122,7 @@ def moving(
     idle: Idle | None = None,
     heading: float = 0.0,
 ) -> HumanMotion:
-    person = Person(stature)
+    person = Physique(stature)
     movements = walks_of(gait or Gait(1.2))[what]
     begin = 0.0 if what in ("S2", "S3", "S7", "S8", "S10", "S12") else 0.4
     return HumanMotion(
@@ -168,7 +168,7 @@ def test_links_are_stiff_and_nothing_is_below_the_floor(
     fidgets: tuple[Fidget, ...],
 ) -> None:
     sway = Sway(Waves.low_pass(0.005, ahead, SWAY_HZ), Waves.low_pass(0.003, aside, SWAY_HZ))
-    motion = moving(what, stature, gait, Idle(Person(stature), sway, Breath(), fidgets))
+    motion = moving(what, stature, gait, Idle(Physique(stature), sway, Breath(), fidgets))
     assert_sound(motion, recording(motion, 60))
 
 
@@ -186,7 +186,7 @@ def test_positions_and_velocities_are_continuous(what: str) -> None:
 @pytest.mark.parametrize("what", ["S9", "S10", "S11", "S12", "backwards", "everything"])
 def test_position_and_velocity_are_continuous_across_movements(what: str) -> None:
     fidgets = tuple(Fidget(channel, 0.05, 0.1 * k, 0.7) for k, channel in enumerate(FIDGETS))
-    motion = moving(what, idle=Idle(Person(1.75), fidgets=fidgets))
+    motion = moving(what, idle=Idle(Physique(1.75), fidgets=fidgets))
     dt = 1e-5
     for part, _ in motion.parts[1:]:
         p = motion.positions(part.begin + dt * np.array([-1.5, -0.5, 0.5, 1.5]))
@@ -215,7 +215,7 @@ def test_smooth_between_breakpoints(what: str) -> None:
 def test_feet_of_walkers_stand_still_between_touch_down_and_heel_off(
     stature: float, gait: Gait, from_rest: bool, duration: float
 ) -> None:
-    person = Person(stature)
+    person = Physique(stature)
     motion = HumanMotion(
         person, (Walk(gait, duration, from_rest),), (0.0, 0.0), 0.0, 0.0, 6.0, Idle(person)
     )
@@ -317,7 +317,7 @@ def test_positions_depend_on_the_instant_alone() -> None:
 
 
 def test_whoever_does_not_breathe_has_a_stiff_trunk() -> None:
-    person = Person(1.8)
+    person = Physique(1.8)
     motion = moving("S4", 1.8, idle=Idle(person, breath=Breath(chest=0.0, heart=0.0)))
     assert max(link_errors(motion, np.linspace(0, 6, 200)).values()) < STIFF
 
@@ -338,7 +338,7 @@ def test_transitions_may_overlap(
     what: str, stature: float, gait: Gait, overlap: float, ahead: tuple[float, ...]
 ) -> None:
     """A walk begins before the body is up, or a fall before the walk has come to rest."""
-    person = Person(stature)
+    person = Physique(stature)
     movements = tuple(
         replace(movement, gait=gait) if isinstance(movement, Walk) else movement
         for movement in OVERLAPPING[what]
@@ -354,7 +354,7 @@ def test_transitions_may_overlap(
 
 
 def test_only_a_walk_overlaps() -> None:
-    person = Person(1.75)
+    person = Physique(1.75)
     motion = HumanMotion(
         person, (SitDown(), StandUp()), (2.0, 0.0), 0.0, 0.0, 6.0, Idle(person), (0.0, -0.3)
     )
@@ -363,7 +363,7 @@ def test_only_a_walk_overlaps() -> None:
 
 
 def test_movements_join_only_where_one_begins_as_the_other_ends() -> None:
-    person = Person(1.75)
+    person = Physique(1.75)
     motion = HumanMotion(
         person, (SitDown(), Walk(Gait(1.0))), (2.0, 0.0), 0.0, 0.0, 6.0, Idle(person)
     )
@@ -382,7 +382,7 @@ def test_phases_name_what_is_under_way() -> None:
 @settings(max_examples=10, deadline=None)
 def test_a_ragged_walk_covers_the_same_distance(gait: Gait) -> None:
     """What a walker is ahead or behind is made up for by the stop."""
-    person = Person(1.75)
+    person = Physique(1.75)
     walk = Walk(gait, 2.0)
     regular = replace(gait, ragged=Waves(), jitter=())
     reached = walk.part(person, 0.0, 5.0).place.ahead

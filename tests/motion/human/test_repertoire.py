@@ -8,12 +8,12 @@ import pytest
 from radhar_cli.motion.human.falling import FallBackward
 from radhar_cli.motion.human.idle import Idle
 from radhar_cli.motion.human.motion import HumanMotion
-from radhar_cli.motion.human.person import Person
+from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.repertoire import Repertoire
 from radhar_cli.motion.human.walking import Gait
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
 
-PERSON = Person(1.7)
+PERSON = Physique(1.7)
 REPERTOIRE = Repertoire(Gait(1.1))
 
 

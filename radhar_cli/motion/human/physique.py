@@ -8,7 +8,7 @@ from radhar_cli.motion.skeleton import JOINTS, links
 
 
 @dataclass(frozen=True)
-class Person:
+class Physique:
     """A body with the paper's links; heights and widths as fractions of the stature.
 
     Ankle height: Winter, Biomechanics and Motor Control, after Drillis and Contini. Hip width:

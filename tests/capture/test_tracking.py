@@ -1,24 +1,19 @@
 """Tracking the torso in range-Doppler maps: gaps, ambiguous velocities, limbs."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from radhar_cli.arrays import Complex, Float
+from radhar_cli.capture.tracking import TorsoTrack, hann_in_range, peaks, track_torso
 from radhar_cli.echo.beat import beat_matrix
-from radhar_cli.processing.range_compression import range_bins
-from radhar_cli.processing.torso_track import (
-    RangeDoppler,
-    TorsoTrack,
-    find_torso,
-    hann_in_range,
-    peaks,
-    range_doppler,
-    velocities,
-)
+from radhar_cli.processing.pulse_times import PulseTimes
+from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 WAVEFORM = Waveform(fc=24e9, bandwidth=1e9, chirp=40e-6, adc_rate=5e6, prf=1000.0, duration=4.0)
-LENGTH, HOP = 160, 80
+LENGTH = 160
 
 
 def bins_of(
@@ -29,16 +24,13 @@ def bins_of(
     beat = beat_matrix(delay, amplitude, w)
     rng = np.random.default_rng(seed)
     pairs = rng.standard_normal((2, *beat.shape))
-    return range_bins(beat + noise * (pairs[0] + 1j * pairs[1]), w)[None]
+    noisy = beat + noise * (pairs[0] + 1j * pairs[1])
+    return range_compression(noisy, replace(w, centred=False))[None]
 
 
 def track(bins: Complex, w: Waveform = WAVEFORM) -> TorsoTrack | None:
-    window = np.hanning(LENGTH + 2)[1:-1]
-    frames = [
-        range_doppler(hann_in_range(bins[..., at : at + LENGTH]), window, (at + LENGTH / 2) / w.prf)
-        for at in range(0, bins.shape[2] - LENGTH + 1, HOP)
-    ]
-    return find_torso(frames, w.range_axis(), velocities(LENGTH, w.prf, w.f0))
+    one = PulseTimes(np.zeros(1), np.zeros(1, np.int64), bins.shape[2], w.prf)
+    return track_torso(bins, one, w)
 
 
 def times(w: Waveform = WAVEFORM) -> Float:
@@ -100,10 +92,8 @@ def test_nothing_is_found_in_noise(seed: int) -> None:
     assert track(bins_of(np.full((1, t.size), 3.0), np.zeros((1, t.size)), seed=seed)) is None
 
 
-def test_empty_and_silent_frames_do_no_harm() -> None:
-    zero = RangeDoppler(np.zeros((8, 16)), 0.0)
-    assert find_torso([], np.arange(8.0), np.arange(16.0)) is None
-    assert find_torso([zero, zero], np.arange(8.0), np.linspace(-1, 1, 16)) is None
+def test_silence_is_no_torso() -> None:
+    assert track(np.zeros((1, 8, 400), complex)) is None
 
 
 def test_a_peak_lies_between_its_bins() -> None:
@@ -113,8 +103,10 @@ def test_a_peak_lies_between_its_bins() -> None:
         r = np.full((1, LENGTH), (20 + off) * w.range_step)
         r += np.arange(LENGTH) / w.prf * 0.8
         bins = hann_in_range(bins_of(r, np.ones((1, LENGTH)), w, 0.0))
-        power = range_doppler(bins, np.hanning(LENGTH), 0.0).power
-        found = peaks(power, w.range_axis(), velocities(LENGTH, w.prf, w.f0))
+        spectrum = np.fft.fft(bins[0] * np.hanning(LENGTH), axis=1)
+        power = np.abs(np.fft.fftshift(spectrum, axes=1)[:, ::-1]) ** 2
+        speeds = np.arange(1 - LENGTH // 2, LENGTH // 2 + 1) * 2 * w.highest_speed / LENGTH
+        found = peaks(power, w.range_axis(), speeds)
         middle = r[0, LENGTH // 2]
         assert found.range[0] == pytest.approx(middle, abs=0.1 * w.range_step)
         assert found.velocity[0] == pytest.approx(0.8, abs=0.04)

@@ -1,0 +1,123 @@
+"""The exact reference: W times the whole beat matrix in float64, block by block."""
+
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+
+from radhar_cli.arrays import Complex, Float, Index
+from radhar_cli.echo.beat import BLOCK_SAMPLES, beat_matrix
+from radhar_cli.echo.motion_in_chirp import moving_beat_matrix
+from radhar_cli.echo.paths import Paths, PathSource
+from radhar_cli.processing.canceller import Fir
+from radhar_cli.processing.look import Look, RawSamples
+from radhar_cli.radar.waveform import Waveform
+from radhar_cli.receiver.impairment import Impairment
+
+CHUNK_PULSES = 2**15
+
+
+def signal_power(source: PathSource, waveform: Waveform) -> float:
+    """P_s = mean over the pulses of sum_i A_i^2."""
+    total = 0.0
+    for start in range(0, waveform.n_pulses, BLOCK_SAMPLES):
+        power = np.empty(min(BLOCK_SAMPLES, waveform.n_pulses - start))
+        for first in range(0, power.size, CHUNK_PULSES):
+            part = power[first : first + CHUNK_PULSES]
+            pulses = np.arange(start + first, start + first + part.size, dtype=float)
+            a = source(waveform.times(pulses)).amplitude
+            part[:] = np.einsum("im,im->m", a, a)
+        total += float(power.sum())
+    return total / waveform.n_pulses
+
+
+def beat_blocks(
+    source: PathSource,
+    waveform: Waveform,
+    receiver: Sequence[Impairment] = (),
+    motion_in_chirp: bool = False,
+) -> Iterator[Complex]:
+    """Yield s_b[n, m] [N_ADC, block] of consecutive blocks of pulses.
+
+    Args:
+        source: the paths.
+        waveform: the radar.
+        receiver: what it does to the raw samples, in this order.
+        motion_in_chirp: whether paths go on moving during a chirp, instead of stop-and-hop.
+    """
+    raw = Look.of_all("beat", RawSamples(waveform))
+    length = max(2, min(BLOCK_SAMPLES // waveform.n_adc, CHUNK_PULSES))
+    for start in range(0, waveform.n_pulses, length):
+        pulses = np.arange(start, min(start + length, waveform.n_pulses), dtype=float)
+        if motion_in_chirp:
+            beat = moving_beat_matrix(source, waveform, pulses)
+        else:
+            paths = source(waveform.times(pulses))
+            beat = beat_matrix(paths.delay, paths.amplitude, waveform)
+        look = raw.part(start, start + pulses.size)
+        for impairment in receiver:
+            beat = impairment.apply(beat, look)
+        yield beat
+
+
+def exact_echo(
+    source: PathSource,
+    looks: Sequence[Look],
+    receiver: Sequence[Impairment] = (),
+    static: bool = True,
+    motion_in_chirp: bool = False,
+) -> list[Complex]:
+    """x [K, M] of every look at one echo, in one pass through its beat matrix.
+
+    Args:
+        source: the paths.
+        looks: of one waveform, with the same taps.
+        receiver: what it does to the raw samples.
+        static: whether what stands still matters. If not, the first pulse is taken out of every
+            one: of an echo that does not move, however strong, nothing is left to round.
+        motion_in_chirp: whether paths go on moving during a chirp.
+    """
+    waveform, taps = looks[0].fast.waveform, looks[0].taps
+    found = [np.empty((look.fast.rows, look.count), complex) for look in looks]
+    canceller, first, still = Fir(taps), 0, None
+    carried: Complex = np.empty((waveform.n_adc, 0), complex)
+    for block in beat_blocks(source, waveform, receiver, motion_in_chirp):
+        if not static:
+            still = block[:, :1] if still is None else still
+            block = block - still
+        wide = np.concatenate([carried, block], axis=1) if carried.size else block
+        carried = wide[:, wide.shape[1] - canceller.lost :]
+        if wide.shape[1] <= canceller.lost:
+            continue
+        cancelled = canceller(wide)
+        for look, x in zip(looks, found, strict=True):
+            if isinstance(look.pulses, range):
+                x[:, first : first + cancelled.shape[1]] = look.fast(cancelled)
+                continue
+            here = slice(*np.searchsorted(look.pulses, [first, first + cancelled.shape[1]]))
+            x[:, here] = look.fast(cancelled[:, look.pulses[here] - first])
+        first += cancelled.shape[1]
+    return found
+
+
+def beat_at(
+    source: Callable[[Float], Paths],
+    waveform: Waveform,
+    pulses: Index,
+    canceller: tuple[float, ...] = (1.0,),
+) -> Complex:
+    """sum_j c[j] s_b[n, m + j] at pulses m [N_ADC, len(pulses)], c the canceller's weights.
+
+    Exact in float64, without noise.
+    """
+    needed = np.unique(pulses + np.arange(len(canceller))[:, None])
+    paths = source(waveform.times(needed.astype(float)))
+    at = [np.searchsorted(needed, pulses + lag) for lag in range(len(canceller))]
+    delay = np.concatenate([paths.delay[:, some] for some in at])
+    amplitude = np.concatenate(
+        [c * paths.amplitude[:, some] for c, some in zip(canceller, at, strict=True)]
+    )
+    if sum(canceller) == 0:  # a path that stands still cancels itself exactly
+        moves = (paths.delay != paths.delay[:, :1]) | (paths.amplitude != paths.amplitude[:, :1])
+        kept = np.tile(moves.any(axis=1), len(canceller))
+        delay, amplitude = delay[kept], amplitude[kept]
+    return beat_matrix(delay, amplitude, waveform)

@@ -1,0 +1,232 @@
+"""What is looked at of an echo: a functional W of fast time, at some pulses of slow time.
+
+    x[k, m] = sum_n W[k, n] sum_j taps[j] s[n, p_m + j]
+
+of the beat matrix s. W [K, N_ADC] has one row for the coherent sum over range, one a bin for range
+bins, and is the identity for a raw recording. White noise of unit variance a raw sample has the
+covariance W W^H in x.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from radhar_cli.arrays import Complex, Index
+from radhar_cli.processing.range_compression import range_compression
+from radhar_cli.radar.waveform import Waveform
+
+BLOCK = 2**13  # pulses of a slow-time process made at once
+
+
+class FastTime(ABC):
+    """A linear functional of fast time: W [rows, N_ADC]."""
+
+    waveform: Waveform
+
+    @property
+    @abstractmethod
+    def rows(self) -> int:
+        """K."""
+
+    @property
+    def white(self) -> bool:
+        """Whether rows of W are orthogonal: white noise is independent from row to row of x."""
+        return True
+
+    @property
+    def rank(self) -> int:
+        """Independent processes that white noise is made of in x."""
+        return self.rows
+
+    @abstractmethod
+    def __call__(self, s: Complex) -> Complex:
+        """W s [K, M] of a beat matrix s [N_ADC, M]."""
+
+    @abstractmethod
+    def colour(self, v: Complex, scale: float = 1.0) -> Complex:
+        """scale L v [K, M] of v [rank, M], L L^H = W W^H; v is lost."""
+
+
+@dataclass(frozen=True)
+class RawSamples(FastTime):
+    """The samples themselves."""
+
+    waveform: Waveform
+
+    @property
+    def rows(self) -> int:
+        return self.waveform.n_adc
+
+    def __call__(self, s: Complex) -> Complex:
+        return s
+
+    def colour(self, v: Complex, scale: float = 1.0) -> Complex:
+        v *= scale
+        return v
+
+
+@dataclass(frozen=True)
+class RangeSum(FastTime):
+    """The coherent sum over the kept range bins: W = D[n], one row."""
+
+    waveform: Waveform
+
+    @property
+    def rows(self) -> int:
+        return 1
+
+    def __call__(self, s: Complex) -> Complex:
+        return weights(self.waveform)[None] @ s
+
+    def colour(self, v: Complex, scale: float = 1.0) -> Complex:
+        v *= scale * np.sqrt(noise_gain(self.waveform))
+        return v
+
+
+@dataclass(frozen=True)
+class RangeBins(FastTime):
+    """Range bins, all of the kept ones or some consecutive of them, referred to as the waveform is.
+
+    Attributes:
+        waveform: the radar.
+        bins: of the N_FFT/2; None is all.
+    """
+
+    waveform: Waveform
+    bins: slice | None = None
+
+    @property
+    def rows(self) -> int:
+        return len(range(self.waveform.n_bins)[self._bins])
+
+    @property
+    def white(self) -> bool:
+        """A transform is orthogonal unless it is padded."""
+        return self.waveform.n_fft == self.waveform.n_adc
+
+    @property
+    def rank(self) -> int:
+        if self.white:
+            return self.rows
+        return self.waveform.n_adc if self.bins is None else self._colour.shape[1]
+
+    def __call__(self, s: Complex) -> Complex:
+        return range_compression(s, self.waveform, self._bins)
+
+    def colour(self, v: Complex, scale: float = 1.0) -> Complex:
+        if self.white:
+            v *= scale * np.sqrt(self.waveform.n_adc)
+            return v
+        v *= scale
+        return self(v) if self.bins is None else self._colour @ v
+
+    @property
+    def _bins(self) -> slice:
+        return slice(None) if self.bins is None else self.bins
+
+    @property
+    def _colour(self) -> Complex:
+        assert self.bins is not None
+        return _colour(self.waveform, self.bins.start, self.bins.stop)
+
+
+@lru_cache(maxsize=4)
+def _colour(waveform: Waveform, first: int, stop: int) -> Complex:
+    """W W^H [k, k'] = sum_n exp(j 2 pi (k - k')(n - n0)/N_FFT); with W^H = Q R it is R^H R."""
+    n = np.arange(waveform.n_adc) - waveform.n0
+    w = np.exp(2j * np.pi * np.mod(np.outer(np.arange(first, stop), n) / waveform.n_fft, 1))
+    colour: Complex = np.linalg.qr(w.conj().T).R.conj().T
+    return colour
+
+
+@lru_cache(maxsize=4)
+def weights(waveform: Waveform) -> Complex:
+    """D[n] = sum_k exp(+j 2 pi k (n - n0)/N_FFT) [N_ADC], k over the kept bins."""
+    n = np.arange(waveform.n_adc) - waveform.n0
+    # A geometric series; its ratio is 1 where n - n0 = 0 mod N_FFT.
+    angle = np.pi * n / waveform.n_fft
+    whole = np.isclose(np.sin(angle), 0, atol=1e-12)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        series = np.exp(1j * (waveform.n_bins - 1) * angle) * (
+            np.sin(waveform.n_bins * angle) / np.sin(angle)
+        )
+    d: Complex = np.where(whole, waveform.n_bins, series)
+    return d
+
+
+def noise_gain(waveform: Waveform) -> float:
+    """Variance gain sum_n |D[n]|^2 of white noise through compression and the sum over bins."""
+    return float(np.sum(np.abs(weights(waveform)) ** 2))
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """x[k, m], as the module has it.
+
+    Attributes:
+        name: of the look, and of its random streams.
+        fast: W.
+        pulses: p_m [M], rising.
+        taps: of a canceller that x is seen after.
+        spans: where rows are drawn one after the other, the pulses of each that count.
+        memory: what impairments keep from one block of pulses to the next.
+    """
+
+    name: str
+    fast: FastTime
+    pulses: Index | range
+    taps: tuple[float, ...] = (1.0,)
+    spans: Sequence[slice] | None = None
+    memory: dict[str, Any] = field(default_factory=dict)
+
+    @classmethod
+    def of_all(
+        cls,
+        name: str,
+        fast: FastTime,
+        taps: tuple[float, ...] = (1.0,),
+        spans: Sequence[slice] | None = None,
+    ) -> "Look":
+        """At all pulses of the waveform."""
+        return cls(name, fast, range(fast.waveform.n_pulses - len(taps) + 1), taps, spans)
+
+    @property
+    def count(self) -> int:
+        """M."""
+        return len(self.pulses)
+
+    def part(self, first: int, stop: int) -> "Look":
+        """Some consecutive columns, with the same memory."""
+        return replace(self, pulses=self.pulses[first:stop])
+
+    def taken(self, process: Callable[[Index], Complex]) -> Complex:
+        """sum_j taps[j] v[..., p_m + j] of a process v that any pulses may be asked of."""
+        pulses = np.asarray(self.pulses)
+        taken: Complex = self.taps[0] * process(pulses)
+        for lag, tap in enumerate(self.taps[1:], 1):
+            taken += tap * process(pulses + lag)
+        return taken
+
+    def in_order(self, following: Callable[[int], Complex]) -> Complex:
+        """`taken` of a process [rank, pulses] that is made in the order of the pulses.
+
+        Args:
+            following: makes as many of the next pulses as it is asked for.
+        """
+        pulses, reach = np.asarray(self.pulses), len(self.taps) - 1
+        if reach == 0 and self.count == pulses[-1] - pulses[0] + 1:
+            return following(self.count)
+        x = np.zeros((self.fast.rank, self.count), complex)
+        held, stop = np.empty((len(x), 0), complex), int(pulses[-1]) + reach + 1
+        for first in range(0, stop, BLOCK):
+            held = np.concatenate([held, following(min(BLOCK, stop - first))], axis=1)
+            begin = min(first + BLOCK, stop) - held.shape[1]
+            here = slice(*np.searchsorted(pulses, [begin, begin + held.shape[1] - reach]))
+            for lag, tap in enumerate(self.taps):
+                x[:, here] += tap * held[:, pulses[here] - begin + lag]
+            held = held[:, held.shape[1] - reach :]
+        return x

@@ -1,0 +1,87 @@
+"""What a user adds: products of their own, in the plan of every scene and data set.
+
+    from radhar_cli.registry import add_product
+
+A product of a new name is a further map, if it makes a `PowerMap` and `maps:` names it, or an array
+of any shape that `output.products` stores. One with the name of a row of the table takes its place:
+`antennas`, `receiver` (a tuple of impairments), `canceller`, `motions` and so on. The commands
+import the modules that RADHAR_EXTENSIONS names (`my_radar,my_maps`) before they read a config.
+"""
+
+import hashlib
+import inspect
+import os
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from functools import cache
+from importlib import import_module
+from typing import Any
+
+from radhar_cli.errors import RadharError
+
+VARIABLE = "RADHAR_EXTENSIONS"
+_PRODUCTS: dict[str, Any] = {}
+_ANY: ContextVar[bool] = ContextVar("any", default=False)
+
+
+def add_product(product: Any) -> None:
+    """Add a row (`pipeline.plan.Product`) to the table of products, or replace one.
+
+    Raises:
+        ValueError: its name is no identifier.
+    """
+    if not product.name.isidentifier():
+        raise ValueError(f"{product.name!r} should be a name of letters, digits and _")
+    _PRODUCTS[product.name] = product
+
+
+def own_products() -> tuple[Any, ...]:
+    """The products that were added."""
+    _load()
+    return tuple(_PRODUCTS.values())
+
+
+def know_products(own: Iterable[Any]) -> None:
+    """Have the products of another process, and no others."""
+    own = tuple(own)
+    _PRODUCTS.clear()
+    _PRODUCTS.update((product.name, product) for product in own)
+
+
+def own_digest() -> str | None:
+    """Of the names and sources of the products that were added; None without any."""
+    if not own_products():
+        return None
+    digest = hashlib.sha256()
+    for product in own_products():
+        try:
+            source = inspect.getsource(product.make)
+        except (OSError, TypeError):
+            source = ""  # made where no file is
+        digest.update(f"{product.name} {product.needs} {source}\0".encode())
+    return digest.hexdigest()[:12]
+
+
+@contextmanager
+def any_name() -> Iterator[None]:
+    """Context in which maps may have any name: what is stored was made elsewhere."""
+    token = _ANY.set(True)
+    try:
+        yield
+    finally:
+        _ANY.reset(token)
+
+
+def is_known(name: str) -> bool:
+    """Whether a product of that name was added, or need not have been."""
+    return _ANY.get() or any(product.name == name for product in own_products())
+
+
+@cache
+def _load() -> None:
+    for name in filter(None, os.environ.get(VARIABLE, "").split(",")):
+        try:
+            import_module(name.strip())
+        except ImportError as error:
+            raise RadharError(f"{VARIABLE}: {name} cannot be imported ({error})") from None

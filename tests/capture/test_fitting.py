@@ -48,7 +48,7 @@ def recorded(folder: Path, *sets: str, activity: str = "punching", seed: int = 1
 @pytest.mark.parametrize("snr_db", [20.0, 5.0, -5.0])
 def test_snr_range_and_floor_come_back(tmp_path: Path, snr_db: float) -> None:
     found = fit([recorded(tmp_path, f"snr_db={snr_db}", activity="walking")])
-    assert found.document["snr_db"] == pytest.approx(snr_db, abs=1.0)
+    assert found.document["snr_db"] == pytest.approx(snr_db, abs=2.0)
     assert abs(found.numbers()["noise_over_range_db"]) < 1, "white noise is the same everywhere"
     low, high = found.document["motion"]["range_m"]["uniform"]
     assert 2 < low < 4

@@ -14,7 +14,7 @@ def fit(
     out: Annotated[Path, typer.Option("-o", "--out", help="Config to write.")],
     overwrite: Replace = False,
 ) -> None:
-    """Estimate a simulation config from recordings: waveform, SNR and ranges.
+    """Estimate a config from recordings: waveform, SNR and ranges.
 
     The noise floor is printed, and drawn with the SNRs next to the config, as .png.
 

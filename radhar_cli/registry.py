@@ -43,14 +43,14 @@ def own_products() -> tuple[Any, ...]:
 
 
 def know_products(own: Iterable[Any]) -> None:
-    """Have the products of another process, and no others."""
+    """Replace the products that were added here by those of another process."""
     own = tuple(own)
     _PRODUCTS.clear()
     _PRODUCTS.update((product.name, product) for product in own)
 
 
 def own_digest() -> str | None:
-    """Of the names and sources of the products that were added; None without any."""
+    """Digest of the names and sources of the products that were added; None without any."""
     if not own_products():
         return None
     digest = hashlib.sha256()
@@ -65,7 +65,7 @@ def own_digest() -> str | None:
 
 @contextmanager
 def any_name() -> Iterator[None]:
-    """Context in which maps may have any name: what is stored was made elsewhere."""
+    """Accept maps of any name: a stored data set may hold products that are not registered here."""
     token = _ANY.set(True)
     try:
         yield
@@ -74,7 +74,7 @@ def any_name() -> Iterator[None]:
 
 
 def is_known(name: str) -> bool:
-    """Whether a product of that name was added, or need not have been."""
+    """Whether a product of that name was added, or any name is accepted."""
     return _ANY.get() or any(product.name == name for product in own_products())
 
 

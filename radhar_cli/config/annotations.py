@@ -33,7 +33,7 @@ PERSONAL, UNSTEADY = Mark
 
 @dataclass(frozen=True)
 class Limits:
-    """Where every draw of a number shall lie under motion.model: human."""
+    """Bounds of every draw of a number under motion.model: human."""
 
     low: float
     high: float
@@ -53,7 +53,7 @@ class People:
 
 @dataclass(frozen=True)
 class Paper:
-    """The same of motion.model: paper."""
+    """S labels of the classes that use a number under motion.model: paper."""
 
     names: str
 

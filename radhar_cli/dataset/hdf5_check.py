@@ -16,7 +16,7 @@ MEMORY, SECONDS = 2 * 2**30, 10  # address space, CPU time of a run
 
 @contextmanager
 def harmless() -> Iterator[None]:
-    """Pass over errors that who reads the file will meet again, but for a lack of memory."""
+    """Ignore errors, which the reader of the file will meet again; exit if memory runs out."""
     try:
         yield
     except Exception as error:
@@ -25,7 +25,7 @@ def harmless() -> Iterator[None]:
 
 
 def walk(file: h5py.File) -> None:
-    """Read the texts and numbers among a file's attributes; open all its groups and datasets.
+    """Read a file's attributes of text and numbers; open all its groups and datasets.
 
     Links to other files are not followed.
     """
@@ -62,7 +62,7 @@ def _names(group: Iterable[Any]) -> list[Any]:
 
 
 def main() -> None:
-    """Try the files whose names come in, each ended by a zero byte; say the number of each."""
+    """Try the files named on standard input, each ended by a zero byte; print each one's number."""
     import resource
 
     for kind, most in ((resource.RLIMIT_AS, MEMORY), (resource.RLIMIT_CPU, SECONDS)):

@@ -81,19 +81,22 @@ def try_files(paths: Sequence[Path]) -> None:
     raise FolderError(f"{path}: cannot be read, the file is damaged ({why})")
 
 
-def remember(path: Path, tried: bool = True) -> None:
-    """Know a file as written here or tried, also in processes that are started later.
+def remember(path: Path) -> None:
+    """Do not try this file again, here or in processes started later: it is known to be sound."""
+    others = [one for one in os.environ.get(_TRIED, "").split() if one != _version_of(path)]
+    os.environ[_TRIED] = " ".join([*others[-99:], _version_of(path)])
 
-    Args:
-        path: of the file.
-        tried: whether it was; if not it is, unless it is known.
-    """
-    status, known = path.stat(), os.environ.get(_TRIED, "").split()
-    name = f"{status.st_dev}:{status.st_ino}:{status.st_size}:{status.st_ctime_ns}"
-    if name not in known:
-        if not tried:
-            try_files([path])
-        os.environ[_TRIED] = " ".join([*known[-99:], name])
+
+def _try_once(path: Path) -> None:
+    if _version_of(path) not in os.environ.get(_TRIED, "").split():
+        try_files([path])
+        remember(path)
+
+
+def _version_of(path: Path) -> str:
+    """What changes when a file is written or replaced."""
+    status = path.stat()
+    return f"{status.st_dev}:{status.st_ino}:{status.st_size}:{status.st_ctime_ns}"
 
 
 class UntrustedFile(Closing):
@@ -114,7 +117,7 @@ class UntrustedFile(Closing):
         try:
             self.bytes = regular_size(path) if data is None else len(data)
             if data is None:
-                remember(path, tried=False)
+                _try_once(path)
         except OSError as error:
             raise FolderError(f"{path}: {error.strerror}") from None
         try:

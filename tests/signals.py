@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from radhar_cli.processing.pulse_times import PulseTimes
 from radhar_cli.processing.signal import Signal
+from radhar_cli.radar.pulse_times import PulseTimes
 
 
 def signal(x: np.ndarray, prf: float = 1.0, f0: float = 1e9, step: float = 0.5) -> Signal:

@@ -21,9 +21,9 @@ from radhar_cli.pipeline.run import process
 from radhar_cli.processing.canceller import NO_CANCELLER, Canceller
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.power_map import PowerMap
-from radhar_cli.processing.pulse_times import PulseTimes
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.signal import Signal, nearest
+from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 MAX_BYTES = 3 * 2**29  # of range bins that are held at once

@@ -25,7 +25,7 @@ from radhar_cli.config.reading import validated
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import CaptureError
 from radhar_cli.figures.page import page, write_figure
-from radhar_cli.processing.pulse_times import PulseTimes
+from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 RADAR = {  # key: attribute of a waveform

@@ -20,7 +20,7 @@ from radhar_cli.capture.source import PIECE_BYTES, Parts
 from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.errors import CaptureError, FolderError, UnfinishedError
 from radhar_cli.new_hdf5 import new_hdf5
-from radhar_cli.processing.pulse_times import PulseTimes
+from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.replacing import replacing
 from radhar_cli.untrusted import Closing

@@ -16,7 +16,7 @@ from scipy.ndimage import maximum_filter, uniform_filter
 from scipy.special import gammainccinv
 
 from radhar_cli.arrays import Complex, Float, Index
-from radhar_cli.processing.pulse_times import PulseTimes
+from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 WINDOW_S = 0.16  # of the tracker's frames

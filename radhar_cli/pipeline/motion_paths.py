@@ -51,6 +51,8 @@ class MotionPaths:
         r_tx, r_rx = leg(p, self.antennas.tx), leg(p, self.antennas.rx)
         tau = bistatic_delay(r_tx, r_rx)
         a = amplitude(r_tx, r_rx, sigma, self.antennas.gain, SPEED_OF_LIGHT / self.fc)
+        if self.antennas.aim is not None:
+            a *= self.antennas.aim.two_way(p)
         if self.wall is not None:
             for antenna in (self.antennas.tx, self.antennas.rx):
                 through = transmission(p, antenna, self.wall, self.fc)

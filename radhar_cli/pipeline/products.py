@@ -64,10 +64,10 @@ from radhar_cli.processing.image import (
 )
 from radhar_cli.processing.look import Look, RangeBins, RangeSum
 from radhar_cli.processing.power_map import Axis, MapImage, PowerMap
-from radhar_cli.processing.pulse_times import PulseTimes
 from radhar_cli.processing.signal import Signal, shown_pulses
 from radhar_cli.processing.stft import Stft
 from radhar_cli.radar.propagation import Antennas
+from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.receiver.impairment import Impairment

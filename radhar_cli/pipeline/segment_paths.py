@@ -211,6 +211,8 @@ class SegmentPaths:
         sigma = cross_section(height, radii, half, REFLECTANCE)
         wavelength = SPEED_OF_LIGHT / self.fc
         a = amplitude(tx.distance, rx.distance, sigma, self.antennas.gain, wavelength)
+        if self.antennas.aim is not None:
+            a *= self.antennas.aim.two_way(frames.centre)
         if self.shadowing:
             a *= self._light(frames, 0.5 * (tx.way + rx.way), wavelength)
         # The n-th part of a segment is an ellipsoid of its own, with its own nearest point.

@@ -8,7 +8,7 @@ import numpy as np
 
 from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.processing.canceller import Canceller
-from radhar_cli.processing.pulse_times import PulseTimes
+from radhar_cli.radar.pulse_times import PulseTimes
 
 
 def shown_pulses(count: int, width: int) -> Index:

@@ -2,11 +2,39 @@
 
 from dataclasses import dataclass, replace
 from math import pi
+from typing import NamedTuple
 
 import numpy as np
 
 from radhar_cli.arrays import Float
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
+
+
+class Aim(NamedTuple):
+    """Where an antenna looks, and how its gain falls off to the sides.
+
+    Attributes:
+        position: of the array, m.
+        axes: [3, 3], rows are ahead, left and up of the radar in the scene.
+        half_power_deg: half-power half-widths (azimuth, elevation), one way.
+    """
+
+    position: tuple[float, float, float]
+    axes: tuple[tuple[float, float, float], ...]
+    half_power_deg: tuple[float, float]
+
+    def to_radar(self, p: Float) -> Float:
+        """Places p [3, ...] of the scene as the radar has them: ahead, left, up, m."""
+        seen: Float = np.tensordot(np.array(self.axes), (p.T - np.array(self.position)).T, axes=1)
+        return seen
+
+    def two_way(self, p: Float) -> Float:
+        """Two-way amplitude pattern exp(-ln 2 ((az/az3)^2 + (el/el3)^2)) [...] at p [3, ...]."""
+        ahead, left, up = self.to_radar(p)
+        azimuth, elevation = np.arctan2(left, ahead), np.arctan2(up, np.hypot(ahead, left))
+        az3, el3 = np.radians(self.half_power_deg)
+        pattern: Float = np.exp(-np.log(2) * ((azimuth / az3) ** 2 + (elevation / el3) ** 2))
+        return pattern
 
 
 @dataclass(frozen=True)
@@ -17,12 +45,14 @@ class Antennas:
         tx, rx: positions (x, y, z), m.
         gain: linear gain of each antenna.
         isolation_db: between the two; used by the static leakage alone.
+        aim: where both look, with their pattern; None radiates evenly.
     """
 
     tx: tuple[float, float, float]
     rx: tuple[float, float, float]
     gain: float
     isolation_db: float
+    aim: Aim | None = None
 
 
 def behind_mirror(antennas: Antennas, x: float, reflectance: float) -> Antennas:

@@ -18,7 +18,7 @@ from radhar_cli.errors import CaptureError
 from radhar_cli.processing.image import decibels
 from radhar_cli.processing.look import RangeSum
 from radhar_cli.processing.power_map import PowerMap
-from radhar_cli.processing.pulse_times import PulseTimes
+from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.simulation.simulate import Simulation, simulate
 
 SCENE = """

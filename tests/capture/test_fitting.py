@@ -16,7 +16,7 @@ from radhar_cli.capture.importing import write_simulated
 from radhar_cli.capture.recording import Label, RecordingInfo, SourceNote, write_recording
 from radhar_cli.config import load_config
 from radhar_cli.errors import CaptureError
-from radhar_cli.processing.pulse_times import PulseTimes
+from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.simulation.simulate import Simulation, simulate
 
 CONFIG = """

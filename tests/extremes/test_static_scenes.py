@@ -14,9 +14,9 @@ from radhar_cli.pipeline.run import process
 from radhar_cli.pipeline.run import record as record_scene
 from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.look import RangeSum
-from radhar_cli.processing.pulse_times import PulseTimes
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.signal import Signal
+from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.scene import nominal_scene
 from radhar_cli.simulation.simulate import RAW_ECHO, simulate
 

@@ -1,0 +1,118 @@
+"""Raw samples of every virtual channel of a board: the fast sum, and the exact reference.
+
+    s[f, l, v, n] = sum_i A_i exp(-j 2 pi (fc tau_i + K tau_i n/fs))
+
+with tau_i and A_i of the channel's own transmitter and receiver (spherical waves), frozen when its
+chirp begins.
+"""
+
+from collections.abc import Sequence
+from math import factorial, inf, log10, pi
+
+import numpy as np
+
+from radhar_cli.arrays import Complex, Float
+from radhar_cli.echo.beat import beat_matrix
+from radhar_cli.echo.paths import PathSource
+from radhar_cli.phasor import unit_phasor
+from radhar_cli.radar.board import Board
+
+BLOCK_FRAMES = 16
+SINGLE_DB = -100.0  # tolerances below need double precision
+PROBES = 24
+MOST_TERMS = 24
+
+
+def exact_cube(channels: Sequence[PathSource], board: Board) -> tuple[Complex, float]:
+    """Samples [frame, loop, virtual, sample] in double precision, and P_s.
+
+    Args:
+        channels: the paths of every virtual element.
+        board: whose times and chirps hold.
+
+    Returns:
+        The samples and P_s, the mean over frames, loops and channels of sum_i A_i^2.
+    """
+    cube = np.empty((board.frames, board.loops, board.channels, board.samples), complex)
+    power = 0.0
+    for v, (source, (k, _)) in enumerate(zip(channels, board.pairs, strict=True)):
+        for first in range(0, board.frames, BLOCK_FRAMES):
+            some = slice(first, first + BLOCK_FRAMES)
+            paths = source(board.chirp_times(some)[..., k].ravel())
+            power += float((paths.amplitude**2).sum())
+            s = beat_matrix(paths.delay, paths.amplitude, board.waveform).T * board.signs[v]
+            cube[some, :, v] = s.reshape(-1, board.loops, board.samples)
+    return cube, power / (board.frames * board.loops * board.channels)
+
+
+def fast_cube(
+    channels: Sequence[PathSource], board: Board, tolerance_db: float
+) -> tuple[Complex, float, float]:
+    """Samples as `exact_cube`, P_s, and the measured error relative to the cube, dB.
+
+    Within a frame delays differ little from their mean tau_0, and with u = n - (N - 1)/2
+
+        exp(-j 2 pi K (tau - tau_0) u/fs) = sum_q (-j y)^q/q! (u/u_N)^q,
+
+    y = 2 pi K (tau - tau_0) u_N/fs: the sum over the paths is one product of matrices a frame. The
+    number of terms follows from the largest y and the tolerance; some chirps are then compared.
+    """
+    single = tolerance_db >= SINGLE_DB
+    dtype = np.complex64 if single else np.complex128
+    half = max(board.samples - 1, 1) / 2
+    rate, u = board.slope / board.adc_rate, np.arange(board.samples) - half
+    cube = np.empty((board.frames, board.loops, board.channels, board.samples), dtype)
+    power = 0.0
+    for first in range(0, board.frames, BLOCK_FRAMES):
+        some = slice(first, min(first + BLOCK_FRAMES, board.frames))
+        times = board.chirp_times(some)
+        seen = [
+            source(times[..., k].ravel())
+            for source, (k, _) in zip(channels, board.pairs, strict=True)
+        ]
+        shape = (-1, times.shape[0], board.loops)
+        delay = np.stack([paths.delay.reshape(shape) for paths in seen], axis=-1)
+        a = np.stack([paths.amplitude.reshape(shape) for paths in seen], axis=-1)
+        power += float(np.einsum("iflv,iflv->", a, a))
+        a = (a * board.signs).astype(np.float32 if single else float)
+        for f in range(times.shape[0]):
+            tau = delay[:, f].reshape(len(delay), -1)  # [I, loop virtual]
+            tau0 = tau.mean(axis=1, keepdims=True)
+            y = ((2 * pi * rate * half) * (tau - tau0)).astype(a.dtype)
+            terms = _terms(y[:, ::16], tolerance_db)
+            left = np.empty((terms, *tau.shape), dtype)
+            left[0] = unit_phasor(board.centre * tau, dtype)
+            left[0] *= a[:, f].reshape(tau.shape)
+            for q in range(1, terms):
+                np.multiply(left[q - 1], y, out=left[q])
+            base = unit_phasor(rate * tau0 * u, dtype)
+            right = np.array([(-1j * u / half) ** q / factorial(q) for q in range(terms)], dtype)
+            right = np.multiply(right[:, None], base).reshape(-1, board.samples)
+            s = left.reshape(len(right), -1).T @ right
+            cube[first + f] = s.reshape(board.loops, board.channels, board.samples)
+    power /= board.frames * board.loops * board.channels
+    return cube, power, measured_db(cube, channels, board)
+
+
+def _terms(y: Float, tolerance_db: float) -> int:
+    """Fewest terms of exp(-j y) whose remainder y^Q/Q! has an rms below the tolerance."""
+    rest = np.ones_like(y)
+    for q in range(1, MOST_TERMS):
+        rest *= y / q
+        if float(np.mean(rest**2)) < 10 ** (tolerance_db / 10):
+            return q
+    return MOST_TERMS
+
+
+def measured_db(cube: Complex, channels: Sequence[PathSource], board: Board) -> float:
+    """Relative L2 error (dB) of a cube at PROBES chirps spread over channels, loops and frames."""
+    count = board.frames * board.loops
+    error = total = 0.0
+    for probe in range(min(PROBES, count)):
+        v = probe * 5 % board.channels
+        f, loop = divmod((2 * probe + 1) * count // (2 * min(PROBES, count)), board.loops)
+        paths = channels[v](board.chirp_times()[f, loop, board.pairs[v][0], None])
+        exact = beat_matrix(paths.delay, paths.amplitude, board.waveform)[:, 0] * board.signs[v]
+        error += float((np.abs(cube[f, loop, v] - exact) ** 2).sum())
+        total += float((np.abs(exact) ** 2).sum())
+    return 10 * log10(error / total) if error > 0 and total > 0 else -inf

@@ -1,0 +1,123 @@
+"""Point clouds as the data allow them: detection on powers, interpolated peaks, several angles.
+
+P = mean over the channels of |X|^2 in a range-Doppler cell. With noise alone P over the mean of R
+reference cells has the distribution F(2 V, 2 V R) of V channels, from which the threshold follows
+(neighbouring cells of a Hann window are correlated, so the rate of false alarms is approximate).
+"""
+
+from functools import partial
+
+import numpy as np
+from scipy.ndimage import maximum_filter, uniform_filter
+from scipy.stats import f as f_distribution
+
+from radhar_cli.arrays import Complex, Float
+from radhar_cli.processing.frame_maps import spectra, without_turns
+from radhar_cli.processing.points import COLUMNS, Cloud, elevation_pair
+from radhar_cli.radar.board import Board
+
+GUARD, TRAINING = (3, 2), (8, 4)  # cells on each side: range, Doppler
+ANGLES = 256  # of the azimuth FFT
+BESIDE_DB = -10.0  # a further target of a cell, relative to its strongest
+INTERVALS = np.array([-1, 0, 1])
+
+
+def best_points(
+    cube: Complex,
+    board: Board,
+    remove_mean: bool,
+    pfa: float,
+    carrier: float | None = None,
+    bias: float = 0.0,
+) -> Cloud:
+    """The points of every frame; intensity is the power of a cell's echo, for unit transmit power.
+
+    Args:
+        cube: samples [frame, loop, virtual, sample].
+        board: the radar.
+        remove_mean: take the mean over each frame's loops out first.
+        pfa: rate of false alarms of a cell.
+        carrier: frequency of the Doppler axis, Hz; None is the centre frequency.
+        bias: of ranges, m.
+    """
+    step, found = board.doppler_step(carrier), list[Float]()
+    for _, x in spectra(cube, board, remove_mean):
+        for frame in x:  # [Doppler, virtual, range]
+            found.append(_frame_points(frame, board, pfa, step, bias))
+    return Cloud.of(found)
+
+
+def _frame_points(x: Complex, board: Board, pfa: float, step: float, bias: float) -> Float:
+    power = (
+        (x.real.astype(float) ** 2 + x.imag.astype(float) ** 2).mean(axis=1).T
+    )  # [range, Doppler]
+    noise, cells = _noise(power)
+    factor = f_distribution.isf(pfa, 2 * board.channels, 2 * board.channels * cells)
+    largest = maximum_filter(power, size=3, mode=("nearest", "wrap"))
+    rows = []
+    without = without_turns(x, board)
+    for k, d in np.argwhere((power > factor * noise) & (power == largest) & (power > 0)):
+        level = np.log(np.maximum(power[:, d], np.finfo(float).tiny))
+        r = max((k + _offset(level, k, False)) * board.range_step - bias, 0.0)
+        turn = np.log(np.maximum(power[k], np.finfo(float).tiny))
+        signed = (d + board.n_doppler // 2) % board.n_doppler - board.n_doppler // 2
+        fine = signed + _offset(turn, d, True)
+        element = without[d, :, k] * np.exp(
+            -2j * np.pi * (fine - signed) / board.n_doppler * board.turns
+        )
+        for strength, left, up in _directions(element, board):
+            ahead = np.sqrt(max(r * r * (1 - left * left - up * up), 0.0))
+            snr = 10 * np.log10(power[k, d] / noise[k, d])
+            rows.append((ahead, r * left, r * up, fine * step, strength, snr, k, signed))
+    return np.array(rows, float).reshape(-1, len(COLUMNS))
+
+
+def _noise(power: Float) -> tuple[Float, int]:
+    """Mean of the reference cells around each cell, and how many they are."""
+    inner = [min(2 * g + 1, n) for g, n in zip(GUARD, power.shape, strict=True)]
+    outer = [min(2 * (g + t) + 1, n) for g, t, n in zip(GUARD, TRAINING, power.shape, strict=True)]
+    area = outer[0] * outer[1], inner[0] * inner[1]
+    around = partial(uniform_filter, power, mode=("reflect", "wrap"))
+    total = around(outer) * area[0]
+    noise = (total - around(inner) * area[1]) / max(area[0] - area[1], 1)
+    return np.maximum(noise, np.finfo(float).tiny), max(area[0] - area[1], 1)
+
+
+def _offset(level: Float, at: int, cyclic: bool) -> float:
+    """Where a parabola through three logarithms of power has its top, in bins, -1/2 to 1/2."""
+    if level.size < 3 or (not cyclic and not 0 < at < level.size - 1):
+        return 0.0
+    before, here, after = level[(at + INTERVALS) % level.size]
+    curve = before - 2 * here + after
+    return float(np.clip((before - after) / (2 * curve), -0.5, 0.5)) if curve < 0 else 0.0
+
+
+def _directions(element: Complex, board: Board) -> list[tuple[float, float, float]]:
+    """(power, left, up) of the targets that the longest row separates, strongest first.
+
+    left and up are sines of angles; up follows from the phase between two rows.
+    """
+    row, upper, aside, above = elevation_pair(board)
+    spectrum = np.abs(np.fft.fft(element[row], ANGLES) / len(row)) ** 2
+    peaks = (spectrum >= np.roll(spectrum, 1)) & (spectrum > np.roll(spectrum, -1))
+    peaks &= spectrum > spectrum.max() * 10 ** (BESIDE_DB / 10)
+    level = np.log(np.maximum(spectrum, np.finfo(float).tiny))
+    bins = sorted(np.flatnonzero(peaks), key=lambda n: -spectrum[n])[: max(len(upper), 1)]
+    turns = np.array([(b + _offset(level, int(b), True)) / ANGLES for b in bins])
+    left = 2 * (turns - np.round(turns))
+    up = np.zeros(left.size)
+    if upper:
+        ratio = _targets(element, board, upper, left) / _targets(element, board, row, left)
+        up = ((np.angle(ratio) / np.pi - aside * left + 1) % 2 - 1) / above
+    return [
+        (float(spectrum[b]), float(y), float(z))
+        for b, y, z in zip(bins, left, up, strict=True)
+        if y * y + z * z <= 1
+    ]
+
+
+def _targets(element: Complex, board: Board, row: list[int], left: Float) -> Complex:
+    """Echoes of the targets of these directions [J] at the first element of a row."""
+    places = board.places[row, 0] - board.places[row[0], 0]
+    steering = np.exp(1j * np.pi * np.outer(places, left))
+    return np.linalg.lstsq(steering, element[row])[0].astype(complex)

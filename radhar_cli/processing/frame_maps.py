@@ -1,0 +1,151 @@
+"""Maps of a board's frames: range-Doppler, range-azimuth and range-elevation, frame by frame.
+
+Spectra are divided by the sum of their window, so that a steady echo of amplitude a in the middle
+of a bin reads a^2 in all of them.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.fft
+from scipy.signal.windows import hann
+
+from radhar_cli.arrays import Complex, Float
+from radhar_cli.processing.power_map import Axis
+from radhar_cli.radar.board import Board
+
+BLOCK_FRAMES = 16
+
+
+@dataclass(frozen=True)
+class FrameMaps:
+    """Power of every frame for unit transmit power.
+
+    Attributes:
+        power: [frame, rows, columns], lowest first.
+        rows, columns: the axes.
+        times: middles of the frames, s.
+    """
+
+    power: Float
+    rows: Axis
+    columns: Axis
+    times: Float
+
+
+def range_spectrum(cube: Complex, board: Board, window: Float) -> Complex:
+    """X [frame, loop, virtual, range] of a cube, signs of the feeds taken out.
+
+    Beats have the sign exp(-j 2 pi K tau t), so the kernel is the conjugate one.
+    """
+    weighted = cube * (window / window.sum()).astype(cube.real.dtype)
+    if (board.signs < 0).any():
+        weighted *= board.signs[:, None].astype(cube.real.dtype)
+    spectrum: Complex = scipy.fft.ifft(weighted, board.n_fft, axis=-1, norm="forward")
+    return spectrum
+
+
+def doppler_spectrum(x: Complex, board: Board, window: Float, remove_mean: bool) -> Complex:
+    """X [frame, Doppler, virtual, range], Doppler as FFTs have it: 0 first, approaching positive.
+
+    Args:
+        x: [frame, loop, virtual, range].
+        board: whose bins.
+        window: over the loops.
+        remove_mean: take the mean over each frame's loops out first.
+    """
+    if remove_mean:
+        x = x - x.mean(axis=1, keepdims=True)
+    weights = (window / window.sum()).astype(x.real.dtype)[:, None, None]
+    spectrum: Complex = scipy.fft.fft(x * weights, board.n_doppler, axis=1)
+    return spectrum
+
+
+def without_turns(x: Complex, board: Board) -> Complex:
+    """X [.., Doppler, virtual, range] as if all transmitters had sent at once.
+
+    A chirp that comes k/n_TX of a loop later has turned by 2 pi d k/(N_D n_TX) in Doppler bin d.
+    """
+    d = scipy.fft.fftfreq(board.n_doppler)[:, None]
+    turned = np.exp(-2j * np.pi * d * board.turns)[..., None]
+    compensated: Complex = x * turned.astype(x.dtype)
+    return compensated
+
+
+def ascending(count: int) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
+    """Numbers of FFT bins from -count/2 + 1 to count/2, as a sort of 0 .. count - 1."""
+    return np.arange(-(count // 2) + 1, count // 2 + 1) % count
+
+
+def doppler_axis(board: Board) -> Axis:
+    """Radial speeds, positive approaching."""
+    bins = np.arange(-(board.n_doppler // 2) + 1, board.n_doppler // 2 + 1)
+    return Axis("radial speed", "m/s", bins * board.doppler_step())
+
+
+def range_axis(board: Board) -> Axis:
+    """Ranges of all bins."""
+    return Axis("range", "m", np.arange(board.n_fft) * board.range_step)
+
+
+def spectra(cube: Complex, board: Board, remove_mean: bool) -> Iterator[tuple[slice, Complex]]:
+    """(frames, X [frame, Doppler, virtual, range]) of some frames at a time, with Hann windows."""
+    fast, slow = hann(board.samples, sym=False), hann(board.loops, sym=False)
+    for first in range(0, len(cube), BLOCK_FRAMES):
+        some = slice(first, min(first + BLOCK_FRAMES, len(cube)))
+        x = range_spectrum(cube[some], board, fast)
+        yield some, doppler_spectrum(x, board, slow, remove_mean)
+
+
+def range_doppler(cube: Complex, board: Board, remove_mean: bool) -> FrameMaps:
+    """Power [frame, range, Doppler], the mean over the virtual channels."""
+    power = np.empty((len(cube), board.n_fft, board.n_doppler), np.float32)
+    order = ascending(board.n_doppler)
+    for some, x in spectra(cube, board, remove_mean):
+        mean = (x.real**2 + x.imag**2).mean(axis=2)
+        power[some] = mean[:, order].transpose(0, 2, 1)
+    return FrameMaps(power, range_axis(board), doppler_axis(board), board.middles)
+
+
+def range_angle(cube: Complex, board: Board, remove_mean: bool, axis: int) -> FrameMaps:
+    """Power [frame, range, angle] of a Bartlett beamformer over the longest rows or columns.
+
+    Doppler bins are compensated for the transmitters' turns and summed. The taper of n elements is
+    sin^2(pi (i + 1)/(n + 1)); of several rows as long, powers are averaged.
+
+    Args:
+        cube: samples.
+        board: the radar.
+        remove_mean: take out what stands still.
+        axis: 0 for azimuth, positive left, 1 for elevation, positive up.
+    """
+    angles = np.arange(-90.0, 91.0)
+    rows = longest_rows(board, axis)
+    taper = np.sin(np.pi * np.arange(1, len(rows[0]) + 1) / (len(rows[0]) + 1)) ** 2
+    sines = np.sin(np.radians(angles))[:, None]
+    window = hann(board.loops, sym=False)
+    level = board.n_doppler * float((window**2).sum() / window.sum() ** 2)
+    power = np.zeros((len(cube), board.n_fft, angles.size), np.float32)
+    for some, x in spectra(cube, board, remove_mean):
+        x = without_turns(x, board)
+        for row in rows:
+            steering = np.exp(-1j * np.pi * sines * board.places[row, axis])
+            weights = (steering * taper / taper.sum()).astype(x.dtype)
+            y = np.matmul(weights, x[:, :, row])  # [frame, Doppler, angle, range]
+            power[some] += (y.real**2 + y.imag**2).sum(axis=1).transpose(0, 2, 1)
+    power /= level * len(rows)
+    name = "azimuth" if axis == 0 else "elevation"
+    return FrameMaps(power, range_axis(board), Axis(name, "degree", angles), board.middles)
+
+
+def longest_rows(board: Board, axis: int) -> list[list[int]]:
+    """Virtual elements along an axis, ordered: of each of the rows that have the most of them.
+
+    Of elements at the same place the first counts.
+    """
+    found: dict[float, dict[float, int]] = {}
+    for v, place in enumerate(board.places.round(6).tolist()):
+        found.setdefault(place[1 - axis], {}).setdefault(place[axis], v)
+    most = max(map(len, found.values()))
+    return [[row[at] for at in sorted(row)] for row in found.values() if len(row) == most]

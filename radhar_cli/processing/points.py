@@ -1,0 +1,292 @@
+"""Point clouds as the firmware of TI's xWR14xx demo makes them (out of its source).
+
+Spectra here have TI's sign, the conjugate of radhar's; clouds have radhar's axes: x ahead, y left,
+z up of the radar, Doppler positive approaching.
+"""
+
+from dataclasses import dataclass
+from math import ceil, log2, log10
+from typing import NamedTuple
+
+import numpy as np
+import scipy.fft
+from scipy.signal.windows import blackman, hann
+
+from radhar_cli.arrays import Bool, Complex, Float, Index
+from radhar_cli.processing.frame_maps import (
+    doppler_spectrum,
+    longest_rows,
+    range_spectrum,
+)
+from radhar_cli.radar.board import Board
+
+COLUMNS = ("x", "y", "z", "doppler", "intensity", "snr_db", "range_index", "doppler_index")
+BINS = 64  # of the angle FFT
+MAX_POINTS = 64  # first peaks of a frame
+CA, CAGO, CASO = range(3)
+NOISE_LSB = 1.5  # rms of a Doppler cell's noise in units of the fixed-point numbers
+XYZ_STEP = 2.0**-10  # m
+
+
+class Cfar(NamedTuple):
+    """One `cfarCfg`: averaging of decibels along an axis.
+
+    Attributes:
+        mode: CA, CAGO or CASO.
+        window, guard: cells on each side.
+        cyclic: whether the axis closes.
+        threshold_db: over the average.
+    """
+
+    mode: int
+    window: int
+    guard: int
+    cyclic: bool
+    threshold_db: float
+
+
+@dataclass(frozen=True)
+class Detection:
+    """What a .cfg says of detection.
+
+    Attributes:
+        along_range, along_doppler: the CFAR; both must fire where there are two.
+        grouping: whether peaks alone are kept, along range, along Doppler.
+        first_bin, last_bin: ranges that points may have.
+        second_peak: least height of a second peak over angle, over the first; None is no second.
+        remove_mean: take out what stands still.
+        bias: range bias, m.
+        coefficients: of the virtual channels [V], complex.
+        azimuth_deg, elevation_deg, range_m, doppler_mps: fields of view, or None.
+    """
+
+    along_range: Cfar
+    along_doppler: Cfar | None = None
+    grouping: tuple[bool, bool] = (False, False)
+    first_bin: int = 0
+    last_bin: int | None = None
+    second_peak: float | None = None
+    remove_mean: bool = False
+    bias: float = 0.0
+    coefficients: tuple[complex, ...] = ()
+    azimuth_deg: tuple[float, float] | None = None
+    elevation_deg: tuple[float, float] | None = None
+    range_m: tuple[float, float] | None = None
+    doppler_mps: tuple[float, float] | None = None
+
+
+class Cloud(NamedTuple):
+    """Points of all frames, one frame after the other.
+
+    Attributes:
+        points: float32 [N, 8], columns as COLUMNS.
+        start: int64 [frames + 1]; points start[f] .. start[f + 1] - 1 are frame f's.
+    """
+
+    points: Float
+    start: Index
+
+    @classmethod
+    def of(cls, frames: list[Float]) -> "Cloud":
+        """Of the points of each frame [n, 8]."""
+        start = np.cumsum([0, *map(len, frames)])
+        points = np.concatenate([np.empty((0, len(COLUMNS))), *frames])
+        return cls(points.astype(np.float32), start.astype(np.int64))
+
+
+def ti_threshold_db(value: float, channels: int) -> float:
+    """Threshold of cfarCfg of SDK 1 and 2: 512 an octave, of sums over 2^ceil(log2 n) channels."""
+    octaves: float = value / (512 * channels / 2 ** ceil(log2(channels)))
+    return octaves * 20 * log10(2)
+
+
+def board_points(
+    cube: Complex,
+    board: Board,
+    detection: Detection,
+    sigma: float | None,
+    carrier: float | None = None,
+) -> Cloud:
+    """The points of every frame.
+
+    Args:
+        cube: samples [frame, loop, virtual, sample].
+        board: the radar.
+        detection: thresholds and switches.
+        sigma: standard deviation of a raw sample's noise, which sets the unit of fixed-point
+            numbers; None leaves all rounding out.
+        carrier: frequency of the Doppler axis, Hz; None is the centre frequency.
+    """
+    fast, slow = blackman(board.samples), hann(board.loops)
+    fast, slow = fast / fast.sum(), slow / slow.sum()
+    lsb = None
+    if sigma is not None and sigma > 0:
+        lsb = sigma * float(np.sqrt((fast**2).sum() * (slow**2).sum())) / NOISE_LSB
+    step = board.doppler_step(carrier)
+    found = []
+    for frame in range(len(cube)):
+        x = range_spectrum(cube[frame : frame + 1], board, fast)
+        spectrum = doppler_spectrum(x, board, slow, detection.remove_mean)[0].conj()
+        found.append(_frame_points(spectrum[_negated(board)], board, detection, lsb, step))
+    return Cloud.of(found)
+
+
+def _negated(board: Board) -> Index:
+    """Doppler bins in TI's order: the conjugate of a signal has the opposite frequency."""
+    return -np.arange(board.n_doppler) % board.n_doppler
+
+
+def _frame_points(
+    x: Complex, board: Board, detection: Detection, lsb: float | None, step: float
+) -> Float:
+    """Points [n, 8] of a spectrum [Doppler, virtual, range] of TI's sign."""
+    with np.errstate(divide="ignore"):
+        d = np.mean(20 * np.log10(np.abs(x)), axis=1)  # [Doppler, range]
+    snr = _above(d, detection.along_range, axis=1)
+    hit = snr > detection.along_range.threshold_db
+    if detection.along_doppler is not None:
+        over = _above(d, detection.along_doppler, axis=0)
+        hit &= over > detection.along_doppler.threshold_db
+    hit &= _peaks(d, detection.grouping)
+    hit[:, : detection.first_bin] = False
+    if detection.last_bin is not None:
+        hit[:, detection.last_bin + 1 :] = False
+    doppler, ranges = (found[:MAX_POINTS] for found in np.nonzero(hit))
+    symbols = x[doppler, :, ranges]  # [n, virtual]
+    if lsb is not None:
+        symbols = np.round(symbols.real / lsb) + 1j * np.round(symbols.imag / lsb)
+    if detection.coefficients:
+        symbols = symbols * np.array(detection.coefficients)
+    signed = np.where(doppler < board.n_doppler / 2, doppler, doppler - board.n_doppler)
+    turn = signed[:, None] / board.n_doppler * board.turns
+    symbols = symbols * np.exp(-2j * np.pi * turn)
+    if lsb is not None:
+        symbols = np.trunc(symbols.real) + 1j * np.trunc(symbols.imag)
+    angles = [_angles(one, board, detection.second_peak, lsb is not None) for one in symbols]
+    first = [(n, *found[0]) for n, found in enumerate(angles)]
+    second = [(n, *one) for n, found in enumerate(angles) for one in found[1:]]
+    rows = []
+    for n, intensity, right, up in first + second:
+        r = max(ranges[n] * board.range_step - detection.bias, 0.0)
+        x_right, z = r * right, r * up
+        y_ahead = np.sqrt(max(r * r - x_right * x_right - z * z, 0.0))
+        place = np.array([y_ahead, -x_right, z])
+        if lsb is not None:
+            place = np.round(place / XYZ_STEP) * XYZ_STEP
+        about = (-signed[n] * step, intensity, snr[doppler[n], ranges[n]], ranges[n], -signed[n])
+        rows.append((*place, *about))
+    points = np.array(rows, float).reshape(-1, len(COLUMNS))
+    return points[_in_view(points, detection)]
+
+
+def _above(d: Float, cfar: Cfar, axis: int) -> Float:
+    """Cells over the noise that their neighbours along an axis show, dB; -inf without any.
+
+    A side that lacks cells is left out.
+    """
+    d = np.moveaxis(d, axis, -1)
+    reach, count = cfar.guard + cfar.window, d.shape[-1]
+    wrapped = np.concatenate([d[..., count - reach :], d, d[..., :reach]], axis=-1)
+    windows = np.lib.stride_tricks.sliding_window_view(wrapped, cfar.window, axis=-1)
+    means = windows.mean(axis=-1)
+    left, right = (
+        means[..., :count].copy(),
+        means[..., reach + cfar.guard + 1 :][..., :count].copy(),
+    )
+    if not cfar.cyclic:
+        left[..., :reach] = np.nan
+        right[..., max(count - reach, 0) :] = np.nan
+    sides = np.stack([left, right])
+    sides = np.where(np.isnan(sides), sides[::-1], sides)
+    noise = (sides.mean(axis=0), sides.max(axis=0), sides.min(axis=0))[cfar.mode]
+    with np.errstate(invalid="ignore"):
+        above = np.where(np.isfinite(d), d - noise, -np.inf)
+    above[np.isnan(above)] = -np.inf
+    return np.moveaxis(above, -1, axis)
+
+
+def _peaks(d: Float, grouping: tuple[bool, bool]) -> Bool:
+    """Cells [Doppler, range] not below their neighbours; Doppler closes on itself."""
+    kept = np.ones(d.shape, bool)
+    wide = np.pad(d, ((0, 0), (1, 1)), constant_values=-np.inf)
+    wide = np.concatenate([wide[-1:], wide, wide[:1]])
+    rows = (-1, 0, 1) if grouping[1] else (0,)
+    columns = (-1, 0, 1) if grouping[0] else (0,)
+    for i in rows:
+        for j in columns:
+            kept &= d >= wide[1 + i : 1 + i + len(d), 1 + j : 1 + j + d.shape[1]]
+    return kept
+
+
+def _angles(
+    symbols: Complex, board: Board, second: float | None, whole: bool
+) -> list[tuple[float, float, float]]:
+    """(intensity, right, up) of the first peak over angle, and of a second one."""
+    row, upper, aside, above = elevation_pair(board)
+    a = scipy.fft.fft(symbols[row], BINS)
+    m = np.abs(a) / len(row)
+    m = np.floor(m) if whole else m
+    best = int(m.argmax())
+    peaks = [best]
+    if second is not None:
+        rest = m.copy()
+        rest[_flanks(m, best)] = -1
+        other = int(rest.argmax())
+        least = second * m[best]
+        if rest[other] > (np.floor(least) if whole else least):
+            peaks.append(other)
+    found = []
+    e = scipy.fft.fft(symbols[upper], BINS) if upper else None
+    for b in peaks:
+        right = 2 * (b if b < BINS // 2 else b - BINS) / BINS
+        up = 0.0
+        if e is not None:
+            up = float(np.angle(a[b] * np.conj(e[b]))) / np.pi + aside * right
+            up = (up + 1) % 2 - 1
+            up /= above
+        found.append((float(m[b]), right, up))
+    return found
+
+
+def elevation_pair(board: Board) -> tuple[list[int], list[int], float, float]:
+    """The longest row, the elements of the row nearest to it, and how far left and up these begin.
+
+    Offsets are in half wavelengths; without another row its elements are none.
+    """
+    row = longest_rows(board, 0)[0]
+    places = board.places
+    left, up = places[row[0]]
+    others = sorted({round(float(other), 6) for other in places[:, 1]} - {round(float(up), 6)})
+    if not others:
+        return row, [], 0.0, 1.0
+    near = min(others, key=lambda other: (abs(other - up), -other))
+    upper = [v for v in range(len(places)) if abs(places[v, 1] - near) < 1e-6]
+    upper.sort(key=lambda v: float(places[v, 0]))
+    return row, upper, float(places[upper[0], 0] - left), float(near - up)
+
+
+def _flanks(m: Float, peak: int) -> Index:
+    """Bins of a peak and of what falls off monotonously to both sides of it; angles close."""
+    bins = [peak]
+    for way in (-1, 1):
+        at = peak
+        while len(bins) < m.size and m[(at + way) % m.size] <= m[at]:
+            at = (at + way) % m.size
+            bins.append(at)
+    return np.array(bins)
+
+
+def _in_view(points: Float, detection: Detection) -> Bool:
+    """Points in the fields of view of aoaFovCfg and cfarFovCfg."""
+    x, y, z, doppler = points[:, :4].T
+    angles = np.degrees(np.arctan2(-y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
+    seen = np.ones(len(points), bool)
+    for value, limits in (
+        (angles[0], detection.azimuth_deg),
+        (angles[1], detection.elevation_deg),
+        (np.sqrt(x * x + y * y + z * z), detection.range_m),
+        (-doppler, detection.doppler_mps),
+    ):
+        if limits is not None:
+            seen &= (value >= limits[0]) & (value <= limits[1])
+    return seen

@@ -1,7 +1,6 @@
 """Captures of real radars -> recordings -> maps, fitted configs and data sets.
 
 settings      the header of a capture, from a file or by hand
-ti_header     the header of TI's mmWave Studio (JSON) and of its SDK demos (.cfg)
 dca1000       raw samples of TI's capture card
 array_files   .npy, .npz, .mat, HDF5
 sigmf_file    SigMF, in and out

@@ -20,8 +20,8 @@ from radhar_cli.capture.recording import (
 )
 from radhar_cli.capture.settings import CaptureSettings
 from radhar_cli.capture.source import Parts, Source
-from radhar_cli.capture.ti_header import read_header
 from radhar_cli.config.reading import load_mapping, validated, with_overrides
+from radhar_cli.config.ti_header import read_header
 from radhar_cli.errors import CaptureError
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform

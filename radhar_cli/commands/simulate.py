@@ -157,12 +157,23 @@ def _looking_at(motion: Path, slug: str) -> list[str]:
 def _draw(simulation: "Simulation", out: Path, overlay: bool) -> list[Path]:
     from radhar_cli.commands.bars import Bars
     from radhar_cli.figures import maps_panel, stickman
-    from radhar_cli.simulation.scene_file import ANIMATION, MAPS
+    from radhar_cli.simulation.scene_file import ANIMATION, CLOUD, FRAMES, MAPS
 
-    maps = out / MAPS
-    maps_panel.draw_maps(maps_panel.of_simulation(simulation, overlay), maps)
-    animation = out / ANIMATION
+    drawn = list[Path]()
+    if simulation.maps:
+        maps_panel.draw_maps(maps_panel.of_simulation(simulation, overlay), out / MAPS)
+        drawn.append(out / MAPS)
     with Bars() as bars:
-        bars.open(animation.name, stickman.frame_count(simulation), "frame")
-        stickman.draw_stickman(simulation, animation, bars.advance)
-    return [maps, animation]
+        bars.open(ANIMATION, stickman.frame_count(simulation), "frame")
+        stickman.draw_stickman(simulation, out / ANIMATION, bars.advance)
+        drawn.append(out / ANIMATION)
+        if simulation.board is not None and simulation.frames.keys() - {"cube"}:
+            from radhar_cli.figures import frames_panel
+
+            frames_panel.draw_frames(simulation, out / FRAMES)
+            drawn.append(out / FRAMES)
+            if "cloud" in simulation.frames:
+                bars.open(CLOUD, simulation.board.frames, "frame")
+                frames_panel.draw_cloud(simulation, out / CLOUD, bars.advance)
+                drawn.append(out / CLOUD)
+    return drawn

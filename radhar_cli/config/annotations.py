@@ -58,9 +58,12 @@ class Paper:
     names: str
 
 
+GIVEN = object()
+
+
 @dataclass(frozen=True)
 class Needs:
-    """The key has an effect only where another one has this value."""
+    """The key has an effect only where another one has this value, or any (GIVEN)."""
 
     key: str
     value: object

@@ -9,18 +9,24 @@ from radhar_cli.config.annotations import Limits, People, of_kind
 from radhar_cli.config.number import MAX_NUMBER, nominal, support
 from radhar_cli.config.paths import at
 from radhar_cli.config.schema import (
+    FRAME_MAPS,
     MIN_WINDOW,
+    OF_POINTS,
     Config,
     PerActivity,
     SequenceConfig,
     class_activities,
+    elevations,
     for_activity,
 )
 from radhar_cli.light import SPEED_OF_LIGHT
+from radhar_cli.radar.board import DEVICES
 from radhar_cli.radar.waveform import Waveform
 
 MAX_PULSES = 2**24
 MAX_PADDING = 64
+MAX_CUBE = 2**27  # samples of all channels
+BOARD_PRODUCTS = (*FRAME_MAPS, *OF_POINTS, "cube")
 MAX_BIN_SAMPLES = 2**27  # of range bins in memory, 16 bytes each
 MIN_CUTOFF = 1e-4  # of PRF/2; below, rounding spoils a filter of order 10 in float64
 
@@ -38,10 +44,16 @@ def problems(c: Config) -> Iterator[Problem]:
         yield Problem("classes", {}, "should have files of each class with motion.model: file")
         return
     yield from _unknown_activities(c)
-    yield from _waveform_problems(c)
-    yield from _signal_problems(c)
-    yield from _clutter_problems(c)
-    yield from _gate_problems(c)
+    if c.radar.cfg is not None:
+        yield from _board_problems(c)
+    else:
+        frames = [name for name in (*c.maps, *c.output.products) if name in BOARD_PRODUCTS]
+        if frames:
+            yield Problem("maps", frames, "should have the board that makes them: radar.cfg")
+        yield from _waveform_problems(c)
+        yield from _signal_problems(c)
+        yield from _clutter_problems(c)
+        yield from _gate_problems(c)
     yield from _wall_problems(c)
     yield from _back_wall_problems(c)
     yield from _image_problems(c)
@@ -65,6 +77,61 @@ def problems(c: Config) -> Iterator[Problem]:
             f"should be at most samples_per_class = {c.samples_of(fewest)}{whose}: "
             "every person performs every activity",
         )
+
+
+def _board_problems(c: Config) -> Iterator[Problem]:
+    """What a board cannot do, or is not simulated for one."""
+    board, radar, clutter = c.board, c.radar, c.processing.clutter
+    known = DEVICES.get(str(radar.device))
+    tx, rx = (
+        (len(radar.array.tx), len(radar.array.rx))
+        if radar.array
+        else (len(known.tx), len(known.rx))
+        if known
+        else (0, 0)
+    )
+    if not tx:
+        right = (
+            f"should name the board that radar.cfg runs on: {', '.join(DEVICES)}; or radar.array"
+        )
+        yield Problem("radar.device", radar.device, right)
+        return
+    if max(board.order) >= tx or max(board.receivers) >= rx:
+        masks = [1 << n for n in board.order]
+        right = (
+            f"should name transmitters and receivers of the array, {tx} and {rx}: it has the "
+            f"masks {masks} and receivers {[n + 1 for n in board.receivers]}"
+        )
+        yield Problem("radar.cfg", "chirpCfg, channelCfg", right)
+        return
+    for key, number in board.numbers.items():
+        value = getattr(radar, key)
+        if not (isinstance(value, (int, float)) and abs(value - number) <= 1e-9 * number):
+            yield Problem(f"radar.{key}", value, f"should be left out: radar.cfg gives {number:g}")
+    if support(c.duration_s)[0] < board.period_s:
+        right = f"should hold a frame of {board.period_s:g} s"
+        yield Problem("duration_s", c.duration_s, right)
+    chirps = support(c.duration_s)[1] / board.period_s * board.loops * len(board.order)
+    most = chirps * len(board.receivers) * board.samples
+    if most > MAX_CUBE:
+        seconds = support(c.duration_s)[1] * MAX_CUBE / most
+        right = f"should be at most {seconds:.3g} s: a cube of {MAX_CUBE} samples is held at once"
+        yield Problem("duration_s", c.duration_s, right)
+    if clutter not in ("mean", "none"):
+        right = "should be mean (of each frame) or none with radar.cfg"
+        yield Problem("processing.clutter", clutter, right)
+    if "range_elevation" in c.maps and len(elevations(c)) < 2:
+        right = "should not have range_elevation: all elements of the array lie in one row"
+        yield Problem("maps", "range_elevation", right)
+    if c.receiver.tones or support(c.receiver.noise_corner_hz)[1] > 0:
+        right = "should have neither with radar.cfg: they are of one channel"
+        yield Problem("receiver", "tones, noise_corner_hz", right)
+    if c.engine.motion_in_chirp:
+        right = "should be false with radar.cfg: positions are frozen when a chirp begins"
+        yield Problem("engine.motion_in_chirp", True, right)
+    if c.output.slow_time:
+        right = "should be false with radar.cfg; output.products: [cube] stores raw samples"
+        yield Problem("output.slow_time", True, right)
 
 
 def _class_problems(c: Config) -> Iterator[Problem]:
@@ -242,7 +309,7 @@ def _too_many(c: Config, key: str, value: object, what: str) -> Iterator[Problem
 def _wall_problems(c: Config) -> Iterator[Problem]:
     if c.wall is None:
         return
-    for name in ("tx_m", "rx_m"):
+    for name in ("tx_m", "rx_m") if c.radar.cfg is None else ("position_m",):
         antenna = getattr(c.radar, name)
         inside = True
         for place, centre, size in zip(antenna, c.wall.center_m, c.wall.size_m, strict=True):
@@ -293,7 +360,7 @@ def _image_problems(c: Config) -> Iterator[Problem]:
             f"{list(cfar.guard)} on each side it takes {reach[0]} x {reach[1]}",
         )
     limits = c.image.doppler_limits_mps
-    if limits is None or set(c.maps) == {"rtm"}:
+    if limits is None or set(c.maps) == {"rtm"} or c.radar.cfg is not None:
         return
     shortest = _waveform(c, *HIGHEST_F0)
     fastest = shortest.highest_speed

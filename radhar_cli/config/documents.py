@@ -44,7 +44,28 @@ def read_document(path: Path) -> tuple[Document, Places]:
         document = {}
     if not isinstance(document, dict):
         raise ConfigError(f"{path}: should be a mapping of keys such as 'seed: 1'")
-    return document, {key: f"{path}:{line}" for key, line in lines.items()}
+    places = {key: f"{path}:{line}" for key, line in lines.items()}
+    radar = document.get("radar")
+    if isinstance(radar, dict) and "cfg" in radar:
+        radar["cfg"] = cfg_text(radar["cfg"], path.parent, places.get("radar.cfg", str(path)))
+    return document, places
+
+
+def cfg_text(given: Any, folder: Path, where: str) -> Any:
+    """The text of a board's .cfg that `radar.cfg` names from a folder on; a text is left as it is.
+
+    Raises:
+        ConfigError: it cannot be read.
+    """
+    if not isinstance(given, str) or "\n" in given.strip():
+        return given
+    try:
+        return read_text(folder / given, MAX_TEXT)
+    except (OSError, ValueError) as error:
+        told = getattr(error, "strerror", None) or error
+        raise ConfigError(
+            f"{where}: radar.cfg = {json.dumps(given)}: should be the path of a TI .cfg ({told})"
+        ) from None
 
 
 def read_on_bases(path: Path | None, given: Mapping[str, Any]) -> tuple[Document, Places]:

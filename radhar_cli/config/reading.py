@@ -11,7 +11,7 @@ from typing import Any, TypeAlias, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from radhar_cli.config.checks import Problem
-from radhar_cli.config.documents import BASE, Places, read_document, read_on_bases
+from radhar_cli.config.documents import BASE, Places, cfg_text, read_document, read_on_bases
 from radhar_cli.config.motion_files import with_files
 from radhar_cli.config.schema import Config, Section
 from radhar_cli.config.yaml_reader import parse_yaml
@@ -29,30 +29,24 @@ MAX_MISTAKES = 20
 MAX_VALUE, MAX_ADVICE = 120, 500  # characters of value and advice in a message
 
 _CHANNELS = (
-    "is not there: a scene has one receive channel; antennas= of record() simulates another "
-    "(docs/architecture.md), and `radhar import` reads captures of several"
+    "is not there: the receive channels of a board come with its .cfg (radar.cfg, docs/boards.md); "
+    "antennas= of record() simulates another channel of the default radar"
 )
 _PEOPLE = (
     "is not there: one person a scene; motions= of record() adds up several "
     "(docs/architecture.md), split.subjects names how many persons a data set has"
 )
 _ROOMS = "is not there: a config has one room, under `room`; each of its numbers may be drawn"
-_DEVICE = (
-    "is not there: give the numbers of its data sheet (carrier_hz, bandwidth_hz, prf_hz, "
-    "adc_rate_hz, chirp_s), or have `radhar fit` read them off a recording of it"
-)
-_PROFILE = "is not there: `radhar import --radar FILE` reads it with a capture, then `radhar fit`"
-_ANGLES = "is not there: it takes angles, and a scene has one receive channel; maps are "
-_MAPS = "rtm, stft and fsst"
+_DEVICE = "is not there: radar.device names a TI board, radar.cfg its .cfg (docs/boards.md)"
 # What people ask for and is not there, as a key or a map, and what to do instead.
 ABSENT = {
     **dict.fromkeys(("receivers", "transmitters", "channels", "antennas", "mimo"), _CHANNELS),
     **dict.fromkeys(("people", "persons", "targets", "subjects"), _PEOPLE),
     **dict.fromkeys(("rooms", "environments"), _ROOMS),
-    **dict.fromkeys(("device", "chip", "board", "sensor"), _DEVICE),
-    **dict.fromkeys(("cfg", "profile"), _PROFILE),
-    **dict.fromkeys(("point_cloud", "range_angle", "doppler_angle"), _ANGLES + _MAPS),
-    "range_doppler": "is not there: maps are over time, rtm (range), stft and fsst (Doppler)",
+    **dict.fromkeys(("chip", "board", "sensor", "profile"), _DEVICE),
+    **dict.fromkeys(("point_cloud", "pointcloud", "cloud"), "is called points"),
+    **dict.fromkeys(("range_angle", "range_azimuth_map"), "is called range_azimuth"),
+    "doppler_angle": "is not there: boards have range_doppler and range_azimuth",
     **dict.fromkeys(("spectrogram", "micro_doppler", "doppler_time"), "is called stft"),
     "range_time": "is called rtm",
 }
@@ -202,7 +196,10 @@ def _override(document: dict[str, Any], override: str) -> str:
         if isinstance(inner, list) and names[0] == "classes":
             inner = {"files": inner}  # the short form of a class of files
         place[name] = place = inner if isinstance(inner, dict) else {}
-    place[names[-1]], _ = parse_yaml(text, f"--set {key.strip()}")
+    value, _ = parse_yaml(text, f"--set {key.strip()}")
+    if names == ["radar", "cfg"]:
+        value = cfg_text(value, Path(), "--set")
+    place[names[-1]] = value
     return key.strip()
 
 

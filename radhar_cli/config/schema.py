@@ -12,7 +12,7 @@ from itertools import pairwise
 from math import floor, sqrt
 from pathlib import PurePosixPath
 from textwrap import dedent
-from typing import Annotated, Any, ClassVar, Literal, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias, TypeVar
 
 from pydantic import (
     AfterValidator,
@@ -39,6 +39,7 @@ from radhar_cli.activity import (
     is_new_slug,
 )
 from radhar_cli.config.annotations import (
+    GIVEN,
     PERSONAL,
     UNSTEADY,
     ByModel,
@@ -71,8 +72,12 @@ from radhar_cli.errors import did_you_mean
 from radhar_cli.light import SPEED_OF_LIGHT
 from radhar_cli.motion.files.names import WANTED
 from radhar_cli.motion.files.reading import SUFFIXES
+from radhar_cli.radar.board import DEVICES
 from radhar_cli.registry import is_known, own_products
 from radhar_cli.rounding import half_up
+
+if TYPE_CHECKING:
+    from radhar_cli.config.ti_header import BoardHeader
 
 Flag: TypeAlias = Annotated[bool, Field(strict=True)]
 
@@ -177,6 +182,20 @@ def for_activity(value: Any, activity: Activity) -> Any:
     return value
 
 
+Place: TypeAlias = tuple[Real, Real]
+HalfPower = Annotated[float, Field(ge=1, le=1000, strict=True)]
+_BOARD = Needs("radar.cfg", GIVEN)
+
+
+class ArrayConfig(Section):
+    """Antenna elements of a board, (left, up) in half wavelengths, looking out of the radar."""
+
+    tx: Annotated[tuple[Place, ...], Field(min_length=1, max_length=4)]
+    """Transmitters."""
+    rx: Annotated[tuple[Place, ...], Field(min_length=1, max_length=4)]
+    """Receivers."""
+
+
 class RadarConfig(Section):
     """Waveform, antenna positions and gains; every number may be drawn."""
 
@@ -204,6 +223,25 @@ class RadarConfig(Section):
     """Only a raw echo shows the leakage."""
     residual_video_phase: Flag = False
     """Keep the term pi K tau^2."""
+    cfg: Annotated[str, Field(min_length=1, max_length=2**16)] | None = None
+    """The .cfg of a TI board, which gives the waveform: a path from this file's folder on. A config
+    that is written has its text."""
+    device: Literal[tuple(DEVICES)] | None = None  # type: ignore[valid-type]
+    """The board that the .cfg runs on: its antenna array."""
+    array: ArrayConfig | None = None
+    """Another array instead of a device's."""
+    position_m: Annotated[Vector, _BOARD] = (0.0, 0.0, 1.0)
+    """Of a board: range, cross-range, height."""
+    yaw_deg: Annotated[Angle, _BOARD] = 0.0
+    """Of its boresight from the x axis, positive to the left."""
+    tilt_deg: Annotated[Angle, _BOARD] = 0.0
+    """Of its boresight, positive down."""
+    half_power_deg: Annotated[tuple[HalfPower, HalfPower] | None, _BOARD] = None
+    """Half-power half-widths of an element in azimuth and elevation; null is the device's."""
+    half_wavelength_m: Annotated[float | None, Field(gt=0, le=1, strict=True), _BOARD] = None
+    """Unit of an array's places; null is c/(2 f_c), f_c the middle of what is sampled."""
+    transmit_power_dbm: Annotated[Decibel, Needs("snr_db", None)] = 12.0
+    """With receiver.noise_figure_db."""
 
 
 Metres = Annotated[NotNegative, within(0, 1, "m")]
@@ -733,6 +771,14 @@ class ReceiverConfig(Section):
     """Slope of that noise, dB per decade."""
     tones: Annotated[tuple[ToneConfig, ...], Field(max_length=16)] = ()
     """Interference: up to 16 of {doppler_hz, level_db, on_s, off_s, both_sides}."""
+    noise_figure_db: Annotated[NotNegative, within(0, 100, "dB")] | None = None
+    """White noise of k T0 fs F instead of snr_db; of a board without snr_db 15 dB."""
+    channel_gain_db: Annotated[NotNegative, within(0, 20, "dB"), _BOARD] = 0.0
+    """Standard deviation of the virtual channels' gains."""
+    channel_phase_deg: Annotated[NotNegative, within(0, 180, "degree"), _BOARD] = 0.0
+    """Standard deviation of the virtual channels' phases."""
+    channel_errors: Annotated[Literal["data_set", "sample"], _BOARD] = "data_set"
+    """Gains and phases are drawn once a data set, or once a sample."""
 
 
 class SavgolConfig(Section):
@@ -777,6 +823,7 @@ PAPER_WINDOW = 0.1  # of the recording
 
 
 _GATED = Needs("processing.range_sum", "gated")
+_POINTS = OnlyMaps("points")
 _SPECTRA = OnlyMaps("st")  # of stft and fsst
 
 
@@ -841,6 +888,7 @@ class ProcessingConfig(Section):
         return max(half_up(min(seconds, MAX_WINDOW_SHARE * duration), prf), MIN_WINDOW)
 
 
+BOARD_GAIN_DBI, BOARD_NOISE_FIGURE_DB = 9.0, 15.0
 DEFAULT_COLOUR_MAP = "viridis"
 Pixels = Annotated[int, Field(ge=2, le=8192, strict=True)]
 
@@ -868,6 +916,19 @@ class CfarConfig(Section):
     """With decibels, where the map's median is put: the threshold is then a factor of decibels."""
     edges: Literal["wrap", "shrink"] = "wrap"
     """Beyond an edge: the cells of the opposite edge, or none."""
+
+
+class CloudConfig(Section):
+    """How points are found in the frames of a board (docs/boards.md)."""
+
+    chain: Annotated[Literal["best", "board"], _POINTS] = "best"
+    """What the data allow, or what TI's firmware does with the .cfg."""
+    pfa: Annotated[float, Field(gt=0, le=0.1, strict=True), Needs("cloud.chain", "best")] = 1e-5
+    """Rate of false alarms of a range-Doppler cell."""
+    quantise: Annotated[Flag, Needs("cloud.chain", "board")] = True
+    """Round as the firmware's fixed-point numbers do."""
+    doppler_carrier: Annotated[Literal["centre", "start"], _POINTS] = "centre"
+    """Frequency that the points' speeds refer to; TI's software takes that at which ramps start."""
 
 
 class ImageConfig(Section):
@@ -1012,21 +1073,21 @@ MAP_NAMES = (
 )
 
 
+# Maps of a board, frame by frame: data sets hold them as arrays, and sheets of frames as images.
+FRAME_MAPS = ("range_doppler", "range_azimuth", "range_elevation", "points")
+# What comes with the points.
+OF_POINTS = ("points", "points_start", "points_person", "skeleton", "skeleton_velocity")
+
+
 def _known_map(name: str) -> str:
-    if name not in MAP_NAMES and not is_known(name):
-        names = (*MAP_NAMES, *(product.name for product in own_products()))
+    if name not in (*MAP_NAMES, *FRAME_MAPS) and not is_known(name):
+        names = (*MAP_NAMES, *FRAME_MAPS, *(product.name for product in own_products()))
         right = " or ".join(filter(None, (", ".join(map(repr, names[:-1])), repr(names[-1]))))
         raise PydanticCustomError("map", "should be {right}", {"right": right})
     return name
 
 
 MapName = Annotated[str, AfterValidator(_known_map)]
-
-
-def possible_maps(processing: ProcessingConfig) -> tuple[str, ...]:
-    """The maps that there can be: no FSST of a gate, whose bins are summed without their phase."""
-    gated = processing.range_sum == "gated"
-    return tuple(name for name in MAP_NAMES if not (gated and name.startswith("fsst")))
 
 
 MAX_WINDOWS = 1_000_000
@@ -1139,10 +1200,12 @@ class Config(Section):
     """A body that meets the wall, a scatterer that leaves the range half-band. One that comes
     within 5 cm of an antenna is drawn again with `redraw`, and refused otherwise."""
     processing: ProcessingConfig = ProcessingConfig()
+    cloud: CloudConfig = CloudConfig()
     image: ImageConfig = ImageConfig()
     maps: tuple[MapName, ...] = ("stft",)
     """Of `rtm`, `stft`, `fsst`; the latter two with `_denoised`, `_compensated`,
-    `_compensated_denoised`."""
+    `_compensated_denoised`. Of boards also `range_doppler`, `range_azimuth`, `range_elevation`,
+    `points`."""
     split: SplitConfig = SplitConfig()
     engine: EngineConfig = EngineConfig()
     output: OutputConfig = OutputConfig()
@@ -1185,8 +1248,23 @@ class Config(Section):
             raise PydanticCustomError("maps", "should name at least 1 map")
         if len(set(value)) != len(value):
             raise PydanticCustomError("maps", "should name each map once")
-        own = [name for name in value if name not in MAP_NAMES]
-        return (*sorted(set(value) - set(own), key=MAP_NAMES.index), *own)
+        known = (*MAP_NAMES, *FRAME_MAPS)
+        own = [name for name in value if name not in known]
+        return (*sorted(set(value) - set(own), key=known.index), *own)
+
+    @property
+    def stored(self) -> tuple[str, ...]:
+        """Products that a data set holds as arrays: those of `output.products` and of boards."""
+        frames = [name for name in self.maps if name in FRAME_MAPS]
+        points = OF_POINTS if "points" in frames else ()
+        return tuple(dict.fromkeys((*frames, *points, *self.output.products)))
+
+    @property
+    def has_error(self) -> bool:
+        """Whether the direct engine makes something whose error is measured."""
+        own = {"rtm", *(product.name for product in own_products())}
+        seen = set(self.maps) - own or self.radar.cfg is not None
+        return self.engine.kind == "direct" and bool(seen)
 
     def filled(self) -> "Config":
         """This config, in which what is null and has a default by model takes it."""
@@ -1195,6 +1273,8 @@ class Config(Section):
             name, _, rest = key.rpartition(".")
             if getattr(getattr(self, name) if name else self, rest) is None:
                 changed.setdefault(name, {})[rest] = default.values.get(self.motion.model)
+        if self.radar.cfg is not None:
+            _fill_from_cfg(self, changed)
         for name, value in changed.pop("", {}).items():
             object.__setattr__(self, name, value)
         for name, values in changed.items():
@@ -1213,6 +1293,18 @@ class Config(Section):
         if mistakes:
             raise PydanticCustomError("across", "{problems}", {"problems": mistakes})
         return self
+
+    @property
+    def board(self) -> "BoardHeader":
+        """What `radar.cfg` says.
+
+        Raises:
+            CaptureError: a line of it is missing or wrong.
+        """
+        from radhar_cli.config.ti_header import board_header  # which knows this schema
+
+        assert self.radar.cfg is not None
+        return board_header(self.radar.cfg)
 
     def samples_of(self, activity: Activity) -> int:
         """How many samples of an activity there are."""
@@ -1258,8 +1350,10 @@ class Config(Section):
 
     def depends_on(self, activity: Activity, key: str) -> bool:
         """Whether scenes of an activity depend on the number of this dotted key."""
-        if key.startswith("receiver.noise_"):
+        if key in ("receiver.noise_corner_hz", "receiver.noise_slope_db"):
             return support(self.receiver.noise_corner_hz)[1] > 0
+        if key in ("receiver.noise_figure_db", "radar.transmit_power_dbm"):
+            return self.receiver.noise_figure_db is not None and self.snr_db is None
         if key == "room.back_wall_reflection_db":
             return self.room.back_wall_m is not None
         if key.startswith("image.cfar."):
@@ -1279,6 +1373,31 @@ class Config(Section):
         """The files of an activity, None where a model makes its motion."""
         one = self.classes.get(activity.slug)
         return one if isinstance(one, FilesConfig) else None
+
+
+def _fill_from_cfg(c: Config, changed: dict[str, dict[str, Any]]) -> None:
+    """Note what the .cfg of a board gives, and the defaults of boards, of what was not given."""
+    from radhar_cli.errors import CaptureError
+
+    try:
+        board = c.board
+    except CaptureError as error:
+        raise PydanticCustomError("cfg", "{what}", {"what": str(error)}) from None
+    radar = {
+        key: value for key, value in board.numbers.items() if key not in c.radar.model_fields_set
+    }
+    if "antenna_gain_dbi" not in c.radar.model_fields_set:
+        radar["antenna_gain_dbi"] = BOARD_GAIN_DBI
+    changed.setdefault("radar", {}).update(radar)
+    if "snr_db" not in c.model_fields_set:
+        changed.setdefault("", {})["snr_db"] = None
+        if "noise_figure_db" not in c.receiver.model_fields_set:
+            changed.setdefault("receiver", {})["noise_figure_db"] = BOARD_NOISE_FIGURE_DB
+    if "clutter" not in c.processing.model_fields_set:
+        clutter = "mean" if board.detection.remove_mean else "none"
+        changed.setdefault("processing", {})["clutter"] = clutter
+    if "range_sum" not in c.processing.model_fields_set:
+        changed.setdefault("processing", {})["range_sum"] = "gated"
 
 
 @cache
@@ -1305,3 +1424,24 @@ def class_activities(classes: Mapping[str, ClassConfig]) -> dict[str, Activity]:
         movements = one.sequence if isinstance(one, SequenceConfig) else ()
         activities[slug] = Activity(number, slug, movements)
     return activities
+
+
+def possible_maps(config: Config) -> tuple[str, ...]:
+    """The maps that there can be: no FSST of a gate, whose bins are summed without their phase.
+
+    Of a board range, Doppler, its frames and the cube.
+    """
+    gated = config.processing.range_sum == "gated"
+    if config.radar.cfg is None:
+        return tuple(name for name in MAP_NAMES if not (gated and name.startswith("fsst")))
+    flat = {"range_elevation"} if len(elevations(config)) < 2 else set()
+    signals = MAP_NAMES if not gated else ("rtm", "stft")
+    return tuple(name for name in (*signals, *FRAME_MAPS, "cube") if name not in flat)
+
+
+def elevations(config: Config) -> set[float]:
+    """Heights of the virtual elements of a board, half wavelengths."""
+    array = config.radar.array or DEVICES[str(config.radar.device)]
+    board = config.board
+    rows = (array.tx[t][1] + array.rx[r][1] for t in board.order for r in board.receivers)
+    return {round(row, 6) for row in rows}

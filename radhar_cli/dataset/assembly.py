@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from radhar_cli.arrays import Float
 from radhar_cli.config.identity import as_yaml, config_hash, resolved
-from radhar_cli.config.schema import MAP_NAMES, Config
+from radhar_cli.config.schema import FRAME_MAPS, Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.column_labels import label_names
 from radhar_cli.dataset.files import unfinished_path, write_whole
@@ -32,9 +32,11 @@ from radhar_cli.dataset.layout import (
     MANIFEST,
     SCENES,
     SPLITS,
+    TIME,
     WORK,
     Rows,
     chunked,
+    column_axis,
     columns,
     count_of,
     row_axis,
@@ -70,6 +72,7 @@ LEVELS_TEXT = (
     "level = floor(255 (dB / dynamic_range_db + 1) + 1/2), dB = 10 log10(power / largest power), "
     "clipped to [-dynamic_range_db, 0]; level 0 everywhere for an all-zero map"
 )
+SHEET_TEXT = "frames side by side, row by row, evenly spread over the sample; edges are a frame's"
 SLOW_TIME_TEXT = (
     "x[m] after receiver and canceller, for unit transmit power; NaN after the last pulse of "
     "a recording that is shorter than others"
@@ -155,7 +158,7 @@ def _copy_shards(
     chunks: dict[str, list[tuple[int, bytes]]] = {name: [] for name in large}
     fields = scene_fields.fields(config)
     scene = [_Column(file[f"scene/{field.name}"]) for field in fields]
-    products = {name: _Ragged(file, config, name) for name in config.output.products}
+    products = {name: _Ragged(file, config, name) for name in config.stored}
     rows_csv = SceneTable(config, table)
     flags = dict.fromkeys(Flags, 0)
     extents: dict[str, set[tuple[float, ...]]] = {f"extent/{name}": set() for name in config.maps}
@@ -170,7 +173,7 @@ def _copy_shards(
             for name, (dtype, shape) in large.items():
                 source = part.chunks(name, dtype, (rows, *shape))
                 chunks[name] += [source.stored(row) for row in range(rows)]
-            for name in config.output.products:
+            for name in config.stored:
                 if part.column(count_of(name), np.int64, (rows,))[:].any():
                     products[name].append(part.samples(f"products/{name}"))
             for column, (target, kind, shape) in small.items():
@@ -288,25 +291,31 @@ def _describe_map(
     """Attributes of a map of these extents; of more than one, two are enough."""
     same = len(extents) == 1
     start, stop, low, high = next(iter(extents)) if same else [np.nan] * 4
-    (rows, unit), image = row_axis(name), config.image
-    own, decibel = name not in MAP_NAMES, image.kind == "decibel"
+    (rows, unit), (across, column_unit), image = row_axis(name), column_axis(name), config.image
+    decibel, sheet = image.kind == "decibel", name in FRAME_MAPS
     described = {
-        "axes": ["sample", f"{rows} (row 0 is the highest)", "time"],
+        "axes": [
+            "sample",
+            f"{rows} (row 0 is the highest)",
+            "time" if across == TIME[0] else across,
+        ],
         "row_quantity": rows,
         "row_unit": unit,
         "row_top": high,
         "row_bottom": low,
-        "column_quantity": "columns of the product" if own else "slow time",
-        "column_unit": "1" if own else "s",
+        "column_quantity": across,
+        "column_unit": column_unit,
         "column_left": start,
         "column_right": stop,
         "kind": image.kind,
         **({"dynamic_range_db": image.dynamic_range_db} if decibel else {}),
         "levels": LEVELS_TEXT if decibel else CFAR_TEXT,
+        **({"sheet": SHEET_TEXT} if sheet else {}),
         **({} if same else {"edges": "differ from sample to sample: see /extent"}),
     }
     file[f"maps/{name}"].attrs.update(described)
-    edges = ["time left (s)", "time right (s)", f"{rows} bottom ({unit})", f"{rows} top ({unit})"]
+    edges = [f"{sides} left ({column_unit})", f"{sides} right ({column_unit})"]
+    edges += [f"{rows} bottom ({unit})", f"{rows} top ({unit})"]
     file[f"extent/{name}"].attrs["columns"] = edges
     file[f"entropy/{name}"].attrs["unit"] = "bit"
     if config.output.power is not None:

@@ -7,7 +7,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from radhar_cli.arrays import Levels
-from radhar_cli.dataset.layout import Rows, row_axis
+from radhar_cli.dataset.layout import Rows, column_axis, row_axis
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset
 
@@ -61,9 +61,12 @@ def _described(data: Dataset, name: str) -> list[str]:
     pieces = name.split("_")
     extent = data.extent(name)
     quantity, unit = row_axis(name)
+    across, column_unit = column_axis(name)
+    across = "time" if column_unit == "s" else across
     what = quantity.split()[0]
     if extent is None:
-        return [*pieces, f"up: {what}", "right: time"]
+        return [*pieces, f"up: {what}", f"right: {across}"]
     left, right, bottom, top = extent
     reach = f"{bottom:.4g} to {top:.4g} {unit}"
-    return [*pieces, f"up: {what}", reach, "right: time", f"{left:.3g} to {right:.3g} s"]
+    columns = f"{left:.3g} to {right:.3g} {column_unit}"
+    return [*pieces, f"up: {what}", reach, f"right: {across}", columns]

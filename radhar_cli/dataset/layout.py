@@ -59,7 +59,7 @@ def count_of(name: str) -> str:
 def columns(config: Config) -> Parts:
     """The small datasets that a shard has beside the large ones and the scenes."""
     parts: Parts = {checksum_of(name): ("S64", ()) for name in chunked(config)}
-    parts |= {count_of(name): ("i8", ()) for name in config.output.products}
+    parts |= {count_of(name): ("i8", ()) for name in config.stored}
     for name in config.maps:
         parts |= {f"entropy/{name}": ("f4", ()), f"extent/{name}": ("f8", (4,))}
         if config.output.power is not None:
@@ -69,11 +69,30 @@ def columns(config: Config) -> Parts:
     return parts
 
 
+TIME = ("slow time", "s")
+# {map of a board: (quantity, unit) of rows, of columns} of the frames on its sheet.
+_SHEETS = {
+    "range_doppler": (("range", "m"), ("radial speed", "m/s")),
+    "range_azimuth": (("range", "m"), ("azimuth", "degree")),
+    "range_elevation": (("range", "m"), ("elevation", "degree")),
+    "points": (("up", "m"), ("right", "m")),
+}
+
+
 def row_axis(name: str) -> tuple[str, str]:
     """Quantity and unit of the rows of a map; of a user's own, what the product says."""
+    if name in _SHEETS:
+        return _SHEETS[name][0]
     if name not in MAP_NAMES:
         return "rows of the product", "1"
     return ("range", "m") if name == "rtm" else ("Doppler frequency", "Hz")
+
+
+def column_axis(name: str) -> tuple[str, str]:
+    """Quantity and unit of the columns of a map."""
+    if name in _SHEETS:
+        return _SHEETS[name][1]
+    return TIME if name in MAP_NAMES else ("columns of the product", "1")
 
 
 def row_bytes(config: Config) -> int:

@@ -100,7 +100,7 @@ class Dataset(Closing):
         self.small = small | dict(zip(named, self.scene.values(), strict=False))
         self.products = {
             name: Ragged(file.samples(f"products/{name}"), small[count_of(name)][:])
-            for name in config.output.products
+            for name in config.stored
             if small[count_of(name)][:].any()
         }
         self._entropy = {name: small[f"entropy/{name}"] for name in names}

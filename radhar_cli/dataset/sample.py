@@ -16,6 +16,8 @@ from radhar_cli.errors import SceneError
 from radhar_cli.pipeline.plan import Plan
 from radhar_cli.pipeline.products import EchoAccuracy, Fallback
 from radhar_cli.pipeline.run import run
+from radhar_cli.processing.frame_maps import FrameMaps
+from radhar_cli.processing.image import levels
 from radhar_cli.processing.power_map import MapImage
 from radhar_cli.scene import Scene
 
@@ -83,12 +85,18 @@ def synthesise(scene: Scene, plan: Plan) -> Sample:
     fell_back, error_db = isinstance(accuracy, Fallback), nan
     if isinstance(accuracy, Accuracy) and isfinite(accuracy.error_db):
         error_db = accuracy.error_db
-    own = {name: _array(recording[name], name) for name in scene.config.output.products}
+    deepest = scene.config.image.dynamic_range_db
+    own = {name: _array(recording[name], name, deepest) for name in scene.config.stored}
     return Sample(images, error_db, fell_back, labels, slow_time, own)
 
 
-def _array(value: Any, name: str) -> NDArray[Any]:
-    """A product as it is stored: the power of a map, the samples of a signal, or an array."""
+def _array(value: Any, name: str, dynamic_range_db: float) -> NDArray[Any]:
+    """A product as it is stored: the power of a map, the samples of a signal, or an array.
+
+    Of frame maps it is grey levels, in decibels below the peak of the sample.
+    """
+    if isinstance(value, FrameMaps):
+        return levels(value.power, dynamic_range_db)
     array = np.asarray(getattr(value, "power", getattr(value, "x", value)))
     if array.ndim == 0 or array.dtype.kind not in "iufc":
         raise SceneError(f"output.products: {name} is {type(value).__name__}; should be an array")

@@ -71,7 +71,7 @@ def fields(config: Config) -> tuple[Field, ...]:
     ]
     if "subject.weight_kg" not in keys:
         keys.insert(keys.index("subject.height_m") + 1, "subject.weight_kg")
-    measured = (ERROR,) if config.engine.kind == "direct" and set(config.maps) != {"rtm"} else ()
+    measured = (ERROR,) if config.has_error else ()
     return (*(_field(key) for key in keys), *measured)
 
 

@@ -135,7 +135,7 @@ def encode_shard(
                 file[f"largest_db/{name}"] = np.array([i.largest_db for i in images])
             if config.output.column_labels:
                 file[f"{COLUMN_LABEL}/{name}"] = np.stack([s.column_labels[name] for s in samples])
-        for name in config.output.products:
+        for name in config.stored:
             arrays = [sample.products[name] for sample in samples]
             if len({(array.dtype, array.shape[1:]) for array in arrays}) > 1:
                 raise SceneError(f"output.products: {name}: should differ in its first axis alone")

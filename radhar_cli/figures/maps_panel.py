@@ -175,12 +175,13 @@ def draw_maps(shown: Shown, path: Path) -> None:
 def title(simulation: Simulation) -> str:
     """One line that says what was simulated."""
     scene, waveform = simulation.scene, simulation.waveform
-    snr = scene.config.snr_db
+    snr, figure = scene.config.snr_db, scene.config.receiver.noise_figure_db
+    noise = "no noise" if figure is None else f"noise figure {figure:g} dB"
     parts = [
         f"{scene.activity.label} {scene.activity.slug.replace('_', ' ')}",
         f"{waveform.fc / 1e9:g} GHz + {waveform.bandwidth / 1e9:g} GHz, PRF {waveform.prf:g} Hz",
         "through a wall" if simulation.config.wall is not None else "free space",
-        "no noise" if snr is None else f"SNR {snr:g} dB",
+        noise if snr is None else f"SNR {snr:g} dB",
         f"seed {scene.config.seed}",
     ]
     if simulation.joint is not None:

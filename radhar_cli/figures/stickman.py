@@ -37,23 +37,52 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Callable[[int], o
         advance: called with 1 after every frame.
     """
     figure = Figure(figsize=(13, 4.6), dpi=80)
-    canvas: Any = FigureCanvasAgg(figure)
     figure.suptitle(title(simulation), fontsize=9)
     stage = _Stage(figure, simulation)
     cursor = _cursor(figure, simulation)
     moving: list[Any] = [*stage.artists, *cursor]
+
+    def show(frame: int) -> None:
+        t = frame / FRAMES_PER_SECOND
+        stage.show(t)
+        for line in cursor:
+            line.set_xdata([t, t])
+
+    write_animation(
+        figure, moving, show, frame_count(simulation), 1000 // FRAMES_PER_SECOND, path, advance
+    )
+
+
+def write_animation(
+    figure: Figure,
+    moving: list[Any],
+    show: Callable[[int], None],
+    count: int,
+    frame_ms: int,
+    path: Path,
+    advance: Callable[[int], object],
+) -> None:
+    """Write a GIF whose frames differ in some artists alone.
+
+    Args:
+        figure: with all that is drawn.
+        moving: the artists that change.
+        show: makes them show a frame.
+        count: of frames.
+        frame_ms: duration of each.
+        path: ends in .gif.
+        advance: called with 1 after every frame.
+    """
+    canvas: Any = FigureCanvasAgg(figure)
     for artist in moving:
         artist.set_animated(True)
     canvas.draw()
     background = canvas.copy_from_bbox(figure.bbox)
     frames: list[Image.Image] = []
     palette: Image.Image | None = None
-    for frame in range(frame_count(simulation)):
-        t = frame / FRAMES_PER_SECOND
+    for frame in range(count):
         canvas.restore_region(background)
-        stage.show(t)
-        for line in cursor:
-            line.set_xdata([t, t])
+        show(frame)
         for artist in moving:
             figure.draw_artist(artist)
         picture = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
@@ -66,7 +95,7 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Callable[[int], o
             format="GIF",
             save_all=True,
             append_images=frames[1:],
-            duration=1000 // FRAMES_PER_SECOND,
+            duration=frame_ms,
             loop=0,
         )
 

@@ -1,9 +1,11 @@
 """What the echo needs to know of anything that moves."""
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 from radhar_cli.arrays import Float
+
+KEPT_TIMES = 8  # of a motion that is remembered: chirps of the transmitters of a board
 
 
 class Motion(Protocol):
@@ -85,3 +87,32 @@ class Only:
     def torso(self, t: Float) -> Float:
         """Of the whole motion: what is left out still moves."""
         return self.motion.torso(t)
+
+
+def remembered(motion: Motion) -> Motion:
+    """A motion that is asked for the same times again and again, such as by several channels."""
+    if isinstance(motion, Only):
+        return Only(remembered(motion.motion), motion.kept)
+    held: Motion = _Remembered(motion)  # the rest of it comes by __getattr__
+    return held
+
+
+class _Remembered:
+    def __init__(self, motion: Motion) -> None:
+        self._motion = motion
+        self._held: dict[tuple[str, bytes], Float] = {}
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._motion, name)
+
+    def positions(self, t: Float) -> Float:
+        """Positions [3, I, M] (m), which are not to be changed."""
+        return self._kept("positions", t)
+
+    def _kept(self, name: str, t: Float) -> Float:
+        key = (name, t.tobytes())
+        if key not in self._held:
+            if len(self._held) >= KEPT_TIMES:
+                self._held.clear()
+            self._held[key] = getattr(self._motion, name)(t)
+        return self._held[key]

@@ -1,6 +1,6 @@
 """Unpack a scene into the objects of the physics: here alone are keys and units of scenes read."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 from functools import partial
 from math import radians
 
@@ -27,9 +27,13 @@ from radhar_cli.processing.canceller import (
 from radhar_cli.processing.cfar import CellAveraging
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.gate import Gate, around, interval
+from radhar_cli.processing.signal import Signal
+from radhar_cli.processing.stft import Stft
+from radhar_cli.radar.board import DEVICES, Array, Board
+from radhar_cli.radar.detection import Detection
 from radhar_cli.radar.propagation import Antennas, behind_mirror
 from radhar_cli.radar.wall import Wall
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.randomness import NOISE, stream
 from radhar_cli.receiver.flicker import FlickerNoise
 from radhar_cli.receiver.impairment import Impairment
@@ -38,9 +42,52 @@ from radhar_cli.receiver.noise import WhiteNoise
 from radhar_cli.rounding import half_up
 from radhar_cli.scene import Numbers, Person, Scene
 
+EVEN = (1000.0, 1000.0)  # half-power half-widths (degree) of an array by hand: no pattern
+
+
+def board_of(config: Config) -> Board:
+    """The board of a scene's config, which has a `radar.cfg`."""
+    radar, header = Numbers(config.radar), config.board
+    array = DEVICES.get(str(radar.device))
+    if config.radar.array is not None:
+        own = config.radar.array
+        array = Array(own.tx, own.rx, (1.0,) * len(own.rx), EVEN)
+    assert array is not None
+    frames = max(int(Numbers(config).duration_s / header.period_s + 1e-9), 1)
+    return Board(
+        array=array,
+        start=header.start_hz,
+        fc=header.carrier_hz,
+        slope=header.slope_hz,
+        adc_rate=header.adc_rate_hz,
+        samples=header.samples,
+        slot=header.slot_s,
+        order=header.order,
+        receivers=header.receivers,
+        loops=header.loops,
+        frames=min(frames, header.frames or frames),
+        period=header.period_s,
+        position=radar.position_m,
+        yaw=radians(radar.yaw_deg),
+        tilt=radians(radar.tilt_deg),
+        half_power_deg=radar.half_power_deg,
+        half_wavelength=radar.half_wavelength_m,
+        gain=10 ** (radar.antenna_gain_dbi / 10),
+    )
+
+
+def detection_of(config: Config) -> Detection:
+    """What the .cfg says of detection, as far as the board heeds it; clutter is the config's."""
+    found = replace(config.board.detection, remove_mean=config.processing.clutter == "mean")
+    if "1443" in str(config.radar.device):
+        found = replace(found, azimuth_deg=None, elevation_deg=None, range_m=None, doppler_mps=None)
+    return found
+
 
 def waveform_of(config: Config) -> Waveform:
     """The waveform of a scene's config."""
+    if config.radar.cfg is not None:
+        return board_of(config).waveform
     radar = Numbers(config.radar)
     return Waveform(
         fc=radar.carrier_hz,
@@ -56,7 +103,10 @@ def waveform_of(config: Config) -> Waveform:
 
 
 def antennas_of(config: Config) -> Antennas:
-    """The antennas of a scene's config."""
+    """The antennas of a scene's config; of a board its first channel's."""
+    if config.radar.cfg is not None:
+        board = board_of(config)
+        return board.antennas(*board.pairs[0])
     radar = Numbers(config.radar)
     return Antennas(
         tx=radar.tx_m,
@@ -199,6 +249,22 @@ def gate_of(config: Config, ranges: Float, torso: Float | None) -> Gate:
         return interval(*within, ranges)
     assert torso is not None
     return around(torso, within, ranges)
+
+
+def gate_in_windows(config: Config, after: Signal, frames: Frames, t: Float, track: Float) -> Gate:
+    """The gate of a config in every window of a signal.
+
+    Args:
+        config: as `gate_of`.
+        after: the signal after the canceller.
+        frames: its windows.
+        t: times of the pulses before the canceller, s.
+        track: delay of the torso there, s.
+    """
+    assert after.ranges is not None
+    middle = np.interp(Stft(after, frames).time.values, t, range(track.size))
+    torso = track[np.rint(np.round(middle, 6)).astype(np.intp)] * (SPEED_OF_LIGHT / 2)
+    return gate_of(config, after.ranges, torso)
 
 
 def max_samples(config: Config) -> int:

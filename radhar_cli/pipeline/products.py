@@ -20,7 +20,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from radhar_cli.arrays import Complex, Float, Index
-from radhar_cli.config.schema import MAX_TOLERANCE_DB, Config
+from radhar_cli.config.schema import MAP_NAMES, MAX_TOLERANCE_DB, Config
 from radhar_cli.echo.accuracy import AccuracyError
 from radhar_cli.echo.direct import Accuracy, DirectEcho
 from radhar_cli.echo.exact import beat_at, exact_echo, signal_power
@@ -29,6 +29,7 @@ from radhar_cli.echo.knots import mean_power
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.protocol import Motion
+from radhar_cli.pipeline.board_products import board_products
 from radhar_cli.pipeline.bodies import paths_of
 from radhar_cli.pipeline.motion_paths import point_delay
 from radhar_cli.pipeline.physics import (
@@ -105,12 +106,12 @@ def plan_images(config: Config, entropy: bool = True) -> Plan:
         entropy: whether the maps' entropies are asked for.
     """
     own = {product.name for product in own_products()}
-    of_signals = [name for name in config.maps if name not in own]
+    of_signals = [name for name in config.maps if name in MAP_NAMES and name not in own]
     maps = sorted(of_signals, key=lambda name: SIGNALS.index(signal_of(name)))
-    asked = [f"image:{name}" for name in (*maps, *(n for n in config.maps if n in own))]
-    if config.engine.kind == "direct" and set(maps) - {"rtm"}:
+    asked = [f"image:{name}" for name in (*maps, *(n for n in config.maps if n not in of_signals))]
+    if config.has_error:
         asked.append("accuracy")
-    asked += config.output.products
+    asked += config.stored
     if config.output.slow_time:
         asked.append("signal")
     if config.output.column_labels:
@@ -120,8 +121,10 @@ def plan_images(config: Config, entropy: bool = True) -> Plan:
 
 def products(config: Config, entropy: bool = True) -> dict[str, Product]:
     """Every product there could be under a config, by name; images with or without entropy."""
-    rows = (*_physics(config), *_echo(config), *_signals(config), *_maps(config, entropy))
-    return {row.name: row for row in (*rows, *own_products())}
+    board = config.radar.cfg is not None
+    echo = board_products(config, entropy) if board else _echo(config)
+    rows = (*_physics(config), *_signals(config), *_maps(config, entropy), *echo, *own_products())
+    return {row.name: row for row in rows}
 
 
 def _physics(c: Config) -> Iterator[Product]:

@@ -13,13 +13,11 @@ from radhar_cli.pipeline.physics import (
     cfar_of,
     frames_of,
     fsst_frames_of,
-    gate_of,
+    gate_in_windows,
 )
 from radhar_cli.pipeline.plan import Plan, Product, plan
 from radhar_cli.pipeline.products import products
 from radhar_cli.processing.signal import Signal
-from radhar_cli.processing.stft import Stft
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 from radhar_cli.scene import Scene
 
 
@@ -101,11 +99,7 @@ def process(
         later = after.t + canceller.lost / 2 / signal.prf
         given["torso_track"] = np.interp(later, signal.t, track)
         if gated:
-            middle = np.interp(
-                Stft(after, given["frames"]).time.values, signal.t, range(track.size)
-            )
-            torso = track[np.rint(np.round(middle, 6)).astype(np.intp)] * (SPEED_OF_LIGHT / 2)
-            given["gate"] = gate_of(config, signal.ranges, torso)
+            given["gate"] = gate_in_windows(config, after, given["frames"], signal.t, track)
     profiles = after.columns(config.image.size_px[1])
     made = {"signal": after.summed(), "range_signals": after, "range_profiles": profiles}
     return _made(config, asked, more, {**made, "range_axis": signal.ranges, **given})

@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from radhar_cli.activity import ACTIVITIES
-from radhar_cli.config.annotations import Needs, OnlyMaps, of_kind
+from radhar_cli.config.annotations import GIVEN, Needs, OnlyMaps, of_kind
 from radhar_cli.config.number import support
 from radhar_cli.config.paths import at
 from radhar_cli.config.schema import Config, MotionConfig, PerActivity, class_activities
@@ -36,7 +36,10 @@ def _without_effect(config: Config) -> Iterator[tuple[str, str]]:
         whole = sections.get(key.rpartition(".")[0])  # a section without effect is said once
         if whole is not None and at(config, whole.key) != whole.value:
             continue
-        if at(config, needed.key) != needed.value:
+        there = at(config, needed.key)
+        if needed.value is GIVEN and there is None:
+            yield key, f"{needed.key}: null; it needs one"
+        elif needed.value is not GIVEN and there != needed.value:
             yield key, f"{_entry(config, needed.key)}; it needs {needed.key}: {needed.value}"
     for key, only in of_kind(Config, OnlyMaps):
         if not any(only.part in name for name in config.maps):

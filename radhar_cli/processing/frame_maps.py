@@ -111,7 +111,8 @@ def range_doppler(cube: Complex, board: Board, remove_mean: bool) -> FrameMaps:
 def range_angle(cube: Complex, board: Board, remove_mean: bool, axis: int) -> FrameMaps:
     """Power [frame, range, angle] of a Bartlett beamformer over the longest rows or columns.
 
-    Doppler bins are compensated for the transmitters' turns and summed. The taper of n elements is
+    Doppler bins are compensated for the transmitters' turns and summed: sum_d |w^H x_d|^2 =
+    w^H R w with the covariance R = sum_d x_d x_d^H. The taper of n elements is
     sin^2(pi (i + 1)/(n + 1)); of several rows as long, powers are averaged.
 
     Args:
@@ -130,10 +131,13 @@ def range_angle(cube: Complex, board: Board, remove_mean: bool, axis: int) -> Fr
     for some, x in spectra(cube, board, remove_mean):
         x = without_turns(x, board)
         for row in rows:
-            steering = np.exp(-1j * np.pi * sines * board.places[row, axis])
-            weights = (steering * taper / taper.sum()).astype(x.dtype)
-            y = np.matmul(weights, x[:, :, row])  # [frame, Doppler, angle, range]
-            power[some] += (y.real**2 + y.imag**2).sum(axis=1).transpose(0, 2, 1)
+            element = np.ascontiguousarray(x[:, :, row].transpose(0, 3, 2, 1))  # Doppler last
+            covariance = np.matmul(element, element.conj().swapaxes(2, 3))
+            steering = np.exp(-1j * np.pi * sines * board.places[row, axis]) * taper / taper.sum()
+            pairs = (steering[:, :, None] * steering[:, None].conj()).reshape(len(angles), -1)
+            flat = covariance.reshape(*covariance.shape[:2], -1)
+            power[some] += (flat @ pairs.T.astype(flat.dtype)).real
+    np.maximum(power, 0, out=power)  # of rounding
     power /= level * len(rows)
     name = "azimuth" if axis == 0 else "elevation"
     return FrameMaps(power, range_axis(board), Axis(name, "degree", angles), board.middles)

@@ -4,8 +4,6 @@ Spectra here have TI's sign, the conjugate of radhar's; clouds have radhar's axe
 z up of the radar, Doppler positive approaching.
 """
 
-from dataclasses import dataclass
-from math import ceil, log2, log10
 from typing import NamedTuple
 
 import numpy as np
@@ -19,60 +17,13 @@ from radhar_cli.processing.frame_maps import (
     range_spectrum,
 )
 from radhar_cli.radar.board import Board
+from radhar_cli.radar.detection import Cfar, Detection
 
 COLUMNS = ("x", "y", "z", "doppler", "intensity", "snr_db", "range_index", "doppler_index")
 BINS = 64  # of the angle FFT
 MAX_POINTS = 64  # first peaks of a frame
-CA, CAGO, CASO = range(3)
 NOISE_LSB = 1.5  # rms of a Doppler cell's noise in units of the fixed-point numbers
 XYZ_STEP = 2.0**-10  # m
-
-
-class Cfar(NamedTuple):
-    """One `cfarCfg`: averaging of decibels along an axis.
-
-    Attributes:
-        mode: CA, CAGO or CASO.
-        window, guard: cells on each side.
-        cyclic: whether the axis closes.
-        threshold_db: over the average.
-    """
-
-    mode: int
-    window: int
-    guard: int
-    cyclic: bool
-    threshold_db: float
-
-
-@dataclass(frozen=True)
-class Detection:
-    """What a .cfg says of detection.
-
-    Attributes:
-        along_range, along_doppler: the CFAR; both must fire where there are two.
-        grouping: whether peaks alone are kept, along range, along Doppler.
-        first_bin, last_bin: ranges that points may have.
-        second_peak: least height of a second peak over angle, over the first; None is no second.
-        remove_mean: take out what stands still.
-        bias: range bias, m.
-        coefficients: of the virtual channels [V], complex.
-        azimuth_deg, elevation_deg, range_m, doppler_mps: fields of view, or None.
-    """
-
-    along_range: Cfar
-    along_doppler: Cfar | None = None
-    grouping: tuple[bool, bool] = (False, False)
-    first_bin: int = 0
-    last_bin: int | None = None
-    second_peak: float | None = None
-    remove_mean: bool = False
-    bias: float = 0.0
-    coefficients: tuple[complex, ...] = ()
-    azimuth_deg: tuple[float, float] | None = None
-    elevation_deg: tuple[float, float] | None = None
-    range_m: tuple[float, float] | None = None
-    doppler_mps: tuple[float, float] | None = None
 
 
 class Cloud(NamedTuple):
@@ -92,12 +43,6 @@ class Cloud(NamedTuple):
         start = np.cumsum([0, *map(len, frames)])
         points = np.concatenate([np.empty((0, len(COLUMNS))), *frames])
         return cls(points.astype(np.float32), start.astype(np.int64))
-
-
-def ti_threshold_db(value: float, channels: int) -> float:
-    """Threshold of cfarCfg of SDK 1 and 2: 512 an octave, of sums over 2^ceil(log2 n) channels."""
-    octaves: float = value / (512 * channels / 2 ** ceil(log2(channels)))
-    return octaves * 20 * log10(2)
 
 
 def board_points(

@@ -193,7 +193,21 @@ class Board:
     def pulses(self) -> PulseTimes:
         """Times of the chirps of one transmitter, a stretch a frame."""
         f = np.arange(self.frames)
+        if abs(self.period - self.loops * self.loop) < 1e-9 * self.period:
+            return PulseTimes.even(self.frames * self.loops, 1 / self.loop)
         return PulseTimes(f * self.period, f * self.loops, self.frames * self.loops, 1 / self.loop)
+
+    @property
+    def seen_as(self) -> Waveform:
+        """A waveform of the centre frequency, as paths are computed for, without gaps."""
+        return Waveform(
+            self.centre,
+            self.slope * self.samples / self.adc_rate,
+            self.samples / self.adc_rate,
+            self.adc_rate,
+            1 / self.loop,
+            self.frames * self.period,
+        )
 
     @cached_property
     def waveform(self) -> Waveform:

@@ -15,11 +15,14 @@ def noise_variance(signal_power: float, snr_db: float) -> float:
     return signal_power / 10 ** (snr_db / 10)
 
 
-def circular_gaussian(rng: np.random.Generator, shape: tuple[int, ...]) -> Complex:
+def circular_gaussian(
+    rng: np.random.Generator, shape: tuple[int, ...], single: bool = False
+) -> Complex:
     """Unit-variance circular Gaussian numbers: real and imaginary parts of variance 1/2."""
-    pairs = rng.standard_normal((*shape, 2))
+    pairs = rng.standard_normal((*shape, 2), np.float32 if single else np.float64)
     pairs *= np.sqrt(0.5)
-    return pairs.view(np.complex128)[..., 0]
+    z: Complex = pairs.view(np.complex64 if single else np.complex128)[..., 0]
+    return z
 
 
 def white_noise(look: Look, rng: np.random.Generator, sigma: float = 1.0) -> Complex:

@@ -18,13 +18,15 @@ from radhar_cli.new_hdf5 import new_hdf5
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.replacing import UNFINISHED, replacing, write_text
 from radhar_cli.scene import Scene, scene_numbers
+from radhar_cli.simulation.board_file import write_frames
 from radhar_cli.simulation.simulate import Simulation
 
 SCENE_FILE = "scene.h5"
 SCENE_JSON = "scene.json"
 SCENE_YAML = "scene.yaml"
 MAPS, ANIMATION = "maps.png", "stickman.gif"
-FILES = (SCENE_FILE, SCENE_JSON, SCENE_YAML, MAPS, ANIMATION)
+FRAMES, CLOUD = "frames.png", "cloud.gif"
+FILES = (SCENE_FILE, SCENE_JSON, SCENE_YAML, MAPS, ANIMATION, FRAMES, CLOUD)
 
 
 def refuse_foreign(folder: Path) -> None:
@@ -49,6 +51,8 @@ def write_scene(simulation: Simulation, path: Path) -> None:
             write_map(file, name, power_map)
         for name, signal in simulation.signals.items():
             file[f"slow_time/{name}"] = signal.x[0, 0]
+        if simulation.board is not None:
+            write_frames(file, simulation.frames, simulation.board, simulation.config)
         _write_truth(file, simulation)
         file.attrs["scene"] = json.dumps(describe(simulation))
         file.attrs["config"] = json.dumps(resolved(_alone(simulation.scene)))
@@ -180,7 +184,7 @@ def write_all(simulation: Simulation, folder: Path) -> list[Path]:
         write_scene(simulation, folder / SCENE_FILE)
         write_text(folder / SCENE_JSON, json.dumps(describe(simulation), indent=2) + "\n")
         write_text(folder / SCENE_YAML, _as_config(simulation.scene))
-        for drawn in (MAPS, ANIMATION):  # of an earlier scene
+        for drawn in (MAPS, ANIMATION, FRAMES, CLOUD):  # of an earlier scene
             (folder / drawn).unlink(missing_ok=True)
     except OSError as error:
         raise UnfinishedError(

@@ -2,13 +2,14 @@
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from radhar_cli.activity import Activity, activity_named
 from radhar_cli.arrays import Complex
 from radhar_cli.config.reading import ABSENT, as_config
-from radhar_cli.config.schema import MAP_NAMES, Config, possible_maps
+from radhar_cli.config.schema import FRAME_MAPS, MAP_NAMES, Config, possible_maps
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.direct import Accuracy
 from radhar_cli.echo.exact import beat_blocks
@@ -28,12 +29,20 @@ from radhar_cli.pipeline.validity import (
 )
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.processing.signal import Signal
+from radhar_cli.radar.board import Board
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.receiver.impairment import Impairment
 from radhar_cli.scene import Scene, draw_scene, nominal_scene
 from radhar_cli.simulation.truth import Truth, truth
+
+# {what may be asked for of a board: the products behind it}
+FRAMES = {
+    **{name: (name,) for name in FRAME_MAPS},
+    "points": ("cloud", "skeletons", "points_person"),
+    "cube": ("cube",),
+}
 
 
 @dataclass(frozen=True)
@@ -52,6 +61,9 @@ class Simulation:
         seconds: {product: time it took}.
         accuracy: how the direct engine made the signal, and its error; None of the cube.
         beat: raw echo [N_ADC, M] with static leakage and wall return, where asked for.
+        board: the board, or None.
+        frames: what its frames gave: {map name: FrameMaps}, and `cube`, `cloud`, `skeletons`,
+            `points_person` where asked for.
     """
 
     scene: Scene
@@ -67,6 +79,8 @@ class Simulation:
     seconds: dict[str, float]
     accuracy: Accuracy | None = None
     beat: Complex | None = None
+    board: Board | None = None
+    frames: dict[str, Any] = field(default_factory=dict, repr=False)
 
     @property
     def config(self) -> Config:
@@ -97,7 +111,7 @@ def simulate(
         index: number of the sample within its class.
         nominal: take the middle of every range instead of drawing.
         joint: keep this scatterer alone.
-        maps: which to compute; None is all that `processing.range_sum` allows, of the nine.
+        maps: which to compute; None is all that the config allows.
         raw: compute the raw beat matrix too, static returns included.
 
     Raises:
@@ -108,8 +122,11 @@ def simulate(
     """
     config = as_config(config)
     activity = activity_of(activity, config)
-    possible = possible_maps(config.processing)
+    possible = possible_maps(config)
     maps = possible if maps is None else maps
+    absent = [name for name in maps if name in FRAMES and name not in possible]
+    if absent:
+        raise ConfigError(f"{absent[0]} is of boards: the config has no radar.cfg (docs/boards.md)")
     if not set(maps) <= set(possible):
         raise ConfigError(
             "there is no fsst with processing.range_sum: gated, which sums bins without their "
@@ -120,7 +137,12 @@ def simulate(
     warnings = scene_warnings(scene)
     motion = motion_of(scene.people[0])
     kept = motion if joint is None else Only(motion, (_joint(joint, motion.names),))
-    asked = [*SIGNALS, *maps, "waveform", "antennas", "wall"]
+    board = config.radar.cfg is not None
+    frames = [product for name in maps for product in FRAMES.get(name, ())]
+    maps = tuple(name for name in maps if name not in FRAMES)
+    signals = SIGNALS[:1] if board else SIGNALS
+    asked = [*signals, *maps, *frames, "waveform", "antennas", "wall"]
+    asked += ["board"] if board else []
     asked += ["accuracy"] if config.engine.kind == "direct" else []
     asked += ["raw_echo"] if raw else []
     recorded = record(scene, asked, [RAW_ECHO], motions=(kept,))
@@ -138,13 +160,15 @@ def simulate(
         joint=None if joint is None else kept.names[0],
         maps={name: recorded[name] for name in maps},
         signals={
-            name.removeprefix("signal").lstrip("_") or "raw": recorded[name] for name in SIGNALS
+            name.removeprefix("signal").lstrip("_") or "raw": recorded[name] for name in signals
         },
         truth=truth(motion, recorded["antennas"], recorded["wall"], recorded["waveform"]),
         warnings=warnings,
         seconds=recorded.seconds,
         accuracy=accuracy if isinstance(accuracy, Accuracy) else None,
         beat=recorded["raw_echo"] if raw else None,
+        board=recorded["board"] if board else None,
+        frames={name: recorded[name] for name in frames},
     )
 
 
@@ -167,12 +191,12 @@ def map_names(chosen: list[str]) -> tuple[str, ...]:
     Raises:
         ConfigError: one is unknown.
     """
-    names = [name.strip() for name in chosen]
+    names, known = [name.strip() for name in chosen], (*MAP_NAMES, *FRAMES)
     for name in names:
-        if name not in MAP_NAMES:
-            hint = did_you_mean(name, MAP_NAMES, "there are " + ", ".join(MAP_NAMES))
+        if name not in known:
+            hint = did_you_mean(name, known, "there are " + ", ".join(known))
             raise ConfigError(f"{name!r} {ABSENT.get(name, f'is not a map; {hint}')}")
-    return tuple(name for name in MAP_NAMES if name in names)
+    return tuple(name for name in known if name in names)
 
 
 def raw_echo(

@@ -66,7 +66,7 @@ def test_a_simulated_recording_gives_the_maps_of_its_scene(
     scene = simulate(config, seed=3, raw=True)
     assert scene.beat is not None
     write_simulated(tmp_path / "r.h5", scene.beat, scene.waveform, Label(label="walking"))
-    names = possible_maps(config.processing)
+    names = possible_maps(config)
     found = processed(tmp_path / "r.h5", config, *names).maps
     for name in names:
         one, other = found[name], scene.maps[name]

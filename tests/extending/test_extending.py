@@ -247,7 +247,7 @@ def test_an_impairment_between_echo_and_processing(engine: str) -> None:
 @pytest.mark.parametrize("processing", [{}, {"range_sum": "gated", "gate_m": (0.0, 3.0)}])
 def test_an_impairment_is_in_every_map_of_every_engine(processing: dict[str, object]) -> None:
     scenes = [with_engine(kind, clutter="none", **processing) for kind in ("direct", "cube")]
-    for name in possible_maps(scenes[0].config.processing):
+    for name in possible_maps(scenes[0].config):
         direct, cube = (
             record(scene, [name], [receiver_with(DcOffset())])[name].power.sum() for scene in scenes
         )

@@ -1,0 +1,280 @@
+"""The table of products of a board: channels, cube, frame maps, points, skeletons, signals."""
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from math import log10, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from radhar_cli.arrays import Complex, Float, Index
+from radhar_cli.config.schema import Config
+from radhar_cli.echo.cube import exact_cube, fast_cube
+from radhar_cli.echo.direct import Accuracy
+from radhar_cli.echo.paths import PathSource
+from radhar_cli.motion.protocol import Motion, remembered
+from radhar_cli.motion.reflectors import Reflectors
+from radhar_cli.pipeline.bodies import paths_of
+from radhar_cli.pipeline.motion_paths import point_delay
+from radhar_cli.pipeline.physics import (
+    board_of,
+    detection_of,
+    frames_of,
+    fsst_frames_of,
+    gate_in_windows,
+    noise_stream,
+)
+from radhar_cli.pipeline.plan import Product
+from radhar_cli.processing.best_points import best_points
+from radhar_cli.processing.canceller import NO_CANCELLER, MeanRemoval
+from radhar_cli.processing.frame_maps import FrameMaps, range_angle, range_doppler
+from radhar_cli.processing.frame_sheets import cloud_sheet, maps_sheet
+from radhar_cli.processing.frames import Frames
+from radhar_cli.processing.gate import Gate
+from radhar_cli.processing.points import Cloud, board_points
+from radhar_cli.processing.power_map import MapImage
+from radhar_cli.processing.range_compression import range_compression
+from radhar_cli.processing.signal import Signal
+from radhar_cli.radar.board import Board
+from radhar_cli.radar.wall import Wall
+from radhar_cli.randomness import NOISE, stream
+from radhar_cli.receiver.noise import circular_gaussian, noise_variance
+from radhar_cli.scene import Numbers, Scene
+
+BOLTZMANN_T0 = 1.380649e-23 * 290.0  # k T0, W/Hz
+VELOCITY_STEP_S = 1e-3
+NEAR_M = 0.5  # of a point from a joint of the person whose it is
+
+
+class Echo(NamedTuple):
+    """The echo of a board without noise.
+
+    Attributes:
+        cube: samples [frame, loop, virtual, sample].
+        power: P_s of a sample, mean over frames, loops and channels.
+        error_db: of the fast sum, measured; None of the exact one.
+    """
+
+    cube: Complex
+    power: float
+    error_db: float | None
+
+
+class Skeletons(NamedTuple):
+    """Joints of everybody in the middle of each frame's chirps, as the radar sees them.
+
+    Attributes:
+        positions, velocities: [frame, person, joint, 3], m and m/s; ahead, left, up.
+        names: of the joints.
+    """
+
+    positions: Float
+    velocities: Float
+    names: tuple[str, ...]
+
+
+def board_products(c: Config, entropy: bool = True) -> Iterator[Product]:
+    """Rows of the table that a config with `radar.cfg` has."""
+    seen = ("scene", "motions", "board", "wall", *(("room",) if c.room.reflectors else ()))
+    still = c.processing.clutter == "mean"
+    does = "canceller of each frame"
+    yield Product("board", ("scene",), lambda scene: board_of(scene.config), "array and chirps")
+    yield Product("channels", seen, channels, "paths of every virtual channel")
+    made = "sums in matrix products" if c.engine.kind == "direct" else "exact sums"
+    yield Product("echo", ("channels", "board"), partial(_echo, c), f"raw samples, {made}")
+    yield Product("accuracy", ("echo",), _accuracy, "its measured error")
+    yield Product("signal_power", ("echo",), lambda echo: echo.power, "P_s, for snr_db")
+    yield Product("noise_sigma", ("echo", "board", "scene"), _sigma, "of a raw sample")
+    needs = ("echo", "noise_sigma", "board", "scene")
+    yield Product("cube", needs, _received, "raw samples with noise and channel errors")
+    yield Product(
+        "range_doppler",
+        ("cube", "board"),
+        lambda cube, board: range_doppler(cube, board, still),
+        "range-Doppler maps of the frames",
+    )
+    for axis, name in enumerate(("range_azimuth", "range_elevation")):
+        make = partial(_range_angle, still, axis)
+        yield Product(name, ("cube", "board"), make, f"{name.replace('_', '-')} maps of the frames")
+    chain = f"points of the frames, chain: {c.cloud.chain}"
+    yield Product("cloud", ("cube", "board", "scene", "noise_sigma"), _cloud, chain)
+    yield Product("points", ("cloud",), lambda cloud: cloud.points, "of all frames")
+    yield Product("points_start", ("cloud",), lambda cloud: cloud.start, "first of each frame")
+    yield Product("skeletons", ("motions", "board"), skeletons_of, "joints in each frame's middle")
+    yield Product("skeleton", ("skeletons",), lambda s: s.positions, "positions of joints")
+    yield Product("skeleton_velocity", ("skeletons",), lambda s: s.velocities, "their velocities")
+    yield Product("points_person", ("cloud", "skeletons"), persons_of, "whose each point is")
+    yield Product("canceller", (), lambda: MeanRemoval() if still else NO_CANCELLER, does)
+    yield Product("slow_time", ("board_bins",), lambda x: x.summed(), "sum over range, uncancelled")
+    yield Product("board_bins", ("cube", "board"), range_bins, "range bins of every channel")
+    yield Product(
+        "range_signals",
+        ("board_bins", "canceller"),
+        lambda x, canceller: x.cancelled(canceller),
+        "its range bins after the canceller",
+    )
+    yield Product("signal", ("range_signals",), lambda x: x.summed(), "their coherent sum")
+    width = c.image.size_px[1]
+    yield Product("range_profiles", ("range_signals",), lambda x: x.columns(width), "some pulses")
+    yield Product("torso_track", ("motions", "board", "wall"), torso_track, "delay of the torso")
+    if c.processing.range_sum == "gated":
+        of_gate = ("board_bins", "range_signals", "frames", "torso_track")
+        yield Product("gate", of_gate, partial(_gate, c), "range bins of each window")
+    for name in ("range_doppler", "range_azimuth", "range_elevation"):
+        sheet = partial(
+            maps_sheet,
+            size=c.image.size_px,
+            dynamic_range_db=c.image.dynamic_range_db,
+            entropy=entropy,
+        )
+        yield Product(f"image:{name}", (name,), sheet, "sheet of frames")
+    shown = ("cloud", "skeletons", "motions")
+    yield Product("image:points", shown, partial(_points_sheet, c), "front views of frames")
+    for name, of in (("frames", frames_of), ("fsst_frames", fsst_frames_of)):
+        yield Product(name, ("board",), partial(_windows, c, of), "windows, within frames")
+
+
+def channels(
+    scene: Scene,
+    motions: tuple[Motion, ...],
+    board: Board,
+    wall: Wall | None,
+    room: Reflectors | None = None,
+) -> list[PathSource]:
+    """The paths of every virtual channel; all are of the same motions, evaluated once."""
+    once = tuple(remembered(motion) for motion in motions)
+    return [
+        paths_of(scene, once, board.antennas(k, r), wall, board.seen_as, room)
+        for k, r in board.pairs
+    ]
+
+
+def _echo(c: Config, sources: list[PathSource], board: Board) -> Echo:
+    if c.engine.kind == "direct":
+        cube, power, error_db = fast_cube(sources, board, c.engine.tolerance_db)
+        if error_db <= c.engine.tolerance_db:
+            return Echo(cube, power, error_db)
+    cube, power = exact_cube(sources, board)
+    return Echo(cube, power, None)
+
+
+def _accuracy(echo: Echo) -> Accuracy:
+    single = echo.cube.dtype == np.complex64
+    return Accuracy(1, 1, single, float("-inf") if echo.error_db is None else echo.error_db)
+
+
+def _sigma(echo: Echo, board: Board, scene: Scene) -> float:
+    """Standard deviation of the noise of a raw sample, for unit transmit power; 0 without noise."""
+    config = scene.config
+    if config.snr_db is not None:
+        return sqrt(noise_variance(echo.power, Numbers(config).snr_db))
+    if config.receiver.noise_figure_db is None:
+        return 0.0
+    figure, power = (
+        Numbers(config.receiver).noise_figure_db,
+        Numbers(config.radar).transmit_power_dbm,
+    )
+    thermal_db = 10 * log10(BOLTZMANN_T0 * board.adc_rate) + figure
+    return float(10 ** ((thermal_db - power + 30) / 20))
+
+
+def _received(echo: Echo, sigma: float, board: Board, scene: Scene) -> Complex:
+    """The echo with errors of its channels and white noise."""
+    cube, receiver = echo.cube, Numbers(scene.config.receiver)
+    if receiver.channel_gain_db > 0 or receiver.channel_phase_deg > 0:
+        name = "receiver.channel_errors"
+        whole = receiver.channel_errors == "data_set"
+        rng = stream(scene.config.seed, NOISE, name=name) if whole else noise_stream(scene, name)
+        gain_db, phase = rng.standard_normal((2, board.channels))
+        gain_db, phase = gain_db * receiver.channel_gain_db, phase * receiver.channel_phase_deg
+        errors = 10 ** (gain_db / 20) * np.exp(1j * np.radians(phase))
+        cube = cube * errors[:, None].astype(cube.dtype)
+    if sigma > 0:
+        rng = noise_stream(scene, "cube")
+        noisy = np.empty_like(cube)
+        for frame, samples in enumerate(cube):
+            noisy[frame] = circular_gaussian(rng, samples.shape, single=True)
+            noisy[frame] *= np.float32(sigma)
+            noisy[frame] += samples
+        return noisy
+    return cube
+
+
+def _range_angle(still: bool, axis: int, cube: Complex, board: Board) -> FrameMaps:
+    return range_angle(cube, board, still, axis)
+
+
+def _cloud(cube: Complex, board: Board, scene: Scene, sigma: float) -> Cloud:
+    return cloud_of(cube, board, scene.config, sigma)
+
+
+def cloud_of(cube: Complex, board: Board, config: Config, sigma: float) -> Cloud:
+    """The points of a cube by the chain of a config, sigma the noise of a raw sample."""
+    cloud, detection = config.cloud, detection_of(config)
+    carrier = board.start if cloud.doppler_carrier == "start" else None
+    if cloud.chain == "board":
+        return board_points(cube, board, detection, sigma if cloud.quantise else None, carrier)
+    still = config.processing.clutter == "mean"
+    return best_points(cube, board, still, cloud.pfa, carrier, detection.bias)
+
+
+def skeletons_of(motions: tuple[Motion, ...], board: Board) -> Skeletons:
+    """Joints of everybody; NaN where one has fewer than another."""
+    names = motions[0].names
+    shape = (board.frames, len(motions), len(names), 3)
+    found = np.full((2, *shape), np.nan, np.float32)
+    t = board.middles
+    for person, motion in enumerate(motions):
+        before, at, after = (
+            board.aim.to_radar(motion.positions(t + step))
+            for step in (-VELOCITY_STEP_S, 0.0, VELOCITY_STEP_S)
+        )
+        joints = slice(min(len(names), at.shape[1]))
+        found[0, :, person, joints] = at[:, joints].T
+        found[1, :, person, joints] = ((after - before) / (2 * VELOCITY_STEP_S))[:, joints].T
+    return Skeletons(found[0], found[1], names)
+
+
+def persons_of(cloud: Cloud, skeletons: Skeletons) -> Index:
+    """Number of the person with the nearest joint [N]; -1 beyond NEAR_M."""
+    frame = np.repeat(np.arange(len(cloud.start) - 1), np.diff(cloud.start))
+    apart = skeletons.positions[frame] - cloud.points[:, None, None, :3]
+    distance = np.sqrt((apart**2).sum(axis=-1)).min(axis=2, initial=np.inf)  # [N, person]
+    nearest = distance.argmin(axis=1)
+    person: Index = np.where(distance.min(axis=1) <= NEAR_M, nearest, -1).astype(np.int16)
+    return person
+
+
+def range_bins(cube: Complex, board: Board) -> Signal:
+    """The range bins of every virtual channel, pulse by pulse."""
+    w = board.waveform
+    x = np.empty((board.channels, w.n_bins, board.frames * board.loops), cube.dtype)
+    for v in range(board.channels):
+        s = cube[:, :, v].reshape(-1, board.samples).T * board.signs[v]
+        x[v] = range_compression(s, w)
+    return Signal(x, board.pulses, w.f0, w.range_axis())
+
+
+def torso_track(motions: tuple[Motion, ...], board: Board, wall: Wall | None) -> Float:
+    """Delay of the first person's torso at every pulse of a channel [M], s."""
+    t = board.pulses.times(np.arange(board.frames * board.loops))
+    track: Float = point_delay(motions[0].torso(t), board.antennas(*board.pairs[0]), wall)[0]
+    return track
+
+
+def _windows(c: Config, of: Callable[..., Frames], board: Board) -> Frames:
+    """Windows of the Doppler maps: within frames, one of each where frames have gaps between."""
+    whole = of(c, board.frames * board.period, 1 / board.loop, board.centre)
+    length = min(whole.length, board.loops)
+    gaps = len(board.pulses) > 1
+    return Frames(length, board.loops if gaps else min(whole.hop, length))
+
+
+def _gate(c: Config, x: Signal, after: Signal, frames: Frames, track: Float) -> Gate:
+    return gate_in_windows(c, after, frames, x.t, track)
+
+
+def _points_sheet(
+    c: Config, cloud: Cloud, skeletons: Skeletons, motions: tuple[Motion, ...]
+) -> MapImage:
+    return cloud_sheet(cloud, skeletons.positions, motions[0].parents, c.image.size_px)

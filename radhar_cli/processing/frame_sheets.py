@@ -1,0 +1,96 @@
+"""Sheets of frames: one image a sample of a board's maps, points and skeletons, for looking."""
+
+from math import ceil, nan, sqrt
+from typing import TypeAlias
+
+import numpy as np
+from PIL import Image, ImageDraw
+
+from radhar_cli.arrays import Float, Index
+from radhar_cli.processing.entropy import entropy_bits
+from radhar_cli.processing.frame_maps import FrameMaps
+from radhar_cli.processing.image import binary_exponent, levels, reduced
+from radhar_cli.processing.points import Cloud
+from radhar_cli.processing.power_map import MapImage
+
+MOST_TILES = 16
+BONE, LEAST, GAP = 70, 120, 1  # grey of bones, of the weakest point; pixels between tiles
+FRONT_M = ((-1.25, 1.25), (-1.25, 1.25))  # what is shown to the left and up of the radar
+Size: TypeAlias = tuple[int, int]
+
+
+def _tiles(frames: int, size: Size) -> tuple[Index, list[tuple[slice, slice]]]:
+    """Frames to show, spread evenly, and their places row by row."""
+    across = ceil(sqrt(min(frames, MOST_TILES)))
+    shown = np.unique(np.linspace(0, frames - 1, min(frames, across * across)).round().astype(int))
+    rows = np.linspace(0, size[0], across + 1).astype(int).tolist()
+    columns = np.linspace(0, size[1], across + 1).astype(int).tolist()
+
+    def tile(n: int) -> tuple[slice, slice]:
+        y, x = divmod(n, across)
+        return slice(rows[y], rows[y + 1] - GAP), slice(columns[x], columns[x + 1] - GAP)
+
+    return shown, [tile(n) for n in range(shown.size)]
+
+
+def maps_sheet(
+    maps: FrameMaps, size: Size, dynamic_range_db: float, entropy: bool = True
+) -> MapImage:
+    """Frames side by side, in decibels below the peak of all of them; row 0 is the farthest.
+
+    Args:
+        maps: of all frames.
+        size: (height, width).
+        dynamic_range_db: of the grey levels.
+        entropy: whether that of the power is asked for.
+    """
+    shown, places = _tiles(len(maps.power), size)
+    cells = np.zeros(size, np.float32)
+    scaled = np.ldexp(maps.power[shown].astype(float), -binary_exponent(maps.power))
+    for power, (rows, columns) in zip(scaled, places, strict=True):
+        shape = rows.stop - rows.start, columns.stop - columns.start
+        if min(shape) > 0:
+            cells[rows, columns] = reduced([power.T], power.shape[1], shape, None, False).cells
+    extent = (*maps.columns.edges, *maps.rows.edges)
+    bits = entropy_bits(maps.power) if entropy else nan
+    return MapImage(levels(cells, dynamic_range_db), bits, extent)
+
+
+def cloud_sheet(
+    cloud: Cloud, skeletons: Float, parents: tuple[int | None, ...], size: Size
+) -> MapImage:
+    """Front views of frames side by side, as the radar sees them: points over the skeletons.
+
+    Args:
+        cloud: the points.
+        skeletons: positions of joints [frame, person, joint, 3], m.
+        parents: of the joints.
+        size: (height, width).
+    """
+    shown, places = _tiles(len(cloud.start) - 1, size)
+    sheet = np.zeros(size, np.uint8)
+    strongest = cloud.points[:, 4].max(initial=1e-30)
+    for frame, (rows, columns) in zip(shown, places, strict=True):
+        shape = rows.stop - rows.start, columns.stop - columns.start
+        if min(shape) <= 0:
+            continue
+        image = Image.new("L", shape[::-1])
+        draw = ImageDraw.Draw(image)
+        for joints in _pixels(skeletons[frame], shape):
+            for joint, parent in enumerate(parents):
+                if parent is not None and np.isfinite(joints[[joint, parent]]).all():
+                    draw.line([*joints[joint], *joints[parent]], fill=BONE)
+        points = cloud.points[cloud.start[frame] : cloud.start[frame + 1]]
+        grey = LEAST + (255 - LEAST) * (points[:, 4] / strongest) ** 0.25
+        for (x, y), level in zip(_pixels(points[:, :3], shape), grey.astype(int), strict=True):
+            draw.rectangle([x, y, x + 1, y + 1], fill=int(level))
+        sheet[rows, columns] = np.asarray(image)
+    return MapImage(sheet, entropy_bits(sheet.astype(float)), (*FRONT_M[0], *FRONT_M[1]))
+
+
+def _pixels(p: Float, shape: Size) -> Float:
+    """Places (x, y) [..., 2] of points [..., 3] in a front view; left of the radar is left."""
+    (right, left), (low, high) = FRONT_M
+    x = (left - p[..., 1]) / (left - right) * (shape[1] - 1)
+    y = (high - p[..., 2]) / (high - low) * (shape[0] - 1)
+    return np.stack([x, y], axis=-1)

@@ -1,0 +1,60 @@
+"""What the .cfg of a TI board says of detection (mmWave SDK user guide, "CLI")."""
+
+from dataclasses import dataclass
+from math import ceil, log2, log10
+from typing import NamedTuple
+
+CA, CAGO, CASO = range(3)
+
+
+class Cfar(NamedTuple):
+    """One `cfarCfg`: averaging of decibels along an axis.
+
+    Attributes:
+        mode: CA, CAGO or CASO.
+        window, guard: cells on each side.
+        cyclic: whether the axis closes.
+        threshold_db: over the average.
+    """
+
+    mode: int
+    window: int
+    guard: int
+    cyclic: bool
+    threshold_db: float
+
+
+@dataclass(frozen=True)
+class Detection:
+    """What a .cfg says of detection.
+
+    Attributes:
+        along_range, along_doppler: the CFAR; both must fire where there are two.
+        grouping: whether peaks alone are kept, along range, along Doppler.
+        first_bin, last_bin: ranges that points may have.
+        second_peak: least height of a second peak over angle, over the first; None is no second.
+        remove_mean: take out what stands still.
+        bias: range bias, m.
+        coefficients: of the virtual channels [V], complex.
+        azimuth_deg, elevation_deg, range_m, doppler_mps: fields of view, or None.
+    """
+
+    along_range: Cfar
+    along_doppler: Cfar | None = None
+    grouping: tuple[bool, bool] = (False, False)
+    first_bin: int = 0
+    last_bin: int | None = None
+    second_peak: float | None = None
+    remove_mean: bool = False
+    bias: float = 0.0
+    coefficients: tuple[complex, ...] = ()
+    azimuth_deg: tuple[float, float] | None = None
+    elevation_deg: tuple[float, float] | None = None
+    range_m: tuple[float, float] | None = None
+    doppler_mps: tuple[float, float] | None = None
+
+
+def ti_threshold_db(value: float, channels: int) -> float:
+    """Threshold of cfarCfg of SDK 1 and 2: 512 an octave, of sums over 2^ceil(log2 n) channels."""
+    octaves: float = value / (512 * channels / 2 ** ceil(log2(channels)))
+    return octaves * 20 * log10(2)

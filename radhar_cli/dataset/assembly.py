@@ -293,12 +293,9 @@ def _describe_map(
     start, stop, low, high = next(iter(extents)) if same else [np.nan] * 4
     (rows, unit), (across, column_unit), image = row_axis(name), column_axis(name), config.image
     decibel, sheet = image.kind == "decibel", name in FRAME_MAPS
+    sides = "time" if across == TIME[0] else across
     described = {
-        "axes": [
-            "sample",
-            f"{rows} (row 0 is the highest)",
-            "time" if across == TIME[0] else across,
-        ],
+        "axes": ["sample", f"{rows} (row 0 is the highest)", sides],
         "row_quantity": rows,
         "row_unit": unit,
         "row_top": high,

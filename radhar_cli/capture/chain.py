@@ -5,7 +5,8 @@ times. Powers of several receivers are added up.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -16,13 +17,14 @@ from radhar_cli.capture.tracking import TorsoTrack, track_torso, without_static
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import CaptureError
 from radhar_cli.phasor import unit_phasor
-from radhar_cli.pipeline.physics import canceller_of, frames_of, fsst_frames_of
+from radhar_cli.pipeline.physics import board_of, canceller_of, frames_of, fsst_frames_of
 from radhar_cli.pipeline.run import process
 from radhar_cli.processing.canceller import NO_CANCELLER, Canceller
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.signal import Signal, nearest
+from radhar_cli.radar.board import Board
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
@@ -31,7 +33,7 @@ PIECE_SAMPLES = 2**20
 MIN_FRAME_PULSES = 8  # pulses of a window
 
 
-@dataclass(frozen=True)
+@dataclass
 class Maps:
     """What was made of a recording, or of a stretch of it.
 
@@ -40,12 +42,15 @@ class Maps:
         track: of the torso; None of slow time, and where nothing moves.
         f0: frequency at which the Doppler is read, Hz.
         notes: what was shortened, filled in or not found, in words.
+        frames: {product: what a board's frames gave}, and the board, where there is one.
     """
 
     maps: dict[str, PowerMap]
     track: TorsoTrack | None
     f0: float
     notes: list[str]
+    frames: dict[str, Any] = field(default_factory=dict)
+    board: Board | None = None
 
 
 def maps_of(
@@ -100,6 +105,8 @@ def maps_of(
             recording.info.waveform(processing.range_fft_length, centred),
             duration=segments.pulses / prf,
         )
+        if config.radar.cfg is not None:  # whose samples have no half band
+            waveform = replace(board_of(config).waveform, centred=centred)
         x = filled(bins_of_part(recording, waveform, chosen, first, last), lost)
         track = track_torso(without_static(x), segments, waveform)
         notes += [] if track else ["nothing moves: no torso was found"]

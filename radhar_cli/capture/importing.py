@@ -258,25 +258,40 @@ def _info(
     )
 
 
-def write_simulated(out: Path, beat: Complex, waveform: Waveform, label: Label) -> RecordingInfo:
-    """Write a simulated beat matrix [N_ADC, M] as a recording.
+def write_simulated(
+    out: Path,
+    beat: Complex,
+    waveform: Waveform,
+    label: Label,
+    segments: PulseTimes | None = None,
+    delays: Sequence[float] = (0.0,),
+) -> RecordingInfo:
+    """Write simulated samples as a recording.
+
+    Args:
+        out: the file.
+        beat: [receiver, N_ADC, M].
+        waveform: its chirps.
+        label: of all of it.
+        segments: of the pulses; None has no gap.
+        delays: of each receiver's pulses, s.
 
     Raises:
         UnfinishedError: it cannot be written.
     """
-    samples, pulses = beat.shape
+    receivers, samples, pulses = beat.shape
+    segments = segments or PulseTimes.even(pulses, waveform.prf)
     info = RecordingInfo(
         carrier_hz=waveform.fc,
         prf_hz=waveform.prf,
         bandwidth_hz=waveform.slope * samples / waveform.adc_rate,
         adc_rate_hz=waveform.adc_rate,
         samples=samples,
-        receivers=1,
+        receivers=receivers,
         pulses=pulses,
-        receiver_delay_s=[0.0],
+        receiver_delay_s=[*delays],
         labels=[label],
         source=SourceNote(format="simulated"),
     )
-    values = np.ascontiguousarray(beat).view(float).reshape(1, samples, pulses, 2)
-    segments = PulseTimes(np.zeros(1), np.zeros(1, np.int64), pulses, waveform.prf)
+    values = np.ascontiguousarray(beat).view(beat.real.dtype).reshape(*beat.shape, 2)
     return write_recording(out, info, values.dtype, 2, [(0, values)], segments)

@@ -13,12 +13,14 @@ from radhar_cli.capture.tracking import TorsoTrack
 from radhar_cli.config.identity import resolved
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import UnfinishedError
+from radhar_cli.figures.frames_panel import Frames, draw_frames
 from radhar_cli.figures.maps_panel import Shown, draw_maps
 from radhar_cli.new_hdf5 import new_hdf5
 from radhar_cli.replacing import replacing
+from radhar_cli.simulation.board_file import write_frames
 from radhar_cli.simulation.scene_file import write_map
 
-FILES = MAPS_FILE, FIGURE = "maps.h5", "maps.png"
+FILES = MAPS_FILE, FIGURE, FRAMES = "maps.h5", "maps.png", "frames.png"
 SURE = 0.5  # confidence from which the track is drawn as found
 TRACK_UNITS = {
     "time": "s",
@@ -40,6 +42,8 @@ def write_maps(maps: Maps, config: Config, info: RecordingInfo, folder: Path) ->
         with replacing(path) as unfinished, new_hdf5(unfinished, path) as (file, _):
             for name, power_map in maps.maps.items():
                 write_map(file, name, power_map)
+            if maps.board is not None:
+                write_frames(file, maps.frames, maps.board, config)
             if maps.track is not None:
                 for name, unit in TRACK_UNITS.items():
                     file[f"track/{name}"] = getattr(maps.track, name)
@@ -53,8 +57,19 @@ def write_maps(maps: Maps, config: Config, info: RecordingInfo, folder: Path) ->
     return [path]
 
 
-def draw(maps: Maps, config: Config, title: str, path: Path) -> None:
-    """Write maps.png: every map, with the torso's track over the range-time map."""
+def draw(maps: Maps, config: Config, title: str, folder: Path) -> list[Path]:
+    """Write maps.png, every map with the torso's track over the range-time map, and frames.png."""
+    drawn = []
+    if maps.maps:
+        _draw_maps(maps, config, title, folder / FIGURE)
+        drawn.append(folder / FIGURE)
+    if maps.board is not None and maps.frames.keys() - {"cube"}:
+        draw_frames(Frames(maps.frames, maps.board, config.image, title), folder / FRAMES)
+        drawn.append(folder / FRAMES)
+    return drawn
+
+
+def _draw_maps(maps: Maps, config: Config, title: str, path: Path) -> None:
     track = maps.track
     last = max((one.rows.values[-1] for name, one in maps.maps.items() if name == "rtm"), default=1)
     far = last if track is None else 1.3 * float(track.range.max()) + 0.5

@@ -38,6 +38,7 @@ def process(
       radhar process walk.h5 --config configs/paper/free_space.yaml --maps rtm,stft -o out/walk
     """
     from radhar_cli.capture import maps_file
+    from radhar_cli.capture.board_frames import OF_FRAMES, frames_of_recording
     from radhar_cli.capture.chain import maps_of
     from radhar_cli.capture.recording import Recording
     from radhar_cli.config import load_config
@@ -51,9 +52,13 @@ def process(
     refuse_file(out)
     for name in maps_file.FILES:
         refuse_links(out, out / name)
+    frames = [product for name in names for product in OF_FRAMES.get(name, ())]
+    signals = tuple(name for name in names if name not in OF_FRAMES)
     with Recording(recording) as opened:
         info, gaps = opened.info, len(opened.segments) - 1
-        made = maps_of(opened, loaded, names, start, stop, receiver)
+        made = maps_of(opened, loaded, signals, start, stop, receiver)
+        if frames:
+            made.frames, made.board = frames_of_recording(opened, loaded, frames, start, stop)
     if gaps:
         tell(f"{gaps} gap{'s' * (gaps > 1)}: the stretches between are processed separately")
     for note in [*unused_keys(loaded.model_copy(update={"maps": names})), *made.notes]:
@@ -63,8 +68,7 @@ def process(
         labels = ", ".join(one.label for one in info.labels) or "no label"
         title = f"{recording.name}   |   {labels}   |   {info.carrier_hz / 1e9:g} GHz"
         title += f", PRF {info.prf_hz:.6g} Hz"
-        maps_file.draw(made, loaded, title, out / maps_file.FIGURE)
-        written.append(out / maps_file.FIGURE)
+        written += maps_file.draw(made, loaded, title, out)
     if made.track is not None:
         track = made.track
         tell(

@@ -133,14 +133,20 @@ def _say(simulation: "Simulation", written: list[Path]) -> None:
 
 
 def _record(simulation: "Simulation", path: Path, sigmf: bool) -> list[Path]:
+    from radhar_cli.capture.board_frames import cube_recording
     from radhar_cli.capture.importing import write_simulated
     from radhar_cli.capture.recording import Label
     from radhar_cli.capture.sigmf_file import recording_or_sigmf
 
-    assert simulation.beat is not None
-    label = Label(label=simulation.activity.slug)
+    label, board = Label(label=simulation.activity.slug), simulation.board
     with recording_or_sigmf(path, sigmf) as (target, files):
-        write_simulated(target, simulation.beat, simulation.waveform, label)
+        if board is not None:
+            beat = cube_recording(simulation.frames["cube"])
+            delays = [k * board.slot for k, _ in board.pairs]
+            write_simulated(target, beat, simulation.waveform, label, board.pulses, delays)
+        else:
+            assert simulation.beat is not None
+            write_simulated(target, simulation.beat[None], simulation.waveform, label)
     return files
 
 
@@ -170,10 +176,11 @@ def _draw(simulation: "Simulation", out: Path, overlay: bool) -> list[Path]:
         if simulation.board is not None and simulation.frames.keys() - {"cube"}:
             from radhar_cli.figures import frames_panel
 
-            frames_panel.draw_frames(simulation, out / FRAMES)
+            frames = frames_panel.of_simulation(simulation)
+            frames_panel.draw_frames(frames, out / FRAMES)
             drawn.append(out / FRAMES)
             if "cloud" in simulation.frames:
                 bars.open(CLOUD, simulation.board.frames, "frame")
-                frames_panel.draw_cloud(simulation, out / CLOUD, bars.advance)
+                frames_panel.draw_cloud(frames, out / CLOUD, bars.advance)
                 drawn.append(out / CLOUD)
     return drawn

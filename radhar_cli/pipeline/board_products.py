@@ -97,7 +97,7 @@ def board_products(c: Config, entropy: bool = True) -> Iterator[Product]:
         make = partial(_range_angle, still, axis)
         yield Product(name, ("cube", "board"), make, f"{name.replace('_', '-')} maps of the frames")
     chain = f"points of the frames, chain: {c.cloud.chain}"
-    yield Product("cloud", ("cube", "board", "scene", "noise_sigma"), _cloud, chain)
+    yield Product("cloud", ("cube", "board"), partial(_cloud, c), chain)
     yield Product("points", ("cloud",), lambda cloud: cloud.points, "of all frames")
     yield Product("points_start", ("cloud",), lambda cloud: cloud.start, "first of each frame")
     yield Product("skeletons", ("motions", "board"), skeletons_of, "joints in each frame's middle")
@@ -204,17 +204,13 @@ def _range_angle(still: bool, axis: int, cube: Complex, board: Board) -> FrameMa
     return range_angle(cube, board, still, axis)
 
 
-def _cloud(cube: Complex, board: Board, scene: Scene, sigma: float) -> Cloud:
-    return cloud_of(cube, board, scene.config, sigma)
-
-
-def cloud_of(cube: Complex, board: Board, config: Config, sigma: float) -> Cloud:
-    """The points of a cube by the chain of a config, sigma the noise of a raw sample."""
-    cloud, detection = config.cloud, detection_of(config)
+def _cloud(c: Config, cube: Complex, board: Board) -> Cloud:
+    """The points of a cube by the chain of a config."""
+    cloud, detection = c.cloud, detection_of(c)
     carrier = board.start if cloud.doppler_carrier == "start" else None
     if cloud.chain == "board":
-        return board_points(cube, board, detection, sigma if cloud.quantise else None, carrier)
-    still = config.processing.clutter == "mean"
+        return board_points(cube, board, detection, cloud.quantise, carrier)
+    still = c.processing.clutter == "mean"
     return best_points(cube, board, still, cloud.pfa, carrier, detection.bias)
 
 

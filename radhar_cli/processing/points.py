@@ -24,6 +24,7 @@ BINS = 64  # of the angle FFT
 MAX_POINTS = 64  # first peaks of a frame
 NOISE_LSB = 1.5  # rms of a Doppler cell's noise in units of the fixed-point numbers
 XYZ_STEP = 2.0**-10  # m
+NOISE_FRAMES = 8  # that noise is estimated from
 
 
 class Cloud(NamedTuple):
@@ -49,7 +50,7 @@ def board_points(
     cube: Complex,
     board: Board,
     detection: Detection,
-    sigma: float | None,
+    quantise: bool,
     carrier: float | None = None,
 ) -> Cloud:
     """The points of every frame.
@@ -58,15 +59,12 @@ def board_points(
         cube: samples [frame, loop, virtual, sample].
         board: the radar.
         detection: thresholds and switches.
-        sigma: standard deviation of a raw sample's noise, which sets the unit of fixed-point
-            numbers; None leaves all rounding out.
+        quantise: round as fixed-point numbers do, whose unit follows from the noise.
         carrier: frequency of the Doppler axis, Hz; None is the centre frequency.
     """
     fast, slow = blackman(board.samples), hann(board.loops)
     fast, slow = fast / fast.sum(), slow / slow.sum()
-    lsb = None
-    if sigma is not None and sigma > 0:
-        lsb = sigma * float(np.sqrt((fast**2).sum() * (slow**2).sum())) / NOISE_LSB
+    lsb = noise_rms(cube, board, fast, slow) / NOISE_LSB if quantise else 0.0
     step = board.doppler_step(carrier)
     found = []
     for frame in range(len(cube)):
@@ -76,14 +74,26 @@ def board_points(
     return Cloud.of(found)
 
 
+def noise_rms(cube: Complex, board: Board, fast: Float, slow: Float) -> float:
+    """Rms of the noise of a range-Doppler cell: people fill less than half of the cells.
+
+    Args:
+        cube: samples [frame, loop, virtual, sample].
+        board: the radar.
+        fast, slow: windows, whose sums are 1.
+    """
+    some = np.unique(np.linspace(0, len(cube) - 1, min(len(cube), NOISE_FRAMES)).astype(int))
+    x = doppler_spectrum(range_spectrum(cube[some], board, fast), board, slow, False)
+    moving = x[:, 2:-1] if board.n_doppler > 4 else x  # what stands still fills three bins
+    return float(np.sqrt(np.median(moving.real**2 + moving.imag**2) / np.log(2)))
+
+
 def _negated(board: Board) -> Index:
     """Doppler bins in TI's order: the conjugate of a signal has the opposite frequency."""
     return -np.arange(board.n_doppler) % board.n_doppler
 
 
-def _frame_points(
-    x: Complex, board: Board, detection: Detection, lsb: float | None, step: float
-) -> Float:
+def _frame_points(x: Complex, board: Board, detection: Detection, lsb: float, step: float) -> Float:
     """Points [n, 8] of a spectrum [Doppler, virtual, range] of TI's sign."""
     with np.errstate(divide="ignore"):
         d = np.mean(20 * np.log10(np.abs(x)), axis=1)  # [Doppler, range]
@@ -98,16 +108,16 @@ def _frame_points(
         hit[:, detection.last_bin + 1 :] = False
     doppler, ranges = (found[:MAX_POINTS] for found in np.nonzero(hit))
     symbols = x[doppler, :, ranges]  # [n, virtual]
-    if lsb is not None:
+    if lsb > 0:
         symbols = np.round(symbols.real / lsb) + 1j * np.round(symbols.imag / lsb)
     if detection.coefficients:
         symbols = symbols * np.array(detection.coefficients)
     signed = np.where(doppler < board.n_doppler / 2, doppler, doppler - board.n_doppler)
     turn = signed[:, None] / board.n_doppler * board.turns
     symbols = symbols * np.exp(-2j * np.pi * turn)
-    if lsb is not None:
+    if lsb > 0:
         symbols = np.trunc(symbols.real) + 1j * np.trunc(symbols.imag)
-    angles = [_angles(one, board, detection.second_peak, lsb is not None) for one in symbols]
+    angles = [_angles(one, board, detection.second_peak, lsb > 0) for one in symbols]
     first = [(n, *found[0]) for n, found in enumerate(angles)]
     second = [(n, *one) for n, found in enumerate(angles) for one in found[1:]]
     rows = []
@@ -116,7 +126,7 @@ def _frame_points(
         x_right, z = r * right, r * up
         y_ahead = np.sqrt(max(r * r - x_right * x_right - z * z, 0.0))
         place = np.array([y_ahead, -x_right, z])
-        if lsb is not None:
+        if lsb > 0:
             place = np.round(place / XYZ_STEP) * XYZ_STEP
         about = (-signed[n] * step, intensity, snr[doppler[n], ranges[n]], ranges[n], -signed[n])
         rows.append((*place, *about))

@@ -141,10 +141,11 @@ def simulate(
     frames = [product for name in maps for product in FRAMES.get(name, ())]
     maps = tuple(name for name in maps if name not in FRAMES)
     signals = SIGNALS[:1] if board else SIGNALS
+    frames += ["cube"] if board and raw and "cube" not in frames else []
     asked = [*signals, *maps, *frames, "waveform", "antennas", "wall"]
     asked += ["board"] if board else []
     asked += ["accuracy"] if config.engine.kind == "direct" else []
-    asked += ["raw_echo"] if raw else []
+    asked += ["raw_echo"] if raw and not board else []
     recorded = record(scene, asked, [RAW_ECHO], motions=(kept,))
     accuracy: EchoAccuracy | None = recorded.products.get("accuracy")
     if isinstance(accuracy, Fallback):
@@ -166,7 +167,7 @@ def simulate(
         warnings=warnings,
         seconds=recorded.seconds,
         accuracy=accuracy if isinstance(accuracy, Accuracy) else None,
-        beat=recorded["raw_echo"] if raw else None,
+        beat=recorded["raw_echo"] if raw and not board else None,
         board=recorded["board"] if board else None,
         frames={name: recorded[name] for name in frames},
     )

@@ -65,7 +65,7 @@ def test_a_simulated_recording_gives_the_maps_of_its_scene(
     config = config_of(tmp_path, *overrides)
     scene = simulate(config, seed=3, raw=True)
     assert scene.beat is not None
-    write_simulated(tmp_path / "r.h5", scene.beat, scene.waveform, Label(label="walking"))
+    write_simulated(tmp_path / "r.h5", scene.beat[None], scene.waveform, Label(label="walking"))
     names = possible_maps(config)
     found = processed(tmp_path / "r.h5", config, *names).maps
     for name in names:
@@ -173,7 +173,7 @@ def recorded(folder: Path) -> tuple[Config, Simulation]:
     config = config_of(folder)
     scene = simulate(config, seed=3, raw=True, maps=("stft",))
     assert scene.beat is not None
-    write_simulated(folder / "r.h5", scene.beat, scene.waveform, Label(label="walking"))
+    write_simulated(folder / "r.h5", scene.beat[None], scene.waveform, Label(label="walking"))
     return config, scene
 
 

@@ -41,7 +41,7 @@ def recorded(folder: Path, *sets: str, activity: str = "punching", seed: int = 1
     scene = simulated(folder, activity, seed, *sets)
     assert scene.beat is not None
     path = folder / f"{len([*folder.glob('*.h5')])}.h5"
-    write_simulated(path, scene.beat, scene.waveform, Label(label=activity))
+    write_simulated(path, scene.beat[None], scene.waveform, Label(label=activity))
     return path
 
 
@@ -78,7 +78,9 @@ def test_an_empty_room_is_refused_as_nobody_moves(tmp_path: Path) -> None:
     assert alone.beat is not None
     still = alone.beat.mean(axis=1, keepdims=True)  # the same person, taken out; the leakage stays
     empty = tmp_path / "empty.h5"
-    write_simulated(empty, scene.beat - alone.beat + still, scene.waveform, Label(label="empty"))
+    write_simulated(
+        empty, (scene.beat - alone.beat + still)[None], scene.waveform, Label(label="empty")
+    )
     with pytest.raises(CaptureError, match="nobody moves"):
         fit([empty])
     person = recorded(tmp_path, "snr_db=20")

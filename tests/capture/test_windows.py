@@ -40,7 +40,7 @@ def recordings(tmp_path_factory: pytest.TempPathFactory) -> Path:
             scene = simulate(config, slug, person, maps=("stft",), raw=True)
             assert scene.beat is not None
             name = f"p{person}/{slug}.h5"
-            write_simulated(folder / name, scene.beat, scene.waveform, Label(label=slug))
+            write_simulated(folder / name, scene.beat[None], scene.waveform, Label(label=slug))
             label = "drinking" if slug == "kicking" else slug
             rows.append({"file": name, "label": label, "person": f"P{person}", "stop": ""})
     rows[0] |= {"stop": "2"}

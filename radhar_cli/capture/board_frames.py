@@ -1,0 +1,81 @@
+"""Frames of a recording of a board: cube, frame maps and points, by the chain of simulations."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from radhar_cli.arrays import Complex
+from radhar_cli.capture.chain import pulses_between
+from radhar_cli.capture.recording import Recording
+from radhar_cli.config.schema import FRAME_MAPS, Config
+from radhar_cli.errors import CaptureError
+from radhar_cli.pipeline.physics import board_of
+from radhar_cli.pipeline.plan import plan
+from radhar_cli.pipeline.products import products
+from radhar_cli.pipeline.run import run
+from radhar_cli.radar.board import Board
+
+# {map of a board: products of its recording that are behind it}
+OF_FRAMES = {name: (name,) for name in (*FRAME_MAPS, "cube")} | {"points": ("cloud",)}
+SAME = 1e-6  # relative difference of frequencies and times that are the same
+
+
+def frames_of_recording(
+    recording: Recording,
+    config: Config,
+    asked: Sequence[str],
+    start: float | None = None,
+    stop: float | None = None,
+) -> tuple[dict[str, Any], Board]:
+    """{product: what its frames gave} of a recording, and the board with so many frames.
+
+    Args:
+        recording: an open one, of all virtual channels.
+        config: with the board's `radar.cfg`.
+        asked: products of a cube, such as range_doppler or cloud.
+        start, stop: which part, s; frames that are whole within it are used.
+
+    Raises:
+        CaptureError: the recording is not of this board.
+    """
+    board = _board(recording, config)
+    first, _, segments = pulses_between(recording, start, stop)
+    whole = segments.lengths == board.loops
+    if not whole.any():
+        raise CaptureError(f"{recording.path}: holds no whole frame of {board.loops} loops there")
+    board = replace(board, frames=int(whole.sum()))
+    cube = np.empty((board.frames, board.loops, board.channels, board.samples), np.complex64)
+    starts = first + segments.first[whole]
+    for frame, pulse in enumerate(starts.tolist()):
+        cube[frame] = recording.beat(pulse, pulse + board.loops).transpose(2, 0, 1)
+    given = {"cube": cube, "board": board}
+    return run(plan(products(config), asked, given), given).products, board
+
+
+def _board(recording: Recording, config: Config) -> Board:
+    """The board of a config, which must be the recording's."""
+    if config.radar.cfg is None:
+        raise CaptureError(f"{recording.path}: frames need the board's .cfg: radar.cfg")
+    board, info = board_of(config), recording.info
+    ours = {
+        "receivers": board.channels,
+        "samples": board.samples,
+        "carrier_hz": board.fc,
+        "bandwidth_hz": board.slope * board.samples / board.adc_rate,
+        "adc_rate_hz": board.adc_rate,
+        "prf_hz": 1 / board.loop,
+    }
+    for key, value in ours.items():
+        there = getattr(info, key)
+        if there is None or abs(there - value) > SAME * abs(value):
+            raise CaptureError(
+                f"{recording.path}: {key} = {there}: should be {value:.10g}, as radar.cfg has it"
+            )
+    return board
+
+
+def cube_recording(cube: Complex) -> Complex:
+    """A cube [frame, loop, virtual, sample] as a recording holds it: [virtual, sample, pulse]."""
+    return cube.reshape(-1, *cube.shape[2:]).transpose(1, 2, 0)

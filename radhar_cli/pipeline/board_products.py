@@ -9,7 +9,8 @@ import numpy as np
 
 from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.config.schema import Config
-from radhar_cli.echo.cube import exact_cube, fast_cube
+from radhar_cli.echo.accuracy import SPARE_DB
+from radhar_cli.echo.board_cube import exact_cube, fast_cube
 from radhar_cli.echo.direct import Accuracy
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.motion.protocol import Motion, remembered
@@ -152,7 +153,7 @@ def channels(
 def _echo(c: Config, sources: list[PathSource], board: Board) -> Echo:
     if c.engine.kind == "direct":
         cube, power, error_db = fast_cube(sources, board, c.engine.tolerance_db)
-        if error_db <= c.engine.tolerance_db:
+        if error_db <= c.engine.tolerance_db - SPARE_DB:
             return Echo(cube, power, error_db)
     cube, power = exact_cube(sources, board)
     return Echo(cube, power, None)
@@ -180,7 +181,8 @@ def _sigma(echo: Echo, board: Board, scene: Scene) -> float:
 
 def _received(echo: Echo, sigma: float, board: Board, scene: Scene) -> Complex:
     """The echo with errors of its channels and white noise."""
-    cube, receiver = echo.cube, Numbers(scene.config.receiver)
+    receiver = Numbers(scene.config.receiver)
+    cube: Complex = echo.cube
     if receiver.channel_gain_db > 0 or receiver.channel_phase_deg > 0:
         name = "receiver.channel_errors"
         whole = receiver.channel_errors == "data_set"
@@ -188,15 +190,15 @@ def _received(echo: Echo, sigma: float, board: Board, scene: Scene) -> Complex:
         gain_db, phase = rng.standard_normal((2, board.channels))
         gain_db, phase = gain_db * receiver.channel_gain_db, phase * receiver.channel_phase_deg
         errors = 10 ** (gain_db / 20) * np.exp(1j * np.radians(phase))
-        cube = cube * errors[:, None].astype(cube.dtype)
+        cube = np.multiply(cube, errors[:, None], dtype=cube.dtype, casting="same_kind")
     if sigma > 0:
         rng = noise_stream(scene, "cube")
-        noisy = np.empty_like(cube)
+        noisy: Complex = np.empty_like(echo.cube)
         for frame, samples in enumerate(cube):
             noisy[frame] = circular_gaussian(rng, samples.shape, single=True)
             noisy[frame] *= np.float32(sigma)
             noisy[frame] += samples
-        return noisy
+        cube = noisy
     return cube
 
 

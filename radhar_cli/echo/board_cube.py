@@ -19,7 +19,8 @@ from radhar_cli.radar.board import Board
 
 BLOCK_FRAMES = 16
 SINGLE_DB = -100.0  # tolerances below need double precision
-PROBES = 24
+PROBES = 48
+MARGIN_DB = 20.0
 MOST_TERMS = 24
 
 
@@ -99,7 +100,7 @@ def _terms(y: Float, tolerance_db: float) -> int:
     rest = np.ones_like(y)
     for q in range(1, MOST_TERMS):
         rest *= y / q
-        if float(np.mean(rest**2)) < 10 ** (tolerance_db / 10):
+        if float(np.mean(rest**2)) < 10 ** ((tolerance_db - MARGIN_DB) / 10):
             return q
     return MOST_TERMS
 

@@ -1,0 +1,77 @@
+"""The cube of a board: numbers of an independent reference, and the fast against the exact sum."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from radhar_cli.echo.accuracy import SPARE_DB
+from radhar_cli.echo.board_cube import exact_cube, fast_cube, measured_db
+from radhar_cli.radar.board import DEVICES
+from tests.boards import MARS, channels
+
+P, V, A = [(2, 0.3, -0.1), (1.5, -0.4, 0.6)], [(-1, 0.2, 0), (0.5, 0, 0.3)], [1, 0.5]
+# Of a program of other authors; [frame, loop, virtual, sample].
+KNOWN = {
+    (0, 0, 0, 0): -2.338012084294e-01 + 3.160266437939e-01j,
+    (0, 31, 11, 79): 2.792382471605e-01 - 7.927925464462e-02j,
+    (1, 0, 0, 0): 1.970900983800e-01 + 1.441892804927e-02j,
+    (1, 16, 5, 40): 2.919467935763e-02 + 1.950559592754e-01j,
+    (1, 31, 8, 79): 1.215679391962e-01 + 3.624585790791e-01j,
+}
+
+
+def test_samples_of_two_moving_scatterers() -> None:
+    cube, power = exact_cube(channels(MARS, P, V, A), MARS)
+    for index, value in KNOWN.items():
+        assert cube[index] == pytest.approx(value, abs=1e-9)
+    assert power == pytest.approx(0.0966, abs=1e-4)
+
+
+@pytest.mark.parametrize("tolerance", [-20.0, -60.0, -80.0, -99.0, -140.0, -200.0])
+@pytest.mark.parametrize("speed", [0.0, 1.0, 30.0])
+def test_the_fast_sum_keeps_its_tolerance_or_says_so(tolerance: float, speed: float) -> None:
+    rng = np.random.default_rng(1)
+    p, v = rng.normal((3, 0, 0), 0.3, (20, 3)), speed * rng.normal(size=(20, 3))
+    sources = channels(MARS, p, v, np.ones(20))
+    exact, power = exact_cube(sources, MARS)
+    cube, fast_power, measured = fast_cube(sources, MARS, tolerance)
+    error = 20 * np.log10(np.linalg.norm(cube - exact) / np.linalg.norm(exact))
+    assert error <= tolerance or (speed == 30 and measured > tolerance - SPARE_DB)
+    assert measured == pytest.approx(error, abs=10) or measured < -180
+    assert fast_power == pytest.approx(power, rel=1e-6)
+
+
+@given(
+    samples=st.integers(2, 200),
+    loops=st.integers(1, 9),
+    frames=st.integers(1, 20),
+    distance=st.floats(0.05, 500),
+)
+def test_any_shape_of_frames(samples: int, loops: int, frames: int, distance: float) -> None:
+    board = replace(MARS, samples=samples, loops=loops, frames=frames)
+    sources = channels(board, [(distance, 0, 0)], [(-1, 0.1, 0)], [distance**2])
+    exact, _ = exact_cube(sources, board)
+    cube, _, measured = fast_cube(sources, board, -60)
+    assert cube.shape == (frames, loops, 12, samples)
+    assert measured <= -60
+    assert np.abs(cube - exact).max() <= 2e-2 * np.abs(exact).max()
+
+
+def test_receivers_fed_the_other_way_round_change_their_sign() -> None:
+    board = replace(MARS, array=DEVICES["IWR6843ISK-ODS"])
+    same = replace(board, array=board.array._replace(rx_sign=(1.0,) * 4))
+    sources = channels(board, P, V, A)
+    signed, plain = exact_cube(sources, board)[0], exact_cube(sources, same)[0]
+    np.testing.assert_allclose(signed[:, :, 1::4], -plain[:, :, 1::4])
+    np.testing.assert_allclose(signed[:, :, 3::4], plain[:, :, 3::4])
+
+
+def test_an_echo_of_nothing_has_no_error() -> None:
+    sources = channels(MARS, P, V, [0, 0])
+    cube, power, measured = fast_cube(sources, MARS, -80)
+    assert not cube.any()
+    assert power == 0
+    assert measured == measured_db(cube, sources, MARS) == -np.inf

@@ -1,0 +1,220 @@
+"""Boards through a config: cube, noise, poses, skeletons, Doppler maps, and what is refused."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from radhar_cli.config import load_config
+from radhar_cli.config.schema import Config
+from radhar_cli.echo.beat import beat_matrix
+from radhar_cli.errors import ConfigError
+from radhar_cli.pipeline.physics import board_of
+from radhar_cli.pipeline.run import record
+from radhar_cli.scene import Scene, draw_scene
+from tests.boards import CFG, MARS
+
+C = 299792458.0
+QUIET = "receiver.noise_figure_db=null"
+
+YAML = """
+radar: {device: IWR1443BOOST, cfg: board.cfg, position_m: [0, 0, 1]}
+activities: [punching]
+motion: {range_m: 2.2}
+duration_s: 0.3
+samples_per_class: 2
+maps: [points]
+"""
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    (tmp_path / "board.cfg").write_text(CFG)
+    (tmp_path / "config.yaml").write_text(YAML)
+    return tmp_path / "config.yaml"
+
+
+def scene_of(path: Path, *overrides: str) -> Scene:
+    config = load_config(path, overrides)
+    return draw_scene(config, config.chosen_activities[0], 0)
+
+
+def made(path: Path, *names: str, overrides: tuple[str, ...] = ()) -> dict[str, Any]:
+    return record(scene_of(path, *overrides), names).products
+
+
+def test_a_config_gives_the_board_of_its_cfg(path: Path) -> None:
+    board = board_of(scene_of(path).config)
+    assert (board.fc, board.loops, board.frames, board.order) == (77.7e9, 32, 3, MARS.order)
+    assert board.position == (0, 0, 1)
+    assert board.gain == pytest.approx(10**0.9)
+
+
+def test_a_written_config_has_the_text_of_the_cfg_and_gives_the_same(path: Path) -> None:
+    from radhar_cli.config.identity import as_yaml
+
+    config = load_config(path)
+    assert config.radar.cfg == CFG
+    (path.parent / "again").mkdir()
+    again = path.parent / "again" / "config.yaml"
+    again.write_text(as_yaml(config))
+    assert load_config(again) == config
+
+
+def test_cube_is_the_sum_over_the_scatterers_of_every_channel(path: Path) -> None:
+    """Made anew from the joints of the motion, the antennas and the pattern."""
+    found = made(path, "cube", "board", "motions", overrides=(QUIET,))
+    board, motion = found["board"], found["motions"][0]
+    for frame, loop, v, (k, r) in [(0, 0, 0, (0, 0)), (2, 31, 11, (2, 3)), (1, 9, 6, (1, 2))]:
+        p = motion.positions(board.chirp_times()[frame, loop, k, None])
+        antennas = board.antennas(k, r)
+        legs = [np.linalg.norm(p[..., 0].T - one, axis=1) for one in (antennas.tx, antennas.rx)]
+        a = np.sqrt(motion.cross_sections(np.zeros(1))[:, 0]) * board.aim.two_way(p)[:, 0]
+        a *= board.gain * C / board.centre / (4 * np.pi) ** 1.5 / (legs[0] * legs[1])
+        tau = sum(legs) / C
+        right = beat_matrix(tau[:, None], a[:, None], board.waveform)[:, 0]
+        largest = np.abs(right).max()
+        np.testing.assert_allclose(found["cube"][frame, loop, v], right, atol=1e-4 * largest)
+
+
+def test_both_engines_agree_within_the_tolerance(path: Path) -> None:
+    fast = made(path, "cube", "accuracy", overrides=(QUIET,))
+    exact = made(path, "cube", overrides=(QUIET, "engine.kind=cube"))["cube"]
+    error = np.linalg.norm(fast["cube"] - exact) / np.linalg.norm(exact)
+    assert 20 * np.log10(error) < -80
+    assert fast["accuracy"].error_db < -80
+
+
+def test_the_radar_equation_gives_436_db_for_a_square_metre_at_a_metre(path: Path) -> None:
+    """12 dBm, 9 dBi each, noise figure 15 dB, 2.499 MHz."""
+    found = made(path, "noise_sigma", "board")
+    board = found["board"]
+    a = board.gain * (C / board.centre) / (4 * np.pi) ** 1.5
+    assert 20 * np.log10(a / found["noise_sigma"]) == pytest.approx(43.6, abs=0.05)
+
+
+def test_snr_is_of_a_raw_sample(path: Path) -> None:
+    found = made(path, "noise_sigma", "signal_power", "cube", "echo", overrides=("snr_db=10",))
+    assert found["signal_power"] / found["noise_sigma"] ** 2 == pytest.approx(10)
+    noise = found["cube"] - found["echo"].cube
+    assert np.mean(np.abs(noise) ** 2) == pytest.approx(found["noise_sigma"] ** 2, rel=0.02)
+
+
+def test_channels_have_noise_of_their_own(path: Path) -> None:
+    found = made(path, "cube", "echo", overrides=("snr_db=0",))
+    noise = (found["cube"] - found["echo"].cube).transpose(2, 0, 1, 3).reshape(12, -1)
+    correlation = np.abs(np.corrcoef(noise)) - np.eye(12)
+    assert correlation.max() < 0.05
+
+
+def test_errors_of_channels_stay_for_a_data_set_or_change_by_sample(path: Path) -> None:
+    errors = "receiver.channel_gain_db=1", "receiver.channel_phase_deg=20", QUIET
+    by_sample = "receiver.channel_errors=sample"
+
+    def of(index: int, *more: str) -> Any:
+        config = load_config(path, [*errors, *more])
+        found = record(draw_scene(config, config.chosen_activities[0], index), ["cube", "echo"])
+        return (found["cube"] / found["echo"].cube)[0, 0, :, 0]
+
+    np.testing.assert_allclose(of(0), of(1), rtol=1e-3)
+    assert np.abs(of(0, by_sample) - of(1, by_sample)).max() > 0.01
+    assert np.std(np.degrees(np.angle(of(0)))) > 5
+
+
+def test_a_board_that_is_moved_and_turned_sees_the_same_from_elsewhere(path: Path) -> None:
+    """Skeletons are as the radar sees them: a turn of the radar turns them back."""
+    straight = made(path, "skeleton")["skeleton"]
+    turned = made(path, "skeleton", overrides=("radar.yaw_deg=30", "radar.position_m=[0.5, 0, 1]"))
+    c, s = np.cos(np.pi / 6), np.sin(np.pi / 6)
+    back = np.array([[c, s], [-s, c]])
+    expected = (straight[..., :2] - [0.5, 0]) @ back.T
+    np.testing.assert_allclose(turned["skeleton"][..., :2], expected, atol=1e-5)
+    np.testing.assert_allclose(turned["skeleton"][..., 2], straight[..., 2], atol=1e-5)
+
+
+def test_skeletons_are_at_the_middle_of_the_chirps(path: Path) -> None:
+    found = made(path, "skeleton", "skeleton_velocity", "motions", "board")
+    t = np.arange(3) * 0.1 + 32 * 171e-6 / 2
+    p = found["motions"][0].positions(t).T - [0, 0, 1]
+    np.testing.assert_allclose(found["skeleton"][:, 0], p, atol=1e-6)
+    later = found["motions"][0].positions(t + 0.01).T - [0, 0, 1]
+    np.testing.assert_allclose(found["skeleton_velocity"][:, 0] * 0.01, later - p, atol=2e-3)
+
+
+def test_points_lie_on_the_person_and_say_whose_they_are(path: Path) -> None:
+    found = made(path, "cloud", "skeleton", "points_person", overrides=("duration_s=1.5",))
+    cloud = found["cloud"]
+    assert len(cloud.points) > 15
+    frame = np.repeat(np.arange(15), np.diff(cloud.start))
+    ways = cloud.points[:, None, :3] - found["skeleton"][frame, 0]
+    apart = np.linalg.norm(ways, axis=2).min(axis=1)
+    assert np.median(apart) < 0.1
+    np.testing.assert_array_equal(found["points_person"], np.where(apart <= 0.5, 0, -1))
+
+
+@pytest.mark.parametrize("names", [("stft", "rtm"), ("stft_compensated_denoised",)])
+@pytest.mark.parametrize("range_sum", ["gated", "coherent"])
+def test_doppler_maps_of_a_board(path: Path, names: tuple[str, ...], range_sum: str) -> None:
+    """A scatterer of known speed: one window a frame, at its Doppler, in every column."""
+    found = made(path, *names, overrides=(f"processing.range_sum={range_sum}", "duration_s=1"))
+    for name in names:
+        power_map = found[name]
+        assert np.isfinite(power_map.power).all()
+        if name != "rtm":
+            assert power_map.power.shape == (32, 10)
+            assert power_map.columns.values[1] - power_map.columns.values[0] == pytest.approx(0.1)
+            assert power_map.rows.values[-1] == pytest.approx(1 / (2 * 171e-6) * 15 / 16)
+
+
+def test_a_wall_and_a_room_are_seen_by_boards_too(path: Path) -> None:
+    free = made(path, "signal_power")["signal_power"]
+    wall = made(path, "signal_power", overrides=("wall={center_m: [1, 0, 1.25]}",))["signal_power"]
+    assert wall < 0.7 * free
+    assert "room" in made(path, "room", "cube", overrides=("room={reflectors: [{}]}",))
+
+
+WRONG = {
+    "radar.device=null": "null: should name the board that radar.cfg",
+    "radar.device=IWR1642": "radar.device",
+    "radar.carrier_hz=24e9": "should be left out: radar.cfg gives 7.77e+10",
+    "duration_s=0.05": "duration_s = 0.05: should hold a frame of 0.1 s",
+    "processing.clutter=difference": "processing.clutter",
+    "receiver.tones=[{doppler_hz: 10}]": "receiver",
+    "engine={kind: cube, motion_in_chirp: true}": "engine.motion_in_chirp",
+    "duration_s=5000": "should be at most",
+    "output.slow_time=true": "output.slow_time",
+    "radar.array={tx: [[0, 0]], rx: [[0, 0], [1, 0]]}": "receivers of the array, 1 and 2",
+    "maps=[range_elevation]": "",
+}
+
+
+@pytest.mark.parametrize("override", WRONG)
+def test_what_a_board_cannot_do_is_said_in_a_line(path: Path, override: str) -> None:
+    if not WRONG[override]:
+        assert load_config(path, [override]).maps == ("range_elevation",)
+        flat = "radar.array={tx: [[0, 0], [4, 0], [8, 0]], rx: [[0, 0], [1, 0], [2, 0], [3, 0]]}"
+        with pytest.raises(ConfigError, match="all elements of the array lie in one row"):
+            load_config(path, [override, flat])
+        return
+    with pytest.raises(ConfigError) as caught:
+        load_config(path, [override])
+    assert WRONG[override] in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["range_doppler", "points"])
+def test_frames_without_a_board_are_refused(name: str) -> None:
+    with pytest.raises(ValueError, match=r"should have the board that makes them: radar\.cfg"):
+        Config(maps=(name,))
+
+
+def test_a_cfg_that_is_not_there_is_named(path: Path) -> None:
+    path.write_text(YAML.replace("board.cfg", "missing.cfg"))
+    with pytest.raises(ConfigError, match=r'radar\.cfg = "missing\.cfg": should be the path'):
+        load_config(path)
+
+
+def test_a_mistake_in_the_cfg_is_named_with_its_line(path: Path) -> None:
+    (path.parent / "board.cfg").write_text(CFG.replace("adcCfg 2 1", "adcCfg 2 2"))
+    with pytest.raises(ConfigError, match="adcCfg 2 2: should be 2 1"):
+        load_config(path)

@@ -1,0 +1,76 @@
+"""A board's elements, times and axes, against TI's numbers."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from radhar_cli.radar.board import DEVICES
+from tests.boards import MARS
+
+
+def test_frequencies_and_steps_of_a_known_profile() -> None:
+    assert MARS.centre == pytest.approx(79.280632e9, rel=1e-8)
+    assert MARS.unit == pytest.approx(1.890704e-3, rel=1e-6)
+    assert MARS.range_step == pytest.approx(29.264897e-3, rel=1e-7)
+    assert MARS.doppler_step() == pytest.approx(0.345523, rel=1e-5)
+    assert MARS.doppler_step(MARS.start) == pytest.approx(0.355757, rel=1e-5)
+
+
+def test_virtual_elements_of_the_boost_are_a_row_of_eight_and_four_above() -> None:
+    left, up = MARS.places.T
+    np.testing.assert_allclose(left, [0, 1, 2, 3, 4, 5, 6, 7, 2, 3, 4, 5], atol=1e-12)
+    np.testing.assert_allclose(up, [0] * 8 + [1] * 4, atol=1e-12)
+
+
+def test_other_order_of_transmitters_swaps_their_blocks() -> None:
+    swapped = replace(MARS, order=(0, 1, 2))
+    np.testing.assert_array_equal(swapped.places[4:8], MARS.places[8:])
+    np.testing.assert_array_equal(swapped.places[8:], MARS.places[4:8])
+
+
+def test_receivers_that_are_off_are_left_out() -> None:
+    board = replace(MARS, receivers=(1, 3))
+    np.testing.assert_allclose(board.places[:, 0], [1, 3, 5, 7, 3, 5], atol=1e-12)
+
+
+def test_elements_turn_with_the_radar() -> None:
+    """Looking to the left, left is back; looking down, up is ahead."""
+    left = replace(MARS, position=(1, 2, 3), yaw=np.pi / 2)
+    np.testing.assert_allclose(left.element((1, 0)), (1 - MARS.unit, 2, 3), atol=1e-12)
+    down = replace(MARS, tilt=np.pi / 2)
+    np.testing.assert_allclose(down.element((0, 1)), (MARS.unit, 0, 0), atol=1e-12)
+
+
+@pytest.mark.parametrize(("yaw", "tilt"), [(0.0, 0.0), (0.4, 0.0), (0.0, 0.3), (-0.7, 0.5)])
+def test_what_lies_on_boresight_is_ahead(yaw: float, tilt: float) -> None:
+    board = replace(MARS, position=(1.0, 2.0, 1.5), yaw=yaw, tilt=tilt)
+    ahead = np.array([np.cos(yaw) * np.cos(tilt), np.sin(yaw) * np.cos(tilt), -np.sin(tilt)])
+    p = (np.array(board.position) + 2.5 * ahead)[:, None]
+    np.testing.assert_allclose(board.aim.to_radar(p)[:, 0], [2.5, 0, 0], atol=1e-12)
+
+
+def test_the_pattern_is_half_at_its_half_widths_one_way() -> None:
+    """Two ways, and as an amplitude, that is again one half."""
+    az, el = np.radians(28.0), np.radians(14.0)
+    p = np.array([[1, np.cos(az), np.cos(el)], [0, np.sin(az), 0], [0, 0, np.sin(el)]])
+    np.testing.assert_allclose(MARS.aim.two_way(p), [1, 0.5, 0.5], atol=1e-12)
+
+
+def test_chirps_follow_frames_loops_and_turns() -> None:
+    t = MARS.chirp_times()
+    assert t.shape == (2, 32, 3)
+    assert t[1, 2, 1] == pytest.approx(0.1 + (2 * 3 + 1) * 57e-6)
+    np.testing.assert_allclose(MARS.waveform.times(np.arange(t.size)), t.ravel(), atol=1e-15)
+    np.testing.assert_allclose(MARS.pulses.times(np.arange(64)), t[..., 0].ravel(), atol=1e-15)
+
+
+def test_frames_without_idle_time_have_no_gaps() -> None:
+    assert len(replace(MARS, period=32 * 3 * 57e-6).pulses) == 1
+
+
+@pytest.mark.parametrize("device", DEVICES)
+def test_every_device_has_a_sign_for_each_receiver(device: str) -> None:
+    array = DEVICES[device]
+    assert len(array.rx_sign) == len(array.rx) == 4
+    assert len(array.tx) == 3

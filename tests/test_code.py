@@ -185,7 +185,10 @@ def test_arrays_from_elsewhere_are_opened_where_they_are_checked() -> None:
 
 
 def test_noise_is_made_by_the_receiver_alone() -> None:
-    assert {p.name for p in files() if "noise_variance" in calls(p)} == {"products.py"}
+    assert {p.name for p in files() if "noise_variance" in calls(p)} == {
+        "board_products.py",
+        "products.py",
+    }
     draw = {package(p) for p in files() if any(c.startswith("rng.") for c in calls(p))}
     assert not draw & {"motion", "radar", "echo", "processing", "simulation", "capture"}
 
@@ -198,7 +201,7 @@ def test_only_one_module_prints() -> None:
 
 def test_hdf5_is_opened_for_reading_in_one_place_and_for_writing_in_two() -> None:
     doors, in_memory = ("dataset/untrusted_hdf5.py", "dataset/hdf5_check.py"), "dataset/shards.py"
-    fillers = {"dataset/assembly.py", "simulation/scene_file.py"}
+    fillers = {"dataset/assembly.py", "simulation/board_file.py", "simulation/scene_file.py"}
     for path in files():
         name = str(path.relative_to(PACKAGE))
         if "h5py" in imports(path):

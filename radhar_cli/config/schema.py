@@ -184,15 +184,15 @@ def for_activity(value: Any, activity: Activity) -> Any:
 
 Place: TypeAlias = tuple[Real, Real]
 HalfPower = Annotated[float, Field(ge=1, le=1000, strict=True)]
-_BOARD = Needs("radar.cfg", GIVEN)
+_BOARD, BOOST = Needs("radar.cfg", GIVEN), "IWR1443BOOST"
 
 
 class ArrayConfig(Section):
     """Antenna elements of a board, (left, up) in half wavelengths, looking out of the radar."""
 
-    tx: Annotated[tuple[Place, ...], Field(min_length=1, max_length=4)]
+    tx: Annotated[tuple[Place, ...], Field(min_length=1, max_length=4)] = DEVICES[BOOST].tx
     """Transmitters."""
-    rx: Annotated[tuple[Place, ...], Field(min_length=1, max_length=4)]
+    rx: Annotated[tuple[Place, ...], Field(min_length=1, max_length=4)] = DEVICES[BOOST].rx
     """Receivers."""
 
 
@@ -704,10 +704,10 @@ class BodyConfig(Section):
     follows from its speeds, window and wavelength. docs/bodies.md has what that brings and costs.
     """
 
-    scatterers: Literal["points", "segments"] = "points"
-    """The 13 joints, or ellipsoids between them."""
-    points_per_segment: Annotated[int, Field(ge=1, le=1000, strict=True), _SEGMENTS] = 20
-    """Most points of a segment."""
+    scatterers: Literal["points", "segments", "surfaces"] = "points"
+    """The 13 joints, ellipsoids between them, or surfaces that face the radar."""
+    points_per_segment: Annotated[int, Field(ge=1, le=1000, strict=True)] = 20
+    """Most points of a segment; of a surface there are 14 at most."""
     shadowing: Annotated[Flag, _SEGMENTS] = True
     """Of segments: trunk and thighs hide what is behind them."""
 
@@ -1262,9 +1262,8 @@ class Config(Section):
     @property
     def has_error(self) -> bool:
         """Whether the direct engine makes something whose error is measured."""
-        own = {"rtm", *(product.name for product in own_products())}
-        seen = set(self.maps) - own or self.radar.cfg is not None
-        return self.engine.kind == "direct" and bool(seen)
+        signals = set(self.maps) & set(MAP_NAMES) - {"rtm"}
+        return self.engine.kind == "direct" and bool(signals or self.radar.cfg is not None)
 
     def filled(self) -> "Config":
         """This config, in which what is null and has a default by model takes it."""
@@ -1352,6 +1351,10 @@ class Config(Section):
         """Whether scenes of an activity depend on the number of this dotted key."""
         if key in ("receiver.noise_corner_hz", "receiver.noise_slope_db"):
             return support(self.receiver.noise_corner_hz)[1] > 0
+        if key.startswith(("radar.position_m", "radar.yaw", "radar.tilt", "receiver.channel_")):
+            return self.radar.cfg is not None
+        if key.startswith(("radar.tx_m", "radar.rx_m")):
+            return self.radar.cfg is None
         if key in ("receiver.noise_figure_db", "radar.transmit_power_dbm"):
             return self.receiver.noise_figure_db is not None and self.snr_db is None
         if key == "room.back_wall_reflection_db":

@@ -1,10 +1,12 @@
 """What the echo needs to know of anything that moves."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 from radhar_cli.arrays import Float
 
+T = TypeVar("T")
 KEPT_TIMES = 8  # of a motion that is remembered: chirps of the transmitters of a board
 
 
@@ -100,19 +102,27 @@ def remembered(motion: Motion) -> Motion:
 class _Remembered:
     def __init__(self, motion: Motion) -> None:
         self._motion = motion
-        self._held: dict[tuple[str, bytes], Float] = {}
+        self._held: dict[tuple[object, bytes], Any] = {}
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._motion, name)
 
     def positions(self, t: Float) -> Float:
         """Positions [3, I, M] (m), which are not to be changed."""
-        return self._kept("positions", t)
+        return self.kept("positions", t, lambda: self._motion.positions(t))
 
-    def _kept(self, name: str, t: Float) -> Float:
+    def kept(self, name: object, t: Float, make: Callable[[], T]) -> T:
+        """What was made for these times, or is made now."""
         key = (name, t.tobytes())
         if key not in self._held:
             if len(self._held) >= KEPT_TIMES:
                 self._held.clear()
-            self._held[key] = getattr(self._motion, name)(t)
-        return self._held[key]
+            self._held[key] = make()
+        found: T = self._held[key]
+        return found
+
+
+def recalled(motion: Motion, name: object, t: Float, make: Callable[[], T]) -> T:
+    """What was made of a remembered motion for these times; of another it is made anew."""
+    whole = motion.motion if isinstance(motion, Only) else motion
+    return whole.kept(name, t, make) if isinstance(whole, _Remembered) else make()

@@ -11,10 +11,13 @@ from radhar_cli.motion.segments import covered, found_segments, landmarks_of
 from radhar_cli.pipeline.motion_paths import MotionPaths, SumOfPaths
 from radhar_cli.pipeline.physics import antennas_behind_mirror, body_of, frames_of
 from radhar_cli.pipeline.segment_paths import Points, SegmentPaths, draw_points, point_counts
+from radhar_cli.pipeline.surface_paths import SurfacePaths, draw_surface
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene import Person, Scene
+
+POINTS = 14  # of a surface
 
 
 def paths_of(
@@ -30,14 +33,15 @@ def paths_of(
 
     With a wall behind them (`room.back_wall_m`) people are there twice, unless not `mirrored`.
     """
-    sources: list[SegmentPaths | MotionPaths] = []
+    sources: list[SegmentPaths | SurfacePaths | MotionPaths] = []
     people = scene.people
     for number, motion in enumerate(motions):
         rest: Motion | None = motion
-        if scene.config.body.scatterers == "segments":
+        if scene.config.body.scatterers != "points":
             whose = people[min(number, len(people) - 1)]
-            segments = segment_paths(whose, motion, antennas, wall, waveform, number)
-            sources += [segments] if segments else []
+            make = segment_paths if scene.config.body.scatterers == "segments" else surface_paths
+            parts = make(whose, motion, antennas, wall, waveform, number)
+            sources += [parts] if parts else []
             rest = _without_segments(motion)
         if rest is not None:
             sources.append(MotionPaths(rest, antennas, waveform.fc, wall))
@@ -87,6 +91,25 @@ def segment_paths(
     return SegmentPaths(
         body, points, antennas, waveform.fc, wall, shadowing, tuple(sorted(set(kept)))
     )
+
+
+def surface_paths(
+    person: Person,
+    motion: Motion,
+    antennas: Antennas,
+    wall: Wall | None,
+    waveform: Waveform,
+    number: int = 0,
+) -> SurfacePaths | None:
+    """The paths of the surfaces of a motion's segments; arguments as `segment_paths`."""
+    body = body_of(person, motion)
+    kept = sorted({n for joint in motion.names for n in covered(joint, body.segments)})
+    if not kept:
+        return None
+    rng = person.stream(f"surface/{number}")
+    points = min(person.scene.config.body.points_per_segment, POINTS)
+    drawn = draw_surface(len(body.segments), points, rng)
+    return SurfacePaths(body, drawn, antennas, waveform.fc, wall, tuple(kept))
 
 
 def _tapered(points: Points) -> Points:

@@ -74,7 +74,7 @@ def cloud_sheet(
         shape = rows.stop - rows.start, columns.stop - columns.start
         if min(shape) <= 0:
             continue
-        image = Image.new("L", shape[::-1])
+        image = Image.fromarray(np.zeros(shape, np.uint8))
         draw = ImageDraw.Draw(image)
         for joints in _pixels(skeletons[frame], shape):
             for joint, parent in enumerate(parents):

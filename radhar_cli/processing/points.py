@@ -21,7 +21,7 @@ from radhar_cli.radar.detection import Cfar, Detection
 
 COLUMNS = ("x", "y", "z", "doppler", "intensity", "snr_db", "range_index", "doppler_index")
 BINS = 64  # of the angle FFT
-MAX_POINTS = 64  # first peaks of a frame
+MAX_POINTS = 64  # of a frame
 NOISE_LSB = 1.5  # rms of a Doppler cell's noise in units of the fixed-point numbers
 XYZ_STEP = 2.0**-10  # m
 NOISE_FRAMES = 8  # that noise is estimated from
@@ -120,6 +120,7 @@ def _frame_points(x: Complex, board: Board, detection: Detection, lsb: float, st
     angles = [_angles(one, board, detection.second_peak, lsb > 0) for one in symbols]
     first = [(n, *found[0]) for n, found in enumerate(angles)]
     second = [(n, *one) for n, found in enumerate(angles) for one in found[1:]]
+    second = second[: MAX_POINTS - len(first)]
     rows = []
     for n, intensity, right, up in first + second:
         r = max(ranges[n] * board.range_step - detection.bias, 0.0)

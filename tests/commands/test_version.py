@@ -42,7 +42,7 @@ def completed(words: str) -> set[str]:
         ("radhar inspect --j", {"--json"}),
         ("radhar simulate c.yaml -a walking_to_", {"walking_to_sitting", "walking_to_falling"}),
         ("radhar motion c.yaml --activity ki", {"kicking"}),
-        ("radhar generate c.yaml --set radar.p", {"radar.prf_hz="}),
+        ("radhar generate c.yaml --set radar.p", {"radar.position_m=", "radar.prf_hz="}),
         ("radhar generate c.yaml --set wal", {"wall=", *(f"wall.{key}=" for key in WALL)}),
         ("radhar config show c.yaml --set snr_d", {"snr_db="}),
         ("radhar train d --set schedule.k", {"schedule.kind="}),

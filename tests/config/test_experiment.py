@@ -20,6 +20,7 @@ from radhar_cli.config import (
 )
 from radhar_cli.config.number import Uniform
 from radhar_cli.config.schema import (
+    ArrayConfig,
     MotionConfig,
     RecordingsConfig,
     ReflectorConfig,
@@ -28,6 +29,7 @@ from radhar_cli.config.schema import (
     SubjectConfig,
     ToneConfig,
 )
+from tests.boards import CFG
 
 
 def test_the_defaults_of_the_paper_are_its_free_space_data_set() -> None:
@@ -149,6 +151,15 @@ CHANGES: dict[str, object] = {
     "radar.antenna_gain_dbi": 7.0,
     "radar.antenna_isolation_db": 20.0,
     "radar.residual_video_phase": True,
+    "radar.cfg": CFG,
+    "radar.device": "IWR6843ISK",
+    "radar.array": ArrayConfig(),
+    "radar.position_m": (0.0, 0.0, 1.5),
+    "radar.yaw_deg": 5.0,
+    "radar.tilt_deg": 5.0,
+    "radar.half_power_deg": (20.0, 10.0),
+    "radar.half_wavelength_m": 1.9e-3,
+    "radar.transmit_power_dbm": 10.0,
     "subject.height_m": Uniform(uniform=(1.5, 1.8)),
     "subject.weight_kg": 80.0,
     "motion.range_m": 2.0,
@@ -190,6 +201,10 @@ CHANGES: dict[str, object] = {
     "receiver.noise_corner_hz": 3.0,
     "receiver.noise_slope_db": 20.0,
     "receiver.tones": (ToneConfig(doppler_hz=100.0),),
+    "receiver.noise_figure_db": 10.0,
+    "receiver.channel_gain_db": 1.0,
+    "receiver.channel_phase_deg": 10.0,
+    "receiver.channel_errors": "sample",
     "snr_reference": "received",
     "on_invalid": "redraw",
     "processing.clutter": "mean",
@@ -209,6 +224,10 @@ CHANGES: dict[str, object] = {
     "processing.savgol.frame": 13,
     "processing.fsst_hop_pulses": 1,
     "processing.fsst_threshold": 0.0,
+    "cloud.chain": "board",
+    "cloud.pfa": 1e-3,
+    "cloud.quantise": False,
+    "cloud.doppler_carrier": "start",
     "image.size_px": (128, 256),
     "image.dynamic_range_db": 40.0,
     "image.colour_map": "gray",

@@ -43,9 +43,9 @@ def test_every_key_stands_in_it_and_is_explained(kind: type[Section]) -> None:
     assert max(map(len, lines)) <= WIDTH
     stand = {}
     for number, line in enumerate(lines):
-        found = re.match(r"(?:# )? *([a-z][a-z0-9_]*):(?: |$)", line)
+        found = re.match(r" *(?:# )? *([a-z][a-z0-9_]*):(?: |$)", line)
         if found:
-            explained = "  # " in line or re.match(r"(?:# )? *# ", lines[number - 1])
+            explained = "  # " in line or re.match(r" *(?:# )? *# ", lines[number - 1])
             stand[found[1]] = bool(explained) or line.endswith(f"{found[1]}:")
     assert keys(kind) <= stand.keys()
     assert not [key for key in keys(kind) if not stand[key]]

@@ -187,7 +187,7 @@ def test_interference_comes_from_outside_and_is_the_same_in_all_channels() -> No
     assert correlation(one, other) > 0.99
 
 
-def range_doppler(beat: Complex, w: Waveform) -> PowerMap:
+def range_speed(beat: Complex, w: Waveform) -> PowerMap:
     """Range against Doppler over the whole recording."""
     spectrum = np.fft.fftshift(np.fft.fft(range_compression(beat, w), axis=1), axes=1)
     doppler = np.fft.fftshift(np.fft.fftfreq(beat.shape[1], 1 / w.prf))
@@ -196,9 +196,9 @@ def range_doppler(beat: Complex, w: Waveform) -> PowerMap:
 
 
 def test_a_product() -> None:
-    row = Product("range_doppler", ("raw_echo", "waveform"), range_doppler, "range, Doppler")
+    row = Product("range_speed", ("raw_echo", "waveform"), range_speed, "range, Doppler")
     ball = Ball(2.0)
-    found = record(walking(), ["range_doppler"], [RAW_ECHO, row], motions=(ball,))["range_doppler"]
+    found = record(walking(), ["range_speed"], [RAW_ECHO, row], motions=(ball,))["range_speed"]
     moving = np.abs(found.columns.values) > 5
     at, _ = np.unravel_index(np.argmax(found.power[:, moving]), found.power[:, moving].shape)
     assert abs(found.rows.values[at] - (2.0 - 0.4)) < 0.35
@@ -339,9 +339,9 @@ def own(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 OWN = {
-    "a map": Product("range_doppler", ("raw_echo", "waveform"), range_doppler, "range, Doppler"),
+    "a map": Product("range_speed", ("raw_echo", "waveform"), range_speed, "range, Doppler"),
     "its echo": RAW_ECHO,
-    "points": Product("points", ("signal",), points, "strong pulses"),
+    "strong_pulses": Product("strong_pulses", ("signal",), points, "strong pulses"),
     "antennas": Product(
         "antennas", ("scene",), lambda s: replace(antennas_of(s.config), gain=9.0), ""
     ),
@@ -360,8 +360,8 @@ def test_products_of_ones_own_reach_a_data_set(tmp_path: Path, engine: str, jobs
     document = {
         "activities": ["punching", "walking"],
         "samples_per_class": 2,
-        "maps": ["stft", "range_doppler"],
-        "output": {"products": ["points"]},
+        "maps": ["stft", "range_speed"],
+        "output": {"products": ["strong_pulses"]},
         "engine": {"kind": engine},
         "processing": {"clutter": "none"},
         "snr_db": 20.0,
@@ -369,11 +369,11 @@ def test_products_of_ones_own_reach_a_data_set(tmp_path: Path, engine: str, jobs
     config = Config.model_validate(CONFIG.model_dump() | document)
     build(config, tmp_path, jobs, Listener(), batch_size=1)
     scene = draw_valid_scene(config, activity_named("walking"), 1)[0]
-    right = record(scene, ["image:range_doppler", "points"])
+    right = record(scene, ["image:range_speed", "strong_pulses"])
     with open_dataset(tmp_path) as data:
-        assert np.array_equal(data.maps["range_doppler"][3], right["image:range_doppler"].levels)
-        assert np.array_equal(data.products["points"][3], right["points"])
-        sizes = {len(data.products["points"][row]) for row in range(4)}
+        assert np.array_equal(data.maps["range_speed"][3], right["image:range_speed"].levels)
+        assert np.array_equal(data.products["strong_pulses"][3], right["strong_pulses"])
+        sizes = {len(data.products["strong_pulses"][row]) for row in range(4)}
     assert len(sizes) > 1
     assert not verify(tmp_path, 4).problems
     plain = record(scene, ["stft"], [Product("receiver", (), tuple, "nothing")])["stft"]
@@ -386,14 +386,14 @@ def test_a_data_set_is_read_where_its_products_are_not_known(tmp_path: Path) -> 
     registry.add_product(RAW_ECHO)
     registry.add_product(OWN["a map"])
     config = Config.model_validate(
-        CONFIG.model_dump() | {"maps": ["range_doppler"], "samples_per_class": 1}
+        CONFIG.model_dump() | {"maps": ["range_speed"], "samples_per_class": 1}
     )
     build(config, tmp_path, 1, Listener())
     registry._PRODUCTS.clear()
     with open_dataset(tmp_path) as data:
-        assert data.maps["range_doppler"][0].any()
+        assert data.maps["range_speed"][0].any()
     with pytest.raises(ValidationError, match="should be 'rtm'"):
-        Config.model_validate({"maps": ["range_doppler"]})
+        Config.model_validate({"maps": ["range_speed"]})
 
 
 @pytest.mark.usefixtures("own")

@@ -1,0 +1,191 @@
+"""A body as a board at 77 GHz sees it: scatterers on the surfaces of its parts that face the radar.
+
+Every segment has n points, uniform along it and within +-SPREAD of the side that faces the array,
+at DEPTH of its radius. A point's field goes with cos^1.9 of the angle between its normal and the
+line of sight and with sin^0.9 of that between segment and sight, times a circular Gaussian number
+of its own: as limbs turn, points slide over their surfaces and the echo speckles. The facing cross
+sections were fitted to measured clouds (docs/boards.md).
+"""
+
+from dataclasses import dataclass, field
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+
+from radhar_cli.arrays import Complex, Float
+from radhar_cli.echo.paths import Paths
+from radhar_cli.motion.protocol import recalled
+from radhar_cli.motion.segments import REFERENCE_STATURE, cross, soft_unit, unit
+from radhar_cli.pipeline.segment_paths import Body
+from radhar_cli.radar.propagation import Antennas, amplitude, bistatic_delay, leg
+from radhar_cli.radar.transmission import transmission
+from radhar_cli.radar.wall import Wall
+from radhar_cli.radar.waveform import SPEED_OF_LIGHT
+
+SPREAD = np.radians(59.0)
+DEPTH = 0.86
+NORMAL_POWER, ALONG_POWER = 1.9, 0.9
+# Of a segment that faces the radar, dBsm, by the last word of its name.
+FACING_DBSM = {
+    "trunk": -5.3,
+    "head": -16.0,
+    "arm": -13.0,
+    "forearm": -16.8,
+    "hand": -22.0,
+    "thigh": -19.6,
+    "shank": -27.0,
+    "foot": -31.0,
+}
+# Where along a segment its points lie; elsewhere all of it.
+REACH = {"trunk": (0.0, 1.0)}
+TREMOR_MPS, COMMON_MPS = 0.006, 0.005  # rms speed of a segment, and of the body, beside its motion
+TREMOR_HZ = (2.0, 8.0)
+TONES = 4
+
+
+class Drawn(NamedTuple):
+    """What is drawn of a body's points [I].
+
+    Attributes:
+        segment: number of the segment.
+        along: 0 at its start, 1 at its end.
+        around: angle from the side that faces the radar, rad.
+        weight: circular Gaussian.
+        rate: of the tones of the tremor [segment + 1, TONES], Hz; the last row is the body's.
+        phase: of these, cycles.
+    """
+
+    segment: np.ndarray[tuple[int], np.dtype[np.intp]]
+    along: Float
+    around: Float
+    weight: Complex
+    rate: Float
+    phase: Float
+
+
+def draw_surface(segments: int, points: int, rng: np.random.Generator) -> Drawn:
+    """So many points of each segment, spread evenly along it and drawn around it."""
+    shape = (segments, points)
+    weight = rng.standard_normal((2, *shape)) * np.sqrt(0.5)
+    along = (np.arange(points) + rng.random(shape)) / points
+    around = rng.uniform(-SPREAD, SPREAD, shape)
+    rate = rng.uniform(*TREMOR_HZ, (segments + 1, TONES))
+    return Drawn(
+        np.repeat(np.arange(segments), points),
+        along.ravel(),
+        around.ravel(),
+        (weight[0] + 1j * weight[1]).ravel(),
+        rate,
+        rng.random((segments + 1, TONES)),
+    )
+
+
+@dataclass(frozen=True)
+class SurfacePaths:
+    """A source of paths: `PathSource` for surfaces seen through air or a wall.
+
+    Attributes:
+        body: whose segments.
+        drawn: their points.
+        antennas: where the legs start and end.
+        fc: carrier, Hz.
+        wall: the slab between, or None.
+        kept: numbers of the segments whose paths are wanted.
+    """
+
+    body: Body
+    drawn: Drawn = field(repr=False)
+    antennas: Antennas
+    fc: float
+    wall: Wall | None
+    kept: tuple[int, ...]
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Instants (s) at which positions are not smooth."""
+        return self.body.motion.breakpoints
+
+    @property
+    def highest_frequency(self) -> float:
+        """Fundamental of the fastest motion, Hz."""
+        return self.body.motion.highest_frequency
+
+    @property
+    def smooth(self) -> bool:
+        """Paths kink where a leg passes an edge of the wall."""
+        return self.wall is None
+
+    def __call__(self, t: Float) -> Paths:
+        """Paths of the points at times t [M] (s)."""
+        place = self._centre()
+        p, field_ = recalled(self.body.motion, ("surface", place), t, lambda: self._seen(t, place))
+        r_tx, r_rx = leg(p, self.antennas.tx), leg(p, self.antennas.rx)
+        tau = bistatic_delay(r_tx, r_rx)
+        a = amplitude(r_tx, r_rx, field_**2, self.antennas.gain, SPEED_OF_LIGHT / self.fc)
+        if self.wall is not None:
+            for antenna in (self.antennas.tx, self.antennas.rx):
+                through = transmission(p, antenna, self.wall, self.fc)
+                tau += through.delay
+                a *= through.factor
+        chosen = np.isin(self.drawn.segment, self.kept)
+        tau -= (np.angle(self.drawn.weight) / (2 * pi * self.fc))[:, None]  # less than lambda/2
+        return Paths(tau[chosen], a[chosen])
+
+    def _centre(self) -> tuple[float, ...]:
+        """What surfaces face: the array, or the middle of the antennas."""
+        if self.antennas.aim is not None:
+            return self.antennas.aim.position
+        return tuple((np.array(self.antennas.tx) + np.array(self.antennas.rx)) / 2)
+
+    def _seen(self, t: Float, place: tuple[float, ...]) -> tuple[Float, Float]:
+        """Positions [3, I, M] (m) of the points, and their fields sqrt(sigma) [I, M] (m)."""
+        drawn, placed = self.drawn, self.body.at(t)
+        way = placed.end - placed.start
+        axis = unit(way)
+        sight = unit(np.array(place)[:, None, None] - 0.5 * (placed.start + placed.end))
+        facing = soft_unit(sight - (sight * axis).sum(axis=0) * axis)
+        aside = cross(axis, facing)
+        across = np.sqrt(np.maximum(1 - (sight * axis).sum(axis=0) ** 2, 0))  # sin(segment, sight)
+        s = drawn.segment
+        cosine, sine = np.cos(drawn.around)[:, None], np.sin(drawn.around)[:, None]
+        outwards = cosine * facing[:, s] + sine * aside[:, s]
+        low, high = self._reach[s].T
+        p = placed.start[:, s] + (low + (high - low) * drawn.along)[:, None] * way[:, s]
+        p += DEPTH * self.body.radii[s] * outwards
+        p += self._tremor(t)[s] * sight[:, s]
+        normal = np.maximum(cosine * across[s], 0) ** NORMAL_POWER
+        strength = normal * across[s] ** ALONG_POWER
+        strength *= (np.abs(drawn.weight) * self._facing[s])[:, None]
+        if self.antennas.aim is not None:
+            strength *= self.antennas.aim.two_way(p)
+        return p, strength
+
+    def _tremor(self, t: Float) -> Float:
+        """Displacement along the sight [segment, M], m: tones of random rates."""
+        drawn = self.drawn
+        speeds = np.full(len(drawn.rate), TREMOR_MPS)
+        speeds[-1] = COMMON_MPS
+        size = speeds[:, None] * np.sqrt(2 / TONES) / (2 * pi * drawn.rate)
+        tones = np.sin(2 * pi * (drawn.rate[..., None] * t + drawn.phase[..., None]))
+        moved = (size[..., None] * tones).sum(axis=1)
+        shaken: Float = moved[:-1] + moved[-1]
+        return shaken
+
+    @property
+    def _reach(self) -> Float:
+        """Which part of each segment scatters [segment, 2], as shares of its length."""
+        words = (one.name.split("_")[-1] for one in self.body.segments)
+        return np.array([REACH.get(word, (0.0, 1.0)) for word in words])
+
+    @property
+    def _facing(self) -> Float:
+        """Fields of a point of each facing segment, m; powers of all add up to sigma."""
+        count = self.drawn.segment.size // len(self.body.segments)
+        x = np.linspace(-SPREAD, SPREAD, 1001)
+        mean = float(np.mean(np.cos(x) ** (2 * NORMAL_POWER)))
+        words = (one.name.split("_")[-1] for one in self.body.segments)
+        sigma = 10 ** (np.array([FACING_DBSM[word] for word in words]) / 10)
+        size = self.body.stature / REFERENCE_STATURE * self.body.thickness
+        field_: Float = np.sqrt(sigma * size / (count * mean))
+        return field_

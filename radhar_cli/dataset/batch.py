@@ -61,16 +61,6 @@ class Batch:
     parent_pid: int
     factory: RowFactory | None = None
 
-    def scenes(self) -> Iterator[tuple[Scene, int]]:
-        """Each row's scene and Flags."""
-        rows = Rows.of(self.config)
-        for number, row in enumerate(range(self.start, self.stop)):
-            if self.checked is None:
-                yield checked_scene(self.config, rows, row)
-            else:
-                attempt, flags = self.checked[number].tolist()
-                yield draw_scene(self.config, *rows[row], attempt), flags
-
 
 def checked_scene(config: Config, rows: Rows, row: int) -> tuple[Scene, Flags]:
     """`draw_valid_scene` of a row; a refusal says whether a dry run could have known of it."""
@@ -143,15 +133,19 @@ def _check_machine(batch: Batch) -> None:
 
 def _made(batch: Batch) -> Iterator[tuple[Row, int]]:
     """Each row, and its Flags."""
-    config = batch.config
-    if batch.factory is not None:
-        for row in range(batch.start, batch.stop):
-            leave_if_orphaned(batch.parent_pid)
-            yield batch.factory(config, row), 0
-        return
-    plan, columns = plan_images(config), scene_fields.fields(config)
-    for scene, flags in batch.scenes():
+    config, rows = batch.config, Rows.of(batch.config)
+    if batch.factory is None:
+        plan, columns = plan_images(config), scene_fields.fields(config)
+    for number, row in enumerate(range(batch.start, batch.stop)):
         leave_if_orphaned(batch.parent_pid)
+        if batch.factory is not None:
+            yield batch.factory(config, row), 0
+            continue
+        if batch.checked is None:
+            scene, flags = checked_scene(config, rows, row)
+        else:
+            attempt, flags = batch.checked[number].tolist()
+            scene = draw_scene(config, *rows[row], attempt)
         sample = synthesise(scene, plan)
         yield Row(sample, scene_fields.values(scene, columns, sample.error_db)), flags
 

@@ -65,7 +65,7 @@ class Mixed:
         drawn = rng.choice(rows, (count, MIXED), p=weights / weights.sum())
         labels = labels_for(self.images, metadata.classes)
         change = Augmentation(config.augment, config.seed) if config.input == "gray" else None
-        yield from Reader(self.images, labels, 0, False, change)(list(drawn), epoch)
+        yield from Reader(self.images.pixels, labels, 0, False, change)(list(drawn), epoch)
 
 
 def adapt(
@@ -243,5 +243,5 @@ def _batches(metadata: RunMetadata, rows: Index, epoch: int) -> list[Index]:
 
 def _levels(images: ImageSet, batches: list[Index]) -> Iterator[Tensor]:
     """Levels uint8 [B, 3, H, W] of each batch."""
-    for levels, _ in Reader(images, images.label, workers=0, pin=False)(batches):
+    for levels, _ in Reader(images.pixels, images.label, workers=0, pin=False)(batches):
         yield levels

@@ -144,7 +144,7 @@ def predict_batches(
     Raises:
         RunError: a logit is not finite.
     """
-    reader = Reader(images, images.label, workers=0, pin=False)
+    reader = Reader(images.pixels, images.label, workers=0, pin=False)
     with torch.inference_mode():
         for levels, _ in reader(pieces(rows, batch)):
             features, logits = features_and_logits(model, metadata.normalisation(levels.to(device)))

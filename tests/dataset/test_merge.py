@@ -15,7 +15,7 @@ from listener import Listener
 from small import fingerprint, small_config
 
 from radhar_cli.config import Config, load_config
-from radhar_cli.dataset.build import build, build_part
+from radhar_cli.dataset.build import build
 from radhar_cli.dataset.merge import merge
 from radhar_cli.dataset.parts import Part
 from radhar_cli.dataset.reading import open_dataset
@@ -48,7 +48,7 @@ def made(config: Config, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """All four parts of a data set, for tests to copy."""
     out = tmp_path_factory.mktemp("parts") / "set"
     for number in (3, 1, 4, 2):
-        build_part(config, out, Part(4, number), 1, Listener(), batch_size=1 + number % 2)
+        build(config, out, 1, Listener(), part=Part(4, number), batch_size=1 + number % 2)
     return out
 
 
@@ -94,14 +94,14 @@ def test_gaps_and_damage_name_the_parts_to_run_again(
     shard.write_bytes(content[:-1] + bytes([content[-1] ^ 1]))
     with pytest.raises(UnfinishedError, match=r"rows 4-5 \(2 of 9\).* make .* --shard 3/4, then"):
         merge(out, [], 1, Listener())
-    build_part(config, out, Part(4, 3), 1, Listener())
+    build(config, out, 1, Listener(), part=Part(4, 3))
     with pytest.raises(
         UnfinishedError, match=r"rows 0-1 \(2 of 9\).* make .* --shard 1/4, then"
     ) as told:
         merge(out, [], 1, Listener())
     assert f"{shard} does not match its checksum" in str(told.value)
     assert not (out / "dataset.h5").exists()
-    assert build_part(config, out, Part(4, 1), 1, Listener()).made == 2
+    assert build(config, out, 1, Listener(), part=Part(4, 1)).made == 2
     merge(out, [], 1, Listener())
     assert merged(out) == whole
 
@@ -114,7 +114,7 @@ def test_damaged_shards_are_replaced_by_shards_of_other_rows(
     for shard in damaged:
         shard.path.write_bytes(shard.path.read_bytes()[:-1])
     notes = Listener()
-    assert build_part(config, out, Part(4, 2), 1, notes, batch_size=2).made == 2
+    assert build(config, out, 1, notes, part=Part(4, 2), batch_size=2).made == 2
     assert len(notes.messages) >= 2
     merge(out, [], 1, Listener())
     assert merged(out) == whole
@@ -122,21 +122,21 @@ def test_damaged_shards_are_replaced_by_shards_of_other_rows(
 
 def test_a_finished_part_checks_nothing_again(config: Config, out: Path) -> None:
     notes = Listener()
-    assert build_part(config, out, Part(4, 2), 1, notes).already_complete
+    assert build(config, out, 1, notes, part=Part(4, 2)).already_complete
     assert "checking scenes" not in notes.stages
 
 
 def test_parts_of_something_else_are_refused(config: Config, out: Path, tmp_path: Path) -> None:
     other = config.model_copy(update={"seed": 8})
     with pytest.raises(FolderError, match="holds parts of 4; this would be part 1/3"):
-        build_part(config, out, Part(3, 1), 1, Listener())
+        build(config, out, 1, Listener(), part=Part(3, 1))
     with pytest.raises(FolderError, match="should be at most K/9"):
-        build_part(config, tmp_path / "ten", Part(10, 1), 1, Listener())
+        build(config, tmp_path / "ten", 1, Listener(), part=Part(10, 1))
     with pytest.raises(FolderError, match="differs in\n  seed: 7 there, 8 here"):
-        build_part(other, out, Part(4, 1), 1, Listener())
+        build(other, out, 1, Listener(), part=Part(4, 1))
     with pytest.raises(FolderError, match="radhar merge"):
         build(config, out, 1, Listener())
-    build_part(other, tmp_path / "other", Part(4, 2), 1, Listener())
+    build(other, tmp_path / "other", 1, Listener(), part=Part(4, 2))
     with pytest.raises(FolderError, match="seed: 7 there, 8 here"):
         merge(out, [tmp_path / "other"], 1, Listener())
     with pytest.raises(FolderError, match="no such folder"):
@@ -217,6 +217,6 @@ def test_parts_of_two_builds_of_radhar_are_not_merged(
 ) -> None:
     monkeypatch.setattr("radhar_cli.dataset.identity.build_version", lambda: "0.1.0+another")
     part = Part(4, 2)
-    build_part(config, out, part, 1, Listener(), overwrite=True)
+    build(config, out, 1, Listener(), part=part, overwrite=True)
     with pytest.raises(FolderError, match=r'versions\.radhar: "0\.1\.0\+[0-9a-f]{12}"'):
         merge(out, [], 1, Listener())

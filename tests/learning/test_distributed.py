@@ -24,7 +24,7 @@ import numpy as np, torch, torch.distributed as dist
 sys.path[:0] = [sys.argv[1], str(Path(sys.argv[1]).parent)]
 from learning.patterns import Watched, settings
 from radhar_cli.learning.batches import Reader
-from radhar_cli.learning.execution_plan import choose_execution_plan
+from radhar_cli.learning.machine import choose_execution_plan
 from radhar_cli.learning.gradient_step import TrainStep
 from radhar_cli.learning.process_group import Group, distributed, process_group
 from radhar_cli.learning.training import Task, _Training, checked_images, train
@@ -78,7 +78,7 @@ with process_group(cpu) as group:
         seen.append([whole, [hash(image.numpy().tobytes()) for image in levels]])
         return 0.0, 0
     TrainStep.step = look
-    work._train_epoch(network, Reader(images, images.label, 0, False), 0)
+    work._train_epoch(network, Reader(images.pixels, images.label, 0, False), 0)
     everyone = [None] * group.size
     dist.all_gather_object(everyone, seen)
     if group.is_main:

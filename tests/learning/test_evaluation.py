@@ -142,7 +142,7 @@ def test_several_data_sets_give_robustness(learned: tuple[Path, Path], tmp_path:
 def test_several_runs_overlay_their_curves(
     learned: tuple[Path, Path], run_dir: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from radhar_cli.learning import comparison as module
+    from radhar_cli.learning import report as module
 
     drawn: list[list[str]] = []
     draw = module.curves_png

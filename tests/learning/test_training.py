@@ -33,10 +33,10 @@ from torch import nn
 
 from radhar_cli.learning import gradient_step, run_files, training
 from radhar_cli.learning import run_folder as run
-from radhar_cli.learning.execution_plan import ExecutionPlan, choose_execution_plan
 from radhar_cli.learning.gradient_step import optimiser_for
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.scan import scan
+from radhar_cli.learning.machine import ExecutionPlan, choose_execution_plan
 from radhar_cli.learning.process_group import Group
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.training import Task, TrainingError, _Training, checked_images

@@ -139,7 +139,7 @@ def _claims(path: Path) -> None:
 
 FILES: dict[str, tuple[Callable[[Path], None], str]] = {
     "not finite": (weights(lambda w: w["head.bias"].fill_(torch.nan)), "head.bias holds a number"),
-    "double": (weights(lambda w: w.update({"head.bias": torch.zeros(2).double()})), "F64"),
+    "double": (weights(lambda w: w.update({"head.bias": torch.zeros(2).double()})), "float64"),
     "eight bits": (weights(lambda w: w.update({"head.bias": torch.zeros(2).char()})), "I8"),
     "too large": (weights(lambda w: w.update({"head.bias": torch.zeros(9)})), "(9,)"),
     "a header without end": (header(b"{}", 2**63), "claims a header of"),

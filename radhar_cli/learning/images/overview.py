@@ -24,6 +24,14 @@ def summarise_tree(root: Path) -> dict[str, Any]:
     assert isinstance(images.pixels, FilePixels)
     files = images.pixels.files
     sizes = Counter(map(image_size, files))
+
+    def counts(label: int) -> dict[str, int]:
+        mine = images.label == label
+        if images.split is None:
+            return {"images": int(mine.sum())}
+        by_split = np.bincount(images.split[mine], minlength=len(SPLITS))
+        return dict(zip(SPLITS, by_split.tolist(), strict=True))
+
     return {
         "kind": "tree of images",
         "path": str(root),
@@ -31,17 +39,8 @@ def summarise_tree(root: Path) -> dict[str, Any]:
         "bytes": sum(file.stat().st_size for file in files),
         "map": images.map,
         "sizes": [{"size": list(size), "images": n} for size, n in sizes.most_common()],
-        "classes": {name: _counts(images, number) for number, name in enumerate(images.classes)},
+        "classes": {name: counts(number) for number, name in enumerate(images.classes)},
     }
-
-
-def _counts(images: ImageSet, label: int) -> dict[str, int]:
-    """Images of a class by split, or their number where there is no split."""
-    mine = images.label == label
-    if images.split is None:
-        return {"images": int(mine.sum())}
-    counts = np.bincount(images.split[mine], minlength=len(SPLITS))
-    return dict(zip(SPLITS, counts.tolist(), strict=True))
 
 
 def first_of_each(images: ImageSet, per_class: int, classes: int) -> dict[str, list[Levels]]:

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -73,35 +74,25 @@ class StoredPixels:
 
 
 @dataclass(frozen=True)
-class StreamLabels:
-    """Label of every row of a stream, in the numbering of `classes`."""
-
-    order: StreamOrder
-    classes: tuple[str, ...]
-
-    def __getitem__(self, row: int) -> int:
-        return self.classes.index(self.order[row][0].slug)
-
-
-@dataclass(frozen=True)
 class TrainingStream:
     """An endless series of training images; no two epochs share any.
 
     Attributes:
-        pixels, label: of every row.
+        order: which sample stands in which row.
+        pixels: of every row.
+        classes: that the labels number; `stream[row]` is the label of a row.
         per_epoch: rows of an epoch.
         first: the scan of the first rows.
     """
 
+    order: StreamOrder
     pixels: SynthesisedPixels
-    label: StreamLabels
+    classes: tuple[str, ...]
     per_epoch: int
     first: Scan
 
-    @property
-    def order(self) -> StreamOrder:
-        """Which sample stands in which row."""
-        return self.label.order
+    def __getitem__(self, row: int) -> int:
+        return self.classes.index(self.order[row][0].slug)
 
     def rows(self, epoch: int) -> Index:
         """Rows of an epoch, which no other has."""
@@ -160,8 +151,9 @@ def stream_and_validation(
     first = StoredPixels(synthesised_levels(recipe, order, count, workers), table)
     return (
         TrainingStream(
+            order,
             SynthesisedPixels(recipe, order, table),
-            StreamLabels(order, classes),
+            classes,
             per_epoch,
             scan(replace(images, pixels=first), count),
         ),
@@ -254,15 +246,5 @@ def synthesised_levels(
 ) -> Levels:
     """Levels [rows, H, W] of some rows, made by worker processes if there are any."""
     pixels = SynthesisedPixels(recipe, where, GREY)
-    reader = Reader(_Unlabelled(pixels), _NoLabels(), workers, pin=False)
+    reader = Reader(pixels, defaultdict(int), workers, pin=False)
     return np.concatenate([rgb[:, 0].numpy() for rgb, _ in reader(pieces(rows, PIECE))])
-
-
-@dataclass(frozen=True)
-class _Unlabelled:
-    pixels: SynthesisedPixels
-
-
-class _NoLabels:
-    def __getitem__(self, row: int) -> int:
-        return 0

@@ -36,6 +36,13 @@ def radhar(*arguments: object) -> Done:
     return Done(command, status, out.getvalue(), err.getvalue())
 
 
+def ok(*arguments: object) -> Done:
+    """Run the program, which should end well."""
+    done = radhar(*arguments)
+    assert done.returncode == 0, done.stderr
+    return done
+
+
 def process(*arguments: object) -> Done:
     """Run ``python`` with some arguments."""
     paths = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])

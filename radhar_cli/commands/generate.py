@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from radhar_cli.commands.options import Overrides, Tolerance, resumable, with_tolerance
+from radhar_cli.commands.options import Overrides, StartOver, Tolerance, resumable, with_tolerance
 from radhar_cli.commands.tell import tell
 from radhar_cli.errors import ConfigError
 
@@ -17,13 +17,6 @@ if TYPE_CHECKING:
     from radhar_cli.dataset.sample import RowFactory
 
 ARRAY = "slurm"  # the part that the environment names
-EXAMPLE = """
-Example:
-
-  radhar generate configs/paper/through_wall.yaml -o datasets/ttw_10dB --set snr_db=10 --jobs 2
-
-The same command, run again, resumes where it stopped and says so when the folder is complete.
-"""
 
 
 def generate(
@@ -63,10 +56,16 @@ def generate(
             "or a tree of class folders, or an .npz of masks.",
         ),
     ] = None,
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Start over in a folder that holds a data set.")
-    ] = False,
+    overwrite: StartOver = False,
 ) -> None:
+    """Build a labelled data set from a config file.
+
+    Example:
+
+      radhar generate configs/paper/through_wall.yaml -o datasets/ttw_10dB --set snr_db=10 --jobs 2
+
+    The same command, run again, resumes where it stopped and says so when the folder is complete.
+    """
     with resumable(f"what is finished in {out}"):
         from radhar_cli.commands.terminal import BarProgress, print_outcome, print_part
         from radhar_cli.config import load_config
@@ -121,6 +120,3 @@ def _measured(config: "Config", manifest: Path) -> "tuple[Config, RowFactory]":
         tell(f"warning: {warning}", err=True)
     folder = manifest if manifest.is_dir() else manifest.parent
     return measured, WindowFactory(folder.absolute())
-
-
-generate.__doc__ = "Build a labelled data set from a config file.\n" + EXAMPLE

@@ -10,6 +10,15 @@ from radhar_cli.commands.tell import tell, wanted
 from radhar_cli.errors import FolderError, MachineError, RadharError, did_you_mean
 
 DEVICES = ("auto", "cpu", "cuda", "mps")
+Run: TypeAlias = Annotated[Path, typer.Argument(help="Folder that train wrote.")]
+TrainedMap: TypeAlias = Annotated[
+    str | None, typer.Option("--map", help="Another map than the one it was trained on.")
+]
+AnyMap: TypeAlias = Annotated[
+    str | None, typer.Option("--map", help="Which map; the first if not given.")
+]
+Split: TypeAlias = Annotated[str, typer.Option(help="train, val, test or all.")]
+Device: TypeAlias = Annotated[str, typer.Option(help="auto, cpu, cuda or mps.")]
 Resize: TypeAlias = Annotated[
     bool,
     typer.Option("--resize", help="Resize images to the size that the network was trained on."),

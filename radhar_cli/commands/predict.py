@@ -5,22 +5,20 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.learning_options import Resize
+from radhar_cli.commands.learning_options import Device, Resize, Run, Split, TrainedMap
 from radhar_cli.commands.tell import report, tell
 
 
 def predict(
-    run: Annotated[Path, typer.Argument(help="Folder that train wrote.")],
+    run: Run,
     paths: Annotated[
         list[Path], typer.Argument(metavar="IMAGE_OR_DATA...", help="Images, or data sets.")
     ],
     top: Annotated[int, typer.Option(min=1, help="Classes to print, the most likely first.")] = 3,
-    map_: Annotated[
-        str | None, typer.Option("--map", help="Another map than the one it was trained on.")
-    ] = None,
-    split: Annotated[str, typer.Option(help="Of a data set: train, val, test or all.")] = "all",
+    map_: TrainedMap = None,
+    split: Split = "all",
     resize: Resize = False,
-    device: Annotated[str, typer.Option(help="auto, cpu, cuda or mps.")] = "auto",
+    device: Device = "auto",
 ) -> None:
     """Print the class of every image and its probabilities.
 

@@ -8,9 +8,7 @@ import torch
 
 from radhar_cli.dataset.layout import DATASET
 from radhar_cli.errors import FolderError
-from radhar_cli.figures.curves import curves_png
-from radhar_cli.figures.filters import filters_png
-from radhar_cli.figures.robustness import Point, robustness_png
+from radhar_cli.figures.evaluation import Point, curves_png, filters_png, robustness_png
 from radhar_cli.learning.evaluation import speed
 from radhar_cli.learning.filter_weights import magnitudes, table
 from radhar_cli.learning.images.classes import unknown_message

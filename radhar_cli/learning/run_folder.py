@@ -323,7 +323,7 @@ def _opened(path: Path, file: Any) -> tuple[RunMetadata, nn.Module]:
         weights = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
         for name in wanted.keys() | weights.keys():
             actual, expected = (
-                [each[name].dtype, list(each[name].shape)] if name in each else "missing"
+                (tuple(each[name].shape), each[name].dtype) if name in each else "missing"
                 for each in (weights, wanted)
             )
             if actual != expected:

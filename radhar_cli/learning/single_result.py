@@ -13,10 +13,12 @@ from torch import nn
 
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.arrays import Index, Levels
-from radhar_cli.figures.confusion import confusion_png
-from radhar_cli.figures.embedding import embeddings_png
-from radhar_cli.figures.mistakes import captioned_png
-from radhar_cli.figures.reliability import reliability_png
+from radhar_cli.figures.evaluation import (
+    captioned_png,
+    confusion_png,
+    embeddings_png,
+    reliability_png,
+)
 from radhar_cli.learning import metrics
 from radhar_cli.learning.evaluation import Predictions, open_for, predict, rows_of
 from radhar_cli.learning.images.image_set import ImageSet

@@ -3,29 +3,28 @@
 import json
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
-from typer.testing import CliRunner, Result
+from typer.testing import CliRunner
 
 from radhar_cli.cli import program
 from radhar_cli.dataset.contact_sheet import draw_image_sheet
 from radhar_cli.errors import FolderError
 
 
-def radhar(*arguments: object) -> Result:
+def radhar(*arguments):
     return CliRunner().invoke(program(), [str(argument) for argument in arguments])
 
 
-def picture(path: Path, size: tuple[int, int], colour: tuple[int, int, int]) -> None:
+def picture(path, size, colour):
     path.parent.mkdir(parents=True, exist_ok=True)
     Image.new("RGB", size[::-1], colour).save(path)
 
 
 @pytest.fixture
-def photos(tmp_path: Path) -> Path:
+def photos(tmp_path):
     """Two classes in two splits, two formats, two sizes."""
     root = tmp_path / "photos"
     for number in range(3):
@@ -35,7 +34,7 @@ def photos(tmp_path: Path) -> Path:
     return root
 
 
-def test_inspect_counts_classes_splits_and_sizes(photos: Path) -> None:
+def test_inspect_counts_classes_splits_and_sizes(photos):
     found = json.loads(radhar("inspect", photos, "--json").stdout)
     assert found["kind"] == "tree of images"
     assert found["samples"] == 7
@@ -53,12 +52,12 @@ def test_inspect_counts_classes_splits_and_sizes(photos: Path) -> None:
         assert word in table
 
 
-def test_inspect_of_a_tree_without_splits(photos: Path) -> None:
+def test_inspect_of_a_tree_without_splits(photos):
     found = json.loads(radhar("inspect", photos / "train", "--json").stdout)
     assert found["classes"] == {"big_dogs": {"images": 3}, "cats": {"images": 3}}
 
 
-def test_preview_shows_a_row_a_class_and_lies_beside_the_tree(photos: Path) -> None:
+def test_preview_shows_a_row_a_class_and_lies_beside_the_tree(photos):
     done = radhar("preview", photos, "--per-class", 2)
     assert done.exit_code == 0, done.output
     sheet = photos.parent / "preview_photos.png"
@@ -74,7 +73,7 @@ def test_preview_shows_a_row_a_class_and_lies_beside_the_tree(photos: Path) -> N
     assert not blue.any(), "two a class"
 
 
-def test_many_classes_stay_one_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_many_classes_stay_one_page(tmp_path, monkeypatch):
     for number in range(45):
         picture(tmp_path / f"t/c{number:02d}/a.png", (8, 8), (9, 9, 9))
     drawn: list[tuple[int, str]] = []
@@ -86,14 +85,14 @@ def test_many_classes_stay_one_page(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert drawn == [(40, "t: 45 images of 45 classes, the first 40 shown")]
 
 
-def test_dollar_signs_in_names_are_not_mathtext(tmp_path: Path) -> None:
+def test_dollar_signs_in_names_are_not_mathtext(tmp_path):
     """Dollar signs would be read as mathematics, and wrong mathematics is an error."""
     rows = {"a $_$ b": [np.zeros((8, 8, 3), np.uint8)]}
     draw_image_sheet(rows, "100 $^$", tmp_path / "sheet.png")
     assert (tmp_path / "sheet.png").exists()
 
 
-def test_paths_that_are_no_trees_are_named(tmp_path: Path, photos: Path) -> None:
+def test_paths_that_are_no_trees_are_named(tmp_path, photos):
     (tmp_path / "empty").mkdir()
     (photos / "train/cats/broken.png").write_bytes(b"no image")
     for command, path, expected in (
@@ -106,7 +105,7 @@ def test_paths_that_are_no_trees_are_named(tmp_path: Path, photos: Path) -> None
         assert expected in str(error)
 
 
-def test_looking_at_images_needs_no_torch(photos: Path) -> None:
+def test_looking_at_images_needs_no_torch(photos):
     code = """
 import sys
 from typer.testing import CliRunner

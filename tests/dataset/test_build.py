@@ -5,7 +5,6 @@ import json
 import os
 import re
 from pathlib import Path
-from typing import Any
 
 import h5py
 import numpy as np
@@ -15,13 +14,12 @@ from listener import Listener
 from PIL import Image
 from small import SMALL, fingerprint, small_config
 
-from radhar_cli.activity import Activity
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.identity import resolved
 from radhar_cli.dataset import batch as batch_module
 from radhar_cli.dataset import build as build_module
 from radhar_cli.dataset import folder as folder_module
-from radhar_cli.dataset.build import BuildOutcome, build
+from radhar_cli.dataset.build import build
 from radhar_cli.dataset.folder import folder_lock
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
@@ -31,17 +29,17 @@ from radhar_cli.dataset.workers import run_tasks, warm_up
 from radhar_cli.errors import FolderError, SceneError, UnfinishedError
 
 
-def make(config: Config, folder: Path, **options: object) -> BuildOutcome:
+def make(config, folder, **options):
     return build(config, folder, options.pop("jobs", 1), Listener(), **options)
 
 
 @pytest.fixture(scope="module")
-def config(tmp_path_factory: pytest.TempPathFactory) -> Config:
+def config(tmp_path_factory):
     return load_config(small_config(tmp_path_factory.mktemp("config")))
 
 
 @pytest.fixture(scope="module")
-def whole(config: Config, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def whole(config, tmp_path_factory):
     """The data set in one uninterrupted go, one job."""
     folder = tmp_path_factory.mktemp("whole") / "set"
     make(config, folder)
@@ -49,19 +47,15 @@ def whole(config: Config, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize(("jobs", "batch_size"), [(1, 1), (1, 9), (2, 2), (4, 1)])
-def test_jobs_and_batch_size_change_no_byte(
-    config: Config, whole: Path, tmp_path: Path, jobs: int, batch_size: int
-) -> None:
+def test_jobs_and_batch_size_change_no_byte(config, whole, tmp_path, jobs, batch_size):
     make(config, tmp_path / "set", jobs=jobs, batch_size=batch_size)
     assert fingerprint(tmp_path / "set") == fingerprint(whole)
 
 
-def test_no_more_processes_than_batches_are_started(
-    config: Config, whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_no_more_processes_than_batches_are_started(config, whole, tmp_path, monkeypatch):
     asked: list[int] = []
 
-    def here(function: Any, tasks: Any, jobs: int) -> Any:
+    def here(function, tasks, jobs):
         asked.append(jobs)
         return run_tasks(function, tasks, 1)
 
@@ -73,8 +67,8 @@ def test_no_more_processes_than_batches_are_started(
     assert fingerprint(tmp_path / "set") == fingerprint(whole)
 
 
-def test_batch_size_by_number_of_rows() -> None:
-    def size(left: int, jobs: int, one: int = 10**4) -> int:
+def test_batch_size_by_number_of_rows():
+    def size(left, jobs, one=10**4):
         return build_module._batch_size(left, jobs, one)
 
     assert [size(left, 2) for left in (1, 9, 100, 3600)] == [1, 2, 13, 32]
@@ -85,8 +79,8 @@ def test_batch_size_by_number_of_rows() -> None:
 
 
 def test_a_relative_folder_is_built_whatever_the_working_directory_of_the_workers(
-    config: Config, whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    config, whole, tmp_path, monkeypatch
+):
     here, elsewhere = tmp_path / "here", tmp_path / "elsewhere"
     here.mkdir()
     elsewhere.mkdir()
@@ -100,13 +94,11 @@ def test_a_relative_folder_is_built_whatever_the_working_directory_of_the_worker
     assert not list(elsewhere.iterdir())
 
 
-def test_an_unfinished_build_resumes_with_another_batch_size(
-    config: Config, whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_unfinished_build_resumes_with_another_batch_size(config, whole, tmp_path, monkeypatch):
     folder, made = tmp_path / "set", []
     original = batch_module.synthesise
 
-    def stops_after_five(*arguments: object) -> object:
+    def stops_after_five(*arguments):
         made.append(arguments)
         if len(made) > 5:
             raise OSError(errno.ENOSPC, "No space left on device", "shard")
@@ -122,19 +114,19 @@ def test_an_unfinished_build_resumes_with_another_batch_size(
     assert fingerprint(folder) == fingerprint(whole)
 
 
-def test_a_complete_folder_is_not_changed(config: Config, whole: Path) -> None:
+def test_a_complete_folder_is_not_changed(config, whole):
     before = (whole / "dataset.h5").stat().st_mtime_ns
     assert make(config, whole).already_complete
     assert (whole / "dataset.h5").stat().st_mtime_ns == before
 
 
-def test_other_config_is_refused_and_the_keys_named(config: Config, whole: Path) -> None:
+def test_other_config_is_refused_and_the_keys_named(config, whole):
     other = config.model_copy(update={"seed": 8, "snr_db": 5.0})
     with pytest.raises(FolderError, match=r"(?s)seed: 7 there, 8 here.*snr_db"):
         make(other, whole)
 
 
-def test_a_folder_without_samples_is_free(config: Config, tmp_path: Path) -> None:
+def test_a_folder_without_samples_is_free(config, tmp_path):
     """As after a build whose scenes were refused: another config may have it."""
     far = {"motion": {"model": "paper", "range_m": 500.0}, "on_invalid": "error"}
     refused = Config.model_validate({**resolved(config), **far})
@@ -146,9 +138,7 @@ def test_a_folder_without_samples_is_free(config: Config, tmp_path: Path) -> Non
     assert verify(tmp_path, 1).problems == []
 
 
-def test_other_versions_are_refused(
-    config: Config, whole: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_other_versions_are_refused(config, whole, monkeypatch):
     real = folder_module.identity(config)
     other = {**real, "versions": {**real["versions"], "numpy": "1.0"}}
     monkeypatch.setattr(folder_module, "identity", lambda _: other)
@@ -156,9 +146,7 @@ def test_other_versions_are_refused(
         make(config, whole)
 
 
-def test_pngs_can_be_added_later_and_lost_ones_are_rewritten(
-    config: Config, whole: Path, tmp_path: Path
-) -> None:
+def test_pngs_can_be_added_later_and_lost_ones_are_rewritten(config, whole, tmp_path):
     folder = tmp_path / "set"
     without = config.model_copy(update={"output": config.output.model_copy(update={"png": False})})
     make(without, folder)
@@ -178,9 +166,7 @@ def test_pngs_can_be_added_later_and_lost_ones_are_rewritten(
     assert fingerprint(folder).items() >= {k: right[k] for k in right if k[:3] == "png"}.items()
 
 
-def test_overwrite_starts_again_and_keeps_foreign_files(
-    config: Config, whole: Path, tmp_path: Path
-) -> None:
+def test_overwrite_starts_again_and_keeps_foreign_files(config, whole, tmp_path):
     folder = tmp_path / "set"
     make(config.model_copy(update={"seed": 99}), folder)
     (folder / "notes.txt").write_text("mine")
@@ -190,9 +176,7 @@ def test_overwrite_starts_again_and_keeps_foreign_files(
     assert fingerprint(folder) == fingerprint(whole)
 
 
-def test_overwrite_refuses_folders_that_radhar_did_not_build(
-    config: Config, tmp_path: Path
-) -> None:
+def test_overwrite_refuses_folders_that_radhar_did_not_build(config, tmp_path):
     with h5py.File(tmp_path / "dataset.h5", "w") as file:
         file["mine"] = 1
     (tmp_path / "png").mkdir()
@@ -203,9 +187,7 @@ def test_overwrite_refuses_folders_that_radhar_did_not_build(
     assert (tmp_path / "dataset.h5").exists()
 
 
-def test_overwrite_killed_midway_resumes(
-    config: Config, whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_overwrite_killed_midway_resumes(config, whole, tmp_path, monkeypatch):
     """Whatever step of clearing is the last, the same command finishes the job."""
     for count in range(1, 7):
         folder = tmp_path / f"set{count}"
@@ -213,12 +195,12 @@ def test_overwrite_killed_midway_resumes(
         (folder / "preview_stft.png").write_text("mine")
         left = [count]
 
-        def dying(original: object, left: list[int] = left) -> object:
-            def step(*arguments: object, **options: object) -> object:
+        def dying(original, left=left):
+            def step(*arguments, **options):
                 left[0] -= 1
                 if left[0] <= 0:
                     raise KeyboardInterrupt
-                return original(*arguments, **options)  # type: ignore[operator]
+                return original(*arguments, **options)
 
             return step
 
@@ -233,16 +215,14 @@ def test_overwrite_killed_midway_resumes(
         assert fingerprint(folder) == fingerprint(whole)
 
 
-def test_scenes_are_checked_by_the_workers_and_only_of_what_is_missing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_scenes_are_checked_by_the_workers_and_only_of_what_is_missing(tmp_path, monkeypatch):
     """The warnings of a resumed build count all its rows."""
     text = SMALL.replace("seed: 7", "seed: 7\nwall: {}\non_invalid: keep")
     config = load_config(small_config(tmp_path, text), ["motion.range_m={uniform: [1, 3]}"])
     make(config, tmp_path / "whole")
     checks: list[tuple[int, int, int]] = []
 
-    def noted(function: Any, tasks: Any, jobs: int) -> Any:
+    def noted(function, tasks, jobs):
         tasks = list(tasks)
         if function is batch_module.check_rows:
             checks.extend((start, stop, jobs) for _, start, stop, _ in tasks)
@@ -252,7 +232,7 @@ def test_scenes_are_checked_by_the_workers_and_only_of_what_is_missing(
         patch.setattr(build_module, "run_tasks", noted)
         made, stopped = [], batch_module.synthesise
 
-        def synthesise(*given: Any) -> Any:
+        def synthesise(*given):
             made.append(given)
             return 1 / 0 if len(made) > 4 else stopped(*given)
 
@@ -272,9 +252,7 @@ def test_scenes_are_checked_by_the_workers_and_only_of_what_is_missing(
     assert fingerprint(tmp_path / "whole") == fingerprint(tmp_path / "set")
 
 
-def test_scenes_of_a_large_data_set_are_checked_by_the_workers(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_scenes_of_a_large_data_set_are_checked_by_the_workers(tmp_path, monkeypatch):
     """The same bytes, redraws and warnings as where they are all checked first."""
     text = SMALL.replace("seed: 7", "seed: 7\nwall: {}\non_invalid: keep")
     config = load_config(small_config(tmp_path, text), ["motion.range_m={uniform: [1, 3]}"])
@@ -291,7 +269,7 @@ def test_scenes_of_a_large_data_set_are_checked_by_the_workers(
     assert fingerprint(tmp_path / "first") == fingerprint(tmp_path / "by workers")
 
 
-def test_foreign_folder_file_and_live_folder_are_refused(config: Config, tmp_path: Path) -> None:
+def test_foreign_folder_file_and_live_folder_are_refused(config, tmp_path):
     (tmp_path / "thesis.tex").write_text("x")
     with pytest.raises(FolderError, match=r"thesis\.tex"):
         make(config, tmp_path)
@@ -304,17 +282,15 @@ def test_foreign_folder_file_and_live_folder_are_refused(config: Config, tmp_pat
         make(config, tmp_path / "live")
 
 
-def test_a_path_that_cannot_be_made_is_one_clear_line(config: Config, tmp_path: Path) -> None:
+def test_a_path_that_cannot_be_made_is_one_clear_line(config, tmp_path):
     (tmp_path / "file").write_text("x")
     with pytest.raises(FolderError, match="file/set: cannot be made") as caught:
         make(config, tmp_path / "file" / "set")
     assert "\n" not in str(caught.value)
 
 
-def test_scene_too_close_to_an_antenna_stops_before_any_echo(
-    config: Config, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def never(*_: object) -> None:
+def test_scene_too_close_to_an_antenna_stops_before_any_echo(config, tmp_path, monkeypatch):
+    def never(*_):
         raise AssertionError("an echo was computed")
 
     monkeypatch.setattr(batch_module, "synthesise", never)
@@ -328,12 +304,10 @@ def test_scene_too_close_to_an_antenna_stops_before_any_echo(
     assert "generate --dry-run checks 9 of the 9 scenes, this one too" in str(caught.value)
 
 
-def test_a_refusal_says_where_a_dry_run_could_not_know(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_refusal_says_where_a_dry_run_could_not_know(tmp_path, monkeypatch):
     """Of 240 scenes of one class a dry run checks every other, the first not among them."""
 
-    def refuse(_: Config, activity: Activity, index: int) -> None:
+    def refuse(_, activity, index):
         raise SceneError(f"sample {activity.slug}/{index}")
 
     monkeypatch.setattr(batch_module, "draw_valid_scene", refuse)
@@ -346,9 +320,7 @@ def test_a_refusal_says_where_a_dry_run_could_not_know(
         batch_module.checked_scene(config, rows, 1)
 
 
-def test_physical_warnings_are_given_once_with_a_count_and_stored(
-    config: Config, tmp_path: Path
-) -> None:
+def test_physical_warnings_are_given_once_with_a_count_and_stored(config, tmp_path):
     notes = Listener()
     far = load_config(small_config(tmp_path), ["motion.range_m=28", "activities=[walking, S1]"])
     build(far, tmp_path / "set", 1, notes)
@@ -363,9 +335,7 @@ def test_physical_warnings_are_given_once_with_a_count_and_stored(
     }
 
 
-def test_fallbacks_to_the_cube_are_counted_across_resumed_runs(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_fallbacks_to_the_cube_are_counted_across_resumed_runs(tmp_path, monkeypatch):
     """Double precision cannot promise -300 dB of anybody who moves."""
     engine = ["engine={tolerance_db: -300, fallback: cube}", "duration_s=1", "maps=[rtm, stft]"]
     config = load_config(small_config(tmp_path), [*engine, "activities=[punching, S1, S8]"])
@@ -373,7 +343,7 @@ def test_fallbacks_to_the_cube_are_counted_across_resumed_runs(
     build(config, tmp_path / "whole", 1, notes)
     assert "warning: 6 of 9 recordings: computed by the cube (engine.fallback)" in notes.messages
 
-    def stops_after_four(*arguments: object) -> object:
+    def stops_after_four(*arguments):
         made.append(arguments)
         if len(made) > 4:
             raise OSError(errno.ENOSPC, "No space left on device", "shard")
@@ -391,13 +361,13 @@ def test_fallbacks_to_the_cube_are_counted_across_resumed_runs(
     assert [w["recordings"] for w in stored if w["kind"] == "fallback"] == [6]
 
 
-def test_a_range_map_alone_never_falls_back(tmp_path: Path) -> None:
+def test_a_range_map_alone_never_falls_back(tmp_path):
     engine = ["engine={tolerance_db: -390, fallback: cube}", "duration_s=1", "maps=[rtm]"]
     outcome = make(load_config(small_config(tmp_path), engine), tmp_path / "set")
     assert "fallback" not in {warning["kind"] for warning in outcome.warnings}
 
 
-def test_dataset_contract(config: Config, whole: Path) -> None:
+def test_dataset_contract(config, whole):
     with h5py.File(whole / "dataset.h5") as file:
         assert set(file["maps"]) == set(config.maps)
         for name in config.maps:
@@ -429,13 +399,13 @@ def test_dataset_contract(config: Config, whole: Path) -> None:
 
 
 @pytest.mark.parametrize(("count", "last"), [(3, "00002"), (10**5, "99999"), (10**5 + 1, "100000")])
-def test_png_names_sort_by_index_at_any_count(config: Config, count: int, last: str) -> None:
+def test_png_names_sort_by_index_at_any_count(config, count, last):
     rows = Rows(config.chosen_activities[:2], (5, count))
     assert (rows.name(4), rows.name(4 + count)) == ("00004", last)
     assert rows.png_path("rtm", 0, 5).stem == "0".zfill(len(last))
 
 
-def test_pngs_show_the_levels(config: Config, whole: Path) -> None:
+def test_pngs_show_the_levels(config, whole):
     table, rows = colour_table("viridis"), Rows.of(config)
     with h5py.File(whole / "dataset.h5") as file:
         for row in range(len(rows)):
@@ -447,7 +417,7 @@ def test_pngs_show_the_levels(config: Config, whole: Path) -> None:
                 assert np.array_equal(shown, table[file["maps/stft"][row]])
 
 
-def test_scenes_csv_has_the_numbers_of_the_file(whole: Path) -> None:
+def test_scenes_csv_has_the_numbers_of_the_file(whole):
     lines = (whole / "scenes.csv").read_text().splitlines()
     header, rows = lines[0].split(","), [line.split(",") for line in lines[1:]]
     with h5py.File(whole / "dataset.h5") as file:
@@ -457,11 +427,11 @@ def test_scenes_csv_has_the_numbers_of_the_file(whole: Path) -> None:
     assert rows[0][header.index("motion.thigh_deg")] == ""
 
 
-def test_resolved_config_builds_the_same_identity(config: Config, whole: Path) -> None:
+def test_resolved_config_builds_the_same_identity(config, whole):
     assert load_config(whole / "config.yaml") == config
 
 
-def test_redrawn_scenes_are_valid_and_deterministic(tmp_path: Path) -> None:
+def test_redrawn_scenes_are_valid_and_deterministic(tmp_path):
     text = SMALL.replace("seed: 7", "seed: 7\nwall: {}\non_invalid: redraw")
     config = load_config(
         small_config(tmp_path, text), ["motion.range_m={uniform: [1, 3]}", "activities=[S1, S2]"]

@@ -1,7 +1,6 @@
 """`inspect` tells what a data set, a half-built folder or a scene holds."""
 
 import shutil
-from pathlib import Path
 
 import pytest
 from small import small_config
@@ -18,14 +17,14 @@ from radhar_cli.simulation.simulate import simulate
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def whole(tmp_path_factory):
     place = tmp_path_factory.mktemp("summary")
     build(load_config(small_config(place)), place / "set", 1, BarProgress())
     return place / "set"
 
 
 @pytest.mark.parametrize("name", ["", "dataset.h5"])
-def test_data_set(whole: Path, name: str) -> None:
+def test_data_set(whole, name):
     found = summarise(whole / name)
     assert found["kind"] == "data set"
     assert found["samples"] == 9
@@ -37,12 +36,10 @@ def test_data_set(whole: Path, name: str) -> None:
     assert found["entropy_bits"]["stft"]["walking"]["mean"] > 0
 
 
-def test_inspect_of_an_unfinished_build_shows_its_progress(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_inspect_of_an_unfinished_build_shows_its_progress(tmp_path, monkeypatch):
     original, made = batch.synthesise, []
 
-    def fails(*arguments: object) -> object:
+    def fails(*arguments):
         made.append(1)
         if len(made) > 4:
             raise OSError("disk")
@@ -58,7 +55,7 @@ def test_inspect_of_an_unfinished_build_shows_its_progress(
         open_dataset(tmp_path / "set")
 
 
-def test_scene(tmp_path: Path) -> None:
+def test_scene(tmp_path):
     simulation = simulate(load_config(small_config(tmp_path)), "S12", maps=("stft",))
     write_all(simulation, tmp_path)
     for path in (tmp_path, tmp_path / "scene.h5"):
@@ -67,7 +64,7 @@ def test_scene(tmp_path: Path) -> None:
         assert found["activity"]["slug"] == "walking_to_falling"
 
 
-def test_foreign_files_are_refused(whole: Path, tmp_path: Path) -> None:
+def test_foreign_files_are_refused(whole, tmp_path):
     import h5py
 
     with h5py.File(tmp_path / "other.h5", "w") as file:
@@ -81,7 +78,7 @@ def test_foreign_files_are_refused(whole: Path, tmp_path: Path) -> None:
             summarise(tmp_path / name)
 
 
-def test_dataset_reads_lazily_and_suggests_maps(whole: Path) -> None:
+def test_dataset_reads_lazily_and_suggests_maps(whole):
     with open_dataset(whole) as data:
         assert data.maps["stft"][0].shape == (48, 48)
         assert data.map_name(None) == "rtm"

@@ -88,7 +88,7 @@ os._exit(0)  # threads of gloo may still run, which aborts an exit of the interp
 """
 
 
-def torchrun(*arguments: object) -> subprocess.CompletedProcess[str]:
+def torchrun(*arguments):
     command = [
         *(sys.executable, "-m", "torch.distributed.run", "--nproc-per-node", "2"),
         *("--standalone", "--local-addr", "127.0.0.1"),
@@ -103,7 +103,7 @@ def torchrun(*arguments: object) -> subprocess.CompletedProcess[str]:
     )
 
 
-def test_two_processes_have_the_gradient_of_one(data: Path, tmp_path: Path) -> None:
+def test_two_processes_have_the_gradient_of_one(data, tmp_path):
     script = tmp_path / "step.py"
     script.write_text(STEP)
     done = torchrun(script, TESTS, data, tmp_path / "runs", tmp_path / "answer.json")
@@ -120,9 +120,7 @@ def test_two_processes_have_the_gradient_of_one(data: Path, tmp_path: Path) -> N
 
 
 @pytest.mark.slow
-def test_two_processes_write_one_set_of_files_and_resume(
-    data: Path, run_dir: Path, tmp_path: Path
-) -> None:
+def test_two_processes_write_one_set_of_files_and_resume(data, run_dir, tmp_path):
     config, out = tmp_path / "train.json", tmp_path / "run"
     config.write_text(json.dumps(BASE))
     command = ("-m", "radhar_cli", "train", data, "-o", out, "--config", config)

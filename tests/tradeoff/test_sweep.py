@@ -3,7 +3,6 @@
 import csv
 import json
 import re
-from pathlib import Path
 from shutil import copytree
 
 import numpy as np
@@ -42,7 +41,7 @@ FEW = ("-40 dB", "-80 dB", "cube")
 
 
 @pytest.fixture
-def config(tmp_path) -> Path:
+def config(tmp_path):
     path = tmp_path / "c.yaml"
     path.write_text(CONFIG)
     return path
@@ -60,7 +59,7 @@ def tried(config):
 
 
 @pytest.fixture(scope="module")
-def done(tmp_path_factory) -> tuple[Path, Path]:
+def done(tmp_path_factory):
     """A config and its finished sweep, a few settings of each kind; who changes it takes a copy."""
     place = tmp_path_factory.mktemp("sweep")
     path = place / "c.yaml"
@@ -73,18 +72,18 @@ def done(tmp_path_factory) -> tuple[Path, Path]:
     return path, place / "out"
 
 
-def tradeoff(config: Path, out: Path, *more: str):
+def tradeoff(config, out, *more):
     return CliRunner().invoke(
         program(), ["tradeoff", str(config), "-o", str(out), "--quick", *more]
     )
 
 
-def rows_of(out: Path) -> dict[str, dict]:
+def rows_of(out):
     rows = json.loads((out / "tradeoff.json").read_text())["settings"]
     return {row["setting"]: row for row in rows}
 
 
-def files_of(out: Path) -> dict[str, bytes]:
+def files_of(out):
     return {path.name: path.read_bytes() for path in out.iterdir() if path.is_file()}
 
 
@@ -214,7 +213,7 @@ def test_a_damaged_result_is_refused(text, done, tmp_path):
 
 
 class TestSettings:
-    def scenes(self, config: Path, *more: str) -> Scenes:
+    def scenes(self, config, *more):
         return Scenes(config, more, quick=False)
 
     def test_every_setting_is_a_config(self, config):

@@ -55,7 +55,7 @@ def train(
 
       radhar train datasets/measured -o runs/tuned --init runs/simulated --set learning_rate=1e-4
 
-      radhar train --stream configs/quickstart.yaml -o runs/endless    # every image new, none stored
+      radhar train --stream configs/quickstart.yaml -o runs/endless    # every image new
 
     Several processes, or several GPUs: torchrun --nproc-per-node 2 -m radhar_cli train ...
     The same command, run again, resumes after the last finished epoch.

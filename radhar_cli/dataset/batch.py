@@ -36,29 +36,18 @@ Outcomes: TypeAlias = NDArray[Any]  # of OUTCOME
 
 @dataclass(frozen=True)
 class Batch:
-    """Rows start .. stop - 1 and all that a worker needs to make them.
-
-    Attributes:
-        config: the data set's.
-        identity_hash: of it.
-        folder: the output folder, absolute: a worker may have another working directory.
-        start, stop: rows.
-        checked: outcome of the check of each row, or None where the worker is to check.
-        split: split number of each row.
-        table: colour table [256, 3], or None without PNGs.
-        parent_pid: process that asked; a worker that outlives it stops. NO_PARENT: on a cluster.
-        factory: makes the rows where they are no scenes.
-    """
+    """Rows start .. stop - 1 and all that a worker needs to make them."""
 
     config: Config
     identity_hash: str
-    folder: Path
+    folder: Path  # the output folder, absolute: a worker may have another working directory
     start: int
     stop: int
+    # outcome of the check of each row, or None where the worker is to check
     checked: Outcomes | None
     split: Levels
-    table: Levels | None
-    parent_pid: int
+    table: Levels | None  # colour table [256, 3], or None without PNGs
+    parent_pid: int  # process that asked; a worker that outlives it stops. NO_PARENT: on a cluster
     factory: RowFactory | None = None
 
 

@@ -33,22 +33,14 @@ ONE_ROW = 4
 
 @dataclass(frozen=True)
 class Shown:
-    """What a page of maps shows, simulated or measured.
-
-    Attributes:
-        maps: {map name: PowerMap}.
-        image: dynamic range and colours.
-        f0: frequency at which the Doppler is read, Hz.
-        farthest: what the range-time map shows, m.
-        title: one line above.
-        over: draws more over a map: (axes, map name, Hz or m of a unit of the axis).
-    """
+    """What a page of maps shows, simulated or measured."""
 
     maps: Mapping[str, PowerMap]
-    image: ImageConfig
-    f0: float
-    farthest: float
-    title: str
+    image: ImageConfig  # dynamic range and colours
+    f0: float  # frequency at which the Doppler is read, Hz
+    farthest: float  # what the range-time map shows, m
+    title: str  # one line above
+    # draws more over a map: (axes, map name, Hz or m of a unit of the axis)
     over: Callable[[Axes, str, float], None] | None = None
 
 

@@ -45,15 +45,10 @@ RATE = 5e-4  # of Adam, falls to zero by a cosine
 
 @dataclass(frozen=True)
 class Mixed:
-    """Labelled images that are shown while a network learns from unlabelled ones.
-
-    Attributes:
-        images: their training images are taken.
-        weights: how often those of each joined set; None: all alike.
-    """
+    """Labelled images that are shown while a network learns from unlabelled ones."""
 
     images: ImageSet
-    weights: tuple[float, ...] | None = None
+    weights: tuple[float, ...] | None = None  # how often those of each joined set; None: all alike
 
     def batches(
         self, metadata: RunMetadata, epoch: int, count: int

@@ -16,15 +16,10 @@ from radhar_cli.randomness import TRAINING, stream
 
 @dataclass(frozen=True)
 class Augmentation:
-    """Changes that depend on seed, epoch and row alone, whichever process makes them.
+    """Changes that depend on seed, epoch and row alone, whichever process makes them."""
 
-    Attributes:
-        config: how far the changes go.
-        seed: of the training run.
-    """
-
-    config: AugmentConfig
-    seed: int
+    config: AugmentConfig  # how far the changes go
+    seed: int  # of the training run
 
     def __call__(self, levels: Levels, row: int, epoch: int) -> Levels:
         """A changed copy of grey levels [H, W], row 0 the highest frequency."""

@@ -28,21 +28,13 @@ WARM_UP, REPEATS, BATCH_REPEATS = 3, 15, 5
 
 @dataclass(frozen=True)
 class Predictions:
-    """Predictions for rows of an image set.
-
-    Attributes:
-        images: the set.
-        rows: [N] rows of the set.
-        truth: [N] true classes, in the model's numbering.
-        probabilities: [N, classes].
-        features: [N, F], input of the last layer.
-    """
+    """Predictions for rows of an image set."""
 
     images: ImageSet
-    rows: Index
-    truth: Index
-    probabilities: Float
-    features: Float
+    rows: Index  # [N] rows of the set
+    truth: Index  # [N] true classes, in the model's numbering
+    probabilities: Float  # [N, classes]
+    features: Float  # [N, F], input of the last layer
 
     @property
     def predicted(self) -> Index:

@@ -69,16 +69,11 @@ def out_of_memory(error: RuntimeError) -> bool:
 
 @dataclass(frozen=True)
 class ExecutionPlan:
-    """Device, precision, micro batch and reading processes of a run.
-
-    Attributes:
-        device, precision: of the forward and backward passes.
-        micro_batch: most images in one pass of one process; gradients are accumulated over passes.
-        workers: reading processes.
-    """
+    """Device, precision, micro batch and reading processes of a run."""
 
     device: torch.device
     precision: torch.dtype
+    # most images in one pass of one process; gradients are accumulated over passes
     micro_batch: int
     workers: int
 

@@ -91,17 +91,11 @@ class TrainingProgress(Messages, Protocol):
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a run left.
+    """What a run left."""
 
-    Attributes:
-        folder: of the run.
-        history: its epochs.
-        resumed: epochs that were finished before.
-    """
-
-    folder: Path
+    folder: Path  # of the run
     history: list[Epoch]
-    resumed: int
+    resumed: int  # epochs that were finished before
 
     @property
     def best(self) -> Epoch:

@@ -193,19 +193,12 @@ def mask_statistics(
 
 
 class Statistic(NamedTuple):
-    """What a statistic is called in tables.
+    """What a statistic is called in tables."""
 
-    Attributes:
-        words: for people.
-        unit: "%", "dB", "" of a number, "rows" (the unit of rows), "columns" (of columns).
-        of_range: whether it means something in a range-time map.
-        of_power: whether it needs power, not occupied cells alone.
-    """
-
-    words: str
-    unit: str
-    of_range: bool = False
-    of_power: bool = False
+    words: str  # for people
+    unit: str  # "%", "dB", "" of a number, "rows" (the unit of rows), "columns" (of columns)
+    of_range: bool = False  # whether it means something in a range-time map
+    of_power: bool = False  # whether it needs power, not occupied cells alone
 
 
 STATISTICS = {

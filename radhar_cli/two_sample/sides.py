@@ -23,26 +23,16 @@ TWO_VALUED = 8  # images looked at to tell masks from grey
 
 @dataclass(frozen=True)
 class Side:
-    """One of two data sets.
-
-    Attributes:
-        images: its images.
-        classes: {class, by the common name: rows}.
-        left_out: {class of its own: images} that are not compared.
-        extent: [N, 4] edges (s; Hz or m) of every image; None where they are not known.
-        group: [N] who is in it, where that is known, or which recording; else a number of its own.
-        persons: whether it is known who.
-        dynamic_range_db: that levels span; None where it is not known, or of masks.
-        masks: whether its images are masks.
-    """
+    """One of two data sets."""
 
     images: ImageSet
-    classes: dict[str, Index]
-    left_out: dict[str, int]
-    extent: Float | None
+    classes: dict[str, Index]  # {class, by the common name: rows}
+    left_out: dict[str, int]  # {class of its own: images} that are not compared
+    extent: Float | None  # [N, 4] edges (s; Hz or m) of every image; None where they are not known
+    # [N] who is in it, where that is known, or which recording; else a number of its own
     group: Index
-    persons: bool
-    dynamic_range_db: float | None
+    persons: bool  # whether it is known who
+    dynamic_range_db: float | None  # that levels span; None where it is not known, or of masks
     masks: bool
 
     @property

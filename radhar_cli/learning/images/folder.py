@@ -29,17 +29,11 @@ MAX_CLASSES = 128  # a confusion matrix of them can still be drawn
 
 @dataclass(frozen=True)
 class FilePixels:
-    """One image file per row.
+    """One image file per row."""
 
-    Attributes:
-        files: [N].
-        kind: "rgb" or "gray".
-        size: (H, W) that all of them should have, None for any.
-    """
-
-    files: tuple[Path, ...]
-    kind: str
-    size: tuple[int, int] | None
+    files: tuple[Path, ...]  # [N]
+    kind: str  # "rgb" or "gray"
+    size: tuple[int, int] | None  # (H, W) that all of them should have, None for any
 
     def read(self, row: int) -> Levels:
         """RGB [H, W, 3] of a row, or one channel three times.

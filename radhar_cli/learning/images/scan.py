@@ -14,15 +14,10 @@ from radhar_cli.learning.images.image_set import ImageSet
 
 @dataclass(frozen=True)
 class Scan:
-    """Digests and histogram of some images.
+    """Digests and histogram of some images."""
 
-    Attributes:
-        digests: [rows] digest of each image's pixels.
-        histogram: [3, 256] how often each level occurs in each channel.
-    """
-
-    digests: tuple[str, ...]
-    histogram: NDArray[np.int64]
+    digests: tuple[str, ...]  # [rows] digest of each image's pixels
+    histogram: NDArray[np.int64]  # [3, 256] how often each level occurs in each channel
 
     @property
     def mean(self) -> tuple[float, ...]:

@@ -37,17 +37,11 @@ GREY = repeated(np.arange(256, dtype=np.uint8))
 
 @dataclass(frozen=True)
 class SynthesisedPixels:
-    """A map of one sample a row, through a table [256, 3].
+    """A map of one sample a row, through a table [256, 3]."""
 
-    Attributes:
-        recipe: of the map alone.
-        where: row -> (activity, index).
-        table: colours of the levels.
-    """
-
-    recipe: Recipe
-    where: StreamOrder | Rows
-    table: Levels
+    recipe: Recipe  # of the map alone
+    where: StreamOrder | Rows  # row -> (activity, index)
+    table: Levels  # colours of the levels
 
     def read(self, row: int) -> Levels:
         """RGB [H, W, 3] of a row.
@@ -75,20 +69,12 @@ class StoredPixels:
 
 @dataclass(frozen=True)
 class TrainingStream:
-    """An endless series of training images; no two epochs share any.
+    """An endless series of training images; no two epochs share any."""
 
-    Attributes:
-        order: which sample stands in which row.
-        pixels: of every row.
-        classes: that the labels number; `stream[row]` is the label of a row.
-        per_epoch: rows of an epoch.
-        first: the scan of the first rows.
-    """
-
-    order: StreamOrder
-    pixels: SynthesisedPixels
-    classes: tuple[str, ...]
-    per_epoch: int
+    order: StreamOrder  # which sample stands in which row
+    pixels: SynthesisedPixels  # of every row
+    classes: tuple[str, ...]  # that the labels number; `stream[row]` is the label of a row
+    per_epoch: int  # rows of an epoch
     first: Scan
 
     def __getitem__(self, row: int) -> int:

@@ -84,11 +84,6 @@ def build(
     """Build `config` into `folder`, or resume it; nothing to do where it is complete.
 
     Args:
-        config: the data set.
-        folder: created if need be.
-        jobs: processes.
-        progress: receives progress and messages.
-        overwrite: start over.
         batch_size: samples a shard; it changes no byte of the result.
         factory: makes the rows of a data set that is not simulated.
         part: make these rows alone, in their folder below `folder`.

@@ -81,9 +81,6 @@ def reserve(
     """Take a locked folder for this config, or refuse it.
 
     Args:
-        folder: the output folder, or a part's.
-        config: of the data set.
-        overwrite: start over.
         part: which one this is, K/N.
         allowed: names that a folder without a data set may hold already.
 
@@ -193,24 +190,16 @@ def _remove_batches(folder: Path) -> None:
         place.rmdir()
 
 
-def _ours(folder: Path) -> bool:
-    """Whether radhar built, or began to build, what a folder holds, damaged or not."""
-    ours = is_incomplete(folder) or (folder / WORK / "built").exists()
-    if ours or not (folder / DATASET).exists():
-        return ours
-    try:
-        return stored_identity(folder) is not None
-    except FolderError:
-        return False
-
-
 def _clear(folder: Path, new: dict[str, Any]) -> None:
     """Start again where radhar was before: remove its files and nothing else.
 
     The new name comes first and the old data set's file last but for the PNGs that were put aside,
     so that a kill in between leaves a folder that either run can go on with.
     """
-    if not _ours(folder):
+    ours = is_incomplete(folder) or (folder / WORK / "built").exists()
+    with suppress(FolderError):  # of radhar, or damaged
+        ours = ours or stored_identity(folder) is not None
+    if not ours:
         return
     if (folder / PNG).exists():
         put_aside = unfinished_path(folder)

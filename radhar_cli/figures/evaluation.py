@@ -21,7 +21,6 @@ def curves_png(runs: Mapping[str, Sequence[Any]], best: Mapping[str, int]) -> by
     """Accuracy and loss by epoch, training dashed and validation solid, the kept epoch marked.
 
     Args:
-        runs: name of each run and its epochs, `run_folder.Epoch`.
         best: kept epoch of a run, by name.
     """
     figure = page(10.5, 4.2)

@@ -32,7 +32,6 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Callable[[int], o
     What never changes is drawn once; a frame draws the body, the clock and the cursor over it.
 
     Args:
-        simulation: the scene.
         path: ends in .gif.
         advance: called with 1 after every frame.
     """

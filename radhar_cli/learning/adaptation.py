@@ -83,17 +83,11 @@ def adapt(
     epochs it learns from them as well, which takes every class to be there about equally often.
 
     Args:
-        run: a training run.
-        data: a data set or a tree of images.
-        folder: of the copy.
-        device: where to compute.
         map_name: of a data set, if not the one of the run.
         split: of `data`, where it has any.
         resize: bring images to the model's size.
-        overwrite: replace a run that the folder holds.
-        epochs: of `maximise_information`.
+        epochs: passes in which it learns from the images.
         mix: labelled data sets that it shows as well, those that the run learned from.
-        progress: receives a line for each of them.
 
     Raises:
         RunError, FolderError: one of them cannot be used.
@@ -133,10 +127,11 @@ def adapt_to(
     repeatable(device)
     if device.type == "cpu":
         keep_memory()
-    adapt_batch_norm(model.to(device), metadata, images, rows, device)
+    learner = _Learner(model.to(device), metadata, images, rows, device)
+    learner.adapt_batch_norm()
     if epochs:
-        maximise_information(model, metadata, images, rows, device, epochs, mixed, progress)
-        adapt_batch_norm(model, metadata, images, rows, device)
+        learner.maximise_information(epochs, mixed, progress)
+        learner.adapt_batch_norm()
     seen = content_hash(images, rows, scan(images, rows).digests)
     work = {**metadata.work, "adapted_to": seen, "adapted_epochs": epochs}
     if mixed is not None:
@@ -155,88 +150,93 @@ def adapt_to(
     return metadata
 
 
-def adapt_batch_norm(
-    model: nn.Module, metadata: RunMetadata, images: ImageSet, rows: Index, device: torch.device
-) -> None:
-    """Replace the statistics of every batch norm by their average over rows of an image set.
+@dataclass(frozen=True)
+class _Learner:
+    """A network on its device, and the rows of an image set that it is fitted to."""
 
-    The rows are shuffled, as stored ones may be sorted by class, and batches are nearly equal.
-    """
-    for layer in model.modules():
-        if isinstance(layer, _BatchNorm):
+    model: nn.Module
+    metadata: RunMetadata
+    images: ImageSet
+    rows: Index
+    device: torch.device
+
+    @property
+    def norms(self) -> list[_BatchNorm]:
+        return [layer for layer in self.model.modules() if isinstance(layer, _BatchNorm)]
+
+    def adapt_batch_norm(self) -> None:
+        """Replace the statistics of every batch norm by their average over the rows.
+
+        The rows are shuffled, as stored ones may be sorted by class, and batches are nearly equal.
+        """
+        for layer in self.norms:
             layer.train()
             layer.reset_running_stats()
             layer.momentum = None  # the plain average over all batches
-    with torch.inference_mode():
-        for levels in _levels(images, _batches(metadata, rows, 0)):
-            model(metadata.normalisation(levels.to(device)))
-    model.eval()
+        with torch.inference_mode():
+            for levels in self._levels(self._batches(0)):
+                self.model(levels)
+        self.model.eval()
 
+    def maximise_information(
+        self, epochs: int, mixed: Mixed | None, progress: Messages | None
+    ) -> None:
+        """Lower the entropy of each prediction, raise that of their mean: all but the last layer.
 
-def maximise_information(
-    model: nn.Module,
-    metadata: RunMetadata,
-    images: ImageSet,
-    rows: Index,
-    device: torch.device,
-    epochs: int,
-    mixed: Mixed | None = None,
-    progress: Messages | None = None,
-) -> None:
-    """Lower the entropy of each prediction and raise that of their mean, by all but the last layer.
+        The mutual information of images and predictions grows; without labels, batch norm as in
+        training, in the batches of `adapt_batch_norm`. Mixed images, in batches of their own, add
+        their cross-entropy, smoothed as in training.
 
-    The mutual information of images and predictions grows; without labels, batch norm as in
-    training, in the batches of `adapt_batch_norm`. Mixed images, in batches of their own, add their
-    cross-entropy, smoothed as in training.
+        Raises:
+            RunError: the loss is not finite.
+        """
+        model, metadata = self.model, self.metadata
+        learned = [p for name, p in model.named_parameters() if not is_of_last_layer(name, model)]
+        optimiser = torch.optim.Adam(learned)
+        smoothing = TrainConfig.model_validate(metadata.config).label_smoothing
+        for epoch in range(1, epochs + 1):
+            for layer in self.norms:
+                layer.train()
+            batches = self._batches(epoch)
+            labelled = mixed.batches(metadata, epoch, len(batches)) if mixed else None
+            for step, levels in enumerate(self._levels(batches)):
+                done = (epoch - 1 + step / len(batches)) / epochs
+                optimiser.param_groups[0]["lr"] = RATE * (1 + cos(pi * done)) / 2
+                shares = model(levels).softmax(1)
+                entropy, of_mean = _entropy(shares).mean(), _entropy(shares.mean(0))
+                loss = entropy - of_mean
+                if labelled is not None:
+                    shown, label = (part.to(self.device) for part in next(labelled))
+                    logits = model(metadata.normalisation(shown))
+                    loss = loss + cross_entropy(logits, label, label_smoothing=smoothing)
+                if not loss.isfinite():
+                    raise run_folder.RunError(
+                        f"epoch {epoch} of --epochs: the loss is {loss.item()}"
+                    )
+                optimiser.zero_grad()
+                loss.backward()  # type: ignore[no-untyped-call]
+                optimiser.step()
+            if progress is not None:
+                progress.say(
+                    f"epoch {epoch}/{epochs}  entropy of a prediction {entropy:.3f}, of their mean "
+                    f"{of_mean:.3f}"
+                )
+        model.eval()
 
-    Raises:
-        RunError: the loss is not finite.
-    """
-    norms = [layer for layer in model.modules() if isinstance(layer, _BatchNorm)]
-    learned = [p for name, p in model.named_parameters() if not is_of_last_layer(name, model)]
-    optimiser = torch.optim.Adam(learned)
-    smoothing = TrainConfig.model_validate(metadata.config).label_smoothing
-    for epoch in range(1, epochs + 1):
-        for layer in norms:
-            layer.train()
-        batches = _batches(metadata, rows, epoch)
-        labelled = mixed.batches(metadata, epoch, len(batches)) if mixed else None
-        for step, levels in enumerate(_levels(images, batches)):
-            done = (epoch - 1 + step / len(batches)) / epochs
-            optimiser.param_groups[0]["lr"] = RATE * (1 + cos(pi * done)) / 2
-            shares = model(metadata.normalisation(levels.to(device))).softmax(1)
-            entropy, of_mean = _entropy(shares).mean(), _entropy(shares.mean(0))
-            loss = entropy - of_mean
-            if labelled is not None:
-                shown, label = (part.to(device) for part in next(labelled))
-                logits = model(metadata.normalisation(shown))
-                loss = loss + cross_entropy(logits, label, label_smoothing=smoothing)
-            if not loss.isfinite():
-                raise run_folder.RunError(f"epoch {epoch} of --epochs: the loss is {loss.item()}")
-            optimiser.zero_grad()
-            loss.backward()  # type: ignore[no-untyped-call]
-            optimiser.step()
-        if progress is not None:
-            progress.say(
-                f"epoch {epoch}/{epochs}  entropy of a prediction {entropy:.3f}, of their mean "
-                f"{of_mean:.3f}"
-            )
-    model.eval()
+    def _batches(self, epoch: int) -> list[Index]:
+        """The rows in nearly equal batches, in the order of an epoch."""
+        seed = int(self.metadata.config.get("seed", 0))
+        rng = stream(seed, TRAINING, epoch, name="adaptation")
+        order = self.rows[rng.permutation(self.rows.size)]
+        return pieces(order, -(-order.size // max(1, order.size // BATCH)))
+
+    def _levels(self, batches: list[Index]) -> Iterator[Tensor]:
+        """The network's input [B, 3, H, W] of each batch."""
+        images = self.images
+        for levels, _ in Reader(images.pixels, images.label, workers=0, pin=False)(batches):
+            yield self.metadata.normalisation(levels.to(self.device))
 
 
 def _entropy(shares: Tensor) -> Tensor:
     """Entropy [...] of shares [..., classes], nats."""
     return -(shares * shares.clamp_min(1e-12).log()).sum(-1)
-
-
-def _batches(metadata: RunMetadata, rows: Index, epoch: int) -> list[Index]:
-    """The rows in nearly equal batches, in the order of an epoch."""
-    seed = int(metadata.config.get("seed", 0))
-    order = rows[stream(seed, TRAINING, epoch, name="adaptation").permutation(rows.size)]
-    return pieces(order, -(-order.size // max(1, order.size // BATCH)))
-
-
-def _levels(images: ImageSet, batches: list[Index]) -> Iterator[Tensor]:
-    """Levels uint8 [B, 3, H, W] of each batch."""
-    for levels, _ in Reader(images.pixels, images.label, workers=0, pin=False)(batches):
-        yield levels

@@ -29,12 +29,9 @@ def predict(
     """Yield (name, probability of every class) for every image.
 
     Args:
-        run: a training run.
         paths: images, folders of images, or data sets.
-        device: where to compute.
         map_name: of a data set, if not the one of the run.
         split: of a data set.
-        resize: bring images to the model's size.
 
     Raises:
         RunError: no such run.

@@ -118,11 +118,8 @@ def train(
     Under torchrun every process calls this; the first one writes.
 
     Args:
-        config: model, optimiser, schedule.
         data: a data set, or several that are combined; with a stream, the validation data, or
             nothing.
-        folder: of the run.
-        progress: receives progress.
         overwrite: start over in a folder that holds a run.
         names: {class of the data: class here, or None to leave it out}.
         start: a run whose best weights and normalisation are the initial ones; those of the last

@@ -39,7 +39,6 @@ def held_out(features: Float, truth: Bool, group: Index, rng: np.random.Generato
         features: [N, D]; what is not finite counts as the mean.
         truth: [N] kind of each.
         group: [N]; samples of one kind and group are held out together.
-        rng: shares them out.
 
     Returns:
         None where a kind has fewer than two groups.

@@ -59,7 +59,6 @@ def power_statistics(
     canceller noise is weaker near zero), a limb that does not stand out.
 
     Args:
-        one: the map.
         zero: half the width of the line of zero Doppler.
         beyond: above that Doppler there is noise alone.
         near: half the width of the torso's line.
@@ -113,13 +112,9 @@ class Body:
 
 
 def body_of(occupied: Bool, at_zero: Bool) -> Body:
-    """The pieces that touch the line at zero Doppler, or are tall; the others are stray.
+    """The pieces of cells [rows, columns] that touch the rows `at_zero` [rows], or are tall.
 
-    Lines of interference and single cells of noise are stray.
-
-    Args:
-        occupied: [rows, columns].
-        at_zero: rows of the line, [rows].
+    The others are stray: lines of interference, single cells of noise.
     """
     pieces, _ = label(binary_dilation(occupied, EIGHT, iterations=JOINED), EIGHT)
     kept = np.zeros(pieces.max(initial=0) + 1, bool)

@@ -25,7 +25,7 @@ from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.shards import listed_shards
 from radhar_cli.dataset.verify import verify
-from radhar_cli.dataset.workers import run_tasks, warm_up
+from radhar_cli.dataset.workers import run_tasks
 from radhar_cli.errors import FolderError, SceneError, UnfinishedError
 
 
@@ -86,7 +86,7 @@ def test_a_relative_folder_is_built_whatever_the_working_directory_of_the_worker
     elsewhere.mkdir()
     monkeypatch.chdir(elsewhere)
     get_reusable_executor(max_workers=2, kill_workers=True).shutdown(kill_workers=True)
-    warm_up(2)
+    list(run_tasks(os.getcwd, [()] * 8, 2))
     monkeypatch.chdir(here)
     assert set(run_tasks(os.getcwd, [()] * 8, 2)) == {str(elsewhere)}
     make(config, Path("set"), jobs=2, batch_size=2)

@@ -8,8 +8,9 @@ from typing import Any
 
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.card import data_files, number_features
-from radhar_cli.dataset.formats.convert import CheckedPngs, describe, files_of_split
+from radhar_cli.dataset.formats.convert import checked_png, describe, files_of_split
 from radhar_cli.dataset.layout import Rows
+from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.table import Entry, number_names
 from radhar_cli.progress import Progress
@@ -17,7 +18,8 @@ from radhar_cli.progress import Progress
 
 def write(data: Dataset, folder: Path, progress: Progress) -> None:
     """Write <split>-<number>.tar with <class>-<index>.<map>.png, .cls and .json of each sample."""
-    samples, rows, names = CheckedPngs(data), Rows.of(data.config), number_names(data.config)
+    rows, names = Rows.of(data.config), number_names(data.config)
+    table = colour_table(data.config.image.colour_map)
     for split, part in data.present_splits.items():
         for number, (_, here) in enumerate(files_of_split(data, split, len(data.maps))):
             path = folder / f"{part}-{number:06d}.tar"
@@ -25,7 +27,7 @@ def write(data: Dataset, folder: Path, progress: Progress) -> None:
                 for entry in here:
                     key = f"{entry.label}-{rows.name(entry.row)}"
                     for name in data.config.maps:
-                        _add(tar, f"{key}.{name}.png", samples.png(name, entry.row))
+                        _add(tar, f"{key}.{name}.png", checked_png(data, table, name, entry.row))
                     _add(tar, f"{key}.cls", str(entry.number).encode())
                     _add(tar, f"{key}.json", json.dumps(as_json(entry, names)).encode())
                     progress.advance(1)

@@ -17,7 +17,6 @@ def open_images(
     """Open a data set: dataset.h5, a folder that `radhar generate` wrote, or a tree of images.
 
     Args:
-        path: what the user gave.
         map_name: which map; the first one if None.
         kind: "rgb" as the PNGs are coloured, or "gray", one channel three times.
         resize: (H, W) to bring every image to; they may then differ in size.

@@ -98,8 +98,6 @@ def stream_and_validation(
     `data` the first of each class that the split of the stream's own data set holds back.
 
     Args:
-        config: of the training run.
-        stream: config of the samples.
         data: data sets to validate on, or none.
         names: those that classes of `data` get.
         workers: processes that synthesise.
@@ -148,13 +146,7 @@ def stream_and_validation(
 
 
 def stream_data(stream: TrainingStream, validation: LearnedFrom, epochs: int) -> LearnedFrom:
-    """Description of the data of a run on a stream, stored with the run.
-
-    Args:
-        stream: what is learned from.
-        validation: the same of the validation images.
-        epochs: of the run.
-    """
+    """Description of the data of a run on a stream, stored with the run."""
     order, count = stream.order, stream.per_epoch * epochs
     own = [identity_hash(identity(order.config)), validation["hash"]]
     return {

@@ -30,8 +30,6 @@ def build_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
 
     Args:
         name: fftnet, smallnet, or any name that timm knows (needs the extra `zoo`).
-        classes: outputs.
-        size: (H, W) of the images.
 
     Raises:
         ModelError: unknown name, or images it cannot take.

@@ -1,6 +1,8 @@
 """simulate, preview and inspect as a user meets them."""
 
 import json
+from pathlib import Path
+from shutil import copytree
 
 import pytest
 from command_line import ok, radhar
@@ -66,9 +68,8 @@ def test_simulate_says_how_accurate_it_is(tmp_path):
     assert "engine.tolerance_db = -5" in refused.stderr
 
 
-def test_preview_and_inspect(tmp_path):
-    out = tmp_path / "set"
-    radhar("generate", small_config(tmp_path), "-o", out, "--jobs", 1)
+def test_preview_and_inspect(small_set, tmp_path):
+    out = Path(copytree(small_set, tmp_path / "set"))
     sheet = ok("preview", out, "--map", "stft", "--per-class", 2)
     assert (out / "preview_stft.png").exists()
     assert "half-band" not in sheet.stdout

@@ -3,10 +3,8 @@
 import ast
 import io
 import json
-import signal
 import sys
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -191,33 +189,6 @@ def test_output_options_do_not_leak_into_the_next_command(capsys):
     tell.report(a=1)
     tell.tell("spoken")
     assert capsys.readouterr().out == "spoken\n"
-
-
-@pytest.mark.parametrize(
-    ("ends", "status", "expected"),
-    [
-        (lambda: SimpleNamespace(), 0, ""),
-        (KeyboardInterrupt, 130, "interrupted: what is finished in "),
-        (lambda: signal.raise_signal(signal.SIGTERM), 143, "terminated: what is finished in "),
-    ],
-)
-def test_exit_statuses_of_a_stopped_build(tmp_path, monkeypatch, ends, status, expected):
-    def build(*_):
-        found = ends()
-        if isinstance(found, BaseException):
-            raise found
-        return found
-
-    monkeypatch.setattr("radhar_cli.dataset.build.build", build)
-    monkeypatch.setattr("radhar_cli.commands.terminal.print_outcome", lambda *_: None)
-    handler = signal.getsignal(signal.SIGTERM)
-    try:
-        done = radhar("generate", small_config(tmp_path), "-o", tmp_path / "set")
-    finally:
-        signal.signal(signal.SIGTERM, handler)
-    assert done.returncode == status
-    assert expected in done.stderr
-    assert "Traceback" not in done.stderr
 
 
 def test_help_and_docs_name_every_status():

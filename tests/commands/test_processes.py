@@ -9,17 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from command_line import radhar
-from small import fingerprint, small_config
-
-
-@pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    """A folder with a config and the data set of it."""
-    place = tmp_path_factory.mktemp("made")
-    small_config(place)
-    assert radhar("generate", place / "small.yaml", "-o", place / "set").returncode == 0
-    return place
+from small import fingerprint
 
 
 def shell(line):
@@ -29,17 +19,17 @@ def shell(line):
 
 
 @pytest.mark.parametrize("options", ["", "--json"])
-def test_output_that_cannot_be_written_is_one_line(made, options):
+def test_output_that_cannot_be_written_is_one_line(small_set, options):
     if not Path("/dev/full").exists():
         pytest.skip("no /dev/full")
-    done = shell(f"RADHAR inspect {made}/set {options} > /dev/full")
+    done = shell(f"RADHAR inspect {small_set} {options} > /dev/full")
     assert (done.returncode, done.stderr) == (1, "radhar: output: No space left on device\n")
 
 
 @pytest.mark.parametrize("encoding", ["latin-1", "ascii", "utf-8"])
-def test_a_summary_prints_in_any_encoding(made, encoding):
+def test_a_summary_prints_in_any_encoding(small_set, encoding):
     done = subprocess.run(
-        [sys.executable, "-m", "radhar_cli", "inspect", made / "set"],
+        [sys.executable, "-m", "radhar_cli", "inspect", small_set],
         capture_output=True,
         env={**os.environ, "PYTHONIOENCODING": encoding},
     )
@@ -50,10 +40,12 @@ def test_a_summary_prints_in_any_encoding(made, encoding):
 
 
 @pytest.mark.parametrize(("closed", "jobs"), [("2>&-", 2), (">&-", 2), ("<&- >&- 2>&-", 1)])
-def test_a_build_with_closed_streams(made, tmp_path, closed, jobs):
-    done = shell(f"RADHAR generate {made}/small.yaml -o {tmp_path}/set --jobs {jobs} {closed}")
+def test_a_build_with_closed_streams(small_set, tmp_path, closed, jobs):
+    done = shell(
+        f"RADHAR generate {small_set.parent}/small.yaml -o {tmp_path}/set --jobs {jobs} {closed}"
+    )
     assert done.returncode == 0, done.stderr
-    assert fingerprint(tmp_path / "set").items() <= fingerprint(made / "set").items()
+    assert fingerprint(tmp_path / "set").items() <= fingerprint(small_set).items()
 
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="needs limits as Linux has them")
@@ -64,8 +56,10 @@ def test_a_build_with_closed_streams(made, tmp_path, closed, jobs):
         ("-v 400000", "--jobs 1 --set image.size_px=8192", "radhar: out of memory"),
     ],
 )
-def test_limits_of_the_machine_end_in_one_line(made, tmp_path, limit, options, expected):
-    done = shell(f"ulimit {limit}; RADHAR generate {made}/small.yaml -o {tmp_path}/set {options}")
+def test_limits_of_the_machine_end_in_one_line(small_set, tmp_path, limit, options, expected):
+    done = shell(
+        f"ulimit {limit}; RADHAR generate {small_set.parent}/small.yaml -o {tmp_path}/set {options}"
+    )
     said = [line for line in done.stderr.splitlines() if not line.startswith("warning: ")]
     assert (done.returncode, len(said)) == (1, 1), done.stderr
     assert expected in said[0]

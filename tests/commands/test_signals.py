@@ -14,7 +14,6 @@ from small import SMALL, small_config
 from typer.testing import CliRunner
 
 from radhar_cli.cli import main, program
-from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.commands.training_view import TrainingView
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
@@ -57,13 +56,6 @@ def test_sigterm_of_train_keeps_the_last_epoch_and_it_resumes(tmp_path, monkeypa
     assert "resuming: 1 of 2 epochs are done" in again.stderr
     trained(data, tmp_path / "whole", epochs=2)
     assert same_run(tmp_path / "run", tmp_path / "whole")
-
-
-def test_sigterm_of_tradeoff_says_what_is_kept(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(BarProgress, "stage", terminate)
-    command = ["tradeoff", small_config(tmp_path), "-o", tmp_path / "out", "--quick"]
-    assert status(monkeypatch, *command) == TERMINATED
-    assert f"terminated: what is measured in {tmp_path / 'out'} is kept" in capsys.readouterr().err
 
 
 class Swallowing:

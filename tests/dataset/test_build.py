@@ -1,6 +1,5 @@
 """A build gives the same bytes for any batches, workers and interruptions; what it refuses."""
 
-import errno
 import json
 import os
 import re
@@ -12,7 +11,7 @@ import pytest
 from joblib.externals.loky import get_reusable_executor
 from listener import Listener
 from PIL import Image
-from small import SMALL, fingerprint, small_config
+from small import SMALL, fingerprint, full_disk_after, small_config
 
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.identity import resolved
@@ -26,7 +25,7 @@ from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.shards import listed_shards
 from radhar_cli.dataset.verify import verify
 from radhar_cli.dataset.workers import run_tasks
-from radhar_cli.errors import FolderError, SceneError, UnfinishedError
+from radhar_cli.errors import FolderError, SceneError
 
 
 def make(config, folder, **options):
@@ -38,21 +37,13 @@ def config(tmp_path_factory):
     return load_config(small_config(tmp_path_factory.mktemp("config")))
 
 
-@pytest.fixture(scope="module")
-def whole(config, tmp_path_factory):
-    """The data set in one uninterrupted go, one job."""
-    folder = tmp_path_factory.mktemp("whole") / "set"
-    make(config, folder)
-    return folder
-
-
 @pytest.mark.parametrize(("jobs", "batch_size"), [(1, 1), (1, 9), (2, 2), (4, 1)])
-def test_jobs_and_batch_size_change_no_byte(config, whole, tmp_path, jobs, batch_size):
+def test_jobs_and_batch_size_change_no_byte(config, small_set, tmp_path, jobs, batch_size):
     make(config, tmp_path / "set", jobs=jobs, batch_size=batch_size)
-    assert fingerprint(tmp_path / "set") == fingerprint(whole)
+    assert fingerprint(tmp_path / "set") == fingerprint(small_set)
 
 
-def test_no_more_processes_than_batches_are_started(config, whole, tmp_path, monkeypatch):
+def test_no_more_processes_than_batches_are_started(config, small_set, tmp_path, monkeypatch):
     asked: list[int] = []
 
     def here(function, tasks, jobs):
@@ -64,7 +55,7 @@ def test_no_more_processes_than_batches_are_started(config, whole, tmp_path, mon
     build(config, tmp_path / "set", 3000, notes, batch_size=2)
     assert asked == [9, 5], "of the checks, then of the batches"
     assert "5 of 3000 processes, one for each batch of samples" in notes.messages
-    assert fingerprint(tmp_path / "set") == fingerprint(whole)
+    assert fingerprint(tmp_path / "set") == fingerprint(small_set)
 
 
 def test_batch_size_by_number_of_rows():
@@ -79,7 +70,7 @@ def test_batch_size_by_number_of_rows():
 
 
 def test_a_relative_folder_is_built_whatever_the_working_directory_of_the_workers(
-    config, whole, tmp_path, monkeypatch
+    config, small_set, tmp_path, monkeypatch
 ):
     here, elsewhere = tmp_path / "here", tmp_path / "elsewhere"
     here.mkdir()
@@ -90,40 +81,30 @@ def test_a_relative_folder_is_built_whatever_the_working_directory_of_the_worker
     monkeypatch.chdir(here)
     assert set(run_tasks(os.getcwd, [()] * 8, 2)) == {str(elsewhere)}
     make(config, Path("set"), jobs=2, batch_size=2)
-    assert fingerprint(here / "set") == fingerprint(whole)
+    assert fingerprint(here / "set") == fingerprint(small_set)
     assert not list(elsewhere.iterdir())
 
 
-def test_an_unfinished_build_resumes_with_another_batch_size(config, whole, tmp_path, monkeypatch):
-    folder, made = tmp_path / "set", []
-    original = batch_module.synthesise
-
-    def stops_after_five(*arguments):
-        made.append(arguments)
-        if len(made) > 5:
-            raise OSError(errno.ENOSPC, "No space left on device", "shard")
-        return original(*arguments)
-
-    monkeypatch.setattr(batch_module, "synthesise", stops_after_five)
-    with pytest.raises(UnfinishedError, match="no space left on the disk"):
+def test_an_unfinished_build_resumes_with_another_batch_size(config, small_set, tmp_path):
+    folder = tmp_path / "set"
+    with full_disk_after(5):
         make(config, folder, batch_size=2)
     assert [(s.start, s.stop) for s in listed_shards(folder)] == [(0, 2), (2, 4)]
-    monkeypatch.setattr(batch_module, "synthesise", original)
     outcome = make(config, folder, batch_size=3)
     assert outcome.made == 5, "the four finished samples are not made again"
-    assert fingerprint(folder) == fingerprint(whole)
+    assert fingerprint(folder) == fingerprint(small_set)
 
 
-def test_a_complete_folder_is_not_changed(config, whole):
-    before = (whole / "dataset.h5").stat().st_mtime_ns
-    assert make(config, whole).already_complete
-    assert (whole / "dataset.h5").stat().st_mtime_ns == before
+def test_a_complete_folder_is_not_changed(config, small_set):
+    before = (small_set / "dataset.h5").stat().st_mtime_ns
+    assert make(config, small_set).already_complete
+    assert (small_set / "dataset.h5").stat().st_mtime_ns == before
 
 
-def test_other_config_is_refused_and_the_keys_named(config, whole):
+def test_other_config_is_refused_and_the_keys_named(config, small_set):
     other = config.model_copy(update={"seed": 8, "snr_db": 5.0})
     with pytest.raises(FolderError, match=r"(?s)seed: 7 there, 8 here.*snr_db"):
-        make(other, whole)
+        make(other, small_set)
 
 
 def test_a_folder_without_samples_is_free(config, tmp_path):
@@ -138,15 +119,15 @@ def test_a_folder_without_samples_is_free(config, tmp_path):
     assert verify(tmp_path, 1).problems == []
 
 
-def test_other_versions_are_refused(config, whole, monkeypatch):
+def test_other_versions_are_refused(config, small_set, monkeypatch):
     real = folder_module.identity(config)
     other = {**real, "versions": {**real["versions"], "numpy": "1.0"}}
     monkeypatch.setattr(folder_module, "identity", lambda _: other)
     with pytest.raises(FolderError, match=r"versions\.numpy"):
-        make(config, whole)
+        make(config, small_set)
 
 
-def test_pngs_can_be_added_later_and_lost_ones_are_rewritten(config, whole, tmp_path):
+def test_pngs_can_be_added_later_and_lost_ones_are_rewritten(config, small_set, tmp_path):
     folder = tmp_path / "set"
     without = config.model_copy(update={"output": config.output.model_copy(update={"png": False})})
     make(without, folder)
@@ -154,7 +135,7 @@ def test_pngs_can_be_added_later_and_lost_ones_are_rewritten(config, whole, tmp_
     outcome = make(config, folder)
     assert outcome.made == 0
     assert outcome.pngs == 27
-    with_pngs, right = fingerprint(folder), fingerprint(whole)
+    with_pngs, right = fingerprint(folder), fingerprint(small_set)
     assert {k: v for k, v in with_pngs.items() if k.startswith("png")} == {
         k: v for k, v in right.items() if k.startswith("png")
     }
@@ -166,14 +147,14 @@ def test_pngs_can_be_added_later_and_lost_ones_are_rewritten(config, whole, tmp_
     assert fingerprint(folder).items() >= {k: right[k] for k in right if k[:3] == "png"}.items()
 
 
-def test_overwrite_starts_again_and_keeps_foreign_files(config, whole, tmp_path):
+def test_overwrite_starts_again_and_keeps_foreign_files(config, small_set, tmp_path):
     folder = tmp_path / "set"
     make(config.model_copy(update={"seed": 99}), folder)
     (folder / "notes.txt").write_text("mine")
     make(config, folder, overwrite=True)
     assert (folder / "notes.txt").read_text() == "mine"
     (folder / "notes.txt").unlink()
-    assert fingerprint(folder) == fingerprint(whole)
+    assert fingerprint(folder) == fingerprint(small_set)
 
 
 def test_overwrite_refuses_folders_that_radhar_did_not_build(config, tmp_path):
@@ -187,7 +168,7 @@ def test_overwrite_refuses_folders_that_radhar_did_not_build(config, tmp_path):
     assert (tmp_path / "dataset.h5").exists()
 
 
-def test_overwrite_killed_midway_resumes(config, whole, tmp_path, monkeypatch):
+def test_overwrite_killed_midway_resumes(config, small_set, tmp_path, monkeypatch):
     """Whatever step of clearing is the last, the same command finishes the job."""
     for count in range(1, 7):
         folder = tmp_path / f"set{count}"
@@ -212,7 +193,7 @@ def test_overwrite_killed_midway_resumes(config, whole, tmp_path, monkeypatch):
                 make(config, folder, overwrite=True)
         make(config, folder, overwrite=True)
         (folder / "preview_stft.png").unlink()
-        assert fingerprint(folder) == fingerprint(whole)
+        assert fingerprint(folder) == fingerprint(small_set)
 
 
 def test_scenes_are_checked_by_the_workers_and_only_of_what_is_missing(tmp_path, monkeypatch):
@@ -230,18 +211,10 @@ def test_scenes_are_checked_by_the_workers_and_only_of_what_is_missing(tmp_path,
 
     with monkeypatch.context() as patch:
         patch.setattr(build_module, "run_tasks", noted)
-        made, stopped = [], batch_module.synthesise
-
-        def synthesise(*given):
-            made.append(given)
-            return 1 / 0 if len(made) > 4 else stopped(*given)
-
-        patch.setattr(batch_module, "synthesise", synthesise)
-        with pytest.raises(ZeroDivisionError):
+        with full_disk_after(4):
             build(config, tmp_path / "set", 3, Listener(), batch_size=2)
         assert [row for start, stop, _ in checks for row in range(start, stop)] == list(range(9))
         assert {jobs for *_, jobs in checks} == {3}
-        patch.setattr(batch_module, "synthesise", stopped)
         checks.clear()
         again = Listener()
         build(config, tmp_path / "set", 3, again, batch_size=2)
@@ -339,20 +312,11 @@ def test_fallbacks_to_the_cube_are_counted_across_resumed_runs(tmp_path, monkeyp
     """Double precision cannot promise -300 dB of anybody who moves."""
     engine = ["engine={tolerance_db: -300, fallback: cube}", "duration_s=1", "maps=[rtm, stft]"]
     config = load_config(small_config(tmp_path), [*engine, "activities=[punching, S1, S8]"])
-    notes, original, made = Listener(), batch_module.synthesise, []
+    notes = Listener()
     build(config, tmp_path / "whole", 1, notes)
     assert "warning: 6 of 9 recordings: computed by the cube (engine.fallback)" in notes.messages
-
-    def stops_after_four(*arguments):
-        made.append(arguments)
-        if len(made) > 4:
-            raise OSError(errno.ENOSPC, "No space left on device", "shard")
-        return original(*arguments)
-
-    monkeypatch.setattr(batch_module, "synthesise", stops_after_four)
-    with pytest.raises(UnfinishedError):
+    with full_disk_after(4):
         make(config, tmp_path / "set", batch_size=1)
-    monkeypatch.setattr(batch_module, "synthesise", original)
     make(config, tmp_path / "set", batch_size=2)
     assert fingerprint(tmp_path / "set") == fingerprint(tmp_path / "whole")
     with h5py.File(tmp_path / "set/dataset.h5") as file:
@@ -367,8 +331,8 @@ def test_a_range_map_alone_never_falls_back(tmp_path):
     assert "fallback" not in {warning["kind"] for warning in outcome.warnings}
 
 
-def test_dataset_contract(config, whole):
-    with h5py.File(whole / "dataset.h5") as file:
+def test_dataset_contract(config, small_set):
+    with h5py.File(small_set / "dataset.h5") as file:
         assert set(file["maps"]) == set(config.maps)
         for name in config.maps:
             maps = file[f"maps/{name}"]
@@ -405,11 +369,11 @@ def test_png_names_sort_by_index_at_any_count(config, count, last):
     assert rows.png_path("rtm", 0, 5).stem == "0".zfill(len(last))
 
 
-def test_pngs_show_the_levels(config, whole):
+def test_pngs_show_the_levels(config, small_set):
     table, rows = colour_table("viridis"), Rows.of(config)
-    with h5py.File(whole / "dataset.h5") as file:
+    with h5py.File(small_set / "dataset.h5") as file:
         for row in range(len(rows)):
-            path = whole / rows.png_path("stft", file["split"][row], row)
+            path = small_set / rows.png_path("stft", file["split"][row], row)
             with Image.open(path) as picture:
                 assert picture.mode == "P"
                 assert np.array_equal(np.asarray(picture), file["maps/stft"][row])
@@ -417,18 +381,18 @@ def test_pngs_show_the_levels(config, whole):
                 assert np.array_equal(shown, table[file["maps/stft"][row]])
 
 
-def test_scenes_csv_has_the_numbers_of_the_file(whole):
-    lines = (whole / "scenes.csv").read_text().splitlines()
+def test_scenes_csv_has_the_numbers_of_the_file(small_set):
+    lines = (small_set / "scenes.csv").read_text().splitlines()
     header, rows = lines[0].split(","), [line.split(",") for line in lines[1:]]
-    with h5py.File(whole / "dataset.h5") as file:
+    with h5py.File(small_set / "dataset.h5") as file:
         column = header.index("motion.angle_deg")
         degrees = np.degrees(file["scene/angle"][:])
     assert np.allclose([float(row[column]) for row in rows], degrees, rtol=1e-12)
     assert rows[0][header.index("motion.thigh_deg")] == ""
 
 
-def test_resolved_config_builds_the_same_identity(config, whole):
-    assert load_config(whole / "config.yaml") == config
+def test_resolved_config_builds_the_same_identity(config, small_set):
+    assert load_config(small_set / "config.yaml") == config
 
 
 def test_redrawn_scenes_are_valid_and_deterministic(tmp_path):

@@ -129,19 +129,6 @@ def test_a_short_file_is_warned_of(place, tmp_path):
     assert any("2 of 2 recordings: the motion file ends" in line for line in listener.messages)
 
 
-def test_train_and_eval_accept_it(place, tmp_path):
-    pytest.importorskip("torch")
-    ok(
-        *("train", place / "out", "-o", tmp_path / "run", "--model", "smallnet"),
-        *("--set", "epochs=2", "--set", "batch_size=8"),
-    )
-    ok("eval", tmp_path / "run", place / "out")
-    sheet = tmp_path / "sheet.png"
-    for command in (("preview", place / "out", "-o", sheet), ("inspect", place / "out")):
-        ok(*command)
-    assert sheet.is_file()
-
-
 def test_two_user_defined_classes_alone(place, tmp_path):
     """With `motion.model: file` the classes are those of the files, two of them here."""
     config = load_config(

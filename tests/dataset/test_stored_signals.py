@@ -155,27 +155,6 @@ def test_other_versions_may_round_differently(whole, tmp_path, monkeypatch):
     assert verify(copy, 9).problems != []
 
 
-@pytest.mark.parametrize(
-    ("name", "wrong", "words"),
-    [
-        ("power/stft", np.zeros((9, 48, 48), np.float32), "is of the type float32"),
-        ("power/stft", np.zeros((9, 48, 48), ">f2"), "is of the type"),
-        ("slow_time", np.zeros((9, 1998), np.complex64), "has the shape"),
-        ("slow_time", None, "is missing"),
-    ],
-)
-def test_wrong_shapes_and_types_are_refused(name, wrong, words, whole, tmp_path):
-    copy = tmp_path / "dataset.h5"
-    copy.write_bytes((whole / "dataset.h5").read_bytes())
-    with h5py.File(copy, "r+") as file:
-        del file[name]
-        if wrong is not None:
-            file.create_dataset(name, data=wrong, chunks=(1, *wrong.shape[1:]))
-    with pytest.raises(FolderError, match=words) as caught:
-        open_dataset(copy)
-    assert f"/{name}" in str(caught.value)
-
-
 def test_the_estimate_counts_stored_signals(tmp_path):
     with_signals, plain = config_of(tmp_path), config_of(tmp_path, SMALL)
     more = estimate(with_signals, 1).hdf5_bytes - estimate(plain, 1).hdf5_bytes

@@ -3,29 +3,21 @@
 import shutil
 
 import pytest
-from small import small_config
+from small import full_disk_after, small_config
 
 from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import load_config
-from radhar_cli.dataset import batch
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.summary import summarise
-from radhar_cli.errors import FolderError, UnfinishedError
+from radhar_cli.errors import FolderError
 from radhar_cli.simulation.scene_file import write_all
 from radhar_cli.simulation.simulate import simulate
 
 
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory):
-    place = tmp_path_factory.mktemp("summary")
-    build(load_config(small_config(place)), place / "set", 1, BarProgress())
-    return place / "set"
-
-
 @pytest.mark.parametrize("name", ["", "dataset.h5"])
-def test_data_set(whole, name):
-    found = summarise(whole / name)
+def test_data_set(small_set, name):
+    found = summarise(small_set / name)
     assert found["kind"] == "data set"
     assert found["samples"] == 9
     assert found["classes"]["walking"] == {"train": 2, "validation": 1, "test": 0}
@@ -36,18 +28,9 @@ def test_data_set(whole, name):
     assert found["entropy_bits"]["stft"]["walking"]["mean"] > 0
 
 
-def test_inspect_of_an_unfinished_build_shows_its_progress(tmp_path, monkeypatch):
-    original, made = batch.synthesise, []
-
-    def fails(*arguments):
-        made.append(1)
-        if len(made) > 4:
-            raise OSError("disk")
-        return original(*arguments)
-
-    monkeypatch.setattr(batch, "synthesise", fails)
+def test_inspect_of_an_unfinished_build_shows_its_progress(tmp_path):
     config = load_config(small_config(tmp_path))
-    with pytest.raises(UnfinishedError):
+    with full_disk_after(4):
         build(config, tmp_path / "set", 1, BarProgress(), batch_size=2)
     found = summarise(tmp_path / "set")
     assert (found["kind"], found["finished"], found["samples"]) == ("unfinished data set", 4, 9)
@@ -64,13 +47,13 @@ def test_scene(tmp_path):
         assert found["activity"]["slug"] == "walking_to_falling"
 
 
-def test_foreign_files_are_refused(whole, tmp_path):
+def test_foreign_files_are_refused(small_set, tmp_path):
     import h5py
 
     with h5py.File(tmp_path / "other.h5", "w") as file:
         file["x"] = 1
     (tmp_path / "text.h5").write_text("hello")
-    shutil.copy(whole / "dataset.h5", tmp_path / "cut.h5")
+    shutil.copy(small_set / "dataset.h5", tmp_path / "cut.h5")
     with (tmp_path / "cut.h5").open("r+b") as cut:
         cut.truncate(4000)
     for name in ("other.h5", "text.h5", "cut.h5", "none.h5", ""):
@@ -78,8 +61,8 @@ def test_foreign_files_are_refused(whole, tmp_path):
             summarise(tmp_path / name)
 
 
-def test_dataset_reads_lazily_and_suggests_maps(whole):
-    with open_dataset(whole) as data:
+def test_dataset_reads_lazily_and_suggests_maps(small_set):
+    with open_dataset(small_set) as data:
         assert data.maps["stft"][0].shape == (48, 48)
         assert data.map_name(None) == "rtm"
         with pytest.raises(FolderError, match="did you mean 'stft'"):

@@ -6,11 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
-from small import small_config
 
-from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import MAP_NAMES, load_config
-from radhar_cli.dataset.build import build
 from radhar_cli.dataset.contact_sheet import draw_contact_sheet
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.figures.maps_panel import TITLES, decibels, draw_maps, of_simulation, places
@@ -71,9 +68,8 @@ def test_stickman_plays_at_true_speed_and_moves(tmp_path):
     assert (np.abs(first - later).sum(axis=2) > 60).sum() > 500
 
 
-def test_contact_sheet_shows_every_class(tmp_path):
-    build(load_config(small_config(tmp_path)), tmp_path / "set", 1, BarProgress())
-    with open_dataset(tmp_path / "set") as data:
+def test_contact_sheet_shows_every_class(small_set, tmp_path):
+    with open_dataset(small_set) as data:
         draw_contact_sheet(data, "stft", 2, tmp_path / "sheet.png")
         assert len(data) == 9
     assert colours(tmp_path / "sheet.png") > 100

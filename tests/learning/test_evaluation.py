@@ -165,16 +165,6 @@ def test_batch_size_does_not_change_predictions(learned):
     assert many.features.shape == (9, 128)
 
 
-def test_features_and_last_layer_make_the_probabilities(learned):
-    metadata, model = load_best(learned[0])
-    images = open_for(metadata, learned[1], None)
-    found = predict(model, metadata, images, images.rows("val"), CPU, 4)
-    head = model.head
-    logits = found.features @ head.weight.detach().numpy().T + head.bias.detach().numpy()
-    odds = np.exp(logits - logits.max(1, keepdims=True))
-    np.testing.assert_allclose(found.probabilities, odds / odds.sum(1, keepdims=True), atol=1e-5)
-
-
 @pytest.mark.parametrize(
     ("classes", "parts", "size", "expected"),
     [

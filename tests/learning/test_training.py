@@ -1,9 +1,7 @@
 """Training: what a step does; config and data alone determine the weights."""
 
-import copy
 import json
 import math
-import signal
 import subprocess
 import sys
 import time
@@ -147,15 +145,6 @@ def test_stopped_between_the_files_of_the_last_epoch_loses_nothing(
     assert same_run(run_dir, out)
 
 
-def test_a_finished_run_is_not_trained_again(data, run_dir):
-    before = (run_dir / run_files.BEST).stat().st_mtime_ns
-    progress = Watched()
-    done = trained(data, run_dir, progress)
-    assert (done.resumed, progress.losses) == (3, [])
-    assert (run_dir / run_files.BEST).stat().st_mtime_ns == before
-    assert done.history == run.read_history(run_dir)
-
-
 def test_only_a_better_epoch_replaces_the_best(data, tmp_path, monkeypatch):
     seen = iter([(1.0, 0.5), (2.0, 0.75), (1.5, 0.75), (9.0, 0.5)])
     monkeypatch.setattr(_Training, "_validate", lambda *_: next(seen))
@@ -258,18 +247,6 @@ def test_validation_is_that_of_the_stored_weights(data, run_dir):
     last = run.read_history(run_dir)[-1]
     assert last.val_loss == pytest.approx(float(loss), rel=1e-5)
     assert last.val_accuracy == float((logits.argmax(1) == truth).double().mean())
-
-
-def test_step_reports_the_smoothed_loss_and_the_correct_predictions(data, tmp_path):
-    work = prepared(data, tmp_path / "run", label_smoothing=0.2)
-    levels, labels = first_batch(work)
-    network = copy.deepcopy(work.model).train()
-    logits = network(work.metadata.normalisation(levels))
-    wanted = nn.functional.one_hot(labels, 3) * 0.8 + 0.2 / 3
-    expected = -(wanted * logits.detach().log_softmax(1)).sum(1).mean()
-    loss, right = work._train_step.step(work.model.train(), work.optimiser, levels, labels, 6)
-    assert loss == pytest.approx(float(expected), rel=1e-5)
-    assert right == int((logits.argmax(1) == labels).sum())
 
 
 @pytest.mark.parametrize("micro_batch", [2, 3, 4, 5])
@@ -403,14 +380,6 @@ def test_a_non_finite_validation_loss_is_one_clear_line(data, tmp_path, monkeypa
     one_clear_line(caught.value, "validation of epoch 1", "inf")
 
 
-def test_a_huge_rate_ends_in_one_clear_line(data, tmp_path):
-    """Decay at this rate multiplies the weights by -1e6 a step: 1e38 is not far."""
-    huge = {"optimiser": "sgd", "learning_rate": 1e3, "weight_decay": 1e3}
-    with pytest.raises(TrainingError) as caught:
-        trained(data, tmp_path / "run", epochs=20, **huge)
-    one_clear_line(caught.value, "epoch", "lower learning_rate (now 1000)")
-
-
 @pytest.mark.parametrize("changes", [{"batch_size": 2}, {"micro_batch": 2}, {"micro_batch": 5}])
 def test_no_micro_batch_has_one_image(data, tmp_path, changes):
     """At 32 px the last maps are 1 x 1: a part of one image has no spread to normalise by."""
@@ -432,15 +401,6 @@ def test_micro_batches_are_nearly_equal_and_within_the_limit(images, micro_batch
     assert min(sizes) >= 2
     assert max(sizes) - min(sizes) <= 1
     assert max(sizes) <= max(micro_batch, 3), "three, where two would leave one alone"
-
-
-def test_a_tree_without_splits_is_split_the_same_for_training(tmp_path):
-    root = tree(tmp_path / "t", parts={"": 4})
-    done = trained(root, tmp_path / "run", epochs=1, validation_share=0.25)
-    metadata = run.read_metadata(tmp_path / "run")
-    assert (metadata.data["train"], metadata.data["val"]) == (9, 3)
-    assert trained(root, tmp_path / "run", epochs=1, validation_share=0.25).resumed == 1
-    assert len(done.history) == 1
 
 
 def test_gray_and_bfloat16_train(data, tmp_path):
@@ -489,17 +449,3 @@ def test_killed_and_resumed_gives_the_same_run(data, run_dir, tmp_path, sign):
     assert len(done.history) == 3
     assert same_run(run_dir, out)
     assert without_seconds(done.history) == without_seconds(run.read_history(run_dir))
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
-def test_ctrl_c_keeps_the_last_epoch_and_is_quiet(data, tmp_path):
-    """In the midst of a run that would take minutes."""
-    out = tmp_path / "run"
-    process = started(data, out, run_files.HISTORY, "--set", "epochs=5000")
-    process.send_signal(signal.SIGINT)
-    output = process.communicate()[0]
-    assert process.returncode == 130, output
-    assert "Traceback" not in output
-    assert "the same command resumes" in output
-    assert 1 <= len(run.read_history(out)) < 5000
-    run.load_best(out)

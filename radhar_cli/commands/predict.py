@@ -29,11 +29,11 @@ def predict(
     from radhar_cli.commands.learning_options import known_device, needs_torch
 
     needs_torch()
+    from radhar_cli.learning.evaluation import predict_paths
     from radhar_cli.learning.images.image_set import split_named
     from radhar_cli.learning.machine import choose_device
-    from radhar_cli.learning.prediction import predict
 
-    predictions = predict(
+    predictions = predict_paths(
         run, paths, choose_device(known_device(device)), map_, split_named(split), resize
     )
     for name, probabilities in predictions:

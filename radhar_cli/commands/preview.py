@@ -55,7 +55,7 @@ def _draw_tree(root: Path, map_name: str | None, per_class: int, out: Path | Non
     """Draw next to the tree, not in it: its files are data."""
     from radhar_cli.dataset.contact_sheet import draw_image_sheet
     from radhar_cli.learning.images.folder import folder_images
-    from radhar_cli.learning.images.overview import first_of_each
+    from radhar_cli.learning.images.opening import first_of_each
 
     images = folder_images(root, map_name, "rgb", any_size=True)
     whole = root.resolve()

@@ -15,5 +15,5 @@ The only package that imports PyTorch; `pip install 'radhar[train]'` installs it
     report          `radhar eval`: single_result fills it, report_files writes it
     adaptation      batch norm fitted to unlabelled images
     stream          samples for a PyTorch DataLoader, synthesised in its workers
-    prediction      classes of single images; onnx_export
+    onnx_export     the network without PyTorch
 """

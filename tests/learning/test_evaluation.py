@@ -17,9 +17,8 @@ from small import small_config
 from radhar_cli.config import load_config
 from radhar_cli.dataset.build import build
 from radhar_cli.errors import FolderError, RadharError
-from radhar_cli.learning.evaluation import open_for, predict, speed
+from radhar_cli.learning.evaluation import open_for, predict, predict_paths, speed
 from radhar_cli.learning.onnx_export import export
-from radhar_cli.learning.prediction import predict as predict_paths
 from radhar_cli.learning.report import evaluate
 from radhar_cli.learning.run_files import BEST
 from radhar_cli.learning.run_folder import load_best

@@ -25,9 +25,8 @@ from radhar_cli.errors import FolderError, ModelError, RadharError
 from radhar_cli.learning import run_files
 from radhar_cli.learning import run_folder as run
 from radhar_cli.learning.batches import Reader, pieces
-from radhar_cli.learning.evaluation import open_for, rows_of
+from radhar_cli.learning.evaluation import open_for, predict_paths, rows_of
 from radhar_cli.learning.images.opening import open_images
-from radhar_cli.learning.prediction import predict
 from radhar_cli.learning.report import evaluate
 from radhar_cli.learning.run_folder import RunError
 from radhar_cli.learning.single_result import EvalOptions
@@ -172,7 +171,7 @@ def test_a_class_without_validation_images_is_warned_of(tmp_path):
 
 
 def test_predict_takes_a_folder_of_images(run_dir, data):
-    answers = list(predict(run_dir, [data / "val/walking"], CPU, None, "all"))
+    answers = list(predict_paths(run_dir, [data / "val/walking"], CPU, None, "all"))
     assert [Path(name).name for name, _ in answers] == ["000.png", "001.png"]
 
 

@@ -3,6 +3,7 @@
 import statistics
 import time
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -77,7 +78,12 @@ def open_for(
     if labelled:
         images = known_to(images.renamed(names or {}), metadata.classes)
         if images.split is None:
-            return _cut_as_in_training(metadata, images)
+            with suppress(FolderError):
+                settings = TrainConfig.model_validate(metadata.config)
+                cut = images.cut(settings.validation_share, settings.seed)
+                rows = np.concatenate([cut.rows("train"), cut.rows("val")])
+                if content_hash(cut, rows, scan(cut, rows).digests) == metadata.data["hash"]:
+                    return cut
     return images
 
 
@@ -97,17 +103,6 @@ def _map_there(metadata: RunMetadata, path: Path) -> str | None:
                 "that did not say which they were; name one with --map"
             )
         return metadata.map
-
-
-def _cut_as_in_training(metadata: RunMetadata, images: ImageSet) -> ImageSet:
-    try:
-        settings = TrainConfig.model_validate(metadata.config)
-        cut = images.cut(settings.validation_share, settings.seed)
-    except FolderError:
-        return images
-    rows = np.concatenate([cut.rows("train"), cut.rows("val")])
-    same = content_hash(cut, rows, scan(cut, rows).digests) == metadata.data["hash"]
-    return cut if same else images
 
 
 def training_images(metadata: RunMetadata, path: Path) -> ImageSet:

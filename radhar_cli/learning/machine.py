@@ -62,11 +62,6 @@ def autocast(device: torch.device, precision: torch.dtype) -> torch.autocast:
     return torch.autocast(device.type, precision if lower else torch.bfloat16, enabled=lower)
 
 
-def out_of_memory(error: RuntimeError) -> bool:
-    """Whether PyTorch could not allocate a tensor; on the CPU only the message says so."""
-    return isinstance(error, torch.OutOfMemoryError) or "DefaultCPUAllocator" in str(error)
-
-
 @dataclass(frozen=True)
 class ExecutionPlan:
     """Device, precision, micro batch and reading processes of a run."""

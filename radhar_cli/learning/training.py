@@ -44,7 +44,6 @@ from radhar_cli.learning.machine import (
     ExecutionPlan,
     choose_device,
     choose_execution_plan,
-    out_of_memory,
     reading_workers,
     repeatable,
 )
@@ -174,7 +173,8 @@ def train_on(task: Task, progress: TrainingProgress) -> Outcome:
         try:
             return _Training.prepared(task, plan, group, progress).run()
         except RuntimeError as error:
-            if not out_of_memory(error):
+            # On the CPU only the message says that memory was short.
+            if not isinstance(error, torch.OutOfMemoryError) and "CPUAllocator" not in str(error):
                 raise
             height, width = images.size
             count = min(plan.micro_batch, -(-config.images_a_step // group.size))

@@ -185,7 +185,10 @@ def _class(
         for column, key in enumerate(scale.names)
     }
     order = sorted(distances, key=lambda key: -np.nan_to_num(distances[key].distance, nan=-1))
-    typical = tuple(_typical(one, here) for one, here in zip(both, near, strict=True))
+    typical = []  # from the middle outwards
+    for one, here in zip(both, near, strict=True):
+        away = ((here - np.median(here, axis=0)) ** 2).sum(axis=1)
+        typical.append(one.rows[np.argsort(away, kind="stable")])
     return ClassCompared(
         name,
         *both,
@@ -210,12 +213,6 @@ def _comparable(features: Float, measured: Float, statistics: int) -> Float:
     numbers = np.clip(away[:, :statistics] / np.where(sd > 0, sd, 1), -FARTHEST, FARTHEST)
     pixels = away[:, statistics:] / max(np.sqrt(variance[statistics:].sum()), 1e-6)
     return np.hstack([numbers / np.sqrt(statistics), pixels])
-
-
-def _typical(one: Described, features: Float) -> Index:
-    """Rows from the middle outwards."""
-    away = ((features - np.median(features, axis=0)) ** 2).sum(axis=1)
-    return np.asarray(one.rows[np.argsort(away, kind="stable")])
 
 
 def _warnings(

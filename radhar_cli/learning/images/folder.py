@@ -103,15 +103,11 @@ def folder_images(root: Path, map_name: str | None, kind: str, any_size: bool = 
 def _names(images: Sequence[tuple[int, str, Path]]) -> tuple[str, ...]:
     """<class>/<image> of (split, class, file), with the ending where only that tells two apart."""
     alike = Counter((split, name, file.stem) for split, name, file in images)
-    return tuple(
-        f"{name}/{file.stem if alike[split, name, file.stem] == 1 else _below(name, file)}"
-        for split, name, file in images
-    )
-
-
-def _below(name: str, file: Path) -> str:
-    """The file's path below its class folder."""
-    return file.name if file.parent.name == name else f"{file.parent.name}/{file.name}"
+    names = []
+    for split, name, file in images:
+        below = file.name if file.parent.name == name else f"{file.parent.name}/{file.name}"
+        names.append(f"{name}/{file.stem if alike[split, name, file.stem] == 1 else below}")
+    return tuple(names)
 
 
 def loose_images(

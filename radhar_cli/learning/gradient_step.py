@@ -1,5 +1,6 @@
 """One step of training: learning rate, logits, loss, gradient, update."""
 
+from contextlib import nullcontext
 from dataclasses import dataclass
 from math import cos, pi
 from typing import Any
@@ -10,7 +11,7 @@ from torch.nn.functional import cross_entropy
 
 from radhar_cli.learning.batches import Normalisation
 from radhar_cli.learning.machine import ExecutionPlan, autocast
-from radhar_cli.learning.process_group import Group, no_sync
+from radhar_cli.learning.process_group import Group
 from radhar_cli.learning.settings import TrainConfig
 
 _ADAM = {"step", "exp_avg", "exp_avg_sq"}
@@ -102,7 +103,7 @@ class TrainStep:
 
     def step(
         self,
-        network: nn.Module,
+        network: Any,
         optimiser: torch.optim.Optimizer,
         levels: Tensor,
         labels: Tensor,
@@ -119,7 +120,9 @@ class TrainStep:
         loss_sum, correct = 0.0, 0
         parts = self.plan.parts(len(labels))
         for number, part in enumerate(parts):
-            with no_sync(network, self.group, last=number == len(parts) - 1):
+            # Processes exchange their gradients in the last backward pass of a step alone.
+            alone = self.group.size == 1 or number == len(parts) - 1
+            with nullcontext() if alone else network.no_sync():
                 loss, part_correct = self.loss_and_correct(network, levels[part], labels[part])
                 # Processes average their gradients: the sum over all, divided by the whole batch.
                 torch.autograd.backward(loss * (self.group.size / batch_size))

@@ -4,7 +4,6 @@ import csv
 import io
 import json
 import math
-import pickle
 import warnings
 import zipfile
 from collections.abc import Mapping, Sequence
@@ -30,21 +29,6 @@ from radhar_cli.learning.report_folder import csv_text
 from radhar_cli.learning.run_files import ABOUT, ALL, BEST, EVENTS, HISTORY, LAST, TRAINED_ON
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.untrusted import regular_size
-
-# What PyTorch raises on a file that is damaged or asks for more than tensors and plain values.
-_DAMAGED = (
-    pickle.UnpicklingError,
-    AttributeError,
-    EOFError,
-    IndexError,
-    KeyError,
-    OSError,
-    RuntimeError,
-    TypeError,
-    ValueError,
-    zipfile.BadZipFile,
-)
-
 
 MAX_CLASSES = 10_000
 MAX_HEADER = 2**24  # bytes
@@ -79,32 +63,21 @@ class LearnedFrom(TypedDict):
 
 
 class RunMetadata(Section):
-    """What a model was trained for and on; stored with its weights.
-
-    Attributes:
-        model, classes, size: enough to build the network; size is (height, width).
-        map, input: which map of a data set, and as rgb or gray.
-        mean, sd: normalisation of the three channels.
-        config: the resolved training config.
-        data: path, content hash, images of the training and validation sets.
-        versions: of radhar, torch, numpy.
-        work: how it was computed, as far as the result depends on it: precision, micro batch,
-            number of processes.
-        epoch: with weights, after which they were kept.
-    """
+    """What a model was trained for and on; stored with its weights."""
 
     model: Name
     classes: Annotated[tuple[Name, ...], Field(min_length=1, max_length=MAX_CLASSES)]
-    size: tuple[Side, Side]
+    size: tuple[Side, Side]  # (height, width)
     map: Annotated[Name, Field(pattern=r"^[^/\\]*[^/\\.][^/\\]*$")] | None
     input: Literal["rgb", "gray"]
-    mean: tuple[float, float, float]
+    mean: tuple[float, float, float]  # of the three channels
     sd: tuple[Spread, Spread, Spread]
-    config: dict[str, Any]
+    config: dict[str, Any]  # resolved
     data: LearnedFrom
-    versions: dict[str, str]
+    versions: dict[str, str]  # of radhar, torch, numpy
+    # how it was computed, as far as the result depends on it: precision, micro batch, processes
     work: dict[str, Any] = Field(default_factory=dict)
-    epoch: Annotated[int, Field(ge=1)] | None = None
+    epoch: Annotated[int, Field(ge=1)] | None = None  # with weights, after which they were kept
 
     @field_validator("classes")
     @classmethod
@@ -369,7 +342,9 @@ def read_last(folder: Path) -> dict[str, Any] | None:
             key: checkpoint[key]
             for key in ("model", "average", "optimiser", "history", "random", "metadata")
         }
-    except _DAMAGED as error:
+    except MemoryError:
+        raise
+    except Exception as error:  # PyTorch raises whatever its parsers meet
         raise RunError(
             f"{path}: is damaged, or not a checkpoint of radhar ({first_line(error)}); {BEST} is "
             "untouched; --overwrite starts the run over"

@@ -327,14 +327,9 @@ class _Training:
             if self.average is not None:
                 self.average.load_state_dict(checkpoint["average"])
             torch.set_rng_state(checkpoint["random"])
-        except (
-            AttributeError,
-            IndexError,
-            KeyError,
-            RuntimeError,
-            TypeError,
-            ValueError,
-        ) as error:
+        except (MemoryError, run.RunError):
+            raise
+        except Exception as error:  # whatever a foreign checkpoint leads to
             raise run.RunError(
                 f"{path}: does not fit this run ({run.first_line(error)}); --overwrite starts over"
             ) from None

@@ -54,12 +54,6 @@ def test_order_depends_on_seed_and_epoch_alone():
     assert order(1, 0) != list(range(40))
 
 
-def test_full_batches_are_the_same_for_any_number_of_processes():
-    order = epoch_order(np.ones(18), 1, 0)
-    one, two = epoch_batches(order, 6, 1), epoch_batches(order, 6, 2)
-    assert [b.tolist() for b in one] == [b.tolist() for b in two]
-
-
 def test_a_weight_is_how_often_an_epoch_shows_an_image():
     weights = np.array([0.0, 0.25, 1.0, 2.5])
     shown = np.zeros(4)

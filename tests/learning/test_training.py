@@ -380,13 +380,6 @@ def test_a_non_finite_validation_loss_is_one_clear_line(data, tmp_path, monkeypa
     one_clear_line(caught.value, "validation of epoch 1", "inf")
 
 
-@pytest.mark.parametrize("changes", [{"batch_size": 2}, {"micro_batch": 2}, {"micro_batch": 5}])
-def test_no_micro_batch_has_one_image(data, tmp_path, changes):
-    """At 32 px the last maps are 1 x 1: a part of one image has no spread to normalise by."""
-    done = trained(data, tmp_path / "run", epochs=1, model="fftnet", **changes)
-    assert len(done.history) == 1
-
-
 @pytest.mark.parametrize("key", ["batch_size", "micro_batch"])
 def test_a_batch_of_one_image_is_refused(key):
     with pytest.raises(ValueError, match=f"(?s){key}.*2"):

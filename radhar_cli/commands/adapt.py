@@ -52,12 +52,7 @@ def adapt(
     show the classes about as often as those it will be asked about; with --epochs, every class
     about equally often.
     """
-    from radhar_cli.commands.learning_options import (
-        StderrLog,
-        apart,
-        known_device,
-        needs_torch,
-    )
+    from radhar_cli.commands.learning_options import StderrLog, apart, needs_torch
 
     needs_torch()
     from radhar_cli.learning import adaptation
@@ -71,7 +66,7 @@ def adapt(
         run,
         data,
         out,
-        choose_device(known_device(device)),
+        choose_device(device),
         map_,
         split_named(split),
         resize,

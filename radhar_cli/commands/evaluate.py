@@ -18,8 +18,7 @@ def evaluate(
         ),
     ],
     out: Annotated[
-        Path | None,
-        typer.Option("-o", "--out", help="Folder of the report; RUN/eval if none."),
+        Path | None, typer.Option("-o", "--out", help="Folder of the report; RUN/eval if none.")
     ] = None,
     split: Split = "val",
     map_: TrainedMap = None,
@@ -46,13 +45,7 @@ def evaluate(
 
     Several runs or data sets give the comparison: train at one SNR, test at all.
     """
-    from radhar_cli.commands.learning_options import (
-        StderrLog,
-        apart,
-        known_device,
-        needs_torch,
-        runs_and_data,
-    )
+    from radhar_cli.commands.learning_options import StderrLog, apart, needs_torch, runs_and_data
 
     needs_torch()
     from radhar_cli.dataset.files import refuse_links
@@ -78,7 +71,6 @@ def evaluate(
     if out is None:
         refuse_links(inside, folder)
     apart(folder, data)
-    known_device(device)
     evaluation = test(runs, data, options, choose_device(device), StderrLog())
     evaluation.write(folder)
     accuracies = {

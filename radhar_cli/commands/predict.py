@@ -26,16 +26,14 @@ def predict(
 
       radhar predict runs/quickstart datasets/quickstart/png/stft/val/walking/00003.png
     """
-    from radhar_cli.commands.learning_options import known_device, needs_torch
+    from radhar_cli.commands.learning_options import needs_torch
 
     needs_torch()
     from radhar_cli.learning.evaluation import predict_paths
     from radhar_cli.learning.images.image_set import split_named
     from radhar_cli.learning.machine import choose_device
 
-    predictions = predict_paths(
-        run, paths, choose_device(known_device(device)), map_, split_named(split), resize
-    )
+    predictions = predict_paths(run, paths, choose_device(device), map_, split_named(split), resize)
     for name, probabilities in predictions:
         ranked = sorted(probabilities.items(), key=lambda item: -item[1])
         report(**{"image": name, "class": ranked[0][0], "probabilities": probabilities})

@@ -37,8 +37,7 @@ def simulate(
     ] = None,
     nominal: Nominal = False,
     motion: Annotated[
-        Path | None,
-        typer.Option("--motion", help="A motion file (.bvh, .amc, .npz) to look at."),
+        Path | None, typer.Option("--motion", help="A motion file (.bvh, .amc, .npz) to look at.")
     ] = None,
     set_: Overrides = None,
     tolerance: Tolerance = None,
@@ -87,14 +86,7 @@ def simulate(
     for name in (*scene_file.FILES, *RECORDINGS):
         refuse_links(out, out / name)
     simulation = simulate_scene(
-        loaded,
-        activity,
-        seed,
-        index=index,
-        nominal=nominal,
-        joint=joint,
-        maps=chosen,
-        raw=raw,
+        loaded, activity, seed, index=index, nominal=nominal, joint=joint, maps=chosen, raw=raw
     )
     samples, warnings = loaded.samples_of(simulation.activity), list[str]()
     if index >= samples and not nominal:

@@ -38,8 +38,7 @@ def train(
         str | None, typer.Option(help="fftnet, smallnet, or a name of timm's; see radhar models.")
     ] = None,
     init: Annotated[
-        Path | None,
-        typer.Option(help="A run whose best weights are the initial ones."),
+        Path | None, typer.Option(help="A run whose best weights are the initial ones.")
     ] = None,
     classes: Classes = None,
     tensorboard: Annotated[

@@ -12,12 +12,7 @@ from typing import Any
 from filelock import FileLock, Timeout
 
 from radhar_cli.config.schema import Config
-from radhar_cli.dataset.files import (
-    refuse_foreign_work,
-    refuse_links,
-    unfinished_path,
-    write_whole,
-)
+from radhar_cli.dataset.files import refuse_foreign_work, refuse_links, unfinished_path, write_whole
 from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.dataset.layout import (
     CARD,
@@ -107,10 +102,7 @@ def reserve(
 
 
 def refuse_foreign_files(
-    folder: Path,
-    ours: str,
-    allowed: tuple[str, ...] = (),
-    error: type[RadharError] = FolderError,
+    folder: Path, ours: str, allowed: tuple[str, ...] = (), error: type[RadharError] = FolderError
 ) -> None:
     """Refuse a folder that holds something, but not what is `ours`; `allowed` are names of it."""
     names = sorted(p.name for p in folder.iterdir() if p.name not in (WORK, *allowed))

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import torch
 
-from radhar_cli.errors import MachineError
+from radhar_cli.errors import MachineError, did_you_mean
 from radhar_cli.learning.settings import TrainConfig
 
 CUDA_WORKERS = 8
@@ -34,6 +34,9 @@ def choose_device(wanted: str) -> torch.device:
     }
     if wanted == "auto":
         wanted = next(name for name, available in there.items() if available)
+    if wanted not in there:
+        hint = did_you_mean(wanted, there, f"the devices are auto, {', '.join(there)}")
+        raise MachineError(f"--device {wanted}: is not a device; {hint}")
     if not there[wanted]:
         has = ", ".join(name for name, available in there.items() if available)
         raise MachineError(f'device = "{wanted}": is not on this machine; it has {has}')

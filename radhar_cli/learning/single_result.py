@@ -175,12 +175,7 @@ class _Shown:
         self.report.tables.append((f"{name}{self.stem}.csv", csv_text(header, rows)))
 
     def confusion(
-        self,
-        name: str,
-        caption: str,
-        counts: NDArray[np.int64],
-        classes: Sequence[str],
-        title: str,
+        self, name: str, caption: str, counts: NDArray[np.int64], classes: Sequence[str], title: str
     ) -> None:
         """Counts [true class, predicted class] as a figure and a table, true classes down."""
         self.figure(name, caption, confusion_png(counts, classes, title))

@@ -22,13 +22,7 @@ from radhar_cli.errors import ConfigError, FolderError, RadharError
 from radhar_cli.learning import run_files
 from radhar_cli.learning import run_folder as run
 from radhar_cli.learning.augmentation import Augmentation
-from radhar_cli.learning.batches import (
-    MIN_PER_PROCESS,
-    Reader,
-    epoch_batches,
-    epoch_order,
-    pieces,
-)
+from radhar_cli.learning.batches import MIN_PER_PROCESS, Reader, epoch_batches, epoch_order, pieces
 from radhar_cli.learning.gradient_step import TrainStep, check_state, optimiser_for, rate
 from radhar_cli.learning.images.classes import renamed
 from radhar_cli.learning.images.image_set import ImageSet

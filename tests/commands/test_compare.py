@@ -161,9 +161,6 @@ assert not {"torch", "jinja2"} & set(sys.modules)
 """
     arguments = few(place, tmp_path / "out")[1:]
     done = subprocess.run(
-        [sys.executable, "-c", code, *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        cwd=ROOT,
+        [sys.executable, "-c", code, *map(str, arguments)], capture_output=True, text=True, cwd=ROOT
     )
     assert done.returncode == 0, done.stderr

@@ -19,11 +19,7 @@ from radhar_cli.commands.bars import Bars
 
 FOLDER = Path(str(commands.__file__)).parent
 # Modules that report for commands of others.
-FOR = {
-    "terminal": ["generate", "merge"],
-    "dry_run": ["generate"],
-    "training_view": ["train"],
-}
+FOR = {"terminal": ["generate", "merge"], "dry_run": ["generate"], "training_view": ["train"]}
 
 
 def registered(app, prefix=""):

@@ -19,12 +19,7 @@ from radhar_cli.config import load_config
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.image_file import luminance, read_gray, read_rgb
 from radhar_cli.errors import FolderError
-from radhar_cli.learning.images.image_set import (
-    ImageSet,
-    class_order,
-    labels_for,
-    split_named,
-)
+from radhar_cli.learning.images.image_set import ImageSet, class_order, labels_for, split_named
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.scan import content_hash, scan
 from radhar_cli.learning.training import checked_images

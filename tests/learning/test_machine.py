@@ -4,11 +4,7 @@ import pytest
 import torch
 
 from radhar_cli.errors import MachineError
-from radhar_cli.learning.machine import (
-    autocast,
-    choose_device,
-    choose_precision,
-)
+from radhar_cli.learning.machine import autocast, choose_device, choose_precision
 from radhar_cli.learning.process_group import Group, process_group
 
 CPU = torch.device("cpu")

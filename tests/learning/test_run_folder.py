@@ -8,14 +8,7 @@ import zipfile
 
 import pytest
 import torch
-from learning.patterns import (
-    Watched,
-    best_weights,
-    last_weights,
-    one_clear_line,
-    same,
-    trained,
-)
+from learning.patterns import Watched, best_weights, last_weights, one_clear_line, same, trained
 
 from radhar_cli.learning import run_files
 from radhar_cli.learning import run_folder as run
@@ -90,8 +83,7 @@ def test_a_weights_file_alone_can_be_loaded(run_dir, tmp_path):
     metadata, model = run.load_best(tmp_path / "model.safetensors")
     assert metadata.classes == ("punching", "kicking", "walking")
     assert same(
-        dict(sorted(model.state_dict().items())),
-        dict(sorted(best_weights(run_dir).items())),
+        dict(sorted(model.state_dict().items())), dict(sorted(best_weights(run_dir).items()))
     )
 
 

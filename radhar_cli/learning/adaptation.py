@@ -28,7 +28,7 @@ from radhar_cli.learning.batches import Reader, pieces
 from radhar_cli.learning.evaluation import open_for, rows_of, training_images
 from radhar_cli.learning.images.image_set import ImageSet, labels_for
 from radhar_cli.learning.images.joined import joined, sampling_weights
-from radhar_cli.learning.images.scan import content_hash, scan
+from radhar_cli.learning.images.scan import content_hash
 from radhar_cli.learning.machine import repeatable
 from radhar_cli.learning.run_files import TRAINED_ON
 from radhar_cli.learning.run_folder import MAX_TABLE, RunMetadata, load_best
@@ -132,13 +132,10 @@ def adapt_to(
     if epochs:
         learner.maximise_information(epochs, mixed, progress)
         learner.adapt_batch_norm()
-    seen = content_hash(images, rows, scan(images, rows).digests)
+    seen = content_hash(images, rows)
     work = {**metadata.work, "adapted_to": seen, "adapted_epochs": epochs}
     if mixed is not None:
-        learned = mixed.images.rows("train")
-        work["adapted_with"] = content_hash(
-            mixed.images, learned, scan(mixed.images, learned).digests
-        )
+        work["adapted_with"] = content_hash(mixed.images, mixed.images.rows("train"))
     metadata = metadata.model_copy(update={"work": work})
     with folder_lock(folder):
         run_folder.reserve_run(folder, metadata, overwrite)
@@ -232,8 +229,7 @@ class _Learner:
 
     def _levels(self, batches: list[Index]) -> Iterator[Tensor]:
         """The network's input [B, 3, H, W] of each batch."""
-        images = self.images
-        for levels, _ in Reader(images.pixels, images.label, workers=0, pin=False)(batches):
+        for levels, _ in Reader(self.images.pixels, None, workers=0, pin=False)(batches):
             yield self.metadata.normalisation(levels.to(self.device))
 
 

@@ -66,9 +66,11 @@ class Labels(Protocol):
 
 
 class _Rows(Dataset[tuple[Tensor, int]]):
-    """Rows read on demand; `labels` in the model's numbering."""
+    """Rows read on demand; `labels` in the model's numbering, 0 for all without."""
 
-    def __init__(self, pixels: Pixels, labels: Labels, augmentation: Augmentation | None) -> None:
+    def __init__(
+        self, pixels: Pixels, labels: Labels | None, augmentation: Augmentation | None
+    ) -> None:
         self.pixels, self.labels, self.augmentation = pixels, labels, augmentation
 
     def __getitem__(self, place: tuple[int, int]) -> tuple[Tensor, int]:
@@ -76,7 +78,8 @@ class _Rows(Dataset[tuple[Tensor, int]]):
         rgb = self.pixels.read(row)
         if self.augmentation is not None and epoch >= 0:
             rgb = repeated(self.augmentation(rgb[..., 0], row, epoch))
-        return torch.from_numpy(np.ascontiguousarray(rgb.transpose(2, 0, 1))), int(self.labels[row])
+        label = 0 if self.labels is None else int(self.labels[row])
+        return torch.from_numpy(np.ascontiguousarray(rgb.transpose(2, 0, 1))), label
 
 
 class _Batches(Sampler[list[tuple[int, int]]]):
@@ -99,7 +102,7 @@ class Reader:
     def __init__(
         self,
         pixels: Pixels,
-        labels: Labels,
+        labels: Labels | None,
         workers: int,
         pin: bool,
         augmentation: Augmentation | None = None,

@@ -17,10 +17,10 @@ from radhar_cli.dataset.split import TRAIN
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.batches import Reader, pieces
 from radhar_cli.learning.images.classes import known_to
-from radhar_cli.learning.images.folder import image_files, is_image, loose_images
-from radhar_cli.learning.images.image_set import ImageSet, labels_for
+from radhar_cli.learning.images.folder import FilePixels, image_files, is_image
+from radhar_cli.learning.images.image_set import ImageSet, Pixels, Resized, labels_for
 from radhar_cli.learning.images.opening import is_h5, is_tree, open_images
-from radhar_cli.learning.images.scan import content_hash, scan
+from radhar_cli.learning.images.scan import content_hash
 from radhar_cli.learning.models.build import features_and_logits
 from radhar_cli.learning.run_files import is_run
 from radhar_cli.learning.run_folder import RunError, RunMetadata, load_best
@@ -82,7 +82,7 @@ def open_for(
                 settings = TrainConfig.model_validate(metadata.config)
                 cut = images.cut(settings.validation_share, settings.seed)
                 rows = np.concatenate([cut.rows("train"), cut.rows("val")])
-                if content_hash(cut, rows, scan(cut, rows).digests) == metadata.data["hash"]:
+                if content_hash(cut, rows) == metadata.data["hash"]:
                     return cut
     return images
 
@@ -122,19 +122,19 @@ def rows_of(images: ImageSet, split: str) -> tuple[Index, str]:
 def predict_batches(
     model: nn.Module,
     metadata: RunMetadata,
-    images: ImageSet,
+    pixels: Pixels,
     rows: Index,
     device: torch.device,
     batch: int,
 ) -> Iterator[tuple[Float, Float]]:
-    """Yield (probabilities [B, classes], features [B, F]) of rows of a set, batch by batch.
+    """Yield (probabilities [B, classes], features [B, F]) of some rows, batch by batch.
 
     The model is in evaluation mode and on the device; float32, whatever it was trained in.
 
     Raises:
         RunError: a logit is not finite.
     """
-    reader = Reader(images.pixels, images.label, workers=0, pin=False)
+    reader = Reader(pixels, None, workers=0, pin=False)
     with torch.inference_mode():
         for levels, _ in reader(pieces(rows, batch)):
             features, logits = features_and_logits(model, metadata.normalisation(levels.to(device)))
@@ -155,7 +155,7 @@ def predict(
     batch: int,
 ) -> Predictions:
     """Predictions of a model for rows of a labelled set."""
-    batches = list(predict_batches(model, metadata, images, rows, device, batch))
+    batches = list(predict_batches(model, metadata, images.pixels, rows, device, batch))
     return Predictions(
         images=images,
         rows=rows,
@@ -187,36 +187,30 @@ def predict_paths(
     metadata, model = load_best(run)
     model.to(device)
     for path in paths:
-        images, rows, names = _opened(metadata, path, map_name, split, resize)
-        place = 0
-        for probabilities, _ in predict_batches(
-            model, metadata, images, rows, device, PREDICT_BATCH
-        ):
+        pixels, rows, names = _opened(metadata, path, map_name, split, resize)
+        each = iter(names)
+        found = predict_batches(model, metadata, pixels, rows, device, PREDICT_BATCH)
+        for probabilities, _ in found:
             for row in probabilities.tolist():
-                yield names[place], dict(zip(metadata.classes, row, strict=True))
-                place += 1
+                yield next(each), dict(zip(metadata.classes, row, strict=True))
 
 
 def _opened(
     metadata: RunMetadata, path: Path, map_name: str | None, split: str, resize: bool
-) -> tuple[ImageSet, Index, list[str]]:
+) -> tuple[Pixels, Index, list[str]]:
     """Images, which of them, and what to call them."""
     if not path.exists():
         raise FolderError(f"{path}: no such file or folder")
     if is_run(path):
         raise FolderError(f"{path}: is a training run; images or data are asked for here")
-    files = [p for p in (path,) if is_image(p)]
-    if is_tree(path):
-        files = image_files(path, path)
+    files = image_files(path, path) if is_tree(path) else [p for p in (path,) if is_image(p)]
     if files:
-        return (
-            loose_images(files, metadata.size, metadata.input, resize),
-            np.arange(len(files)),
-            list(map(str, files)),
-        )
+        kept = FilePixels(tuple(files), metadata.input, None if resize else metadata.size)
+        brought = Resized(kept, metadata.size) if resize else kept
+        return brought, np.arange(len(files)), list(map(str, files))
     images = open_for(metadata, path, map_name, labelled=False, resize=resize)
     rows, _ = rows_of(images, split)
-    return images, rows, [f"{path}: {images.names[row]}" for row in rows]
+    return images.pixels, rows, [f"{path}: {images.names[row]}" for row in rows]
 
 
 def speed(

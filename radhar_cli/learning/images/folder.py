@@ -11,13 +11,7 @@ from radhar_cli.arrays import Levels
 from radhar_cli.dataset.image_file import SUFFIXES, image_size, read_gray, read_rgb
 from radhar_cli.dataset.layout import CONFIG, PNG
 from radhar_cli.errors import FolderError
-from radhar_cli.learning.images.image_set import (
-    SPLIT_NAMES,
-    ImageSet,
-    Resized,
-    class_order,
-    repeated,
-)
+from radhar_cli.learning.images.image_set import SPLIT_NAMES, ImageSet, class_order, repeated
 from radhar_cli.untrusted import refuse_outside
 
 _WANTED = (
@@ -108,25 +102,6 @@ def _names(images: Sequence[tuple[int, str, Path]]) -> tuple[str, ...]:
         below = file.name if file.parent.name == name else f"{file.parent.name}/{file.name}"
         names.append(f"{name}/{file.stem if alike[split, name, file.stem] == 1 else below}")
     return tuple(names)
-
-
-def loose_images(
-    files: Sequence[Path], size: tuple[int, int], kind: str, resize: bool = False
-) -> ImageSet:
-    """Single files without classes, of a size (H, W) or brought to it."""
-    where = files[0].parent
-    pixels = FilePixels(tuple(files), kind, None if resize else size)
-    return ImageSet(
-        where=where,
-        map=None,
-        classes=(),
-        label=np.zeros(len(files), dtype=np.intp),
-        split=None,
-        names=tuple(map(str, files)),
-        scenes=None,
-        size=size,
-        pixels=Resized(pixels, size) if resize else pixels,
-    )
 
 
 def our_map(inside: Path) -> str | None:

@@ -52,8 +52,9 @@ def scan(images: ImageSet, rows: Sequence[int] | Index) -> Scan:
     return Scan(tuple(digests), histogram)
 
 
-def content_hash(images: ImageSet, rows: Index, digests: Sequence[str]) -> str:
-    """SHA-256 of what a training run depends on: classes, labels, splits, pixels."""
+def content_hash(images: ImageSet, rows: Index, digests: Sequence[str] | None = None) -> str:
+    """SHA-256 of what a training run depends on: classes, labels, splits, pixels (`scan`)."""
+    digests = scan(images, rows).digests if digests is None else digests
     split = None if images.split is None else images.split[rows].tolist()
     text = json.dumps([images.classes, images.label[rows].tolist(), split, list(digests)])
     return hashlib.sha256(text.encode()).hexdigest()

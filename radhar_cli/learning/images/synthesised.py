@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -224,5 +223,5 @@ def synthesised_levels(
 ) -> Levels:
     """Levels [rows, H, W] of some rows, made by worker processes if there are any."""
     pixels = SynthesisedPixels(recipe, where, GREY)
-    reader = Reader(pixels, defaultdict(int), workers, pin=False)
+    reader = Reader(pixels, None, workers, pin=False)
     return np.concatenate([rgb[:, 0].numpy() for rgb, _ in reader(pieces(rows, PIECE))])

@@ -125,29 +125,6 @@ def test_a_range_time_map(place, tmp_path):
     assert "receding" not in found["classes"]["walking"]["statistics"]
 
 
-@pytest.mark.parametrize(
-    ("arguments", "expected"),
-    [
-        (("{human}", "{none}"), "none: no such file or folder"),
-        (("{human}", "{paper}", "--map", "stfd"), "has no map 'stfd'"),
-        (("{human}", "{human}/dataset.h5", "-o", "{human}/x"), "lies in the data"),
-        (("{human}", "{c}"), "c.yaml: is not a data set"),
-        (("{human}", "{paper}", "--classes", "{names}"), "no class 'walkin' (--classes)"),
-    ],
-)
-def test_mistakes_are_refused_in_one_line(place, tmp_path, arguments, expected):
-    (tmp_path / "names.yaml").write_text("walkin: walking\n")
-    paths = {name: place / name for name in ("human", "paper", "none")}
-    filled = [
-        a.format(**paths, c=place / "c.yaml", names=tmp_path / "names.yaml") for a in arguments
-    ]
-    out = () if "-o" in filled else ("-o", tmp_path / "out")
-    done = radhar("compare", *filled, *out)
-    assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
-    assert expected in done.stderr
-    assert not (tmp_path / "out").exists()
-
-
 def test_compare_needs_no_torch(place, tmp_path):
     code = """
 import sys

@@ -6,7 +6,7 @@ import json
 import pytest
 from command_line import ok, process, radhar
 from documented import KEYS
-from learning.patterns import BASE, split_tree, trained, tree
+from learning.patterns import BASE, split_tree, trained
 
 
 @pytest.fixture(scope="module")
@@ -79,40 +79,6 @@ def test_models_lists_our_networks_and_the_papers_rivals(place):
     assert "6,496,012" in done.stdout
     assert "99,228" in done.stdout
     assert "resnet50" in done.stdout
-
-
-@pytest.mark.parametrize(
-    ("arguments", "expected"),
-    [
-        (["train", "{}/tree", "-o", "{}/x", "--model", "fftnett"], ["did you mean 'fftnet'"]),
-        (["train", "{}/tree", "-o", "{}/x", "--set", "epoch=3"], ["epoch", "epochs"]),
-        (["train", "{}/none", "-o", "{}/x"], ["no such file or folder"]),
-        (["train", "{}/alone", "-o", "{}/x"], ["'walking' alone"]),
-        (["train", "{}/tree", "-o", "{}/tree/train"], ["lies in the data"]),
-        (["eval", "{}/tree", "{}/tree"], ["is given twice"]),
-        (["eval", "{}/run"], ["give a data set after it"]),
-        (["eval", "{}/run", "{}/tree", "--split", "vall"], ["did you mean 'val'"]),
-        (["eval", "{}/run", "{}/tree", "--split", "test"], ["has no test images"]),
-        (["eval", "{}/run", "{}/tree", "--device", "cdua"], ["did you mean 'cuda'"]),
-        (["predict", "{}/run", "{}/train.json"], ["is not a data set"]),
-        (
-            ["adapt", "{}/run", "{}/tree", "-o", "{}/x", "--mix", "{}/tree"],
-            ["--mix: needs --epochs"],
-        ),
-        (["export", "{}/tree", "-o", "{}/x.onnx"], ["holds no best.safetensors"]),
-        (["models", "resnet5O"], ["did you mean 'resnet50'"]),
-    ],
-    ids=lambda x: "-".join(x).replace("{}/", "") if x[0] in ("train", "eval") else None,
-)
-def test_wrong_use_is_refused_in_one_line_with_status_2(place, arguments, expected):
-    if not (place / "alone").exists():
-        tree(place / "alone", ("walking",), {"train": 2, "val": 1})
-    done = radhar(*[a.replace("{}", str(place)) for a in arguments])
-    assert done.returncode == 2
-    assert "Traceback" not in done.stderr
-    for words in expected:
-        assert words in done.stderr
-    assert not (place / "x" / "best.safetensors").exists()
 
 
 def test_help_and_building_data_need_no_torch():

@@ -4,7 +4,6 @@ import json
 from pathlib import Path
 from shutil import copytree
 
-import pytest
 from command_line import ok, radhar
 from small import SMALL, small_config
 
@@ -77,30 +76,6 @@ def test_preview_and_inspect(small_set, tmp_path):
     assert "punching" in table.stdout
     found = json.loads(radhar("inspect", out, "--json").stdout)
     assert found["samples"] == 9
-
-
-@pytest.mark.parametrize(
-    ("arguments", "expected"),
-    [
-        (["simulate", "CONFIG", "-a", "walkin", "-o", "OUT"], "did you mean 'walking'"),
-        (["simulate", "CONFIG", "-a", "S8", "-o", "OUT", "--joint", "rite_hand"], "'right_hand'"),
-        (["simulate", "CONFIG", "-a", "S8", "-o", "OUT", "--maps", "sftf"], "did you mean"),
-        (
-            ["simulate", "CONFIG", "-a", "S8", "-o", "OUT", "--set", "engine.kind=cubic"],
-            "engine.kind",
-        ),
-        (["preview", "OUT"], "no such file"),
-        (["inspect", "OUT"], "no such file"),
-        (["inspect", "CONFIG"], "not an HDF5 file"),
-    ],
-)
-def test_bad_input_is_one_line_and_status_2(arguments, expected, tmp_path):
-    config = small_config(tmp_path)
-    done = radhar(*[{"CONFIG": config, "OUT": tmp_path / "out"}.get(a, a) for a in arguments])
-    assert done.returncode == 2
-    assert expected in done.stderr
-    assert "Traceback" not in done.stderr
-    assert len(done.stderr.strip().splitlines()) == 1
 
 
 def test_simulate_refuses_a_folder_of_other_things(tmp_path):

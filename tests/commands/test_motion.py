@@ -4,7 +4,7 @@ import h5py
 import numpy as np
 import pytest
 from command_line import ROOT, ok, radhar
-from recorded import frames, write_amc, write_npz
+from recorded import frames, write_npz
 
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.motion.files.clip import clip_of
@@ -74,22 +74,3 @@ def test_simulate_motion_uses_the_joint_names_of_a_class(tmp_path):
     assert done.returncode == 2
     assert "has no joint that is head by its name" in done.stderr
     done = ok(*look, "-o", tmp_path / "a", "--activity", "wave")
-
-
-def test_impossible_requests_are_refused_in_one_line(tmp_path):
-    path = tmp_path / "x.yaml"
-    path.write_text("duration_s: 1\n")
-    broken = write_amc(tmp_path / "x.amc", frames(seconds=0.5))
-    broken.with_suffix(".asf").unlink()
-    for words, message in (
-        (["motion", path, "-a", "walking", "-o", tmp_path / "x.fbx"], "should end in .bvh"),
-        (["motion", path, "-a", "flying", "-o", tmp_path / "x.bvh"], "is not an activity"),
-        (["motion", path, "-o", tmp_path / "x.bvh"], "--activity is needed"),
-        (["motion", path, "-a", "S8", "-o", tmp_path / "no/x.bvh"], "No such file"),
-        (["simulate", path, "-o", tmp_path / "o", "--motion", broken], "needs its skeleton"),
-        (["simulate", path, "-o", tmp_path / "o", "--motion", tmp_path / "y.bvh"], "y.bvh"),
-    ):
-        done = radhar(*words)
-        assert done.returncode in (1, 2)
-        assert message in done.stderr, done.stderr
-        assert done.stderr.count("\n") == 1

@@ -94,49 +94,6 @@ def test_schema_is_json_schema():
     assert schema["additionalProperties"] is False
 
 
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("radar: {prf_hz: -5}", ["radar.prf_hz", "-5", "above 0"]),
-        ("motion: {sped_mps: 1}", ["motion.sped_mps", "speed_mps"]),
-        ("activities: [wlaking]", ["activities", "walking"]),
-        ("radar: {chirp_s: 1e-3}", ["radar.chirp_s", "0.001", "shorter than the pulse interval"]),
-        ("seed: [1", ["not valid YAML"]),
-        ("image: {colour_map: viridus}", ["image.colour_map", "viridus", "viridis"]),
-    ],
-)
-def test_broken_configs_are_refused_in_one_message_with_status_2(tmp_path, text, expected):
-    path = small_config(tmp_path, text)
-    done = radhar("generate", path, "-o", tmp_path / "set")
-    assert done.returncode == 2
-    assert "Traceback" not in done.stderr
-    for word in expected:
-        assert word in done.stderr
-    assert not (tmp_path / "set").exists()
-
-
-@pytest.mark.parametrize(
-    ("arguments", "said"),
-    [
-        ("generat", "No such command 'generat'. Did you mean 'generate'"),
-        ("config shwo", "'shwo'. Did you mean 'show'"),
-        ("generate", "Missing argument"),
-        ("generate c.yaml", "Missing option"),
-        ("generate c.yaml -o out --jbos 2", "No such option: --jbos"),
-        ("generate c.yaml -o out --jobs 0", "--jobs 0: should be greater than or equal to 1"),
-        ("generate c.yaml -o out -j two", "--jobs two: should be a valid integer"),
-        ("eval run data --repeats", "--repeats"),
-        ("compare a b -o c --zero x", "--zero x: should be a valid number"),
-    ],
-)
-def test_mistaken_options_are_one_line_as_all_our_errors(arguments, said):
-    done = radhar(*arguments.split())
-    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1), done.stderr
-    assert done.stderr.startswith("radhar: ")
-    assert said in done.stderr
-    assert " --help)" in done.stderr
-
-
 @pytest.mark.parametrize("group", [[], ["config"]])
 def test_a_group_alone_shows_its_help(group):
     done = radhar(*group)

@@ -212,26 +212,6 @@ def test_damaged_data_sets_are_not_converted(place, tmp_path, name):
     assert [path.name for path in tmp_path.iterdir()] == ["dataset.h5"], "nothing half written"
 
 
-def test_impossible_conversions_are_refused_in_one_line(place, tmp_path):
-    for arguments, expected in (
-        (
-            (place / "set", "-o", place / "webdataset", "--to", "webdataset"),
-            "webdataset: already exists",
-        ),
-        ((place / "set", "-o", tmp_path / "x", "--to", "parket"), "did you mean 'parquet'?"),
-        ((place / "no", "-o", tmp_path / "x", "--to", "webdataset"), "no such file"),
-        ((place / "set/png", "-o", tmp_path / "x", "--to", "webdataset"), "no such file"),
-        (
-            (place / "set/config.yaml", "-o", tmp_path / "x", "--to", "parquet"),
-            "is not an HDF5 file",
-        ),
-    ):
-        done = radhar("convert", *arguments)
-        assert (done.returncode, len(done.stderr.splitlines())) == (2, 1), done.stderr
-        assert expected in done.stderr
-    assert not [*tmp_path.iterdir()]
-
-
 def test_a_label_of_another_row_is_refused(place, tmp_path):
     damaged = tmp_path / "dataset.h5"
     damaged.write_bytes((place / "set/dataset.h5").read_bytes())

@@ -2,13 +2,11 @@
 
 import json
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
-from command_line import ROOT, ok, radhar
+from command_line import ok, radhar
 from documented import KEYS
 from PIL import Image
 
@@ -123,21 +121,3 @@ def test_a_range_time_map(place, tmp_path):
     found = json.loads((tmp_path / "r/report.json").read_text())
     assert found["units"] == {"rows": "m", "columns": "s"}
     assert "receding" not in found["classes"]["walking"]["statistics"]
-
-
-def test_compare_needs_no_torch(place, tmp_path):
-    code = """
-import sys
-sys.argv = ["radhar", "compare", *sys.argv[1:]]
-from radhar_cli.cli import main
-try:
-    main()
-except SystemExit as ended:
-    assert not ended.code, ended.code
-assert not {"torch", "jinja2"} & set(sys.modules)
-"""
-    arguments = few(place, tmp_path / "out")[1:]
-    done = subprocess.run(
-        [sys.executable, "-c", code, *map(str, arguments)], capture_output=True, text=True, cwd=ROOT
-    )
-    assert done.returncode == 0, done.stderr

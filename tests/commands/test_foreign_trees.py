@@ -1,8 +1,6 @@
 """`inspect` and `preview` of anyone's tree of class folders."""
 
 import json
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -100,17 +98,3 @@ def test_paths_that_are_no_trees_are_named(tmp_path, photos):
         error = radhar(command, path).exception
         assert isinstance(error, FolderError)
         assert expected in str(error)
-
-
-def test_looking_at_images_needs_no_torch(photos):
-    code = """
-import sys
-from typer.testing import CliRunner
-from radhar_cli.cli import program
-for command in ("inspect", "preview"):
-    done = CliRunner().invoke(program(), [command, sys.argv[1]])
-    assert done.exit_code == 0, done.output
-assert "torch" not in sys.modules
-"""
-    done = subprocess.run([sys.executable, "-c", code, str(photos)], capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from command_line import process
 from small import fingerprint
 
 
@@ -63,3 +64,30 @@ def test_limits_of_the_machine_end_in_one_line(small_set, tmp_path, limit, optio
     said = [line for line in done.stderr.splitlines() if not line.startswith("warning: ")]
     assert (done.returncode, len(said)) == (1, 1), done.stderr
     assert expected in said[0]
+
+
+PROGRAM = """
+import sys
+from radhar_cli.cli import main
+try:
+    main()
+except SystemExit as ended:
+    assert not ended.code, ended.code
+assert not {"torch", "timm", "safetensors", "jinja2"} & set(sys.modules)
+"""
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        *("train --help", "eval --help", "models --help", "export --help", "predict --help"),
+        "generate {}/small.yaml -o {}/set",
+        "verify {}/set --samples 1",
+        "inspect {}/set/png/stft/train",
+        "preview {}/set/png/stft/train -o {}/tree.png",
+        "compare {}/set {}/set -o {}/compared --map stft --per-class 2 --pictures 1",
+    ],
+)
+def test_what_learns_nothing_needs_no_torch(small_set, words):
+    done = process("-c", PROGRAM, *words.format(*[small_set.parent] * 3).split())
+    assert done.returncode == 0, done.stderr

@@ -2,9 +2,11 @@
 
 import dataclasses
 import math
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
+import pytest
 import torch
 from PIL import Image
 from safetensors.torch import load_file
@@ -141,6 +143,14 @@ def same_run(one, other):
         and same(last_weights(one), last_weights(other))
         and histories[0] == histories[1]
     )
+
+
+@contextmanager
+def clear_line(kind, *words):
+    """What ends the program with status 2, by an error of a kind that names what matters."""
+    with pytest.raises(kind) as caught:
+        yield
+    one_clear_line(caught.value, *words)
 
 
 def one_clear_line(error, *words):

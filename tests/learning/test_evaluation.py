@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
-from learning.patterns import CLASSES, one_clear_line, plant, split_tree, trained, tree
+from learning.patterns import CLASSES, clear_line, plant, split_tree, trained, tree
 from listener import Listener
 from PIL import Image
 from small import small_config
@@ -176,9 +176,8 @@ def test_data_that_does_not_fit_the_model_is_refused(
     learned, tmp_path, classes, parts, size, expected
 ):
     root = tree(tmp_path / "t", classes, parts, size)
-    with pytest.raises(FolderError) as caught:
+    with clear_line(FolderError, *expected, root):
         evaluated(learned, root)
-    one_clear_line(caught.value, *expected, root)
 
 
 def test_two_groups_need_the_twelve_classes(tmp_path):
@@ -195,9 +194,8 @@ def test_the_same_data_twice_is_refused(learned):
 
 def test_tsne_needs_two_images(learned, tmp_path):
     one = tree(tmp_path / "one", ("walking",), {"val": 1})
-    with pytest.raises(RadharError) as caught:
+    with clear_line(RadharError, "--tsne", "at least 2 images"):
         evaluated(learned, one, tsne=True)
-    one_clear_line(caught.value, "--tsne", "at least 2 images")
     report, _ = evaluated(
         learned, tree(tmp_path / "two", ("walking", "kicking"), {"val": 1}), tsne=True
     )
@@ -238,9 +236,8 @@ def test_predict_refuses_other_sizes_and_damage(learned, tmp_path):
     Image.new("RGB", (32, 32)).save(tmp_path / "b.png")
     (tmp_path / "b.png").write_bytes((tmp_path / "b.png").read_bytes()[:50])
     for name, expected in (("a", "32 x 64 px"), ("b", "truncated"), ("c", "no such file")):
-        with pytest.raises(FolderError) as caught:
+        with clear_line(FolderError, tmp_path / f"{name}.png", expected):
             list(predict_paths(learned[0], [tmp_path / f"{name}.png"], CPU, None, "all"))
-        one_clear_line(caught.value, tmp_path / f"{name}.png", expected)
 
 
 def test_onnx_runtime_gives_the_same_probabilities(learned, tmp_path):

@@ -10,7 +10,7 @@ from command_line import ok, radhar
 from hypothesis import given
 from hypothesis import settings as examples
 from hypothesis import strategies as st
-from learning.patterns import one_clear_line, settings, split_tree, stripes, tree
+from learning.patterns import clear_line, settings, split_tree, stripes, tree
 from listener import Listener
 from PIL import Image
 from small import small_config
@@ -119,9 +119,8 @@ def test_hash_covers_pixels_labels_classes_and_splits(made):
 
 def test_first_map_is_read_if_none_is_named_and_a_wrong_one_is_suggested(made):
     assert open_images(made, None, "rgb").map == "rtm"
-    with pytest.raises(FolderError, match="did you mean 'stft'") as caught:
+    with clear_line(FolderError, match="did you mean 'stft'"):
         open_images(made, "stftt", "rgb")
-    one_clear_line(caught.value)
 
 
 def test_subjects_and_snr_are_read_from_the_scenes(made):
@@ -142,9 +141,8 @@ def test_classes_are_matched_by_name_not_by_number(tmp_path):
     images = open_images(tree(tmp_path / "t", ("b", "d"), {"test": 2}), None, "rgb")
     assert images.label.tolist() == [0, 0, 1, 1]
     assert labels_for(images, ("d", "c", "b")).tolist() == [2, 2, 0, 0]
-    with pytest.raises(FolderError) as caught:
+    with clear_line(FolderError, "'d'", "unknown to the model", tmp_path):
         labels_for(images, ("a", "b", "c"))
-    one_clear_line(caught.value, "'d'", "unknown to the model", tmp_path)
 
 
 @pytest.mark.parametrize("name", ["val", "validation", "valid", "Val"])
@@ -252,9 +250,8 @@ def broken(tmp_path, what):
 )
 def test_unusable_data_is_named(tmp_path, what):
     root, expected = broken(tmp_path, what)
-    with pytest.raises(FolderError) as caught:
+    with clear_line(FolderError, *expected):
         look_at_all(root)
-    one_clear_line(caught.value, *expected)
 
 
 def test_gray_and_other_formats_are_read_as_rgb(tmp_path):
@@ -285,9 +282,8 @@ def test_gray_and_other_formats_are_read_as_rgb(tmp_path):
 )
 def test_unusable_training_data_is_refused(tmp_path, parts, classes, size, expected):
     root = tree(tmp_path / "t", classes, parts, size)
-    with pytest.raises(FolderError) as caught:
+    with clear_line(FolderError, expected, root):
         checked_images(settings(), root)
-    one_clear_line(caught.value, expected, root)
 
 
 def test_a_class_without_training_images_is_named(tmp_path):

@@ -9,6 +9,7 @@ import torch
 from learning.patterns import (
     Watched,
     best_weights,
+    clear_line,
     last_weights,
     one_clear_line,
     same,
@@ -85,9 +86,8 @@ class _Stop(Watched):
 def test_a_checkpoint_of_another_run_is_refused(data, copy, tmp_path):
     trained(data, tmp_path / "other", epochs=3, seed=77)
     shutil.copy(tmp_path / "other" / run_files.LAST, copy / run_files.LAST)
-    with pytest.raises(RunError) as caught:
+    with clear_line(RunError, run_files.LAST, "is another run's", "seed: 77 there, 1 here"):
         trained(data, copy)
-    one_clear_line(caught.value, run_files.LAST, "is another run's", "seed: 77 there, 1 here")
 
 
 @pytest.mark.parametrize("best", [1, 3])
@@ -104,9 +104,8 @@ def test_missing_best_weights_are_reported_or_restored(best, data, copy):
         best_and_last = best_weights(copy), last_weights(copy)
         assert same(*(dict(sorted(weights.items())) for weights in best_and_last))
     else:
-        with pytest.raises(RunError) as caught:
+        with clear_line(RunError, "cannot be recovered", "--overwrite"):
             trained(data, copy)
-        one_clear_line(caught.value, "cannot be recovered", "--overwrite")
 
 
 def test_derived_files_are_written_again(data, run_dir, copy):
@@ -147,9 +146,8 @@ def test_a_run_on_unnamed_images_needs_a_map(tmp_path):
     assert open_for(metadata, ours, None).map == "stft"
     foreign = shutil.copytree(ours / "png/stft", tmp_path / "foreign")
     trained(foreign, tmp_path / "other", epochs=1)
-    with pytest.raises(FolderError) as caught:
+    with clear_line(FolderError, "rtm, stft", "--map"):
         open_for(run.read_metadata(tmp_path / "other"), ours, None)
-    one_clear_line(caught.value, "rtm, stft", "--map")
     with pytest.raises(FolderError, match="has no map 'stft'"):
         open_images(foreign, "stft", "rgb")
 

@@ -8,7 +8,15 @@ import zipfile
 
 import pytest
 import torch
-from learning.patterns import Watched, best_weights, last_weights, one_clear_line, same, trained
+from learning.patterns import (
+    Watched,
+    best_weights,
+    clear_line,
+    last_weights,
+    one_clear_line,
+    same,
+    trained,
+)
 
 from radhar_cli.learning import run_files
 from radhar_cli.learning import run_folder as run
@@ -151,21 +159,18 @@ def test_checkpoint_holds_tensors_and_plain_values_alone(run_dir):
 )
 def test_a_folder_with_another_run_is_refused_naming_the_key(data, run_dir, changes, named):
     before = {p.name: p.stat().st_mtime_ns for p in run_dir.iterdir() if p.is_file()}
-    with pytest.raises(RunError) as caught:
+    with clear_line(RunError, run_dir, "holds another run", "--overwrite", *named):
         trained(data, run_dir, **changes)
-    one_clear_line(caught.value, run_dir, "holds another run", "--overwrite", *named)
     assert before == {p.name: p.stat().st_mtime_ns for p in run_dir.iterdir() if p.is_file()}
 
 
 def test_a_folder_with_a_run_on_other_data_is_refused(run_dir, tmp_path):
     from learning.patterns import split_tree
 
-    with pytest.raises(RunError) as caught:
+    with clear_line(RunError, "data:"):
         trained(split_tree(tmp_path / "t", seed=5), run_dir)
-    one_clear_line(caught.value, "data:")
-    with pytest.raises(RunError) as caught:
+    with clear_line(RunError, 'classes: ["punching", "kicking", "walking"] there, ["a", "b"]'):
         trained(split_tree(tmp_path / "u", classes=("a", "b")), run_dir)
-    one_clear_line(caught.value, 'classes: ["punching", "kicking", "walking"] there, ["a", "b"]')
 
 
 def test_device_settings_do_not_make_another_run(data, run_dir):
@@ -175,9 +180,8 @@ def test_device_settings_do_not_make_another_run(data, run_dir):
 
 def test_a_folder_with_foreign_files_is_refused(data, tmp_path):
     (tmp_path / "thesis.tex").write_text("years of work")
-    with pytest.raises(RunError) as caught:
+    with clear_line(RunError, tmp_path, "thesis.tex", "no training run"):
         trained(data, tmp_path)
-    one_clear_line(caught.value, tmp_path, "thesis.tex", "no training run")
     from learning.patterns import settings
 
     from radhar_cli.learning.training import train
@@ -217,14 +221,12 @@ def test_overwrite_removes_only_files_of_a_run(data, copy):
 
 def test_a_missing_run_is_named(tmp_path):
     for read in (run.load_best, run.read_metadata, run.read_history):
-        with pytest.raises(RunError) as caught:
+        with clear_line(RunError, tmp_path):
             read(tmp_path)
-        one_clear_line(caught.value, tmp_path)
 
 
 @pytest.mark.parametrize("content", ["epoch\nx\n", "epoch,val_loss\n1,2\n", "a,b\n1,2\n"])
 def test_damaged_history_is_named(tmp_path, content):
     (tmp_path / run_files.HISTORY).write_text(content)
-    with pytest.raises(RunError) as caught:
+    with clear_line(RunError, tmp_path / run_files.HISTORY, "is damaged"):
         run.read_history(tmp_path)
-    one_clear_line(caught.value, tmp_path / run_files.HISTORY, "is damaged")

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 from command_line import ok, radhar
-from learning.patterns import Watched, last_weights, one_clear_line, same, same_run, settings
+from learning.patterns import Watched, clear_line, last_weights, same, same_run, settings
 from listener import Listener
 
 from radhar_cli.config import load_config
@@ -181,9 +181,8 @@ def test_another_config_is_another_run(place):
     ids=["map", "class", "validation", "weights", "scene"],
 )
 def test_what_cannot_be_streamed_is_refused_in_one_line(place, scenes, changes, words):
-    with pytest.raises((ConfigError, SceneError)) as caught:
+    with clear_line((ConfigError, SceneError), *words):
         streamed(place, "refused", scenes=scenes, **changes)
-    one_clear_line(caught.value, *words)
 
 
 def test_data_that_does_not_fit_the_stream_is_refused_in_one_line(place, built):

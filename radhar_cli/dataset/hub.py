@@ -34,6 +34,18 @@ def write_hub_files(source: Path, folder: Path, png: bool) -> None:
             write_whole(folder, path, folder_card(data, png).encode())
 
 
+def loading(name: str) -> str:
+    """Markdown: how `datasets` loads a map."""
+    return f"""\
+```python
+from datasets import load_dataset
+
+data = load_dataset("FOLDER OR NAME ON THE HUB", "{name}")  # one configuration a map
+sample = data["train"][0]     # image, label, index and the numbers of the sample
+sample["image"]               # numpy.asarray(...): grey levels; .convert("RGB"): colours
+```"""
+
+
 def folder_card(data: Dataset, png: bool) -> str:
     """The data card of an output folder."""
     name = data.config.maps[0]
@@ -52,13 +64,7 @@ def folder_card(data: Dataset, png: bool) -> str:
         data,
         {"configs": configurations(data.config, png_files(data))},
         f"""\
-```python
-from datasets import load_dataset
-
-data = load_dataset("FOLDER OR NAME ON THE HUB", "{name}")  # one configuration a map
-sample = data["train"][0]     # image, label, index and the numbers of the sample
-sample["image"]               # numpy.asarray(...): grey levels; .convert("RGB"): colours
-```
+{loading(name)}
 
 The same images lie in class folders for torchvision's `ImageFolder("png/{name}/train")`, which
 numbers the classes by the alphabet. {h5}""",

@@ -11,6 +11,7 @@ import pyarrow.parquet as pq
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.card import configurations, number_features
 from radhar_cli.dataset.formats.convert import checked_png, describe, files_of_split
+from radhar_cli.dataset.hub import loading
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset
@@ -36,7 +37,9 @@ def write(data: Dataset, folder: Path, progress: Progress) -> None:
     parts = data.present_splits.values()
     files_of = {n: {part: f"{n}/{part}-*.parquet" for part in parts} for n in data.maps}
     configs = configurations(data.config, files_of)
-    describe(data, folder, {"configs": configs}, _reading(data))
+    reading = "Samples stand in turn, one of each class. `image.bytes` of a row is a PNG file."
+    reading = f"{loading(data.config.maps[0])}\n\n{reading}"
+    describe(data, folder, {"configs": configs}, reading)
 
 
 def schema_of(config: Config) -> pa.Schema:
@@ -69,17 +72,3 @@ def _table(data: Dataset, name: str, here: list[Entry], schema: pa.Schema) -> pa
     ]
     arrays = [pa.array(c, f.type) for c, f in zip(columns, schema, strict=True)]
     return pa.Table.from_arrays(arrays, schema=schema)
-
-
-def _reading(data: Dataset) -> str:
-    name = data.config.maps[0]
-    return f"""\
-```python
-from datasets import load_dataset
-
-data = load_dataset("FOLDER OR NAME ON THE HUB", "{name}")  # one configuration a map
-sample = data["train"][0]     # image, label, index and the numbers of the sample
-sample["image"]               # numpy.asarray(...): grey levels; .convert("RGB"): colours
-```
-
-Samples stand in turn, one of each class. `image.bytes` of a row is a PNG file."""

@@ -145,6 +145,10 @@ class Recipe:
     def _large(self) -> dict[str, tuple[int, ...]]:
         return {name: shape for name, (_, shape) in chunked(self.config).items()}
 
+    @cached_property
+    def _scene_fields(self) -> dict[str, scene_fields.Field]:
+        return {field.name: field for field in scene_fields.fields(self.config)}
+
     def _field(self, name: str, scene: Scene, made: Sample) -> Any:
         kind, _, rest = name.partition("/")
         if name in self._large:
@@ -156,7 +160,7 @@ class Recipe:
         if name == "scene/subject":
             return scene.subject
         if kind == "scene":
-            field = next(f for f in scene_fields.fields(self.config) if f.name == rest)
+            field = self._scene_fields[rest]
             return float(scene_fields.values(scene, (field,))[0]) * field.factor
         if kind == COLUMN_LABEL:
             return made.column_labels[rest]

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import h5py
 import pytest
 
 SMALL = """
@@ -56,3 +57,11 @@ def full_disk_after(samples: int) -> Iterator[None]:
         patch.setattr(batch, "synthesise", synthesise)
         with pytest.raises(UnfinishedError, match="no space left on the disk"):
             yield
+
+
+@contextmanager
+def edited(source, path):
+    """A copy of an HDF5 file at a path, open to be changed."""
+    path.write_bytes(source.read_bytes())
+    with h5py.File(path, "r+") as file:
+        yield file

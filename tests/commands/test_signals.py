@@ -9,6 +9,7 @@ import time
 from pathlib import Path
 
 import pytest
+from command_line import processes
 from learning.patterns import BASE, same_run, split_tree, trained
 from small import SMALL, small_config
 from typer.testing import CliRunner
@@ -95,20 +96,6 @@ def test_a_signal_that_python_swallows_ends_the_build_all_the_same(
     )
     assert (tmp_path / "set/dataset.h5").exists() == finished
     assert not status(monkeypatch, *command)
-
-
-def processes(group):
-    """Command lines of a group's processes, but of those that have ended and wait to be buried."""
-    found = {}
-    for stat in Path("/proc").glob("[0-9]*/stat"):
-        try:
-            fields = stat.read_text().rpartition(")")[2].split()
-            line = (stat.parent / "cmdline").read_bytes()
-        except OSError:
-            continue
-        if int(fields[2]) == group and fields[0] != "Z":
-            found[int(stat.parent.name)] = line
-    return found
 
 
 def wait_for(done, run):

@@ -15,7 +15,7 @@ import pytest
 import yaml
 from command_line import ROOT, radhar
 from listener import Listener
-from small import fingerprint, small_config
+from small import edited, fingerprint, small_config
 
 from radhar_cli.config import load_config
 from radhar_cli.dataset import layout
@@ -203,8 +203,7 @@ def test_what_a_killed_run_left_is_cleared_and_a_run_at_work_is_not(place, tmp_p
 @pytest.mark.parametrize("name", FORMATS)
 def test_damaged_data_sets_are_not_converted(place, tmp_path, name):
     damaged = tmp_path / "dataset.h5"
-    damaged.write_bytes((place / "set/dataset.h5").read_bytes())
-    with h5py.File(damaged, "r+") as file:
+    with edited(place / "set/dataset.h5", damaged) as file:
         file["maps/stft"][7, 3, 3] ^= 1
     done = radhar("convert", damaged, "-o", tmp_path / "out", "--to", name)
     assert done.returncode == 2
@@ -214,8 +213,7 @@ def test_damaged_data_sets_are_not_converted(place, tmp_path, name):
 
 def test_a_label_of_another_row_is_refused(place, tmp_path):
     damaged = tmp_path / "dataset.h5"
-    damaged.write_bytes((place / "set/dataset.h5").read_bytes())
-    with h5py.File(damaged, "r+") as file:
+    with edited(place / "set/dataset.h5", damaged) as file:
         file["label"][0] = 4
     done = radhar("convert", damaged, "-o", tmp_path / "out", "--to", "webdataset")
     assert done.returncode == 2

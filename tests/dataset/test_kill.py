@@ -12,6 +12,7 @@ import time
 from pathlib import Path
 
 import pytest
+from command_line import processes
 from slow import slow
 from small import fingerprint, small_config
 
@@ -77,19 +78,6 @@ def test_builds_killed_at_random_moments_resume_to_the_same_bytes(trial, uninter
     assert fingerprint(folder) == uninterrupted
 
 
-def children(pid):
-    found = []
-    for status in Path("/proc").glob("[0-9]*/stat"):
-        try:
-            fields = status.read_text().rpartition(")")[2].split()
-            line = (status.parent / "cmdline").read_bytes()
-        except OSError:
-            continue
-        if int(fields[1]) == pid and b"popen_loky" in line:
-            found.append(int(status.parent.name))
-    return found
-
-
 def amid_the_work(folder):
     """A run that has made the first of three hundred samples, of many pixels each."""
     run = start(folder, "--set", "samples_per_class=100", "--set", "image.size_px=2048")
@@ -102,7 +90,7 @@ def amid_the_work(folder):
 def test_a_killed_worker_is_one_clear_line_and_finished_batches_are_kept(tmp_path):
     small_config(tmp_path)
     run = amid_the_work(tmp_path / "set")
-    workers = children(run.pid)
+    workers = [pid for pid, line in processes(run.pid).items() if b"popen_loky" in line]
     for worker in workers[:1]:
         os.kill(worker, signal.SIGKILL)
     output = run.communicate()[0]

@@ -5,7 +5,7 @@ import hashlib
 import h5py
 import numpy as np
 import pytest
-from small import SMALL, fingerprint, small_config
+from small import SMALL, edited, fingerprint, small_config
 
 from radhar_cli.activity import activity_named
 from radhar_cli.commands.terminal import BarProgress
@@ -128,8 +128,7 @@ def _signal_and_checksum(file):
 )
 def test_changed_signals_are_found(change, words, whole, tmp_path):
     copy = tmp_path / "dataset.h5"
-    copy.write_bytes((whole / "dataset.h5").read_bytes())
-    with h5py.File(copy, "r+") as file:
+    with edited(whole / "dataset.h5", copy) as file:
         change(file)
     assert any(words in problem for problem in verify(copy, 9).problems)
 
@@ -137,8 +136,7 @@ def test_changed_signals_are_found(change, words, whole, tmp_path):
 def test_other_versions_may_round_differently(whole, tmp_path, monkeypatch):
     """A last bit of every sample is no problem under another version; a wrong one still is."""
     copy = tmp_path / "dataset.h5"
-    copy.write_bytes((whole / "dataset.h5").read_bytes())
-    with h5py.File(copy, "r+") as file:
+    with edited(whole / "dataset.h5", copy) as file:
         for name in ("slow_time", "power/stft"):
             values = file[name][:] * np.float16(1 + 2e-7 if name == "slow_time" else 1)
             if name == "power/stft":

@@ -119,7 +119,7 @@ def test_hash_covers_pixels_labels_classes_and_splits(made):
 
 def test_first_map_is_read_if_none_is_named_and_a_wrong_one_is_suggested(made):
     assert open_images(made, None, "rgb").map == "rtm"
-    with clear_line(FolderError, match="did you mean 'stft'"):
+    with clear_line(FolderError, "did you mean 'stft'"):
         open_images(made, "stftt", "rgb")
 
 

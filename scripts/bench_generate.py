@@ -278,14 +278,14 @@ def jobs(rounds: int) -> dict[str, Any]:
     """Two jobs against one, with warm workers and as a cold command."""
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.dataset.build import build
-    from radhar_cli.dataset.workers import warm_up
 
     config = load_config(PAPER, ["samples_per_class=40"])
-    warm_up(2)
     with tempfile.TemporaryDirectory() as place:
 
         def warm(count: int, turn: int) -> None:
             build(config, Path(place) / f"warm{count}", count, BarProgress(), overwrite=True)
+
+        warm(2, 0)  # starts the workers, which have then imported what they need
 
         def cold(count: int, turn: int) -> None:
             radhar(

@@ -761,7 +761,7 @@ def _shown_part(record: dict[str, Any]) -> dict[str, Any] | None:
 
 def confusion_figures(name: str, results: Path, records: dict[str, dict[str, Any]]) -> None:
     """Draw the confusion matrices on the fresh seed of records that have one to be shown."""
-    from radhar_cli.figures.confusion import confusion_png
+    from radhar_cli.figures.evaluation import confusion_png
 
     for key, record in records.items():
         if part := _shown_part(record):
@@ -773,7 +773,7 @@ def confusion_figures(name: str, results: Path, records: dict[str, dict[str, Any
 
 def snr_figures(name: str, results: Path, records: dict[str, dict[str, Any]]) -> None:
     """Draw the accuracy over the SNR of each scenario, a line for every record."""
-    from radhar_cli.figures.robustness import Point, robustness_png
+    from radhar_cli.figures.evaluation import Point, robustness_png
 
     for scenario in SCENARIOS:
         mine = [record for record in records.values() if record["scenario"] == scenario]

@@ -36,6 +36,13 @@ def radhar(*arguments: object) -> Done:
     return Done(command, status, out.getvalue(), err.getvalue())
 
 
+def ok(*arguments: object) -> Done:
+    """Run the program, which should end well."""
+    done = radhar(*arguments)
+    assert done.returncode == 0, done.stderr
+    return done
+
+
 def process(*arguments: object) -> Done:
     """Run ``python`` with some arguments."""
     paths = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
@@ -46,3 +53,17 @@ def process(*arguments: object) -> Done:
         cwd=ROOT,
         env={**os.environ, "PYTHONPATH": paths},
     )
+
+
+def processes(group):
+    """Command lines of a group's processes, but of those that have ended and wait to be buried."""
+    found = {}
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = stat.read_text().rpartition(")")[2].split()
+            line = (stat.parent / "cmdline").read_bytes()
+        except OSError:
+            continue
+        if int(fields[2]) == group and fields[0] != "Z":
+            found[int(stat.parent.name)] = line
+    return found

@@ -4,6 +4,7 @@ import resource
 import signal
 import sys
 from collections.abc import Iterable
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -59,3 +60,17 @@ def pytest_testnodedown(node: object, error: object) -> None:
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
     peaks: Iterable[str] = (f"{name} {peak:.0f} MiB" for name, peak in sorted(PEAKS.items()))
     terminalreporter.write_line(f"peak memory: {', '.join(peaks)}")
+
+
+@pytest.fixture(scope="session")
+def small_set(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The data set of small.SMALL, its config beside it; who changes it takes a copy."""
+    from listener import Listener
+    from small import small_config
+
+    from radhar_cli.config import load_config
+    from radhar_cli.dataset.build import build
+
+    place = tmp_path_factory.mktemp("small")
+    build(load_config(small_config(place)), place / "set", 1, Listener())
+    return place / "set"

@@ -5,21 +5,20 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.learning_options import Resize
+from radhar_cli.commands.learning_options import Device, Resize, Run, Split, TrainedMap
+from radhar_cli.commands.options import StartOver
 from radhar_cli.commands.tell import report, tell
 from radhar_cli.errors import ConfigError
 
 
 def adapt(
-    run: Annotated[Path, typer.Argument(help="Folder that train wrote.")],
+    run: Run,
     data: Annotated[
         Path, typer.Argument(help="A data set or a tree of images; classes are not looked at.")
     ],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder of the adapted run.")],
-    map_: Annotated[
-        str | None, typer.Option("--map", help="Another map than the one it was trained on.")
-    ] = None,
-    split: Annotated[str, typer.Option(help="train, val, test or all.")] = "all",
+    map_: TrainedMap = None,
+    split: Split = "all",
     epochs: Annotated[
         int,
         typer.Option(
@@ -38,10 +37,8 @@ def adapt(
         ),
     ] = None,
     resize: Resize = False,
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Replace a run that the folder holds.")
-    ] = False,
-    device: Annotated[str, typer.Option(help="auto, cpu, cuda or mps.")] = "auto",
+    overwrite: StartOver = False,
+    device: Device = "auto",
 ) -> None:
     """Fit a copy of a run to another radar's images, without labels.
 
@@ -55,12 +52,7 @@ def adapt(
     show the classes about as often as those it will be asked about; with --epochs, every class
     about equally often.
     """
-    from radhar_cli.commands.learning_options import (
-        StderrLog,
-        apart,
-        known_device,
-        needs_torch,
-    )
+    from radhar_cli.commands.learning_options import StderrLog, apart, needs_torch
 
     needs_torch()
     from radhar_cli.learning import adaptation
@@ -74,7 +66,7 @@ def adapt(
         run,
         data,
         out,
-        choose_device(known_device(device)),
+        choose_device(device),
         map_,
         split_named(split),
         resize,

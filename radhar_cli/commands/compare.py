@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from radhar_cli.commands.learning_options import Classes
+from radhar_cli.commands.learning_options import AnyMap, Classes
 from radhar_cli.commands.tell import report, tell
 
 if TYPE_CHECKING:
@@ -22,9 +22,7 @@ def compare(
     ],
     measured: Annotated[Path, typer.Argument(help="Another, of measured maps.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder of the report.")],
-    map_: Annotated[
-        str | None, typer.Option("--map", help="Which map; the first if not given.")
-    ] = None,
+    map_: AnyMap = None,
     classes: Classes = None,
     resize: Annotated[
         bool, typer.Option("--resize", help="Bring images to the size of the measured ones.")

@@ -31,8 +31,7 @@ def group() -> typer.Typer:
 
 
 def init(
-    out: Annotated[Path, typer.Argument(help="YAML file to write.")],
-    train: Training = False,
+    out: Annotated[Path, typer.Argument(help="YAML file to write.")], train: Training = False
 ) -> None:
     """Write a config to start from: every key, default and meaning.
 

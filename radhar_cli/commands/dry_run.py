@@ -19,7 +19,13 @@ from radhar_cli.scene import nominal_scene
 
 def print_plan(config: Config, jobs: int) -> None:
     """Print stages with reasons, samples, bytes and time; write nothing."""
-    plan, rows = plan_images(config), Rows.of(config)
+    rows = Rows.of(config)
+    if config.recorded is not None:
+        report(samples=len(rows), classes=class_counts(rows), maps=config.maps)
+        tell(f"samples     {len(rows)} = {rows.counted}")
+        tell("nothing was written")
+        return
+    plan = plan_images(config)
     checked = [checked_scene(config, rows, row) for row in rows.spread(DRY_RUN_SCENES)]
     engine = config.engine
     tolerance = f", tolerance {engine.tolerance_db:g} dB" if engine.kind == "direct" else ""

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.learning_options import Classes, Resize
+from radhar_cli.commands.learning_options import Classes, Device, Resize, Split, TrainedMap
 from radhar_cli.commands.tell import report, tell
 
 
@@ -18,13 +18,10 @@ def evaluate(
         ),
     ],
     out: Annotated[
-        Path | None,
-        typer.Option("-o", "--out", help="Folder of the report; RUN/eval if none."),
+        Path | None, typer.Option("-o", "--out", help="Folder of the report; RUN/eval if none.")
     ] = None,
-    split: Annotated[str, typer.Option(help="train, val, test or all.")] = "val",
-    map_: Annotated[
-        str | None, typer.Option("--map", help="Another map than the one it was trained on.")
-    ] = None,
+    split: Split = "val",
+    map_: TrainedMap = None,
     tsne: Annotated[
         bool, typer.Option("--tsne", help="Draw t-SNE of the maps and of the last features.")
     ] = False,
@@ -38,7 +35,7 @@ def evaluate(
     batch: Annotated[int, typer.Option(min=1, help="Images at once.")] = 32,
     resize: Resize = False,
     classes: Classes = None,
-    device: Annotated[str, typer.Option(help="auto, cpu, cuda or mps.")] = "auto",
+    device: Device = "auto",
 ) -> None:
     """Evaluate trained networks on data sets.
 
@@ -48,13 +45,7 @@ def evaluate(
 
     Several runs or data sets give the comparison: train at one SNR, test at all.
     """
-    from radhar_cli.commands.learning_options import (
-        StderrLog,
-        apart,
-        known_device,
-        needs_torch,
-        runs_and_data,
-    )
+    from radhar_cli.commands.learning_options import StderrLog, apart, needs_torch, runs_and_data
 
     needs_torch()
     from radhar_cli.dataset.files import refuse_links
@@ -80,7 +71,6 @@ def evaluate(
     if out is None:
         refuse_links(inside, folder)
     apart(folder, data)
-    known_device(device)
     evaluation = test(runs, data, options, choose_device(device), StderrLog())
     evaluation.write(folder)
     accuracies = {

@@ -5,11 +5,12 @@ from typing import Annotated
 
 import typer
 
+from radhar_cli.commands.learning_options import Run
 from radhar_cli.commands.tell import report, tell
 
 
 def export(
-    run: Annotated[Path, typer.Argument(help="Folder that train wrote.")],
+    run: Run,
     out: Annotated[Path, typer.Option("-o", "--out", help="File to write, such as model.onnx.")],
 ) -> None:
     """Write a network as ONNX, checked with ONNX Runtime.

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.options import Replace, refuse_to_replace
+from radhar_cli.commands.options import Replace, To, refuse_to_replace
 from radhar_cli.commands.tell import report, tell
 
 
@@ -30,9 +30,7 @@ def import_(
     ] = None,
     label: Annotated[str | None, typer.Option(help="Activity label.")] = None,
     person: Annotated[str | None, typer.Option(help="Subject ID.")] = None,
-    to: Annotated[
-        str | None, typer.Option("--to", help="sigmf: write SigMF instead of a recording file.")
-    ] = None,
+    to: To = None,
     overwrite: Replace = False,
 ) -> None:
     """Read a capture of a real radar into a recording file.

@@ -19,8 +19,7 @@ def inspect(
     """
     from radhar_cli.capture.recording import is_recording, summarise_recording
     from radhar_cli.dataset.summary import summarise
-    from radhar_cli.learning.images.opening import is_tree
-    from radhar_cli.learning.images.overview import summarise_tree
+    from radhar_cli.learning.images.opening import is_tree, summarise_tree
 
     if path.is_file() and is_recording(path):
         summary = summarise_recording(path)

@@ -7,9 +7,17 @@ from typing import Annotated, TypeAlias
 import typer
 
 from radhar_cli.commands.tell import tell, wanted
-from radhar_cli.errors import FolderError, MachineError, RadharError, did_you_mean
+from radhar_cli.errors import FolderError, MachineError
 
-DEVICES = ("auto", "cpu", "cuda", "mps")
+Run: TypeAlias = Annotated[Path, typer.Argument(help="Folder that train wrote.")]
+TrainedMap: TypeAlias = Annotated[
+    str | None, typer.Option("--map", help="Another map than the one it was trained on.")
+]
+AnyMap: TypeAlias = Annotated[
+    str | None, typer.Option("--map", help="Which map; the first if not given.")
+]
+Split: TypeAlias = Annotated[str, typer.Option(help="train, val, test or all.")]
+Device: TypeAlias = Annotated[str, typer.Option(help="auto, cpu, cuda or mps.")]
 Resize: TypeAlias = Annotated[
     bool,
     typer.Option("--resize", help="Resize images to the size that the network was trained on."),
@@ -43,18 +51,6 @@ def needs(extra: str, modules: Sequence[str]) -> None:
                 f"this command needs {module}, which is not installed: "
                 f"pip install 'radhar[{extra}]'"
             )
-
-
-def known_device(name: str) -> str:
-    """A device's name as the user gave it.
-
-    Raises:
-        RadharError: no such device.
-    """
-    if name not in DEVICES:
-        hint = did_you_mean(name, DEVICES, f"the devices are {', '.join(DEVICES)}")
-        raise RadharError(f"--device {name}: is not a device; {hint}")
-    return name
 
 
 def runs_and_data(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:

@@ -15,8 +15,7 @@ def merge(
         typer.Argument(help="Parts, or folders that hold parts, in addition to those below OUT."),
     ] = None,
     jobs: Annotated[
-        int | None,
-        typer.Option("--jobs", "-j", min=1, help="Processes that write PNGs."),
+        int | None, typer.Option("--jobs", "-j", min=1, help="Processes that write PNGs.")
     ] = None,
 ) -> None:
     """Merge the parts of a data set, which are only read.

@@ -23,6 +23,18 @@ Activity: TypeAlias = Annotated[
 Nominal: TypeAlias = Annotated[
     bool, typer.Option("--nominal", help="Take mid-points instead of drawing.")
 ]
+Maps: TypeAlias = Annotated[
+    str | None, typer.Option(help="Comma-separated maps, instead of the config's.")
+]
+Figures: TypeAlias = Annotated[
+    bool, typer.Option("--figures/--no-figures", help="Draw the figures.")
+]
+To: TypeAlias = Annotated[
+    str | None, typer.Option("--to", help="sigmf: write SigMF instead of a recording file.")
+]
+StartOver: TypeAlias = Annotated[
+    bool, typer.Option("--overwrite", help="Start over in a folder that was written before.")
+]
 Replace: TypeAlias = Annotated[bool, typer.Option("--overwrite", help="Replace an existing file.")]
 Tolerance: TypeAlias = Annotated[
     float | None,

@@ -5,22 +5,20 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.learning_options import Resize
+from radhar_cli.commands.learning_options import Device, Resize, Run, Split, TrainedMap
 from radhar_cli.commands.tell import report, tell
 
 
 def predict(
-    run: Annotated[Path, typer.Argument(help="Folder that train wrote.")],
+    run: Run,
     paths: Annotated[
         list[Path], typer.Argument(metavar="IMAGE_OR_DATA...", help="Images, or data sets.")
     ],
     top: Annotated[int, typer.Option(min=1, help="Classes to print, the most likely first.")] = 3,
-    map_: Annotated[
-        str | None, typer.Option("--map", help="Another map than the one it was trained on.")
-    ] = None,
-    split: Annotated[str, typer.Option(help="Of a data set: train, val, test or all.")] = "all",
+    map_: TrainedMap = None,
+    split: Split = "all",
     resize: Resize = False,
-    device: Annotated[str, typer.Option(help="auto, cpu, cuda or mps.")] = "auto",
+    device: Device = "auto",
 ) -> None:
     """Print the class of every image and its probabilities.
 
@@ -28,16 +26,14 @@ def predict(
 
       radhar predict runs/quickstart datasets/quickstart/png/stft/val/walking/00003.png
     """
-    from radhar_cli.commands.learning_options import known_device, needs_torch
+    from radhar_cli.commands.learning_options import needs_torch
 
     needs_torch()
+    from radhar_cli.learning.evaluation import predict_paths
     from radhar_cli.learning.images.image_set import split_named
     from radhar_cli.learning.machine import choose_device
-    from radhar_cli.learning.prediction import predict
 
-    predictions = predict(
-        run, paths, choose_device(known_device(device)), map_, split_named(split), resize
-    )
+    predictions = predict_paths(run, paths, choose_device(device), map_, split_named(split), resize)
     for name, probabilities in predictions:
         ranked = sorted(probabilities.items(), key=lambda item: -item[1])
         report(**{"image": name, "class": ranked[0][0], "probabilities": probabilities})

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from radhar_cli.commands.learning_options import AnyMap
 from radhar_cli.commands.tell import report, tell
 
 MAX_CLASSES = 40
@@ -17,9 +18,7 @@ def preview(
             help="Folder that `generate` wrote, dataset.h5, or a tree of class folders."
         ),
     ],
-    map_: Annotated[
-        str | None, typer.Option("--map", help="Which map; the first if not given.")
-    ] = None,
+    map_: AnyMap = None,
     per_class: Annotated[int, typer.Option(min=1, max=50, help="Samples a class.")] = 4,
     out: Annotated[
         Path | None, typer.Option("-o", "--out", help="PNG; preview_<map>.png next to the data.")
@@ -56,7 +55,7 @@ def _draw_tree(root: Path, map_name: str | None, per_class: int, out: Path | Non
     """Draw next to the tree, not in it: its files are data."""
     from radhar_cli.dataset.contact_sheet import draw_image_sheet
     from radhar_cli.learning.images.folder import folder_images
-    from radhar_cli.learning.images.overview import first_of_each
+    from radhar_cli.learning.images.opening import first_of_each
 
     images = folder_images(root, map_name, "rgb", any_size=True)
     whole = root.resolve()

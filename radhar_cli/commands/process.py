@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.options import Overrides
+from radhar_cli.commands.options import Figures, Maps, Overrides
 from radhar_cli.commands.tell import report, tell
 
 
@@ -18,16 +18,14 @@ def process(
     ],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the results.")],
     set_: Overrides = None,
-    maps: Annotated[
-        str | None, typer.Option(help="Comma-separated maps, instead of the config's.")
-    ] = None,
+    maps: Maps = None,
     start: Annotated[float | None, typer.Option(min=0, help="Start time, s.")] = None,
     stop: Annotated[float | None, typer.Option(min=0, help="Stop time, s.")] = None,
     receiver: Annotated[
         int | None,
         typer.Option(min=0, help="Use only this receiver; default: the sum of all powers."),
     ] = None,
-    figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw maps.png.")] = True,
+    figures: Figures = True,
 ) -> None:
     """Compute the maps of a recording and track the torso.
 

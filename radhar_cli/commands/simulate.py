@@ -5,7 +5,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from radhar_cli.commands.options import Activity, Nominal, Overrides, Tolerance, with_tolerance
+from radhar_cli.commands.options import (
+    Activity,
+    Figures,
+    Maps,
+    Nominal,
+    Overrides,
+    To,
+    Tolerance,
+    with_tolerance,
+)
 from radhar_cli.commands.tell import report, tell
 
 RECORDING = "recording.h5"
@@ -28,12 +37,11 @@ def simulate(
     ] = None,
     nominal: Nominal = False,
     motion: Annotated[
-        Path | None,
-        typer.Option("--motion", help="A motion file (.bvh, .amc, .npz) to look at."),
+        Path | None, typer.Option("--motion", help="A motion file (.bvh, .amc, .npz) to look at.")
     ] = None,
     set_: Overrides = None,
     tolerance: Tolerance = None,
-    maps: Annotated[str | None, typer.Option(help="Comma-separated maps; default: all.")] = None,
+    maps: Maps = None,
     joint: Annotated[
         str | None, typer.Option(help="Keep this scatterer alone, such as right_ankle.")
     ] = None,
@@ -44,12 +52,8 @@ def simulate(
         bool,
         typer.Option("--raw", help="Write recording.h5: the beat matrix, static returns included."),
     ] = False,
-    to: Annotated[
-        str | None, typer.Option("--to", help="sigmf: write that with --raw, not recording.h5.")
-    ] = None,
-    figures: Annotated[
-        bool, typer.Option("--figures/--no-figures", help="Draw maps.png and the animation.")
-    ] = True,
+    to: To = None,
+    figures: Figures = True,
 ) -> None:
     """Simulate one scene: its maps, its truth and an animation.
 
@@ -82,14 +86,7 @@ def simulate(
     for name in (*scene_file.FILES, *RECORDINGS):
         refuse_links(out, out / name)
     simulation = simulate_scene(
-        loaded,
-        activity,
-        seed,
-        index=index,
-        nominal=nominal,
-        joint=joint,
-        maps=chosen,
-        raw=raw,
+        loaded, activity, seed, index=index, nominal=nominal, joint=joint, maps=chosen, raw=raw
     )
     samples, warnings = loaded.samples_of(simulation.activity), list[str]()
     if index >= samples and not nominal:

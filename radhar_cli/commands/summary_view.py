@@ -1,5 +1,6 @@
 """A summary as tables on the terminal."""
 
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from rich import box
@@ -36,36 +37,28 @@ def _plain(value: Any) -> Any:
 
 def _data_set(console: Console, s: dict[str, Any]) -> None:
     console.print(Text(s["path"], "bold"), f" {s['samples']} samples, {s['bytes'] / 2**20:.1f} MiB")
-    console.print(f"seed {s['seed']}   config {s['config_hash'][:12]}   " + _versions(s))
-    samples = _table("samples", "class")
-    for part in ("train", "validation", "test"):
-        samples.add_column(part, justify="right")
-    for slug, parts in s["classes"].items():
-        samples.add_row(slug, *map(str, parts.values()))
-    console.print(samples)
+    versions = ", ".join(f"{library} {version}" for library, version in s["versions"].items())
+    console.print(f"seed {s['seed']}   config {s['config_hash'][:12]}   {versions}")
+    samples = ((slug, *parts.values()) for slug, parts in s["classes"].items())
+    _table(console, "samples", ["class"], ["train", "validation", "test"], samples)
     for number, (name, shape) in enumerate(s["maps"].items(), 1):
         console.print(f"map {number}   {name}, {shape[0]} x {shape[1]} px")
-    entropy = _table("mean entropy of the power maps (bit)", "class")
-    for number in range(1, 1 + len(s["maps"])):
-        entropy.add_column(f"{number}", justify="right", no_wrap=True)
-    for slug in s["classes"]:
-        means = (f"{values[slug]['mean']:.1f}" for values in s["entropy_bits"].values())
-        entropy.add_row(slug, *means)
-    console.print(entropy)
+    maps = [f"{number}" for number in range(1, 1 + len(s["maps"]))]
+    means = (
+        (slug, *(f"{values[slug]['mean']:.1f}" for values in s["entropy_bits"].values()))
+        for slug in s["classes"]
+    )
+    _table(console, "mean entropy of the power maps (bit)", ["class"], maps, means)
     if s["drawn"]:
-        drawn = _table("drawn parameters", "parameter", "unit")
-        for column in ("min", "mean", "max", "samples", "histogram"):
-            drawn.add_column(column, justify="right", no_wrap=True)
-        for name, h in s["drawn"].items():
-            numbers = [f"{h[key]:.4g}" for key in ("min", "mean", "max")]
-            drawn.add_row(
-                name,
-                h["unit"],
-                *numbers,
-                str(h["samples"]),
-                _bars(h["counts"], _bar_signs(console)),
+        drawn = (
+            (
+                *(name, h["unit"], *(f"{h[key]:.4g}" for key in ("min", "mean", "max"))),
+                *(h["samples"], _bars(h["counts"], _bar_signs(console))),
             )
-        console.print(drawn)
+            for name, h in s["drawn"].items()
+        )
+        numbers = ["min", "mean", "max", "samples", "histogram"]
+        _table(console, "drawn parameters", ["parameter", "unit"], numbers, drawn)
     for warning in s["warnings"]:
         console.print(Text("warning", "yellow"), warning["message"])
 
@@ -76,24 +69,34 @@ def _recording(console: Console, s: dict[str, Any]) -> None:
         f" {s['duration_s']:.4g} s in {s['segments']} stretch{'es' * (s['segments'] > 1)}, "
         f"{s['bytes'] / 2**20:.1f} MiB",
     )
-    table = _table("recording", "key")
-    table.add_column("value", justify="right")
-    for key, value in s.items():
-        if isinstance(value, (int, float)) and not isinstance(value, bool):
-            table.add_row(key, f"{value:.6g}" if isinstance(value, float) else str(value))
-    console.print(table)
+    numbers = (
+        (key, f"{value:.6g}" if isinstance(value, float) else value)
+        for key, value in s.items()
+        if isinstance(value, (int, float)) and not isinstance(value, bool)
+    )
+    _table(console, "recording", ["key"], ["value"], numbers)
     for one in s["labels"]:
         console.print(f"label {one['label']}, person {one['person'] or 'not given'}")
     for line in s["source"]["found"]:
         console.print(Text("found", "yellow"), line)
 
 
-def _table(title: str, *names: str) -> Table:
-    """An empty table that nine maps and long names leave narrower than 80 characters."""
+def _table(
+    console: Console,
+    title: str,
+    names: Sequence[str],
+    numbers: Sequence[str],
+    rows: Iterable[Iterable[object]],
+) -> None:
+    """Print a table that nine maps and long names leave narrower than 80 characters."""
     table = Table(title=title, box=box.SIMPLE_HEAD, pad_edge=False)
     for name in names:
         table.add_column(name, overflow="fold")
-    return table
+    for name in numbers:
+        table.add_column(name, justify="right", no_wrap=True)
+    for row in rows:
+        table.add_row(*(Text(str(cell)) for cell in row))
+    console.print(table)
 
 
 def _tree(console: Console, s: dict[str, Any]) -> None:
@@ -104,16 +107,9 @@ def _tree(console: Console, s: dict[str, Any]) -> None:
     sizes = [f"{one['images']} of {one['size'][0]} x {one['size'][1]} px" for one in s["sizes"]]
     more = f", and {len(sizes) - MAX_SIZES} more sizes" if len(sizes) > MAX_SIZES else ""
     console.print(f"sizes {', '.join(sizes[:MAX_SIZES])}{more}")
-    table = _table("images by class", "class")
-    for part in next(iter(s["classes"].values())):
-        table.add_column(part, justify="right")
-    for name, counts in s["classes"].items():
-        table.add_row(Text(name), *map(str, counts.values()))
-    console.print(table)
-
-
-def _versions(s: dict[str, Any]) -> str:
-    return ", ".join(f"{library} {version}" for library, version in s["versions"].items())
+    parts = list(next(iter(s["classes"].values())))
+    rows = ((name, *counts.values()) for name, counts in s["classes"].items())
+    _table(console, "images by class", ["class"], parts, rows)
 
 
 def _bar_signs(console: Console) -> str:
@@ -126,17 +122,13 @@ def _bars(counts: list[int], signs: str) -> str:
 
 
 def _unfinished(console: Console, s: dict[str, Any]) -> None:
-    share = s["finished"] / s["samples"]
+    share, signs = s["finished"] / s["samples"], _bar_signs(console)
     console.print(
         Text(s["path"], "bold"), f" unfinished: {s['finished']} of {s['samples']} samples"
     )
-    progress = _progress(share, _bar_signs(console))
+    progress = (signs[-1] * int(share * 40)).ljust(40, signs[1])
     console.print(f"{progress} {share:.0%}   seed {s['seed']}   config {s['config_hash'][:12]}")
     console.print("the same `radhar generate` command resumes")
-
-
-def _progress(share: float, signs: str, width: int = 40) -> str:
-    return (signs[-1] * int(share * width)).ljust(width, signs[1])
 
 
 def _scene(console: Console, s: dict[str, Any]) -> None:
@@ -146,16 +138,12 @@ def _scene(console: Console, s: dict[str, Any]) -> None:
         f" {s['activity']['label']} {s['activity']['slug']}"
         f"{joint}, {s['engine']} engine, seed {s['seed']}",
     )
-    table = _table("maps", "map")
-    for column in ("size", "entropy (bit)"):
-        table.add_column(column, justify="right")
-    for name, shape in s["maps"].items():
-        table.add_row(name, f"{shape[0]} x {shape[1]}", f"{s['entropy_bits'][name]:.2f}")
-    console.print(table)
-    parameters = _table("parameters", "key")
-    parameters.add_column("value", justify="right")
-    for key, value in {**s["parameters"], **s["derived"]}.items():
-        parameters.add_row(key, f"{value:.6g}")
-    console.print(parameters)
+    maps = (
+        (name, f"{shape[0]} x {shape[1]}", f"{s['entropy_bits'][name]:.2f}")
+        for name, shape in s["maps"].items()
+    )
+    _table(console, "maps", ["map"], ["size", "entropy (bit)"], maps)
+    numbers = ((k, f"{v:.6g}") for k, v in {**s["parameters"], **s["derived"]}.items())
+    _table(console, "parameters", ["key"], ["value"], numbers)
     for warning in s["warnings"]:
         console.print(Text("warning", "yellow"), warning)

@@ -6,8 +6,7 @@ options to every command (`with_output_options`).
 
 import inspect
 import json
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import wraps
 from typing import Annotated, Any
@@ -68,8 +67,11 @@ def with_output_options(command: Callable[..., None]) -> Callable[..., None]:
 
     @wraps(command)
     def run(*, json_: bool, quiet: bool, **arguments: Any) -> None:
-        with _as_asked(json_, quiet):
+        _output.json, _output.quiet = json_, quiet
+        try:
             command(**arguments)
+        finally:
+            _output.json = _output.quiet = False
 
     signature = inspect.signature(command)
     options = [
@@ -80,12 +82,3 @@ def with_output_options(command: Callable[..., None]) -> Callable[..., None]:
         parameters=[*signature.parameters.values(), *options]
     )
     return run
-
-
-@contextmanager
-def _as_asked(json_: bool, quiet: bool) -> Iterator[None]:
-    _output.json, _output.quiet = json_, quiet
-    try:
-        yield
-    finally:
-        _output.json = _output.quiet = False

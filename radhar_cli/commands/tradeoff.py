@@ -5,17 +5,8 @@ from typing import Annotated, Any
 
 import typer
 
-from radhar_cli.commands.options import Overrides, resumable
+from radhar_cli.commands.options import Overrides, StartOver, resumable
 from radhar_cli.commands.tell import report, tell
-
-EXAMPLE = """
-Example:
-
-  radhar tradeoff configs/paper/free_space.yaml -o out/tradeoff --quick
-
-The same command, run again, resumes. Leave the machine idle meanwhile: a busy one distorts the
-times, not the errors.
-"""
 
 
 def tradeoff(
@@ -25,10 +16,17 @@ def tradeoff(
         bool, typer.Option("--quick", help="Three activities, three rounds: a first look.")
     ] = False,
     set_: Overrides = None,
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Start over in a folder that holds a sweep.")
-    ] = False,
+    overwrite: StartOver = False,
 ) -> None:
+    """Measure what accuracy costs: tolerances, engines, physics.
+
+    Example:
+
+      radhar tradeoff configs/paper/free_space.yaml -o out/tradeoff --quick
+
+    The same command, run again, resumes. Leave the machine idle meanwhile: a busy one distorts the
+    times, not the errors.
+    """
     from radhar_cli.commands.learning_options import needs
 
     needs("tradeoff", ["skimage"])
@@ -56,6 +54,3 @@ def tradeoff(
     report(files=written)
     for file in written:
         tell(f"  {file}")
-
-
-tradeoff.__doc__ = "Measure what accuracy costs: tolerances, engines, physics.\n" + EXAMPLE

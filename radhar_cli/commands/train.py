@@ -6,21 +6,8 @@ from typing import Annotated
 import typer
 
 from radhar_cli.commands.learning_options import Classes
-from radhar_cli.commands.options import Overrides, resumable
+from radhar_cli.commands.options import Overrides, StartOver, resumable
 from radhar_cli.errors import FolderError
-
-EXAMPLE = """
-Example:
-
-  radhar train datasets/quickstart -o runs/quickstart
-
-  radhar train datasets/measured -o runs/tuned --init runs/simulated --set learning_rate=1e-4
-
-  radhar train --stream configs/quickstart.yaml -o runs/endless    # every image new, none stored
-
-Several processes, or several GPUs: torchrun --nproc-per-node 2 -m radhar_cli train ...
-The same command, run again, resumes after the last finished epoch.
-"""
 
 
 def train(
@@ -51,17 +38,27 @@ def train(
         str | None, typer.Option(help="fftnet, smallnet, or a name of timm's; see radhar models.")
     ] = None,
     init: Annotated[
-        Path | None,
-        typer.Option(help="A run whose best weights are the initial ones."),
+        Path | None, typer.Option(help="A run whose best weights are the initial ones.")
     ] = None,
     classes: Classes = None,
     tensorboard: Annotated[
         bool, typer.Option("--tensorboard", help="Also write event files into RUN/tensorboard.")
     ] = False,
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Start over in a folder that holds a run.")
-    ] = False,
+    overwrite: StartOver = False,
 ) -> None:
+    """Train a network on a data set.
+
+    Example:
+
+      radhar train datasets/quickstart -o runs/quickstart
+
+      radhar train datasets/measured -o runs/tuned --init runs/simulated --set learning_rate=1e-4
+
+      radhar train --stream configs/quickstart.yaml -o runs/endless    # every image new
+
+    Several processes, or several GPUs: torchrun --nproc-per-node 2 -m radhar_cli train ...
+    The same command, run again, resumes after the last finished epoch.
+    """
     from radhar_cli.commands.learning_options import apart, needs, needs_torch
 
     needs_torch()
@@ -92,6 +89,3 @@ def train(
         samples = load_config(stream) if stream else None
         outcome = training.train(settings, data, out, view, overwrite, names, init, samples)
     view.print_outcome(outcome)
-
-
-train.__doc__ = "Train a network on a data set.\n" + EXAMPLE

@@ -1,14 +1,11 @@
 """`radhar verify`: is a data set what its config and seed say?"""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from radhar_cli.commands.tell import report, tell
-
-if TYPE_CHECKING:
-    from radhar_cli.dataset.verify import Verification
 
 
 def verify(
@@ -43,19 +40,14 @@ def verify(
         tell(f"... and {len(outcome.problems) - 20} more")
     if outcome.problems:
         raise typer.Exit(1)
+    within = f"within {outcome.worst_level} grey level"
+    anew = f"synthesised anew and equal {within if outcome.other_versions else 'byte for byte'}"
     tell(
         f"{out}: {outcome.samples} samples; checksums, labels and counts right; "
-        + (_anew(outcome) if outcome.resynthesised else "none made anew")
+        + (f"{outcome.resynthesised} {anew}" if outcome.resynthesised else "none made anew")
         + (f"; {outcome.pngs} PNG files show the same" if outcome.pngs else "")
     )
     if outcome.unmade:
         tell(
             f"{outcome.unmade} samples use motion files; --motion FOLDER synthesises them anew too"
         )
-
-
-def _anew(outcome: "Verification") -> str:
-    within = (
-        f"within {outcome.worst_level} grey level" if outcome.other_versions else "byte for byte"
-    )
-    return f"{outcome.resynthesised} synthesised anew and equal {within}"

@@ -36,40 +36,19 @@ Outcomes: TypeAlias = NDArray[Any]  # of OUTCOME
 
 @dataclass(frozen=True)
 class Batch:
-    """Rows start .. stop - 1 and all that a worker needs to make them.
-
-    Attributes:
-        config: the data set's.
-        identity_hash: of it.
-        folder: the output folder, absolute: a worker may have another working directory.
-        start, stop: rows.
-        checked: outcome of the check of each row, or None where the worker is to check.
-        split: split number of each row.
-        table: colour table [256, 3], or None without PNGs.
-        parent_pid: process that asked; a worker that outlives it stops. NO_PARENT: on a cluster.
-        factory: makes the rows where they are no scenes.
-    """
+    """Rows start .. stop - 1 and all that a worker needs to make them."""
 
     config: Config
     identity_hash: str
-    folder: Path
+    folder: Path  # the output folder, absolute: a worker may have another working directory
     start: int
     stop: int
+    # outcome of the check of each row, or None where the worker is to check
     checked: Outcomes | None
     split: Levels
-    table: Levels | None
-    parent_pid: int
+    table: Levels | None  # colour table [256, 3], or None without PNGs
+    parent_pid: int  # process that asked; a worker that outlives it stops. NO_PARENT: on a cluster
     factory: RowFactory | None = None
-
-    def scenes(self) -> Iterator[tuple[Scene, int]]:
-        """Each row's scene and Flags."""
-        rows = Rows.of(self.config)
-        for number, row in enumerate(range(self.start, self.stop)):
-            if self.checked is None:
-                yield checked_scene(self.config, rows, row)
-            else:
-                attempt, flags = self.checked[number].tolist()
-                yield draw_scene(self.config, *rows[row], attempt), flags
 
 
 def checked_scene(config: Config, rows: Rows, row: int) -> tuple[Scene, Flags]:
@@ -143,15 +122,19 @@ def _check_machine(batch: Batch) -> None:
 
 def _made(batch: Batch) -> Iterator[tuple[Row, int]]:
     """Each row, and its Flags."""
-    config = batch.config
-    if batch.factory is not None:
-        for row in range(batch.start, batch.stop):
-            leave_if_orphaned(batch.parent_pid)
-            yield batch.factory(config, row), 0
-        return
-    plan, columns = plan_images(config), scene_fields.fields(config)
-    for scene, flags in batch.scenes():
+    config, rows = batch.config, Rows.of(batch.config)
+    if batch.factory is None:
+        plan, columns = plan_images(config), scene_fields.fields(config)
+    for number, row in enumerate(range(batch.start, batch.stop)):
         leave_if_orphaned(batch.parent_pid)
+        if batch.factory is not None:
+            yield batch.factory(config, row), 0
+            continue
+        if batch.checked is None:
+            scene, flags = checked_scene(config, rows, row)
+        else:
+            attempt, flags = batch.checked[number].tolist()
+            scene = draw_scene(config, *rows[row], attempt)
         sample = synthesise(scene, plan)
         yield Row(sample, scene_fields.values(scene, columns, sample.error_db)), flags
 

@@ -6,7 +6,7 @@ shards it finds; dataset.h5 comes last, so that a folder with one is complete.
 
 import errno
 import uuid
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -79,17 +79,14 @@ def build(
     overwrite: bool = False,
     batch_size: int | None = None,
     factory: RowFactory | None = None,
+    part: Part | None = None,
 ) -> BuildOutcome:
     """Build `config` into `folder`, or resume it; nothing to do where it is complete.
 
     Args:
-        config: the data set.
-        folder: created if need be.
-        jobs: processes.
-        progress: receives progress and messages.
-        overwrite: start over.
         batch_size: samples a shard; it changes no byte of the result.
         factory: makes the rows of a data set that is not simulated.
+        part: make these rows alone, in their folder below `folder`.
 
     Raises:
         FolderError: the folder is in use or holds something else.
@@ -97,43 +94,18 @@ def build(
         SceneError: a scene outside the model; nothing was computed of a data set of at most
             MAX_CHECKED_FIRST rows.
     """
-
-    def work(folder: Path) -> BuildOutcome:
-        reserve(folder, config, overwrite)
-        return _Build(config, folder, jobs, progress, factory).whole(batch_size)
-
-    return _with_lock(folder.absolute(), work)
-
-
-def build_part(
-    config: Config,
-    out: Path,
-    part: Part,
-    jobs: int,
-    progress: Progress,
-    overwrite: bool = False,
-    batch_size: int | None = None,
-) -> BuildOutcome:
-    """Build one part of `config` in its folder below `out`, or resume it.
-
-    Arguments and errors are those of `build`.
-    """
-    count = len(Rows.of(config))
-    if part.of > count:
-        raise FolderError(f"--shard {part}: there are {count} samples; should be at most K/{count}")
-    refuse_other_cuts(out, part)
-
-    def work(folder: Path) -> BuildOutcome:
-        reserve(folder, config, overwrite, str(part))
-        return _Build(config, folder, jobs, progress).part(part, batch_size)
-
-    return _with_lock(part.folder(out.absolute()), work)
-
-
-def _with_lock(folder: Path, work: Callable[[Path], BuildOutcome]) -> BuildOutcome:
+    folder, count = folder.absolute(), len(Rows.of(config))
+    if part is not None:
+        if part.of > count:
+            most = f"there are {count} samples; should be at most K/{count}"
+            raise FolderError(f"--shard {part}: {most}")
+        refuse_other_cuts(folder, part)
+        folder = part.folder(folder)
     try:
         with folder_lock(folder):
-            return work(folder)
+            reserve(folder, config, overwrite, None if part is None else str(part))
+            work = _Build(config, folder, jobs, progress, factory)
+            return work.whole(batch_size) if part is None else work.part(part, batch_size)
     except OSError as error:
         raise disk_error(folder, error) from error
 
@@ -214,18 +186,15 @@ class _Build:
         self, rows: range, gaps: Runs, checked: Outcomes | None, batch_size: int | None
     ) -> tuple[list[Shard], int]:
         """Make the rows in the gaps; return their shards, and how many they are."""
-        shards: list[Shard] = []
         config = self.config
         left = sum(stop - start for start, stop in gaps)
         self.progress.stage("samples", len(rows), len(rows) - left)
         size = batch_size or _batch_size(left, self.jobs, row_bytes(config))
         table = colour_table(config.image.colour_map) if self.png else None
-
         cuts = _cuts(gaps, size)
 
         def batches() -> Iterator[tuple[Batch]]:
             for start, stop in cuts:
-                shards.append(Shard(start, stop, self.folder))
                 own = None if checked is None else checked[start - rows.start : stop - rows.start]
                 where = (config, self.identity_hash, self.folder, start, stop)
                 split = self.split[start:stop]
@@ -238,7 +207,7 @@ class _Build:
             self.progress.say(f"{processes} of {self.jobs} processes, {why}")
         for samples in run_tasks(run_batch, batches(), processes):
             self.progress.advance(samples)
-        return shards, left
+        return [Shard(*cut, self.folder) for cut in cuts], left
 
     def _sound_shards(self, rows: range) -> list[Shard]:
         """Usable shards of these rows.

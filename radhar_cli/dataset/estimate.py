@@ -27,22 +27,14 @@ FILE_WRITE_S = 0.0002
 
 @dataclass(frozen=True)
 class Estimate:
-    """An estimate of a whole build.
+    """An estimate of a whole build."""
 
-    Attributes:
-        samples: in the data set.
-        probes: samples timed.
-        seconds_per_sample: of one process.
-        hdf5_bytes, png_bytes: on disk.
-        seconds: wall time with the jobs asked for.
-    """
-
-    samples: int
-    probes: int
-    seconds_per_sample: float
+    samples: int  # in the data set
+    probes: int  # samples timed
+    seconds_per_sample: float  # of one process
     hdf5_bytes: int
     png_bytes: int
-    seconds: float
+    seconds: float  # wall time with the jobs asked for
 
 
 def estimate(config: Config, jobs: int) -> Estimate:

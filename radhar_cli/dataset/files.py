@@ -13,12 +13,7 @@ MAX_TEXT = 2**20
 
 
 def write_whole(folder: Path, path: Path, data: bytes) -> None:
-    """Write a file of an output folder atomically: under a temporary name, then renamed.
-
-    Args:
-        folder: the output folder; the unfinished file lies in its work folder.
-        path: of the finished file, inside `folder`.
-        data: the content.
+    """Write a file inside an output folder atomically: under a name in its work folder, renamed.
 
     Raises:
         FolderError: a folder on the way is a symbolic link.

@@ -12,12 +12,7 @@ from typing import Any
 from filelock import FileLock, Timeout
 
 from radhar_cli.config.schema import Config
-from radhar_cli.dataset.files import (
-    refuse_foreign_work,
-    refuse_links,
-    unfinished_path,
-    write_whole,
-)
+from radhar_cli.dataset.files import refuse_foreign_work, refuse_links, unfinished_path, write_whole
 from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.dataset.layout import (
     CARD,
@@ -81,9 +76,6 @@ def reserve(
     """Take a locked folder for this config, or refuse it.
 
     Args:
-        folder: the output folder, or a part's.
-        config: of the data set.
-        overwrite: start over.
         part: which one this is, K/N.
         allowed: names that a folder without a data set may hold already.
 
@@ -110,10 +102,7 @@ def reserve(
 
 
 def refuse_foreign_files(
-    folder: Path,
-    ours: str,
-    allowed: tuple[str, ...] = (),
-    error: type[RadharError] = FolderError,
+    folder: Path, ours: str, allowed: tuple[str, ...] = (), error: type[RadharError] = FolderError
 ) -> None:
     """Refuse a folder that holds something, but not what is `ours`; `allowed` are names of it."""
     names = sorted(p.name for p in folder.iterdir() if p.name not in (WORK, *allowed))
@@ -193,24 +182,16 @@ def _remove_batches(folder: Path) -> None:
         place.rmdir()
 
 
-def _ours(folder: Path) -> bool:
-    """Whether radhar built, or began to build, what a folder holds, damaged or not."""
-    ours = is_incomplete(folder) or (folder / WORK / "built").exists()
-    if ours or not (folder / DATASET).exists():
-        return ours
-    try:
-        return stored_identity(folder) is not None
-    except FolderError:
-        return False
-
-
 def _clear(folder: Path, new: dict[str, Any]) -> None:
     """Start again where radhar was before: remove its files and nothing else.
 
     The new name comes first and the old data set's file last but for the PNGs that were put aside,
     so that a kill in between leaves a folder that either run can go on with.
     """
-    if not _ours(folder):
+    ours = is_incomplete(folder) or (folder / WORK / "built").exists()
+    with suppress(FolderError):  # of radhar, or damaged
+        ours = ours or stored_identity(folder) is not None
+    if not ours:
         return
     if (folder / PNG).exists():
         put_aside = unfinished_path(folder)

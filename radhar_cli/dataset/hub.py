@@ -19,8 +19,6 @@ def write_hub_files(source: Path, folder: Path, png: bool) -> None:
 
     Args:
         source: dataset.h5, or what is going to be it.
-        folder: the output folder.
-        png: whether the folder has images.
     """
     with Dataset(source) as data:
         if png:
@@ -30,14 +28,22 @@ def write_hub_files(source: Path, folder: Path, png: bool) -> None:
         if not (folder / GALLERY).exists():
             write_whole(folder, folder / GALLERY, gallery_png(data))
         path = folder / CARD
-        if not path.exists() or (png and _is_without_images(data, path)):
+        text = path.read_bytes() if path.exists() else None
+        early = png and text is not None and b"\nconfigs:" not in text  # before there were images
+        if text is None or (early and text == folder_card(data, False).encode()):
             write_whole(folder, path, folder_card(data, png).encode())
 
 
-def _is_without_images(data: Dataset, path: Path) -> bool:
-    """Whether a card is what `write_hub_files` wrote for a folder without images."""
-    text = path.read_bytes()
-    return b"\nconfigs:" not in text and text == folder_card(data, False).encode()
+def loading(name: str) -> str:
+    """Markdown: how `datasets` loads a map."""
+    return f"""\
+```python
+from datasets import load_dataset
+
+data = load_dataset("FOLDER OR NAME ON THE HUB", "{name}")  # one configuration a map
+sample = data["train"][0]     # image, label, index and the numbers of the sample
+sample["image"]               # numpy.asarray(...): grey levels; .convert("RGB"): colours
+```"""
 
 
 def folder_card(data: Dataset, png: bool) -> str:
@@ -58,13 +64,7 @@ def folder_card(data: Dataset, png: bool) -> str:
         data,
         {"configs": configurations(data.config, png_files(data))},
         f"""\
-```python
-from datasets import load_dataset
-
-data = load_dataset("FOLDER OR NAME ON THE HUB", "{name}")  # one configuration a map
-sample = data["train"][0]     # image, label, index and the numbers of the sample
-sample["image"]               # numpy.asarray(...): grey levels; .convert("RGB"): colours
-```
+{loading(name)}
 
 The same images lie in class folders for torchvision's `ImageFolder("png/{name}/train")`, which
 numbers the classes by the alphabet. {h5}""",
@@ -83,16 +83,12 @@ def wrong_hub_files(data: Dataset, folder: Path) -> list[str]:
         if (folder / GALLERY).exists():
             image_size(folder / GALLERY)
         if png or (folder / CARD).exists():
-            problems += _wrong_card(data, folder, png)
+            found = front_matter(folder / CARD).get("configs")
+            if found not in (configurations(data.config, png_files(data)), *([None] * (not png))):
+                problems.append(
+                    f"{CARD}: its configs are not the maps here; where there is no card `generate` "
+                    "writes one"
+                )
     except FolderError as error:
         problems.append(str(error))
     return problems
-
-
-def _wrong_card(data: Dataset, folder: Path, png: bool) -> list[str]:
-    found = front_matter(folder / CARD).get("configs")
-    if found == configurations(data.config, png_files(data)) or (found is None and not png):
-        return []
-    return [
-        f"{CARD}: its configs are not the maps here; where there is no card `generate` writes one"
-    ]

@@ -35,7 +35,6 @@ def read_rgb(path: Path, size: tuple[int, int] | None = None) -> Levels:
     """RGB [H, W, 3] of an image file; 16-bit greys are scaled, transparency is dropped.
 
     Args:
-        path: of the file.
         size: (H, W) that it should have, or None.
 
     Raises:

@@ -36,10 +36,7 @@ def merge(
     """Make the data set in `out` of its parts, which are only read.
 
     Args:
-        out: the output folder.
         folders: of parts, or that hold parts, in addition to those below `out`.
-        jobs: processes, for PNGs.
-        progress: receives progress and messages.
 
     Raises:
         FolderError: parts differ, or are none.

@@ -69,15 +69,10 @@ def sample(
 
 @dataclass(frozen=True)
 class Recipe:
-    """Makes samples of a data set; can be pickled.
-
-    Attributes:
-        config: of the data set.
-        fields: names in dataset.h5 of what is made.
-    """
+    """Makes samples of a data set; can be pickled."""
 
     config: Config
-    fields: tuple[str, ...]
+    fields: tuple[str, ...]  # names in dataset.h5 of what is made
 
     @classmethod
     def of(

@@ -105,9 +105,5 @@ def write_part_manifest(
 
 def rows_by_part(runs: Sequence[tuple[int, int]], of: int, count: int) -> list[Part]:
     """The parts, of so many, in which runs (first row, past-last row) lie."""
-    parts = {number: Part(of, number).rows(count) for number in range(1, of + 1)}
-    return [
-        Part(of, number)
-        for number, rows in parts.items()
-        if any(a < rows.stop and b > rows.start for a, b in runs)
-    ]
+    parts = [(part, part.rows(count)) for part in (Part(of, n) for n in range(1, of + 1))]
+    return [one for one, rows in parts if any(a < rows.stop and b > rows.start for a, b in runs)]

@@ -24,12 +24,7 @@ def write_missing_pngs(
     """Write PNGs that are not there: asked for later, deleted, or lost with a killed run.
 
     Args:
-        config: the data set's.
-        folder: the output folder.
-        split: split number of each row.
         source: HDF5 file to make them from.
-        jobs: processes.
-        progress: receives progress.
 
     Returns:
         Number of PNGs written; none where the config asks for none.

@@ -9,17 +9,11 @@ from radhar_cli.scene import ByIdentity
 
 
 class RecordedWindow(NamedTuple):
-    """One sample.
+    """One sample."""
 
-    Attributes:
-        number: of its part in the manifest.
-        part: the part.
-        start: s, from the start of the recording.
-    """
-
-    number: int
+    number: int  # of its part in the manifest
     part: RecordedPart
-    start: float
+    start: float  # s, from the start of the recording
 
 
 def windows(config: Config) -> list[RecordedWindow]:

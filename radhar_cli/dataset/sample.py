@@ -23,22 +23,16 @@ from radhar_cli.scene import Scene
 
 
 class Sample(NamedTuple):
-    """What is made of a scene.
+    """What is made of a scene."""
 
-    Attributes:
-        images: {map name: image}, in the order of the config.
-        error_db: measured error of the direct engine; NaN where it made nothing that could err.
-        fell_back: the cube made the signal, as the direct engine could not (`engine.fallback`).
-        column_labels: {map name: [width]}, where asked for (`output.column_labels`).
-        slow_time: x[m] after the canceller, where it is stored (`output.slow_time`).
-        products: {name: array}, where they are stored (`output.products`).
-    """
-
-    images: dict[str, MapImage]
-    error_db: float
-    fell_back: bool
+    images: dict[str, MapImage]  # {map name: image}, in the order of the config
+    error_db: float  # measured error of the direct engine; NaN where it made nothing that could err
+    fell_back: bool  # the cube made the signal, as the direct engine could not (`engine.fallback`)
+    # {map name: [width]}, where asked for (`output.column_labels`)
     column_labels: dict[str, Levels]
+    # x[m] after the canceller, where it is stored (`output.slow_time`)
     slow_time: Complex | None = None
+    # {name: array}, where they are stored (`output.products`)
     products: Mapping[str, NDArray[Any]] = MappingProxyType({})
 
     def chunk(self, name: str, shape: tuple[int, ...]) -> NDArray[Any]:
@@ -57,15 +51,10 @@ class Sample(NamedTuple):
 
 
 class Row(NamedTuple):
-    """A sample that was not simulated.
-
-    Attributes:
-        sample: its images.
-        values: of `scene_fields.fields` [fields].
-    """
+    """A sample that was not simulated."""
 
     sample: Sample
-    values: Float
+    values: Float  # of `scene_fields.fields` [fields]
 
 
 # Makes a row of a data set that is not simulated; what it holds can be pickled.

@@ -109,10 +109,6 @@ def encode_shard(
     """The bytes of the shard of the rows from `start` on; a full disk is then one failed write.
 
     Args:
-        config: the data set's.
-        identity_hash: of it.
-        start: first row.
-        samples: of the rows.
         scene_values: [rows, fields].
         flags: what there is to warn of in each row (`Flags`).
     """
@@ -223,9 +219,6 @@ def require_tiling(
     """Refuse shards that do not hold each of `count` rows once.
 
     Args:
-        folder: the output folder.
-        shards: of the data set.
-        count: rows.
         remedy: what to do about rows, if not to run the same command again.
         unusable: shards that were left out, and why.
 

@@ -16,15 +16,11 @@ from radhar_cli.errors import ConfigError
 
 @dataclass(frozen=True)
 class StreamOrder:
-    """Number n of a stream -> (activity, index within its class), for n = 0, 1, 2, ...
+    """Number n of a stream -> (activity, index within its class), for n = 0, 1, 2, ..."""
 
-    Attributes:
-        config: of the samples.
-        split: "train" leaves out what the config's data set holds back: with named persons those
-            who validate or test; else it begins where the data set ends.
-    """
-
-    config: Config
+    config: Config  # of the samples
+    # "train" leaves out what the config's data set holds back: with named persons those who
+    # validate or test; else it begins where the data set ends
     split: Literal["all", "train"] = "all"
 
     def __post_init__(self) -> None:

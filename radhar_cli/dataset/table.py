@@ -21,22 +21,14 @@ BLOCK = 256  # indices whose numbers are read at once
 
 
 class Entry(NamedTuple):
-    """A line of the table.
+    """A line of the table."""
 
-    Attributes:
-        row: of dataset.h5.
-        split: 0 train, 1 validation, 2 test.
-        number: of the class, as in /label.
-        label: slug of the class.
-        place: index within the class; (number, place) is the sample key.
-        values: of `number_names`, as in /scene: SI units, NaN where one does not apply.
-    """
-
-    row: int
-    split: int
-    number: int
-    label: str
-    place: int
+    row: int  # of dataset.h5
+    split: int  # 0 train, 1 validation, 2 test
+    number: int  # of the class, as in /label
+    label: str  # slug of the class
+    place: int  # index within the class; (number, place) is the sample key
+    # of `number_names`, as in /scene: SI units, NaN where one does not apply
     values: tuple[float, ...]
 
 

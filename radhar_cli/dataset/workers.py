@@ -157,19 +157,6 @@ def parent_pid() -> int:
     return os.getpid() if _CLIENT.get() is None else NO_PARENT
 
 
-def warm_up(jobs: int) -> None:
-    """Start the workers and have them import what they need."""
-    for _ in run_tasks(_import_physics, [()] * jobs, jobs):
-        pass
-
-
-def _import_physics() -> int:
-    import radhar_cli.dataset.batch  # noqa: F401 - the import is the work
-
-    prepare_process()
-    return os.getpid()
-
-
 @contextmanager
 def _interrupts_blocked() -> Iterator[None]:
     """Workers started meanwhile inherit the blocked signals: only the parent handles Ctrl-C."""

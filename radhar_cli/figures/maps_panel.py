@@ -33,22 +33,14 @@ ONE_ROW = 4
 
 @dataclass(frozen=True)
 class Shown:
-    """What a page of maps shows, simulated or measured.
-
-    Attributes:
-        maps: {map name: PowerMap}.
-        image: dynamic range and colours.
-        f0: frequency at which the Doppler is read, Hz.
-        farthest: what the range-time map shows, m.
-        title: one line above.
-        over: draws more over a map: (axes, map name, Hz or m of a unit of the axis).
-    """
+    """What a page of maps shows, simulated or measured."""
 
     maps: Mapping[str, PowerMap]
-    image: ImageConfig
-    f0: float
-    farthest: float
-    title: str
+    image: ImageConfig  # dynamic range and colours
+    f0: float  # frequency at which the Doppler is read, Hz
+    farthest: float  # what the range-time map shows, m
+    title: str  # one line above
+    # draws more over a map: (axes, map name, Hz or m of a unit of the axis)
     over: Callable[[Axes, str, float], None] | None = None
 
 
@@ -59,11 +51,13 @@ def of_simulation(simulation: Simulation, overlay: bool) -> Shown:
         if name != "rtm":
             _draw_truth(axes, name, simulation, unit)
 
+    p = simulation.truth.positions.transpose(2, 1, 0)
+    farthest = point_delay(p, simulation.antennas, simulation.wall).max() * SPEED_OF_LIGHT / 2
     return Shown(
         simulation.maps,
         simulation.config.image,
         simulation.waveform.f0,
-        1.3 * _farthest(simulation) + 0.5,
+        1.3 * float(farthest) + 0.5,
         title(simulation),
         draw_truth if overlay else None,
     )
@@ -104,12 +98,6 @@ def draw_map(axes: Axes, name: str, shown: Shown) -> AxesImage:
     if shown.over is not None:
         shown.over(axes, name, unit)
     return drawn
-
-
-def _farthest(simulation: Simulation) -> float:
-    p = simulation.truth.positions.transpose(2, 1, 0)
-    tau = point_delay(p, simulation.antennas, simulation.wall)
-    return float(tau.max()) * SPEED_OF_LIGHT / 2
 
 
 def _draw_truth(axes: Axes, map_name: str, simulation: Simulation, unit: float) -> None:

@@ -32,7 +32,6 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Callable[[int], o
     What never changes is drawn once; a frame draws the body, the clock and the cursor over it.
 
     Args:
-        simulation: the scene.
         path: ends in .gif.
         advance: called with 1 after every frame.
     """
@@ -118,7 +117,11 @@ class _Stage:
         p = self.truth.positions
         self.middle = p.mean(axis=1)
         radar = np.array([simulation.antennas.tx, simulation.antennas.rx])
-        room = {"antennas": radar, "wall": None if simulation.wall is None else _box(simulation)}
+        room: dict[str, Any] = {"antennas": radar, "wall": None}
+        if simulation.wall is not None:  # its outline from the side, closed, and its extent along y
+            (x0, x1), (y0, y1), (z0, z1) = simulation.wall.bounds
+            corners = [[x0, y0, z0], [x1, y1, z0], [x1, y1, z1], [x0, y0, z1], [x0, y0, z0]]
+            room["wall"] = np.array(corners)
         half = max(1.2, float(np.abs(p - self.middle[:, None])[..., :2].max()) + 0.15)
         top, low = max(2.1, float(p[..., 2].max()) + 0.15), min(-0.1, float(p[..., 2].min()))
         views = {"from the side": (0, 1.0, 0.02), "from the radar": (1, -1.0, 0.265)}
@@ -202,13 +205,6 @@ class _View:
         self.radar.set_data(across(self.antennas), self.antennas[:, 2])
         if self.wall is not None and self.axis == 0:
             self.slab.set_data(across(self.wall), self.wall[:, 2])
-
-
-def _box(simulation: Simulation) -> Float:
-    """Outline of the wall from the side, closed, and its extent along y: corners [5, 3]."""
-    assert simulation.wall is not None
-    (x0, x1), (y0, y1), (z0, z1) = simulation.wall.bounds
-    return np.array([[x0, y0, z0], [x1, y1, z0], [x1, y1, z1], [x0, y0, z1], [x0, y0, z0]])
 
 
 def _plan(figure: Figure, way: Float, room: dict[str, Any]) -> Line2D:

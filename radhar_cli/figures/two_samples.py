@@ -92,8 +92,6 @@ def pictures_png(
     """Draw rows of maps, each under its name.
 
     Args:
-        rows: {name: maps}.
-        title: of the page.
         across: quantity and unit of the columns of a map.
         upwards: of its rows.
     """

@@ -6,14 +6,14 @@ The only package that imports PyTorch; `pip install 'radhar[train]'` installs it
     images/         labelled images of dataset.h5, of a tree of class folders, or synthesised
     batches         which images make a step, the same for any number of processes; augmentation
     models/         one network per file; zoo: those of timm
-    machine         device and precision; execution_plan: how it runs
+    machine         device, precision, micro batch, reading processes
     process_group   several processes that train one network
-    gradient_step   logits, loss, gradient, update; schedule: the learning rate
+    gradient_step   learning rate, logits, loss, gradient, update
     training        epochs, validation, the best one, resuming; starting_point: --init
     run_folder      the files of a run, and how they are read safely; run_summary, event_files
     evaluation      probabilities, features and speed; metrics: how good they are
-    report          `radhar eval`: single_result and comparison fill it, report_files writes it
+    report          `radhar eval`: single_result fills it, report_files writes it
     adaptation      batch norm fitted to unlabelled images
     stream          samples for a PyTorch DataLoader, synthesised in its workers
-    prediction      classes of single images; onnx_export
+    onnx_export     the network without PyTorch
 """

@@ -28,7 +28,7 @@ from radhar_cli.learning.batches import Reader, pieces
 from radhar_cli.learning.evaluation import open_for, rows_of, training_images
 from radhar_cli.learning.images.image_set import ImageSet, labels_for
 from radhar_cli.learning.images.joined import joined, sampling_weights
-from radhar_cli.learning.images.scan import content_hash, scan
+from radhar_cli.learning.images.scan import content_hash
 from radhar_cli.learning.machine import repeatable
 from radhar_cli.learning.run_files import TRAINED_ON
 from radhar_cli.learning.run_folder import MAX_TABLE, RunMetadata, load_best
@@ -45,15 +45,10 @@ RATE = 5e-4  # of Adam, falls to zero by a cosine
 
 @dataclass(frozen=True)
 class Mixed:
-    """Labelled images that are shown while a network learns from unlabelled ones.
-
-    Attributes:
-        images: their training images are taken.
-        weights: how often those of each joined set; None: all alike.
-    """
+    """Labelled images that are shown while a network learns from unlabelled ones."""
 
     images: ImageSet
-    weights: tuple[float, ...] | None = None
+    weights: tuple[float, ...] | None = None  # how often those of each joined set; None: all alike
 
     def batches(
         self, metadata: RunMetadata, epoch: int, count: int
@@ -65,7 +60,7 @@ class Mixed:
         drawn = rng.choice(rows, (count, MIXED), p=weights / weights.sum())
         labels = labels_for(self.images, metadata.classes)
         change = Augmentation(config.augment, config.seed) if config.input == "gray" else None
-        yield from Reader(self.images, labels, 0, False, change)(list(drawn), epoch)
+        yield from Reader(self.images.pixels, labels, 0, False, change)(list(drawn), epoch)
 
 
 def adapt(
@@ -88,17 +83,11 @@ def adapt(
     epochs it learns from them as well, which takes every class to be there about equally often.
 
     Args:
-        run: a training run.
-        data: a data set or a tree of images.
-        folder: of the copy.
-        device: where to compute.
         map_name: of a data set, if not the one of the run.
         split: of `data`, where it has any.
         resize: bring images to the model's size.
-        overwrite: replace a run that the folder holds.
-        epochs: of `maximise_information`.
+        epochs: passes in which it learns from the images.
         mix: labelled data sets that it shows as well, those that the run learned from.
-        progress: receives a line for each of them.
 
     Raises:
         RunError, FolderError: one of them cannot be used.
@@ -138,17 +127,15 @@ def adapt_to(
     repeatable(device)
     if device.type == "cpu":
         keep_memory()
-    adapt_batch_norm(model.to(device), metadata, images, rows, device)
+    learner = _Learner(model.to(device), metadata, images, rows, device)
+    learner.adapt_batch_norm()
     if epochs:
-        maximise_information(model, metadata, images, rows, device, epochs, mixed, progress)
-        adapt_batch_norm(model, metadata, images, rows, device)
-    seen = content_hash(images, rows, scan(images, rows).digests)
+        learner.maximise_information(epochs, mixed, progress)
+        learner.adapt_batch_norm()
+    seen = content_hash(images, rows)
     work = {**metadata.work, "adapted_to": seen, "adapted_epochs": epochs}
     if mixed is not None:
-        learned = mixed.images.rows("train")
-        work["adapted_with"] = content_hash(
-            mixed.images, learned, scan(mixed.images, learned).digests
-        )
+        work["adapted_with"] = content_hash(mixed.images, mixed.images.rows("train"))
     metadata = metadata.model_copy(update={"work": work})
     with folder_lock(folder):
         run_folder.reserve_run(folder, metadata, overwrite)
@@ -160,88 +147,92 @@ def adapt_to(
     return metadata
 
 
-def adapt_batch_norm(
-    model: nn.Module, metadata: RunMetadata, images: ImageSet, rows: Index, device: torch.device
-) -> None:
-    """Replace the statistics of every batch norm by their average over rows of an image set.
+@dataclass(frozen=True)
+class _Learner:
+    """A network on its device, and the rows of an image set that it is fitted to."""
 
-    The rows are shuffled, as stored ones may be sorted by class, and batches are nearly equal.
-    """
-    for layer in model.modules():
-        if isinstance(layer, _BatchNorm):
+    model: nn.Module
+    metadata: RunMetadata
+    images: ImageSet
+    rows: Index
+    device: torch.device
+
+    @property
+    def norms(self) -> list[_BatchNorm]:
+        return [layer for layer in self.model.modules() if isinstance(layer, _BatchNorm)]
+
+    def adapt_batch_norm(self) -> None:
+        """Replace the statistics of every batch norm by their average over the rows.
+
+        The rows are shuffled, as stored ones may be sorted by class, and batches are nearly equal.
+        """
+        for layer in self.norms:
             layer.train()
             layer.reset_running_stats()
             layer.momentum = None  # the plain average over all batches
-    with torch.inference_mode():
-        for levels in _levels(images, _batches(metadata, rows, 0)):
-            model(metadata.normalisation(levels.to(device)))
-    model.eval()
+        with torch.inference_mode():
+            for levels in self._levels(self._batches(0)):
+                self.model(levels)
+        self.model.eval()
 
+    def maximise_information(
+        self, epochs: int, mixed: Mixed | None, progress: Messages | None
+    ) -> None:
+        """Lower the entropy of each prediction, raise that of their mean: all but the last layer.
 
-def maximise_information(
-    model: nn.Module,
-    metadata: RunMetadata,
-    images: ImageSet,
-    rows: Index,
-    device: torch.device,
-    epochs: int,
-    mixed: Mixed | None = None,
-    progress: Messages | None = None,
-) -> None:
-    """Lower the entropy of each prediction and raise that of their mean, by all but the last layer.
+        The mutual information of images and predictions grows; without labels, batch norm as in
+        training, in the batches of `adapt_batch_norm`. Mixed images, in batches of their own, add
+        their cross-entropy, smoothed as in training.
 
-    The mutual information of images and predictions grows; without labels, batch norm as in
-    training, in the batches of `adapt_batch_norm`. Mixed images, in batches of their own, add their
-    cross-entropy, smoothed as in training.
+        Raises:
+            RunError: the loss is not finite.
+        """
+        model, metadata = self.model, self.metadata
+        learned = [p for name, p in model.named_parameters() if not is_of_last_layer(name, model)]
+        optimiser = torch.optim.Adam(learned)
+        smoothing = TrainConfig.model_validate(metadata.config).label_smoothing
+        for epoch in range(1, epochs + 1):
+            for layer in self.norms:
+                layer.train()
+            batches = self._batches(epoch)
+            labelled = mixed.batches(metadata, epoch, len(batches)) if mixed else None
+            for step, levels in enumerate(self._levels(batches)):
+                done = (epoch - 1 + step / len(batches)) / epochs
+                optimiser.param_groups[0]["lr"] = RATE * (1 + cos(pi * done)) / 2
+                shares = model(levels).softmax(1)
+                entropy, of_mean = _entropy(shares).mean(), _entropy(shares.mean(0))
+                loss = entropy - of_mean
+                if labelled is not None:
+                    shown, label = (part.to(self.device) for part in next(labelled))
+                    logits = model(metadata.normalisation(shown))
+                    loss = loss + cross_entropy(logits, label, label_smoothing=smoothing)
+                if not loss.isfinite():
+                    raise run_folder.RunError(
+                        f"epoch {epoch} of --epochs: the loss is {loss.item()}"
+                    )
+                optimiser.zero_grad()
+                loss.backward()  # type: ignore[no-untyped-call]
+                optimiser.step()
+            if progress is not None:
+                progress.say(
+                    f"epoch {epoch}/{epochs}  entropy of a prediction {entropy:.3f}, of their mean "
+                    f"{of_mean:.3f}"
+                )
+        model.eval()
 
-    Raises:
-        RunError: the loss is not finite.
-    """
-    norms = [layer for layer in model.modules() if isinstance(layer, _BatchNorm)]
-    learned = [p for name, p in model.named_parameters() if not is_of_last_layer(name, model)]
-    optimiser = torch.optim.Adam(learned)
-    smoothing = TrainConfig.model_validate(metadata.config).label_smoothing
-    for epoch in range(1, epochs + 1):
-        for layer in norms:
-            layer.train()
-        batches = _batches(metadata, rows, epoch)
-        labelled = mixed.batches(metadata, epoch, len(batches)) if mixed else None
-        for step, levels in enumerate(_levels(images, batches)):
-            done = (epoch - 1 + step / len(batches)) / epochs
-            optimiser.param_groups[0]["lr"] = RATE * (1 + cos(pi * done)) / 2
-            shares = model(metadata.normalisation(levels.to(device))).softmax(1)
-            entropy, of_mean = _entropy(shares).mean(), _entropy(shares.mean(0))
-            loss = entropy - of_mean
-            if labelled is not None:
-                shown, label = (part.to(device) for part in next(labelled))
-                logits = model(metadata.normalisation(shown))
-                loss = loss + cross_entropy(logits, label, label_smoothing=smoothing)
-            if not loss.isfinite():
-                raise run_folder.RunError(f"epoch {epoch} of --epochs: the loss is {loss.item()}")
-            optimiser.zero_grad()
-            loss.backward()  # type: ignore[no-untyped-call]
-            optimiser.step()
-        if progress is not None:
-            progress.say(
-                f"epoch {epoch}/{epochs}  entropy of a prediction {entropy:.3f}, of their mean "
-                f"{of_mean:.3f}"
-            )
-    model.eval()
+    def _batches(self, epoch: int) -> list[Index]:
+        """The rows in nearly equal batches, in the order of an epoch."""
+        seed = int(self.metadata.config.get("seed", 0))
+        rng = stream(seed, TRAINING, epoch, name="adaptation")
+        order = self.rows[rng.permutation(self.rows.size)]
+        return pieces(order, -(-order.size // max(1, order.size // BATCH)))
+
+    def _levels(self, batches: list[Index]) -> Iterator[Tensor]:
+        """The network's input [B, 3, H, W] of each batch."""
+        for levels, _ in Reader(self.images.pixels, None, workers=0, pin=False)(batches):
+            yield self.metadata.normalisation(levels.to(self.device))
 
 
 def _entropy(shares: Tensor) -> Tensor:
     """Entropy [...] of shares [..., classes], nats."""
     return -(shares * shares.clamp_min(1e-12).log()).sum(-1)
-
-
-def _batches(metadata: RunMetadata, rows: Index, epoch: int) -> list[Index]:
-    """The rows in nearly equal batches, in the order of an epoch."""
-    seed = int(metadata.config.get("seed", 0))
-    order = rows[stream(seed, TRAINING, epoch, name="adaptation").permutation(rows.size)]
-    return pieces(order, -(-order.size // max(1, order.size // BATCH)))
-
-
-def _levels(images: ImageSet, batches: list[Index]) -> Iterator[Tensor]:
-    """Levels uint8 [B, 3, H, W] of each batch."""
-    for levels, _ in Reader(images, images.label, workers=0, pin=False)(batches):
-        yield levels

@@ -16,15 +16,10 @@ from radhar_cli.randomness import TRAINING, stream
 
 @dataclass(frozen=True)
 class Augmentation:
-    """Changes that depend on seed, epoch and row alone, whichever process makes them.
+    """Changes that depend on seed, epoch and row alone, whichever process makes them."""
 
-    Attributes:
-        config: how far the changes go.
-        seed: of the training run.
-    """
-
-    config: AugmentConfig
-    seed: int
+    config: AugmentConfig  # how far the changes go
+    seed: int  # of the training run
 
     def __call__(self, levels: Levels, row: int, epoch: int) -> Levels:
         """A changed copy of grey levels [H, W], row 0 the highest frequency."""
@@ -41,7 +36,10 @@ class Augmentation:
             grow = ndimage.maximum_filter if rng.random() < 0.5 else ndimage.minimum_filter
             changed = grow(changed, size=((3, 1), (1, 3), (3, 3))[rng.integers(3)])
         changed = 255 - (255 - changed) * (1 + c.contrast * contrast)
-        _swap(changed, c.noise * abs(share), rng)
+        # Some pixels take the level of another place: noise, whatever the levels mean.
+        there, here = rng.integers(levels.size, size=(2, int(c.noise * abs(share) * levels.size)))
+        flat = changed.reshape(-1)
+        flat[here] = flat[there]
         for axis, count in enumerate((c.doppler_bands, c.time_bands)):
             for _ in range(rng.integers(count + 1)):
                 size = int(rng.uniform(0, c.band_width) * changed.shape[axis])
@@ -59,11 +57,3 @@ def _resampled(levels: Levels, scale: tuple[float, float], shift: tuple[float, f
     return np.asarray(
         ndimage.affine_transform(levels.astype(np.float32), 1 / change, offset, order=1)
     )
-
-
-def _swap(levels: Float, share: float, rng: np.random.Generator) -> None:
-    """Give a share of the pixels the level of another place: noise, whatever the levels mean."""
-    count = int(share * levels.size)
-    there, here = rng.integers(levels.size, size=(2, count))
-    flat = levels.reshape(-1)
-    flat[here] = flat[there]

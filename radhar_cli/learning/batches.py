@@ -59,32 +59,27 @@ def epoch_batches(order: Index, size: int, processes: int) -> list[Index]:
     return [order[start:stop] for start, stop in zip(starts, [*starts[1:], count], strict=True)]
 
 
-class Readable(Protocol):
-    """Anything whose pixels are read by row: an image set, a stream."""
-
-    @property
-    def pixels(self) -> Pixels:
-        """Where they come from."""
-
-
 class Labels(Protocol):
     """Label of every row."""
 
-    def __getitem__(self, row: int) -> SupportsInt: ...
+    def __getitem__(self, row: int, /) -> SupportsInt: ...
 
 
 class _Rows(Dataset[tuple[Tensor, int]]):
-    """Rows of an image set, read on demand; `labels` in the model's numbering."""
+    """Rows read on demand; `labels` in the model's numbering, 0 for all without."""
 
-    def __init__(self, images: Readable, labels: Labels, augmentation: Augmentation | None) -> None:
-        self.images, self.labels, self.augmentation = images, labels, augmentation
+    def __init__(
+        self, pixels: Pixels, labels: Labels | None, augmentation: Augmentation | None
+    ) -> None:
+        self.pixels, self.labels, self.augmentation = pixels, labels, augmentation
 
     def __getitem__(self, place: tuple[int, int]) -> tuple[Tensor, int]:
         row, epoch = place
-        rgb = self.images.pixels.read(row)
+        rgb = self.pixels.read(row)
         if self.augmentation is not None and epoch >= 0:
             rgb = repeated(self.augmentation(rgb[..., 0], row, epoch))
-        return torch.from_numpy(np.ascontiguousarray(rgb.transpose(2, 0, 1))), int(self.labels[row])
+        label = 0 if self.labels is None else int(self.labels[row])
+        return torch.from_numpy(np.ascontiguousarray(rgb.transpose(2, 0, 1))), label
 
 
 class _Batches(Sampler[list[tuple[int, int]]]):
@@ -106,15 +101,15 @@ class Reader:
 
     def __init__(
         self,
-        images: Readable,
-        labels: Labels,
+        pixels: Pixels,
+        labels: Labels | None,
         workers: int,
         pin: bool,
         augmentation: Augmentation | None = None,
     ) -> None:
         self._sampler = _Batches()
         self._loader = DataLoader(
-            _Rows(images, labels, augmentation),
+            _Rows(pixels, labels, augmentation),
             batch_sampler=self._sampler,
             num_workers=workers,
             persistent_workers=workers > 0,

@@ -1,8 +1,9 @@
-"""Predictions of a trained network on a set of images, and their latency."""
+"""Predictions of a trained network on labelled sets and on any images, and their latency."""
 
 import statistics
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -16,33 +17,28 @@ from radhar_cli.dataset.split import TRAIN
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.batches import Reader, pieces
 from radhar_cli.learning.images.classes import known_to
-from radhar_cli.learning.images.image_set import ImageSet, labels_for
-from radhar_cli.learning.images.opening import is_h5, open_images
-from radhar_cli.learning.images.scan import content_hash, scan
+from radhar_cli.learning.images.folder import FilePixels, image_files, is_image
+from radhar_cli.learning.images.image_set import ImageSet, Pixels, Resized, labels_for
+from radhar_cli.learning.images.opening import is_h5, is_tree, open_images
+from radhar_cli.learning.images.scan import content_hash
 from radhar_cli.learning.models.build import features_and_logits
+from radhar_cli.learning.run_files import is_run
 from radhar_cli.learning.run_folder import RunError, RunMetadata, load_best
 from radhar_cli.learning.settings import TrainConfig
 
 WARM_UP, REPEATS, BATCH_REPEATS = 3, 15, 5
+PREDICT_BATCH = 32
 
 
 @dataclass(frozen=True)
 class Predictions:
-    """Predictions for rows of an image set.
-
-    Attributes:
-        images: the set.
-        rows: [N] rows of the set.
-        truth: [N] true classes, in the model's numbering.
-        probabilities: [N, classes].
-        features: [N, F], input of the last layer.
-    """
+    """Predictions for rows of an image set."""
 
     images: ImageSet
-    rows: Index
-    truth: Index
-    probabilities: Float
-    features: Float
+    rows: Index  # [N] rows of the set
+    truth: Index  # [N] true classes, in the model's numbering
+    probabilities: Float  # [N, classes]
+    features: Float  # [N, F], input of the last layer
 
     @property
     def predicted(self) -> Index:
@@ -82,7 +78,12 @@ def open_for(
     if labelled:
         images = known_to(images.renamed(names or {}), metadata.classes)
         if images.split is None:
-            return _cut_as_in_training(metadata, images)
+            with suppress(FolderError):
+                settings = TrainConfig.model_validate(metadata.config)
+                cut = images.cut(settings.validation_share, settings.seed)
+                rows = np.concatenate([cut.rows("train"), cut.rows("val")])
+                if content_hash(cut, rows) == metadata.data["hash"]:
+                    return cut
     return images
 
 
@@ -104,17 +105,6 @@ def _map_there(metadata: RunMetadata, path: Path) -> str | None:
         return metadata.map
 
 
-def _cut_as_in_training(metadata: RunMetadata, images: ImageSet) -> ImageSet:
-    try:
-        settings = TrainConfig.model_validate(metadata.config)
-        cut = images.cut(settings.validation_share, settings.seed)
-    except FolderError:
-        return images
-    rows = np.concatenate([cut.rows("train"), cut.rows("val")])
-    same = content_hash(cut, rows, scan(cut, rows).digests) == metadata.data["hash"]
-    return cut if same else images
-
-
 def training_images(metadata: RunMetadata, path: Path) -> ImageSet:
     """Training images of a data set, of the classes that a run knows."""
     config = TrainConfig.model_validate(metadata.config)
@@ -132,19 +122,19 @@ def rows_of(images: ImageSet, split: str) -> tuple[Index, str]:
 def predict_batches(
     model: nn.Module,
     metadata: RunMetadata,
-    images: ImageSet,
+    pixels: Pixels,
     rows: Index,
     device: torch.device,
     batch: int,
 ) -> Iterator[tuple[Float, Float]]:
-    """Yield (probabilities [B, classes], features [B, F]) of rows of a set, batch by batch.
+    """Yield (probabilities [B, classes], features [B, F]) of some rows, batch by batch.
 
     The model is in evaluation mode and on the device; float32, whatever it was trained in.
 
     Raises:
         RunError: a logit is not finite.
     """
-    reader = Reader(images, images.label, workers=0, pin=False)
+    reader = Reader(pixels, None, workers=0, pin=False)
     with torch.inference_mode():
         for levels, _ in reader(pieces(rows, batch)):
             features, logits = features_and_logits(model, metadata.normalisation(levels.to(device)))
@@ -165,7 +155,7 @@ def predict(
     batch: int,
 ) -> Predictions:
     """Predictions of a model for rows of a labelled set."""
-    batches = list(predict_batches(model, metadata, images, rows, device, batch))
+    batches = list(predict_batches(model, metadata, images.pixels, rows, device, batch))
     return Predictions(
         images=images,
         rows=rows,
@@ -173,6 +163,54 @@ def predict(
         probabilities=np.concatenate([batch_probabilities for batch_probabilities, _ in batches]),
         features=np.concatenate([features for _, features in batches]),
     )
+
+
+def predict_paths(
+    run: Path,
+    paths: Sequence[Path],
+    device: torch.device,
+    map_name: str | None,
+    split: str,
+    resize: bool = False,
+) -> Iterator[tuple[str, dict[str, float]]]:
+    """Yield (name, probability of every class) for every image.
+
+    Args:
+        paths: images, folders of images, or data sets.
+        map_name: of a data set, if not the one of the run.
+        split: of a data set.
+
+    Raises:
+        RunError: no such run.
+        FolderError: an image that cannot be read, or of another size.
+    """
+    metadata, model = load_best(run)
+    model.to(device)
+    for path in paths:
+        pixels, rows, names = _opened(metadata, path, map_name, split, resize)
+        each = iter(names)
+        found = predict_batches(model, metadata, pixels, rows, device, PREDICT_BATCH)
+        for probabilities, _ in found:
+            for row in probabilities.tolist():
+                yield next(each), dict(zip(metadata.classes, row, strict=True))
+
+
+def _opened(
+    metadata: RunMetadata, path: Path, map_name: str | None, split: str, resize: bool
+) -> tuple[Pixels, Index, list[str]]:
+    """Images, which of them, and what to call them."""
+    if not path.exists():
+        raise FolderError(f"{path}: no such file or folder")
+    if is_run(path):
+        raise FolderError(f"{path}: is a training run; images or data are asked for here")
+    files = image_files(path, path) if is_tree(path) else [p for p in (path,) if is_image(p)]
+    if files:
+        kept = FilePixels(tuple(files), metadata.input, None if resize else metadata.size)
+        brought = Resized(kept, metadata.size) if resize else kept
+        return brought, np.arange(len(files)), list(map(str, files))
+    images = open_for(metadata, path, map_name, labelled=False, resize=resize)
+    rows, _ = rows_of(images, split)
+    return images.pixels, rows, [f"{path}: {images.names[row]}" for row in rows]
 
 
 def speed(

@@ -1,6 +1,8 @@
-"""One step of training: logits, loss, gradient, update."""
+"""One step of training: learning rate, logits, loss, gradient, update."""
 
+from contextlib import nullcontext
 from dataclasses import dataclass
+from math import cos, pi
 from typing import Any
 
 import torch
@@ -8,12 +10,29 @@ from torch import Tensor, nn
 from torch.nn.functional import cross_entropy
 
 from radhar_cli.learning.batches import Normalisation
-from radhar_cli.learning.execution_plan import ExecutionPlan
-from radhar_cli.learning.machine import autocast
-from radhar_cli.learning.process_group import Group, no_sync
+from radhar_cli.learning.machine import ExecutionPlan, autocast
+from radhar_cli.learning.process_group import Group
 from radhar_cli.learning.settings import TrainConfig
 
 _ADAM = {"step", "exp_avg", "exp_avg_sq"}
+
+
+def rate(config: TrainConfig, epoch: int, step: int, steps: int) -> float:
+    """Learning rate of a step (from 0) of an epoch (from 0) that has `steps` of them.
+
+    A linear rise over the first `warmup_epochs` that reaches the initial rate with their last
+    step, then the schedule.
+    """
+    initial, schedule = config.learning_rate, config.schedule
+    risen = epoch + (step + 1) / steps
+    if risen < config.warmup_epochs:
+        return initial * min(1.0, risen / config.warmup_epochs)
+    if schedule.kind == "step":
+        return initial * float(schedule.factor ** (epoch // schedule.every_epochs))
+    if schedule.kind == "cosine":
+        since = max(0.0, epoch + step / steps - config.warmup_epochs)
+        return initial * (1 + cos(pi * since / max(config.epochs - config.warmup_epochs, 1e-9))) / 2
+    return initial
 
 
 def optimiser_for(config: TrainConfig, model: nn.Module) -> torch.optim.Optimizer:
@@ -58,16 +77,6 @@ def check_state(optimiser: torch.optim.Optimizer, stored: dict[str, Any]) -> Non
                 raise ValueError(f"the optimiser's {name} of weight {number} does not fit it")
 
 
-def logits_of(
-    network: nn.Module, levels: Tensor, prepare: Normalisation, plan: ExecutionPlan
-) -> Tensor:
-    """Levels uint8 [B, 3, H, W] to logits float32 [B, classes]."""
-    x = prepare(levels.to(plan.device, non_blocking=True))
-    with autocast(plan.device, plan.precision):
-        logits: Tensor = network(x)
-    return logits.float()
-
-
 @dataclass(frozen=True)
 class TrainStep:
     """Forward pass, loss, gradient and update of a training step."""
@@ -84,28 +93,25 @@ class TrainStep:
 
         The target of class k is y_k (1 - zeta) + zeta/K (paper, equation of label smoothing).
         """
-        wanted = labels.to(self.plan.device)
-        logits = logits_of(network, levels, self.prepare, self.plan)
-        smoothing = self.config.label_smoothing
+        device, smoothing = self.plan.device, self.config.label_smoothing
+        wanted, x = labels.to(device), self.prepare(levels.to(device, non_blocking=True))
+        with autocast(device, self.plan.precision):
+            logits: Tensor = network(x)
+        logits = logits.float()
         loss = cross_entropy(logits, wanted, label_smoothing=smoothing, reduction="sum")
         return loss, int((logits.argmax(1) == wanted).sum())
 
     def step(
         self,
-        network: nn.Module,
+        network: Any,
         optimiser: torch.optim.Optimizer,
         levels: Tensor,
         labels: Tensor,
         batch_size: int,
     ) -> tuple[float, int]:
-        """One update from this process's share of a batch.
+        """One update from this process's share, levels uint8 [B, 3, H, W], of a batch.
 
-        Args:
-            network: wrapped so that the processes average its gradients.
-            optimiser: of its parameters.
-            levels: uint8 [B, 3, H, W], the share.
-            labels: [B].
-            batch_size: images of the whole batch, over all processes.
+        `network` averages the gradients of the processes; `batch_size` is that of all of them.
 
         Returns:
             The mean loss of the share, and how many of it are classified correctly.
@@ -114,7 +120,9 @@ class TrainStep:
         loss_sum, correct = 0.0, 0
         parts = self.plan.parts(len(labels))
         for number, part in enumerate(parts):
-            with no_sync(network, self.group, last=number == len(parts) - 1):
+            # Processes exchange their gradients in the last backward pass of a step alone.
+            alone = self.group.size == 1 or number == len(parts) - 1
+            with nullcontext() if alone else network.no_sync():
                 loss, part_correct = self.loss_and_correct(network, levels[part], labels[part])
                 # Processes average their gradients: the sum over all, divided by the whole batch.
                 torch.autograd.backward(loss * (self.group.size / batch_size))

@@ -44,16 +44,13 @@ def _ratio(above: Float, below: NDArray[np.int64]) -> Float:
 
 @dataclass(frozen=True)
 class Calibration:
-    """Predictions by confidence: mean confidence, accuracy and number of each bin; their gap.
-
-    Attributes:
-        error: expected calibration error, sum over bins of share |accuracy - confidence|
-            (Guo et al., 2017), 15 equal bins.
-    """
+    """Predictions by confidence: mean confidence, accuracy and number of each bin; their gap."""
 
     confidence: Float
     accuracy: Float
     count: NDArray[np.int64]
+    # expected calibration error, sum over bins of share |accuracy - confidence| (Guo et al., 2017),
+    # 15 equal bins
     error: float
 
 

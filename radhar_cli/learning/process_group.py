@@ -2,9 +2,8 @@
 
 import os
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
 
 import torch
 from torch import nn
@@ -51,13 +50,6 @@ def distributed(model: nn.Module, device: torch.device, group: Group) -> nn.Modu
 
     ids = [device.index] if device.type == "cuda" else None
     return DistributedDataParallel(model, device_ids=ids)
-
-
-def no_sync(network: Any, group: Group, last: bool) -> AbstractContextManager[Any]:
-    """Context of a backward pass: gradients are exchanged in the last one of a step only."""
-    context: AbstractContextManager[Any]
-    context = nullcontext() if last or group.size == 1 else network.no_sync()
-    return context
 
 
 def broadcast_buffers(model: nn.Module, group: Group) -> None:

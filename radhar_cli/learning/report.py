@@ -1,20 +1,20 @@
 """`radhar eval`: every figure and table of some runs on some data sets."""
 
 import platform
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import torch
 
 from radhar_cli.dataset.layout import DATASET
 from radhar_cli.errors import FolderError
-from radhar_cli.figures.robustness import Point
-from radhar_cli.learning.comparison import compare
+from radhar_cli.figures.evaluation import Point, curves_png, filters_png, robustness_png
 from radhar_cli.learning.evaluation import speed
+from radhar_cli.learning.filter_weights import magnitudes, table
 from radhar_cli.learning.images.classes import unknown_message
 from radhar_cli.learning.models.build import cost
 from radhar_cli.learning.report_files import Report
+from radhar_cli.learning.report_folder import csv_text
 from radhar_cli.learning.run_files import BEST
 from radhar_cli.learning.run_folder import best_epoch
 from radhar_cli.learning.single_result import (
@@ -24,7 +24,6 @@ from radhar_cli.learning.single_result import (
     evaluate_one,
     open_eval_set,
     open_run,
-    seen_message,
 )
 from radhar_cli.progress import Messages
 
@@ -73,60 +72,90 @@ def evaluate(
         for data_name in named_data:
             one = len(opened) == len(named_data) == 1
             stem = "" if one else f"_{run.name}__{data_name}"
-            predictions, numbers = evaluate_one(
-                report, run, data_name, eval_sets[run.name, data_name], stem, options, device
-            )
+            eval_set = eval_sets[run.name, data_name]
+            numbers = evaluate_one(report, run, data_name, eval_set, stem, options, device)
             results[data_name] = numbers
             low, high = numbers["accuracy_95"]
-            point = Point(data_name, predictions.images.snr_db, numbers["accuracy"], low, high)
+            point = Point(data_name, eval_set.images.snr_db, numbers["accuracy"], low, high)
             lines.setdefault(run.name, []).append(point)
             progress.say(
                 f"  {data_name}, {numbers['split']}: {100 * numbers['accuracy']:.2f} % "
                 f"({100 * low:.2f} to {100 * high:.2f} %) of {numbers['images']}"
             )
-            if numbers["seen_in_training"]["images"] or numbers["seen_in_training"]["scenes"]:
-                progress.say(f"  warning: {seen_message(numbers)}")
+            seen = numbers["seen_in_training"]
+            if any(seen.values()):
+                progress.say(
+                    f"  warning: {seen['images']} of these {numbers['images']} images, and the "
+                    f"person and motion of {seen['scenes']}, were trained on: this does not test "
+                    "on unseen data"
+                )
         first = eval_sets[run.name, next(iter(named_data))]
+        price = cost(run.metadata.model, len(run.metadata.classes), run.metadata.size)
         report.numbers["runs"][run.name] = {
-            **_about_run(run),
+            "model": run.metadata.model,
+            "parameters": price.parameters,
+            "multiply_adds": price.multiply_adds,
+            "size_px": list(run.metadata.size),
+            "map": run.metadata.map,
+            "trained_on": run.metadata.data,
+            "epochs": len(run.history),
+            "best_epoch": best_epoch(run.history).epoch if run.history else None,
             "speed": speed(run.folder, first.images, int(first.rows[0]), device, options.batch),
             "data": results,
         }
-    compare(report, opened, lines, options)
+    _compare(report, opened, lines)
+    if options.filters:
+        _show_filters(report, opened)
     return report
+
+
+def _compare(report: Report, runs: Sequence[Run], lines: Mapping[str, Sequence[Point]]) -> None:
+    """Curves of the runs, and their accuracy over several data sets."""
+    with_history = {run.name: run.history for run in runs if run.history}
+    if with_history:
+        best = {name: best_epoch(rows).epoch for name, rows in with_history.items()}
+        report.figure("curves.png", "Training curves.", curves_png(with_history, best))
+    if any(len(points) > 1 for points in lines.values()):
+        caption = "Accuracy over the data sets."
+        report.figure("robustness.png", caption, robustness_png(lines))
+        rows = (
+            (name, p.data, p.snr_db, p.accuracy, p.low, p.high)
+            for name, points in lines.items()
+            for p in points
+        )
+        head = ("run", "data", "snr_db", "accuracy", "low_95", "high_95")
+        report.tables.append(("robustness.csv", csv_text(head, rows)))
+
+
+def _show_filters(report: Report, runs: Sequence[Run]) -> None:
+    filters = {run.name: magnitudes(run.model) for run in runs}
+    filters = {name: weights for name, weights in filters.items() if weights}
+    report.figure(
+        "filters.png",
+        "Magnitude of the global filters by spatial frequency, mean over channels; the zero "
+        "frequency is in the middle.",
+        filters_png(filters),
+    )
+    tables = {name: table(weights) for name, weights in filters.items()}
+    report.numbers["filters"] = tables
+    keys = list(next(iter(tables.values()))[0])
+    every = ((name, *row.values()) for name, weights in tables.items() for row in weights)
+    report.tables.append(("filters.csv", csv_text(["run", *keys], every)))
 
 
 def _named(paths: Sequence[Path]) -> dict[str, Path]:
     """A short name for every path: its last part, with more of it where two are alike.
 
+    dataset.h5 and best.safetensors go by their folder.
+
     Raises:
         FolderError: the same path twice.
     """
-    parts = [_name_parts(path) for path in paths]
+    whole = [path.resolve() for path in paths]
+    whole = [p.parent if p.is_file() and p.name in (DATASET, BEST) else p for p in whole]
+    parts = [path.parts[1:] or (path.anchor,) for path in whole]
     for depth in range(1, max(map(len, parts)) + 1):
         names = ["-".join(p[-depth:]) for p in parts]
         if len(set(names)) == len(names):
             return dict(zip(names, paths, strict=True))
     raise FolderError(f"{paths[0]}: is given twice")
-
-
-def _name_parts(path: Path) -> tuple[str, ...]:
-    """Parts of a path for its name; dataset.h5 and best.safetensors go by their folder."""
-    whole = path.resolve()
-    if path.is_file() and path.name in (DATASET, BEST):
-        whole = whole.parent
-    return whole.parts[1:] or (whole.anchor,)
-
-
-def _about_run(run: Run) -> dict[str, Any]:
-    price = cost(run.metadata.model, len(run.metadata.classes), run.metadata.size)
-    return {
-        "model": run.metadata.model,
-        "parameters": price.parameters,
-        "multiply_adds": price.multiply_adds,
-        "size_px": list(run.metadata.size),
-        "map": run.metadata.map,
-        "trained_on": run.metadata.data,
-        "epochs": len(run.history),
-        "best_epoch": best_epoch(run.history).epoch if run.history else None,
-    }

@@ -1,8 +1,6 @@
 """A report on disk: figures, tables, report.json, and a self-contained report.html."""
 
 import base64
-import json
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -10,7 +8,7 @@ from typing import Any
 from jinja2 import Environment
 
 from radhar_cli.dataset.files import write_whole
-from radhar_cli.learning.report_folder import NUMBERS, remove_others
+from radhar_cli.learning.report_folder import write_report
 
 PAGE = "report.html"
 _PAGE = """<!doctype html>
@@ -70,13 +68,6 @@ src="data:image/png;base64,{{ data }}"><figcaption>{{ caption }}</figcaption></f
 """
 
 
-def report_html(numbers: dict[str, Any], figures: Sequence[tuple[str, str, bytes]]) -> str:
-    """One self-contained page; `figures` are (name, caption, PNG)."""
-    encoded = [(name, caption, base64.b64encode(png).decode()) for name, caption, png in figures]
-    page = Environment(autoescape=True).from_string(_PAGE)
-    return page.render(n=numbers, figures=encoded)
-
-
 @dataclass
 class Report:
     """Files of a report, in the order in which they are read, and its numbers."""
@@ -93,10 +84,9 @@ class Report:
         """Write everything into a folder; report.json comes last."""
         files = {name: png for name, _, png in self.figures}
         files |= {name: text.encode("utf-8", "surrogateescape") for name, text in self.tables}
-        remove_others(folder, files)
-        for name, content in files.items():
-            write_whole(folder, folder / name, content)
-        page = report_html(self.numbers, self.figures)
+        figures = [(name, text, base64.b64encode(png).decode()) for name, text, png in self.figures]
+        page = (
+            Environment(autoescape=True).from_string(_PAGE).render(n=self.numbers, figures=figures)
+        )
         write_whole(folder, folder / PAGE, page.encode("utf-8", "backslashreplace"))
-        text = json.dumps({**self.numbers, "files": sorted(files)}, indent=2) + "\n"
-        write_whole(folder, folder / NUMBERS, text.encode())
+        write_report(folder, files, self.numbers)

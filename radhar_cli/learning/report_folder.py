@@ -1,24 +1,39 @@
-"""The folder of a report: what an earlier one left there goes."""
+"""The folder of a report: tables and figures, report.json last; what an earlier one left goes."""
 
-from collections.abc import Iterable
+import csv
+import io
+import json
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
+from radhar_cli.dataset.files import write_whole
 from radhar_cli.errors import FolderError
+from radhar_cli.plain_json import plain
 from radhar_cli.untrusted import read_json
 
 NUMBERS = "report.json"
 
 
-def remove_others(folder: Path, kept: Iterable[str]) -> None:
-    """Remove the files that report.json lists, those in `kept` aside."""
-    for name in set(_files_of(folder)) - set(kept):
-        (folder / name).unlink(missing_ok=True)
-
-
-def _files_of(folder: Path) -> list[str]:
-    """Files of the report that a folder holds, itself aside; those of another kind are not ours."""
+def write_report(folder: Path, files: Mapping[str, bytes], numbers: dict[str, Any]) -> None:
+    """Write files and report.json, which lists them; those that it listed before go."""
     try:
-        names = read_json(folder / NUMBERS)["files"]
-        return [n for n in names if Path(n).name == n and Path(n).suffix in (".png", ".csv")]
+        listed = read_json(folder / NUMBERS)["files"]
+        ours = [n for n in listed if Path(n).name == n and Path(n).suffix in (".png", ".csv")]
     except (FolderError, KeyError, TypeError):
-        return []
+        ours = []
+    for name in set(ours) - set(files):
+        (folder / name).unlink(missing_ok=True)
+    for name, content in files.items():
+        write_whole(folder, folder / name, content)
+    text = json.dumps(plain({**numbers, "files": sorted(files)}), indent=2) + "\n"
+    write_whole(folder, folder / NUMBERS, text.encode())
+
+
+def csv_text(header: Sequence[object], rows: Iterable[Iterable[object]]) -> str:
+    """A table as CSV; names are quoted where they need it."""
+    text = io.StringIO(newline="")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(header)
+    writer.writerows(rows)
+    return text.getvalue()

@@ -4,7 +4,6 @@ import csv
 import io
 import json
 import math
-import pickle
 import warnings
 import zipfile
 from collections.abc import Mapping, Sequence
@@ -26,25 +25,10 @@ from radhar_cli.dataset.folder import refuse_differences, refuse_foreign_files
 from radhar_cli.errors import ModelError, RadharError
 from radhar_cli.learning.batches import Normalisation
 from radhar_cli.learning.models.build import build_model
+from radhar_cli.learning.report_folder import csv_text
 from radhar_cli.learning.run_files import ABOUT, ALL, BEST, EVENTS, HISTORY, LAST, TRAINED_ON
 from radhar_cli.learning.settings import TrainConfig
-from radhar_cli.learning.tables import csv_text
 from radhar_cli.untrusted import regular_size
-
-# What PyTorch raises on a file that is damaged or asks for more than tensors and plain values.
-_DAMAGED = (
-    pickle.UnpicklingError,
-    AttributeError,
-    EOFError,
-    IndexError,
-    KeyError,
-    OSError,
-    RuntimeError,
-    TypeError,
-    ValueError,
-    zipfile.BadZipFile,
-)
-
 
 MAX_CLASSES = 10_000
 MAX_HEADER = 2**24  # bytes
@@ -52,16 +36,6 @@ MAX_TABLE = 2**28
 Name = Annotated[str, Field(min_length=1, max_length=255)]
 Side = Annotated[int, Field(ge=1, le=2**14)]
 Spread = Annotated[float, Field(gt=0)]
-_TYPES = {  # as safetensors calls them
-    torch.float64: "F64",
-    torch.float32: "F32",
-    torch.float16: "F16",
-    torch.bfloat16: "BF16",
-    torch.int64: "I64",
-    torch.int32: "I32",
-    torch.uint8: "U8",
-    torch.bool: "BOOL",
-}
 
 
 class RunError(RadharError):
@@ -89,32 +63,21 @@ class LearnedFrom(TypedDict):
 
 
 class RunMetadata(Section):
-    """What a model was trained for and on; stored with its weights.
-
-    Attributes:
-        model, classes, size: enough to build the network; size is (height, width).
-        map, input: which map of a data set, and as rgb or gray.
-        mean, sd: normalisation of the three channels.
-        config: the resolved training config.
-        data: path, content hash, images of the training and validation sets.
-        versions: of radhar, torch, numpy.
-        work: how it was computed, as far as the result depends on it: precision, micro batch,
-            number of processes.
-        epoch: with weights, after which they were kept.
-    """
+    """What a model was trained for and on; stored with its weights."""
 
     model: Name
     classes: Annotated[tuple[Name, ...], Field(min_length=1, max_length=MAX_CLASSES)]
-    size: tuple[Side, Side]
+    size: tuple[Side, Side]  # (height, width)
     map: Annotated[Name, Field(pattern=r"^[^/\\]*[^/\\.][^/\\]*$")] | None
     input: Literal["rgb", "gray"]
-    mean: tuple[float, float, float]
+    mean: tuple[float, float, float]  # of the three channels
     sd: tuple[Spread, Spread, Spread]
-    config: dict[str, Any]
+    config: dict[str, Any]  # resolved
     data: LearnedFrom
-    versions: dict[str, str]
+    versions: dict[str, str]  # of radhar, torch, numpy
+    # how it was computed, as far as the result depends on it: precision, micro batch, processes
     work: dict[str, Any] = Field(default_factory=dict)
-    epoch: Annotated[int, Field(ge=1)] | None = None
+    epoch: Annotated[int, Field(ge=1)] | None = None  # with weights, after which they were kept
 
     @field_validator("classes")
     @classmethod
@@ -147,24 +110,10 @@ class Epoch:
     val_accuracy: float
     seconds: float
 
-    def better_than(self, other: "Epoch | None") -> bool:
-        """Higher validation accuracy, then lower loss, then earlier."""
-        if other is None:
-            return True
-        return (-self.val_accuracy, self.val_loss, self.epoch) < (
-            -other.val_accuracy,
-            other.val_loss,
-            other.epoch,
-        )
-
 
 def best_epoch(history: Sequence[Epoch]) -> Epoch:
-    """The epoch whose weights are kept."""
-    best = history[0]
-    for epoch in history[1:]:
-        if epoch.better_than(best):
-            best = epoch
-    return best
+    """The epoch whose weights are kept: highest accuracy, then lowest loss, then earliest."""
+    return min(history, key=lambda row: (-row.val_accuracy, row.val_loss, row.epoch))
 
 
 def reserve_run(folder: Path, metadata: RunMetadata, overwrite: bool) -> None:
@@ -233,11 +182,9 @@ def _first(error: ValidationError) -> str:
     return f"{'.'.join(map(str, item['loc']))}: {item['msg']}"
 
 
-def write_trained_on(
-    folder: Path, names: Sequence[str], digests: Sequence[str], scenes: Sequence[str]
-) -> None:
-    """Write which images and which scenes a run learns from."""
-    text = csv_text(("image", "pixels", "scene"), zip(names, digests, scenes, strict=True))
+def write_trained_on(folder: Path, learned: Sequence[tuple[str, str, str]]) -> None:
+    """Write (name, fingerprint, fingerprint of the scene) of every image that a run learns from."""
+    text = csv_text(("image", "pixels", "scene"), learned)
     write_whole(folder, folder / TRAINED_ON, text.encode("utf-8", "surrogateescape"))
 
 
@@ -338,7 +285,7 @@ def load_best(folder: Path) -> tuple[RunMetadata, nn.Module]:
 
 
 def _opened(path: Path, file: Any) -> tuple[RunMetadata, nn.Module]:
-    """Read weights only after names, types and shapes are those of the network described."""
+    """Take weights whose names, types and shapes are those of the network described."""
     header = file.metadata() or {}
     if "radhar" not in header:
         raise RunError(f"{path}: was not written by `radhar train`")
@@ -346,17 +293,15 @@ def _opened(path: Path, file: Any) -> tuple[RunMetadata, nn.Module]:
         metadata = RunMetadata.model_validate_json(header["radhar"])
         with torch.device("meta"):
             wanted = build_model(metadata.model, len(metadata.classes), metadata.size).state_dict()
-        stored = {name: file.get_slice(name) for name in file.keys()}  # noqa: SIM118
-        for name in wanted.keys() | stored.keys():
-            if name not in stored or name not in wanted:
-                raise RuntimeError(f"{name} is {'too much' if name in stored else 'missing'}")
-            actual = (tuple(stored[name].get_shape()), stored[name].get_dtype())
-            expected = (tuple(wanted[name].shape), _TYPES.get(wanted[name].dtype))
+        weights = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
+        for name in wanted.keys() | weights.keys():
+            actual, expected = (
+                (tuple(each[name].shape), each[name].dtype) if name in each else "missing"
+                for each in (weights, wanted)
+            )
             if actual != expected:
                 raise RuntimeError(f"{name} is {actual}, should be {expected}")
-        weights = {name: file.get_tensor(name) for name in stored}
-        for name, tensor in weights.items():
-            if not tensor.isfinite().all():
+            if not weights[name].isfinite().all():
                 raise RuntimeError(f"{name} holds a number that is not finite")
         model = build_model(metadata.model, len(metadata.classes), metadata.size)
         model.load_state_dict(weights)
@@ -397,7 +342,9 @@ def read_last(folder: Path) -> dict[str, Any] | None:
             key: checkpoint[key]
             for key in ("model", "average", "optimiser", "history", "random", "metadata")
         }
-    except _DAMAGED as error:
+    except MemoryError:
+        raise
+    except Exception as error:  # PyTorch raises whatever its parsers meet
         raise RunError(
             f"{path}: is damaged, or not a checkpoint of radhar ({first_line(error)}); {BEST} is "
             "untouched; --overwrite starts the run over"

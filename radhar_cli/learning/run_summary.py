@@ -8,9 +8,9 @@ import torch
 from torch import nn
 
 from radhar_cli.dataset.files import write_whole
-from radhar_cli.figures.curves import curves_png
+from radhar_cli.figures.evaluation import curves_png
 from radhar_cli.learning import run_files
-from radhar_cli.learning.execution_plan import ExecutionPlan
+from radhar_cli.learning.machine import ExecutionPlan
 from radhar_cli.learning.metrics import wilson
 from radhar_cli.learning.models.build import cost
 from radhar_cli.learning.process_group import Group

@@ -1,27 +1,31 @@
 """One run on one data set: its numbers and figures."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 from sklearn.metrics import confusion_matrix
 from torch import nn
 
 from radhar_cli.activity import ACTIVITIES
-from radhar_cli.arrays import Index
-from radhar_cli.figures.confusion import confusion_png
-from radhar_cli.figures.embedding import embeddings_png
-from radhar_cli.figures.mistakes import captioned_png
-from radhar_cli.figures.reliability import reliability_png
+from radhar_cli.arrays import Index, Levels
+from radhar_cli.figures.evaluation import (
+    captioned_png,
+    confusion_png,
+    embeddings_png,
+    reliability_png,
+)
 from radhar_cli.learning import metrics
 from radhar_cli.learning.evaluation import Predictions, open_for, predict, rows_of
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.scan import scan
 from radhar_cli.learning.models.fftnet import NAME
 from radhar_cli.learning.report_files import Report
+from radhar_cli.learning.report_folder import csv_text
 from radhar_cli.learning.run_folder import (
     Epoch,
     RunError,
@@ -30,7 +34,6 @@ from radhar_cli.learning.run_folder import (
     read_history,
     read_trained_on,
 )
-from radhar_cli.learning.tables import confusion_csv, csv_text
 
 MAX_MISTAKES = 12
 MIN_EMBEDDED = 2
@@ -115,40 +118,28 @@ def evaluate_one(
     stem: str,
     options: EvalOptions,
     device: torch.device,
-) -> tuple[Predictions, dict[str, Any]]:
+) -> dict[str, Any]:
+    """Numbers of a run on a data set; its figures and tables, named with `stem`, go to `report`."""
     images, rows, split = eval_set.images, eval_set.rows, eval_set.split
     predictions = predict(run.model, run.metadata, images, rows, device, options.batch)
-    names, title = run.metadata.classes, f"{run.name} on {data_name}, {split}"
+    names = run.metadata.classes
     numbers = metrics.summary(predictions.truth, predictions.probabilities, names)
     numbers["seen_in_training"] = seen_in_training(run, images, rows)
     numbers |= {"split": split, "map": images.map, "snr_db": images.snr_db}
     numbers |= {"left_out": dict(images.left_out)}
-    counts = np.array(numbers["confusion"])
-    right = 100 * numbers["accuracy"]
-    report.figure(
-        f"confusion{stem}.png",
-        f"Confusion matrix of {title}: counts, and shares of the true class.",
-        confusion_png(counts, names, f"{title}: {right:.2f} % of {rows.size}"),
-    )
-    report.tables.append((f"confusion{stem}.csv", confusion_csv(counts, names)))
-    report.tables.append((f"predictions{stem}.csv", _predictions_csv(predictions, names)))
+    shown = _Shown(report, predictions, names, stem, f"{run.name} on {data_name}, {split}")
+    counts, right = np.array(numbers["confusion"]), 100 * numbers["accuracy"]
+    caption = f"Confusion matrix of {shown.title}: counts, and shares of the true class."
+    title = f"{shown.title}: {right:.2f} % of {rows.size}"
+    shown.confusion("confusion", caption, counts, names, title)
+    shown.predictions_table()
     if options.in_place_vs_moving:
-        _in_place_vs_moving(report, predictions, names, stem, title, numbers)
-    bins = metrics.calibration(predictions.truth, predictions.probabilities)
-    report.figure(
-        f"reliability{stem}.png",
-        f"Reliability: accuracy by confidence, {title}.",
-        reliability_png(
-            bins.confidence,
-            bins.accuracy,
-            bins.count.astype(float),
-            f"{_narrow(title)}\ncalibration error {100 * bins.error:.2f} %",
-        ),
-    )
-    _mistakes(report, predictions, names, stem, title)
+        numbers["in_place_vs_moving"] = shown.in_place_vs_moving()
+    shown.reliability()
+    shown.hardest()
     if options.tsne:
-        _tsne(report, predictions, names, stem, title, numbers)
-    return predictions, numbers
+        numbers["silhouette"] = shown.tsne()
+    return numbers
 
 
 def seen_in_training(run: Run, images: ImageSet, rows: Index) -> dict[str, int]:
@@ -162,104 +153,102 @@ def seen_in_training(run: Run, images: ImageSet, rows: Index) -> dict[str, int]:
     }
 
 
-def seen_message(numbers: Mapping[str, Any]) -> str:
-    seen = numbers["seen_in_training"]
-    return (
-        f"{seen['images']} of these {numbers['images']} images, and the person and motion of "
-        f"{seen['scenes']}, were trained on: this does not test on unseen data"
-    )
+@dataclass(frozen=True)
+class _Shown:
+    """Predictions of classes `names`, and the report that shows them under a title."""
 
+    report: Report
+    predictions: Predictions
+    names: Sequence[str]
+    stem: str
+    title: str
 
-def _predictions_csv(predictions: Predictions, names: Sequence[str]) -> str:
-    sure = predictions.probabilities.max(1)
-    return csv_text(
-        ("image", "true", "predicted", "probability"),
-        (
-            (predictions.images.names[row], names[true], names[guess], f"{probability:.6f}")
-            for row, true, guess, probability in zip(
-                predictions.rows, predictions.truth, predictions.predicted, sure, strict=True
-            )
-        ),
-    )
+    @property
+    def narrow_title(self) -> str:
+        """In two lines, for a small figure."""
+        return self.title.replace(" on ", "\non ", 1)
 
+    def figure(self, name: str, caption: str, png: bytes) -> None:
+        self.report.figure(f"{name}{self.stem}.png", caption, png)
 
-def _in_place_vs_moving(
-    report: Report,
-    predictions: Predictions,
-    names: Sequence[str],
-    stem: str,
-    title: str,
-    numbers: dict[str, Any],
-) -> None:
-    """The paper's two groups: S1 to S7 against S8 to S12."""
-    moving = {activity.slug: activity.walks for activity in ACTIVITIES}
-    group = np.array([int(moving[name]) for name in names])
-    counts = confusion_matrix(group[predictions.truth], group[predictions.predicted], labels=[0, 1])
-    numbers["in_place_vs_moving"] = counts.tolist()
-    share = 100 * np.trace(counts) / max(1, counts.sum())
-    report.figure(
-        f"in_place_vs_moving{stem}.png",
-        f"Standing activities (S1 to S7) against moving ones (S8 to S12), {title}.",
-        confusion_png(counts, GROUPS, f"{_narrow(title)}\n{share:.2f} %"),
-    )
-    report.tables.append((f"in_place_vs_moving{stem}.csv", confusion_csv(counts, GROUPS)))
+    def table(self, name: str, header: Sequence[str], rows: Iterable[Iterable[object]]) -> None:
+        self.report.tables.append((f"{name}{self.stem}.csv", csv_text(header, rows)))
 
+    def confusion(
+        self, name: str, caption: str, counts: NDArray[np.int64], classes: Sequence[str], title: str
+    ) -> None:
+        """Counts [true class, predicted class] as a figure and a table, true classes down."""
+        self.figure(name, caption, confusion_png(counts, classes, title))
+        rows = ([one, *row] for one, row in zip(classes, counts.tolist(), strict=True))
+        self.table(name, ["true \\ predicted", *classes], rows)
 
-def _mistakes(
-    report: Report, predictions: Predictions, names: Sequence[str], stem: str, title: str
-) -> None:
-    """The most confident mistakes; where there are none, the least confident predictions."""
-    sure, wrong = predictions.probabilities.max(1), predictions.predicted != predictions.truth
-    order = np.argsort(-sure, kind="stable")
-    chosen = order[wrong[order]][:MAX_MISTAKES]
-    what = "Most confident mistakes"
-    if not chosen.size:
-        chosen, what = order[::-1][: MAX_MISTAKES // 3], "No mistakes; the least sure predictions"
-    images = [predictions.images.pixels.read(int(predictions.rows[i])) for i in chosen]
-    captions = [
-        f"{_plain(names[int(predictions.truth[i])])}\n-> "
-        f"{_plain(names[int(predictions.predicted[i])])}, {100 * sure[i]:.0f} %"
-        for i in chosen
-    ]
-    report.figure(
-        f"hardest{stem}.png",
-        f"{what}, {title}.",
-        captioned_png(images, captions, f"{what}: {title}"),
-    )
+    def predictions_table(self) -> None:
+        found, names = self.predictions, self.names
+        columns = (found.rows, found.truth, found.predicted, found.probabilities.max(1))
+        rows = (
+            (found.images.names[row], names[true], names[guess], f"{probability:.6f}")
+            for row, true, guess, probability in zip(*columns, strict=True)
+        )
+        self.table("predictions", ("image", "true", "predicted", "probability"), rows)
 
+    def in_place_vs_moving(self) -> list[list[int]]:
+        """The paper's two groups: S1 to S7 against S8 to S12; counts [true, predicted]."""
+        moving = {activity.slug: activity.walks for activity in ACTIVITIES}
+        group = np.array([int(moving[name]) for name in self.names])
+        truth, predicted = group[self.predictions.truth], group[self.predictions.predicted]
+        counts = confusion_matrix(truth, predicted, labels=[0, 1])
+        share = 100 * np.trace(counts) / max(1, counts.sum())
+        caption = f"Standing activities (S1 to S7) against moving ones (S8 to S12), {self.title}."
+        title = f"{self.narrow_title}\n{share:.2f} %"
+        self.confusion("in_place_vs_moving", caption, counts, GROUPS, title)
+        found: list[list[int]] = counts.tolist()
+        return found
 
-def _narrow(title: str) -> str:
-    """A title in two lines, for a small figure."""
-    return title.replace(" on ", "\non ", 1)
+    def reliability(self) -> None:
+        bins = metrics.calibration(self.predictions.truth, self.predictions.probabilities)
+        title = f"{self.narrow_title}\ncalibration error {100 * bins.error:.2f} %"
+        png = reliability_png(bins.confidence, bins.accuracy, bins.count.astype(float), title)
+        self.figure("reliability", f"Reliability: accuracy by confidence, {self.title}.", png)
 
+    def hardest(self) -> None:
+        """The most confident mistakes; where there are none, the least confident predictions."""
+        found = self.predictions
+        sure, wrong = found.probabilities.max(1), found.predicted != found.truth
+        order = np.argsort(-sure, kind="stable")
+        chosen, what = order[wrong[order]][:MAX_MISTAKES], "Most confident mistakes"
+        if not chosen.size:
+            chosen = order[::-1][: MAX_MISTAKES // 3]
+            what = "No mistakes; the least sure predictions"
+        plain = [name.replace("_", " ") for name in self.names]
+        captions = [
+            f"{plain[found.truth[i]]}\n-> {plain[found.predicted[i]]}, {100 * sure[i]:.0f} %"
+            for i in chosen
+        ]
+        png = captioned_png(self._levels(chosen), captions, f"{what}: {self.title}")
+        self.figure("hardest", f"{what}, {self.title}.", png)
 
-def _plain(name: str) -> str:
-    return name.replace("_", " ")
+    def tsne(self) -> dict[str, float | None]:
+        """Silhouettes of maps and of features."""
+        from radhar_cli.learning.embedding import chosen, embed, separation, shrunk
 
+        found = self.predictions
+        if found.rows.size < MIN_EMBEDDED:
+            raise RunError(f"--tsne: needs at least {MIN_EMBEDDED} images; there is one")
+        picked = chosen(found.rows.size)
+        maps = np.stack([shrunk(rgb) for rgb in self._levels(picked)])
+        features, label = found.features[picked], found.truth[picked]
+        before, after = separation(maps, label), separation(features, label)
+        panels = {"input maps": embed(maps), "features before the last layer": embed(features)}
+        silhouettes = " and ".join("unknown" if s is None else f"{s:.2f}" for s in (before, after))
+        self.figure(
+            "tsne",
+            f"t-SNE of {len(picked)} maps and of their features, {self.title}; silhouettes "
+            f"{silhouettes}.",
+            embeddings_png(panels, label, self.names, self.title),
+        )
+        return {"maps": before, "features": after}
 
-def _tsne(
-    report: Report,
-    predictions: Predictions,
-    names: Sequence[str],
-    stem: str,
-    title: str,
-    numbers: dict[str, Any],
-) -> None:
-    from radhar_cli.learning.embedding import chosen, embed, separation, shrunk
-
-    if predictions.rows.size < MIN_EMBEDDED:
-        raise RunError(f"--tsne: needs at least {MIN_EMBEDDED} images; there is one")
-    picked = chosen(predictions.rows.size)
-    maps = np.stack(
-        [shrunk(predictions.images.pixels.read(int(predictions.rows[i]))) for i in picked]
-    )
-    features, label = predictions.features[picked], predictions.truth[picked]
-    before, after = separation(maps, label), separation(features, label)
-    numbers["silhouette"] = {"maps": before, "features": after}
-    panels = {"input maps": embed(maps), "features before the last layer": embed(features)}
-    silhouettes = " and ".join("unknown" if s is None else f"{s:.2f}" for s in (before, after))
-    report.figure(
-        f"tsne{stem}.png",
-        f"t-SNE of {len(picked)} maps and of their features, {title}; silhouettes {silhouettes}.",
-        embeddings_png(panels, label, names, title),
-    )
+    def _levels(self, chosen: Index) -> list[Levels]:
+        """RGB [H, W, 3] of some predictions."""
+        found = self.predictions
+        return [found.images.pixels.read(int(found.rows[i])) for i in chosen]

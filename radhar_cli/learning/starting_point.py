@@ -16,17 +16,11 @@ from radhar_cli.learning.settings import TrainConfig
 
 @dataclass(frozen=True)
 class StartingPoint:
-    """What a run starts from.
+    """What a run starts from."""
 
-    Attributes:
-        sha256: of the weights.
-        normalisation: of the earlier run; the weights were learned with it.
-        notes: what was not taken over, in words.
-    """
-
-    sha256: str
-    normalisation: Normalisation
-    notes: tuple[str, ...]
+    sha256: str  # of the weights
+    normalisation: Normalisation  # of the earlier run; the weights were learned with it
+    notes: tuple[str, ...]  # what was not taken over, in words
 
 
 def start_from(run: Path, model: nn.Module, config: TrainConfig, images: ImageSet) -> StartingPoint:

@@ -22,19 +22,8 @@ from radhar_cli.errors import ConfigError, FolderError, RadharError
 from radhar_cli.learning import run_files
 from radhar_cli.learning import run_folder as run
 from radhar_cli.learning.augmentation import Augmentation
-from radhar_cli.learning.batches import (
-    MIN_PER_PROCESS,
-    Reader,
-    epoch_batches,
-    epoch_order,
-    pieces,
-)
-from radhar_cli.learning.execution_plan import (
-    ExecutionPlan,
-    choose_execution_plan,
-    reading_workers,
-)
-from radhar_cli.learning.gradient_step import TrainStep, check_state, optimiser_for
+from radhar_cli.learning.batches import MIN_PER_PROCESS, Reader, epoch_batches, epoch_order, pieces
+from radhar_cli.learning.gradient_step import TrainStep, check_state, optimiser_for, rate
 from radhar_cli.learning.images.classes import renamed
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.joined import joined, sampling_weights
@@ -45,7 +34,13 @@ from radhar_cli.learning.images.synthesised import (
     stream_and_validation,
     stream_data,
 )
-from radhar_cli.learning.machine import choose_device, out_of_memory, repeatable
+from radhar_cli.learning.machine import (
+    ExecutionPlan,
+    choose_device,
+    choose_execution_plan,
+    reading_workers,
+    repeatable,
+)
 from radhar_cli.learning.models.build import build_model
 from radhar_cli.learning.process_group import (
     Group,
@@ -58,7 +53,6 @@ from radhar_cli.learning.process_group import (
 )
 from radhar_cli.learning.run_folder import Epoch, LearnedFrom, RunMetadata, best_epoch
 from radhar_cli.learning.run_summary import write_run_summary
-from radhar_cli.learning.schedule import rate
 from radhar_cli.learning.settings import AugmentConfig, TrainConfig
 from radhar_cli.learning.starting_point import StartingPoint, start_from
 from radhar_cli.progress import Messages
@@ -90,17 +84,11 @@ class TrainingProgress(Messages, Protocol):
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a run left.
+    """What a run left."""
 
-    Attributes:
-        folder: of the run.
-        history: its epochs.
-        resumed: epochs that were finished before.
-    """
-
-    folder: Path
+    folder: Path  # of the run
     history: list[Epoch]
-    resumed: int
+    resumed: int  # epochs that were finished before
 
     @property
     def best(self) -> Epoch:
@@ -123,11 +111,8 @@ def train(
     Under torchrun every process calls this; the first one writes.
 
     Args:
-        config: model, optimiser, schedule.
         data: a data set, or several that are combined; with a stream, the validation data, or
             nothing.
-        folder: of the run.
-        progress: receives progress.
         overwrite: start over in a folder that holds a run.
         names: {class of the data: class here, or None to leave it out}.
         start: a run whose best weights and normalisation are the initial ones; those of the last
@@ -155,16 +140,7 @@ def train(
 
 @dataclass(frozen=True)
 class Task:
-    """What is learned, from which images.
-
-    Attributes:
-        config: model, optimiser, schedule.
-        images: of training and validation.
-        folder: of the run.
-        overwrite: start over in a folder that holds a run.
-        start: a run whose weights are the initial ones.
-        stream: of training samples, instead of the training images.
-    """
+    """Arguments of `train` with the images opened; those of `stream` take the place of theirs."""
 
     config: TrainConfig
     images: ImageSet
@@ -191,7 +167,8 @@ def train_on(task: Task, progress: TrainingProgress) -> Outcome:
         try:
             return _Training.prepared(task, plan, group, progress).run()
         except RuntimeError as error:
-            if not out_of_memory(error):
+            # On the CPU only the message says that memory was short.
+            if not isinstance(error, torch.OutOfMemoryError) and "CPUAllocator" not in str(error):
                 raise
             height, width = images.size
             count = min(plan.micro_batch, -(-config.images_a_step // group.size))
@@ -264,15 +241,15 @@ class _Training:
                 many = f"{images.rows('val').size} validation images; {stream.per_epoch} samples "
                 many += f"an epoch are synthesised by {plan.workers or 'no'} workers"
             progress.say(f"reading {many}")
-            for warning in (*_unbalanced(images), *_few_steps(task, group)):
-                progress.say(f"warning: {warning}")
-            for note in started.notes if started else ():
-                progress.say(note)
+            for message in (*_warnings(task, group), *(started.notes if started else ())):
+                progress.say(message)
         metadata, digests = _metadata(task, plan, group, started)
 
         def reserve() -> None:
+            scenes = images.scenes or ("",) * len(images)
+            learned = [(images.names[row], pixels, scenes[row]) for row, pixels in digests.items()]
             run.reserve_run(task.folder, metadata, task.overwrite)
-            _write_trained_on(task.folder, images, digests)
+            run.write_trained_on(task.folder, learned)
 
         on_rank_zero(group, reserve)
         model.to(plan.device)
@@ -291,27 +268,32 @@ class _Training:
             augmentation = Augmentation(task.config.augment, task.config.seed)
         pin, label = plan.device.type == "cuda", task.images.label
         if task.stream is None:
-            training_reader = Reader(task.images, label, plan.workers, pin, augmentation)
+            training_reader = Reader(task.images.pixels, label, plan.workers, pin, augmentation)
             validation_reader = training_reader
         else:
-            validation_reader = Reader(task.images, label, 0, pin)
-            training_reader = Reader(
-                task.stream, task.stream.label, plan.workers, pin, augmentation
-            )
+            validation_reader = Reader(task.images.pixels, label, 0, pin)
+            source = task.stream
+            training_reader = Reader(source.pixels, source, plan.workers, pin, augmentation)
         for epoch in range(resumed, task.config.epochs):
             began = time.perf_counter()
-            torch.manual_seed(self._epoch_seed(epoch))
+            # Of dropout and the like, for this epoch and process alone, so that a run can resume.
+            layers = stream(task.config.seed, TRAINING, epoch, self.group.rank, name="layers")
+            torch.manual_seed(int(layers.integers(2**63)))
             training = self._train_epoch(network, training_reader, epoch)
             self._statistics_of_average(training_reader, epoch)
             validation = self._validate(validation_reader, epoch)
+            learning_rate = self.optimiser.param_groups[0]["lr"]
+            seconds = round(time.perf_counter() - began, 3)
+            row = Epoch(epoch + 1, learning_rate, *training, *validation, seconds)
+            self.history.append(row)
             if self.group.is_main:
-                self._keep(epoch, training, validation, time.perf_counter() - began)
-            else:
-                self.history.append(_row(epoch, 0.0, training, validation, 0.0))
+                self._keep(row)
         if self.group.is_main:
             run.write_history(task.folder, self.history)
             if resumed < task.config.epochs or not (task.folder / run_files.METRICS).exists():
-                self._finish()
+                write_run_summary(
+                    task.folder, self.metadata, self.history, self.model, plan, self.group
+                )
         barrier(self.group)
         return Outcome(task.folder, self.history, resumed)
 
@@ -339,14 +321,9 @@ class _Training:
             if self.average is not None:
                 self.average.load_state_dict(checkpoint["average"])
             torch.set_rng_state(checkpoint["random"])
-        except (
-            AttributeError,
-            IndexError,
-            KeyError,
-            RuntimeError,
-            TypeError,
-            ValueError,
-        ) as error:
+        except (MemoryError, run.RunError):
+            raise
+        except Exception as error:  # whatever a foreign checkpoint leads to
             raise run.RunError(
                 f"{path}: does not fit this run ({run.first_line(error)}); --overwrite starts over"
             ) from None
@@ -393,11 +370,6 @@ class _Training:
                 f"time, so this is not the same as a batch of {size}"
             )
 
-    def _epoch_seed(self, epoch: int) -> int:
-        """Seed of dropout and the like for one epoch and process, so that a run can resume."""
-        rng = stream(self.task.config.seed, TRAINING, epoch, self.group.rank, name="layers")
-        return int(rng.integers(2**63))
-
     def _epoch_rows(self, epoch: int) -> Index:
         """Rows of the training images of an epoch, in the order in which they are shown."""
         if self.task.stream is not None:
@@ -434,8 +406,8 @@ class _Training:
             totals += (loss * len(labels), correct, len(labels))
             if group.is_main:
                 self.progress.step(loss, totals[1] / totals[2])
-        totals = all_reduce_sum(totals, group)
-        return totals[0] / totals[2], totals[1] / totals[2]
+        loss_sum, right, count = all_reduce_sum(totals, group).tolist()
+        return loss_sum / count, right / count
 
     def _statistics_of_average(self, reader: Reader, epoch: int) -> None:
         """Take the batch-norm statistics of averaged weights from images as they are stored.
@@ -465,10 +437,10 @@ class _Training:
             for levels, labels in reader(pieces(mine, size)):
                 loss, correct = self._train_step.loss_and_correct(model, levels, labels)
                 totals += (float(loss), correct, len(labels))
-        totals = all_reduce_sum(totals, group)
-        if not math.isfinite(totals[0]):
-            raise TrainingError(self._not_finite(f"validation of epoch {epoch + 1}", totals[0]))
-        return totals[0] / totals[2], totals[1] / totals[2]
+        loss_sum, right, count = all_reduce_sum(totals, group).tolist()
+        if not math.isfinite(loss_sum):
+            raise TrainingError(self._not_finite(f"validation of epoch {epoch + 1}", loss_sum))
+        return loss_sum / count, right / count
 
     def _not_finite(self, where: str, loss: float) -> str:
         rate_now = self.task.config.learning_rate
@@ -482,16 +454,8 @@ class _Training:
             f"gradient_clip_norm or warmup_epochs may help; {kept}"
         )
 
-    def _keep(
-        self,
-        epoch: int,
-        training: tuple[float, float],
-        validation: tuple[float, float],
-        seconds: float,
-    ) -> None:
+    def _keep(self, row: Epoch) -> None:
         """Put an epoch on disk: the best weights first, then what the next epoch starts from."""
-        row = _row(epoch, self.optimiser.param_groups[0]["lr"], training, validation, seconds)
-        self.history.append(row)
         best = best_epoch(self.history) is row
         if best:
             run.write_best(self.task.folder, self.metadata, row, self._kept.state_dict())
@@ -508,11 +472,6 @@ class _Training:
         )
         run.write_history(self.task.folder, self.history)
         self.progress.epoch_done(row, best)
-
-    def _finish(self) -> None:
-        write_run_summary(
-            self.task.folder, self.metadata, self.history, self.model, self.plan, self.group
-        )
 
 
 def _metadata(
@@ -559,51 +518,21 @@ def _metadata(
     return metadata, dict(zip(rows.tolist(), learned.digests, strict=True))
 
 
-def _write_trained_on(folder: Path, images: ImageSet, digests: dict[int, str]) -> None:
-    run.write_trained_on(
-        folder,
-        [images.names[row] for row in digests],
-        [*digests.values()],
-        [images.scenes[row] if images.scenes else "" for row in digests],
-    )
-
-
-def _unbalanced(images: ImageSet) -> list[str]:
-    """Warnings about a data set."""
+def _warnings(task: Task, group: Group) -> list[str]:
+    """Of classes that are not validated, and of epochs too short to learn much in."""
+    images = task.images
     checked = set(images.label[images.rows("val")].tolist())
-    return [
-        f"the class {name!r} has no validation image; the best epoch is chosen without it"
+    warnings = [
+        f"warning: the class {name!r} has no validation image; the best epoch is chosen without it"
         for index, name in enumerate(images.classes)
         if index not in checked
     ]
-
-
-def _few_steps(task: Task, group: Group) -> list[str]:
-    """A warning where an epoch has few steps, and the network learns little in it."""
-    count = task.images.rows("train").size if task.stream is None else task.stream.per_epoch
+    count = images.rows("train").size if task.stream is None else task.stream.per_epoch
     size = task.config.images_a_step
     steps = len(epoch_batches(np.arange(count), size, group.size))
-    if steps >= FEW_STEPS:
-        return []
-    return [
-        f"batch_size = {size}: {count} images make {steps} steps an epoch; should be "
-        f"{FEW_STEPS} or more, by a smaller batch, or else many more epochs"
-    ]
-
-
-def _row(
-    epoch: int,
-    learning_rate: float,
-    training: tuple[float, float],
-    validation: tuple[float, float],
-    seconds: float,
-) -> Epoch:
-    return Epoch(
-        epoch=epoch + 1,
-        learning_rate=learning_rate,
-        train_loss=float(training[0]),
-        train_accuracy=float(training[1]),
-        val_loss=float(validation[0]),
-        val_accuracy=float(validation[1]),
-        seconds=round(seconds, 3),
-    )
+    if steps < FEW_STEPS:
+        warnings.append(
+            f"warning: batch_size = {size}: {count} images make {steps} steps an epoch; should be "
+            f"{FEW_STEPS} or more, by a smaller batch, or else many more epochs"
+        )
+    return warnings

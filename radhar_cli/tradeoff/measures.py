@@ -76,20 +76,13 @@ def image_scores(compared: Levels, exact: Levels) -> dict[str, float | None]:
 
 
 class SettingData(NamedTuple):
-    """One scene under one setting.
+    """One scene under one setting."""
 
-    Attributes:
-        signal: x [M] after the canceller.
-        power: the first map of the config.
-        levels: its image.
-        dynamic_range_db: of the image.
-        engine_db: the error that the direct engine measured itself, dB; None of the cube.
-    """
-
-    signal: Complex
-    power: Float
+    signal: Complex  # x [M] after the canceller
+    power: Float  # the first map of the config
     levels: Levels
     dynamic_range_db: float
+    # the error that the direct engine measured itself, dB; None of the cube
     engine_db: float | None
 
 
@@ -131,16 +124,11 @@ def _sample(scenes: Scenes, slug: str, overrides: tuple[str, ...]) -> SettingDat
 
 
 class Times(NamedTuple):
-    """One round of one setting.
+    """One round of one setting."""
 
-    Attributes:
-        sample_ms: from scene to levels and entropy, a sample.
-        echo_ms: of that, paths and echo.
-        ratio, echo_ratio: the same over those of the baseline.
-    """
-
-    sample_ms: float
-    echo_ms: float
+    sample_ms: float  # from scene to levels and entropy, a sample
+    echo_ms: float  # of that, paths and echo
+    # ratio, echo_ratio: the same over those of the baseline
     ratio: float
     echo_ratio: float
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from radhar_cli.dataset.files import write_whole
-from radhar_cli.learning.tables import csv_text
+from radhar_cli.learning.report_folder import csv_text
 from radhar_cli.tradeoff.figure import ENGINES, tradeoff_png
 from radhar_cli.tradeoff.study import Record
 

@@ -37,17 +37,11 @@ DIRECT = ("engine.kind=direct", f"engine.tolerance_db={EngineConfig().tolerance_
 
 @dataclass(frozen=True)
 class Scenes:
-    """Samples 0 of the activities of a config file.
+    """Samples 0 of the activities of a config file."""
 
-    Attributes:
-        path: of the config file.
-        overrides: of the command line; a setting's come after them.
-        quick: whether three activities are enough.
-    """
-
-    path: Path
-    overrides: tuple[str, ...]
-    quick: bool
+    path: Path  # of the config file
+    overrides: tuple[str, ...]  # of the command line; a setting's come after them
+    quick: bool  # whether three activities are enough
 
     def config(self, more: Sequence[str] = ()) -> Config:
         """The config under further overrides."""
@@ -72,29 +66,19 @@ def _config(path: Path, overrides: tuple[str, ...]) -> Config:
 
 @dataclass(frozen=True)
 class Setting:
-    """One row of the sweep. All overrides are dotted `key=value` pairs.
+    """One row of the sweep. All overrides are dotted `key=value` pairs."""
 
-    Attributes:
-        group: budget, precision, engine, image size, image kind, map or switch.
-        name: as printed.
-        overrides: the setting itself; its time is measured with them.
-        compared: of the data whose error is measured: `overrides`, or for a switch, without it.
-        exact: of the exact data that the error is relative to.
-        baseline: of the run that the time is divided by, on the same scenes, interleaved.
-        baseline_name: as printed.
-        of_signal: whether it changes the signal, not a map alone.
-        noisy: whether its errors are those of data with the config's noise.
-    """
-
-    group: str
-    name: str
-    overrides: tuple[str, ...]
+    group: str  # budget, precision, engine, image size, image kind, map or switch
+    name: str  # as printed
+    overrides: tuple[str, ...]  # the setting itself; its time is measured with them
+    # of the data whose error is measured: `overrides`, or for a switch, without it
     compared: tuple[str, ...]
-    exact: tuple[str, ...]
+    exact: tuple[str, ...]  # of the exact data that the error is relative to
+    # of the run that the time is divided by, on the same scenes, interleaved
     baseline: tuple[str, ...] = DIRECT
-    baseline_name: str = "the default"
-    of_signal: bool = True
-    noisy: bool = False
+    baseline_name: str = "the default"  # as printed
+    of_signal: bool = True  # whether it changes the signal, not a map alone
+    noisy: bool = False  # whether its errors are those of data with the config's noise
 
     @property
     def is_default(self) -> bool:

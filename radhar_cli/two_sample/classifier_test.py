@@ -20,15 +20,10 @@ PENALTY = 10.0  # of the squared weights, relative to the sum of losses
 
 @dataclass(frozen=True)
 class Tested:
-    """What was found of some samples when they were held out.
+    """What was found of some samples when they were held out."""
 
-    Attributes:
-        truth: [N] whether each is of the first kind.
-        score: [N] log-odds of that.
-    """
-
-    truth: Bool
-    score: Float
+    truth: Bool  # [N] whether each is of the first kind
+    score: Float  # [N] log-odds of that
 
     @property
     def right(self) -> int:
@@ -44,7 +39,6 @@ def held_out(features: Float, truth: Bool, group: Index, rng: np.random.Generato
         features: [N, D]; what is not finite counts as the mean.
         truth: [N] kind of each.
         group: [N]; samples of one kind and group are held out together.
-        rng: shares them out.
 
     Returns:
         None where a kind has fewer than two groups.

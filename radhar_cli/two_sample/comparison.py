@@ -22,72 +22,45 @@ FARTHEST = 5.0  # standard deviations of a statistic
 
 @dataclass(frozen=True)
 class Options:
-    """What is asked for.
+    """What is asked for."""
 
-    Attributes:
-        map_name: which map; the first of each if None.
-        names: {class in one of the sets: common name, or None to leave it out}.
-        resize: bring all images to the size of the measured ones.
-        most: maps of a class and side, drawn at random where there are more.
-        seed: of what is drawn.
-        zero: half the width of the line at zero Doppler, Hz or rows; None for 5 % of the largest.
-        pictures: in a row of a figure.
-    """
-
-    map_name: str | None = None
+    map_name: str | None = None  # which map; the first of each if None
+    # {class in one of the sets: common name, or None to leave it out}
     names: Mapping[str, str | None] | None = None
-    resize: bool = False
-    most: int = 200
-    seed: int = 1
+    resize: bool = False  # bring all images to the size of the measured ones
+    most: int = 200  # maps of a class and side, drawn at random where there are more
+    seed: int = 1  # of what is drawn
+    # half the width of the line at zero Doppler, Hz or rows; None for 5 % of the largest
     zero: float | None = None
-    pictures: int = 6
+    pictures: int = 6  # in a row of a figure
 
 
 @dataclass(frozen=True)
 class ClassCompared:
-    """One class.
-
-    Attributes:
-        name: of the class.
-        simulated, measured: what was drawn of it.
-        differences: {statistic: difference}, the largest first.
-        tested: the classifier test, of as many maps of either side; None where a side has fewer
-            than two persons or maps.
-        surest: rows of simulated maps, what is told from measured ones most surely first.
-        uncovered: [measured] how far from anything simulated each is.
-        far: rows of measured maps, what is least like simulated ones first.
-        typical: rows of simulated and of measured maps, from the middle outwards.
-    """
+    """One class."""
 
     name: str
     simulated: Described
     measured: Described
-    differences: dict[str, Difference]
+    differences: dict[str, Difference]  # {statistic: difference}, the largest first
+    # the classifier test, of as many maps of either side; None where a side has fewer than two
+    # persons or maps
     tested: Tested | None
-    surest: Index
-    uncovered: Float
-    far: Index
-    typical: tuple[Index, Index]
+    surest: Index  # rows of simulated maps, what is told from measured ones most surely first
+    uncovered: Float  # [measured] how far from anything simulated each is
+    far: Index  # rows of measured maps, what is least like simulated ones first
+    typical: tuple[Index, Index]  # rows of simulated and of measured maps, from the middle outwards
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """Two data sets compared.
+    """Two data sets compared."""
 
-    Attributes:
-        sides: simulated, measured.
-        scale: how maps are measured.
-        shown: share of the rows, from the top, that pictures show.
-        classes: class by class.
-        warnings: what a reader should know.
-        options: what was asked for.
-    """
-
-    sides: tuple[Side, Side]
+    sides: tuple[Side, Side]  # simulated, measured
     scale: Scale
-    shown: tuple[float, float]
+    shown: tuple[float, float]  # share of the rows, from the top, that pictures show
     classes: tuple[ClassCompared, ...]
-    warnings: tuple[str, ...]
+    warnings: tuple[str, ...]  # what a reader should know
     options: Options
 
     def numbers(self) -> dict[str, Any]:
@@ -212,7 +185,10 @@ def _class(
         for column, key in enumerate(scale.names)
     }
     order = sorted(distances, key=lambda key: -np.nan_to_num(distances[key].distance, nan=-1))
-    typical = tuple(_typical(one, here) for one, here in zip(both, near, strict=True))
+    typical = []  # from the middle outwards
+    for one, here in zip(both, near, strict=True):
+        away = ((here - np.median(here, axis=0)) ** 2).sum(axis=1)
+        typical.append(one.rows[np.argsort(away, kind="stable")])
     return ClassCompared(
         name,
         *both,
@@ -237,12 +213,6 @@ def _comparable(features: Float, measured: Float, statistics: int) -> Float:
     numbers = np.clip(away[:, :statistics] / np.where(sd > 0, sd, 1), -FARTHEST, FARTHEST)
     pixels = away[:, statistics:] / max(np.sqrt(variance[statistics:].sum()), 1e-6)
     return np.hstack([numbers / np.sqrt(statistics), pixels])
-
-
-def _typical(one: Described, features: Float) -> Index:
-    """Rows from the middle outwards."""
-    away = ((features - np.median(features, axis=0)) ** 2).sum(axis=1)
-    return np.asarray(one.rows[np.argsort(away, kind="stable")])
 
 
 def _warnings(

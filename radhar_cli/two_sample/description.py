@@ -24,19 +24,13 @@ ZERO, BEYOND, NEAR = 0.05, 0.867, 0.025  # of the largest Doppler
 
 @dataclass(frozen=True)
 class Scale:
-    """How maps are measured.
+    """How maps are measured."""
 
-    Attributes:
-        names: of the statistics.
-        axes: whether edges of the images are used; else all is counted in rows and columns.
-        zero: half the width of the line at zero Doppler, Hz or rows; None of a range-time map.
-        ranges: whether it is a range-time map.
-    """
-
-    names: tuple[str, ...]
-    axes: bool
+    names: tuple[str, ...]  # of the statistics
+    axes: bool  # whether edges of the images are used; else all is counted in rows and columns
+    # half the width of the line at zero Doppler, Hz or rows; None of a range-time map
     zero: float | None
-    ranges: bool
+    ranges: bool  # whether it is a range-time map
 
     @classmethod
     def of(cls, sides: Sequence[Side], zero: float | None) -> "Scale":
@@ -97,19 +91,12 @@ class Scale:
 
 @dataclass(frozen=True)
 class Described:
-    """Some maps of one side.
+    """Some maps of one side."""
 
-    Attributes:
-        rows: [N] of the side.
-        statistics: [N, statistics].
-        fine: [N, FINE, columns] mean levels 0 to 1.
-        hashes: [N] of the levels; None of an image of one level.
-    """
-
-    rows: Index
-    statistics: Float
-    fine: Float
-    hashes: tuple[bytes | None, ...]
+    rows: Index  # [N] of the side
+    statistics: Float  # [N, statistics]
+    fine: Float  # [N, FINE, columns] mean levels 0 to 1
+    hashes: tuple[bytes | None, ...]  # [N] of the levels; None of an image of one level
 
     def features(self, shown: slice) -> Float:
         """Statistics and few pixels [N, D] for a classifier; `shown` are rows of `fine`."""

@@ -29,21 +29,15 @@ class Spread(NamedTuple):
 
 
 class Difference(NamedTuple):
-    """Two samples of a number.
-
-    Attributes:
-        simulated, measured: what each is like.
-        distance: Wasserstein distance (the mean of how far quantiles are apart) over the root of
-            the mean of both variances; of all together where these are 0.
-        ks: largest difference of the two distribution functions (Kolmogorov and Smirnov).
-        p: of it, where both were drawn from one distribution.
-    """
+    """Two samples of a number."""
 
     simulated: Spread
     measured: Spread
+    # Wasserstein distance (the mean of how far quantiles are apart) over the root of the mean of
+    # both variances; of all together where these are 0
     distance: float
-    ks: float
-    p: float
+    ks: float  # largest difference of the two distribution functions (Kolmogorov and Smirnov)
+    p: float  # of it, where both were drawn from one distribution
 
 
 def difference(simulated: Float, measured: Float) -> Difference:

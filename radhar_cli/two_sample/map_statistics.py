@@ -59,7 +59,6 @@ def power_statistics(
     canceller noise is weaker near zero), a limb that does not stand out.
 
     Args:
-        one: the map.
         zero: half the width of the line of zero Doppler.
         beyond: above that Doppler there is noise alone.
         near: half the width of the torso's line.
@@ -113,13 +112,9 @@ class Body:
 
 
 def body_of(occupied: Bool, at_zero: Bool) -> Body:
-    """The pieces that touch the line at zero Doppler, or are tall; the others are stray.
+    """The pieces of cells [rows, columns] that touch the rows `at_zero` [rows], or are tall.
 
-    Lines of interference and single cells of noise are stray.
-
-    Args:
-        occupied: [rows, columns].
-        at_zero: rows of the line, [rows].
+    The others are stray: lines of interference, single cells of noise.
     """
     pieces, _ = label(binary_dilation(occupied, EIGHT, iterations=JOINED), EIGHT)
     kept = np.zeros(pieces.max(initial=0) + 1, bool)
@@ -193,19 +188,12 @@ def mask_statistics(
 
 
 class Statistic(NamedTuple):
-    """What a statistic is called in tables.
+    """What a statistic is called in tables."""
 
-    Attributes:
-        words: for people.
-        unit: "%", "dB", "" of a number, "rows" (the unit of rows), "columns" (of columns).
-        of_range: whether it means something in a range-time map.
-        of_power: whether it needs power, not occupied cells alone.
-    """
-
-    words: str
-    unit: str
-    of_range: bool = False
-    of_power: bool = False
+    words: str  # for people
+    unit: str  # "%", "dB", "" of a number, "rows" (the unit of rows), "columns" (of columns)
+    of_range: bool = False  # whether it means something in a range-time map
+    of_power: bool = False  # whether it needs power, not occupied cells alone
 
 
 STATISTICS = {

@@ -1,6 +1,5 @@
 """What `radhar compare` writes: numbers, a table, figures."""
 
-import json
 import re
 from collections.abc import Mapping
 from pathlib import Path
@@ -9,7 +8,6 @@ import numpy as np
 from scipy.special import expit
 
 from radhar_cli.arrays import Index
-from radhar_cli.dataset.files import write_whole
 from radhar_cli.figures.two_samples import (
     Distribution,
     Picture,
@@ -17,9 +15,7 @@ from radhar_cli.figures.two_samples import (
     distributions_png,
     pictures_png,
 )
-from radhar_cli.learning.report_folder import NUMBERS, remove_others
-from radhar_cli.learning.tables import csv_text
-from radhar_cli.plain_json import plain
+from radhar_cli.learning.report_folder import NUMBERS, csv_text, write_report
 from radhar_cli.two_sample.comparison import ClassCompared, Comparison
 from radhar_cli.two_sample.map_statistics import STATISTICS
 
@@ -36,11 +32,7 @@ def write(comparison: Comparison, folder: Path) -> list[Path]:
         stem = f"{number:02d}_" + re.sub(r"[^\w-]", "_", one.name)
         files[f"{stem}_statistics.png"] = _distributions(comparison, one)
         files[f"{stem}_pictures.png"] = _pictures(comparison, one)
-    remove_others(folder, files)
-    for name, content in files.items():
-        write_whole(folder, folder / name, content)
-    numbers = plain({**comparison.numbers(), "files": sorted(files)})
-    write_whole(folder, folder / NUMBERS, (json.dumps(numbers, indent=2) + "\n").encode())
+    write_report(folder, files, comparison.numbers())
     return [folder / NUMBERS, *(folder / name for name in files)]
 
 

@@ -3,14 +3,12 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from radhar_cli.arrays import Float, Index, Levels
 from radhar_cli.capture.images import is_image
-from radhar_cli.dataset.reading import Dataset, open_dataset
-from radhar_cli.dataset.recorded import persons, windows
+from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import FolderError, did_you_mean
 from radhar_cli.learning.images.folder import our_map
 from radhar_cli.learning.images.image_set import ImageSet
@@ -23,26 +21,16 @@ TWO_VALUED = 8  # images looked at to tell masks from grey
 
 @dataclass(frozen=True)
 class Side:
-    """One of two data sets.
-
-    Attributes:
-        images: its images.
-        classes: {class, by the common name: rows}.
-        left_out: {class of its own: images} that are not compared.
-        extent: [N, 4] edges (s; Hz or m) of every image; None where they are not known.
-        group: [N] who is in it, where that is known, or which recording; else a number of its own.
-        persons: whether it is known who.
-        dynamic_range_db: that levels span; None where it is not known, or of masks.
-        masks: whether its images are masks.
-    """
+    """One of two data sets."""
 
     images: ImageSet
-    classes: dict[str, Index]
-    left_out: dict[str, int]
-    extent: Float | None
+    classes: dict[str, Index]  # {class, by the common name: rows}
+    left_out: dict[str, int]  # {class of its own: images} that are not compared
+    extent: Float | None  # [N, 4] edges (s; Hz or m) of every image; None where they are not known
+    # [N] who is in it, where that is known, or which recording; else a number of its own
     group: Index
-    persons: bool
-    dynamic_range_db: float | None
+    persons: bool  # whether it is known who
+    dynamic_range_db: float | None  # that levels span; None where it is not known, or of masks
     masks: bool
 
     @property
@@ -75,11 +63,8 @@ def open_sides(
     """Open both, classes matched by name.
 
     Args:
-        simulated: a data set, or a tree of images.
-        measured: another.
         map_name: which map; the first of each if None.
         names: {class in one of them: common name, or None to leave it out}.
-        resize: bring all images to the size of the measured ones.
 
     Raises:
         FolderError: it is none of these, they have no class in common, or differ in map or size.
@@ -143,45 +128,24 @@ def _side(path: Path, images: ImageSet, classes: dict[str, Index]) -> Side:
     lost = np.bincount(np.delete(images.label, used), minlength=len(images.classes)).tolist()
     left_out = {name: n for name, n in zip(images.classes, lost, strict=True) if n}
     some = used[:: max(1, used.size // TWO_VALUED)]
-    known: dict[str, Any] = {
-        "extent": None,
-        "group": np.arange(len(images)),
-        "persons": False,
-        "dynamic_range_db": None,
-    }
     masks = all(_two_valued(images.pixels.read(int(row))) for row in some)
+    group, extent, persons, decibels = np.arange(len(images)), None, False, None
+    if images.persons is not None:
+        group = np.unique(images.persons, return_inverse=True)[1]
     if is_h5(path):
         assert images.map is not None
         with open_dataset(path) as data:
-            known |= _of_dataset(data, images.map)
+            extent, recorded = data.extents(images.map), data.config.recorded
             masks |= data.config.image.kind == "cfar"
-    if masks:
-        known["dynamic_range_db"] = None
-    return Side(images, classes, left_out, masks=masks, **known)
+            persons = images.persons is not None
+            if recorded is not None:
+                persons = all(part.person is not None for part in recorded.parts)
+            if not masks and (recorded is None or not is_image(recorded.parts[0].file)):
+                decibels = data.config.image.dynamic_range_db
+    return Side(images, classes, left_out, extent, group, persons, decibels, masks)
 
 
 def _two_valued(levels: Levels) -> bool:
     """Whether an image has two levels at most, a dark and a bright one."""
     dark, bright = levels.min(), levels.max()
     return bool(((levels == dark) | (levels == bright)).all() and (bright >= 128 or bright == dark))
-
-
-def _of_dataset(data: Dataset, name: str) -> dict[str, Any]:
-    config, count = data.config, len(data)
-    own = config.recorded is not None and is_image(config.recorded.parts[0].file)
-    who = np.full(count, -1)
-    if "subject" in data.scene:
-        who = np.asarray(data.scene["subject"][:], np.intp)
-    elif config.recorded is not None:
-        who = np.array(persons(config))
-    recording = np.arange(count)  # of simulated maps, each its own
-    if config.recorded is not None:
-        files = {part.file: number for number, part in enumerate(config.recorded.parts)}
-        recording = np.array([files[window.part.file] for window in windows(config)])
-    group = np.where(who >= 0, who, who.max(initial=-1) + 1 + recording)
-    return {
-        "extent": data.extents(name),
-        "group": group,
-        "persons": bool((who >= 0).all()),
-        "dynamic_range_db": None if own else config.image.dynamic_range_db,
-    }

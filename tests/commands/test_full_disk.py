@@ -1,13 +1,11 @@
 """A full disk is one line that names what could not be written, and leaves nothing half done."""
 
 import resource
-from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 
 import numpy as np
 import pytest
-from command_line import radhar
+from command_line import ok, radhar
 from small import small_config
 
 from radhar_cli.figures.page import page, write_figure
@@ -22,7 +20,7 @@ PROCESS = "process walk/recording.h5 --config small.yaml --maps rtm"
 
 
 @pytest.fixture(scope="module")
-def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def place(tmp_path_factory):
     """A data set, a recording and a capture."""
     place = tmp_path_factory.mktemp("place")
     small_config(place)
@@ -31,13 +29,12 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(place)
         for command in (f"generate small.yaml -o set --jobs 1 {SHORT}", f"{SCENE} -o walk"):
-            done = radhar(*command.split())
-            assert done.returncode == 0, done.stderr
+            ok(*command.split())
     return place
 
 
 @contextmanager
-def full_disk(limit: int) -> Iterator[None]:
+def full_disk(limit):
     """A limit on the size of a file stands for a full disk: writing fails midway, as there."""
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (limit, before[1]))
@@ -57,15 +54,7 @@ def full_disk(limit: int) -> Iterator[None]:
         *((f"convert set --to {form}", 10_000, "", []) for form in ("webdataset", "parquet")),
     ],
 )
-def test_full_disk_is_one_line(
-    command: str,
-    limit: int,
-    file: str,
-    written: list[str],
-    place: Path,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_full_disk_is_one_line(command, limit, file, written, place, tmp_path, monkeypatch):
     monkeypatch.chdir(place)
     out = tmp_path / "out"
     with full_disk(limit):
@@ -76,7 +65,7 @@ def test_full_disk_is_one_line(
     assert sorted(path.name for path in tmp_path.rglob("*") if path != out) == written
 
 
-def test_a_figure_on_a_full_disk_is_named_and_the_earlier_one_stays(tmp_path: Path) -> None:
+def test_a_figure_on_a_full_disk_is_named_and_the_earlier_one_stays(tmp_path):
     path = tmp_path / "maps.png"
     path.write_text("earlier")
     with full_disk(100), pytest.raises(OSError, match="File too large") as error:
@@ -85,7 +74,7 @@ def test_a_figure_on_a_full_disk_is_named_and_the_earlier_one_stays(tmp_path: Pa
     assert [(one, one.read_text()) for one in tmp_path.iterdir()] == [(path, "earlier")]
 
 
-def test_config_init_on_a_full_disk_leaves_no_file(tmp_path: Path) -> None:
+def test_config_init_on_a_full_disk_leaves_no_file(tmp_path):
     out = tmp_path / "new.yaml"
     with full_disk(1000):
         done = radhar("config", "init", out)

@@ -32,7 +32,7 @@ OTHERS = [
 
 
 @pytest.fixture
-def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def place(tmp_path, monkeypatch):
     np.save(tmp_path / "good.npy", np.ones((8, 40)))
     (tmp_path / "c.yaml").write_text("maps: [stft]\n")
     (tmp_path / "manifest.csv").write_text("file,label\nx.h5,walking\n")
@@ -40,7 +40,7 @@ def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def refusal(words: list[str]) -> str:
+def refusal(words):
     with pytest.raises(RadharError) as error:
         program()([*words, *["-o", "out"] * (words[0] != "merge")], standalone_mode=False)
     assert error.value.status == 2
@@ -48,13 +48,13 @@ def refusal(words: list[str]) -> str:
 
 
 @pytest.mark.parametrize("words", [*CAPTURES, *HEADERS, *OTHERS], ids=lambda words: " ".join(words))
-def test_a_missing_file_is_missing(words: list[str], place: Path) -> None:
+def test_a_missing_file_is_missing(words, place):
     assert "no such f" in refusal(words)
     assert "damaged" not in refusal(words)
 
 
 @pytest.mark.parametrize("words", [*CAPTURES[:6], *HEADERS, *OTHERS[:3], OTHERS[5]], ids=str)
-def test_a_folder_is_no_file(words: list[str], place: Path) -> None:
+def test_a_folder_is_no_file(words, place):
     for word in ("x.h5", *words):
         if word.startswith("x.") and not Path(word).exists():
             Path(word).mkdir()
@@ -78,9 +78,7 @@ def test_a_folder_is_no_file(words: list[str], place: Path) -> None:
     ],
     ids=str,
 )
-def test_a_file_that_may_not_be_read_is_not_called_damaged(
-    words: list[str], file: str, place: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_file_that_may_not_be_read_is_not_called_damaged(words, file, place, monkeypatch):
     named = Path(words[1])
     for path in map(Path, (file, words[1])):
         if path.suffix:

@@ -1,12 +1,10 @@
 """`radhar motion` and `radhar simulate --motion`: our motions out, anyone's in."""
 
-from pathlib import Path
-
 import h5py
 import numpy as np
 import pytest
-from command_line import ROOT, radhar
-from recorded import frames, write_amc, write_npz
+from command_line import ROOT, ok, radhar
+from recorded import frames, write_npz
 
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.motion.files.clip import clip_of
@@ -21,7 +19,7 @@ classes: {wave: {files: [theirs.npz], joints: {head: Kopf}}}
 """
 
 
-def test_a_motion_is_exported_and_read_back(tmp_path: Path) -> None:
+def test_a_motion_is_exported_and_read_back(tmp_path):
     path, bvh = tmp_path / "x.yaml", tmp_path / "kick.bvh"
     names = [n if n != "head" else "Kopf" for n in clip_names()]
     write_npz(tmp_path / "theirs.npz", frames("punching", 2.0, 60.0), 60.0, names)
@@ -38,11 +36,10 @@ def test_a_motion_is_exported_and_read_back(tmp_path: Path) -> None:
     scale = clip_of(read_motion(bvh).recording()).stature
     shown = ["--no-figures", "--maps", "stft", "-o"]
     radhar("simulate", *common, *shown, tmp_path / "a")
-    done = radhar(
+    done = ok(
         *("simulate", path, "--motion", bvh, "--nominal", *shown, tmp_path / "b"),
         *("--set", f"subject.height_m={scale}", "--set", "classes.from_file.low_pass_hz=null"),
     )
-    assert done.returncode == 0, done.stderr
     assert "leg length of a person of 1.78 m" in done.stdout
     with h5py.File(tmp_path / "a/scene.h5") as a, h5py.File(tmp_path / "b/scene.h5") as b:
         p, q = a["truth/positions"][:], b["truth/positions"][:]
@@ -52,23 +49,22 @@ def test_a_motion_is_exported_and_read_back(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("activity", [activity.slug for activity in ACTIVITIES])
-def test_our_own_motion_of_the_demo_can_be_simulated(tmp_path: Path, activity: str) -> None:
+def test_our_own_motion_of_the_demo_can_be_simulated(tmp_path, activity):
     """People come towards the radar: they start far enough away, or elsewhere."""
     path, bvh = ROOT / "configs/quickstart.yaml", tmp_path / "w.bvh"
-    done = radhar("motion", path, "--activity", activity, "-o", bvh)
-    assert done.returncode == 0, done.stderr
+    done = ok("motion", path, "--activity", activity, "-o", bvh)
     shown = ["--no-figures", "--maps", "stft"]
     done = radhar("simulate", path, "--motion", bvh, *shown, "-o", tmp_path / "scene")
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def clip_names() -> list[str]:
+def clip_names():
     from radhar_cli.motion.files.names import WANTED
 
     return [*WANTED]
 
 
-def test_simulate_motion_uses_the_joint_names_of_a_class(tmp_path: Path) -> None:
+def test_simulate_motion_uses_the_joint_names_of_a_class(tmp_path):
     path = tmp_path / "x.yaml"
     names = [n if n != "head" else "Kopf" for n in clip_names()]
     write_npz(tmp_path / "theirs.npz", frames("punching", 2.0, 60.0), 60.0, names)
@@ -77,24 +73,4 @@ def test_simulate_motion_uses_the_joint_names_of_a_class(tmp_path: Path) -> None
     done = radhar(*look, "-o", tmp_path / "a")
     assert done.returncode == 2
     assert "has no joint that is head by its name" in done.stderr
-    done = radhar(*look, "-o", tmp_path / "a", "--activity", "wave")
-    assert done.returncode == 0, done.stderr
-
-
-def test_impossible_requests_are_refused_in_one_line(tmp_path: Path) -> None:
-    path = tmp_path / "x.yaml"
-    path.write_text("duration_s: 1\n")
-    broken = write_amc(tmp_path / "x.amc", frames(seconds=0.5))
-    broken.with_suffix(".asf").unlink()
-    for words, message in (
-        (["motion", path, "-a", "walking", "-o", tmp_path / "x.fbx"], "should end in .bvh"),
-        (["motion", path, "-a", "flying", "-o", tmp_path / "x.bvh"], "is not an activity"),
-        (["motion", path, "-o", tmp_path / "x.bvh"], "--activity is needed"),
-        (["motion", path, "-a", "S8", "-o", tmp_path / "no/x.bvh"], "No such file"),
-        (["simulate", path, "-o", tmp_path / "o", "--motion", broken], "needs its skeleton"),
-        (["simulate", path, "-o", tmp_path / "o", "--motion", tmp_path / "y.bvh"], "y.bvh"),
-    ):
-        done = radhar(*words)
-        assert done.returncode in (1, 2)
-        assert message in done.stderr, done.stderr
-        assert done.stderr.count("\n") == 1
+    done = ok(*look, "-o", tmp_path / "a", "--activity", "wave")

@@ -9,79 +9,28 @@ import sys
 from pathlib import Path
 
 import pytest
-from command_line import Done, process, radhar
-from learning.patterns import split_tree, trained
-from small import fingerprint, small_config
+from command_line import process
+from small import fingerprint
 
 
-def smoke(*arguments: object) -> Done:
-    done = process("-m", "radhar_cli", *arguments)
-    assert done.returncode == 0, done.stderr
-    return done
-
-
-@pytest.fixture(scope="module")
-def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a config and the data set of it."""
-    place = tmp_path_factory.mktemp("made")
-    small_config(place)
-    assert radhar("generate", place / "small.yaml", "-o", place / "set").returncode == 0
-    return place
-
-
-@pytest.mark.parametrize(
-    ("command", "expected"),
-    [
-        ("simulate {}/small.yaml -a S8 -o {}/scene --no-figures --maps stft", "scene.h5"),
-        ("verify {}/set", ""),
-        ("preview {}/set --map stft --per-class 1", "preview_stft.png"),
-        ("inspect {}/set", "punching"),
-        ("config show {}/small.yaml", "samples_per_class: 3"),
-        ("tradeoff --help", "Example"),
-    ],
-)
-def test_data(made: Path, command: str, expected: str) -> None:
-    assert expected in smoke(*command.replace("{}", str(made)).split()).stdout
-
-
-@pytest.fixture(scope="module")
-def learned(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a tree of images and a run on them."""
-    place = tmp_path_factory.mktemp("learned")
-    split_tree(place / "tree", 2, 1)
-    trained(place / "tree", place / "run", epochs=1)
-    return place
-
-
-@pytest.mark.parametrize(
-    ("command", "expected"),
-    [
-        ("export {}/run -o {}/model.onnx", "model.onnx"),
-        ("models", "fftnet"),
-    ],
-)
-def test_learning(learned: Path, command: str, expected: str) -> None:
-    assert expected in smoke(*command.replace("{}", str(learned)).split()).stdout
-
-
-def shell(line: str) -> Done:
+def shell(line):
     """Run a line of the shell in which RADHAR is the program."""
     line = line.replace("RADHAR", f"{sys.executable} -m radhar_cli")
     return subprocess.run(["bash", "-c", line], capture_output=True, text=True)
 
 
 @pytest.mark.parametrize("options", ["", "--json"])
-def test_output_that_cannot_be_written_is_one_line(made: Path, options: str) -> None:
+def test_output_that_cannot_be_written_is_one_line(small_set, options):
     if not Path("/dev/full").exists():
         pytest.skip("no /dev/full")
-    done = shell(f"RADHAR inspect {made}/set {options} > /dev/full")
+    done = shell(f"RADHAR inspect {small_set} {options} > /dev/full")
     assert (done.returncode, done.stderr) == (1, "radhar: output: No space left on device\n")
 
 
 @pytest.mark.parametrize("encoding", ["latin-1", "ascii", "utf-8"])
-def test_a_summary_prints_in_any_encoding(made: Path, encoding: str) -> None:
+def test_a_summary_prints_in_any_encoding(small_set, encoding):
     done = subprocess.run(
-        [sys.executable, "-m", "radhar_cli", "inspect", made / "set"],
+        [sys.executable, "-m", "radhar_cli", "inspect", small_set],
         capture_output=True,
         env={**os.environ, "PYTHONIOENCODING": encoding},
     )
@@ -92,10 +41,12 @@ def test_a_summary_prints_in_any_encoding(made: Path, encoding: str) -> None:
 
 
 @pytest.mark.parametrize(("closed", "jobs"), [("2>&-", 2), (">&-", 2), ("<&- >&- 2>&-", 1)])
-def test_a_build_with_closed_streams(made: Path, tmp_path: Path, closed: str, jobs: int) -> None:
-    done = shell(f"RADHAR generate {made}/small.yaml -o {tmp_path}/set --jobs {jobs} {closed}")
+def test_a_build_with_closed_streams(small_set, tmp_path, closed, jobs):
+    done = shell(
+        f"RADHAR generate {small_set.parent}/small.yaml -o {tmp_path}/set --jobs {jobs} {closed}"
+    )
     assert done.returncode == 0, done.stderr
-    assert fingerprint(tmp_path / "set").items() <= fingerprint(made / "set").items()
+    assert fingerprint(tmp_path / "set").items() <= fingerprint(small_set).items()
 
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="needs limits as Linux has them")
@@ -106,10 +57,37 @@ def test_a_build_with_closed_streams(made: Path, tmp_path: Path, closed: str, jo
         ("-v 400000", "--jobs 1 --set image.size_px=8192", "radhar: out of memory"),
     ],
 )
-def test_limits_of_the_machine_end_in_one_line(
-    made: Path, tmp_path: Path, limit: str, options: str, expected: str
-) -> None:
-    done = shell(f"ulimit {limit}; RADHAR generate {made}/small.yaml -o {tmp_path}/set {options}")
+def test_limits_of_the_machine_end_in_one_line(small_set, tmp_path, limit, options, expected):
+    done = shell(
+        f"ulimit {limit}; RADHAR generate {small_set.parent}/small.yaml -o {tmp_path}/set {options}"
+    )
     said = [line for line in done.stderr.splitlines() if not line.startswith("warning: ")]
     assert (done.returncode, len(said)) == (1, 1), done.stderr
     assert expected in said[0]
+
+
+PROGRAM = """
+import sys
+from radhar_cli.cli import main
+try:
+    main()
+except SystemExit as ended:
+    assert not ended.code, ended.code
+assert not {"torch", "timm", "safetensors", "jinja2"} & set(sys.modules)
+"""
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        *("train --help", "eval --help", "models --help", "export --help", "predict --help"),
+        "generate {}/small.yaml -o {}/set",
+        "verify {}/set --samples 1",
+        "inspect {}/set/png/stft/train",
+        "preview {}/set/png/stft/train -o {}/tree.png",
+        "compare {}/set {}/set -o {}/compared --map stft --per-class 2 --pictures 1",
+    ],
+)
+def test_what_learns_nothing_needs_no_torch(small_set, words):
+    done = process("-c", PROGRAM, *words.format(*[small_set.parent] * 3).split())
+    assert done.returncode == 0, done.stderr

@@ -6,16 +6,15 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from command_line import processes
 from learning.patterns import BASE, same_run, split_tree, trained
 from small import SMALL, small_config
 from typer.testing import CliRunner
 
 from radhar_cli.cli import main, program
-from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.commands.training_view import TrainingView
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
@@ -23,7 +22,7 @@ TERMINATED = 143
 
 
 @pytest.fixture(autouse=True)
-def handlers() -> Iterator[None]:
+def handlers():
     """`main` sets handlers for good."""
     before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
     yield
@@ -31,7 +30,7 @@ def handlers() -> Iterator[None]:
         signal.signal(number, handler)
 
 
-def status(monkeypatch: pytest.MonkeyPatch, *arguments: object) -> object:
+def status(monkeypatch, *arguments):
     """Exit status of the program in this process."""
     monkeypatch.setattr(sys, "argv", ["radhar", *map(str, arguments)])
     with pytest.raises(SystemExit) as ended:
@@ -39,13 +38,11 @@ def status(monkeypatch: pytest.MonkeyPatch, *arguments: object) -> object:
     return ended.value.code
 
 
-def terminate(*_: object) -> None:
+def terminate(*_):
     signal.raise_signal(signal.SIGTERM)
 
 
-def test_sigterm_of_train_keeps_the_last_epoch_and_it_resumes(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_sigterm_of_train_keeps_the_last_epoch_and_it_resumes(tmp_path, monkeypatch, capsys):
     data = split_tree(tmp_path / "tree")
     (tmp_path / "train.json").write_text(json.dumps({**BASE, "epochs": 2}))
     command = ["train", data, "-o", tmp_path / "run", "--config", tmp_path / "train.json"]
@@ -62,28 +59,19 @@ def test_sigterm_of_train_keeps_the_last_epoch_and_it_resumes(
     assert same_run(tmp_path / "run", tmp_path / "whole")
 
 
-def test_sigterm_of_tradeoff_says_what_is_kept(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(BarProgress, "stage", terminate)
-    command = ["tradeoff", small_config(tmp_path), "-o", tmp_path / "out", "--quick"]
-    assert status(monkeypatch, *command) == TERMINATED
-    assert f"terminated: what is measured in {tmp_path / 'out'} is kept" in capsys.readouterr().err
-
-
 class Swallowing:
     """Gets SIGTERM where Python prints exceptions and goes on, as in HDF5's weak references."""
 
-    def __del__(self) -> None:
+    def __del__(self):
         terminate()
 
 
-def swallow_in_assembly(self: BarProgress, name: str, total: int, done: int) -> None:
+def swallow_in_assembly(self, name, total, done):
     if name == "assembling":
         Swallowing()
 
 
-def swallow_at_the_end(*_: object) -> None:
+def swallow_at_the_end(*_):
     Swallowing()
 
 
@@ -95,13 +83,8 @@ def swallow_at_the_end(*_: object) -> None:
     ],
 )
 def test_a_signal_that_python_swallows_ends_the_build_all_the_same(
-    place: str,
-    swallow: Callable[..., None],
-    finished: bool,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+    place, swallow, finished, tmp_path, monkeypatch, capsys
+):
     command = ["generate", small_config(tmp_path), "-o", tmp_path / "set", "--jobs", 1]
     with monkeypatch.context() as patched:
         patched.setattr(place, swallow)
@@ -115,27 +98,13 @@ def test_a_signal_that_python_swallows_ends_the_build_all_the_same(
     assert not status(monkeypatch, *command)
 
 
-def processes(group: int) -> dict[int, bytes]:
-    """Command lines of a group's processes, but of those that have ended and wait to be buried."""
-    found = {}
-    for stat in Path("/proc").glob("[0-9]*/stat"):
-        try:
-            fields = stat.read_text().rpartition(")")[2].split()
-            line = (stat.parent / "cmdline").read_bytes()
-        except OSError:
-            continue
-        if int(fields[2]) == group and fields[0] != "Z":
-            found[int(stat.parent.name)] = line
-    return found
-
-
-def wait_for(done: Callable[[], bool], run: subprocess.Popen[str]) -> None:
+def wait_for(done, run):
     while run.poll() is None and not done():
         time.sleep(0.01)
 
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="needs /proc")
-def test_sigterm_of_generate_ends_its_workers_and_keeps_shards(tmp_path: Path) -> None:
+def test_sigterm_of_generate_ends_its_workers_and_keeps_shards(tmp_path):
     """The workers leave it to their master: batch systems and `timeout` signal all of a group."""
     text = SMALL.replace("samples_per_class: 3", "samples_per_class: 60\nengine: {kind: cube}")
     config, folder = small_config(tmp_path, text), tmp_path / "set"
@@ -148,7 +117,7 @@ def test_sigterm_of_generate_ends_its_workers_and_keeps_shards(tmp_path: Path) -
         start_new_session=True,
     )
 
-    def shards() -> int:
+    def shards():
         return len(list((folder / ".radhar/shards").glob("*.h5")))
 
     wait_for(lambda: shards() > 0, run)

@@ -15,7 +15,7 @@ from radhar_cli.config.schema import WallConfig
 WALL = WallConfig.model_fields
 
 
-def test_version_names_the_libraries_that_decide_bytes() -> None:
+def test_version_names_the_libraries_that_decide_bytes():
     done = CliRunner().invoke(program(), ["--version"])
     assert done.exit_code == 0
     lines = done.stdout.splitlines()
@@ -25,7 +25,7 @@ def test_version_names_the_libraries_that_decide_bytes() -> None:
     assert "h5py" in lines[1]
 
 
-def completed(words: str) -> set[str]:
+def completed(words):
     """What bash offers for the last word."""
     asked = {
         "_RADHAR_COMPLETE": "complete_bash",
@@ -52,11 +52,11 @@ def completed(words: str) -> set[str]:
         ("radhar import walk.npy --set snr", set()),
     ],
 )
-def test_the_shell_completes(words: str, wanted: set[str]) -> None:
+def test_the_shell_completes(words, wanted):
     assert completed(words) == wanted
 
 
-def test_every_completed_model_is_listed() -> None:
+def test_every_completed_model_is_listed():
     from radhar_cli.learning.models.build import RIVALS
     from radhar_cli.learning.models.zoo import OURS
 
@@ -64,7 +64,7 @@ def test_every_completed_model_is_listed() -> None:
 
 
 @pytest.mark.parametrize("group", [[], ["config"]], ids=["radhar", "config"])
-def test_help_of_80_columns_cuts_no_summary(group: list[str]) -> None:
+def test_help_of_80_columns_cuts_no_summary(group):
     done = CliRunner().invoke(program(), [*group, "--help"], env={"COLUMNS": "80"})
     listed = get_command(program())
     for name in group:
@@ -75,7 +75,7 @@ def test_help_of_80_columns_cuts_no_summary(group: list[str]) -> None:
         assert re.search(line, done.stdout), f"{name}: {summary}"
 
 
-def test_help_groups_every_command() -> None:
+def test_help_groups_every_command():
     shown = CliRunner().invoke(program(), ["--help"]).stdout
     headings = re.findall(r"^(\w[^:\n]*):\n  \w", shown, re.MULTILINE)
     assert len(headings) == 5

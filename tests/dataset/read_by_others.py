@@ -20,11 +20,11 @@ load_timm()  # torchvision's operators may be of another PyTorch
 from torchvision.datasets import ImageFolder  # noqa: E402
 
 
-def digest(levels: object) -> str:
+def digest(levels):
     return hashlib.sha256(np.asarray(levels).tobytes()).hexdigest()
 
 
-def hub(folder: Path, name: str | None) -> dict[str, object]:
+def hub(folder, name):
     """What load_dataset makes of a folder."""
     found = datasets.load_dataset(str(folder), name)
     parts = {}
@@ -41,7 +41,7 @@ def hub(folder: Path, name: str | None) -> dict[str, object]:
     return {"parts": parts, "labels": rows.features["label"].names}
 
 
-def tars(folder: Path) -> dict[str, object]:
+def tars(folder):
     """What webdataset reads."""
     parts = {}
     for split in ("train", "validation", "test"):
@@ -59,7 +59,7 @@ def tars(folder: Path) -> dict[str, object]:
     return parts
 
 
-def snippet(folder: Path) -> list[str]:
+def snippet(folder):
     """Key and image of the sample that the Python of a card reads."""
     _, code, _ = (folder / "README.md").read_text().replace("```python", "```").split("```", 2)
     held: dict[str, Any] = {}
@@ -68,7 +68,7 @@ def snippet(folder: Path) -> list[str]:
     return [held["sample"]["__key__"], digest(held["image"])]
 
 
-def tree(folder: Path) -> list[tuple[str, str]]:
+def tree(folder):
     """(file, class) of what ImageFolder reads."""
     found = ImageFolder(str(folder))
     return [(str(Path(p).relative_to(folder)), found.classes[n]) for p, n in found.samples]

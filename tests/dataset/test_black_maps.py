@@ -1,8 +1,6 @@
 """Maps of which nothing is left are refused or counted, never shown in silence."""
 
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -22,7 +20,7 @@ GATED = {"processing": {"range_sum": "gated"}}
 MASKS = {"image": {"size_px": 32, "kind": "cfar", "cfar": {"guard": [1, 1], "training": [2, 2]}}}
 
 
-def config_of(engine: str, **more: Any) -> Config:
+def config_of(engine, **more):
     return Config.model_validate(
         {
             "samples_per_class": 1,
@@ -41,9 +39,7 @@ def config_of(engine: str, **more: Any) -> Config:
 
 @ENGINES
 @pytest.mark.parametrize("maps", [["rtm"], ["stft", "fsst_compensated"]])
-def test_noise_below_an_echo_of_nothing_is_refused(
-    engine: str, maps: list[str], tmp_path: Path
-) -> None:
+def test_noise_below_an_echo_of_nothing_is_refused(engine, maps, tmp_path):
     """No noise is 10 dB below an echo that has no power."""
     config = config_of(engine, **OPAQUE, snr_db=10, maps=maps)
     words = r"stationary/0: the echo's power is 0; snr_db = 10 needs .*wall\.loss_tangent"
@@ -57,7 +53,7 @@ def test_noise_below_an_echo_of_nothing_is_refused(
 @pytest.mark.parametrize(
     "more", [{"maps": ["rtm"]}, {"maps": ["stft", "fsst"]}, GATED, MASKS], ids=str
 )
-def test_black_maps_are_counted(engine: str, more: dict[str, Any], tmp_path: Path) -> None:
+def test_black_maps_are_counted(engine, more, tmp_path):
     """One warning for all of them; without a wall the canceller removes who stands still."""
     for name, wall, count in (("wall", OPAQUE, 2), ("air", {}, 1)):
         listener = Listener()
@@ -69,7 +65,7 @@ def test_black_maps_are_counted(engine: str, more: dict[str, Any], tmp_path: Pat
 
 
 @ENGINES
-def test_a_black_map_of_one_scene_is_named(engine: str) -> None:
+def test_a_black_map_of_one_scene_is_named(engine):
     warnings = simulate(config_of(engine), "stationary", maps=("rtm", "stft")).warnings
     assert [one for one in warnings if one.startswith("rtm, stft: a map is black")]
     assert not [one for one in simulate(config_of(engine), "punching").warnings if "black" in one]
@@ -79,9 +75,7 @@ def test_a_black_map_of_one_scene_is_named(engine: str) -> None:
 @pytest.mark.parametrize("snr_db", [None, 10])
 @pytest.mark.parametrize("map_name", ["image:rtm", "image:stft", "image:fsst"])
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")
-def test_a_motion_that_is_no_number_is_refused(
-    engine: str, snr_db: float | None, map_name: str
-) -> None:
+def test_a_motion_that_is_no_number_is_refused(engine, snr_db, map_name):
     config = config_of(engine, snr_db=snr_db)
     scene = draw_scene(config, config.chosen_activities[0], 0)
     nowhere = replace(motion_of(scene.people[0]), start=(np.nan, 0.0))

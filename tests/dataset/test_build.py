@@ -1,11 +1,9 @@
 """A build gives the same bytes for any batches, workers and interruptions; what it refuses."""
 
-import errno
 import json
 import os
 import re
 from pathlib import Path
-from typing import Any
 
 import h5py
 import numpy as np
@@ -13,55 +11,42 @@ import pytest
 from joblib.externals.loky import get_reusable_executor
 from listener import Listener
 from PIL import Image
-from small import SMALL, fingerprint, small_config
+from small import SMALL, fingerprint, full_disk_after, small_config
 
-from radhar_cli.activity import Activity
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.identity import resolved
 from radhar_cli.dataset import batch as batch_module
 from radhar_cli.dataset import build as build_module
 from radhar_cli.dataset import folder as folder_module
-from radhar_cli.dataset.build import BuildOutcome, build
+from radhar_cli.dataset.build import build
 from radhar_cli.dataset.folder import folder_lock
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.shards import listed_shards
 from radhar_cli.dataset.verify import verify
-from radhar_cli.dataset.workers import run_tasks, warm_up
-from radhar_cli.errors import FolderError, SceneError, UnfinishedError
+from radhar_cli.dataset.workers import run_tasks
+from radhar_cli.errors import FolderError, SceneError
 
 
-def make(config: Config, folder: Path, **options: object) -> BuildOutcome:
+def make(config, folder, **options):
     return build(config, folder, options.pop("jobs", 1), Listener(), **options)
 
 
 @pytest.fixture(scope="module")
-def config(tmp_path_factory: pytest.TempPathFactory) -> Config:
+def config(tmp_path_factory):
     return load_config(small_config(tmp_path_factory.mktemp("config")))
 
 
-@pytest.fixture(scope="module")
-def whole(config: Config, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The data set in one uninterrupted go, one job."""
-    folder = tmp_path_factory.mktemp("whole") / "set"
-    make(config, folder)
-    return folder
-
-
 @pytest.mark.parametrize(("jobs", "batch_size"), [(1, 1), (1, 9), (2, 2), (4, 1)])
-def test_jobs_and_batch_size_change_no_byte(
-    config: Config, whole: Path, tmp_path: Path, jobs: int, batch_size: int
-) -> None:
+def test_jobs_and_batch_size_change_no_byte(config, small_set, tmp_path, jobs, batch_size):
     make(config, tmp_path / "set", jobs=jobs, batch_size=batch_size)
-    assert fingerprint(tmp_path / "set") == fingerprint(whole)
+    assert fingerprint(tmp_path / "set") == fingerprint(small_set)
 
 
-def test_no_more_processes_than_batches_are_started(
-    config: Config, whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_no_more_processes_than_batches_are_started(config, small_set, tmp_path, monkeypatch):
     asked: list[int] = []
 
-    def here(function: Any, tasks: Any, jobs: int) -> Any:
+    def here(function, tasks, jobs):
         asked.append(jobs)
         return run_tasks(function, tasks, 1)
 
@@ -70,11 +55,11 @@ def test_no_more_processes_than_batches_are_started(
     build(config, tmp_path / "set", 3000, notes, batch_size=2)
     assert asked == [9, 5], "of the checks, then of the batches"
     assert "5 of 3000 processes, one for each batch of samples" in notes.messages
-    assert fingerprint(tmp_path / "set") == fingerprint(whole)
+    assert fingerprint(tmp_path / "set") == fingerprint(small_set)
 
 
-def test_batch_size_by_number_of_rows() -> None:
-    def size(left: int, jobs: int, one: int = 10**4) -> int:
+def test_batch_size_by_number_of_rows():
+    def size(left, jobs, one=10**4):
         return build_module._batch_size(left, jobs, one)
 
     assert [size(left, 2) for left in (1, 9, 100, 3600)] == [1, 2, 13, 32]
@@ -85,56 +70,44 @@ def test_batch_size_by_number_of_rows() -> None:
 
 
 def test_a_relative_folder_is_built_whatever_the_working_directory_of_the_workers(
-    config: Config, whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    config, small_set, tmp_path, monkeypatch
+):
     here, elsewhere = tmp_path / "here", tmp_path / "elsewhere"
     here.mkdir()
     elsewhere.mkdir()
     monkeypatch.chdir(elsewhere)
     get_reusable_executor(max_workers=2, kill_workers=True).shutdown(kill_workers=True)
-    warm_up(2)
+    list(run_tasks(os.getcwd, [()] * 8, 2))
     monkeypatch.chdir(here)
     assert set(run_tasks(os.getcwd, [()] * 8, 2)) == {str(elsewhere)}
     make(config, Path("set"), jobs=2, batch_size=2)
-    assert fingerprint(here / "set") == fingerprint(whole)
+    assert fingerprint(here / "set") == fingerprint(small_set)
     assert not list(elsewhere.iterdir())
 
 
-def test_an_unfinished_build_resumes_with_another_batch_size(
-    config: Config, whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    folder, made = tmp_path / "set", []
-    original = batch_module.synthesise
-
-    def stops_after_five(*arguments: object) -> object:
-        made.append(arguments)
-        if len(made) > 5:
-            raise OSError(errno.ENOSPC, "No space left on device", "shard")
-        return original(*arguments)
-
-    monkeypatch.setattr(batch_module, "synthesise", stops_after_five)
-    with pytest.raises(UnfinishedError, match="no space left on the disk"):
+def test_an_unfinished_build_resumes_with_another_batch_size(config, small_set, tmp_path):
+    folder = tmp_path / "set"
+    with full_disk_after(5):
         make(config, folder, batch_size=2)
     assert [(s.start, s.stop) for s in listed_shards(folder)] == [(0, 2), (2, 4)]
-    monkeypatch.setattr(batch_module, "synthesise", original)
     outcome = make(config, folder, batch_size=3)
     assert outcome.made == 5, "the four finished samples are not made again"
-    assert fingerprint(folder) == fingerprint(whole)
+    assert fingerprint(folder) == fingerprint(small_set)
 
 
-def test_a_complete_folder_is_not_changed(config: Config, whole: Path) -> None:
-    before = (whole / "dataset.h5").stat().st_mtime_ns
-    assert make(config, whole).already_complete
-    assert (whole / "dataset.h5").stat().st_mtime_ns == before
+def test_a_complete_folder_is_not_changed(config, small_set):
+    before = (small_set / "dataset.h5").stat().st_mtime_ns
+    assert make(config, small_set).already_complete
+    assert (small_set / "dataset.h5").stat().st_mtime_ns == before
 
 
-def test_other_config_is_refused_and_the_keys_named(config: Config, whole: Path) -> None:
+def test_other_config_is_refused_and_the_keys_named(config, small_set):
     other = config.model_copy(update={"seed": 8, "snr_db": 5.0})
     with pytest.raises(FolderError, match=r"(?s)seed: 7 there, 8 here.*snr_db"):
-        make(other, whole)
+        make(other, small_set)
 
 
-def test_a_folder_without_samples_is_free(config: Config, tmp_path: Path) -> None:
+def test_a_folder_without_samples_is_free(config, tmp_path):
     """As after a build whose scenes were refused: another config may have it."""
     far = {"motion": {"model": "paper", "range_m": 500.0}, "on_invalid": "error"}
     refused = Config.model_validate({**resolved(config), **far})
@@ -146,19 +119,15 @@ def test_a_folder_without_samples_is_free(config: Config, tmp_path: Path) -> Non
     assert verify(tmp_path, 1).problems == []
 
 
-def test_other_versions_are_refused(
-    config: Config, whole: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_other_versions_are_refused(config, small_set, monkeypatch):
     real = folder_module.identity(config)
     other = {**real, "versions": {**real["versions"], "numpy": "1.0"}}
     monkeypatch.setattr(folder_module, "identity", lambda _: other)
     with pytest.raises(FolderError, match=r"versions\.numpy"):
-        make(config, whole)
+        make(config, small_set)
 
 
-def test_pngs_can_be_added_later_and_lost_ones_are_rewritten(
-    config: Config, whole: Path, tmp_path: Path
-) -> None:
+def test_pngs_can_be_added_later_and_lost_ones_are_rewritten(config, small_set, tmp_path):
     folder = tmp_path / "set"
     without = config.model_copy(update={"output": config.output.model_copy(update={"png": False})})
     make(without, folder)
@@ -166,7 +135,7 @@ def test_pngs_can_be_added_later_and_lost_ones_are_rewritten(
     outcome = make(config, folder)
     assert outcome.made == 0
     assert outcome.pngs == 27
-    with_pngs, right = fingerprint(folder), fingerprint(whole)
+    with_pngs, right = fingerprint(folder), fingerprint(small_set)
     assert {k: v for k, v in with_pngs.items() if k.startswith("png")} == {
         k: v for k, v in right.items() if k.startswith("png")
     }
@@ -178,21 +147,17 @@ def test_pngs_can_be_added_later_and_lost_ones_are_rewritten(
     assert fingerprint(folder).items() >= {k: right[k] for k in right if k[:3] == "png"}.items()
 
 
-def test_overwrite_starts_again_and_keeps_foreign_files(
-    config: Config, whole: Path, tmp_path: Path
-) -> None:
+def test_overwrite_starts_again_and_keeps_foreign_files(config, small_set, tmp_path):
     folder = tmp_path / "set"
     make(config.model_copy(update={"seed": 99}), folder)
     (folder / "notes.txt").write_text("mine")
     make(config, folder, overwrite=True)
     assert (folder / "notes.txt").read_text() == "mine"
     (folder / "notes.txt").unlink()
-    assert fingerprint(folder) == fingerprint(whole)
+    assert fingerprint(folder) == fingerprint(small_set)
 
 
-def test_overwrite_refuses_folders_that_radhar_did_not_build(
-    config: Config, tmp_path: Path
-) -> None:
+def test_overwrite_refuses_folders_that_radhar_did_not_build(config, tmp_path):
     with h5py.File(tmp_path / "dataset.h5", "w") as file:
         file["mine"] = 1
     (tmp_path / "png").mkdir()
@@ -203,9 +168,7 @@ def test_overwrite_refuses_folders_that_radhar_did_not_build(
     assert (tmp_path / "dataset.h5").exists()
 
 
-def test_overwrite_killed_midway_resumes(
-    config: Config, whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_overwrite_killed_midway_resumes(config, small_set, tmp_path, monkeypatch):
     """Whatever step of clearing is the last, the same command finishes the job."""
     for count in range(1, 7):
         folder = tmp_path / f"set{count}"
@@ -213,12 +176,12 @@ def test_overwrite_killed_midway_resumes(
         (folder / "preview_stft.png").write_text("mine")
         left = [count]
 
-        def dying(original: object, left: list[int] = left) -> object:
-            def step(*arguments: object, **options: object) -> object:
+        def dying(original, left=left):
+            def step(*arguments, **options):
                 left[0] -= 1
                 if left[0] <= 0:
                     raise KeyboardInterrupt
-                return original(*arguments, **options)  # type: ignore[operator]
+                return original(*arguments, **options)
 
             return step
 
@@ -230,19 +193,17 @@ def test_overwrite_killed_midway_resumes(
                 make(config, folder, overwrite=True)
         make(config, folder, overwrite=True)
         (folder / "preview_stft.png").unlink()
-        assert fingerprint(folder) == fingerprint(whole)
+        assert fingerprint(folder) == fingerprint(small_set)
 
 
-def test_scenes_are_checked_by_the_workers_and_only_of_what_is_missing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_scenes_are_checked_by_the_workers_and_only_of_what_is_missing(tmp_path, monkeypatch):
     """The warnings of a resumed build count all its rows."""
     text = SMALL.replace("seed: 7", "seed: 7\nwall: {}\non_invalid: keep")
     config = load_config(small_config(tmp_path, text), ["motion.range_m={uniform: [1, 3]}"])
     make(config, tmp_path / "whole")
     checks: list[tuple[int, int, int]] = []
 
-    def noted(function: Any, tasks: Any, jobs: int) -> Any:
+    def noted(function, tasks, jobs):
         tasks = list(tasks)
         if function is batch_module.check_rows:
             checks.extend((start, stop, jobs) for _, start, stop, _ in tasks)
@@ -250,18 +211,10 @@ def test_scenes_are_checked_by_the_workers_and_only_of_what_is_missing(
 
     with monkeypatch.context() as patch:
         patch.setattr(build_module, "run_tasks", noted)
-        made, stopped = [], batch_module.synthesise
-
-        def synthesise(*given: Any) -> Any:
-            made.append(given)
-            return 1 / 0 if len(made) > 4 else stopped(*given)
-
-        patch.setattr(batch_module, "synthesise", synthesise)
-        with pytest.raises(ZeroDivisionError):
+        with full_disk_after(4):
             build(config, tmp_path / "set", 3, Listener(), batch_size=2)
         assert [row for start, stop, _ in checks for row in range(start, stop)] == list(range(9))
         assert {jobs for *_, jobs in checks} == {3}
-        patch.setattr(batch_module, "synthesise", stopped)
         checks.clear()
         again = Listener()
         build(config, tmp_path / "set", 3, again, batch_size=2)
@@ -272,9 +225,7 @@ def test_scenes_are_checked_by_the_workers_and_only_of_what_is_missing(
     assert fingerprint(tmp_path / "whole") == fingerprint(tmp_path / "set")
 
 
-def test_scenes_of_a_large_data_set_are_checked_by_the_workers(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_scenes_of_a_large_data_set_are_checked_by_the_workers(tmp_path, monkeypatch):
     """The same bytes, redraws and warnings as where they are all checked first."""
     text = SMALL.replace("seed: 7", "seed: 7\nwall: {}\non_invalid: keep")
     config = load_config(small_config(tmp_path, text), ["motion.range_m={uniform: [1, 3]}"])
@@ -291,7 +242,7 @@ def test_scenes_of_a_large_data_set_are_checked_by_the_workers(
     assert fingerprint(tmp_path / "first") == fingerprint(tmp_path / "by workers")
 
 
-def test_foreign_folder_file_and_live_folder_are_refused(config: Config, tmp_path: Path) -> None:
+def test_foreign_folder_file_and_live_folder_are_refused(config, tmp_path):
     (tmp_path / "thesis.tex").write_text("x")
     with pytest.raises(FolderError, match=r"thesis\.tex"):
         make(config, tmp_path)
@@ -304,17 +255,15 @@ def test_foreign_folder_file_and_live_folder_are_refused(config: Config, tmp_pat
         make(config, tmp_path / "live")
 
 
-def test_a_path_that_cannot_be_made_is_one_clear_line(config: Config, tmp_path: Path) -> None:
+def test_a_path_that_cannot_be_made_is_one_clear_line(config, tmp_path):
     (tmp_path / "file").write_text("x")
     with pytest.raises(FolderError, match="file/set: cannot be made") as caught:
         make(config, tmp_path / "file" / "set")
     assert "\n" not in str(caught.value)
 
 
-def test_scene_too_close_to_an_antenna_stops_before_any_echo(
-    config: Config, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def never(*_: object) -> None:
+def test_scene_too_close_to_an_antenna_stops_before_any_echo(config, tmp_path, monkeypatch):
+    def never(*_):
         raise AssertionError("an echo was computed")
 
     monkeypatch.setattr(batch_module, "synthesise", never)
@@ -328,12 +277,10 @@ def test_scene_too_close_to_an_antenna_stops_before_any_echo(
     assert "generate --dry-run checks 9 of the 9 scenes, this one too" in str(caught.value)
 
 
-def test_a_refusal_says_where_a_dry_run_could_not_know(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_refusal_says_where_a_dry_run_could_not_know(tmp_path, monkeypatch):
     """Of 240 scenes of one class a dry run checks every other, the first not among them."""
 
-    def refuse(_: Config, activity: Activity, index: int) -> None:
+    def refuse(_, activity, index):
         raise SceneError(f"sample {activity.slug}/{index}")
 
     monkeypatch.setattr(batch_module, "draw_valid_scene", refuse)
@@ -346,9 +293,7 @@ def test_a_refusal_says_where_a_dry_run_could_not_know(
         batch_module.checked_scene(config, rows, 1)
 
 
-def test_physical_warnings_are_given_once_with_a_count_and_stored(
-    config: Config, tmp_path: Path
-) -> None:
+def test_physical_warnings_are_given_once_with_a_count_and_stored(config, tmp_path):
     notes = Listener()
     far = load_config(small_config(tmp_path), ["motion.range_m=28", "activities=[walking, S1]"])
     build(far, tmp_path / "set", 1, notes)
@@ -363,26 +308,15 @@ def test_physical_warnings_are_given_once_with_a_count_and_stored(
     }
 
 
-def test_fallbacks_to_the_cube_are_counted_across_resumed_runs(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_fallbacks_to_the_cube_are_counted_across_resumed_runs(tmp_path, monkeypatch):
     """Double precision cannot promise -300 dB of anybody who moves."""
     engine = ["engine={tolerance_db: -300, fallback: cube}", "duration_s=1", "maps=[rtm, stft]"]
     config = load_config(small_config(tmp_path), [*engine, "activities=[punching, S1, S8]"])
-    notes, original, made = Listener(), batch_module.synthesise, []
+    notes = Listener()
     build(config, tmp_path / "whole", 1, notes)
     assert "warning: 6 of 9 recordings: computed by the cube (engine.fallback)" in notes.messages
-
-    def stops_after_four(*arguments: object) -> object:
-        made.append(arguments)
-        if len(made) > 4:
-            raise OSError(errno.ENOSPC, "No space left on device", "shard")
-        return original(*arguments)
-
-    monkeypatch.setattr(batch_module, "synthesise", stops_after_four)
-    with pytest.raises(UnfinishedError):
+    with full_disk_after(4):
         make(config, tmp_path / "set", batch_size=1)
-    monkeypatch.setattr(batch_module, "synthesise", original)
     make(config, tmp_path / "set", batch_size=2)
     assert fingerprint(tmp_path / "set") == fingerprint(tmp_path / "whole")
     with h5py.File(tmp_path / "set/dataset.h5") as file:
@@ -391,14 +325,14 @@ def test_fallbacks_to_the_cube_are_counted_across_resumed_runs(
     assert [w["recordings"] for w in stored if w["kind"] == "fallback"] == [6]
 
 
-def test_a_range_map_alone_never_falls_back(tmp_path: Path) -> None:
+def test_a_range_map_alone_never_falls_back(tmp_path):
     engine = ["engine={tolerance_db: -390, fallback: cube}", "duration_s=1", "maps=[rtm]"]
     outcome = make(load_config(small_config(tmp_path), engine), tmp_path / "set")
     assert "fallback" not in {warning["kind"] for warning in outcome.warnings}
 
 
-def test_dataset_contract(config: Config, whole: Path) -> None:
-    with h5py.File(whole / "dataset.h5") as file:
+def test_dataset_contract(config, small_set):
+    with h5py.File(small_set / "dataset.h5") as file:
         assert set(file["maps"]) == set(config.maps)
         for name in config.maps:
             maps = file[f"maps/{name}"]
@@ -429,17 +363,17 @@ def test_dataset_contract(config: Config, whole: Path) -> None:
 
 
 @pytest.mark.parametrize(("count", "last"), [(3, "00002"), (10**5, "99999"), (10**5 + 1, "100000")])
-def test_png_names_sort_by_index_at_any_count(config: Config, count: int, last: str) -> None:
+def test_png_names_sort_by_index_at_any_count(config, count, last):
     rows = Rows(config.chosen_activities[:2], (5, count))
     assert (rows.name(4), rows.name(4 + count)) == ("00004", last)
     assert rows.png_path("rtm", 0, 5).stem == "0".zfill(len(last))
 
 
-def test_pngs_show_the_levels(config: Config, whole: Path) -> None:
+def test_pngs_show_the_levels(config, small_set):
     table, rows = colour_table("viridis"), Rows.of(config)
-    with h5py.File(whole / "dataset.h5") as file:
+    with h5py.File(small_set / "dataset.h5") as file:
         for row in range(len(rows)):
-            path = whole / rows.png_path("stft", file["split"][row], row)
+            path = small_set / rows.png_path("stft", file["split"][row], row)
             with Image.open(path) as picture:
                 assert picture.mode == "P"
                 assert np.array_equal(np.asarray(picture), file["maps/stft"][row])
@@ -447,21 +381,21 @@ def test_pngs_show_the_levels(config: Config, whole: Path) -> None:
                 assert np.array_equal(shown, table[file["maps/stft"][row]])
 
 
-def test_scenes_csv_has_the_numbers_of_the_file(whole: Path) -> None:
-    lines = (whole / "scenes.csv").read_text().splitlines()
+def test_scenes_csv_has_the_numbers_of_the_file(small_set):
+    lines = (small_set / "scenes.csv").read_text().splitlines()
     header, rows = lines[0].split(","), [line.split(",") for line in lines[1:]]
-    with h5py.File(whole / "dataset.h5") as file:
+    with h5py.File(small_set / "dataset.h5") as file:
         column = header.index("motion.angle_deg")
         degrees = np.degrees(file["scene/angle"][:])
     assert np.allclose([float(row[column]) for row in rows], degrees, rtol=1e-12)
     assert rows[0][header.index("motion.thigh_deg")] == ""
 
 
-def test_resolved_config_builds_the_same_identity(config: Config, whole: Path) -> None:
-    assert load_config(whole / "config.yaml") == config
+def test_resolved_config_builds_the_same_identity(config, small_set):
+    assert load_config(small_set / "config.yaml") == config
 
 
-def test_redrawn_scenes_are_valid_and_deterministic(tmp_path: Path) -> None:
+def test_redrawn_scenes_are_valid_and_deterministic(tmp_path):
     text = SMALL.replace("seed: 7", "seed: 7\nwall: {}\non_invalid: redraw")
     config = load_config(
         small_config(tmp_path, text), ["motion.range_m={uniform: [1, 3]}", "activities=[S1, S2]"]

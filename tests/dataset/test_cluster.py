@@ -7,8 +7,6 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from command_line import ROOT
@@ -16,7 +14,7 @@ from listener import Listener
 from small import fingerprint, small_config
 
 from radhar_cli.config import load_config
-from radhar_cli.dataset.build import build, build_part
+from radhar_cli.dataset.build import build
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.merge import merge
 from radhar_cli.dataset.parts import Part
@@ -33,7 +31,7 @@ CHANGES = [
 Process = subprocess.Popen[str]
 
 
-def dask(place: Path, *arguments: str) -> Process:
+def dask(place, *arguments):
     """A dask program in a folder of its own."""
     place.mkdir()
     return subprocess.Popen(
@@ -47,7 +45,7 @@ def dask(place: Path, *arguments: str) -> Process:
 
 
 @pytest.fixture
-def cluster(tmp_path: Path) -> Iterator[tuple[str, list[Process]]]:
+def cluster(tmp_path):
     """Address, and the processes: a scheduler and two workers."""
     started = [
         dask(
@@ -67,7 +65,7 @@ def cluster(tmp_path: Path) -> Iterator[tuple[str, list[Process]]]:
             one.communicate()
 
 
-def generate(address: str, folder: Path, *more: str) -> Process:
+def generate(address, folder, *more):
     """Build in a folder, named from its parent, on a cluster."""
     changes = [x for change in CHANGES for x in ("--set", change)]
     return subprocess.Popen(
@@ -82,12 +80,12 @@ def generate(address: str, folder: Path, *more: str) -> Process:
     )
 
 
-def test_dask_shards_loky_and_one_process_give_the_same_bytes(tmp_path: Path) -> None:
+def test_dask_shards_loky_and_one_process_give_the_same_bytes(tmp_path):
     config = load_config(small_config(tmp_path), CHANGES)
     build(config, tmp_path / "alone", 1, Listener())
     build(config, tmp_path / "loky", 2, Listener())
     for number in (2, 1):
-        build_part(config, tmp_path / "shards", Part(2, number), 1, Listener())
+        build(config, tmp_path / "shards", 1, Listener(), part=Part(2, number))
     merge(tmp_path / "shards", [], 1, Listener())
     shutil.rmtree(tmp_path / "shards/parts")
     made = generate("local", tmp_path / "dask", "--jobs", "2")
@@ -100,14 +98,12 @@ def test_dask_shards_loky_and_one_process_give_the_same_bytes(tmp_path: Path) ->
     assert len(pngs) == 2 * len(Rows.of(config))  # one of each map
 
 
-def test_a_build_survives_a_killed_worker_and_names_a_killed_scheduler(
-    cluster: tuple[str, list[Process]], tmp_path: Path
-) -> None:
+def test_a_build_survives_a_killed_worker_and_names_a_killed_scheduler(cluster, tmp_path):
     address, (scheduler, first, _) = cluster
     config = load_config(small_config(tmp_path), CHANGES)
     build(config, tmp_path / "whole", 1, Listener())
 
-    def kill_after(run: Process, shards: int, victim: Process) -> str:
+    def kill_after(run, shards, victim):
         while run.poll() is None and len(listed_shards(tmp_path / "set")) < shards:
             time.sleep(0.001)
         assert run.poll() is None
@@ -134,7 +130,7 @@ def test_a_build_survives_a_killed_worker_and_names_a_killed_scheduler(
     assert fingerprint(tmp_path / "set") == fingerprint(tmp_path / "whole")
 
 
-def test_ctrl_c_ends_local_workers_in_one_line(tmp_path: Path) -> None:
+def test_ctrl_c_ends_local_workers_in_one_line(tmp_path):
     """Of the whole group, as a terminal sends it; workers have nothing to say."""
     (tmp_path / "many.yaml").write_text("base: small.yaml\nsamples_per_class: 3000\n")
     small_config(tmp_path)

@@ -2,7 +2,6 @@
 
 import shutil
 from itertools import pairwise
-from pathlib import Path
 
 import h5py
 import numpy as np
@@ -39,20 +38,18 @@ output: {column_labels: true, png: false}
 
 
 @pytest.fixture(scope="module")
-def config(tmp_path_factory: pytest.TempPathFactory) -> Config:
+def config(tmp_path_factory):
     return load_config(small_config(tmp_path_factory.mktemp("labels"), TEXT))
 
 
 @pytest.fixture(scope="module")
-def whole(config: Config, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def whole(config, tmp_path_factory):
     folder = tmp_path_factory.mktemp("labels") / "set"
     build(config, folder, 1, Listener())
     return folder
 
 
-def test_labels_are_those_of_the_truth_at_the_middle_of_each_column(
-    config: Config, whole: Path
-) -> None:
+def test_labels_are_those_of_the_truth_at_the_middle_of_each_column(config, whole):
     with h5py.File(whole / "dataset.h5") as file:
         keys = file["sample_key"][:].tolist()
         assert keys == [[7, 0], [11, 0], [11, 1], [11, 2], [12, 0], [12, 1]]
@@ -70,9 +67,7 @@ def test_labels_are_those_of_the_truth_at_the_middle_of_each_column(
         assert done == ["walking", "sitting down", "seated"]
 
 
-def test_column_labels_do_not_depend_on_batches_and_are_optional(
-    config: Config, whole: Path, tmp_path: Path
-) -> None:
+def test_column_labels_do_not_depend_on_batches_and_are_optional(config, whole, tmp_path):
     build(config, tmp_path / "set", 1, Listener(), batch_size=1)
     assert fingerprint(tmp_path / "set") == fingerprint(whole)
     plain = load_config(small_config(tmp_path, TEXT), ["output.column_labels=false"])
@@ -85,7 +80,7 @@ def test_column_labels_do_not_depend_on_batches_and_are_optional(
 
 
 @pytest.mark.parametrize(("number", "says"), [(3, "40 wrong columns"), (99, "should be 0 to 14")])
-def test_verify_finds_a_changed_label(whole: Path, tmp_path: Path, number: int, says: str) -> None:
+def test_verify_finds_a_changed_label(whole, tmp_path, number, says):
     assert verify(whole, 6).problems == []
     shutil.copytree(whole, tmp_path / "set")
     with h5py.File(tmp_path / "set/dataset.h5", "r+") as file:
@@ -94,7 +89,7 @@ def test_verify_finds_a_changed_label(whole: Path, tmp_path: Path, number: int, 
 
 
 @pytest.mark.parametrize("model", ["paper", "human"])
-def test_every_phase_of_the_twelve_has_a_number(model: str) -> None:
+def test_every_phase_of_the_twelve_has_a_number(model):
     config = Config(motion={"model": model})
     for activity in ACTIVITIES:
         phases = motion_of(nominal_scene(config, activity).people[0]).phases
@@ -102,7 +97,7 @@ def test_every_phase_of_the_twelve_has_a_number(model: str) -> None:
         assert {name for _, name in phases} <= set(PHASES), activity.slug
 
 
-def test_every_phase_of_a_sequence_has_a_number() -> None:
+def test_every_phase_of_a_sequence_has_a_number():
     classes = {name: {"sequence": [name], "durations_s": [2.0]} for name in MOVEMENTS}
     own = {f"own_{name}": one for name, one in classes.items()}
     config = Config(classes=own, activities=list(own))
@@ -111,7 +106,7 @@ def test_every_phase_of_a_sequence_has_a_number() -> None:
         assert {name for _, name in phases} <= set(PHASES), activity.slug
 
 
-def test_a_motion_without_phases_is_labelled_with_its_class(config: Config) -> None:
+def test_a_motion_without_phases_is_labelled_with_its_class(config):
     class Silent(Only):
         phases = ()
 

@@ -1,9 +1,7 @@
 """The estimate of a build: nothing written, sizes close to the truth."""
 
 from itertools import count
-from pathlib import Path
 
-import pytest
 from small import small_config
 
 from radhar_cli.commands.terminal import BarProgress
@@ -13,7 +11,7 @@ from radhar_cli.dataset.build import build
 from radhar_cli.dataset.estimate import estimate
 
 
-def test_bytes_are_close_to_those_of_the_build(tmp_path: Path) -> None:
+def test_bytes_are_close_to_those_of_the_build(tmp_path):
     config = load_config(small_config(tmp_path), ["samples_per_class=6", "image.size_px=128"])
     found = estimate(config, jobs=1)
     build(config, tmp_path / "set", 1, BarProgress())
@@ -24,9 +22,7 @@ def test_bytes_are_close_to_those_of_the_build(tmp_path: Path) -> None:
     assert 0.9 < found.png_bytes / pngs < 1.1
 
 
-def test_time_grows_with_samples_and_shrinks_with_jobs(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_time_grows_with_samples_and_shrinks_with_jobs(tmp_path, monkeypatch):
     """By a clock that gives every sample 20 ms, so that the machine's mood plays no part."""
     monkeypatch.setattr(estimate_module, "perf_counter", map((0.02).__mul__, count()).__next__)
     few = load_config(small_config(tmp_path))

@@ -8,12 +8,10 @@ import pytest
 from radhar_cli.dataset.files import write_whole
 
 
-def test_a_full_disk_names_the_file_and_leaves_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_full_disk_names_the_file_and_leaves_nothing(tmp_path, monkeypatch):
     """`write` says no name; without one the program has no line to print."""
 
-    def full(path: Path, data: bytes) -> int:
+    def full(path, data):
         path.touch()
         raise OSError(errno.ENOSPC, "No space left on device")
 

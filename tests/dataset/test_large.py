@@ -4,7 +4,6 @@ Every shard is a copy of one but for its rows, so that what is left is the maste
 """
 
 import tracemalloc
-from pathlib import Path
 
 import h5py
 import pytest
@@ -15,7 +14,6 @@ from stub_shards import stub_shard
 
 from radhar_cli.config import load_config
 from radhar_cli.dataset import build as build_module
-from radhar_cli.dataset.batch import Batch
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset
@@ -25,7 +23,7 @@ ROWS, MANY, FEW, SIZE, BATCH = 150_000, 15_000, 9_000, 16, 32
 BYTES_A_ROW = 16
 
 
-def built(rows: int, folder: Path, monkeypatch: pytest.MonkeyPatch) -> int:
+def built(rows, folder, monkeypatch):
     """Build that many rows of stubs; return the most memory that Python held, bytes."""
     folder.mkdir()
     changes = ["maps=[stft]", f"image.size_px={SIZE}", f"samples_per_class={rows // 3}"]
@@ -33,7 +31,7 @@ def built(rows: int, folder: Path, monkeypatch: pytest.MonkeyPatch) -> int:
     config = load_config(small_config(folder), [*changes, by_person, "output.png=false"])
     made: dict[int, bytes] = {}
 
-    def stub(batch: Batch) -> int:
+    def stub(batch):
         assert batch.checked is None, "its scenes are the worker's to check"
         return stub_shard(batch, SIZE, made)
 
@@ -53,9 +51,7 @@ def built(rows: int, folder: Path, monkeypatch: pytest.MonkeyPatch) -> int:
 
 
 @pytest.mark.slow
-def test_the_master_of_150_000_rows_holds_a_few_bytes_a_row(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_master_of_150_000_rows_holds_a_few_bytes_a_row(tmp_path, monkeypatch):
     assert FEW < build_module.MAX_CHECKED_FIRST < ROWS
     large = built(ROWS, tmp_path / "large", monkeypatch)
     monkeypatch.setattr(build_module, "MAX_CHECKED_FIRST", 0)
@@ -69,9 +65,7 @@ def test_the_master_of_150_000_rows_holds_a_few_bytes_a_row(
 
 
 @pytest.mark.slow
-def test_metadata_of_many_rows_take_no_memory_of_theirs(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_metadata_of_many_rows_take_no_memory_of_theirs(tmp_path, monkeypatch):
     monkeypatch.setattr(build_module, "MAX_CHECKED_FIRST", 0)
     built(MANY, tmp_path / "set", monkeypatch)
     folder = tmp_path / "set/set"

@@ -14,8 +14,8 @@ from command_line import radhar
 from listener import Listener
 from small import fingerprint, small_config
 
-from radhar_cli.config import Config, load_config
-from radhar_cli.dataset.build import build, build_part
+from radhar_cli.config import load_config
+from radhar_cli.dataset.build import build
 from radhar_cli.dataset.merge import merge
 from radhar_cli.dataset.parts import Part
 from radhar_cli.dataset.reading import open_dataset
@@ -31,12 +31,12 @@ CHANGES = [
 
 
 @pytest.fixture(scope="module")
-def config(tmp_path_factory: pytest.TempPathFactory) -> Config:
+def config(tmp_path_factory):
     return load_config(small_config(tmp_path_factory.mktemp("config")), CHANGES)
 
 
 @pytest.fixture(scope="module")
-def whole(config: Config, tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+def whole(config, tmp_path_factory):
     """Fingerprint of the data set made in one piece."""
     folder = tmp_path_factory.mktemp("whole") / "set"
     build(config, folder, 1, Listener())
@@ -44,27 +44,25 @@ def whole(config: Config, tmp_path_factory: pytest.TempPathFactory) -> dict[str,
 
 
 @pytest.fixture(scope="module")
-def made(config: Config, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def made(config, tmp_path_factory):
     """All four parts of a data set, for tests to copy."""
     out = tmp_path_factory.mktemp("parts") / "set"
     for number in (3, 1, 4, 2):
-        build_part(config, out, Part(4, number), 1, Listener(), batch_size=1 + number % 2)
+        build(config, out, 1, Listener(), part=Part(4, number), batch_size=1 + number % 2)
     return out
 
 
 @pytest.fixture
-def out(made: Path, tmp_path: Path) -> Path:
+def out(made, tmp_path):
     return Path(shutil.copytree(made, tmp_path / "set"))
 
 
-def merged(out: Path) -> dict[str, str]:
+def merged(out):
     """Fingerprint of a merged data set, its parts aside."""
     return {k: v for k, v in fingerprint(out).items() if not k.startswith("parts/")}
 
 
-def test_parts_in_one_place_or_two_are_the_build_in_one_piece(
-    out: Path, whole: dict[str, str], tmp_path: Path
-) -> None:
+def test_parts_in_one_place_or_two_are_the_build_in_one_piece(out, whole, tmp_path):
     elsewhere = tmp_path / "elsewhere"
     (out / "parts/2-of-4").rename(elsewhere)
     merge(out, [elsewhere], 1, Listener())
@@ -75,85 +73,74 @@ def test_parts_in_one_place_or_two_are_the_build_in_one_piece(
     assert verify(out, 1).problems == []
 
 
-def test_unmerged_folders_are_reported_as_parts(out: Path) -> None:
-    part = out / "parts/2-of-4"
-    for folder in (out, part):
-        with pytest.raises(FolderError, match=r"dataset\.h5: .*`radhar merge"):
-            open_dataset(folder)
-    (part / ".radhar/manifest.json").unlink()
-    with pytest.raises(FolderError, match="unfinished; run `radhar generate` again"):
-        open_dataset(part)
-
-
-def test_gaps_and_damage_name_the_parts_to_run_again(
-    config: Config, out: Path, whole: dict[str, str]
-) -> None:
+def test_gaps_and_damage_name_the_parts_to_run_again(config, out, whole):
     shutil.rmtree(out / "parts/3-of-4")
     shard = listed_shards(out / "parts/1-of-4")[-1].path
     content = shard.read_bytes()
     shard.write_bytes(content[:-1] + bytes([content[-1] ^ 1]))
     with pytest.raises(UnfinishedError, match=r"rows 4-5 \(2 of 9\).* make .* --shard 3/4, then"):
         merge(out, [], 1, Listener())
-    build_part(config, out, Part(4, 3), 1, Listener())
+    build(config, out, 1, Listener(), part=Part(4, 3))
     with pytest.raises(
         UnfinishedError, match=r"rows 0-1 \(2 of 9\).* make .* --shard 1/4, then"
     ) as told:
         merge(out, [], 1, Listener())
     assert f"{shard} does not match its checksum" in str(told.value)
     assert not (out / "dataset.h5").exists()
-    assert build_part(config, out, Part(4, 1), 1, Listener()).made == 2
+    assert build(config, out, 1, Listener(), part=Part(4, 1)).made == 2
     merge(out, [], 1, Listener())
     assert merged(out) == whole
 
 
-def test_damaged_shards_are_replaced_by_shards_of_other_rows(
-    config: Config, out: Path, whole: dict[str, str]
-) -> None:
+def test_damaged_shards_are_replaced_by_shards_of_other_rows(config, out, whole):
     damaged = listed_shards(out / "parts/2-of-4")
     assert [shard.stop - shard.start for shard in damaged] == [1, 1]
     for shard in damaged:
         shard.path.write_bytes(shard.path.read_bytes()[:-1])
     notes = Listener()
-    assert build_part(config, out, Part(4, 2), 1, notes, batch_size=2).made == 2
+    assert build(config, out, 1, notes, part=Part(4, 2), batch_size=2).made == 2
     assert len(notes.messages) >= 2
     merge(out, [], 1, Listener())
     assert merged(out) == whole
 
 
-def test_a_finished_part_checks_nothing_again(config: Config, out: Path) -> None:
+def test_a_finished_part_checks_nothing_again(config, out):
     notes = Listener()
-    assert build_part(config, out, Part(4, 2), 1, notes).already_complete
+    assert build(config, out, 1, notes, part=Part(4, 2)).already_complete
     assert "checking scenes" not in notes.stages
 
 
-def test_parts_of_something_else_are_refused(config: Config, out: Path, tmp_path: Path) -> None:
+def test_parts_of_something_else_are_refused(config, out, tmp_path):
     other = config.model_copy(update={"seed": 8})
     with pytest.raises(FolderError, match="holds parts of 4; this would be part 1/3"):
-        build_part(config, out, Part(3, 1), 1, Listener())
+        build(config, out, 1, Listener(), part=Part(3, 1))
     with pytest.raises(FolderError, match="should be at most K/9"):
-        build_part(config, tmp_path / "ten", Part(10, 1), 1, Listener())
+        build(config, tmp_path / "ten", 1, Listener(), part=Part(10, 1))
     with pytest.raises(FolderError, match="differs in\n  seed: 7 there, 8 here"):
-        build_part(other, out, Part(4, 1), 1, Listener())
+        build(other, out, 1, Listener(), part=Part(4, 1))
     with pytest.raises(FolderError, match="radhar merge"):
         build(config, out, 1, Listener())
-    build_part(other, tmp_path / "other", Part(4, 2), 1, Listener())
+    build(other, tmp_path / "other", 1, Listener(), part=Part(4, 2))
     with pytest.raises(FolderError, match="seed: 7 there, 8 here"):
         merge(out, [tmp_path / "other"], 1, Listener())
     with pytest.raises(FolderError, match="no such folder"):
         merge(tmp_path / "nothing", [], 1, Listener())
 
 
-def test_reading_unmerged_parts_asks_to_merge(out: Path, tmp_path: Path) -> None:
+def test_reading_unmerged_parts_asks_to_merge(out, tmp_path):
     part = out / "parts/1-of-4"
     with pytest.raises(FolderError, match=f"{part} is part 1/4 alone; `radhar merge OUT`"):
         open_dataset(part)
     with pytest.raises(FolderError, match=f"not made yet; `radhar merge {out}`"):
         open_dataset(out)
+    (part / ".radhar/manifest.json").unlink()
+    with pytest.raises(FolderError, match="unfinished; run `radhar generate` again"):
+        open_dataset(part)
     with pytest.raises(FolderError, match="no such file"):
         open_dataset(tmp_path / "none")
 
 
-def test_the_manifest_of_a_part_has_rows_bytes_and_checksums(out: Path) -> None:
+def test_the_manifest_of_a_part_has_rows_bytes_and_checksums(out):
     folder = out / "parts/2-of-4"
     manifest = json.loads((folder / ".radhar/manifest.json").read_text())
     assert (manifest["part"], manifest["rows"]) == ("2/4", 2)
@@ -163,14 +150,14 @@ def test_the_manifest_of_a_part_has_rows_bytes_and_checksums(out: Path) -> None:
         assert held == {**expected, "sha256": checksum}
 
 
-def test_parts_hold_each_row_once() -> None:
+def test_parts_hold_each_row_once():
     for count, of in ((9, 4), (10, 10), (1000, 7)):
         rows = [row for number in range(1, of + 1) for row in Part(of, number).rows(count)]
         assert rows == list(range(count))
 
 
-def test_the_task_of_an_array_names_the_part(monkeypatch: pytest.MonkeyPatch) -> None:
-    def part(task: int, first: int, last: int, count: int) -> str:
+def test_the_task_of_an_array_names_the_part(monkeypatch):
+    def part(task, first, last, count):
         names = ("ID", "MIN", "MAX", "COUNT")
         values = zip(names, (task, first, last, count), strict=True)
         return str(Part.of_array_task({f"SLURM_ARRAY_TASK_{k}": str(v) for k, v in values}))
@@ -186,9 +173,7 @@ def test_the_task_of_an_array_names_the_part(monkeypatch: pytest.MonkeyPatch) ->
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
-def test_the_program_makes_killed_parts_of_an_array_whole(
-    whole: dict[str, str], tmp_path: Path
-) -> None:
+def test_the_program_makes_killed_parts_of_an_array_whole(whole, tmp_path):
     path, out = small_config(tmp_path), tmp_path / "set"
     arguments = ["generate", path, "-o", out, *(x for c in CHANGES for x in ("--set", c))]
     arguments = [*map(str, arguments), "--batch", "1", "--jobs", "1", "--shard"]
@@ -212,11 +197,9 @@ def test_the_program_makes_killed_parts_of_an_array_whole(
     assert merged(out) == whole
 
 
-def test_parts_of_two_builds_of_radhar_are_not_merged(
-    config: Config, out: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_parts_of_two_builds_of_radhar_are_not_merged(config, out, monkeypatch):
     monkeypatch.setattr("radhar_cli.dataset.identity.build_version", lambda: "0.1.0+another")
     part = Part(4, 2)
-    build_part(config, out, part, 1, Listener(), overwrite=True)
+    build(config, out, 1, Listener(), part=part, overwrite=True)
     with pytest.raises(FolderError, match=r'versions\.radhar: "0\.1\.0\+[0-9a-f]{12}"'):
         merge(out, [], 1, Listener())

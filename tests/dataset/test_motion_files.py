@@ -2,11 +2,10 @@
 
 import shutil
 from collections import OrderedDict
-from pathlib import Path
 
 import numpy as np
 import pytest
-from command_line import radhar
+from command_line import ok, radhar
 from listener import Listener
 from recorded import frames, write_amc, write_bvh, write_npz
 from small import fingerprint
@@ -39,7 +38,7 @@ split: {train: 0.67, validation: 0.33}
 
 
 @pytest.fixture(scope="module")
-def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def place(tmp_path_factory):
     """The config, its files, and the data set `out` built from them."""
     folder = tmp_path_factory.mktemp("files")
     walk = frames("walking", 2.5, 60.0)
@@ -52,7 +51,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def test_labels_columns_and_folders_follow(place: Path) -> None:
+def test_labels_columns_and_folders_follow(place):
     with open_dataset(place / "out") as data:
         assert [data.class_slugs[label] for label in data.label[::6]] == [
             *("kicking", "walking", "rise", "wave")
@@ -68,9 +67,7 @@ def test_labels_columns_and_folders_follow(place: Path) -> None:
     ]
 
 
-def test_bytes_depend_on_the_files_and_not_on_where_they_lie(
-    place: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_bytes_depend_on_the_files_and_not_on_where_they_lie(place, tmp_path, monkeypatch):
     shutil.copytree(place, tmp_path / "moved", ignore=shutil.ignore_patterns("out"))
     moved = load_config(tmp_path / "moved/set.yaml")
     build(moved, tmp_path / "again", 2, Listener(), batch_size=5)
@@ -84,7 +81,7 @@ def test_bytes_depend_on_the_files_and_not_on_where_they_lie(
         build(moved.model_copy(update={"seed": 6}), tmp_path / "third", 1, Listener())
 
 
-def test_persons_that_share_files_are_warned_of(place: Path) -> None:
+def test_persons_that_share_files_are_warned_of(place):
     config = load_config(place / "set.yaml", ["split.by=subject", "split.subjects=3"])
     assert split_warnings(config, split_rows(config)) == [
         f"classes.{slug}: 1 files for split.subjects = 3: "
@@ -93,7 +90,7 @@ def test_persons_that_share_files_are_warned_of(place: Path) -> None:
     ]
 
 
-def test_verify_opens_no_file_that_a_data_set_names(place: Path) -> None:
+def test_verify_opens_no_file_that_a_data_set_names(place):
     report = verify(place / "out", 24)
     assert (report.problems, report.resynthesised, report.unmade) == ([], 6, 18)
     report = verify(place / "out", 24, place)
@@ -102,7 +99,7 @@ def test_verify_opens_no_file_that_a_data_set_names(place: Path) -> None:
     assert "--motion FOLDER synthesises them anew" in done.stdout
 
 
-def test_a_written_scene_is_the_same_recording(place: Path, tmp_path: Path) -> None:
+def test_a_written_scene_is_the_same_recording(place, tmp_path):
     import h5py
 
     common = ["--no-figures", "--maps", "stft", "-o"]
@@ -119,11 +116,10 @@ def test_a_written_scene_is_the_same_recording(place: Path, tmp_path: Path) -> N
     with open_dataset(place / "out") as data:
         file = int(data.scene["walking_file"][6 + 4])
     assert f"walks/{file}.bvh" in (tmp_path / "a/scene.yaml").read_text()
-    done = radhar("inspect", tmp_path / "a")
-    assert done.returncode == 0, done.stderr
+    ok("inspect", tmp_path / "a")
 
 
-def test_a_short_file_is_warned_of(place: Path, tmp_path: Path) -> None:
+def test_a_short_file_is_warned_of(place, tmp_path):
     config = load_config(
         place / "set.yaml",
         ["duration_s=3", "activities=[walking]", "samples_per_class=2", "output.png=false"],
@@ -133,23 +129,7 @@ def test_a_short_file_is_warned_of(place: Path, tmp_path: Path) -> None:
     assert any("2 of 2 recordings: the motion file ends" in line for line in listener.messages)
 
 
-def test_train_and_eval_accept_it(place: Path, tmp_path: Path) -> None:
-    pytest.importorskip("torch")
-    trained = radhar(
-        *("train", place / "out", "-o", tmp_path / "run", "--model", "smallnet"),
-        *("--set", "epochs=2", "--set", "batch_size=8"),
-    )
-    assert trained.returncode == 0, trained.stderr
-    done = radhar("eval", tmp_path / "run", place / "out")
-    assert done.returncode == 0, done.stderr
-    sheet = tmp_path / "sheet.png"
-    for command in (("preview", place / "out", "-o", sheet), ("inspect", place / "out")):
-        shown = radhar(*command)
-        assert shown.returncode == 0, shown.stderr
-    assert sheet.is_file()
-
-
-def test_two_user_defined_classes_alone(place: Path, tmp_path: Path) -> None:
+def test_two_user_defined_classes_alone(place, tmp_path):
     """With `motion.model: file` the classes are those of the files, two of them here."""
     config = load_config(
         place / "set.yaml",
@@ -161,14 +141,13 @@ def test_two_user_defined_classes_alone(place: Path, tmp_path: Path) -> None:
     build(config, tmp_path / "two", 1, Listener())
     assert verify(tmp_path / "two", 6, place).problems == []
     pytest.importorskip("torch")
-    run = radhar("train", tmp_path / "two", "-o", tmp_path / "run", "--model", "smallnet",
+    ok("train", tmp_path / "two", "-o", tmp_path / "run", "--model", "smallnet",
                  "--set", "epochs=1", "--set", "batch_size=4")  # fmt: skip
-    assert run.returncode == 0, run.stderr
     assert radhar("eval", tmp_path / "run", tmp_path / "two").returncode == 0
 
 
 @pytest.mark.parametrize("path", ["/etc/walk.bvh", "../elsewhere/walk.bvh", "a/../../walk.bvh"])
-def test_motion_file_paths_cannot_leave_the_given_folder(path: str, tmp_path: Path) -> None:
+def test_motion_file_paths_cannot_leave_the_given_folder(path, tmp_path):
     config = Config(classes={"wave": {"files": {path: "0" * 64}}}, activities=("wave",))
     with pytest.raises(FolderError, match=r"names .* which lies outside"):
         with_folder(config, tmp_path)

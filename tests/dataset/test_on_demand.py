@@ -1,9 +1,6 @@
 """A sample on demand is the one of the data set, bit for bit, and nothing else is computed."""
 
 import pickle
-from collections.abc import Sequence
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -13,13 +10,11 @@ from small import SMALL, small_config
 
 import radhar_cli as radhar
 from radhar_cli.config import load_config
-from radhar_cli.config.schema import Config
 from radhar_cli.dataset import on_demand
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.on_demand import Recipe, field_names, sample
-from radhar_cli.dataset.reading import Dataset, open_dataset
+from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import ConfigError, SceneError
-from radhar_cli.pipeline.plan import Plan
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.run import run
 
@@ -31,19 +26,19 @@ PERSONS = "\nsplit: {train: 0.5, validation: 0.5, by: subject, subjects: 2}\n"
 
 
 @pytest.fixture(scope="module")
-def config(tmp_path_factory: pytest.TempPathFactory) -> Config:
+def config(tmp_path_factory):
     text = SMALL.replace("split: {train: 0.67, validation: 0.33}", "") + EVERYTHING + PERSONS
     return load_config(small_config(tmp_path_factory.mktemp("config"), text))
 
 
 @pytest.fixture(scope="module")
-def built(config: Config, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def built(config, tmp_path_factory):
     folder = tmp_path_factory.mktemp("built")
     build(config, folder, 1, Listener())
     return folder
 
 
-def stored(data: Dataset, row: int, name: str) -> Any:
+def stored(data, row, name):
     """What dataset.h5 has in a row, by the name of the dataset."""
     kind, _, rest = name.partition("/")
     if kind == "scene":
@@ -60,7 +55,7 @@ def stored(data: Dataset, row: int, name: str) -> Any:
     return {"label": data.label, "sample_key": data.sample_key}[kind][row]
 
 
-def test_every_field_of_every_sample_is_that_of_the_data_set(config: Config, built: Path) -> None:
+def test_every_field_of_every_sample_is_that_of_the_data_set(config, built):
     names = [name for name in field_names(config) if not name.startswith("largest_db/")]
     with open_dataset(built) as data:
         assert {"maps/rtm", "power/stft", "slow_time", "entropy/rtm", "scene/snr"} <= {*names}
@@ -78,9 +73,7 @@ def test_every_field_of_every_sample_is_that_of_the_data_set(config: Config, bui
 @pytest.mark.parametrize(
     "fields", [["maps/stft"], ["maps/fsst_compensated", "slow_time"], ["entropy/stft"]]
 )
-def test_a_field_does_not_depend_on_what_else_is_asked_for(
-    config: Config, fields: list[str]
-) -> None:
+def test_a_field_does_not_depend_on_what_else_is_asked_for(config, fields):
     whole, alone = sample(config, "S12", 1, field_names(config)), sample(config, "S12", 1, fields)
     assert list(alone) == ["label", "sample_key", *fields]
     for name in alone:
@@ -96,16 +89,10 @@ def test_a_field_does_not_depend_on_what_else_is_asked_for(
         (["scene/height"], set(), {"paths", "echo", "signal", "waveform"}),
     ],
 )
-def test_nothing_is_synthesised_that_is_not_asked_for(
-    config: Config,
-    fields: list[str],
-    runs: set[str],
-    not_runs: set[str],
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_nothing_is_synthesised_that_is_not_asked_for(config, fields, runs, not_runs, monkeypatch):
     ran: set[str] = set()
 
-    def watched(steps: Any, given: Any) -> Any:
+    def watched(steps, given):
         found = run(steps, given)
         ran.update(found.seconds)
         return found
@@ -116,10 +103,8 @@ def test_nothing_is_synthesised_that_is_not_asked_for(
     assert not not_runs & ran
 
 
-def test_entropy_is_summed_up_only_where_it_is_asked_for(
-    config: Config, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def refuse(*_: object) -> None:
+def test_entropy_is_summed_up_only_where_it_is_asked_for(config, monkeypatch):
+    def refuse(*_):
         raise AssertionError("an entropy")
 
     monkeypatch.setattr("radhar_cli.processing.entropy.EntropySum.add", refuse)
@@ -128,8 +113,8 @@ def test_entropy_is_summed_up_only_where_it_is_asked_for(
         sample(config, "walking", 0, ["maps/rtm", "entropy/rtm"])
 
 
-def test_seed_and_index_name_a_sample_beyond_the_data_set_too(config: Config) -> None:
-    def levels(seed: int | None, index: int, more: Sequence[str] = ()) -> bytes:
+def test_seed_and_index_name_a_sample_beyond_the_data_set_too(config):
+    def levels(seed, index, more=()):
         made = sample(config, "walking", index, ["maps/stft", *more], seed)
         return bytes(made["maps/stft"].tobytes())
 
@@ -138,7 +123,7 @@ def test_seed_and_index_name_a_sample_beyond_the_data_set_too(config: Config) ->
     assert len({levels(None, 0), levels(99, 0), levels(None, 4000), levels(99, 4000)}) == 4
 
 
-def test_samples_can_be_pickled(config: Config) -> None:
+def test_samples_can_be_pickled(config):
     recipe = Recipe.of(config, ["maps/stft"])
     activity = config.chosen_activities[1]
     first = recipe(activity, 2)["maps/stft"]
@@ -147,12 +132,10 @@ def test_samples_can_be_pickled(config: Config) -> None:
     assert np.array_equal(again(activity, 2)["maps/stft"], first)
 
 
-def test_the_plan_is_made_once_for_one_config(
-    config: Config, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_plan_is_made_once_for_one_config(config, monkeypatch):
     made = []
 
-    def counted(config: Config, entropy: bool) -> Plan:
+    def counted(config, entropy):
         made.append(entropy)
         return plan_images(config, entropy)
 
@@ -163,7 +146,7 @@ def test_the_plan_is_made_once_for_one_config(
     assert made == [False]
 
 
-def test_mistakes_are_refused_in_one_line(config: Config) -> None:
+def test_mistakes_are_refused_in_one_line(config):
     plain = config.model_copy(
         update={"output": config.output.model_copy(update={"power": None, "slow_time": False})}
     )
@@ -197,7 +180,7 @@ def test_mistakes_are_refused_in_one_line(config: Config) -> None:
         sample(config, "wlking")
 
 
-def test_a_config_may_be_a_path(tmp_path: Path) -> None:
+def test_a_config_may_be_a_path(tmp_path):
     path = small_config(tmp_path)
     right = sample(load_config(path), "punching", 1, ["maps/stft"])["maps/stft"]
     for given in (path, str(path)):
@@ -205,7 +188,7 @@ def test_a_config_may_be_a_path(tmp_path: Path) -> None:
         assert Recipe.of(given) == Recipe.of(load_config(path))
 
 
-def test_numpy_integers_are_accepted(config: Config) -> None:
+def test_numpy_integers_are_accepted(config):
     fields = ["scene/height"]
     one = sample(config, "walking", np.int64(2), fields, np.uint8(5))
     other = sample(config, "walking", 2, fields, 5)
@@ -213,10 +196,8 @@ def test_numpy_integers_are_accepted(config: Config) -> None:
     assert sample(config, "walking", 2**63 - 1, fields)["sample_key"].dtype == np.int64
 
 
-def test_scenes_outside_the_model_are_refused_or_drawn_again_as_in_a_build(
-    config: Config,
-) -> None:
-    def within(on_invalid: str) -> Config:
+def test_scenes_outside_the_model_are_refused_or_drawn_again_as_in_a_build(config):
+    def within(on_invalid):
         motion = config.motion.model_copy(update={"range_m": 200.0})
         return config.model_copy(update={"on_invalid": on_invalid, "motion": motion})
 
@@ -226,7 +207,7 @@ def test_scenes_outside_the_model_are_refused_or_drawn_again_as_in_a_build(
         sample(within("error"), "walking", 0, ["scene/height"])
 
 
-def test_it_needs_no_torch_and_the_package_stays_light() -> None:
+def test_it_needs_no_torch_and_the_package_stays_light():
     done = process(
         "-c",
         "import sys, radhar_cli as radhar\n"
@@ -238,7 +219,7 @@ def test_it_needs_no_torch_and_the_package_stays_light() -> None:
     assert radhar.sample is sample
 
 
-def test_without_torch_a_stream_says_what_to_install() -> None:
+def test_without_torch_a_stream_says_what_to_install():
     done = process(
         "-c",
         "import sys, radhar_cli as radhar\n"

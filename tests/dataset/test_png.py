@@ -15,7 +15,7 @@ from radhar_cli.dataset.png import colour_table, deflated, encode_png, stored_le
 LEVELS = [0, 1, 2, 6, 9]
 
 
-def levels() -> np.ndarray:
+def levels():
     return (
         np.random.default_rng(0)
         .permutation(np.arange(48 * 32) % 256)
@@ -51,14 +51,6 @@ def test_indices_of_a_strange_palette_are_no_levels():
         picture.save(buffer, "png")
         with Image.open(buffer) as again:
             assert stored_levels(again) is None
-
-
-def test_few_levels_keep_their_numbers():
-    """A smaller palette would renumber them."""
-    two = np.full((4, 4), 7, np.uint8)
-    two[0] = 200
-    with Image.open(io.BytesIO(encode_png(two, colour_table("viridis"), 1))) as picture:
-        assert np.array_equal(stored_levels(picture), two)
 
 
 @pytest.mark.parametrize("level", LEVELS)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from small import small_config
 
-from radhar_cli.config import Config, load_config
+from radhar_cli.config import load_config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.sample import Sample
@@ -29,11 +29,11 @@ from radhar_cli.processing.power_map import MapImage
 
 
 @pytest.fixture(scope="module")
-def config(tmp_path_factory: pytest.TempPathFactory) -> Config:
+def config(tmp_path_factory):
     return load_config(small_config(tmp_path_factory.mktemp("config")), ["maps=[stft]"])
 
 
-def stub(config: Config, start: int, stop: int) -> bytes:
+def stub(config, start, stop):
     """A shard whose level is the row's number everywhere."""
     size = config.image.size_px
     levels = (np.full(size, row, np.uint8) for row in range(start, stop))
@@ -44,11 +44,11 @@ def stub(config: Config, start: int, stop: int) -> bytes:
     return encode_shard(config, whose(config), start, samples, values, flags)
 
 
-def whose(config: Config) -> str:
+def whose(config):
     return identity_hash(identity(config))
 
 
-def test_what_was_stored_is_read_and_hdf5(config: Config, tmp_path: Path) -> None:
+def test_what_was_stored_is_read_and_hdf5(config, tmp_path):
     write_shard(tmp_path, 4, 7, stub(config, 4, 7))
     shard = Shard(4, 7, tmp_path)
     data, checksum = shard.read(whose(config))
@@ -60,14 +60,14 @@ def test_what_was_stored_is_read_and_hdf5(config: Config, tmp_path: Path) -> Non
             assert file["flags"][:].tolist() == [4, 5, 6]
 
 
-def test_the_same_rows_give_the_same_bytes_at_another_time(config: Config) -> None:
+def test_the_same_rows_give_the_same_bytes_at_another_time(config):
     """HDF5 counts in seconds."""
     before = stub(config, 0, 2)
     time.sleep(1.1)
     assert stub(config, 0, 2) == before
 
 
-def test_every_changed_or_missing_byte_is_found(config: Config, tmp_path: Path) -> None:
+def test_every_changed_or_missing_byte_is_found(config, tmp_path):
     right = stub(config, 0, 2)
     shard = Shard(0, 2, tmp_path)
     places = {*range(0, 220, 7), *range(220, len(right), 499), len(right) - 1}
@@ -82,7 +82,7 @@ def test_every_changed_or_missing_byte_is_found(config: Config, tmp_path: Path) 
             shard.read(whose(config))
 
 
-def test_why_a_shard_cannot_be_used(config: Config, tmp_path: Path) -> None:
+def test_why_a_shard_cannot_be_used(config, tmp_path):
     shard = Shard(0, 2, tmp_path)
     with pytest.raises(ShardError, match="is not there"):
         shard.read(whose(config))
@@ -100,7 +100,7 @@ def test_why_a_shard_cannot_be_used(config: Config, tmp_path: Path) -> None:
     assert shard.read(whose(other))
 
 
-def test_of_two_shards_with_the_same_rows_one_is_used(config: Config, tmp_path: Path) -> None:
+def test_of_two_shards_with_the_same_rows_one_is_used(config, tmp_path):
     for start, stop in ((0, 4), (2, 6), (4, 6), (8, 9)):
         write_shard(tmp_path, start, stop, stub(config, start, stop))
     Shard(6, 8, tmp_path).path.write_bytes(b"half")
@@ -110,18 +110,18 @@ def test_of_two_shards_with_the_same_rows_one_is_used(config: Config, tmp_path: 
     assert [(s.start, s.stop) for s, _ in unusable] == [(6, 8)]
 
 
-def shards(*runs: tuple[int, int]) -> list[Shard]:
+def shards(*runs):
     return [Shard(start, stop, Path("set")) for start, stop in runs]
 
 
-def test_missing_and_repeated_rows() -> None:
+def test_missing_and_repeated_rows():
     assert missing_and_repeated(shards((4, 6), (0, 4)), 6) == ([], [])
     assert missing_and_repeated(shards((2, 4), (6, 8)), 9) == ([(0, 2), (4, 6), (8, 9)], [])
     assert missing_and_repeated(shards((0, 6), (2, 4), (5, 9)), 9) == ([], [(2, 4), (5, 6)])
     assert missing_and_repeated([], 3) == ([(0, 3)], [])
 
 
-def test_gaps_and_overlaps_are_refused_and_their_rows_named(tmp_path: Path) -> None:
+def test_gaps_and_overlaps_are_refused_and_their_rows_named(tmp_path):
     require_tiling(tmp_path, shards((0, 4), (4, 9)), 9)
     with pytest.raises(UnfinishedError, match=r"rows 2-3, 8 \(3 of 9\) are missing"):
         require_tiling(tmp_path, shards((0, 2), (4, 8)), 9)

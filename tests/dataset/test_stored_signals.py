@@ -1,18 +1,15 @@
 """`output: {power, slow_time}`: what images lose, in dataset.h5 by the contract of the images."""
 
 import hashlib
-from collections.abc import Callable
-from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
-from small import SMALL, fingerprint, small_config
+from small import SMALL, edited, fingerprint, small_config
 
 from radhar_cli.activity import activity_named
 from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import load_config
-from radhar_cli.config.schema import Config
 from radhar_cli.dataset import verify as verification
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.estimate import estimate
@@ -27,20 +24,18 @@ WITH_SIGNALS = SMALL + "output: {png: false, power: float16, slow_time: true}\n"
 HALF_DB = 0.03  # half a step of float16 between 64 and 128 dB, and more
 
 
-def config_of(folder: Path, text: str = WITH_SIGNALS) -> Config:
+def config_of(folder, text=WITH_SIGNALS):
     return load_config(small_config(folder, text))
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def whole(tmp_path_factory):
     place = tmp_path_factory.mktemp("signals")
     build(config_of(place), place / "set", 1, BarProgress())
     return place / "set"
 
 
-def test_stored_signals_are_verified_and_do_not_depend_on_batches_or_workers(
-    whole: Path, tmp_path: Path
-) -> None:
+def test_stored_signals_are_verified_and_do_not_depend_on_batches_or_workers(whole, tmp_path):
     report = verify(whole, 100)
     assert report.problems == []
     assert report.resynthesised == 9
@@ -48,7 +43,7 @@ def test_stored_signals_are_verified_and_do_not_depend_on_batches_or_workers(
     assert fingerprint(whole)["dataset.h5"] == fingerprint(tmp_path / "set")["dataset.h5"]
 
 
-def test_power_is_that_of_the_map_without_clipping(whole: Path) -> None:
+def test_power_is_that_of_the_map_without_clipping(whole):
     """Levels follow from it; with the largest power it is the map in absolute decibels."""
     with open_dataset(whole) as data, h5py.File(whole / "dataset.h5") as file:
         for name in data.config.maps:
@@ -67,11 +62,11 @@ def test_power_is_that_of_the_map_without_clipping(whole: Path) -> None:
         assert -6 < file["largest_db/stft"][row] - largest <= 1e-3
 
 
-def data_activity(file: h5py.File, row: int):
+def data_activity(file, row):
     return activity_named(file.attrs["class_slugs"][file["sample_key"][row, 0]])
 
 
-def test_the_signal_is_that_of_the_scene(whole: Path) -> None:
+def test_the_signal_is_that_of_the_scene(whole):
     with open_dataset(whole) as data, h5py.File(whole / "dataset.h5") as file:
         stored = file["slow_time"]
         assert (stored.dtype, stored.shape) == (np.complex64, (9, 1999))
@@ -83,7 +78,7 @@ def test_the_signal_is_that_of_the_scene(whole: Path) -> None:
             assert np.linalg.norm(stored[row] - right) <= 1e-7 * np.linalg.norm(right)
 
 
-def test_masks_of_decibels_have_the_power_of_the_map_beside_them(tmp_path: Path) -> None:
+def test_masks_of_decibels_have_the_power_of_the_map_beside_them(tmp_path):
     masks = "{size_px: 48, kind: cfar, cfar: {guard: [1, 1], training: [5, 5]}}"
     text = WITH_SIGNALS.replace("{size_px: 48}", masks)
     for name, chosen in (("plain", WITH_SIGNALS), ("masks", text)):
@@ -97,7 +92,7 @@ def test_masks_of_decibels_have_the_power_of_the_map_beside_them(tmp_path: Path)
         assert set(np.unique(b["maps/stft"])) == {0, 255}
 
 
-def test_shorter_recordings_end_in_nan(tmp_path: Path) -> None:
+def test_shorter_recordings_end_in_nan(tmp_path):
     text = WITH_SIGNALS.replace("duration_s: 4.0", "duration_s: {choice: [2.0, 4.0]}")
     build(config_of(tmp_path, text), tmp_path / "set", 1, BarProgress())
     assert verify(tmp_path / "set", 100).problems == []
@@ -108,15 +103,15 @@ def test_shorter_recordings_end_in_nan(tmp_path: Path) -> None:
         assert np.array_equal(np.isnan(x), np.arange(1999) >= duration * 500 - 1)
 
 
-def _power(file: h5py.File) -> None:
+def _power(file):
     file["power/rtm"][2, 3, 4] -= np.float16(1)
 
 
-def _signal(file: h5py.File) -> None:
+def _signal(file):
     file["slow_time"][7, 100] *= -1
 
 
-def _signal_and_checksum(file: h5py.File) -> None:
+def _signal_and_checksum(file):
     signal = file["slow_time"][4]
     signal[100] *= -1
     file["slow_time"][4] = signal
@@ -131,23 +126,17 @@ def _signal_and_checksum(file: h5py.File) -> None:
         (_signal_and_checksum, "/slow_time[4] (walking/1): differs"),
     ],
 )
-def test_changed_signals_are_found(
-    change: Callable[[h5py.File], None], words: str, whole: Path, tmp_path: Path
-) -> None:
+def test_changed_signals_are_found(change, words, whole, tmp_path):
     copy = tmp_path / "dataset.h5"
-    copy.write_bytes((whole / "dataset.h5").read_bytes())
-    with h5py.File(copy, "r+") as file:
+    with edited(whole / "dataset.h5", copy) as file:
         change(file)
     assert any(words in problem for problem in verify(copy, 9).problems)
 
 
-def test_other_versions_may_round_differently(
-    whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_other_versions_may_round_differently(whole, tmp_path, monkeypatch):
     """A last bit of every sample is no problem under another version; a wrong one still is."""
     copy = tmp_path / "dataset.h5"
-    copy.write_bytes((whole / "dataset.h5").read_bytes())
-    with h5py.File(copy, "r+") as file:
+    with edited(whole / "dataset.h5", copy) as file:
         for name in ("slow_time", "power/stft"):
             values = file[name][:] * np.float16(1 + 2e-7 if name == "slow_time" else 1)
             if name == "power/stft":
@@ -164,30 +153,7 @@ def test_other_versions_may_round_differently(
     assert verify(copy, 9).problems != []
 
 
-@pytest.mark.parametrize(
-    ("name", "wrong", "words"),
-    [
-        ("power/stft", np.zeros((9, 48, 48), np.float32), "is of the type float32"),
-        ("power/stft", np.zeros((9, 48, 48), ">f2"), "is of the type"),
-        ("slow_time", np.zeros((9, 1998), np.complex64), "has the shape"),
-        ("slow_time", None, "is missing"),
-    ],
-)
-def test_wrong_shapes_and_types_are_refused(
-    name: str, wrong: np.ndarray | None, words: str, whole: Path, tmp_path: Path
-) -> None:
-    copy = tmp_path / "dataset.h5"
-    copy.write_bytes((whole / "dataset.h5").read_bytes())
-    with h5py.File(copy, "r+") as file:
-        del file[name]
-        if wrong is not None:
-            file.create_dataset(name, data=wrong, chunks=(1, *wrong.shape[1:]))
-    with pytest.raises(FolderError, match=words) as caught:
-        open_dataset(copy)
-    assert f"/{name}" in str(caught.value)
-
-
-def test_the_estimate_counts_stored_signals(tmp_path: Path) -> None:
+def test_the_estimate_counts_stored_signals(tmp_path):
     with_signals, plain = config_of(tmp_path), config_of(tmp_path, SMALL)
     more = estimate(with_signals, 1).hdf5_bytes - estimate(plain, 1).hdf5_bytes
     raw = row_bytes(with_signals) - row_bytes(plain)
@@ -195,6 +161,6 @@ def test_the_estimate_counts_stored_signals(tmp_path: Path) -> None:
     assert 0.5 * 9 * raw < more < 2 * 9 * raw
 
 
-def test_their_keys_are_part_of_the_identity(whole: Path, tmp_path: Path) -> None:
+def test_their_keys_are_part_of_the_identity(whole, tmp_path):
     with pytest.raises(FolderError, match=r"output\.slow_time"):
         build(config_of(tmp_path, SMALL), whole, 1, BarProgress())

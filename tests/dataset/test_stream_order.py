@@ -1,7 +1,5 @@
 """The order of a stream: every sample once, in the ratio of the data set, its split held back."""
 
-from typing import Any
-
 import pytest
 
 from radhar_cli.config.schema import Config
@@ -14,23 +12,23 @@ UNEVEN = {"per_activity": {"default": 6, "walking": 12, "S12": 3}}
 FOUR = ["punching", "kicking", "walking", "S12"]
 
 
-def config(**more: Any) -> Config:
+def config(**more):
     document = {"seed": 5, "samples_per_class": 10, "activities": FOUR, **more}
     return Config.model_validate(document)
 
 
-def first(order: StreamOrder, count: int) -> list[tuple[str, int]]:
+def first(order, count):
     return [(activity.slug, index) for activity, index in map(order.__getitem__, range(count))]
 
 
-def test_classes_come_in_turn_and_every_sample_once() -> None:
+def test_classes_come_in_turn_and_every_sample_once():
     seen = first(StreamOrder(config(samples_per_class=UNEVEN)), 40)
     assert {slug for slug, _ in seen[:4]} == {slug for slug, _ in seen[4:8]}
     assert [index for _, index in seen] == [n // 4 for n in range(40)]
     assert len({*seen}) == 40
 
 
-def test_training_leaves_out_what_the_split_holds_back() -> None:
+def test_training_leaves_out_what_the_split_holds_back():
     made = config(samples_per_class=UNEVEN, split={"train": 0.6, "validation": 0.2, "test": 0.2})
     rows, split, order = Rows.of(made), split_rows(made), StreamOrder(made, "train")
     held_back = {
@@ -42,7 +40,7 @@ def test_training_leaves_out_what_the_split_holds_back() -> None:
     assert len({*seen}) == len(seen)
 
 
-def test_training_leaves_out_persons_and_nobody_else() -> None:
+def test_training_leaves_out_persons_and_nobody_else():
     split = {"train": 0.5, "validation": 0.5, "by": "subject", "subjects": 4}
     made = config(samples_per_class=8, split=split)
     rows, numbers = Rows.of(made), split_rows(made)
@@ -54,7 +52,7 @@ def test_training_leaves_out_persons_and_nobody_else() -> None:
     assert max(index for _, index in seen) < 2 * 160 / 4 + 4, "no index is skipped but theirs"
 
 
-def test_a_split_without_training_persons_is_refused() -> None:
+def test_a_split_without_training_persons_is_refused():
     split = {"train": 0.0, "validation": 1.0, "by": "subject", "subjects": 2}
     with pytest.raises(ConfigError, match=r"split.train: leaves no person"):
         StreamOrder(config(split=split), "train")

@@ -1,32 +1,23 @@
 """`inspect` tells what a data set, a half-built folder or a scene holds."""
 
 import shutil
-from pathlib import Path
 
 import pytest
-from small import small_config
+from small import full_disk_after, small_config
 
 from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import load_config
-from radhar_cli.dataset import batch
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.summary import summarise
-from radhar_cli.errors import FolderError, UnfinishedError
+from radhar_cli.errors import FolderError
 from radhar_cli.simulation.scene_file import write_all
 from radhar_cli.simulation.simulate import simulate
 
 
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    place = tmp_path_factory.mktemp("summary")
-    build(load_config(small_config(place)), place / "set", 1, BarProgress())
-    return place / "set"
-
-
 @pytest.mark.parametrize("name", ["", "dataset.h5"])
-def test_data_set(whole: Path, name: str) -> None:
-    found = summarise(whole / name)
+def test_data_set(small_set, name):
+    found = summarise(small_set / name)
     assert found["kind"] == "data set"
     assert found["samples"] == 9
     assert found["classes"]["walking"] == {"train": 2, "validation": 1, "test": 0}
@@ -37,20 +28,9 @@ def test_data_set(whole: Path, name: str) -> None:
     assert found["entropy_bits"]["stft"]["walking"]["mean"] > 0
 
 
-def test_inspect_of_an_unfinished_build_shows_its_progress(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    original, made = batch.synthesise, []
-
-    def fails(*arguments: object) -> object:
-        made.append(1)
-        if len(made) > 4:
-            raise OSError("disk")
-        return original(*arguments)
-
-    monkeypatch.setattr(batch, "synthesise", fails)
+def test_inspect_of_an_unfinished_build_shows_its_progress(tmp_path):
     config = load_config(small_config(tmp_path))
-    with pytest.raises(UnfinishedError):
+    with full_disk_after(4):
         build(config, tmp_path / "set", 1, BarProgress(), batch_size=2)
     found = summarise(tmp_path / "set")
     assert (found["kind"], found["finished"], found["samples"]) == ("unfinished data set", 4, 9)
@@ -58,7 +38,7 @@ def test_inspect_of_an_unfinished_build_shows_its_progress(
         open_dataset(tmp_path / "set")
 
 
-def test_scene(tmp_path: Path) -> None:
+def test_scene(tmp_path):
     simulation = simulate(load_config(small_config(tmp_path)), "S12", maps=("stft",))
     write_all(simulation, tmp_path)
     for path in (tmp_path, tmp_path / "scene.h5"):
@@ -67,13 +47,13 @@ def test_scene(tmp_path: Path) -> None:
         assert found["activity"]["slug"] == "walking_to_falling"
 
 
-def test_foreign_files_are_refused(whole: Path, tmp_path: Path) -> None:
+def test_foreign_files_are_refused(small_set, tmp_path):
     import h5py
 
     with h5py.File(tmp_path / "other.h5", "w") as file:
         file["x"] = 1
     (tmp_path / "text.h5").write_text("hello")
-    shutil.copy(whole / "dataset.h5", tmp_path / "cut.h5")
+    shutil.copy(small_set / "dataset.h5", tmp_path / "cut.h5")
     with (tmp_path / "cut.h5").open("r+b") as cut:
         cut.truncate(4000)
     for name in ("other.h5", "text.h5", "cut.h5", "none.h5", ""):
@@ -81,8 +61,8 @@ def test_foreign_files_are_refused(whole: Path, tmp_path: Path) -> None:
             summarise(tmp_path / name)
 
 
-def test_dataset_reads_lazily_and_suggests_maps(whole: Path) -> None:
-    with open_dataset(whole) as data:
+def test_dataset_reads_lazily_and_suggests_maps(small_set):
+    with open_dataset(small_set) as data:
         assert data.maps["stft"][0].shape == (48, 48)
         assert data.map_name(None) == "rtm"
         with pytest.raises(FolderError, match="did you mean 'stft'"):

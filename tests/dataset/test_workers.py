@@ -25,7 +25,7 @@ if __name__ == "__main__":
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
-def test_a_library_loaded_late_keeps_to_one_thread(jobs: int) -> None:
+def test_a_library_loaded_late_keeps_to_one_thread(jobs):
     asked = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "3")
     done = subprocess.run(
         [sys.executable, "-c", THREADS, str(jobs)],

@@ -6,13 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
-from small import small_config
 
-from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import MAP_NAMES, load_config
-from radhar_cli.dataset.build import build
 from radhar_cli.dataset.contact_sheet import draw_contact_sheet
-from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.figures.maps_panel import TITLES, decibels, draw_maps, of_simulation, places
 from radhar_cli.figures.stickman import draw_stickman, frame_count
@@ -22,7 +18,7 @@ ROOT = Path(__file__).resolve().parents[2]
 WALL = ROOT / "configs/paper/figures_through_wall.yaml"
 
 
-def colours(path: Path) -> int:
+def colours(path):
     with Image.open(path) as picture:
         return len(np.unique(np.asarray(picture.convert("RGB")).reshape(-1, 3), axis=0))
 
@@ -35,16 +31,14 @@ def colours(path: Path) -> int:
         ("S8", ["wall=null"], "right_ankle", ("stft",)),
     ],
 )
-def test_maps_are_drawn(
-    activity: str, overrides: list[str], joint: str | None, maps: tuple[str, ...], tmp_path: Path
-) -> None:
+def test_maps_are_drawn(activity, overrides, joint, maps, tmp_path):
     simulation = simulate(load_config(WALL, overrides), activity, joint=joint, maps=maps)
     draw_maps(of_simulation(simulation, overlay=True), tmp_path / "maps.png")
     assert colours(tmp_path / "maps.png") > 200
 
 
 @pytest.mark.parametrize("count", range(1, len(TITLES) + 1))
-def test_any_choice_of_maps_fills_its_page(count: int) -> None:
+def test_any_choice_of_maps_fills_its_page(count):
     for names in combinations(TITLES, count):
         cells = [
             (row, column)
@@ -61,7 +55,7 @@ def test_any_choice_of_maps_fills_its_page(count: int) -> None:
         ]
 
 
-def test_stickman_plays_at_true_speed_and_moves(tmp_path: Path) -> None:
+def test_stickman_plays_at_true_speed_and_moves(tmp_path):
     simulation = simulate(load_config(WALL, ["duration_s=0.7"]), "S12", maps=("stft",))
     done: list[int] = []
     draw_stickman(simulation, tmp_path / "stickman.gif", done.append)
@@ -74,22 +68,15 @@ def test_stickman_plays_at_true_speed_and_moves(tmp_path: Path) -> None:
     assert (np.abs(first - later).sum(axis=2) > 60).sum() > 500
 
 
-def test_contact_sheet_shows_every_class(tmp_path: Path) -> None:
-    build(load_config(small_config(tmp_path)), tmp_path / "set", 1, BarProgress())
-    with open_dataset(tmp_path / "set") as data:
+def test_contact_sheet_shows_every_class(small_set, tmp_path):
+    with open_dataset(small_set) as data:
         draw_contact_sheet(data, "stft", 2, tmp_path / "sheet.png")
         assert len(data) == 9
     assert colours(tmp_path / "sheet.png") > 100
 
 
-def test_decibels_of_an_all_zero_map_are_the_floor() -> None:
+def test_decibels_of_an_all_zero_map_are_the_floor():
     assert (decibels(np.zeros((3, 4)), 50.0) == -50).all()
     found = decibels(np.array([[1.0, 0.1, 0.0]]), 50.0)
     assert found == pytest.approx(np.array([[0, -10, -50]]), rel=1e-15, abs=0)
     assert found[0, 2] == -50
-
-
-def test_colour_table_is_256_colours() -> None:
-    table = colour_table("viridis")
-    assert table.shape == (256, 3)
-    assert table[0].tolist() != table[255].tolist()

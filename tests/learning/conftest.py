@@ -1,7 +1,5 @@
 """Runs that several tests read and none changes."""
 
-from pathlib import Path
-
 import pytest
 import torch
 from learning.patterns import split_tree, trained
@@ -10,7 +8,7 @@ from radhar_cli.learning.models.zoo import load_timm
 
 
 @pytest.fixture(autouse=True)
-def fresh_torch() -> None:
+def fresh_torch():
     """Chance, threads and algorithms as in a new process, whatever ran before."""
     torch.manual_seed(0)
     torch.set_num_threads(1)
@@ -18,13 +16,13 @@ def fresh_torch() -> None:
 
 
 @pytest.fixture(scope="session")
-def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def data(tmp_path_factory):
     """A tree of three of our classes, train and val."""
     return split_tree(tmp_path_factory.mktemp("data") / "tree")
 
 
 @pytest.fixture(scope="session")
-def run_dir(data: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def run_dir(data, tmp_path_factory):
     """A run of three epochs on it."""
     folder = tmp_path_factory.mktemp("runs") / "plain"
     trained(data, folder)
@@ -32,6 +30,6 @@ def run_dir(data: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def zoo() -> None:
+def zoo():
     """timm loads."""
     load_timm()

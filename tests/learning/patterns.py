@@ -2,22 +2,20 @@
 
 import dataclasses
 import math
-from collections.abc import Mapping, Sequence
-from pathlib import Path
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
+import pytest
 import torch
 from PIL import Image
 from safetensors.torch import load_file
 
-from radhar_cli.errors import RadharError
 from radhar_cli.learning import run_files
 from radhar_cli.learning import run_folder as run
 from radhar_cli.learning.evaluation import open_for, predict
-from radhar_cli.learning.run_folder import Epoch
 from radhar_cli.learning.settings import TrainConfig
-from radhar_cli.learning.training import Outcome, train
+from radhar_cli.learning.training import train
 
 SIZE = 32
 CLASSES = ("kicking", "punching", "walking")  # S3, S2 and S8: not the order of the alphabet
@@ -37,9 +35,7 @@ BASE = {
 }
 
 
-def stripes(
-    kind: int, rng: np.random.Generator, size: int | tuple[int, int] = SIZE
-) -> np.ndarray[Any, Any]:
+def stripes(kind, rng, size=SIZE):
     """An image [H, W, 3] whose stripes lie in a direction of their class."""
     height, width = (size, size) if isinstance(size, int) else size
     y, x = np.mgrid[:height, :width]
@@ -49,13 +45,7 @@ def stripes(
     return np.clip(levels, 0, 255).astype(np.uint8)
 
 
-def tree(
-    root: Path,
-    classes: Sequence[str] = CLASSES,
-    parts: Mapping[str, int] | None = None,
-    size: int | tuple[int, int] = SIZE,
-    seed: int = 0,
-) -> Path:
+def tree(root, classes=CLASSES, parts=None, size=SIZE, seed=0):
     """Write <part>/<class>/<number>.png; without parts <class>/<number>.png, eight a class.
 
     The pattern belongs to the name, wherever it stands in the list.
@@ -71,46 +61,46 @@ def tree(
     return root
 
 
-def split_tree(root: Path, train: int = 4, val: int = 2, **more: Any) -> Path:
+def split_tree(root, train=4, val=2, **more):
     """The tree that most tests learn from."""
     return tree(root, parts={"train": train, "val": val}, **more)
 
 
-def settings(**changes: Any) -> TrainConfig:
+def settings(**changes):
     return TrainConfig.model_validate({**BASE, **changes})
 
 
 class Watched:
     """A progress that remembers, and raises after an epoch if asked to."""
 
-    def __init__(self, stop_after: int = 0, error: type[BaseException] = KeyboardInterrupt) -> None:
+    def __init__(self, stop_after=0, error=KeyboardInterrupt):
         self.messages: list[str] = []
         self.losses: list[float] = []
         self.best: list[bool] = []
         self.steps: list[int] = []
         self.stop_after, self.error = stop_after, error
 
-    def say(self, message: str) -> None:
+    def say(self, message):
         self.messages.append(message)
 
-    def epoch(self, number: int, epochs: int, steps: int) -> None:
+    def epoch(self, number, epochs, steps):
         self.steps.append(steps)
 
-    def step(self, loss: float, accuracy: float) -> None:
+    def step(self, loss, accuracy):
         self.losses.append(loss)
 
-    def epoch_done(self, row: Epoch, best: bool) -> None:
+    def epoch_done(self, row, best):
         self.best.append(best)
         if row.epoch == self.stop_after:
             raise self.error
 
 
-def trained(data: Path, out: Path, progress: Watched | None = None, **changes: Any) -> Outcome:
+def trained(data, out, progress=None, **changes):
     """Train with the tiny settings."""
     return train(settings(**changes), data, out, progress or Watched())
 
 
-def plant(out: Path, data: Path, margin: float = 5.0) -> None:
+def plant(out, data, margin=5.0):
     """Give a run a last layer that is right about every image of a set, by a margin of its logits.
 
     logits = W (f - mean f), W by least squares: whatever the layers before it have learned, they
@@ -128,24 +118,24 @@ def plant(out: Path, data: Path, margin: float = 5.0) -> None:
     run.write_best(out, metadata, run.best_epoch(run.read_history(out)), model.state_dict())
 
 
-def best_weights(out: Path) -> dict[str, torch.Tensor]:
+def best_weights(out):
     return load_file(out / run_files.BEST)
 
 
-def last_weights(out: Path) -> dict[str, torch.Tensor]:
+def last_weights(out):
     found: dict[str, torch.Tensor] = torch.load(out / run_files.LAST, weights_only=True)["model"]
     return found
 
 
-def same(one: Mapping[str, torch.Tensor], other: Mapping[str, torch.Tensor]) -> bool:
+def same(one, other):
     return list(one) == list(other) and all(torch.equal(one[k], other[k]) for k in one)
 
 
-def without_seconds(history: Sequence[Epoch]) -> list[Epoch]:
+def without_seconds(history):
     return [dataclasses.replace(row, seconds=0.0) for row in history]
 
 
-def same_run(one: Path, other: Path) -> bool:
+def same_run(one, other):
     """Whether two folders hold the same weights and history, but for the time they took."""
     histories = [without_seconds(run.read_history(folder)) for folder in (one, other)]
     return (
@@ -155,7 +145,15 @@ def same_run(one: Path, other: Path) -> bool:
     )
 
 
-def one_clear_line(error: RadharError, *words: object) -> None:
+@contextmanager
+def clear_line(kind, *words):
+    """What ends the program with status 2, by an error of a kind that names what matters."""
+    with pytest.raises(kind) as caught:
+        yield
+    one_clear_line(caught.value, *words)
+
+
+def one_clear_line(error, *words):
     """An error that the program ends with status 2 on, which names what matters."""
     assert error.status == 2
     for word in words:

@@ -1,7 +1,5 @@
 """Batch norm of unlabelled images."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 import torch
@@ -18,14 +16,14 @@ from radhar_cli.learning.run_folder import RunError, load_best
 CPU = torch.device("cpu")
 
 
-def accuracy(run: Path, data: Path) -> float:
+def accuracy(run, data):
     metadata, model = load_best(run)
     images = open_for(metadata, data, None)
     found = predict(model, metadata, images, np.arange(len(images)), CPU, 32)
     return float((found.predicted == found.truth).mean())
 
 
-def cross_entropy(run: Path, data: Path) -> float:
+def cross_entropy(run, data):
     """With batch norm as in training: statistics of other images are not what is asked about."""
     metadata, model = load_best(run)
     images = training_images(metadata, data)
@@ -35,7 +33,7 @@ def cross_entropy(run: Path, data: Path) -> float:
     return float(nn.functional.cross_entropy(logits, torch.from_numpy(images.label)))
 
 
-def another_radar(data: Path) -> Path:
+def another_radar(data):
     """Darkens all images of a tree and takes most of their contrast."""
     for path in data.rglob("*.png"):
         levels = np.asarray(Image.open(path)).astype(float)
@@ -44,20 +42,20 @@ def another_radar(data: Path) -> Path:
 
 
 @pytest.fixture(scope="module")
-def learned(data: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def learned(data, tmp_path_factory):
     run = tmp_path_factory.mktemp("learned") / "run"
     trained(data, run, epochs=8)
     return run
 
 
-def test_adaptation_restores_accuracy_at_another_contrast(learned: Path, tmp_path: Path) -> None:
+def test_adaptation_restores_accuracy_at_another_contrast(learned, tmp_path):
     measured = another_radar(tree(tmp_path / "measured", seed=5))
     adapt(learned, measured, tmp_path / "adapted", CPU)
     assert accuracy(learned, measured) < 0.7
     assert accuracy(tmp_path / "adapted", measured) > 0.9
 
 
-def test_statistics_alone_change_and_labels_do_not_matter(learned: Path, tmp_path: Path) -> None:
+def test_statistics_alone_change_and_labels_do_not_matter(learned, tmp_path):
     tree(tmp_path / "one", seed=5)
     (tmp_path / "one/walking").rename(tmp_path / "one/unknown")  # an unknown class
     metadata = adapt(learned, tmp_path / "one", tmp_path / "adapted", CPU)
@@ -70,7 +68,7 @@ def test_statistics_alone_change_and_labels_do_not_matter(learned: Path, tmp_pat
         assert same != (layer in norms and part.startswith(("running", "num_batches"))), name
 
 
-def information(run: Path, data: Path) -> float:
+def information(run, data):
     """Mutual information of images and predictions: entropy of the mean less mean entropy, nats."""
     metadata, model = load_best(run)
     images = open_for(metadata, data, None)
@@ -79,9 +77,7 @@ def information(run: Path, data: Path) -> float:
     return float(-(p.mean(0) * np.log(p.mean(0))).sum() - entropy)
 
 
-def test_epochs_raise_the_information_of_predictions_and_lose_no_accuracy(
-    learned: Path, tmp_path: Path
-) -> None:
+def test_epochs_raise_the_information_of_predictions_and_lose_no_accuracy(learned, tmp_path):
     measured = another_radar(tree(tmp_path / "measured", seed=5))
     watched = Watched()
     adapt(learned, measured, tmp_path / "norms", CPU)
@@ -91,9 +87,7 @@ def test_epochs_raise_the_information_of_predictions_and_lose_no_accuracy(
     assert accuracy(tmp_path / "epochs", measured) > 0.9
 
 
-def test_epochs_leave_the_last_layer_and_do_not_look_at_labels(
-    learned: Path, tmp_path: Path
-) -> None:
+def test_epochs_leave_the_last_layer_and_do_not_look_at_labels(learned, tmp_path):
     one, other = (tree(tmp_path / name / "tree", seed=5) for name in ("one", "other"))
     for number, name in enumerate(("punching", "kicking", "walking")):  # the order stays
         (other / name).rename(other / f"class_{number}")
@@ -108,7 +102,7 @@ def test_epochs_leave_the_last_layer_and_do_not_look_at_labels(
         assert torch.equal(tensor, after[name]) == name.startswith("head"), name
 
 
-def test_mixed_images_teach_their_labels(learned: Path, tmp_path: Path) -> None:
+def test_mixed_images_teach_their_labels(learned, tmp_path):
     measured, other = tree(tmp_path / "measured", seed=5), split_tree(tmp_path / "other", seed=6)
     for part in other.iterdir():  # two classes change names
         for old, new in (("kicking", "x"), ("punching", "kicking"), ("x", "punching")):
@@ -125,7 +119,7 @@ def test_mixed_images_teach_their_labels(learned: Path, tmp_path: Path) -> None:
     assert work[1] is not None
 
 
-def test_mixed_sets_are_drawn_by_their_weights(learned: Path, tmp_path: Path) -> None:
+def test_mixed_sets_are_drawn_by_their_weights(learned, tmp_path):
     metadata, _ = load_best(learned)
     sets = [
         training_images(metadata, split_tree(tmp_path / name, classes=(name,)))
@@ -139,9 +133,7 @@ def test_mixed_sets_are_drawn_by_their_weights(learned: Path, tmp_path: Path) ->
 
 
 @pytest.mark.parametrize(("epochs", "mix"), [(0, False), (2, False), (2, True)])
-def test_adaptation_is_reproducible(
-    learned: Path, data: Path, tmp_path: Path, epochs: int, mix: bool
-) -> None:
+def test_adaptation_is_reproducible(learned, data, tmp_path, epochs, mix):
     measured = tree(tmp_path / "measured", seed=5)
     for name in ("one", "two"):
         adapt(learned, measured, tmp_path / name, CPU, epochs=epochs, mix=(data,) * mix)
@@ -151,7 +143,7 @@ def test_adaptation_is_reproducible(
     assert same(one.state_dict(), two.state_dict())
 
 
-def test_what_cannot_be_adapted_is_refused(learned: Path, data: Path, tmp_path: Path) -> None:
+def test_what_cannot_be_adapted_is_refused(learned, data, tmp_path):
     few = tree(tmp_path / "few", classes=("walking",))
     with pytest.raises(ConfigError, match="has 8 images; should have at least 16"):
         adapt(learned, few, tmp_path / "no", CPU)

@@ -1,6 +1,5 @@
 """Changed copies of training images."""
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,24 +10,23 @@ from hypothesis import settings as examples
 from hypothesis import strategies as st
 from learning.patterns import same, settings, split_tree, trained
 
-from radhar_cli.arrays import Levels
 from radhar_cli.errors import ConfigError
 from radhar_cli.learning.augmentation import Augmentation
 from radhar_cli.learning.run_folder import load_best
 from radhar_cli.learning.settings import AugmentConfig, TrainConfig
 
 
-def changed(levels: Levels, row: int = 0, epoch: int = 0, seed: int = 1, **config: Any) -> Levels:
+def changed(levels, row=0, epoch=0, seed=1, **config):
     return Augmentation(AugmentConfig(**config), seed)(levels, row, epoch)
 
 
-def blob(row: int, column: int, size: int = 64) -> Levels:
+def blob(row, column, size=64):
     levels = np.zeros((size, size), np.uint8)
     levels[row - 2 : row + 3, column - 2 : column + 3] = 255
     return levels
 
 
-def centre(levels: Levels) -> tuple[float, float]:
+def centre(levels):
     weights = levels.astype(float)
     rows, columns = np.indices(levels.shape)
     return (
@@ -37,12 +35,12 @@ def centre(levels: Levels) -> tuple[float, float]:
     )
 
 
-def test_no_augmentation_by_default() -> None:
+def test_no_augmentation_by_default():
     levels = np.random.default_rng(1).integers(0, 256, (16, 20), dtype=np.uint8)
     assert np.array_equal(changed(levels), levels)
 
 
-def test_a_shift_moves_along_time_alone_and_stays_in_its_range() -> None:
+def test_a_shift_moves_along_time_alone_and_stays_in_its_range():
     moves = [centre(changed(blob(31, 31), row, time_shift=0.25)) for row in range(60)]
     rows, columns = np.array(moves).T
     assert np.abs(rows - 31).max() < 0.1
@@ -50,7 +48,7 @@ def test_a_shift_moves_along_time_alone_and_stays_in_its_range() -> None:
     assert np.abs(columns - 31).max() <= 16.1
 
 
-def test_doppler_scale_keeps_zero_doppler_and_multiplies_the_rest() -> None:
+def test_doppler_scale_keeps_zero_doppler_and_multiplies_the_rest():
     middle = 31.5
     above = np.array(
         [centre(changed(blob(16, 31), row, doppler_scale=0.3))[0] for row in range(60)]
@@ -67,7 +65,7 @@ def test_doppler_scale_keeps_zero_doppler_and_multiplies_the_rest() -> None:
         assert not found[34:].any()
 
 
-def test_time_stretch_keeps_the_middle_and_multiplies_the_distance_from_it() -> None:
+def test_time_stretch_keeps_the_middle_and_multiplies_the_distance_from_it():
     left, right = (
         np.array([centre(changed(blob(31, at), row, time_stretch=0.3)) for row in range(60)])
         for at in (21, 41)
@@ -79,13 +77,13 @@ def test_time_stretch_keeps_the_middle_and_multiplies_the_distance_from_it() -> 
     assert np.abs(left[:, 0] - 31).max() < 0.1, "nothing moves along Doppler"
 
 
-def test_a_doppler_shift_moves_along_doppler_alone() -> None:
+def test_a_doppler_shift_moves_along_doppler_alone():
     moves = np.array([centre(changed(blob(31, 31), row, doppler_shift=0.1)) for row in range(60)])
     assert 5 < np.ptp(moves[:, 0]) <= 12.8
     assert np.abs(moves[:, 1] - 31).max() < 0.1
 
 
-def test_contrast_is_another_snr() -> None:
+def test_contrast_is_another_snr():
     """Levels are decibels: the strongest stays, and the floor lies so many more or fewer below."""
     levels = np.tile(np.array([75, 155, 255], np.uint8), (8, 8))
     floors = np.array([int(changed(levels, row, contrast=0.4)[0, 0]) for row in range(60)])
@@ -98,7 +96,7 @@ def test_contrast_is_another_snr() -> None:
     assert 1.25 < below.max() <= 1.41
 
 
-def test_masks_grow_or_shrink_by_one_pixel() -> None:
+def test_masks_grow_or_shrink_by_one_pixel():
     mask = blob(31, 31)  # 5 x 5 px
     sizes = set()
     for row in range(60):
@@ -111,14 +109,14 @@ def test_masks_grow_or_shrink_by_one_pixel() -> None:
     assert 0.35 < np.mean(kept) < 0.65
 
 
-def test_noise_takes_levels_that_are_there() -> None:
+def test_noise_takes_levels_that_are_there():
     mask = (np.random.default_rng(2).random((64, 64)) < 0.3).astype(np.uint8) * 255
     found = changed(mask, 3, noise=0.4)
     assert set(np.unique(found).tolist()) == {0, 255}
     assert 0 < (found != mask).mean() < 0.4
 
 
-def test_bands_are_blank_from_edge_to_edge() -> None:
+def test_bands_are_blank_from_edge_to_edge():
     full = np.full((64, 64), 255, np.uint8)
     for row in range(20):
         for bands, along in (("time_bands", 0), ("doppler_bands", 1)):
@@ -136,8 +134,8 @@ def test_bands_are_blank_from_edge_to_edge() -> None:
     row=st.integers(0, 1000),
 )
 def test_any_setting_gives_an_image_of_the_same_size_again_and_again(
-    height: int, width: int, value: float, bands: int, row: int
-) -> None:
+    height, width, value, bands, row
+):
     names = AugmentConfig.model_fields.keys() - {"time_bands", "doppler_bands"}
     config = {**dict.fromkeys(names, value), "time_bands": bands, "doppler_bands": bands}
     levels = np.random.default_rng(row).integers(0, 256, (height, width), dtype=np.uint8)
@@ -147,7 +145,7 @@ def test_any_setting_gives_an_image_of_the_same_size_again_and_again(
     assert np.array_equal(one, again)
 
 
-def test_augmentation_differs_by_row_epoch_and_seed() -> None:
+def test_augmentation_differs_by_row_epoch_and_seed():
     levels = blob(20, 20)
     kinds = [
         changed(levels, row, epoch, seed, time_shift=0.3).tobytes()
@@ -156,7 +154,7 @@ def test_augmentation_differs_by_row_epoch_and_seed() -> None:
     assert len(set(kinds)) == 4
 
 
-def test_coloured_images_are_refused() -> None:
+def test_coloured_images_are_refused():
     with pytest.raises(ValueError, match="input: gray"):
         TrainConfig.model_validate({"augment": {"noise": 0.1}})
 
@@ -164,9 +162,7 @@ def test_coloured_images_are_refused() -> None:
 AUGMENTED: dict[str, Any] = {"input": "gray", "augment": {"time_shift": 0.3, "noise": 0.1}}
 
 
-def test_a_run_learns_from_changed_images_and_resumes_to_the_same_weights(
-    data: Path, tmp_path: Path
-) -> None:
+def test_a_run_learns_from_changed_images_and_resumes_to_the_same_weights(data, tmp_path):
     from learning.patterns import Watched, last_weights
 
     whole = trained(data, tmp_path / "whole", **AUGMENTED)
@@ -178,7 +174,7 @@ def test_a_run_learns_from_changed_images_and_resumes_to_the_same_weights(
     assert same(last_weights(whole.folder), last_weights(tmp_path / "cut"))
 
 
-def test_workers_change_images_in_the_same_way(data: Path, tmp_path: Path) -> None:
+def test_workers_change_images_in_the_same_way(data, tmp_path):
     from learning.patterns import last_weights
 
     for workers in (0, 1):
@@ -186,9 +182,7 @@ def test_workers_change_images_in_the_same_way(data: Path, tmp_path: Path) -> No
     assert same(last_weights(tmp_path / "0"), last_weights(tmp_path / "1"))
 
 
-def test_init_starts_from_the_weights_and_normalisation_of_a_run(
-    data: Path, run_dir: Path, tmp_path: Path
-) -> None:
+def test_init_starts_from_the_weights_and_normalisation_of_a_run(data, run_dir, tmp_path):
     from learning.patterns import Watched, best_weights
 
     from radhar_cli.learning.training import train
@@ -204,7 +198,7 @@ def test_init_starts_from_the_weights_and_normalisation_of_a_run(
             torch.testing.assert_close(learned[name], tensor, rtol=0, atol=1e-6)
 
 
-def test_init_with_other_classes_learns_the_last_layer_anew(run_dir: Path, tmp_path: Path) -> None:
+def test_init_with_other_classes_learns_the_last_layer_anew(run_dir, tmp_path):
     from learning.patterns import Watched
 
     from radhar_cli.learning.training import train
@@ -215,7 +209,7 @@ def test_init_with_other_classes_learns_the_last_layer_anew(run_dir: Path, tmp_p
     assert any("last layer" in message for message in watched.messages)
 
 
-def test_init_of_another_model_is_refused(run_dir: Path, data: Path, tmp_path: Path) -> None:
+def test_init_of_another_model_is_refused(run_dir, data, tmp_path):
     from learning.patterns import Watched
 
     from radhar_cli.learning.training import train

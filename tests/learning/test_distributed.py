@@ -24,7 +24,7 @@ import numpy as np, torch, torch.distributed as dist
 sys.path[:0] = [sys.argv[1], str(Path(sys.argv[1]).parent)]
 from learning.patterns import Watched, settings
 from radhar_cli.learning.batches import Reader
-from radhar_cli.learning.execution_plan import choose_execution_plan
+from radhar_cli.learning.machine import choose_execution_plan
 from radhar_cli.learning.gradient_step import TrainStep
 from radhar_cli.learning.process_group import Group, distributed, process_group
 from radhar_cli.learning.training import Task, _Training, checked_images, train
@@ -78,7 +78,7 @@ with process_group(cpu) as group:
         seen.append([whole, [hash(image.numpy().tobytes()) for image in levels]])
         return 0.0, 0
     TrainStep.step = look
-    work._train_epoch(network, Reader(images, images.label, 0, False), 0)
+    work._train_epoch(network, Reader(images.pixels, images.label, 0, False), 0)
     everyone = [None] * group.size
     dist.all_gather_object(everyone, seen)
     if group.is_main:
@@ -88,7 +88,7 @@ os._exit(0)  # threads of gloo may still run, which aborts an exit of the interp
 """
 
 
-def torchrun(*arguments: object) -> subprocess.CompletedProcess[str]:
+def torchrun(*arguments):
     command = [
         *(sys.executable, "-m", "torch.distributed.run", "--nproc-per-node", "2"),
         *("--standalone", "--local-addr", "127.0.0.1"),
@@ -103,7 +103,7 @@ def torchrun(*arguments: object) -> subprocess.CompletedProcess[str]:
     )
 
 
-def test_two_processes_have_the_gradient_of_one(data: Path, tmp_path: Path) -> None:
+def test_two_processes_have_the_gradient_of_one(data, tmp_path):
     script = tmp_path / "step.py"
     script.write_text(STEP)
     done = torchrun(script, TESTS, data, tmp_path / "runs", tmp_path / "answer.json")
@@ -120,9 +120,7 @@ def test_two_processes_have_the_gradient_of_one(data: Path, tmp_path: Path) -> N
 
 
 @pytest.mark.slow
-def test_two_processes_write_one_set_of_files_and_resume(
-    data: Path, run_dir: Path, tmp_path: Path
-) -> None:
+def test_two_processes_write_one_set_of_files_and_resume(data, run_dir, tmp_path):
     config, out = tmp_path / "train.json", tmp_path / "run"
     config.write_text(json.dumps(BASE))
     command = ("-m", "radhar_cli", "train", data, "-o", out, "--config", config)

@@ -9,7 +9,7 @@ from radhar_cli.learning.embedding import MAX_POINTS, chosen, embed, separation,
 
 
 @given(st.integers(1, 10_000))
-def test_chosen_rows_are_distinct_spread_and_few(count: int) -> None:
+def test_chosen_rows_are_distinct_spread_and_few(count):
     rows = chosen(count)
     assert rows[0] == 0
     assert rows[-1] == count - 1
@@ -17,7 +17,7 @@ def test_chosen_rows_are_distinct_spread_and_few(count: int) -> None:
     assert (np.diff(rows) > 0).all()
 
 
-def test_shrunk_averages_blocks() -> None:
+def test_shrunk_averages_blocks():
     image = np.zeros((128, 96, 3), np.uint8)
     image[:2, :2] = [[[255, 0, 0], [0, 255, 0]], [[0, 0, 255], [0, 0, 0]]]
     vector = shrunk(image)
@@ -27,7 +27,7 @@ def test_shrunk_averages_blocks() -> None:
     assert shrunk(np.zeros((32, 32, 3), np.uint8)).shape == (1024,)
 
 
-def test_separate_clouds_stay_separate() -> None:
+def test_separate_clouds_stay_separate():
     rng = np.random.default_rng(0)
     label = np.repeat([0, 1], 12)
     vectors = rng.normal(0, 0.1, (24, 60)) + 5 * label[:, None]
@@ -38,6 +38,6 @@ def test_separate_clouds_stay_separate() -> None:
     assert np.array_equal(points, embed(vectors))
 
 
-def test_separation_of_one_class_is_unknown() -> None:
+def test_separation_of_one_class_is_unknown():
     assert separation(np.zeros((4, 2)), np.zeros(4, int)) is None
     assert separation(np.zeros((2, 2)), np.array([0, 1])) is None

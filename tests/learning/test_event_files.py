@@ -1,10 +1,9 @@
 """Event files for TensorBoard: read by its own reader, every epoch once, whatever happened."""
 
 import json
-from pathlib import Path
 
 import pytest
-from command_line import Done, radhar
+from command_line import radhar
 from learning.patterns import BASE, split_tree, trained
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
@@ -14,18 +13,18 @@ from radhar_cli.learning.run_folder import read_history
 
 
 @pytest.fixture
-def place(tmp_path: Path) -> Path:
+def place(tmp_path):
     split_tree(tmp_path / "tree")
     (tmp_path / "train.json").write_text(json.dumps(BASE))
     return tmp_path
 
 
-def learn(place: Path, *more: object) -> Done:
+def learn(place, *more):
     command = ("train", place / "tree", "-o", place / "run", "--config", place / "train.json")
     return radhar(*command, *more)
 
 
-def check(run: Path) -> None:
+def check(run):
     """TensorBoard finds what history.csv says, each epoch once."""
     found = EventAccumulator(str(run / "tensorboard")).Reload()
     history = read_history(run)
@@ -39,12 +38,10 @@ def check(run: Path) -> None:
 
 
 @pytest.mark.parametrize("written", [True, False], ids=["after the event", "before the event"])
-def test_an_interrupted_run_has_every_epoch_once(
-    place: Path, monkeypatch: pytest.MonkeyPatch, written: bool
-) -> None:
+def test_an_interrupted_run_has_every_epoch_once(place, monkeypatch, written):
     update = EventFiles.update
 
-    def interrupted(events: EventFiles) -> None:
+    def interrupted(events):
         if written:
             update(events)
         raise KeyboardInterrupt
@@ -58,7 +55,7 @@ def test_an_interrupted_run_has_every_epoch_once(
     assert len(list((place / "run/tensorboard").iterdir())) == 1
 
 
-def test_event_files_are_added_later_and_removed_by_overwrite(place: Path) -> None:
+def test_event_files_are_added_later_and_removed_by_overwrite(place):
     trained(place / "tree", place / "run")
     assert not (place / "run/tensorboard").exists()
     for _ in range(2):
@@ -69,7 +66,7 @@ def test_event_files_are_added_later_and_removed_by_overwrite(place: Path) -> No
     assert [path.name for path in (place / "run/tensorboard").iterdir()] == ["notes.txt"]
 
 
-def test_a_link_in_the_place_of_their_folder_is_refused(place: Path) -> None:
+def test_a_link_in_the_place_of_their_folder_is_refused(place):
     trained(place / "tree", place / "run")
     (place / "elsewhere").mkdir()
     theirs = place / "elsewhere/events.out.tfevents.1"
@@ -81,10 +78,8 @@ def test_a_link_in_the_place_of_their_folder_is_refused(place: Path) -> None:
     assert [path.name for path in (place / "elsewhere").iterdir()] == [theirs.name]
 
 
-def test_without_tensorboard_the_extra_is_named(
-    place: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def find(name: str) -> object:
+def test_without_tensorboard_the_extra_is_named(place, monkeypatch):
+    def find(name):
         return None if name == "tensorboard" else event_files
 
     monkeypatch.setattr("importlib.util.find_spec", find)

@@ -2,7 +2,6 @@
 
 import json
 from dataclasses import replace
-from pathlib import Path
 
 import few_shots as module
 import numpy as np
@@ -21,23 +20,23 @@ QUICK = ("epochs=2", "batch_size=12", "threads=1", "workers=0")
 
 
 @pytest.fixture(autouse=True)
-def few_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+def few_shown(monkeypatch):
     """Short epochs."""
     monkeypatch.setattr(module, "SHOWN", 24)
 
 
 @pytest.fixture(scope="module")
-def measured(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def measured(tmp_path_factory):
     """Eight images of each class, without splits."""
     return tree(tmp_path_factory.mktemp("measured") / "tree", seed=9)
 
 
-def opened(path: Path, persons: tuple[str, ...] | None = None) -> EvalSet:
+def opened(path, persons=None):
     images = replace(open_images(path, None, "rgb"), persons=persons)
     return EvalSet(images, np.arange(len(images)), "all")
 
 
-def test_draws_are_k_of_each_class_and_all_others_are_tested(measured: Path) -> None:
+def test_draws_are_k_of_each_class_and_all_others_are_tested(measured):
     some = opened(measured)
     for k in (1, 3):
         draw = drawn(some, k, seed=1, repeat=0)
@@ -49,18 +48,18 @@ def test_draws_are_k_of_each_class_and_all_others_are_tested(measured: Path) -> 
     assert drawn(some, 0, 1, 0).tested.tolist() == list(range(24))
 
 
-def test_a_class_that_has_too_few_is_named(measured: Path) -> None:
+def test_a_class_that_has_too_few_is_named(measured):
     some = opened(measured)
     assert missing(some, drawn(some, 7, 1, 0), 7) is None
     assert missing(some, drawn(some, 8, 1, 0), 8) == "punching"
     assert missing(some, drawn(some, 9, 1, 0), 9) == "punching"
 
 
-def test_labelled_images_come_from_other_persons_than_tested_ones(measured: Path) -> None:
+def test_labelled_images_come_from_other_persons_than_tested_ones(measured):
     persons = tuple("abcd"[row % 4] for row in range(24))
     some = opened(measured, persons)
 
-    def who(rows: np.ndarray) -> set[str]:
+    def who(rows):
         return {persons[row] for row in rows}
 
     for repeat in range(6):
@@ -75,8 +74,8 @@ def test_labelled_images_come_from_other_persons_than_tested_ones(measured: Path
 
 
 def test_mixed_images_are_shown_as_often_as_labelled_ones_unless_these_are_few(
-    run_dir: Path, data: Path, measured: Path
-) -> None:
+    run_dir, data, measured
+):
     metadata, _ = load_best(run_dir)
     few = open_for(metadata, measured, None).some(np.array([0, 8, 16]))
     mixed = training_images(metadata, data)
@@ -90,12 +89,10 @@ def test_mixed_images_are_shown_as_often_as_labelled_ones_unless_these_are_few(
         assert images.classes == metadata.classes
 
 
-def test_the_curve_of_a_run(
-    run_dir: Path, data: Path, measured: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_curve_of_a_run(run_dir, data, measured, tmp_path, capsys):
     """Every way for every number; what a class cannot give is left out; again is the same."""
 
-    def curve() -> list[dict]:
+    def curve():
         return few_shots(run_dir, measured, tmp_path, (0, 2, 8), 2, (data,), 1, QUICK)
 
     found = curve()

@@ -1,25 +1,22 @@
 """The paper's network: parameters, and the filter by half a spectrum."""
 
-from pathlib import Path
-
 import pytest
 import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from learning.patterns import split_tree, trained
-from torch import Tensor
 
 from radhar_cli.errors import ModelError
 from radhar_cli.learning.models.build import build_model, features_and_logits
 from radhar_cli.learning.models.fftnet import Block, FFTNet, GlobalFilter
 
 
-def full_form(weight: Tensor, x: Tensor) -> Tensor:
+def full_form(weight, x):
     """Re IFFT2(K FFT2(x)), without any symmetry."""
     return torch.fft.ifft2(torch.view_as_complex(weight) * torch.fft.fft2(x)).real
 
 
-def test_parameters_and_filters_are_the_papers() -> None:
+def test_parameters_and_filters_are_the_papers():
     with torch.device("meta"):
         model = FFTNet(12, 256, 256)
     assert sum(p.numel() for p in model.parameters()) == 6_496_012
@@ -37,9 +34,7 @@ def test_parameters_and_filters_are_the_papers() -> None:
     channels=st.integers(1, 3),
     seed=st.integers(0, 2**31),
 )
-def test_half_a_spectrum_is_the_whole_one(
-    height: int, width: int, channels: int, seed: int
-) -> None:
+def test_half_a_spectrum_is_the_whole_one(height, width, channels, seed):
     torch.manual_seed(seed)
     layer = GlobalFilter(channels, height, width).double()
     x = torch.randn(2, channels, height, width, dtype=torch.float64, requires_grad=True)
@@ -54,7 +49,7 @@ def test_half_a_spectrum_is_the_whole_one(
 
 
 @pytest.mark.parametrize("size", [(8, 8), (5, 7), (6, 9), (7, 4), (2, 1)])
-def test_filter_passes_gradcheck(size: tuple[int, int]) -> None:
+def test_filter_passes_gradcheck(size):
     layer = GlobalFilter(2, *size).double()
     x = torch.randn(1, 2, *size, dtype=torch.float64, requires_grad=True)
     assert torch.autograd.gradcheck(
@@ -62,7 +57,7 @@ def test_filter_passes_gradcheck(size: tuple[int, int]) -> None:
     )
 
 
-def test_filter_weights_start_normal_with_sd_of_a_fiftieth() -> None:
+def test_filter_weights_start_normal_with_sd_of_a_fiftieth():
     torch.manual_seed(0)
     values = GlobalFilter(64, 32, 32).weight.detach().numpy().ravel()
     assert abs(values.std() / 0.02 - 1) < 0.01
@@ -70,7 +65,7 @@ def test_filter_weights_start_normal_with_sd_of_a_fiftieth() -> None:
     assert abs((values**4).mean() / values.var() ** 2 - 3) < 0.1, "normal, not uniform"
 
 
-def test_block_is_branches_times_each_other_plus_filter_plus_input() -> None:
+def test_block_is_branches_times_each_other_plus_filter_plus_input():
     torch.manual_seed(1)
     block = Block(3, 4, 6).eval()
     x = torch.randn(2, 3, 4, 6)
@@ -86,11 +81,11 @@ def test_block_is_branches_times_each_other_plus_filter_plus_input() -> None:
 
 
 @pytest.mark.parametrize("size", [(32, 32), (64, 32), (32, 96)])
-def test_shapes_from_images_to_logits(size: tuple[int, int]) -> None:
+def test_shapes_from_images_to_logits(size):
     model = build_model("fftnet", 5, size).eval()
     x = torch.randn(2, 3, *size)
     with torch.no_grad():
-        maps = model.forward_features(x)  # type: ignore[operator]
+        maps = model.forward_features(x)
         assert maps.shape == (2, 512, size[0] // 32, size[1] // 32)
         features, logits = features_and_logits(model, x)
         assert torch.equal(logits, model(x))
@@ -99,18 +94,18 @@ def test_shapes_from_images_to_logits(size: tuple[int, int]) -> None:
 
 
 @pytest.mark.parametrize("size", [(48, 32), (32, 33), (16, 16)])
-def test_sides_that_are_no_multiples_of_32_are_refused(size: tuple[int, int]) -> None:
+def test_sides_that_are_no_multiples_of_32_are_refused(size):
     with pytest.raises(ModelError, match=f"{size[0]} x {size[1]} px; both sides should be multi"):
         build_model("fftnet", 3, size)
 
 
-def test_filter_computes_in_float32_under_autocast() -> None:
+def test_filter_computes_in_float32_under_autocast():
     layer, x = GlobalFilter(2, 8, 8), torch.randn(1, 2, 8, 8)
     with torch.autocast("cpu", torch.bfloat16):
         assert layer(x.bfloat16()).dtype == torch.float32
 
 
-def test_training_lowers_the_loss(tmp_path: Path) -> None:
+def test_training_lowers_the_loss(tmp_path):
     """The loss of stripes in three directions falls by more than rounding could undo."""
     root = split_tree(tmp_path / "tree")
     history = trained(root, tmp_path / "run", epochs=4, model="fftnet").history

@@ -1,7 +1,5 @@
 """Several data sets that are learned from as one."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from learning.patterns import Watched, same_run, settings, split_tree
@@ -15,12 +13,12 @@ from radhar_cli.learning.training import checked_images, train
 
 
 @pytest.fixture
-def other(tmp_path: Path) -> Path:
+def other(tmp_path):
     """A tree with one class of `data`'s, and one of its own."""
     return split_tree(tmp_path / "other", train=8, seed=7, classes=("walking", "wave"))
 
 
-def test_a_joined_set_has_all_rows_and_classes(data: Path, other: Path) -> None:
+def test_a_joined_set_has_all_rows_and_classes(data, other):
     one, two = (open_images(path, None, "rgb") for path in (data, other))
     both = checked_images(settings(), [data, other])
     assert len(both) == len(one) + len(two)
@@ -35,7 +33,7 @@ def test_a_joined_set_has_all_rows_and_classes(data: Path, other: Path) -> None:
         assert both.source[row] == (part is two)
 
 
-def test_weights_of_sets_and_balance_of_classes(data: Path, other: Path) -> None:
+def test_weights_of_sets_and_balance_of_classes(data, other):
     both = checked_images(settings(), [data, other])
     rows = both.rows("train")
     plain = sampling_weights(both, rows, None, balanced=False)
@@ -48,7 +46,7 @@ def test_weights_of_sets_and_balance_of_classes(data: Path, other: Path) -> None
     assert np.isclose(balanced.sum(), weighted.sum())
 
 
-def test_a_run_on_two_sets(data: Path, other: Path, tmp_path: Path) -> None:
+def test_a_run_on_two_sets(data, other, tmp_path):
     watched = Watched()
     config = settings(epochs=1, data_weights=[1, 0.5], sampling="balanced")
     train(config, [data, other], tmp_path / "run", watched)
@@ -57,9 +55,7 @@ def test_a_run_on_two_sets(data: Path, other: Path, tmp_path: Path) -> None:
         train(settings(data_weights=[1.0]), [data, other], tmp_path / "no", watched)
 
 
-def test_an_epoch_shows_sets_by_their_weights_and_classes_equally_often(
-    data: Path, other: Path
-) -> None:
+def test_an_epoch_shows_sets_by_their_weights_and_classes_equally_often(data, other):
     config = settings(data_weights=[3.0, 0.5], sampling="balanced")
     both = checked_images(config, [data, other])
     rows = both.rows("train")
@@ -73,9 +69,7 @@ def test_an_epoch_shows_sets_by_their_weights_and_classes_equally_often(
     assert by_set[0] / by_set[1] == pytest.approx(3 * 4 / (0.5 * 8), rel=0.15)
 
 
-def test_a_run_on_weighted_sets_resumes_to_the_same_weights(
-    data: Path, other: Path, run_dir: Path, tmp_path: Path
-) -> None:
+def test_a_run_on_weighted_sets_resumes_to_the_same_weights(data, other, run_dir, tmp_path):
     config = settings(data_weights=[1, 0.5], sampling="balanced")
     train(config, [data, other], tmp_path / "whole", Watched(), start=run_dir)
     with pytest.raises(KeyboardInterrupt):
@@ -86,7 +80,7 @@ def test_a_run_on_weighted_sets_resumes_to_the_same_weights(
         train(config, [data, other], tmp_path / "cut", Watched(), start=tmp_path / "whole")
 
 
-def test_images_of_two_sizes_are_refused(data: Path, tmp_path: Path) -> None:
+def test_images_of_two_sizes_are_refused(data, tmp_path):
     large = split_tree(tmp_path / "large", size=(64, 64))
     with pytest.raises(FolderError, match=r"64 x 64 px, those of .* 32 x 32"):
         checked_images(settings(), [data, large])

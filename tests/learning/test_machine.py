@@ -4,17 +4,13 @@ import pytest
 import torch
 
 from radhar_cli.errors import MachineError
-from radhar_cli.learning.machine import (
-    autocast,
-    choose_device,
-    choose_precision,
-)
+from radhar_cli.learning.machine import autocast, choose_device, choose_precision
 from radhar_cli.learning.process_group import Group, process_group
 
 CPU = torch.device("cpu")
 
 
-def test_a_device_that_is_not_there_is_named() -> None:
+def test_a_device_that_is_not_there_is_named():
     if torch.cuda.is_available():
         pytest.skip("it is there")
     with pytest.raises(MachineError, match='device = "cuda": is not on this machine; it has'):
@@ -22,7 +18,7 @@ def test_a_device_that_is_not_there_is_named() -> None:
     assert choose_device("cpu") == CPU
 
 
-def test_precision_is_as_requested(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_precision_is_as_requested(monkeypatch):
     assert choose_precision("bfloat16", CPU) == torch.bfloat16
     assert choose_precision("float32", CPU) == torch.float32
     for able, chosen in (({}, torch.float32), ({"amx_bf16": True}, torch.bfloat16)):
@@ -30,13 +26,13 @@ def test_precision_is_as_requested(monkeypatch: pytest.MonkeyPatch) -> None:
         assert choose_precision("auto", CPU) == chosen
 
 
-def test_float32_is_computed_in_float32() -> None:
+def test_float32_is_computed_in_float32():
     for precision in (torch.float32, torch.bfloat16):
         with autocast(CPU, precision):
             assert (torch.ones(2, 2) @ torch.ones(2, 2)).dtype == precision
 
 
-def test_a_single_process_without_torchrun(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_single_process_without_torchrun(monkeypatch):
     for name in ("WORLD_SIZE", "TORCHELASTIC_RUN_ID"):
         monkeypatch.delenv(name, raising=False)
     with process_group(CPU) as group:

@@ -35,22 +35,20 @@ DOCUMENT: dict[str, Any] = {
 ONE_MAP = ["maps/stft"]
 
 
-def config(**more: Any) -> Config:
+def config(**more):
     return Config.model_validate({**DOCUMENT, **more})
 
 
-def keys(batch: dict[str, Any]) -> list[tuple[int, int]]:
+def keys(batch):
     return [tuple(pair) for pair in batch["sample_key"].tolist()]
 
 
-def batches(
-    count: int, workers: int, ranks: tuple[int, int] = (0, 1), start: int = 0, **more: Any
-) -> list[dict[str, Any]]:
+def batches(count, workers, ranks=(0, 1), start=0, **more):
     stream = Stream(config(), fields=ONE_MAP, batch_size=4, shard=ranks, start=start)
     return [*islice(DataLoader(stream, 4, num_workers=workers, **more), count)]
 
 
-def same(one: list[dict[str, Any]], other: list[dict[str, Any]]) -> bool:
+def same(one, other):
     return len(one) == len(other) and all(
         a.keys() == b.keys() and all(torch.equal(a[name], b[name]) for name in a)
         for a, b in zip(one, other, strict=True)
@@ -58,12 +56,12 @@ def same(one: list[dict[str, Any]], other: list[dict[str, Any]]) -> bool:
 
 
 @pytest.fixture(scope="module")
-def alone() -> list[dict[str, Any]]:
+def alone():
     """Six batches, made in this process."""
     return batches(6, 0)
 
 
-def test_a_batch_has_levels_labels_and_keys(alone: list[dict[str, Any]]) -> None:
+def test_a_batch_has_levels_labels_and_keys(alone):
     first = alone[0]
     assert {*first} == {"label", "sample_key", "maps/stft"}
     assert first["maps/stft"].shape == (4, 16, 16)
@@ -75,28 +73,26 @@ def test_a_batch_has_levels_labels_and_keys(alone: list[dict[str, Any]]) -> None
 
 
 @pytest.mark.parametrize("workers", [1, 2, 3])
-def test_batches_are_the_same_for_any_number_of_workers(
-    alone: list[dict[str, Any]], workers: int
-) -> None:
+def test_batches_are_the_same_for_any_number_of_workers(alone, workers):
     assert same(batches(6, workers), alone)
 
 
-def test_spawned_workers_make_the_same_too(alone: list[dict[str, Any]]) -> None:
+def test_spawned_workers_make_the_same_too(alone):
     assert same(batches(2, 1, multiprocessing_context="spawn"), alone[:2])
 
 
-def test_ranks_share_the_batches(alone: list[dict[str, Any]]) -> None:
+def test_ranks_share_the_batches(alone):
     shares = [batches(3, workers, (rank, 2)) for rank, workers in ((0, 0), (1, 2))]
     assert same([batch for pair in zip(*shares, strict=True) for batch in pair], alone)
 
 
-def test_a_stream_resumed_at_a_sample_continues_unchanged(alone: list[dict[str, Any]]) -> None:
+def test_a_stream_resumed_at_a_sample_continues_unchanged(alone):
     assert same(batches(4, 2, start=2 * 4), alone[2:])
     assert same(batches(1, 0, (1, 2), start=2 * 4), [alone[3]])
 
 
-def test_without_the_batch_size_workers_change_the_order_but_not_the_samples() -> None:
-    def seen(workers: int, count: int) -> dict[tuple[int, int], torch.Tensor]:
+def test_without_the_batch_size_workers_change_the_order_but_not_the_samples():
+    def seen(workers, count):
         stream = Stream(config(), fields=ONE_MAP)
         found = islice(DataLoader(stream, 4, num_workers=workers), count)
         return {
@@ -110,14 +106,14 @@ def test_without_the_batch_size_workers_change_the_order_but_not_the_samples() -
     assert all(torch.equal(one[key], levels) for key, levels in two.items())
 
 
-def test_a_stream_is_sample_by_name_and_index(alone: list[dict[str, Any]]) -> None:
+def test_a_stream_is_sample_by_name_and_index(alone):
     stream = Stream(config())
     for (label, index), levels in zip(keys(alone[1]), alone[1]["maps/stft"], strict=True):
         made = sample(config(), stream.class_slugs[label], index)
         assert np.array_equal(levels.numpy(), made["maps/stft"])
 
 
-def test_another_seed_is_another_stream_with_an_identity_of_its_own() -> None:
+def test_another_seed_is_another_stream_with_an_identity_of_its_own():
     one, other, again = Stream(config()), Stream(config(), 8), Stream(config(seed=8))
     assert one.identity != other.identity == again.identity
     assert other.config.seed == 8
@@ -126,9 +122,7 @@ def test_another_seed_is_another_stream_with_an_identity_of_its_own() -> None:
     assert torch.equal(first[1], first[2])
 
 
-def test_ranks_are_those_of_torchrun_also_in_spawned_workers(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_ranks_are_those_of_torchrun_also_in_spawned_workers(monkeypatch):
     monkeypatch.setenv("RANK", "1")
     monkeypatch.setenv("WORLD_SIZE", "2")
     handed = pickle.dumps(Stream(config(), fields=ONE_MAP))
@@ -141,7 +135,7 @@ def test_ranks_are_those_of_torchrun_also_in_spawned_workers(
         assert (made["sample_key"] == order[1]["sample_key"]).all()
 
 
-def test_samples_are_the_rows_of_the_data_set() -> None:
+def test_samples_are_the_rows_of_the_data_set():
     samples, rows = Samples(config(), fields=ONE_MAP), Rows.of(config())
     assert len(samples) == 12
     found = dict(enumerate(DataLoader(samples, batch_size=None, num_workers=2)))
@@ -153,7 +147,7 @@ def test_samples_are_the_rows_of_the_data_set() -> None:
         assert np.array_equal(made["maps/stft"], there["maps/stft"])
 
 
-def test_samples_of_a_split_are_those_rows_alone() -> None:
+def test_samples_of_a_split_are_those_rows_alone():
     samples = Samples(config(), split="val", fields=["scene/height"])
     rows = np.flatnonzero(split_rows(config()) == VALIDATION)
     assert len(samples) == rows.size
@@ -167,7 +161,7 @@ def test_samples_of_a_split_are_those_rows_alone() -> None:
     assert not held_back & seen
 
 
-def test_a_distributed_sampler_shares_the_rows() -> None:
+def test_a_distributed_sampler_shares_the_rows():
     samples = Samples(config(), fields=["scene/height"])
     found: list[tuple[int, int]] = []
     for rank in range(2):
@@ -178,7 +172,7 @@ def test_a_distributed_sampler_shares_the_rows() -> None:
     assert len(found) == len({*found}) == len(samples)
 
 
-def test_power_and_slow_time_come_as_tensors() -> None:
+def test_power_and_slow_time_come_as_tensors():
     whole = config(output={"power": "float16", "slow_time": True})
     batch = next(iter(DataLoader(Stream(whole), 2)))
     assert batch["power/stft"].dtype == torch.float16
@@ -187,7 +181,7 @@ def test_power_and_slow_time_come_as_tensors() -> None:
 
 
 @pytest.mark.parametrize("workers", [0, 1])
-def test_on_invalid_error_ends_a_stream(workers: int) -> None:
+def test_on_invalid_error_ends_a_stream(workers):
     far = config(motion={"model": "paper", "range_m": {"uniform": [1, 40]}}, on_invalid="error")
     stream = Stream(far, fields=["scene/range"])
     with pytest.raises(SceneError, match=r"sample \w+/\d+: a scatterer leaves the range half-band"):
@@ -196,7 +190,7 @@ def test_on_invalid_error_ends_a_stream(workers: int) -> None:
     assert all(math.isfinite(made["scene/range"]) for made in islice(again, 10))
 
 
-def test_user_defined_classes_are_known_to_workers(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_user_defined_classes_are_known_to_workers(monkeypatch):
     """A spawned worker begins without it, and gets the stream as bytes."""
     monkeypatch.setattr(activity, "_OWN", {})
     add_activity("swinging_ball", swinging)
@@ -209,20 +203,20 @@ def test_user_defined_classes_are_known_to_workers(monkeypatch: pytest.MonkeyPat
         assert np.array_equal(one["maps/stft"], other["maps/stft"])
 
 
-def test_mistakes_are_refused_in_one_line() -> None:
+def test_mistakes_are_refused_in_one_line():
     for make, words in (
         (lambda: Stream(config(), batch_size=0), "batch_size = 0: should be a whole number from 1"),
         (lambda: Stream(config(), start=-1), "start = -1: should be a whole number from 0"),
-        (lambda: Stream(config(), batch_size=2.5), "batch_size = 2.5"),  # type: ignore[arg-type]
+        (lambda: Stream(config(), batch_size=2.5), "batch_size = 2.5"),
         (lambda: Stream(config(), seed=-1), "seed = -1: should be a whole number from 0 to 2"),
         (lambda: Samples(config(), 2**63), "seed = 9223372036854775808: should be"),
         (lambda: Stream("x.yaml"), r"x\.yaml: no such file"),
-        (lambda: Samples(7), "config = 7: should be the path"),  # type: ignore[arg-type]
+        (lambda: Samples(7), "config = 7: should be the path"),
         *(
             (lambda shard=shard: Stream(config(), shard=shard), "shard = .*should be .rank, ranks")
             for shard in ((5, 2), (2, 2), (0, 0), (-1, 2), (0.5, 2), (1,), 3)
         ),
-        (lambda: Stream(config(), split="val"), "should be all or train"),  # type: ignore[arg-type]
+        (lambda: Stream(config(), split="val"), "should be all or train"),
         (lambda: Stream(config(), fields=["maps/fsst"]), "is not in this data set"),
         (lambda: Samples(config(split={"train": 1, "validation": 0}), split="val"), "no sample"),
     ):
@@ -230,6 +224,6 @@ def test_mistakes_are_refused_in_one_line() -> None:
             make()
 
 
-def test_public_names_of_the_package() -> None:
+def test_public_names_of_the_package():
     assert radhar.Stream is Stream
     assert radhar.Samples is Samples

@@ -139,8 +139,15 @@ def _claims(path: Path) -> None:
 
 FILES: dict[str, tuple[Callable[[Path], None], str]] = {
     "not finite": (weights(lambda w: w["head.bias"].fill_(torch.nan)), "head.bias holds a number"),
-    "double": (weights(lambda w: w.update({"head.bias": torch.zeros(2).double()})), "F64"),
-    "eight bits": (weights(lambda w: w.update({"head.bias": torch.zeros(2).char()})), "I8"),
+    "double": (weights(lambda w: w.update({"head.bias": torch.zeros(2).double()})), "float64"),
+    "eight bits": (weights(lambda w: w.update({"head.bias": torch.zeros(2).char()})), "int8"),
+    "a weight too few": (weights(lambda w: w.pop("head.bias")), "head.bias is missing"),
+    "a weight too many": (weights(lambda w: w.update(evil=torch.zeros(7))), "evil is"),
+    "another's": (
+        lambda path: save_file({"a": torch.zeros(3)}, path),
+        "not written by `radhar train`",
+    ),
+    "half": (lambda path: path.write_bytes(path.read_bytes()[:5000]), "truncated"),
     "too large": (weights(lambda w: w.update({"head.bias": torch.zeros(9)})), "(9,)"),
     "a header without end": (header(b"{}", 2**63), "claims a header of"),
     "a header of 90 MB": (header(b" " * 10, 90_000_000), "claims a header of"),
@@ -190,6 +197,9 @@ def _state(found: dict[str, Any], number: int, **values: Any) -> None:
 
 CHECKPOINTS: dict[str, tuple[Callable[[Path], None], str]] = {
     "packed": (_packed, "more than its own size"),
+    "half": (lambda path: path.write_bytes(path.read_bytes()[:5000]), "--overwrite"),
+    "text": (lambda path: path.write_bytes(b"hello\n"), "not a checkpoint"),
+    "numbers": (lambda path: torch.save([1, 2], path), "not a checkpoint"),
     "a pickle": (as_pickle, "not a checkpoint"),
     "a folder": (as_folder, "regular file"),
     "a pipe": (as_pipe, "regular file"),

@@ -3,7 +3,6 @@
 import csv
 import json
 import re
-from pathlib import Path
 from shutil import copytree
 
 import numpy as np
@@ -42,7 +41,7 @@ FEW = ("-40 dB", "-80 dB", "cube")
 
 
 @pytest.fixture
-def config(tmp_path) -> Path:
+def config(tmp_path):
     path = tmp_path / "c.yaml"
     path.write_text(CONFIG)
     return path
@@ -60,7 +59,7 @@ def tried(config):
 
 
 @pytest.fixture(scope="module")
-def done(tmp_path_factory) -> tuple[Path, Path]:
+def done(tmp_path_factory):
     """A config and its finished sweep, a few settings of each kind; who changes it takes a copy."""
     place = tmp_path_factory.mktemp("sweep")
     path = place / "c.yaml"
@@ -73,18 +72,18 @@ def done(tmp_path_factory) -> tuple[Path, Path]:
     return path, place / "out"
 
 
-def tradeoff(config: Path, out: Path, *more: str):
+def tradeoff(config, out, *more):
     return CliRunner().invoke(
         program(), ["tradeoff", str(config), "-o", str(out), "--quick", *more]
     )
 
 
-def rows_of(out: Path) -> dict[str, dict]:
+def rows_of(out):
     rows = json.loads((out / "tradeoff.json").read_text())["settings"]
     return {row["setting"]: row for row in rows}
 
 
-def files_of(out: Path) -> dict[str, bytes]:
+def files_of(out):
     return {path.name: path.read_bytes() for path in out.iterdir() if path.is_file()}
 
 
@@ -120,36 +119,26 @@ class TestCommand:
 
     def test_a_switch_shows_what_is_missed_without_it(self, done):
         rows = rows_of(done[1])
-        assert -80 < rows["residual video phase"]["signal_error_db"] < 0
-        dense = rows["FSST at every sample"]
-        assert dense["signal_error_db"] < -60
-        assert dense["map_error_db"] is None  # other columns: no cell to compare with
-        assert dense["ssim"] < 0.999
-        assert dense["time_over"] == "the FSST at the STFT's hop"
         assert "refracted rays" not in rows  # no wall, no rays through it
-
-    def test_bodies_and_gates_show_what_they_change(self, done):
-        rows = rows_of(done[1])
-        body = rows["scatterers: segments instead of points"]
-        assert body["signal_error_db"] > -10
-        assert body["ssim"] < 0.95
-        shadows = rows["shadowing"]
-        assert -60 < shadows["signal_error_db"] < body["signal_error_db"]
-        assert shadows["time_over"] == "segments without shadowing"
-        gate = rows["range_sum: gated instead of coherent"]
-        assert gate["signal_error_db"] < -60  # the half-band's sum stays what it is
-        assert gate["map_error_db"] > 0.1
-        assert gate["echo_ratio"] > 0
-        assert all(row["refused"] == 0 for row in (body, shadows, gate))
-
-    def test_clutter_room_noise_and_masks_show_what_they_change(self, done):
-        rows = rows_of(done[1])
+        for name, signal in (
+            ("residual video phase", (-80, 0)),
+            ("FSST at every sample", (-300, -60)),
+            ("scatterers: segments instead of points", (-10, 20)),
+            ("shadowing", (-60, -10)),
+            ("range_sum: gated instead of coherent", (-300, -60)),  # the coherent sum stays
+            ("room: 3 reflectors", (-80, 0)),
+            ("noise corner at PRF/20", (-80, 0)),  # the same white noise on both sides
+            ("interference line at PRF/8", (-80, 0)),
+        ):
+            assert signal[0] < rows[name]["signal_error_db"] < signal[1], name
+            assert rows[name]["refused"] == 0
         mean = rows["clutter: mean instead of difference"]
         assert mean["signal_error_db"] is None  # one pulse more: nothing to subtract
-        assert mean["ssim"] < 0.99
-        assert -80 < rows["room: 3 reflectors"]["signal_error_db"] < 0
-        for name in ("noise corner at PRF/20", "interference line at PRF/8"):
-            assert -80 < rows[name]["signal_error_db"] < 0  # the same white noise on both sides
+        dense = rows["FSST at every sample"]
+        assert dense["map_error_db"] is None  # other columns: no cell to compare with
+        assert max(dense["ssim"], mean["ssim"]) < 0.999
+        assert dense["time_over"] == "the FSST at the STFT's hop"
+        assert rows["range_sum: gated instead of coherent"]["map_error_db"] > 0.1
         assert rows["cfar"]["pixels_changed"] < 0.05  # masks of the engine against the cube's
 
     def test_a_second_sweep_measures_nothing(self, done, monkeypatch):
@@ -214,7 +203,7 @@ def test_a_damaged_result_is_refused(text, done, tmp_path):
 
 
 class TestSettings:
-    def scenes(self, config: Path, *more: str) -> Scenes:
+    def scenes(self, config, *more):
         return Scenes(config, more, quick=False)
 
     def test_every_setting_is_a_config(self, config):

@@ -8,7 +8,7 @@ from radhar_cli.two_sample.classifier_test import held_out, interval
 COUNT = 40
 
 
-def features(rng: np.random.Generator, shift: float = 0.0) -> Float:
+def features(rng, shift=0.0):
     """Twice COUNT samples [., 60] that hang together; the second half is shifted in one of 60."""
     mixed = rng.normal(size=(2 * COUNT, 8)) @ rng.normal(size=(8, 60))
     x: Float = mixed + 0.5 * rng.normal(size=mixed.shape)
@@ -19,7 +19,7 @@ def features(rng: np.random.Generator, shift: float = 0.0) -> Float:
 TRUTH = np.repeat([True, False], COUNT)
 
 
-def test_accuracy_is_half_for_equal_distributions_and_intervals_cover_it() -> None:
+def test_accuracy_is_half_for_equal_distributions_and_intervals_cover_it():
     found = []
     for seed in range(100):
         rng = np.random.default_rng(seed)
@@ -34,14 +34,14 @@ def test_accuracy_is_half_for_equal_distributions_and_intervals_cover_it() -> No
     assert np.mean(inside) > 0.88
 
 
-def test_different_distributions_are_told_apart() -> None:
+def test_different_distributions_are_told_apart():
     rng = np.random.default_rng(0)
     tested = held_out(features(rng, 20.0), TRUTH, np.arange(2 * COUNT), rng)
     assert tested is not None
     assert interval([tested])["accuracy_95"][0] > 0.85
 
 
-def test_features_that_identify_persons_tell_nothing() -> None:
+def test_features_that_identify_persons_tell_nothing():
     """Four persons a side, each with features of his own: whether they are seen decides."""
     rng = np.random.default_rng(3)
     person = np.tile(np.repeat(np.arange(4), COUNT // 4), 2)
@@ -55,12 +55,12 @@ def test_features_that_identify_persons_tell_nothing() -> None:
     assert interval([difference])["accuracy"] < 0.9
 
 
-def test_one_person_cannot_be_held_out() -> None:
+def test_one_person_cannot_be_held_out():
     rng = np.random.default_rng(0)
     assert held_out(features(rng), TRUTH, np.zeros(2 * COUNT, np.intp), rng) is None
 
 
-def test_numbers_that_are_missing_or_constant_tell_nothing() -> None:
+def test_numbers_that_are_missing_or_constant_tell_nothing():
     rng = np.random.default_rng(0)
     x = features(rng, 20.0)
     x = np.hstack([x, np.full((2 * COUNT, 1), np.nan), np.full((2 * COUNT, 1), 7.0)])

@@ -1,18 +1,14 @@
 """Two data sets of maps, as they lie on disk, compared."""
 
-from collections.abc import Callable
-from pathlib import Path
-
 import numpy as np
 import pytest
-from command_line import radhar
+from command_line import ok, radhar
 from listener import Listener
 from PIL import Image
 
-from radhar_cli.arrays import Float, Levels
 from radhar_cli.errors import FolderError, RadharError
 from radhar_cli.two_sample import report
-from radhar_cli.two_sample.comparison import Comparison, Options, compare
+from radhar_cli.two_sample.comparison import Options, compare
 from radhar_cli.two_sample.description import Scale
 from radhar_cli.two_sample.map_statistics import STATISTICS
 from radhar_cli.two_sample.sides import open_sides
@@ -20,7 +16,7 @@ from radhar_cli.two_sample.sides import open_sides
 SIZE = 64
 
 
-def mask(rng: np.random.Generator, high: float = 12, size: int = SIZE) -> Levels:
+def mask(rng, high=12, size=SIZE):
     """A zero line and a bump of a random height and place."""
     cells = np.zeros((size, size), np.uint8)
     middle, start = size // 2, int(rng.integers(5, size // 2))
@@ -30,9 +26,7 @@ def mask(rng: np.random.Generator, high: float = 12, size: int = SIZE) -> Levels
     return cells
 
 
-def tree(
-    root: Path, seed: int, draw: Callable[[np.random.Generator], Levels], *classes: str
-) -> Path:
+def tree(root, seed, draw, *classes):
     """40 images a class in a tree."""
     rng = np.random.default_rng(seed)
     for name in classes:
@@ -42,11 +36,11 @@ def tree(
     return root
 
 
-def compared(one: Path, other: Path, **options: object) -> Comparison:
-    return compare(one, other, Options(**options), Listener())  # type: ignore[arg-type]
+def compared(one, other, **options):
+    return compare(one, other, Options(**options), Listener())
 
 
-def test_halves_of_one_set_cannot_be_told_apart(tmp_path: Path) -> None:
+def test_halves_of_one_set_cannot_be_told_apart(tmp_path):
     one = tree(tmp_path / "a", 1, mask, "falling", "walking")
     other = tree(tmp_path / "b", 2, mask, "walking", "falling")
     found = compared(one, other)
@@ -61,7 +55,7 @@ def test_halves_of_one_set_cannot_be_told_apart(tmp_path: Path) -> None:
     assert any("has no axes" in warning for warning in found.warnings)
 
 
-def test_the_largest_differences_come_first(tmp_path: Path) -> None:
+def test_the_largest_differences_come_first(tmp_path):
     one = tree(tmp_path / "a", 1, lambda rng: mask(rng, 22), "walking")
     other = tree(tmp_path / "b", 2, mask, "walking")
     (found,) = compared(one, other).classes
@@ -78,7 +72,7 @@ def test_the_largest_differences_come_first(tmp_path: Path) -> None:
     assert found.tested.right > 0.95 * 80
 
 
-def test_outlying_maps_are_named(tmp_path: Path) -> None:
+def test_outlying_maps_are_named(tmp_path):
     one, other = (tree(tmp_path / name, n, mask, "a") for n, name in enumerate("xy"))
     rng = np.random.default_rng(5)
     Image.fromarray(mask(rng, 29)).save(one / "a/07.png")
@@ -88,7 +82,7 @@ def test_outlying_maps_are_named(tmp_path: Path) -> None:
     assert numbers["least_covered"][0] == "a/11"
 
 
-def test_classes_are_matched_and_the_others_named(tmp_path: Path) -> None:
+def test_classes_are_matched_and_the_others_named(tmp_path):
     one = tree(tmp_path / "a", 1, mask, "grabbing", "kicking")
     other = tree(tmp_path / "b", 2, mask, "picking_up", "drinking")
     with pytest.raises(FolderError, match=r"its classes \(kicking, grabbing\) are none of those"):
@@ -101,7 +95,7 @@ def test_classes_are_matched_and_the_others_named(tmp_path: Path) -> None:
         compared(one, other, names={"walkin": "walking"})
 
 
-def test_other_sizes_need_resize(tmp_path: Path) -> None:
+def test_other_sizes_need_resize(tmp_path):
     one = tree(tmp_path / "a", 1, mask, "walking")
     other = tree(tmp_path / "b", 2, lambda rng: mask(rng, 12, 128), "walking")
     with pytest.raises(FolderError, match=r"images are 64 x 64 px, .* --resize"):
@@ -110,7 +104,7 @@ def test_other_sizes_need_resize(tmp_path: Path) -> None:
     assert [side.images.size for side in found.sides] == [(128, 128)] * 2
 
 
-def test_maps_are_subsampled_by_seed(tmp_path: Path) -> None:
+def test_maps_are_subsampled_by_seed(tmp_path):
     one, other = (tree(tmp_path / name, n, mask, "a") for n, name in enumerate("xy"))
     first, again = (compared(one, other, most=12).numbers() for _ in range(2))
     assert first == again
@@ -118,7 +112,7 @@ def test_maps_are_subsampled_by_seed(tmp_path: Path) -> None:
     assert compared(one, other, most=12, seed=2).numbers() != first
 
 
-def test_one_map_a_class_is_described_but_not_tested(tmp_path: Path) -> None:
+def test_one_map_a_class_is_described_but_not_tested(tmp_path):
     one, other = (tree(tmp_path / name, n, mask, "a") for n, name in enumerate("xy"))
     for number in range(1, 40):
         (one / f"a/{number:02d}.png").unlink()
@@ -127,7 +121,7 @@ def test_one_map_a_class_is_described_but_not_tested(tmp_path: Path) -> None:
     assert any("a: no test" in warning for warning in found.warnings)
 
 
-def test_a_zero_line_as_wide_as_the_map_is_refused(tmp_path: Path) -> None:
+def test_a_zero_line_as_wide_as_the_map_is_refused(tmp_path):
     one, other = (tree(tmp_path / name, n, mask, "a") for n, name in enumerate("xy"))
     for zero in (1e9, 28, np.inf, np.nan):
         with pytest.raises(RadharError, match=r"--zero \S+: should be below 27.74 px"):
@@ -135,7 +129,7 @@ def test_a_zero_line_as_wide_as_the_map_is_refused(tmp_path: Path) -> None:
     assert compared(one, other, zero=20).classes
 
 
-def test_images_that_both_sides_hold_are_said(tmp_path: Path) -> None:
+def test_images_that_both_sides_hold_are_said(tmp_path):
     one, other = (tree(tmp_path / name, n, mask, "a") for n, name in enumerate("xy"))
     blank = Image.fromarray(np.zeros((SIZE, SIZE), np.uint8))
     for place in (one, other):
@@ -146,14 +140,12 @@ def test_images_that_both_sides_hold_are_said(tmp_path: Path) -> None:
     assert any("39 of 40 images of" in warning for warning in compared(one, one).warnings)
 
 
-def test_statistics_that_no_class_has_are_not_drawn(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_statistics_that_no_class_has_are_not_drawn(tmp_path, monkeypatch):
     still = mask(np.random.default_rng(1), 0)
     one, other = (tree(tmp_path / name, n, lambda rng: still, "a") for n, name in enumerate("xy"))
     found, drawn = compared(one, other), list[str]()
 
-    def draws(distances: Float, rows: list[str], columns: list[str]) -> bytes:
+    def draws(distances, rows, columns):
         assert np.isfinite(distances).any(axis=1).all()
         drawn.extend(rows)
         return b""
@@ -165,7 +157,7 @@ def test_statistics_that_no_class_has_are_not_drawn(
 
 
 @pytest.fixture
-def recorded(tmp_path: Path) -> Path:
+def recorded(tmp_path):
     """Masks of three persons as a data set with axes."""
     rng = np.random.default_rng(0)
     np.savez(
@@ -178,15 +170,14 @@ def recorded(tmp_path: Path) -> Path:
         "maps: [stft]\nrecordings: {window_s: 5, rows: [-500, 500]}\n"
         "split: {train: 0.5, validation: 0.5}\n"
     )
-    done = radhar(
+    ok(
         "generate", tmp_path / "c.yaml", "--recordings", tmp_path / "masks.npz", "-o",
         tmp_path / "set", "--jobs", 1,
     )  # fmt: skip
-    assert done.returncode == 0, done.stderr
     return tmp_path / "set"
 
 
-def test_axes_and_persons_of_a_data_set(recorded: Path) -> None:
+def test_axes_and_persons_of_a_data_set(recorded):
     sides = open_sides(recorded, recorded, None, {}, False)
     scale = Scale.of(sides, None)
     assert scale.edges(sides[0], 3) == (0, 5, -500, 500)
@@ -205,7 +196,7 @@ def test_axes_and_persons_of_a_data_set(recorded: Path) -> None:
     )
 
 
-def test_different_axes_are_reported(recorded: Path, tmp_path: Path) -> None:
+def test_different_axes_are_reported(recorded, tmp_path):
     other = tmp_path / "other"
     more = ("--set", "recordings.window_s=10", "--jobs", 1)
     source = (tmp_path / "c.yaml", "--recordings", tmp_path / "masks.npz")

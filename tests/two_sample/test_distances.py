@@ -8,7 +8,7 @@ from radhar_cli.two_sample.distances import difference, uncovered
 RNG = np.random.default_rng(0)
 
 
-def test_a_shift_of_a_standard_deviation_is_a_distance_of_one() -> None:
+def test_a_shift_of_a_standard_deviation_is_a_distance_of_one():
     x = RNG.normal(5, 2, 500)
     found = difference(x + 2, x)
     assert found.distance == pytest.approx(1, abs=0.08)
@@ -18,7 +18,7 @@ def test_a_shift_of_a_standard_deviation_is_a_distance_of_one() -> None:
     assert (same.distance, same.ks) == (0, 0)
 
 
-def test_missing_statistics_are_left_out() -> None:
+def test_missing_statistics_are_left_out():
     found = difference(np.array([1.0, np.nan, 3.0] * 4), np.array([1.0, 3.0]))
     assert (found.simulated.known, found.measured.known, found.distance) == (8, 2, 0)
     nothing = difference(np.array([np.nan]), np.array([1.0]))
@@ -28,14 +28,14 @@ def test_missing_statistics_are_left_out() -> None:
     assert few.measured.known == 4
 
 
-def test_constants() -> None:
+def test_constants():
     assert difference(np.ones(3), np.ones(4)).distance == 0
     assert difference(np.zeros(4), np.ones(4)).distance == pytest.approx(2)
     rounded = np.array([4.0, 4.0, np.nextafter(4.0, 5.0)])
     assert difference(rounded, np.full(3, 3.0)).distance == pytest.approx(2)
 
 
-def test_coverage() -> None:
+def test_coverage():
     x, y = RNG.normal(size=(200, 5)), RNG.normal(size=(200, 5))
     assert np.mean(uncovered(x, y) <= 1) > 0.93
     assert np.mean(uncovered(x[:50], y) <= 1) > 0.93

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from radhar_cli.arrays import Bool, Float
+from radhar_cli.arrays import Float
 from radhar_cli.two_sample.map_statistics import (
     STATISTICS,
     DopplerMap,
@@ -16,7 +16,7 @@ DOPPLER: Float = 10.0 * (49.5 - np.arange(ROWS))  # 10 Hz a row, from 495 to -49
 ZERO = 20.0  # four rows at 5 and 15 Hz
 
 
-def map_of_a_bump(shift: int = 0) -> Bool:
+def map_of_a_bump(shift=0):
     """A zero line of four rows; +-95 Hz from 1 to 2 s above it, to 2.5 s below it."""
     cells = np.zeros((ROWS, COLUMNS), bool)
     cells[48:52] = True
@@ -25,7 +25,7 @@ def map_of_a_bump(shift: int = 0) -> Bool:
     return cells
 
 
-def test_numbers_of_a_bump() -> None:
+def test_numbers_of_a_bump():
     found = mask_statistics(map_of_a_bump(), DOPPLER, SECONDS, ZERO)
     assert found.keys() == {name for name, one in STATISTICS.items() if not one.of_power}
     expected = {
@@ -51,7 +51,7 @@ def test_numbers_of_a_bump() -> None:
     assert found["width"] == pytest.approx(180, abs=15)
 
 
-def test_a_shift_in_time_changes_times_alone() -> None:
+def test_a_shift_in_time_changes_times_alone():
     early = mask_statistics(map_of_a_bump(), DOPPLER, SECONDS, ZERO)
     late = mask_statistics(map_of_a_bump(25), DOPPLER, SECONDS, ZERO)
     assert late["first"] == pytest.approx(early["first"] + 0.5)
@@ -59,7 +59,7 @@ def test_a_shift_in_time_changes_times_alone() -> None:
     assert all(late[n] == pytest.approx(early[n]) for n in early if n not in ("first", "rest"))
 
 
-def test_a_mirrored_map_recedes_as_much_as_it_approached() -> None:
+def test_a_mirrored_map_recedes_as_much_as_it_approached():
     one = mask_statistics(map_of_a_bump(), DOPPLER, SECONDS, ZERO)
     other = mask_statistics(map_of_a_bump()[::-1], DOPPLER, SECONDS, ZERO)
     assert other["receding"] == pytest.approx(100 - one["receding"])
@@ -67,7 +67,7 @@ def test_a_mirrored_map_recedes_as_much_as_it_approached() -> None:
     assert other["active"] == one["active"]
 
 
-def test_interference_and_noise_are_stray() -> None:
+def test_interference_and_noise_are_stray():
     cells = map_of_a_bump()
     clean = mask_statistics(cells, DOPPLER, SECONDS, ZERO)
     cells[20] = True  # a line at 295 Hz
@@ -77,7 +77,7 @@ def test_interference_and_noise_are_stray() -> None:
     assert all(dirty[name] == clean[name] for name in clean if name != "stray")
 
 
-def test_fading_of_the_zero_line() -> None:
+def test_fading_of_the_zero_line():
     cells = map_of_a_bump()
     cells[:, 180:] = False
     found = mask_statistics(cells, DOPPLER, SECONDS, ZERO)
@@ -86,14 +86,14 @@ def test_fading_of_the_zero_line() -> None:
 
 
 @pytest.mark.parametrize("full", [False, True])
-def test_maps_of_nothing_and_of_everything(full: bool) -> None:
+def test_maps_of_nothing_and_of_everything(full):
     found = mask_statistics(np.full((ROWS, COLUMNS), full), DOPPLER, SECONDS, ZERO)
     assert found["occupied"] == (100 if full else 0)
     assert found["active"] == (SECONDS if full else 0)
     assert np.isfinite(found["receding"]) == full
 
 
-def test_a_range_time_map_has_no_line_at_zero() -> None:
+def test_a_range_time_map_has_no_line_at_zero():
     cells = np.zeros((ROWS, COLUMNS), bool)
     cells[30:40] = True
     metres = (np.arange(ROWS)[::-1] + 0.5) / 10
@@ -103,7 +103,7 @@ def test_a_range_time_map_has_no_line_at_zero() -> None:
     assert found["active"] == SECONDS
 
 
-def walker(limb_db: float, ripple: float = 0.0) -> DopplerMap:
+def walker(limb_db, ripple=0.0):
     """A torso near 100 Hz, 40 dB over exponential noise, a limb at 300 Hz, a zero line."""
     rng = np.random.default_rng(0)
     power = rng.exponential(1.0, (ROWS, COLUMNS))
@@ -116,7 +116,7 @@ def walker(limb_db: float, ripple: float = 0.0) -> DopplerMap:
     return DopplerMap(power, DOPPLER)
 
 
-def test_power_of_a_walker() -> None:
+def test_power_of_a_walker():
     found = power_statistics(walker(15), ZERO, 430, 20)
     assert found.keys() == {name for name, one in STATISTICS.items() if one.of_power}
     assert found["peak_over_floor"] == pytest.approx(40, abs=0.2)
@@ -131,13 +131,13 @@ def test_power_of_a_walker() -> None:
     assert found["zero_over_floor"] == pytest.approx(20, abs=0.5)
 
 
-def test_a_brighter_limb_and_a_torso_that_ripples() -> None:
+def test_a_brighter_limb_and_a_torso_that_ripples():
     assert power_statistics(walker(5), ZERO, 430, 20)["limb_below_torso"] < 6
     found = power_statistics(walker(30, ripple=40), ZERO, 430, 20)
     assert found["torso_ripple"] == pytest.approx(40)
 
 
-def test_a_receding_walker_has_the_same_limbs() -> None:
+def test_a_receding_walker_has_the_same_limbs():
     one = walker(15)
     away = power_statistics(DopplerMap(one.power[::-1], DOPPLER), ZERO, 430, 20)
     assert away["limb_below_torso"] == pytest.approx(15, abs=0.2)
@@ -145,14 +145,14 @@ def test_a_receding_walker_has_the_same_limbs() -> None:
     assert away["receding_energy"] > 99
 
 
-def test_a_map_without_power() -> None:
+def test_a_map_without_power():
     found = power_statistics(DopplerMap(np.zeros((ROWS, COLUMNS)), DOPPLER), ZERO, 430, 20)
     assert np.isnan(found["fast_energy"])
     assert not DopplerMap(np.zeros((ROWS, COLUMNS)), DOPPLER).occupied(430).any()
 
 
 @pytest.mark.parametrize("limb_db", [10, 30])
-def test_shares_of_an_energy_that_noise_hides_are_left_out(limb_db: float) -> None:
+def test_shares_of_an_energy_that_noise_hides_are_left_out(limb_db):
     """Noise after a first difference is weaker near zero; a share is from 0 to 100 %, or none."""
     noise = np.random.default_rng(2).exponential(1.0, (ROWS, COLUMNS))
     noise *= np.sin(np.pi * DOPPLER / 1000)[:, None] ** 2
@@ -172,7 +172,7 @@ def test_shares_of_an_energy_that_noise_hides_are_left_out(limb_db: float) -> No
     assert known == sorted(known, reverse=True)
 
 
-def test_where_nobody_is_seen_noise_is_no_torso() -> None:
+def test_where_nobody_is_seen_noise_is_no_torso():
     rng = np.random.default_rng(1)
     one = DopplerMap(rng.exponential(size=(ROWS, COLUMNS)), DOPPLER)
     cells = mask_statistics(one.occupied(430), DOPPLER, SECONDS, ZERO)

@@ -10,13 +10,14 @@ from math import prod
 from pathlib import Path
 from typing import Any, TypeAlias
 
+from radhar_cli.arrays import Levels
 from radhar_cli.config.identity import as_yaml
 from radhar_cli.dataset.card import card, owner_licence
 from radhar_cli.dataset.files import refuse_links
 from radhar_cli.dataset.folder import folder_lock
 from radhar_cli.dataset.gallery import gallery_png
 from radhar_cli.dataset.layout import CARD, CONFIG, GALLERY
-from radhar_cli.dataset.png import colour_table, encode_png
+from radhar_cli.dataset.png import encode_png
 from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.dataset.table import Entry, entries
 from radhar_cli.errors import FolderError, UnfinishedError
@@ -29,12 +30,6 @@ Writer: TypeAlias = Callable[[Dataset, Path, Progress], None]
 
 def convert(path: Path, out: Path, to: str, progress: Progress) -> int:
     """Write a data set in another format; return its number of samples.
-
-    Args:
-        path: folder that `generate` wrote, or dataset.h5.
-        out: folder to make.
-        to: one of FORMATS.
-        progress: receives progress.
 
     Raises:
         FolderError: the data set cannot be read or is damaged, there is something at `out`, or
@@ -64,33 +59,23 @@ def convert(path: Path, out: Path, to: str, progress: Progress) -> int:
         return len(data)
 
 
-class CheckedPngs:
-    """The maps of a data set as PNGs, each compared with its checksum."""
+def checked_png(data: Dataset, table: Levels, map_name: str, row: int) -> bytes:
+    """The PNG file of a sample with a colour table [256, 3], as `generate` writes it.
 
-    def __init__(self, data: Dataset) -> None:
-        self._data = data
-        self._table = colour_table(data.config.image.colour_map)
-
-    def png(self, map_name: str, row: int) -> bytes:
-        """The PNG file of a sample, as `generate` writes it.
-
-        Raises:
-            FolderError: its levels are not those that were stored.
-        """
-        data, name = self._data, f"maps/{map_name}"
-        levels = data.large[name][row]
-        stored = data.sha256[name].rows(row, row + 1)[0]
-        if hashlib.sha256(levels.tobytes()).hexdigest().encode() != stored:
-            raise FolderError(f"{data.path}: /{name}[{row}]: does not match its checksum")
-        return encode_png(levels, self._table, data.config.output.png_level)
+    Raises:
+        FolderError: its levels are not those that were stored.
+    """
+    name = f"maps/{map_name}"
+    levels, stored = data.large[name][row], data.sha256[name].rows(row, row + 1)[0]
+    if hashlib.sha256(levels.tobytes()).hexdigest().encode() != stored:
+        raise FolderError(f"{data.path}: /{name}[{row}]: does not match its checksum")
+    return encode_png(levels, table, data.config.output.png_level)
 
 
 def files_of_split(data: Dataset, split: int, maps: int) -> Iterator[tuple[int, Iterator[Entry]]]:
     """The files that a split is cut into: how many there are, and the samples of each.
 
     Args:
-        data: the data set.
-        split: number of it.
         maps: images of each sample in a file.
     """
     count = int((data.split == split).sum())
@@ -105,10 +90,7 @@ def describe(data: Dataset, folder: Path, loading: Mapping[str, Any], reading: s
     """Write the card of a converted data set, its picture and the resolved config.
 
     Args:
-        data: the data set; its own card says the licence.
-        folder: to write to.
         loading: front matter that `load_dataset` reads; none where that cannot read the format.
-        reading: Markdown, how to read the files next to the card.
     """
     front = {**loading, **owner_licence(data.path.parent)}
     (folder / CARD).write_text(card(data, front, reading), encoding="utf-8")

@@ -10,8 +10,10 @@ import pyarrow.parquet as pq
 
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.card import configurations, number_features
-from radhar_cli.dataset.formats.convert import CheckedPngs, describe, files_of_split
+from radhar_cli.dataset.formats.convert import checked_png, describe, files_of_split
+from radhar_cli.dataset.hub import loading
 from radhar_cli.dataset.layout import Rows
+from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.table import Entry
 from radhar_cli.progress import Progress
@@ -21,7 +23,7 @@ GROUP, GROUP_BYTES = 256, 2**26  # samples and bytes of pixels per row group
 
 def write(data: Dataset, folder: Path, progress: Progress) -> None:
     """Write <map>/<split>-<number>-of-<files>.parquet."""
-    schema, samples = schema_of(data.config), CheckedPngs(data)
+    schema = schema_of(data.config)
     group = max(1, min(GROUP, GROUP_BYTES // prod(data.config.image.size_px)))
     for name in data.config.maps:
         (folder / name).mkdir()
@@ -30,12 +32,14 @@ def write(data: Dataset, folder: Path, progress: Progress) -> None:
                 path = folder / name / f"{part}-{number:05d}-of-{files:05d}.parquet"
                 with pq.ParquetWriter(path, schema, use_dictionary=False) as file:
                     while some := list(islice(here, group)):
-                        file.write_table(_table(data, name, some, samples, schema))
+                        file.write_table(_table(data, name, some, schema))
                         progress.advance(len(some) if name == data.config.maps[0] else 0)
     parts = data.present_splits.values()
     files_of = {n: {part: f"{n}/{part}-*.parquet" for part in parts} for n in data.maps}
     configs = configurations(data.config, files_of)
-    describe(data, folder, {"configs": configs}, _reading(data))
+    reading = "Samples stand in turn, one of each class. `image.bytes` of a row is a PNG file."
+    reading = f"{loading(data.config.maps[0])}\n\n{reading}"
+    describe(data, folder, {"configs": configs}, reading)
 
 
 def schema_of(config: Config) -> pa.Schema:
@@ -53,12 +57,12 @@ def schema_of(config: Config) -> pa.Schema:
     return pa.schema([*columns, *numbers], metadata={"huggingface": metadata})
 
 
-def _table(
-    data: Dataset, name: str, here: list[Entry], samples: CheckedPngs, schema: pa.Schema
-) -> pa.Table:
+def _table(data: Dataset, name: str, here: list[Entry], schema: pa.Schema) -> pa.Table:
     rows, numbers = Rows.of(data.config), zip(*(entry.values for entry in here), strict=True)
+    colours = colour_table(data.config.image.colour_map)
     images = [
-        {"bytes": samples.png(name, entry.row), "path": rows.file_name(entry.row)} for entry in here
+        {"bytes": checked_png(data, colours, name, one.row), "path": rows.file_name(one.row)}
+        for one in here
     ]
     columns = [
         images,
@@ -68,17 +72,3 @@ def _table(
     ]
     arrays = [pa.array(c, f.type) for c, f in zip(columns, schema, strict=True)]
     return pa.Table.from_arrays(arrays, schema=schema)
-
-
-def _reading(data: Dataset) -> str:
-    name = data.config.maps[0]
-    return f"""\
-```python
-from datasets import load_dataset
-
-data = load_dataset("FOLDER OR NAME ON THE HUB", "{name}")  # one configuration a map
-sample = data["train"][0]     # image, label, index and the numbers of the sample
-sample["image"]               # numpy.asarray(...): grey levels; .convert("RGB"): colours
-```
-
-Samples stand in turn, one of each class. `image.bytes` of a row is a PNG file."""

@@ -8,26 +8,31 @@ from typing import Any
 
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.card import data_files, number_features
-from radhar_cli.dataset.formats.convert import CheckedPngs, describe, files_of_split
+from radhar_cli.dataset.formats.convert import checked_png, describe, files_of_split
 from radhar_cli.dataset.layout import Rows
+from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset
-from radhar_cli.dataset.table import Entry, number_names
+from radhar_cli.dataset.table import number_names
 from radhar_cli.progress import Progress
 
 
 def write(data: Dataset, folder: Path, progress: Progress) -> None:
     """Write <split>-<number>.tar with <class>-<index>.<map>.png, .cls and .json of each sample."""
-    samples, rows, names = CheckedPngs(data), Rows.of(data.config), number_names(data.config)
+    rows, names = Rows.of(data.config), number_names(data.config)
+    table = colour_table(data.config.image.colour_map)
     for split, part in data.present_splits.items():
         for number, (_, here) in enumerate(files_of_split(data, split, len(data.maps))):
             path = folder / f"{part}-{number:06d}.tar"
             with tarfile.open(path, "w", format=tarfile.USTAR_FORMAT) as tar:
                 for entry in here:
                     key = f"{entry.label}-{rows.name(entry.row)}"
+                    values = (None if value != value else value for value in entry.values)
+                    about = {"label": entry.label, "index": entry.place}
+                    about |= dict(zip(names, values, strict=True))
                     for name in data.config.maps:
-                        _add(tar, f"{key}.{name}.png", samples.png(name, entry.row))
+                        _add(tar, f"{key}.{name}.png", checked_png(data, table, name, entry.row))
                     _add(tar, f"{key}.cls", str(entry.number).encode())
-                    _add(tar, f"{key}.json", json.dumps(as_json(entry, names)).encode())
+                    _add(tar, f"{key}.json", json.dumps(about).encode())
                     progress.advance(1)
     files = {"default": {part: f"{part}-*.tar" for _, part in data.present_splits.items()}}
     loading = {
@@ -49,12 +54,6 @@ def members(config: Config) -> list[dict[str, Any]]:
         {"name": "__key__", "dtype": "string"},
         {"name": "__url__", "dtype": "string"},
     ]
-
-
-def as_json(entry: Entry, names: list[str]) -> dict[str, Any]:
-    """Label, index and numbers of a sample; null where one does not apply to its activity."""
-    numbers = {k: None if v != v else v for k, v in zip(names, entry.values, strict=True)}
-    return {"label": entry.label, "index": entry.place, **numbers}
 
 
 def _add(tar: tarfile.TarFile, name: str, data: bytes) -> None:

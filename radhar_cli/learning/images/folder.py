@@ -11,13 +11,7 @@ from radhar_cli.arrays import Levels
 from radhar_cli.dataset.image_file import SUFFIXES, image_size, read_gray, read_rgb
 from radhar_cli.dataset.layout import CONFIG, PNG
 from radhar_cli.errors import FolderError
-from radhar_cli.learning.images.image_set import (
-    SPLIT_NAMES,
-    ImageSet,
-    Resized,
-    class_order,
-    repeated,
-)
+from radhar_cli.learning.images.image_set import SPLIT_NAMES, ImageSet, class_order, repeated
 from radhar_cli.untrusted import refuse_outside
 
 _WANTED = (
@@ -29,17 +23,11 @@ MAX_CLASSES = 128  # a confusion matrix of them can still be drawn
 
 @dataclass(frozen=True)
 class FilePixels:
-    """One image file per row.
+    """One image file per row."""
 
-    Attributes:
-        files: [N].
-        kind: "rgb" or "gray".
-        size: (H, W) that all of them should have, None for any.
-    """
-
-    files: tuple[Path, ...]
-    kind: str
-    size: tuple[int, int] | None
+    files: tuple[Path, ...]  # [N]
+    kind: str  # "rgb" or "gray"
+    size: tuple[int, int] | None  # (H, W) that all of them should have, None for any
 
     def read(self, row: int) -> Levels:
         """RGB [H, W, 3] of a row, or one channel three times.
@@ -109,34 +97,11 @@ def folder_images(root: Path, map_name: str | None, kind: str, any_size: bool = 
 def _names(images: Sequence[tuple[int, str, Path]]) -> tuple[str, ...]:
     """<class>/<image> of (split, class, file), with the ending where only that tells two apart."""
     alike = Counter((split, name, file.stem) for split, name, file in images)
-    return tuple(
-        f"{name}/{file.stem if alike[split, name, file.stem] == 1 else _below(name, file)}"
-        for split, name, file in images
-    )
-
-
-def _below(name: str, file: Path) -> str:
-    """The file's path below its class folder."""
-    return file.name if file.parent.name == name else f"{file.parent.name}/{file.name}"
-
-
-def loose_images(
-    files: Sequence[Path], size: tuple[int, int], kind: str, resize: bool = False
-) -> ImageSet:
-    """Single files without classes, of a size (H, W) or brought to it."""
-    where = files[0].parent
-    pixels = FilePixels(tuple(files), kind, None if resize else size)
-    return ImageSet(
-        where=where,
-        map=None,
-        classes=(),
-        label=np.zeros(len(files), dtype=np.intp),
-        split=None,
-        names=tuple(map(str, files)),
-        scenes=None,
-        size=size,
-        pixels=Resized(pixels, size) if resize else pixels,
-    )
+    names = []
+    for split, name, file in images:
+        below = file.name if file.parent.name == name else f"{file.parent.name}/{file.name}"
+        names.append(f"{name}/{file.stem if alike[split, name, file.stem] == 1 else below}")
+    return tuple(names)
 
 
 def our_map(inside: Path) -> str | None:

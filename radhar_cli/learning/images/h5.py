@@ -2,18 +2,16 @@
 
 import hashlib
 import os
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
-from radhar_cli.arrays import Float, Levels
+from radhar_cli.arrays import Levels
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.dataset.recorded import windows
-from radhar_cli.dataset.scene_fields import Field
 from radhar_cli.learning.images.image_set import ImageSet, class_order, repeated
 
 _WHO_AND_HOW = ("subject.", "motion.", "timing.", "recordings.part", "recordings.start_s")
@@ -49,7 +47,7 @@ def h5_images(path: Path, map_name: str | None, kind: str) -> ImageSet:
     """Open one map of a dataset.h5, or of the folder it lies in, as images."""
     with open_dataset(path) as data:
         name, rows = data.map_name(map_name), Rows.of(data.config)
-        slug = np.array(data.class_slugs)[data.label]
+        slug, snr_db = np.array(data.class_slugs)[data.label], data.config.snr_db
         classes = class_order(set(slug.tolist()))
         colours = colour_table(data.config.image.colour_map)
         table = colours if kind == "rgb" else repeated(np.arange(256, dtype=np.uint8))
@@ -63,13 +61,9 @@ def h5_images(path: Path, map_name: str | None, kind: str) -> ImageSet:
             scenes=_scenes(data, slug.tolist()),
             size=data.config.image.size_px,
             pixels=H5Pixels(data.path, name, table),
-            snr_db=_one_number(data.config.snr_db),
+            snr_db=float(snr_db) if isinstance(snr_db, (int, float)) else None,
             persons=_persons(data),
         )
-
-
-def _one_number(value: object) -> float | None:
-    return float(value) if isinstance(value, (int, float)) else None
 
 
 def _persons(data: Dataset) -> tuple[str, ...] | None:
@@ -83,18 +77,12 @@ def _persons(data: Dataset) -> tuple[str, ...] | None:
 
 
 def _scenes(data: Dataset, slugs: list[str]) -> tuple[str, ...]:
-    """A fingerprint of who moved and how; radar, wall and noise do not enter."""
-    columns = [data.scene[field.name][:] for field in who_and_how(data.fields)]
+    """A fingerprint of who moved and how, in SI units; radar, wall and noise do not enter."""
+    fields = [field for field in data.fields if field.key.startswith(_WHO_AND_HOW)]
+    fields.sort(key=lambda field: field.name)
+    columns = [data.scene[field.name][:] for field in fields]
     table = np.stack(columns, axis=1) if columns else np.zeros((len(slugs), 0))
-    return tuple(fingerprint(slug, row) for slug, row in zip(slugs, table, strict=True))
-
-
-def who_and_how(fields: Iterable[Field]) -> list[Field]:
-    """The fields that say who moved and how, in the order in which a fingerprint has them."""
-    mine = (field for field in fields if field.key.startswith(_WHO_AND_HOW))
-    return sorted(mine, key=lambda field: field.name)
-
-
-def fingerprint(slug: str, values: Float) -> str:
-    """Of a scene of a class, from the values of `who_and_how` in SI units."""
-    return hashlib.blake2b(slug.encode() + values.tobytes(), digest_size=8).hexdigest()
+    return tuple(
+        hashlib.blake2b(slug.encode() + row.tobytes(), digest_size=8).hexdigest()
+        for slug, row in zip(slugs, table, strict=True)
+    )

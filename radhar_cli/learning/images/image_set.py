@@ -58,38 +58,26 @@ class SomeRows:
 
 @dataclass(frozen=True)
 class ImageSet:
-    """Images of one size, each with a class and a split.
+    """Images of one size, each with a class and a split."""
 
-    Attributes:
-        where: the file or folder they came from.
-        map: name of the map, None for a tree that names none.
-        classes: names of the classes that are present, S1 to S12 in this order where all are
-            of the twelve, else alphabetically.
-        label: [N] index into `classes`.
-        split: [N] 0 train, 1 validation, 2 test; None where the source does not say.
-        names: [N] name of each image, for messages and tables.
-        scenes: [N] fingerprint of the person and the motion, None where the source does not say.
-        size: (H, W) in pixels.
-        pixels: reads them.
-        snr_db: of all of them, None where they differ or the source does not say.
-        left_out: {class: images of it that the source has and this set does not}.
-        source: [N] which of several joined sets each came from.
-        persons: [N] who is in each, or the recording that it was cut from; None where the source
-            does not say.
-    """
-
-    where: Path
-    map: str | None
+    where: Path  # the file or folder they came from
+    map: str | None  # name of the map, None for a tree that names none
+    # names of the classes that are present, S1 to S12 in this order where all are of the twelve,
+    # else alphabetically
     classes: tuple[str, ...]
-    label: Index
-    split: Levels | None
-    names: tuple[str, ...]
+    label: Index  # [N] index into `classes`
+    split: Levels | None  # [N] 0 train, 1 validation, 2 test; None where the source does not say
+    names: tuple[str, ...]  # [N] name of each image, for messages and tables
+    # [N] fingerprint of the person and the motion, None where the source does not say
     scenes: tuple[str, ...] | None
-    size: tuple[int, int]
+    size: tuple[int, int]  # (H, W) in pixels
     pixels: Pixels
-    snr_db: float | None = None
+    snr_db: float | None = None  # of all of them, None where they differ or the source does not say
+    # {class: images of it that the source has and this set does not}
     left_out: Mapping[str, int] = field(default_factory=dict)
+    # [N] which of several joined sets each came from
     source: Index = field(default_factory=lambda: np.zeros(0, np.intp))
+    # [N] who is in each, or the recording that it was cut from; None where the source does not say
     persons: tuple[str, ...] | None = None
 
     def __post_init__(self) -> None:

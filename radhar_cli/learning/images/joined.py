@@ -62,8 +62,6 @@ def sampling_weights(
     """How often an epoch shows each of these rows on average [rows].
 
     Args:
-        images: the set.
-        rows: of it.
         of_sets: weight of every joined set; 1 each if None.
         balanced: every class as often as the others, the epoch's length unchanged.
     """

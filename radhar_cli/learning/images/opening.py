@@ -1,11 +1,17 @@
-"""Open labelled images by path: dataset.h5, its folder, or a tree of class folders."""
+"""Open labelled images by path: dataset.h5, its folder, or a tree; what `inspect` says of one."""
 
+from collections import Counter
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
-from radhar_cli.dataset.layout import DATASET, is_incomplete
+import numpy as np
+
+from radhar_cli.arrays import Levels
+from radhar_cli.dataset.image_file import image_size
+from radhar_cli.dataset.layout import DATASET, SPLITS, is_incomplete
 from radhar_cli.errors import FolderError
-from radhar_cli.learning.images.folder import folder_images
+from radhar_cli.learning.images.folder import FilePixels, folder_images
 from radhar_cli.learning.images.h5 import h5_images
 from radhar_cli.learning.images.image_set import ImageSet, Resized
 from radhar_cli.learning.run_files import is_run
@@ -17,7 +23,6 @@ def open_images(
     """Open a data set: dataset.h5, a folder that `radhar generate` wrote, or a tree of images.
 
     Args:
-        path: what the user gave.
         map_name: which map; the first one if None.
         kind: "rgb" as the PNGs are coloured, or "gray", one channel three times.
         resize: (H, W) to bring every image to; they may then differ in size.
@@ -53,3 +58,43 @@ def is_h5(path: Path) -> bool:
     if path.is_dir():
         return (path / DATASET).exists()
     return path.suffix.lower() in (".h5", ".hdf5") and path.exists()
+
+
+def summarise_tree(root: Path) -> dict[str, Any]:
+    """Count the images of a tree by class, split and size; pixels are not read.
+
+    Raises:
+        FolderError: it is no such tree, or a file is not an image.
+    """
+    images = open_images(root, None, "rgb")
+    assert isinstance(images.pixels, FilePixels)
+    files = images.pixels.files
+    sizes = Counter(map(image_size, files))
+
+    def counts(label: int) -> dict[str, int]:
+        mine = images.label == label
+        if images.split is None:
+            return {"images": int(mine.sum())}
+        by_split = np.bincount(images.split[mine], minlength=len(SPLITS))
+        return dict(zip(SPLITS, by_split.tolist(), strict=True))
+
+    return {
+        "kind": "tree of images",
+        "path": str(root),
+        "samples": len(images),
+        "bytes": sum(file.stat().st_size for file in files),
+        "map": images.map,
+        "sizes": [{"size": list(size), "images": n} for size, n in sizes.most_common()],
+        "classes": {name: counts(number) for number, name in enumerate(images.classes)},
+    }
+
+
+def first_of_each(images: ImageSet, per_class: int, classes: int) -> dict[str, list[Levels]]:
+    """The first RGB images of the first classes."""
+    return {
+        name: [
+            images.pixels.read(int(row))
+            for row in np.flatnonzero(images.label == label)[:per_class]
+        ]
+        for label, name in enumerate(images.classes[:classes])
+    }

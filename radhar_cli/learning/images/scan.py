@@ -14,15 +14,10 @@ from radhar_cli.learning.images.image_set import ImageSet
 
 @dataclass(frozen=True)
 class Scan:
-    """Digests and histogram of some images.
+    """Digests and histogram of some images."""
 
-    Attributes:
-        digests: [rows] digest of each image's pixels.
-        histogram: [3, 256] how often each level occurs in each channel.
-    """
-
-    digests: tuple[str, ...]
-    histogram: NDArray[np.int64]
+    digests: tuple[str, ...]  # [rows] digest of each image's pixels
+    histogram: NDArray[np.int64]  # [3, 256] how often each level occurs in each channel
 
     @property
     def mean(self) -> tuple[float, ...]:
@@ -57,8 +52,9 @@ def scan(images: ImageSet, rows: Sequence[int] | Index) -> Scan:
     return Scan(tuple(digests), histogram)
 
 
-def content_hash(images: ImageSet, rows: Index, digests: Sequence[str]) -> str:
-    """SHA-256 of what a training run depends on: classes, labels, splits, pixels."""
+def content_hash(images: ImageSet, rows: Index, digests: Sequence[str] | None = None) -> str:
+    """SHA-256 of what a training run depends on: classes, labels, splits, pixels (`scan`)."""
+    digests = scan(images, rows).digests if digests is None else digests
     split = None if images.split is None else images.split[rows].tolist()
     text = json.dumps([images.classes, images.label[rows].tolist(), split, list(digests)])
     return hashlib.sha256(text.encode()).hexdigest()

@@ -36,17 +36,11 @@ GREY = repeated(np.arange(256, dtype=np.uint8))
 
 @dataclass(frozen=True)
 class SynthesisedPixels:
-    """A map of one sample a row, through a table [256, 3].
+    """A map of one sample a row, through a table [256, 3]."""
 
-    Attributes:
-        recipe: of the map alone.
-        where: row -> (activity, index).
-        table: colours of the levels.
-    """
-
-    recipe: Recipe
-    where: StreamOrder | Rows
-    table: Levels
+    recipe: Recipe  # of the map alone
+    where: StreamOrder | Rows  # row -> (activity, index)
+    table: Levels  # colours of the levels
 
     def read(self, row: int) -> Levels:
         """RGB [H, W, 3] of a row.
@@ -73,35 +67,17 @@ class StoredPixels:
 
 
 @dataclass(frozen=True)
-class StreamLabels:
-    """Label of every row of a stream, in the numbering of `classes`."""
+class TrainingStream:
+    """An endless series of training images; no two epochs share any."""
 
-    order: StreamOrder
-    classes: tuple[str, ...]
+    order: StreamOrder  # which sample stands in which row
+    pixels: SynthesisedPixels  # of every row
+    classes: tuple[str, ...]  # that the labels number; `stream[row]` is the label of a row
+    per_epoch: int  # rows of an epoch
+    first: Scan
 
     def __getitem__(self, row: int) -> int:
         return self.classes.index(self.order[row][0].slug)
-
-
-@dataclass(frozen=True)
-class TrainingStream:
-    """An endless series of training images; no two epochs share any.
-
-    Attributes:
-        pixels, label: of every row.
-        per_epoch: rows of an epoch.
-        first: the scan of the first rows.
-    """
-
-    pixels: SynthesisedPixels
-    label: StreamLabels
-    per_epoch: int
-    first: Scan
-
-    @property
-    def order(self) -> StreamOrder:
-        """Which sample stands in which row."""
-        return self.label.order
 
     def rows(self, epoch: int) -> Index:
         """Rows of an epoch, which no other has."""
@@ -121,8 +97,6 @@ def stream_and_validation(
     `data` the first of each class that the split of the stream's own data set holds back.
 
     Args:
-        config: of the training run.
-        stream: config of the samples.
         data: data sets to validate on, or none.
         names: those that classes of `data` get.
         workers: processes that synthesise.
@@ -160,8 +134,9 @@ def stream_and_validation(
     first = StoredPixels(synthesised_levels(recipe, order, count, workers), table)
     return (
         TrainingStream(
+            order,
             SynthesisedPixels(recipe, order, table),
-            StreamLabels(order, classes),
+            classes,
             per_epoch,
             scan(replace(images, pixels=first), count),
         ),
@@ -170,13 +145,7 @@ def stream_and_validation(
 
 
 def stream_data(stream: TrainingStream, validation: LearnedFrom, epochs: int) -> LearnedFrom:
-    """Description of the data of a run on a stream, stored with the run.
-
-    Args:
-        stream: what is learned from.
-        validation: the same of the validation images.
-        epochs: of the run.
-    """
+    """Description of the data of a run on a stream, stored with the run."""
     order, count = stream.order, stream.per_epoch * epochs
     own = [identity_hash(identity(order.config)), validation["hash"]]
     return {
@@ -254,15 +223,5 @@ def synthesised_levels(
 ) -> Levels:
     """Levels [rows, H, W] of some rows, made by worker processes if there are any."""
     pixels = SynthesisedPixels(recipe, where, GREY)
-    reader = Reader(_Unlabelled(pixels), _NoLabels(), workers, pin=False)
+    reader = Reader(pixels, None, workers, pin=False)
     return np.concatenate([rgb[:, 0].numpy() for rgb, _ in reader(pieces(rows, PIECE))])
-
-
-@dataclass(frozen=True)
-class _Unlabelled:
-    pixels: SynthesisedPixels
-
-
-class _NoLabels:
-    def __getitem__(self, row: int) -> int:
-        return 0

@@ -17,16 +17,11 @@ RIVALS = ("mobilenetv2_100", "resnet50", "vgg19", "vit_base_patch16_224", "convn
 
 @dataclass(frozen=True)
 class Cost:
-    """Size and work of a network.
+    """Size and work of a network."""
 
-    Attributes:
-        parameters: trainable ones.
-        multiply_adds: of one image: convolutions, matrix products, and FFTs at 5/4 N log2 N a real
-            transform of N numbers (half of a complex one's 5 N log2 N operations, two a
-            multiply-add).
-    """
-
-    parameters: int
+    parameters: int  # trainable ones
+    # of one image: convolutions, matrix products, and FFTs at 5/4 N log2 N a real transform of N
+    # numbers (half of a complex one's 5 N log2 N operations, two a multiply-add)
     multiply_adds: int
 
 
@@ -35,8 +30,6 @@ def build_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
 
     Args:
         name: fftnet, smallnet, or any name that timm knows (needs the extra `zoo`).
-        classes: outputs.
-        size: (H, W) of the images.
 
     Raises:
         ModelError: unknown name, or images it cannot take.

@@ -1,0 +1,225 @@
+"""The figures of `radhar train` and `radhar eval`: curves, confusions, images, filters, points."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import nan
+from typing import Any
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.ticker import FormatStrFormatter, LogLocator, MaxNLocator, NullFormatter
+from numpy.typing import NDArray
+
+from radhar_cli.arrays import Float, Index, Levels
+from radhar_cli.figures.page import page, png_bytes
+
+MAX_NUMBERED = 32  # classes; with more, cells of a confusion matrix have no numbers
+COLUMNS = 4  # of images with captions
+
+
+def curves_png(runs: Mapping[str, Sequence[Any]], best: Mapping[str, int]) -> bytes:
+    """Accuracy and loss by epoch, training dashed and validation solid, the kept epoch marked.
+
+    Args:
+        best: kept epoch of a run, by name.
+    """
+    figure = page(10.5, 4.2)
+    left, right = figure.subplots(1, 2)
+    for number, (name, rows) in enumerate(runs.items()):
+        colour, x = f"C{number % 10}", [row.epoch for row in rows]
+        mark = "o" if len(rows) == 1 else None
+        label = f"{name}, " if len(runs) > 1 else ""
+        for axes, train, val in (
+            (left, [100 * r.train_accuracy for r in rows], [100 * r.val_accuracy for r in rows]),
+            (right, [r.train_loss for r in rows], [r.val_loss for r in rows]),
+        ):
+            style: dict[str, Any] = {"color": colour, "marker": mark}
+            axes.plot(x, train, "--", **style, lw=1, alpha=0.6, label=label + "training")
+            axes.plot(x, val, "-", **style, lw=1.8, label=label + "validation")
+            if name in best and best[name] in x:
+                kept = x.index(best[name])
+                axes.plot(x[kept], val[kept], "*", color=colour, markersize=11)
+    for axes, what in ((left, "accuracy (%)"), (right, "loss (label-smoothed cross-entropy)")):
+        axes.set_xlabel("epoch")
+        axes.set_ylabel(what)
+        axes.grid(alpha=0.3)
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    right.set_yscale("log")  # a spike leaves the rest of the curve its room
+    right.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    right.yaxis.set_major_formatter(FormatStrFormatter("%g"))
+    right.yaxis.set_minor_formatter(NullFormatter())
+    left.legend(fontsize=8 if len(runs) < 4 else 6)
+    figure.suptitle("star: the epoch that is kept", fontsize=9)
+    return png_bytes(figure)
+
+
+def confusion_png(counts: NDArray[np.int64], names: Sequence[str], title: str) -> bytes:
+    """Draw counts [true class, predicted class]; colour and percentage are shares of a row."""
+    totals, shown = counts.sum(1, keepdims=True), [name.replace("_", " ") for name in names]
+    shares = np.divide(counts, totals, out=np.zeros(counts.shape), where=totals > 0)
+    side = 2.6 + 0.62 * min(len(names), MAX_NUMBERED)
+    figure = page(side + 1.0, side)
+    axes = figure.subplots()
+    drawn = axes.imshow(100 * shares, cmap="Blues", vmin=0, vmax=100)
+    for (row, column), count in np.ndenumerate(counts):
+        if count and len(names) <= MAX_NUMBERED:
+            axes.text(
+                column,
+                row,
+                f"{count}\n{100 * shares[row, column]:.1f} %",
+                ha="center",
+                va="center",
+                fontsize=7,
+                color="white" if shares[row, column] > 0.55 else "black",
+            )
+    axes.set_xticks(range(len(names)), shown, rotation=40, ha="right", fontsize=8)
+    axes.set_yticks(range(len(names)), shown, fontsize=8)
+    axes.set_xlabel("predicted")
+    axes.set_ylabel("true")
+    figure.colorbar(drawn, ax=axes, shrink=0.75, label="share of the true class (%)")
+    axes.set_title(title, fontsize=10)
+    return png_bytes(figure)
+
+
+def reliability_png(confidence: Float, accuracy: Float, count: Float, title: str) -> bytes:
+    """Draw accuracy against mean confidence, both [bins]; `count` [bins] is the size of a dot."""
+    figure = page(4.8, 4.6)
+    axes = figure.subplots()
+    used = count > 0
+    axes.plot([0, 1], [0, 1], ":", color="gray", linewidth=1)
+    axes.scatter(
+        confidence[used], accuracy[used], s=20 + 180 * count[used] / count.sum(), alpha=0.7
+    )
+    axes.set_xlabel("mean probability of the predicted class")
+    axes.set_ylabel("share that is right")
+    axes.set_xlim(0, 1.02)
+    axes.set_ylim(-0.02, 1.05)
+    axes.grid(alpha=0.3)
+    axes.set_title(title, fontsize=8)
+    return png_bytes(figure)
+
+
+def captioned_png(images: Sequence[Levels], captions: Sequence[str], title: str) -> bytes:
+    """Draw RGB images [H, W, 3], four a row."""
+    rows = -(-len(images) // COLUMNS)
+    figure = page(2.4 * COLUMNS, 2.5 * rows + 0.4)
+    panels = figure.subplots(rows, COLUMNS, squeeze=False).ravel()
+    for panel in panels:
+        panel.set_axis_off()
+    for panel, image, caption in zip(panels, images, captions, strict=False):
+        panel.imshow(image, interpolation="nearest", aspect="auto")
+        panel.set_title(caption, fontsize=7)
+    figure.suptitle(title, fontsize=10)
+    return png_bytes(figure)
+
+
+def embeddings_png(
+    panels: Mapping[str, Float], label: Index, names: Sequence[str], title: str
+) -> bytes:
+    """Draw each embedding [N, 2] under its name; `label` [N] numbers `names`."""
+    figure = page(5.2 * len(panels) + 1.6, 4.8)
+    drawn = figure.subplots(1, len(panels), squeeze=False)[0]
+    colours = colormaps["tab20"]
+    for axes, (space, points) in zip(drawn, panels.items(), strict=True):
+        for number, class_name in enumerate(names):
+            mine = points[label == number]
+            if len(mine):
+                name = class_name.replace("_", " ")
+                axes.scatter(*mine.T, s=12, color=colours(number % 20), label=name)
+        axes.set_title(space, fontsize=10)
+        axes.set_xticks([])
+        axes.set_yticks([])
+    figure.legend(*drawn[0].get_legend_handles_labels(), loc="outside right center", fontsize=7)
+    figure.suptitle(title, fontsize=9)
+    return png_bytes(figure)
+
+
+def filters_png(runs: Mapping[str, Sequence[Float]]) -> bytes:
+    """Draw a row for every run and a column for every layer.
+
+    Args:
+        runs: name of each run and its filters, each [H, W]: magnitude of the effective weight in
+            FFT order, averaged over channels.
+    """
+    columns = max(len(filters) for filters in runs.values())
+    figure = page(2.4 * columns + 0.8, 2.4 * len(runs) + 0.7)
+    panels = figure.subplots(len(runs), columns, squeeze=False)
+    for column in range(columns):
+        drawn = [filters[column] for filters in runs.values() if column < len(filters)]
+        low, high = min(f.min() for f in drawn), max(f.max() for f in drawn)
+        for row, (name, filters) in enumerate(runs.items()):
+            panel = panels[row, column]
+            if column >= len(filters):
+                panel.set_axis_off()
+                continue
+            height, width = filters[column].shape
+            image = panel.imshow(
+                np.fft.fftshift(filters[column]),
+                # Pixel centres are whole frequencies: -N/2 to N/2 - 1.
+                extent=(-width / 2 - 0.5, width / 2 - 0.5, -height / 2 - 0.5, height / 2 - 0.5),
+                origin="lower",
+                cmap="viridis",
+                vmin=low,
+                vmax=high,
+            )
+            panel.set_title(f"filter {column + 1}, {height} x {width}", fontsize=8)
+            panel.tick_params(labelsize=7)
+            if column == 0:
+                panel.set_ylabel(name, fontsize=7)
+        figure.colorbar(image, ax=panels[:, column], shrink=0.7, location="bottom").ax.tick_params(
+            labelsize=6
+        )
+    figure.supxlabel("horizontal frequency (cycles an image)", fontsize=8)
+    figure.supylabel("vertical frequency (cycles an image)", fontsize=8)
+    return png_bytes(figure)
+
+
+@dataclass(frozen=True)
+class Point:
+    """Accuracy and its interval on one data set, in shares; `snr_db` where it has a single one."""
+
+    data: str
+    snr_db: float | None
+    accuracy: float
+    low: float
+    high: float
+
+
+def robustness_png(lines: Mapping[str, Sequence[Point]]) -> bytes:
+    """Draw a line for every run; points over the SNR, or over the names of the data sets."""
+    figure = page(7.5, 4.6)
+    axes = figure.subplots()
+    by_snr = all(point.snr_db is not None for points in lines.values() for point in points)
+    snrs = {p.snr_db for points in lines.values() for p in points}
+    names = list(dict.fromkeys(p.data for points in lines.values() for p in points))
+    for number, (name, points) in enumerate(lines.items()):
+        if by_snr:
+            untested = snrs - {p.snr_db for p in points}  # where the line is interrupted
+            points = [*points, *(Point("", snr, nan, nan, nan) for snr in untested)]
+            points.sort(key=lambda p: p.snr_db or 0.0)
+            x = [p.snr_db or 0.0 for p in points]
+        else:
+            x = [names.index(p.data) + 0.08 * (number - (len(lines) - 1) / 2) for p in points]
+        y = [100 * p.accuracy for p in points]
+        spread = [
+            [100 * max(0.0, p.accuracy - p.low) for p in points],
+            [100 * max(0.0, p.high - p.accuracy) for p in points],
+        ]
+        axes.errorbar(
+            x,
+            y,
+            spread,
+            fmt="o-" if by_snr else "o",
+            capsize=3,
+            color=f"C{number % 10}",
+            label=name,
+        )
+    if by_snr:
+        axes.set_xlabel("SNR of the data (dB)")
+    else:
+        axes.set_xticks(range(len(names)), names, rotation=25, ha="right", fontsize=8)
+    axes.set_ylabel("accuracy (%), 95 % interval")
+    axes.set_ylim(0, 102)
+    axes.grid(alpha=0.3)
+    figure.legend(loc="outside right center", fontsize=8)
+    return png_bytes(figure)

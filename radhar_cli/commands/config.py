@@ -31,21 +31,33 @@ def group() -> typer.Typer:
 
 
 def init(
-    out: Annotated[Path, typer.Argument(help="YAML file to write.")], train: Training = False
+    out: Annotated[Path, typer.Argument(help="YAML file to write.")],
+    train: Training = False,
+    radar: Annotated[
+        Path | None, typer.Option("--radar", help="The .cfg of a TI board: a short config of it.")
+    ] = None,
 ) -> None:
-    """Write a config to start from: every key, default and meaning.
+    """Write a config to start from: every key, default and meaning; or that of a TI board.
 
     Example:
 
-      radhar config init mine.yaml
+      radhar config init mine.yaml --radar configs/boards/iwr1443.cfg
     """
-    from radhar_cli.config.starting_file import as_commented_yaml
-    from radhar_cli.errors import FolderError
+    from radhar_cli.config.starting_file import as_commented_yaml, of_board
+    from radhar_cli.errors import FolderError, RadharError
     from radhar_cli.replacing import write_text
 
     if out.exists() or out.is_symlink() or not out.parent.is_dir():
         why = "exists already" if out.parent.is_dir() else "there is no such folder"
         raise FolderError(f"{out}: {why}; should be a new file")
+    if radar is not None and train:
+        raise RadharError("--radar is of generate, not of --train; should be one of the two")
+    if radar is not None:
+        write_text(out, of_board(radar, out.parent))
+        report(file=out)
+        tell(f"{out}: the board of {radar}; radar.device should be the one that runs it")
+        tell(f"  then        radhar simulate {out} --activity punching -o OUT")
+        return
     write_text(out, as_commented_yaml(_kind(train)))
     report(file=out)
     tell(f"{out}: all keys with their defaults; leave out what should stay as it is")

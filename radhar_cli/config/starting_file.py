@@ -2,13 +2,18 @@
 
 import inspect
 import json
+import os
 import re
 from collections.abc import Iterator
 from decimal import Decimal
+from pathlib import Path
 from textwrap import wrap
 from typing import Any, Literal, get_args, get_origin
 
+from radhar_cli.config.documents import cfg_text
 from radhar_cli.config.schema import Config, Section
+from radhar_cli.config.ti_header import board_header
+from radhar_cli.light import SPEED_OF_LIGHT
 
 WIDTH = 100
 HEAD = """\
@@ -83,3 +88,32 @@ def as_text(value: object) -> str:
     if isinstance(value, str) and re.fullmatch(r"[A-Za-z_]+[0-9]*", value):
         return value
     return json.dumps(value)
+
+
+def of_board(cfg: Path, folder: Path) -> str:
+    """The text of a short config of the TI board that a .cfg is of.
+
+    Args:
+        cfg: its path.
+        folder: of the config, which names it from there.
+
+    Raises:
+        ConfigError: the .cfg cannot be read.
+        CaptureError: it is wrong; names the line.
+    """
+    board = board_header(cfg_text(str(cfg), Path(), str(cfg)), str(cfg))
+    device = "IWR6843ISK" if board.start_hz < 70e9 else "IWR1443BOOST"
+    range_step = SPEED_OF_LIGHT * board.adc_rate_hz / (2 * board.slope_hz)
+    speed = SPEED_OF_LIGHT / (4 * board.carrier_hz * board.slot_s * len(board.order))
+    path = os.path.relpath(cfg.resolve(), folder.resolve())
+    what = f"{len(board.order)} transmitters and {len(board.receivers)} receivers"
+    return f"""# {what}; {1 / board.period_s:.4g} frames a second of {board.loops} loops;
+# ranges to {range_step:.3g} m, speeds of +-{speed:.3g} m/s. docs/boards.md explains what comes out.
+radar: {{device: {device}, cfg: {json.dumps(path)}, position_m: [0, 0, 1]}}
+samples_per_class: 20
+activities: [punching, kicking, grabbing, sitting_down, standing_up]
+duration_s: {max(3.0, 2 * board.period_s):g}
+motion: {{range_m: {{uniform: [{min(1.5, range_step / 3):.2g}, {min(3.0, range_step / 1.5):.2g}]}}}}
+body: {{scatterers: surfaces}}
+maps: [stft, range_doppler, range_azimuth, points]
+"""

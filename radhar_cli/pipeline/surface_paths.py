@@ -28,18 +28,16 @@ DEPTH = 0.86
 NORMAL_POWER, ALONG_POWER = 1.9, 0.9
 # Of a segment that faces the radar, dBsm, by the last word of its name.
 FACING_DBSM = {
-    "trunk": -5.3,
-    "head": -16.0,
-    "arm": -13.0,
-    "forearm": -16.8,
-    "hand": -22.0,
-    "thigh": -19.6,
-    "shank": -27.0,
-    "foot": -31.0,
+    "trunk": -4.0,
+    "head": -20.7,
+    "arm": -17.7,
+    "forearm": -21.5,
+    "hand": -26.7,
+    "thigh": -24.3,
+    "shank": -31.7,
+    "foot": -35.7,
 }
-# Where along a segment its points lie; elsewhere all of it.
-REACH = {"trunk": (0.0, 1.0)}
-TREMOR_MPS, COMMON_MPS = 0.006, 0.005  # rms speed of a segment, and of the body, beside its motion
+TREMOR_MPS, COMMON_MPS = 0.012, 0.010  # rms speed of a segment, and of the body, beside its motion
 TREMOR_HZ = (2.0, 8.0)
 TONES = 4
 
@@ -150,8 +148,7 @@ class SurfacePaths:
         s = drawn.segment
         cosine, sine = np.cos(drawn.around)[:, None], np.sin(drawn.around)[:, None]
         outwards = cosine * facing[:, s] + sine * aside[:, s]
-        low, high = self._reach[s].T
-        p = placed.start[:, s] + (low + (high - low) * drawn.along)[:, None] * way[:, s]
+        p = placed.start[:, s] + drawn.along[:, None] * way[:, s]
         p += DEPTH * self.body.radii[s] * outwards
         p += self._tremor(t)[s] * sight[:, s]
         normal = np.maximum(cosine * across[s], 0) ** NORMAL_POWER
@@ -171,12 +168,6 @@ class SurfacePaths:
         moved = (size[..., None] * tones).sum(axis=1)
         shaken: Float = moved[:-1] + moved[-1]
         return shaken
-
-    @property
-    def _reach(self) -> Float:
-        """Which part of each segment scatters [segment, 2], as shares of its length."""
-        words = (one.name.split("_")[-1] for one in self.body.segments)
-        return np.array([REACH.get(word, (0.0, 1.0)) for word in words])
 
     @property
     def _facing(self) -> Float:

@@ -267,8 +267,10 @@ def _cure(config: Config, check: SceneCheck) -> str:
 
 
 def config_warnings(config: Config) -> list[str]:
-    """Say which keys have no effect, and which interference lines alias."""
-    return unused_keys(config) + line_warnings(config)
+    """Say which keys and lines of a .cfg have no effect, and which interference lines alias."""
+    cfg = config.board.unknown if config.radar.cfg is not None else ()
+    lines = [f"radar.cfg: {command} is not known and has no effect" for command in cfg]
+    return unused_keys(config) + line_warnings(config) + lines
 
 
 def scene_warnings(scene: Scene) -> list[str]:

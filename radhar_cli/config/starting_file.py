@@ -115,5 +115,6 @@ activities: [punching, kicking, grabbing, sitting_down, standing_up]
 duration_s: {max(3.0, 2 * board.period_s):g}
 motion: {{range_m: {{uniform: [{min(1.5, range_step / 3):.2g}, {min(3.0, range_step / 1.5):.2g}]}}}}
 body: {{scatterers: surfaces}}
+cloud: {{chain: board}}  # as the firmware makes points; best: fewer, finer ones
 maps: [stft, range_doppler, range_azimuth, points]
 """

@@ -17,8 +17,9 @@ from radhar_cli.processing.points import COLUMNS, Cloud, elevation_pair
 from radhar_cli.radar.board import Board
 
 GUARD, TRAINING = (3, 2), (8, 4)  # cells on each side: range, Doppler
-ANGLES = 256  # of the azimuth FFT
-BESIDE_DB = -10.0  # a further target of a cell, relative to its strongest
+BEAMS, ANGLES = 32, 256  # of azimuth FFTs, to find targets and to place them
+BESIDE = 0.1  # power of a further target of a cell over its strongest
+TINY = np.finfo(float).tiny
 INTERVALS = np.array([-1, 0, 1])
 
 
@@ -48,27 +49,40 @@ def best_points(
 
 
 def _frame_points(x: Complex, board: Board, pfa: float, step: float, bias: float) -> Float:
+    """Points [n, 8] of a spectrum [Doppler, virtual, range]: peaks over range, Doppler, azimuth."""
     power = (
         (x.real.astype(float) ** 2 + x.imag.astype(float) ** 2).mean(axis=1).T
     )  # [range, Doppler]
     noise, cells = _noise(power)
     factor = f_distribution.isf(pfa, 2 * board.channels, 2 * board.channels * cells)
-    largest = maximum_filter(power, size=3, mode=("nearest", "wrap"))
+    hit = (power > factor * noise) & (power > 0)
+    ranges = np.flatnonzero(hit.any(axis=1))
+    if not ranges.size:
+        return np.empty((0, len(COLUMNS)))
+    first, stop = max(ranges[0] - 1, 0), min(ranges[-1] + 2, len(power))
+    turned = without_turns(x, board)[..., first:stop].transpose(
+        2, 0, 1
+    )  # [range, Doppler, virtual]
+    row = elevation_pair(board)[0]
+    beams = np.abs(np.fft.fft(turned[..., row], BEAMS) / len(row)) ** 2
+    around = (3, 3, 2 * BEAMS // len(row) // 2 + 1)
+    largest = maximum_filter(beams, around, mode=("nearest", "wrap", "wrap"))
+    strong = beams > BESIDE * beams.max(axis=2, keepdims=True)
     rows = []
-    without = without_turns(x, board)
-    for k, d in np.argwhere((power > factor * noise) & (power == largest) & (power > 0)):
-        level = np.log(np.maximum(power[:, d], np.finfo(float).tiny))
-        r = max((k + _offset(level, k, False)) * board.range_step - bias, 0.0)
-        turn = np.log(np.maximum(power[k], np.finfo(float).tiny))
+    for k, d, b in np.argwhere((beams == largest) & strong & hit[first:stop, :, None]):
+        level = np.log(np.maximum(beams[:, d, b], TINY))
+        r = max((first + k + _offset(level, k, False)) * board.range_step - bias, 0.0)
         signed = (d + board.n_doppler // 2) % board.n_doppler - board.n_doppler // 2
-        fine = signed + _offset(turn, d, True)
-        element = without[d, :, k] * np.exp(
+        fine = signed + _offset(np.log(np.maximum(beams[k, :, b], TINY)), d, True)
+        element = turned[k, d] * np.exp(
             -2j * np.pi * (fine - signed) / board.n_doppler * board.turns
         )
-        for strength, left, up in _directions(element, board):
-            ahead = np.sqrt(max(r * r * (1 - left * left - up * up), 0.0))
-            snr = 10 * np.log10(power[k, d] / noise[k, d])
-            rows.append((ahead, r * left, r * up, fine * step, strength, snr, k, signed))
+        left, up = _direction(element, board, 2 * np.pi * b / BEAMS)
+        if left * left + up * up <= 1:
+            ahead = np.sqrt(r * r * (1 - left * left - up * up))
+            snr = 10 * np.log10(power[first + k, d] / noise[first + k, d])
+            about = fine * step, beams[k, d, b], snr, first + k, signed
+            rows.append((ahead, r * left, r * up, *about))
     return np.array(rows, float).reshape(-1, len(COLUMNS))
 
 
@@ -80,7 +94,7 @@ def _noise(power: Float) -> tuple[Float, int]:
     around = partial(uniform_filter, power, mode=("reflect", "wrap"))
     total = around(outer) * area[0]
     noise = (total - around(inner) * area[1]) / max(area[0] - area[1], 1)
-    return np.maximum(noise, np.finfo(float).tiny), max(area[0] - area[1], 1)
+    return np.maximum(noise, TINY), max(area[0] - area[1], 1)
 
 
 def _offset(level: Float, at: int, cyclic: bool) -> float:
@@ -92,28 +106,28 @@ def _offset(level: Float, at: int, cyclic: bool) -> float:
     return float(np.clip((before - after) / (2 * curve), -0.5, 0.5)) if curve < 0 else 0.0
 
 
-def _directions(element: Complex, board: Board) -> list[tuple[float, float, float]]:
-    """(power, left, up) of the targets that the longest row separates, strongest first.
+def _direction(element: Complex, board: Board, near: float) -> tuple[float, float]:
+    """Sines (left, up) of a target near a phase step (rad) from element to element of a row.
 
-    left and up are sines of angles; up follows from the phase between two rows.
+    left is the peak of the row's spectrum there; with the other peaks of the spectrum taken out by
+    least squares, up follows from the phase between two rows.
     """
     row, upper, aside, above = elevation_pair(board)
-    spectrum = np.abs(np.fft.fft(element[row], ANGLES) / len(row)) ** 2
+    spectrum = np.abs(np.fft.fft(element[row], ANGLES)) ** 2
     peaks = (spectrum >= np.roll(spectrum, 1)) & (spectrum > np.roll(spectrum, -1))
-    peaks &= spectrum > spectrum.max() * 10 ** (BESIDE_DB / 10)
-    level = np.log(np.maximum(spectrum, np.finfo(float).tiny))
+    peaks &= spectrum > BESIDE * spectrum.max()
+    level = np.log(np.maximum(spectrum, TINY))
     bins = sorted(np.flatnonzero(peaks), key=lambda n: -spectrum[n])[: max(len(upper), 1)]
     turns = np.array([(b + _offset(level, int(b), True)) / ANGLES for b in bins])
+    apart = turns - near / (2 * np.pi)
+    chosen = int(np.abs(apart - np.round(apart)).argmin())
     left = 2 * (turns - np.round(turns))
-    up = np.zeros(left.size)
+    up = 0.0
     if upper:
         ratio = _targets(element, board, upper, left) / _targets(element, board, row, left)
-        up = ((np.angle(ratio) / np.pi - aside * left + 1) % 2 - 1) / above
-    return [
-        (float(spectrum[b]), float(y), float(z))
-        for b, y, z in zip(bins, left, up, strict=True)
-        if y * y + z * z <= 1
-    ]
+        turned = np.angle(ratio[chosen]) / np.pi - aside * left[chosen]
+        up = ((turned + 1) % 2 - 1) / above
+    return float(left[chosen]), float(up)
 
 
 def _targets(element: Complex, board: Board, row: list[int], left: Float) -> Complex:

@@ -52,7 +52,13 @@ from radhar_cli.dataset.shards import (
     require_tiling,
 )
 from radhar_cli.dataset.split import split_rows
-from radhar_cli.dataset.untrusted_hdf5 import Numbers, UntrustedFile, remember
+from radhar_cli.dataset.untrusted_hdf5 import (
+    DIGESTS,
+    Numbers,
+    UntrustedFile,
+    attribute_digests,
+    remember,
+)
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.new_hdf5 import new_hdf5
 from radhar_cli.pipeline.validity import Flags, warnings
@@ -121,6 +127,7 @@ def assembled(
                 held.write("]}\n")
                 messages = warnings(config, flags)
                 _root_attributes(file, config, messages)
+                file.attrs[DIGESTS] = json.dumps(attribute_digests(file), sort_keys=True)
             remember(unfinished)
             yield unfinished, messages
             write_whole(folder, folder / CONFIG, (CONFIG_HEADING + as_yaml(config)).encode())

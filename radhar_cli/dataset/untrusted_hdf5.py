@@ -7,6 +7,7 @@ Types and shapes are checked before anything is read, and compressed pieces are 
 the size that they should have: HDF5 would inflate them to any.
 """
 
+import hashlib
 import io
 import os
 import signal
@@ -99,6 +100,26 @@ def _version_of(path: Path) -> str:
     return f"{status.st_dev}:{status.st_ino}:{status.st_size}:{status.st_ctime_ns}"
 
 
+DIGESTS = "attributes_sha256"
+
+
+def attribute_digests(file: h5py.File) -> dict[str, str]:
+    """{name: digest of shape, type and attributes} of all that a file holds, links left out."""
+    found = {"/": _attribute_digest(file)}
+    file.visititems(lambda name, held: found.__setitem__(name, _attribute_digest(held)))
+    return found
+
+
+def _attribute_digest(held: Any) -> str:
+    attributes = {
+        name: np.asarray(held.attrs[name]).tolist()
+        for name in sorted(held.attrs)
+        if name != DIGESTS
+    }
+    kind = repr((getattr(held, "shape", None), str(getattr(held, "dtype", "")), attributes))
+    return hashlib.sha256(kind.encode()).hexdigest()[:16]
+
+
 class UntrustedFile(Closing):
     """An HDF5 file, opened for reading.
 
@@ -151,6 +172,11 @@ class UntrustedFile(Closing):
             return parse_json(self.text(name))
         except ValueError as error:
             raise FolderError(f"{self.path}: attribute {name}: is not JSON ({error})") from None
+
+    def attribute_digests(self) -> dict[str, str]:
+        """As the function of that name."""
+        with _refusing_damage(f"{self.path}: attributes"):
+            return attribute_digests(self._file)
 
     def whole_number(self, name: str) -> int:
         """A whole number among the attributes of the file."""

@@ -26,6 +26,7 @@ from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.split import split_rows
+from radhar_cli.dataset.untrusted_hdf5 import DIGESTS
 from radhar_cli.errors import FolderError
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.validity import draw_valid_scene
@@ -87,6 +88,7 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Verificati
         ]
         if _structure(data, report):
             _checksums(data, report)
+            _attributes(data, report)
             _column_labels(data, report)
             if data.config.recorded is None:  # whose recordings may lie anywhere
                 _resynthesise(data, samples, report, motion)
@@ -124,7 +126,9 @@ def _checksums(data: Dataset, report: Verification) -> None:
             if hashlib.sha256(chunks[row].tobytes()).hexdigest().encode() != stored[row]:
                 report.problems.append(f"/{name}[{row}]: does not match its checksum")
     if not data.file.has_attribute("columns_sha256"):
-        return  # of a build from before it
+        if not report.other_versions:  # some of which had none
+            report.problems.append("attribute columns_sha256: is missing")
+        return
     for name, column in data.small.items():
         if name.startswith(checksum_of("")):
             continue
@@ -133,6 +137,22 @@ def _checksums(data: Dataset, report: Verification) -> None:
             digest.update(column.rows(start, start + ROWS).tobytes())
         if data.file.json("columns_sha256").get(name) != digest.hexdigest():
             report.problems.append(f"/{name}: does not match its checksum")
+
+
+def _attributes(data: Dataset, report: Verification) -> None:
+    """Compare names, shapes, types and attributes with those of when it was built."""
+    if not data.file.has_attribute(DIGESTS):
+        if not report.other_versions:
+            report.problems.append(f"attribute {DIGESTS}: is missing")
+        return
+    there, built = data.file.attribute_digests(), data.file.json(DIGESTS)
+    # The file's own attributes name the versions that it was built with.
+    own = {"/"} if report.other_versions else set[str]()
+    for name in sorted((there.keys() | built.keys()) - own):
+        if there.get(name) != built.get(name):
+            what = "attributes, shape or type differ from what was built"
+            what = "was not built" if name not in built else what
+            report.problems.append(f"{name}: {'is missing' if name not in there else what}")
 
 
 def _config_and_table(data: Dataset, folder: Path, report: Verification) -> None:
@@ -255,8 +275,11 @@ def _pngs(data: Dataset, folder: Path, report: Verification) -> None:
     config = data.config
     rows, split = Rows.of(config), split_rows(config)
     table = colour_table(config.image.colour_map)
+    for foreign in sorted({path.name for path in (folder / PNG).iterdir()} - {*config.maps}):
+        report.problems.append(f"{PNG}/{foreign}: is no map of this data set")
     for name in config.maps:
         if not (folder / PNG / name).is_dir():
+            report.problems.append(f"{PNG}/{name}: is missing")
             continue
         for row in range(len(data)):
             levels = data.maps[name][row]

@@ -91,6 +91,49 @@ def test_damage_is_found(
     assert any(expected in problem for problem in verify(tmp_path / "set", 9).problems)
 
 
+ATTRIBUTES = {
+    "/": ("class_slugs", "class_names", "warnings", "identity", "columns_sha256"),
+    "maps/stft": ("row_top", "row_unit", "dynamic_range_db", "kind", "levels"),
+    "scene/snr": ("unit", "config_key"),
+    "extent/stft": ("columns",),
+}
+
+
+@pytest.mark.parametrize("way", ["changed", "deleted"])
+@pytest.mark.parametrize(
+    ("place", "name"), [(place, name) for place, names in ATTRIBUTES.items() for name in names]
+)
+def test_attributes_are_those_that_were_built(
+    whole: Path, tmp_path: Path, place: str, name: str, way: str
+) -> None:
+    shutil.copytree(whole, tmp_path / "set")
+    with h5py.File(tmp_path / "set/dataset.h5", "r+") as file:
+        if way == "deleted" and name not in ("class_slugs", "class_names", "warnings", "identity"):
+            del file[place].attrs[name]
+        elif isinstance(file[place].attrs[name], str):
+            text = file[place].attrs[name]
+            file[place].attrs[name] = text.replace('"', "' '") if text[:1] in "{[" else text + "!"
+        else:
+            file[place].attrs[name] = 7
+    try:
+        problems = verify(tmp_path / "set", 1).problems
+    except FolderError as error:  # of what nothing can be read without
+        problems = [str(error)]
+    assert problems
+
+
+def test_what_was_not_built_is_named(whole: Path, tmp_path: Path) -> None:
+    shutil.copytree(whole, tmp_path / "set")
+    with h5py.File(tmp_path / "set/dataset.h5", "r+") as file:
+        file["maps/foo"] = [1, 2]
+    shutil.copytree(tmp_path / "set/png/stft", tmp_path / "set/png/stft2")
+    shutil.rmtree(tmp_path / "set/png/rtm")
+    problems = verify(tmp_path / "set", 1).problems
+    assert "maps/foo: was not built" in problems
+    assert "png/stft2: is no map of this data set" in problems
+    assert "png/rtm: is missing" in problems
+
+
 def _widen_an_extent(folder: Path) -> None:
     with h5py.File(folder / "dataset.h5", "r+") as file:
         file["extent/stft"][3, 1] += 0.5

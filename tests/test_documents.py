@@ -90,6 +90,8 @@ def clone(folder: Path) -> None:
         there = folder / path.relative_to(ROOT)
         there.parent.mkdir(parents=True, exist_ok=True)
         there.write_text(yaml.safe_dump(small(yaml.safe_load(path.read_text())), sort_keys=False))
+    for path in (ROOT / "configs").rglob("*.cfg"):
+        shutil.copy(path, folder / path.relative_to(ROOT))
     for name in ("scripts", "examples", "Makefile", "pyproject.toml", "radhar_cli"):
         (folder / name).symlink_to(ROOT / name)
 

@@ -45,6 +45,9 @@ class Coding(NamedTuple):
 PLAIN = Coding(False)
 
 
+HALVES, SHARE_OF_HALF = (2**9, 2**11, 2**13), 0.25  # of ADCs of 10 to 14 bits
+
+
 def coding_of(pieces: list[Parts], asked: str | None = None, bits: int = 16) -> Coding:
     """The coding in which the samples are smallest, or the one that is asked for.
 
@@ -73,6 +76,9 @@ def coding_of(pieces: list[Parts], asked: str | None = None, bits: int = 16) -> 
         signed, offset = (float(np.abs(decoded(seen, Coding(True, n))).mean()) for n in (0, 2**15))
         if (not signed < 0.5 * offset) if unsigned else offset < 0.5 * signed:
             return Coding(True, 2**15)
+        half = next((h for h in HALVES if low >= 0 and high < 2 * h), None)
+        if half and abs(float(np.median(seen)) - half) < SHARE_OF_HALF * half:
+            return Coding(False, half)  # words of an ADC that were stored as other numbers
     return Coding(words and (native or high >= 2**15))
 
 
@@ -157,7 +163,7 @@ class Damage:
         flags, words = np.concatenate(self.flags), []
         if lost := int(np.count_nonzero(flags & LOST)):
             words.append(
-                f"{lost} of {flags.size} pulses ({100 * lost / flags.size:.2g} %) lack samples "
+                f"{lost} of {flags.size} pulses ({100 * lost / flags.size:.3g} %) lack samples "
                 "(zeros, or NaN); they are flagged"
             )
         if self.clipped > RARE:

@@ -48,7 +48,11 @@ def read_settings(header: Path | None, overrides: Sequence[str]) -> CaptureSetti
 
 
 def import_capture(
-    paths: Sequence[Path], out: Path, settings: CaptureSettings, header: str = "--set"
+    paths: Sequence[Path],
+    out: Path,
+    settings: CaptureSettings,
+    header: str = "--set",
+    overwrite: bool = False,
 ) -> RecordingInfo:
     """Read a capture in pieces and write it as a recording; findings are in `source.found`.
 
@@ -57,6 +61,7 @@ def import_capture(
         out: the recording to write.
         settings: its header.
         header: file of the header, for messages.
+        overwrite: replace a recording that is there.
 
     Raises:
         CaptureError, FolderError: the capture cannot be read, or does not fit its header.
@@ -65,7 +70,7 @@ def import_capture(
     out.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=f".{out.name}.", dir=out.parent) as scratch:
         source, settings = _opened(paths, settings, header, Path(scratch))
-        return _written(source, out, settings, header)
+        return _written(source, out, settings, header, exclusive=not overwrite)
 
 
 def _opened(
@@ -92,7 +97,9 @@ def _opened(
     return source, validated(CaptureSettings, document, source.name, {})
 
 
-def _written(source: Source, out: Path, s: CaptureSettings, header: str) -> RecordingInfo:
+def _written(
+    source: Source, out: Path, s: CaptureSettings, header: str, exclusive: bool
+) -> RecordingInfo:
     notes = [*source.notes]
     probed = findings.probe(source)
     coding = _coding(probed, s, source.name, notes)
@@ -119,7 +126,8 @@ def _written(source: Source, out: Path, s: CaptureSettings, header: str) -> Reco
                 values[..., 1] *= -1
             yield first, values
 
-    return write_recording(out, info, probed[0].dtype, source.parts, pieces(), segments, damage)
+    number, parts = probed[0].dtype, source.parts
+    return write_recording(out, info, number, parts, pieces(), segments, damage, exclusive)
 
 
 def _coding(

@@ -111,6 +111,7 @@ def write_recording(
     pieces: Iterable[tuple[int, Parts]],
     segments: PulseTimes,
     damage: Damage | None = None,
+    exclusive: bool = False,
 ) -> RecordingInfo:
     """Write a recording under another name, then rename it into place.
 
@@ -122,8 +123,10 @@ def write_recording(
         pieces: (first pulse, numbers [receiver, sample, pulse, part]).
         segments: of the pulses.
         damage: filled while the pieces are made; None: no flags.
+        exclusive: leave a file alone that another process made meanwhile.
 
     Raises:
+        CaptureError: no pulse is sound.
         UnfinishedError: it cannot be written.
     """
     dtype = number
@@ -136,7 +139,10 @@ def write_recording(
     chunks = (1, samples, min(length, info.pulses))
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with replacing(path) as unfinished, new_hdf5(unfinished, path) as (file, check):
+        with (
+            replacing(path, exclusive=exclusive) as unfinished,
+            new_hdf5(unfinished, path) as (file, check),
+        ):
             name = "slow_time" if info.samples is None else "beat"
             data = file.create_dataset(name, shape[kept], dtype, chunks=chunks[kept])
             data.attrs["axes"] = ["receiver", "fast time", "pulse"][kept]
@@ -146,6 +152,10 @@ def write_recording(
                 data[..., first:stop] = block if info.samples else block[:, 0]
                 check()
             flags = np.concatenate(damage.flags) if damage else np.zeros(info.pulses, np.uint8)
+            if damage is not None and (flags & LOST).all():
+                raise CaptureError(
+                    f"{path.name}: each of the {info.pulses} pulses lacks samples (zeros, or NaN)"
+                )
             findings = damage.findings() if damage else []
             file["flags"] = flags
             file["flags"].attrs["meaning"] = [f"{LOST}: samples lost", f"{CLIPPED}: clipped"]
@@ -158,6 +168,10 @@ def write_recording(
             file.attrs["schema_version"] = SCHEMA_VERSION
             file.attrs["recording"] = json.dumps(info.model_dump())
             file.attrs["radhar_version"] = __version__
+    except FileExistsError:
+        raise FolderError(
+            f"{path}: was written by another process meanwhile; --overwrite replaces it"
+        ) from None
     except OSError as error:
         raise UnfinishedError(
             f"{error.filename or path}: {error.strerror or error}; nothing was written"

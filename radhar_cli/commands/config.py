@@ -37,7 +37,7 @@ def init(
         Path | None, typer.Option("--radar", help="The .cfg of a TI board: a short config of it.")
     ] = None,
 ) -> None:
-    """Write a config to start from: every key, default and meaning; or that of a TI board.
+    """Write a config to start from: every key, or a TI board's.
 
     Example:
 

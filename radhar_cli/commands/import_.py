@@ -57,7 +57,9 @@ def import_(
     for path in (out.with_suffix(META), out.with_suffix(DATA)) if sigmf else (out,):
         refuse_to_replace(path, overwrite, "walk.h5")
     with recording_or_sigmf(out, sigmf) as (target, files):
-        info = import_capture(captures, target, settings, str(radar) if radar else "--set")
+        info = import_capture(
+            captures, target, settings, str(radar) if radar else "--set", overwrite
+        )
         for line in info.source.found:
             tell(f"  {line}")
         shape = f"{info.receivers} receiver{'s' * (info.receivers > 1)}, "

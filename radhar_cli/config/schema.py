@@ -230,7 +230,7 @@ class RadarConfig(Section):
     """The board that the .cfg runs on: its antenna array."""
     array: ArrayConfig | None = None
     """Another array instead of a device's."""
-    position_m: Annotated[Vector, _BOARD] = (0.0, 0.0, 1.0)
+    position_m: Vector = (0.0, 0.0, 1.0)
     """Of a board: range, cross-range, height."""
     yaw_deg: Annotated[Angle, _BOARD] = 0.0
     """Of its boresight from the x axis, positive to the left."""

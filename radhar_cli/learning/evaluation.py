@@ -16,7 +16,7 @@ from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.split import TRAIN
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.batches import Reader, pieces
-from radhar_cli.learning.images.classes import known_to
+from radhar_cli.learning.images.classes import known_to, refuse_mistyped
 from radhar_cli.learning.images.folder import FilePixels, image_files, is_image
 from radhar_cli.learning.images.image_set import ImageSet, Pixels, Resized, labels_for
 from radhar_cli.learning.images.opening import is_h5, is_tree, open_images
@@ -76,6 +76,7 @@ def open_for(
             f"{metadata.size[0]} x {metadata.size[1]} px; --resize brings them to that"
         )
     if labelled:
+        refuse_mistyped(names or {}, metadata.classes)
         images = known_to(images.renamed(names or {}), metadata.classes)
         if images.split is None:
             with suppress(FolderError):

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from radhar_cli.activity import ACTIVITIES
 from radhar_cli.config.reading import load_mapping
 from radhar_cli.errors import ConfigError, FolderError, did_you_mean
 from radhar_cli.learning.images.image_set import ImageSet
@@ -35,6 +36,19 @@ def renamed(images: ImageSet, names: Mapping[str, str | None]) -> ImageSet:
             hint = did_you_mean(name, images.classes, f"it has {', '.join(images.classes)}")
             raise FolderError(f"{images.where}: has no class {name!r} (--classes); {hint}")
     return images.renamed(names)
+
+
+def refuse_mistyped(names: Mapping[str, str | None], known: Sequence[str]) -> None:
+    """Refuse names of classes that neither the model nor radhar knows.
+
+    Raises:
+        ConfigError: names the first.
+    """
+    every = [*known, *(activity.slug for activity in ACTIVITIES if activity.slug not in known)]
+    for foreign, ours in names.items():
+        if ours is not None and ours not in every:
+            hint = did_you_mean(ours, every, f"the model knows {', '.join(known)}")
+            raise ConfigError(f"--classes: {foreign} = {ours!r}: should be a class or null; {hint}")
 
 
 def known_to(images: ImageSet, known: Sequence[str]) -> ImageSet:

@@ -52,7 +52,7 @@ def import_capture(
     out: Path,
     settings: CaptureSettings,
     header: str = "--set",
-    overwrite: bool = False,
+    overwrite: bool = True,
 ) -> RecordingInfo:
     """Read a capture in pieces and write it as a recording; findings are in `source.found`.
 

@@ -312,22 +312,28 @@ def test_memory_does_not_grow_with_the_capture(tmp_path: Path, kind: str) -> Non
     """192 MiB of samples need no more memory than 48; a sparse file stands for a capture."""
     for name, pulses in (("small", 12_288), ("large", 49_152)):
         shape = (pulses, 4, 256)
-        size = 4 * pulses * 4 * 256
+        size, pulse = 4 * pulses * 4 * 256, np.ones((4, 256))
         path = tmp_path / f"{name}.{kind}"
         if kind == "npy":
             with path.open("wb") as file:
                 np.lib.format.write_array_header_1_0(
                     file, {"descr": "<c8", "fortran_order": False, "shape": shape}
                 )
-                file.truncate(file.tell() + 2 * size)
+                start = file.tell()
+                file.truncate(start + 2 * size)
+                file.seek(start)
+                file.write(pulse.astype("<c8").tobytes())
         elif kind == "bin":
             with path.open("wb") as file:
                 file.truncate(size)
+                file.seek(0)
+                file.write(np.ones(2 * pulse.size, "<i2").tobytes())
         else:
             with h5py.File(path, "w") as file:
                 data = file.create_dataset("beat", shape, "c8", chunks=(64, 4, 256))
                 for first in range(0, pulses, 4096):
                     data[first : first + 4096] = 0
+                data[0] = pulse
     done = subprocess.run(
         [sys.executable, "-c", GROWTH, str(tmp_path), kind],
         capture_output=True,

@@ -17,6 +17,9 @@ WALL = ("wall.center_m", "wall.size_m")
 Limits = dict[str, tuple[Any, Any, Any, Any]]
 
 
+PLACES = ("radar.tx_m", "radar.rx_m", "radar.position_m", "wall.center_m", "wall.size_m")
+
+
 def of_the_schema() -> Limits:
     """{key of a number: (least, most) that is taken, then (too little, too much)}."""
     found: Limits = {}
@@ -25,9 +28,7 @@ def of_the_schema() -> Limits:
         if bounds and not key.startswith(("room.", "receiver.", "image.")):
             low, high = max(one.low for one in bounds), min(one.high for one in bounds)
             below = low * (0.9 if low > 0 else 1.1) or -1
-            axis = (
-                ".0" if key in ("radar.tx_m", "radar.rx_m", "wall.center_m", "wall.size_m") else ""
-            )
+            axis = ".0" if key in PLACES else ""
             found[key + axis] = (low, high, below, high * 1.1)
     return found
 

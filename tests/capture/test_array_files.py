@@ -333,7 +333,7 @@ def test_memory_does_not_grow_with_the_capture(tmp_path: Path, kind: str) -> Non
                 data = file.create_dataset("beat", shape, "c8", chunks=(64, 4, 256))
                 for first in range(0, pulses, 4096):
                     data[first : first + 4096] = 0
-                data[0] = pulse
+                data[0] = pulse.astype("c8")
     done = subprocess.run(
         [sys.executable, "-c", GROWTH, str(tmp_path), kind],
         capture_output=True,

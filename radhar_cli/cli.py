@@ -100,6 +100,9 @@ def main() -> None:
         except BaseException as error:
             if interrupts.status() is None:
                 status = _tell(error)
+        if (stopped := interrupts.status()) is not None and interrupts.tell_once():
+            how = "interrupted" if stopped == INTERRUPTED else "terminated"
+            print(f"{how}: what was not finished is not kept", file=sys.stderr)
         sys.exit(interrupts.status() or status)
 
 

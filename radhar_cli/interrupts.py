@@ -4,6 +4,7 @@ What a handler raises within a `__del__` or a weakref callback is printed and fo
 libraries turn it into errors of their own.
 """
 
+import os
 import signal
 import sys
 from collections.abc import Iterator
@@ -14,6 +15,7 @@ from radhar_cli.errors import INTERRUPTED, TERMINATED
 
 _STATUS = {signal.SIGINT: INTERRUPTED, signal.SIGTERM: TERMINATED}
 _received: list[int] = []
+_told: list[bool] = []
 
 
 @contextmanager
@@ -21,6 +23,7 @@ def handled() -> Iterator[None]:
     """Handle both signals meanwhile; afterwards they are ignored, as the work is done."""
     hook = sys.unraisablehook
     _received.clear()
+    _told.clear()
     signal.signal(signal.SIGTERM, _receive)
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # not of a background job
         signal.signal(signal.SIGINT, _receive)
@@ -32,6 +35,13 @@ def handled() -> Iterator[None]:
             signal.signal(number, signal.SIG_IGN)
         sys.unraisablehook = hook
         _received.clear()
+
+
+def tell_once() -> bool:
+    """Whether what a signal left behind is still to be said; it is taken as said then."""
+    first = not _told and os.environ.get("RANK", "0") == "0"  # under torchrun one should speak
+    _told.append(True)
+    return first
 
 
 def status() -> int | None:

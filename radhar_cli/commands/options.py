@@ -1,6 +1,5 @@
 """Options that several commands share."""
 
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -53,7 +52,7 @@ def resumable(kept: str) -> Iterator[None]:
         status = interrupts.status() or (INTERRUPTED if by_hand else None)
         if status is None:
             raise
-        if os.environ.get("RANK", "0") == "0":  # under torchrun all end alike; one should speak
+        if interrupts.tell_once():
             how = "interrupted" if status == INTERRUPTED else "terminated"
             tell(f"\n{how}: {kept} is kept; the same command resumes", err=True)
         raise typer.Exit(status) from None

@@ -35,20 +35,15 @@ MOVEMENTS = {
 
 @dataclass(frozen=True)
 class Activity:
-    """One class of a data set.
+    """One class of a data set."""
 
-    Attributes:
-        number: 1 to 12, the paper's S number; 13 and more for user-defined classes.
-        slug: name used in folders and on the command line.
-        movements: of people, one after the other; config keys say which of them use a number.
-        motion: makes the motion of a `scene.Person`; None for what `motion:` decides about.
-        uses: keys of `motion:` and `timing:` that such a motion depends on, besides the place.
-    """
-
-    number: int
-    slug: str
+    number: int  # 1 to 12, the paper's S number; 13 and more for user-defined classes
+    slug: str  # name used in folders and on the command line
+    # of people, one after the other; config keys say which of them use a number
     movements: tuple[str, ...] = ()
+    # makes the motion of a `scene.Person`; None for what `motion:` decides about
     motion: "Callable[..., Motion] | None" = None
+    # keys of `motion:` and `timing:` that such a motion depends on, besides the place
     uses: tuple[str, ...] = ()
 
     @property

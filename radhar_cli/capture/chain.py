@@ -35,20 +35,13 @@ MIN_FRAME_PULSES = 8  # pulses of a window
 
 @dataclass
 class Maps:
-    """What was made of a recording, or of a stretch of it.
+    """What was made of a recording, or of a stretch of it."""
 
-    Attributes:
-        maps: {map name: PowerMap}; times are those of the recording.
-        track: of the torso; None of slow time, and where nothing moves.
-        f0: frequency at which the Doppler is read, Hz.
-        notes: what was shortened, filled in or not found, in words.
-        frames: {product: what a board's frames gave}, and the board, where there is one.
-    """
-
-    maps: dict[str, PowerMap]
-    track: TorsoTrack | None
-    f0: float
-    notes: list[str]
+    maps: dict[str, PowerMap]  # {map name: PowerMap}; times are those of the recording
+    track: TorsoTrack | None  # of the torso; None of slow time, and where nothing moves
+    f0: float  # frequency at which the Doppler is read, Hz
+    notes: list[str]  # what was shortened, filled in or not found, in words
+    # {product: what a board's frames gave}, and the board, where there is one
     frames: dict[str, Any] = field(default_factory=dict)
     board: Board | None = None
 

@@ -31,15 +31,10 @@ def probe(source: Source) -> list[Parts]:
 
 
 class Coding(NamedTuple):
-    """How whole numbers encode signed samples.
+    """How whole numbers encode signed samples."""
 
-    Attributes:
-        words: whether they are words of 16 bits, read as signed or unsigned.
-        offset: of offset binary; 0 of two's complement.
-    """
-
-    words: bool
-    offset: int = 0
+    words: bool  # whether they are words of 16 bits, read as signed or unsigned
+    offset: int = 0  # of offset binary; 0 of two's complement
 
 
 PLAIN = Coding(False)
@@ -131,17 +126,12 @@ def _share(power: NDArray[np.float64]) -> float:
 
 @dataclass
 class Damage:
-    """Clipping and losses, counted piece by piece.
+    """Clipping and losses, counted piece by piece."""
 
-    Attributes:
-        full_scale: lowest and highest number of the converter, reached by clipped samples only;
-            None of floats.
-        clipped: number of clipped samples.
-        flags: of the pulses, uint8 [pulse] of each piece.
-    """
-
+    # lowest and highest number of the converter, reached by clipped samples only; None of floats
     full_scale: tuple[int, int] | None
-    clipped: int = 0
+    clipped: int = 0  # number of clipped samples
+    # of the pulses, uint8 [pulse] of each piece
     flags: list[NDArray[np.uint8]] = field(default_factory=list)
 
     def add(self, raw: Parts, values: Parts, gone: Bool) -> None:

@@ -48,17 +48,11 @@ REACH_M = 1.2  # limbs from the torso
 
 
 class Part(NamedTuple):
-    """Estimates from a few seconds of a recording.
+    """Estimates from a few seconds of a recording."""
 
-    Attributes:
-        snr_db: moving echo within reach of the torso, per raw sample; NaN if nobody is found.
-        ranges: of the torso where its track is reliable, m.
-        floor: noise in each range bin, as variance of a raw sample [K].
-    """
-
-    snr_db: float
-    ranges: Float
-    floor: Float
+    snr_db: float  # moving echo within reach of the torso, per raw sample; NaN if nobody is found
+    ranges: Float  # of the torso where its track is reliable, m
+    floor: Float  # noise in each range bin, as variance of a raw sample [K]
 
     @property
     def noise(self) -> float:
@@ -68,17 +62,11 @@ class Part(NamedTuple):
 
 @dataclass(frozen=True)
 class Fit:
-    """Estimates from all recordings.
+    """Estimates from all recordings."""
 
-    Attributes:
-        parts: the estimates of each part.
-        waveform: common to all recordings.
-        seconds: median duration of the recordings.
-    """
-
-    parts: list[Part]
-    waveform: Waveform
-    seconds: float
+    parts: list[Part]  # the estimates of each part
+    waveform: Waveform  # common to all recordings
+    seconds: float  # median duration of the recordings
 
     @property
     def snr_db(self) -> Float:

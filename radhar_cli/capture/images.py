@@ -23,17 +23,11 @@ MAX_NPZ = 2**29  # bytes of its images, which are held
 
 
 class Listed(NamedTuple):
-    """Images of a tree or an .npz.
+    """Images of a tree or an .npz."""
 
-    Attributes:
-        parts: {file, label, person} of each.
-        sha256: {name: of all of them}.
-        size: (H, W) of the first.
-    """
-
-    parts: list[dict[str, Any]]
-    sha256: dict[str, str]
-    size: tuple[int, int]
+    parts: list[dict[str, Any]]  # {file, label, person} of each
+    sha256: dict[str, str]  # {name: of all of them}
+    size: tuple[int, int]  # (H, W) of the first
 
 
 def are_images(path: Path) -> bool:

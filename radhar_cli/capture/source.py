@@ -16,34 +16,22 @@ PIECE_BYTES = 2**24
 
 @dataclass(frozen=True)
 class Source:
-    """An open capture.
+    """An open capture."""
 
-    Attributes:
-        files: its files.
-        receivers: virtual receivers: transmitters times receivers.
-        samples: of a chirp; None of slow time.
-        pulses: of each virtual receiver.
-        dtype: of the numbers.
-        parts: 2 of complex samples, 1 of real ones.
-        read: numbers [receiver, sample, stop - first, part] of pulses first .. stop - 1, one
-            sample of slow time.
-        times: of the pulses [pulses], s, if the capture contains them.
-        step: pulses that are best read together.
-        settings: fields of `CaptureSettings` that the capture itself contains.
-        notes: findings on opening it, in words.
-    """
-
-    files: tuple[Path, ...]
-    receivers: int
-    samples: int | None
-    pulses: int
-    dtype: np.dtype[Any]
-    parts: int
+    files: tuple[Path, ...]  # its files
+    receivers: int  # virtual receivers: transmitters times receivers
+    samples: int | None  # of a chirp; None of slow time
+    pulses: int  # of each virtual receiver
+    dtype: np.dtype[Any]  # of the numbers
+    parts: int  # 2 of complex samples, 1 of real ones
+    # numbers [receiver, sample, stop - first, part] of pulses first .. stop - 1, one sample of slow
+    # time
     read: Callable[[int, int], Parts]
-    times: Float | None = None
-    step: int = 1
+    times: Float | None = None  # of the pulses [pulses], s, if the capture contains them
+    step: int = 1  # pulses that are best read together
+    # fields of `CaptureSettings` that the capture itself contains
     settings: dict[str, Any] = field(default_factory=dict)
-    notes: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()  # findings on opening it, in words
 
     @property
     def name(self) -> str:

@@ -37,34 +37,22 @@ MAX_DB = 60.0
 
 
 class Peaks(NamedTuple):
-    """Candidates of a frame, strongest first, each [C].
+    """Candidates of a frame, strongest first, each [C]."""
 
-    Attributes:
-        range: m.
-        velocity: radial, receding, m/s.
-        snr: power relative to the floor.
-    """
-
-    range: Float
-    velocity: Float
-    snr: Float
+    range: Float  # m
+    velocity: Float  # radial, receding, m/s
+    snr: Float  # power relative to the floor
 
 
 @dataclass(frozen=True)
 class TorsoTrack:
-    """The track of the torso.
+    """The track of the torso."""
 
-    Attributes:
-        time: middles of the frames [F], s.
-        range: m [F].
-        velocity: radial, receding, m/s [F].
-        confidence: 0 to 1 [F]: the share of the frame's moving power, above the floor, within a
-            metre of the track; 0 in a frame that was bridged.
-    """
-
-    time: Float
-    range: Float
-    velocity: Float
+    time: Float  # middles of the frames [F], s
+    range: Float  # m [F]
+    velocity: Float  # radial, receding, m/s [F]
+    # 0 to 1 [F]: the share of the frame's moving power, above the floor, within a metre of the
+    # track; 0 in a frame that was bridged
     confidence: Float
 
     def ranges(self, t: Float) -> Float:

@@ -222,13 +222,9 @@ def warnings_of(config: Config) -> list[str]:
 
 @dataclass(frozen=True)
 class WindowFactory:
-    """Makes the rows of a data set of recordings.
+    """Makes the rows of a data set of recordings."""
 
-    Attributes:
-        folder: of the manifest, absolute.
-    """
-
-    folder: Path
+    folder: Path  # of the manifest, absolute
 
     def __call__(self, config: Config, row: int) -> Row:
         """Sample and values of a row."""

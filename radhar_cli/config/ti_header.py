@@ -290,36 +290,22 @@ def _demo(text: str, path: str) -> tuple[dict[str, Any], str, dict[str, str]]:
 
 @dataclass(frozen=True)
 class BoardHeader:
-    """What a .cfg says of a board, whichever device it runs on.
+    """What a .cfg says of a board, whichever device it runs on."""
 
-    Attributes:
-        start_hz: frequency at which a ramp starts.
-        carrier_hz: at the first sample that is kept.
-        slope_hz: per second.
-        adc_rate_hz, samples: of a chirp.
-        slot_s: from chirp to chirp.
-        order: numbers of the transmitters in their order within a loop, from 0 on.
-        receivers: numbers of those that are on, from 0 on.
-        loops: of a frame.
-        frames: of the recording; 0 is as many as there is time for.
-        period_s: from frame to frame.
-        detection: of its point cloud.
-        unknown: commands that say nothing here.
-    """
-
-    start_hz: float
-    carrier_hz: float
-    slope_hz: float
+    start_hz: float  # frequency at which a ramp starts
+    carrier_hz: float  # at the first sample that is kept
+    slope_hz: float  # per second
+    # adc_rate_hz, samples: of a chirp
     adc_rate_hz: float
     samples: int
-    slot_s: float
-    order: tuple[int, ...]
-    receivers: tuple[int, ...]
-    loops: int
-    frames: int
-    period_s: float
-    detection: Detection
-    unknown: tuple[str, ...]
+    slot_s: float  # from chirp to chirp
+    order: tuple[int, ...]  # numbers of the transmitters in their order within a loop, from 0 on
+    receivers: tuple[int, ...]  # numbers of those that are on, from 0 on
+    loops: int  # of a frame
+    frames: int  # of the recording; 0 is as many as there is time for
+    period_s: float  # from frame to frame
+    detection: Detection  # of its point cloud
+    unknown: tuple[str, ...]  # commands that say nothing here
 
     @property
     def numbers(self) -> dict[str, float]:

@@ -42,25 +42,16 @@ ROWS = 4096  # rows of column labels read at once
 
 @dataclass
 class Verification:
-    """What verification found.
+    """What verification found."""
 
-    Attributes:
-        samples: in the data set.
-        resynthesised: of them, made anew.
-        other_versions: library versions that differ from those that built it.
-        unmade: of them, not made anew as their motion files are not known.
-        worst_level: largest difference of a grey level among the samples made anew.
-        pngs: PNG files compared.
-        problems: everything that is wrong.
-    """
-
-    samples: int
-    resynthesised: int = 0
+    samples: int  # in the data set
+    resynthesised: int = 0  # of them, made anew
+    # library versions that differ from those that built it
     other_versions: list[str] = field(default_factory=list)
-    unmade: int = 0
-    worst_level: int = 0
-    pngs: int = 0
-    problems: list[str] = field(default_factory=list)
+    unmade: int = 0  # of them, not made anew as their motion files are not known
+    worst_level: int = 0  # largest difference of a grey level among the samples made anew
+    pngs: int = 0  # PNG files compared
+    problems: list[str] = field(default_factory=list)  # everything that is wrong
 
 
 def verify(folder: Path, samples: int, motion: Path | None = None) -> Verification:

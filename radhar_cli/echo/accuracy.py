@@ -34,17 +34,11 @@ PROBES = 48
 
 
 class Settings(NamedTuple):
-    """What the direct engine does.
+    """What the direct engine does."""
 
-    Attributes:
-        spacing: of the knots.
-        table_oversampling: points of the table of G per fast-time sample.
-        single: whether phasors between knots are single precision.
-    """
-
-    spacing: Spacing
-    table_oversampling: int
-    single: bool
+    spacing: Spacing  # of the knots
+    table_oversampling: int  # points of the table of G per fast-time sample
+    single: bool  # whether phasors between knots are single precision
 
 
 def settings(aim_db: float, waveform: Waveform, highest_frequency: float) -> Settings:

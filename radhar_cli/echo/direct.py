@@ -53,38 +53,23 @@ SAMPLED = 64
 
 
 class Accuracy(NamedTuple):
-    """How a slow-time signal was made, and its error.
+    """How a slow-time signal was made, and its error."""
 
-    Attributes:
-        step: pulses from knot to knot; 1 where paths are taken at every pulse.
-        table_oversampling: points of the table of G per fast-time sample.
-        single: whether phasors between knots are single precision.
-        error_db: measured relative L2 error after the canceller.
-    """
-
-    step: int
-    table_oversampling: int
-    single: bool
-    error_db: float
+    step: int  # pulses from knot to knot; 1 where paths are taken at every pulse
+    table_oversampling: int  # points of the table of G per fast-time sample
+    single: bool  # whether phasors between knots are single precision
+    error_db: float  # measured relative L2 error after the canceller
 
 
 @dataclass(frozen=True)
 class DirectEcho:
-    """The slow-time signal of a source of paths, without noise.
+    """The slow-time signal of a source of paths, without noise."""
 
-    Attributes:
-        source: the paths.
-        waveform: the radar.
-        tolerance_db: largest relative L2 error after the canceller.
-        double: keep to double precision whatever the tolerance.
-        canceller: after which the signal will be seen.
-    """
-
-    source: PathSource
-    waveform: Waveform
-    tolerance_db: float
-    double: bool = False
-    canceller: Canceller = FIRST_DIFFERENCE
+    source: PathSource  # the paths
+    waveform: Waveform  # the radar
+    tolerance_db: float  # largest relative L2 error after the canceller
+    double: bool = False  # keep to double precision whatever the tolerance
+    canceller: Canceller = FIRST_DIFFERENCE  # after which the signal will be seen
 
     def signal_power(self) -> float:
         """P_s = mean over the pulses of sum_i A_i^2."""

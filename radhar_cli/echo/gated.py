@@ -37,17 +37,11 @@ WIDTHS = 8  # bins to which extents are rounded up, so that few designs are need
 
 
 class Nodes(NamedTuple):
-    """Nodes in fast time for echoes within some bins of the middle.
+    """Nodes in fast time for echoes within some bins of the middle."""
 
-    Attributes:
-        size: P.
-        spacing: samples; they lie symmetrically about the middle of the chirp.
-        to_samples: takes the beat at the nodes to that at the samples [N_ADC, P]; None where these
-            are the nodes.
-    """
-
-    size: int
-    spacing: float
+    size: int  # P
+    spacing: float  # samples; they lie symmetrically about the middle of the chirp
+    # takes the beat at the nodes to that at the samples [N_ADC, P]; None where these are the nodes
     to_samples: Complex | None
 
 
@@ -87,18 +81,13 @@ def _about_zero(count: int) -> Float:
 
 @dataclass(frozen=True)
 class GatedEcho(DirectEcho):
-    """Range bins of a source of paths, without noise, referred to mid-chirp.
+    """Range bins of a source of paths, without noise, referred to mid-chirp."""
 
-    Attributes:
-        bins: those that are made.
-        needed: (first [M], last + 1 [M]): which of them count, pulse by pulse; others may be zero.
-            None is all.
-        spans: the pulses of each bin that count; None is all.
-    """
-
-    bins: slice = field(default_factory=lambda: slice(0, 0))
+    bins: slice = field(default_factory=lambda: slice(0, 0))  # those that are made
+    # (first [M], last + 1 [M]): which of them count, pulse by pulse; others may be zero. None is
+    # all
     needed: tuple[Index, Index] | None = None
-    spans: list[slice] | None = None
+    spans: list[slice] | None = None  # the pulses of each bin that count; None is all
 
     @property
     def look(self) -> Look:

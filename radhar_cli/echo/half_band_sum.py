@@ -20,19 +20,14 @@ MAX_CELLS = 2**22  # size of a table; a cell has 64 bytes
 
 @dataclass(frozen=True, eq=False)
 class HalfBandTable:
-    """G tabulated over one period, read by cubic Hermite interpolation.
+    """G tabulated over one period, read by cubic Hermite interpolation."""
 
-    Attributes:
-        waveform: the radar.
-        oversampling: table points per fast-time sample; the root-mean-square relative error is
-            about -48, -71, -95, -118 dB for 4, 8, 16, 32.
-        single: whether values are complex64; places in the table are float64.
-        cubics: coefficients of the cubic in each cell, lowest power first, an array for each.
-    """
-
-    waveform: Waveform
+    waveform: Waveform  # the radar
+    # table points per fast-time sample; the root-mean-square relative error is about -48, -71, -95,
+    # -118 dB for 4, 8, 16, 32
     oversampling: int
-    single: bool = False
+    single: bool = False  # whether values are complex64; places in the table are float64
+    # coefficients of the cubic in each cell, lowest power first, an array for each
     cubics: tuple[Complex, ...] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:

@@ -20,23 +20,14 @@ MIN_STEP = 3  # fewer pulses from knot to knot are not worth interpolating
 
 
 class Knots(NamedTuple):
-    """Paths every `step` pulses, and exactly in the segments that hold a breakpoint.
+    """Paths every `step` pulses, and exactly in the segments that hold a breakpoint."""
 
-    Attributes:
-        step: pulses from knot to knot; 1 where paths are taken at every pulse.
-        pulses: first and last + 1 of the pulses that they are for.
-        paths: at the knots [I, BEFORE + segments + AFTER], or at the pulses for step 1.
-        shift: of the stencil of every segment.
-        exact_pulses: those of the segments that cannot be interpolated.
-        exact: paths there.
-    """
-
-    step: int
-    pulses: tuple[int, int]
-    paths: Paths
-    shift: Index
-    exact_pulses: Index
-    exact: Paths
+    step: int  # pulses from knot to knot; 1 where paths are taken at every pulse
+    pulses: tuple[int, int]  # first and last + 1 of the pulses that they are for
+    paths: Paths  # at the knots [I, BEFORE + segments + AFTER], or at the pulses for step 1
+    shift: Index  # of the stencil of every segment
+    exact_pulses: Index  # those of the segments that cannot be interpolated
+    exact: Paths  # paths there
 
     @property
     def at_pulses(self) -> Paths:
@@ -69,21 +60,13 @@ class Spacing(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """A recording seen at its knots.
+    """A recording seen at its knots."""
 
-    Attributes:
-        step: pulses from knot to knot; 1 where nothing is interpolated.
-        moving: which paths change at all [I].
-        power: mean over the pulses of sum_i A_i^2.
-        largest: amplitude.
-        kept: the knots, where one chunk of them is all.
-    """
-
-    step: int
-    moving: Bool
-    power: float
-    largest: float
-    kept: Knots | None
+    step: int  # pulses from knot to knot; 1 where nothing is interpolated
+    moving: Bool  # which paths change at all [I]
+    power: float  # mean over the pulses of sum_i A_i^2
+    largest: float  # amplitude
+    kept: Knots | None  # the knots, where one chunk of them is all
 
     def knots(self, source: PathSource, waveform: Waveform) -> Iterator[Knots]:
         """The knots of the whole recording."""

@@ -30,15 +30,11 @@ def nodes(degree: int, length: int) -> Float:
 
 
 class Runs(NamedTuple):
-    """A segment in equal runs of pulses, each with a polynomial of its own.
+    """A segment in equal runs of pulses, each with a polynomial of its own."""
 
-    Attributes:
-        length: pulses of a run; the last may go beyond the segment.
-        differences: p, Dp, ... D^d p at the first pulse of each run, of the phases at the knots
-            -2 .. 3 of the segment [runs, d + 1, TAPS].
-    """
-
-    length: int
+    length: int  # pulses of a run; the last may go beyond the segment
+    # p, Dp, ... D^d p at the first pulse of each run, of the phases at the knots -2 .. 3 of the
+    # segment [runs, d + 1, TAPS]
     differences: Float
 
 

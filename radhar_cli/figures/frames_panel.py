@@ -33,23 +33,14 @@ LABELS = {0: "ahead (m)", 1: "right (m)", 2: "up (m)"}
 
 @dataclass(frozen=True)
 class Frames:
-    """What a page of frames shows, simulated or measured.
+    """What a page of frames shows, simulated or measured."""
 
-    Attributes:
-        made: {name: FrameMaps}, and `cloud`, `skeletons` where there are some.
-        board: whose frames.
-        image: dynamic range and colours.
-        title: one line above.
-        parents: of the joints.
-        farthest: range that maps show, m; None is all.
-    """
-
-    made: Mapping[str, Any]
-    board: Board
-    image: ImageConfig
-    title: str
-    parents: tuple[int | None, ...] = ()
-    farthest: float | None = None
+    made: Mapping[str, Any]  # {name: FrameMaps}, and `cloud`, `skeletons` where there are some
+    board: Board  # whose frames
+    image: ImageConfig  # dynamic range and colours
+    title: str  # one line above
+    parents: tuple[int | None, ...] = ()  # of the joints
+    farthest: float | None = None  # range that maps show, m; None is all
 
 
 def of_simulation(simulation: Simulation) -> Frames:

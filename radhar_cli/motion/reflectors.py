@@ -18,23 +18,16 @@ class Reflectors:
 
     Reflector i is at p_i + u_i d_i(t), u_i the direction to `towards`, d_i a sum of TONES sines of
     equal amplitude and standard deviation sd_i, at frequencies from SLOWEST f_i to f_i.
-
-    Attributes:
-        places: p [I, 3], m.
-        rcs: [I], m^2.
-        sd: of d [I], m.
-        fastest: f [I], Hz.
-        fractions, phases: of each tone, from 0 to 1 in its range and its cycle [I, TONES].
-        towards: [3], m.
     """
 
-    places: Float
-    rcs: Float
-    sd: Float
-    fastest: Float
+    places: Float  # p [I, 3], m
+    rcs: Float  # [I], m^2
+    sd: Float  # of d [I], m
+    fastest: Float  # f [I], Hz
+    # fractions, phases: of each tone, from 0 to 1 in its range and its cycle [I, TONES]
     fractions: Float
     phases: Float
-    towards: Float
+    towards: Float  # [3], m
 
     @property
     def names(self) -> tuple[str, ...]:

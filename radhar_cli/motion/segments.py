@@ -47,26 +47,18 @@ class Landmarks(Protocol):
 
 
 class Segment(NamedTuple):
-    """One ellipsoid.
+    """One ellipsoid."""
 
-    Attributes:
-        name: of the part.
-        start, end: names of the points between which it lies.
-        radius: across, m, the mean of two where it is flat.
-        joint: which it goes with when joints are seen alone.
-        arm: whether it is of an arm: its cross axis comes from the back instead of the side.
-        occludes: whether it is large enough to hide others.
-        flatness: width over the mean radius, and this over depth.
-    """
-
-    name: str
+    name: str  # of the part
+    # start, end: names of the points between which it lies
     start: str
     end: str
-    radius: float
-    joint: str
+    radius: float  # across, m, the mean of two where it is flat
+    joint: str  # which it goes with when joints are seen alone
+    # whether it is of an arm: its cross axis comes from the back instead of the side
     arm: bool = False
-    occludes: bool = False
-    flatness: float = 1.0
+    occludes: bool = False  # whether it is large enough to hide others
+    flatness: float = 1.0  # width over the mean radius, and this over depth
 
 
 def _side(side: str) -> tuple[Segment, ...]:
@@ -127,16 +119,12 @@ def thickness(stature: float, weight: float) -> float:
 
 
 class Placed(NamedTuple):
-    """Segments at M instants, in m.
+    """Segments at M instants, in m."""
 
-    Attributes:
-        start, end: of S segments [3, S, M].
-        beside: a unit vector of the body that is not along the segment in most poses [3, S, M].
-    """
-
+    # start, end: of S segments [3, S, M]
     start: Float
     end: Float
-    beside: Float
+    beside: Float  # a unit vector of the body that is not along the segment in most poses [3, S, M]
 
 
 def place(motion: Motion, segments: tuple[Segment, ...], stature: float, t: Float) -> Placed:

@@ -48,30 +48,20 @@ NEAR_M = 0.5  # of a point from a joint of the person whose it is
 
 
 class Echo(NamedTuple):
-    """The echo of a board without noise.
+    """The echo of a board without noise."""
 
-    Attributes:
-        cube: samples [frame, loop, virtual, sample].
-        power: P_s of a sample, mean over frames, loops and channels.
-        error_db: of the fast sum, measured; None of the exact one.
-    """
-
-    cube: Complex
-    power: float
-    error_db: float | None
+    cube: Complex  # samples [frame, loop, virtual, sample]
+    power: float  # P_s of a sample, mean over frames, loops and channels
+    error_db: float | None  # of the fast sum, measured; None of the exact one
 
 
 class Skeletons(NamedTuple):
-    """Joints of everybody in the middle of each frame's chirps, as the radar sees them.
+    """Joints of everybody in the middle of each frame's chirps, as the radar sees them."""
 
-    Attributes:
-        positions, velocities: [frame, person, joint, 3], m and m/s; ahead, left, up.
-        names: of the joints.
-    """
-
+    # positions, velocities: [frame, person, joint, 3], m and m/s; ahead, left, up
     positions: Float
     velocities: Float
-    names: tuple[str, ...]
+    names: tuple[str, ...]  # of the joints
 
 
 def board_products(c: Config, entropy: bool = True) -> Iterator[Product]:

@@ -16,19 +16,12 @@ from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
 @dataclass(frozen=True)
 class MotionPaths:
-    """A source of paths: `PathSource` for a motion seen through air or a wall.
+    """A source of paths: `PathSource` for a motion seen through air or a wall."""
 
-    Attributes:
-        motion: scatterer positions over time.
-        antennas: where the legs start and end.
-        fc: carrier, Hz.
-        wall: the slab between, or None.
-    """
-
-    motion: Motion | Reflectors
-    antennas: Antennas
-    fc: float
-    wall: Wall | None
+    motion: Motion | Reflectors  # scatterer positions over time
+    antennas: Antennas  # where the legs start and end
+    fc: float  # carrier, Hz
+    wall: Wall | None  # the slab between, or None
 
     @property
     def breakpoints(self) -> tuple[float, ...]:

@@ -488,13 +488,9 @@ def _frames(c: Config, of: Callable[..., Frames], w: Waveform) -> Frames:
 
 
 class DopplerPower(NamedTuple):
-    """The power of a Doppler-time map in blocks, in units of 2^(2 exponent), and its axes.
+    """The power of a Doppler-time map in blocks, in units of 2^(2 exponent), and its axes."""
 
-    Attributes:
-        blocks: [some columns, rows] in the order of time.
-    """
-
-    blocks: Iterator[Float]
+    blocks: Iterator[Float]  # [some columns, rows] in the order of time
     exponent: int
     rows: Axis
     columns: Axis

@@ -23,15 +23,10 @@ from radhar_cli.scene import Scene
 
 @dataclass
 class Recording:
-    """What was made of one scene, or of one recorded signal.
+    """What was made of one scene, or of one recorded signal."""
 
-    Attributes:
-        products: {name: product}, those asked for.
-        seconds: {name: processor time it took}.
-    """
-
-    products: dict[str, Any] = field(default_factory=dict)
-    seconds: dict[str, float] = field(default_factory=dict)
+    products: dict[str, Any] = field(default_factory=dict)  # {name: product}, those asked for
+    seconds: dict[str, float] = field(default_factory=dict)  # {name: processor time it took}
 
     def __getitem__(self, name: str) -> Any:
         return self.products[name]

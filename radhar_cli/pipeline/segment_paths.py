@@ -32,17 +32,11 @@ TINY = np.finfo(float).tiny
 
 
 class Points(NamedTuple):
-    """The n points of a segment.
+    """The n points of a segment."""
 
-    Attributes:
-        along: from the middle, -1/2 to 1/2 of the length [n].
-        across: in two directions [2, n], m.
-        share: of the amplitude [n]; squares add up to 1.
-    """
-
-    along: Float
-    across: Float
-    share: Float
+    along: Float  # from the middle, -1/2 to 1/2 of the length [n]
+    across: Float  # in two directions [2, n], m
+    share: Float  # of the amplitude [n]; squares add up to 1
 
     @property
     def coefficients(self) -> Float:
@@ -66,19 +60,12 @@ def draw_points(count: int, rng: np.random.Generator) -> Points:
 
 @dataclass(frozen=True)
 class Body:
-    """Whose segments they are.
+    """Whose segments they are."""
 
-    Attributes:
-        motion: how the joints move.
-        segments: those that its joints have.
-        stature: of the person, m.
-        thickness: of the segments, over the usual one.
-    """
-
-    motion: Motion
-    segments: tuple[Segment, ...]
-    stature: float
-    thickness: float
+    motion: Motion  # how the joints move
+    segments: tuple[Segment, ...]  # those that its joints have
+    stature: float  # of the person, m
+    thickness: float  # of the segments, over the usual one
 
     @cached_property
     def radii(self) -> Float:
@@ -135,24 +122,15 @@ def point_counts(
 
 @dataclass(frozen=True)
 class SegmentPaths:
-    """A source of paths: `PathSource` for a body of segments seen through air or a wall.
+    """A source of paths: `PathSource` for a body of segments seen through air or a wall."""
 
-    Attributes:
-        body: whose segments.
-        points: of each segment.
-        antennas: where the legs start and end.
-        fc: carrier, Hz.
-        wall: the slab between, or None.
-        shadowing: whether trunk and thighs hide what is behind them.
-        kept: numbers of the segments whose paths are wanted; the others hide these all the same.
-    """
-
-    body: Body
-    points: tuple[Points, ...]
-    antennas: Antennas
-    fc: float
-    wall: Wall | None
-    shadowing: bool
+    body: Body  # whose segments
+    points: tuple[Points, ...]  # of each segment
+    antennas: Antennas  # where the legs start and end
+    fc: float  # carrier, Hz
+    wall: Wall | None  # the slab between, or None
+    shadowing: bool  # whether trunk and thighs hide what is behind them
+    # numbers of the segments whose paths are wanted; the others hide these all the same
     kept: tuple[int, ...]
 
     @property
@@ -265,19 +243,14 @@ class SegmentPaths:
 
 
 class Frames(NamedTuple):
-    """Segments as frames of reference.
+    """Segments as frames of reference."""
 
-    Attributes:
-        centre, way: middle, and way from start to end [3, S, M], m.
-        length: [S, M], m.
-        axis: unit vector along [3, S, M].
-        left, up: at right angles to it and to each other, as long as each other [3, S, M].
-    """
-
+    # centre, way: middle, and way from start to end [3, S, M], m
     centre: Float
     way: Float
-    length: Float
-    axis: Float
+    length: Float  # [S, M], m
+    axis: Float  # unit vector along [3, S, M]
+    # left, up: at right angles to it and to each other, as long as each other [3, S, M]
     left: Float
     up: Float
 
@@ -312,17 +285,12 @@ class Frames(NamedTuple):
 
 
 class _Seen(NamedTuple):
-    """Segments seen from an antenna.
+    """Segments seen from an antenna."""
 
-    Attributes:
-        way: to their centres [3, S, M], m.
-        distance: of these [S, M], m.
-        ways: products that the squared distances of points are made of [S, 6, M], m^2:
-            `Points.coefficients`.
-    """
-
-    way: Float
-    distance: Float
+    way: Float  # to their centres [3, S, M], m
+    distance: Float  # of these [S, M], m
+    # products that the squared distances of points are made of [S, 6, M], m^2:
+    # `Points.coefficients`
     ways: Float
 
 

@@ -43,23 +43,14 @@ TONES = 4
 
 
 class Drawn(NamedTuple):
-    """What is drawn of a body's points [I].
+    """What is drawn of a body's points [I]."""
 
-    Attributes:
-        segment: number of the segment.
-        along: 0 at its start, 1 at its end.
-        around: angle from the side that faces the radar, rad.
-        weight: circular Gaussian.
-        rate: of the tones of the tremor [segment + 1, TONES], Hz; the last row is the body's.
-        phase: of these, cycles.
-    """
-
-    segment: np.ndarray[tuple[int], np.dtype[np.intp]]
-    along: Float
-    around: Float
-    weight: Complex
-    rate: Float
-    phase: Float
+    segment: np.ndarray[tuple[int], np.dtype[np.intp]]  # number of the segment
+    along: Float  # 0 at its start, 1 at its end
+    around: Float  # angle from the side that faces the radar, rad
+    weight: Complex  # circular Gaussian
+    rate: Float  # of the tones of the tremor [segment + 1, TONES], Hz; the last row is the body's
+    phase: Float  # of these, cycles
 
 
 def draw_surface(segments: int, points: int, rng: np.random.Generator) -> Drawn:
@@ -81,23 +72,14 @@ def draw_surface(segments: int, points: int, rng: np.random.Generator) -> Drawn:
 
 @dataclass(frozen=True)
 class SurfacePaths:
-    """A source of paths: `PathSource` for surfaces seen through air or a wall.
+    """A source of paths: `PathSource` for surfaces seen through air or a wall."""
 
-    Attributes:
-        body: whose segments.
-        drawn: their points.
-        antennas: where the legs start and end.
-        fc: carrier, Hz.
-        wall: the slab between, or None.
-        kept: numbers of the segments whose paths are wanted.
-    """
-
-    body: Body
-    drawn: Drawn = field(repr=False)
-    antennas: Antennas
-    fc: float
-    wall: Wall | None
-    kept: tuple[int, ...]
+    body: Body  # whose segments
+    drawn: Drawn = field(repr=False)  # their points
+    antennas: Antennas  # where the legs start and end
+    fc: float  # carrier, Hz
+    wall: Wall | None  # the slab between, or None
+    kept: tuple[int, ...]  # numbers of the segments whose paths are wanted
 
     @property
     def breakpoints(self) -> tuple[float, ...]:

@@ -83,15 +83,11 @@ class Approach(NamedTuple):
 
 @dataclass(frozen=True)
 class SceneCheck:
-    """What the check of one scene's kinematics found.
+    """What the check of one scene's kinematics found."""
 
-    Attributes:
-        closest: nearest passage, exact wherever it is below 5 cm.
-        flags: WALL, a scatterer is inside the wall; HALF_BAND, a delay lies beyond the kept range
-            bins; ALIASING, a Doppler lies beyond PRF/2; FLOOR, a height is below 0.
-    """
-
-    closest: Approach
+    closest: Approach  # nearest passage, exact wherever it is below 5 cm
+    # WALL, a scatterer is inside the wall; HALF_BAND, a delay lies beyond the kept range bins;
+    # ALIASING, a Doppler lies beyond PRF/2; FLOOR, a height is below 0
     flags: Flags
 
     @property

@@ -41,13 +41,10 @@ class Canceller(ABC):
 
 @dataclass(frozen=True)
 class Fir(Canceller):
-    """y[..., m] = sum_k taps[k] s[..., m + k].
+    """y[..., m] = sum_k taps[k] s[..., m + k]."""
 
-    Attributes:
-        taps: earliest pulse first; (-1, 1) is the first difference, (1, -2, 1) the three-pulse
-            canceller, (1,) none.
-    """
-
+    # earliest pulse first; (-1, 1) is the first difference, (1, -2, 1) the three-pulse canceller,
+    # (1,) none
     taps: tuple[float, ...]
 
     @property
@@ -90,19 +87,14 @@ class MeanRemoval(Canceller):
 
 @dataclass(frozen=True)
 class HighPass(Canceller):
-    """A Butterworth high-pass that starts from rest.
+    """A Butterworth high-pass that starts from rest."""
 
-    Attributes:
-        order: of the filter; both ways it has the effect of twice that.
-        cutoff: where |H|^2 = 1/2, as a fraction of PRF/2.
-        zero_phase: filter forwards and then backwards: the response is |H|^2, without delay.
-        remove_mean: first take out the mean of the recording. Without it what stands still is
-            switched on at the first pulse and rings, as it does in MATLAB's `filter`.
-    """
-
-    order: int
-    cutoff: float
+    order: int  # of the filter; both ways it has the effect of twice that
+    cutoff: float  # where |H|^2 = 1/2, as a fraction of PRF/2
+    # filter forwards and then backwards: the response is |H|^2, without delay
     zero_phase: bool = False
+    # first take out the mean of the recording. Without it what stands still is switched on at the
+    # first pulse and rings, as it does in MATLAB's `filter`
     remove_mean: bool = True
 
     @property

@@ -17,23 +17,16 @@ FLOOR_DB = -300.0  # lowest level of a map scaled near 1
 
 @dataclass(frozen=True)
 class CellAveraging:
-    """Which cells of a map are set.
+    """Which cells of a map are set."""
 
-    Attributes:
-        guard: cells on each side that are left out, (rows, columns).
-        training: cells on each side beyond those, whose mean is the background.
-        pfa: false alarm rate in exponentially distributed power, which makes the threshold.
-        decibel: whether cells are compared in decibels; in power otherwise.
-        floor_db: where the median of a map in decibels is put, so that a factor means something.
-        wrap: whether training cells beyond an edge are those of the opposite edge; otherwise
-            there are fewer.
-    """
-
-    guard: tuple[int, int]
-    training: tuple[int, int]
-    pfa: float
-    decibel: bool = False
+    guard: tuple[int, int]  # cells on each side that are left out, (rows, columns)
+    training: tuple[int, int]  # cells on each side beyond those, whose mean is the background
+    pfa: float  # false alarm rate in exponentially distributed power, which makes the threshold
+    decibel: bool = False  # whether cells are compared in decibels; in power otherwise
+    # where the median of a map in decibels is put, so that a factor means something
     floor_db: float = 0.0
+    # whether training cells beyond an edge are those of the opposite edge; otherwise there are
+    # fewer
     wrap: bool = False
 
     def levels(self, cells: Float) -> Levels:

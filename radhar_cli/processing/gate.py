@@ -15,15 +15,10 @@ from radhar_cli.processing.frames import Frames
 
 @dataclass(frozen=True, eq=False)
 class Gate:
-    """The range bins that each frame shows: first[l] .. first[l] + count - 1.
+    """The range bins that each frame shows: first[l] .. first[l] + count - 1."""
 
-    Attributes:
-        first: [frames], or [1] where all frames show the same.
-        count: of bins.
-    """
-
-    first: Index
-    count: int
+    first: Index  # [frames], or [1] where all frames show the same
+    count: int  # of bins
 
     @property
     def bins(self) -> slice:

@@ -16,16 +16,12 @@ BAND = 64  # rows or columns per matrix product, besides the overlap
 
 
 class Reduced(NamedTuple):
-    """What a data set needs of a power map.
+    """What a data set needs of a power map."""
 
-    Attributes:
-        cells: the map, or a function of it, resized [height, width] in float32, row 0 the highest
-            frequency or the farthest range, in the scale of the map.
-        entropy: of the map, bits; NaN where it was not asked for.
-    """
-
+    # the map, or a function of it, resized [height, width] in float32, row 0 the highest frequency
+    # or the farthest range, in the scale of the map
     cells: Float
-    entropy: float
+    entropy: float  # of the map, bits; NaN where it was not asked for
 
 
 def reduced(

@@ -25,22 +25,14 @@ class Stft:
 
     Frames come in blocks that bound the memory. Coefficients are those of 2^-exponent x, whose
     largest part is 1/2 to 1, so that no power of them overflows or vanishes, in float32 either.
-
-    Attributes:
-        signal: without its gaps, in which no frame lies.
-        frames: window length L and hop.
-        bins: N, at least L; None is L.
-        single: whether coefficients are complex64; complex128 otherwise.
-        gate: which rows of the signal a frame shows; None is all.
-        magnitudes: whether magnitudes are summed over the rows instead of powers.
     """
 
-    signal: Signal
-    frames: Frames
-    bins: int | None = None
-    single: bool = False
-    gate: Gate | None = None
-    magnitudes: bool = False
+    signal: Signal  # without its gaps, in which no frame lies
+    frames: Frames  # window length L and hop
+    bins: int | None = None  # N, at least L; None is L
+    single: bool = False  # whether coefficients are complex64; complex128 otherwise
+    gate: Gate | None = None  # which rows of the signal a frame shows; None is all
+    magnitudes: bool = False  # whether magnitudes are summed over the rows instead of powers
 
     @property
     def size(self) -> int:

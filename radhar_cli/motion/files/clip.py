@@ -37,21 +37,13 @@ _AXES = {
 
 @dataclass(frozen=True)
 class Clip:
-    """The thirteen joints, then right and left hip joint, over the frames of a file.
+    """The thirteen joints, then right and left hip joint, over the frames of a file."""
 
-    Attributes:
-        where: what messages call it.
-        positions: [frames, 15, 3], over the stature; z is up, the lowest ankle at 0.039.
-        rate: frames per second.
-        hip_joints: whether the file has them; else they are at the hip.
-        stature: of the recorded person by the legs, m; NaN where the unit is not known.
-    """
-
-    where: str
-    positions: Float
-    rate: float
-    hip_joints: bool
-    stature: float
+    where: str  # what messages call it
+    positions: Float  # [frames, 15, 3], over the stature; z is up, the lowest ankle at 0.039
+    rate: float  # frames per second
+    hip_joints: bool  # whether the file has them; else they are at the hip
+    stature: float  # of the recorded person by the legs, m; NaN where the unit is not known
 
     @property
     def seconds(self) -> float:

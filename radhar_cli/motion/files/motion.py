@@ -36,33 +36,20 @@ _ANKLES = [JOINTS.index("right_ankle"), JOINTS.index("left_ankle")]
 
 @dataclass(frozen=True)
 class FileMotion:
-    """The `Motion` of a clip.
+    """The `Motion` of a clip."""
 
-    Attributes:
-        clip: of a person of 1 m.
-        stature: m.
-        weight: kg.
-        start: x and y of the floor point between the ankles at 0 s, m.
-        heading: to where the person goes, rad from the x axis; who travels less than 0.5 m faces
-            there at 0 s.
-        seconds: of the recording.
-        begin: second of the clip at 0 s.
-        end: second of the clip beyond which nothing of it is used.
-        speed: seconds of the clip a second.
-        mirrored: left and right are exchanged.
-        rests: beyond the end people come to rest; else every joint goes on at its last velocity.
-    """
-
-    clip: Clip
-    stature: float
-    weight: float
-    start: tuple[float, float]
+    clip: Clip  # of a person of 1 m
+    stature: float  # m
+    weight: float  # kg
+    start: tuple[float, float]  # x and y of the floor point between the ankles at 0 s, m
+    # to where the person goes, rad from the x axis; who travels less than 0.5 m faces there at 0 s
     heading: float
-    seconds: float
-    begin: float = 0.0
-    end: float | None = None
-    speed: float = 1.0
-    mirrored: bool = False
+    seconds: float  # of the recording
+    begin: float = 0.0  # second of the clip at 0 s
+    end: float | None = None  # second of the clip beyond which nothing of it is used
+    speed: float = 1.0  # seconds of the clip a second
+    mirrored: bool = False  # left and right are exchanged
+    # beyond the end people come to rest; else every joint goes on at its last velocity
     rests: bool = False
 
     names = JOINTS

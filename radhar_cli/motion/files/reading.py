@@ -15,17 +15,11 @@ SUFFIXES = (".bvh", ".amc", ".npz")
 
 
 class MotionBytes(NamedTuple):
-    """A motion file as it was read: an AMC with its skeleton.
+    """A motion file as it was read: an AMC with its skeleton."""
 
-    Attributes:
-        path: of it.
-        data: its bytes.
-        skeleton: (path, bytes) of the ASF.
-    """
-
-    path: Path
-    data: bytes
-    skeleton: tuple[Path, bytes] | None
+    path: Path  # of it
+    data: bytes  # its bytes
+    skeleton: tuple[Path, bytes] | None  # (path, bytes) of the ASF
 
     @property
     def checksum(self) -> str:

@@ -27,15 +27,12 @@ PRONE, SUPINE = "lying prone", "lying on the back"
 
 @dataclass(frozen=True)
 class Prone:
-    """How people lie after a fall ahead: height of the knees in m, angles in rad.
-
-    Attributes:
-        hands: where they are ahead of and outside the shoulders, fractions of the stature.
-    """
+    """How people lie after a fall ahead: height of the knees in m, angles in rad."""
 
     knee_height: float = 0.10
     thigh: float = radians(90)
     trunk: float = radians(88)
+    # where they are ahead of and outside the shoulders, fractions of the stature
     hands: tuple[float, float] = (0.12, 0.05)
 
     def posture(self, person: Physique) -> dict[str, float]:
@@ -52,21 +49,14 @@ class Prone:
 
 @dataclass(frozen=True)
 class FallForward:
-    """From standing over the knees to lying; `duration` (s) from the loss of balance to impact.
-
-    Attributes:
-        buckle: by how much the thighs give way at first, rad.
-        arms: flexion of the shoulders as the hands look for the floor, rad.
-        kneel: how long the trunk stays over the knees before it falls too, s.
-        heels: how far the shanks swing up behind the knees on which the body lands, rad.
-    """
+    """From standing over the knees to lying; `duration` (s) from the loss of balance to impact."""
 
     duration: float = 1.1
     prone: Prone = field(default_factory=Prone)
-    buckle: float = radians(26)
-    arms: float = radians(80)
-    kneel: float = 0.0
-    heels: float = 0.0
+    buckle: float = radians(26)  # by how much the thighs give way at first, rad
+    arms: float = radians(80)  # flexion of the shoulders as the hands look for the floor, rad
+    kneel: float = 0.0  # how long the trunk stays over the knees before it falls too, s
+    heels: float = 0.0  # how far the shanks swing up behind the knees on which the body lands, rad
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
         """The movement from `begin` (s) on."""
@@ -110,18 +100,12 @@ class Supine:
 
 @dataclass(frozen=True)
 class FallBackward:
-    """From standing onto the buttocks, then the back, within about `duration` s.
+    """From standing onto the buttocks, then the back, within about `duration` s."""
 
-    Attributes:
-        duration: to the impact of the trunk, s.
-        bow: by how much the trunk bends ahead at first, rad.
-        arms: how far the arms go ahead at first, rad.
-    """
-
-    duration: float = 1.1
+    duration: float = 1.1  # to the impact of the trunk, s
     supine: Supine = field(default_factory=Supine)
-    bow: float = radians(28)
-    arms: float = radians(55)
+    bow: float = radians(28)  # by how much the trunk bends ahead at first, rad
+    arms: float = radians(55)  # how far the arms go ahead at first, rad
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
         """The movement from `begin` (s) on."""

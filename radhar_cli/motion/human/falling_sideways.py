@@ -19,26 +19,16 @@ from radhar_cli.motion.human.two_link import AHEAD, two_link
 
 @dataclass(frozen=True)
 class FallSideways:
-    """From standing to lying on one side; angles in rad.
+    """From standing to lying on one side; angles in rad."""
 
-    Attributes:
-        duration: from the loss of balance to the impact of the shoulder, s.
-        side: 1 to the left, -1 to the right.
-        hip_height: of the hip on the floor, over the stature.
-        bent: distance from hip to ankles at the end, over thigh and shank.
-        tilt: of pelvis and trunk to the side at the end.
-        curl: pitch of the trunk at the end.
-        arms: flexion of the shoulders as the hands look for the floor.
-        hands: where they end, ahead of the ankles and beyond the hip, over the stature.
-    """
-
-    duration: float = 1.1
-    side: float = 1.0
-    hip_height: float = 0.097
-    bent: float = 0.78
-    tilt: float = radians(80)
-    curl: float = radians(8)
-    arms: float = radians(55)
+    duration: float = 1.1  # from the loss of balance to the impact of the shoulder, s
+    side: float = 1.0  # 1 to the left, -1 to the right
+    hip_height: float = 0.097  # of the hip on the floor, over the stature
+    bent: float = 0.78  # distance from hip to ankles at the end, over thigh and shank
+    tilt: float = radians(80)  # of pelvis and trunk to the side at the end
+    curl: float = radians(8)  # pitch of the trunk at the end
+    arms: float = radians(55)  # flexion of the shoulders as the hands look for the floor
+    # where they end, ahead of the ankles and beyond the hip, over the stature
     hands: tuple[float, float] = (0.20, 0.20)
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "FallingSideways":

@@ -24,41 +24,28 @@ LAG_SHAPE = np.array([0, 0, 0, 1, -3, 3, -1, 0, 0]) * 64  # t^3 (1 - t)^3, peak 
 
 
 class Footfalls(NamedTuple):
-    """Swings of one foot [N], and the footholds before and after each; s and m.
+    """Swings of one foot [N], and the footholds before and after each; s and m."""
 
-    Attributes:
-        off, toe, down: heel-off, toe-off and touch-down, s.
-        before, after: x and y of the footholds [2, N].
-        heading: to where the foot points before the swing, rad from the x axis.
-        size: length of the step over the walker's usual one, at most 1.
-    """
-
+    # off, toe, down: heel-off, toe-off and touch-down, s
     off: Float
     toe: Float
     down: Float
+    # before, after: x and y of the footholds [2, N]
     before: Float
     after: Float
-    heading: Float
-    size: Float
+    heading: Float  # to where the foot points before the swing, rad from the x axis
+    size: Float  # length of the step over the walker's usual one, at most 1
 
 
 @dataclass(frozen=True)
 class FootTrack:
-    """Where an ankle is, at any time.
+    """Where an ankle is, at any time."""
 
-    Attributes:
-        person: whose foot.
-        falls: the swings.
-        roll: angle at toe-off, rad.
-        lift: height added to the swing, m.
-        lag: how far the foot is behind in mid-swing, over the length of the step.
-    """
-
-    person: Physique
-    falls: Footfalls
-    roll: float
-    lift: float
-    lag: float
+    person: Physique  # whose foot
+    falls: Footfalls  # the swings
+    roll: float  # angle at toe-off, rad
+    lift: float  # height added to the swing, m
+    lag: float  # how far the foot is behind in mid-swing, over the length of the step
 
     @property
     def breakpoints(self) -> Float:

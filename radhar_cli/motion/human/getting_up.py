@@ -15,18 +15,13 @@ from radhar_cli.motion.human.planted import Planted, at_rest, timed
 
 @dataclass(frozen=True)
 class GetUp:
-    """From lying prone to standing within `duration` s; angles in rad.
-
-    Attributes:
-        hands: where they push, ahead of the ankles, fraction of the stature.
-        on_knees: pitch of the trunk on hands and knees.
-        shank, thigh, trunk: in the crouch that follows.
-    """
+    """From lying prone to standing within `duration` s; angles in rad."""
 
     duration: float = 3.0
     prone: Prone = field(default_factory=Prone)
-    hands: float = 0.57
-    on_knees: float = radians(84)
+    hands: float = 0.57  # where they push, ahead of the ankles, fraction of the stature
+    on_knees: float = radians(84)  # pitch of the trunk on hands and knees
+    # shank, thigh, trunk: in the crouch that follows
     shank: float = radians(38)
     thigh: float = radians(-70)
     trunk: float = radians(50)

@@ -16,15 +16,7 @@ STOOP = -0.33, 0.66, 0.25, 0.0
 
 @dataclass(frozen=True)
 class Grab:
-    """Down, a dwell, and up, s; angles at the floor in rad.
-
-    Attributes:
-        haste: people come up before they are all the way down, by that share of `down`.
-        reach: of the right arm ahead of the vertical.
-        other_arm: what the left arm does of what the right one does.
-        squat: from -1, over straight legs, to 1, deep in the knees.
-        lowering, rising: which joints lead and which lag.
-    """
+    """Down, a dwell, and up, s; angles at the floor in rad."""
 
     down: float = 1.2
     dwell: float = 0.4
@@ -32,10 +24,11 @@ class Grab:
     shank: float = radians(20)
     thigh: float = radians(-62)
     trunk: float = radians(72)
-    reach: float = radians(12)
-    other_arm: float = 0.55
-    squat: float = 0.0
-    haste: float = 0.0
+    reach: float = radians(12)  # of the right arm ahead of the vertical
+    other_arm: float = 0.55  # what the left arm does of what the right one does
+    squat: float = 0.0  # from -1, over straight legs, to 1, deep in the knees
+    haste: float = 0.0  # people come up before they are all the way down, by that share of `down`
+    # lowering, rising: which joints lead and which lag
     lowering: Lags = field(default_factory=Lags)
     rising: Lags = field(default_factory=Lags)
 

@@ -19,35 +19,21 @@ from radhar_cli.motion.human.two_link import AHEAD, two_link
 
 @dataclass(frozen=True)
 class Kick:
-    """Kicks for `duration` s; angles in rad.
-
-    Attributes:
-        frequency: Hz.
-        first: the first kick after the beginning, or after the stance is taken, s.
-        thigh: flexion of the hip.
-        fold: flexion of the knee before the kick.
-        snap: extension of the knee in the kick.
-        refold: flexion of the knee after it.
-        lean: of the trunk ahead in the stance.
-        back: of the trunk backwards in the kick.
-        bend: length of the standing legs in the stance, over thigh and shank.
-        entry: time to take the stance, and to leave it, s.
-        from_rest: whether the stance is taken at first.
-        paces, sizes: of each kick, over the usual ones.
-    """
+    """Kicks for `duration` s; angles in rad."""
 
     duration: float = inf
-    frequency: float = 0.45
-    first: float = 0.3
-    thigh: float = radians(78)
-    fold: float = radians(92)
-    snap: float = radians(100)
-    refold: float = radians(75)
-    lean: float = radians(2)
-    back: float = radians(14)
-    bend: float = 0.985
-    entry: float = 0.5
-    from_rest: bool = False
+    frequency: float = 0.45  # Hz
+    first: float = 0.3  # the first kick after the beginning, or after the stance is taken, s
+    thigh: float = radians(78)  # flexion of the hip
+    fold: float = radians(92)  # flexion of the knee before the kick
+    snap: float = radians(100)  # extension of the knee in the kick
+    refold: float = radians(75)  # flexion of the knee after it
+    lean: float = radians(2)  # of the trunk ahead in the stance
+    back: float = radians(14)  # of the trunk backwards in the kick
+    bend: float = 0.985  # length of the standing legs in the stance, over thigh and shank
+    entry: float = 0.5  # time to take the stance, and to leave it, s
+    from_rest: bool = False  # whether the stance is taken at first
+    # paces, sizes: of each kick, over the usual ones
     paces: tuple[float, ...] = ()
     sizes: tuple[float, ...] = ()
 

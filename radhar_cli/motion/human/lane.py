@@ -18,21 +18,13 @@ DEGREE = 40  # of the integrals, which then hold to 1e-15
 
 @dataclass(frozen=True)
 class Lane:
-    """Where half turns are.
+    """Where half turns are."""
 
-    Attributes:
-        length: of the straight way between them, m.
-        first: of that before the first one, m.
-        radius: of the turns on average, m.
-        side: 1 to the left, -1 to the right, as all of them.
-        slow: by how much a walker slows down in them, fraction of the speed.
-    """
-
-    length: float
-    first: float = 0.0
-    radius: float = 0.5
-    side: float = 1.0
-    slow: float = 0.45
+    length: float  # of the straight way between them, m
+    first: float = 0.0  # of that before the first one, m
+    radius: float = 0.5  # of the turns on average, m
+    side: float = 1.0  # 1 to the left, -1 to the right, as all of them
+    slow: float = 0.45  # by how much a walker slows down in them, fraction of the speed
 
 
 @lru_cache(maxsize=1)

@@ -45,22 +45,15 @@ class Step(NamedTuple):
 
 @dataclass(frozen=True)
 class Course:
-    """Channels that go from value to value: y_c(t) = y_c0 + sum_k w_ck S((t - t_k)/T_k).
+    """Channels that go from value to value: y_c(t) = y_c0 + sum_k w_ck S((t - t_k)/T_k)."""
 
-    Attributes:
-        channels: their names, C.
-        initial: [C, 1].
-        weights: [C, K].
-        starts, lengths: [K, 1], s.
-        late: which steps are late [K].
-    """
-
-    channels: tuple[str, ...]
-    initial: Float
-    weights: Float
+    channels: tuple[str, ...]  # their names, C
+    initial: Float  # [C, 1]
+    weights: Float  # [C, K]
+    # starts, lengths: [K, 1], s
     starts: Float
     lengths: Float
-    late: Bool
+    late: Bool  # which steps are late [K]
 
     @classmethod
     def of(cls, initial: Mapping[str, float], steps: Iterable[Step]) -> "Course":
@@ -108,14 +101,11 @@ class Course:
 
 @dataclass(frozen=True)
 class Lags:
-    """How far joints lead and lag: each channel moves in a part of its steps' time of its own.
+    """How far joints lead and lag: each channel moves in a part of its steps' time of its own."""
 
-    Attributes:
-        share: of the lengths of all steps, by which they are shorter; 0 is all at the same time.
-        places: of each channel's part, from 0 (the beginning) to 1 (the end).
-    """
-
+    # of the lengths of all steps, by which they are shorter; 0 is all at the same time
     share: float = 0.0
+    # of each channel's part, from 0 (the beginning) to 1 (the end)
     places: Mapping[str, float] = field(default_factory=dict)
 
     def __call__(self, steps: Iterable[Step]) -> list[Step]:

@@ -32,27 +32,20 @@ class Movement(Protocol):
 
 @dataclass(frozen=True)
 class HumanMotion:
-    """A person who does one thing after another.
+    """A person who does one thing after another."""
 
-    Attributes:
-        person: whose body.
-        movements: what is done; each begins when the one before has come to rest.
-        start: x and y of the floor point between the ankles of the first stance, m.
-        heading: to where the person faces at first, rad from the x axis; 0 is away from the radar.
-        begin: when the first movement begins, s.
-        pauses: at rest before each movement, s; those that are not named are 0. Below 0 the
-            movement overlaps the one before: a walk and a movement on planted feet.
-        horizon: end of the recording, s; at least 2 strides of a walk are worked out beyond.
-        idle: sway, breath and fidgets.
-    """
-
-    person: Physique
+    person: Physique  # whose body
+    # what is done; each begins when the one before has come to rest
     movements: tuple[Movement, ...]
+    # x and y of the floor point between the ankles of the first stance, m
     start: tuple[float, float]
+    # to where the person faces at first, rad from the x axis; 0 is away from the radar
     heading: float
-    begin: float
-    horizon: float
-    idle: Idle
+    begin: float  # when the first movement begins, s
+    horizon: float  # end of the recording, s; at least 2 strides of a walk are worked out beyond
+    idle: Idle  # sway, breath and fidgets
+    # at rest before each movement, s; those that are not named are 0. Below 0 the movement overlaps
+    # the one before: a walk and a movement on planted feet
     pauses: tuple[float, ...] = ()
 
     names = JOINTS

@@ -14,30 +14,20 @@ class Physique:
     Ankle height: Winter, Biomechanics and Motor Control, after Drillis and Contini. Hip width:
     CMU motion capture, subject 02.
 
-    Attributes:
-        stature: m.
-        ankle_height: of the ankle above the floor.
-        hip_width: of a hip joint beside the hip point; at rest the feet are below the hip joints.
-        ball: of the foot, ahead of the ankle.
-        standing: length of a standing leg over thigh and shank together.
-        straightest: the longest that a leg gets, likewise (a knee of 11.5 degrees).
-        softness: k of the soft minimum that sets the pelvis's height, 1/m.
-        elbow: flexion at rest, rad.
-        weight: kg; 26 kg/m^2 times the stature squared where it is not given.
-
     Raises:
         ValueError: no stature.
     """
 
-    stature: float
-    ankle_height: float = 0.039
+    stature: float  # m
+    ankle_height: float = 0.039  # of the ankle above the floor
+    # of a hip joint beside the hip point; at rest the feet are below the hip joints
     hip_width: float = 0.052
-    ball: float = 0.10
-    standing: float = 0.997
-    straightest: float = 0.995
-    softness: float = 160.0
-    elbow: float = radians(8)
-    weight: float | None = None
+    ball: float = 0.10  # of the foot, ahead of the ankle
+    standing: float = 0.997  # length of a standing leg over thigh and shank together
+    straightest: float = 0.995  # the longest that a leg gets, likewise (a knee of 11.5 degrees)
+    softness: float = 160.0  # k of the soft minimum that sets the pelvis's height, 1/m
+    elbow: float = radians(8)  # flexion at rest, rad
+    weight: float | None = None  # kg; 26 kg/m^2 times the stature squared where it is not given
 
     def __post_init__(self) -> None:
         if not self.stature > 0:

@@ -37,24 +37,18 @@ def axes(pitch: Float, yaw: Float, roll: Float) -> Axes:
 
 @dataclass
 class Pose:
-    """A body at M instants, in m and rad, x ahead, y left, z up.
+    """A body at M instants, in m and rad, x ahead, y left, z up."""
 
-    Attributes:
-        hip: [3, M].
-        trunk: its axes.
-        hip_joints, knees, ankles: right, left [3, 2, M].
-        upper_arms, forearms: unit vectors, right, left [3, 2, M].
-        breath: how far the torso is ahead of its place [M] or a number.
-    """
-
-    hip: Float
-    trunk: Axes
+    hip: Float  # [3, M]
+    trunk: Axes  # its axes
+    # hip_joints, knees, ankles: right, left [3, 2, M]
     hip_joints: Float
     knees: Float
     ankles: Float
+    # upper_arms, forearms: unit vectors, right, left [3, 2, M]
     upper_arms: Float
     forearms: Float
-    breath: Float | float = 0.0
+    breath: Float | float = 0.0  # how far the torso is ahead of its place [M] or a number
 
     def at(self, x: Float, y: Float, heading: Float | None) -> "Pose":
         """The pose turned to a heading [M] (rad), if there is one, and moved by x, y [M] (m)."""

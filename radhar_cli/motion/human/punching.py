@@ -26,43 +26,31 @@ ENTRY = {"right_foot": (0.0, 0.6), "left_foot": (0.4, 0.6), "guard": (0.0, 1.0)}
 
 @dataclass(frozen=True)
 class Punch:
-    """Punches for `duration` s; lengths in m at a stature of 1.75 m, angles in rad.
-
-    Attributes:
-        frequency: of a right and a left punch together, Hz.
-        first: the first punch after the beginning, or after the guard is taken, s.
-        out, hold, back: the hand goes out within `out`, begins its way back after `hold` and takes
-            `back`, s.
-        reach: of a punch, over the arm's length.
-        guard: of a hand ahead of the shoulder, inwards and up.
-        stance: how far the left foot is ahead and the right one behind, and both beside.
-        turn: of the trunk into a punch.
-        pelvis: what the pelvis does of it.
-        thrust: of the hip ahead.
-        pitch, bow: of the trunk in guard, and further in a punch.
-        entry: time to take the guard, and to leave it, s.
-        lift: of the feet as they do so.
-        from_rest: whether the guard is taken at first.
-        paces, sizes: of each punch, over the usual ones.
-    """
+    """Punches for `duration` s; lengths in m at a stature of 1.75 m, angles in rad."""
 
     duration: float = inf
-    frequency: float = 0.7
-    first: float = 0.1
+    frequency: float = 0.7  # of a right and a left punch together, Hz
+    first: float = 0.1  # the first punch after the beginning, or after the guard is taken, s
+    # out, hold, back: the hand goes out within `out`, begins its way back after `hold` and takes
+    # `back`, s
     out: float = 0.28
     hold: float = 0.31
     back: float = 0.40
-    reach: float = 0.96
+    reach: float = 0.96  # of a punch, over the arm's length
+    # of a hand ahead of the shoulder, inwards and up
     guard: tuple[float, float, float] = (0.24, 0.04, 0.05)
+    # how far the left foot is ahead and the right one behind, and both beside
     stance: tuple[float, float] = (0.18, 0.11)
-    turn: float = radians(28)
-    pelvis: float = 0.35
-    thrust: float = 0.05
+    turn: float = radians(28)  # of the trunk into a punch
+    pelvis: float = 0.35  # what the pelvis does of it
+    thrust: float = 0.05  # of the hip ahead
+    # pitch, bow: of the trunk in guard, and further in a punch
     pitch: float = radians(6)
     bow: float = radians(4)
-    entry: float = 0.9
-    lift: float = 0.03
-    from_rest: bool = False
+    entry: float = 0.9  # time to take the guard, and to leave it, s
+    lift: float = 0.03  # of the feet as they do so
+    from_rest: bool = False  # whether the guard is taken at first
+    # paces, sizes: of each punch, over the usual ones
     paces: tuple[float, ...] = ()
     sizes: tuple[float, ...] = ()
 

@@ -23,24 +23,18 @@ AROUND = StepTo(1.8, Place(turn=pi), steps=5, name="turning around")
 
 @dataclass(frozen=True)
 class Repertoire:
-    """How somebody does what they do.
+    """How somebody does what they do."""
 
-    Attributes:
-        gait: of every walk.
-        walk: how long the walk of S10 and S12 lasts before its last steps, s.
-        standing_first: whether who walks (S8) has stood before.
-        fall: in which direction people fall, and how.
-    """
-
-    gait: Gait
-    walk: float = 2.0
-    standing_first: bool = False
+    gait: Gait  # of every walk
+    walk: float = 2.0  # how long the walk of S10 and S12 lasts before its last steps, s
+    standing_first: bool = False  # whether who walks (S8) has stood before
     punch: Punch = field(default_factory=Punch)
     kick: Kick = field(default_factory=Kick)
     grab: Grab = field(default_factory=Grab)
     sit_down: SitDown = field(default_factory=SitDown)
     stand_up: StandUp = field(default_factory=StandUp)
     turn: Turn = field(default_factory=Turn)
+    # in which direction people fall, and how
     fall: FallForward | FallBackward | FallSideways = field(default_factory=FallForward)
     get_up: GetUp = field(default_factory=GetUp)
     turn_around: StepTo = AROUND

@@ -64,19 +64,12 @@ S = TypeVar("S", bound=Strikes)
 
 @dataclass(frozen=True)
 class Striking(Generic[S]):
-    """Blows of a person; see `part.Part`. Subclasses have the steps of the blows and the pose.
+    """Blows of a person; see `part.Part`. Subclasses have the steps of the blows and the pose."""
 
-    Attributes:
-        person: whose blows.
-        strikes: how.
-        begin: from when on, s.
-        horizon: until when there are blows, s.
-    """
-
-    person: Physique
-    strikes: S
-    begin: float
-    horizon: float
+    person: Physique  # whose blows
+    strikes: S  # how
+    begin: float  # from when on, s
+    horizon: float  # until when there are blows, s
 
     after = STANDING
     place = Place()

@@ -23,18 +23,15 @@ from radhar_cli.motion.human.planted import (
 
 @dataclass(frozen=True)
 class Seat:
-    """How people sit: height of the hip over stature, angles in rad, `recline` backwards.
-
-    Attributes:
-        lap: how far the hands are on the lap, where shoulders and elbows are flexed as given; 0 is
-            hanging beside the seat.
-    """
+    """How people sit: height of the hip over stature, angles in rad, `recline` backwards."""
 
     height: float = 0.285
     shank: float = radians(8)
     shoulder: float = radians(35)
     elbow: float = radians(53)
     recline: float = 0.0
+    # how far the hands are on the lap, where shoulders and elbows are flexed as given; 0 is hanging
+    # beside the seat
     lap: float = 1.0
 
     def posture(self, person: Physique) -> dict[str, float]:
@@ -47,17 +44,11 @@ class Seat:
 
 @dataclass(frozen=True)
 class Rise:
-    """How people stand up: angles in rad, seat to standing in 1 unit of time.
+    """How people stand up: angles in rad, seat to standing in 1 unit of time."""
 
-    Attributes:
-        lean: of the trunk ahead while the body leaves the seat.
-        swing: of the arms ahead.
-        shin: of the shanks ahead, beyond the seated angle.
-    """
-
-    lean: float = radians(42)
-    swing: float = radians(20)
-    shin: float = radians(14)
+    lean: float = radians(42)  # of the trunk ahead while the body leaves the seat
+    swing: float = radians(20)  # of the arms ahead
+    shin: float = radians(14)  # of the shanks ahead, beyond the seated angle
 
     def steps(self, person: Physique, seat: Seat) -> list[Step]:
         """From seat to standing, in units of the duration."""
@@ -101,18 +92,14 @@ class StandUp:
 
 @dataclass(frozen=True)
 class SitDown:
-    """From standing to a seat within `duration` s, then back against the chair if it reclines.
-
-    Attributes:
-        recline: the trunk leans back from that share of the duration on, for so long in s.
-        lags: which joints lead and which lag.
-    """
+    """From standing to a seat within `duration` s, then back against the chair if it reclines."""
 
     duration: float = 2.0
     seat: Seat = field(default_factory=Seat)
     rise: Rise = field(default_factory=Rise)
+    # the trunk leans back from that share of the duration on, for so long in s
     recline: tuple[float, float] = (0.7, 1.0)
-    lags: Lags = field(default_factory=Lags)
+    lags: Lags = field(default_factory=Lags)  # which joints lead and which lag
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
         """The movement from `begin` (s) on."""

@@ -25,20 +25,13 @@ HERE = Place()
 
 @dataclass(frozen=True)
 class StepTo:
-    """To another stance within `duration` s.
-
-    Attributes:
-        place: of the new stance, seen from the old one.
-        steps: how many, at least 2.
-        lift: of a stepping foot, m.
-        name: what this is called among the phases.
-    """
+    """To another stance within `duration` s."""
 
     duration: float = 0.9
-    place: Place = HERE
-    steps: int = 2
-    lift: float = 0.03
-    name: str = "stepping"
+    place: Place = HERE  # of the new stance, seen from the old one
+    steps: int = 2  # how many, at least 2
+    lift: float = 0.03  # of a stepping foot, m
+    name: str = "stepping"  # what this is called among the phases
 
     def __post_init__(self) -> None:
         if self.steps < 2:

@@ -19,27 +19,17 @@ from radhar_cli.motion.human.two_link import AHEAD, two_link
 
 @dataclass(frozen=True)
 class Turn:
-    """Turns for `duration` s; angles in rad.
-
-    Attributes:
-        frequency: Hz.
-        angle: of the trunk to each side.
-        pelvis: what the pelvis does of it.
-        arms: how far the arms swing.
-        lag: phase by which they follow the shoulders.
-        entry: time in which the turning begins, and ends, s.
-        from_rest: whether it begins from rest.
-        paces, sizes: time and angle of each turn to both sides, over the usual ones.
-    """
+    """Turns for `duration` s; angles in rad."""
 
     duration: float = inf
-    frequency: float = 0.45
-    angle: float = radians(45)
-    pelvis: float = 0.45
-    arms: float = radians(14)
-    lag: float = radians(20)
-    entry: float = 0.8
-    from_rest: bool = False
+    frequency: float = 0.45  # Hz
+    angle: float = radians(45)  # of the trunk to each side
+    pelvis: float = 0.45  # what the pelvis does of it
+    arms: float = radians(14)  # how far the arms swing
+    lag: float = radians(20)  # phase by which they follow the shoulders
+    entry: float = 0.8  # time in which the turning begins, and ends, s
+    from_rest: bool = False  # whether it begins from rest
+    # paces, sizes: time and angle of each turn to both sides, over the usual ones
     paces: tuple[float, ...] = ()
     sizes: tuple[float, ...] = ()
 

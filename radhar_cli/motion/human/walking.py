@@ -44,58 +44,36 @@ SURGE_PHASE, SHARPNESS = 0.04, 0.08
 
 @dataclass(frozen=True)
 class Gait:
-    """How somebody walks. Phases are fractions of a stride from right heel strike on.
+    """How somebody walks. Phases are fractions of a stride from right heel strike on."""
 
-    Attributes:
-        speed: m/s.
-        period_scale: of the stride's duration after Boulic and Thalmann.
-        phase: of a steady walk at t = 0.
-        arm_swing: of the arms' amplitude.
-        trunk_pitch: rad ahead.
-        half_width: of the stance, fraction of the stature.
-        surge: speed of the hip's surge, twice a stride, over the speed.
-        surge_asymmetry: of the right step's surge over the left one's, over twice the speed.
-        sidewards: of the hip from side to side, m.
-        sink: of the standing height while walking, fraction of the stature.
-        softness: of the pelvis's height (`Physique.softness`) while walking, 1/m.
-        touch_down, heel_off: phases between which the foot lies flat.
-        below: phase at which the body is above the foothold.
-        roll: of the foot about its ball until toe-off, rad.
-        lift: of the swinging foot, m.
-        lag: of the foot in mid-swing behind a smooth course, over the length of the step.
-        ramp: in which a walk gains and loses its speed, fraction of a stride.
-        start: in which it gains it from rest, likewise; as ramp if None.
-        asymmetry: of left over right step lengths, fraction of a step.
-        ragged: relative deviation of the speed over time.
-        jitter: by how much the phase is ahead after each stride, fractions of a stride.
-        widths: further half width of each stride, m.
-        lane: where the walker turns round; None for never.
-    """
-
-    speed: float
-    period_scale: float = 1.0
-    phase: float = 0.0
-    arm_swing: float = 1.0
-    trunk_pitch: float = radians(3)
-    half_width: float = 0.0315
-    surge: float = 0.125
+    speed: float  # m/s
+    period_scale: float = 1.0  # of the stride's duration after Boulic and Thalmann
+    phase: float = 0.0  # of a steady walk at t = 0
+    arm_swing: float = 1.0  # of the arms' amplitude
+    trunk_pitch: float = radians(3)  # rad ahead
+    half_width: float = 0.0315  # of the stance, fraction of the stature
+    surge: float = 0.125  # speed of the hip's surge, twice a stride, over the speed
+    # of the right step's surge over the left one's, over twice the speed
     surge_asymmetry: float = 0.0
-    sidewards: float = 0.018
-    sink: float = 0.003
-    softness: float = 80.0
+    sidewards: float = 0.018  # of the hip from side to side, m
+    sink: float = 0.003  # of the standing height while walking, fraction of the stature
+    softness: float = 80.0  # of the pelvis's height (`Physique.softness`) while walking, 1/m
+    # touch_down, heel_off: phases between which the foot lies flat
     touch_down: float = 0.085
     heel_off: float = 0.42
-    below: float = 0.25
-    roll: float = radians(52)
-    lift: float = 0.10
+    below: float = 0.25  # phase at which the body is above the foothold
+    roll: float = radians(52)  # of the foot about its ball until toe-off, rad
+    lift: float = 0.10  # of the swinging foot, m
+    # of the foot in mid-swing behind a smooth course, over the length of the step
     lag: float = 0.21
-    ramp: float = 0.6
-    start: float | None = None
-    asymmetry: float = 0.0
-    ragged: Waves = field(default_factory=Waves)
+    ramp: float = 0.6  # in which a walk gains and loses its speed, fraction of a stride
+    start: float | None = None  # in which it gains it from rest, likewise; as ramp if None
+    asymmetry: float = 0.0  # of left over right step lengths, fraction of a step
+    ragged: Waves = field(default_factory=Waves)  # relative deviation of the speed over time
+    # by how much the phase is ahead after each stride, fractions of a stride
     jitter: tuple[float, ...] = ()
-    widths: tuple[float, ...] = ()
-    lane: Lane | None = None
+    widths: tuple[float, ...] = ()  # further half width of each stride, m
+    lane: Lane | None = None  # where the walker turns round; None for never
 
     def __post_init__(self) -> None:
         if not self.speed > 0:
@@ -117,23 +95,15 @@ class Walk:
 
 @dataclass(frozen=True)
 class Walking:
-    """A walk; see `part.Part`.
-
-    Attributes:
-        begin: from rest on, or from where x and the stride are counted, s.
-        stop: when the speed begins to fall, s; infinity for never.
-        from_rest: whether the walk begins from rest.
-        horizon: until when there are steps, s.
-        planted: movements on planted feet that have not ended when the walk begins, or begin
-            before it ends.
-    """
+    """A walk; see `part.Part`."""
 
     person: Physique
     gait: Gait
-    begin: float
-    stop: float
-    from_rest: bool
-    horizon: float
+    begin: float  # from rest on, or from where x and the stride are counted, s
+    stop: float  # when the speed begins to fall, s; infinity for never
+    from_rest: bool  # whether the walk begins from rest
+    horizon: float  # until when there are steps, s
+    # movements on planted feet that have not ended when the walk begins, or begin before it ends
     planted: tuple[Planted, ...] = ()
 
     before = STANDING

@@ -46,23 +46,15 @@ class Timing:
 
 @dataclass
 class Posture:
-    """What an activity asks of the body at times t [M].
+    """What an activity asks of the body at times t [M]."""
 
-    Attributes:
-        angles: {joint name: theta [M]} in rad; joints left out do not turn.
-        travelled: path of the torso along the motion angle [M], m.
-        seated: fraction of the seat taken, 0 standing, 1 seated [M].
-        pitch: global pitch about y [M], rad.
-        lying: fraction of the way from standing height to lying height [M].
-        twist: yaw beyond the motion angle [M], rad.
-    """
-
+    # {joint name: theta [M]} in rad; joints left out do not turn
     angles: dict[str, Float] = field(default_factory=dict)
-    travelled: Float | float = 0.0
-    seated: Float | float = 0.0
-    pitch: Float | float = 0.0
-    lying: Float | float = 0.0
-    twist: Float | float = 0.0
+    travelled: Float | float = 0.0  # path of the torso along the motion angle [M], m
+    seated: Float | float = 0.0  # fraction of the seat taken, 0 standing, 1 seated [M]
+    pitch: Float | float = 0.0  # global pitch about y [M], rad
+    lying: Float | float = 0.0  # fraction of the way from standing height to lying height [M]
+    twist: Float | float = 0.0  # yaw beyond the motion angle [M], rad
 
 
 def _stationary(t: Float, gait: Gait, timing: Timing) -> Posture:
@@ -188,19 +180,12 @@ Phases: TypeAlias = Callable[[Timing], tuple[tuple[float, str], ...]]
 
 @dataclass(frozen=True)
 class PaperActivity:
-    """How the paper moves a body in one activity.
+    """How the paper moves a body in one activity."""
 
-    Attributes:
-        posture: what it asks of the body at times t [M] (s).
-        ramps: (start, duration) in s of its raised-cosine ramps.
-        phases: (start in s, name) of the movements within it (`motion.phases.PHASES`).
-        swings: whether limbs swing at the gait frequency.
-    """
-
-    posture: Callable[[Float, Gait, Timing], Posture]
-    phases: Phases
-    ramps: Instants = lambda timing: ()
-    swings: bool = False
+    posture: Callable[[Float, Gait, Timing], Posture]  # what it asks of the body at times t [M] (s)
+    phases: Phases  # (start in s, name) of the movements within it (`motion.phases.PHASES`)
+    ramps: Instants = lambda timing: ()  # (start, duration) in s of its raised-cosine ramps
+    swings: bool = False  # whether limbs swing at the gait frequency
 
     def breakpoints(self, timing: Timing) -> tuple[float, ...]:
         """Instants (s) at which the acceleration, or more, jumps: both ends of every ramp."""

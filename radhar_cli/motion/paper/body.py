@@ -19,22 +19,14 @@ from radhar_cli.motion.skeleton import JOINTS, PARENTS, TORSO
 
 @dataclass(frozen=True)
 class PaperBody:
-    """A person performing one activity as the paper has it: a `Motion`.
+    """A person performing one activity as the paper has it: a `Motion`."""
 
-    Attributes:
-        activity: slug of the activity.
-        height: stature, m.
-        weight: kg.
-        start: where the torso stands, (range, cross-range), m.
-        angle: motion angle, rad; 0 walks away from the radar.
-        gait, timing: how and when the limbs move.
-    """
-
-    activity: str
-    height: float
-    weight: float
-    start: tuple[float, float]
-    angle: float
+    activity: str  # slug of the activity
+    height: float  # stature, m
+    weight: float  # kg
+    start: tuple[float, float]  # where the torso stands, (range, cross-range), m
+    angle: float  # motion angle, rad; 0 walks away from the radar
+    # gait, timing: how and when the limbs move
     gait: Gait
     timing: Timing
     links: Float = field(init=False, repr=False, compare=False)

@@ -1,0 +1,114 @@
+"""Boards from a config to files: a scene, a data set, a recording, and the same of each."""
+
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from command_line import radhar
+
+from radhar_cli.dataset.reading import open_dataset
+from tests.boards import CFG
+
+YAML = """
+radar: {device: IWR1443BOOST, cfg: board.cfg, position_m: [0, 0, 1]}
+activities: [punching, kicking]
+motion: {range_m: 2.2}
+duration_s: 0.5
+samples_per_class: 2
+split: {train: 0.5, validation: 0.5}
+body: {scatterers: surfaces}
+cloud: {chain: board}
+maps: [stft, range_doppler, range_azimuth, points]
+image: {size_px: 64}
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("boards")
+    (folder / "board.cfg").write_text(CFG)
+    (folder / "config.yaml").write_text(YAML)
+    return folder
+
+
+def done(*words: object) -> None:
+    made = radhar(*words)
+    assert made.returncode == 0, made.stderr
+
+
+@pytest.fixture(scope="module")
+def data(folder: Path) -> Path:
+    done("generate", folder / "config.yaml", "-o", folder / "data", "--jobs", "1", "-q")
+    return folder / "data"
+
+
+def test_a_data_set_holds_frames_points_and_skeletons(data: Path) -> None:
+    with open_dataset(data) as found:
+        assert tuple(found.maps) == ("stft", "range_doppler", "range_azimuth", "points")
+        for row in range(4):
+            assert found.products["range_doppler"][row].shape == (5, 128, 32)
+            assert found.products["range_azimuth"][row].shape == (5, 128, 181)
+            start = found.products["points_start"][row]
+            points = found.products["points"][row]
+            assert start.shape == (6,)
+            assert points.shape == (start[-1], 8)
+            assert len(found.products["points_person"][row]) == len(points)
+            assert found.products["skeleton"][row].shape == (5, 1, 13, 3)
+            assert found.maps["points"][row].any()
+
+
+def test_it_is_verified_and_its_bytes_do_not_depend_on_the_workers(
+    data: Path, folder: Path
+) -> None:
+    done("verify", data)
+    done("generate", folder / "config.yaml", "-o", folder / "again", "--jobs", "2", "-q")
+    assert (folder / "again/dataset.h5").read_bytes() == (data / "dataset.h5").read_bytes()
+
+
+def test_a_recording_gives_the_frames_of_its_scene(folder: Path) -> None:
+    config, scene, made = folder / "config.yaml", folder / "scene", folder / "made"
+    done("simulate", config, "--activity", "punching", "-o", scene, "--raw", "-q")
+    names = "stft,rtm,cube,range_doppler,range_azimuth,points"
+    done("process", scene / "recording.h5", "--config", config, "-o", made, "--maps", names, "-q")
+    with h5py.File(scene / "scene.h5") as one, h5py.File(made / "maps.h5") as other:
+        for name in ("cube", "range_doppler", "range_azimuth", "points", "points_start"):
+            np.testing.assert_array_equal(one[name], other[name])
+        assert one["cube"].shape == (5, 32, 12, 80)
+        assert one["truth/time"].shape == (5 * 32 * 3,)
+        assert one.attrs["cfg"] == CFG
+        assert one["points"].attrs["doppler_sign"] == "positive approaching"
+    for name in ("maps.png", "stickman.gif", "frames.png", "cloud.gif"):
+        assert (scene / name).stat().st_size > 1000
+    assert (made / "frames.png").stat().st_size > 1000
+
+
+def test_a_recording_of_another_board_is_refused(folder: Path) -> None:
+    config, scene = folder / "config.yaml", folder / "scene"
+    if not scene.exists():
+        done("simulate", config, "--activity", "punching", "-o", scene, "--raw", "-q")
+    (folder / "other.cfg").write_text(CFG.replace("1 80 2499", "1 64 2499"))
+    options = ("--set", f"radar.cfg={folder / 'other.cfg'}", "--maps", "points", "-q")
+    made = radhar(
+        "process", scene / "recording.h5", "--config", config, "-o", folder / "x", *options
+    )
+    assert made.returncode == 2
+    assert "samples = 80: should be 64, as radar.cfg has it" in made.stderr
+
+
+def test_a_config_from_a_cfg_is_simulated(folder: Path) -> None:
+    done("config", "init", folder / "mine.yaml", "--radar", folder / "board.cfg")
+    options = ("--activity", "punching", "--set", "duration_s=0.4", "--no-figures", "-q")
+    done("simulate", folder / "mine.yaml", *options, "-o", folder / "mine")
+    with h5py.File(folder / "mine/scene.h5") as file:
+        assert len(file["points"]) > 5
+
+
+def test_a_line_of_the_cfg_that_nobody_knows_is_warned_of(folder: Path) -> None:
+    (folder / "odd.cfg").write_text(CFG + "quantumCfg 1\n")
+    made = radhar(
+        *("simulate", folder / "config.yaml", "--activity", "punching", "-o", folder / "odd"),
+        *("--set", f"radar.cfg={folder / 'odd.cfg'}", "--maps", "points", "--no-figures"),
+    )
+    assert made.returncode == 0
+    assert "warning: radar.cfg: quantumCfg is not known and has no effect" in made.stderr

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import IntFlag
+from math import log10
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,11 +28,13 @@ from radhar_cli.pipeline.physics import (
 from radhar_cli.pipeline.segment_paths import Body
 from radhar_cli.pipeline.unused_keys import unused_keys
 from radhar_cli.radar.propagation import Antennas, bistatic_delay, leg
+from radhar_cli.radar.transmission import transmission
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
-from radhar_cli.scene import Person, Scene, draw_scene
+from radhar_cli.scene import Numbers, Person, Scene, draw_scene, nominal_scene
 
 MIN_DISTANCE_M = 0.05
+LEAST_SNR_DB = -80.0  # of a raw sample; compression and windows gain less than that
 REACH_M = 1.0  # distance of a segment's surface from its joints, at most
 GRID_HZ = 50.0
 GRID_PER_CYCLE = 40
@@ -266,7 +269,27 @@ def config_warnings(config: Config) -> list[str]:
     """Say which keys and lines of a .cfg have no effect, and which interference lines alias."""
     cfg = config.board.unknown if config.radar.cfg is not None else ()
     lines = [f"radar.cfg: {command} is not known and has no effect" for command in cfg]
-    return unused_keys(config) + line_warnings(config) + lines
+    return unused_keys(config) + line_warnings(config) + lines + _opaque(config)
+
+
+def _opaque(config: Config) -> list[str]:
+    """Say that noise alone is left behind the middle of a wall that lets nothing through."""
+    if config.wall is None or config.snr_db is None or config.snr_reference != "free_space":
+        return []
+    scene = nominal_scene(config, config.chosen_activities[0])
+    wall, antennas = wall_of(scene.config), antennas_of(scene.config)
+    assert wall is not None
+    behind = np.array(wall.center)[:, None, None] + [[[wall.size[0]]], [[0.0]], [[0.0]]]
+    fc = waveform_of(scene.config).fc
+    ways = [transmission(behind, one, wall, fc) for one in (antennas.tx, antennas.rx)]
+    left = float(np.prod([way.factor[0, 0] for way in ways]))
+    loss, snr = -20 * log10(max(left, 1e-300)), Numbers(scene.config).snr_db
+    if snr - loss > LEAST_SNR_DB:
+        return []
+    return [
+        f"the wall takes {loss:.0f} dB of the echo, both ways: at snr_db = {snr:g} in free space "
+        "maps show noise alone (wall.loss_tangent, wall.size_m; or snr_reference: received)"
+    ]
 
 
 def scene_warnings(scene: Scene) -> list[str]:

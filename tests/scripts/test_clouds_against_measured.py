@@ -72,3 +72,40 @@ def test_a_table_figures_and_a_last_line(pairs: Path, tmp_path: Path) -> None:
     assert report["measured"]["points a frame"] == pytest.approx(measured, abs=0.05)
     for name in ("clouds.md", "frames.png", "statistics.png"):
         assert (tmp_path / "out" / name).stat().st_size > 500
+
+
+POSE = re.compile(
+    r"mean absolute error: ([\d.]+) cm \(mean pose ([\d.]+) cm\), mpjpe: ([\d.]+) cm, "
+    r"n = (\d+) frames"
+)
+
+
+def _pose(pairs: Path, out: Path, *more: str) -> tuple[float, ...]:
+    script = ROOT / "scripts" / "pose_from_clouds.py"
+    command = [sys.executable, str(script), "--train", str(pairs), "--test", str(pairs)]
+    made = subprocess.run([*command, "-o", str(out), *more], capture_output=True, text=True)
+    assert made.returncode == 0, made.stderr
+    last = POSE.fullmatch(made.stdout.splitlines()[-1])
+    assert last, made.stdout
+    assert (out / "pose.png").stat().st_size > 500
+    return tuple(map(float, last.groups()))
+
+
+def test_joints_are_learned_from_measured_clouds(pairs: Path, tmp_path: Path) -> None:
+    error, mean_pose, mpjpe, count = _pose(pairs, tmp_path / "out", "--epochs", "150")
+    assert count == 24
+    assert 0 < error < mean_pose
+    assert mpjpe > error
+
+
+def test_simulated_clouds_need_the_joints_alone(pairs: Path, tmp_path: Path) -> None:
+    """The measured points of the training pairs are not there at all."""
+    with np.load(pairs) as file:
+        held = {name: file[name] for name in file.files if name != "points"}
+    np.savez(tmp_path / "joints.npz", **held)
+    script = ROOT / "scripts" / "pose_from_clouds.py"
+    command = [sys.executable, str(script), "--train", str(tmp_path / "joints.npz")]
+    command += ["--test", str(pairs), "--simulated", "--draws", "2", "--epochs", "4"]
+    made = subprocess.run([*command, "-o", str(tmp_path)], capture_output=True, text=True)
+    assert made.returncode == 0, made.stderr
+    assert POSE.fullmatch(made.stdout.splitlines()[-1])

@@ -38,8 +38,9 @@ def sigmf_metadata(folder: Path) -> Case:
 
 
 def next_file_of_a_capture(folder: Path) -> Case:
+    words = np.random.default_rng(0).integers(-99, 99, 400, "<i2")
     for number in range(2):
-        (folder / f"a_Raw_{number}.bin").write_bytes(np.tile(np.arange(20, dtype="<i2"), 20).tobytes())
+        (folder / f"a_Raw_{number}.bin").write_bytes(words.tobytes())
     settings = read_settings(None, [*HEADER, "samples=10", "receivers=1"])
     out = folder / "o.h5"
     return folder / "a_Raw_1.bin", lambda: import_capture([folder / "a_Raw_0.bin"], out, settings)

@@ -178,7 +178,8 @@ def rows(rounds: int) -> dict[str, Any]:
 
         def naive(turn: int) -> None:
             there = ready[turn % 12]
-            signal = there["signal"].with_samples(naive_signal(scene(config, turn % 12)))
+            x = naive_signal(scene(config, turn % 12))
+            signal = there["signal"].with_samples(x[None, None])
             sink.write([image.sample(there | {"signal": signal})])
 
         results = interleaved(

@@ -12,6 +12,7 @@ from typing import Any
 import h5py
 
 MEMORY, SECONDS = 2 * 2**30, 10  # address space, CPU time of a run
+MAX_BYTES = 2**26  # of an attribute
 
 
 @contextmanager
@@ -29,12 +30,7 @@ def walk(file: h5py.File) -> None:
 
     Links to other files are not followed.
     """
-    for name in _names(file.attrs):
-        with harmless():
-            attribute = file.attrs.get_id(name)
-            text = h5py.check_string_dtype(attribute.dtype) is not None
-            if attribute.shape == () and (text or attribute.dtype.kind in "iuf"):
-                file.attrs[name]
+    _read_attributes(file)
     seen, left = set(), [file.id]
     while left:
         group = left.pop()
@@ -47,11 +43,25 @@ def walk(file: h5py.File) -> None:
                 if isinstance(found, h5py.h5g.GroupID) and place not in seen:
                     seen.add(place)
                     left.append(found)
-                elif (
-                    isinstance(found, h5py.h5d.DatasetID)
-                    and found.get_create_plist().get_layout() == h5py.h5d.CHUNKED
-                ):
-                    found.get_num_chunks()
+                    _read_attributes(h5py.Group(found))
+                elif isinstance(found, h5py.h5d.DatasetID):
+                    _read_attributes(h5py.Dataset(found))
+                    if found.get_create_plist().get_layout() == h5py.h5d.CHUNKED:
+                        found.get_num_chunks()
+
+
+def _read_attributes(held: h5py.HLObject) -> None:
+    for name in _names(held.attrs):
+        with harmless():
+            if is_plain(held.attrs.get_id(name)):
+                held.attrs[name]
+
+
+def is_plain(attribute: Any) -> bool:
+    """Whether an attribute is text or numbers of at most MAX_BYTES."""
+    text = h5py.check_string_dtype(attribute.dtype) is not None
+    plain = text or attribute.dtype.kind in "iuf"
+    return plain and attribute.get_storage_size() <= MAX_BYTES
 
 
 def _names(group: Iterable[Any]) -> list[Any]:

@@ -1,6 +1,7 @@
 """scene.h5 and scene.json: one simulated scene on disk."""
 
 import json
+from contextlib import suppress
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -190,4 +191,7 @@ def write_all(simulation: Simulation, folder: Path) -> list[Path]:
         raise UnfinishedError(
             f"{error.filename or folder}: {error.strerror or error}; nothing else was written"
         ) from None
+    finally:
+        with suppress(OSError):  # a folder that nothing came into
+            folder.rmdir()
     return [folder / name for name in (SCENE_FILE, SCENE_JSON, SCENE_YAML)]

@@ -1,7 +1,10 @@
 """`verify` finds every change of a data set."""
 
 import json
+import os
 import shutil
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -132,6 +135,31 @@ def test_what_was_not_built_is_named(whole: Path, tmp_path: Path) -> None:
     assert "maps/foo: was not built" in problems
     assert "png/stft2: is no map of this data set" in problems
     assert "png/rtm: is missing" in problems
+
+
+@pytest.mark.parametrize("name", ["columns_sha256", "attributes_sha256"])
+def test_checksums_that_are_no_mapping_are_a_problem(
+    whole: Path, tmp_path: Path, name: str
+) -> None:
+    shutil.copytree(whole, tmp_path / "set")
+    with h5py.File(tmp_path / "set/dataset.h5", "r+") as file:
+        file.attrs[name] = "[]"
+    assert f"attribute {name}: should be a mapping" in verify(tmp_path / "set", 0).problems
+
+
+def test_files_that_a_virtual_dataset_names_are_not_opened(whole: Path, tmp_path: Path) -> None:
+    """Opening a pipe that nobody writes to would wait for ever."""
+    shutil.copytree(whole, tmp_path / "set")
+    os.mkfifo(tmp_path / "pipe")
+    layout = h5py.VirtualLayout((4,), "u1", maxshape=(None,))
+    source = h5py.VirtualSource(str(tmp_path / "pipe"), "x", (4,), maxshape=(None,))
+    layout[: h5py.h5s.UNLIMITED] = source[: h5py.h5s.UNLIMITED]
+    with h5py.File(tmp_path / "set/dataset.h5", "r+") as file:
+        file.create_virtual_dataset("extra", layout)
+    command = [sys.executable, "-m", "radhar_cli", "verify", str(tmp_path / "set"), "--samples"]
+    done = subprocess.run([*command, "0"], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 1
+    assert "WRONG extra: was not built" in done.stdout + done.stderr
 
 
 def _widen_an_extent(folder: Path) -> None:

@@ -37,6 +37,8 @@ LANGUAGES = {"sh", "bash", "yaml", "python", "text"}  # text is not run
 NOT_RUN = {
     "dask_jobqueue": "needs SLURM",
     "rule merge": "needs Snakemake",
+    "clouds_against_measured.py": "measured pairs; tests/scripts has some of its own",
+    "pose_from_clouds.py": "the same",
     "load_dataset": "tests/dataset/test_hub.py does, in a process of its own",
 }
 # Commands whose options alone are looked at, by a word of theirs, and why.

@@ -49,6 +49,7 @@ _INTERFACE = {
     "open_dataset": "radhar_cli.dataset.reading",
     "sample": "radhar_cli.dataset.on_demand",
     "Samples": "radhar_cli.learning.stream",
+    "Sequences": "radhar_cli.learning.sequences",
     "Stream": "radhar_cli.learning.stream",
 }
 

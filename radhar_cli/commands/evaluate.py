@@ -73,9 +73,12 @@ def evaluate(
     apart(folder, data)
     evaluation = test(runs, data, options, choose_device(device), StderrLog())
     evaluation.write(folder)
-    accuracies = {
-        run: {data: numbers["accuracy"] for data, numbers in about["data"].items()}
-        for run, about in evaluation.numbers["runs"].items()
+    found = {
+        score: {
+            run: {data: numbers.get(score) for data, numbers in about["data"].items()}
+            for run, about in evaluation.numbers["runs"].items()
+        }
+        for score in ("accuracy", "mpjpe_cm")
     }
-    report(page=folder / "report.html", numbers=folder / "report.json", accuracy=accuracies)
+    report(page=folder / "report.html", numbers=folder / "report.json", **found)
     tell(f"{folder / 'report.html'}: {len(evaluation.figures)} figures; numbers in report.json")

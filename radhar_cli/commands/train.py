@@ -35,7 +35,14 @@ def train(
         str | None, typer.Option("--map", help="Which map to learn; the first one if not given.")
     ] = None,
     model: Annotated[
-        str | None, typer.Option(help="fftnet, smallnet, or a name of timm's; see radhar models.")
+        str | None,
+        typer.Option(
+            help="fftnet, smallnet, or a name of timm's, see radhar models; of sequences framenet "
+            "or cloudnet."
+        ),
+    ] = None,
+    target: Annotated[
+        str | None, typer.Option(help="classes, or skeleton: the joints in every frame.")
     ] = None,
     init: Annotated[
         Path | None, typer.Option(help="A run whose best weights are the initial ones.")
@@ -51,6 +58,8 @@ def train(
     Example:
 
       radhar train datasets/quickstart -o runs/quickstart
+
+      radhar train datasets/boards -o runs/joints --model cloudnet --target skeleton
 
       radhar train datasets/measured -o runs/tuned --init runs/simulated --set learning_rate=1e-4
 
@@ -74,7 +83,7 @@ def train(
     from radhar_cli.learning.images.classes import read_classes
     from radhar_cli.learning.settings import TrainConfig
 
-    named = {"map": map_, "model": model}
+    named = {"map": map_, "model": model, "target": target}
     overrides = [
         *(set_ or []),
         *(f"--{key} {key}={value}" for key, value in named.items() if value),

@@ -31,7 +31,7 @@ class TrainingView(Bars):
         self.open(f"epoch {number}/{epochs}", steps, "step", leave=False)
 
     def step(self, loss: float, accuracy: float) -> None:
-        self.advance(1, f"loss {loss:.3f}, accuracy {100 * accuracy:.1f} %")
+        self.advance(1, f"loss {loss:.3f}, right {100 * accuracy:.1f} %")
 
     def epoch_done(self, row: Epoch, best: bool) -> None:
         self.close()
@@ -61,7 +61,7 @@ class TrainingView(Bars):
         )
         if outcome.resumed == len(outcome.history):
             tell(f"{folder} is complete: {outcome.resumed} epochs; nothing to do")
-        tell(f"best epoch {best.epoch}: validation accuracy {100 * best.val_accuracy:.2f} %")
+        tell(f"best epoch {best.epoch}: validation {outcome.score} {100 * best.val_accuracy:.2f} %")
         tell(f"  weights   {folder / run.BEST}")
         tell(f"  curves    {folder / run.CURVES}")
         tell(f"  summary   {folder / run.SUMMARY}")

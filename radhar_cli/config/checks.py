@@ -11,6 +11,7 @@ from radhar_cli.config.paths import at
 from radhar_cli.config.schema import (
     FRAME_MAPS,
     MIN_WINDOW,
+    OF_FRAMES,
     OF_POINTS,
     Config,
     PerActivity,
@@ -26,7 +27,7 @@ from radhar_cli.radar.waveform import Waveform
 MAX_PULSES = 2**24
 MAX_PADDING = 64
 MAX_CUBE = 2**27  # samples of all channels
-BOARD_PRODUCTS = (*FRAME_MAPS, *OF_POINTS, "cube")
+BOARD_PRODUCTS = (*FRAME_MAPS, *OF_POINTS, *OF_FRAMES, "cube")
 MAX_BIN_SAMPLES = 2**27  # of range bins in memory, 16 bytes each
 MIN_CUTOFF = 1e-4  # of PRF/2; below, rounding spoils a filter of order 10 in float64
 

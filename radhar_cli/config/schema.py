@@ -1075,8 +1075,9 @@ MAP_NAMES = (
 
 # Maps of a board, frame by frame: data sets hold them as arrays, and sheets of frames as images.
 FRAME_MAPS = ("range_doppler", "range_azimuth", "range_elevation", "points")
-# What comes with the points.
-OF_POINTS = ("points", "points_start", "points_person", "skeleton", "skeleton_velocity")
+# What comes with the points, and with any of these maps.
+OF_POINTS = ("points", "points_start", "points_person")
+OF_FRAMES = ("skeleton", "skeleton_velocity")
 
 
 def _known_map(name: str) -> str:
@@ -1257,7 +1258,8 @@ class Config(Section):
         """Products that a data set holds as arrays: those of `output.products` and of boards."""
         frames = [name for name in self.maps if name in FRAME_MAPS]
         points = OF_POINTS if "points" in frames else ()
-        return tuple(dict.fromkeys((*frames, *points, *self.output.products)))
+        people = OF_FRAMES if frames else ()
+        return tuple(dict.fromkeys((*frames, *points, *people, *self.output.products)))
 
     @property
     def has_error(self) -> bool:

@@ -184,12 +184,21 @@ class Dataset(Closing):
 
 
 class Ragged:
-    """An array of each sample: rows of one array that holds them one after the other."""
+    """An array of each sample: rows of one array that holds them one after the other.
+
+    Attributes:
+        counts: rows of each sample.
+    """
 
     def __init__(self, samples: Numbers, counts: Index) -> None:
         if (counts < 0).any() or counts.sum() != samples.shape[0]:
             raise FolderError(f"{samples.where}: has not as many rows as its counts say")
-        self._samples, self._stops = samples, np.cumsum(counts)
+        self._samples, self.counts, self._stops = samples, counts, np.cumsum(counts)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Of the rows of all samples together."""
+        return self._samples.shape
 
     def __len__(self) -> int:
         return self._stops.size

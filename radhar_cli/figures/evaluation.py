@@ -17,11 +17,14 @@ MAX_NUMBERED = 32  # classes; with more, cells of a confusion matrix have no num
 COLUMNS = 4  # of images with captions
 
 
-def curves_png(runs: Mapping[str, Sequence[Any]], best: Mapping[str, int]) -> bytes:
-    """Accuracy and loss by epoch, training dashed and validation solid, the kept epoch marked.
+def curves_png(
+    runs: Mapping[str, Sequence[Any]], best: Mapping[str, int], score: str, loss: str
+) -> bytes:
+    """Score and loss by epoch, training dashed and validation solid, the kept epoch marked.
 
     Args:
         best: kept epoch of a run, by name.
+        score, loss: what they are.
     """
     figure = page(10.5, 4.2)
     left, right = figure.subplots(1, 2)
@@ -39,7 +42,7 @@ def curves_png(runs: Mapping[str, Sequence[Any]], best: Mapping[str, int]) -> by
             if name in best and best[name] in x:
                 kept = x.index(best[name])
                 axes.plot(x[kept], val[kept], "*", color=colour, markersize=11)
-    for axes, what in ((left, "accuracy (%)"), (right, "loss (label-smoothed cross-entropy)")):
+    for axes, what in ((left, f"{score} (%)"), (right, f"loss ({loss})")):
         axes.set_xlabel("epoch")
         axes.set_ylabel(what)
         axes.grid(alpha=0.3)

@@ -3,17 +3,17 @@
 The only package that imports PyTorch; `pip install 'radhar[train]'` installs it.
 
     settings        the YAML file of `radhar train`
-    images/         labelled images of dataset.h5, of a tree of class folders, or synthesised
+    images/         labelled images or sequences of dataset.h5, of class folders, or synthesised
     batches         which images make a step, the same for any number of processes; augmentation
     models/         one network per file; zoo: those of timm
     machine         device, precision, micro batch, reading processes
     process_group   several processes that train one network
-    gradient_step   learning rate, logits, loss, gradient, update
+    gradient_step   learning rate, gradient, update; targets: the loss of classes and of skeletons
     training        epochs, validation, the best one, resuming; starting_point: --init
     run_folder      the files of a run, and how they are read safely; run_summary, event_files
     evaluation      probabilities, features and speed; metrics: how good they are
-    report          `radhar eval`: single_result fills it, report_files writes it
+    report          `radhar eval`: single_result or skeleton_result fills it, report_files writes it
     adaptation      batch norm fitted to unlabelled images
-    stream          samples for a PyTorch DataLoader, synthesised in its workers
+    stream          samples for a PyTorch DataLoader, synthesised in its workers; sequences: stored
     onnx_export     the network without PyTorch
 """

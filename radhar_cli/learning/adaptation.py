@@ -32,7 +32,6 @@ from radhar_cli.learning.images.scan import content_hash
 from radhar_cli.learning.machine import repeatable
 from radhar_cli.learning.run_files import TRAINED_ON
 from radhar_cli.learning.run_folder import MAX_TABLE, RunMetadata, load_best
-from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.starting_point import is_of_last_layer
 from radhar_cli.progress import Messages
 from radhar_cli.randomness import TRAINING, stream
@@ -54,7 +53,7 @@ class Mixed:
         self, metadata: RunMetadata, epoch: int, count: int
     ) -> Iterator[tuple[Tensor, Tensor]]:
         """`count` batches (uint8 [MIXED, 3, H, W], labels [MIXED]), changed as in training."""
-        config, rows = TrainConfig.model_validate(metadata.config), self.images.rows("train")
+        config, rows = metadata.settings, self.images.rows("train")
         weights = sampling_weights(self.images, rows, self.weights, balanced=False)
         rng = stream(config.seed, TRAINING, epoch, name="adaptation mixed")
         drawn = rng.choice(rows, (count, MIXED), p=weights / weights.sum())
@@ -190,7 +189,7 @@ class _Learner:
         model, metadata = self.model, self.metadata
         learned = [p for name, p in model.named_parameters() if not is_of_last_layer(name, model)]
         optimiser = torch.optim.Adam(learned)
-        smoothing = TrainConfig.model_validate(metadata.config).label_smoothing
+        smoothing = metadata.settings.label_smoothing
         for epoch in range(1, epochs + 1):
             for layer in self.norms:
                 layer.train()

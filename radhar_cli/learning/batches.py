@@ -2,10 +2,11 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol, SupportsInt
+from typing import Protocol
 
 import numpy as np
 import torch
+from numpy.typing import ArrayLike
 from torch import Tensor
 from torch.utils.data import DataLoader, Dataset, Sampler
 
@@ -21,14 +22,19 @@ AS_STORED = -1
 
 @dataclass(frozen=True)
 class Normalisation:
-    """Levels to network input: (level/255 - mean)/sd, channel by channel."""
+    """Levels to network input: (level/255 - mean)/sd, channel by channel, or all channels alike.
+
+    What is no levels, but numbers with a unit, stays as it is.
+    """
 
     mean: tuple[float, ...]
     sd: tuple[float, ...]
 
     def __call__(self, levels: Tensor) -> Tensor:
-        """uint8 [B, 3, H, W] to float32 of the same shape."""
-        shape = (1, 3, 1, 1)
+        """uint8 [B, C, H, W] to float32 of the same shape."""
+        if levels.is_floating_point():
+            return levels
+        shape = (1, -1, 1, 1)
         mean = torch.tensor(self.mean, device=levels.device).view(shape)
         sd = torch.tensor(self.sd, device=levels.device).view(shape)
         return (levels.float() / 255 - mean) / sd
@@ -60,12 +66,12 @@ def epoch_batches(order: Index, size: int, processes: int) -> list[Index]:
 
 
 class Labels(Protocol):
-    """Label of every row."""
+    """What is to be learned of every row: the number of its class, or an array."""
 
-    def __getitem__(self, row: int, /) -> SupportsInt: ...
+    def __getitem__(self, row: int, /) -> ArrayLike: ...
 
 
-class _Rows(Dataset[tuple[Tensor, int]]):
+class _Rows(Dataset[tuple[Tensor, Tensor]]):
     """Rows read on demand; `labels` in the model's numbering, 0 for all without."""
 
     def __init__(
@@ -73,12 +79,12 @@ class _Rows(Dataset[tuple[Tensor, int]]):
     ) -> None:
         self.pixels, self.labels, self.augmentation = pixels, labels, augmentation
 
-    def __getitem__(self, place: tuple[int, int]) -> tuple[Tensor, int]:
+    def __getitem__(self, place: tuple[int, int]) -> tuple[Tensor, Tensor]:
         row, epoch = place
         rgb = self.pixels.read(row)
         if self.augmentation is not None and epoch >= 0:
             rgb = repeated(self.augmentation(rgb[..., 0], row, epoch))
-        label = 0 if self.labels is None else int(self.labels[row])
+        label = torch.as_tensor(0 if self.labels is None else self.labels[row])
         return torch.from_numpy(np.ascontiguousarray(rgb.transpose(2, 0, 1))), label
 
 
@@ -121,7 +127,7 @@ class Reader:
     def __call__(
         self, batches: Sequence[Index], epoch: int = AS_STORED
     ) -> Iterator[tuple[Tensor, Tensor]]:
-        """Yield (uint8 [B, 3, H, W], labels [B]) for every batch of row numbers.
+        """Yield ([B, C, H, W], labels [B, ...]) for every batch of row numbers.
 
         With an epoch number images are augmented as in that epoch; AS_STORED leaves them.
         """

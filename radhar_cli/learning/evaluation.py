@@ -19,12 +19,11 @@ from radhar_cli.learning.batches import Reader, pieces
 from radhar_cli.learning.images.classes import known_to, refuse_mistyped
 from radhar_cli.learning.images.folder import FilePixels, image_files, is_image
 from radhar_cli.learning.images.image_set import ImageSet, Pixels, Resized, labels_for
-from radhar_cli.learning.images.opening import is_h5, is_tree, open_images
+from radhar_cli.learning.images.opening import is_h5, is_tree, open_images, open_inputs
 from radhar_cli.learning.images.scan import content_hash
 from radhar_cli.learning.models.build import features_and_logits
 from radhar_cli.learning.run_files import is_run
 from radhar_cli.learning.run_folder import RunError, RunMetadata, load_best
-from radhar_cli.learning.settings import TrainConfig
 
 WARM_UP, REPEATS, BATCH_REPEATS = 3, 15, 5
 PREDICT_BATCH = 32
@@ -68,24 +67,32 @@ def open_for(
     Raises:
         FolderError: no class or another size than the model's, or a map that must be named.
     """
-    size = metadata.size if resize else None
-    images = open_images(path, map_name or _map_there(metadata, path), metadata.input, size)
-    if images.size != metadata.size:
+    images = _opened_images(metadata, path, map_name or _map_there(metadata, path), resize)
+    if (images.size, images.channels) != (metadata.size, metadata.channels):
+        cure = "; --resize brings them to that" if metadata.input in ("rgb", "gray") else ""
         raise FolderError(
-            f"{path}: images are {images.size[0]} x {images.size[1]} px; the model was trained on "
-            f"{metadata.size[0]} x {metadata.size[1]} px; --resize brings them to that"
+            f"{path}: images are {images.shape}; the model was trained on {metadata.shape}{cure}"
         )
     if labelled:
         refuse_mistyped(names or {}, metadata.classes)
         images = known_to(images.renamed(names or {}), metadata.classes)
         if images.split is None:
             with suppress(FolderError):
-                settings = TrainConfig.model_validate(metadata.config)
-                cut = images.cut(settings.validation_share, settings.seed)
+                cut = images.cut(metadata.settings.validation_share, metadata.settings.seed)
                 rows = np.concatenate([cut.rows("train"), cut.rows("val")])
                 if content_hash(cut, rows) == metadata.data["hash"]:
                     return cut
     return images
+
+
+def _opened_images(
+    metadata: RunMetadata, path: Path, map_name: str | None, resize: bool
+) -> ImageSet:
+    if not resize:
+        return open_inputs(path, map_name, metadata.settings)
+    if metadata.input not in ("rgb", "gray"):
+        raise RunError(f"--resize: {metadata.model} reads {metadata.input}, which have no size")
+    return open_images(path, map_name, metadata.input, metadata.size)
 
 
 def _map_there(metadata: RunMetadata, path: Path) -> str | None:
@@ -108,7 +115,7 @@ def _map_there(metadata: RunMetadata, path: Path) -> str | None:
 
 def training_images(metadata: RunMetadata, path: Path) -> ImageSet:
     """Training images of a data set, of the classes that a run knows."""
-    config = TrainConfig.model_validate(metadata.config)
+    config = metadata.settings
     images = open_for(metadata, path, None).cut(config.validation_share, config.seed)
     images = images.some(images.rows("train"))
     return replace(images, split=np.full(len(images), TRAIN, np.uint8))
@@ -186,6 +193,8 @@ def predict_paths(
         FolderError: an image that cannot be read, or of another size.
     """
     metadata, model = load_best(run)
+    if metadata.finds_joints:
+        raise RunError(f"{run}: finds joints, no classes; `radhar eval` shows how well")
     model.to(device)
     for path in paths:
         pixels, rows, names = _opened(metadata, path, map_name, split, resize)
@@ -217,7 +226,7 @@ def _opened(
 def speed(
     run: Path, images: ImageSet, row: int, device: torch.device, batch: int
 ) -> dict[str, float]:
-    """Time one image and a batch, from levels in memory to probabilities on the CPU.
+    """Time one image and a batch, from levels in memory to the network's answer on the CPU.
 
     The libraries are loaded and the weights' file is in the system's cache, as it would be in a
     program that is already running.
@@ -236,7 +245,7 @@ def speed(
 
     def ask(levels: torch.Tensor) -> float:
         start = time.perf_counter()
-        model(metadata.normalisation(levels.to(device))).softmax(1).cpu()
+        model(metadata.normalisation(levels.to(device))).cpu()
         return time.perf_counter() - start
 
     with torch.inference_mode():

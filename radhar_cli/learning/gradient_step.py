@@ -7,12 +7,12 @@ from typing import Any
 
 import torch
 from torch import Tensor, nn
-from torch.nn.functional import cross_entropy
 
 from radhar_cli.learning.batches import Normalisation
 from radhar_cli.learning.machine import ExecutionPlan, autocast
 from radhar_cli.learning.process_group import Group
 from radhar_cli.learning.settings import TrainConfig
+from radhar_cli.learning.targets import class_loss, skeleton_loss
 
 _ADAM = {"step", "exp_avg", "exp_avg_sq"}
 
@@ -88,18 +88,15 @@ class TrainStep:
 
     def loss_and_correct(
         self, network: nn.Module, levels: Tensor, labels: Tensor
-    ) -> tuple[Tensor, int]:
-        """Sum of the label-smoothed cross-entropy, and number of correctly classified images.
-
-        The target of class k is y_k (1 - zeta) + zeta/K (paper, equation of label smoothing).
-        """
-        device, smoothing = self.plan.device, self.config.label_smoothing
+    ) -> tuple[Tensor, float]:
+        """Sums over a batch of the loss, and of what is right: classes, or shares of the joints."""
+        device = self.plan.device
         wanted, x = labels.to(device), self.prepare(levels.to(device, non_blocking=True))
         with autocast(device, self.plan.precision):
-            logits: Tensor = network(x)
-        logits = logits.float()
-        loss = cross_entropy(logits, wanted, label_smoothing=smoothing, reduction="sum")
-        return loss, int((logits.argmax(1) == wanted).sum())
+            outputs: Tensor = network(x)
+        if self.config.target == "skeleton":
+            return skeleton_loss(outputs.float(), wanted)
+        return class_loss(outputs.float(), wanted, self.config.label_smoothing)
 
     def step(
         self,
@@ -108,16 +105,16 @@ class TrainStep:
         levels: Tensor,
         labels: Tensor,
         batch_size: int,
-    ) -> tuple[float, int]:
-        """One update from this process's share, levels uint8 [B, 3, H, W], of a batch.
+    ) -> tuple[float, float]:
+        """One update from this process's share, [B, C, H, W], of a batch.
 
         `network` averages the gradients of the processes; `batch_size` is that of all of them.
 
         Returns:
-            The mean loss of the share, and how many of it are classified correctly.
+            The mean loss of the share, and how much of it is right.
         """
         optimiser.zero_grad(set_to_none=True)
-        loss_sum, correct = 0.0, 0
+        loss_sum, correct = 0.0, 0.0
         parts = self.plan.parts(len(labels))
         for number, part in enumerate(parts):
             # Processes exchange their gradients in the last backward pass of a step alone.

@@ -46,6 +46,8 @@ def export(run: Path, path: Path) -> float:
     import onnxruntime
 
     metadata, network = load_best(run)
+    if metadata.input not in ("rgb", "gray"):
+        raise RunError(f"{run}: {metadata.model} reads {metadata.input}; only images are exported")
     model = _FromPixels(network, metadata.normalisation).eval()
     pixels = _pixels(2, metadata)
     try:

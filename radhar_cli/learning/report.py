@@ -3,6 +3,7 @@
 import platform
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import torch
 
@@ -12,7 +13,6 @@ from radhar_cli.figures.evaluation import Point, curves_png, filters_png, robust
 from radhar_cli.learning.evaluation import speed
 from radhar_cli.learning.filter_weights import magnitudes, table
 from radhar_cli.learning.images.classes import unknown_message
-from radhar_cli.learning.models.build import cost
 from radhar_cli.learning.report_files import Report
 from radhar_cli.learning.report_folder import csv_text
 from radhar_cli.learning.run_files import BEST
@@ -25,6 +25,7 @@ from radhar_cli.learning.single_result import (
     open_eval_set,
     open_run,
 )
+from radhar_cli.learning.targets import LOSSES, SCORES
 from radhar_cli.progress import Messages
 
 
@@ -75,13 +76,11 @@ def evaluate(
             eval_set = eval_sets[run.name, data_name]
             numbers = evaluate_one(report, run, data_name, eval_set, stem, options, device)
             results[data_name] = numbers
-            low, high = numbers["accuracy_95"]
-            point = Point(data_name, eval_set.images.snr_db, numbers["accuracy"], low, high)
-            lines.setdefault(run.name, []).append(point)
-            progress.say(
-                f"  {data_name}, {numbers['split']}: {100 * numbers['accuracy']:.2f} % "
-                f"({100 * low:.2f} to {100 * high:.2f} %) of {numbers['images']}"
-            )
+            progress.say(f"  {data_name}, {numbers['split']}: {_found(numbers)}")
+            if not run.metadata.finds_joints:
+                interval = numbers["accuracy_95"]
+                point = Point(data_name, eval_set.images.snr_db, numbers["accuracy"], *interval)
+                lines.setdefault(run.name, []).append(point)
             seen = numbers["seen_in_training"]
             if any(seen.values()):
                 progress.say(
@@ -90,7 +89,7 @@ def evaluate(
                     "on unseen data"
                 )
         first = eval_sets[run.name, next(iter(named_data))]
-        price = cost(run.metadata.model, len(run.metadata.classes), run.metadata.size)
+        price = run.metadata.cost
         report.numbers["runs"][run.name] = {
             "model": run.metadata.model,
             "parameters": price.parameters,
@@ -109,12 +108,31 @@ def evaluate(
     return report
 
 
+def _found(numbers: Mapping[str, Any]) -> str:
+    """What was found, in words."""
+    if "mpjpe_cm" in numbers:
+        in_place = numbers["mpjpe_of_the_mean_pose_in_place_cm"]
+        return (
+            f"mean absolute error {numbers['mean_absolute_error_cm']:.2f} cm, MPJPE "
+            f"{numbers['mpjpe_cm']:.2f} cm (the mean pose in its place {in_place:.2f} cm), "
+            f"{numbers['frames']} frames"
+        )
+    low, high = numbers["accuracy_95"]
+    return (
+        f"{100 * numbers['accuracy']:.2f} % ({100 * low:.2f} to {100 * high:.2f} %) of "
+        f"{numbers['images']}"
+    )
+
+
 def _compare(report: Report, runs: Sequence[Run], lines: Mapping[str, Sequence[Point]]) -> None:
     """Curves of the runs, and their accuracy over several data sets."""
     with_history = {run.name: run.history for run in runs if run.history}
     if with_history:
         best = {name: best_epoch(rows).epoch for name, rows in with_history.items()}
-        report.figure("curves.png", "Training curves.", curves_png(with_history, best))
+        targets = dict.fromkeys(run.metadata.settings.target for run in runs if run.history)
+        score, loss = (" or ".join(names[one] for one in targets) for names in (SCORES, LOSSES))
+        png = curves_png(with_history, best, score, loss)
+        report.figure("curves.png", "Training curves.", png)
     if any(len(points) > 1 for points in lines.values()):
         caption = "Accuracy over the data sets."
         report.figure("robustness.png", caption, robustness_png(lines))

@@ -27,7 +27,7 @@ figure { margin: 1.2rem 0; } img { max-width: 100%; } figcaption { color: #555; 
 <table><tr><th>run</th><th>data</th><th>split</th><th>map</th>
 <th>SNR (dB)</th><th>images</th><th>accuracy (%)</th>
 <th>interval (%)</th><th>macro F1</th><th>calibration error</th></tr>
-{% for name, run in n.runs.items() %}{% for data, r in run.data.items() %}
+{% for name, run in n.runs.items() %}{% for data, r in run.data.items() if r.accuracy is defined %}
 <tr><td>{{ name }}</td><td>{{ data }}</td><td>{{ r.split }}</td><td>{{ r.map or "" }}</td>
 <td>{{ "" if r.snr_db is none else r.snr_db }}</td>
 <td>{{ r.images }}</td><td>{{ "%.2f" | format(100 * r.accuracy) }}</td>
@@ -35,7 +35,11 @@ figure { margin: 1.2rem 0; } img { max-width: 100%; } figcaption { color: #555; 
 </td><td>{{ "%.4f" | format(r.macro_f1) }}</td><td>{{ "%.4f" | format(r.calibration_error) }}</td>
 </tr>{% endfor %}{% endfor %}</table>
 {% for name, run in n.runs.items() %}{% for data, r in run.data.items() %}
-{% if r.seen_in_training.images or r.seen_in_training.scenes %}
+{% if r.mpjpe_cm is defined %}<p>{{ name }} on {{ data }}, {{ r.split }}, {{ r.map }}:
+mean absolute error {{ "%.2f" | format(r.mean_absolute_error_cm) }} cm, MPJPE
+{{ "%.2f" | format(r.mpjpe_cm) }} cm (the mean pose in its place
+{{ "%.2f" | format(r.mpjpe_of_the_mean_pose_in_place_cm) }} cm), {{ r.frames }} frames.</p>
+{% endif %}{% if r.seen_in_training.images or r.seen_in_training.scenes %}
 <p class="warning">{{ name }} on {{ data }}: {{ r.seen_in_training.images }} of {{ r.images }}
 images, and the person and motion of {{ r.seen_in_training.scenes }}, were trained on.</p>
 {% endif %}{% if r.left_out %}<p class="warning">{{ name }} on {{ data }}: left out
@@ -55,10 +59,18 @@ images, and the person and motion of {{ r.seen_in_training.scenes }}, were train
 <td>{{ "%.1f" | format(run.speed.images_per_s) }}</td></tr>{% endfor %}</table>
 {% for name, run in n.runs.items() %}{% for data, r in run.data.items() %}
 <h2>{{ name }} on {{ data }}</h2>
+{% if r.mpjpe_cm is defined %}
+<table><tr><th>class</th><th>frames</th><th>MPJPE (cm)</th></tr>
+{% for class, c in r.classes.items() %}<tr><td>{{ class }}</td><td>{{ c.frames }}</td>
+<td>{{ "%.2f" | format(c.mpjpe_cm) }}</td></tr>{% endfor %}</table>
+<table><tr><th>joint</th><th>MPJPE (cm)</th><th>ahead</th><th>left</th><th>up</th></tr>
+{% for joint, c in r.joints.items() %}<tr><td>{{ joint }}</td>
+{% for cm in c.values() %}<td>{{ "%.2f" | format(cm) }}</td>{% endfor %}</tr>{% endfor %}</table>
+{% else %}
 <table><tr><th>class</th><th>images</th><th>precision</th><th>recall</th><th>F1</th></tr>
 {% for class, c in r.classes.items() %}<tr><td>{{ class }}</td><td>{{ c.images }}</td>
 <td>{{ "%.4f" | format(c.precision) }}</td><td>{{ "%.4f" | format(c.recall) }}</td>
-<td>{{ "%.4f" | format(c.f1) }}</td></tr>{% endfor %}</table>
+<td>{{ "%.4f" | format(c.f1) }}</td></tr>{% endfor %}</table>{% endif %}
 {% endfor %}{% endfor %}
 <h2>Figures</h2>
 {% for name, caption, data in figures %}<figure><img alt="{{ name }}"

@@ -9,10 +9,10 @@ import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Literal, NotRequired
+from typing import Annotated, Any, NotRequired
 
 import torch
-from pydantic import Field, ValidationError, field_validator
+from pydantic import Field, ValidationError, field_validator, model_validator
 from pydantic_core import PydanticCustomError
 from safetensors import SafetensorError, safe_open
 from safetensors.torch import save as safetensors_bytes
@@ -24,10 +24,11 @@ from radhar_cli.dataset.files import read_bytes, refuse_links, write_whole
 from radhar_cli.dataset.folder import refuse_differences, refuse_foreign_files
 from radhar_cli.errors import ModelError, RadharError
 from radhar_cli.learning.batches import Normalisation
-from radhar_cli.learning.models.build import build_model
+from radhar_cli.learning.images.image_set import shape_in_words
+from radhar_cli.learning.models.build import Cost, build_model, cost
 from radhar_cli.learning.report_folder import csv_text
 from radhar_cli.learning.run_files import ABOUT, ALL, BEST, EVENTS, HISTORY, LAST, TRAINED_ON
-from radhar_cli.learning.settings import TrainConfig
+from radhar_cli.learning.settings import Kind, TrainConfig
 from radhar_cli.untrusted import regular_size
 
 MAX_CLASSES = 10_000
@@ -69,9 +70,11 @@ class RunMetadata(Section):
     classes: Annotated[tuple[Name, ...], Field(min_length=1, max_length=MAX_CLASSES)]
     size: tuple[Side, Side]  # (height, width)
     map: Annotated[Name, Field(pattern=r"^[^/\\]*[^/\\.][^/\\]*$")] | None
-    input: Literal["rgb", "gray"]
-    mean: tuple[float, float, float]  # of the three channels
-    sd: tuple[Spread, Spread, Spread]
+    channels: Annotated[int, Field(ge=1, le=2**14)] = 3
+    input: Kind
+    joints: Annotated[tuple[Name, ...], Field(max_length=256)] = ()  # of skeletons
+    mean: Annotated[tuple[float, ...], Field(min_length=1, max_length=3)]  # of the channels
+    sd: Annotated[tuple[Spread, ...], Field(min_length=1, max_length=3)]
     config: dict[str, Any]  # resolved
     data: LearnedFrom
     versions: dict[str, str]  # of radhar, torch, numpy
@@ -91,6 +94,42 @@ class RunMetadata(Section):
     def _usable(cls, value: dict[str, Any]) -> dict[str, Any]:
         TrainConfig.model_validate(value)
         return value
+
+    @model_validator(mode="after")
+    def _fits(self) -> "RunMetadata":
+        if not len(self.mean) == len(self.sd) in (1, self.channels):
+            raise PydanticCustomError("mean", "should have a mean and an sd for each channel")
+        if self.model != self.settings.model or (self.finds_joints and not self.joints):
+            raise PydanticCustomError("model", "should be that of its config")
+        return self
+
+    @property
+    def settings(self) -> TrainConfig:
+        """Of the run."""
+        return TrainConfig.model_validate(self.config)
+
+    @property
+    def finds_joints(self) -> bool:
+        """Whether it was trained on skeletons, not on classes."""
+        return self.settings.target == "skeleton"
+
+    @property
+    def shape(self) -> str:
+        """Of an image that it takes, in words."""
+        return shape_in_words(self.input, self.size, self.channels)
+
+    def network(self) -> nn.Module:
+        """The network with fresh weights."""
+        return build_model(self.model, self._outputs, self.size, self.finds_joints)
+
+    @property
+    def cost(self) -> Cost:
+        """Of the network."""
+        return cost(self.model, self._outputs, self.size, self.finds_joints, self.channels)
+
+    @property
+    def _outputs(self) -> int:
+        return 3 * len(self.joints) if self.finds_joints else len(self.classes)
 
     @property
     def normalisation(self) -> Normalisation:
@@ -292,7 +331,7 @@ def _opened(path: Path, file: Any) -> tuple[RunMetadata, nn.Module]:
     try:
         metadata = RunMetadata.model_validate_json(header["radhar"])
         with torch.device("meta"):
-            wanted = build_model(metadata.model, len(metadata.classes), metadata.size).state_dict()
+            wanted = metadata.network().state_dict()
         weights = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
         for name in wanted.keys() | weights.keys():
             actual, expected = (
@@ -303,7 +342,7 @@ def _opened(path: Path, file: Any) -> tuple[RunMetadata, nn.Module]:
                 raise RuntimeError(f"{name} is {actual}, should be {expected}")
             if not weights[name].isfinite().all():
                 raise RuntimeError(f"{name} holds a number that is not finite")
-        model = build_model(metadata.model, len(metadata.classes), metadata.size)
+        model = metadata.network()
         model.load_state_dict(weights)
     except ValidationError as error:
         raise RunError(f"{path}: its description is damaged ({_first(error)})") from None

@@ -12,9 +12,9 @@ from radhar_cli.figures.evaluation import curves_png
 from radhar_cli.learning import run_files
 from radhar_cli.learning.machine import ExecutionPlan
 from radhar_cli.learning.metrics import wilson
-from radhar_cli.learning.models.build import cost
 from radhar_cli.learning.process_group import Group
 from radhar_cli.learning.run_folder import Epoch, RunMetadata, best_epoch
+from radhar_cli.learning.targets import LOSSES, SCORES
 
 
 def write_run_summary(
@@ -27,14 +27,20 @@ def write_run_summary(
 ) -> None:
     """Write metrics.json, summary.txt and curves.png of a finished run."""
     best, count = best_epoch(history), int(metadata.data["val"])
-    low, high = wilson(round(best.val_accuracy * count), count)
-    price = cost(metadata.model, len(metadata.classes), metadata.size)
-    share = -(-int(metadata.config["batch_size"]) // group.size)
+    settings, series = metadata.settings, {folder.name or str(folder): history}
+    interval, score = None, SCORES[settings.target]
+    found = f"{score} {100 * best.val_accuracy:.2f} %"
+    if settings.target == "classes":
+        interval = wilson(round(best.val_accuracy * count), count)
+        found += f" (95 % interval {100 * interval[0]:.2f} to {100 * interval[1]:.2f} %)"
+    price = metadata.cost
+    share = -(-settings.images_a_step // group.size)
     metrics = {
         "model": metadata.model,
         "best_epoch": best.epoch,
+        "score": score,
         "val_accuracy": best.val_accuracy,
-        "val_accuracy_95": [low, high],
+        "val_accuracy_95": interval,
         "val_loss": best.val_loss,
         "epochs": len(history),
         "parameters": price.parameters,
@@ -53,20 +59,18 @@ def write_run_summary(
         "micro_batch": plan.micro_batch,
         "gradient_accumulation": len(plan.parts(share)),
     }
-    series = {folder.name or str(folder): history}
-    write_whole(folder, folder / run_files.CURVES, curves_png(series, {folder.name: best.epoch}))
+    curves = curves_png(series, {folder.name: best.epoch}, score, LOSSES[settings.target])
+    write_whole(folder, folder / run_files.CURVES, curves)
     lines = [
         f"{metadata.model} on {metadata.data['path']}"
         + (f", map {metadata.map}" if metadata.map else "")
-        + f", {metadata.size[0]} x {metadata.size[1]} px, {len(metadata.classes)} classes",
+        + f", {metadata.shape}, {len(metadata.classes)} classes",
         f"{metadata.data['train']} training and {count} validation images",
-        f"best epoch {best.epoch} of {len(history)}: validation accuracy "
-        f"{100 * best.val_accuracy:.2f} % (95 % interval {100 * low:.2f} to {100 * high:.2f} %), "
-        f"loss {best.val_loss:.4f}",
+        f"best epoch {best.epoch} of {len(history)}: validation {found}, loss {best.val_loss:.4f}",
         f"{price.parameters:,} parameters, {price.multiply_adds / 1e9:.3f} G multiply-adds",
         f"{metrics['seconds']} s on {metrics['device']}, {metrics['precision']}, "
         f"{metrics['threads']} threads, {group.size} process(es), batch "
-        f"{metadata.config['batch_size']} in {metrics['gradient_accumulation']} part(s)",
+        f"{settings.images_a_step} in {metrics['gradient_accumulation']} part(s)",
         "",
         *_layer_table(model),
     ]

@@ -24,6 +24,9 @@ def _auto_or(least: int) -> BeforeValidator:
 STEPS_AN_EPOCH, SMALLEST_BATCH, LARGEST_BATCH = 24, 4, 128  # of batch_size: auto
 
 Auto = Literal["auto"] | int
+Target = Literal["classes", "skeleton"]
+Kind = Literal["rgb", "gray", "frames", "clouds"]
+OF_SEQUENCES: dict[str, Kind] = {"framenet": "frames", "cloudnet": "clouds"}
 Count = Annotated[int, Field(ge=1, le=1_000_000, strict=True)]
 Rate = Annotated[float, Field(gt=0, le=1e3, strict=True)]
 Weight = Annotated[float, Field(ge=0, le=1000, strict=True)]
@@ -99,11 +102,17 @@ class TrainConfig(Section):
     """
 
     model: Annotated[str, Field(min_length=1)] = "smallnet"
-    """smallnet, the paper's network fftnet, or any name of timm's."""
+    """smallnet, the paper's network fftnet, any name of timm's; of sequences framenet, cloudnet."""
+    target: Target = "classes"
+    """Or skeleton, of sequences: the joints in every frame."""
     map: str | None = None
     """Which map; null is the first one."""
     input: Literal["rgb", "gray"] = "rgb"
-    """Colours as in the PNGs, or one channel three times."""
+    """Colours as in the PNGs, or one channel three times; of images."""
+    frames: Annotated[Auto, _auto_or(1)] = "auto"
+    """Of a sequence, the middle ones of a longer sample; auto is as many as the longest."""
+    points: Annotated[Count, Field(le=4096)] = 64
+    """Most points of a frame, those of the highest SNR."""
     seed: Annotated[int, Field(ge=0, lt=2**63, strict=True)] = 1
     """Of first weights, order of the images, dropout."""
     epochs: Count = 30
@@ -144,13 +153,13 @@ class TrainConfig(Section):
     threads: Annotated[Auto, _auto_or(1)] = "auto"
     """Of the CPU."""
 
-    def for_images(self, count: int) -> "TrainConfig":
-        """The same with a batch size for so many training images, where it is auto."""
-        if self.batch_size != "auto":
-            return self
-        fitting = 2 ** round(log2(max(count, 1) / STEPS_AN_EPOCH))
-        size = min(max(fitting, SMALLEST_BATCH), LARGEST_BATCH)
-        return self.model_copy(update={"batch_size": size})
+    def for_images(self, count: int, frames: int = 1) -> "TrainConfig":
+        """The same with a batch size for so many training images, and frames, where it is auto."""
+        update = {"frames": frames} if self.frames == "auto" else {}
+        if self.batch_size == "auto":
+            fitting = 2 ** round(log2(max(count, 1) / STEPS_AN_EPOCH))
+            update["batch_size"] = min(max(fitting, SMALLEST_BATCH), LARGEST_BATCH)
+        return self.model_copy(update=update)
 
     @property
     def images_a_step(self) -> int:
@@ -158,10 +167,21 @@ class TrainConfig(Section):
         assert self.batch_size != "auto"
         return self.batch_size
 
+    @property
+    def reads(self) -> Kind:
+        """What the model is given: sequences where it is one of these, else images."""
+        return OF_SEQUENCES.get(self.model, self.input)
+
     @model_validator(mode="after")
     def _fits(self) -> "TrainConfig":
         if self.warmup_epochs > self.epochs:
             raise PydanticCustomError("warmup", "should have warmup_epochs of at most epochs")
+        if self.target == "skeleton" and self.model not in OF_SEQUENCES:
+            raise PydanticCustomError(
+                "skeleton", "should have model: cloudnet or framenet for target: skeleton"
+            )
+        if self.augment != AugmentConfig() and self.model in OF_SEQUENCES:
+            raise PydanticCustomError("augment", "should have no augment, which is of images")
         if self.augment != AugmentConfig() and self.input != "gray":
             raise PydanticCustomError(
                 "gray", "should have input: gray for augment, which changes grey levels"

@@ -34,6 +34,7 @@ from radhar_cli.learning.run_folder import (
     read_history,
     read_trained_on,
 )
+from radhar_cli.learning.skeleton_result import evaluate_skeletons, found_and_true
 
 MAX_MISTAKES = 12
 MIN_EMBEDDED = 2
@@ -90,6 +91,8 @@ def check_options(runs: Sequence[Run], options: EvalOptions) -> None:
     """
     ours = {activity.slug for activity in ACTIVITIES}
     for run in runs:
+        if options.tsne and run.metadata.input not in ("rgb", "gray"):
+            raise RunError(f"--tsne: {run.name} reads {run.metadata.input}; it is of images")
         for name in run.metadata.classes:
             if options.in_place_vs_moving and name not in ours:
                 raise RunError(
@@ -121,13 +124,22 @@ def evaluate_one(
 ) -> dict[str, Any]:
     """Numbers of a run on a data set; its figures and tables, named with `stem`, go to `report`."""
     images, rows, split = eval_set.images, eval_set.rows, eval_set.split
-    predictions = predict(run.model, run.metadata, images, rows, device, options.batch)
+    title = f"{run.name} on {data_name}, {split}"
+    asked = (run.model, run.metadata, images, rows, device, options.batch)
+    about = {
+        "seen_in_training": seen_in_training(run, images, rows),
+        "split": split,
+        "map": images.map,
+        "snr_db": images.snr_db,
+        "left_out": dict(images.left_out),
+    }
+    if run.metadata.finds_joints:
+        joints = found_and_true(*asked)
+        return evaluate_skeletons(report, *joints, images, rows, stem, title) | about
+    predictions = predict(*asked)
     names = run.metadata.classes
-    numbers = metrics.summary(predictions.truth, predictions.probabilities, names)
-    numbers["seen_in_training"] = seen_in_training(run, images, rows)
-    numbers |= {"split": split, "map": images.map, "snr_db": images.snr_db}
-    numbers |= {"left_out": dict(images.left_out)}
-    shown = _Shown(report, predictions, names, stem, f"{run.name} on {data_name}, {split}")
+    numbers = metrics.summary(predictions.truth, predictions.probabilities, names) | about
+    shown = _Shown(report, predictions, names, stem, title)
     counts, right = np.array(numbers["confusion"]), 100 * numbers["accuracy"]
     caption = f"Confusion matrix of {shown.title}: counts, and shares of the true class."
     title = f"{shown.title}: {right:.2f} % of {rows.size}"
@@ -136,7 +148,8 @@ def evaluate_one(
     if options.in_place_vs_moving:
         numbers["in_place_vs_moving"] = shown.in_place_vs_moving()
     shown.reliability()
-    shown.hardest()
+    if images.kind in ("rgb", "gray"):
+        shown.hardest()
     if options.tsne:
         numbers["silhouette"] = shown.tsne()
     return numbers

@@ -35,8 +35,10 @@ def start_from(run: Path, model: nn.Module, config: TrainConfig, images: ImageSe
     metadata, earlier = load_best(run)
     for what, theirs, ours in (
         ("model", metadata.model, config.model),
-        ("input", metadata.input, config.input),
+        ("input", metadata.input, config.reads),
         ("image size", metadata.size, images.size),
+        ("target", metadata.settings.target, config.target),
+        ("list of joints", metadata.joints, images.joints),
     ):
         if theirs != ours:
             raise ConfigError(f"--init {run}: its {what} is {theirs}, here it is {ours}")

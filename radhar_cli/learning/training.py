@@ -22,12 +22,19 @@ from radhar_cli.errors import ConfigError, FolderError, RadharError
 from radhar_cli.learning import run_files
 from radhar_cli.learning import run_folder as run
 from radhar_cli.learning.augmentation import Augmentation
-from radhar_cli.learning.batches import MIN_PER_PROCESS, Reader, epoch_batches, epoch_order, pieces
+from radhar_cli.learning.batches import (
+    MIN_PER_PROCESS,
+    Labels,
+    Reader,
+    epoch_batches,
+    epoch_order,
+    pieces,
+)
 from radhar_cli.learning.gradient_step import TrainStep, check_state, optimiser_for, rate
 from radhar_cli.learning.images.classes import renamed
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.joined import joined, sampling_weights
-from radhar_cli.learning.images.opening import open_images
+from radhar_cli.learning.images.opening import open_inputs
 from radhar_cli.learning.images.scan import content_hash, scan
 from radhar_cli.learning.images.synthesised import (
     TrainingStream,
@@ -53,8 +60,9 @@ from radhar_cli.learning.process_group import (
 )
 from radhar_cli.learning.run_folder import Epoch, LearnedFrom, RunMetadata, best_epoch
 from radhar_cli.learning.run_summary import write_run_summary
-from radhar_cli.learning.settings import AugmentConfig, TrainConfig
+from radhar_cli.learning.settings import OF_SEQUENCES, AugmentConfig, TrainConfig
 from radhar_cli.learning.starting_point import StartingPoint, start_from
+from radhar_cli.learning.targets import SCORES
 from radhar_cli.progress import Messages
 from radhar_cli.randomness import TRAINING, stream
 from radhar_cli.worker_process import keep_memory
@@ -76,7 +84,7 @@ class TrainingProgress(Messages, Protocol):
         """An epoch begins."""
 
     def step(self, loss: float, accuracy: float) -> None:
-        """A step is done: its loss, and the accuracy of the epoch so far."""
+        """A step is done: its loss, and the accuracy (or other score) of the epoch so far."""
 
     def epoch_done(self, row: Epoch, best: bool) -> None:
         """An epoch is done and on disk."""
@@ -89,6 +97,7 @@ class Outcome:
     folder: Path  # of the run
     history: list[Epoch]
     resumed: int  # epochs that were finished before
+    score: str  # what its accuracies are
 
     @property
     def best(self) -> Epoch:
@@ -130,6 +139,8 @@ def train(
     training_stream = None
     if stream is None:
         images = checked_images(config, data, names)
+    elif config.model in OF_SEQUENCES:
+        raise ConfigError(f"model {config.model}: reads sequences; --stream makes images")
     else:
         paths = [data] if isinstance(data, Path) else list(data)
         device = choose_device(config.device)
@@ -154,7 +165,7 @@ def train_on(task: Task, progress: TrainingProgress) -> Outcome:
     """As `train`, on images that are open already."""
     images, folder = task.images, task.folder
     count = images.rows("train").size if task.stream is None else task.stream.per_epoch
-    config = task.config.for_images(count)
+    config = task.config.for_images(count, images.frames)
     task = replace(task, config=config)
     if config.threads != "auto":
         torch.set_num_threads(config.threads)
@@ -170,11 +181,10 @@ def train_on(task: Task, progress: TrainingProgress) -> Outcome:
             # On the CPU only the message says that memory was short.
             if not isinstance(error, torch.OutOfMemoryError) and "CPUAllocator" not in str(error):
                 raise
-            height, width = images.size
             count = min(plan.micro_batch, -(-config.images_a_step // group.size))
             raise TrainingError(
-                f"out of memory on {device.type} in a step of {count} images of {height} x {width} "
-                f"px; should be fewer: --set micro_batch={max(1, count // 2)}"
+                f"out of memory on {device.type} in a step of {count} images of {images.shape}; "
+                f"should be fewer: --set micro_batch={max(1, count // 2)}"
             ) from None
 
 
@@ -193,12 +203,15 @@ def checked_images(
             f"{len(paths)} data sets"
         )
     sets = [
-        renamed(open_images(path, config.map, config.input), names or {}).cut(
+        renamed(open_inputs(path, config.map, config), names or {}).cut(
             config.validation_share, config.seed
         )
         for path in paths
     ]
     images, path = joined(sets), " and ".join(map(str, paths))
+    if config.target == "skeleton":
+        images.rows("val"), images.rows("train")
+        return images
     if len(images.classes) < 2:
         raise FolderError(f"{path}: has the class {images.classes[0]!r} alone; should have two")
     learned = set(images.label[images.rows("train")].tolist())
@@ -233,10 +246,12 @@ class _Training:
                 "processes; batch norm needs two images in each"
             )
         torch.manual_seed(config.seed)
-        model = build_model(config.model, len(images.classes), images.size)
+        joints = config.target == "skeleton"
+        outputs = 3 * len(images.joints) if joints else len(images.classes)
+        model = build_model(config.model, outputs, images.size, joints)
         started = None if task.start is None else start_from(task.start, model, config, images)
         if group.is_main:
-            many = f"{len(images)} images of {len(images.classes)} classes"
+            many = f"{len(images)} images of {len(images.classes)} classes, {images.shape}"
             if stream is not None:
                 many = f"{images.rows('val').size} validation images; {stream.per_epoch} samples "
                 many += f"an epoch are synthesised by {plan.workers or 'no'} workers"
@@ -266,7 +281,7 @@ class _Training:
         augmentation = None
         if task.config.augment != AugmentConfig():
             augmentation = Augmentation(task.config.augment, task.config.seed)
-        pin, label = plan.device.type == "cuda", task.images.label
+        pin, label = plan.device.type == "cuda", _wanted(task)
         if task.stream is None:
             training_reader = Reader(task.images.pixels, label, plan.workers, pin, augmentation)
             validation_reader = training_reader
@@ -295,7 +310,7 @@ class _Training:
                     task.folder, self.metadata, self.history, self.model, plan, self.group
                 )
         barrier(self.group)
-        return Outcome(task.folder, self.history, resumed)
+        return Outcome(task.folder, self.history, resumed, SCORES[task.config.target])
 
     @property
     def _train_step(self) -> TrainStep:
@@ -474,6 +489,11 @@ class _Training:
         self.progress.epoch_done(row, best)
 
 
+def _wanted(task: Task) -> Labels:
+    """What is to be learned of each row."""
+    return task.images.skeletons if task.config.target == "skeleton" else task.images.label
+
+
 def _metadata(
     task: Task, plan: ExecutionPlan, group: Group, started: StartingPoint | None
 ) -> tuple[RunMetadata, dict[int, str]]:
@@ -502,9 +522,11 @@ def _metadata(
         classes=images.classes,
         size=images.size,
         map=images.map,
-        input=config.input,
-        mean=(mean[0], mean[1], mean[2]),
-        sd=(sd[0], sd[1], sd[2]),
+        channels=images.channels,
+        input=config.reads,
+        joints=images.joints,
+        mean=mean,
+        sd=sd,
         config=kept,
         data=data,
         work={

@@ -135,9 +135,12 @@ def test_several_runs_overlay_their_curves(learned, run_dir, monkeypatch):
 
     drawn: list[list[str]] = []
     draw = module.curves_png
-    monkeypatch.setattr(
-        module, "curves_png", lambda series, best: drawn.append(list(series)) or draw(series, best)
-    )
+
+    def recorded(series, *rest):
+        drawn.append(list(series))
+        return draw(series, *rest)
+
+    monkeypatch.setattr(module, "curves_png", recorded)
     report = evaluate([learned[0], run_dir], [learned[1]], EvalOptions(), CPU, Listener())
     assert drawn == [["good", "plain"]]
     assert list(report.numbers["runs"]) == ["good", "plain"]

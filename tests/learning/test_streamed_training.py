@@ -114,7 +114,9 @@ def test_every_image_is_seen_once_and_none_that_is_held_back(place, built, monke
 def test_streamed_images_are_those_of_the_built_data_set(place, built, tmp_path, kind):
     config = load_config(place / "scenes.yaml")
     stream, validation = stream_and_validation(settings(map="stft", input=kind), config, [], {}, 0)
-    metadata = run.read_metadata(place / "run").model_copy(update={"input": kind})
+    metadata = run.read_metadata(place / "run")
+    config_of_run = {**metadata.config, "input": kind}
+    metadata = metadata.model_copy(update={"input": kind, "config": config_of_run})
     there = open_for(metadata, built, "stft")
     row_of = {name: row for row, name in enumerate(there.names)}
     assert isinstance(validation.pixels, StoredPixels)

@@ -28,7 +28,7 @@ from learning.patterns import (
 from slow import slow
 from torch import nn
 
-from radhar_cli.learning import gradient_step, run_files, training
+from radhar_cli.learning import run_files, targets, training
 from radhar_cli.learning import run_folder as run
 from radhar_cli.learning.gradient_step import optimiser_for
 from radhar_cli.learning.images.opening import open_images
@@ -113,7 +113,7 @@ def test_resumed_after_an_epoch_gives_the_same_run(data, run_dir, tmp_path, epoc
 
 
 def test_dropout_resumes_its_random_state(data, tmp_path, monkeypatch):
-    def with_dropout(name, classes, size):
+    def with_dropout(name, classes, size, per_frame):
         return nn.Sequential(
             nn.Conv2d(3, 4, 3, 4), nn.Flatten(), nn.Dropout(0.5), nn.Linear(4 * 8 * 8, classes)
         )
@@ -289,7 +289,7 @@ def test_accumulation_is_reported_and_recorded(data, tmp_path):
 
 def test_out_of_memory_names_a_smaller_micro_batch(data, tmp_path, monkeypatch):
     """An allocation of 2**60 bytes, which PyTorch refuses at once."""
-    monkeypatch.setattr(gradient_step, "cross_entropy", lambda *_, **__: torch.empty(2**58))
+    monkeypatch.setattr(targets, "cross_entropy", lambda *_, **__: torch.empty(2**58))
     with pytest.raises(TrainingError, match=r"out of memory on cpu in .* 6 images .*micro_batch=3"):
         trained(data, tmp_path / "run", batch_size=6)
 
@@ -347,14 +347,14 @@ def test_rates_of_the_schedule_reach_the_optimiser(data, tmp_path, monkeypatch):
 def test_a_non_finite_loss_is_one_clear_line(data, tmp_path, monkeypatch, model_step):
     """Two steps an epoch: the first is of the first epoch, the fourth the last of the second."""
     out, calls = tmp_path / "run", []
-    loss = gradient_step.cross_entropy
+    loss = targets.cross_entropy
 
     def sometimes(logits, *rest, **more):
         calls.append(torch.is_grad_enabled())
         found = loss(logits, *rest, **more)
         return found * math.nan if sum(calls) == model_step else found
 
-    monkeypatch.setattr(gradient_step, "cross_entropy", sometimes)
+    monkeypatch.setattr(targets, "cross_entropy", sometimes)
     with pytest.raises(TrainingError) as caught:
         trained(data, out)
     monkeypatch.undo()
@@ -369,13 +369,13 @@ def test_a_non_finite_loss_is_one_clear_line(data, tmp_path, monkeypatch, model_
 
 
 def test_a_non_finite_validation_loss_is_one_clear_line(data, tmp_path, monkeypatch):
-    loss = gradient_step.cross_entropy
+    loss = targets.cross_entropy
 
     def only_training(logits, *rest, **more):
         found = loss(logits, *rest, **more)
         return found if torch.is_grad_enabled() else found * math.inf
 
-    monkeypatch.setattr(gradient_step, "cross_entropy", only_training)
+    monkeypatch.setattr(targets, "cross_entropy", only_training)
     with clear_line(TrainingError, "validation of epoch 1", "inf"):
         trained(data, tmp_path / "run")
 

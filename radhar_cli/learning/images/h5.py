@@ -1,8 +1,7 @@
-"""Images of a dataset.h5: levels, or their colours in the PNGs."""
+"""Images of a dataset.h5, its levels or their colours in the PNGs, and its sequences."""
 
 import hashlib
-import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,19 +11,27 @@ from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.dataset.recorded import windows
-from radhar_cli.learning.images.image_set import ImageSet, class_order, repeated
+from radhar_cli.learning.images.image_set import ImageSet, Pixels, class_order, repeated
+from radhar_cli.learning.images.sequences import (
+    COLUMNS,
+    POINTS,
+    Opened,
+    SequenceReader,
+    joint_names,
+    longest,
+    sequence_product,
+)
+from radhar_cli.learning.settings import Auto, Kind
 
 _WHO_AND_HOW = ("subject.", "motion.", "timing.", "recordings.part", "recordings.start_s")
 
 
 @dataclass
-class H5Pixels:
-    """Rows of one map through a table [256, 3]; every process opens the file for itself."""
+class H5Pixels(Opened):
+    """Rows of one map through a table [256, 3]."""
 
-    path: Path
     map: str
     table: Levels
-    _open: dict[int, Dataset] = field(default_factory=dict, repr=False)
 
     def read(self, row: int) -> Levels:
         """RGB [H, W, 3] of a row.
@@ -32,38 +39,64 @@ class H5Pixels:
         Raises:
             FolderError: the file is damaged there.
         """
-        mine = self._open.get(os.getpid())
-        if mine is None:
-            self._open.clear()
-            mine = self._open[os.getpid()] = open_dataset(self.path)
-        rgb: Levels = self.table[mine.maps[self.map][row]]
+        rgb: Levels = self.table[self.data.maps[self.map][row]]
         return rgb
 
-    def __getstate__(self) -> dict[str, object]:
-        return {**self.__dict__, "_open": {}}
 
-
-def h5_images(path: Path, map_name: str | None, kind: str) -> ImageSet:
+def h5_images(path: Path, map_name: str | None, kind: Kind) -> ImageSet:
     """Open one map of a dataset.h5, or of the folder it lies in, as images."""
     with open_dataset(path) as data:
-        name, rows = data.map_name(map_name), Rows.of(data.config)
-        slug, snr_db = np.array(data.class_slugs)[data.label], data.config.snr_db
-        classes = class_order(set(slug.tolist()))
+        name = data.map_name(map_name)
         colours = colour_table(data.config.image.colour_map)
         table = colours if kind == "rgb" else repeated(np.arange(256, dtype=np.uint8))
-        return ImageSet(
-            where=path,
-            map=name,
-            classes=classes,
-            label=np.array([classes.index(s) for s in slug], dtype=np.intp),
-            split=data.split,
-            names=tuple(f"{s}/{rows.name(row)}" for row, s in enumerate(slug)),
-            scenes=_scenes(data, slug.tolist()),
-            size=data.config.image.size_px,
-            pixels=H5Pixels(data.path, name, table),
-            snr_db=float(snr_db) if isinstance(snr_db, (int, float)) else None,
-            persons=_persons(data),
-        )
+        pixels = H5Pixels(data.path, name, table)
+        return _labelled(data, path, name, pixels, data.config.image.size_px)
+
+
+def h5_sequences(
+    path: Path, product: str | None, kind: Kind, frames: Auto = "auto", points: int = POINTS
+) -> ImageSet:
+    """Open the frames or clouds of a dataset.h5, or of the folder it lies in.
+
+    Args:
+        product: which; the first of that kind if None.
+        frames: of a sequence; auto is as many as the longest sample has.
+        points: most points of a frame.
+
+    Raises:
+        FolderError: it has none.
+    """
+    with open_dataset(path) as data:
+        name = sequence_product(data, kind, product)
+        count = longest(data, name) if frames == "auto" else frames
+        pixels = SequenceReader(data.path, name, count, points)
+        size, channels = data.products[name].shape[1:], count
+        if kind == "clouds":
+            size, channels = (count, points), len(COLUMNS)
+        images = _labelled(data, path, name, pixels, (size[0], size[1]))
+        return replace(images, kind=kind, channels=channels, joints=joint_names(data))
+
+
+def _labelled(
+    data: Dataset, where: Path, name: str, pixels: Pixels, size: tuple[int, int]
+) -> ImageSet:
+    """An image set of what reads the rows of a data set."""
+    rows, snr_db = Rows.of(data.config), data.config.snr_db
+    slug = np.array(data.class_slugs)[data.label]
+    classes = class_order(set(slug.tolist()))
+    return ImageSet(
+        where=where,
+        map=name,
+        classes=classes,
+        label=np.array([classes.index(s) for s in slug], dtype=np.intp),
+        split=data.split,
+        names=tuple(f"{s}/{rows.name(row)}" for row, s in enumerate(slug)),
+        scenes=_scenes(data, slug.tolist()),
+        size=size,
+        pixels=pixels,
+        snr_db=float(snr_db) if isinstance(snr_db, (int, float)) else None,
+        persons=_persons(data),
+    )
 
 
 def _persons(data: Dataset) -> tuple[str, ...] | None:

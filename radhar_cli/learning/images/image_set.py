@@ -1,18 +1,19 @@
-"""Labelled images of one size, from a dataset.h5 or a tree of class folders."""
+"""Labelled images, or sequences, of one size: of a dataset.h5, or a tree of class folders."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from PIL import Image
 
 from radhar_cli.activity import ACTIVITIES
-from radhar_cli.arrays import Index, Levels
+from radhar_cli.arrays import Float, Index, Levels
 from radhar_cli.dataset.layout import SPLITS
 from radhar_cli.dataset.split import TRAIN, VALIDATION
 from radhar_cli.errors import FolderError, did_you_mean
+from radhar_cli.learning.settings import Kind
 from radhar_cli.randomness import TRAINING, stream
 from radhar_cli.rounding import half_up
 
@@ -23,7 +24,7 @@ class Pixels(Protocol):
     """Reads images by row; can be pickled for worker processes."""
 
     def read(self, row: int) -> Levels:
-        """RGB [H, W, 3] of a row.
+        """RGB [H, W, 3] of a row, or a sequence (`SequenceReader.read`).
 
         Raises:
             FolderError: it cannot be read; the message names the file.
@@ -46,6 +47,17 @@ class Resized:
 
 
 @dataclass(frozen=True)
+class Skeletons:
+    """Joints [T, joint, 3] of every row of pixels that have them."""
+
+    pixels: Any
+
+    def __getitem__(self, row: int) -> Float:
+        found: Float = self.pixels.joints(row)
+        return found
+
+
+@dataclass(frozen=True)
 class SomeRows:
     """A selection of the rows of other pixels."""
 
@@ -55,10 +67,14 @@ class SomeRows:
     def read(self, row: int) -> Levels:
         return self.pixels.read(int(self.rows[row]))
 
+    def joints(self, row: int) -> Float:
+        """As `SequenceReader.joints`."""
+        return Skeletons(self.pixels)[int(self.rows[row])]
+
 
 @dataclass(frozen=True)
 class ImageSet:
-    """Images of one size, each with a class and a split."""
+    """Images or sequences of one size, each with a class and a split."""
 
     where: Path  # the file or folder they came from
     map: str | None  # name of the map, None for a tree that names none
@@ -79,6 +95,9 @@ class ImageSet:
     source: Index = field(default_factory=lambda: np.zeros(0, np.intp))
     # [N] who is in each, or the recording that it was cut from; None where the source does not say
     persons: tuple[str, ...] | None = None
+    kind: Kind = "rgb"
+    channels: int = 3  # colours, columns of a cloud, or frames of a sequence of frames
+    joints: tuple[str, ...] = ()  # names of what `pixels.joints` reads
 
     def __post_init__(self) -> None:
         if not self.source.size:
@@ -86,6 +105,21 @@ class ImageSet:
 
     def __len__(self) -> int:
         return len(self.label)
+
+    @property
+    def shape(self) -> str:
+        """Of an image, in words."""
+        return shape_in_words(self.kind, self.size, self.channels)
+
+    @property
+    def frames(self) -> int:
+        """Of a sequence; 1 of an image."""
+        return {"clouds": self.size[0], "frames": self.channels}.get(self.kind, 1)
+
+    @property
+    def skeletons(self) -> Skeletons:
+        """Joints of the person in each sequence."""
+        return Skeletons(self.pixels)
 
     def rows(self, split: str) -> Index:
         """Rows of a split: train, val, test or all.
@@ -159,6 +193,14 @@ class ImageSet:
             held_out = min(max(1, half_up(share, mine.size)), mine.size - 1)
             split[mine[order[:held_out]]] = VALIDATION
         return replace(self, split=split)
+
+
+def shape_in_words(kind: Kind, size: tuple[int, int], channels: int) -> str:
+    """What an image or a sequence measures."""
+    height, width = size
+    if kind == "clouds":
+        return f"{height} frames of {width} points"
+    return f"{f'{channels} frames of ' * (kind == 'frames')}{height} x {width} px"
 
 
 def class_order(names: set[str]) -> tuple[str, ...]:

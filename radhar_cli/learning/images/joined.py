@@ -8,7 +8,7 @@ import numpy as np
 
 from radhar_cli.arrays import Float, Index, Levels
 from radhar_cli.errors import FolderError
-from radhar_cli.learning.images.image_set import ImageSet, Pixels, class_order
+from radhar_cli.learning.images.image_set import ImageSet, Pixels, Skeletons, class_order
 
 
 @dataclass(frozen=True)
@@ -22,6 +22,11 @@ class JoinedPixels:
         part = int(np.searchsorted(self.first, row, side="right")) - 1
         return self.parts[part].read(row - int(self.first[part]))
 
+    def joints(self, row: int) -> Float:
+        """As `SequenceReader.joints`."""
+        part = int(np.searchsorted(self.first, row, side="right")) - 1
+        return Skeletons(self.parts[part])[row - int(self.first[part])]
+
 
 def joined(sets: Sequence[ImageSet]) -> ImageSet:
     """One set of all images, classes matched by name.
@@ -32,10 +37,10 @@ def joined(sets: Sequence[ImageSet]) -> ImageSet:
     if len(sets) == 1:
         return sets[0]
     for one, other in pairwise(sets):
-        if one.size != other.size:
+        if (one.size, one.channels, one.joints) != (other.size, other.channels, other.joints):
             raise FolderError(
-                f"{other.where}: images are {other.size[0]} x {other.size[1]} px, those of "
-                f"{one.where} {one.size[0]} x {one.size[1]} px; should be of one size"
+                f"{other.where}: images are {other.shape}, those of {one.where} {one.shape}; "
+                "should be of one size"
             )
     classes = class_order({name for one in sets for name in one.classes})
     numbers = [np.array([classes.index(name) for name in one.classes]) for one in sets]

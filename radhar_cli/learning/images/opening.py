@@ -12,13 +12,27 @@ from radhar_cli.dataset.image_file import image_size
 from radhar_cli.dataset.layout import DATASET, SPLITS, is_incomplete
 from radhar_cli.errors import FolderError
 from radhar_cli.learning.images.folder import FilePixels, folder_images
-from radhar_cli.learning.images.h5 import h5_images
+from radhar_cli.learning.images.h5 import h5_images, h5_sequences
 from radhar_cli.learning.images.image_set import ImageSet, Resized
 from radhar_cli.learning.run_files import is_run
+from radhar_cli.learning.settings import OF_SEQUENCES, Kind, TrainConfig
+
+
+def open_inputs(path: Path, map_name: str | None, config: TrainConfig) -> ImageSet:
+    """Open what a network reads: images as `open_images`, or sequences of a dataset.h5.
+
+    Raises:
+        FolderError: it is neither, or it is damaged.
+    """
+    if config.model not in OF_SEQUENCES:
+        return open_images(path, map_name, config.input)
+    if not is_h5(path):
+        raise FolderError(f"{path}: is no data set with {config.reads}, which {config.model} reads")
+    return h5_sequences(path, map_name, config.reads, config.frames, config.points)
 
 
 def open_images(
-    path: Path, map_name: str | None, kind: str, resize: tuple[int, int] | None = None
+    path: Path, map_name: str | None, kind: Kind, resize: tuple[int, int] | None = None
 ) -> ImageSet:
     """Open a data set: dataset.h5, a folder that `radhar generate` wrote, or a tree of images.
 

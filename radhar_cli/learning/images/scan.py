@@ -1,4 +1,4 @@
-"""One pass over all pixels: digests, mean and deviation of the levels, and early errors."""
+"""One pass over all images: digests, mean and deviation of the levels, and early errors."""
 
 import hashlib
 import json
@@ -6,50 +6,51 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from radhar_cli.arrays import Index
+from radhar_cli.arrays import Float, Index
 from radhar_cli.learning.images.image_set import ImageSet
 
 
 @dataclass(frozen=True)
 class Scan:
-    """Digests and histogram of some images."""
+    """Digests and statistics of some images.
 
-    digests: tuple[str, ...]  # [rows] digest of each image's pixels
-    histogram: NDArray[np.int64]  # [3, 256] how often each level occurs in each channel
+    Attributes:
+        digests: [rows] of each image's pixels.
+        mean: of each channel, of levels from 0 to 1; of all frames of a sequence together.
+        sd: standard deviation of each, 1 where it is constant.
+    """
 
-    @property
-    def mean(self) -> tuple[float, ...]:
-        """Mean of each channel, of levels from 0 to 1."""
-        return tuple(_moment(counts, 1) for counts in self.histogram)
-
-    @property
-    def sd(self) -> tuple[float, ...]:
-        """Standard deviation of each channel, 1 where it is constant."""
-        spread = (_moment(c, 2) - _moment(c, 1) ** 2 for c in self.histogram)
-        return tuple(float(np.sqrt(s)) if s > 1e-12 else 1.0 for s in spread)
-
-
-def _moment(counts: NDArray[np.int64], power: int) -> float:
-    levels = np.arange(256, dtype=np.int64) ** power
-    mean: float = int(counts @ levels) / (int(counts.sum()) * 255**power)
-    return mean
+    digests: tuple[str, ...]
+    mean: tuple[float, ...]
+    sd: tuple[float, ...]
 
 
 def scan(images: ImageSet, rows: Sequence[int] | Index) -> Scan:
-    """Read some images once: digests and histogram; a damaged one is found here.
+    """Read some images once; a damaged one is found here.
+
+    Numbers with a unit, as clouds have them, have no statistics.
 
     Raises:
         FolderError: an image cannot be read.
     """
-    digests, histogram = [], np.zeros((3, 256), dtype=np.int64)
+    channels = images.channels if images.kind in ("rgb", "gray") else 1
+    digests, histogram = list[str](), np.zeros((channels, 256), dtype=np.int64)
     for row in rows:
-        rgb = images.pixels.read(int(row))
-        digests.append(hashlib.blake2b(rgb.tobytes(), digest_size=8).hexdigest())
-        for channel in range(3):
-            histogram[channel] += np.bincount(rgb[..., channel].reshape(-1), minlength=256)
-    return Scan(tuple(digests), histogram)
+        values = images.pixels.read(int(row))
+        digest = hashlib.blake2b(values.tobytes(), digest_size=8)
+        if images.joints:
+            digest.update(images.skeletons[int(row)].tobytes())
+        digests.append(digest.hexdigest())
+        if values.dtype == np.uint8:
+            for counts, channel in zip(histogram, values.reshape(-1, channels).T, strict=True):
+                counts += np.bincount(channel, minlength=256)
+    levels = np.arange(256, dtype=np.int64)
+    count = np.maximum(histogram.sum(axis=1), 1)
+    mean: Float = histogram @ levels / (count * 255)
+    spread = np.sqrt(np.maximum(histogram @ levels**2 / (count * 255**2) - mean**2, 0))
+    sd = np.where(spread > 1e-6, spread, 1.0)
+    return Scan(tuple(digests), tuple(mean.tolist()), tuple(sd.tolist()))
 
 
 def content_hash(images: ImageSet, rows: Index, digests: Sequence[str] | None = None) -> str:

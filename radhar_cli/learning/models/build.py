@@ -7,7 +7,7 @@ import torch
 from torch import Tensor, nn
 
 from radhar_cli.errors import ModelError
-from radhar_cli.learning.models import smallnet
+from radhar_cli.learning.models import cloudnet, framenet, smallnet
 from radhar_cli.learning.models.fftnet import NAME, STRIDE, FFTNet
 from radhar_cli.learning.models.zoo import zoo_model
 
@@ -25,31 +25,46 @@ class Cost:
     multiply_adds: int
 
 
-def build_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
+def build_model(
+    name: str, outputs: int, size: tuple[int, int], per_frame: bool = False
+) -> nn.Module:
     """Build a network with fresh weights.
 
     Args:
-        name: fftnet, smallnet, or any name that timm knows (needs the extra `zoo`).
+        name: fftnet, smallnet, or any name that timm knows (needs the extra `zoo`); of sequences
+            cloudnet, framenet.
+        outputs: as many as classes, or as coordinates of all joints.
+        size: of an image, (frames, points) of clouds.
+        per_frame: every frame of a sequence has outputs.
 
     Raises:
         ModelError: unknown name, or images it cannot take.
     """
     height, width = size
+    if name == cloudnet.NAME:
+        return cloudnet.CloudNet(outputs, per_frame)
+    if name == framenet.NAME:
+        if min(size) < framenet.MIN_SIDE:
+            raise ModelError(
+                f"model framenet: frames are {height} x {width} cells; both sides should have at "
+                f"least {framenet.MIN_SIDE}"
+            )
+        return framenet.FrameNet(outputs, per_frame)
     if name == NAME:
         if height % STRIDE or width % STRIDE:
             raise ModelError(
                 f"model fftnet: images are {height} x {width} px; both sides should be multiples "
                 f"of {STRIDE}"
             )
-        return FFTNet(classes, height, width)
+        return FFTNet(outputs, height, width)
     if name == smallnet.NAME:
         if min(size) < smallnet.MIN_SIDE:
             raise ModelError(
                 f"model smallnet: images are {height} x {width} px; both sides should have at "
                 f"least {smallnet.MIN_SIDE}"
             )
-        return smallnet.SmallNet(classes)
-    return zoo_model(name, classes, size)
+        return smallnet.SmallNet(outputs)
+    return zoo_model(name, outputs, size)
 
 
 def features_and_logits(model: nn.Module, x: Tensor) -> tuple[Tensor, Tensor]:
@@ -61,7 +76,9 @@ def features_and_logits(model: nn.Module, x: Tensor) -> tuple[Tensor, Tensor]:
     return features.flatten(1), logits
 
 
-def cost(name: str, classes: int, size: tuple[int, int]) -> Cost:
+def cost(
+    name: str, outputs: int, size: tuple[int, int], per_frame: bool = False, channels: int = 3
+) -> Cost:
     """Parameters and multiply-adds of a network, without computing or allocating anything."""
     from torch.utils.flop_counter import FlopCounterMode
 
@@ -73,8 +90,8 @@ def cost(name: str, classes: int, size: tuple[int, int]) -> Cost:
     aten = torch.ops.aten
     real_ffts: dict[Any, Any] = {aten._fft_r2c: fft_operations, aten._fft_c2r: fft_operations}
     with torch.device("meta"):
-        model = build_model(name, classes, size).eval()
-        image = torch.zeros(1, 3, *size)
+        model = build_model(name, outputs, size, per_frame).eval()
+        image = torch.zeros(1, channels, *size)
     counter = FlopCounterMode(display=False, custom_mapping=real_ffts)
     with counter, torch.no_grad():
         model(image)

@@ -8,10 +8,11 @@ from torch import nn
 from torch.library import Library
 
 from radhar_cli.errors import ModelError, did_you_mean
-from radhar_cli.learning.models import fftnet, smallnet
+from radhar_cli.learning.models import cloudnet, fftnet, framenet, smallnet
 
 _OPERATORS: Any = Library("torchvision", "FRAGMENT")  # type: ignore[no-untyped-call]  # forgets what it defines when it is let go
 OURS = (fftnet.NAME, smallnet.NAME)
+OF_SEQUENCES = (cloudnet.NAME, framenet.NAME)
 
 
 def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
@@ -36,7 +37,9 @@ def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
             "installed PyTorch"
         ) from None
     if not timm.is_model(name):
-        hint = did_you_mean(name, timm.list_models(), "`radhar models` lists some")
+        hint = did_you_mean(
+            name, (*OF_SEQUENCES, *timm.list_models()), "`radhar models` lists some"
+        )
         raise ModelError(
             f"model {name!r}: is none of {', '.join(OURS)} nor a name of timm's; {hint}"
         )

@@ -1,0 +1,56 @@
+"""Skeletons that a network found beside the true ones, and the error of every joint."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from radhar_cli.arrays import Float
+from radhar_cli.figures.page import page, png_bytes
+
+# What lies across and which way: seen from the radar left is left; from the person's left.
+SIDES = {"from the radar": (1, -1), "from the side": (0, 1)}
+REACH_M = 1.15
+
+
+def skeletons_png(
+    pairs: Sequence[tuple[Float, Float, str]], parents: Sequence[int | None], title: str
+) -> bytes:
+    """Draw (true [joint, 3], found [joint, 3], caption) as columns, from two sides.
+
+    Args:
+        parents: of each joint; empty to draw points alone.
+    """
+    figure = page(2.1 * len(pairs), 5.4)
+    grid = figure.subplots(len(SIDES), len(pairs), squeeze=False)
+    bones = [(one, parent) for one, parent in enumerate(parents) if parent is not None]
+    for row, (side, (across, sign)) in zip(grid, SIDES.items(), strict=True):
+        for axes, (true, found, caption) in zip(row, pairs, strict=True):
+            for joints, colour, name in ((true, "0.6", "true"), (found, "tab:red", "found")):
+                x, z = sign * joints[:, across], joints[:, 2]
+                for bone in bones:
+                    axes.plot(x[list(bone)], z[list(bone)], color=colour, linewidth=1.6)
+                axes.plot(x, z, "o", color=colour, markersize=2.5, label=name)
+            middle = np.array([sign * true[:, across].mean(), true[:, 2].mean()])
+            axes.set_xlim(middle[0] - REACH_M, middle[0] + REACH_M)
+            axes.set_ylim(middle[1] - REACH_M, middle[1] + REACH_M)
+            axes.set_aspect("equal")
+            axes.set_title(caption, fontsize=6)
+            axes.tick_params(labelsize=5)
+        row[0].set_ylabel(f"{side}, m", fontsize=7)
+    grid[0, 0].legend(fontsize=6)
+    figure.suptitle(title, fontsize=9)
+    return png_bytes(figure)
+
+
+def joint_errors_png(names: Sequence[str], errors: Float, title: str) -> bytes:
+    """Draw the mean error of every joint [joint], cm, as bars."""
+    figure = page(6.0, 0.6 + 0.26 * len(names))
+    axes = figure.subplots()
+    places = np.arange(len(names))
+    axes.barh(places, errors, color="C0")
+    axes.set_yticks(places, [name.replace("_", " ") for name in names], fontsize=8)
+    axes.invert_yaxis()
+    axes.set_xlabel("mean distance between found and true joint (cm)")
+    axes.grid(axis="x", alpha=0.3)
+    axes.set_title(title, fontsize=9)
+    return png_bytes(figure)

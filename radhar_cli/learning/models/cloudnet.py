@@ -1,0 +1,79 @@
+"""A small network of sequences of point clouds: PointNet in each frame, convolutions over time.
+
+Every point goes through the same layers, the largest answer of each feature stands for the frame
+(Qi et al., PointNet, 2017), and two convolutions look at five frames each.
+"""
+
+import torch
+from torch import Tensor, nn
+from torch.nn.functional import avg_pool1d
+
+from radhar_cli.learning.images.sequences import COLUMNS
+
+NAME = "cloudnet"
+WIDTHS = (64, 128)
+NEAR = 5  # frames whose points make the centre of one
+GROUPS = 8
+
+
+def over_time(channels: int) -> nn.Sequential:
+    """Two convolutions over five frames of [B, C, T]."""
+    layers: list[nn.Module] = []
+    for _ in range(2):
+        layers += [nn.Conv1d(channels, channels, NEAR, padding=NEAR // 2)]
+        layers += [nn.GroupNorm(GROUPS, channels), nn.ReLU(inplace=True)]
+    return nn.Sequential(*layers)
+
+
+def centres(x: Tensor) -> Tensor:
+    """Mean place [B, 3, T] of the points of five frames; of all frames where those are empty."""
+    present = x[:, -1:]
+    sums, counts = (x[:, :3] * present).sum(3), present.sum(3)
+    whole, number = sums.mean(2, keepdim=True), counts.mean(2, keepdim=True)
+
+    def near(values: Tensor) -> Tensor:
+        return avg_pool1d(values, NEAR, 1, NEAR // 2)
+
+    return (near(sums) + 1e-3 * whole) / (near(counts) + 1e-3 * number).clamp_min(1e-6)
+
+
+class CloudNet(nn.Module):
+    """The network, for clouds [B, 6, T, K]: COLUMNS of K points in T frames.
+
+    Args:
+        outputs: of a sequence; or of a frame.
+        per_frame: every frame has outputs, places relative to the centre of its points.
+    """
+
+    def __init__(self, outputs: int, per_frame: bool = False) -> None:
+        super().__init__()
+        self.per_frame = per_frame
+        first, second = WIDTHS
+        self.points = nn.Sequential(
+            nn.Conv2d(3 + len(COLUMNS) - 1, first, 1),
+            nn.ReLU(inplace=True),
+            nn.Conv2d(first, second, 1),
+            nn.ReLU(inplace=True),
+        )
+        self.time = over_time(second)
+        self.head = nn.Linear(second, outputs)
+
+    def forward_features(self, x: Tensor) -> Tensor:
+        """[B, 6, T, K] to features [B, 128, T]."""
+        present = x[:, -1:]
+        each = torch.cat([x[:, :3] - centres(x)[..., None], x[:, :-1]], 1)
+        features: Tensor = self.time((self.points(each * present) * present).amax(3))
+        return features
+
+    def forward_head(self, features: Tensor, pre_logits: bool = False) -> Tensor:
+        """Features to their means over time [B, 128], or to outputs [B, (T,) outputs]."""
+        pooled = features.transpose(1, 2) if self.per_frame else features.mean(2)
+        return pooled if pre_logits else self.head(pooled)
+
+    def forward(self, x: Tensor) -> Tensor:
+        """[B, 6, T, K] to [B, outputs], or to places [B, T, outputs/3, 3]."""
+        outputs = self.forward_head(self.forward_features(x))
+        if not self.per_frame:
+            return outputs
+        places = outputs.view(*outputs.shape[:2], -1, 3)
+        return places + centres(x).transpose(1, 2)[:, :, None]

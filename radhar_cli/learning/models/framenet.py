@@ -1,0 +1,60 @@
+"""A small network of sequences of frames: convolutions in each frame, then over time."""
+
+from torch import Tensor, nn
+
+from radhar_cli.learning.models.cloudnet import GROUPS, over_time
+
+NAME = "framenet"
+WIDTHS = (8, 16, 32)
+FEATURES, GRID = 128, 4
+MIN_SIDE = 2 ** len(WIDTHS)
+
+
+def block(inputs: int, outputs: int) -> nn.Sequential:
+    """3 x 3 convolution, group norm, ReLU, and the largest of every 2 x 2."""
+    return nn.Sequential(
+        nn.Conv2d(inputs, outputs, 3, padding=1, bias=False),
+        nn.GroupNorm(GROUPS, outputs),
+        nn.MaxPool2d(2),
+        nn.ReLU(inplace=True),
+    )
+
+
+class FrameNet(nn.Module):
+    """The network, for frames [B, T, H, W] whose sides have at least 8 cells.
+
+    Where in a frame an echo lies is kept, on a grid of 4 x 4.
+
+    Args:
+        outputs: of a sequence; or of a frame.
+        per_frame: every frame has outputs, places.
+    """
+
+    def __init__(self, outputs: int, per_frame: bool = False) -> None:
+        super().__init__()
+        self.per_frame = per_frame
+        pairs = zip((1, *WIDTHS[:-1]), WIDTHS, strict=True)
+        self.frame = nn.Sequential(
+            *(block(*pair) for pair in pairs),
+            nn.AdaptiveAvgPool2d(GRID),
+            nn.Flatten(),
+            nn.Linear(WIDTHS[-1] * GRID**2, FEATURES),
+        )
+        self.time = over_time(FEATURES)
+        self.head = nn.Linear(FEATURES, outputs)
+
+    def forward_features(self, x: Tensor) -> Tensor:
+        """[B, T, H, W] to features [B, 128, T]."""
+        frames: Tensor = self.frame(x.flatten(0, 1)[:, None]).view(*x.shape[:2], -1)
+        features: Tensor = self.time(frames.transpose(1, 2))
+        return features
+
+    def forward_head(self, features: Tensor, pre_logits: bool = False) -> Tensor:
+        """Features to their means over time [B, 128], or to outputs [B, (T,) outputs]."""
+        pooled = features.transpose(1, 2) if self.per_frame else features.mean(2)
+        return pooled if pre_logits else self.head(pooled)
+
+    def forward(self, x: Tensor) -> Tensor:
+        """[B, T, H, W] to [B, outputs], or to places [B, T, outputs/3, 3]."""
+        outputs = self.forward_head(self.forward_features(x))
+        return outputs.view(*outputs.shape[:2], -1, 3) if self.per_frame else outputs

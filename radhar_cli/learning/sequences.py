@@ -1,0 +1,76 @@
+"""Sequences of a data set for PyTorch."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor
+from torch.utils.data import Dataset
+
+from radhar_cli.arrays import Index
+from radhar_cli.dataset.reading import open_dataset
+from radhar_cli.learning.images.image_set import SPLIT_NAMES, split_named
+from radhar_cli.learning.images.sequences import (
+    CLOUDS,
+    POINTS,
+    SequenceReader,
+    longest,
+    sequence_product,
+)
+
+
+class Sequences(Dataset[dict[str, Any]]):
+    """Sequences of a data set as tensors, for a DataLoader.
+
+    An item has `label` (place in `class_slugs`), `skeleton` float32 [frames, joint, 3] of the first
+    person (m, in the radar's axes; NaN after the end of the sample), and `clouds` float32 [frames,
+    points, 6], or `frames` uint8 [frames, rows, columns]. The columns of a cloud are x, y, z (m),
+    Doppler (m/s, approaching), SNR (bels) and 1 where there is a point.
+
+    Attributes:
+        label: [N].
+        class_slugs: slug of every label.
+        frames: of an item.
+    """
+
+    def __init__(
+        self,
+        path: str | Path,
+        of: str = CLOUDS,
+        *,
+        split: str = "all",
+        frames: int | None = None,
+        points: int = POINTS,
+    ) -> None:
+        """The sequences of a data set.
+
+        Args:
+            path: folder that `radhar generate` wrote, or dataset.h5.
+            of: points, range_doppler, range_azimuth or range_elevation.
+            split: train, val, test or all.
+            frames: of an item, the middle ones of a longer sample; None is as many as the longest.
+            points: of a frame, those of the highest SNR.
+
+        Raises:
+            FolderError: it is no data set, or has no such product.
+        """
+        with open_dataset(path) as data:
+            product = sequence_product(data, "clouds" if of == CLOUDS else "frames", of)
+            self.frames = frames or longest(data, product)
+            wanted = split_named(split)
+            some = wanted == "all" or data.split == SPLIT_NAMES.get(wanted)
+            self._rows = np.flatnonzero(np.broadcast_to(some, data.split.shape))
+            self.label: Index = data.label[self._rows].astype(np.intp)
+            self.class_slugs = data.class_slugs
+            self._reader = SequenceReader(data.path, product, self.frames, points)
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def __getitem__(self, row: int) -> dict[str, Any]:
+        place, reader = int(self._rows[row]), self._reader
+        read: Tensor = torch.from_numpy(np.ascontiguousarray(reader.read(place)))
+        of = {"clouds": read} if reader.product == CLOUDS else {"frames": read.permute(2, 0, 1)}
+        skeleton = torch.from_numpy(reader.joints(place))
+        return {**of, "skeleton": skeleton, "label": int(self.label[row])}

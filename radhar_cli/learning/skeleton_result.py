@@ -1,0 +1,103 @@
+"""One run that finds joints on one data set: its errors, and found beside true skeletons."""
+
+from typing import Any
+
+import numpy as np
+import torch
+
+from radhar_cli.arrays import Float, Index
+from radhar_cli.figures.skeletons import joint_errors_png, skeletons_png
+from radhar_cli.learning.batches import Reader, pieces
+from radhar_cli.learning.images.image_set import ImageSet
+from radhar_cli.learning.report_files import Report
+from radhar_cli.learning.report_folder import csv_text
+from radhar_cli.learning.run_folder import RunError, RunMetadata
+from radhar_cli.learning.targets import NEAR_M
+from radhar_cli.motion.skeleton import JOINTS, PARENTS
+
+AXES = ("ahead", "left", "up")
+SHOWN = 6  # skeletons of the figure
+
+
+def found_and_true(
+    model: torch.nn.Module,
+    metadata: RunMetadata,
+    images: ImageSet,
+    rows: Index,
+    device: torch.device,
+    batch: int,
+) -> tuple[Float, Float]:
+    """Joints that a network finds, and those that are there, [N, T, joint, 3] in m.
+
+    Raises:
+        RunError: a joint is not finite.
+    """
+    reader = Reader(images.pixels, images.skeletons, workers=0, pin=False)
+    found, true = list[Float](), list[Float]()
+    with torch.inference_mode():
+        for values, joints in reader(pieces(rows, batch)):
+            each = model(metadata.normalisation(values.to(device))).cpu().numpy()
+            if not np.isfinite(each).all():
+                raise RunError(f"the network {metadata.model}: finds joints that are not finite")
+            found.append(each)
+            true.append(joints.numpy())
+    return np.concatenate(found), np.concatenate(true)
+
+
+def evaluate_skeletons(
+    report: Report,
+    found: Float,
+    true: Float,
+    images: ImageSet,
+    rows: Index,
+    stem: str,
+    title: str,
+) -> dict[str, Any]:
+    """Errors in cm of joints [N, T, joint, 3]; figures and tables go to `report`.
+
+    Beside them the error of the mean pose at its true place: the mean skeleton of these frames
+    moved to the mean of the true joints, which asks for no movement of the limbs.
+    """
+    there = np.isfinite(true).all((2, 3))  # [N, T]
+    off, joints = (found - true)[there], true[there]  # [frame, joint, 3]
+    middle = joints.mean(1, keepdims=True)
+    still = (joints - middle).mean(0) + middle - joints
+    by_joint = 100 * np.linalg.norm(off, axis=2).mean(0)
+    by_axis = 100 * np.abs(off).mean(0)  # [joint, 3]
+    label = np.repeat(images.label[rows], there.sum(1))
+    names = images.joints
+    table = [
+        (name, *map("{:.2f}".format, (*axes, error)))
+        for name, axes, error in zip(names, by_axis.tolist(), by_joint.tolist(), strict=True)
+    ]
+    head = ("joint", *(f"{axis}_cm" for axis in AXES), "mpjpe_cm")
+    report.tables.append((f"joints{stem}.csv", csv_text(head, table)))
+    errors = np.linalg.norm(off, axis=2).mean(1)
+    numbers = {
+        "images": int(rows.size),
+        "frames": int(there.sum()),
+        "mean_absolute_error_cm": float(100 * np.abs(off).mean()),
+        "mpjpe_cm": float(by_joint.mean()),
+        "mpjpe_of_the_mean_pose_in_place_cm": float(100 * np.linalg.norm(still, axis=2).mean()),
+        "within_15_cm": float((np.linalg.norm(off, axis=2) < NEAR_M).mean()),
+        "joints": {
+            name: {"mpjpe_cm": error, **dict(zip(head[1:4], axes, strict=True))}
+            for name, axes, error in zip(names, by_axis.tolist(), by_joint.tolist(), strict=True)
+        },
+        "classes": {
+            name: {"frames": int(mine.sum()), "mpjpe_cm": float(100 * errors[mine].mean())}
+            for n, name in enumerate(images.classes)
+            if (mine := label == n).any()
+        },
+    }
+    caption = f"Error of each joint, mean distance, {title}."
+    report.figure(f"joints{stem}.png", caption, joint_errors_png(names, by_joint, title))
+    places = np.argwhere(there)[np.linspace(0, there.sum() - 1, SHOWN).astype(int)]
+    pairs = [
+        (true[row, frame], found[row, frame], f"{images.names[rows[row]]}, frame {frame}")
+        for row, frame in places.tolist()
+    ]
+    parents = PARENTS if names == JOINTS else ()
+    caption = f"True skeletons (grey) and those found (red), from ahead and from the side, {title}."
+    report.figure(f"skeletons{stem}.png", caption, skeletons_png(pairs, parents, title))
+    return numbers

@@ -1,0 +1,242 @@
+"""Sequences of frames and clouds: how they are read, learned from, and evaluated."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from command_line import radhar
+from torch.utils.data import DataLoader
+
+import radhar_cli
+from radhar_cli.dataset.reading import open_dataset
+from radhar_cli.learning.batches import Normalisation
+from radhar_cli.learning.evaluation import open_for
+from radhar_cli.learning.images.h5 import h5_sequences
+from radhar_cli.learning.images.joined import joined
+from radhar_cli.learning.images.scan import scan
+from radhar_cli.learning.images.sequences import cloud_frames, of_length
+from radhar_cli.learning.models.build import build_model
+from radhar_cli.learning.models.cloudnet import centres
+from radhar_cli.learning.run_folder import load_best
+from radhar_cli.learning.skeleton_result import found_and_true
+from radhar_cli.learning.targets import skeleton_loss
+from tests.boards import CFG
+
+YAML = """
+radar: {device: IWR1443BOOST, cfg: board.cfg, position_m: [0, 0, 1]}
+activities: [punching, walking]
+motion: {range_m: {per_activity: {default: 2.2, walking: 3}}}
+duration_s: 0.5
+samples_per_class: 5
+split: {train: 0.6, validation: 0.4}
+body: {scatterers: surfaces}
+cloud: {chain: board}
+maps: [range_doppler, points]
+image: {size_px: 32}
+"""
+QUICK = ("--set", "device=cpu", "--set", "precision=float32", "--set", "threads=1")
+
+
+@pytest.fixture(scope="module")
+def boards(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("sequences")
+    (folder / "board.cfg").write_text(CFG)
+    (folder / "config.yaml").write_text(YAML)
+    made = radhar("generate", folder / "config.yaml", "-o", folder / "data", "--jobs", "1", "-q")
+    assert made.returncode == 0, made.stderr
+    return folder
+
+
+def trained(boards: Path, model: str, target: str, *words: object) -> Path:
+    run = boards / f"{model}_{target}"
+    if not run.exists():
+        options = ("--model", model, "--target", target, "--set", "batch_size=2", *words, *QUICK)
+        made = radhar("train", boards / "data", "-o", run, *options)
+        assert made.returncode == 0, made.stderr
+    return run
+
+
+def test_the_longest_sequences_are_cut_in_the_middle_and_short_ones_filled_up() -> None:
+    values = np.arange(5.0)[:, None]
+    np.testing.assert_array_equal(of_length(values, 3, 0)[:, 0], [1, 2, 3])
+    np.testing.assert_array_equal(
+        of_length(values, 7, np.nan)[:, 0], [0, 1, 2, 3, 4, *[np.nan] * 2]
+    )
+
+
+def test_of_too_many_points_those_of_the_highest_snr_stay_in_their_order() -> None:
+    points = np.zeros((5, 8), np.float32)
+    points[:, 0], points[:, 5] = [1, 2, 3, 4, 5], [30, 10, 20, 40, 15]
+    clouds = cloud_frames(points, np.array([0, 4, 5, 5]), 2)
+    np.testing.assert_array_equal(clouds[:, :, 0], [[1, 4], [5, 0], [0, 0]])
+    np.testing.assert_allclose(clouds[:, :, 4], [[3, 4], [1.5, 0], [0, 0]])
+    np.testing.assert_array_equal(clouds[:, :, 5], [[1, 1], [1, 0], [0, 0]])
+
+
+def test_sequences_are_the_products_of_the_data_set(boards: Path) -> None:
+    clouds = radhar_cli.Sequences(boards / "data", split="train", points=128)
+    frames = radhar_cli.Sequences(boards / "data", "range_doppler", split="train")
+    with open_dataset(boards / "data") as data:
+        rows = np.flatnonzero(data.split == 0)
+        assert len(clouds) == len(frames) == len(rows) == 6
+        for item, row in enumerate(rows):
+            points = data.products["points"][int(row)]
+            found = clouds[item]
+            present = found["clouds"][..., 5] > 0
+            np.testing.assert_array_equal(found["clouds"][present][:, :4], points[:, :4])
+            np.testing.assert_allclose(found["clouds"][present][:, 4], points[:, 5] / 10, rtol=1e-6)
+            skeleton = data.products["skeleton"][int(row)]
+            np.testing.assert_array_equal(found["skeleton"], skeleton[:, 0])
+            levels = data.products["range_doppler"][int(row)]
+            np.testing.assert_array_equal(frames[item]["frames"], levels)
+            assert found["label"] == data.label[row]
+
+
+def test_a_loader_with_workers_makes_batches_of_them(boards: Path) -> None:
+    clouds = radhar_cli.Sequences(boards / "data", frames=7, points=16)
+    batch = next(iter(DataLoader(clouds, batch_size=10, num_workers=2)))
+    assert batch["clouds"].shape == (10, 7, 16, 6)
+    assert batch["skeleton"].shape == (10, 7, 13, 3)
+    assert batch["skeleton"].isnan().any(3).any(2).nonzero()[:, 1].tolist() == [5, 6] * 10
+    assert batch["label"].bincount().tolist() == [5, 5] or len(clouds.class_slugs) == 12
+
+
+def test_a_product_that_is_not_there_is_named(boards: Path) -> None:
+    with pytest.raises(
+        radhar_cli.errors.FolderError,
+        match="has no frames of 'range_azimuth'; it has range_doppler",
+    ):
+        radhar_cli.Sequences(boards / "data", "range_azimuth")
+
+
+@pytest.mark.parametrize("per_frame", [False, True])
+def test_cloudnet_heeds_neither_the_order_nor_the_missing_ones_of_points(per_frame: bool) -> None:
+    torch.manual_seed(0)
+    network = build_model("cloudnet", 6, (4, 8), per_frame).eval()
+    clouds = torch.randn(2, 6, 4, 8)
+    clouds[:, 5] = (torch.arange(8) < 5).float()
+    other = clouds[..., torch.randperm(8)]
+    other[:, :5] += 9 * (1 - other[:, 5:])
+    with torch.inference_mode():
+        torch.testing.assert_close(network(other), network(clouds), rtol=1e-4, atol=1e-5)
+        assert network(clouds).shape == ((2, 4, 2, 3) if per_frame else (2, 6))
+
+
+def test_the_centre_of_a_frame_without_points_is_that_of_all() -> None:
+    clouds = torch.zeros(1, 6, 11, 4)
+    clouds[0, :3, 0], clouds[0, 5, 0] = 2.0, 1.0
+    torch.testing.assert_close(centres(clouds), torch.full((1, 3, 11), 2.0))
+
+
+@pytest.mark.parametrize("per_frame", [False, True])
+def test_framenet_takes_any_number_of_frames(per_frame: bool) -> None:
+    network = build_model("framenet", 6, (16, 24), per_frame).eval()
+    for frames in (1, 5):
+        found = network(torch.randn(2, frames, 16, 24))
+        assert found.shape == ((2, frames, 2, 3) if per_frame else (2, 6))
+
+
+def test_the_loss_of_skeletons_leaves_out_what_is_not_there() -> None:
+    joints = torch.zeros(2, 3, 2, 3)
+    joints[1, 1:] = torch.nan
+    found = torch.zeros(2, 3, 2, 3)
+    found[:, 0, 0, 0] = 0.3
+    loss, right = skeleton_loss(found, joints)
+    assert float(loss) == pytest.approx(0.3 / 18 + 0.3 / 6)
+    assert right == pytest.approx(5 / 6 + 1 / 2)
+
+
+def test_statistics_of_frames_are_of_all_of_them_and_clouds_have_none(boards: Path) -> None:
+    frames = h5_sequences(boards / "data", None, "frames")
+    levels = np.stack([frames.pixels.read(row) for row in range(3)]) / 255
+    found = scan(frames, [0, 1, 2])
+    np.testing.assert_allclose([found.mean[0], found.sd[0]], [levels.mean(), levels.std()])
+    assert len(found.mean) == 1
+    clouds = h5_sequences(boards / "data", None, "clouds")
+    found = scan(clouds, [0, 1])
+    read = torch.from_numpy(clouds.pixels.read(0))
+    torch.testing.assert_close(Normalisation(found.mean, found.sd)(read), read)
+
+
+def test_joined_and_chosen_sequences_keep_their_skeletons(boards: Path) -> None:
+    clouds = h5_sequences(boards / "data", None, "clouds")
+    both = joined([clouds, clouds]).some(np.array([12, 3]))
+    for row, of in enumerate((2, 3)):
+        np.testing.assert_array_equal(both.skeletons[row], clouds.skeletons[of])
+        np.testing.assert_array_equal(both.pixels.read(row), clouds.pixels.read(of))
+
+
+@pytest.mark.parametrize("model", ["cloudnet", "framenet"])
+def test_a_network_of_sequences_tells_punching_from_walking(boards: Path, model: str) -> None:
+    run = trained(boards, model, "classes")
+    done = radhar("eval", run, boards / "data", "-o", boards / f"eval_{model}")
+    assert done.returncode == 0, done.stderr
+    report = json.loads((boards / f"eval_{model}/report.json").read_text())
+    numbers = report["runs"][run.name]["data"]["data"]
+    assert numbers["images"] == 4
+    assert numbers["accuracy"] == 1
+    assert (boards / f"eval_{model}/confusion.png").exists()
+    answer = radhar("predict", run, boards / "data", "--split", "val")
+    assert answer.stdout.count("\n") == 4
+    assert all(line.split(": ")[1] for line in answer.stdout.splitlines())
+
+
+def test_joints_are_found_nearer_than_by_a_person_who_stands_still(boards: Path) -> None:
+    run = trained(boards, "cloudnet", "skeleton", "--set", "epochs=60")
+    done = radhar("eval", run, boards / "data", "-o", boards / "eval_joints")
+    assert done.returncode == 0, done.stderr
+    report = json.loads((boards / "eval_joints/report.json").read_text())
+    numbers = report["runs"][run.name]["data"]["data"]
+    metadata, model = load_best(run)
+    images = open_for(metadata, boards / "data", None)
+    rows = images.rows("val")
+    found, true = found_and_true(model, metadata, images, rows, torch.device("cpu"), 3)
+    off = 100 * np.linalg.norm(found - true, axis=3)
+    assert numbers["frames"] == 20
+    assert numbers["mpjpe_cm"] == pytest.approx(off.mean(), rel=1e-5)
+    assert numbers["mean_absolute_error_cm"] == pytest.approx(100 * np.abs(found - true).mean())
+    assert numbers["joints"]["head"]["mpjpe_cm"] == pytest.approx(off[..., 1].mean(), rel=1e-5)
+    assert numbers["mpjpe_cm"] < 25
+    assert "joints within 15 cm" in (run / "summary.txt").read_text()
+    for name in ("joints.csv", "joints.png", "skeletons.png", "report.html"):
+        assert (boards / "eval_joints" / name).exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--target", "skeleton"), "should have model: cloudnet or framenet"),
+        (("--target", "bones"), "should be 'classes' or 'skeleton'"),
+        (("--model", "framenet", "--map", "points"), "has no frames of 'points'"),
+        (("--model", "cloudnet", "--set", "augment.noise=0.1"), "should have no augment"),
+        (("--model", "cloudnet", "--stream", "config.yaml"), "--stream makes images"),
+        (("--model", "cloudnett"), "did you mean 'cloudnet'?"),
+    ],
+)
+def test_what_cannot_be_learned_is_refused(
+    boards: Path, words: tuple[str, ...], message: str
+) -> None:
+    given = [boards / word if word == "config.yaml" else word for word in words]
+    done = radhar("train", boards / "data", "-o", boards / "refused", *given)
+    assert done.returncode == 2
+    assert message in " ".join(done.stderr.split())
+    assert not (boards / "refused/run.json").exists()
+
+
+def test_images_are_refused_where_a_network_reads_clouds(boards: Path) -> None:
+    run = trained(boards, "cloudnet", "skeleton", "--set", "epochs=60")
+    for words, message in (
+        (
+            ("eval", run, boards / "data/png/points", "-o", boards / "x"),
+            "is no data set with clouds",
+        ),
+        (("eval", run, boards / "data", "--resize"), "reads clouds, which have no size"),
+        (("eval", run, boards / "data", "--tsne"), "reads clouds; it is of images"),
+        (("predict", run, boards / "data"), "finds joints, no classes"),
+        (("export", run, "-o", boards / "x.onnx"), "only images are exported"),
+    ):
+        done = radhar(*words)
+        assert done.returncode == 2, done.stderr
+        assert message in " ".join(done.stderr.split())

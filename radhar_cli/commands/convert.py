@@ -11,13 +11,20 @@ from radhar_cli.commands.tell import report, tell
 def convert(
     dataset: Annotated[Path, typer.Argument(help="Folder that `generate` wrote, or dataset.h5.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder to make.")],
-    to: Annotated[str, typer.Option(metavar="FORMAT", help="webdataset or parquet.")],
+    to: Annotated[
+        str,
+        typer.Option(
+            metavar="FORMAT", help="webdataset or parquet; of point clouds mars, ros or ti."
+        ),
+    ],
 ) -> None:
-    """Write a data set as WebDataset tar files or as Parquet.
+    """Write a data set as WebDataset, as Parquet, or its point clouds as others keep them.
 
     Example:
 
       radhar convert datasets/quickstart -o shared/quickstart --to parquet
+
+      radhar convert datasets/boards -o shared/mars --to mars
 
     Labels, splits and the numbers drawn go with it, and a data card. The folder appears when it is
     whole. Parquet needs `pip install 'radhar[formats]'`.

@@ -23,9 +23,10 @@ from radhar_cli.dataset.build import build
 from radhar_cli.dataset.folder import folder_lock
 from radhar_cli.dataset.formats import convert as checked
 from radhar_cli.dataset.formats import parquet
-from radhar_cli.dataset.formats.convert import FORMATS, convert
+from radhar_cli.dataset.formats.convert import convert
 from radhar_cli.errors import FolderError
 
+FORMATS = ("webdataset", "parquet")
 READER = Path(__file__).with_name("read_by_others.py")
 CONFIG = """
 seed: 3

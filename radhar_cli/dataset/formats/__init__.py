@@ -1,1 +1,1 @@
-"""Formats of `radhar convert`: a module each, with `write(data, folder, progress)`."""
+"""Formats of `radhar convert`: functions of (data, folder, progress)."""

@@ -23,7 +23,14 @@ from radhar_cli.dataset.table import Entry, entries
 from radhar_cli.errors import FolderError, UnfinishedError
 from radhar_cli.progress import Progress
 
-FORMATS = ("webdataset", "parquet")
+# Module and function of each format.
+FORMATS = {
+    "webdataset": ("webdataset", "write"),
+    "parquet": ("parquet", "write"),
+    "mars": ("clouds", "write_mars"),
+    "ros": ("clouds", "write_ros"),
+    "ti": ("clouds", "write_ti"),
+}
 FILE_BYTES = 2**28  # of pixels per file
 Writer: TypeAlias = Callable[[Dataset, Path, Progress], None]
 
@@ -38,8 +45,13 @@ def convert(path: Path, out: Path, to: str, progress: Progress) -> int:
     """
     if out.exists() or out.is_symlink():
         raise FolderError(f"{out}: already exists; -o should name a new folder")
-    write: Writer = import_module(f"radhar_cli.dataset.formats.{to}").write
+    module, function = FORMATS[to]
+    write: Writer = getattr(import_module(f"radhar_cli.dataset.formats.{module}"), function)
     with open_dataset(path) as data:
+        if module == "clouds" and "points" not in data.products:
+            raise FolderError(
+                f"{path}: has no points; {to} needs a board's data set, maps: [points]"
+            )
         owner_licence(data.path.parent)  # refused before anything is written
         scratch = out.absolute().with_name(f".{out.name}.unfinished")
         refuse_links(scratch.parent, scratch)

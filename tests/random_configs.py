@@ -285,7 +285,7 @@ class Drawer:
         self.maybe(wall, 0.7, "eps_r", lambda: self.number(lambda: self.log(1, 1e6)))
         self.maybe(wall, 0.7, "loss_tangent", lambda: self.number(lambda: self.log(1e-12, 1e12)))
         self.maybe(wall, 0.1, "loss_tangent", lambda: 0)
-        self.maybe(wall, 0.4, "rays", lambda: self.pick(("straight", "refracted")))
+        self.maybe(wall, 0.4, "rays", lambda: self.pick(("straight", "plane", "refracted")))
         fresnel = ("normal", "perpendicular", "parallel")
         self.maybe(wall, 0.4, "fresnel", lambda: self.pick(fresnel))
         if extreme:

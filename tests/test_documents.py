@@ -226,9 +226,9 @@ FILES: dict[str, dict[str, Callable[[Path], object]]] = {
 }
 
 
-def first_batch(stream: Any, batch_size: int, num_workers: int) -> object:
+def first_batch(stream: Any, batch_size: int, num_workers: int = 0) -> object:
     """What a loader of endless data gives first, without processes."""
-    return islice(DataLoader(stream, batch_size=4), 1)
+    return islice(DataLoader(stream, batch_size=min(batch_size, 4)), 1)
 
 
 def tell(page: Path, folder: Path) -> None:

@@ -73,12 +73,10 @@ def evaluate(
     apart(folder, data)
     evaluation = test(runs, data, options, choose_device(device), StderrLog())
     evaluation.write(folder)
-    found = {
-        score: {
-            run: {data: numbers.get(score) for data, numbers in about["data"].items()}
-            for run, about in evaluation.numbers["runs"].items()
-        }
-        for score in ("accuracy", "mpjpe_cm")
-    }
+    found: dict[str, dict[str, dict[str, float]]] = {}
+    for run, about in evaluation.numbers["runs"].items():
+        for tested, numbers in about["data"].items():
+            score = "accuracy" if "accuracy" in numbers else "mpjpe_cm"
+            found.setdefault(score, {}).setdefault(run, {})[tested] = numbers[score]
     report(page=folder / "report.html", numbers=folder / "report.json", **found)
     tell(f"{folder / 'report.html'}: {len(evaluation.figures)} figures; numbers in report.json")

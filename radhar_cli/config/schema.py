@@ -688,8 +688,11 @@ class WallConfig(Section):
     """Relative permittivity."""
     loss_tangent: Annotated[NotNegative, within(0, 1e12)] = 0.03
     """Of its material."""
-    rays: Literal["straight", "refracted"] = "straight"
-    """Through the wall; refracted is by Snell's law."""
+    rays: Annotated[
+        Literal["straight", "plane", "refracted"] | None,
+        ByModel(human="plane", paper="straight", file="plane"),
+    ] = None
+    """Through the wall: the chord, a plane wave's at the same angle, or Snell's law."""
     fresnel: Literal["normal", "perpendicular", "parallel"] = "normal"
     """Loss of the faces: at normal incidence, or the ray's with the field so to its plane."""
 
@@ -1272,7 +1275,8 @@ class Config(Section):
         changed = dict[str, dict[str, Any]]()
         for key, default in of_kind(Config, ByModel):
             name, _, rest = key.rpartition(".")
-            if getattr(getattr(self, name) if name else self, rest) is None:
+            holder = getattr(self, name) if name else self
+            if holder is not None and getattr(holder, rest) is None:
                 changed.setdefault(name, {})[rest] = default.values.get(self.motion.model)
         if self.radar.cfg is not None:
             _fill_from_cfg(self, changed)

@@ -5,7 +5,15 @@ from typing import NamedTuple
 from radhar_cli.arrays import Float
 from radhar_cli.radar.fresnel import faces_factor
 from radhar_cli.radar.refraction import refract
-from radhar_cli.radar.wall import Crossing, Wall, absorption, crossing, extra_delay, field_factor
+from radhar_cli.radar.wall import (
+    Crossing,
+    Wall,
+    absorption,
+    crossing,
+    extra_delay,
+    field_factor,
+    plane_wave,
+)
 
 Point = tuple[float, float, float]
 
@@ -44,5 +52,8 @@ def _ray(p: Float, antenna: Point, wall: Wall) -> _Ray:
     straight = crossing(p, antenna, wall)
     if wall.rays == "straight":
         return _Ray(straight, extra_delay(straight.chord, wall), None)
+    if wall.rays == "plane":
+        chord, delay = plane_wave(p, antenna, wall, straight)
+        return _Ray(straight._replace(chord=chord), delay, None)
     bent = refract(p, antenna, wall, straight)
     return _Ray(bent.crossed, bent.delay, bent.tangent)

@@ -1,4 +1,4 @@
-"""A homogeneous axis-aligned slab crossed by straight rays (docs/model.md, Propagation)."""
+"""A homogeneous axis-aligned slab crossed at straight angles (docs/model.md, Propagation)."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ class Wall:
         center, size: (x, y, z), m.
         eps_r: relative permittivity, real part.
         loss_tangent: tan delta; eps = eps_r (1 - j tan delta).
-        rays: whether rays go straight through or are refracted (`refraction.py`).
+        rays: chord of the straight ray, plane wave at its angle, or refracted (`refraction.py`).
         fresnel: transmission of a face at normal incidence, or at the ray's angle for a field
             perpendicular or parallel to the plane of incidence (`fresnel.py`).
     """
@@ -28,7 +28,7 @@ class Wall:
     size: tuple[float, float, float]
     eps_r: float
     loss_tangent: float
-    rays: Literal["straight", "refracted"] = "straight"
+    rays: Literal["straight", "plane", "refracted"] = "straight"
     fresnel: Literal["normal", "perpendicular", "parallel"] = "normal"
 
     @property
@@ -128,6 +128,31 @@ def _between_planes(
 def extra_delay(chord: Float, wall: Wall) -> Float:
     """Delay (s) beyond free space of a chord (m): d (Re sqrt(eps) - 1)/c."""
     return chord * ((wall.refractive_index.real - 1) / SPEED_OF_LIGHT)
+
+
+def plane_wave(
+    p: Float, antenna: tuple[float, float, float], wall: Wall, straight: Crossing
+) -> tuple[Float, Float]:
+    """Chord (m) and delay beyond free space (s) of a plane wave along each straight ray, [I, M].
+
+    At the angle of the ray, cos = |dx|/R, a slab of depth D has the delay
+    D (sqrt(n^2 - 1 + cos^2) - cos)/c and the chord D/sqrt(1 - (1 - cos^2)/n^2), n = Re sqrt(eps).
+    A ray that does not pass both x faces keeps its own chord.
+    """
+    way = p - np.reshape(antenna, (3,) + (1,) * (p.ndim - 1))
+    reach = np.sqrt(np.sum(way * way, axis=0))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        cos = np.abs(way[0]) / reach
+        n, depth = wall.refractive_index.real, wall.size[0]
+        both = (straight.faces == 2) & (straight.chord * cos > depth * (1 - 1e-6))
+        steps = (n - 1) * (n + 1)
+        inside = np.sqrt(steps + cos * cos)  # n times the cosine inside
+        delay = depth * steps / (inside + cos) / SPEED_OF_LIGHT
+        chord = depth * n / inside
+    return (
+        np.where(both, chord, straight.chord),
+        np.where(both, delay, extra_delay(straight.chord, wall)),
+    )
 
 
 def field_factor(crossed: Crossing, wall: Wall, fc: float) -> Float:

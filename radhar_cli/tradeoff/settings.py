@@ -156,7 +156,11 @@ def _switches(config: Config) -> list[Setting]:
     ]
     if config.wall is not None:
         switches += [
-            _switch("refracted rays", "wall.rays=refracted"),
+            *(
+                _switch(f"{rays} rays", f"wall.rays={rays}")
+                for rays in ("straight", "plane", "refracted")
+                if rays != config.wall.rays
+            ),
             _switch("Fresnel, perpendicular", "wall.fresnel=perpendicular"),
             _switch("Fresnel, parallel", "wall.fresnel=parallel"),
         ]

@@ -246,7 +246,7 @@ BROKEN = [
     Broken("timing: {blend_s: -0.1}", "1: timing.blend_s = -0.1", "0 or more"),
     Broken("wall: {eps_r: 0.5}", "1: wall.eps_r = 0.5", "1 or more"),
     Broken("wall:\n  size_m: [0, 5, 2]", "2: wall.size_m.0 = 0", "above 0"),
-    Broken("wall:\n  rays: bent", '2: wall.rays = "bent"', "'straight' or 'refracted'"),
+    Broken("wall:\n  rays: bent", '2: wall.rays = "bent"', "'straight', 'plane' or 'refracted'"),
     Broken(
         "wall: {fresnel: s}", '1: wall.fresnel = "s"', "'normal', 'perpendicular' or 'parallel'"
     ),

@@ -37,6 +37,7 @@ CASES = {
     "free space 77 GHz": {},
     "through the wall 2 GHz": {"radar": radar(2, 1, 128), "wall": {}},
     "through the wall, high PRF": FAST | {"radar": radar(2, 1, 2000), "wall": {}},
+    "plane wave through a wall": FAST | {"radar": radar(2, 1, 2000), "wall": {"rays": "plane"}},
     "refracted, Fresnel by angle": FAST
     | {"radar": radar(2, 1, 2000), "wall": {"rays": "refracted", "fresnel": "parallel"}},
     "24 GHz 1 kHz": FAST | {"radar": radar(24, 1, 1000)},

@@ -47,7 +47,7 @@ def test_normal_incidence_is_that_of_the_wall(polarisation: Polarisation) -> Non
     antenna, p = (0.4, 0.0, 1.2), (3.0, 0.0, 1.2)
     crossed = crossing(np.reshape(p, (3, 1, 1)), antenna, WALL)
     expected = float(field_factor(crossed, WALL, FC)[0, 0])
-    for rays in ("straight", "refracted"):
+    for rays in ("straight", "plane", "refracted"):
         wall = replace(WALL, rays=rays, fresnel=polarisation)
         assert left(antenna, p, wall) == pytest.approx(expected, rel=ROUNDING)
 
@@ -115,7 +115,7 @@ def test_each_face_at_its_own_angle(polarisation: Polarisation) -> None:
     clear = replace(WALL, loss_tangent=0.0, fresnel=polarisation)
     theta = atan(0.15 / 0.9)
     expected = factor(cos(theta), 6.0, polarisation) * factor(sin(theta), 6.0, polarisation)
-    for rays in ("straight", "refracted"):
+    for rays in ("straight", "plane", "refracted"):
         corner = left((0.4, 2.4, 1.0), (1.3, 2.55, 1.0), replace(clear, rays=rays))
         assert corner == pytest.approx(expected, rel=1e-12)
 
@@ -136,7 +136,7 @@ def test_the_angle_is_that_of_the_ray_in_use(polarisation: Polarisation) -> None
 
 
 @both
-@pytest.mark.parametrize("rays", ["straight", "refracted"])
+@pytest.mark.parametrize("rays", ["straight", "plane", "refracted"])
 def test_a_scatterer_inside_has_one_face_and_a_miss_has_none(
     polarisation: Polarisation, rays: str
 ) -> None:

@@ -15,7 +15,7 @@ from radhar_cli.radar.refraction import (
     refract,
 )
 from radhar_cli.radar.transmission import wall_delay
-from radhar_cli.radar.wall import Wall, crossing, extra_delay
+from radhar_cli.radar.wall import Wall, crossing, extra_delay, plane_wave
 
 C = 299_792_458.0
 WALL = Wall((1.0, 0.0, 1.25), (0.24, 5.0, 2.5), eps_r=6.0, loss_tangent=0.03, rays="refracted")
@@ -192,3 +192,75 @@ def test_a_ray_does_not_depend_on_those_beside_it() -> None:
     whole = wall_delay(p, (0.4, -0.1, 1.5), WALL)
     parts = [wall_delay(p[:, :, m : m + 1], (0.4, -0.1, 1.5), WALL) for m in range(50)]
     np.testing.assert_array_equal(np.concatenate(parts, axis=1), whole)
+
+
+PLANE = replace(WALL, rays="plane")
+
+
+@pytest.mark.parametrize(
+    ("degrees", "straight", "plane"),
+    [
+        (0, 0.34794365589898896, 0.34794365589898896),
+        (15, 0.3602177790770255, 0.35283092461126664),
+        (30, 0.40177072679220754, 0.36772122540239954),
+        (45, 0.4920666371140275, 0.39321332095440553),
+        (60, 0.6958873117979778, 0.42997976554766876),
+    ],
+)
+def test_delay_of_a_plane_wave(degrees: float, straight: float, plane: float) -> None:
+    """Against numbers of another implementation, from both sides and up as well as across."""
+    wall = replace(PLANE, center=(5.0, 0.0, 0.0), size=(0.24, 200.0, 200.0))
+    turned = np.deg2rad(degrees)
+    across = 10 * np.tan(turned)
+    for p in ((10.0, across, 0.0), (10.0, 0.0, -across)):
+        assert late((0.0, 0.0, 0.0), p, wall) == pytest.approx(plane, rel=1e-12)
+        assert late(p, (0.0, 0.0, 0.0), wall) == pytest.approx(plane, rel=1e-12)
+        as_straight = late((0.0, 0.0, 0.0), p, replace(wall, rays="straight"))
+        assert as_straight == pytest.approx(straight, rel=1e-12)
+
+
+@pytest.mark.parametrize(("reach", "most"), [(1.5, 5.3e-3), (1.75, 4.5e-3), (3.0, 2.5e-3)])
+def test_a_plane_wave_is_almost_as_right_as_a_refracted_ray(reach: float, most: float) -> None:
+    """To 45 degrees; straight rays are up to 96 mm off there."""
+    angle = np.deg2rad(np.linspace(-45, 45, 91))
+    p = reach * np.array([np.cos(angle), np.sin(angle), 0 * angle])[:, None]
+    wall = replace(WALL, center=(0.5, 0.0, 0.0), size=(0.24, 50.0, 50.0))
+    straight, plane, bent = (
+        C * wall_delay(p, (0.0, 0.0, 0.0), replace(wall, rays=rays))
+        for rays in ("straight", "plane", "refracted")
+    )
+    assert np.abs(plane - bent).max() < most
+    assert 0.09 < np.abs(straight - bent).max() < 0.1
+
+
+def test_chord_of_a_plane_wave() -> None:
+    """Snell at the straight angle: sin inside = sin/n."""
+    antenna, p = (0.4, -0.1, 1.5), (3.0, 2.0, 0.5)
+    way = np.subtract(p, antenna)
+    sine = np.sqrt(1 - (way[0] / np.linalg.norm(way)) ** 2) / N
+    straight = crossing(np.reshape(p, (3, 1, 1)), antenna, PLANE)
+    chord, _ = plane_wave(np.reshape(p, (3, 1, 1)), antenna, PLANE, straight)
+    assert chord[0, 0] == pytest.approx(0.24 / np.sqrt(1 - sine * sine), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("antenna", "p"),
+    [
+        ((0.4, 0.0, 2.4), (3.0, 0.0, 3.5)),  # over the wall
+        ((0.4, 0.0, 1.5), (0.8, 0.0, 1.5)),  # before it
+        ((0.4, 0.0, 1.5), (1.0, 0.7, 1.2)),  # ends in it
+        ((0.4, 2.4, 1.0), (1.3, 2.55, 1.0)),  # in by the face, out by the side
+        ((1.0, -4.0, 1.0), (1.1, 4.0, 1.0)),  # lengthwise
+    ],
+)
+def test_a_leg_that_does_not_pass_both_faces_stays_straight(antenna: Point, p: Point) -> None:
+    assert late(antenna, p, PLANE) == late(antenna, p, replace(WALL, rays="straight"))
+
+
+@pytest.mark.parametrize(("eps_r", "loss"), [(1.0, 0.0), (1.0, 1e12), (1e6, 0.0), (1e6, 1e12)])
+def test_plane_waves_at_the_edges_of_the_material(eps_r: float, loss: float) -> None:
+    wall = replace(PLANE, eps_r=eps_r, loss_tangent=loss)
+    found = late((0.4, 0.0, 1.5), (3.0, 2.0, 0.5), wall)
+    assert np.isfinite(found)
+    assert 0 <= found <= late((0.4, 0.0, 1.5), (3.0, 2.0, 0.5), replace(wall, rays="straight"))
+    assert (found == 0) == (eps_r == 1 and loss == 0)

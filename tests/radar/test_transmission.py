@@ -32,6 +32,17 @@ def test_off_by_default() -> None:
     assert slab == Wall((1, 0, 1.25), (0.24, 5, 2.5), 6, 0.03, rays="straight", fresnel="normal")
 
 
+@pytest.mark.parametrize(
+    ("model", "rays"), [("paper", "straight"), ("human", "plane"), ("file", "plane")]
+)
+def test_rays_by_default(model: str, rays: str) -> None:
+    classes = {"walking": {"files": ["walk.bvh"]}} if model == "file" else {}
+    document = {"motion": {"model": model}, "wall": {}, "classes": classes}
+    wall = Config.model_validate(document | {"activities": ["walking"]}).wall
+    assert wall is not None
+    assert wall.rays == rays
+
+
 def test_refraction_makes_every_path_shorter_and_the_torsos_with_it() -> None:
     straight, bent = source(), source(rays="refracted")
     assert np.all(bent(T).delay < straight(T).delay)

@@ -1,5 +1,6 @@
 """A summary as tables on the terminal."""
 
+import os
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -12,11 +13,14 @@ from radhar_cli.untrusted import shown
 
 BARS, ASCII_BARS = " ▁▂▃▄▅▆▇█", " .:-=+*%#"
 MAX_SIZES = 5
+MAX_WIDTH = 1000  # columns where no terminal says how wide it is
 
 
 def print_summary(summary: dict[str, Any]) -> None:
     """Print what `dataset.summary.summarise` found."""
     console = Console(highlight=False, markup=False, emoji=False)
+    if not console.is_terminal and "COLUMNS" not in os.environ:
+        console.width = MAX_WIDTH
     {
         "data set": _data_set,
         "unfinished data set": _unfinished,

@@ -1,6 +1,6 @@
 """Frozen, strict models of the YAML file, and how they are read."""
 
-from radhar_cli.config.checks import line_warnings, timing_warnings
+from radhar_cli.config.checks import timing_warnings, tone_warnings
 from radhar_cli.config.identity import config_hash, resolved
 from radhar_cli.config.reading import config_from_json, load_config
 from radhar_cli.config.schema import MAP_NAMES, Config
@@ -10,8 +10,8 @@ __all__ = [
     "Config",
     "config_from_json",
     "config_hash",
-    "line_warnings",
     "load_config",
     "resolved",
     "timing_warnings",
+    "tone_warnings",
 ]

@@ -413,16 +413,16 @@ def _human_problems(c: Config) -> Iterator[Problem]:
             )
 
 
-def line_warnings(c: Config) -> list[str]:
+def tone_warnings(c: Config) -> list[str]:
     """Say which interference tones alias."""
     warnings = []
     prf = support(c.radar.prf_hz)[0]
-    for number, line in enumerate(c.receiver.tones):
-        least, most = support(line.doppler_hz)
+    for number, tone in enumerate(c.receiver.tones):
+        least, most = support(tone.doppler_hz)
         if max(-least, most) > prf / 2:
             warnings.append(
                 f"receiver.tones.{number}.doppler_hz reaches beyond PRF/2 = {prf / 2:g} Hz: the "
-                "line aliases, to that frequency less a multiple of the PRF"
+                "tone aliases, to that frequency less a multiple of the PRF"
             )
     return warnings
 

@@ -211,7 +211,7 @@ def _within(key: str, parent: str) -> bool:
 _WORDING = {
     "model_type": "should be a mapping of keys",
     "dict_type": "should be a mapping of keys",
-    "tuple_type": "should be a list, such as [a, b]",
+    "tuple_type": "should be a list: [a, b], or of sections [{}, {}]",
     "missing": "is required",
 }
 

@@ -24,6 +24,7 @@ from radhar_cli.dataset.image_file import SUFFIXES, read_gray, read_rgb
 from radhar_cli.dataset.layout import COLUMN_LABEL, CONFIG, PNG, SCENES, WORK, Rows, checksum_of
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset, open_dataset
+from radhar_cli.dataset.recorded import persons
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.split import split_rows
 from radhar_cli.dataset.untrusted_hdf5 import DIGESTS
@@ -85,6 +86,8 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Verificati
                 _resynthesise(data, samples, report, motion)
             if (beside / PNG).is_dir():
                 _pngs(data, beside, report)
+            elif (beside / WORK).is_dir() and data.config.output.png:
+                report.problems.append(f"{PNG}: is missing; `radhar generate` makes it again")
             if (beside / WORK).is_dir():
                 _config_and_table(data, beside, report)
             report.problems += wrong_hub_files(data, beside)
@@ -96,11 +99,16 @@ def _structure(data: Dataset, report: Verification) -> bool:
     rows = Rows.of(config)
     label = np.repeat([a.index for a in rows.activities], rows.counts)
     index = np.concatenate([np.arange(count) for count in rows.counts])
-    for name, stored, right in (
+    follows = [
         ("label", data.label, label),
         ("split", data.split, split_rows(config)),
         ("sample_key", data.sample_key[:], np.stack([label, index], axis=1)),
-    ):
+    ]
+    if config.split.subjects is not None:
+        measured = config.recorded is not None
+        right = np.array(persons(config)) if measured else index % config.split.subjects
+        follows.append(("scene/subject", data.scene["subject"][:], right))
+    for name, stored, right in follows:
         if (stored != right).any():
             report.problems.append(f"/{name}: {np.count_nonzero(stored != right)} wrong values")
     if document_hash(data.file.json("config")) != data.file.text("config_hash"):
@@ -296,6 +304,9 @@ def _pngs(data: Dataset, folder: Path, report: Verification) -> None:
             if not same:
                 report.problems.append(f"{path}: does not show /maps/{name}[{row}]")
         own = {rows.png_path(name, split[row], row) for row in range(len(data))}
-        found = (path.relative_to(folder) for path in (folder / PNG / name).rglob("*"))
-        for path in sorted({path for path in found if path.suffix.lower() in SUFFIXES} - own):
-            report.problems.append(f"{path}: is no image of this data set")
+        own |= {parent for path in own for parent in path.parents}
+        for path in sorted((folder / PNG / name).rglob("*")):
+            there = path.relative_to(folder)
+            if there not in own and (path.is_dir() or path.suffix.lower() in SUFFIXES):
+                what = "class" if path.is_dir() else "image"
+                report.problems.append(f"{there}: is no {what} of this data set")

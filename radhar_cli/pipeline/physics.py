@@ -175,7 +175,7 @@ def reflectors_of(scene: Scene) -> Reflectors | None:
 def impairments_of(scene: Scene, noise: WhiteNoise, w: Waveform) -> tuple[Impairment, ...]:
     """What a receiver adds to white noise.
 
-    Coloured noise is the channel's own, as white noise is. Interference comes from outside: lines
+    Coloured noise is the channel's own, as white noise is. Interference comes from outside: tones
     are the same in all channels, phases included.
     """
     receiver, impairments = Numbers(scene.config.receiver), list[Impairment]()
@@ -183,18 +183,18 @@ def impairments_of(scene: Scene, noise: WhiteNoise, w: Waveform) -> tuple[Impair
     if corner > 0:
         slope = receiver.noise_slope_db
         impairments.append(FlickerNoise(noise.sigma, noise.stream, corner, slope))
-    for number, line in enumerate(receiver.tones):
-        amplitude = noise.sigma * 10 ** (line.level_db / 20)
-        times = line.on_s, line.off_s
+    for number, tone in enumerate(receiver.tones):
+        amplitude = noise.sigma * 10 ** (tone.level_db / 20)
+        times = tone.on_s, tone.off_s
         impairments.append(
             Line(
                 amplitude,
-                line.doppler_hz,
+                tone.doppler_hz,
                 w,
                 partial(noise_stream, scene),
                 f"line {number}",
                 *times,
-                line.both_sides,
+                tone.both_sides,
             )
         )
     return tuple(impairments)

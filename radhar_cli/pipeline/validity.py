@@ -10,7 +10,7 @@ import numpy as np
 
 from radhar_cli.activity import Activity
 from radhar_cli.arrays import Float, Index
-from radhar_cli.config.checks import line_warnings, timing_warnings
+from radhar_cli.config.checks import timing_warnings, tone_warnings
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.files.motion import FileMotion
@@ -269,7 +269,7 @@ def config_warnings(config: Config) -> list[str]:
     """Say which keys and lines of a .cfg have no effect, and which interference lines alias."""
     cfg = config.board.unknown if config.radar.cfg is not None else ()
     lines = [f"radar.cfg: {command} is not known and has no effect" for command in cfg]
-    return unused_keys(config) + line_warnings(config) + lines + _opaque(config)
+    return unused_keys(config) + tone_warnings(config) + lines + _opaque(config)
 
 
 def _opaque(config: Config) -> list[str]:

@@ -97,6 +97,17 @@ def test_an_index_that_no_data_set_has_is_warned_of(tmp_path):
     assert "--index" not in radhar(*what, "-o", tmp_path / "b", "--index", 2).stderr
 
 
+def test_inspect_folds_no_name_in_a_pipe(tmp_path, monkeypatch):
+    monkeypatch.delenv("COLUMNS", raising=False)
+    name = "a_class_of_our_own_with_quite_a_long_name_that_would_be_folded_at_eighty_columns"
+    text = SMALL.replace(
+        "activities:", f"classes: {{{name}: {{sequence: [grabbing]}}}}\nactivities:"
+    )
+    config = small_config(tmp_path, text.replace("S12]", f"{name}]").replace("paper", "human"))
+    ok("generate", config, "-o", tmp_path / "set", "--set", "output.png=false", "-j", "1")
+    assert name in radhar("inspect", tmp_path / "set").stdout
+
+
 def test_inspect_fits_a_terminal_of_80_columns(tmp_path, monkeypatch):
     monkeypatch.setenv("COLUMNS", "80")
     names = ", ".join(MAP_NAMES)

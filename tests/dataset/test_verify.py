@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from listener import Listener
 from PIL import Image
-from small import small_config
+from small import SMALL, small_config
 
 from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import Config, load_config
@@ -135,6 +135,26 @@ def test_what_was_not_built_is_named(whole: Path, tmp_path: Path) -> None:
     assert "maps/foo: was not built" in problems
     assert "png/stft2: is no map of this data set" in problems
     assert "png/rtm: is missing" in problems
+    shutil.rmtree(tmp_path / "set/png")
+    problems = verify(tmp_path / "set", 1).problems
+    assert "png: is missing; `radhar generate` makes it again" in problems
+
+
+def test_an_empty_class_folder_is_none_of_its_own(whole: Path, tmp_path: Path) -> None:
+    """ImageFolder would count it."""
+    shutil.copytree(whole, tmp_path / "set")
+    (tmp_path / "set/png/stft/train/dancing").mkdir()
+    problems = verify(tmp_path / "set", 1).problems
+    assert problems == ["png/stft/train/dancing: is no class of this data set"]
+
+
+def test_persons_are_those_of_the_config(tmp_path: Path) -> None:
+    shares = "split: {by: subject, subjects: 3, train: 0.34, validation: 0.66}"
+    text = SMALL.replace("split: {train: 0.67, validation: 0.33}", shares)
+    build(load_config(small_config(tmp_path, text)), tmp_path / "set", 1, Listener())
+    with h5py.File(tmp_path / "set/dataset.h5", "r+") as file:
+        file["scene/subject"][0] += 1
+    assert "/scene/subject: 1 wrong values" in verify(tmp_path / "set", 0).problems
 
 
 @pytest.mark.parametrize("name", ["columns_sha256", "attributes_sha256"])
@@ -245,6 +265,7 @@ def test_other_versions_compare_within_one_level(whole: Path, tmp_path: Path) ->
         file.attrs["numpy_version"] = "1.0"
         _flip_level_and_checksum(file)
     shutil.rmtree(tmp_path / "set/png")
+    shutil.rmtree(tmp_path / "set/.radhar")
     report = verify(tmp_path / "set", 9)
     assert report.other_versions[0].startswith("numpy 1.0 there")
     assert report.problems == []

@@ -60,8 +60,10 @@ from radhar_cli.dataset.untrusted_hdf5 import (
     remember,
 )
 from radhar_cli.errors import UnfinishedError
+from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.new_hdf5 import new_hdf5
 from radhar_cli.pipeline.validity import Flags, warnings
+from radhar_cli.processing.points import COLUMNS
 from radhar_cli.progress import Progress
 from radhar_cli.replacing import replacing
 from radhar_cli.scene import subject_of
@@ -208,6 +210,11 @@ def _copy_shards(
     file.attrs["columns_sha256"] = json.dumps(digests)
     for name in config.maps:
         _describe_map(file, config, name, extents[f"extent/{name}"])
+    if "products/points" in file:
+        file["products/points"].attrs["columns"] = [*COLUMNS]
+    recorded = any(config.files_of(one) is not None for one in config.chosen_activities)
+    if "products/skeleton" in file and not recorded:
+        file["products/skeleton"].attrs["joint_names"] = [*JOINTS]
     if config.output.slow_time:
         file["slow_time"].attrs.update({"axes": ["sample", "pulse"], "meaning": SLOW_TIME_TEXT})
     return flags

@@ -258,6 +258,8 @@ def _cure(config: Config, check: SceneCheck) -> str:
     """What would make another scene of this one."""
     if check.too_close and check.closest.joint.startswith("reflector "):
         return "room.reflectors should be elsewhere"
+    if check.flags & Flags.HALF_BAND and config.radar.cfg is not None and not check.too_close:
+        return "a smaller motion.range_m stays in the range that the board's .cfg sees"
     if config.on_invalid == "redraw" and check.flags & Flags.HALF_BAND and not check.too_close:
         return "a smaller radar.bandwidth_hz has a longer half-band, a smaller motion.range_m room"
     if config.on_invalid == "redraw":

@@ -56,6 +56,17 @@ def test_a_data_set_holds_frames_points_and_skeletons(data: Path) -> None:
             assert len(found.products["points_person"][row]) == len(points)
             assert found.products["skeleton"][row].shape == (5, 1, 13, 3)
             assert found.maps["points"][row].any()
+    with h5py.File(data / "dataset.h5") as file:
+        columns = file["products/points"].attrs["columns"].tolist()
+        assert columns[:6] == ["x", "y", "z", "doppler", "intensity", "snr_db"]
+        assert len(file["products/skeleton"].attrs["joint_names"]) == 13
+
+
+def test_people_beyond_the_boards_range_are_told_so(folder: Path, tmp_path: Path) -> None:
+    far = ("--set", "motion.range_m=30", "--set", "on_invalid=error")
+    made = radhar("generate", folder / "config.yaml", "-o", tmp_path / "far", "--jobs", "1", *far)
+    assert made.returncode == 2
+    assert "a smaller motion.range_m stays in the range that the board's .cfg sees" in made.stderr
 
 
 def test_it_is_verified_and_its_bytes_do_not_depend_on_the_workers(

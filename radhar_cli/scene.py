@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from math import nan
 from typing import Any, TypeAlias
 
@@ -12,7 +12,15 @@ from radhar_cli.activity import Activity
 from radhar_cli.config.annotations import Mark, of_kind
 from radhar_cli.config.number import Distribution, Number, is_fixed, nominal, quantile
 from radhar_cli.config.paths import at, changed, each_number
-from radhar_cli.config.schema import FALLS, Config, Falls, PerActivity, Section, for_activity
+from radhar_cli.config.schema import (
+    FALLS,
+    Config,
+    Falls,
+    PerActivity,
+    PersonConfig,
+    Section,
+    for_activity,
+)
 from radhar_cli.motion.skeleton import default_weight
 from radhar_cli.randomness import PERSON, SCENE, stream
 
@@ -46,7 +54,9 @@ OVERLAPPED = {
     "walking_to_falling": "fall_duration_s",
 }
 MAX_OVERLAP = 0.3
-Draw: TypeAlias = Callable[[str, Number], float]
+MAX_PLACES = 100  # drawn for a person who comes too near to others
+Draw: TypeAlias = Callable[[str], float]
+OfOther: TypeAlias = Callable[[int, str], float]
 
 
 class Numbers:
@@ -81,13 +91,18 @@ class Person:
         scene: in which they are.
         activity: what they do.
         config: whose `subject`, `motion`, `timing` and `classes` are theirs.
-        prefix: of the names of their random streams.
+        number: 0 for the sample's own person, else their place in `people`, from 1 on.
     """
 
     scene: "Scene"
     activity: Activity
     config: Config
-    prefix: str = ""
+    number: int = 0
+
+    @property
+    def prefix(self) -> str:
+        """Of the names of their random streams."""
+        return f"people.{self.number}." if self.number else ""
 
     @property
     def seconds(self) -> float:
@@ -117,7 +132,7 @@ class Person:
     def own_stream(self, name: str) -> np.random.Generator:
         """That of a name for the body, the same in all scenes of a named person."""
         scene, name = self.scene, self.prefix + name
-        if scene.subject is not None:
+        if scene.subject is not None and not self.number:
             return stream(scene.config.seed, PERSON, scene.subject, name=name)
         return stream(scene.config.seed, SCENE, scene.activity.index, scene.index, name=name)
 
@@ -149,44 +164,106 @@ class Scene:
     @property
     def people(self) -> tuple[Person, ...]:
         """Everybody in the scene, the sample's own person first."""
-        return (Person(self, self.activity, self.config),)
+        others = (
+            Person(
+                self, self.config.activities_of(number)[0], self.config.of_person(number), number
+            )
+            for number, one in enumerate(self.config.people, 1)
+            if one.share > 0
+        )
+        return (Person(self, self.activity, self.config), *others)
 
 
-def draw_scene(config: Config, activity: Activity, index: int, attempt: int = 0) -> Scene:
+def draw_scene(
+    config: Config,
+    activity: Activity,
+    index: int,
+    attempt: int = 0,
+    again: tuple[int, ...] = (),
+) -> Scene:
     """Draw every number of one sample, each from its own stream.
 
     Persons come from (seed, subject, field), the rest from (seed, class, index, field): no draw
     depends on another, on the maps, on the engine, or on the order of work.
+
+    Args:
+        attempt: how often the scene was drawn before, outside the model.
+        again: how often each of `people` was, too near to somebody.
     """
     subject = subject_of(config, index)
 
-    def draw(key: str, number: Number) -> float:
-        again = attempt if key.startswith(REDRAWN) else 0
+    def at_share(key: str) -> float:
         if subject is not None and key in PERSONAL:
-            rng = stream(config.seed, PERSON, subject, name=key)
-        else:
-            rng = stream(config.seed, SCENE, activity.index, index, again, name=key)
-        return quantile(number, rng.random())
+            return stream(config.seed, PERSON, subject, name=key).random()
+        redrawn = attempt if key.startswith(REDRAWN) else 0
+        return stream(config.seed, SCENE, activity.index, index, redrawn, name=key).random()
 
-    fixed = _fixed(config, activity, draw)
-    if isinstance(fixed.motion.fall, Falls):
-        u = stream(config.seed, SCENE, activity.index, index, attempt, name=FALL).random()
-        fixed = changed(fixed, {FALL: fixed.motion.fall.drawn(u)})
-    if config.files_of(activity) is not None:
-        name = f"classes.{activity.slug}.file"
-        u = stream(config.seed, SCENE, activity.index, index, attempt, name=name).random()
-        fixed = _with_file(fixed, activity, u, subject)
-    return Scene(_with_possible_overlap(fixed, activity), activity, index, subject, attempt)
+    def of_other(number: int, key: str) -> float:
+        times = (MAX_PLACES + 1) * attempt + (again[number - 1] if again else 0)
+        redrawn = times if key.startswith(REDRAWN) else 0
+        name = f"people.{number}.{key}"
+        return stream(config.seed, SCENE, activity.index, index, redrawn, name=name).random()
+
+    fixed = _drawn(config, activity, at_share, subject)
+    if config.people:
+        fixed = changed(fixed, {"people": _drawn_people(config, of_other)})
+    return Scene(fixed, activity, index, subject, attempt)
 
 
 def nominal_scene(config: Config, activity: Activity) -> Scene:
     """The scene with every number at its middle, and nothing that people do not repeat."""
-    fixed = _fixed(config, activity, lambda key, number: nominal(number))
-    fixed = changed(fixed, dict.fromkeys(UNSTEADY, 0.0))
+    fixed = _drawn(config, activity, None, None)
+    if config.people:
+        fixed = changed(fixed, {"people": _drawn_people(config, None)})
+    return Scene(fixed, activity, 0)
+
+
+def _drawn(
+    config: Config, activity: Activity, at_share: Draw | None, subject: int | None
+) -> Config:
+    """The config of one person's scene, numbers at shares (key) of their distributions.
+
+    None is the middle of all, and nothing unsteady.
+    """
+
+    def draw(key: str, number: Number) -> float:
+        return nominal(number) if at_share is None else quantile(number, at_share(key))
+
+    fixed = _fixed(config, activity, draw)
+    if at_share is None:
+        fixed = changed(fixed, dict.fromkeys(UNSTEADY, 0.0))
     if isinstance(fixed.motion.fall, Falls):
-        fixed = changed(fixed, {FALL: fixed.motion.fall.drawn(0.5)})
-    fixed = _with_file(fixed, activity, 0.5, None)
-    return Scene(_with_possible_overlap(fixed, activity), activity, 0)
+        fixed = changed(fixed, {FALL: fixed.motion.fall.drawn(at_share(FALL) if at_share else 0.5)})
+    if config.files_of(activity) is not None:
+        share = at_share(f"classes.{activity.slug}.file") if at_share else 0.5
+        fixed = _with_file(fixed, activity, share, subject)
+    return _with_possible_overlap(fixed, activity)
+
+
+def _drawn_people(config: Config, at_share: OfOther | None) -> tuple[PersonConfig, ...]:
+    """`people` with nothing left to draw; who is not there has a share of 0."""
+    found = []
+    for number, one in enumerate(config.people, 1):
+        share = partial(at_share, number) if at_share else None
+        activities = config.activities_of(number)
+        place = min(
+            int((share("activity") if share else 0.5) * len(activities)), len(activities) - 1
+        )
+        activity = activities[place]
+        there = one.share > (share("share") if share else 0.5 - 1e-9)
+        fixed = _drawn(_of_person(ByIdentity(config), number), activity, share, None)
+        own = {slug: c for slug, c in fixed.classes.items() if slug == activity.slug}
+        found.append(
+            PersonConfig.model_construct(
+                activity=activity.slug,
+                share=float(there),
+                subject=fixed.subject,
+                motion=fixed.motion,
+                timing=fixed.timing,
+                classes=own or None,
+            )
+        )
+    return tuple(found)
 
 
 def _with_possible_overlap(config: Config, activity: Activity) -> Config:
@@ -244,12 +321,34 @@ def numbers(config: Config) -> list[tuple[str, Any]]:
 def number_at(scene: Scene, key: str) -> float:
     """The number of a dotted key, such as `radar.tx_m.0`; NaN where the scene has no such number.
 
-    `motion.fall` is its place in FALLS.
+    `motion.fall` is its place in FALLS; `people.0.motion.range_m` is of the first of `people`.
     """
-    place = at(scene.config, key)
-    if place is None or not scene.config.depends_on(scene.activity, key):
+    config, activity = scene.config, scene.activity
+    if key.startswith("people."):
+        _, place, key = key.split(".", 2)
+        other = next((one for one in scene.people if one.number == int(place) + 1), None)
+        if other is None:
+            return nan
+        config, activity = other.config, other.activity
+    number = at(config, key)
+    if number is None or not config.depends_on(activity, key):
         return nan
-    return float(FALLS.index(place)) if key == FALL else float(place)
+    return float(FALLS.index(number)) if key == FALL else float(number)
+
+
+def keys_of_people(config: Config) -> list[str]:
+    """Keys of the numbers of all of `people`, such as `people.0.motion.range_m`."""
+    found = []
+    for number in range(1, len(config.people) + 1):
+        theirs, activities = config.of_person(number), config.activities_of(number)
+        keys = [*(key for key, _ in numbers(theirs)), FALL]
+        found += [
+            f"people.{number - 1}.{key}"
+            for key in keys
+            if key.startswith(("subject.", "motion.", "timing."))
+            and any(theirs.depends_on(activity, key) for activity in activities)
+        ]
+    return found
 
 
 def file_keys(config: Config) -> tuple[str, ...]:
@@ -266,7 +365,8 @@ def scene_numbers(scene: Scene) -> dict[str, float]:
     """
     keys = (*(key for key, _ in numbers(scene.config)), FALL, *file_keys(scene.config))
     used = (key for key in keys if scene.config.depends_on(scene.activity, key))
-    return {key: number_at(scene, key) for key in used}
+    found = {key: number_at(scene, key) for key in (*used, *keys_of_people(scene.config))}
+    return {key: number for key, number in found.items() if number == number}
 
 
 class ByIdentity:
@@ -280,6 +380,12 @@ class ByIdentity:
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, ByIdentity) and self.config is other.config
+
+
+@lru_cache(maxsize=64)
+def _of_person(same: ByIdentity, number: int) -> Config:
+    """One config of a person for all scenes: drawing keeps what it finds by its identity."""
+    return same.config.of_person(number)
 
 
 @lru_cache(maxsize=64)
@@ -297,7 +403,7 @@ def _fixed_and_drawn(same: ByIdentity, activity: Activity) -> tuple[Config, dict
     return changed(config, sections | {"activities": (activity.slug,)}), drawn
 
 
-def _fixed(config: Config, activity: Activity, draw: Draw) -> Config:
+def _fixed(config: Config, activity: Activity, draw: Callable[[str, Number], float]) -> Config:
     """The config of one scene; numbers that its activity does not depend on are at their middle."""
     fixed, drawn = _fixed_and_drawn(ByIdentity(config), activity)
     values = {key: draw(key, number) for key, number in drawn.items()}

@@ -90,7 +90,7 @@ def annotations(kind: type[BaseModel], prefix: str = "") -> Mapping[str, tuple[A
     for name, field in kind.model_fields.items():
         found[prefix + name] = tuple(_flat(field))
         inner = section(field)
-        if inner is not None:
+        if inner is not None and not getattr(inner, "REPEATS", False):
             found |= annotations(inner, f"{prefix}{name}.")
     return MappingProxyType(found)
 

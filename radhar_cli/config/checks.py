@@ -61,6 +61,7 @@ def problems(c: Config) -> Iterator[Problem]:
     if c.motion.model == "human":
         yield from _human_problems(c)
     yield from _class_problems(c)
+    yield from _people_problems(c)
     if c.engine.motion_in_chirp and c.engine.kind == "direct":
         yield Problem(
             "engine.motion_in_chirp",
@@ -78,6 +79,36 @@ def problems(c: Config) -> Iterator[Problem]:
             f"should be at most samples_per_class = {c.samples_of(fewest)}{whose}: "
             "every person performs every activity",
         )
+
+
+def _people_problems(c: Config) -> Iterator[Problem]:
+    """What others in a scene cannot do."""
+    if c.people and (c.motion.model == "paper" or c.recorded is not None):
+        right = "should be empty with motion.model: paper, whose scenes hold one person"
+        yield Problem("people", f"{len(c.people)} persons", right)
+        return
+    if c.people and c.radar.cfg is not None and c.snr_db is not None:
+        right = "should be null with radar.cfg and people: a board's noise is thermal"
+        yield Problem("snr_db", c.snr_db, right)
+    for number, one in enumerate(c.people, 1):
+        key = f"people.{number - 1}"
+        if one.motion.model != "human":
+            yield Problem(f"{key}.motion.model", one.motion.model, "should be human")
+            continue
+        try:
+            activities = c.activities_of(number)
+        except ValueError as error:
+            yield Problem(f"{key}.activity", ", ".join(one.names), str(error))
+            continue
+        files = [a.slug for a in activities if c.files_of(a) is not None]
+        if files:
+            yield Problem(f"{key}.activity", files[0], "should be a movement, not motion files")
+            continue
+        slugs = tuple(a.slug for a in activities)
+        for problem in _human_problems(
+            c.of_person(number).model_copy(update={"activities": slugs})
+        ):
+            yield problem._replace(key=f"{key}.{problem.key}")
 
 
 def _board_problems(c: Config) -> Iterator[Problem]:

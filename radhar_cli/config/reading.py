@@ -33,15 +33,15 @@ _CHANNELS = (
     "antennas= of record() simulates another channel of the default radar"
 )
 _PEOPLE = (
-    "is not there: one person a scene; motions= of record() adds up several "
-    "(docs/architecture.md), split.subjects names how many persons a data set has"
+    "is not there: `people` has others in a scene, a list of `{activity, subject, motion, timing}` "
+    "(docs/scenes.md); split.subjects names how many persons a data set has"
 )
 _ROOMS = "is not there: a config has one room, under `room`; each of its numbers may be drawn"
 _DEVICE = "is not there: radar.device names a TI board, radar.cfg its .cfg (docs/boards.md)"
 # What people ask for and is not there, as a key or a map, and what to do instead.
 ABSENT = {
     **dict.fromkeys(("receivers", "transmitters", "channels", "antennas", "mimo"), _CHANNELS),
-    **dict.fromkeys(("people", "persons", "targets", "subjects"), _PEOPLE),
+    **dict.fromkeys(("persons", "targets", "subjects"), _PEOPLE),
     **dict.fromkeys(("rooms", "environments"), _ROOMS),
     **dict.fromkeys(("chip", "board", "sensor", "profile"), _DEVICE),
     **dict.fromkeys(("point_cloud", "pointcloud", "cloud"), "is called points"),

@@ -1166,6 +1166,34 @@ class RecordingsConfig(Section):
         return tuple(sorted({part.person for part in self.parts if part.person is not None}))
 
 
+class OneOf(Section):
+    """``{choice: [walking, punching]}``: one of them, equally likely."""
+
+    choice: Annotated[tuple[str, ...], Field(min_length=1, max_length=200)]
+
+
+class PersonConfig(Section):
+    """Somebody besides the sample's own person."""
+
+    REPEATS: ClassVar = True  # sections of the top level
+
+    activity: str | OneOf = "walking"
+    """Slug or label, or {choice: [...]}."""
+    share: Share = 1.0
+    """Of the scenes in which the person is there."""
+    subject: SubjectConfig = SubjectConfig()
+    motion: MotionConfig = MotionConfig()
+    """`cross_range_m` is -1.5 to 1.5 unless given."""
+    timing: TimingConfig = TimingConfig()
+    classes: dict[str, ClassConfig] | None = None
+    """Filled in for a scene: numbers of a class of one's own that were drawn for this person."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of all activities that the person may do."""
+        return (self.activity,) if isinstance(self.activity, str) else self.activity.choice
+
+
 class Config(Section):
     """A data set: what to draw, what to compute, how to store it."""
 
@@ -1189,6 +1217,8 @@ class Config(Section):
     motion: MotionConfig = MotionConfig()
     timing: TimingConfig = TimingConfig()
     body: BodyConfig = BodyConfig()
+    people: Annotated[tuple[PersonConfig, ...], Field(max_length=7)] = ()
+    """Others in the scene; see docs/scenes.md."""
     wall: WallConfig | None = None
     """null is free space."""
     room: RoomConfig = RoomConfig()
@@ -1284,11 +1314,37 @@ class Config(Section):
             object.__setattr__(self, name, value)
         for name, values in changed.items():
             object.__setattr__(self, name, getattr(self, name).model_copy(update=values))
+        if self.people:
+            filled = tuple(self._filled_person(n) for n in range(1, len(self.people) + 1))
+            object.__setattr__(self, "people", filled)
         if self.motion.model == "paper" and self.processing.window_s is None:
             processing = self.processing.model_copy()  # which does not say that it was given
             object.__setattr__(processing, "window_s", PAPER_WINDOW * nominal(self.duration_s))
             object.__setattr__(self, "processing", processing)
         return self
+
+    def of_person(self, number: int) -> "Config":
+        """This config as it is of one of `people`, 1 the first: their numbers at the top level."""
+        one = self.people[number - 1]
+        theirs = {"subject": one.subject, "motion": one.motion, "timing": one.timing, "people": ()}
+        classes = self.classes if one.classes is None else one.classes
+        return self.model_copy(update={**theirs, "classes": classes})
+
+    def activities_of(self, number: int) -> tuple[Activity, ...]:
+        """What one of `people` may do.
+
+        Raises:
+            ValueError: there is no such activity.
+        """
+        own = {one.slug: one for one in self.every_class}
+        return tuple(activity_named(name, own) for name in self.people[number - 1].names)
+
+    def _filled_person(self, number: int) -> PersonConfig:
+        filled, one = self.of_person(number).filled(), self.people[number - 1]
+        motion = filled.motion
+        if "cross_range_m" not in one.motion.model_fields_set:
+            motion = motion.model_copy(update={"cross_range_m": uniform(-1.5, 1.5)})
+        return one.model_copy(update={"motion": motion, "timing": filled.timing})
 
     @model_validator(mode="after")
     def _consistent(self) -> "Config":

@@ -29,7 +29,9 @@ from radhar_cli.dataset.layout import (
     COLUMN_LABEL,
     CONFIG,
     DATASET,
+    LABELS,
     MANIFEST,
+    PERSON_LABEL,
     SCENES,
     SPLITS,
     TIME,
@@ -215,6 +217,11 @@ def _copy_shards(
     recorded = any(config.files_of(one) is not None for one in config.chosen_activities)
     if "products/skeleton" in file and not recorded:
         file["products/skeleton"].attrs["joint_names"] = [*JOINTS]
+    if config.people:
+        file[LABELS].attrs["class_slugs"] = [activity.slug for activity in config.every_class]
+        file[PERSON_LABEL].attrs["meaning"] = (
+            "class of each person, the sample's own first; -1 absent"
+        )
     if config.output.slow_time:
         file["slow_time"].attrs.update({"axes": ["sample", "pulse"], "meaning": SLOW_TIME_TEXT})
     return flags

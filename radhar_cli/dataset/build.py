@@ -160,7 +160,8 @@ class _Build:
         """Shards of the rows, number of rows that this run made, and warnings."""
         shards = self._sound_shards(rows)
         gaps, _ = missing_and_repeated(shards, rows.stop, rows.start)
-        few = self.factory is None and len(rows) <= MAX_CHECKED_FIRST
+        # Others may be drawn again in each scene: who makes it checks it.
+        few = len(rows) <= MAX_CHECKED_FIRST and not self.config.people and self.factory is None
         checked = self._check_scenes(rows, gaps) if few and gaps else None
         shown: list[dict[str, Any]] = []
         if checked is not None and not shards:

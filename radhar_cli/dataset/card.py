@@ -74,8 +74,10 @@ def features(config: Config) -> list[dict[str, Any]]:
 
 def number_features(config: Config) -> list[dict[str, Any]]:
     """The columns of numbers among them: index, and what was drawn."""
-    whole, names = ("index", "subject"), ["index", *number_names(config)]
-    return [{"name": name, "dtype": "int64" if name in whole else "float64"} for name in names]
+    whole, names = ("index", "subject"), number_names(config)
+    kinds = {"index": "int64"} | ({"labels": "string"} if config.people else {})
+    kinds |= {name: "int64" if name in whole else "float64" for name in names}
+    return [{"name": name, "dtype": kind} for name, kind in kinds.items()]
 
 
 def data_files(files: Files) -> list[dict[str, Any]]:
@@ -234,10 +236,18 @@ def _classes(data: Dataset) -> str:
     for activity, rows in Rows.of(data.config).classes():
         counts = np.bincount(data.split[rows], minlength=len(SPLITS))
         lines.append([activity.index, f"`{activity.slug}`", *(counts[n] for n in present)])
+    others = ""
+    if data.labels is not None:
+        shown = zip(data.class_slugs, data.labels.sum(axis=0).tolist(), strict=True)
+        listed = ", ".join(f"`{slug}` {count}" for slug, count in shown if count)
+        others = (
+            "\n\nThe class is what the sample's own person does. Others are there too: column "
+            f"`labels` has what anybody does ({listed})."
+        )
     by = "sample: every sample was drawn on its own"
     if data.config.split.subjects is not None:
         by = f"person: none of the {data.config.split.subjects} is in two of its parts"
-    return table(["label", "class", *present.values()], lines) + f"\n\nSplit by {by}."
+    return table(["label", "class", *present.values()], lines) + f"{others}\n\nSplit by {by}."
 
 
 def _numbers(data: Dataset) -> str:

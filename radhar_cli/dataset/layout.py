@@ -26,6 +26,8 @@ IDENTITY = "identity.json"
 MANIFEST = "manifest.json"
 PARTS = "parts"
 COLUMN_LABEL = "column_label"
+# Of scenes with `people`: which classes anybody shows, and the class of each person.
+LABELS, PERSON_LABEL = "labels", "person_label"
 PNGS_A_FOLDER = 10_000
 SPLITS = ("train", "validation", "test")
 # Type and shape of a sample's part of a dataset.
@@ -60,6 +62,9 @@ def columns(config: Config) -> Parts:
     """The small datasets that a shard has beside the large ones and the scenes."""
     parts: Parts = {checksum_of(name): ("S64", ()) for name in chunked(config)}
     parts |= {count_of(name): ("i8", ()) for name in config.stored}
+    if config.people:
+        parts |= {LABELS: ("u1", (len(config.every_class),))}
+        parts |= {PERSON_LABEL: ("<i2", (1 + len(config.people),))}
     for name in config.maps:
         parts |= {f"entropy/{name}": ("f4", ()), f"extent/{name}": ("f8", (4,))}
         if config.output.power is not None:

@@ -17,7 +17,14 @@ from radhar_cli.activity import Activity, know_activities, own_activities
 from radhar_cli.config.reading import as_config
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
-from radhar_cli.dataset.layout import COLUMN_LABEL, checksum_of, chunked, columns
+from radhar_cli.dataset.layout import (
+    COLUMN_LABEL,
+    LABELS,
+    PERSON_LABEL,
+    checksum_of,
+    chunked,
+    columns,
+)
 from radhar_cli.dataset.sample import Sample, synthesise
 from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.pipeline.plan import Plan
@@ -159,6 +166,8 @@ class Recipe:
             return np.array([scene.activity.index, scene.index])
         if name == "scene/subject":
             return scene.subject
+        if name in (LABELS, PERSON_LABEL):
+            return made.labels[name]
         if kind == "scene":
             field = self._scene_fields[rest]
             return float(scene_fields.values(scene, (field,))[0]) * field.factor

@@ -16,8 +16,10 @@ from radhar_cli.dataset.identity import versions
 from radhar_cli.dataset.layout import (
     COLUMN_LABEL,
     DATASET,
+    LABELS,
     MANIFEST,
     PARTS,
+    PERSON_LABEL,
     SPLITS,
     WORK,
     Rows,
@@ -49,6 +51,8 @@ class Dataset(Closing):
         config: its own.
         maps: {map name: uint8 [N, H, W]}.
         label, split: uint8 [N]; 0 to 11, 0 to 2.
+        labels: uint8 [N, classes], 1 for what anybody in the scene does; None without `people`.
+        person_label: int16 [N, 1 + people], the class of each person, -1 absent; None without.
         sample_key: int64 [N, 2], (class, index).
         scene: {field: [N]}, SI units.
         fields: what the fields of `scene` are.
@@ -107,6 +111,9 @@ class Dataset(Closing):
         self._extent = {name: small[f"extent/{name}"] for name in names}
         labelled = names if config.output.column_labels else ()
         self.column_label = {name: small[f"{COLUMN_LABEL}/{name}"] for name in labelled}
+        self.labels, self.person_label = (
+            small[name][:] if config.people else None for name in (LABELS, PERSON_LABEL)
+        )
         self.label = _small(file.column("label", np.uint8, (count,)), len(config.every_class))
         self.split = _small(file.column("split", np.uint8, (count,)), len(SPLITS))
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from radhar_cli.arrays import Complex, Float, Levels
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.column_labels import column_labels
+from radhar_cli.dataset.layout import LABELS, PERSON_LABEL
 from radhar_cli.echo.direct import Accuracy
 from radhar_cli.errors import SceneError
 from radhar_cli.pipeline.plan import Plan
@@ -34,6 +35,8 @@ class Sample(NamedTuple):
     slow_time: Complex | None = None
     # {name: array}, where they are stored (`output.products`)
     products: Mapping[str, NDArray[Any]] = MappingProxyType({})
+    # {name: values}: LABELS and PERSON_LABEL of scenes with `people`
+    labels: Mapping[str, NDArray[Any]] = MappingProxyType({})
 
     def chunk(self, name: str, shape: tuple[int, ...]) -> NDArray[Any]:
         """What a large dataset (`layout.chunked`) holds of this sample, in its shape."""
@@ -76,7 +79,19 @@ def synthesise(scene: Scene, plan: Plan) -> Sample:
         error_db = accuracy.error_db
     deepest = scene.config.image.dynamic_range_db
     own = {name: _array(recording[name], name, deepest) for name in scene.config.stored}
-    return Sample(images, error_db, fell_back, labels, slow_time, own)
+    return Sample(images, error_db, fell_back, labels, slow_time, own, labels_of(scene))
+
+
+def labels_of(scene: Scene) -> dict[str, NDArray[Any]]:
+    """What everybody does, where a config has `people`: LABELS and PERSON_LABEL."""
+    if not scene.config.people:
+        return {}
+    person = np.full(1 + len(scene.config.people), -1, np.int16)
+    for one in scene.people:
+        person[one.number] = one.activity.index
+    found = np.zeros(len(scene.config.every_class), np.uint8)
+    found[person[person >= 0]] = 1
+    return {LABELS: found, PERSON_LABEL: person}
 
 
 def _array(value: Any, name: str, dynamic_range_db: float) -> NDArray[Any]:

@@ -7,7 +7,7 @@ import numpy as np
 
 from radhar_cli.arrays import Float
 from radhar_cli.config.schema import Config
-from radhar_cli.scene import FALL, Scene, file_keys, number_at, numbers
+from radhar_cli.scene import FALL, Scene, file_keys, keys_of_people, number_at, numbers
 
 _UNITS = {
     "m": ("m", 1.0),
@@ -71,6 +71,7 @@ def fields(config: Config) -> tuple[Field, ...]:
     ]
     if "subject.weight_kg" not in keys:
         keys.insert(keys.index("subject.height_m") + 1, "subject.weight_kg")
+    keys += keys_of_people(config)
     measured = (ERROR,) if config.has_error else ()
     return (*(_field(key) for key in keys), *measured)
 
@@ -81,6 +82,10 @@ def values(scene: Scene, columns: tuple[Field, ...], error_db: float = nan) -> F
 
 
 def _field(key: str) -> Field:
+    if key.startswith("people."):
+        theirs = _field(key.split(".", 2)[2])
+        name = f"people_{int(key.split('.')[1]) + 1}_{theirs.name}"
+        return theirs._replace(key=key, name=name)
     if key.startswith("classes."):
         _, slug, name, *place = key.split(".")
         if not place:  # of files

@@ -17,7 +17,15 @@ import numpy as np
 from radhar_cli.arrays import Float, Levels
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.files import write_whole
-from radhar_cli.dataset.layout import COLUMN_LABEL, WORK, checksum_of, chunked, count_of
+from radhar_cli.dataset.layout import (
+    COLUMN_LABEL,
+    LABELS,
+    PERSON_LABEL,
+    WORK,
+    checksum_of,
+    chunked,
+    count_of,
+)
 from radhar_cli.dataset.png import deflated
 from radhar_cli.dataset.sample import Sample
 from radhar_cli.errors import SceneError, UnfinishedError
@@ -131,6 +139,8 @@ def encode_shard(
                 file[f"largest_db/{name}"] = np.array([i.largest_db for i in images])
             if config.output.column_labels:
                 file[f"{COLUMN_LABEL}/{name}"] = np.stack([s.column_labels[name] for s in samples])
+        for name in (LABELS, PERSON_LABEL) if config.people else ():
+            file[name] = np.stack([sample.labels[name] for sample in samples])
         for name in config.stored:
             arrays = [sample.products[name] for sample in samples]
             if len({(array.dtype, array.shape[1:]) for array in arrays}) > 1:

@@ -80,6 +80,13 @@ def _data_set(data: Dataset) -> dict[str, Any]:
             }
             for label, slug in Counter(zip(labels.tolist(), slugs, strict=True))
         },
+        "labels": None
+        if data.labels is None
+        else {
+            slug: int(count)
+            for slug, count in zip(data.class_slugs, data.labels.sum(axis=0), strict=True)
+            if count
+        },
         "entropy_bits": {
             name: {
                 data.class_slugs[label]: _spread(bits[labels == label])

@@ -8,6 +8,8 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.files import refuse_links, unfinished_path
@@ -30,6 +32,8 @@ class Entry(NamedTuple):
     place: int  # index within the class; (number, place) is the sample key
     # of `number_names`, as in /scene: SI units, NaN where one does not apply
     values: tuple[float, ...]
+    # slugs of what anybody in the scene does, a space between; of scenes with `people`
+    labels: str = ""
 
 
 def number_names(config: Config) -> list[str]:
@@ -70,16 +74,24 @@ def entries(data: Dataset) -> Iterator[Entry]:
                     activity.slug,
                     first + place,
                     values[place],
+                    "" if data.labels is None else _slugs(data, row),
                 )
+
+
+def _slugs(data: Dataset, row: int) -> str:
+    assert data.labels is not None
+    return " ".join(data.class_slugs[label] for label in np.flatnonzero(data.labels[row]))
 
 
 def lines(data: Dataset) -> Iterator[tuple[int | None, bytes]]:
     """(split, line) of the files of all splits; the first line belongs to each of them."""
     rows = Rows.of(data.config)
-    yield None, _line(["file_name", "label", "index", *number_names(data.config)])
+    several = ["labels"] if data.config.people else []
+    yield None, _line(["file_name", "label", "index", *several, *number_names(data.config)])
     for entry in entries(data):
         numbers = ("" if value != value else repr(value) for value in entry.values)
-        cells = [rows.file_name(entry.row), entry.label, str(entry.place), *numbers]
+        known = [rows.file_name(entry.row), entry.label, str(entry.place)]
+        cells = [*known, *([entry.labels] if several else []), *numbers]
         yield entry.split, _line(cells)
 
 

@@ -248,6 +248,9 @@ def _resynthesise(data: Dataset, samples: int, report: Verification, motion: Pat
             there = data.products[name][row] if name in data.products else right[:0]
             if not _same(there, right, exactly=not report.other_versions):
                 report.problems.append(f"/products/{name}[{row}] ({scene.name}): differs")
+        for name, labels in made.labels.items():
+            if (data.small[name].rows(row, row + 1)[0] != labels).any():
+                report.problems.append(f"/{name}[{row}] ({scene.name}): is not {labels.tolist()}")
         for name, labels in made.column_labels.items():
             wrong = int(np.count_nonzero(data.column_label[name].rows(row, row + 1)[0] != labels))
             # Under other versions a phase may begin a column later: rounding.

@@ -101,16 +101,16 @@ def draw_map(axes: Axes, name: str, shown: Shown) -> AxesImage:
 
 
 def _draw_truth(axes: Axes, map_name: str, simulation: Simulation, unit: float) -> None:
-    """Curves of the true Doppler, folded into +-PRF/2 as the map is."""
+    """Curves of everybody's true Doppler, folded into +-PRF/2 as the map is."""
     truth, prf = simulation.truth, simulation.waveform.prf
-    doppler = truth.doppler
+    joint, names = simulation.joint, simulation.motion.names
+    own = [number for number, name in enumerate(names) if joint in (None, name)]
+    others = [one.truth.doppler for one in simulation.others if joint is None]
+    doppler = np.concatenate([truth.doppler[:, own], *others], axis=1)
     if "compensated" in map_name:
-        doppler = doppler - doppler[:, :1]
+        doppler = doppler - truth.doppler[:, :1]
     every = max(1, truth.time.size // 1500)
-    for number, name in enumerate(simulation.motion.names):
-        if simulation.joint is not None and name != simulation.joint:
-            continue
-        curve = doppler[::every, number]
+    for curve in doppler[::every].T:
         folded = (curve + prf / 2) % prf - prf / 2
         folded[1:][np.abs(np.diff(folded)) > prf / 2] = np.nan
         axes.plot(

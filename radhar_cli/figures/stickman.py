@@ -1,6 +1,7 @@
 """stickman.gif: the thirteen joints in 3-D, beside a Doppler-time map with a moving cursor."""
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -116,6 +117,11 @@ class _Stage:
         self.truth, self.parents = simulation.truth, simulation.motion.parents
         p = self.truth.positions
         self.middle = p.mean(axis=1)
+        self.others = [
+            (one.truth.positions, _pairs(one.motion.parents)) for one in simulation.others
+        ]
+        ways = [self.middle, *(positions.mean(axis=1) for positions, _ in self.others)]
+        self.ways = np.stack(ways)  # [person, M, 3]
         radar = np.array([simulation.antennas.tx, simulation.antennas.rx])
         room: dict[str, Any] = {"antennas": radar, "wall": None}
         if simulation.wall is not None:  # its outline from the side, closed, and its extent along y
@@ -137,7 +143,7 @@ class _Stage:
         bar = figure.colorbar(self.views[0].joints, cax=figure.add_axes((0.625, 0.15, 0.008, 0.3)))
         bar.set_label("RCS (m²)", fontsize=7)
         bar.ax.tick_params(labelsize=6)
-        self.here = _plan(figure, self.middle, room)
+        self.here = _plan(figure, self.ways, room)
 
     @property
     def artists(self) -> list[Any]:
@@ -150,7 +156,8 @@ class _Stage:
         hips = None if self.truth.hip_joints is None else self.truth.hip_joints[pulse]
         for view in self.views:
             view.show(self.truth.positions[pulse], hips, self.middle[pulse])
-        self.here.set_data([-self.middle[pulse, 1]], [self.middle[pulse, 0]])
+            view.show_others([(p[pulse], pairs) for p, pairs in self.others], self.middle[pulse])
+        self.here.set_data(-self.ways[:, pulse, 1], self.ways[:, pulse, 0])
         under_way = self.truth.phases[self.truth.phase_label[pulse]]
         what = "" if under_way == WHOLE else f"   {under_way}"
         self.clock.set_text(f"t = {t:.2f} s{what}")
@@ -170,7 +177,7 @@ class _View:
         room: dict[str, Any],
     ) -> None:
         self.axis, self.sign, self.half = axis, sign, half
-        self.pairs = [(parent, one) for one, parent in enumerate(parents) if parent is not None]
+        self.pairs = _pairs(parents)
         self.antennas, self.wall = room["antennas"], room["wall"]
         axes.axhline(0, color="0.6", linewidth=1)
         (self.floor,) = axes.plot([], [], color="0.6", linewidth=1)
@@ -181,15 +188,27 @@ class _View:
             0 * colours, colours, c=colours, cmap="plasma", s=30, edgecolors="black", linewidths=0.4
         )
         self.joints.set_zorder(3)
-        self.artists: list[Any] = [self.floor, self.radar, self.slab, self.links, self.joints]
+        (self.crowd,) = axes.plot([], [], color="tab:blue", linewidth=1.5, alpha=0.6)
+        lines = [self.floor, self.radar, self.slab, self.crowd, self.links]
+        self.artists: list[Any] = [*lines, self.joints]
+
+    def _across(self, points: Float, middle: Float) -> Float:
+        seen: Float = self.sign * (points[..., self.axis] - middle[self.axis])
+        return seen
+
+    def show_others(self, people: list[tuple[Float, list[tuple[int, int]]]], middle: Float) -> None:
+        """Joints [I, 3] and pairs of them of everybody else who is near `middle` [3]."""
+        lines = [
+            np.stack([p[a], p[b], np.full(3, np.nan)]) for p, pairs in people for a, b in pairs
+        ]
+        if lines:
+            drawn = np.concatenate(lines)
+            x = self._across(drawn, middle)
+            self.crowd.set_data(np.where(np.abs(x) <= self.half, x, np.nan), drawn[:, 2])
 
     def show(self, p: Float, hips: Float | None, middle: Float) -> None:
         """Joints [I, 3] and hip joints [2, 3], where there are, seen from `middle` [3]."""
-
-        def across(points: Float) -> Float:
-            seen: Float = self.sign * (points[..., self.axis] - middle[self.axis])
-            return seen
-
+        across = partial(self._across, middle=middle)
         starts = np.array([p[parent] for parent, _ in self.pairs])
         ends = np.array([p[one] for _, one in self.pairs])
         if hips is not None:  # thighs hang on the hip joints, which the hip point carries
@@ -207,19 +226,29 @@ class _View:
             self.slab.set_data(across(self.wall), self.wall[:, 2])
 
 
-def _plan(figure: Figure, way: Float, room: dict[str, Any]) -> Line2D:
-    """Draw the room from above, range upwards; return the mark of where the body is."""
+def _pairs(parents: tuple[int | None, ...]) -> list[tuple[int, int]]:
+    """(parent, scatterer) of every bone."""
+    return [(parent, one) for one, parent in enumerate(parents) if parent is not None]
+
+
+def _plan(figure: Figure, ways: Float, room: dict[str, Any]) -> Line2D:
+    """Draw the room and the ways [person, M, 3] from above, range upwards.
+
+    Returns:
+        The marks of where everybody is.
+    """
     axes = figure.add_axes((0.535, 0.15, 0.08, 0.66))
     radar, wall = room["antennas"], room["wall"]
     axes.plot(-radar[:, 1], radar[:, 0], "^", color="black", markersize=4)
-    axes.plot(-way[:, 1], way[:, 0], color="0.6", linewidth=1)
-    across = np.abs(np.concatenate([way[:, 1], radar[:, 1]])).max() + 0.4
+    for way in ways:
+        axes.plot(-way[:, 1], way[:, 0], color="0.6", linewidth=1)
+    across = np.abs(np.append(ways[..., 1], radar[:, 1])).max() + 0.4
     if wall is not None:
         (x0, y0, _), (x1, y1, _) = wall[0], wall[1]
         y0, y1 = max(y0, -across), min(y1, across)
         axes.fill([-y0, -y1, -y1, -y0], [x0, x0, x1, x1], color="firebrick", linewidth=0)
     (here,) = axes.plot([], [], "o", color="tab:blue", markersize=6)
-    ends = np.concatenate([way[:, 0], radar[:, 0]])
+    ends = np.append(ways[..., 0], radar[:, 0])
     axes.set(xlim=(-across, across), ylim=(min(0.0, ends.min() - 0.2), ends.max() + 0.3))
     axes.set_title("from above", fontsize=9)
     axes.set_ylabel("range x (m)", fontsize=8, labelpad=1)

@@ -111,6 +111,10 @@ class _Remembered:
         """Positions [3, I, M] (m), which are not to be changed."""
         return self.kept("positions", t, lambda: self._motion.positions(t))
 
+    def torso(self, t: Float) -> Float:
+        """Positions [3, 1, M] (m), which are not to be changed."""
+        return self.kept("torso", t, lambda: self._motion.torso(t))
+
     def kept(self, name: object, t: Float, make: Callable[[], T]) -> T:
         """What was made for these times, or is made now."""
         key = (name, t.tobytes())

@@ -91,7 +91,9 @@ def board_products(c: Config, entropy: bool = True) -> Iterator[Product]:
     yield Product("cloud", ("cube", "board"), partial(_cloud, c), chain)
     yield Product("points", ("cloud",), lambda cloud: cloud.points, "of all frames")
     yield Product("points_start", ("cloud",), lambda cloud: cloud.start, "first of each frame")
-    yield Product("skeletons", ("motions", "board"), skeletons_of, "joints in each frame's middle")
+    yield Product(
+        "skeletons", ("scene", "motions", "board"), skeletons_of, "joints in each frame's middle"
+    )
     yield Product("skeleton", ("skeletons",), lambda s: s.positions, "positions of joints")
     yield Product("skeleton_velocity", ("skeletons",), lambda s: s.velocities, "their velocities")
     yield Product("points_person", ("cloud", "skeletons"), persons_of, "whose each point is")
@@ -206,13 +208,15 @@ def _cloud(c: Config, cube: Complex, board: Board) -> Cloud:
     return best_points(cube, board, still, cloud.pfa, carrier, detection.bias)
 
 
-def skeletons_of(motions: tuple[Motion, ...], board: Board) -> Skeletons:
-    """Joints of everybody; NaN where one has fewer than another."""
-    names = motions[0].names
-    shape = (board.frames, len(motions), len(names), 3)
+def skeletons_of(scene: Scene, motions: tuple[Motion, ...], board: Board) -> Skeletons:
+    """Joints of everybody; NaN of who is not there, and where one has fewer than another."""
+    names, people = motions[0].names, scene.people
+    numbers = [one.number for one in people] if len(people) == len(motions) else range(len(motions))
+    everybody = max(1 + len(scene.config.people), len(motions))
+    shape = (board.frames, everybody, len(names), 3)
     found = np.full((2, *shape), np.nan, np.float32)
     t = board.middles
-    for person, motion in enumerate(motions):
+    for person, motion in zip(numbers, motions, strict=True):
         before, at, after = (
             board.aim.to_radar(motion.positions(t + step))
             for step in (-VELOCITY_STEP_S, 0.0, VELOCITY_STEP_S)
@@ -227,7 +231,8 @@ def persons_of(cloud: Cloud, skeletons: Skeletons) -> Index:
     """Number of the person with the nearest joint [N]; -1 beyond NEAR_M."""
     frame = np.repeat(np.arange(len(cloud.start) - 1), np.diff(cloud.start))
     apart = skeletons.positions[frame] - cloud.points[:, None, None, :3]
-    distance = np.sqrt((apart**2).sum(axis=-1)).min(axis=2, initial=np.inf)  # [N, person]
+    square = np.nan_to_num((apart**2).sum(axis=-1), nan=np.inf)
+    distance = np.sqrt(square).min(axis=2, initial=np.inf)  # [N, person]
     nearest = distance.argmin(axis=1)
     person: Index = np.where(distance.min(axis=1) <= NEAR_M, nearest, -1).astype(np.int16)
     return person

@@ -5,13 +5,14 @@ from dataclasses import replace
 import numpy as np
 
 from radhar_cli.echo.paths import PathSource
-from radhar_cli.motion.protocol import Motion, Only
+from radhar_cli.motion.protocol import Motion, Only, remembered
 from radhar_cli.motion.reflectors import Reflectors
-from radhar_cli.motion.segments import covered, found_segments, landmarks_of
-from radhar_cli.pipeline.motion_paths import MotionPaths, SumOfPaths
+from radhar_cli.motion.segments import covered, found_segments, landmarks_of, thickness
+from radhar_cli.pipeline.motion_paths import MotionPaths, Shade, ShadowedPaths, SumOfPaths
 from radhar_cli.pipeline.physics import antennas_behind_mirror, body_of, frames_of
 from radhar_cli.pipeline.segment_paths import Points, SegmentPaths, draw_points, point_counts
 from radhar_cli.pipeline.surface_paths import SurfacePaths, draw_surface
+from radhar_cli.radar.person_shadow import HALF_WIDTH_M
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
@@ -31,26 +32,42 @@ def paths_of(
 ) -> PathSource:
     """The paths of everything in a scene: of what moves, and of what stands in the room.
 
-    With a wall behind them (`room.back_wall_m`) people are there twice, unless not `mirrored`.
+    People shadow each other, unless `body.shadowing` is false. With a wall behind them
+    (`room.back_wall_m`) they are there twice, unless not `mirrored`.
     """
-    sources: list[SegmentPaths | SurfacePaths | MotionPaths] = []
+    sources: list[PathSource] = []
+    direct: list[SegmentPaths | SurfacePaths | MotionPaths] = []
     people = scene.people
+    several = len(people) == len(motions) > 1 and scene.config.body.shadowing
+    if several:  # each is asked for their own echo and for their shadow on others
+        motions = tuple(map(remembered, motions))
+    shades = [shade_of(*one) for one in zip(people, motions, strict=True)] if several else []
     for number, motion in enumerate(motions):
+        theirs: list[SegmentPaths | SurfacePaths | MotionPaths] = []
         rest: Motion | None = motion
         if scene.config.body.scatterers != "points":
             whose = people[min(number, len(people) - 1)]
             make = segment_paths if scene.config.body.scatterers == "segments" else surface_paths
-            parts = make(whose, motion, antennas, wall, waveform, number)
-            sources += [parts] if parts else []
+            parts = make(whose, motion, antennas, wall, waveform, 0 if several else number)
+            theirs += [parts] if parts else []
             rest = _without_segments(motion)
         if rest is not None:
-            sources.append(MotionPaths(rest, antennas, waveform.fc, wall))
+            theirs.append(MotionPaths(rest, antennas, waveform.fc, wall))
+        direct += theirs
+        others = tuple(shade for at, shade in enumerate(shades) if at != number)
+        sources += [ShadowedPaths(one, others, waveform.fc) if others else one for one in theirs]
     behind = antennas_behind_mirror(scene.config, antennas) if mirrored else None
     if behind is not None:
-        sources += [replace(source, antennas=behind) for source in sources]
+        sources += [replace(source, antennas=behind) for source in direct]
     if room is not None:
         sources.append(MotionPaths(room, antennas, waveform.fc, wall))
     return sources[0] if len(sources) == 1 else SumOfPaths(tuple(sources))
+
+
+def shade_of(person: Person, motion: Motion) -> Shade:
+    """What a person hides others with."""
+    stature, weight = person.subject.height_m, person.subject.weight_kg
+    return Shade(motion, HALF_WIDTH_M * thickness(stature, weight), stature)
 
 
 def segment_paths(

@@ -1,13 +1,15 @@
 """Motion, antennas and wall -> paths, one a scatterer."""
 
 from dataclasses import dataclass
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from radhar_cli.arrays import Float
+from radhar_cli.arrays import Float, Index
 from radhar_cli.echo.paths import Paths, PathSource
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.motion.reflectors import Reflectors
+from radhar_cli.radar.person_shadow import left_of, light_past
 from radhar_cli.radar.propagation import Antennas, amplitude, bistatic_delay, leg
 from radhar_cli.radar.transmission import transmission, wall_delay
 from radhar_cli.radar.wall import Wall
@@ -38,6 +40,11 @@ class MotionPaths:
         """Paths kink where a leg passes an edge of the wall."""
         return self.wall is None
 
+    def places(self, t: Float) -> tuple[Float, Index]:
+        """Positions [3, I, M] (m) that shadows fall on, and which of them each path has [I]."""
+        p = self.motion.positions(t)
+        return p, np.arange(p.shape[1])
+
     def __call__(self, t: Float) -> Paths:
         """Paths of the scatterers at times t [M] (s)."""
         p, sigma = self.motion.positions(t), self.motion.cross_sections(t)
@@ -52,6 +59,59 @@ class MotionPaths:
                 tau += through.delay
                 a *= through.factor
         return Paths(tau, a)
+
+
+class Placed(PathSource, Protocol):
+    """Paths that say where they end."""
+
+    @property
+    def antennas(self) -> Antennas: ...
+    def places(self, t: Float) -> tuple[Float, Index]: ...
+
+
+class Shade(NamedTuple):
+    """What throws a person's shadow (`radar/person_shadow.py`)."""
+
+    motion: Motion
+    half_width: float  # m
+    top: float  # m
+
+
+@dataclass(frozen=True)
+class ShadowedPaths:
+    """The paths of one person, weakened where others stand in their way."""
+
+    source: Placed
+    shades: tuple[Shade, ...]
+    fc: float  # carrier, Hz
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Instants (s) at which any of the people does not move smoothly."""
+        others = (at for shade in self.shades for at in shade.motion.breakpoints)
+        return tuple(sorted({*self.source.breakpoints, *others}))
+
+    @property
+    def highest_frequency(self) -> float:
+        """Of the fastest of them, Hz."""
+        others = (shade.motion.highest_frequency for shade in self.shades)
+        return max(self.source.highest_frequency, *others)
+
+    @property
+    def smooth(self) -> bool:
+        """As the source's own paths."""
+        return self.source.smooth
+
+    def __call__(self, t: Float) -> Paths:
+        """Paths of the source at times t [M] (s)."""
+        paths, (p, which) = self.source(t), self.source.places(t)
+        left, wavelength = np.ones(p.shape[1:]), SPEED_OF_LIGHT / self.fc
+        for shade in self.shades:
+            place, legs = shade.motion.torso(t), np.ones(p.shape[1:])
+            for antenna in (self.source.antennas.tx, self.source.antennas.rx):
+                legs *= light_past(p, antenna, place, shade.half_width, shade.top, wavelength)
+            left *= left_of(legs)
+        return Paths(paths.delay, paths.amplitude * left[which])
 
 
 @dataclass(frozen=True)

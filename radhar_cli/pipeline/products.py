@@ -136,7 +136,7 @@ def _physics(c: Config) -> Iterator[Product]:
         w: Waveform,
     ) -> PathSource:
         through = None if c.snr_reference == "free_space" else wall
-        return paths_of(scene, motions, antennas, through, w, mirrored=False)
+        return paths_of(scene, motions[:1], antennas, through, w, mirrored=False)
 
     def torso_track(
         motions: tuple[Motion, ...], antennas: Antennas, wall: Wall | None, w: Waveform
@@ -166,9 +166,10 @@ def _physics(c: Config) -> Iterator[Product]:
 
 
 def _snr_of_other_paths(c: Config) -> bool:
-    """Whether the SNR refers to another echo than the simulated: no wall, or no room."""
+    """Whether the SNR refers to another echo than the simulated: no wall, no room, nobody else."""
     no_wall = c.wall is not None and c.snr_reference == "free_space"
-    return no_wall or bool(c.room.reflectors) or c.room.back_wall_m is not None
+    others = c.room.reflectors or c.people
+    return no_wall or bool(others) or c.room.back_wall_m is not None
 
 
 def _echo(c: Config) -> Iterator[Product]:

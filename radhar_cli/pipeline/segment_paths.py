@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Bool, Float
+from radhar_cli.arrays import Bool, Float, Index
 from radhar_cli.echo.paths import Paths
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.motion.segments import Placed, Segment, cross, place, soft_unit
@@ -151,6 +151,13 @@ class SegmentPaths:
     @cached_property
     def _coefficients(self) -> list[Float]:
         return [points.coefficients for points in self.points]
+
+    def places(self, t: Float) -> tuple[Float, Index]:
+        """Middles [3, S, M] (m) of the segments, and that of each path [I]."""
+        counts = [self.points[s].share.size for s in self.kept]
+        return Frames.of(self.body.at(t)).centre[:, list(self.kept)], np.repeat(
+            np.arange(len(counts)), counts
+        )
 
     def __call__(self, t: Float) -> Paths:
         """Paths of the points at times t [M] (s), segment by segment."""

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Complex, Float
+from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.echo.paths import Paths
 from radhar_cli.motion.protocol import recalled
 from radhar_cli.motion.segments import REFERENCE_STATURE, cross, soft_unit, unit
@@ -95,6 +95,11 @@ class SurfacePaths:
     def smooth(self) -> bool:
         """Paths kink where a leg passes an edge of the wall."""
         return self.wall is None
+
+    def places(self, t: Float) -> tuple[Float, Index]:
+        """Middles [3, S, M] (m) of the segments, and that of each path [I]."""
+        placed, segment = self.body.at(t), self.drawn.segment
+        return 0.5 * (placed.start + placed.end), segment[np.isin(segment, self.kept)]
 
     def __call__(self, t: Float) -> Paths:
         """Paths of the points at times t [M] (s)."""

@@ -31,7 +31,7 @@ from radhar_cli.radar.propagation import Antennas, bistatic_delay, leg
 from radhar_cli.radar.transmission import transmission
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
-from radhar_cli.scene import Numbers, Person, Scene, draw_scene, nominal_scene
+from radhar_cli.scene import MAX_PLACES, Numbers, Person, Scene, draw_scene, nominal_scene
 
 MIN_DISTANCE_M = 0.05
 LEAST_SNR_DB = -80.0  # of a raw sample; compression and windows gain less than that
@@ -40,6 +40,8 @@ GRID_HZ = 50.0
 GRID_PER_CYCLE = 40
 ANTENNA_KEYS = {"transmitter": "radar.tx_m", "receiver": "radar.rx_m"}
 MAX_ATTEMPTS = 1000
+TORSOS_APART_M = 0.5
+ROOM = "motion.range_m and motion.cross_range_m of people should leave room"
 CHUNK = 65536
 GRID_CHUNK = 16384
 FLOOR_MARGIN_M = 1e-3  # for rounding, and the paper's ankles in the floor
@@ -234,11 +236,12 @@ def draw_valid_scene(config: Config, activity: Activity, index: int) -> tuple[Sc
 
     Raises:
         SceneError: a scatterer too close to an antenna (unless redrawn), any scene outside the
-            model under `on_invalid: error`, or no valid scene in 1000 redraws.
+            model under `on_invalid: error`, no valid scene in 1000 redraws, or no place for one of
+            `people`.
     """
     check: SceneCheck | None = None
     for attempt in range(MAX_ATTEMPTS if config.on_invalid == "redraw" else 1):
-        scene = draw_scene(config, activity, index, attempt)
+        scene = _drawn_apart(config, activity, index, attempt)
         check = check_scene(scene)
         if check.invalid is None or (config.on_invalid == "keep" and not check.too_close):
             return scene, check.flags
@@ -252,6 +255,43 @@ def draw_valid_scene(config: Config, activity: Activity, index: int) -> tuple[Sc
         f"sample {activity.slug}/{index}: {check.invalid} (on_invalid: {config.on_invalid}); "
         f"{_cure(config, check)}"
     )
+
+
+def _drawn_apart(config: Config, activity: Activity, index: int, attempt: int) -> Scene:
+    """One draw of a scene, in which others are drawn again until nobody is too near to them."""
+    again = [0] * len(config.people)
+    while True:
+        scene = draw_scene(config, activity, index, attempt, tuple(again))
+        number = too_near(scene)
+        if number is None:
+            return scene
+        again[number - 1] += 1
+        if again[number - 1] > MAX_PLACES:
+            raise SceneError(f"{_crowded(scene, number)} in {MAX_PLACES} draws; {ROOM}")
+
+
+def too_near(scene: Scene) -> int | None:
+    """The first of `people` whose torso comes within TORSOS_APART_M of another's, horizontally.
+
+    Compared 50 times a second. None where nobody does, or where no body can do what is drawn.
+    """
+    if len(scene.people) == 1:
+        return None
+    seconds = scene.people[0].seconds
+    t, torsos = np.linspace(0, seconds, int(GRID_HZ * seconds) + 2), list[Float]()
+    for person in scene.people:
+        try:
+            torso = motion_of(person).torso(t)[:2, 0]
+        except OutOfReachError:
+            return None
+        if any(np.hypot(*(torso - other)).min() < TORSOS_APART_M for other in torsos):
+            return person.number
+        torsos.append(torso)
+    return None
+
+
+def _crowded(scene: Scene, number: int) -> str:
+    return f"{scene.name}: people.{number - 1} comes within {TORSOS_APART_M} m of another person"
 
 
 def _cure(config: Config, check: SceneCheck) -> str:
@@ -300,6 +340,9 @@ def scene_warnings(scene: Scene) -> list[str]:
     Raises:
         SceneError: a scatterer comes within 5 cm of an antenna.
     """
+    number = too_near(scene)
+    if number is not None:
+        raise SceneError(f"{_crowded(scene, number)}; {ROOM}")
     check = check_scene(scene)
     if check.too_close:
         raise SceneError(f"{scene.name}: {check.invalid}; {_cure(scene.config, check)}")

@@ -15,12 +15,14 @@ from radhar_cli.config.motion_files import alone
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import FolderError, UnfinishedError
 from radhar_cli.motion.files.motion import FileMotion
+from radhar_cli.motion.protocol import Motion
 from radhar_cli.new_hdf5 import new_hdf5
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.replacing import UNFINISHED, replacing, write_text
 from radhar_cli.scene import Scene, scene_numbers
 from radhar_cli.simulation.board_file import write_frames
 from radhar_cli.simulation.simulate import Simulation
+from radhar_cli.simulation.truth import Truth
 
 SCENE_FILE = "scene.h5"
 SCENE_JSON = "scene.json"
@@ -84,23 +86,31 @@ def _float32(power: np.ndarray[Any, Any]) -> np.ndarray[Any, np.dtype[np.float32
 
 
 def _write_truth(file: h5py.File, simulation: Simulation) -> None:
-    truth = simulation.truth
-    file["truth/time"] = truth.time
-    file["truth/time"].attrs["unit"] = "s"
-    file["truth/positions"] = truth.positions
-    file["truth/positions"].attrs["unit"] = "m"
-    file["truth/positions"].attrs["axes"] = ["pulse", "joint", "x y z"]
+    _write_person(file.create_group("truth"), simulation.truth, simulation.motion)
+    for person, motion, truth in simulation.others:
+        group = file.create_group(f"truth/person_{person.number}")
+        group.attrs["activity"] = person.activity.slug
+        _write_person(group, truth, motion)
+
+
+def _write_person(group: h5py.Group, truth: Truth, motion: Motion) -> None:
+    """Write the truth of one person."""
+    group["time"] = truth.time
+    group["time"].attrs["unit"] = "s"
+    group["positions"] = truth.positions
+    group["positions"].attrs["unit"] = "m"
+    group["positions"].attrs["axes"] = ["pulse", "joint", "x y z"]
     if truth.hip_joints is not None:
-        file["truth/hip_joints"] = truth.hip_joints
-        file["truth/hip_joints"].attrs["unit"] = "m"
-        file["truth/hip_joints"].attrs["axes"] = ["pulse", "right left", "x y z"]
-    file["truth/radial_velocity"] = truth.radial_velocity
-    file["truth/radial_velocity"].attrs["unit"] = "m/s, positive receding"
-    file["truth/doppler"] = truth.doppler
-    file["truth/doppler"].attrs["unit"] = "Hz, positive approaching, before aliasing"
-    file["truth/phase_label"] = truth.phase_label
-    file["truth/phase_label"].attrs["meaning"] = list(truth.phases)
-    file["truth"].attrs["joints"] = list(simulation.motion.names)
+        group["hip_joints"] = truth.hip_joints
+        group["hip_joints"].attrs["unit"] = "m"
+        group["hip_joints"].attrs["axes"] = ["pulse", "right left", "x y z"]
+    group["radial_velocity"] = truth.radial_velocity
+    group["radial_velocity"].attrs["unit"] = "m/s, positive receding"
+    group["doppler"] = truth.doppler
+    group["doppler"].attrs["unit"] = "Hz, positive approaching, before aliasing"
+    group["phase_label"] = truth.phase_label
+    group["phase_label"].attrs["meaning"] = list(truth.phases)
+    group.attrs["joints"] = list(motion.names)
 
 
 def describe(simulation: Simulation) -> dict[str, Any]:
@@ -109,6 +119,7 @@ def describe(simulation: Simulation) -> dict[str, Any]:
     return {
         "activity": {"label": scene.activity.label, "slug": scene.activity.slug},
         "seed": scene.config.seed,
+        "people": [one.person.activity.slug for one in simulation.others],
         "motion_file": _motion_file(simulation),
         "joint": simulation.joint,
         "engine": _engine(simulation),

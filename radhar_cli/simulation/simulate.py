@@ -1,8 +1,9 @@
 """Simulate one scene: every map, every signal, the truth behind them."""
 
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -34,7 +35,7 @@ from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.receiver.impairment import Impairment
-from radhar_cli.scene import Scene, draw_scene, nominal_scene
+from radhar_cli.scene import Person, Scene, draw_scene, nominal_scene
 from radhar_cli.simulation.truth import Truth, truth
 
 # {what may be asked for of a board: the products behind it}
@@ -43,6 +44,14 @@ FRAMES = {
     "points": ("cloud", "skeletons", "points_person"),
     "cube": ("cube",),
 }
+
+
+class Other(NamedTuple):
+    """Somebody else in a scene."""
+
+    person: Person
+    motion: Motion
+    truth: Truth
 
 
 @dataclass(frozen=True)
@@ -64,6 +73,7 @@ class Simulation:
         board: the board, or None.
         frames: what its frames gave: {map name: FrameMaps}, and `cube`, `cloud`, `skeletons`,
             `points_person` where asked for.
+        others: in the scene besides the sample's own person.
     """
 
     scene: Scene
@@ -81,6 +91,7 @@ class Simulation:
     beat: Complex | None = None
     board: Board | None = None
     frames: dict[str, Any] = field(default_factory=dict, repr=False)
+    others: list[Other] = field(default_factory=list, repr=False)
 
     @property
     def config(self) -> Config:
@@ -110,7 +121,7 @@ def simulate(
         seed: instead of the config's.
         index: number of the sample within its class.
         nominal: take the middle of every range instead of drawing.
-        joint: keep this scatterer alone.
+        joint: keep this scatterer of the sample's own person alone.
         maps: which to compute; None is all that the config allows.
         raw: compute the raw beat matrix too, static returns included.
 
@@ -135,7 +146,7 @@ def simulate(
     config = config.model_copy(update={"maps": maps, **({} if seed is None else {"seed": seed})})
     scene = scene_of(config, activity, index, nominal)
     warnings = scene_warnings(scene)
-    motion = motion_of(scene.people[0])
+    motion, *others = map(motion_of, scene.people)
     kept = motion if joint is None else Only(motion, (_joint(joint, motion.names),))
     board = config.radar.cfg is not None
     frames = [product for name in maps for product in FRAMES.get(name, ())]
@@ -146,7 +157,13 @@ def simulate(
     asked += ["board"] if board else []
     asked += ["accuracy"] if config.engine.kind == "direct" else []
     asked += ["raw_echo"] if raw and not board else []
-    recorded = record(scene, asked, [RAW_ECHO], motions=(kept,))
+    recorded = record(scene, asked, [RAW_ECHO], motions=(kept, *(others if joint is None else ())))
+    true = partial(
+        truth,
+        antennas=recorded["antennas"],
+        wall=recorded["wall"],
+        waveform=recorded["waveform"],
+    )
     accuracy: EchoAccuracy | None = recorded.products.get("accuracy")
     if isinstance(accuracy, Fallback):
         warnings.append(f"computed by the cube (engine.fallback): {accuracy.reason}")
@@ -163,7 +180,11 @@ def simulate(
         signals={
             name.removeprefix("signal").lstrip("_") or "raw": recorded[name] for name in signals
         },
-        truth=truth(motion, recorded["antennas"], recorded["wall"], recorded["waveform"]),
+        truth=true(motion),
+        others=[
+            Other(person, one, true(one))
+            for person, one in zip(scene.people[1:], others, strict=True)
+        ],
         warnings=warnings,
         seconds=recorded.seconds,
         accuracy=accuracy if isinstance(accuracy, Accuracy) else None,
@@ -181,7 +202,7 @@ def scene_of(config: Config, activity: Activity, index: int, nominal: bool) -> S
     """
     if nominal:
         return nominal_scene(config, activity)
-    if config.on_invalid == "redraw":
+    if config.on_invalid == "redraw" or config.people:
         return draw_valid_scene(config, activity, index)[0]
     return draw_scene(config, activity, index)
 

@@ -68,6 +68,7 @@ def _table(data: Dataset, name: str, here: list[Entry], schema: pa.Schema) -> pa
         images,
         [entry.number for entry in here],
         [entry.place for entry in here],
+        *([[entry.labels for entry in here]] if data.config.people else []),
         *([None if v != v else v for v in values] for values in numbers),
     ]
     arrays = [pa.array(c, f.type) for c, f in zip(columns, schema, strict=True)]

@@ -28,6 +28,7 @@ def write(data: Dataset, folder: Path, progress: Progress) -> None:
                     key = f"{entry.label}-{rows.name(entry.row)}"
                     values = (None if value != value else value for value in entry.values)
                     about = {"label": entry.label, "index": entry.place}
+                    about |= {"labels": entry.labels} if data.config.people else {}
                     about |= dict(zip(names, values, strict=True))
                     for name in data.config.maps:
                         _add(tar, f"{key}.{name}.png", checked_png(data, table, name, entry.row))

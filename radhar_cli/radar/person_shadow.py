@@ -2,7 +2,7 @@
 
 Fitted to an absorbing screen (Kirchhoff's integral), whose fringes no interpolation in time could
 follow: half-power edges of an echo lie within 4 cm of the screen's from 2 to 77 GHz, and in the
-middle of the shadow 0.5 dB above to 10 dB below it is left (`tests/radar/test_person_shadow.py`).
+middle of the shadow an echo is 0.8 dB stronger to 10 dB weaker (`tests/radar/test_person_shadow.py`).
 """
 
 import numpy as np

@@ -8,6 +8,8 @@ import typer
 from radhar_cli.commands.learning_options import Classes, Device, Resize, Split, TrainedMap
 from radhar_cli.commands.tell import report, tell
 
+SCORES = ("accuracy", "mean_average_precision", "mpjpe_cm")
+
 
 def evaluate(
     paths: Annotated[
@@ -76,7 +78,7 @@ def evaluate(
     found: dict[str, dict[str, dict[str, float]]] = {}
     for run, about in evaluation.numbers["runs"].items():
         for tested, numbers in about["data"].items():
-            score = "accuracy" if "accuracy" in numbers else "mpjpe_cm"
+            score = next(one for one in SCORES if one in numbers)
             found.setdefault(score, {}).setdefault(run, {})[tested] = numbers[score]
     report(page=folder / "report.html", numbers=folder / "report.json", **found)
     tell(f"{folder / 'report.html'}: {len(evaluation.figures)} figures; numbers in report.json")

@@ -42,7 +42,10 @@ def train(
         ),
     ] = None,
     target: Annotated[
-        str | None, typer.Option(help="classes, or skeleton: the joints in every frame.")
+        str | None,
+        typer.Option(
+            help="classes, labels (of everybody), count (of people), or skeleton (joints)."
+        ),
     ] = None,
     init: Annotated[
         Path | None, typer.Option(help="A run whose best weights are the initial ones.")

@@ -226,3 +226,17 @@ def robustness_png(lines: Mapping[str, Sequence[Point]]) -> bytes:
     axes.grid(alpha=0.3)
     figure.legend(loc="outside right center", fontsize=8)
     return png_bytes(figure)
+
+
+def bars_png(names: Sequence[str], values: Sequence[float], quantity: str, title: str) -> bytes:
+    """Draw a bar for every name."""
+    figure = page(6.0, 0.8 + 0.26 * len(names))
+    axes = figure.subplots()
+    places = range(len(names))
+    axes.barh(places, values, color="C0")
+    axes.set_yticks(places, [name.replace("_", " ") for name in names], fontsize=8)
+    axes.invert_yaxis()
+    axes.set_xlabel(quantity)
+    axes.grid(axis="x", alpha=0.3)
+    axes.set_title(title, fontsize=9)
+    return png_bytes(figure)

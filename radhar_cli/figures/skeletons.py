@@ -40,17 +40,3 @@ def skeletons_png(
     grid[0, 0].legend(fontsize=6)
     figure.suptitle(title, fontsize=9)
     return png_bytes(figure)
-
-
-def joint_errors_png(names: Sequence[str], errors: Float, title: str) -> bytes:
-    """Draw the mean error of every joint [joint], cm, as bars."""
-    figure = page(6.0, 0.6 + 0.26 * len(names))
-    axes = figure.subplots()
-    places = np.arange(len(names))
-    axes.barh(places, errors, color="C0")
-    axes.set_yticks(places, [name.replace("_", " ") for name in names], fontsize=8)
-    axes.invert_yaxis()
-    axes.set_xlabel("mean distance between found and true joint (cm)")
-    axes.grid(axis="x", alpha=0.3)
-    axes.set_title(title, fontsize=9)
-    return png_bytes(figure)

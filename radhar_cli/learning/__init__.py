@@ -8,11 +8,11 @@ The only package that imports PyTorch; `pip install 'radhar[train]'` installs it
     models/         one network per file; zoo: those of timm
     machine         device, precision, micro batch, reading processes
     process_group   several processes that train one network
-    gradient_step   learning rate, gradient, update; targets: the loss of classes and of skeletons
+    gradient_step   learning rate, gradient, update; targets: losses of what is learned
     training        epochs, validation, the best one, resuming; starting_point: --init
     run_folder      the files of a run, and how they are read safely; run_summary, event_files
     evaluation      probabilities, features and speed; metrics: how good they are
-    report          `radhar eval`: single_result or skeleton_result fills it, report_files writes it
+    report          `radhar eval`: single_result, labels_result, skeleton_result fill it
     adaptation      batch norm fitted to unlabelled images
     stream          samples for a PyTorch DataLoader, synthesised in its workers; sequences: stored
     onnx_export     the network without PyTorch

@@ -119,6 +119,8 @@ def adapt_to(
     history = run_folder.read_history(run)
     if not any(isinstance(layer, _BatchNorm) for layer in model.modules()):
         raise ConfigError(f"{run}: the network {metadata.model} has no batch norm to adapt")
+    if metadata.settings.target == "labels":
+        raise ConfigError(f"{run}: finds several labels at a time; should be a run of classes")
     if rows.size < MIN_IMAGES:
         raise ConfigError(
             f"{images.where}: has {rows.size} images; should have at least {MIN_IMAGES}"

@@ -75,7 +75,8 @@ def open_for(
         )
     if labelled:
         refuse_mistyped(names or {}, metadata.classes)
-        images = known_to(images.renamed(names or {}), metadata.classes)
+        images = images.renamed(names or {}).learned_as(metadata.settings.target)
+        images = known_to(images, metadata.classes)
         if images.split is None:
             with suppress(FolderError):
                 cut = images.cut(metadata.settings.validation_share, metadata.settings.seed)
@@ -151,7 +152,8 @@ def predict_batches(
                     f"the network {metadata.model} trained on {metadata.data['path']}: its logits "
                     "are not finite; its weights or its mean and sd are damaged"
                 )
-            yield logits.softmax(1).cpu().numpy(), features.cpu().numpy()
+            each = logits.sigmoid() if metadata.settings.target == "labels" else logits.softmax(1)
+            yield each.cpu().numpy(), features.cpu().numpy()
 
 
 def predict(

@@ -12,7 +12,7 @@ from radhar_cli.learning.batches import Normalisation
 from radhar_cli.learning.machine import ExecutionPlan, autocast
 from radhar_cli.learning.process_group import Group
 from radhar_cli.learning.settings import TrainConfig
-from radhar_cli.learning.targets import class_loss, skeleton_loss
+from radhar_cli.learning.targets import class_loss, labels_loss, skeleton_loss
 
 _ADAM = {"step", "exp_avg", "exp_avg_sq"}
 
@@ -96,6 +96,8 @@ class TrainStep:
             outputs: Tensor = network(x)
         if self.config.target == "skeleton":
             return skeleton_loss(outputs.float(), wanted)
+        if self.config.target == "labels":
+            return labels_loss(outputs.float(), wanted)
         return class_loss(outputs.float(), wanted, self.config.label_smoothing)
 
     def step(

@@ -77,7 +77,7 @@ def evaluate(
             numbers = evaluate_one(report, run, data_name, eval_set, stem, options, device)
             results[data_name] = numbers
             progress.say(f"  {data_name}, {numbers['split']}: {_found(numbers)}")
-            if not run.metadata.finds_joints:
+            if "accuracy" in numbers:
                 interval = numbers["accuracy_95"]
                 point = Point(data_name, eval_set.images.snr_db, numbers["accuracy"], *interval)
                 lines.setdefault(run.name, []).append(point)
@@ -116,6 +116,11 @@ def _found(numbers: Mapping[str, Any]) -> str:
             f"mean absolute error {numbers['mean_absolute_error_cm']:.2f} cm, MPJPE "
             f"{numbers['mpjpe_cm']:.2f} cm (the mean pose in its place {in_place:.2f} cm), "
             f"{numbers['frames']} frames"
+        )
+    if "mean_average_precision" in numbers:
+        return (
+            f"mean average precision {100 * numbers['mean_average_precision']:.2f} %, all labels "
+            f"right in {100 * numbers['exact_match']:.2f} % of {numbers['images']}"
         )
     low, high = numbers["accuracy_95"]
     return (

@@ -39,6 +39,9 @@ figure { margin: 1.2rem 0; } img { max-width: 100%; } figcaption { color: #555; 
 mean absolute error {{ "%.2f" | format(r.mean_absolute_error_cm) }} cm, MPJPE
 {{ "%.2f" | format(r.mpjpe_cm) }} cm (the mean pose in its place
 {{ "%.2f" | format(r.mpjpe_of_the_mean_pose_in_place_cm) }} cm), {{ r.frames }} frames.</p>
+{% elif r.exact_match is defined %}<p>{{ name }} on {{ data }}, {{ r.split }}, {{ r.map }}:
+mean average precision {{ "%.2f" | format(100 * r.mean_average_precision) }} %, all labels right in
+{{ "%.2f" | format(100 * r.exact_match) }} % of {{ r.images }} images.</p>
 {% endif %}{% if r.seen_in_training.images or r.seen_in_training.scenes %}
 <p class="warning">{{ name }} on {{ data }}: {{ r.seen_in_training.images }} of {{ r.images }}
 images, and the person and motion of {{ r.seen_in_training.scenes }}, were trained on.</p>
@@ -66,6 +69,13 @@ images, and the person and motion of {{ r.seen_in_training.scenes }}, were train
 <table><tr><th>joint</th><th>MPJPE (cm)</th><th>ahead</th><th>left</th><th>up</th></tr>
 {% for joint, c in r.joints.items() %}<tr><td>{{ joint }}</td>
 {% for cm in c.values() %}<td>{{ "%.2f" | format(cm) }}</td>{% endfor %}</tr>{% endfor %}</table>
+{% elif r.exact_match is defined %}
+<table><tr><th>label</th><th>images</th><th>average precision</th></tr>
+{% for class, c in r.classes.items() %}<tr><td>{{ class }}</td><td>{{ c.images }}</td>
+<td>{{ "%.4f" | format(c.average_precision) }}</td></tr>{% endfor %}</table>
+<table><tr><th>people</th><th>images</th><th>all labels right (%)</th></tr>
+{% for count, c in r.people.items() %}<tr><td>{{ count }}</td><td>{{ c.images }}</td>
+<td>{{ "%.2f" | format(100 * c.exact_match) }}</td></tr>{% endfor %}</table>
 {% else %}
 <table><tr><th>class</th><th>images</th><th>precision</th><th>recall</th><th>F1</th></tr>
 {% for class, c in r.classes.items() %}<tr><td>{{ class }}</td><td>{{ c.images }}</td>

@@ -24,7 +24,7 @@ def _auto_or(least: int) -> BeforeValidator:
 STEPS_AN_EPOCH, SMALLEST_BATCH, LARGEST_BATCH = 24, 4, 128  # of batch_size: auto
 
 Auto = Literal["auto"] | int
-Target = Literal["classes", "skeleton"]
+Target = Literal["classes", "labels", "count", "skeleton"]
 Kind = Literal["rgb", "gray", "frames", "clouds"]
 OF_SEQUENCES: dict[str, Kind] = {"framenet": "frames", "cloudnet": "clouds"}
 Count = Annotated[int, Field(ge=1, le=1_000_000, strict=True)]
@@ -104,7 +104,8 @@ class TrainConfig(Section):
     model: Annotated[str, Field(min_length=1)] = "smallnet"
     """smallnet, the paper's network fftnet, any name of timm's; of sequences framenet, cloudnet."""
     target: Target = "classes"
-    """Or skeleton, of sequences: the joints in every frame."""
+    """The own person's class; labels: what anybody does; count: how many people; skeleton, of
+    sequences: the joints in every frame."""
     map: str | None = None
     """Which map; null is the first one."""
     input: Literal["rgb", "gray"] = "rgb"

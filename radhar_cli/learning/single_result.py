@@ -23,6 +23,7 @@ from radhar_cli.learning import metrics
 from radhar_cli.learning.evaluation import Predictions, open_for, predict, rows_of
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.scan import scan
+from radhar_cli.learning.labels_result import evaluate_labels
 from radhar_cli.learning.models.fftnet import NAME
 from radhar_cli.learning.report_files import Report
 from radhar_cli.learning.report_folder import csv_text
@@ -138,6 +139,8 @@ def evaluate_one(
         return evaluate_skeletons(report, *joints, images, rows, stem, title) | about
     predictions = predict(*asked)
     names = run.metadata.classes
+    if run.metadata.settings.target == "labels":
+        return evaluate_labels(report, predictions, names, stem, title) | about
     numbers = metrics.summary(predictions.truth, predictions.probabilities, names) | about
     shown = _Shown(report, predictions, names, stem, title)
     counts, right = np.array(numbers["confusion"]), 100 * numbers["accuracy"]

@@ -6,7 +6,8 @@ import numpy as np
 import torch
 
 from radhar_cli.arrays import Float, Index
-from radhar_cli.figures.skeletons import joint_errors_png, skeletons_png
+from radhar_cli.figures.evaluation import bars_png
+from radhar_cli.figures.skeletons import skeletons_png
 from radhar_cli.learning.batches import Reader, pieces
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.report_files import Report
@@ -16,6 +17,7 @@ from radhar_cli.learning.targets import NEAR_M
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
 
 AXES = ("ahead", "left", "up")
+DISTANCE = "mean distance between found and true joint (cm)"
 SHOWN = 6  # skeletons of the figure
 
 
@@ -91,7 +93,7 @@ def evaluate_skeletons(
         },
     }
     caption = f"Error of each joint, mean distance, {title}."
-    report.figure(f"joints{stem}.png", caption, joint_errors_png(names, by_joint, title))
+    report.figure(f"joints{stem}.png", caption, bars_png(names, by_joint.tolist(), DISTANCE, title))
     places = np.argwhere(there)[np.linspace(0, there.sum() - 1, SHOWN).astype(int)]
     pairs = [
         (true[row, frame], found[row, frame], f"{images.names[rows[row]]}, frame {frame}")

@@ -1,11 +1,21 @@
-"""What a network learns of an input: its class, or the joints of the person in every frame."""
+"""What a network learns of an input: classes, or the joints of the person in every frame."""
 
 from torch import Tensor
-from torch.nn.functional import cross_entropy
+from torch.nn.functional import binary_cross_entropy_with_logits, cross_entropy
 
 NEAR_M = 0.15  # joints found within it count as found
-SCORES = {"classes": "accuracy", "skeleton": "joints within 15 cm"}
-LOSSES = {"classes": "label-smoothed cross-entropy", "skeleton": "mean absolute error, m"}
+SCORES = {
+    "classes": "accuracy",
+    "count": "accuracy",
+    "labels": "all labels right",
+    "skeleton": "joints within 15 cm",
+}
+LOSSES = {
+    "classes": "label-smoothed cross-entropy",
+    "count": "label-smoothed cross-entropy",
+    "labels": "binary cross-entropy",
+    "skeleton": "mean absolute error, m",
+}
 
 
 def class_loss(logits: Tensor, label: Tensor, smoothing: float) -> tuple[Tensor, float]:
@@ -15,6 +25,18 @@ def class_loss(logits: Tensor, label: Tensor, smoothing: float) -> tuple[Tensor,
     """
     loss = cross_entropy(logits, label, label_smoothing=smoothing, reduction="sum")
     return loss, int((logits.argmax(1) == label).sum())
+
+
+def labels_loss(logits: Tensor, shown: Tensor) -> tuple[Tensor, float]:
+    """Sum over a batch of the mean binary cross-entropy, and of inputs with all labels right.
+
+    Args:
+        logits: [B, classes].
+        shown: as that, 1 for what anybody does, else 0.
+    """
+    wanted = shown.to(logits.dtype)
+    loss = binary_cross_entropy_with_logits(logits, wanted, reduction="none").mean(1)
+    return loss.sum(), int(((logits > 0) == (shown > 0)).all(1).sum())
 
 
 def skeleton_loss(found: Tensor, joints: Tensor) -> tuple[Tensor, float]:

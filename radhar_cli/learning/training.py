@@ -141,6 +141,8 @@ def train(
         images = checked_images(config, data, names)
     elif config.model in OF_SEQUENCES:
         raise ConfigError(f"model {config.model}: reads sequences; --stream makes images")
+    elif config.target != "classes":
+        raise ConfigError(f"target = {config.target}: is of stored data; --stream has classes")
     else:
         paths = [data] if isinstance(data, Path) else list(data)
         device = choose_device(config.device)
@@ -208,13 +210,16 @@ def checked_images(
         )
         for path in paths
     ]
-    images, path = joined(sets), " and ".join(map(str, paths))
+    images, path = joined(sets).learned_as(config.target), " and ".join(map(str, paths))
     if config.target == "skeleton":
         images.rows("val"), images.rows("train")
         return images
     if len(images.classes) < 2:
         raise FolderError(f"{path}: has the class {images.classes[0]!r} alone; should have two")
-    learned = set(images.label[images.rows("train")].tolist())
+    rows = images.rows("train")
+    learned = set(images.label[rows].tolist())
+    if config.target == "labels":
+        learned = set(np.flatnonzero(images.shows(images.classes)[rows].any(0)).tolist())
     for index, name in enumerate(images.classes):
         if index not in learned:
             raise FolderError(f"{path}: the class {name!r} has no training image")
@@ -491,7 +496,13 @@ class _Training:
 
 def _wanted(task: Task) -> Labels:
     """What is to be learned of each row."""
-    return task.images.skeletons if task.config.target == "skeleton" else task.images.label
+    images = task.images
+    match task.config.target:
+        case "skeleton":
+            return images.skeletons
+        case "labels":
+            return images.shows(images.classes)
+    return images.label
 
 
 def _metadata(

@@ -1,8 +1,8 @@
 """The shadow that one person throws on another: an upright obstacle with soft edges.
 
 Fitted to an absorbing screen (Kirchhoff's integral), whose fringes no interpolation in time could
-follow: half-power edges of an echo lie within 4 cm of the screen's from 2 to 77 GHz, and in the
-middle of the shadow an echo is 0.8 dB stronger to 10 dB weaker (`tests/radar/test_person_shadow.py`).
+follow. From 2 to 77 GHz half-power edges of an echo lie within 4 cm of the screen's, and in the
+middle of the shadow it is 0.8 dB stronger to 10 dB weaker (tests/radar/test_person_shadow.py).
 """
 
 import numpy as np

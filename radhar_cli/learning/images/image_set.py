@@ -13,7 +13,7 @@ from radhar_cli.arrays import Float, Index, Levels
 from radhar_cli.dataset.layout import SPLITS
 from radhar_cli.dataset.split import TRAIN, VALIDATION
 from radhar_cli.errors import FolderError, did_you_mean
-from radhar_cli.learning.settings import Kind
+from radhar_cli.learning.settings import Kind, Target
 from radhar_cli.randomness import TRAINING, stream
 from radhar_cli.rounding import half_up
 
@@ -98,6 +98,8 @@ class ImageSet:
     kind: Kind = "rgb"
     channels: int = 3  # colours, columns of a cloud, or frames of a sequence of frames
     joints: tuple[str, ...] = ()  # names of what `pixels.joints` reads
+    # [N] class of everybody in each, the sample's own person first; None where there is one person
+    everybody: tuple[tuple[str, ...], ...] | None = None
 
     def __post_init__(self) -> None:
         if not self.source.size:
@@ -115,6 +117,31 @@ class ImageSet:
     def frames(self) -> int:
         """Of a sequence; 1 of an image."""
         return {"clouds": self.size[0], "frames": self.channels}.get(self.kind, 1)
+
+    def shows(self, classes: Sequence[str]) -> Levels:
+        """What anybody does in each [N, classes], 1 or 0."""
+        alone = ((self.classes[label],) for label in self.label)
+        numbers = {name: number for number, name in enumerate(classes)}
+        found = np.zeros((len(self), len(classes)), np.uint8)
+        for row, names in zip(found, self.everybody or alone, strict=True):
+            row[[numbers[name] for name in names if name in numbers]] = 1
+        return found
+
+    def learned_as(self, target: Target) -> "ImageSet":
+        """The same images with the classes of a target: numbers of people, or all that are shown.
+
+        The label of target labels is still that of the sample's own person.
+        """
+        everybody = self.everybody or tuple((self.classes[label],) for label in self.label)
+        if target == "labels":
+            classes = class_order({name for names in everybody for name in names})
+            label = np.array([classes.index(name) for name in self.classes])[self.label]
+            return replace(self, classes=classes, label=label)
+        if target != "count":
+            return self
+        counts = np.array([len(names) for names in everybody])
+        known, label = np.unique(counts, return_inverse=True)
+        return replace(self, classes=tuple(map(str, known)), label=label, everybody=None)
 
     @property
     def skeletons(self) -> Skeletons:
@@ -151,6 +178,10 @@ class ImageSet:
         number = np.array([-1 if name is None else classes.index(name) for name in new])
         label = number[self.label]
         rows = np.flatnonzero(label >= 0)
+        if self.everybody is not None:
+            others = ([names.get(one, one) for one in self.everybody[row]] for row in rows)
+            kept = tuple(tuple(one for one in each if one is not None) for each in others)
+            return replace(replace(self, everybody=None).renamed(names), everybody=kept)
         if rows.size == label.size:
             return replace(self, classes=classes, label=label)
         lost = np.bincount(self.label[label < 0], minlength=len(new)).tolist()
@@ -171,6 +202,7 @@ class ImageSet:
             pixels=SomeRows(self.pixels, rows),
             source=self.source[rows],
             persons=None if self.persons is None else tuple(self.persons[row] for row in rows),
+            everybody=None if self.everybody is None else tuple(self.everybody[r] for r in rows),
         )
 
     def cut(self, share: float, seed: int) -> "ImageSet":

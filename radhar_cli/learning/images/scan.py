@@ -57,5 +57,8 @@ def content_hash(images: ImageSet, rows: Index, digests: Sequence[str] | None = 
     """SHA-256 of what a training run depends on: classes, labels, splits, pixels (`scan`)."""
     digests = scan(images, rows).digests if digests is None else digests
     split = None if images.split is None else images.split[rows].tolist()
-    text = json.dumps([images.classes, images.label[rows].tolist(), split, list(digests)])
+    about = [images.classes, images.label[rows].tolist(), split, list(digests)]
+    if images.everybody is not None:
+        about.append([images.everybody[row] for row in rows])
+    text = json.dumps(about)
     return hashlib.sha256(text.encode()).hexdigest()

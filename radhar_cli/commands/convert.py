@@ -18,7 +18,7 @@ def convert(
         ),
     ],
 ) -> None:
-    """Write a data set as WebDataset, as Parquet, or its point clouds as others keep them.
+    """Write a data set, or its point clouds, as other tools read them.
 
     Example:
 

@@ -63,7 +63,7 @@ def _data_set(console: Console, s: dict[str, Any]) -> None:
         )
         numbers = ["min", "mean", "max", "samples", "histogram"]
         _table(console, "drawn parameters", ["parameter", "unit"], numbers, drawn)
-    if s["labels"] is not None:
+    if s.get("labels"):
         shown = ", ".join(f"{slug} {count}" for slug, count in s["labels"].items())
         console.print(f"samples in which anybody, of several people, does it: {shown}")
     for warning in s["warnings"]:

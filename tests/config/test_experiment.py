@@ -22,6 +22,7 @@ from radhar_cli.config.number import Uniform
 from radhar_cli.config.schema import (
     ArrayConfig,
     MotionConfig,
+    PersonConfig,
     RecordingsConfig,
     ReflectorConfig,
     Section,
@@ -195,6 +196,7 @@ CHANGES: dict[str, object] = {
     "body.points_per_segment": 6,
     "body.shadowing": False,
     "snr_db": None,
+    "people": (PersonConfig(),),
     "room.reflectors": (ReflectorConfig(),),
     "room.back_wall_m": 9.0,
     "room.back_wall_reflection_db": -6.0,

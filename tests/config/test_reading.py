@@ -289,7 +289,7 @@ BROKEN = [
     Broken("maps: [point_cloud]", '1: maps.0 = "point_cloud"', "is called points"),
     Broken("maps: [range_doppler]", '1: maps = ["range_doppler"]', "the board that makes them"),
     Broken("receivers: 4", "1: receivers = 4", "antennas= of record() simulates another"),
-    Broken("people: 2", "1: people = 2", "one person a scene; motions= of record() adds"),
+    Broken("people: 2", "1: people = 2", "should be a list"),
     Broken("rooms: [lab, hall]", '1: rooms = ["lab", "hall"]', "one room, under `room`"),
     Broken("radar:\n  device: IWR6843", '2: radar.device = "IWR6843"', "IWR6843ISK-ODS"),
     Broken("radar: {cfg: a.cfg}", '1: radar.cfg = "a.cfg"', "should be the path of a TI .cfg"),

@@ -51,6 +51,7 @@ def problems(c: Config) -> Iterator[Problem]:
         frames = [name for name in (*c.maps, *c.output.products) if name in BOARD_PRODUCTS]
         if frames:
             yield Problem("maps", frames, "should have the board that makes them: radar.cfg")
+        yield from _step_problems(c)
         yield from _waveform_problems(c)
         yield from _signal_problems(c)
         yield from _clutter_problems(c)
@@ -79,6 +80,21 @@ def problems(c: Config) -> Iterator[Problem]:
             f"should be at most samples_per_class = {c.samples_of(fewest)}{whose}: "
             "every person performs every activity",
         )
+
+
+def _step_problems(c: Config) -> Iterator[Problem]:
+    """Keys of stepped frequencies that do not fit together."""
+    radar = c.radar
+    for key in ("steps", "dwell_s"):
+        value = getattr(radar, key)
+        if (value is None) == (radar.waveform == "sfcw"):
+            right = "should be given" if value is None else "should be null"
+            yield Problem(f"radar.{key}", value, f"{right} with radar.waveform: {radar.waveform}")
+    for key, number in radar.of_steps.items():
+        value = getattr(radar, key)
+        if not (isinstance(value, (int, float)) and abs(value - number) <= 1e-9 * number):
+            right = f"should be left out: steps and dwell_s give {number:g}"
+            yield Problem(f"radar.{key}", value, right)
 
 
 def _people_problems(c: Config) -> Iterator[Problem]:
@@ -186,8 +202,12 @@ def _unknown_activities(c: Config) -> Iterator[Problem]:
     own = class_activities(c.classes)
     names = {DEFAULT, *(a.slug for a in (*ACTIVITIES, *own.values(), *own_activities()))}
     keys = ["samples_per_class"]
+    of_people = [f"people.{n}." for n in range(len(c.people))]
     keys += [
-        f"{name}.{key}" for name in ("motion", "timing") for key in type(at(c, name)).model_fields
+        f"{whose}{name}.{key}"
+        for whose in ("", *of_people)
+        for name in ("motion", "timing")
+        for key in type(at(c, name)).model_fields
     ]
     for key in keys:
         value = at(c, key)
@@ -223,7 +243,9 @@ def _waveform_problems(c: Config) -> Iterator[Problem]:
     key = "processing.range_fft_length"
     if not support(radar.chirp_s)[1] < shortest_interval:
         right = f"should be shorter than the pulse interval 1/prf_hz = {shortest_interval:g} s"
-        yield Problem("radar.chirp_s", radar.chirp_s, right)
+        key = "steps" if radar.waveform == "sfcw" else "chirp_s"
+        right += f" (steps * dwell_s is {radar.chirp_s:g} s)" if key == "steps" else ""
+        yield Problem(f"radar.{key}", getattr(radar, key), right)
     if fewest < 2:
         right = f"should give at least 2 {samples} {fewest})"
         yield Problem("radar.adc_rate_hz", radar.adc_rate_hz, right)

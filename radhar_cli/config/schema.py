@@ -223,6 +223,12 @@ class RadarConfig(Section):
     """Only a raw echo shows the leakage."""
     residual_video_phase: Flag = False
     """Keep the term pi K tau^2."""
+    waveform: Literal["fmcw", "sfcw"] = "fmcw"
+    """sfcw: sweeps of steps, sampled once each; instead of adc_rate_hz and chirp_s."""
+    steps: Annotated[int, Field(ge=2, le=2**20, strict=True)] | None = None
+    """Of a sweep of sfcw: frequencies carrier_hz + n bandwidth_hz/steps."""
+    dwell_s: Annotated[float, Field(gt=0, le=1e3, strict=True)] | None = None
+    """On each step of sfcw."""
     cfg: Annotated[str, Field(min_length=1, max_length=2**16)] | None = None
     """The .cfg of a TI board, which gives the waveform: a path from this file's folder on. A config
     that is written has its text."""
@@ -242,6 +248,13 @@ class RadarConfig(Section):
     """Unit of an array's places; null is c/(2 f_c), f_c the middle of what is sampled."""
     transmit_power_dbm: Annotated[Decibel, Needs("snr_db", None)] = 12.0
     """With receiver.noise_figure_db."""
+
+    @property
+    def of_steps(self) -> dict[str, float]:
+        """Keys of the chirp with the same samples as the sweeps of sfcw; empty of fmcw."""
+        if self.waveform == "fmcw" or self.steps is None or self.dwell_s is None:
+            return {}
+        return {"adc_rate_hz": 1 / self.dwell_s, "chirp_s": self.steps * self.dwell_s}
 
 
 Metres = Annotated[NotNegative, within(0, 1, "m")]
@@ -1310,6 +1323,9 @@ class Config(Section):
                 changed.setdefault(name, {})[rest] = default.values.get(self.motion.model)
         if self.radar.cfg is not None:
             _fill_from_cfg(self, changed)
+        for key, number in self.radar.of_steps.items():
+            if key not in self.radar.model_fields_set:
+                changed.setdefault("radar", {})[key] = number
         for name, value in changed.pop("", {}).items():
             object.__setattr__(self, name, value)
         for name, values in changed.items():

@@ -7,7 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from radhar_cli.config import Config
+from radhar_cli.config.identity import resolved
+from radhar_cli.echo.beat import beat_matrix
+from radhar_cli.pipeline.physics import waveform_of
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
+from radhar_cli.simulation.simulate import simulate
 
 # The paper's table "Experimental Parameter Settings".
 FREE_SPACE = Waveform(fc=77e9, bandwidth=4e9, chirp=40e-6, adc_rate=10e6, prf=5000.0, duration=4.0)
@@ -89,3 +94,55 @@ def test_pulses_are_a_pulse_interval_apart() -> None:
 )
 def test_counts_are_rounded_half_up_as_written(duration: float, prf: float, pulses: int) -> None:
     assert replace(FREE_SPACE, duration=duration, prf=prf).n_pulses == pulses
+
+
+STEPS = {"carrier_hz": 1e9, "bandwidth_hz": 2e9, "prf_hz": 100}
+
+
+def stepped(**more: object) -> Config:
+    document = {"radar": STEPS | more, "motion": {"range_m": 6}, "duration_s": 1}
+    return Config.model_validate(document | {"activities": ["walking"], "maps": ["stft", "rtm"]})
+
+
+def test_stepped_frequencies_are_the_chirp_of_the_same_samples() -> None:
+    """Bit for bit, and at the frequencies carrier + n B/N."""
+    steps, chirp = (
+        simulate(config, "walking", index=1)
+        for config in (
+            stepped(waveform="sfcw", steps=200, dwell_s=4e-5),
+            stepped(adc_rate_hz=1 / 4e-5, chirp_s=200 * 4e-5),
+        )
+    )
+    assert steps.waveform == chirp.waveform
+    assert steps.waveform.n_adc == 200
+    assert steps.waveform.slope / steps.waveform.adc_rate == pytest.approx(2e9 / 200, rel=1e-12)
+    np.testing.assert_array_equal(steps.signals["raw"].x, chirp.signals["raw"].x)
+    np.testing.assert_array_equal(steps.maps["rtm"].power, chirp.maps["rtm"].power)
+    again = Config.model_validate(resolved(steps.config))
+    assert waveform_of(again) == steps.waveform
+
+
+def test_samples_of_stepped_frequencies() -> None:
+    """S(f) = sum A exp(-j 2 pi f tau), against numbers of another implementation."""
+    config = stepped(waveform="sfcw", steps=16, dwell_s=1e-4)
+    delay, amplitude = np.array([[2e-8], [5e-8]]), np.array([[1.0], [0.5]])
+    found = beat_matrix(delay, amplitude, waveform_of(config))[:, 0]
+    right = np.tile([1.5, -1 - 0.5j, 0.5, -1 + 0.5j], 4)
+    np.testing.assert_allclose(found, right, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        ({"waveform": "sfcw", "steps": 8}, r"radar\.dwell_s.*should be given"),
+        ({"steps": 8}, r"radar\.steps.*should be null"),
+        (
+            {"waveform": "sfcw", "steps": 8, "dwell_s": 1e-4, "chirp_s": 1e-5},
+            r"radar\.chirp_s.*should be left out",
+        ),
+        ({"waveform": "sfcw", "steps": 8, "dwell_s": 2e-3}, r"radar\.steps.*is 0\.016 s"),
+    ],
+)
+def test_steps_that_do_not_fit(more: dict[str, object], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        stepped(**more)

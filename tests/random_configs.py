@@ -255,6 +255,19 @@ class Drawer:
             section, _, name = key.rpartition(".")
             if section and name not in sections[section]:
                 document[section].pop(name, None)
+        self.maybe(
+            document, 0.4, "people", lambda: [self.other() for _ in range(self.pick((1, 2)))]
+        )
+
+    def other(self) -> Document:
+        """Somebody else in the scene."""
+        other: Document = {"activity": self.pick(ACTIVITIES).slug, "motion": {}}
+        self.maybe(other, 0.3, "share", lambda: float(self.rng.uniform(0, 1)))
+        for key in ("range_m", "cross_range_m"):
+            draw = lambda: self.signed(1e-3, 100)  # noqa: E731
+            self.maybe(other["motion"], 0.8, key, lambda draw=draw: self.number(draw))
+        self.maybe(other, 0.3, "subject", lambda: {"height_m": float(self.rng.uniform(1.5, 2.1))})
+        return other
 
     def timing(self, duration: float) -> Document:
         keys = ("seat_start", "seat_duration", "rise_start", "rise_duration", "walk_start")

@@ -2,7 +2,6 @@
 
 import difflib
 import json
-import re
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import islice
 from pathlib import Path
@@ -243,15 +242,15 @@ def _document_path(location: tuple[int | str, ...], document: Any) -> list[int |
     names: list[int | str] = []
     place, tag = document, None
     for name in location:
-        if name in _UNION_TAGS and name != tag:
+        if name in _UNION_TAGS and name != tag and names:  # the document has `recordings` itself
             tag = name
             continue
         if isinstance(place, dict) and name in place:
             place, tag = place[name], None
         elif isinstance(place, (list, tuple)) and isinstance(name, int):
             place = place[name] if name < len(place) else None
-        elif re.match(r"literal|tuple|function|.*\[", str(name)):
-            continue
+        elif isinstance(name, str) and (not isinstance(place, dict) or "[" in name):
+            continue  # of a union, too
         else:
             place = None
         names.append(name)

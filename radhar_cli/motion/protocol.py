@@ -105,15 +105,14 @@ class _Remembered:
         self._held: dict[tuple[object, bytes], Any] = {}
 
     def __getattr__(self, name: str) -> Any:
-        return getattr(self._motion, name)
+        found = getattr(self._motion, name)
+        if name not in ("landmark_positions", "torso"):
+            return found
+        return lambda t: self.kept(name, t, lambda: found(t))
 
     def positions(self, t: Float) -> Float:
         """Positions [3, I, M] (m), which are not to be changed."""
         return self.kept("positions", t, lambda: self._motion.positions(t))
-
-    def torso(self, t: Float) -> Float:
-        """Positions [3, 1, M] (m), which are not to be changed."""
-        return self.kept("torso", t, lambda: self._motion.torso(t))
 
     def kept(self, name: object, t: Float, make: Callable[[], T]) -> T:
         """What was made for these times, or is made now."""

@@ -67,7 +67,13 @@ def paths_of(
 def shade_of(person: Person, motion: Motion) -> Shade:
     """What a person hides others with."""
     stature, weight = person.subject.height_m, person.subject.weight_kg
-    return Shade(motion, HALF_WIDTH_M * thickness(stature, weight), stature)
+    of_points = person.scene.config.body.scatterers == "points"
+    joints = motion.positions if of_points else getattr(motion, "landmark_positions", None)
+    place = motion.torso
+    if joints is not None and "torso" in motion.names:  # which their own echo asks for too
+        torso = motion.names.index("torso")
+        place = lambda t: joints(t)[:, torso : torso + 1]  # noqa: E731
+    return Shade(motion, place, HALF_WIDTH_M * thickness(stature, weight), stature)
 
 
 def segment_paths(

@@ -1,5 +1,6 @@
 """Motion, antennas and wall -> paths, one a scatterer."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
@@ -73,6 +74,7 @@ class Shade(NamedTuple):
     """What throws a person's shadow (`radar/person_shadow.py`)."""
 
     motion: Motion
+    place: Callable[[Float], Float]  # positions [3, 1, M] (m) at times t [M] (s)
     half_width: float  # m
     top: float  # m
 
@@ -107,7 +109,7 @@ class ShadowedPaths:
         paths, (p, which) = self.source(t), self.source.places(t)
         left, wavelength = np.ones(p.shape[1:]), SPEED_OF_LIGHT / self.fc
         for shade in self.shades:
-            place, legs = shade.motion.torso(t), np.ones(p.shape[1:])
+            place, legs = shade.place(t), np.ones(p.shape[1:])
             for antenna in (self.source.antennas.tx, self.source.antennas.rx):
                 legs *= light_past(p, antenna, place, shade.half_width, shade.top, wavelength)
             left *= left_of(legs)

@@ -13,6 +13,7 @@ from radhar_cli.arrays import Float
 HALF_WIDTH_M = 0.165  # of a person of usual thickness
 LEAST = 0.03  # field that gets around a person, of both legs
 EDGE = 0.3  # width of the edge over sqrt(wavelength * 1 m)
+FAR = 25.0  # widths from an edge at which nothing is left of a shadow, 1e-11
 BEYOND, BEYOND_WIDTH = 0.06, 0.03  # where a shadow begins behind a person, and how softly, m
 
 
@@ -40,12 +41,15 @@ def light_past(
     before = (way[0] * to[0] + way[1] * to[1]) / length
     aside = (way[0] * to[1] - way[1] * to[0]) / length
     height = antenna[2] + (p[2] - antenna[2]) * before / length
-    edge = EDGE * np.sqrt(wavelength)
-    hidden: Float = expit((half_width**2 - aside * aside) / (2 * half_width * edge))
-    hidden *= expit((top - height) / edge)
-    for distance in (before, length - before):
-        hidden *= expit((distance - BEYOND) / BEYOND_WIDTH)
-    return 1 - hidden
+    edge, left = EDGE * np.sqrt(wavelength), np.ones(length.shape)
+    near = np.abs(aside) < half_width + FAR * edge
+    near &= (before > BEYOND - FAR * BEYOND_WIDTH) & (length - before > BEYOND - FAR * BEYOND_WIDTH)
+    u, h, d1, d2 = aside[near], height[near], before[near], (length - before)[near]
+    hidden: Float = expit((half_width**2 - u * u) / (2 * half_width * edge))
+    hidden *= expit((top - h) / edge)
+    hidden *= expit((d1 - BEYOND) / BEYOND_WIDTH) * expit((d2 - BEYOND) / BEYOND_WIDTH)
+    left[near] -= hidden
+    return left
 
 
 def left_of(both_legs: Float) -> Float:

@@ -117,7 +117,7 @@ def _frame_points(x: Complex, board: Board, detection: Detection, lsb: float, st
     symbols = symbols * np.exp(-2j * np.pi * turn)
     if lsb > 0:
         symbols = np.trunc(symbols.real) + 1j * np.trunc(symbols.imag)
-    angles = [_angles(one, board, detection.second_peak, lsb > 0) for one in symbols]
+    angles = _angles(symbols, board, detection.second_peak, lsb > 0)
     first = [(n, *found[0]) for n, found in enumerate(angles)]
     second = [(n, *one) for n, found in enumerate(angles) for one in found[1:]]
     second = second[: MAX_POINTS - len(first)]
@@ -176,31 +176,35 @@ def _peaks(d: Float, grouping: tuple[bool, bool]) -> Bool:
 
 def _angles(
     symbols: Complex, board: Board, second: float | None, whole: bool
-) -> list[tuple[float, float, float]]:
-    """(intensity, right, up) of the first peak over angle, and of a second one."""
+) -> list[list[tuple[float, float, float]]]:
+    """(intensity, right, up) of the first peak over angle of symbols [n, virtual], and of a second.
+
+    A list for each symbol.
+    """
     row, upper, aside, above = elevation_pair(board)
-    a = scipy.fft.fft(symbols[row], BINS)
-    m = np.abs(a) / len(row)
-    m = np.floor(m) if whole else m
-    best = int(m.argmax())
-    peaks = [best]
-    if second is not None:
-        rest = m.copy()
-        rest[_flanks(m, best)] = -1
-        other = int(rest.argmax())
-        least = second * m[best]
-        if rest[other] > (np.floor(least) if whole else least):
-            peaks.append(other)
+    spectra = scipy.fft.fft(symbols[:, row], BINS)
+    upwards = scipy.fft.fft(symbols[:, upper], BINS) if upper else None
+    heights = np.abs(spectra) / len(row)
+    heights = np.floor(heights) if whole else heights
     found = []
-    e = scipy.fft.fft(symbols[upper], BINS) if upper else None
-    for b in peaks:
-        right = 2 * (b if b < BINS // 2 else b - BINS) / BINS
-        up = 0.0
-        if e is not None:
-            up = float(np.angle(a[b] * np.conj(e[b]))) / np.pi + aside * right
-            up = (up + 1) % 2 - 1
-            up /= above
-        found.append((float(m[b]), right, up))
+    for n, (a, m) in enumerate(zip(spectra, heights, strict=True)):
+        peaks = [int(m.argmax())]
+        if second is not None:
+            rest = m.copy()
+            rest[_flanks(m, peaks[0])] = -1
+            other = int(rest.argmax())
+            least = second * m[peaks[0]]
+            if rest[other] > (np.floor(least) if whole else least):
+                peaks.append(other)
+        each = []
+        for b in peaks:
+            right = 2 * (b if b < BINS // 2 else b - BINS) / BINS
+            up = 0.0
+            if upwards is not None:
+                turn = np.angle(a[b] * np.conj(upwards[n, b])) / np.pi
+                up = ((float(turn) + aside * right + 1) % 2 - 1) / above
+            each.append((float(m[b]), right, up))
+        found.append(each)
     return found
 
 
@@ -223,11 +227,11 @@ def elevation_pair(board: Board) -> tuple[list[int], list[int], float, float]:
 
 def _flanks(m: Float, peak: int) -> Index:
     """Bins of a peak and of what falls off monotonously to both sides of it; angles close."""
-    bins = [peak]
+    bins, heights = [peak], m.tolist()
     for way in (-1, 1):
         at = peak
-        while len(bins) < m.size and m[(at + way) % m.size] <= m[at]:
-            at = (at + way) % m.size
+        while len(bins) < len(heights) and heights[(at + way) % len(heights)] <= heights[at]:
+            at = (at + way) % len(heights)
             bins.append(at)
     return np.array(bins)
 

@@ -154,6 +154,8 @@ def _switches(config: Config) -> list[Setting]:
             False,
         ),
     ]
+    if config.motion.model == "human" and not config.people:
+        switches.append(_switch("another person, who walks", "people=[{}]"))
     if config.wall is not None:
         switches += [
             *(

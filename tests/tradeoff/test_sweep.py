@@ -251,6 +251,13 @@ class TestSettings:
         for key in ("motion.range_m", "motion.angle_deg", "subject.height_m"):
             assert one[key] == other[key]
 
+    def test_people_and_rays_that_a_config_does_not_have_are_tried(self, tmp_path):
+        path = tmp_path / "people.yaml"
+        path.write_text(CONFIG.replace("model: paper", "model: human") + "wall: {}\n")
+        names = {setting.name for setting in sweep(Scenes(path, (), quick=True).config())}
+        assert {"another person, who walks", "straight rays", "refracted rays"} <= names
+        assert "plane rays" not in names
+
     @pytest.mark.parametrize("model", ["human", "paper"])
     def test_the_other_motion_leaves_radar_duration_and_window(self, tmp_path, model):
         """Where the config leaves them out they would be those of the other model."""

@@ -188,7 +188,7 @@ def draw_scene(
 
     Args:
         attempt: how often the scene was drawn before, outside the model.
-        again: how often each of `people` was, too near to somebody.
+        again: how often each of `people` was, too near to somebody or outside the model.
     """
     subject = subject_of(config, index)
 
@@ -199,7 +199,7 @@ def draw_scene(
         return stream(config.seed, SCENE, activity.index, index, redrawn, name=key).random()
 
     def of_other(number: int, key: str) -> float:
-        times = (MAX_PLACES + 1) * attempt + (again[number - 1] if again else 0)
+        times = again[number - 1] if again else 0
         redrawn = times if key.startswith(REDRAWN) else 0
         name = f"people.{number}.{key}"
         return stream(config.seed, SCENE, activity.index, index, redrawn, name=name).random()

@@ -95,6 +95,47 @@ def test_people_keep_half_a_metre_apart() -> None:
     assert redrawn
 
 
+def test_who_is_drawn_again_moves_nobody_else() -> None:
+    """Half of the far ones leave the half-band of 30 m and are drawn again, alone."""
+    far = {"activity": "punching", "motion": {"range_m": {"uniform": [5, 60]}}}
+    near = {"activity": "punching", "motion": {"range_m": {"uniform": [4, 6]}}}
+    redrawn = 0
+    for index in range(6):
+        scenes = [
+            draw_valid_scene(config(*people, motion={"range_m": 8}), WALKING, index)[0]
+            for people in ((), (far,), (near,), (near, far))
+        ]
+        assert len({str(own(scene)) for scene in scenes}) == 1
+        alone, crowd = scenes[2].people[1], scenes[3].people[1]
+        assert alone.config.motion == crowd.config.motion
+        first = draw_scene(config(far, motion={"range_m": 8}), WALKING, index).people[1]
+        redrawn += first.motion.range_m != scenes[1].people[1].motion.range_m
+    assert redrawn
+
+
+@pytest.mark.parametrize("scatterers", ["points", "segments", "surfaces"])
+def test_without_shadows_people_add_up(scatterers: str) -> None:
+    """Whoever else is there, a person's echo is the same, body and all."""
+    body = {"scatterers": scatterers, "shadowing": False}
+    one = {"activity": "walking", "motion": {"range_m": 6}}
+    two = {"activity": "grabbing", "motion": {"range_m": 3}}
+
+    def echo(*shares: float) -> np.ndarray[Any, Any]:
+        people = [{**who, "share": share} for who, share in zip((one, two), shares, strict=True)]
+        crowd = config(*people, body=body, snr_db=None, duration_s=1, engine={"kind": "cube"})
+        found: np.ndarray[Any, Any] = simulate(crowd, index=1, maps=("stft",)).signals["raw"].x
+        return found
+
+    both, neither = echo(1, 1), echo(0, 0)
+    apart = echo(1, 0) + echo(0, 1) - neither
+    assert np.linalg.norm(both - apart) < 1e-9 * np.linalg.norm(both)
+
+
+def test_a_back_wall_stands_behind_everybody() -> None:
+    with pytest.raises(ValueError, match=r"people\.0\.motion\.range_m"):
+        config({"motion": {"range_m": 8}}, motion={"range_m": 3}, room={"back_wall_m": 7})
+
+
 def test_no_place_is_said_so() -> None:
     inside = {"activity": "walking", "motion": {"range_m": 9, "cross_range_m": 0.1}}
     crowd = config(inside, motion={"range_m": 9})

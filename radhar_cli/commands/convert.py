@@ -26,8 +26,8 @@ def convert(
 
       radhar convert datasets/boards -o shared/mars --to mars
 
-    Labels, splits and the numbers drawn go with it, and a data card. The folder appears when it is
-    whole. Parquet needs `pip install 'radhar[formats]'`.
+    Labels and splits go with it, and with images a data card and the numbers drawn. The folder
+    appears when it is whole. Parquet needs `pip install 'radhar[formats]'`.
     """
     from radhar_cli.commands.learning_options import needs
     from radhar_cli.commands.terminal import BarProgress

@@ -1,6 +1,7 @@
 """Checks that span several sections of a config, and what to warn of in it."""
 
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -93,7 +94,7 @@ def _step_problems(c: Config) -> Iterator[Problem]:
     for key, number in radar.of_steps.items():
         value = getattr(radar, key)
         if not (isinstance(value, (int, float)) and abs(value - number) <= 1e-9 * number):
-            right = f"should be left out: steps and dwell_s give {number:g}"
+            right = f"should be left out: steps and dwell_s give {number:.17g}"
             yield Problem(f"radar.{key}", value, right)
 
 
@@ -386,11 +387,18 @@ def _back_wall_problems(c: Config) -> Iterator[Problem]:
     if c.wall is not None:
         right = "should be null with a wall in front: one of the two is simulated"
         yield Problem(key, wall, right)
-    ranges = [for_activity(c.motion.range_m, one) for one in c.chosen_activities]
-    farthest = max([0.0, *(support(one)[1] for one in ranges if one is not None)])
-    if support(wall)[0] <= farthest:
-        right = f"should be beyond the people, who stand at up to {farthest:g} m (motion.range_m)"
-        yield Problem(key, wall, right)
+    others = range(1, len(c.people) + 1) if c.motion.model != "paper" else ()
+    everybody = [("", c.motion.range_m, c.chosen_activities)]
+    with suppress(ValueError):  # of an unknown activity, which is told by itself
+        everybody += [
+            (f"people.{n - 1}.", c.people[n - 1].motion.range_m, c.activities_of(n)) for n in others
+        ]
+    for whose, number, activities in everybody:
+        ranges = [for_activity(number, one) for one in activities]
+        farthest = max([0.0, *(support(one)[1] for one in ranges if one is not None)])
+        if support(wall)[0] <= farthest:
+            where = f"at up to {farthest:g} m ({whose}motion.range_m)"
+            yield Problem(key, wall, f"should be beyond the people, who stand {where}")
 
 
 def _image_problems(c: Config) -> Iterator[Problem]:

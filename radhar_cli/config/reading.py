@@ -228,6 +228,7 @@ def _found(kind: type[BaseModel], error: ValidationError, document: Any) -> Iter
             yield Problem(key, item["input"], absent)
         else:
             message = _WORDING.get(item["type"], item["msg"])
+            message = message.removeprefix("Tuple ").replace(" after validation", "")
             if not message.startswith(("should", "'")):
                 message = message[0].lower() + message[1:]
                 message = message.removeprefix("input ")
@@ -298,6 +299,8 @@ def _place(where: str, key: str, places: Places, options: Mapping[str, str]) -> 
 
 
 def _what(problem: Problem) -> str:
+    if not problem.key:  # of the whole
+        return _short(problem.right, MAX_ADVICE)
     value = problem.value
     shown_value = _short(json.dumps(value, default=_plain))
     return f" = {shown_value}: {_short(problem.right, MAX_ADVICE)}"

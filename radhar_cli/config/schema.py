@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias, 
 from pydantic import (
     AfterValidator,
     BaseModel,
+    BeforeValidator,
     ConfigDict,
     Discriminator,
     Field,
@@ -1185,12 +1186,20 @@ class OneOf(Section):
     choice: Annotated[tuple[str, ...], Field(min_length=1, max_length=200)]
 
 
+def _name_or_choice(value: object) -> object:
+    names: Any = value.get("choice") if isinstance(value, dict) and len(value) == 1 else None
+    listed = isinstance(names, (list, tuple)) and all(isinstance(one, str) for one in names)
+    if isinstance(value, (str, OneOf)) or (listed and names):
+        return value
+    raise _wrong("should be a slug or label, or {choice: [walking, punching]}")
+
+
 class PersonConfig(Section):
     """Somebody besides the sample's own person."""
 
     REPEATS: ClassVar = True  # sections of the top level
 
-    activity: str | OneOf = "walking"
+    activity: Annotated[str | OneOf, BeforeValidator(_name_or_choice)] = "walking"
     """Slug or label, or {choice: [...]}."""
     share: Share = 1.0
     """Of the scenes in which the person is there."""

@@ -10,7 +10,7 @@ import yaml
 
 from radhar_cli.config.schema import MAP_NAMES, Config
 from radhar_cli.config.yaml_reader import parse_yaml
-from radhar_cli.dataset.layout import CARD, GALLERY, SPLITS, Rows, png_folder, row_axis
+from radhar_cli.dataset.layout import CARD, GALLERY, SPLITS, Rows, column_axis, png_folder, row_axis
 from radhar_cli.dataset.reading import BLOCK, Dataset
 from radhar_cli.dataset.scene_fields import ERROR
 from radhar_cli.dataset.table import number_names
@@ -188,9 +188,10 @@ def _summary(data: Dataset) -> str:
             f"{what}what a radar recorded of people, cut into windows of "
             f"{config.recorded.window_s:g} s."
         )
+    whom = "several moving people" if config.people else "one moving person"
     walled = "through a wall" if config.wall is not None else "in free space"
     return (
-        f"{what}what an FMCW radar sees of one moving person {walled}, simulated from a model of "
+        f"{what}what an FMCW radar sees of {whom} {walled}, simulated from a model of "
         "the body, the waves and the receiver. No person was recorded. Every number of a scene "
         "(who moves, where, how fast, how much noise) was drawn, and stands beside its image."
     )
@@ -203,13 +204,18 @@ def _maps(data: Dataset) -> str:
         says = "a product of its builder's own"
         if name in MAP_NAMES:
             says = ", ".join([_KINDS[first], *(_STEPS[step] for step in steps)])
-        edges, unit = data.extent(name), row_axis(name)[1]
+        edges, unit, across = data.extent(name), row_axis(name)[1], column_axis(name)[1]
         if edges is None:
             lines.append([f"`{name}`", says, "/extent", "/extent"])
             continue
         left, right, bottom, top = edges
         lines.append(
-            [f"`{name}`", says, f"{bottom:.6g} to {top:.6g} {unit}", f"{left:.4g} to {right:.4g} s"]
+            [
+                f"`{name}`",
+                says,
+                f"{bottom:.6g} to {top:.6g} {unit}",
+                f"{left:.4g} to {right:.4g} {across}",
+            ]
         )
     image = data.config.image
     level = (

@@ -215,6 +215,8 @@ def _opened(
         raise FolderError(f"{path}: no such file or folder")
     if is_run(path):
         raise FolderError(f"{path}: is a training run; images or data are asked for here")
+    if metadata.input not in ("rgb", "gray") and not is_h5(path):
+        raise RunError(f"{path}: {metadata.model} reads {metadata.input}; should be a data set")
     files = image_files(path, path) if is_tree(path) else [p for p in (path,) if is_image(p)]
     if files:
         kept = FilePixels(tuple(files), metadata.input, None if resize else metadata.size)

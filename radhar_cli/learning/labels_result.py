@@ -15,7 +15,9 @@ from radhar_cli.learning.report_folder import csv_text
 def evaluate_labels(
     report: Report, predictions: Predictions, names: Sequence[str], stem: str, title: str
 ) -> dict[str, Any]:
-    """Average precision of every class that is there, and shares of inputs with all labels right.
+    """Average precision of every label that is there, and shares of inputs with all labels right.
+
+    Labels that every image has are left out of the mean.
 
     Figures and tables go to `report`. A label is found where its probability is above 1/2.
     """
@@ -30,9 +32,11 @@ def evaluate_labels(
     counts = [int(shown[:, n].sum()) for n in there]
     everybody = images.everybody or ((),) * len(images)
     people = np.array([max(len(everybody[row]), 1) for row in rows])
+    # A label that every image has says nothing: any network has all of its precision.
+    told_apart = [p for p, count in zip(precision, counts, strict=True) if count < rows.size]
     numbers = {
         "images": int(rows.size),
-        "mean_average_precision": float(np.mean(precision)),
+        "mean_average_precision": float(np.mean(told_apart or precision)),
         "exact_match": float(exact.mean()),
         "classes": {
             name: {"images": count, "average_precision": value}

@@ -81,6 +81,8 @@ def evaluate(
                 interval = numbers["accuracy_95"]
                 point = Point(data_name, eval_set.images.snr_db, numbers["accuracy"], *interval)
                 lines.setdefault(run.name, []).append(point)
+            if run.metadata.settings.target == "labels" and eval_set.images.everybody is None:
+                progress.say(f"  warning: {data_name} says of one person alone what they do")
             seen = numbers["seen_in_training"]
             if any(seen.values()):
                 progress.say(

@@ -10,6 +10,7 @@ from torch.utils.data import Dataset
 
 from radhar_cli.arrays import Index
 from radhar_cli.dataset.reading import open_dataset
+from radhar_cli.errors import ConfigError
 from radhar_cli.learning.images.image_set import SPLIT_NAMES, split_named
 from radhar_cli.learning.images.sequences import (
     CLOUDS,
@@ -53,8 +54,12 @@ class Sequences(Dataset[dict[str, Any]]):
             points: of a frame, those of the highest SNR.
 
         Raises:
+            ConfigError: frames or points below 1.
             FolderError: it is no data set, or has no such product.
         """
+        for key, value in (("frames", frames), ("points", points)):
+            if value is not None and value < 1:
+                raise ConfigError(f"{key} = {value}: should be at least 1")
         with open_dataset(path) as data:
             product = sequence_product(data, "clouds" if of == CLOUDS else "frames", of)
             self.frames = frames or longest(data, product)

@@ -48,7 +48,8 @@ def paths_of(
         if scene.config.body.scatterers != "points":
             whose = people[min(number, len(people) - 1)]
             make = segment_paths if scene.config.body.scatterers == "segments" else surface_paths
-            parts = make(whose, motion, antennas, wall, waveform, 0 if several else number)
+            given = 0 if len(people) == len(motions) else number  # streams are the person's own
+            parts = make(whose, motion, antennas, wall, waveform, given)
             theirs += [parts] if parts else []
             rest = _without_segments(motion)
         if rest is not None:

@@ -1,7 +1,7 @@
 """Check scenes before any echo is computed: what lies outside the model, and what to warn of."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntFlag
 from math import log10
 from typing import Any, NamedTuple
@@ -11,6 +11,7 @@ import numpy as np
 from radhar_cli.activity import Activity
 from radhar_cli.arrays import Float, Index
 from radhar_cli.config.checks import timing_warnings, tone_warnings
+from radhar_cli.config.paths import changed
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.files.motion import FileMotion
@@ -40,8 +41,8 @@ GRID_HZ = 50.0
 GRID_PER_CYCLE = 40
 ANTENNA_KEYS = {"transmitter": "radar.tx_m", "receiver": "radar.rx_m"}
 MAX_ATTEMPTS = 1000
-TORSOS_APART_M = 0.5
-ROOM = "motion.range_m and motion.cross_range_m of people should leave room"
+TORSOS_APART_M, MAX_PEOPLE = 0.5, 7
+ROOM = "their motion.range_m and motion.cross_range_m should leave room"
 CHUNK = 65536
 GRID_CHUNK = 16384
 FLOOR_MARGIN_M = 1e-3  # for rounding, and the paper's ankles in the floor
@@ -122,10 +123,7 @@ def check_scene(scene: Scene) -> SceneCheck:
     Raises:
         SceneError: no body can do this.
     """
-    try:
-        checks = [_check(scene, person, motion_of(person)) for person in scene.people]
-    except OutOfReachError as error:
-        raise SceneError(f"{scene.name}: {error} (motion.*, timing.*)") from None
+    checks = [_checked(scene, person) for person in scene.people]
     flags, closest = checks[0].flags, min(check.closest for check in checks)
     for check in checks[1:]:
         flags |= check.flags & ~Flags.GATE  # which follows the sample's own person
@@ -135,6 +133,15 @@ def check_scene(scene: Scene) -> SceneCheck:
         legs = leg(p, antennas.tx), leg(p, antennas.rx)
         closest = min(closest, _nearest(room.names, start, *legs))
     return SceneCheck(closest, flags)
+
+
+def _checked(scene: Scene, person: Person) -> SceneCheck:
+    """`check_scene` of one person."""
+    try:
+        return _check(scene, person, motion_of(person))
+    except OutOfReachError as error:
+        keys = f"{person.prefix}motion.*, {person.prefix}timing.*"
+        raise SceneError(f"{scene.name}: {error} ({keys})") from None
 
 
 def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
@@ -241,10 +248,10 @@ def draw_valid_scene(config: Config, activity: Activity, index: int) -> tuple[Sc
     """
     check: SceneCheck | None = None
     for attempt in range(MAX_ATTEMPTS if config.on_invalid == "redraw" else 1):
-        scene = _drawn_apart(config, activity, index, attempt)
-        check = check_scene(scene)
+        scene = draw_scene(config, activity, index, attempt)
+        check = check_scene(replace(scene, config=changed(scene.config, {"people": ()})))
         if check.invalid is None or (config.on_invalid == "keep" and not check.too_close):
-            return scene, check.flags
+            return _with_others(config, scene, check.flags)
     assert check is not None
     if config.on_invalid == "redraw":
         raise SceneError(
@@ -257,29 +264,47 @@ def draw_valid_scene(config: Config, activity: Activity, index: int) -> tuple[Sc
     )
 
 
-def _drawn_apart(config: Config, activity: Activity, index: int, attempt: int) -> Scene:
-    """One draw of a scene, in which others are drawn again until nobody is too near to them."""
+def _with_others(config: Config, scene: Scene, flags: Flags) -> tuple[Scene, Flags]:
+    """The scene of an own person who stays, with others drawn until they fit, one after the other.
+
+    Raises:
+        SceneError: one of them finds no place, or may not be drawn again.
+    """
     again = [0] * len(config.people)
-    while True:
-        scene = draw_scene(config, activity, index, attempt, tuple(again))
-        number = too_near(scene)
-        if number is None:
-            return scene
-        again[number - 1] += 1
-        if again[number - 1] > MAX_PLACES:
-            raise SceneError(f"{_crowded(scene, number)} in {MAX_PLACES} draws; {ROOM}")
+    for number in range(1, len(config.people) + 1):
+        why: str | None = None
+        for again[number - 1] in range(MAX_PLACES):
+            scene = draw_scene(config, scene.activity, scene.index, scene.attempt, tuple(again))
+            person = next((one for one in scene.people if one.number == number), None)
+            if person is None:
+                break
+            check = _checked(scene, person)
+            kept = config.on_invalid != "redraw" and not check.too_close
+            why = None if kept and config.on_invalid == "keep" else check.invalid
+            if why is None and too_near(scene, number) is None:
+                flags |= check.flags & ~Flags.GATE  # which follows the sample's own person
+                break
+            if why is not None and config.on_invalid != "redraw":
+                raise SceneError(f"{scene.name}: people.{number - 1}: {why}; {ROOM}")
+        else:
+            why = f"people.{number - 1}: {why}" if why else _crowded(number)
+            raise SceneError(f"{scene.name}: {why} in {MAX_PLACES} draws; {ROOM}")
+    return scene, flags
 
 
-def too_near(scene: Scene) -> int | None:
+def too_near(scene: Scene, last: int = MAX_PEOPLE) -> int | None:
     """The first of `people` whose torso comes within TORSOS_APART_M of another's, horizontally.
 
-    Compared 50 times a second. None where nobody does, or where no body can do what is drawn.
+    Compared 50 times a second, of people to number `last`. None where nobody does, or where no body
+    can do what is drawn.
     """
     if len(scene.people) == 1:
         return None
     seconds = scene.people[0].seconds
     t, torsos = np.linspace(0, seconds, int(GRID_HZ * seconds) + 2), list[Float]()
     for person in scene.people:
+        if person.number > last:
+            break
         try:
             torso = motion_of(person).torso(t)[:2, 0]
         except OutOfReachError:
@@ -290,8 +315,8 @@ def too_near(scene: Scene) -> int | None:
     return None
 
 
-def _crowded(scene: Scene, number: int) -> str:
-    return f"{scene.name}: people.{number - 1} comes within {TORSOS_APART_M} m of another person"
+def _crowded(number: int) -> str:
+    return f"people.{number - 1} comes within {TORSOS_APART_M} m of another person"
 
 
 def _cure(config: Config, check: SceneCheck) -> str:
@@ -342,7 +367,7 @@ def scene_warnings(scene: Scene) -> list[str]:
     """
     number = too_near(scene)
     if number is not None:
-        raise SceneError(f"{_crowded(scene, number)}; {ROOM}")
+        raise SceneError(f"{scene.name}: {_crowded(number)}; {ROOM}")
     check = check_scene(scene)
     if check.too_close:
         raise SceneError(f"{scene.name}: {check.invalid}; {_cure(scene.config, check)}")

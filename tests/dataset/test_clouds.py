@@ -111,6 +111,8 @@ def test_axes_and_signs_of_the_formats(place):
 @pytest.mark.parametrize("to", ["mars", "ros", "ti"])
 def test_the_folder_says_which_axes_and_units(place, to):
     card = (place / to / "README.md").read_text()
+    if to != "mars":
+        assert "\nimport csv\n" in card
     for word in ("right" if to != "ros" else "left", "receding", "m/s"):
         assert word in card
     assert (place / to / "config.yaml").exists()

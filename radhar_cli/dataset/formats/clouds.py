@@ -14,9 +14,10 @@ from numpy.lib.format import open_memmap
 from numpy.typing import NDArray
 
 from radhar_cli.arrays import Float
+from radhar_cli.config.identity import as_yaml
 from radhar_cli.config.ti_header import board_header
-from radhar_cli.dataset.formats.convert import describe
-from radhar_cli.dataset.layout import Rows
+from radhar_cli.dataset.card import owner_licence
+from radhar_cli.dataset.layout import CARD, CONFIG, Rows
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.table import Entry, entries
 from radhar_cli.motion.skeleton import JOINTS
@@ -104,7 +105,7 @@ def write_mars(data: Dataset, folder: Path, progress: Progress) -> None:
                 done += 1
             progress.advance(1)
     names = ", ".join(JOINTS) if joints == len(JOINTS) else "as the recorded motion has them"
-    describe(data, folder, {}, _MARS.format(joints=joints, names=names))
+    _describe(data, folder, _MARS.format(joints=joints, names=names))
 
 
 def write_ros(data: Dataset, folder: Path, progress: Progress) -> None:
@@ -120,7 +121,7 @@ def write_ros(data: Dataset, folder: Path, progress: Progress) -> None:
         return (c.frame, c.frame * header.period_s, point, ahead, -right, up, *seen)
 
     _write_csv(data, folder, ROS, columns, progress)
-    describe(data, folder, {}, _ROS)
+    _describe(data, folder, _ROS)
 
 
 def write_ti(data: Dataset, folder: Path, progress: Progress) -> None:
@@ -132,12 +133,26 @@ def write_ti(data: Dataset, folder: Path, progress: Progress) -> None:
         return (c.frame, *c.xyz.T, c.doppler, c.snr_db, noise, track)
 
     _write_csv(data, folder, TI, columns, progress)
-    describe(data, folder, {}, _TI)
+    _describe(data, folder, _TI)
 
 
 def _ti_axes(places: Float) -> Float:
     """Right, ahead, up of [..., ahead, left, up, ...]."""
     return np.stack([-places[..., 1], places[..., 0], places[..., 2]], axis=-1)
+
+
+def _describe(data: Dataset, folder: Path, reading: str) -> None:
+    """Write what the files hold, and the config that they follow from."""
+    licence = owner_licence(data.path.parent).get("license", data.config.output.license)
+    people = (
+        " Others are in the scenes too: class and joints are those of the sample's own person."
+        if data.config.people
+        else ""
+    )
+    text = f"# Point clouds of {len(data)} simulated samples\n\n{reading}\n\n"
+    text += f"They were simulated by config.yaml.{people}\nLicence: {licence or 'not chosen'}.\n"
+    (folder / CARD).write_text(text, encoding="utf-8")
+    (folder / CONFIG).write_text(as_yaml(data.config), encoding="utf-8")
 
 
 def _of_split(data: Dataset, split: int) -> Iterator[Entry]:
@@ -157,7 +172,7 @@ def _write_csv(
                 writer = csv.writer(file, lineterminator="\n")
                 writer.writerow(head)
                 for line in zip(*values, strict=True):
-                    writer.writerow(f"{v:.6g}" if isinstance(v, float) else v for v in line)
+                    writer.writerow(f"{v + 0.0:.6g}" if isinstance(v, float) else v for v in line)
             progress.advance(1)
 
 
@@ -183,6 +198,7 @@ y (left), z (up of the radar) and range, m; velocity, m/s, positive receding; `d
 Doppler in the middle one; bearing, degrees, positive left; intensity, 10 lg(magnitude + 1).
 
 ```python
+import csv
 
 points = list(csv.DictReader(open("train/CLASS/SAMPLE.csv")))
 ```"""
@@ -193,6 +209,7 @@ TI's Industrial Visualizer has: x (right), y (ahead), z (up of the radar; m), Do
 positive), SNR and noise (dB), and the track: here the person whose the point is, 255 nobody's.
 
 ```python
+import csv
 
 points = list(csv.DictReader(open("train/CLASS/SAMPLE.csv")))
 ```"""

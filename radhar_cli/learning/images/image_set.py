@@ -141,7 +141,8 @@ class ImageSet:
             return self
         counts = np.array([len(names) for names in everybody])
         known, label = np.unique(counts, return_inverse=True)
-        return replace(self, classes=tuple(map(str, known)), label=label, everybody=None)
+        classes = tuple(f"{n} {'person' if n == 1 else 'people'}" for n in known)
+        return replace(self, classes=classes, label=label, everybody=None)
 
     @property
     def skeletons(self) -> Skeletons:

@@ -107,7 +107,7 @@ def sequence_product(data: Dataset, kind: Kind, name: str | None = None) -> str:
     have = [one for one in wanted if one in data.products]
     if not have or name not in (*have, None):
         known = f"it has {', '.join(have)}" if have else f"should have maps: {', '.join(wanted)}"
-        raise FolderError(f"{data.path}: has no {kind} of {name or 'a board'!r}; {known}")
+        raise FolderError(f"{data.path}: has no {kind}{f' of {name!r}' if name else ''}; {known}")
     return name or have[0]
 
 

@@ -66,7 +66,7 @@ def _described(data: Dataset, name: str) -> list[str]:
     what = quantity.split()[0]
     if extent is None:
         return [*pieces, f"up: {what}", f"right: {across}"]
-    left, right, bottom, top = extent
+    left, right, bottom, top = (round(edge, 9) for edge in extent)
     reach = f"{bottom:.4g} to {top:.4g} {unit}"
     columns = f"{left:.3g} to {right:.3g} {column_unit}"
     return [*pieces, f"up: {what}", reach, f"right: {across}", columns]

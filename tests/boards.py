@@ -81,3 +81,18 @@ def cube_of(
         noise = circular_gaussian(np.random.default_rng(seed), cube.shape)
         cube = cube + noise * np.sqrt(power / 10 ** (snr_db / 10))
     return cube, board
+
+
+# A data set of points and frames, beside board.cfg.
+CLOUDS = """
+radar: {device: IWR1443BOOST, cfg: board.cfg, position_m: [0, 0, 1]}
+activities: [punching, walking]
+motion: {range_m: {per_activity: {default: 2.2, walking: 3}}}
+duration_s: 0.5
+samples_per_class: 5
+split: {train: 0.6, validation: 0.4}
+body: {scatterers: surfaces}
+cloud: {chain: board}
+maps: [range_doppler, points]
+image: {size_px: 32}
+"""

@@ -20,6 +20,7 @@ from radhar_cli.dataset.build import build
 from radhar_cli.errors import ConfigError, SceneError
 from radhar_cli.pipeline.physics import motion_of
 from radhar_cli.pipeline.run import record
+from radhar_cli.pipeline.unused_keys import unused_keys
 from radhar_cli.pipeline.validity import draw_valid_scene
 from radhar_cli.scene import Scene, draw_scene
 from tests.boards import CFG
@@ -129,6 +130,13 @@ def test_without_shadows_people_add_up(scatterers: str) -> None:
     both, neither = echo(1, 1), echo(0, 0)
     apart = echo(1, 0) + echo(0, 1) - neither
     assert np.linalg.norm(both - apart) < 1e-9 * np.linalg.norm(both)
+
+
+def test_shadows_have_an_effect_wherever_there_are_others() -> None:
+    told = "body.shadowing has no effect"
+    without = {"body": {"shadowing": False}}
+    assert any(told in line for line in unused_keys(config(**without)))
+    assert not any(told in line for line in unused_keys(config(PUNCHER, **without)))
 
 
 def test_a_back_wall_stands_behind_everybody() -> None:

@@ -101,7 +101,8 @@ def _step_problems(c: Config) -> Iterator[Problem]:
 def _people_problems(c: Config) -> Iterator[Problem]:
     """What others in a scene cannot do."""
     if c.people and (c.motion.model == "paper" or c.recorded is not None):
-        right = "should be empty with motion.model: paper, whose scenes hold one person"
+        why = "motion.model: paper" if c.recorded is None else "recordings"
+        right = f"should be empty with {why}, where one person is the sample"
         yield Problem("people", f"{len(c.people)} persons", right)
         return
     if c.people and c.radar.cfg is not None and c.snr_db is not None:
@@ -244,9 +245,11 @@ def _waveform_problems(c: Config) -> Iterator[Problem]:
     key = "processing.range_fft_length"
     if not support(radar.chirp_s)[1] < shortest_interval:
         right = f"should be shorter than the pulse interval 1/prf_hz = {shortest_interval:g} s"
-        key = "steps" if radar.waveform == "sfcw" else "chirp_s"
-        right += f" (steps * dwell_s is {radar.chirp_s:g} s)" if key == "steps" else ""
-        yield Problem(f"radar.{key}", getattr(radar, key), right)
+        if radar.waveform == "sfcw":
+            right = f"{right} (steps * dwell_s is {radar.chirp_s:g} s)"
+            yield Problem("radar.steps", radar.steps, right)
+        else:
+            yield Problem("radar.chirp_s", radar.chirp_s, right)
     if fewest < 2:
         right = f"should give at least 2 {samples} {fewest})"
         yield Problem("radar.adc_rate_hz", radar.adc_rate_hz, right)
@@ -387,11 +390,11 @@ def _back_wall_problems(c: Config) -> Iterator[Problem]:
     if c.wall is not None:
         right = "should be null with a wall in front: one of the two is simulated"
         yield Problem(key, wall, right)
-    others = range(1, len(c.people) + 1) if c.motion.model != "paper" else ()
     everybody = [("", c.motion.range_m, c.chosen_activities)]
     with suppress(ValueError):  # of an unknown activity, which is told by itself
         everybody += [
-            (f"people.{n - 1}.", c.people[n - 1].motion.range_m, c.activities_of(n)) for n in others
+            (f"people.{n}.", one.motion.range_m, c.activities_of(n + 1))
+            for n, one in enumerate(c.people)
         ]
     for whose, number, activities in everybody:
         ranges = [for_activity(number, one) for one in activities]

@@ -726,7 +726,7 @@ class BodyConfig(Section):
     points_per_segment: Annotated[int, Field(ge=1, le=1000, strict=True)] = 20
     """Most points of a segment; of a surface there are 14 at most."""
     shadowing: Annotated[Flag, _SEGMENTS] = True
-    """Of segments: trunk and thighs hide what is behind them."""
+    """Of segments: trunk and thighs hide what is behind them. With `people`: each hides others."""
 
 
 class ReflectorConfig(Section):

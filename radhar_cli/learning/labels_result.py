@@ -30,8 +30,8 @@ def evaluate_labels(
     ]
     present = [names[n] for n in there]
     counts = [int(shown[:, n].sum()) for n in there]
-    everybody = images.everybody or ((),) * len(images)
-    people = np.array([max(len(everybody[row]), 1) for row in rows])
+    done = images.done
+    people = np.array([len(done[row]) for row in rows])
     # A label that every image has says nothing: any network has all of its precision.
     told_apart = [p for p, count in zip(precision, counts, strict=True) if count < rows.size]
     numbers = {

@@ -30,7 +30,7 @@ def write_run_summary(
     settings, series = metadata.settings, {folder.name or str(folder): history}
     interval, score = None, SCORES[settings.target]
     found = f"{score} {100 * best.val_accuracy:.2f} %"
-    if settings.target == "classes":
+    if score == "accuracy":
         interval = wilson(round(best.val_accuracy * count), count)
         found += f" (95 % interval {100 * interval[0]:.2f} to {100 * interval[1]:.2f} %)"
     price = metadata.cost

@@ -154,10 +154,9 @@ class SegmentPaths:
 
     def places(self, t: Float) -> tuple[Float, Index]:
         """Middles [3, S, M] (m) of the segments, and that of each path [I]."""
-        counts = [self.points[s].share.size for s in self.kept]
-        return Frames.of(self.body.at(t)).centre[:, list(self.kept)], np.repeat(
-            np.arange(len(counts)), counts
-        )
+        placed, counts = self.body.at(t), [self.points[s].share.size for s in self.kept]
+        middles: Float = 0.5 * (placed.start + placed.end)[:, list(self.kept)]
+        return middles, np.repeat(np.arange(len(counts)), counts)
 
     def __call__(self, t: Float) -> Paths:
         """Paths of the points at times t [M] (s), segment by segment."""

@@ -32,6 +32,8 @@ def _unused(config: Config) -> Iterator[str]:
 def _without_effect(config: Config) -> Iterator[tuple[str, str]]:
     """(key, reason) of every key that has none."""
     sections = dict(of_kind(Config, Needs))
+    if config.people:  # who shadow each other, whatever they are made of
+        del sections["body.shadowing"]
     for key, needed in sections.items():
         whole = sections.get(key.rpartition(".")[0])  # a section without effect is said once
         if whole is not None and at(config, whole.key) != whole.value:

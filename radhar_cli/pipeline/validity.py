@@ -41,7 +41,7 @@ GRID_HZ = 50.0
 GRID_PER_CYCLE = 40
 ANTENNA_KEYS = {"transmitter": "radar.tx_m", "receiver": "radar.rx_m"}
 MAX_ATTEMPTS = 1000
-TORSOS_APART_M, MAX_PEOPLE = 0.5, 7
+TORSOS_APART_M = 0.5
 ROOM = "their motion.range_m and motion.cross_range_m should leave room"
 CHUNK = 65536
 GRID_CHUNK = 16384
@@ -292,18 +292,18 @@ def _with_others(config: Config, scene: Scene, flags: Flags) -> tuple[Scene, Fla
     return scene, flags
 
 
-def too_near(scene: Scene, last: int = MAX_PEOPLE) -> int | None:
+def too_near(scene: Scene, last: int | None = None) -> int | None:
     """The first of `people` whose torso comes within TORSOS_APART_M of another's, horizontally.
 
-    Compared 50 times a second, of people to number `last`. None where nobody does, or where no body
-    can do what is drawn.
+    Compared 50 times a second, of people to number `last`, or all. None where nobody does, or where
+    no body can do what is drawn.
     """
     if len(scene.people) == 1:
         return None
     seconds = scene.people[0].seconds
     t, torsos = np.linspace(0, seconds, int(GRID_HZ * seconds) + 2), list[Float]()
     for person in scene.people:
-        if person.number > last:
+        if last is not None and person.number > last:
             break
         try:
             torso = motion_of(person).torso(t)[:2, 0]

@@ -14,27 +14,14 @@ from radhar_cli.dataset.formats.convert import convert
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import FolderError
-from tests.boards import CFG
-
-YAML = """
-radar: {device: IWR1443BOOST, cfg: board.cfg, position_m: [0, 0, 1]}
-activities: [punching, walking]
-motion: {range_m: {per_activity: {default: 2.2, walking: 3}}}
-duration_s: 0.5
-samples_per_class: 3
-split: {train: 0.67, validation: 0.33}
-body: {scatterers: surfaces}
-cloud: {chain: CHAIN}
-maps: [range_doppler, points]
-image: {size_px: 32}
-"""
+from tests.boards import CFG, CLOUDS
 
 
 @pytest.fixture(scope="module", params=["board", "best"])
 def place(request, tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("clouds")
     (folder / "board.cfg").write_text(CFG)
-    (folder / "config.yaml").write_text(YAML.replace("CHAIN", request.param))
+    (folder / "config.yaml").write_text(CLOUDS.replace("chain: board", f"chain: {request.param}"))
     made = radhar("generate", folder / "config.yaml", "-o", folder / "set", "--jobs", "1", "-q")
     assert made.returncode == 0, made.stderr
     for to in ("mars", "ros", "ti"):
@@ -119,7 +106,7 @@ def test_the_folder_says_which_axes_and_units(place, to):
 
 
 def test_images_alone_have_no_clouds(tmp_path, place):
-    text = YAML.replace("CHAIN", "board").replace(", points", "").replace("0.5", "0.2")
+    text = CLOUDS.replace(", points", "").replace("0.5", "0.2")
     (tmp_path / "board.cfg").write_text(CFG)
     (tmp_path / "config.yaml").write_text(text)
     made = radhar("generate", tmp_path / "config.yaml", "-o", tmp_path / "set", "-j", "1", "-q")

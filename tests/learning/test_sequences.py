@@ -22,20 +22,8 @@ from radhar_cli.learning.models.cloudnet import centres
 from radhar_cli.learning.run_folder import load_best
 from radhar_cli.learning.skeleton_result import found_and_true
 from radhar_cli.learning.targets import skeleton_loss
-from tests.boards import CFG
+from tests.boards import CFG, CLOUDS
 
-YAML = """
-radar: {device: IWR1443BOOST, cfg: board.cfg, position_m: [0, 0, 1]}
-activities: [punching, walking]
-motion: {range_m: {per_activity: {default: 2.2, walking: 3}}}
-duration_s: 0.5
-samples_per_class: 5
-split: {train: 0.6, validation: 0.4}
-body: {scatterers: surfaces}
-cloud: {chain: board}
-maps: [range_doppler, points]
-image: {size_px: 32}
-"""
 QUICK = ("--set", "device=cpu", "--set", "precision=float32", "--set", "threads=1")
 
 
@@ -43,7 +31,7 @@ QUICK = ("--set", "device=cpu", "--set", "precision=float32", "--set", "threads=
 def boards(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("sequences")
     (folder / "board.cfg").write_text(CFG)
-    (folder / "config.yaml").write_text(YAML)
+    (folder / "config.yaml").write_text(CLOUDS)
     made = radhar("generate", folder / "config.yaml", "-o", folder / "data", "--jobs", "1", "-q")
     assert made.returncode == 0, made.stderr
     return folder

@@ -146,3 +146,10 @@ def test_samples_of_stepped_frequencies() -> None:
 def test_steps_that_do_not_fit(more: dict[str, object], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         stepped(**more)
+
+
+def test_a_slow_sweep_and_a_short_fft_are_told_by_their_own_keys() -> None:
+    document = {"radar": STEPS | {"waveform": "sfcw", "steps": 8, "dwell_s": 2e-3}}
+    with pytest.raises(ValueError, match=r"processing\.range_fft_length") as error:
+        Config.model_validate(document | {"processing": {"range_fft_length": 4}})
+    assert "radar.steps" in str(error.value)

@@ -118,12 +118,16 @@ class ImageSet:
         """Of a sequence; 1 of an image."""
         return {"clouds": self.size[0], "frames": self.channels}.get(self.kind, 1)
 
+    @property
+    def done(self) -> tuple[tuple[str, ...], ...]:
+        """What everybody does in each [N], of one person the class."""
+        return self.everybody or tuple((self.classes[label],) for label in self.label)
+
     def shows(self, classes: Sequence[str]) -> Levels:
         """What anybody does in each [N, classes], 1 or 0."""
-        alone = ((self.classes[label],) for label in self.label)
         numbers = {name: number for number, name in enumerate(classes)}
         found = np.zeros((len(self), len(classes)), np.uint8)
-        for row, names in zip(found, self.everybody or alone, strict=True):
+        for row, names in zip(found, self.done, strict=True):
             row[[numbers[name] for name in names if name in numbers]] = 1
         return found
 
@@ -132,14 +136,13 @@ class ImageSet:
 
         The label of target labels is still that of the sample's own person.
         """
-        everybody = self.everybody or tuple((self.classes[label],) for label in self.label)
         if target == "labels":
-            classes = class_order({name for names in everybody for name in names})
+            classes = class_order({name for names in self.done for name in names})
             label = np.array([classes.index(name) for name in self.classes])[self.label]
             return replace(self, classes=classes, label=label)
         if target != "count":
             return self
-        counts = np.array([len(names) for names in everybody])
+        counts = np.array([len(names) for names in self.done])
         known, label = np.unique(counts, return_inverse=True)
         classes = tuple(f"{n} {'person' if n == 1 else 'people'}" for n in known)
         return replace(self, classes=classes, label=label, everybody=None)

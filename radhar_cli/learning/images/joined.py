@@ -43,8 +43,6 @@ def joined(sets: Sequence[ImageSet]) -> ImageSet:
                 "should be of one size"
             )
     several = any(one.everybody for one in sets)
-    alone = [tuple((one.classes[label],) for label in one.label) for one in sets]
-    everybody = [one.everybody or own for one, own in zip(sets, alone, strict=True)]
     classes = class_order({name for one in sets for name in one.classes})
     numbers = [np.array([classes.index(name) for name in one.classes]) for one in sets]
     count = np.array([len(one) for one in sets])
@@ -61,7 +59,7 @@ def joined(sets: Sequence[ImageSet]) -> ImageSet:
         left_out={name: n for one in sets for name, n in one.left_out.items()},
         source=np.repeat(np.arange(len(sets)), count),
         persons=None,
-        everybody=tuple(names for each in everybody for names in each) if several else None,
+        everybody=tuple(names for one in sets for names in one.done) if several else None,
     )
 
 

@@ -37,7 +37,22 @@ def centres(x: Tensor) -> Tensor:
     return (near(sums) + 1e-3 * whole) / (near(counts) + 1e-3 * number).clamp_min(1e-6)
 
 
-class CloudNet(nn.Module):
+class OverTime(nn.Module):
+    """A network whose features [B, 128, T] become outputs of a sequence, or of its frames."""
+
+    head: nn.Linear
+
+    def __init__(self, per_frame: bool) -> None:
+        super().__init__()
+        self.per_frame = per_frame
+
+    def forward_head(self, features: Tensor, pre_logits: bool = False) -> Tensor:
+        """Features to their means over time [B, 128], or to outputs [B, (T,) outputs]."""
+        pooled = features.transpose(1, 2) if self.per_frame else features.mean(2)
+        return pooled if pre_logits else self.head(pooled)
+
+
+class CloudNet(OverTime):
     """The network, for clouds [B, 6, T, K]: COLUMNS of K points in T frames.
 
     Args:
@@ -46,8 +61,7 @@ class CloudNet(nn.Module):
     """
 
     def __init__(self, outputs: int, per_frame: bool = False) -> None:
-        super().__init__()
-        self.per_frame = per_frame
+        super().__init__(per_frame)
         first, second = WIDTHS
         self.points = nn.Sequential(
             nn.Conv2d(3 + len(COLUMNS) - 1, first, 1),
@@ -64,11 +78,6 @@ class CloudNet(nn.Module):
         each = torch.cat([x[:, :3] - centres(x)[..., None], x[:, :-1]], 1)
         features: Tensor = self.time((self.points(each * present) * present).amax(3))
         return features
-
-    def forward_head(self, features: Tensor, pre_logits: bool = False) -> Tensor:
-        """Features to their means over time [B, 128], or to outputs [B, (T,) outputs]."""
-        pooled = features.transpose(1, 2) if self.per_frame else features.mean(2)
-        return pooled if pre_logits else self.head(pooled)
 
     def forward(self, x: Tensor) -> Tensor:
         """[B, 6, T, K] to [B, outputs], or to places [B, T, outputs/3, 3]."""

@@ -2,7 +2,7 @@
 
 from torch import Tensor, nn
 
-from radhar_cli.learning.models.cloudnet import GROUPS, over_time
+from radhar_cli.learning.models.cloudnet import GROUPS, OverTime, over_time
 
 NAME = "framenet"
 WIDTHS = (8, 16, 32)
@@ -20,7 +20,7 @@ def block(inputs: int, outputs: int) -> nn.Sequential:
     )
 
 
-class FrameNet(nn.Module):
+class FrameNet(OverTime):
     """The network, for frames [B, T, H, W] whose sides have at least 8 cells.
 
     Where in a frame an echo lies is kept, on a grid of 4 x 4.
@@ -31,8 +31,7 @@ class FrameNet(nn.Module):
     """
 
     def __init__(self, outputs: int, per_frame: bool = False) -> None:
-        super().__init__()
-        self.per_frame = per_frame
+        super().__init__(per_frame)
         pairs = zip((1, *WIDTHS[:-1]), WIDTHS, strict=True)
         self.frame = nn.Sequential(
             *(block(*pair) for pair in pairs),
@@ -48,11 +47,6 @@ class FrameNet(nn.Module):
         frames: Tensor = self.frame(x.flatten(0, 1)[:, None]).view(*x.shape[:2], -1)
         features: Tensor = self.time(frames.transpose(1, 2))
         return features
-
-    def forward_head(self, features: Tensor, pre_logits: bool = False) -> Tensor:
-        """Features to their means over time [B, 128], or to outputs [B, (T,) outputs]."""
-        pooled = features.transpose(1, 2) if self.per_frame else features.mean(2)
-        return pooled if pre_logits else self.head(pooled)
 
     def forward(self, x: Tensor) -> Tensor:
         """[B, T, H, W] to [B, outputs], or to places [B, T, outputs/3, 3]."""

@@ -8,11 +8,11 @@ from torch import nn
 from torch.library import Library
 
 from radhar_cli.errors import ModelError, did_you_mean
-from radhar_cli.learning.models import cloudnet, fftnet, framenet, smallnet
+from radhar_cli.learning.models import fftnet, smallnet
+from radhar_cli.learning.settings import OF_SEQUENCES
 
 _OPERATORS: Any = Library("torchvision", "FRAGMENT")  # type: ignore[no-untyped-call]  # forgets what it defines when it is let go
 OURS = (fftnet.NAME, smallnet.NAME)
-OF_SEQUENCES = (cloudnet.NAME, framenet.NAME)
 
 
 def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:

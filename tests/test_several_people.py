@@ -229,6 +229,7 @@ def test_the_fast_echo_keeps_its_tolerance(scatterers: str, wall: dict[str, Any]
         ({"people": [{}] * 8}, r"people .*at most 7"),
         ({"people": 3}, r"people = 3: should be a list"),
         ({"people": [{"wall": {}}]}, r"people\.0\.wall"),
+        ({"people": [{"shar": 0.5}]}, r"people\.0\.shar .*did you mean 'share'"),
     ],
 )
 def test_mistakes_name_key_and_value(

@@ -263,6 +263,8 @@ def _unknown(kind: type[BaseModel], names: list[int | str]) -> str:
         return absent
     section: type[BaseModel] | None = kind
     for name in names[:-1]:
+        if isinstance(name, int):  # in a list of sections
+            continue
         field = section.model_fields.get(str(name)) if section else None
         section = next(
             (

@@ -1,11 +1,10 @@
 """Fit a trained network to images of another radar whose labels nobody knows.
 
-Batch norm keeps mean and variance of what each layer saw while it learned. Replaced by those of the
-new images they take away what differs between the two sources alone (Li et al., Adaptive batch
-normalization for practical domain adaptation, Pattern Recognition 80, 2018). Then all layers but
-the last can learn from the images: to be sure of each, and of every class equally often (Liang, Hu
-and Feng, Do we really need to access the source data?, ICML 2020). Labelled images of the first
-source, shown at the same time, keep the classes what they were.
+All layers but the last learn from the images: to be sure of each, and of every class equally often
+(Liang, Hu and Feng, Do we really need to access the source data?, ICML 2020). Labelled images of
+the first source, shown at the same time, keep the classes what they were. Where a network has
+batch norm, it takes mean and variance from the new images (Li et al., Adaptive batch normalization
+for practical domain adaptation, Pattern Recognition 80, 2018), even without learning.
 """
 
 from collections.abc import Iterator, Sequence
@@ -75,11 +74,11 @@ def adapt(
     mix: Sequence[Path] = (),
     progress: Messages | None = None,
 ) -> RunMetadata:
-    """Write a copy of a run whose batch norm has the statistics of all images of `data`.
+    """Write a copy of a run that has learned from all images of `data`.
 
-    Classes of `data` are not looked at, and may be others than the model's. The images should show
-    the classes about as often as those that will be predicted: statistics are of the mixture. With
-    epochs it learns from them as well, which takes every class to be there about equally often.
+    Classes of `data` are not looked at, and may be others than the model's. Learning takes every
+    class to be there about equally often. Without epochs only the statistics of batch norm change;
+    the images should show the classes about as often as those that will be predicted.
 
     Args:
         map_name: of a data set, if not the one of the run.
@@ -90,7 +89,7 @@ def adapt(
 
     Raises:
         RunError, FolderError: one of them cannot be used.
-        ConfigError: the network has no batch norm, or there are fewer than MIN_IMAGES images.
+        ConfigError: neither epochs nor batch norm, or fewer than MIN_IMAGES images.
     """
     metadata, _ = load_best(run)
     images = open_for(metadata, data, map_name, labelled=False, resize=resize)
@@ -117,8 +116,10 @@ def adapt_to(
     if run.resolve() == folder.resolve():
         raise run_folder.RunError(f"{folder}: is the run itself; -o should name another folder")
     history = run_folder.read_history(run)
-    if not any(isinstance(layer, _BatchNorm) for layer in model.modules()):
-        raise ConfigError(f"{run}: the network {metadata.model} has no batch norm to adapt")
+    if not epochs and not any(isinstance(layer, _BatchNorm) for layer in model.modules()):
+        raise ConfigError(
+            f"epochs = 0: should be at least 1 for {metadata.model}, which has no batch norm"
+        )
     if metadata.settings.target == "labels":
         raise ConfigError(f"{run}: finds several labels at a time; should be a run of classes")
     if rows.size < MIN_IMAGES:
@@ -167,6 +168,9 @@ class _Learner:
 
         The rows are shuffled, as stored ones may be sorted by class, and batches are nearly equal.
         """
+        if not self.norms:
+            self.model.eval()
+            return
         for layer in self.norms:
             layer.train()
             layer.reset_running_stats()

@@ -9,11 +9,11 @@ from torch import Tensor, nn
 from torch.nn.functional import avg_pool1d
 
 from radhar_cli.learning.images.sequences import COLUMNS
+from radhar_cli.learning.models.smallnet import GROUPS
 
 NAME = "cloudnet"
 WIDTHS = (64, 128)
 NEAR = 5  # frames whose points make the centre of one
-GROUPS = 8
 
 
 def over_time(channels: int) -> nn.Sequential:

@@ -2,22 +2,13 @@
 
 from torch import Tensor, nn
 
-from radhar_cli.learning.models.cloudnet import GROUPS, OverTime, over_time
+from radhar_cli.learning.models.cloudnet import OverTime, over_time
+from radhar_cli.learning.models.smallnet import block
 
 NAME = "framenet"
 WIDTHS = (8, 16, 32)
 FEATURES, GRID = 128, 4
 MIN_SIDE = 2 ** len(WIDTHS)
-
-
-def block(inputs: int, outputs: int) -> nn.Sequential:
-    """3 x 3 convolution, group norm, ReLU, and the largest of every 2 x 2."""
-    return nn.Sequential(
-        nn.Conv2d(inputs, outputs, 3, padding=1, bias=False),
-        nn.GroupNorm(GROUPS, outputs),
-        nn.MaxPool2d(2),
-        nn.ReLU(inplace=True),
-    )
 
 
 class FrameNet(OverTime):

@@ -59,6 +59,7 @@ def problems(c: Config) -> Iterator[Problem]:
         yield from _gate_problems(c)
     yield from _wall_problems(c)
     yield from _back_wall_problems(c)
+    yield from _room_problems(c)
     yield from _image_problems(c)
     if c.motion.model == "human":
         yield from _human_problems(c)
@@ -402,6 +403,44 @@ def _back_wall_problems(c: Config) -> Iterator[Problem]:
         if support(wall)[0] <= farthest:
             where = f"at up to {farthest:g} m ({whose}motion.range_m)"
             yield Problem(key, wall, f"should be beyond the people, who stand {where}")
+
+
+def _room_problems(c: Config) -> Iterator[Problem]:
+    """Faces, box and antennas that do not go together."""
+    room, radar = c.room, c.radar
+    if radar.beam is not None and radar.cfg is not None:
+        yield Problem("radar.beam", "a beam", "should be null with radar.cfg: half_power_deg")
+    if room.faces is None:
+        return
+    if room.back_wall_m is not None:
+        right = "should be null with room.faces: back is one of them"
+        yield Problem("room.back_wall_m", room.back_wall_m, right)
+    if radar.cfg is not None and c.snr_db is not None:
+        right = "should be null with radar.cfg and room.faces: a board's noise is thermal"
+        yield Problem("snr_db", c.snr_db, right)
+    if room.box_m is None:
+        if walls := [name for name in room.faces.given if name != "floor"]:
+            right = f"should say where {', '.join(walls)} of room.faces are; a floor needs none"
+            yield Problem("room.box_m", None, right)
+        return
+    box, height = room.box_m, support(room.box_m.height)
+    for key, (low, high) in (("x", box.x), ("y", box.y)):
+        if support(low)[1] >= support(high)[0]:
+            right = "should be [lower, higher]"
+            yield Problem(f"room.box_m.{key}", [str(low), str(high)], right)
+    within = [(support(low)[1], support(high)[0]) for low, high in (box.x, box.y)]
+    within.append((0.0, height[0]))
+    for name in ("tx_m", "rx_m") if radar.cfg is None else ("position_m",):
+        antenna = getattr(radar, name)
+        places = [support(one) for one in antenna]
+        before = places[0][1] < support(box.x[0])[0]
+        inside = [low < a and b < high for (a, b), (low, high) in zip(places, within, strict=True)]
+        if before and all(inside[1:]) and c.wall is None:
+            right = "should be in the room, or have a wall: to see through"
+            yield Problem(f"radar.{name}", list(antenna), right)
+        elif not all(inside[1:] if before else inside):
+            right = "should be inside room.box_m, or before its front"
+            yield Problem(f"radar.{name}", list(antenna), right)
 
 
 def _image_problems(c: Config) -> Iterator[Problem]:

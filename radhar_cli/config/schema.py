@@ -74,6 +74,7 @@ from radhar_cli.light import SPEED_OF_LIGHT
 from radhar_cli.motion.files.names import WANTED
 from radhar_cli.motion.files.reading import SUFFIXES
 from radhar_cli.radar.board import DEVICES
+from radhar_cli.radar.materials import Material
 from radhar_cli.registry import is_known, own_products
 from radhar_cli.rounding import half_up
 
@@ -197,6 +198,21 @@ class ArrayConfig(Section):
     """Receivers."""
 
 
+class BeamConfig(Section):
+    """A beam of -min(12 (az/azimuth_deg)^2 + 12 (el/elevation_deg)^2, most_db) dB, one way."""
+
+    azimuth_deg: Annotated[Positive, within(1, 1000, "degree")]
+    """Full width at -3 dB."""
+    elevation_deg: Annotated[Positive, within(1, 1000, "degree")]
+    """Full width at -3 dB."""
+    pan_deg: Angle = 0.0
+    """Of the boresight from the x axis, positive to the left."""
+    tilt_deg: Angle = 0.0
+    """Of the boresight, positive down."""
+    most_db: Annotated[NotNegative, within(0, 120, "dB")] = 30.0
+    """Least gain below that of the boresight."""
+
+
 class RadarConfig(Section):
     """Waveform, antenna positions and gains; every number may be drawn."""
 
@@ -224,6 +240,12 @@ class RadarConfig(Section):
     """Only a raw echo shows the leakage."""
     residual_video_phase: Flag = False
     """Keep the term pi K tau^2."""
+    polarisation: Annotated[Literal["vertical", "horizontal"], Needs("room.faces", GIVEN)] = (
+        "vertical"
+    )
+    """Of the antennas' field; horizontal is along y."""
+    beam: BeamConfig | None = None
+    """Where both antennas look; null radiates evenly. A board has radar.half_power_deg."""
     waveform: Literal["fmcw", "sfcw"] = "fmcw"
     """sfcw: sweeps of steps, sampled once each; instead of adc_rate_hz and chirp_s."""
     steps: Annotated[int, Field(ge=2, le=2**20, strict=True)] | None = None
@@ -749,8 +771,55 @@ class ReflectorConfig(Section):
 MAX_REFLECTORS = 32
 
 
+class DielectricConfig(Section):
+    """A material by its permittivity eps_r (1 - j loss_tangent)."""
+
+    eps_r: Annotated[AtLeastOne, within(1, 1e6)]
+    loss_tangent: Annotated[NotNegative, within(0, 1e12)] = 0.0
+
+
+class BoxConfig(Section):
+    """Where the faces of a room are: `{x: [0, 6], y: [-2.5, 2.5], height: 2.8}`; floor at 0."""
+
+    x: tuple[Number, Number]
+    """Of front and back face, m."""
+    y: tuple[Number, Number]
+    """Of right and left face, m."""
+    height: Positive
+    """Of the ceiling, m."""
+
+
+_Face = Material | DielectricConfig | None
+
+
+class FacesConfig(Section):
+    """What the faces of a room are made of: ITU-R P.2040's name, or {eps_r, loss_tangent}."""
+
+    floor: _Face = None
+    """Alone it needs no room.box_m."""
+    ceiling: _Face = None
+    left: _Face = None
+    """At the larger y."""
+    right: _Face = None
+    front: _Face = None
+    """At the smaller x."""
+    back: _Face = None
+
+    @property
+    def given(self) -> dict[str, Material | DielectricConfig]:
+        """{name: material} of the faces that reflect."""
+        return {name: one for name in type(self).model_fields if (one := getattr(self, name))}
+
+
 class RoomConfig(Section):
-    """What stands in the room: reflectors, and a wall behind people."""
+    """What stands in the room, what its faces echo, or a wall behind people."""
+
+    box_m: Annotated[BoxConfig | None, Needs("room.faces", GIVEN)] = None
+    """Where the faces are."""
+    faces: FacesConfig | None = None
+    """Faces by way of which people are seen again; null is none."""
+    order: Annotated[int, Field(ge=0, le=2, strict=True), Needs("room.faces", GIVEN)] = 1
+    """Most bounces of a path, on the ways there and back together."""
 
     reflectors: Annotated[tuple[ReflectorConfig, ...], Field(max_length=MAX_REFLECTORS)] = ()
     """Up to 32 of {position_m, rcs_dbsm, residual_m, highest_hz}; `[{}, {}]`: two default ones."""
@@ -1093,7 +1162,7 @@ MAP_NAMES = (
 # Maps of a board, frame by frame: data sets hold them as arrays, and sheets of frames as images.
 FRAME_MAPS = ("range_doppler", "range_azimuth", "range_elevation", "points")
 # What comes with the points, and with any of these maps.
-OF_POINTS = ("points", "points_start", "points_person")
+OF_POINTS = ("points", "points_start", "points_person", "points_kind")  # the last of rooms
 OF_FRAMES = ("skeleton", "skeleton_velocity")
 
 
@@ -1312,7 +1381,7 @@ class Config(Section):
     def stored(self) -> tuple[str, ...]:
         """Products that a data set holds as arrays: those of `output.products` and of boards."""
         frames = [name for name in self.maps if name in FRAME_MAPS]
-        points = OF_POINTS if "points" in frames else ()
+        points = OF_POINTS[: 3 + bool(self.room.faces)] if "points" in frames else ()
         people = OF_FRAMES if frames else ()
         return tuple(dict.fromkeys((*frames, *points, *people, *self.output.products)))
 

@@ -64,11 +64,12 @@ from radhar_cli.dataset.untrusted_hdf5 import (
 from radhar_cli.errors import UnfinishedError
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.new_hdf5 import new_hdf5
+from radhar_cli.pipeline.physics import kinds_of
 from radhar_cli.pipeline.validity import Flags, warnings
 from radhar_cli.processing.points import COLUMNS
 from radhar_cli.progress import Progress
 from radhar_cli.replacing import replacing
-from radhar_cli.scene import subject_of
+from radhar_cli.scene import nominal_scene, subject_of
 
 SCHEMA_VERSION = 2
 RUN, RUN_BYTES = 128, 2**28
@@ -215,6 +216,10 @@ def _copy_shards(
     if "products/points" in file:
         file["products/points"].attrs["columns"] = [*COLUMNS]
     recorded = any(config.files_of(one) is not None for one in config.chosen_activities)
+    if "products/points_kind" in file:
+        file["products/points_kind"].attrs["kinds"] = kinds_of(
+            nominal_scene(config, config.chosen_activities[0]).config
+        )
     if "products/skeleton" in file and not recorded:
         file["products/skeleton"].attrs["joint_names"] = [*JOINTS]
     if config.people:

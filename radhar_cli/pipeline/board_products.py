@@ -24,6 +24,7 @@ from radhar_cli.pipeline.physics import (
     fsst_frames_of,
     gate_in_windows,
     noise_stream,
+    ways_of,
 )
 from radhar_cli.pipeline.plan import Product
 from radhar_cli.processing.best_points import best_points
@@ -37,6 +38,7 @@ from radhar_cli.processing.power_map import MapImage
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.signal import Signal
 from radhar_cli.radar.board import Board
+from radhar_cli.radar.room import Way
 from radhar_cli.radar.wall import Wall
 from radhar_cli.randomness import NOISE, stream
 from radhar_cli.receiver.noise import circular_gaussian, noise_variance
@@ -96,7 +98,10 @@ def board_products(c: Config, entropy: bool = True) -> Iterator[Product]:
     )
     yield Product("skeleton", ("skeletons",), lambda s: s.positions, "positions of joints")
     yield Product("skeleton_velocity", ("skeletons",), lambda s: s.velocities, "their velocities")
-    yield Product("points_person", ("cloud", "skeletons"), persons_of, "whose each point is")
+    whose = ("cloud", "skeletons", "board", "scene")
+    yield Product("owners", whose, owners_of, "nearest joint of each point, or its image")
+    yield Product("points_person", ("owners",), lambda o: o.person, "whose each point is")
+    yield Product("points_kind", ("owners",), lambda o: o.kind, "by way of which faces")
     yield Product("canceller", (), lambda: MeanRemoval() if still else NO_CANCELLER, does)
     yield Product("slow_time", ("board_bins",), lambda x: x.summed(), "sum over range, uncancelled")
     yield Product("board_bins", ("cube", "board"), range_bins, "range bins of every channel")
@@ -227,15 +232,43 @@ def skeletons_of(scene: Scene, motions: tuple[Motion, ...], board: Board) -> Ske
     return Skeletons(found[0], found[1], names)
 
 
-def persons_of(cloud: Cloud, skeletons: Skeletons) -> Index:
-    """Number of the person with the nearest joint [N]; -1 beyond NEAR_M."""
+class Owners(NamedTuple):
+    """Whose the nearest joint of each point [N] is, straight or as an image; -1 beyond NEAR_M."""
+
+    person: Index
+    kind: Index  # of `kinds_of` the config
+
+
+def owners_of(cloud: Cloud, skeletons: Skeletons, board: Board, scene: Scene) -> Owners:
+    """Find the person and the way by which each point is seen."""
     frame = np.repeat(np.arange(len(cloud.start) - 1), np.diff(cloud.start))
-    apart = skeletons.positions[frame] - cloud.points[:, None, None, :3]
-    square = np.nan_to_num((apart**2).sum(axis=-1), nan=np.inf)
-    distance = np.sqrt(square).min(axis=2, initial=np.inf)  # [N, person]
-    nearest = distance.argmin(axis=1)
-    person: Index = np.where(distance.min(axis=1) <= NEAR_M, nearest, -1).astype(np.int16)
-    return person
+    best = np.full(len(frame), np.inf)
+    owners = Owners(*np.full((2, len(frame)), -1, np.int16))
+    for kind, legs in enumerate([None, *ways_of(scene.config)]):
+        joints = skeletons.positions if legs is None else _apparent(skeletons, board, legs)
+        apart = joints[frame] - cloud.points[:, None, None, :3]
+        square = np.nan_to_num((apart**2).sum(axis=-1), nan=np.inf)
+        distance = np.sqrt(square).min(axis=2, initial=np.inf)  # [N, person]
+        nearest = distance.min(axis=1)
+        nearer = (nearest < best) & (nearest <= NEAR_M)
+        owners.person[nearer], owners.kind[nearer] = distance.argmin(axis=1)[nearer], kind
+        best = np.minimum(best, nearest)
+    return owners
+
+
+def _apparent(skeletons: Skeletons, board: Board, legs: tuple[Way, Way]) -> Float:
+    """Joints as skeletons have them, where echoes by way of faces seem to come from.
+
+    The range is half of both legs, the direction that between those in which they leave and arrive.
+    """
+    here, axes = np.array(board.position), np.array(board.aim.axes)
+    p = (skeletons.positions @ axes + here).T
+    images = [way.image(p).T - here for way in legs]
+    far = [np.linalg.norm(one, axis=-1, keepdims=True) for one in images]
+    between = images[0] / far[0] + images[1] / far[1]
+    length = np.maximum(np.linalg.norm(between, axis=-1, keepdims=True), 1e-9)
+    seen: Float = (0.5 * (far[0] + far[1]) * between / length) @ axes.T
+    return seen
 
 
 def range_bins(cube: Complex, board: Board) -> Signal:

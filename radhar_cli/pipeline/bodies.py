@@ -1,6 +1,7 @@
 """A scene and a motion -> paths, from joints or from segments as `body:` has it."""
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -9,16 +10,25 @@ from radhar_cli.motion.protocol import Motion, Only, remembered
 from radhar_cli.motion.reflectors import Reflectors
 from radhar_cli.motion.segments import covered, found_segments, landmarks_of, thickness
 from radhar_cli.pipeline.motion_paths import MotionPaths, Shade, ShadowedPaths, SumOfPaths
-from radhar_cli.pipeline.physics import antennas_behind_mirror, body_of, frames_of
+from radhar_cli.pipeline.physics import body_of, frames_of, ways_of
 from radhar_cli.pipeline.segment_paths import Points, SegmentPaths, draw_points, point_counts
 from radhar_cli.pipeline.surface_paths import SurfacePaths, draw_surface
 from radhar_cli.radar.person_shadow import HALF_WIDTH_M
 from radhar_cli.radar.propagation import Antennas
+from radhar_cli.radar.room import names_of
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene import Person, Scene
 
 POINTS = 14  # of a surface
+
+
+class Whose(NamedTuple):
+    """Paths, and whose echo they are."""
+
+    source: PathSource
+    person: int  # 0 is the sample's own, -1 what stands in the room
+    kind: str  # faces of the leg of the transmitter/of the receiver
 
 
 def paths_of(
@@ -30,16 +40,30 @@ def paths_of(
     room: Reflectors | None = None,
     mirrored: bool = True,
 ) -> PathSource:
-    """The paths of everything in a scene: of what moves, and of what stands in the room.
+    """The paths of everything in a scene, as `sources_of` has them."""
+    found = sources_of(scene, motions, antennas, wall, waveform, room, mirrored)
+    return found[0].source if len(found) == 1 else SumOfPaths(tuple(one.source for one in found))
 
-    People shadow each other, unless `body.shadowing` is false. With a wall behind them
-    (`room.back_wall_m`) they are there twice, unless not `mirrored`.
+
+def sources_of(
+    scene: Scene,
+    motions: tuple[Motion, ...],
+    antennas: Antennas,
+    wall: Wall | None,
+    waveform: Waveform,
+    room: Reflectors | None = None,
+    mirrored: bool = True,
+) -> list[Whose]:
+    """The paths of everything in a scene: of who moves, and of what stands in the room.
+
+    People shadow each other, unless `body.shadowing` is false. By way of a room's faces they are
+    there again, unshadowed, unless not `mirrored`.
     """
-    sources: list[PathSource] = []
-    direct: list[SegmentPaths | SurfacePaths | MotionPaths] = []
+    sources: list[Whose] = []
+    images = [antennas.by_way(*way) for way in ways_of(scene.config)] if mirrored else []
     people = scene.people
     several = len(people) == len(motions) > 1 and scene.config.body.shadowing
-    if several:  # each is asked for their own echo and for their shadow on others
+    if several or images:  # asked for the same times again and again
         motions = tuple(map(remembered, motions))
     shades = [shade_of(*one) for one in zip(people, motions, strict=True)] if several else []
     for number, motion in enumerate(motions):
@@ -54,15 +78,18 @@ def paths_of(
             rest = _without_segments(motion)
         if rest is not None:
             theirs.append(MotionPaths(rest, antennas, waveform.fc, wall))
-        direct += theirs
         others = tuple(shade for at, shade in enumerate(shades) if at != number)
-        sources += [ShadowedPaths(one, others, waveform.fc) if others else one for one in theirs]
-    behind = antennas_behind_mirror(scene.config, antennas) if mirrored else None
-    if behind is not None:
-        sources += [replace(source, antennas=behind) for source in direct]
+        person = people[number].number if len(people) == len(motions) else number
+        straight = [ShadowedPaths(one, others, waveform.fc) if others else one for one in theirs]
+        sources += [Whose(one, person, "-/-") for one in straight]
+        sources += [
+            Whose(replace(one, antennas=seen), person, names_of(seen.ways))
+            for seen in images
+            for one in theirs
+        ]
     if room is not None:
-        sources.append(MotionPaths(room, antennas, waveform.fc, wall))
-    return sources[0] if len(sources) == 1 else SumOfPaths(tuple(sources))
+        sources.append(Whose(MotionPaths(room, antennas, waveform.fc, wall), -1, "-/-"))
+    return sources
 
 
 def shade_of(person: Person, motion: Motion) -> Shade:

@@ -12,7 +12,7 @@ from radhar_cli.motion.protocol import Motion
 from radhar_cli.motion.reflectors import Reflectors
 from radhar_cli.radar.person_shadow import left_of, light_past
 from radhar_cli.radar.propagation import Antennas, amplitude, bistatic_delay, leg
-from radhar_cli.radar.transmission import transmission, wall_delay
+from radhar_cli.radar.transmission import legs_through, wall_delay
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
@@ -52,11 +52,10 @@ class MotionPaths:
         r_tx, r_rx = leg(p, self.antennas.tx), leg(p, self.antennas.rx)
         tau = bistatic_delay(r_tx, r_rx)
         a = amplitude(r_tx, r_rx, sigma, self.antennas.gain, SPEED_OF_LIGHT / self.fc)
-        if self.antennas.aim is not None:
-            a *= self.antennas.aim.two_way(p)
+        if (field := self.antennas.field(p)) is not None:
+            a *= field
         if self.wall is not None:
-            for antenna in (self.antennas.tx, self.antennas.rx):
-                through = transmission(p, antenna, self.wall, self.fc)
+            for through in legs_through(p, self.antennas, self.wall, self.fc):
                 tau += through.delay
                 a *= through.factor
         return Paths(tau, a)

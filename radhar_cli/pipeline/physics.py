@@ -2,13 +2,13 @@
 
 from dataclasses import fields, replace
 from functools import partial
-from math import radians
+from math import inf, log, radians, sqrt
 
 import numpy as np
 
 from radhar_cli.arrays import Float
 from radhar_cli.config.number import support
-from radhar_cli.config.schema import Config
+from radhar_cli.config.schema import Config, DielectricConfig
 from radhar_cli.motion.paper.activities import Gait, Timing
 from radhar_cli.motion.paper.body import PaperBody
 from radhar_cli.motion.protocol import Motion, Only
@@ -31,7 +31,9 @@ from radhar_cli.processing.signal import Signal
 from radhar_cli.processing.stft import Stft
 from radhar_cli.radar.board import DEVICES, Array, Board
 from radhar_cli.radar.detection import Detection
-from radhar_cli.radar.propagation import Antennas, behind_mirror
+from radhar_cli.radar.materials import permittivity
+from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes
+from radhar_cli.radar.room import FACES, Face, Way, names_of, ways
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.randomness import NOISE, stream
@@ -113,6 +115,7 @@ def antennas_of(config: Config) -> Antennas:
         rx=radar.rx_m,
         gain=10 ** (radar.antenna_gain_dbi / 10),
         isolation_db=radar.antenna_isolation_db,
+        aim=beam_of(config),
     )
 
 
@@ -147,12 +150,55 @@ def body_of(person: Person, motion: Motion) -> Body:
     return Body(whole, found_segments(landmarks_of(whole)), stature, thickness(stature, weight))
 
 
-def antennas_behind_mirror(config: Config, antennas: Antennas) -> Antennas | None:
-    """The antennas as the wall behind people mirrors them; None without one."""
-    room = Numbers(config.room)
-    if room.back_wall_m is None:
+def beam_of(config: Config) -> Aim | None:
+    """Where both antennas look, with -min(12 (az/bw)^2 + 12 (el/bw)^2, most_db) dB, if at all."""
+    if config.radar.beam is None:
         return None
-    return behind_mirror(antennas, room.back_wall_m, 10 ** (room.back_wall_reflection_db / 10))
+    beam, radar = Numbers(config.radar.beam), Numbers(config.radar)
+    x, y, z = (np.array(radar.tx_m) + np.array(radar.rx_m)) / 2
+    half = sqrt(log(2) * 20 / (6 * log(10))) / 2  # -3 dB there, and not a half
+    widths = half * beam.azimuth_deg, half * beam.elevation_deg
+    axes = boresight_axes(radians(beam.pan_deg), radians(beam.tilt_deg))
+    return Aim((x, y, z), axes, widths, 10 ** (-beam.most_db / 10))
+
+
+def ways_of(config: Config) -> list[tuple[Way, Way]]:
+    """Ways of transmitter and receiver by faces of the room, or by the wall behind people."""
+    room = Numbers(config.room)
+    if room.back_wall_m is not None:
+        left = 10 ** (room.back_wall_reflection_db / 20)
+        way = Way((Face("back", FACES["back"], room.back_wall_m, fixed=left),))
+        return [(way, way)]
+    if config.room.faces is None:
+        return []
+    at = {"floor": 0.0}
+    if config.room.box_m is not None:
+        box = Numbers(config.room.box_m)
+        at |= {"front": box.x[0], "back": box.x[1], "right": box.y[0], "left": box.y[1]}
+        at["ceiling"] = box.height
+    normal = FACES["floor" if config.radar.polarisation == "vertical" else "left"]
+    faces, radar = [], Numbers(config.radar)
+    for name, material in config.room.faces.given.items():
+        parallel, fixed = FACES[name] != normal, None
+        if material == "metal":
+            fixed = -1.0 if parallel else 1.0
+        eps = _permittivity(material, radar.carrier_hz + radar.bandwidth_hz / 2)
+        faces.append(Face(name, FACES[name], at[name], eps, parallel, fixed))
+    outside = min(p[0] for p in antennas_of(config).places) < at.get("front", -inf)
+    return list(ways(faces, config.room.order, outside))
+
+
+def kinds_of(config: Config) -> list[str]:
+    """Names of the ways on which people are seen, the straight one first."""
+    return ["-/-", *map(names_of, ways_of(config))]
+
+
+def _permittivity(material: str | DielectricConfig, frequency: float) -> complex:
+    """eps = eps_r (1 - j tan delta), or of a named material at a frequency (Hz)."""
+    if isinstance(material, str):
+        return permittivity(material, frequency)
+    numbers = Numbers(material)
+    return complex(numbers.eps_r * (1 - 1j * numbers.loss_tangent))
 
 
 def reflectors_of(scene: Scene) -> Reflectors | None:

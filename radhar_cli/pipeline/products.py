@@ -168,7 +168,7 @@ def _physics(c: Config) -> Iterator[Product]:
 def _snr_of_other_paths(c: Config) -> bool:
     """Whether the SNR refers to another echo than the simulated: no wall, no room, nobody else."""
     no_wall = c.wall is not None and c.snr_reference == "free_space"
-    others = c.room.reflectors or c.people
+    others = c.room.reflectors or c.people or c.room.faces
     return no_wall or bool(others) or c.room.back_wall_m is not None
 
 

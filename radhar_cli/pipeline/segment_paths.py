@@ -18,7 +18,7 @@ from radhar_cli.motion.protocol import Motion
 from radhar_cli.motion.segments import Placed, Segment, cross, place, soft_unit
 from radhar_cli.radar.ellipsoid import View, cross_section, shadow, square_height
 from radhar_cli.radar.propagation import Antennas, amplitude
-from radhar_cli.radar.transmission import transmission
+from radhar_cli.radar.transmission import legs_through
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
@@ -29,6 +29,7 @@ RATE_STEP_S = 1e-3
 RATES_PER_SECOND, MAX_RATES = 25.0, 8192
 BLOCK = 2048  # times per block, which then fits the cache
 TINY = np.finfo(float).tiny
+FORWARD = 1e-6  # least |u_tx + u_rx|^2: scattering forwards has no aspect
 
 
 class Points(NamedTuple):
@@ -185,20 +186,24 @@ class SegmentPaths:
         """
         tx, rx = (frames.seen_from(antenna) for antenna in (self.antennas.tx, self.antennas.rx))
         # The sum of the unit vectors of both legs.
+        square = 2 + 2 * _dot(tx.way, rx.way) / (tx.distance * rx.distance)
         view = View(
             (tx.ways[:, 1] / tx.distance + rx.ways[:, 1] / rx.distance) / frames.length,
             tx.ways[:, 2] / tx.distance + rx.ways[:, 2] / rx.distance,
-            2 + 2 * _dot(tx.way, rx.way) / (tx.distance * rx.distance),
+            np.maximum(square, FORWARD, out=square),
         )
         half, radii, flatness = 0.5 * frames.length, self.body.radii, self.body.flatness
         height = square_height(view, radii, half, flatness) / view.square
         sigma = cross_section(height, radii, half, REFLECTANCE)
         wavelength = SPEED_OF_LIGHT / self.fc
         a = amplitude(tx.distance, rx.distance, sigma, self.antennas.gain, wavelength)
-        if self.antennas.aim is not None:
-            a *= self.antennas.aim.two_way(frames.centre)
-        if self.shadowing:
+        if (field := self.antennas.field(frames.centre)) is not None:
+            a *= field
+        if self.shadowing and self.antennas.ways[0] == self.antennas.ways[1]:
             a *= self._light(frames, 0.5 * (tx.way + rx.way), wavelength)
+        elif self.shadowing:
+            light = (self._light(frames, one.way, wavelength) for one in (tx, rx))
+            a *= np.sqrt(np.multiply(*light))
         # The n-th part of a segment is an ellipsoid of its own, with its own nearest point.
         parts = np.array([[points.share.size] for points in self.points])
         nearer = np.sqrt(square_height(view, radii, half / parts, flatness)) / SPEED_OF_LIGHT
@@ -217,8 +222,7 @@ class SegmentPaths:
 
     def _through_wall(self, p: Float, delay: Float, strength: Float) -> None:
         assert self.wall is not None
-        for antenna in (self.antennas.tx, self.antennas.rx):
-            through = transmission(p, antenna, self.wall, self.fc)
+        for through in legs_through(p, self.antennas, self.wall, self.fc):
             delay += through.delay
             strength *= through.factor
 

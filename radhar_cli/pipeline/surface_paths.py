@@ -19,7 +19,8 @@ from radhar_cli.motion.protocol import recalled
 from radhar_cli.motion.segments import REFERENCE_STATURE, cross, soft_unit, unit
 from radhar_cli.pipeline.segment_paths import Body
 from radhar_cli.radar.propagation import Antennas, amplitude, bistatic_delay, leg
-from radhar_cli.radar.transmission import transmission
+from radhar_cli.radar.room import Point
+from radhar_cli.radar.transmission import legs_through
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
@@ -103,32 +104,40 @@ class SurfacePaths:
 
     def __call__(self, t: Float) -> Paths:
         """Paths of the points at times t [M] (s)."""
-        place = self._centre()
-        p, field_ = recalled(self.body.motion, ("surface", place), t, lambda: self._seen(t, place))
+        places = tuple(way.antenna(self._centre()) for way in self.antennas.ways)
+        p, field_ = recalled(
+            self.body.motion, ("surface", places), t, lambda: self._seen(t, *places)
+        )
         r_tx, r_rx = leg(p, self.antennas.tx), leg(p, self.antennas.rx)
         tau = bistatic_delay(r_tx, r_rx)
         a = amplitude(r_tx, r_rx, field_**2, self.antennas.gain, SPEED_OF_LIGHT / self.fc)
         if self.wall is not None:
-            for antenna in (self.antennas.tx, self.antennas.rx):
-                through = transmission(p, antenna, self.wall, self.fc)
+            for through in legs_through(p, self.antennas, self.wall, self.fc):
                 tau += through.delay
                 a *= through.factor
         chosen = np.isin(self.drawn.segment, self.kept)
         tau -= (np.angle(self.drawn.weight) / (2 * pi * self.fc))[:, None]  # less than lambda/2
         return Paths(tau[chosen], a[chosen])
 
-    def _centre(self) -> tuple[float, ...]:
+    def _centre(self) -> Point:
         """What surfaces face: the array, or the middle of the antennas."""
         if self.antennas.aim is not None:
             return self.antennas.aim.position
-        return tuple((np.array(self.antennas.tx) + np.array(self.antennas.rx)) / 2)
+        x, y, z = np.mean(self.antennas.places, axis=0)
+        return (x, y, z)
 
-    def _seen(self, t: Float, place: tuple[float, ...]) -> tuple[Float, Float]:
-        """Positions [3, I, M] (m) of the points, and their fields sqrt(sigma) [I, M] (m)."""
+    def _seen(self, t: Float, tx: Point, rx: Point) -> tuple[Float, Float]:
+        """Positions [3, I, M] (m) of the points, and their fields sqrt(sigma) [I, M] (m).
+
+        They face the array, or the direction between those from which its legs come.
+        """
         drawn, placed = self.drawn, self.body.at(t)
         way = placed.end - placed.start
         axis = unit(way)
-        sight = unit(np.array(place)[:, None, None] - 0.5 * (placed.start + placed.end))
+        middle = 0.5 * (placed.start + placed.end)
+        sight = unit(np.array(tx)[:, None, None] - middle)
+        if tx != rx:
+            sight = soft_unit(sight + unit(np.array(rx)[:, None, None] - middle))
         facing = soft_unit(sight - (sight * axis).sum(axis=0) * axis)
         aside = cross(axis, facing)
         across = np.sqrt(np.maximum(1 - (sight * axis).sum(axis=0) ** 2, 0))  # sin(segment, sight)
@@ -141,8 +150,8 @@ class SurfacePaths:
         normal = np.maximum(cosine * across[s], 0) ** NORMAL_POWER
         strength = normal * across[s] ** ALONG_POWER
         strength *= (np.abs(drawn.weight) * self._facing[s])[:, None]
-        if self.antennas.aim is not None:
-            strength *= self.antennas.aim.two_way(p)
+        if (field_ := self.antennas.field(p)) is not None:
+            strength *= field_
         return p, strength
 
     def _tremor(self, t: Float) -> Float:

@@ -66,7 +66,7 @@ BLACK = (
     "above the CFAR's threshold"
 )
 _WORDING = {
-    Flags.WALL: "the body passes through the wall",
+    Flags.WALL: "the body passes through the wall, or leaves room.box_m",
     Flags.HALF_BAND: "a scatterer leaves the range half-band and its echo the kept bins",
     Flags.ALIASING: "a joint moves faster than the Doppler PRF/2 and aliases",
     Flags.FALLBACK: "computed by the cube (engine.fallback)",
@@ -92,8 +92,8 @@ class SceneCheck:
     """What the check of one scene's kinematics found."""
 
     closest: Approach  # nearest passage, exact wherever it is below 5 cm
-    # WALL, a scatterer is inside the wall; HALF_BAND, a delay lies beyond the kept range bins;
-    # ALIASING, a Doppler lies beyond PRF/2; FLOOR, a height is below 0
+    # WALL, a scatterer is inside the wall or outside the room; HALF_BAND, a delay lies beyond the
+    # kept range bins; ALIASING, a Doppler lies beyond PRF/2; FLOOR, a height is below 0
     flags: Flags
 
     @property
@@ -111,7 +111,7 @@ class SceneCheck:
                 f"the model holds from {MIN_DISTANCE_M * 100:g} cm on"
             )
         if Flags.WALL in self.flags:
-            return "the body passes through the wall"
+            return _WORDING[Flags.WALL]
         if Flags.HALF_BAND in self.flags:
             return "a scatterer leaves the range half-band"
         return None
@@ -159,6 +159,8 @@ def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
     flags = Flags.RUNS_OUT if runs_out else Flags(0)
     for block in blocks:
         flags |= block.flags
+    if _leaves_room(scene.config, motion, waveform.times(pulses.astype(float))):
+        flags |= Flags.WALL
     processing = scene.config.processing
     if processing.range_sum == "gated" and isinstance(processing.gate_m, tuple):
         low, high = processing.gate_m
@@ -167,6 +169,16 @@ def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
         if distance.min() < low or distance.max() > high:
             flags |= Flags.GATE
     return SceneCheck(min(block.closest for block in blocks), flags)
+
+
+def _leaves_room(config: Config, motion: Motion, t: Float) -> bool:
+    """Whether a scatterer is beyond a face of the room at any of times t [M] (s)."""
+    if config.room.faces is None or config.room.box_m is None:
+        return False
+    box = Numbers(config.room.box_m)
+    (x, y, z), top = motion.positions(t), box.height
+    outside = (x < box.x[0]) | (x > box.x[1]) | (y < box.y[0]) | (y > box.y[1]) | (z > top)
+    return bool(outside.any())
 
 
 def _check_block(

@@ -9,7 +9,6 @@ geometries of its people tracking demos.
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from math import cos, sin
 from types import MappingProxyType
 from typing import NamedTuple, TypeAlias
 
@@ -17,7 +16,7 @@ import numpy as np
 
 from radhar_cli.arrays import Float
 from radhar_cli.light import SPEED_OF_LIGHT
-from radhar_cli.radar.propagation import Aim, Antennas
+from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform
 
@@ -135,8 +134,7 @@ class Board:
     @cached_property
     def aim(self) -> Aim:
         """Rows of its axes: ahead, left, up."""
-        cy, sy, ct, st = cos(self.yaw), sin(self.yaw), cos(self.tilt), sin(self.tilt)
-        axes = (cy * ct, sy * ct, -st), (-sy, cy, 0.0), (cy * st, sy * st, ct)
+        axes = boresight_axes(self.yaw, self.tilt)
         return Aim(self.position, axes, self.half_power_deg or self.array.half_power_deg)
 
     @property

@@ -1,12 +1,14 @@
 """Bistatic delay and amplitude of a path (paper, section "Radar Echo Model"; docs/model.md)."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from math import pi
+from math import cos, pi, sin
 from typing import NamedTuple
 
 import numpy as np
 
 from radhar_cli.arrays import Float
+from radhar_cli.radar.room import STRAIGHT, Point, Way
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
 
@@ -17,11 +19,13 @@ class Aim(NamedTuple):
         position: of the array, m.
         axes: [3, 3], rows are ahead, left and up of the radar in the scene.
         half_power_deg: half-power half-widths (azimuth, elevation), one way.
+        least: the pattern is nowhere below it.
     """
 
-    position: tuple[float, float, float]
-    axes: tuple[tuple[float, float, float], ...]
+    position: Point
+    axes: tuple[Point, ...]
     half_power_deg: tuple[float, float]
+    least: float = 0.0
 
     def to_radar(self, p: Float) -> Float:
         """Places p [3, ...] of the scene as the radar has them: ahead, left, up, m."""
@@ -34,7 +38,13 @@ class Aim(NamedTuple):
         azimuth, elevation = np.arctan2(left, ahead), np.arctan2(up, np.hypot(ahead, left))
         az3, el3 = np.radians(self.half_power_deg)
         pattern: Float = np.exp(-np.log(2) * ((azimuth / az3) ** 2 + (elevation / el3) ** 2))
-        return pattern
+        return np.maximum(pattern, self.least)
+
+
+def boresight_axes(yaw: float, tilt: float) -> tuple[Point, ...]:
+    """Rows ahead, left, up of a radar turned by yaw to the left and tilt down (rad)."""
+    cy, sy, ct, st = cos(yaw), sin(yaw), cos(tilt), sin(tilt)
+    return (cy * ct, sy * ct, -st), (-sy, cy, 0.0), (cy * st, sy * st, ct)
 
 
 @dataclass(frozen=True)
@@ -42,36 +52,51 @@ class Antennas:
     """Transmitter and receiver.
 
     Attributes:
-        tx, rx: positions (x, y, z), m.
+        tx, rx: positions (x, y, z), m; of an echo by way of a room's faces, of the images.
         gain: linear gain of each antenna.
         isolation_db: between the two; used by the static leakage alone.
         aim: where both look, with their pattern; None radiates evenly.
+        ways: of the legs of both, by way of faces or straight.
     """
 
-    tx: tuple[float, float, float]
-    rx: tuple[float, float, float]
+    tx: Point
+    rx: Point
     gain: float
     isolation_db: float
     aim: Aim | None = None
+    ways: tuple[Way, Way] = (STRAIGHT, STRAIGHT)
+
+    def by_way(self, tx: Way, rx: Way) -> "Antennas":
+        """As their images by way of faces: what these see is seen by way of those."""
+        return replace(self, tx=tx.antenna(self.tx), rx=rx.antenna(self.rx), ways=(tx, rx))
+
+    @property
+    def places(self) -> tuple[Point, Point]:
+        """Where transmitter and receiver are, and not their images, m."""
+        tx, rx = self.ways
+        return tx.origin(self.tx), rx.origin(self.rx)
+
+    def seen(self, p: Float) -> Iterator[tuple[Float, Point]]:
+        """For both legs, where positions p [3, ...] appear to the antenna, and that, m."""
+        for way, antenna in zip(self.ways, self.places, strict=True):
+            yield way.image(p), antenna
+
+    def field(self, p: Float) -> Float | None:
+        """Two-way field [...] that pattern and bounces leave at p [3, ...]; None of all of it."""
+        left = None
+        if self.aim is not None:
+            (p_tx, _), (p_rx, _) = self.seen(p)
+            left = self.aim.two_way(p_tx)
+            if self.ways[0] != self.ways[1]:
+                left = np.sqrt(left * self.aim.two_way(p_rx))
+        for way, (image, antenna) in zip(self.ways, self.seen(p), strict=True):
+            if way.faces:
+                bounced = way.field(image, antenna)
+                left = bounced if left is None else left * bounced
+        return left
 
 
-def behind_mirror(antennas: Antennas, x: float, reflectance: float) -> Antennas:
-    """The antennas as a wall at range x (m) mirrors them: what they see is seen by way of it.
-
-    Echoes that go there and back by way of the wall come from a range of 2 x less the scatterer's,
-    with the opposite Doppler, and are weaker by the square of the power `reflectance`. Neglected:
-    echoes that meet the wall once, whose Doppler is that of movements across, and polarisation.
-    """
-    (tx_x, tx_y, tx_z), (rx_x, rx_y, rx_z) = antennas.tx, antennas.rx
-    return replace(
-        antennas,
-        tx=(2 * x - tx_x, tx_y, tx_z),
-        rx=(2 * x - rx_x, rx_y, rx_z),
-        gain=antennas.gain * reflectance,
-    )
-
-
-def leg(p: Float, antenna: tuple[float, float, float]) -> Float:
+def leg(p: Float, antenna: Point) -> Float:
     """Distance (m) [I, M] between positions p [3, I, M] and an antenna."""
     x, y, z = p[0] - antenna[0], p[1] - antenna[1], p[2] - antenna[2]
     x *= x

@@ -1,10 +1,13 @@
 """One leg through the wall, with the rays and the faces that the wall asks for."""
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from radhar_cli.arrays import Float
 from radhar_cli.radar.fresnel import faces_factor
+from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.refraction import refract
+from radhar_cli.radar.room import Point
 from radhar_cli.radar.wall import (
     Crossing,
     Wall,
@@ -15,14 +18,18 @@ from radhar_cli.radar.wall import (
     plane_wave,
 )
 
-Point = tuple[float, float, float]
-
 
 class Transmission(NamedTuple):
     """A leg through the wall: delay beyond free space (s), field left (1), [I, M] each."""
 
     delay: Float
     factor: Float
+
+
+def legs_through(p: Float, antennas: Antennas, wall: Wall, fc: float) -> Iterator[Transmission]:
+    """Both legs to positions p [3, I, M] (m) through the wall at a frequency fc (Hz)."""
+    for image, antenna in antennas.seen(p):
+        yield transmission(image, antenna, wall, fc)
 
 
 class _Ray(NamedTuple):

@@ -9,6 +9,7 @@ import numpy as np
 
 from radhar_cli.config.schema import Config
 from radhar_cli.pipeline.board_products import Skeletons
+from radhar_cli.pipeline.physics import kinds_of
 from radhar_cli.processing.frame_maps import FrameMaps
 from radhar_cli.processing.points import COLUMNS, Cloud
 from radhar_cli.radar.board import Board
@@ -37,6 +38,9 @@ def write_frames(file: h5py.File, frames: Mapping[str, Any], board: Board, confi
             file["cube"] = one.astype(np.complex64)
             file["cube"].attrs["axes"] = ["frame", "loop", "virtual", "sample"]
             file["cube"].attrs["meaning"] = "raw samples for unit transmit power"
+        elif name == "points_kind":
+            file[name] = one
+            file[name].attrs["kinds"] = kinds_of(config)
         else:
             file[name] = one
             file[name].attrs["meaning"] = "number of the person, -1 of none"

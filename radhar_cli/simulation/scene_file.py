@@ -91,6 +91,12 @@ def _write_truth(file: h5py.File, simulation: Simulation) -> None:
         group = file.create_group(f"truth/person_{person.number}")
         group.attrs["activity"] = person.activity.slug
         _write_person(group, truth, motion)
+    if simulation.paths is not None:
+        group = file.create_group("truth/paths")
+        for name, values in simulation.paths._asdict().items():
+            group[name] = values
+        for name, unit in (("time", "s"), ("delay", "s"), ("amplitude", "sqrt of power")):
+            group[name].attrs["unit"] = unit
 
 
 def _write_person(group: h5py.Group, truth: Truth, motion: Motion) -> None:

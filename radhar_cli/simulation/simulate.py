@@ -18,10 +18,11 @@ from radhar_cli.echo.paths import PathSource
 from radhar_cli.echo.static_returns import leakage, near_face_distance, wall_echo
 from radhar_cli.errors import ConfigError, SceneError, did_you_mean
 from radhar_cli.motion.protocol import Motion, Only
-from radhar_cli.pipeline.physics import motion_of
+from radhar_cli.pipeline.bodies import sources_of
+from radhar_cli.pipeline.physics import motion_of, reflectors_of
 from radhar_cli.pipeline.plan import Product
 from radhar_cli.pipeline.products import SIGNALS, EchoAccuracy, Fallback
-from radhar_cli.pipeline.run import record
+from radhar_cli.pipeline.run import Recording, record
 from radhar_cli.pipeline.validity import (
     BLACK,
     MIN_DISTANCE_M,
@@ -29,14 +30,14 @@ from radhar_cli.pipeline.validity import (
     scene_warnings,
 )
 from radhar_cli.processing.power_map import PowerMap
-from radhar_cli.processing.signal import Signal
+from radhar_cli.processing.signal import Signal, shown_pulses
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.receiver.impairment import Impairment
 from radhar_cli.scene import Person, Scene, draw_scene, nominal_scene
-from radhar_cli.simulation.truth import Truth, truth
+from radhar_cli.simulation.truth import PathTruth, Truth, path_truth, truth
 
 # {what may be asked for of a board: the products behind it}
 FRAMES = {
@@ -74,6 +75,7 @@ class Simulation:
         frames: what its frames gave: {map name: FrameMaps}, and `cube`, `cloud`, `skeletons`,
             `points_person` where asked for.
         others: in the scene besides the sample's own person.
+        paths: every path, of several people or of a room with faces; else None.
     """
 
     scene: Scene
@@ -92,6 +94,7 @@ class Simulation:
     board: Board | None = None
     frames: dict[str, Any] = field(default_factory=dict, repr=False)
     others: list[Other] = field(default_factory=list, repr=False)
+    paths: PathTruth | None = None
 
     @property
     def config(self) -> Config:
@@ -150,6 +153,7 @@ def simulate(
     kept = motion if joint is None else Only(motion, (_joint(joint, motion.names),))
     board = config.radar.cfg is not None
     frames = [product for name in maps for product in FRAMES.get(name, ())]
+    frames += ["points_kind"] if "points" in maps and config.room.faces else []
     maps = tuple(name for name in maps if name not in FRAMES)
     signals = SIGNALS[:1] if board else SIGNALS
     frames += ["cube"] if board and raw and "cube" not in frames else []
@@ -191,7 +195,16 @@ def simulate(
         beat=recorded["raw_echo"] if raw and not board else None,
         board=recorded["board"] if board else None,
         frames={name: recorded[name] for name in frames},
+        paths=_paths(scene, (motion, *others), recorded) if others or config.room.faces else None,
     )
+
+
+def _paths(scene: Scene, motions: tuple[Motion, ...], recorded: Recording) -> PathTruth:
+    """All paths at the pulses that a range-time map shows."""
+    w: Waveform = recorded["waveform"]
+    shown = shown_pulses(w.n_pulses, scene.config.image.size_px[1])
+    seen = (recorded["antennas"], recorded["wall"], w, reflectors_of(scene))
+    return path_truth(sources_of(scene, motions, *seen), w.times(shown.astype(float)))
 
 
 def scene_of(config: Config, activity: Activity, index: int, nominal: bool) -> Scene:

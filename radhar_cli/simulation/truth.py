@@ -2,14 +2,16 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from radhar_cli.arrays import Float, Levels
+from radhar_cli.arrays import Float, Index, Levels
 from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.phases import phase_numbers
 from radhar_cli.motion.protocol import Motion
+from radhar_cli.pipeline.bodies import Whose
 from radhar_cli.pipeline.motion_paths import point_delay
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
@@ -40,6 +42,47 @@ class Truth:
     phase_label: Levels
     phases: tuple[str, ...]
     hip_joints: Float | None = None
+
+
+class PathTruth(NamedTuple):
+    """Every path of a scene: of everybody, straight and by way of the room.
+
+    Attributes:
+        time: of the pulses that a range-time map shows [M], s.
+        delay, amplitude: [I, M], s and for unit transmit power.
+        kind: faces of the leg of the transmitter/of the receiver [I].
+        person, scatterer, bounces: numbers [I]; person -1 is what stands in the room.
+    """
+
+    time: Float
+    delay: Float
+    amplitude: Float
+    kind: list[str]
+    person: Index
+    scatterer: Index
+    bounces: Index
+
+
+def path_truth(sources: list[Whose], t: Float) -> PathTruth:
+    """Evaluate all paths at times t [M] (s)."""
+    paths = [one.source(t) for one in sources]
+    counts = [len(one.delay) for one in paths]
+    first = dict[tuple[int, str], int]()  # scatterer of a person and kind
+    scatterers = []
+    for one, count in zip(sources, counts, strict=True):
+        begin = first.get(one[1:], 0)
+        scatterers.append(np.arange(begin, begin + count))
+        first[one[1:]] = begin + count
+    bounces = [sum(leg != "-" and leg.count("+") + 1 for leg in s.kind.split("/")) for s in sources]
+    return PathTruth(
+        t,
+        np.concatenate([one.delay for one in paths]),
+        np.concatenate([one.amplitude for one in paths]),
+        [one.kind for one, count in zip(sources, counts, strict=True) for _ in range(count)],
+        np.repeat([one.person for one in sources], counts),
+        np.concatenate(scatterers),
+        np.repeat(bounces, counts),
+    )
 
 
 def truth(motion: Motion, antennas: Antennas, wall: Wall | None, waveform: Waveform) -> Truth:

@@ -102,6 +102,13 @@ def _engines() -> list[Setting]:
     return [Setting(*named, on, on, CUBE) for named, on in rows.items()]
 
 
+CORRIDOR = (
+    "room.box_m={x: [-2, 1000], y: [-4, 4], height: 3}",
+    "room.faces={floor: concrete, ceiling: concrete, left: concrete, right: concrete}",
+)
+BEAM = "radar.beam={azimuth_deg: 70, elevation_deg: 30}"
+
+
 def _images(config: Config) -> list[Setting]:
     sizes = {f"{size} px": (*DIRECT, f"image.size_px={size}") for size in SIZES}
     kind = "cfar" if config.image.kind == "decibel" else "decibel"
@@ -156,6 +163,13 @@ def _switches(config: Config) -> list[Setting]:
     ]
     if config.motion.model == "human" and not config.people:
         switches.append(_switch("another person, who walks", "people=[{}]"))
+    if config.room.faces is None and config.room.back_wall_m is None:
+        order_2 = (*CORRIDOR, "room.order=2")
+        switches += [
+            _switch("a corridor of concrete, 8 m wide", *CORRIDOR),
+            _switch("the corridor with two bounces", *order_2),
+            _over("the same seen by beams", [(*CORRIDOR, BEAM), (BEAM,)], "beams in the open"),
+        ]
     if config.wall is not None:
         switches += [
             *(

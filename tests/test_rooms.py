@@ -141,7 +141,7 @@ def test_rooms_are_drawn() -> None:
             "room: {box_m: {x: [0, 9], y: [-2, 2], height: 1.2}, faces: {left: wood}}",
             r"radar.tx_m.*inside room.box_m",
         ),
-        ("radar: {beam: {azimuth_deg: 70}}", r"radar.beam.elevation_deg"),
+        ("radar: {beam: {azimuth_deg: 0}}", r"radar.beam.azimuth_deg"),
     ],
 )
 def test_what_does_not_go_together(text: str, words: str, tmp_path: Path) -> None:

@@ -201,9 +201,9 @@ class ArrayConfig(Section):
 class BeamConfig(Section):
     """A beam of -min(12 (az/azimuth_deg)^2 + 12 (el/elevation_deg)^2, most_db) dB, one way."""
 
-    azimuth_deg: Annotated[Positive, within(1, 1000, "degree")]
+    azimuth_deg: Annotated[Positive, within(1, 1000, "degree")] = 70.0
     """Full width at -3 dB."""
-    elevation_deg: Annotated[Positive, within(1, 1000, "degree")]
+    elevation_deg: Annotated[Positive, within(1, 1000, "degree")] = 30.0
     """Full width at -3 dB."""
     pan_deg: Angle = 0.0
     """Of the boresight from the x axis, positive to the left."""
@@ -774,18 +774,20 @@ MAX_REFLECTORS = 32
 class DielectricConfig(Section):
     """A material by its permittivity eps_r (1 - j loss_tangent)."""
 
-    eps_r: Annotated[AtLeastOne, within(1, 1e6)]
+    eps_r: Annotated[AtLeastOne, within(1, 1e6)] = 5.0
+    """Relative permittivity."""
     loss_tangent: Annotated[NotNegative, within(0, 1e12)] = 0.0
+    """Of the material."""
 
 
 class BoxConfig(Section):
-    """Where the faces of a room are: `{x: [0, 6], y: [-2.5, 2.5], height: 2.8}`; floor at 0."""
+    """Where the faces of a room are; the floor is at 0."""
 
-    x: tuple[Number, Number]
+    x: tuple[Number, Number] = (0.0, 6.0)
     """Of front and back face, m."""
-    y: tuple[Number, Number]
+    y: tuple[Number, Number] = (-2.5, 2.5)
     """Of right and left face, m."""
-    height: Positive
+    height: Positive = 2.8
     """Of the ceiling, m."""
 
 
@@ -798,12 +800,15 @@ class FacesConfig(Section):
     floor: _Face = None
     """Alone it needs no room.box_m."""
     ceiling: _Face = None
+    """At the height of room.box_m."""
     left: _Face = None
     """At the larger y."""
     right: _Face = None
+    """At the smaller y."""
     front: _Face = None
     """At the smaller x."""
     back: _Face = None
+    """At the larger x."""
 
     @property
     def given(self) -> dict[str, Material | DielectricConfig]:

@@ -10,6 +10,7 @@ from pathlib import Path
 from textwrap import wrap
 from typing import Any, Literal, get_args, get_origin
 
+from radhar_cli.config.annotations import section
 from radhar_cli.config.documents import cfg_text
 from radhar_cli.config.schema import Config, Section
 from radhar_cli.config.ti_header import board_header
@@ -40,11 +41,12 @@ def _lines(kind: type[Section]) -> Iterator[str]:
         if field.exclude:
             continue
         members = [field.annotation, *get_args(field.annotation)]
-        inner = next((m for m in members if isinstance(m, type) and issubclass(m, Section)), None)
+        inner = section(field)
         value, comment = defaults[name], _comment(members, descriptions.get(name, ""))
         if inner is None or not (value is None or isinstance(value, dict)):
             yield from _key(name, value, comment)
             continue
+        assert issubclass(inner, Section)
         yield ""
         yield from _comment_lines((inspect.getdoc(inner) or "").partition("\n\n")[0])
         mark = ""

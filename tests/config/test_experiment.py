@@ -21,6 +21,9 @@ from radhar_cli.config import (
 from radhar_cli.config.number import Uniform
 from radhar_cli.config.schema import (
     ArrayConfig,
+    BeamConfig,
+    BoxConfig,
+    FacesConfig,
     MotionConfig,
     PersonConfig,
     RecordingsConfig,
@@ -152,6 +155,8 @@ CHANGES: dict[str, object] = {
     "radar.antenna_gain_dbi": 7.0,
     "radar.antenna_isolation_db": 20.0,
     "radar.residual_video_phase": True,
+    "radar.polarisation": "horizontal",
+    "radar.beam": BeamConfig(),
     "radar.cfg": CFG,
     "radar.device": "IWR6843ISK",
     "radar.array": ArrayConfig(),
@@ -201,6 +206,9 @@ CHANGES: dict[str, object] = {
     "snr_db": None,
     "people": (PersonConfig(),),
     "room.reflectors": (ReflectorConfig(),),
+    "room.box_m": BoxConfig(),
+    "room.faces": FacesConfig(floor="wood"),
+    "room.order": 2,
     "room.back_wall_m": 9.0,
     "room.back_wall_reflection_db": -6.0,
     "receiver.noise_corner_hz": 3.0,

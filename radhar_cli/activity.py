@@ -17,6 +17,24 @@ class Movement(NamedTuple):
     seconds: float | None  # None: as long as it is asked for
 
 
+EXERCISES = (
+    "squatting",
+    "jumping",
+    "jumping_jacks",
+    "raising_arms",
+    "raising_arms_ahead",
+    *(
+        name.format(side)
+        for side in ("right", "left")
+        for name in (
+            "{}_lunge",
+            "{}_side_lunge",
+            "raising_{}_arm",
+            "raising_{}_leg",
+            "raising_{}_arm_and_leg",
+        )
+    ),
+)
 # What sequences are made of (`classes:`).
 MOVEMENTS = {
     "stationary": Movement("standing", "standing", None),
@@ -30,6 +48,7 @@ MOVEMENTS = {
     "falling": Movement("standing", "lying", 1.1),
     "getting_up": Movement("lying", "standing", 3.0),
     "turning_around": Movement("standing", "standing", 1.8),
+    **{name: Movement("standing", "standing", None) for name in EXERCISES},
 }
 
 

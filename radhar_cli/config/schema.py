@@ -33,6 +33,7 @@ from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 from radhar_cli.activity import (
     ACTIVITIES,
     DEFAULT,
+    EXERCISES,
     MOVEMENTS,
     TWELVE,
     Activity,
@@ -437,12 +438,16 @@ class MotionConfig(Section):
         1.0, 0.12, 0.8, 1.25
     )
     """Duration of a punch or kick, relative to the usual one."""
+    exercise_period: Annotated[By[Ratio], People("exercises", 0.6, 1.8)] = uniform(0.8, 1.3)
+    """Of exercises: the time a repetition takes, over the usual one."""
+    exercise_size: Annotated[By[Ratio], People("exercises", 0.5, 1.1)] = uniform(0.75, 1.05)
+    """Of exercises: how far they go, over the usual one."""
     tempo_jitter: Annotated[
-        By[Ratio], People("punching kicking body_rotating", 0, 0.2), UNSTEADY
+        By[Ratio], People("punching kicking body_rotating exercises", 0, 0.2), UNSTEADY
     ] = uniform(0.0, 0.1)
     """Relative standard deviation of the time from one punch, kick or turn to the next."""
     size_jitter: Annotated[
-        By[Ratio], People("punching kicking body_rotating", 0, 0.15), UNSTEADY
+        By[Ratio], People("punching kicking body_rotating exercises", 0, 0.15), UNSTEADY
     ] = uniform(0.0, 0.1)
     """Relative standard deviation of the size from one punch, kick or turn to the next."""
     bend_deg: Annotated[By[Angle], People("grabbing", 30, 85)] = normal(72.0, 5.0, 60.0, 85.0)
@@ -1569,7 +1574,8 @@ def _uses() -> dict[str, dict[str, frozenset[str]]]:
     """{dotted key: {model: who uses it}} of the keys that not everybody uses."""
     found = dict[str, dict[str, frozenset[str]]]()
     for key, one in of_kind(Config, People):
-        found.setdefault(key, {})["human"] = frozenset(one.names.split())
+        names = one.names.replace("exercises", " ".join(EXERCISES)).split()
+        found.setdefault(key, {})["human"] = frozenset(names)
     for key, other in of_kind(Config, Paper):
         found.setdefault(key, {})["paper"] = frozenset(other.names.split())
     return found

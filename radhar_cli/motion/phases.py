@@ -23,6 +23,10 @@ PHASES = (
     "getting up",
     "turning around",
     "stepping",
+    "squatting",
+    "lunging",
+    "jumping",
+    "raising",
 )
 
 

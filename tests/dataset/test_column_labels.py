@@ -79,7 +79,7 @@ def test_column_labels_do_not_depend_on_batches_and_are_optional(config, whole, 
         assert "column_label" not in file
 
 
-@pytest.mark.parametrize(("number", "says"), [(3, "40 wrong columns"), (99, "should be 0 to 14")])
+@pytest.mark.parametrize(("number", "says"), [(3, "40 wrong columns"), (99, "should be 0 to 18")])
 def test_verify_finds_a_changed_label(whole, tmp_path, number, says):
     assert verify(whole, 6).problems == []
     shutil.copytree(whole, tmp_path / "set")

@@ -514,6 +514,7 @@ def document(key: str, value: float) -> dict[str, Any]:
         "duration_s": 5.0,
         "radar": {"prf_hz": 500},
         "motion": {"model": "human"},
+        "classes": {"squats": {"sequence": ["squatting"]}},
     }
     if not section:
         return base | {name: value}

@@ -28,6 +28,16 @@ def swung(trunk: Axes, shoulder: Float, elbow: Float) -> tuple[Float, Float]:
     return ahead[0] * x - down[0] * z, ahead[1] * x - down[1] * z
 
 
+def raised(trunk: Axes, shoulder: Float, elbow: Float, outwards: Float) -> tuple[Float, Float]:
+    """`swung` arms that are raised outwards too, by angles [2, M], rad."""
+    upper, fore = swung(trunk, shoulder, elbow)
+    beside = SIDES * trunk.left[:, None]
+    return (
+        np.cos(outwards) * upper + np.sin(outwards) * beside,
+        np.cos(outwards) * fore + np.sin(outwards) * beside,
+    )
+
+
 def directed(trunk: Axes, hands: Float, poles: Float, arm: float) -> tuple[Float, Float]:
     """Unit vectors of upper arms and forearms [3, 2, M] whose hands are where they should be.
 

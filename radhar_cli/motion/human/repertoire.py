@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from math import inf, pi
 
+from radhar_cli.motion.human.exercises import EXERCISES, Exercise
 from radhar_cli.motion.human.falling import FallBackward, FallForward
 from radhar_cli.motion.human.falling_sideways import FallSideways
 from radhar_cli.motion.human.getting_up import GetUp
@@ -18,6 +19,7 @@ from radhar_cli.motion.human.stepping import StepTo
 from radhar_cli.motion.human.turning import Turn
 from radhar_cli.motion.human.walking import Gait, Walk
 
+ANY = Exercise("any", (), 1.0)
 AROUND = StepTo(1.8, Place(turn=pi), steps=5, name="turning around")
 
 
@@ -38,6 +40,7 @@ class Repertoire:
     fall: FallForward | FallBackward | FallSideways = field(default_factory=FallForward)
     get_up: GetUp = field(default_factory=GetUp)
     turn_around: StepTo = AROUND
+    exercise: Exercise = ANY  # the usual period times its own, its paces and sizes
 
     def activity(self, number: int) -> tuple[Movement, ...]:
         """The movements of S`number`: what repeats does so from the first instant on."""
@@ -86,8 +89,13 @@ class Repertoire:
             "getting_up": self.get_up,
             "turning_around": self.turn_around,
         }
-        if name not in movements:
-            raise ValueError(
-                f"{name!r} is not a movement of a sequence; these are: {', '.join(movements)}"
+        if name in EXERCISES:
+            one, every = EXERCISES[name], self.exercise
+            period = every.period * one.period
+            return replace(
+                one, duration=duration, period=period, paces=every.paces, sizes=every.sizes
             )
+        if name not in movements:
+            known = ", ".join((*movements, *EXERCISES))
+            raise ValueError(f"{name!r} is not a movement of a sequence; these are: {known}")
         return movements[name]

@@ -1,0 +1,289 @@
+"""Exercises that are repeated on the spot: squats, lunges, jumps, arms and legs raised.
+
+Each is a table of minimum-jerk steps within one repetition. Feet that are not moved stay where they
+are, and the pelvis is as high as both legs allow. In the air a body follows g alone.
+
+Usual times are of measured people: squats, lunges, arms and legs 2.7 to 3.3 s a repetition (MARS,
+An and Ogras 2021), jumps 0.9 s and jumping jacks 1.2 to 1.8 s (RadHAR, Singh et al. 2019).
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import inf, radians
+from typing import NamedTuple
+
+import numpy as np
+from scipy.interpolate import BPoly
+
+from radhar_cli.arrays import Float
+from radhar_cli.motion.human.arms import raised
+from radhar_cli.motion.human.idle import IdleState
+from radhar_cli.motion.human.minimum_jerk import Course, Step
+from radhar_cli.motion.human.part import STANDING
+from radhar_cli.motion.human.pelvis import hip_joints, swayed, swayed_hip
+from radhar_cli.motion.human.physique import Physique
+from radhar_cli.motion.human.pose import SIDES, Pose, axes
+from radhar_cli.motion.human.repetitions import Repetition, Striking, repetitions
+from radhar_cli.motion.human.two_link import AHEAD, two_link
+
+G = 9.81  # m/s^2
+ANKLES_S = 0.1  # for which the ankles stretch before the feet leave the floor, and bend after, s
+CROUCH_S = 0.35  # to the first crouch, and from the last, s
+SIDE = ("right", "left")
+# Of each side: the foot ahead, outwards and up of where it rests, over the stature; the straight
+# leg raised outwards, the arm ahead and outwards, the elbow bent, rad.
+LIMBS = ("ahead", "out", "up", "leg", "forwards", "sideways", "elbow")
+# The hip ahead, to the left and down, over the stature; the trunk ahead and to the left, rad.
+BODY = ("hip_ahead", "hip_left", "drop", "pitch", "lean")
+
+
+REST = (0.0, 0.0, 0.0)
+Knot = tuple[float, tuple[float, float, float]]  # time, and a value with two derivatives
+
+
+class Move(NamedTuple):
+    """A channel changes within a repetition, and changes back; times are shares of the period."""
+
+    channel: str
+    change: float
+    out: tuple[float, float]  # from, to
+    back: tuple[float, float]
+
+
+def both(channel: str, *rest: object) -> tuple[Move, ...]:
+    """The same of the right and of the left side."""
+    return tuple(Move(f"{side}_{channel}", *rest) for side in SIDE)  # type: ignore[arg-type]
+
+
+def _smooth(knots: Sequence[Knot]) -> BPoly[np.float64]:
+    """Quintics between knots, twice continuously differentiable."""
+    times, values = np.array([at for at, _ in knots]), np.array([value for _, value in knots])
+    return BPoly.from_derivatives(times, values)
+
+
+@dataclass(frozen=True)
+class Exercise:
+    """One repeated for `duration` s, from rest to rest."""
+
+    name: str
+    moves: tuple[Move, ...]
+    period: float  # of a repetition, s
+    hops: tuple[float, ...] = ()  # when feet leave the floor, shares of the period
+    flight: float = 0.0  # of a hop, s
+    crouch: float = 0.0  # before and after it, over the stature
+    duration: float = inf
+    first: float = 0.5  # s
+    entry: float = 0.2  # of rest at the end, s
+    from_rest: bool = True
+    # of each repetition, over the usual ones
+    paces: tuple[float, ...] = ()
+    sizes: tuple[float, ...] = ()
+
+    def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Exercising":
+        """The movement from `begin` (s) on, repeated until `horizon` (s)."""
+        return Exercising(person, self, begin, horizon)
+
+
+class Exercising(Striking[Exercise]):
+    """A person who exercises; see `part.Part`."""
+
+    @property
+    def before(self) -> str:
+        """Feet side by side."""
+        return STANDING
+
+    @property
+    def name(self) -> str:  # type: ignore[override]
+        """Of the exercise."""
+        return self.strikes.name
+
+    @cached_property
+    def _repetitions(self) -> list[Repetition]:
+        one = self.strikes
+        start = self.begin + one.first
+        until = min(self.horizon + 1.0, start + one.duration)
+        return repetitions(start, one.period, until, one.paces, one.sizes)
+
+    @cached_property
+    def _blows(self) -> list[Step]:
+        steps = []
+        for start, pace, size in self._repetitions:
+            period = pace * self.strikes.period
+            for channel, change, *ways in self.strikes.moves:
+                for sign, (first, last) in zip((1, -1), ways, strict=True):
+                    at, length = start + period * first, period * (last - first)
+                    steps.append(Step(channel, sign * size * change, at, length))
+        return steps
+
+    @property
+    def _leaves(self) -> float:
+        """When the last repetition is over, s."""
+        start, pace, _ = self._repetitions[-1]
+        end = start + pace * self.strikes.period
+        return inf if self.strikes.duration == inf else end + CROUCH_S * bool(self.strikes.hops)
+
+    @cached_property
+    def course(self) -> Course:
+        """Channels of both sides and of the body."""
+        limbs = [f"{side}_{channel}" for channel in LIMBS for side in SIDE]
+        return Course.of(dict.fromkeys((*limbs, *BODY), 0.0), self._blows)
+
+    @cached_property
+    def _flights(self) -> list[tuple[float, float]]:
+        """When the feet leave the floor, and for how long they are in the air, s."""
+        one = self.strikes
+        return [
+            (start + pace * one.period * hop, one.flight * size**0.5)
+            for start, pace, size in self._repetitions
+            for hop in one.hops
+        ]
+
+    @cached_property
+    def _hop(self) -> tuple[BPoly[np.float64], BPoly[np.float64]] | None:
+        """Heights of feet and of the hip beyond their course, m, over time."""
+        if not self._flights:
+            return None
+        feet, hip = list[Knot](), list[Knot]()
+        crouch = self.strikes.crouch * self.person.stature
+        landed = None
+        for at, air in self._flights:
+            speed = G * air / 2
+            high = speed * ANKLES_S / 2
+            bottom = at - CROUCH_S / 2 if landed is None else (landed + at) / 2
+            rate = 1.5 * speed / (at - bottom)
+            if landed is None:
+                hip.append((bottom - CROUCH_S, REST))
+            hip.append((bottom, (-crouch, 0.0, rate)))
+            off, on = (at, (high, speed, -G)), (at + air, (high, -speed, -G))
+            feet += [(at - ANKLES_S, REST), off, on, (at + air + ANKLES_S, REST)]
+            hip += [off, on]
+            landed = at + air
+        assert landed is not None
+        hip.append((landed + CROUCH_S / 2, (-crouch, 0.0, rate)))
+        hip.append((landed + 1.5 * CROUCH_S, REST))
+        return _smooth(feet), _smooth(hip)
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Both ends of every step, and of every flight, s."""
+        knots = [] if self._hop is None else [at for one in self._hop for at in one.x.tolist()]
+        return (*self.course.breakpoints, *knots)
+
+    def pose(self, t: Float, idle: IdleState) -> Pose:
+        """The body at times t [M] (s)."""
+        body = self.person
+        values = iter(self.course(t))
+        limbs = {channel: np.stack([next(values), next(values)]) for channel in LIMBS}
+        ahead, left, drop, pitch, lean = values
+        feet, hop = self._risen(t)
+        swing = limbs["leg"]
+        out = body.stature * limbs["out"] + body.reach * np.sin(swing)
+        up = body.stature * limbs["up"] + body.reach * (1 - np.cos(swing)) + feet
+        ankles = np.stack(
+            [body.stature * limbs["ahead"], SIDES * (body.hip + out), body.ankle + up]
+        )
+        aside = hip_joints(body, np.zeros(t.size), np.zeros(t.size))
+        sway = swayed(body.rest_height - body.ankle, idle.lean, idle.legs_roll)
+        standing = body.tallest - body.stature * drop + hop
+        place = body.stature * np.stack([ahead, left])
+        hip = swayed_hip(body, standing, place, aside, ankles, body.softness, sway)
+        joints = hip[:, None] + aside
+        knees = two_link(joints, ankles, body.leg, body.leg, AHEAD)
+        trunk = axes(pitch + idle.pitch, idle.yaw, idle.roll + lean)
+        upper, fore = raised(
+            trunk,
+            limbs["forwards"] + idle.shoulders,
+            body.elbow + limbs["elbow"] + idle.elbows,
+            limbs["sideways"],
+        )
+        return Pose(hip, trunk, joints, knees, ankles, upper, fore, idle.breath)
+
+    def _risen(self, t: Float) -> tuple[Float, Float]:
+        """Feet and hip at times t [M] (s) above their course, m."""
+        if self._hop is None:
+            return np.zeros(t.size), np.zeros(t.size)
+        feet, hip = (one(np.clip(t, one.x[0], one.x[-1])) for one in self._hop)
+        return feet, hip
+
+
+OUT, BACK = (0.0, 0.42), (0.5, 0.92)
+ARM, LEG = radians(160), radians(38)
+
+
+def _lunges(side: str) -> Iterator[tuple[str, Exercise]]:
+    other = SIDE[side == "right"]
+    foot = (0.02, 0.34), (0.58, 0.90)
+    lift = [Move(f"{side}_up", 0.04, (a, (a + b) / 2), ((a + b) / 2, b)) for a, b in foot]
+    weight, deep = ((0.06, 0.42), (0.52, 0.88)), ((0.16, 0.46), (0.5, 0.8))
+    ahead = (
+        Move(f"{side}_ahead", 0.40, *foot),
+        Move("hip_ahead", 0.22, *weight),
+        Move("drop", 0.10, *deep),
+        Move(f"{other}_up", 0.045, *deep),
+        Move("pitch", radians(6), *deep),
+    )
+    yield f"{side}_lunge", Exercise("lunging", (*lift, *ahead), 3.0)
+    towards = 1.0 if side == "left" else -1.0
+    aside = (
+        Move(f"{side}_out", 0.30, *foot),
+        Move("hip_left", towards * 0.20, *weight),
+        Move("drop", 0.09, *deep),
+        Move("hip_ahead", -0.05, *deep),
+        Move("pitch", radians(24), *deep),
+        *both("forwards", radians(50), *deep),
+    )
+    yield f"{side}_side_lunge", Exercise("lunging", (*lift, *aside), 3.0)
+
+
+def _raised(side: str) -> Iterator[tuple[str, Exercise]]:
+    away = -1.0 if side == "left" else 1.0  # to the left
+    arm = Move(f"{side}_sideways", ARM, OUT, BACK)
+    leg = (
+        Move(f"{side}_leg", LEG, OUT, BACK),
+        Move("hip_left", away * 0.045, (0.0, 0.3), (0.62, 0.92)),
+        Move("lean", away * radians(7), OUT, BACK),
+    )
+    yield f"raising_{side}_arm", Exercise("raising", (arm,), 3.0)
+    yield f"raising_{side}_leg", Exercise("raising", leg, 3.0)
+    yield f"raising_{side}_arm_and_leg", Exercise("raising", (arm, *leg), 3.0)
+
+
+EXERCISES = {
+    "squatting": Exercise(
+        "squatting",
+        (
+            Move("drop", 0.26, (0.0, 0.46), (0.5, 0.96)),
+            Move("hip_ahead", -0.09, (0.0, 0.46), (0.5, 0.96)),
+            Move("pitch", radians(38), (0.0, 0.46), (0.5, 0.96)),
+            *both("forwards", radians(105), (0.0, 0.4), (0.56, 0.96)),
+        ),
+        2.7,
+    ),
+    "jumping": Exercise(
+        "jumping",
+        (
+            *both("forwards", radians(35), (0.05, 0.45), (0.5, 0.95)),
+            Move("pitch", radians(22), (-0.36, -0.04), (0.0, 0.28)),
+            Move("hip_ahead", -0.035, (-0.36, -0.04), (0.0, 0.28)),
+        ),
+        0.9,
+        hops=(0.3,),
+        flight=0.36,
+        crouch=0.10,
+    ),
+    "jumping_jacks": Exercise(
+        "jumping",
+        (
+            *both("out", 0.15, (0.085, 0.245), (0.585, 0.745)),
+            *both("sideways", radians(150), (0.0, 0.4), (0.5, 0.9)),
+        ),
+        1.3,
+        hops=(0.08, 0.58),
+        flight=0.22,
+        crouch=0.04,
+    ),
+    "raising_arms": Exercise("raising", both("sideways", ARM, OUT, BACK), 3.0),
+    "raising_arms_ahead": Exercise("raising", both("forwards", ARM, OUT, BACK), 3.0),
+    **{name: one for side in SIDE for name, one in (*_lunges(side), *_raised(side))},
+}

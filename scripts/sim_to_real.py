@@ -1,6 +1,6 @@
 """Train on simulated maps alone, and test on measured ones.
 
-    python scripts/sim_to_real.py MASKS.npz -o OUT [--quick]
+    python scripts/sim_to_real.py MASKS.npz -o OUT [--quick | --seeds K] [--half 1 | 2] [--pieces]
 
 MASKS.npz: `masks` [K, H, W/8], uint8, bits of H x W Doppler-time masks, row 0 the highest Doppler;
 `label` [K] into `classes`. Rows reach over +-500 Hz, columns over 5 s, of walking over 10 s.
@@ -9,9 +9,10 @@ Such masks were made by github.com/Hong-01/EE4675-Human-Activity-Classification-
 
 Simulated people come from configs/measured/glasgow_5p8GHz.yaml, settings of the training from
 configs/train/measured.yaml. The network is on disk, and its digest printed, before MASKS.npz is
-opened. Without --quick: three seeds, what each piece of the simulation brings, and accuracy with a
-few labelled maps of each class. Every step is a `radhar` command; the same line goes on where it
-was stopped.
+opened. Five seeds, or K, or with --quick one. --half takes the first or the second half of the maps
+of each class, so that what is chosen by looking at one is reported on the other. --pieces adds what
+each piece of the simulation brings, and accuracy with a few labelled maps of each class. Every step
+is a `radhar` command; the same line goes on where it was stopped.
 """
 
 import argparse
@@ -72,10 +73,10 @@ INSTEAD = {  # what else could be simulated, and its keys
     "30 dB": ("snr_db=30",),
 }
 NO_AUGMENTATION = "augment={}"
-SEEDS = (1, 2, 3)
+SEEDS = 5
 MIN_PER_CLASS = 8  # fewer leave nothing to validate with
 SHOTS, REPEATS = (0, 1, 5, 20, 100), 5
-ADAPTING = 20  # epochs without labels
+ADAPTING = 60  # epochs without labels
 SHOT_EPOCHS = 40  # of who learns from a few labelled maps, which are soon gone through
 MAX_SIDE = 2048  # px of a mask
 CONFUSED, BESIDE = 6, 3  # pairs of classes and images of each that are drawn
@@ -126,6 +127,14 @@ def read_masks(path: Path) -> tuple[Bool, list[str]]:
     files = (images.parts[row]["file"] for row in rows)
     masks = [read_image(path.parent, file, images.size, packed=True) > 0 for file in files]
     return np.stack(masks), [CLASSES[names[row]] for row in rows]
+
+
+def half_of(slugs: Sequence[str], half: int) -> Index:
+    """Rows of the first (1) or second (2) half of each class: mostly of other persons."""
+    names = np.array(slugs)
+    rows = [np.flatnonzero(names == name) for name in dict.fromkeys(slugs)]
+    found: Index = np.concatenate([np.array_split(of_class, 2)[half - 1] for of_class in rows])
+    return found
 
 
 def write_image(levels: Levels, path: Path) -> None:
@@ -238,13 +247,20 @@ class Predicted:
         return "\n".join(lines)
 
 
-def accuracy_line(what: str, some: Sequence[Predicted]) -> str:
-    """Accuracy over all of some runs, with Wilson's interval of 95 % for the maps of one."""
-    share = float(np.mean([one.accuracy for one in some]))
-    count = some[0].truth.size
-    low, high = wilson(round(share * count), count)
-    each = f" ({', '.join(f'{one.accuracy:.3f}' for one in some)})" if len(some) > 1 else ""
-    return f"{what}: {share:.3f} ({low:.3f} to {high:.3f}), n = {count}{each}"
+def accuracy_line(what: str, one: Predicted) -> str:
+    """Accuracy of a run, with Wilson's interval of 95 %."""
+    count = one.truth.size
+    low, high = wilson(round(one.accuracy * count), count)
+    return f"{what}: {one.accuracy:.3f} ({low:.3f} to {high:.3f}), n = {count}"
+
+
+def seeds_line(what: str, some: Sequence[Predicted]) -> str:
+    """Accuracy of all seeds: their mean and range."""
+    each = [one.accuracy for one in some]
+    return (
+        f"{what}: mean {np.mean(each):.3f}, lowest {min(each):.3f}, highest {max(each):.3f}, "
+        f"n = {some[0].truth.size}, {len(each)} seeds"
+    )
 
 
 def main() -> None:
@@ -253,7 +269,10 @@ def main() -> None:
     )
     parser.add_argument("masks", type=Path, help="measured masks, .npz")
     parser.add_argument("-o", "--out", type=Path, required=True, help="folder of all that is made")
-    parser.add_argument("--quick", action="store_true", help="one seed, nothing else")
+    parser.add_argument("--quick", action="store_true", help="one seed")
+    parser.add_argument("--seeds", type=int, default=SEEDS, metavar="K", help=f"default {SEEDS}")
+    parser.add_argument("--half", type=int, choices=(1, 2), help="of the maps of each class")
+    parser.add_argument("--pieces", action="store_true", help="what each piece brings, few labels")
     parser.add_argument("--per-class", type=int, default=300, help="simulated maps of each class")
     parser.add_argument("--jobs", type=int, default=2, help="processes that generate")
     given = parser.parse_args()
@@ -263,7 +282,9 @@ def main() -> None:
         sys.exit(f"sim_to_real: {given.masks}: no such file")
     out: Path = given.out.resolve()
     images = simulated(out / "simulated", given.per_class, given.jobs)
-    seeds = SEEDS[:1] if given.quick else SEEDS
+    if given.seeds < 1:
+        parser.error(f"--seeds is {given.seeds}; should be at least 1")
+    seeds = range(1, 2 if given.quick else 1 + given.seeds)
     runs = [trained(images, out / f"runs/seed_{seed}", seed) for seed in seeds]
     for run in runs:
         digest = hashlib.sha256((run / "best.safetensors").read_bytes()).hexdigest()
@@ -272,32 +293,36 @@ def main() -> None:
         masks, slugs = read_masks(given.masks)
     except CaptureError as error:
         sys.exit(f"sim_to_real: {error}")
+    if given.half:
+        rows = half_of(slugs, given.half)
+        masks, slugs = masks[rows], [slugs[row] for row in rows]
     measured = Measured.written(masks, slugs, out / "measured")
-    if not given.quick:
+    if given.pieces:
         ablation(measured, images, out / "instead", given)
         curve(measured, images, runs[0], out / "shots")
-    report(measured, images, runs, out)
+    report(measured, images, runs, out, given.quick)
 
 
 def ablation(measured: Measured, images: Path, out: Path, given: argparse.Namespace) -> None:
-    """Print what three seeds reach where one thing is simulated otherwise, or not augmented."""
+    """Print what all seeds reach where one thing is simulated otherwise, or not augmented."""
     made: dict[str, tuple[Path, list[Path]]] = {}
     for what, more in {**INSTEAD, "no augmentation": (NO_AUGMENTATION,)}.items():
         folder = out / re.sub(r"\W+", "_", what)
         same = more == (NO_AUGMENTATION,)
         data = images if same else simulated(folder, given.per_class, given.jobs, more)
         runs = [
-            trained(data, folder / f"seed_{seed}", seed, more if same else ()) for seed in SEEDS
+            trained(data, folder / f"seed_{seed}", seed, more if same else ())
+            for seed in range(1, 1 + given.seeds)
         ]
         made[what] = data, runs
         correct = [measured.predicted(run) for run in runs]
-        print(accuracy_line(f"{what}, as it is, three seeds", correct), flush=True)
+        print(seeds_line(f"{what}, as it is", correct), flush=True)
     for what, (data, runs) in made.items():
         correct = [
             measured.predicted(adapted(run, measured, data, run.parent / "adapted" / run.name))
             for run in runs
         ]
-        print(accuracy_line(f"{what}, adapted, three seeds", correct), flush=True)
+        print(seeds_line(f"{what}, adapted", correct), flush=True)
 
 
 def curve(measured: Measured, images: Path, run: Path, out: Path) -> None:
@@ -351,8 +376,8 @@ def _picture(levels: Levels, words: str) -> Picture:
     return Picture(levels, (0, SHOWN_S, -SHOWN_HZ, SHOWN_HZ), words)
 
 
-def report(measured: Measured, images: Path, runs: Sequence[Path], out: Path) -> None:
-    """Print what the runs make of measured maps, as they are and adapted; the first is the one."""
+def report(measured: Measured, images: Path, runs: Sequence[Path], out: Path, quick: bool) -> None:
+    """Print what the runs make of measured maps, as they are and adapted."""
     fitted = [adapted(run, measured, images, out / "adapted" / run.name) for run in runs]
     result = {"as it is": runs, "adapted": fitted}
     correct = {kind: [measured.predicted(run) for run in some] for kind, some in result.items()}
@@ -363,12 +388,12 @@ def report(measured: Measured, images: Path, runs: Sequence[Path], out: Path) ->
             figure.write_bytes(drawn)
             print(f"what it takes for something else, beside simulated maps: {figure}")
         if len(runs) > 1:
-            print(accuracy_line(f"{kind}, three seeds", some))
             mean = np.mean([one.probabilities for one in some], axis=0)
             together = replace(some[0], probabilities=mean)
-            print(accuracy_line(f"{kind}, probabilities of three seeds averaged", [together]))
-    print(accuracy_line("accuracy with unlabelled measured maps", correct["adapted"][:1]))
-    print(accuracy_line("accuracy on measured", correct["as it is"][:1]), flush=True)
+            print(accuracy_line(f"{kind}, probabilities of all seeds averaged", together))
+    line = (lambda what, some: accuracy_line(what, some[0])) if quick else seeds_line
+    print(line("accuracy with unlabelled measured maps", correct["adapted"]))
+    print(line("accuracy on measured", correct["as it is"]), flush=True)
 
 
 if __name__ == "__main__":

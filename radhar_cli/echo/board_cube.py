@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from math import factorial, inf, log10, pi
 
 import numpy as np
+from numpy.polynomial.chebyshev import chebpts1, chebvander
 
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.echo.beat import beat_matrix
@@ -20,6 +21,7 @@ from radhar_cli.radar.board import Board
 BLOCK_FRAMES = 16
 SINGLE_DB = -100.0  # tolerances below need double precision
 PROBES = 48
+NODES = 4
 MARGIN_DB = 20.0
 MOST_TERMS = 24
 
@@ -56,43 +58,56 @@ def fast_cube(
         exp(-j 2 pi K (tau - tau_0) u/fs) = sum_q (-j y)^q/q! (u/u_N)^q,
 
     y = 2 pi K (tau - tau_0) u_N/fs: the sum over the paths is one product of matrices a frame. The
-    number of terms follows from the largest y and the tolerance; some chirps are then compared.
+    number of terms follows from the largest y and the tolerance. Paths are asked for at NODES
+    instants of a frame, some milliseconds, and are cubic between them; some chirps are compared
+    with the exact sum.
     """
     single = tolerance_db >= SINGLE_DB
     dtype = np.complex64 if single else np.complex128
     half = max(board.samples - 1, 1) / 2
     rate, u = board.slope / board.adc_rate, np.arange(board.samples) - half
     cube = np.empty((board.frames, board.loops, board.channels, board.samples), dtype)
-    power = 0.0
+    power, (nodes, between) = 0.0, _within_frame(board.loops)
     for first in range(0, board.frames, BLOCK_FRAMES):
         some = slice(first, min(first + BLOCK_FRAMES, board.frames))
-        times = board.chirp_times(some)
+        begin = board.chirp_times(some)[:, 0]
         seen = [
-            source(times[..., k].ravel())
+            source((begin[:, k, None] + board.loop * nodes).ravel())
             for source, (k, _) in zip(channels, board.pairs, strict=True)
         ]
-        shape = (-1, times.shape[0], board.loops)
-        delay = np.stack([paths.delay.reshape(shape) for paths in seen], axis=-1)
-        a = np.stack([paths.amplitude.reshape(shape) for paths in seen], axis=-1)
-        power += float(np.einsum("iflv,iflv->", a, a))
-        a = (a * board.signs).astype(np.float32 if single else float)
-        for f in range(times.shape[0]):
-            tau = delay[:, f].reshape(len(delay), -1)  # [I, loop virtual]
+        shape = (-1, len(begin), nodes.size)
+        delay = np.stack([paths.delay.reshape(shape) for paths in seen], axis=2)
+        at_nodes = np.stack([paths.amplitude.reshape(shape) for paths in seen], axis=2)
+        for f in range(len(begin)):
+            tau = (delay[:, f] @ between).reshape(len(delay), -1)  # [I, virtual loop]
+            a = at_nodes[:, f] @ between
+            power += float(np.einsum("ivl,ivl->", a, a))
+            a = (a * board.signs[:, None]).astype(np.float32 if single else float)
             tau0 = tau.mean(axis=1, keepdims=True)
             y = ((2 * pi * rate * half) * (tau - tau0)).astype(a.dtype)
             terms = _terms(y[:, ::16], tolerance_db)
             left = np.empty((terms, *tau.shape), dtype)
             left[0] = unit_phasor(board.centre * tau, dtype)
-            left[0] *= a[:, f].reshape(tau.shape)
+            left[0] *= a.reshape(tau.shape)
             for q in range(1, terms):
                 np.multiply(left[q - 1], y, out=left[q])
             base = unit_phasor(rate * tau0 * u, dtype)
             right = np.array([(-1j * u / half) ** q / factorial(q) for q in range(terms)], dtype)
             right = np.multiply(right[:, None], base).reshape(-1, board.samples)
             s = left.reshape(len(right), -1).T @ right
-            cube[first + f] = s.reshape(board.loops, board.channels, board.samples)
+            cube[first + f] = s.reshape(board.channels, board.loops, -1).swapaxes(0, 1)
     power /= board.frames * board.loops * board.channels
     return cube, power, measured_db(cube, channels, board)
+
+
+def _within_frame(loops: int) -> tuple[Float, Float]:
+    """Instants within a frame, in loops, and what each weighs in every loop [NODES, loops]."""
+    if loops <= NODES:
+        return np.arange(loops, dtype=float), np.eye(loops)
+    half = (loops - 1) / 2
+    x, asked = chebpts1(NODES), np.arange(loops) / half - 1
+    weights: Float = np.linalg.solve(chebvander(x, NODES - 1).T, chebvander(asked, NODES - 1).T)
+    return half * (1 + x), weights
 
 
 def _terms(y: Float, tolerance_db: float) -> int:
@@ -108,12 +123,18 @@ def _terms(y: Float, tolerance_db: float) -> int:
 def measured_db(cube: Complex, channels: Sequence[PathSource], board: Board) -> float:
     """Relative L2 error (dB) of a cube at PROBES chirps spread over channels, loops and frames."""
     count = board.frames * board.loops
-    error = total = 0.0
-    for probe in range(min(PROBES, count)):
-        v = probe * 5 % board.channels
-        f, loop = divmod((2 * probe + 1) * count // (2 * min(PROBES, count)), board.loops)
-        paths = channels[v](board.chirp_times()[f, loop, board.pairs[v][0], None])
-        exact = beat_matrix(paths.delay, paths.amplitude, board.waveform)[:, 0] * board.signs[v]
-        error += float((np.abs(cube[f, loop, v] - exact) ** 2).sum())
-        total += float((np.abs(exact) ** 2).sum())
+    probes = np.arange(min(PROBES, count))
+    frame, loop = np.divmod((2 * probes + 1) * count // (2 * probes.size), board.loops)
+    virtual, sent = probes * 5 % board.channels, np.array([k for k, _ in board.pairs])
+    times, error, total = board.chirp_times(), 0.0, 0.0
+    for k in np.unique(sent):  # channels of one transmitter are asked for the same times
+        some = sent[virtual] == k
+        for v in np.unique(virtual[some]):
+            paths = channels[v](times[frame[some], loop[some], k])
+            mine = virtual[some] == v
+            at = frame[some][mine], loop[some][mine], v
+            delay, a = (part[:, mine] for part in paths)
+            exact = beat_matrix(delay, a, board.waveform).T * board.signs[v]
+            error += float((np.abs(cube[at] - exact) ** 2).sum())
+            total += float((np.abs(exact) ** 2).sum())
     return 10 * log10(error / total) if error > 0 and total > 0 else -inf

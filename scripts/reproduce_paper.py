@@ -293,9 +293,8 @@ class Reproduction:
                 "device": metrics["device"],
                 "precision": metrics["precision"],
                 "threads": metrics["threads"],
-                "processes": metrics["processes"],
                 "seconds": round(seconds, 1),
-                "core_hours": round(seconds * metrics["threads"] * metrics["processes"] / 3600, 3),
+                "core_hours": round(seconds * metrics["threads"] / 3600, 3),
             },
             "data": {
                 **self._made(data),

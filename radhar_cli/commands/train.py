@@ -68,7 +68,6 @@ def train(
 
       radhar train --stream configs/quickstart.yaml -o runs/endless    # every image new
 
-    Several processes, or several GPUs: torchrun --nproc-per-node 2 -m radhar_cli train ...
     The same command, run again, resumes after the last finished epoch.
     """
     from radhar_cli.commands.learning_options import apart, needs, needs_torch

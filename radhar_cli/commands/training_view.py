@@ -1,6 +1,5 @@
 """What `train` prints while it works and when it is done."""
 
-import os
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
@@ -45,9 +44,7 @@ class TrainingView(Bars):
             self._events.update()
 
     def print_outcome(self, outcome: Outcome) -> None:
-        """Print the results and their files; rank 0 only."""
-        if os.environ.get("RANK", "0") != "0":
-            return
+        """Print the results and their files."""
         if self._events is not None:
             self._events.update()  # of a run that was complete before
             self._events.close()

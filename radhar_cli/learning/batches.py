@@ -1,4 +1,4 @@
-"""Which images make a step: the same global batches for any number of processes."""
+"""Which images make a step."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from radhar_cli.learning.augmentation import Augmentation
 from radhar_cli.learning.images.image_set import Pixels, repeated
 from radhar_cli.randomness import TRAINING, stream
 
-MIN_PER_PROCESS = 2
+SMALLEST = 2  # images of a batch, for batch norm
 AS_STORED = -1
 
 
@@ -52,15 +52,15 @@ def epoch_order(weights: Float, seed: int, epoch: int) -> Index:
     return rng.permutation(np.repeat(np.arange(weights.size), times))
 
 
-def epoch_batches(order: Index, size: int, processes: int) -> list[Index]:
+def epoch_batches(order: Index, size: int) -> list[Index]:
     """The batches of one epoch, of images in their order.
 
-    What is left over at the end is a smaller batch, or joins the last one where a process would
-    get fewer than two images of it (batch norm needs two).
+    What is left over at the end is a smaller batch; a single image joins the last one, since batch
+    norm needs two.
     """
     count = order.size
     starts = list(range(0, count, size))
-    if len(starts) > 1 and count - starts[-1] < MIN_PER_PROCESS * processes:
+    if len(starts) > 1 and count - starts[-1] < SMALLEST:
         starts.pop()
     return [order[start:stop] for start, stop in zip(starts, [*starts[1:], count], strict=True)]
 

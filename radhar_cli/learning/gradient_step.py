@@ -1,6 +1,5 @@
 """One step of training: learning rate, logits, loss, gradient, update."""
 
-from contextlib import nullcontext
 from dataclasses import dataclass
 from math import cos, pi
 from typing import Any
@@ -10,7 +9,6 @@ from torch import Tensor, nn
 
 from radhar_cli.learning.batches import Normalisation
 from radhar_cli.learning.machine import ExecutionPlan, autocast
-from radhar_cli.learning.process_group import Group
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.targets import class_loss, labels_loss, skeleton_loss
 
@@ -84,7 +82,6 @@ class TrainStep:
     config: TrainConfig
     prepare: Normalisation
     plan: ExecutionPlan
-    group: Group
 
     def loss_and_correct(
         self, network: nn.Module, levels: Tensor, labels: Tensor
@@ -101,30 +98,18 @@ class TrainStep:
         return class_loss(outputs.float(), wanted, self.config.label_smoothing)
 
     def step(
-        self,
-        network: Any,
-        optimiser: torch.optim.Optimizer,
-        levels: Tensor,
-        labels: Tensor,
-        batch_size: int,
+        self, network: nn.Module, optimiser: torch.optim.Optimizer, levels: Tensor, labels: Tensor
     ) -> tuple[float, float]:
-        """One update from this process's share, [B, C, H, W], of a batch.
-
-        `network` averages the gradients of the processes; `batch_size` is that of all of them.
+        """One update from a batch [B, C, H, W].
 
         Returns:
-            The mean loss of the share, and how much of it is right.
+            The mean loss of the batch, and how much of it is right.
         """
         optimiser.zero_grad(set_to_none=True)
         loss_sum, correct = 0.0, 0.0
-        parts = self.plan.parts(len(labels))
-        for number, part in enumerate(parts):
-            # Processes exchange their gradients in the last backward pass of a step alone.
-            alone = self.group.size == 1 or number == len(parts) - 1
-            with nullcontext() if alone else network.no_sync():
-                loss, part_correct = self.loss_and_correct(network, levels[part], labels[part])
-                # Processes average their gradients: the sum over all, divided by the whole batch.
-                torch.autograd.backward(loss * (self.group.size / batch_size))
+        for part in self.plan.parts(len(labels)):
+            loss, part_correct = self.loss_and_correct(network, levels[part], labels[part])
+            torch.autograd.backward(loss / len(labels))
             loss_sum += float(loss.detach())
             correct += part_correct
         if self.config.gradient_clip_norm is not None:

@@ -40,8 +40,6 @@ def choose_device(wanted: str) -> torch.device:
     if not there[wanted]:
         has = ", ".join(name for name, available in there.items() if available)
         raise MachineError(f'device = "{wanted}": is not on this machine; it has {has}')
-    if wanted == "cuda":
-        return torch.device("cuda", int(os.environ.get("LOCAL_RANK", 0)))
     return torch.device(wanted)
 
 
@@ -71,12 +69,12 @@ class ExecutionPlan:
 
     device: torch.device
     precision: torch.dtype
-    # most images in one pass of one process; gradients are accumulated over passes
+    # most images in one pass; gradients are accumulated over passes
     micro_batch: int
     workers: int
 
     def parts(self, images: int) -> list[slice]:
-        """Micro batches of a process's share of a batch: nearly equal, none of a single image."""
+        """Micro batches of a batch: nearly equal, none of a single image."""
         count = max(1, min(-(-images // self.micro_batch), images // 2))
         edges = [number * images // count for number in range(count + 1)]
         return [slice(*pair) for pair in pairwise(edges)]
@@ -107,5 +105,5 @@ def reading_workers(config: TrainConfig, device: torch.device, synthesises: bool
     from radhar_cli.dataset.workers import cores
 
     if synthesises:
-        return max(1, cores() // int(os.environ.get("LOCAL_WORLD_SIZE", 1)))
+        return cores()
     return min(CUDA_WORKERS, cores()) if device.type == "cuda" else 0

@@ -78,7 +78,7 @@ class RunMetadata(Section):
     config: dict[str, Any]  # resolved
     data: LearnedFrom
     versions: dict[str, str]  # of radhar, torch, numpy
-    # how it was computed, as far as the result depends on it: precision, micro batch, processes
+    # how it was computed, as far as the result depends on it: precision, micro batch
     work: dict[str, Any] = Field(default_factory=dict)
     epoch: Annotated[int, Field(ge=1)] | None = None  # with weights, after which they were kept
 

@@ -3,7 +3,6 @@
 import math
 import time
 from collections.abc import Mapping, Sequence
-from contextlib import nullcontext
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Protocol
@@ -14,7 +13,7 @@ from torch import nn
 from torch.optim.swa_utils import AveragedModel, update_bn
 
 from radhar_cli import __version__
-from radhar_cli.arrays import Float, Index
+from radhar_cli.arrays import Index
 from radhar_cli.config.identity import resolved
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.folder import folder_lock
@@ -22,14 +21,7 @@ from radhar_cli.errors import ConfigError, FolderError, RadharError
 from radhar_cli.learning import run_files
 from radhar_cli.learning import run_folder as run
 from radhar_cli.learning.augmentation import Augmentation
-from radhar_cli.learning.batches import (
-    MIN_PER_PROCESS,
-    Labels,
-    Reader,
-    epoch_batches,
-    epoch_order,
-    pieces,
-)
+from radhar_cli.learning.batches import Labels, Reader, epoch_batches, epoch_order, pieces
 from radhar_cli.learning.gradient_step import TrainStep, check_state, optimiser_for, rate
 from radhar_cli.learning.images.classes import renamed
 from radhar_cli.learning.images.image_set import ImageSet
@@ -49,15 +41,6 @@ from radhar_cli.learning.machine import (
     repeatable,
 )
 from radhar_cli.learning.models.build import build_model
-from radhar_cli.learning.process_group import (
-    Group,
-    all_reduce_sum,
-    barrier,
-    broadcast_buffers,
-    distributed,
-    on_rank_zero,
-    process_group,
-)
 from radhar_cli.learning.run_folder import Epoch, LearnedFrom, RunMetadata, best_epoch
 from radhar_cli.learning.run_summary import write_run_summary
 from radhar_cli.learning.settings import OF_SEQUENCES, AugmentConfig, TrainConfig
@@ -117,8 +100,6 @@ def train(
 ) -> Outcome:
     """Train `config` on `data` in `folder`, or resume; nothing to do where it is complete.
 
-    Under torchrun every process calls this; the first one writes.
-
     Args:
         data: a data set, or several that are combined; with a stream, the validation data, or
             nothing.
@@ -173,17 +154,17 @@ def train_on(task: Task, progress: TrainingProgress) -> Outcome:
         torch.set_num_threads(config.threads)
     device = choose_device(config.device)
     repeatable(device)
-    with process_group(device) as group, folder_lock(folder) if group.is_main else nullcontext():
+    with folder_lock(folder):
         plan = choose_execution_plan(config, device, synthesises=task.stream is not None)
         if device.type == "cpu":
             keep_memory()
         try:
-            return _Training.prepared(task, plan, group, progress).run()
+            return _Training.prepared(task, plan, progress).run()
         except RuntimeError as error:
             # On the CPU only the message says that memory was short.
             if not isinstance(error, torch.OutOfMemoryError) and "CPUAllocator" not in str(error):
                 raise
-            count = min(plan.micro_batch, -(-config.images_a_step // group.size))
+            count = min(plan.micro_batch, config.images_a_step)
             raise TrainingError(
                 f"out of memory on {device.type} in a step of {count} images of {images.shape}; "
                 f"should be fewer: --set micro_batch={max(1, count // 2)}"
@@ -232,7 +213,6 @@ class _Training:
     task: Task
     metadata: RunMetadata
     plan: ExecutionPlan
-    group: Group
     progress: TrainingProgress
     model: nn.Module
     optimiser: torch.optim.Optimizer
@@ -240,49 +220,34 @@ class _Training:
     history: list[Epoch] = field(default_factory=list)
 
     @classmethod
-    def prepared(
-        cls, task: Task, plan: ExecutionPlan, group: Group, progress: TrainingProgress
-    ) -> "_Training":
+    def prepared(cls, task: Task, plan: ExecutionPlan, progress: TrainingProgress) -> "_Training":
         config, images, stream = task.config, task.images, task.stream
-        minimum = MIN_PER_PROCESS * group.size
-        if config.images_a_step < minimum:
-            raise ConfigError(
-                f"batch_size = {config.batch_size}: should be at least {minimum} for {group.size} "
-                "processes; batch norm needs two images in each"
-            )
         torch.manual_seed(config.seed)
         joints = config.target == "skeleton"
         outputs = 3 * len(images.joints) if joints else len(images.classes)
         model = build_model(config.model, outputs, images.size, joints)
         started = None if task.start is None else start_from(task.start, model, config, images)
-        if group.is_main:
-            many = f"{len(images)} images of {len(images.classes)} classes, {images.shape}"
-            if stream is not None:
-                many = f"{images.rows('val').size} validation images; {stream.per_epoch} samples "
-                many += f"an epoch are synthesised by {plan.workers or 'no'} workers"
-            progress.say(f"reading {many}")
-            for message in (*_warnings(task, group), *(started.notes if started else ())):
-                progress.say(message)
-        metadata, digests = _metadata(task, plan, group, started)
-
-        def reserve() -> None:
-            scenes = images.scenes or ("",) * len(images)
-            learned = [(images.names[row], pixels, scenes[row]) for row, pixels in digests.items()]
-            run.reserve_run(task.folder, metadata, task.overwrite)
-            run.write_trained_on(task.folder, learned)
-
-        on_rank_zero(group, reserve)
+        many = f"{len(images)} images of {len(images.classes)} classes, {images.shape}"
+        if stream is not None:
+            many = f"{images.rows('val').size} validation images; {stream.per_epoch} samples "
+            many += f"an epoch are synthesised by {plan.workers or 'no'} workers"
+        progress.say(f"reading {many}")
+        for message in (*_warnings(task), *(started.notes if started else ())):
+            progress.say(message)
+        metadata, digests = _metadata(task, plan, started)
+        scenes = images.scenes or ("",) * len(images)
+        learned = [(images.names[row], pixels, scenes[row]) for row, pixels in digests.items()]
+        run.reserve_run(task.folder, metadata, task.overwrite)
+        run.write_trained_on(task.folder, learned)
         model.to(plan.device)
         average = AveragedModel(model) if config.average_last else None
         optimiser = optimiser_for(config, model)
-        return cls(task, metadata, plan, group, progress, model, optimiser, average)
+        return cls(task, metadata, plan, progress, model, optimiser, average)
 
     def run(self) -> Outcome:
         resumed = self._restore()
-        if self.group.is_main:
-            self._announce(resumed)
+        self._announce(resumed)
         task, plan = self.task, self.plan
-        network = distributed(self.model, plan.device, self.group)
         augmentation = None
         if task.config.augment != AugmentConfig():
             augmentation = Augmentation(task.config.augment, task.config.seed)
@@ -296,30 +261,25 @@ class _Training:
             training_reader = Reader(source.pixels, source, plan.workers, pin, augmentation)
         for epoch in range(resumed, task.config.epochs):
             began = time.perf_counter()
-            # Of dropout and the like, for this epoch and process alone, so that a run can resume.
-            layers = stream(task.config.seed, TRAINING, epoch, self.group.rank, name="layers")
+            # Of dropout and the like, for this epoch alone, so that a run can resume.
+            layers = stream(task.config.seed, TRAINING, epoch, name="layers")
             torch.manual_seed(int(layers.integers(2**63)))
-            training = self._train_epoch(network, training_reader, epoch)
+            training = self._train_epoch(training_reader, epoch)
             self._statistics_of_average(training_reader, epoch)
             validation = self._validate(validation_reader, epoch)
             learning_rate = self.optimiser.param_groups[0]["lr"]
             seconds = round(time.perf_counter() - began, 3)
             row = Epoch(epoch + 1, learning_rate, *training, *validation, seconds)
             self.history.append(row)
-            if self.group.is_main:
-                self._keep(row)
-        if self.group.is_main:
-            run.write_history(task.folder, self.history)
-            if resumed < task.config.epochs or not (task.folder / run_files.METRICS).exists():
-                write_run_summary(
-                    task.folder, self.metadata, self.history, self.model, plan, self.group
-                )
-        barrier(self.group)
+            self._keep(row)
+        run.write_history(task.folder, self.history)
+        if resumed < task.config.epochs or not (task.folder / run_files.METRICS).exists():
+            write_run_summary(task.folder, self.metadata, self.history, self.model, plan)
         return Outcome(task.folder, self.history, resumed, SCORES[task.config.target])
 
     @property
     def _train_step(self) -> TrainStep:
-        return TrainStep(self.task.config, self.metadata.normalisation, self.plan, self.group)
+        return TrainStep(self.task.config, self.metadata.normalisation, self.plan)
 
     def _restore(self) -> int:
         checkpoint = run.read_last(self.task.folder)
@@ -347,7 +307,7 @@ class _Training:
             raise run.RunError(
                 f"{path}: does not fit this run ({run.first_line(error)}); --overwrite starts over"
             ) from None
-        on_rank_zero(self.group, self._ensure_best)
+        self._ensure_best()
         return len(self.history)
 
     def _ensure_best(self) -> None:
@@ -378,14 +338,11 @@ class _Training:
         plan, say, size = self.plan, self.progress.say, self.task.config.images_a_step
         if resumed:
             say(f"resuming: {resumed} of {self.task.config.epochs} epochs are done")
-        share = -(-size // self.group.size)
-        precision = plan.precision_name
-        many = f", {self.group.size} processes" if self.group.size > 1 else ""
-        say(f"on {plan.device.type}{many}, {precision}, {torch.get_num_threads()} threads")
-        parts = len(plan.parts(share))
+        say(f"on {plan.device.type}, {plan.precision_name}, {torch.get_num_threads()} threads")
+        parts = len(plan.parts(size))
         if parts > 1:
             say(
-                f"a batch of {size} goes in {parts} parts a process, of at most "
+                f"a batch of {size} goes in {parts} parts, of at most "
                 f"{plan.micro_batch}: gradients are summed, but batch norm sees one part at a "
                 f"time, so this is not the same as a batch of {size}"
             )
@@ -399,34 +356,28 @@ class _Training:
         weights = sampling_weights(self.task.images, rows, config.data_weights, balanced)
         return rows[epoch_order(weights, config.seed, epoch)]
 
-    def _train_epoch(self, network: nn.Module, reader: Reader, epoch: int) -> tuple[float, float]:
+    def _train_epoch(self, reader: Reader, epoch: int) -> tuple[float, float]:
         """One epoch of steps; returns mean loss and accuracy of its batches."""
-        config, group = self.task.config, self.group
-        rows = self._epoch_rows(epoch)
-        batches = epoch_batches(rows, config.images_a_step, group.size)
-        if group.is_main:
-            self.progress.epoch(epoch + 1, config.epochs, len(batches))
-        mine = [batch[group.rank :: group.size] for batch in batches]
-        network.train()
+        config = self.task.config
+        batches = epoch_batches(self._epoch_rows(epoch), config.images_a_step)
+        self.progress.epoch(epoch + 1, config.epochs, len(batches))
+        self.model.train()
         train_step = self._train_step
-        totals: Float = np.zeros(3)
-        for step, (levels, labels) in enumerate(reader(mine, epoch)):
+        loss_sum, right, count = 0.0, 0.0, 0
+        for step, (levels, labels) in enumerate(reader(batches, epoch)):
             learning_rate = rate(config, epoch, step, len(batches))
             for parameters in self.optimiser.param_groups:
                 parameters["lr"] = learning_rate
-            loss, correct = train_step.step(
-                network, self.optimiser, levels, labels, batches[step].size
-            )
+            loss, correct = train_step.step(self.model, self.optimiser, levels, labels)
             done = (epoch + (step + 1) / len(batches)) / config.epochs
             if self.average is not None and done > 1 - config.average_last:
                 self.average.update_parameters(self.model)
-            # The sum: where one process fails, all should say so.
-            if not math.isfinite(all_reduce_sum(np.array([loss]), group)[0]):
+            if not math.isfinite(loss):
                 raise TrainingError(self._not_finite(f"epoch {epoch + 1}, step {step + 1}", loss))
-            totals += (loss * len(labels), correct, len(labels))
-            if group.is_main:
-                self.progress.step(loss, totals[1] / totals[2])
-        loss_sum, right, count = all_reduce_sum(totals, group).tolist()
+            loss_sum += loss * len(labels)
+            right += correct
+            count += len(labels)
+            self.progress.step(loss, right / count)
         return loss_sum / count, right / count
 
     def _statistics_of_average(self, reader: Reader, epoch: int) -> None:
@@ -439,28 +390,23 @@ class _Training:
         rows = self._epoch_rows(epoch)[:STATISTICS_IMAGES]
         size = min(self.task.config.images_a_step, self.plan.micro_batch)
         device, normalise = self.plan.device, self.metadata.normalisation
-        clean = (normalise(levels.to(device)) for levels, _ in reader(epoch_batches(rows, size, 1)))
+        clean = (normalise(levels.to(device)) for levels, _ in reader(epoch_batches(rows, size)))
         update_bn(clean, self._kept)
 
     def _validate(self, reader: Reader, epoch: int) -> tuple[float, float]:
-        """Mean loss and accuracy over the validation images, shared by the processes."""
-        group = self.group
-        broadcast_buffers(self.model, group)
-        model = self._kept
-        broadcast_buffers(model, group)
-        rows = self.task.images.rows("val")
-        mine = rows[group.rank :: group.size]
+        """Mean loss and accuracy over the validation images."""
+        model, rows = self._kept, self.task.images.rows("val")
         size = min(self.task.config.images_a_step, self.plan.micro_batch)
         model.eval()
-        totals: Float = np.zeros(3)
+        loss_sum, right = 0.0, 0.0
         with torch.no_grad():
-            for levels, labels in reader(pieces(mine, size)):
+            for levels, labels in reader(pieces(rows, size)):
                 loss, correct = self._train_step.loss_and_correct(model, levels, labels)
-                totals += (float(loss), correct, len(labels))
-        loss_sum, right, count = all_reduce_sum(totals, group).tolist()
+                loss_sum += float(loss)
+                right += correct
         if not math.isfinite(loss_sum):
             raise TrainingError(self._not_finite(f"validation of epoch {epoch + 1}", loss_sum))
-        return loss_sum / count, right / count
+        return loss_sum / rows.size, right / rows.size
 
     def _not_finite(self, where: str, loss: float) -> str:
         rate_now = self.task.config.learning_rate
@@ -506,7 +452,7 @@ def _wanted(task: Task) -> Labels:
 
 
 def _metadata(
-    task: Task, plan: ExecutionPlan, group: Group, started: StartingPoint | None
+    task: Task, plan: ExecutionPlan, started: StartingPoint | None
 ) -> tuple[RunMetadata, dict[int, str]]:
     """Metadata of the run, and the digest of every stored training image by row."""
     config, images, stream = task.config, task.images, task.stream
@@ -543,7 +489,6 @@ def _metadata(
         work={
             "precision": plan.precision_name,
             "micro_batch": plan.micro_batch,
-            "processes": group.size,
             **({"start": started.sha256} if started else {}),
         },
         versions={"radhar": __version__, "torch": torch.__version__, "numpy": np.__version__},
@@ -551,7 +496,7 @@ def _metadata(
     return metadata, dict(zip(rows.tolist(), learned.digests, strict=True))
 
 
-def _warnings(task: Task, group: Group) -> list[str]:
+def _warnings(task: Task) -> list[str]:
     """Of classes that are not validated, and of epochs too short to learn much in."""
     images = task.images
     checked = set(images.label[images.rows("val")].tolist())
@@ -562,7 +507,7 @@ def _warnings(task: Task, group: Group) -> list[str]:
     ]
     count = images.rows("train").size if task.stream is None else task.stream.per_epoch
     size = task.config.images_a_step
-    steps = len(epoch_batches(np.arange(count), size, group.size))
+    steps = len(epoch_batches(np.arange(count), size))
     if steps < FEW_STEPS:
         warnings.append(
             f"warning: batch_size = {size}: {count} images make {steps} steps an epoch; should be "

@@ -34,7 +34,6 @@ from radhar_cli.learning.gradient_step import optimiser_for
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.scan import scan
 from radhar_cli.learning.machine import ExecutionPlan, choose_execution_plan
-from radhar_cli.learning.process_group import Group
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.training import Task, TrainingError, _Training, checked_images
 
@@ -45,7 +44,7 @@ def prepared(data, out, **changes):
     out.mkdir()
     config = settings(**changes)
     task = Task(config, checked_images(config, data), out)
-    return _Training.prepared(task, choose_execution_plan(config, CPU), Group(), Watched())
+    return _Training.prepared(task, choose_execution_plan(config, CPU), Watched())
 
 
 def first_batch(work, count=6):
@@ -67,7 +66,7 @@ def test_files_of_a_run(run_dir, data):
     assert metrics["best_epoch"] == best.epoch
     assert metrics["val_accuracy"] == best.val_accuracy
     assert (metrics["micro_batch"], metrics["gradient_accumulation"]) == (6, 1)
-    assert (metrics["processes"], metrics["device"], metrics["precision"]) == (1, "cpu", "float32")
+    assert (metrics["device"], metrics["precision"]) == ("cpu", "float32")
     assert metrics["classes"] == ["punching", "kicking", "walking"]
     assert (metrics["data"]["train"], metrics["data"]["val"]) == (12, 6)
     assert metrics["data"]["path"] == str(data)
@@ -257,7 +256,7 @@ def test_gradients_of_micro_batches_sum_to_that_of_the_batch(data, tmp_path, mic
     parts = prepared(data, tmp_path / "parts", micro_batch=micro_batch)
     levels, labels = first_batch(whole)
     losses = [
-        work._train_step.step(work.model.eval(), work.optimiser, levels, labels, 6)
+        work._train_step.step(work.model.eval(), work.optimiser, levels, labels)
         for work in (whole, parts)
     ]
     assert losses[0] == pytest.approx(losses[1], rel=1e-5)
@@ -268,9 +267,9 @@ def test_gradients_of_micro_batches_sum_to_that_of_the_batch(data, tmp_path, mic
 def test_a_step_starts_from_zero_gradient(data, tmp_path):
     work = prepared(data, tmp_path / "run", learning_rate=1e-12, optimiser="sgd")
     levels, labels = first_batch(work)
-    work._train_step.step(work.model.eval(), work.optimiser, levels, labels, 6)
+    work._train_step.step(work.model.eval(), work.optimiser, levels, labels)
     once = gradients(work.model)
-    work._train_step.step(work.model.eval(), work.optimiser, levels, labels, 6)
+    work._train_step.step(work.model.eval(), work.optimiser, levels, labels)
     for one, other in zip(once, gradients(work.model), strict=True):
         torch.testing.assert_close(one, other, rtol=1e-4, atol=1e-7)
 
@@ -281,8 +280,7 @@ def test_accumulation_is_reported_and_recorded(data, tmp_path):
     metrics = json.loads((tmp_path / "run" / run_files.METRICS).read_text())
     assert (metrics["micro_batch"], metrics["gradient_accumulation"]) == (2, 3)
     assert any(
-        "3 parts a process, of at most 2" in line and "batch norm" in line
-        for line in progress.messages
+        "3 parts, of at most 2" in line and "batch norm" in line for line in progress.messages
     )
     assert "in 3 part(s)" in (tmp_path / "run" / run_files.SUMMARY).read_text()
 
@@ -303,7 +301,7 @@ def test_clipping_limits_the_gradient(data, tmp_path):
     moved = []
     for work in (free, held):
         before = [p.detach().clone() for p in work.model.parameters()]
-        work._train_step.step(work.model.train(), work.optimiser, levels, labels, 6)
+        work._train_step.step(work.model.train(), work.optimiser, levels, labels)
         steps = [p.detach() - b for p, b in zip(work.model.parameters(), before, strict=True)]
         moved.append(float(torch.linalg.vector_norm(torch.cat([s.flatten() for s in steps]))))
     assert moved[0] > 2e-5

@@ -3,7 +3,7 @@
 The only package that imports PyTorch; `pip install 'radhar[train]'` installs it.
 
     settings        the YAML file of `radhar train`
-    images/         labelled images or sequences of dataset.h5, of class folders, or synthesised
+    images/         labelled images or sequences of dataset.h5, or of class folders
     batches         which images make a step; augmentation
     models/         one network per file; zoo: those of timm
     machine         device, precision, micro batch, reading processes

@@ -11,7 +11,7 @@ from torch import Tensor
 from torch.utils.data import DataLoader, Dataset, Sampler
 
 from radhar_cli.arrays import Float, Index
-from radhar_cli.errors import FolderError, SceneError
+from radhar_cli.errors import FolderError
 from radhar_cli.learning.augmentation import Augmentation
 from radhar_cli.learning.images.image_set import Pixels, repeated
 from radhar_cli.randomness import TRAINING, stream
@@ -134,9 +134,8 @@ class Reader:
         self._sampler.batches = [[(int(row), epoch) for row in batch] for batch in batches]
         try:
             yield from self._loader
-        except (FolderError, SceneError) as error:  # a worker's comes wrapped in its traceback
-            kind = type(error)
-            raise kind(str(error).strip().rpartition(f"{kind.__name__}: ")[2]) from None
+        except FolderError as error:  # a worker's comes wrapped in its traceback
+            raise FolderError(str(error).strip().rpartition("FolderError: ")[2]) from None
 
 
 def pieces(rows: Index, size: int) -> list[Index]:

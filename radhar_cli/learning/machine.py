@@ -85,25 +85,18 @@ class ExecutionPlan:
         return str(self.precision).removeprefix("torch.")
 
 
-def choose_execution_plan(
-    config: TrainConfig, device: torch.device, synthesises: bool = False
-) -> ExecutionPlan:
+def choose_execution_plan(config: TrainConfig, device: torch.device) -> ExecutionPlan:
     """Fill in what the config leaves to `auto`; `micro_batch: auto` is the whole batch at once."""
     micro_batch = config.images_a_step if config.micro_batch == "auto" else config.micro_batch
     precision = choose_precision(config.precision, device)
-    workers = reading_workers(config, device, synthesises)
+    workers = reading_workers(config, device)
     return ExecutionPlan(device, precision, micro_batch, workers)
 
 
-def reading_workers(config: TrainConfig, device: torch.device, synthesises: bool) -> int:
-    """Reading processes: none on the CPU, whose cores the network keeps busy.
-
-    Samples of a stream take longer to synthesise than a step: every core gets a worker.
-    """
+def reading_workers(config: TrainConfig, device: torch.device) -> int:
+    """Reading processes: none on the CPU, whose cores the network keeps busy."""
     if config.workers != "auto":
         return config.workers
     from radhar_cli.dataset.workers import cores
 
-    if synthesises:
-        return cores()
     return min(CUDA_WORKERS, cores()) if device.type == "cuda" else 0

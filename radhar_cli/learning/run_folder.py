@@ -9,7 +9,7 @@ import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, NotRequired
+from typing import Annotated, Any
 
 import torch
 from pydantic import Field, ValidationError, field_validator, model_validator
@@ -43,24 +43,13 @@ class RunError(RadharError):
     """A run folder, or a file of it, that cannot be used."""
 
 
-class Streamed(TypedDict):
-    """Config of the samples, and how many were learned from."""
-
-    config: dict[str, Any]
-    samples: Annotated[int, Field(ge=0)]
-
-
 class LearnedFrom(TypedDict):
-    """A data set: path, content hash, images of the training and the validation set.
-
-    Of a stream also how its samples are made anew.
-    """
+    """A data set: path, content hash, images of the training and the validation set."""
 
     path: str
     hash: str
     train: Annotated[int, Field(ge=0)]
     val: Annotated[int, Field(ge=0)]
-    stream: NotRequired[Streamed]
 
 
 class RunMetadata(Section):

@@ -82,19 +82,6 @@ class AugmentConfig(Section):
     """Largest width of one."""
 
 
-class StreamConfig(Section):
-    """Of `radhar train --stream`: what an epoch is, and what validates it.
-
-    An epoch has as many samples as the config's data set would train with, if no number is given;
-    without a data set to validate on, at most `validation_per_class` of its validation samples do.
-    """
-
-    samples_per_epoch: Annotated[Count, Field(ge=2)] | None = None
-    """Null is as many as the config's data set trains with."""
-    validation_per_class: Count = 100
-    """At most; used without a data set to validate on."""
-
-
 class TrainConfig(Section):
     """One training run; the defaults learn from some dozens of images a class as from thousands.
 
@@ -144,7 +131,6 @@ class TrainConfig(Section):
     sampling: Literal["all", "balanced"] = "all"
     """balanced: every class equally often."""
     augment: AugmentConfig = AugmentConfig()
-    stream: StreamConfig = StreamConfig()
     device: Literal["auto", "cpu", "cuda", "mps"] = "auto"
     """auto takes cuda, mps, cpu in that order."""
     precision: Literal["auto", "float32", "bfloat16"] = "auto"

@@ -15,7 +15,6 @@ from torch.optim.swa_utils import AveragedModel, update_bn
 from radhar_cli import __version__
 from radhar_cli.arrays import Index
 from radhar_cli.config.identity import resolved
-from radhar_cli.config.schema import Config
 from radhar_cli.dataset.folder import folder_lock
 from radhar_cli.errors import ConfigError, FolderError, RadharError
 from radhar_cli.learning import run_files
@@ -28,22 +27,16 @@ from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.joined import joined, sampling_weights
 from radhar_cli.learning.images.opening import open_inputs
 from radhar_cli.learning.images.scan import content_hash, scan
-from radhar_cli.learning.images.synthesised import (
-    TrainingStream,
-    stream_and_validation,
-    stream_data,
-)
 from radhar_cli.learning.machine import (
     ExecutionPlan,
     choose_device,
     choose_execution_plan,
-    reading_workers,
     repeatable,
 )
 from radhar_cli.learning.models.build import build_model
 from radhar_cli.learning.run_folder import Epoch, LearnedFrom, RunMetadata, best_epoch
 from radhar_cli.learning.run_summary import write_run_summary
-from radhar_cli.learning.settings import OF_SEQUENCES, AugmentConfig, TrainConfig
+from radhar_cli.learning.settings import AugmentConfig, TrainConfig
 from radhar_cli.learning.starting_point import StartingPoint, start_from
 from radhar_cli.learning.targets import SCORES
 from radhar_cli.progress import Messages
@@ -96,66 +89,49 @@ def train(
     overwrite: bool = False,
     names: Mapping[str, str | None] | None = None,
     start: Path | None = None,
-    stream: Config | None = None,
 ) -> Outcome:
     """Train `config` on `data` in `folder`, or resume; nothing to do where it is complete.
 
     Args:
-        data: a data set, or several that are combined; with a stream, the validation data, or
-            nothing.
+        data: a data set, or several that are combined.
         overwrite: start over in a folder that holds a run.
         names: {class of the data: class here, or None to leave it out}.
         start: a run whose best weights and normalisation are the initial ones; those of the last
             layer too if the classes are the same.
-        stream: config of samples that are synthesised on the fly, each used once.
 
     Raises:
         FolderError: data that cannot be used.
-        ConfigError, SceneError: a stream that cannot be used.
         RunError: a folder that holds something else, or a damaged checkpoint.
         ModelError: a network that cannot be built.
         MachineError: a device that is not available, or a step too large for memory.
         TrainingError: the loss is not finite; earlier checkpoints are kept.
     """
-    training_stream = None
-    if stream is None:
-        images = checked_images(config, data, names)
-    elif config.model in OF_SEQUENCES:
-        raise ConfigError(f"model {config.model}: reads sequences; --stream makes images")
-    elif config.target != "classes":
-        raise ConfigError(f"target = {config.target}: is of stored data; --stream has classes")
-    else:
-        paths = [data] if isinstance(data, Path) else list(data)
-        device = choose_device(config.device)
-        workers = reading_workers(config, device, synthesises=True)
-        training_stream, images = stream_and_validation(config, stream, paths, names or {}, workers)
-    return train_on(Task(config, images, folder, overwrite, start, training_stream), progress)
+    images = checked_images(config, data, names)
+    return train_on(Task(config, images, folder, overwrite, start), progress)
 
 
 @dataclass(frozen=True)
 class Task:
-    """Arguments of `train` with the images opened; those of `stream` take the place of theirs."""
+    """Arguments of `train` with the images opened."""
 
     config: TrainConfig
     images: ImageSet
     folder: Path
     overwrite: bool = False
     start: Path | None = None
-    stream: TrainingStream | None = None
 
 
 def train_on(task: Task, progress: TrainingProgress) -> Outcome:
     """As `train`, on images that are open already."""
     images, folder = task.images, task.folder
-    count = images.rows("train").size if task.stream is None else task.stream.per_epoch
-    config = task.config.for_images(count, images.frames)
+    config = task.config.for_images(images.rows("train").size, images.frames)
     task = replace(task, config=config)
     if config.threads != "auto":
         torch.set_num_threads(config.threads)
     device = choose_device(config.device)
     repeatable(device)
     with folder_lock(folder):
-        plan = choose_execution_plan(config, device, synthesises=task.stream is not None)
+        plan = choose_execution_plan(config, device)
         if device.type == "cpu":
             keep_memory()
         try:
@@ -221,17 +197,14 @@ class _Training:
 
     @classmethod
     def prepared(cls, task: Task, plan: ExecutionPlan, progress: TrainingProgress) -> "_Training":
-        config, images, stream = task.config, task.images, task.stream
+        config, images = task.config, task.images
         torch.manual_seed(config.seed)
         joints = config.target == "skeleton"
         outputs = 3 * len(images.joints) if joints else len(images.classes)
         model = build_model(config.model, outputs, images.size, joints)
         started = None if task.start is None else start_from(task.start, model, config, images)
-        many = f"{len(images)} images of {len(images.classes)} classes, {images.shape}"
-        if stream is not None:
-            many = f"{images.rows('val').size} validation images; {stream.per_epoch} samples "
-            many += f"an epoch are synthesised by {plan.workers or 'no'} workers"
-        progress.say(f"reading {many}")
+        many = f"{len(images)} images of {len(images.classes)} classes"
+        progress.say(f"reading {many}, {images.shape}")
         for message in (*_warnings(task), *(started.notes if started else ())):
             progress.say(message)
         metadata, digests = _metadata(task, plan, started)
@@ -252,21 +225,15 @@ class _Training:
         if task.config.augment != AugmentConfig():
             augmentation = Augmentation(task.config.augment, task.config.seed)
         pin, label = plan.device.type == "cuda", _wanted(task)
-        if task.stream is None:
-            training_reader = Reader(task.images.pixels, label, plan.workers, pin, augmentation)
-            validation_reader = training_reader
-        else:
-            validation_reader = Reader(task.images.pixels, label, 0, pin)
-            source = task.stream
-            training_reader = Reader(source.pixels, source, plan.workers, pin, augmentation)
+        reader = Reader(task.images.pixels, label, plan.workers, pin, augmentation)
         for epoch in range(resumed, task.config.epochs):
             began = time.perf_counter()
             # Of dropout and the like, for this epoch alone, so that a run can resume.
             layers = stream(task.config.seed, TRAINING, epoch, name="layers")
             torch.manual_seed(int(layers.integers(2**63)))
-            training = self._train_epoch(training_reader, epoch)
-            self._statistics_of_average(training_reader, epoch)
-            validation = self._validate(validation_reader, epoch)
+            training = self._train_epoch(reader, epoch)
+            self._statistics_of_average(reader, epoch)
+            validation = self._validate(reader, epoch)
             learning_rate = self.optimiser.param_groups[0]["lr"]
             seconds = round(time.perf_counter() - began, 3)
             row = Epoch(epoch + 1, learning_rate, *training, *validation, seconds)
@@ -349,8 +316,6 @@ class _Training:
 
     def _epoch_rows(self, epoch: int) -> Index:
         """Rows of the training images of an epoch, in the order in which they are shown."""
-        if self.task.stream is not None:
-            return self.task.stream.rows(epoch)
         rows, config = self.task.images.rows("train"), self.task.config
         balanced = config.sampling == "balanced"
         weights = sampling_weights(self.task.images, rows, config.data_weights, balanced)
@@ -454,10 +419,9 @@ def _wanted(task: Task) -> Labels:
 def _metadata(
     task: Task, plan: ExecutionPlan, started: StartingPoint | None
 ) -> tuple[RunMetadata, dict[int, str]]:
-    """Metadata of the run, and the digest of every stored training image by row."""
-    config, images, stream = task.config, task.images, task.stream
-    rows = images.rows("train") if stream is None else np.zeros(0, np.intp)
-    validating = images.rows("val")
+    """Metadata of the run, and the digest of every training image by row."""
+    config, images = task.config, task.images
+    rows, validating = images.rows("train"), images.rows("val")
     learned, checked = scan(images, rows), scan(images, validating)
     seen = np.concatenate([rows, validating])
     data: LearnedFrom = {
@@ -466,11 +430,7 @@ def _metadata(
         "train": rows.size,
         "val": validating.size,
     }
-    statistics = learned
-    if stream is not None:
-        statistics = stream.first
-        data |= stream_data(stream, data, config.epochs)
-    mean, sd = statistics.mean, statistics.sd
+    mean, sd = learned.mean, learned.sd
     if started is not None:
         mean, sd = started.normalisation.mean, started.normalisation.sd
     kept = {k: v for k, v in resolved(config).items() if k not in NOT_IDENTITY}
@@ -505,8 +465,7 @@ def _warnings(task: Task) -> list[str]:
         for index, name in enumerate(images.classes)
         if index not in checked
     ]
-    count = images.rows("train").size if task.stream is None else task.stream.per_epoch
-    size = task.config.images_a_step
+    count, size = images.rows("train").size, task.config.images_a_step
     steps = len(epoch_batches(np.arange(count), size))
     if steps < FEW_STEPS:
         warnings.append(

@@ -43,9 +43,6 @@ def train(
         Path | None, typer.Option(help="A run whose best weights are the initial ones.")
     ] = None,
     classes: Classes = None,
-    tensorboard: Annotated[
-        bool, typer.Option("--tensorboard", help="Also write event files into RUN/tensorboard.")
-    ] = False,
     overwrite: StartOver = False,
 ) -> None:
     """Train a network on a data set.
@@ -60,15 +57,9 @@ def train(
 
     The same command, run again, resumes after the last finished epoch.
     """
-    from radhar_cli.commands.learning_options import apart, needs, needs_torch
+    from radhar_cli.commands.learning_options import apart, needs_torch
 
     needs_torch()
-    events = None
-    if tensorboard:
-        needs("tensorboard", ("tensorboard",))
-        from radhar_cli.learning.event_files import EventFiles
-
-        events = EventFiles(out)
     from radhar_cli.commands.training_view import TrainingView
     from radhar_cli.config.reading import load_section
     from radhar_cli.learning import training
@@ -83,6 +74,6 @@ def train(
     settings = load_section(TrainConfig, config, overrides)
     apart(out, [*data, *([init] if init else [])])
     names = read_classes(classes) if classes else {}
-    with resumable(f"the last finished epoch in {out}"), TrainingView(events) as view:
+    with resumable(f"the last finished epoch in {out}"), TrainingView() as view:
         outcome = training.train(settings, data, out, view, overwrite, names, init)
     view.print_outcome(outcome)

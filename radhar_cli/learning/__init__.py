@@ -9,7 +9,7 @@ The only package that imports PyTorch; `pip install 'radhar[train]'` installs it
     machine         device, precision, micro batch, reading processes
     gradient_step   learning rate, gradient, update; targets: losses of what is learned
     training        epochs, validation, the best one, resuming; starting_point: --init
-    run_folder      the files of a run, and how they are read safely; run_summary, event_files
+    run_folder      the files of a run, and how they are read safely; run_summary
     evaluation      probabilities, features and speed; metrics: how good they are
     report          `radhar eval`: single_result, labels_result, skeleton_result fill it
     adaptation      batch norm fitted to unlabelled images

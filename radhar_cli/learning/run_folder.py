@@ -20,14 +20,14 @@ from torch import Tensor, nn
 from typing_extensions import TypedDict
 
 from radhar_cli.config.schema import Section
-from radhar_cli.dataset.files import read_bytes, refuse_links, write_whole
+from radhar_cli.dataset.files import read_bytes, write_whole
 from radhar_cli.dataset.folder import refuse_differences, refuse_foreign_files
 from radhar_cli.errors import ModelError, RadharError
 from radhar_cli.learning.batches import Normalisation
 from radhar_cli.learning.images.image_set import shape_in_words
 from radhar_cli.learning.models.build import Cost, build_model, cost
 from radhar_cli.learning.report_folder import csv_text
-from radhar_cli.learning.run_files import ABOUT, ALL, BEST, EVENTS, HISTORY, LAST, TRAINED_ON
+from radhar_cli.learning.run_files import ABOUT, ALL, BEST, HISTORY, LAST, TRAINED_ON
 from radhar_cli.learning.settings import Kind, TrainConfig
 from radhar_cli.untrusted import regular_size
 
@@ -154,24 +154,12 @@ def reserve_run(folder: Path, metadata: RunMetadata, overwrite: bool) -> None:
     if ours and (overwrite or not (folder / LAST).exists()):
         for name in reversed(ALL):
             (folder / name).unlink(missing_ok=True)
-        remove_events(folder)
     if not (folder / ABOUT).exists():
         if not ours:
             refuse_foreign_files(folder, "training run", error=RunError)
         write_whole(folder, folder / ABOUT, (metadata.model_dump_json(indent=2) + "\n").encode())
         return
     refuse_differences(folder, "run", differences(read_metadata(folder), metadata), RunError)
-
-
-def remove_events(folder: Path) -> None:
-    """Remove the event files of a run, nothing else.
-
-    Raises:
-        FolderError: their folder is a symbolic link.
-    """
-    refuse_links(folder, folder / EVENTS)
-    for path in (folder / EVENTS).glob("events.out.tfevents.*"):
-        path.unlink()
 
 
 def differences(old: RunMetadata, new: RunMetadata) -> list[str]:

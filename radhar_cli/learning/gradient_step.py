@@ -106,13 +106,10 @@ class TrainStep:
             The mean loss of the batch, and how much of it is right.
         """
         optimiser.zero_grad(set_to_none=True)
-        loss_sum, correct = 0.0, 0.0
-        for part in self.plan.parts(len(labels)):
-            loss, part_correct = self.loss_and_correct(network, levels[part], labels[part])
-            torch.autograd.backward(loss / len(labels))
-            loss_sum += float(loss.detach())
-            correct += part_correct
+        loss_sum, correct = self.loss_and_correct(network, levels, labels)
+        loss = loss_sum / len(labels)
+        torch.autograd.backward(loss)
         if self.config.gradient_clip_norm is not None:
             nn.utils.clip_grad_norm_(network.parameters(), self.config.gradient_clip_norm)
         optimiser.step()
-        return loss_sum / len(labels), correct
+        return float(loss.detach()), correct

@@ -1,11 +1,11 @@
-"""How a run is executed on this machine: device, precision, micro batch, reading processes."""
+"""How a run is executed on this machine: device, precision, reading processes."""
 
 import os
 from dataclasses import dataclass
-from itertools import pairwise
 
 import torch
 
+from radhar_cli.dataset.workers import cores
 from radhar_cli.errors import MachineError, did_you_mean
 from radhar_cli.learning.settings import TrainConfig
 
@@ -65,19 +65,11 @@ def autocast(device: torch.device, precision: torch.dtype) -> torch.autocast:
 
 @dataclass(frozen=True)
 class ExecutionPlan:
-    """Device, precision, micro batch and reading processes of a run."""
+    """Device, precision and reading processes of a run."""
 
     device: torch.device
     precision: torch.dtype
-    # most images in one pass; gradients are accumulated over passes
-    micro_batch: int
     workers: int
-
-    def parts(self, images: int) -> list[slice]:
-        """Micro batches of a batch: nearly equal, none of a single image."""
-        count = max(1, min(-(-images // self.micro_batch), images // 2))
-        edges = [number * images // count for number in range(count + 1)]
-        return [slice(*pair) for pair in pairwise(edges)]
 
     @property
     def precision_name(self) -> str:
@@ -86,17 +78,9 @@ class ExecutionPlan:
 
 
 def choose_execution_plan(config: TrainConfig, device: torch.device) -> ExecutionPlan:
-    """Fill in what the config leaves to `auto`; `micro_batch: auto` is the whole batch at once."""
-    micro_batch = config.images_a_step if config.micro_batch == "auto" else config.micro_batch
+    """Fill in what the config leaves to `auto`: no reading processes on the CPU, which is busy."""
     precision = choose_precision(config.precision, device)
-    workers = reading_workers(config, device)
-    return ExecutionPlan(device, precision, micro_batch, workers)
-
-
-def reading_workers(config: TrainConfig, device: torch.device) -> int:
-    """Reading processes: none on the CPU, whose cores the network keeps busy."""
     if config.workers != "auto":
-        return config.workers
-    from radhar_cli.dataset.workers import cores
-
-    return min(CUDA_WORKERS, cores()) if device.type == "cuda" else 0
+        return ExecutionPlan(device, precision, config.workers)
+    workers = min(CUDA_WORKERS, cores()) if device.type == "cuda" else 0
+    return ExecutionPlan(device, precision, workers)

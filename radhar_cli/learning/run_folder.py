@@ -67,7 +67,7 @@ class RunMetadata(Section):
     config: dict[str, Any]  # resolved
     data: LearnedFrom
     versions: dict[str, str]  # of radhar, torch, numpy
-    # how it was computed, as far as the result depends on it: precision, micro batch
+    # what else the result depends on: precision, weights that it starts from, what it is adapted to
     work: dict[str, Any] = Field(default_factory=dict)
     epoch: Annotated[int, Field(ge=1)] | None = None  # with weights, after which they were kept
 

@@ -52,8 +52,6 @@ def write_run_summary(
         "device": plan.device.type,
         "precision": plan.precision_name,
         "threads": torch.get_num_threads(),
-        "micro_batch": plan.micro_batch,
-        "gradient_accumulation": len(plan.parts(settings.images_a_step)),
     }
     curves = curves_png(series, {folder.name: best.epoch}, score, LOSSES[settings.target])
     write_whole(folder, folder / run_files.CURVES, curves)
@@ -65,8 +63,7 @@ def write_run_summary(
         f"best epoch {best.epoch} of {len(history)}: validation {found}, loss {best.val_loss:.4f}",
         f"{price.parameters:,} parameters, {price.multiply_adds / 1e9:.3f} G multiply-adds",
         f"{metrics['seconds']} s on {metrics['device']}, {metrics['precision']}, "
-        f"{metrics['threads']} threads, batch {settings.images_a_step} in "
-        f"{metrics['gradient_accumulation']} part(s)",
+        f"{metrics['threads']} threads, batch {settings.images_a_step}",
         "",
         *_layer_table(model),
     ]

@@ -107,8 +107,6 @@ class TrainConfig(Section):
     """Passes over the training images."""
     batch_size: Annotated[Auto, _auto_or(2)] = "auto"
     """Images a step; auto makes some 24 steps an epoch, of 4 to 128 images."""
-    micro_batch: Annotated[Auto, _auto_or(2)] = "auto"
-    """Most images in one pass; auto is the whole batch."""
     optimiser: Literal["adam", "adamw", "sgd"] = "adamw"
     """adamw has decoupled decay, sgd a momentum of 0.9."""
     learning_rate: Rate = 0.003

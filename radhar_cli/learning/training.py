@@ -45,8 +45,8 @@ from radhar_cli.worker_process import keep_memory
 
 STATISTICS_IMAGES = 2048  # from which batch norm of averaged weights has its statistics
 FEW_STEPS = 10  # an epoch; fewer are warned of
-# Not part of the identity of a run; precision and micro batch enter as chosen (RunMetadata.work).
-NOT_IDENTITY = ("device", "workers", "threads", "precision", "micro_batch")
+# Not part of the identity of a run; precision enters as chosen (RunMetadata.work).
+NOT_IDENTITY = ("device", "workers", "threads", "precision")
 
 
 class TrainingError(RadharError):
@@ -103,8 +103,9 @@ def train(
         FolderError: data that cannot be used.
         RunError: a folder that holds something else, or a damaged checkpoint.
         ModelError: a network that cannot be built.
-        MachineError: a device that is not available, or a step too large for memory.
-        TrainingError: the loss is not finite; earlier checkpoints are kept.
+        MachineError: a device that is not available.
+        TrainingError: a step too large for memory, or a loss that is not finite; earlier
+            checkpoints are kept.
     """
     images = checked_images(config, data, names)
     return train_on(Task(config, images, folder, overwrite, start), progress)
@@ -140,10 +141,10 @@ def train_on(task: Task, progress: TrainingProgress) -> Outcome:
             # On the CPU only the message says that memory was short.
             if not isinstance(error, torch.OutOfMemoryError) and "CPUAllocator" not in str(error):
                 raise
-            count = min(plan.micro_batch, config.images_a_step)
+            size = config.images_a_step
             raise TrainingError(
-                f"out of memory on {device.type} in a step of {count} images of {images.shape}; "
-                f"should be fewer: --set micro_batch={max(1, count // 2)}"
+                f"out of memory on {device.type} in a step of {size} images of {images.shape}; "
+                f"should be {f'fewer: --set batch_size={size // 2}' if size > 3 else 'smaller'}"
             ) from None
 
 
@@ -302,17 +303,10 @@ class _Training:
         return self.average.module
 
     def _announce(self, resumed: int) -> None:
-        plan, say, size = self.plan, self.progress.say, self.task.config.images_a_step
+        plan, say = self.plan, self.progress.say
         if resumed:
             say(f"resuming: {resumed} of {self.task.config.epochs} epochs are done")
         say(f"on {plan.device.type}, {plan.precision_name}, {torch.get_num_threads()} threads")
-        parts = len(plan.parts(size))
-        if parts > 1:
-            say(
-                f"a batch of {size} goes in {parts} parts, of at most "
-                f"{plan.micro_batch}: gradients are summed, but batch norm sees one part at a "
-                f"time, so this is not the same as a batch of {size}"
-            )
 
     def _epoch_rows(self, epoch: int) -> Index:
         """Rows of the training images of an epoch, in the order in which they are shown."""
@@ -353,7 +347,7 @@ class _Training:
         if self._kept is self.model:
             return
         rows = self._epoch_rows(epoch)[:STATISTICS_IMAGES]
-        size = min(self.task.config.images_a_step, self.plan.micro_batch)
+        size = self.task.config.images_a_step
         device, normalise = self.plan.device, self.metadata.normalisation
         clean = (normalise(levels.to(device)) for levels, _ in reader(epoch_batches(rows, size)))
         update_bn(clean, self._kept)
@@ -361,11 +355,10 @@ class _Training:
     def _validate(self, reader: Reader, epoch: int) -> tuple[float, float]:
         """Mean loss and accuracy over the validation images."""
         model, rows = self._kept, self.task.images.rows("val")
-        size = min(self.task.config.images_a_step, self.plan.micro_batch)
         model.eval()
         loss_sum, right = 0.0, 0.0
         with torch.no_grad():
-            for levels, labels in reader(pieces(rows, size)):
+            for levels, labels in reader(pieces(rows, self.task.config.images_a_step)):
                 loss, correct = self._train_step.loss_and_correct(model, levels, labels)
                 loss_sum += float(loss)
                 right += correct
@@ -448,7 +441,6 @@ def _metadata(
         data=data,
         work={
             "precision": plan.precision_name,
-            "micro_batch": plan.micro_batch,
             **({"start": started.sha256} if started else {}),
         },
         versions={"radhar": __version__, "torch": torch.__version__, "numpy": np.__version__},

@@ -207,7 +207,7 @@ def test_names_with_commas_stay_in_their_column(tmp_path):
 
 
 def test_a_value_neither_auto_nor_a_number_gives_one_message():
-    for key in ("workers", "threads", "micro_batch"):
+    for key in ("workers", "threads", "batch_size"):
         with pytest.raises(ValueError, match="should be auto or a whole number") as caught:
             settings(**{key: "many"})
         assert caught.value.error_count() == 1

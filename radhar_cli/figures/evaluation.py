@@ -51,7 +51,7 @@ def curves_png(
     right.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     right.yaxis.set_major_formatter(FormatStrFormatter("%g"))
     right.yaxis.set_minor_formatter(NullFormatter())
-    left.legend(fontsize=8 if len(runs) < 4 else 6)
+    left.legend(loc="lower right", fontsize=8 if len(runs) < 4 else 6)
     figure.suptitle("star: the epoch that is kept", fontsize=9)
     return png_bytes(figure)
 

@@ -24,7 +24,6 @@ from radhar_cli.learning.evaluation import Predictions, open_for, predict, rows_
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.scan import scan
 from radhar_cli.learning.labels_result import evaluate_labels
-from radhar_cli.learning.models.fftnet import NAME
 from radhar_cli.learning.report_files import Report
 from radhar_cli.learning.report_folder import csv_text
 from radhar_cli.learning.run_folder import (
@@ -49,7 +48,6 @@ class EvalOptions:
     split: str = "val"
     map: str | None = None
     tsne: bool = False
-    filters: bool = False
     in_place_vs_moving: bool = False
     batch: int = 32
     resize: bool = False
@@ -88,7 +86,7 @@ def check_options(runs: Sequence[Run], options: EvalOptions) -> None:
     """Refuse figures that cannot be drawn, before anything is computed.
 
     Raises:
-        RunError: classes whose group is unknown, or no filters to draw.
+        RunError: of sequences or of several labels, or classes whose group is unknown.
     """
     ours = {activity.slug for activity in ACTIVITIES}
     for run in runs:
@@ -104,8 +102,6 @@ def check_options(runs: Sequence[Run], options: EvalOptions) -> None:
                     f"--in-place-vs-moving: {name!r} is none of the twelve activities; its group "
                     "is unknown"
                 )
-    if options.filters and not any(run.metadata.model == NAME for run in runs):
-        raise RunError("--filters: none of these networks has global filters; fftnet has six")
 
 
 def open_run(name: str, path: Path, device: torch.device) -> Run:

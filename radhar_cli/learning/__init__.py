@@ -7,7 +7,7 @@ The only package that imports PyTorch; `pip install 'radhar[train]'` installs it
     batches         which images make a step; augmentation
     models/         one network per file; zoo: those of timm
     machine         device, precision, reading processes
-    gradient_step   learning rate, gradient, update; targets: losses of what is learned
+    optimiser       learning rate, update; targets: losses of what is learned
     training        epochs, validation, the best one, resuming; starting_point: --init
     run_folder      the files of a run, and how they are read safely; run_summary
     evaluation      probabilities, features and speed; metrics: how good they are

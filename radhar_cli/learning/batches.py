@@ -8,7 +8,7 @@ import numpy as np
 import torch
 from numpy.typing import ArrayLike
 from torch import Tensor
-from torch.utils.data import DataLoader, Dataset, Sampler
+from torch.utils.data import DataLoader, Dataset
 
 from radhar_cli.arrays import Float, Index
 from radhar_cli.errors import FolderError
@@ -88,17 +88,6 @@ class _Rows(Dataset[tuple[Tensor, Tensor]]):
         return torch.from_numpy(np.ascontiguousarray(rgb.transpose(2, 0, 1))), label
 
 
-class _Batches(Sampler[list[tuple[int, int]]]):
-    def __init__(self) -> None:
-        self.batches: list[list[tuple[int, int]]] = []
-
-    def __iter__(self) -> Iterator[list[tuple[int, int]]]:
-        return iter(self.batches)
-
-    def __len__(self) -> int:
-        return len(self.batches)
-
-
 class Reader:
     """Reads batches of an image set, in worker processes if there are any.
 
@@ -113,10 +102,10 @@ class Reader:
         pin: bool,
         augmentation: Augmentation | None = None,
     ) -> None:
-        self._sampler = _Batches()
+        self._batches: list[list[tuple[int, int]]] = []
         self._loader = DataLoader(
             _Rows(pixels, labels, augmentation),
-            batch_sampler=self._sampler,
+            batch_sampler=self._batches,
             num_workers=workers,
             persistent_workers=workers > 0,
             pin_memory=pin,
@@ -131,7 +120,7 @@ class Reader:
 
         With an epoch number images are augmented as in that epoch; AS_STORED leaves them.
         """
-        self._sampler.batches = [[(int(row), epoch) for row in batch] for batch in batches]
+        self._batches[:] = [[(int(row), epoch) for row in batch] for batch in batches]
         try:
             yield from self._loader
         except FolderError as error:  # a worker's comes wrapped in its traceback

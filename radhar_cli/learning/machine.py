@@ -77,8 +77,9 @@ class ExecutionPlan:
         return str(self.precision).removeprefix("torch.")
 
 
-def choose_execution_plan(config: TrainConfig, device: torch.device) -> ExecutionPlan:
+def choose_execution_plan(config: TrainConfig) -> ExecutionPlan:
     """Fill in what the config leaves to `auto`: no reading processes on the CPU, which is busy."""
+    device = choose_device(config.device)
     precision = choose_precision(config.precision, device)
     if config.workers != "auto":
         return ExecutionPlan(device, precision, config.workers)

@@ -355,8 +355,7 @@ def read_last(folder: Path) -> dict[str, Any] | None:
             warnings.simplefilter("ignore")
             checkpoint: dict[str, Any] = torch.load(path, map_location="cpu", weights_only=True)
         return {
-            key: checkpoint[key]
-            for key in ("model", "average", "optimiser", "history", "random", "metadata")
+            key: checkpoint[key] for key in ("model", "average", "optimiser", "history", "metadata")
         }
     except MemoryError:
         raise

@@ -28,27 +28,25 @@ from torch import nn
 
 from radhar_cli.learning import run_files, targets, training
 from radhar_cli.learning import run_folder as run
-from radhar_cli.learning.gradient_step import optimiser_for
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.scan import scan
 from radhar_cli.learning.machine import choose_execution_plan
+from radhar_cli.learning.optimiser import optimiser_for
 from radhar_cli.learning.settings import TrainConfig
-from radhar_cli.learning.training import Task, TrainingError, _Training, checked_images
-
-CPU = torch.device("cpu")
+from radhar_cli.learning.training import TrainingError, _Training, checked_images
 
 
 def prepared(data, out, **changes):
     out.mkdir()
     config = settings(**changes)
-    task = Task(config, checked_images(config, data), out)
-    return _Training.prepared(task, choose_execution_plan(config, CPU), Watched())
+    images = checked_images(config, data)
+    return _Training(config, images, out, Watched(), choose_execution_plan(config))
 
 
 def first_batch(work, count=6):
-    rows = work.task.images.rows("train")[::2][:count]
-    levels = np.stack([work.task.images.pixels.read(int(row)).transpose(2, 0, 1) for row in rows])
-    return torch.from_numpy(levels), torch.from_numpy(work.task.images.label[rows])
+    rows = work.images.rows("train")[::2][:count]
+    levels = np.stack([work.images.pixels.read(int(row)).transpose(2, 0, 1) for row in rows])
+    return torch.from_numpy(levels), torch.from_numpy(work.images.label[rows])
 
 
 def gradients(model):
@@ -249,9 +247,10 @@ def test_validation_is_that_of_the_stored_weights(data, run_dir):
 def test_a_step_starts_from_zero_gradient(data, tmp_path):
     work = prepared(data, tmp_path / "run", learning_rate=1e-12, optimiser="sgd")
     levels, labels = first_batch(work)
-    work._train_step.step(work.model.eval(), work.optimiser, levels, labels)
+    work.model.eval()
+    work._step(levels, labels)
     once = gradients(work.model)
-    work._train_step.step(work.model.eval(), work.optimiser, levels, labels)
+    work._step(levels, labels)
     for one, other in zip(once, gradients(work.model), strict=True):
         torch.testing.assert_close(one, other, rtol=1e-4, atol=1e-7)
 
@@ -272,7 +271,8 @@ def test_clipping_limits_the_gradient(data, tmp_path):
     moved = []
     for work in (free, held):
         before = [p.detach().clone() for p in work.model.parameters()]
-        work._train_step.step(work.model.train(), work.optimiser, levels, labels)
+        work.model.train()
+        work._step(levels, labels)
         steps = [p.detach() - b for p, b in zip(work.model.parameters(), before, strict=True)]
         moved.append(float(torch.linalg.vector_norm(torch.cat([s.flatten() for s in steps]))))
     assert moved[0] > 2e-5

@@ -1,16 +1,12 @@
-"""One step of training: learning rate, logits, loss, gradient, update."""
+"""The learning rate of every step, and the optimiser that takes it."""
 
-from dataclasses import dataclass
 from math import cos, pi
 from typing import Any
 
 import torch
-from torch import Tensor, nn
+from torch import nn
 
-from radhar_cli.learning.batches import Normalisation
-from radhar_cli.learning.machine import ExecutionPlan, autocast
 from radhar_cli.learning.settings import TrainConfig
-from radhar_cli.learning.targets import class_loss, labels_loss, skeleton_loss
 
 _ADAM = {"step", "exp_avg", "exp_avg_sq"}
 
@@ -73,43 +69,3 @@ def check_state(optimiser: torch.optim.Optimizer, stored: dict[str, Any]) -> Non
             shape = torch.Size() if name == "step" else parameter.shape
             if state.keys() != names or state[name].shape != shape:
                 raise ValueError(f"the optimiser's {name} of weight {number} does not fit it")
-
-
-@dataclass(frozen=True)
-class TrainStep:
-    """Forward pass, loss, gradient and update of a training step."""
-
-    config: TrainConfig
-    prepare: Normalisation
-    plan: ExecutionPlan
-
-    def loss_and_correct(
-        self, network: nn.Module, levels: Tensor, labels: Tensor
-    ) -> tuple[Tensor, float]:
-        """Sums over a batch of the loss, and of what is right: classes, or shares of the joints."""
-        device = self.plan.device
-        wanted, x = labels.to(device), self.prepare(levels.to(device, non_blocking=True))
-        with autocast(device, self.plan.precision):
-            outputs: Tensor = network(x)
-        if self.config.target == "skeleton":
-            return skeleton_loss(outputs.float(), wanted)
-        if self.config.target == "labels":
-            return labels_loss(outputs.float(), wanted)
-        return class_loss(outputs.float(), wanted, self.config.label_smoothing)
-
-    def step(
-        self, network: nn.Module, optimiser: torch.optim.Optimizer, levels: Tensor, labels: Tensor
-    ) -> tuple[float, float]:
-        """One update from a batch [B, C, H, W].
-
-        Returns:
-            The mean loss of the batch, and how much of it is right.
-        """
-        optimiser.zero_grad(set_to_none=True)
-        loss_sum, correct = self.loss_and_correct(network, levels, labels)
-        loss = loss_sum / len(labels)
-        torch.autograd.backward(loss)
-        if self.config.gradient_clip_norm is not None:
-            nn.utils.clip_grad_norm_(network.parameters(), self.config.gradient_clip_norm)
-        optimiser.step()
-        return float(loss.detach()), correct

@@ -98,9 +98,9 @@ class Reader:
         self,
         pixels: Pixels,
         labels: Labels | None,
-        workers: int,
-        pin: bool,
         augmentation: Augmentation | None = None,
+        workers: int = 0,
+        pin: bool = False,
     ) -> None:
         self._batches: list[list[tuple[int, int]]] = []
         self._loader = DataLoader(

@@ -13,7 +13,6 @@ from radhar_cli.figures.evaluation import Point, curves_png, robustness_png
 from radhar_cli.learning.evaluation import speed
 from radhar_cli.learning.images.classes import unknown_message
 from radhar_cli.learning.report_files import Report
-from radhar_cli.learning.report_folder import csv_text
 from radhar_cli.learning.run_files import BEST
 from radhar_cli.learning.run_folder import best_epoch
 from radhar_cli.learning.single_result import (
@@ -146,7 +145,7 @@ def _compare(report: Report, runs: Sequence[Run], lines: Mapping[str, Sequence[P
             for p in points
         )
         head = ("run", "data", "snr_db", "accuracy", "low_95", "high_95")
-        report.tables.append(("robustness.csv", csv_text(head, rows)))
+        report.table("robustness.csv", head, rows)
 
 
 def _named(paths: Sequence[Path]) -> dict[str, Path]:

@@ -1,6 +1,6 @@
 """One run on one data set: its numbers and figures."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -25,7 +25,6 @@ from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.scan import scan
 from radhar_cli.learning.labels_result import evaluate_labels
 from radhar_cli.learning.report_files import Report
-from radhar_cli.learning.report_folder import csv_text
 from radhar_cli.learning.run_folder import (
     Epoch,
     RunError,
@@ -187,16 +186,13 @@ class _Shown:
     def figure(self, name: str, caption: str, png: bytes) -> None:
         self.report.figure(f"{name}{self.stem}.png", caption, png)
 
-    def table(self, name: str, header: Sequence[str], rows: Iterable[Iterable[object]]) -> None:
-        self.report.tables.append((f"{name}{self.stem}.csv", csv_text(header, rows)))
-
     def confusion(
         self, name: str, caption: str, counts: NDArray[np.int64], classes: Sequence[str], title: str
     ) -> None:
         """Counts [true class, predicted class] as a figure and a table, true classes down."""
         self.figure(name, caption, confusion_png(counts, classes, title))
         rows = ([one, *row] for one, row in zip(classes, counts.tolist(), strict=True))
-        self.table(name, ["true \\ predicted", *classes], rows)
+        self.report.table(f"{name}{self.stem}.csv", ["true \\ predicted", *classes], rows)
 
     def predictions_table(self) -> None:
         found, names = self.predictions, self.names
@@ -205,7 +201,8 @@ class _Shown:
             (found.images.names[row], names[true], names[guess], f"{probability:.6f}")
             for row, true, guess, probability in zip(*columns, strict=True)
         )
-        self.table("predictions", ("image", "true", "predicted", "probability"), rows)
+        head = ("image", "true", "predicted", "probability")
+        self.report.table(f"predictions{self.stem}.csv", head, rows)
 
     def in_place_vs_moving(self) -> list[list[int]]:
         """The paper's two groups: S1 to S7 against S8 to S12; counts [true, predicted]."""

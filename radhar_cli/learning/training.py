@@ -216,8 +216,8 @@ class _Training:
         augmentation = None
         if config.augment != AugmentConfig():
             augmentation = Augmentation(config.augment, config.seed)
-        pin = plan.device.type == "cuda"
-        reader = Reader(images.pixels, _wanted(config, images), plan.workers, pin, augmentation)
+        wanted, pin = _wanted(config, images), plan.device.type == "cuda"
+        reader = Reader(images.pixels, wanted, augmentation, plan.workers, pin)
         for epoch in range(resumed, config.epochs):
             began = time.perf_counter()
             # Of dropout and the like, for this epoch alone, so that a run can resume.

@@ -53,7 +53,7 @@ def test_levels_become_zero_mean_and_unit_spread_channel_by_channel():
 def test_reader_yields_rows_as_asked_channels_first(data):
     images = open_images(data, None, "rgb")
     labels = np.arange(len(images)) + 100
-    reader = Reader(images.pixels, labels, workers=0, pin=False)
+    reader = Reader(images.pixels, labels)
     for _ in range(2):
         (one, first), (two, second) = reader([np.array([5, 0, 7]), np.array([2])])
         assert first.tolist() == [105, 100, 107]

@@ -169,7 +169,7 @@ def differences(old: RunMetadata, new: RunMetadata) -> list[str]:
         there, here = ([data["path"], data["hash"]] for data in (old.data, new.data))
         pairs["data"] = (there, here)
     pairs |= {"classes": (list(old.classes), list(new.classes)), "map": (old.map, new.map)}
-    pairs |= {k: (old.work[k], v) for k, v in new.work.items() if k in old.work}
+    pairs |= {k: (old.work.get(k), new.work.get(k)) for k in old.work | new.work}
     pairs |= {f"versions.{k}": (old.versions.get(k), v) for k, v in new.versions.items()}
     return [
         f"{key}: {json.dumps(there)} there, {json.dumps(here)} here"

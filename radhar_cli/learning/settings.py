@@ -52,16 +52,10 @@ Fraction = Annotated[float, Field(ge=0, le=1, strict=True)]
 
 
 class AugmentConfig(Section):
-    """How far training images are changed, anew in every epoch; all 0 changes nothing.
-
-    Shifts are fractions of the image, either way; stretch and scale e^-x to e^x; contrast 1 - x to
-    1 + x about the brightest level, as another SNR has it; noise the largest share of pixels that
-    take the level of another place; morphology the probability of a dilation or an erosion by one
-    pixel; bands the most that are blanked, each at most `band_width` of the image.
-    """
+    """How far training images are changed, anew in every epoch; all 0 changes nothing."""
 
     time_shift: Fraction = 0.0
-    """Largest shift, a fraction of the image."""
+    """Largest shift either way, a fraction of the image."""
     time_stretch: Fraction = 0.0
     """x: factors from e^-x to e^x about the middle."""
     doppler_shift: Fraction = 0.0
@@ -69,7 +63,7 @@ class AugmentConfig(Section):
     doppler_scale: Fraction = 0.0
     """As time_stretch."""
     contrast: Fraction = 0.0
-    """x: distance from the brightest level times 1 - x to 1 + x."""
+    """x: distance from the brightest level times 1 - x to 1 + x, as another SNR has it."""
     noise: Fraction = 0.0
     """Largest share of pixels that take the level of another place."""
     morphology: Fraction = 0.0
@@ -79,7 +73,7 @@ class AugmentConfig(Section):
     doppler_bands: Annotated[int, Field(ge=0, le=16, strict=True)] = 0
     """Most bands that are blanked."""
     band_width: Fraction = 0.1
-    """Largest width of one."""
+    """Largest width of one, a fraction of the image."""
 
 
 class TrainConfig(Section):

@@ -6,7 +6,7 @@ The only package that imports PyTorch; `pip install 'radhar[train]'` installs it
     images/         labelled images or sequences of dataset.h5, or of class folders
     batches         which images make a step; augmentation
     models/         one network per file; zoo: those of timm
-    machine         device, precision, reading processes
+    machine         device, precision, reading processes, what is repeatable
     optimiser       learning rate, update; targets: losses of what is learned
     training        epochs, validation, the best one, resuming; starting_point: --init
     run_folder      the files of a run, and how they are read safely; run_summary

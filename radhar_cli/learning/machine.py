@@ -1,13 +1,12 @@
 """How a run is executed on this machine: device, precision, reading processes."""
 
 import os
-from dataclasses import dataclass
 
 import torch
 
 from radhar_cli.dataset.workers import cores
 from radhar_cli.errors import MachineError, did_you_mean
-from radhar_cli.learning.settings import TrainConfig
+from radhar_cli.learning.settings import Auto
 
 CUDA_WORKERS = 8
 
@@ -63,25 +62,8 @@ def autocast(device: torch.device, precision: torch.dtype) -> torch.autocast:
     return torch.autocast(device.type, precision if lower else torch.bfloat16, enabled=lower)
 
 
-@dataclass(frozen=True)
-class ExecutionPlan:
-    """Device, precision and reading processes of a run."""
-
-    device: torch.device
-    precision: torch.dtype
-    workers: int
-
-    @property
-    def precision_name(self) -> str:
-        """float32 or bfloat16."""
-        return str(self.precision).removeprefix("torch.")
-
-
-def choose_execution_plan(config: TrainConfig) -> ExecutionPlan:
-    """Fill in what the config leaves to `auto`: no reading processes on the CPU, which is busy."""
-    device = choose_device(config.device)
-    precision = choose_precision(config.precision, device)
-    if config.workers != "auto":
-        return ExecutionPlan(device, precision, config.workers)
-    workers = min(CUDA_WORKERS, cores()) if device.type == "cuda" else 0
-    return ExecutionPlan(device, precision, workers)
+def reading_workers(wanted: Auto, device: torch.device) -> int:
+    """Reading processes; none where the CPU is busy with the network."""
+    if wanted != "auto":
+        return wanted
+    return min(CUDA_WORKERS, cores()) if device.type == "cuda" else 0

@@ -10,7 +10,6 @@ from torch import nn
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.figures.evaluation import curves_png
 from radhar_cli.learning import run_files
-from radhar_cli.learning.machine import ExecutionPlan
 from radhar_cli.learning.metrics import wilson
 from radhar_cli.learning.run_folder import Epoch, RunMetadata, best_epoch
 from radhar_cli.learning.targets import LOSSES, SCORES
@@ -21,7 +20,7 @@ def write_run_summary(
     metadata: RunMetadata,
     history: Sequence[Epoch],
     model: nn.Module,
-    plan: ExecutionPlan,
+    device: torch.device,
 ) -> None:
     """Write metrics.json, summary.txt and curves.png of a finished run."""
     best, count = best_epoch(history), int(metadata.data["val"])
@@ -49,8 +48,8 @@ def write_run_summary(
         "data": metadata.data,
         "config": metadata.config,
         "versions": metadata.versions,
-        "device": plan.device.type,
-        "precision": plan.precision_name,
+        "device": device.type,
+        "precision": metadata.work["precision"],
         "threads": torch.get_num_threads(),
     }
     curves = curves_png(series, {folder.name: best.epoch}, score, LOSSES[settings.target])

@@ -26,7 +26,13 @@ from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.joined import joined, sampling_weights
 from radhar_cli.learning.images.opening import open_inputs
 from radhar_cli.learning.images.scan import content_hash, scan
-from radhar_cli.learning.machine import ExecutionPlan, autocast, choose_execution_plan, repeatable
+from radhar_cli.learning.machine import (
+    autocast,
+    choose_device,
+    choose_precision,
+    reading_workers,
+    repeatable,
+)
 from radhar_cli.learning.models.build import build_model
 from radhar_cli.learning.optimiser import check_state, optimiser_for, rate
 from radhar_cli.learning.run_folder import Epoch, RunMetadata, best_epoch
@@ -118,22 +124,22 @@ def train_on(
     config = config.for_images(images.rows("train").size, images.frames)
     if config.threads != "auto":
         torch.set_num_threads(config.threads)
-    plan = choose_execution_plan(config)
-    repeatable(plan.device)
-    if plan.device.type == "cpu":
+    device = choose_device(config.device)
+    repeatable(device)
+    if device.type == "cpu":
         keep_memory()
     with folder_lock(folder):
         try:
-            return _Training(config, images, folder, progress, plan, overwrite, start).run()
+            return _Training(config, images, folder, progress, device, overwrite, start).run()
         except RuntimeError as error:
             # On the CPU only the message says that memory was short.
             if not isinstance(error, torch.OutOfMemoryError) and "CPUAllocator" not in str(error):
                 raise
             size = config.images_a_step
+            hint = f"fewer: --set batch_size={size // 2}" if size > 3 else "smaller"
             raise TrainingError(
-                f"out of memory on {plan.device.type} in a step of {size} images of "
-                f"{images.shape}; should be "
-                + (f"fewer: --set batch_size={size // 2}" if size > 3 else "smaller")
+                f"out of memory on {device.type} in a step of {size} images of {images.shape}; "
+                f"should be {hint}"
             ) from None
 
 
@@ -183,12 +189,13 @@ class _Training:
         images: ImageSet,
         folder: Path,
         progress: TrainingProgress,
-        plan: ExecutionPlan,
+        device: torch.device,
         overwrite: bool = False,
         start: Path | None = None,
     ) -> None:
         self.config, self.images, self.folder = config, images, folder
-        self.progress, self.plan = progress, plan
+        self.progress, self.device = progress, device
+        self.precision = choose_precision(config.precision, device)
         self.history: list[Epoch] = []
         torch.manual_seed(config.seed)
         joints = config.target == "skeleton"
@@ -199,25 +206,26 @@ class _Training:
         progress.say(f"reading {many}, {images.shape}")
         for message in (*_warnings(config, images), *(started.notes if started else ())):
             progress.say(message)
-        self.metadata, learned = _metadata(config, images, plan, started)
+        self.metadata, learned = _metadata(config, images, self.precision, started)
         run.reserve_run(folder, self.metadata, overwrite)
         run.write_trained_on(folder, learned)
-        self.model.to(plan.device)
+        self.model.to(device)
         self.average = AveragedModel(self.model) if config.average_last else None
         self.optimiser = optimiser_for(config, self.model)
 
     def run(self) -> Outcome:
-        config, images, plan = self.config, self.images, self.plan
+        config, images, device = self.config, self.images, self.device
         resumed = self._restore()
         if resumed:
             self.progress.say(f"resuming: {resumed} of {config.epochs} epochs are done")
-        where = f"{plan.device.type}, {plan.precision_name}"
-        self.progress.say(f"on {where}, {torch.get_num_threads()} threads")
+        how = f"{self.metadata.work['precision']}, {torch.get_num_threads()} threads"
+        self.progress.say(f"on {device.type}, {how}")
         augmentation = None
         if config.augment != AugmentConfig():
             augmentation = Augmentation(config.augment, config.seed)
-        wanted, pin = _wanted(config, images), plan.device.type == "cuda"
-        reader = Reader(images.pixels, wanted, augmentation, plan.workers, pin)
+        wanted, workers = _wanted(config, images), reading_workers(config.workers, device)
+        pin = device.type == "cuda"
+        reader = Reader(images.pixels, wanted, augmentation, workers, pin)
         for epoch in range(resumed, config.epochs):
             began = time.perf_counter()
             # Of dropout and the like, for this epoch alone, so that a run can resume.
@@ -232,7 +240,7 @@ class _Training:
             self._keep()
         run.write_history(self.folder, self.history)
         if resumed < config.epochs or not (self.folder / run_files.METRICS).exists():
-            write_run_summary(self.folder, self.metadata, self.history, self.model, plan)
+            write_run_summary(self.folder, self.metadata, self.history, self.model, device)
         return Outcome(self.folder, self.history, resumed, SCORES[config.target])
 
     def _restore(self) -> int:
@@ -330,11 +338,10 @@ class _Training:
 
     def _loss(self, network: nn.Module, levels: Tensor, labels: Tensor) -> tuple[Tensor, float]:
         """Sums over a batch of the loss, and of what is right: classes, or shares of the joints."""
-        device = self.plan.device
-        x = self.metadata.normalisation(levels.to(device, non_blocking=True))
-        with autocast(device, self.plan.precision):
+        x = self.metadata.normalisation(levels.to(self.device, non_blocking=True))
+        with autocast(self.device, self.precision):
             outputs: Tensor = network(x)
-        wanted, smoothing = labels.to(device), self.config.label_smoothing
+        wanted, smoothing = labels.to(self.device), self.config.label_smoothing
         return loss_and_right(self.config.target, outputs.float(), wanted, smoothing)
 
     def _statistics_of_average(self, reader: Reader, epoch: int) -> None:
@@ -346,7 +353,7 @@ class _Training:
             return
         rows = self._epoch_rows(epoch)[:STATISTICS_IMAGES]
         batches = reader(epoch_batches(rows, self.config.images_a_step))
-        device, normalise = self.plan.device, self.metadata.normalisation
+        device, normalise = self.device, self.metadata.normalisation
         update_bn((normalise(levels.to(device)) for levels, _ in batches), self._kept)
 
     def _validate(self, reader: Reader, epoch: int) -> tuple[float, float]:
@@ -406,7 +413,7 @@ def _wanted(config: TrainConfig, images: ImageSet) -> Labels:
 
 
 def _metadata(
-    config: TrainConfig, images: ImageSet, plan: ExecutionPlan, started: StartingPoint | None
+    config: TrainConfig, images: ImageSet, precision: torch.dtype, started: StartingPoint | None
 ) -> tuple[RunMetadata, list[tuple[str, str, str]]]:
     """Metadata of the run, and (name, fingerprint, that of the scene) of every training image."""
     rows, validating = images.rows("train"), images.rows("val")
@@ -431,7 +438,7 @@ def _metadata(
             "val": validating.size,
         },
         work={
-            "precision": plan.precision_name,
+            "precision": str(precision).removeprefix("torch."),
             **({"start": started.sha256} if started else {}),
         },
         versions={"radhar": __version__, "torch": torch.__version__, "numpy": np.__version__},

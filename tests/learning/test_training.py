@@ -30,7 +30,6 @@ from radhar_cli.learning import run_files, targets, training
 from radhar_cli.learning import run_folder as run
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.scan import scan
-from radhar_cli.learning.machine import choose_execution_plan
 from radhar_cli.learning.optimiser import optimiser_for
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.training import TrainingError, _Training, checked_images
@@ -40,7 +39,7 @@ def prepared(data, out, **changes):
     out.mkdir()
     config = settings(**changes)
     images = checked_images(config, data)
-    return _Training(config, images, out, Watched(), choose_execution_plan(config))
+    return _Training(config, images, out, Watched(), torch.device("cpu"))
 
 
 def first_batch(work, count=6):

@@ -45,7 +45,7 @@ smoke: $(LEARN) ## Generate, train, evaluate: the smallest whole run
 	rm -rf $(SMOKE)
 	$(BIN)/radhar generate configs/smoke.yaml -o $(SMOKE)/data
 	$(BIN)/radhar train $(SMOKE)/data -o $(SMOKE)/run --map stft --config configs/train/smoke.yaml
-	$(BIN)/radhar eval $(SMOKE)/run $(SMOKE)/data --tsne --filters --in-place-vs-moving
+	$(BIN)/radhar eval $(SMOKE)/run $(SMOKE)/data --tsne --in-place-vs-moving
 	$(BIN)/radhar predict $(SMOKE)/run $(SMOKE)/data/png/stft/val/walking/*.png
 
 .PHONY: test

@@ -123,7 +123,7 @@ def _tell(error: BaseException) -> int:
             said = f"{error.filename or 'output'}: {error.strerror}"
     else:
         raise error
-    if said and os.environ.get("RANK", "0") == "0":  # under torchrun all fail, and one reports it
+    if said:
         print(f"radhar: {shown(said)}", file=sys.stderr)
     return status
 

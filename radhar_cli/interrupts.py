@@ -4,7 +4,6 @@ What a handler raises within a `__del__` or a weakref callback is printed and fo
 libraries turn it into errors of their own.
 """
 
-import os
 import signal
 import sys
 from collections.abc import Iterator
@@ -39,7 +38,7 @@ def handled() -> Iterator[None]:
 
 def tell_once() -> bool:
     """Whether what a signal left behind is still to be said; it is taken as said then."""
-    first = not _told and os.environ.get("RANK", "0") == "0"  # under torchrun one should speak
+    first = not _told
     _told.append(True)
     return first
 

@@ -16,6 +16,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from statistics import variance
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -29,11 +30,11 @@ from radhar_cli.learning.adaptation import Mixed, adapt_to
 from radhar_cli.learning.evaluation import predict, training_images
 from radhar_cli.learning.images.image_set import ImageSet, labels_for
 from radhar_cli.learning.images.joined import joined
-from radhar_cli.learning.metrics import interval_of_repeats
+from radhar_cli.learning.metrics import wilson
 from radhar_cli.learning.run_folder import Epoch, RunMetadata, load_best
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.single_result import EvalOptions, EvalSet, open_eval_set, open_run
-from radhar_cli.learning.training import Task, train_on
+from radhar_cli.learning.training import train_on
 from radhar_cli.randomness import TRAINING, stream
 
 AS_TRAINED, TUNED, ADAPTED, SCRATCH = "as trained", "fine-tuned", "adapted", "from scratch"
@@ -102,6 +103,18 @@ def learned_from(
     )
 
 
+def interval_of_repeats(shares: Sequence[float], count: int) -> tuple[float, float]:
+    """Interval of 95 % of the mean of some proportions, of `count` images each.
+
+    Wilson's, of as many images as have the variance of `count` images and that of the mean over
+    the repeats together: it covers the choice of what was tested and of what was learned from.
+    """
+    mean = sum(shares) / len(shares)
+    one = mean * (1 - mean)
+    spread = variance(shares) / len(shares) if len(shares) > 1 else 0.0
+    return wilson(mean * (n := one / (one / count + spread) if one else count), n)
+
+
 def few_shots(
     run: Path,
     data: Path,
@@ -146,7 +159,7 @@ def few_shots(
         if k:
             images, weights = learned_from(opened.metadata, labelled, mixed, MAX_SHOWN)
             chosen = tuned.model_copy(update={"data_weights": weights, "seed": seed})
-            train_on(Task(chosen, images, ways[TUNED], False, run), Silent())
+            train_on(chosen, images, ways[TUNED], Silent(), start=run)
             beside = Mixed(images, weights)
         if adapt:
             ways[ADAPTED] = here / "adapted"
@@ -157,7 +170,7 @@ def few_shots(
             ways[SCRATCH] = here / "from_scratch"
             images, weights = learned_from(opened.metadata, labelled, [], SHOWN)
             chosen = scratch.model_copy(update={"data_weights": weights, "seed": seed})
-            train_on(Task(chosen, images, ways[SCRATCH], False), Silent())
+            train_on(chosen, images, ways[SCRATCH], Silent())
         return ways
 
     points = []

@@ -244,7 +244,7 @@ class Reproduction:
             drawn = training.snr_db is None
             snrs = DRAWN_TESTED if drawn else tested_snrs(self.scale, training.scenario)
             fresh = {snr: self.generate(training.scenario, snr, "fresh") for snr in snrs}
-            others = self._eval(run, "fresh", list(fresh.values()), "--filters")
+            others = self._eval(run, "fresh", list(fresh.values()))
         self.results.mkdir(parents=True, exist_ok=True)
         (self.results / f"{run.name}.json").write_text(
             as_text(self._contents(training, data, own, fresh, others))
@@ -293,9 +293,8 @@ class Reproduction:
                 "device": metrics["device"],
                 "precision": metrics["precision"],
                 "threads": metrics["threads"],
-                "processes": metrics["processes"],
                 "seconds": round(seconds, 1),
-                "core_hours": round(seconds * metrics["threads"] * metrics["processes"] / 3600, 3),
+                "core_hours": round(seconds * metrics["threads"] / 3600, 3),
             },
             "data": {
                 **self._made(data),
@@ -312,7 +311,6 @@ class Reproduction:
                 str(snr): {**self._made(folder), **parts[folder.name]}
                 for snr, folder in fresh.items()
             },
-            "filters": next(iter(others.get("filters", {}).values()), None),
             "history": {
                 key: [float(row[key]) for row in history]
                 for key in ("train_loss", "train_accuracy", "val_loss", "val_accuracy", "seconds")
@@ -380,7 +378,7 @@ def _figures(training: Training) -> dict[str, str]:
         return {}
     captions = {}
     if training.snr_db in (30, -10):
-        captions |= {"curves": "Training curves", "filters": "Global filters"}
+        captions |= {"curves": "Training curves"}
     if training.snr_db == 30:
         captions |= {"tsne": "t-SNE of maps and of features"}
     return captions

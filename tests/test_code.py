@@ -101,7 +101,6 @@ LIBRARIES: dict[str, set[str]] = {
     "torch": {"learning"},
     "timm": {"learning"},
     "sklearn": {"learning", "two_sample"},
-    "tensorboard": {"learning"},
     "skimage": {"tradeoff"},
 }
 

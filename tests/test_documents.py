@@ -54,7 +54,6 @@ SMALL_IMAGE = {"size_px": 32}
 SMALL = {
     "generate": {"--jobs": "1"},
     "train": {"--set": "epochs=1 workers=0"},
-    "train --stream": {"--set": "stream.samples_per_epoch=12 stream.validation_per_class=1"},
     "adapt": {"--epochs": "1"},
     "verify": {"--samples": "1"},
     "simulate": {"--set": "duration_s=3"},
@@ -221,7 +220,6 @@ FILES: dict[str, dict[str, Callable[[Path], object]]] = {
         "beds/low.npz": movement,
     },
     "output.md": {"CONFIG": few_samples, "datasets/mine": data_set},
-    "stream.md": {"datasets/measured": data_set},
     "training.md": {"datasets/quickstart": data_set},
 }
 

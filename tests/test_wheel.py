@@ -50,7 +50,7 @@ def test_the_wheel_holds_the_package_and_nothing_else(wheel: Path) -> None:
     assert names == ours | {"radhar_cli/py.typed", "radhar_cli/dataset/viridis.rgb"}
     assert "radhar = radhar_cli.cli:main" in points
     assert licences
-    for extra in ("train", "tensorboard", "cluster", "dev"):
+    for extra in ("train", "zoo", "cluster", "dev"):
         assert f"Provides-Extra: {extra}\n" in about
 
 

@@ -27,9 +27,6 @@ def evaluate(
     tsne: Annotated[
         bool, typer.Option("--tsne", help="Draw t-SNE of the maps and of the last features.")
     ] = False,
-    filters: Annotated[
-        bool, typer.Option("--filters", help="Draw the weights of the global filters.")
-    ] = False,
     in_place_vs_moving: Annotated[
         bool,
         typer.Option("--in-place-vs-moving", help="Also the two groups S1 to S7 and S8 to S12."),
@@ -43,7 +40,7 @@ def evaluate(
 
     Example:
 
-      radhar eval runs/quickstart datasets/quickstart --tsne --filters
+      radhar eval runs/quickstart datasets/quickstart --tsne
 
     Several runs or data sets give the comparison: train at one SNR, test at all.
     """
@@ -62,7 +59,6 @@ def evaluate(
         split_named(split),
         map_,
         tsne,
-        filters,
         in_place_vs_moving,
         batch,
         resize,

@@ -1,8 +1,6 @@
 """What `train` prints while it works and when it is done."""
 
-import os
 from dataclasses import asdict
-from typing import TYPE_CHECKING
 
 from radhar_cli.commands.bars import Bars
 from radhar_cli.commands.tell import report, tell
@@ -10,21 +8,13 @@ from radhar_cli.learning import run_files as run
 from radhar_cli.learning.run_folder import Epoch
 from radhar_cli.learning.training import Outcome
 
-if TYPE_CHECKING:
-    from radhar_cli.learning.event_files import EventFiles
-
 
 class TrainingView(Bars):
-    """A bar per epoch on a terminal; a line per epoch everywhere.
+    """A bar per epoch on a terminal; a line per epoch everywhere."""
 
-    Args:
-        events: TensorBoard files to update after every epoch, or None.
-    """
-
-    def __init__(self, events: "EventFiles | None" = None) -> None:
+    def __init__(self) -> None:
         super().__init__()
         self._epochs = 0
-        self._events = events
 
     def epoch(self, number: int, epochs: int, steps: int) -> None:
         self._epochs = epochs
@@ -41,16 +31,9 @@ class TrainingView(Bars):
             f"{row.val_loss:.4f}  rate {row.learning_rate:.2e}  {row.seconds:.0f} s"
             + ("  best so far" if best else "")
         )
-        if self._events is not None:
-            self._events.update()
 
     def print_outcome(self, outcome: Outcome) -> None:
-        """Print the results and their files; rank 0 only."""
-        if os.environ.get("RANK", "0") != "0":
-            return
-        if self._events is not None:
-            self._events.update()  # of a run that was complete before
-            self._events.close()
+        """Print the results and their files."""
         folder, best = outcome.folder, outcome.best
         report(
             folder=folder,

@@ -3,14 +3,13 @@
 The only package that imports PyTorch; `pip install 'radhar[train]'` installs it.
 
     settings        the YAML file of `radhar train`
-    images/         labelled images or sequences of dataset.h5, of class folders, or synthesised
-    batches         which images make a step, the same for any number of processes; augmentation
+    images/         labelled images or sequences of dataset.h5, or of class folders
+    batches         which images make a step; augmentation
     models/         one network per file; zoo: those of timm
-    machine         device, precision, micro batch, reading processes
-    process_group   several processes that train one network
-    gradient_step   learning rate, gradient, update; targets: losses of what is learned
+    machine         device, precision, reading processes, what is repeatable
+    optimiser       learning rate, update; targets: losses of what is learned
     training        epochs, validation, the best one, resuming; starting_point: --init
-    run_folder      the files of a run, and how they are read safely; run_summary, event_files
+    run_folder      the files of a run, and how they are read safely; run_summary
     evaluation      probabilities, features and speed; metrics: how good they are
     report          `radhar eval`: single_result, labels_result, skeleton_result fill it
     adaptation      batch norm fitted to unlabelled images

@@ -58,7 +58,7 @@ class Mixed:
         drawn = rng.choice(rows, (count, MIXED), p=weights / weights.sum())
         labels = labels_for(self.images, metadata.classes)
         change = Augmentation(config.augment, config.seed) if config.input == "gray" else None
-        yield from Reader(self.images.pixels, labels, 0, False, change)(list(drawn), epoch)
+        yield from Reader(self.images.pixels, labels, change)(list(drawn), epoch)
 
 
 def adapt(
@@ -234,7 +234,7 @@ class _Learner:
 
     def _levels(self, batches: list[Index]) -> Iterator[Tensor]:
         """The network's input [B, 3, H, W] of each batch."""
-        for levels, _ in Reader(self.images.pixels, None, workers=0, pin=False)(batches):
+        for levels, _ in Reader(self.images.pixels, None)(batches):
             yield self.metadata.normalisation(levels.to(self.device))
 
 

@@ -1,4 +1,4 @@
-"""Which images make a step: the same global batches for any number of processes."""
+"""Which images make a step."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -8,15 +8,15 @@ import numpy as np
 import torch
 from numpy.typing import ArrayLike
 from torch import Tensor
-from torch.utils.data import DataLoader, Dataset, Sampler
+from torch.utils.data import DataLoader, Dataset
 
 from radhar_cli.arrays import Float, Index
-from radhar_cli.errors import FolderError, SceneError
+from radhar_cli.errors import FolderError
 from radhar_cli.learning.augmentation import Augmentation
 from radhar_cli.learning.images.image_set import Pixels, repeated
 from radhar_cli.randomness import TRAINING, stream
 
-MIN_PER_PROCESS = 2
+SMALLEST = 2  # images of a batch, for batch norm
 AS_STORED = -1
 
 
@@ -52,15 +52,15 @@ def epoch_order(weights: Float, seed: int, epoch: int) -> Index:
     return rng.permutation(np.repeat(np.arange(weights.size), times))
 
 
-def epoch_batches(order: Index, size: int, processes: int) -> list[Index]:
+def epoch_batches(order: Index, size: int) -> list[Index]:
     """The batches of one epoch, of images in their order.
 
-    What is left over at the end is a smaller batch, or joins the last one where a process would
-    get fewer than two images of it (batch norm needs two).
+    What is left over at the end is a smaller batch; a single image joins the last one, since batch
+    norm needs two.
     """
     count = order.size
     starts = list(range(0, count, size))
-    if len(starts) > 1 and count - starts[-1] < MIN_PER_PROCESS * processes:
+    if len(starts) > 1 and count - starts[-1] < SMALLEST:
         starts.pop()
     return [order[start:stop] for start, stop in zip(starts, [*starts[1:], count], strict=True)]
 
@@ -88,17 +88,6 @@ class _Rows(Dataset[tuple[Tensor, Tensor]]):
         return torch.from_numpy(np.ascontiguousarray(rgb.transpose(2, 0, 1))), label
 
 
-class _Batches(Sampler[list[tuple[int, int]]]):
-    def __init__(self) -> None:
-        self.batches: list[list[tuple[int, int]]] = []
-
-    def __iter__(self) -> Iterator[list[tuple[int, int]]]:
-        return iter(self.batches)
-
-    def __len__(self) -> int:
-        return len(self.batches)
-
-
 class Reader:
     """Reads batches of an image set, in worker processes if there are any.
 
@@ -109,14 +98,14 @@ class Reader:
         self,
         pixels: Pixels,
         labels: Labels | None,
-        workers: int,
-        pin: bool,
         augmentation: Augmentation | None = None,
+        workers: int = 0,
+        pin: bool = False,
     ) -> None:
-        self._sampler = _Batches()
+        self._batches: list[list[tuple[int, int]]] = []
         self._loader = DataLoader(
             _Rows(pixels, labels, augmentation),
-            batch_sampler=self._sampler,
+            batch_sampler=self._batches,
             num_workers=workers,
             persistent_workers=workers > 0,
             pin_memory=pin,
@@ -131,12 +120,11 @@ class Reader:
 
         With an epoch number images are augmented as in that epoch; AS_STORED leaves them.
         """
-        self._sampler.batches = [[(int(row), epoch) for row in batch] for batch in batches]
+        self._batches[:] = [[(int(row), epoch) for row in batch] for batch in batches]
         try:
             yield from self._loader
-        except (FolderError, SceneError) as error:  # a worker's comes wrapped in its traceback
-            kind = type(error)
-            raise kind(str(error).strip().rpartition(f"{kind.__name__}: ")[2]) from None
+        except FolderError as error:  # a worker's comes wrapped in its traceback
+            raise FolderError(str(error).strip().rpartition("FolderError: ")[2]) from None
 
 
 def pieces(rows: Index, size: int) -> list[Index]:

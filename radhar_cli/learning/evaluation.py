@@ -143,7 +143,7 @@ def predict_batches(
     Raises:
         RunError: a logit is not finite.
     """
-    reader = Reader(pixels, None, workers=0, pin=False)
+    reader = Reader(pixels, None)
     with torch.inference_mode():
         for levels, _ in reader(pieces(rows, batch)):
             features, logits = features_and_logits(model, metadata.normalisation(levels.to(device)))

@@ -9,7 +9,6 @@ from sklearn.metrics import average_precision_score
 from radhar_cli.figures.evaluation import bars_png
 from radhar_cli.learning.evaluation import Predictions
 from radhar_cli.learning.report_files import Report
-from radhar_cli.learning.report_folder import csv_text
 
 
 def evaluate_labels(
@@ -50,12 +49,12 @@ def evaluate_labels(
     }
     head = ("class", "images", "average_precision")
     lines = zip(present, counts, (f"{value:.4f}" for value in precision), strict=True)
-    report.tables.append((f"labels{stem}.csv", csv_text(head, lines)))
+    report.table(f"labels{stem}.csv", head, lines)
     told = (
         (images.names[row], *(" ".join(np.array(names)[one]) for one in pair))
         for row, *pair in zip(rows.tolist(), shown, found, strict=True)
     )
-    report.tables.append((f"predictions{stem}.csv", csv_text(("image", "true", "found"), told)))
+    report.table(f"predictions{stem}.csv", ("image", "true", "found"), told)
     caption = f"Average precision of each label, {title}."
     png = bars_png(present, [100 * value for value in precision], "average precision (%)", title)
     report.figure(f"labels{stem}.png", caption, png)

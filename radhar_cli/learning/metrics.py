@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from statistics import NormalDist, variance
+from statistics import NormalDist
 from typing import Any
 
 import numpy as np
@@ -24,18 +24,6 @@ def wilson(correct: float, count: float) -> tuple[float, float]:
     half = math.sqrt(z2 * (share * (1 - share) + z2 / (4 * count)) / count)
     low, high = ((middle + side) / (1 + z2 / count) for side in (-half, half))
     return max(0.0, low), min(1.0, high)
-
-
-def interval_of_repeats(shares: Sequence[float], count: int) -> tuple[float, float]:
-    """Interval of 95 % of the mean of some proportions, of `count` images each.
-
-    Wilson's, of as many images as have the variance of `count` images and that of the mean over
-    the repeats together: it covers the choice of what was tested and of what was learned from.
-    """
-    mean = sum(shares) / len(shares)
-    one = mean * (1 - mean)
-    spread = variance(shares) / len(shares) if len(shares) > 1 else 0.0
-    return wilson(mean * (n := one / (one / count + spread) if one else count), n)
 
 
 def _ratio(above: Float, below: NDArray[np.int64]) -> Float:

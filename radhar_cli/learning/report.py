@@ -9,12 +9,10 @@ import torch
 
 from radhar_cli.dataset.layout import DATASET
 from radhar_cli.errors import FolderError
-from radhar_cli.figures.evaluation import Point, curves_png, filters_png, robustness_png
+from radhar_cli.figures.evaluation import Point, curves_png, robustness_png
 from radhar_cli.learning.evaluation import speed
-from radhar_cli.learning.filter_weights import magnitudes, table
 from radhar_cli.learning.images.classes import unknown_message
 from radhar_cli.learning.report_files import Report
-from radhar_cli.learning.report_folder import csv_text
 from radhar_cli.learning.run_files import BEST
 from radhar_cli.learning.run_folder import best_epoch
 from radhar_cli.learning.single_result import (
@@ -105,8 +103,6 @@ def evaluate(
             "data": results,
         }
     _compare(report, opened, lines)
-    if options.filters:
-        _show_filters(report, opened)
     return report
 
 
@@ -149,23 +145,7 @@ def _compare(report: Report, runs: Sequence[Run], lines: Mapping[str, Sequence[P
             for p in points
         )
         head = ("run", "data", "snr_db", "accuracy", "low_95", "high_95")
-        report.tables.append(("robustness.csv", csv_text(head, rows)))
-
-
-def _show_filters(report: Report, runs: Sequence[Run]) -> None:
-    filters = {run.name: magnitudes(run.model) for run in runs}
-    filters = {name: weights for name, weights in filters.items() if weights}
-    report.figure(
-        "filters.png",
-        "Magnitude of the global filters by spatial frequency, mean over channels; the zero "
-        "frequency is in the middle.",
-        filters_png(filters),
-    )
-    tables = {name: table(weights) for name, weights in filters.items()}
-    report.numbers["filters"] = tables
-    keys = list(next(iter(tables.values()))[0])
-    every = ((name, *row.values()) for name, weights in tables.items() for row in weights)
-    report.tables.append(("filters.csv", csv_text(["run", *keys], every)))
+        report.table("robustness.csv", head, rows)
 
 
 def _named(paths: Sequence[Path]) -> dict[str, Path]:

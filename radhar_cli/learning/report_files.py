@@ -1,6 +1,7 @@
 """A report on disk: figures, tables, report.json, and a self-contained report.html."""
 
 import base64
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -8,7 +9,7 @@ from typing import Any
 from jinja2 import Environment
 
 from radhar_cli.dataset.files import write_whole
-from radhar_cli.learning.report_folder import write_report
+from radhar_cli.learning.report_folder import csv_text, write_report
 
 PAGE = "report.html"
 _PAGE = """<!doctype html>
@@ -101,6 +102,10 @@ class Report:
     def figure(self, name: str, caption: str, png: bytes) -> None:
         """Add a figure."""
         self.figures.append((name, caption, png))
+
+    def table(self, name: str, header: Sequence[object], rows: Iterable[Iterable[object]]) -> None:
+        """Add a table."""
+        self.tables.append((name, csv_text(header, rows)))
 
     def write(self, folder: Path) -> None:
         """Write everything into a folder; report.json comes last."""

@@ -10,7 +10,6 @@ CURVES = "curves.png"
 METRICS = "metrics.json"
 SUMMARY = "summary.txt"
 TRAINED_ON = "trained_on.csv"
-EVENTS = "tensorboard"  # a folder
 ALL = (ABOUT, BEST, LAST, HISTORY, CURVES, METRICS, SUMMARY, TRAINED_ON)
 
 

@@ -9,7 +9,7 @@ import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, NotRequired
+from typing import Annotated, Any
 
 import torch
 from pydantic import Field, ValidationError, field_validator, model_validator
@@ -20,14 +20,14 @@ from torch import Tensor, nn
 from typing_extensions import TypedDict
 
 from radhar_cli.config.schema import Section
-from radhar_cli.dataset.files import read_bytes, refuse_links, write_whole
+from radhar_cli.dataset.files import read_bytes, write_whole
 from radhar_cli.dataset.folder import refuse_differences, refuse_foreign_files
 from radhar_cli.errors import ModelError, RadharError
 from radhar_cli.learning.batches import Normalisation
 from radhar_cli.learning.images.image_set import shape_in_words
 from radhar_cli.learning.models.build import Cost, build_model, cost
 from radhar_cli.learning.report_folder import csv_text
-from radhar_cli.learning.run_files import ABOUT, ALL, BEST, EVENTS, HISTORY, LAST, TRAINED_ON
+from radhar_cli.learning.run_files import ABOUT, ALL, BEST, HISTORY, LAST, TRAINED_ON
 from radhar_cli.learning.settings import Kind, TrainConfig
 from radhar_cli.untrusted import regular_size
 
@@ -43,24 +43,13 @@ class RunError(RadharError):
     """A run folder, or a file of it, that cannot be used."""
 
 
-class Streamed(TypedDict):
-    """Config of the samples, and how many were learned from."""
-
-    config: dict[str, Any]
-    samples: Annotated[int, Field(ge=0)]
-
-
 class LearnedFrom(TypedDict):
-    """A data set: path, content hash, images of the training and the validation set.
-
-    Of a stream also how its samples are made anew.
-    """
+    """A data set: path, content hash, images of the training and the validation set."""
 
     path: str
     hash: str
     train: Annotated[int, Field(ge=0)]
     val: Annotated[int, Field(ge=0)]
-    stream: NotRequired[Streamed]
 
 
 class RunMetadata(Section):
@@ -78,7 +67,7 @@ class RunMetadata(Section):
     config: dict[str, Any]  # resolved
     data: LearnedFrom
     versions: dict[str, str]  # of radhar, torch, numpy
-    # how it was computed, as far as the result depends on it: precision, micro batch, processes
+    # what else the result depends on: precision, weights that it starts from, what it is adapted to
     work: dict[str, Any] = Field(default_factory=dict)
     epoch: Annotated[int, Field(ge=1)] | None = None  # with weights, after which they were kept
 
@@ -165,24 +154,12 @@ def reserve_run(folder: Path, metadata: RunMetadata, overwrite: bool) -> None:
     if ours and (overwrite or not (folder / LAST).exists()):
         for name in reversed(ALL):
             (folder / name).unlink(missing_ok=True)
-        remove_events(folder)
     if not (folder / ABOUT).exists():
         if not ours:
             refuse_foreign_files(folder, "training run", error=RunError)
         write_whole(folder, folder / ABOUT, (metadata.model_dump_json(indent=2) + "\n").encode())
         return
     refuse_differences(folder, "run", differences(read_metadata(folder), metadata), RunError)
-
-
-def remove_events(folder: Path) -> None:
-    """Remove the event files of a run, nothing else.
-
-    Raises:
-        FolderError: their folder is a symbolic link.
-    """
-    refuse_links(folder, folder / EVENTS)
-    for path in (folder / EVENTS).glob("events.out.tfevents.*"):
-        path.unlink()
 
 
 def differences(old: RunMetadata, new: RunMetadata) -> list[str]:
@@ -192,7 +169,7 @@ def differences(old: RunMetadata, new: RunMetadata) -> list[str]:
         there, here = ([data["path"], data["hash"]] for data in (old.data, new.data))
         pairs["data"] = (there, here)
     pairs |= {"classes": (list(old.classes), list(new.classes)), "map": (old.map, new.map)}
-    pairs |= {k: (old.work[k], v) for k, v in new.work.items() if k in old.work}
+    pairs |= {k: (old.work.get(k), new.work.get(k)) for k in old.work | new.work}
     pairs |= {f"versions.{k}": (old.versions.get(k), v) for k, v in new.versions.items()}
     return [
         f"{key}: {json.dumps(there)} there, {json.dumps(here)} here"
@@ -378,8 +355,7 @@ def read_last(folder: Path) -> dict[str, Any] | None:
             warnings.simplefilter("ignore")
             checkpoint: dict[str, Any] = torch.load(path, map_location="cpu", weights_only=True)
         return {
-            key: checkpoint[key]
-            for key in ("model", "average", "optimiser", "history", "random", "metadata")
+            key: checkpoint[key] for key in ("model", "average", "optimiser", "history", "metadata")
         }
     except MemoryError:
         raise

@@ -10,9 +10,7 @@ from torch import nn
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.figures.evaluation import curves_png
 from radhar_cli.learning import run_files
-from radhar_cli.learning.machine import ExecutionPlan
 from radhar_cli.learning.metrics import wilson
-from radhar_cli.learning.process_group import Group
 from radhar_cli.learning.run_folder import Epoch, RunMetadata, best_epoch
 from radhar_cli.learning.targets import LOSSES, SCORES
 
@@ -22,8 +20,7 @@ def write_run_summary(
     metadata: RunMetadata,
     history: Sequence[Epoch],
     model: nn.Module,
-    plan: ExecutionPlan,
-    group: Group,
+    device: torch.device,
 ) -> None:
     """Write metrics.json, summary.txt and curves.png of a finished run."""
     best, count = best_epoch(history), int(metadata.data["val"])
@@ -34,7 +31,6 @@ def write_run_summary(
         interval = wilson(round(best.val_accuracy * count), count)
         found += f" (95 % interval {100 * interval[0]:.2f} to {100 * interval[1]:.2f} %)"
     price = metadata.cost
-    share = -(-settings.images_a_step // group.size)
     metrics = {
         "model": metadata.model,
         "best_epoch": best.epoch,
@@ -52,12 +48,9 @@ def write_run_summary(
         "data": metadata.data,
         "config": metadata.config,
         "versions": metadata.versions,
-        "device": plan.device.type,
-        "precision": plan.precision_name,
+        "device": device.type,
+        "precision": metadata.work["precision"],
         "threads": torch.get_num_threads(),
-        "processes": group.size,
-        "micro_batch": plan.micro_batch,
-        "gradient_accumulation": len(plan.parts(share)),
     }
     curves = curves_png(series, {folder.name: best.epoch}, score, LOSSES[settings.target])
     write_whole(folder, folder / run_files.CURVES, curves)
@@ -69,8 +62,7 @@ def write_run_summary(
         f"best epoch {best.epoch} of {len(history)}: validation {found}, loss {best.val_loss:.4f}",
         f"{price.parameters:,} parameters, {price.multiply_adds / 1e9:.3f} G multiply-adds",
         f"{metrics['seconds']} s on {metrics['device']}, {metrics['precision']}, "
-        f"{metrics['threads']} threads, {group.size} process(es), batch "
-        f"{settings.images_a_step} in {metrics['gradient_accumulation']} part(s)",
+        f"{metrics['threads']} threads, batch {settings.images_a_step}",
         "",
         *_layer_table(model),
     ]

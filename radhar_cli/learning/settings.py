@@ -52,16 +52,10 @@ Fraction = Annotated[float, Field(ge=0, le=1, strict=True)]
 
 
 class AugmentConfig(Section):
-    """How far training images are changed, anew in every epoch; all 0 changes nothing.
-
-    Shifts are fractions of the image, either way; stretch and scale e^-x to e^x; contrast 1 - x to
-    1 + x about the brightest level, as another SNR has it; noise the largest share of pixels that
-    take the level of another place; morphology the probability of a dilation or an erosion by one
-    pixel; bands the most that are blanked, each at most `band_width` of the image.
-    """
+    """How far training images are changed, anew in every epoch; all 0 changes nothing."""
 
     time_shift: Fraction = 0.0
-    """Largest shift, a fraction of the image."""
+    """Largest shift either way, a fraction of the image."""
     time_stretch: Fraction = 0.0
     """x: factors from e^-x to e^x about the middle."""
     doppler_shift: Fraction = 0.0
@@ -69,7 +63,7 @@ class AugmentConfig(Section):
     doppler_scale: Fraction = 0.0
     """As time_stretch."""
     contrast: Fraction = 0.0
-    """x: distance from the brightest level times 1 - x to 1 + x."""
+    """x: distance from the brightest level times 1 - x to 1 + x, as another SNR has it."""
     noise: Fraction = 0.0
     """Largest share of pixels that take the level of another place."""
     morphology: Fraction = 0.0
@@ -79,20 +73,7 @@ class AugmentConfig(Section):
     doppler_bands: Annotated[int, Field(ge=0, le=16, strict=True)] = 0
     """Most bands that are blanked."""
     band_width: Fraction = 0.1
-    """Largest width of one."""
-
-
-class StreamConfig(Section):
-    """Of `radhar train --stream`: what an epoch is, and what validates it.
-
-    An epoch has as many samples as the config's data set would train with, if no number is given;
-    without a data set to validate on, at most `validation_per_class` of its validation samples do.
-    """
-
-    samples_per_epoch: Annotated[Count, Field(ge=2)] | None = None
-    """Null is as many as the config's data set trains with."""
-    validation_per_class: Count = 100
-    """At most; used without a data set to validate on."""
+    """Largest width of one, a fraction of the image."""
 
 
 class TrainConfig(Section):
@@ -119,9 +100,7 @@ class TrainConfig(Section):
     epochs: Count = 30
     """Passes over the training images."""
     batch_size: Annotated[Auto, _auto_or(2)] = "auto"
-    """Images a step, over all processes; auto makes some 24 steps an epoch, of 4 to 128 images."""
-    micro_batch: Annotated[Auto, _auto_or(2)] = "auto"
-    """Most images in one pass of a process; auto is the whole batch."""
+    """Images a step; auto makes some 24 steps an epoch, of 4 to 128 images."""
     optimiser: Literal["adam", "adamw", "sgd"] = "adamw"
     """adamw has decoupled decay, sgd a momentum of 0.9."""
     learning_rate: Rate = 0.003
@@ -144,7 +123,6 @@ class TrainConfig(Section):
     sampling: Literal["all", "balanced"] = "all"
     """balanced: every class equally often."""
     augment: AugmentConfig = AugmentConfig()
-    stream: StreamConfig = StreamConfig()
     device: Literal["auto", "cpu", "cuda", "mps"] = "auto"
     """auto takes cuda, mps, cpu in that order."""
     precision: Literal["auto", "float32", "bfloat16"] = "auto"

@@ -1,6 +1,6 @@
 """One run on one data set: its numbers and figures."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -24,9 +24,7 @@ from radhar_cli.learning.evaluation import Predictions, open_for, predict, rows_
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.scan import scan
 from radhar_cli.learning.labels_result import evaluate_labels
-from radhar_cli.learning.models.fftnet import NAME
 from radhar_cli.learning.report_files import Report
-from radhar_cli.learning.report_folder import csv_text
 from radhar_cli.learning.run_folder import (
     Epoch,
     RunError,
@@ -49,7 +47,6 @@ class EvalOptions:
     split: str = "val"
     map: str | None = None
     tsne: bool = False
-    filters: bool = False
     in_place_vs_moving: bool = False
     batch: int = 32
     resize: bool = False
@@ -88,7 +85,7 @@ def check_options(runs: Sequence[Run], options: EvalOptions) -> None:
     """Refuse figures that cannot be drawn, before anything is computed.
 
     Raises:
-        RunError: classes whose group is unknown, or no filters to draw.
+        RunError: of sequences or of several labels, or classes whose group is unknown.
     """
     ours = {activity.slug for activity in ACTIVITIES}
     for run in runs:
@@ -104,8 +101,6 @@ def check_options(runs: Sequence[Run], options: EvalOptions) -> None:
                     f"--in-place-vs-moving: {name!r} is none of the twelve activities; its group "
                     "is unknown"
                 )
-    if options.filters and not any(run.metadata.model == NAME for run in runs):
-        raise RunError("--filters: none of these networks has global filters; fftnet has six")
 
 
 def open_run(name: str, path: Path, device: torch.device) -> Run:
@@ -191,16 +186,13 @@ class _Shown:
     def figure(self, name: str, caption: str, png: bytes) -> None:
         self.report.figure(f"{name}{self.stem}.png", caption, png)
 
-    def table(self, name: str, header: Sequence[str], rows: Iterable[Iterable[object]]) -> None:
-        self.report.tables.append((f"{name}{self.stem}.csv", csv_text(header, rows)))
-
     def confusion(
         self, name: str, caption: str, counts: NDArray[np.int64], classes: Sequence[str], title: str
     ) -> None:
         """Counts [true class, predicted class] as a figure and a table, true classes down."""
         self.figure(name, caption, confusion_png(counts, classes, title))
         rows = ([one, *row] for one, row in zip(classes, counts.tolist(), strict=True))
-        self.table(name, ["true \\ predicted", *classes], rows)
+        self.report.table(f"{name}{self.stem}.csv", ["true \\ predicted", *classes], rows)
 
     def predictions_table(self) -> None:
         found, names = self.predictions, self.names
@@ -209,7 +201,8 @@ class _Shown:
             (found.images.names[row], names[true], names[guess], f"{probability:.6f}")
             for row, true, guess, probability in zip(*columns, strict=True)
         )
-        self.table("predictions", ("image", "true", "predicted", "probability"), rows)
+        head = ("image", "true", "predicted", "probability")
+        self.report.table(f"predictions{self.stem}.csv", head, rows)
 
     def in_place_vs_moving(self) -> list[list[int]]:
         """The paper's two groups: S1 to S7 against S8 to S12; counts [true, predicted]."""

@@ -11,7 +11,6 @@ from radhar_cli.figures.skeletons import skeletons_png
 from radhar_cli.learning.batches import Reader, pieces
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.report_files import Report
-from radhar_cli.learning.report_folder import csv_text
 from radhar_cli.learning.run_folder import RunError, RunMetadata
 from radhar_cli.learning.targets import NEAR_M
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
@@ -34,7 +33,7 @@ def found_and_true(
     Raises:
         RunError: a joint is not finite.
     """
-    reader = Reader(images.pixels, images.skeletons, workers=0, pin=False)
+    reader = Reader(images.pixels, images.skeletons)
     found, true = list[Float](), list[Float]()
     with torch.inference_mode():
         for values, joints in reader(pieces(rows, batch)):
@@ -73,7 +72,7 @@ def evaluate_skeletons(
         for name, axes, error in zip(names, by_axis.tolist(), by_joint.tolist(), strict=True)
     ]
     head = ("joint", *(f"{axis}_cm" for axis in AXES), "mpjpe_cm")
-    report.tables.append((f"joints{stem}.csv", csv_text(head, table)))
+    report.table(f"joints{stem}.csv", head, table)
     errors = np.linalg.norm(off, axis=2).mean(1)
     numbers = {
         "images": int(rows.size),

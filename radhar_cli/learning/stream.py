@@ -8,13 +8,13 @@ from typing import Any, Literal
 import numpy as np
 from torch.utils.data import Dataset, IterableDataset, get_worker_info
 
+from radhar_cli.activity import Activity
 from radhar_cli.arrays import Index
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.on_demand import Recipe, whole
-from radhar_cli.dataset.split import split_rows
-from radhar_cli.dataset.stream_order import StreamOrder
+from radhar_cli.dataset.split import TRAIN, split_persons, split_rows
 from radhar_cli.errors import ConfigError
 from radhar_cli.learning.images.image_set import SPLIT_NAMES, split_named
 from radhar_cli.worker_process import prepare_process
@@ -122,7 +122,16 @@ class Stream(IterableDataset[dict[str, Any]]):
             raise ConfigError(
                 f"split = {split!r}: should be all or train; the other splits are finite"
             )
-        self._order = StreamOrder(self.config, split)
+        rows, subjects = Rows.of(self.config), self.config.split.subjects
+        self._activities, self._first = rows.activities, (0,) * len(rows.activities)
+        self._people, self._shown = 1, np.zeros(1, np.intp)  # persons in turn; those of the stream
+        if split == "train" and subjects is None:
+            self._first = rows.counts  # where the config's data set ends
+        elif subjects is not None and split == "train":
+            trained = split_persons(self.config) == TRAIN
+            self._people, self._shown = subjects, np.flatnonzero(trained)
+            if not self._shown.size:
+                raise ConfigError("split.train: leaves no person to train with; should be larger")
         self._batch_size, self.start = whole("batch_size", batch_size, 1), whole("start", start)
         self._shard = None if shard is None else _checked_shard(shard)
         self.class_slugs = self._recipe.class_slugs
@@ -136,8 +145,15 @@ class Stream(IterableDataset[dict[str, Any]]):
         while True:
             first = self.start + (batch * ranks + rank) * self._batch_size
             for number in range(first, first + self._batch_size):
-                yield self._recipe(*self._order[number])
+                yield self._recipe(*self._key(number))
             batch += step
+
+    def _key(self, number: int) -> tuple[Activity, int]:
+        """Class and index of a sample: classes in turn, indices upwards."""
+        turn, place = divmod(number, len(self._activities))
+        again, person = divmod(turn, self._shown.size)
+        index = again * self._people + int(self._shown[person])
+        return self._activities[place], self._first[place] + index
 
     def __getstate__(self) -> dict[str, Any]:
         # A spawned worker belongs to no process group.

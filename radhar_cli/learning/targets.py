@@ -3,6 +3,8 @@
 from torch import Tensor
 from torch.nn.functional import binary_cross_entropy_with_logits, cross_entropy
 
+from radhar_cli.learning.settings import Target
+
 NEAR_M = 0.15  # joints found within it count as found
 SCORES = {
     "classes": "accuracy",
@@ -16,6 +18,18 @@ LOSSES = {
     "labels": "binary cross-entropy",
     "skeleton": "mean absolute error, m",
 }
+
+
+def loss_and_right(
+    target: Target, outputs: Tensor, wanted: Tensor, smoothing: float
+) -> tuple[Tensor, float]:
+    """Sums over a batch of the loss of a target, and of what is right."""
+    match target:
+        case "skeleton":
+            return skeleton_loss(outputs, wanted)
+        case "labels":
+            return labels_loss(outputs, wanted)
+    return class_loss(outputs, wanted, smoothing)
 
 
 def class_loss(logits: Tensor, label: Tensor, smoothing: float) -> tuple[Tensor, float]:

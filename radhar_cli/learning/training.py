@@ -3,74 +3,51 @@
 import math
 import time
 from collections.abc import Mapping, Sequence
-from contextlib import nullcontext
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Protocol
 
 import numpy as np
 import torch
-from torch import nn
+from torch import Tensor, nn
 from torch.optim.swa_utils import AveragedModel, update_bn
 
 from radhar_cli import __version__
-from radhar_cli.arrays import Float, Index
+from radhar_cli.arrays import Index
 from radhar_cli.config.identity import resolved
-from radhar_cli.config.schema import Config
 from radhar_cli.dataset.folder import folder_lock
 from radhar_cli.errors import ConfigError, FolderError, RadharError
 from radhar_cli.learning import run_files
 from radhar_cli.learning import run_folder as run
 from radhar_cli.learning.augmentation import Augmentation
-from radhar_cli.learning.batches import (
-    MIN_PER_PROCESS,
-    Labels,
-    Reader,
-    epoch_batches,
-    epoch_order,
-    pieces,
-)
-from radhar_cli.learning.gradient_step import TrainStep, check_state, optimiser_for, rate
+from radhar_cli.learning.batches import Labels, Reader, epoch_batches, epoch_order, pieces
 from radhar_cli.learning.images.classes import renamed
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.images.joined import joined, sampling_weights
 from radhar_cli.learning.images.opening import open_inputs
 from radhar_cli.learning.images.scan import content_hash, scan
-from radhar_cli.learning.images.synthesised import (
-    TrainingStream,
-    stream_and_validation,
-    stream_data,
-)
 from radhar_cli.learning.machine import (
-    ExecutionPlan,
+    autocast,
     choose_device,
-    choose_execution_plan,
+    choose_precision,
     reading_workers,
     repeatable,
 )
 from radhar_cli.learning.models.build import build_model
-from radhar_cli.learning.process_group import (
-    Group,
-    all_reduce_sum,
-    barrier,
-    broadcast_buffers,
-    distributed,
-    on_rank_zero,
-    process_group,
-)
-from radhar_cli.learning.run_folder import Epoch, LearnedFrom, RunMetadata, best_epoch
+from radhar_cli.learning.optimiser import check_state, optimiser_for, rate
+from radhar_cli.learning.run_folder import Epoch, RunMetadata, best_epoch
 from radhar_cli.learning.run_summary import write_run_summary
-from radhar_cli.learning.settings import OF_SEQUENCES, AugmentConfig, TrainConfig
+from radhar_cli.learning.settings import AugmentConfig, TrainConfig
 from radhar_cli.learning.starting_point import StartingPoint, start_from
-from radhar_cli.learning.targets import SCORES
+from radhar_cli.learning.targets import SCORES, loss_and_right
 from radhar_cli.progress import Messages
 from radhar_cli.randomness import TRAINING, stream
 from radhar_cli.worker_process import keep_memory
 
 STATISTICS_IMAGES = 2048  # from which batch norm of averaged weights has its statistics
 FEW_STEPS = 10  # an epoch; fewer are warned of
-# Not part of the identity of a run; precision and micro batch enter as chosen (RunMetadata.work).
-NOT_IDENTITY = ("device", "workers", "threads", "precision", "micro_batch")
+# Not part of the identity of a run; precision enters as chosen (RunMetadata.work).
+NOT_IDENTITY = ("device", "workers", "threads", "precision")
 
 
 class TrainingError(RadharError):
@@ -113,80 +90,56 @@ def train(
     overwrite: bool = False,
     names: Mapping[str, str | None] | None = None,
     start: Path | None = None,
-    stream: Config | None = None,
 ) -> Outcome:
     """Train `config` on `data` in `folder`, or resume; nothing to do where it is complete.
 
-    Under torchrun every process calls this; the first one writes.
-
     Args:
-        data: a data set, or several that are combined; with a stream, the validation data, or
-            nothing.
+        data: a data set, or several that are combined.
         overwrite: start over in a folder that holds a run.
         names: {class of the data: class here, or None to leave it out}.
         start: a run whose best weights and normalisation are the initial ones; those of the last
             layer too if the classes are the same.
-        stream: config of samples that are synthesised on the fly, each used once.
 
     Raises:
         FolderError: data that cannot be used.
-        ConfigError, SceneError: a stream that cannot be used.
         RunError: a folder that holds something else, or a damaged checkpoint.
         ModelError: a network that cannot be built.
-        MachineError: a device that is not available, or a step too large for memory.
-        TrainingError: the loss is not finite; earlier checkpoints are kept.
+        MachineError: a device that is not available.
+        TrainingError: a step too large for memory, or a loss that is not finite; earlier
+            checkpoints are kept.
     """
-    training_stream = None
-    if stream is None:
-        images = checked_images(config, data, names)
-    elif config.model in OF_SEQUENCES:
-        raise ConfigError(f"model {config.model}: reads sequences; --stream makes images")
-    elif config.target != "classes":
-        raise ConfigError(f"target = {config.target}: is of stored data; --stream has classes")
-    else:
-        paths = [data] if isinstance(data, Path) else list(data)
-        device = choose_device(config.device)
-        workers = reading_workers(config, device, synthesises=True)
-        training_stream, images = stream_and_validation(config, stream, paths, names or {}, workers)
-    return train_on(Task(config, images, folder, overwrite, start, training_stream), progress)
+    images = checked_images(config, data, names)
+    return train_on(config, images, folder, progress, overwrite, start)
 
 
-@dataclass(frozen=True)
-class Task:
-    """Arguments of `train` with the images opened; those of `stream` take the place of theirs."""
-
-    config: TrainConfig
-    images: ImageSet
-    folder: Path
-    overwrite: bool = False
-    start: Path | None = None
-    stream: TrainingStream | None = None
-
-
-def train_on(task: Task, progress: TrainingProgress) -> Outcome:
+def train_on(
+    config: TrainConfig,
+    images: ImageSet,
+    folder: Path,
+    progress: TrainingProgress,
+    overwrite: bool = False,
+    start: Path | None = None,
+) -> Outcome:
     """As `train`, on images that are open already."""
-    images, folder = task.images, task.folder
-    count = images.rows("train").size if task.stream is None else task.stream.per_epoch
-    config = task.config.for_images(count, images.frames)
-    task = replace(task, config=config)
+    config = config.for_images(images.rows("train").size, images.frames)
     if config.threads != "auto":
         torch.set_num_threads(config.threads)
     device = choose_device(config.device)
     repeatable(device)
-    with process_group(device) as group, folder_lock(folder) if group.is_main else nullcontext():
-        plan = choose_execution_plan(config, device, synthesises=task.stream is not None)
-        if device.type == "cpu":
-            keep_memory()
+    if device.type == "cpu":
+        keep_memory()
+    with folder_lock(folder):
         try:
-            return _Training.prepared(task, plan, group, progress).run()
+            return _Training(config, images, folder, progress, device, overwrite, start).run()
         except RuntimeError as error:
             # On the CPU only the message says that memory was short.
             if not isinstance(error, torch.OutOfMemoryError) and "CPUAllocator" not in str(error):
                 raise
-            count = min(plan.micro_batch, -(-config.images_a_step // group.size))
+            size = config.images_a_step
+            hint = f"fewer: --set batch_size={size // 2}" if size > 3 else "smaller"
             raise TrainingError(
-                f"out of memory on {device.type} in a step of {count} images of {images.shape}; "
-                f"should be fewer: --set micro_batch={max(1, count // 2)}"
+                f"out of memory on {device.type} in a step of {size} images of {images.shape}; "
+                f"should be {hint}"
             ) from None
 
 
@@ -227,105 +180,74 @@ def checked_images(
     return images
 
 
-@dataclass
 class _Training:
-    task: Task
-    metadata: RunMetadata
-    plan: ExecutionPlan
-    group: Group
-    progress: TrainingProgress
-    model: nn.Module
-    optimiser: torch.optim.Optimizer
-    average: AveragedModel | None
-    history: list[Epoch] = field(default_factory=list)
+    """A run: its network, and the epochs so far."""
 
-    @classmethod
-    def prepared(
-        cls, task: Task, plan: ExecutionPlan, group: Group, progress: TrainingProgress
-    ) -> "_Training":
-        config, images, stream = task.config, task.images, task.stream
-        minimum = MIN_PER_PROCESS * group.size
-        if config.images_a_step < minimum:
-            raise ConfigError(
-                f"batch_size = {config.batch_size}: should be at least {minimum} for {group.size} "
-                "processes; batch norm needs two images in each"
-            )
+    def __init__(
+        self,
+        config: TrainConfig,
+        images: ImageSet,
+        folder: Path,
+        progress: TrainingProgress,
+        device: torch.device,
+        overwrite: bool = False,
+        start: Path | None = None,
+    ) -> None:
+        self.config, self.images, self.folder = config, images, folder
+        self.progress, self.device = progress, device
+        self.precision = choose_precision(config.precision, device)
+        self.history: list[Epoch] = []
         torch.manual_seed(config.seed)
         joints = config.target == "skeleton"
         outputs = 3 * len(images.joints) if joints else len(images.classes)
-        model = build_model(config.model, outputs, images.size, joints)
-        started = None if task.start is None else start_from(task.start, model, config, images)
-        if group.is_main:
-            many = f"{len(images)} images of {len(images.classes)} classes, {images.shape}"
-            if stream is not None:
-                many = f"{images.rows('val').size} validation images; {stream.per_epoch} samples "
-                many += f"an epoch are synthesised by {plan.workers or 'no'} workers"
-            progress.say(f"reading {many}")
-            for message in (*_warnings(task, group), *(started.notes if started else ())):
-                progress.say(message)
-        metadata, digests = _metadata(task, plan, group, started)
-
-        def reserve() -> None:
-            scenes = images.scenes or ("",) * len(images)
-            learned = [(images.names[row], pixels, scenes[row]) for row, pixels in digests.items()]
-            run.reserve_run(task.folder, metadata, task.overwrite)
-            run.write_trained_on(task.folder, learned)
-
-        on_rank_zero(group, reserve)
-        model.to(plan.device)
-        average = AveragedModel(model) if config.average_last else None
-        optimiser = optimiser_for(config, model)
-        return cls(task, metadata, plan, group, progress, model, optimiser, average)
+        self.model = build_model(config.model, outputs, images.size, joints)
+        started = None if start is None else start_from(start, self.model, config, images)
+        many = f"{len(images)} images of {len(images.classes)} classes"
+        progress.say(f"reading {many}, {images.shape}")
+        for message in (*_warnings(config, images), *(started.notes if started else ())):
+            progress.say(message)
+        self.metadata, learned = _metadata(config, images, self.precision, started)
+        run.reserve_run(folder, self.metadata, overwrite)
+        run.write_trained_on(folder, learned)
+        self.model.to(device)
+        self.average = AveragedModel(self.model) if config.average_last else None
+        self.optimiser = optimiser_for(config, self.model)
 
     def run(self) -> Outcome:
+        config, images, device = self.config, self.images, self.device
         resumed = self._restore()
-        if self.group.is_main:
-            self._announce(resumed)
-        task, plan = self.task, self.plan
-        network = distributed(self.model, plan.device, self.group)
+        if resumed:
+            self.progress.say(f"resuming: {resumed} of {config.epochs} epochs are done")
+        how = f"{self.metadata.work['precision']}, {torch.get_num_threads()} threads"
+        self.progress.say(f"on {device.type}, {how}")
         augmentation = None
-        if task.config.augment != AugmentConfig():
-            augmentation = Augmentation(task.config.augment, task.config.seed)
-        pin, label = plan.device.type == "cuda", _wanted(task)
-        if task.stream is None:
-            training_reader = Reader(task.images.pixels, label, plan.workers, pin, augmentation)
-            validation_reader = training_reader
-        else:
-            validation_reader = Reader(task.images.pixels, label, 0, pin)
-            source = task.stream
-            training_reader = Reader(source.pixels, source, plan.workers, pin, augmentation)
-        for epoch in range(resumed, task.config.epochs):
+        if config.augment != AugmentConfig():
+            augmentation = Augmentation(config.augment, config.seed)
+        wanted, workers = _wanted(config, images), reading_workers(config.workers, device)
+        pin = device.type == "cuda"
+        reader = Reader(images.pixels, wanted, augmentation, workers, pin)
+        for epoch in range(resumed, config.epochs):
             began = time.perf_counter()
-            # Of dropout and the like, for this epoch and process alone, so that a run can resume.
-            layers = stream(task.config.seed, TRAINING, epoch, self.group.rank, name="layers")
+            # Of dropout and the like, for this epoch alone, so that a run can resume.
+            layers = stream(config.seed, TRAINING, epoch, name="layers")
             torch.manual_seed(int(layers.integers(2**63)))
-            training = self._train_epoch(network, training_reader, epoch)
-            self._statistics_of_average(training_reader, epoch)
-            validation = self._validate(validation_reader, epoch)
+            training = self._train_epoch(reader, epoch)
+            self._statistics_of_average(reader, epoch)
+            validation = self._validate(reader, epoch)
             learning_rate = self.optimiser.param_groups[0]["lr"]
             seconds = round(time.perf_counter() - began, 3)
-            row = Epoch(epoch + 1, learning_rate, *training, *validation, seconds)
-            self.history.append(row)
-            if self.group.is_main:
-                self._keep(row)
-        if self.group.is_main:
-            run.write_history(task.folder, self.history)
-            if resumed < task.config.epochs or not (task.folder / run_files.METRICS).exists():
-                write_run_summary(
-                    task.folder, self.metadata, self.history, self.model, plan, self.group
-                )
-        barrier(self.group)
-        return Outcome(task.folder, self.history, resumed, SCORES[task.config.target])
-
-    @property
-    def _train_step(self) -> TrainStep:
-        return TrainStep(self.task.config, self.metadata.normalisation, self.plan, self.group)
+            self.history.append(Epoch(epoch + 1, learning_rate, *training, *validation, seconds))
+            self._keep()
+        run.write_history(self.folder, self.history)
+        if resumed < config.epochs or not (self.folder / run_files.METRICS).exists():
+            write_run_summary(self.folder, self.metadata, self.history, self.model, device)
+        return Outcome(self.folder, self.history, resumed, SCORES[config.target])
 
     def _restore(self) -> int:
-        checkpoint = run.read_last(self.task.folder)
+        checkpoint = run.read_last(self.folder)
         if checkpoint is None:
             return 0
-        path = self.task.folder / run_files.LAST
+        path = self.folder / run_files.LAST
         try:
             other = run.differences(
                 RunMetadata.model_validate_json(checkpoint["metadata"]), self.metadata
@@ -340,14 +262,13 @@ class _Training:
             self.optimiser.load_state_dict(checkpoint["optimiser"])
             if self.average is not None:
                 self.average.load_state_dict(checkpoint["average"])
-            torch.set_rng_state(checkpoint["random"])
         except (MemoryError, run.RunError):
             raise
         except Exception as error:  # whatever a foreign checkpoint leads to
             raise run.RunError(
                 f"{path}: does not fit this run ({run.first_line(error)}); --overwrite starts over"
             ) from None
-        on_rank_zero(self.group, self._ensure_best)
+        self._ensure_best()
         return len(self.history)
 
     def _ensure_best(self) -> None:
@@ -358,14 +279,14 @@ class _Training:
         """
         best = best_epoch(self.history)
         try:
-            run.load_best(self.task.folder)
+            run.load_best(self.folder)
         except run.RunError as error:
             if best is not self.history[-1]:
                 raise run.RunError(
                     f"{error}; the weights of epoch {best.epoch} cannot be recovered; --overwrite "
                     "starts the run over"
                 ) from None
-            run.write_best(self.task.folder, self.metadata, best, self._kept.state_dict())
+            run.write_best(self.folder, self.metadata, best, self._kept.state_dict())
 
     @property
     def _kept(self) -> nn.Module:
@@ -374,60 +295,54 @@ class _Training:
             return self.model
         return self.average.module
 
-    def _announce(self, resumed: int) -> None:
-        plan, say, size = self.plan, self.progress.say, self.task.config.images_a_step
-        if resumed:
-            say(f"resuming: {resumed} of {self.task.config.epochs} epochs are done")
-        share = -(-size // self.group.size)
-        precision = plan.precision_name
-        many = f", {self.group.size} processes" if self.group.size > 1 else ""
-        say(f"on {plan.device.type}{many}, {precision}, {torch.get_num_threads()} threads")
-        parts = len(plan.parts(share))
-        if parts > 1:
-            say(
-                f"a batch of {size} goes in {parts} parts a process, of at most "
-                f"{plan.micro_batch}: gradients are summed, but batch norm sees one part at a "
-                f"time, so this is not the same as a batch of {size}"
-            )
-
     def _epoch_rows(self, epoch: int) -> Index:
         """Rows of the training images of an epoch, in the order in which they are shown."""
-        if self.task.stream is not None:
-            return self.task.stream.rows(epoch)
-        rows, config = self.task.images.rows("train"), self.task.config
+        rows, config = self.images.rows("train"), self.config
         balanced = config.sampling == "balanced"
-        weights = sampling_weights(self.task.images, rows, config.data_weights, balanced)
+        weights = sampling_weights(self.images, rows, config.data_weights, balanced)
         return rows[epoch_order(weights, config.seed, epoch)]
 
-    def _train_epoch(self, network: nn.Module, reader: Reader, epoch: int) -> tuple[float, float]:
+    def _train_epoch(self, reader: Reader, epoch: int) -> tuple[float, float]:
         """One epoch of steps; returns mean loss and accuracy of its batches."""
-        config, group = self.task.config, self.group
-        rows = self._epoch_rows(epoch)
-        batches = epoch_batches(rows, config.images_a_step, group.size)
-        if group.is_main:
-            self.progress.epoch(epoch + 1, config.epochs, len(batches))
-        mine = [batch[group.rank :: group.size] for batch in batches]
-        network.train()
-        train_step = self._train_step
-        totals: Float = np.zeros(3)
-        for step, (levels, labels) in enumerate(reader(mine, epoch)):
+        config = self.config
+        batches = epoch_batches(self._epoch_rows(epoch), config.images_a_step)
+        self.progress.epoch(epoch + 1, config.epochs, len(batches))
+        self.model.train()
+        loss_sum, right, count = 0.0, 0.0, 0
+        for step, (levels, labels) in enumerate(reader(batches, epoch)):
             learning_rate = rate(config, epoch, step, len(batches))
             for parameters in self.optimiser.param_groups:
                 parameters["lr"] = learning_rate
-            loss, correct = train_step.step(
-                network, self.optimiser, levels, labels, batches[step].size
-            )
+            loss, right_here = self._step(levels, labels)
             done = (epoch + (step + 1) / len(batches)) / config.epochs
             if self.average is not None and done > 1 - config.average_last:
                 self.average.update_parameters(self.model)
-            # The sum: where one process fails, all should say so.
-            if not math.isfinite(all_reduce_sum(np.array([loss]), group)[0]):
+            if not math.isfinite(loss):
                 raise TrainingError(self._not_finite(f"epoch {epoch + 1}, step {step + 1}", loss))
-            totals += (loss * len(labels), correct, len(labels))
-            if group.is_main:
-                self.progress.step(loss, totals[1] / totals[2])
-        loss_sum, right, count = all_reduce_sum(totals, group).tolist()
+            loss_sum += loss * len(labels)
+            right += right_here
+            count += len(labels)
+            self.progress.step(loss, right / count)
         return loss_sum / count, right / count
+
+    def _step(self, levels: Tensor, labels: Tensor) -> tuple[float, float]:
+        """One update from a batch [B, C, H, W]: its mean loss, and how much of it was right."""
+        self.optimiser.zero_grad(set_to_none=True)
+        loss_sum, right = self._loss(self.model, levels, labels)
+        loss = loss_sum / len(labels)
+        torch.autograd.backward(loss)
+        if self.config.gradient_clip_norm is not None:
+            nn.utils.clip_grad_norm_(self.model.parameters(), self.config.gradient_clip_norm)
+        self.optimiser.step()
+        return float(loss.detach()), right
+
+    def _loss(self, network: nn.Module, levels: Tensor, labels: Tensor) -> tuple[Tensor, float]:
+        """Sums over a batch of the loss, and of what is right: classes, or shares of the joints."""
+        x = self.metadata.normalisation(levels.to(self.device, non_blocking=True))
+        with autocast(self.device, self.precision):
+            outputs: Tensor = network(x)
+        wanted, smoothing = labels.to(self.device), self.config.label_smoothing
+        return loss_and_right(self.config.target, outputs.float(), wanted, smoothing)
 
     def _statistics_of_average(self, reader: Reader, epoch: int) -> None:
         """Take the batch-norm statistics of averaged weights from images as they are stored.
@@ -437,33 +352,26 @@ class _Training:
         if self._kept is self.model:
             return
         rows = self._epoch_rows(epoch)[:STATISTICS_IMAGES]
-        size = min(self.task.config.images_a_step, self.plan.micro_batch)
-        device, normalise = self.plan.device, self.metadata.normalisation
-        clean = (normalise(levels.to(device)) for levels, _ in reader(epoch_batches(rows, size, 1)))
-        update_bn(clean, self._kept)
+        batches = reader(epoch_batches(rows, self.config.images_a_step))
+        device, normalise = self.device, self.metadata.normalisation
+        update_bn((normalise(levels.to(device)) for levels, _ in batches), self._kept)
 
     def _validate(self, reader: Reader, epoch: int) -> tuple[float, float]:
-        """Mean loss and accuracy over the validation images, shared by the processes."""
-        group = self.group
-        broadcast_buffers(self.model, group)
-        model = self._kept
-        broadcast_buffers(model, group)
-        rows = self.task.images.rows("val")
-        mine = rows[group.rank :: group.size]
-        size = min(self.task.config.images_a_step, self.plan.micro_batch)
+        """Mean loss and accuracy over the validation images."""
+        model, rows = self._kept, self.images.rows("val")
         model.eval()
-        totals: Float = np.zeros(3)
+        loss_sum, right = 0.0, 0.0
         with torch.no_grad():
-            for levels, labels in reader(pieces(mine, size)):
-                loss, correct = self._train_step.loss_and_correct(model, levels, labels)
-                totals += (float(loss), correct, len(labels))
-        loss_sum, right, count = all_reduce_sum(totals, group).tolist()
+            for levels, labels in reader(pieces(rows, self.config.images_a_step)):
+                loss, right_here = self._loss(model, levels, labels)
+                loss_sum += float(loss)
+                right += right_here
         if not math.isfinite(loss_sum):
             raise TrainingError(self._not_finite(f"validation of epoch {epoch + 1}", loss_sum))
-        return loss_sum / count, right / count
+        return loss_sum / rows.size, right / rows.size
 
     def _not_finite(self, where: str, loss: float) -> str:
-        rate_now = self.task.config.learning_rate
+        rate_now = self.config.learning_rate
         kept = (
             f"{run_files.LAST} and {run_files.BEST} hold the epochs up to {len(self.history)}"
             if self.history
@@ -474,30 +382,29 @@ class _Training:
             f"gradient_clip_norm or warmup_epochs may help; {kept}"
         )
 
-    def _keep(self, row: Epoch) -> None:
+    def _keep(self) -> None:
         """Put an epoch on disk: the best weights first, then what the next epoch starts from."""
+        row = self.history[-1]
         best = best_epoch(self.history) is row
         if best:
-            run.write_best(self.task.folder, self.metadata, row, self._kept.state_dict())
+            run.write_best(self.folder, self.metadata, row, self._kept.state_dict())
         run.write_last(
-            self.task.folder,
+            self.folder,
             {
                 "metadata": self.metadata.model_dump_json(),
                 "model": self.model.state_dict(),
                 "average": None if self.average is None else self.average.state_dict(),
                 "optimiser": self.optimiser.state_dict(),
                 "history": [asdict(r) for r in self.history],
-                "random": torch.get_rng_state(),
             },
         )
-        run.write_history(self.task.folder, self.history)
+        run.write_history(self.folder, self.history)
         self.progress.epoch_done(row, best)
 
 
-def _wanted(task: Task) -> Labels:
+def _wanted(config: TrainConfig, images: ImageSet) -> Labels:
     """What is to be learned of each row."""
-    images = task.images
-    match task.config.target:
+    match config.target:
         case "skeleton":
             return images.skeletons
         case "labels":
@@ -506,28 +413,13 @@ def _wanted(task: Task) -> Labels:
 
 
 def _metadata(
-    task: Task, plan: ExecutionPlan, group: Group, started: StartingPoint | None
-) -> tuple[RunMetadata, dict[int, str]]:
-    """Metadata of the run, and the digest of every stored training image by row."""
-    config, images, stream = task.config, task.images, task.stream
-    rows = images.rows("train") if stream is None else np.zeros(0, np.intp)
-    validating = images.rows("val")
+    config: TrainConfig, images: ImageSet, precision: torch.dtype, started: StartingPoint | None
+) -> tuple[RunMetadata, list[tuple[str, str, str]]]:
+    """Metadata of the run, and (name, fingerprint, that of the scene) of every training image."""
+    rows, validating = images.rows("train"), images.rows("val")
     learned, checked = scan(images, rows), scan(images, validating)
     seen = np.concatenate([rows, validating])
-    data: LearnedFrom = {
-        "path": str(images.where),
-        "hash": content_hash(images, seen, (*learned.digests, *checked.digests)),
-        "train": rows.size,
-        "val": validating.size,
-    }
-    statistics = learned
-    if stream is not None:
-        statistics = stream.first
-        data |= stream_data(stream, data, config.epochs)
-    mean, sd = statistics.mean, statistics.sd
-    if started is not None:
-        mean, sd = started.normalisation.mean, started.normalisation.sd
-    kept = {k: v for k, v in resolved(config).items() if k not in NOT_IDENTITY}
+    statistics = learned if started is None else started.normalisation
     metadata = RunMetadata(
         model=config.model,
         classes=images.classes,
@@ -536,33 +428,36 @@ def _metadata(
         channels=images.channels,
         input=config.reads,
         joints=images.joints,
-        mean=mean,
-        sd=sd,
-        config=kept,
-        data=data,
+        mean=statistics.mean,
+        sd=statistics.sd,
+        config={k: v for k, v in resolved(config).items() if k not in NOT_IDENTITY},
+        data={
+            "path": str(images.where),
+            "hash": content_hash(images, seen, (*learned.digests, *checked.digests)),
+            "train": rows.size,
+            "val": validating.size,
+        },
         work={
-            "precision": plan.precision_name,
-            "micro_batch": plan.micro_batch,
-            "processes": group.size,
+            "precision": str(precision).removeprefix("torch."),
             **({"start": started.sha256} if started else {}),
         },
         versions={"radhar": __version__, "torch": torch.__version__, "numpy": np.__version__},
     )
-    return metadata, dict(zip(rows.tolist(), learned.digests, strict=True))
+    scenes = images.scenes or ("",) * len(images)
+    pairs = zip(rows.tolist(), learned.digests, strict=True)
+    return metadata, [(images.names[row], pixels, scenes[row]) for row, pixels in pairs]
 
 
-def _warnings(task: Task, group: Group) -> list[str]:
+def _warnings(config: TrainConfig, images: ImageSet) -> list[str]:
     """Of classes that are not validated, and of epochs too short to learn much in."""
-    images = task.images
     checked = set(images.label[images.rows("val")].tolist())
     warnings = [
         f"warning: the class {name!r} has no validation image; the best epoch is chosen without it"
         for index, name in enumerate(images.classes)
         if index not in checked
     ]
-    count = images.rows("train").size if task.stream is None else task.stream.per_epoch
-    size = task.config.images_a_step
-    steps = len(epoch_batches(np.arange(count), size, group.size))
+    count, size = images.rows("train").size, config.images_a_step
+    steps = len(epoch_batches(np.arange(count), size))
     if steps < FEW_STEPS:
         warnings.append(
             f"warning: batch_size = {size}: {count} images make {steps} steps an epoch; should be "

@@ -52,18 +52,13 @@ def only(report):
 
 
 def test_report_of_a_good_run(learned, tmp_path):
-    """Of the paper's network, which has filters to show."""
-    good = tmp_path / "good", learned[1]
-    trained(good[1], good[0], epochs=1, model="fftnet")
-    plant(*good)
-    report, listener = evaluated(good, tsne=True, filters=True, in_place_vs_moving=True, batch=4)
+    report, listener = evaluated(learned, tsne=True, in_place_vs_moving=True, batch=4)
     numbers = only(report)
     assert numbers["accuracy"] == 1.0
     assert numbers["confusion"] == np.diag([3, 3, 3]).tolist()
     assert numbers["in_place_vs_moving"] == [[6, 0], [0, 3]]
     assert numbers["seen_in_training"] == {"images": 0, "scenes": 0}
     assert not any("trained on" in line for line in listener.messages)
-    assert len(report.numbers["filters"]["good"]) == 6
     out = tmp_path / "report"
     report.write(out)
     stored = json.loads((out / "report.json").read_text())
@@ -71,9 +66,9 @@ def test_report_of_a_good_run(learned, tmp_path):
     page = (out / "report.html").read_text()
     assert "://" not in page
     sources = re.findall(r'src="([^"]{0,30})', page)
-    assert len(sources) == len(report.figures) == 7
+    assert len(sources) == len(report.figures) == 6
     assert all(source.startswith("data:image/png;base64,") for source in sources)
-    for name in ("confusion", "reliability", "hardest", "tsne", "filters", "curves"):
+    for name in ("confusion", "reliability", "hardest", "tsne", "curves"):
         assert (out / f"{name}.png").read_bytes().startswith(b"\x89PNG"), name
     with (out / "predictions.csv").open() as file:
         rows = list(csv.DictReader(file))

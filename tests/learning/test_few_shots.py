@@ -1,17 +1,19 @@
 """scripts/few_shots.py: accuracy after learning from a few labelled images of each class."""
 
 import json
+import math
 from dataclasses import replace
 
 import few_shots as module
 import numpy as np
 import pytest
 import torch
-from few_shots import drawn, few_shots, learned_from, missing
+from few_shots import drawn, few_shots, interval_of_repeats, learned_from, missing
 from learning.patterns import CLASSES, tree
 
 from radhar_cli.learning.evaluation import open_for, predict, training_images
 from radhar_cli.learning.images.opening import open_images
+from radhar_cli.learning.metrics import wilson
 from radhar_cli.learning.run_folder import load_best
 from radhar_cli.learning.single_result import EvalSet
 
@@ -34,6 +36,15 @@ def measured(tmp_path_factory):
 def opened(path, persons=None):
     images = replace(open_images(path, None, "rgb"), persons=persons)
     return EvalSet(images, np.arange(len(images)), "all")
+
+
+def test_interval_of_repeats_holds_images_and_draws():
+    for share, repeats in ((0.8, 3), (1.0, 2), (0.0, 2), (0.8, 1)):
+        alike = interval_of_repeats([share] * repeats, 50)
+        assert alike == pytest.approx(wilson(50 * share, 50))
+    low, high = interval_of_repeats([0.7, 0.8, 0.9], 10**9)
+    known = 1.96 * 0.1 / math.sqrt(3)  # of the mean of three with a standard deviation of 0.1
+    assert (low, high) == pytest.approx((0.8 - known, 0.8 + known), abs=0.03)
 
 
 def test_draws_are_k_of_each_class_and_all_others_are_tested(measured):

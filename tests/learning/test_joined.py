@@ -78,6 +78,8 @@ def test_a_run_on_weighted_sets_resumes_to_the_same_weights(data, other, run_dir
     assert same_run(tmp_path / "whole", tmp_path / "cut")
     with pytest.raises(RunError, match=r"start: .* there"):
         train(config, [data, other], tmp_path / "cut", Watched(), start=tmp_path / "whole")
+    with pytest.raises(RunError, match=r"start: .* there, null here"):
+        train(config, [data, other], tmp_path / "cut", Watched())
 
 
 def test_images_of_two_sizes_are_refused(data, tmp_path):

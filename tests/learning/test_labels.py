@@ -135,10 +135,6 @@ def test_a_network_counts_people(place: Path) -> None:
     ("words", "message"),
     [
         (("adapt", "RUN", "DATA", "-o", "NEW"), "finds several labels at a time"),
-        (
-            ("train", "--stream", "CONFIG", "-o", "NEW", "--target", "labels"),
-            "--stream has classes",
-        ),
         (("train", "ALONE", "-o", "NEW", "--target", "count"), "has the class '1 person' alone"),
     ],
 )
@@ -148,7 +144,6 @@ def test_what_cannot_be_is_said(place: Path, words: tuple[str, ...], message: st
         "DATA": place / "several",
         "ALONE": place / "alone",
         "NEW": place / "new",
-        "CONFIG": place / "several.yaml",
     }
     done = radhar(*(places.get(word, word) for word in words))
     assert done.returncode == 2

@@ -5,7 +5,6 @@ import torch
 
 from radhar_cli.errors import MachineError
 from radhar_cli.learning.machine import autocast, choose_device, choose_precision
-from radhar_cli.learning.process_group import Group, process_group
 
 CPU = torch.device("cpu")
 
@@ -30,12 +29,3 @@ def test_float32_is_computed_in_float32():
     for precision in (torch.float32, torch.bfloat16):
         with autocast(CPU, precision):
             assert (torch.ones(2, 2) @ torch.ones(2, 2)).dtype == precision
-
-
-def test_a_single_process_without_torchrun(monkeypatch):
-    for name in ("WORLD_SIZE", "TORCHELASTIC_RUN_ID"):
-        monkeypatch.delenv(name, raising=False)
-    with process_group(CPU) as group:
-        assert group == Group(0, 1)
-        assert group.is_main
-    assert not Group(1, 2).is_main

@@ -1,7 +1,5 @@
 """Metrics against numbers worked out by hand."""
 
-import math
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -19,15 +17,6 @@ def test_wilson_is_that_of_scipy(count, share):
     known = binomtest(right, count).proportion_ci(0.95, method="wilson")
     assert (low, high) == pytest.approx((known.low, known.high), abs=1e-9)
     assert 0 <= low <= right / count <= high <= 1
-
-
-def test_interval_of_repeats_holds_images_and_draws():
-    for share, repeats in ((0.8, 3), (1.0, 2), (0.0, 2), (0.8, 1)):
-        alike = metrics.interval_of_repeats([share] * repeats, 50)
-        assert alike == pytest.approx(metrics.wilson(50 * share, 50))
-    low, high = metrics.interval_of_repeats([0.7, 0.8, 0.9], 10**9)
-    known = 1.96 * 0.1 / math.sqrt(3)  # of the mean of three with a standard deviation of 0.1
-    assert (low, high) == pytest.approx((0.8 - known, 0.8 + known), abs=0.03)
 
 
 def test_wilson_of_no_images_is_the_whole_interval():

@@ -178,7 +178,7 @@ def test_a_broken_file_in_a_worker_is_one_line(tmp_path):
     images = open_images(root, None, "rgb")
     (root / "train/kicking/001.png").write_bytes(b"no more")
     with pytest.raises(FolderError) as caught:
-        list(Reader(images.pixels, images.label, 1, False)(pieces(np.arange(len(images)), 4)))
+        list(Reader(images.pixels, images.label, workers=1)(pieces(np.arange(len(images)), 4)))
     one_clear_line(caught.value, "001.png: is not an image")
     assert "Traceback" not in str(caught.value)
 
@@ -188,7 +188,7 @@ def test_workers_leave_the_random_state_of_the_network_alone(data):
     drawn = []
     for workers in (0, 1):
         torch.manual_seed(5)
-        list(Reader(images.pixels, images.label, workers, False)(pieces(np.arange(4), 2)))
+        list(Reader(images.pixels, images.label, workers=workers)(pieces(np.arange(4), 2)))
         drawn.append(float(torch.rand(1)))
     assert drawn[0] == drawn[1]
 
@@ -207,7 +207,7 @@ def test_names_with_commas_stay_in_their_column(tmp_path):
 
 
 def test_a_value_neither_auto_nor_a_number_gives_one_message():
-    for key in ("workers", "threads", "micro_batch"):
+    for key in ("workers", "threads", "batch_size"):
         with pytest.raises(ValueError, match="should be auto or a whole number") as caught:
             settings(**{key: "many"})
         assert caught.value.error_count() == 1

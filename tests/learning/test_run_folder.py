@@ -106,9 +106,7 @@ class Evil:
 
 
 def evil_zip(path, mark):
-    torch.save(
-        {"model": Evil(mark), "optimiser": {}, "history": [], "random": 0, "metadata": ""}, path
-    )
+    torch.save({"model": Evil(mark), "optimiser": {}, "history": [], "metadata": ""}, path)
 
 
 def evil_pickle(path, mark):

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from learning.patterns import settings
 
 from radhar_cli.config.reading import load_section
-from radhar_cli.learning.gradient_step import rate
+from radhar_cli.learning.optimiser import rate
 from radhar_cli.learning.settings import TrainConfig
 
 ROOT = Path(__file__).resolve().parents[2]

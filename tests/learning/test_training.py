@@ -9,8 +9,6 @@ import time
 import numpy as np
 import pytest
 import torch
-from hypothesis import given
-from hypothesis import strategies as st
 from learning.patterns import (
     BASE,
     Watched,
@@ -30,28 +28,24 @@ from torch import nn
 
 from radhar_cli.learning import run_files, targets, training
 from radhar_cli.learning import run_folder as run
-from radhar_cli.learning.gradient_step import optimiser_for
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.images.scan import scan
-from radhar_cli.learning.machine import ExecutionPlan, choose_execution_plan
-from radhar_cli.learning.process_group import Group
+from radhar_cli.learning.optimiser import optimiser_for
 from radhar_cli.learning.settings import TrainConfig
-from radhar_cli.learning.training import Task, TrainingError, _Training, checked_images
-
-CPU = torch.device("cpu")
+from radhar_cli.learning.training import TrainingError, _Training, checked_images
 
 
 def prepared(data, out, **changes):
     out.mkdir()
     config = settings(**changes)
-    task = Task(config, checked_images(config, data), out)
-    return _Training.prepared(task, choose_execution_plan(config, CPU), Group(), Watched())
+    images = checked_images(config, data)
+    return _Training(config, images, out, Watched(), torch.device("cpu"))
 
 
 def first_batch(work, count=6):
-    rows = work.task.images.rows("train")[::2][:count]
-    levels = np.stack([work.task.images.pixels.read(int(row)).transpose(2, 0, 1) for row in rows])
-    return torch.from_numpy(levels), torch.from_numpy(work.task.images.label[rows])
+    rows = work.images.rows("train")[::2][:count]
+    levels = np.stack([work.images.pixels.read(int(row)).transpose(2, 0, 1) for row in rows])
+    return torch.from_numpy(levels), torch.from_numpy(work.images.label[rows])
 
 
 def gradients(model):
@@ -66,8 +60,7 @@ def test_files_of_a_run(run_dir, data):
     assert [row.epoch for row in history] == [1, 2, 3]
     assert metrics["best_epoch"] == best.epoch
     assert metrics["val_accuracy"] == best.val_accuracy
-    assert (metrics["micro_batch"], metrics["gradient_accumulation"]) == (6, 1)
-    assert (metrics["processes"], metrics["device"], metrics["precision"]) == (1, "cpu", "float32")
+    assert (metrics["device"], metrics["precision"]) == ("cpu", "float32")
     assert metrics["classes"] == ["punching", "kicking", "walking"]
     assert (metrics["data"]["train"], metrics["data"]["val"]) == (12, 6)
     assert metrics["data"]["path"] == str(data)
@@ -250,47 +243,21 @@ def test_validation_is_that_of_the_stored_weights(data, run_dir):
     assert last.val_accuracy == float((logits.argmax(1) == truth).double().mean())
 
 
-@pytest.mark.parametrize("micro_batch", [2, 3, 4, 5])
-def test_gradients_of_micro_batches_sum_to_that_of_the_batch(data, tmp_path, micro_batch):
-    """With batch norm in evaluation mode, where images do not see each other."""
-    whole = prepared(data, tmp_path / "whole", micro_batch=6)
-    parts = prepared(data, tmp_path / "parts", micro_batch=micro_batch)
-    levels, labels = first_batch(whole)
-    losses = [
-        work._train_step.step(work.model.eval(), work.optimiser, levels, labels, 6)
-        for work in (whole, parts)
-    ]
-    assert losses[0] == pytest.approx(losses[1], rel=1e-5)
-    for one, other in zip(gradients(whole.model), gradients(parts.model), strict=True):
-        torch.testing.assert_close(one, other, rtol=1e-4, atol=1e-6)
-
-
 def test_a_step_starts_from_zero_gradient(data, tmp_path):
     work = prepared(data, tmp_path / "run", learning_rate=1e-12, optimiser="sgd")
     levels, labels = first_batch(work)
-    work._train_step.step(work.model.eval(), work.optimiser, levels, labels, 6)
+    work.model.eval()
+    work._step(levels, labels)
     once = gradients(work.model)
-    work._train_step.step(work.model.eval(), work.optimiser, levels, labels, 6)
+    work._step(levels, labels)
     for one, other in zip(once, gradients(work.model), strict=True):
         torch.testing.assert_close(one, other, rtol=1e-4, atol=1e-7)
 
 
-def test_accumulation_is_reported_and_recorded(data, tmp_path):
-    progress = Watched()
-    trained(data, tmp_path / "run", progress, epochs=1, micro_batch=2)
-    metrics = json.loads((tmp_path / "run" / run_files.METRICS).read_text())
-    assert (metrics["micro_batch"], metrics["gradient_accumulation"]) == (2, 3)
-    assert any(
-        "3 parts a process, of at most 2" in line and "batch norm" in line
-        for line in progress.messages
-    )
-    assert "in 3 part(s)" in (tmp_path / "run" / run_files.SUMMARY).read_text()
-
-
-def test_out_of_memory_names_a_smaller_micro_batch(data, tmp_path, monkeypatch):
+def test_out_of_memory_names_a_smaller_batch(data, tmp_path, monkeypatch):
     """An allocation of 2**60 bytes, which PyTorch refuses at once."""
     monkeypatch.setattr(targets, "cross_entropy", lambda *_, **__: torch.empty(2**58))
-    with pytest.raises(TrainingError, match=r"out of memory on cpu in .* 6 images .*micro_batch=3"):
+    with pytest.raises(TrainingError, match=r"out of memory on cpu in .* 6 images .*batch_size=3"):
         trained(data, tmp_path / "run", batch_size=6)
 
 
@@ -303,7 +270,8 @@ def test_clipping_limits_the_gradient(data, tmp_path):
     moved = []
     for work in (free, held):
         before = [p.detach().clone() for p in work.model.parameters()]
-        work._train_step.step(work.model.train(), work.optimiser, levels, labels, 6)
+        work.model.train()
+        work._step(levels, labels)
         steps = [p.detach() - b for p, b in zip(work.model.parameters(), before, strict=True)]
         moved.append(float(torch.linalg.vector_norm(torch.cat([s.flatten() for s in steps]))))
     assert moved[0] > 2e-5
@@ -380,20 +348,9 @@ def test_a_non_finite_validation_loss_is_one_clear_line(data, tmp_path, monkeypa
         trained(data, tmp_path / "run")
 
 
-@pytest.mark.parametrize("key", ["batch_size", "micro_batch"])
-def test_a_batch_of_one_image_is_refused(key):
-    with pytest.raises(ValueError, match=f"(?s){key}.*2"):
-        settings(**{key: 1})
-
-
-@given(images=st.integers(2, 500), micro_batch=st.integers(2, 500))
-def test_micro_batches_are_nearly_equal_and_within_the_limit(images, micro_batch):
-    parts = ExecutionPlan(CPU, torch.float32, micro_batch, 0).parts(images)
-    sizes = [part.stop - part.start for part in parts]
-    assert [row for part in parts for row in range(images)[part]] == list(range(images))
-    assert min(sizes) >= 2
-    assert max(sizes) - min(sizes) <= 1
-    assert max(sizes) <= max(micro_batch, 3), "three, where two would leave one alone"
+def test_a_batch_of_one_image_is_refused():
+    with pytest.raises(ValueError, match=r"(?s)batch_size.*2"):
+        settings(batch_size=1)
 
 
 def test_gray_and_bfloat16_train(data, tmp_path):

@@ -217,8 +217,6 @@ CHECKPOINTS: dict[str, tuple[Callable[[Path], None], str]] = {
         "other settings",
     ),
     "weights of another": (checkpoint(lambda c: c["model"].popitem()), "does not fit"),
-    "random of text": (checkpoint(lambda c: c.update(random="a")), "does not fit"),
-    "random too short": (checkpoint(lambda c: c.update(random=torch.zeros(3).byte())), "not fit"),
     "a run of nothing": (checkpoint(lambda c: c.update(metadata="{}")), "does not fit"),
 }
 

@@ -6,6 +6,8 @@ Source: paper, section IV and its network figure; docs/model.md, section 7.
 import torch
 from torch import Tensor, nn
 
+from radhar_cli.learning.models.smallnet import Pooled
+
 NAME = "fftnet"
 FILTER_SD = 0.02
 WIDTHS = (64, 128, 256)
@@ -67,10 +69,11 @@ class Block(nn.Module):
         return torch.relu(self.a(x) * self.b(x) + self.g(x) + x)
 
 
-class FFTNet(nn.Module):
+class FFTNet(Pooled):
     """The network for images of one size, whose sides are multiples of 32.
 
-    6,496,012 parameters at 256 x 256 and 12 classes, six global filters.
+    6,496,012 parameters at 256 x 256 and 12 classes, six global filters; the last feature maps are
+    [B, 512, H/32, W/32].
     """
 
     def __init__(self, classes: int, height: int, width: int) -> None:
@@ -87,17 +90,3 @@ class FFTNet(nn.Module):
             layers.append(convolution(channels, wider, stride=2))
         self.layers = nn.Sequential(*layers)
         self.head = nn.Linear(LAST_WIDTH, classes)
-
-    def forward_features(self, x: Tensor) -> Tensor:
-        """[B, 3, H, W] to the last feature maps [B, 512, H/32, W/32]."""
-        features: Tensor = self.layers(x)
-        return features
-
-    def forward_head(self, features: Tensor, pre_logits: bool = False) -> Tensor:
-        """Feature maps to their means [B, 512] or, from there, to logits [B, classes]."""
-        pooled = features.mean((2, 3))
-        return pooled if pre_logits else self.head(pooled)
-
-    def forward(self, x: Tensor) -> Tensor:
-        """Normalised images [B, 3, H, W] to logits [B, classes]."""
-        return self.forward_head(self.forward_features(x))

@@ -26,10 +26,31 @@ def block(inputs: int, outputs: int) -> nn.Sequential:
     )
 
 
-class SmallNet(nn.Module):
+class Pooled(nn.Module):
+    """Layers from images to feature maps, whose means one layer makes logits of."""
+
+    layers: nn.Sequential
+    head: nn.Linear
+
+    def forward_features(self, x: Tensor) -> Tensor:
+        """[B, 3, H, W] to the last feature maps."""
+        features: Tensor = self.layers(x)
+        return features
+
+    def forward_head(self, features: Tensor, pre_logits: bool = False) -> Tensor:
+        """Feature maps to their means [B, F] or, from there, to logits [B, classes]."""
+        pooled = features.mean((2, 3))
+        return pooled if pre_logits else self.head(pooled)
+
+    def forward(self, x: Tensor) -> Tensor:
+        """Normalised images [B, 3, H, W] to logits [B, classes]."""
+        return self.forward_head(self.forward_features(x))
+
+
+class SmallNet(Pooled):
     """The network, for images of any size whose sides have at least 16 px.
 
-    99,228 parameters at 12 classes.
+    99,228 parameters at 12 classes; the last feature maps are [B, 128, H//16, W//16].
     """
 
     def __init__(self, classes: int) -> None:
@@ -37,17 +58,3 @@ class SmallNet(nn.Module):
         pairs = zip((3, *WIDTHS[:-1]), WIDTHS, strict=True)
         self.layers = nn.Sequential(*(block(*pair) for pair in pairs))
         self.head = nn.Linear(WIDTHS[-1], classes)
-
-    def forward_features(self, x: Tensor) -> Tensor:
-        """[B, 3, H, W] to the last feature maps [B, 128, H//16, W//16]."""
-        features: Tensor = self.layers(x)
-        return features
-
-    def forward_head(self, features: Tensor, pre_logits: bool = False) -> Tensor:
-        """Feature maps to their means [B, 128] or, from there, to logits [B, classes]."""
-        pooled = features.mean((2, 3))
-        return pooled if pre_logits else self.head(pooled)
-
-    def forward(self, x: Tensor) -> Tensor:
-        """Normalised images [B, 3, H, W] to logits [B, classes]."""
-        return self.forward_head(self.forward_features(x))

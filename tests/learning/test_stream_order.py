@@ -5,8 +5,8 @@ import pytest
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.split import TRAIN, split_rows
-from radhar_cli.dataset.stream_order import StreamOrder
 from radhar_cli.errors import ConfigError
+from radhar_cli.learning.stream import Stream
 
 UNEVEN = {"per_activity": {"default": 6, "walking": 12, "S12": 3}}
 FOUR = ["punching", "kicking", "walking", "S12"]
@@ -17,12 +17,12 @@ def config(**more):
     return Config.model_validate(document)
 
 
-def first(order, count):
-    return [(activity.slug, index) for activity, index in map(order.__getitem__, range(count))]
+def first(stream, count):
+    return [(activity.slug, index) for activity, index in map(stream._key, range(count))]
 
 
 def test_classes_come_in_turn_and_every_sample_once():
-    seen = first(StreamOrder(config(samples_per_class=UNEVEN)), 40)
+    seen = first(Stream(config(samples_per_class=UNEVEN)), 40)
     assert {slug for slug, _ in seen[:4]} == {slug for slug, _ in seen[4:8]}
     assert [index for _, index in seen] == [n // 4 for n in range(40)]
     assert len({*seen}) == 40
@@ -30,11 +30,11 @@ def test_classes_come_in_turn_and_every_sample_once():
 
 def test_training_leaves_out_what_the_split_holds_back():
     made = config(samples_per_class=UNEVEN, split={"train": 0.6, "validation": 0.2, "test": 0.2})
-    rows, split, order = Rows.of(made), split_rows(made), StreamOrder(made, "train")
+    rows, split = Rows.of(made), split_rows(made)
     held_back = {
         (rows[row][0].slug, rows[row][1]) for row in range(len(rows)) if split[row] != TRAIN
     }
-    seen = first(order, 4 * len(rows))
+    seen = first(Stream(made, split="train"), 4 * len(rows))
     assert held_back
     assert not held_back & {*seen}
     assert len({*seen}) == len(seen)
@@ -46,7 +46,7 @@ def test_training_leaves_out_persons_and_nobody_else():
     rows, numbers = Rows.of(made), split_rows(made)
     trained = {rows[row][1] % 4 for row in range(len(rows)) if numbers[row] == TRAIN}
     assert len(trained) == 2
-    seen = first(StreamOrder(made, "train"), 160)
+    seen = first(Stream(made, split="train"), 160)
     assert {index % 4 for _, index in seen} == trained
     assert len({*seen}) == 160
     assert max(index for _, index in seen) < 2 * 160 / 4 + 4, "no index is skipped but theirs"
@@ -55,4 +55,4 @@ def test_training_leaves_out_persons_and_nobody_else():
 def test_a_split_without_training_persons_is_refused():
     split = {"train": 0.0, "validation": 1.0, "by": "subject", "subjects": 2}
     with pytest.raises(ConfigError, match=r"split.train: leaves no person"):
-        StreamOrder(config(split=split), "train")
+        Stream(config(split=split), split="train")

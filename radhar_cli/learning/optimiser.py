@@ -1,18 +1,12 @@
-"""One step of training: learning rate, logits, loss, gradient, update."""
+"""The learning rate of every step, and the optimiser that takes it."""
 
-from contextlib import nullcontext
-from dataclasses import dataclass
 from math import cos, pi
 from typing import Any
 
 import torch
-from torch import Tensor, nn
+from torch import nn
 
-from radhar_cli.learning.batches import Normalisation
-from radhar_cli.learning.machine import ExecutionPlan, autocast
-from radhar_cli.learning.process_group import Group
 from radhar_cli.learning.settings import TrainConfig
-from radhar_cli.learning.targets import class_loss, labels_loss, skeleton_loss
 
 _ADAM = {"step", "exp_avg", "exp_avg_sq"}
 
@@ -75,59 +69,3 @@ def check_state(optimiser: torch.optim.Optimizer, stored: dict[str, Any]) -> Non
             shape = torch.Size() if name == "step" else parameter.shape
             if state.keys() != names or state[name].shape != shape:
                 raise ValueError(f"the optimiser's {name} of weight {number} does not fit it")
-
-
-@dataclass(frozen=True)
-class TrainStep:
-    """Forward pass, loss, gradient and update of a training step."""
-
-    config: TrainConfig
-    prepare: Normalisation
-    plan: ExecutionPlan
-    group: Group
-
-    def loss_and_correct(
-        self, network: nn.Module, levels: Tensor, labels: Tensor
-    ) -> tuple[Tensor, float]:
-        """Sums over a batch of the loss, and of what is right: classes, or shares of the joints."""
-        device = self.plan.device
-        wanted, x = labels.to(device), self.prepare(levels.to(device, non_blocking=True))
-        with autocast(device, self.plan.precision):
-            outputs: Tensor = network(x)
-        if self.config.target == "skeleton":
-            return skeleton_loss(outputs.float(), wanted)
-        if self.config.target == "labels":
-            return labels_loss(outputs.float(), wanted)
-        return class_loss(outputs.float(), wanted, self.config.label_smoothing)
-
-    def step(
-        self,
-        network: Any,
-        optimiser: torch.optim.Optimizer,
-        levels: Tensor,
-        labels: Tensor,
-        batch_size: int,
-    ) -> tuple[float, float]:
-        """One update from this process's share, [B, C, H, W], of a batch.
-
-        `network` averages the gradients of the processes; `batch_size` is that of all of them.
-
-        Returns:
-            The mean loss of the share, and how much of it is right.
-        """
-        optimiser.zero_grad(set_to_none=True)
-        loss_sum, correct = 0.0, 0.0
-        parts = self.plan.parts(len(labels))
-        for number, part in enumerate(parts):
-            # Processes exchange their gradients in the last backward pass of a step alone.
-            alone = self.group.size == 1 or number == len(parts) - 1
-            with nullcontext() if alone else network.no_sync():
-                loss, part_correct = self.loss_and_correct(network, levels[part], labels[part])
-                # Processes average their gradients: the sum over all, divided by the whole batch.
-                torch.autograd.backward(loss * (self.group.size / batch_size))
-            loss_sum += float(loss.detach())
-            correct += part_correct
-        if self.config.gradient_clip_norm is not None:
-            nn.utils.clip_grad_norm_(network.parameters(), self.config.gradient_clip_norm)
-        optimiser.step()
-        return loss_sum / len(labels), correct

@@ -97,7 +97,6 @@ LIBRARIES: dict[str, set[str]] = {
     "distributed": {"dataset"},
     "pyarrow": {"dataset"},
     "yaml": {"config", "dataset", "commands"},
-    "sigmf": {"capture"},
     "torch": {"learning"},
     "timm": {"learning"},
     "sklearn": {"learning", "two_sample"},
@@ -178,9 +177,7 @@ ARRAYS = {"np.load", "np.memmap", "np.fromfile", "loadmat"}
 
 def test_arrays_from_elsewhere_are_opened_where_they_are_checked() -> None:
     users = {str(p.relative_to(PACKAGE)) for p in files() if ARRAYS & calls(p)}
-    assert users == {
-        f"capture/{name}.py" for name in ("array_files", "dca1000", "images", "sigmf_file")
-    }
+    assert users == {f"capture/{name}.py" for name in ("array_files", "dca1000", "images")}
 
 
 def test_noise_is_made_by_the_receiver_alone() -> None:

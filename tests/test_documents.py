@@ -143,23 +143,6 @@ def imported(path: Path) -> None:
     ran("import", "second_Raw_0.bin", "--radar", "setup.mmwave.json", "-o", path)
 
 
-def recording(path: Path) -> None:
-    """What a simulated radar received from a walker."""
-    (path.parent / "lab.yaml").write_text(LAB)
-    to = ["--to", "sigmf"] if path.suffix == ".sigmf-meta" else []
-    ran("simulate", "lab.yaml", "-a", "S8", "-o", "lab", "--raw", "--no-figures", *MAPS, *to)
-    for made in Path("lab").glob("recording.*"):
-        shutil.move(made, path.with_suffix(made.suffix))
-
-
-LAB = """
-radar: {carrier_hz: 10e9, bandwidth_hz: 1e9, prf_hz: 300, adc_rate_hz: 2.5e6}
-motion: {range_m: 2, angle_deg: 0}
-duration_s: 6
-"""
-MAPS = ("--maps", "stft")
-
-
 def array(path: Path) -> None:
     """Frames of a radar with two receivers."""
     beat = np.random.default_rng(0).normal(size=(2, 10, 32, 2, 64)).astype(np.float32)
@@ -204,7 +187,6 @@ FILES: dict[str, dict[str, Callable[[Path], object]]] = {
         "adc_data_Raw_0.bin": capture,
         "fall.h5": imported,
         "walk.npy": array,
-        "walk.sigmf-meta": recording,
         "measured/manifest.csv": manifest,
         "datasets/simulated": data_set,
         "runs/simulated": run,

@@ -3,7 +3,6 @@
 settings      the header of a capture, from a file or by hand
 dca1000       raw samples of TI's capture card
 array_files   .npy, .npz, .mat, HDF5
-sigmf_file    SigMF, in and out
 findings      estimates from the samples: offset binary, sign of the beat, clipping, losses
 recording     the recording file itself: docs/measured.md
 importing     converts a capture of any of these formats into a recording

@@ -86,7 +86,7 @@ def open_arrays(path: Path, settings: CaptureSettings, scratch: Path) -> Source:
         arrays = _mat5(path, settings)
     else:
         raise CaptureError(
-            f"{path}: unknown format; should be .npy, .npz, .mat, HDF5, SigMF, or .bin of a "
+            f"{path}: unknown format; should be .npy, .npz, .mat, HDF5, or .bin of a "
             "DCA1000 with --radar"
         )
     times = None if settings.times is None or len(arrays) == 1 else _times(arrays[1])

@@ -27,7 +27,6 @@ from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import Waveform
 
 TI_HEADERS = (".json", ".cfg")
-SIGMF = (".sigmf-meta", ".sigmf-data")
 GAP = 0.5  # shortest gap between frames, in pulse intervals
 MAX_HZ = 1e15
 JITTER = 0.1  # in pulse intervals, above which it is reported
@@ -81,10 +80,6 @@ def _opened(
         source = open_dca1000(paths, settings, header)
     elif len(paths) > 1:
         raise CaptureError(f"{paths[1]}: only .bin captures are split into several files")
-    elif suffix in SIGMF:
-        from radhar_cli.capture.sigmf_file import open_sigmf
-
-        source = open_sigmf(paths[0], settings)
     else:
         source = open_arrays(paths[0], settings, scratch)
     if 16 * source.receivers * (source.samples or 1) > MAX_PULSE:
@@ -260,7 +255,6 @@ def _info(
         pulses=source.pulses,
         segments=len(segments),
         receiver_delay_s=[n // per_turn * chirp for n in range(source.receivers)],
-        start_time=s.start_time,
         labels=[] if s.label is None else [Label(label=s.label, person=s.person)],
         source=SourceNote(format=name, files=[path.name for path in source.files], found=notes),
     )

@@ -66,7 +66,6 @@ class RecordingInfo(_Part):
         receivers, pulses: shape of the samples.
         segments: stretches of pulses without a gap.
         receiver_delay_s: delay of each receiver's pulses, if transmitters take turns.
-        start_time: of the first pulse, ISO 8601.
         labels, source: see `Label` and `SourceNote`.
     """
 
@@ -79,7 +78,6 @@ class RecordingInfo(_Part):
     pulses: Whole
     segments: Whole = 1
     receiver_delay_s: Annotated[list[float], Field(max_length=2**16)]
-    start_time: Text | None = None
     labels: Annotated[list[Label], Field(max_length=10_000)] = []
     source: SourceNote
 

@@ -41,7 +41,6 @@ class CaptureSettings(Section):
             `positive` TI's; detected if None.
         dataset, times: names of the samples, and of the pulses' times (s), within the file.
         axes: of an array, outermost first, in the order of the program that wrote it.
-        start_time: ISO 8601.
         label, person: of the whole recording.
     """
 
@@ -65,7 +64,6 @@ class CaptureSettings(Section):
     dataset: Text | None = None
     times: Text | None = None
     axes: tuple[AxisName, ...] | None = None
-    start_time: Text | None = None
     label: Text | None = None
     person: Text | None = None
 

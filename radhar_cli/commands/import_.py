@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.options import Replace, To, refuse_to_replace
+from radhar_cli.commands.options import Replace, refuse_to_replace
 from radhar_cli.commands.tell import report, tell
 
 
@@ -14,7 +14,7 @@ def import_(
         list[Path],
         typer.Argument(
             metavar="CAPTURE...",
-            help=".bin of a DCA1000 (the first is enough), .npy, .npz, .mat, HDF5 or SigMF.",
+            help=".bin of a DCA1000 (the first is enough), .npy, .npz, .mat or HDF5.",
         ),
     ],
     out: Annotated[Path, typer.Option("-o", "--out", help="Recording to write, such as walk.h5.")],
@@ -30,7 +30,6 @@ def import_(
     ] = None,
     label: Annotated[str | None, typer.Option(help="Activity label.")] = None,
     person: Annotated[str | None, typer.Option(help="Subject ID.")] = None,
-    to: To = None,
     overwrite: Replace = False,
 ) -> None:
     """Read a capture of a real radar into a recording file.
@@ -45,30 +44,22 @@ def import_(
     import json
 
     from radhar_cli.capture.importing import import_capture, read_settings
-    from radhar_cli.capture.sigmf_file import DATA, META, recording_or_sigmf
     from radhar_cli.errors import FolderError
 
-    sigmf = wants_sigmf(to)
     named = {"label": label, "person": person}
     overrides = [f"{key}={json.dumps(value)}" for key, value in named.items() if value is not None]
     settings = read_settings(radar, [*(set_ or []), *overrides])
     if out.resolve() in {path.resolve() for path in captures}:
         raise FolderError(f"{out}: is the capture itself; -o should name another file")
-    for path in (out.with_suffix(META), out.with_suffix(DATA)) if sigmf else (out,):
-        refuse_to_replace(path, overwrite, "walk.h5")
-    with recording_or_sigmf(out, sigmf) as (target, files):
-        info = import_capture(
-            captures, target, settings, str(radar) if radar else "--set", overwrite
-        )
-        for line in info.source.found:
-            tell(f"  {line}")
-        shape = f"{info.receivers} receiver{'s' * (info.receivers > 1)}, "
-        shape += f"{info.samples or 'no'} samples a chirp, "
-        tell(
-            f"{info.pulses} pulses at {info.prf_hz:.6g} Hz: {shape}{info.carrier_hz / 1e9:.6g} GHz"
-        )
+    refuse_to_replace(out, overwrite, "walk.h5")
+    info = import_capture(captures, out, settings, str(radar) if radar else "--set", overwrite)
+    for line in info.source.found:
+        tell(f"  {line}")
+    shape = f"{info.receivers} receiver{'s' * (info.receivers > 1)}, "
+    shape += f"{info.samples or 'no'} samples a chirp, "
+    tell(f"{info.pulses} pulses at {info.prf_hz:.6g} Hz: {shape}{info.carrier_hz / 1e9:.6g} GHz")
     report(
-        files=files,
+        files=[out],
         found=info.source.found,
         receivers=info.receivers,
         samples_per_chirp=info.samples,
@@ -76,23 +67,4 @@ def import_(
         prf_hz=info.prf_hz,
         carrier_hz=info.carrier_hz,
     )
-    for path in files:
-        tell(f"  {path}")
-
-
-def wants_sigmf(to: str | None) -> bool:
-    """Whether `--to` asks for SigMF.
-
-    Raises:
-        RadharError: it names another format, or sigmf is not installed.
-    """
-    from radhar_cli.errors import RadharError
-
-    if to is None:
-        return False
-    if to != "sigmf":
-        raise RadharError(f"--to {to}: should be sigmf; without --to a recording is written")
-    from radhar_cli.commands.learning_options import needs
-
-    needs("capture", ("sigmf",))
-    return True
+    tell(f"  {out}")

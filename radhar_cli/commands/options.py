@@ -28,9 +28,6 @@ Maps: TypeAlias = Annotated[
 Figures: TypeAlias = Annotated[
     bool, typer.Option("--figures/--no-figures", help="Draw the figures.")
 ]
-To: TypeAlias = Annotated[
-    str | None, typer.Option("--to", help="sigmf: write SigMF instead of a recording file.")
-]
 StartOver: TypeAlias = Annotated[
     bool, typer.Option("--overwrite", help="Start over in a folder that was written before.")
 ]

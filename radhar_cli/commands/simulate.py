@@ -11,14 +11,12 @@ from radhar_cli.commands.options import (
     Maps,
     Nominal,
     Overrides,
-    To,
     Tolerance,
     with_tolerance,
 )
 from radhar_cli.commands.tell import report, tell
 
 RECORDING = "recording.h5"
-RECORDINGS = (RECORDING, "recording.sigmf-meta", "recording.sigmf-data")
 FROM_FILE = "from_file"  # the class of `--motion` without `--activity`
 
 if TYPE_CHECKING:
@@ -52,7 +50,6 @@ def simulate(
         bool,
         typer.Option("--raw", help="Write recording.h5: the beat matrix, static returns included."),
     ] = False,
-    to: To = None,
     figures: Figures = True,
 ) -> None:
     """Simulate one scene: its maps, its truth and an animation.
@@ -63,11 +60,9 @@ def simulate(
 
       radhar simulate configs/quickstart.yaml --activity walking --seed 7 -o out/walk
     """
-    from radhar_cli.commands.import_ import wants_sigmf
     from radhar_cli.config import load_config
     from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.folder import refuse_file
-    from radhar_cli.errors import RadharError
     from radhar_cli.simulation import scene_file
     from radhar_cli.simulation.simulate import map_names
     from radhar_cli.simulation.simulate import simulate as simulate_scene
@@ -77,13 +72,10 @@ def simulate(
         activity = activity or FROM_FILE
         overrides = [*_looking_at(motion, activity), *overrides]
     loaded = load_config(config, overrides)
-    sigmf = wants_sigmf(to)
-    if sigmf and not raw:
-        raise RadharError("--to sigmf requires --raw")
     chosen = None if maps is None else map_names(maps.split(","))
     refuse_file(out)
     scene_file.refuse_foreign(out)
-    for name in (*scene_file.FILES, *RECORDINGS):
+    for name in (*scene_file.FILES, RECORDING):
         refuse_links(out, out / name)
     simulation = simulate_scene(
         loaded, activity, seed, index=index, nominal=nominal, joint=joint, maps=chosen, raw=raw
@@ -97,10 +89,9 @@ def simulate(
     for warning in (*warnings, *simulation.warnings):
         tell(f"warning: {warning}", err=True)
     written = scene_file.write_all(simulation, out)
-    for name in RECORDINGS:  # of an earlier scene
-        (out / name).unlink(missing_ok=True)
+    (out / RECORDING).unlink(missing_ok=True)  # of an earlier scene
     if raw:
-        written += _record(simulation, out / RECORDING, sigmf)
+        written.append(_record(simulation, out / RECORDING))
     if figures:
         written += _draw(simulation, out, overlay)
     _say(simulation, written)
@@ -129,22 +120,20 @@ def _say(simulation: "Simulation", written: list[Path]) -> None:
         tell(f"  {path}")
 
 
-def _record(simulation: "Simulation", path: Path, sigmf: bool) -> list[Path]:
+def _record(simulation: "Simulation", path: Path) -> Path:
     from radhar_cli.capture.board_frames import cube_recording
     from radhar_cli.capture.importing import write_simulated
     from radhar_cli.capture.recording import Label
-    from radhar_cli.capture.sigmf_file import recording_or_sigmf
 
     label, board = Label(label=simulation.activity.slug), simulation.board
-    with recording_or_sigmf(path, sigmf) as (target, files):
-        if board is not None:
-            beat = cube_recording(simulation.frames["cube"])
-            delays = [k * board.slot for k, _ in board.pairs]
-            write_simulated(target, beat, simulation.waveform, label, board.pulses, delays)
-        else:
-            assert simulation.beat is not None
-            write_simulated(target, simulation.beat[None], simulation.waveform, label)
-    return files
+    if board is not None:
+        beat = cube_recording(simulation.frames["cube"])
+        delays = [k * board.slot for k, _ in board.pairs]
+        write_simulated(path, beat, simulation.waveform, label, board.pulses, delays)
+    else:
+        assert simulation.beat is not None
+        write_simulated(path, simulation.beat[None], simulation.waveform, label)
+    return path
 
 
 def _looking_at(motion: Path, slug: str) -> list[str]:

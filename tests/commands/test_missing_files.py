@@ -11,10 +11,7 @@ from radhar_cli.errors import RadharError
 
 HEADER = ["carrier_hz=77e9", "bandwidth_hz=1e9", "adc_rate_hz=1e6", "prf_hz=1000"]
 SET = [word for one in [*HEADER, "samples=8", "receivers=1"] for word in ("--set", one)]
-CAPTURES = [
-    ["import", f"x.{suffix}", *SET]
-    for suffix in ("bin", "npy", "npz", "mat", "h5", "sigmf-meta", "sigmf-data")
-]
+CAPTURES = [["import", f"x.{suffix}", *SET] for suffix in ("bin", "npy", "npz", "mat", "h5")]
 HEADERS = [["import", "good.npy", "--radar", f"x.{suffix}"] for suffix in ("json", "cfg", "yaml")]
 OTHERS = [
     ["process", "x.h5", "--config", "c.yaml"],
@@ -72,8 +69,6 @@ def test_a_folder_is_no_file(words, place):
             ["generate", "c.yaml", "--recordings", "tree", "--set", "recordings.rows=[-1,1]"],
             "tree/a/0.png",
         ),
-        (["import", "x.sigmf-meta", *SET], "x.sigmf-data"),
-        (["import", "x.sigmf-data", *SET], "x.sigmf-meta"),
         (["import", "x_0.bin", *SET], "x_1.bin"),
     ],
     ids=str,
@@ -86,9 +81,6 @@ def test_a_file_that_may_not_be_read_is_not_called_damaged(words, file, place, m
             path.touch()
     if named.suffix == ".bin":
         named.write_bytes(bytes(100))
-    if named.suffix == ".sigmf-meta":
-        about = '{"core:datatype": "ci16_le", "core:version": "1.2.0"}'
-        named.write_text(f'{{"global": {about}, "captures": [], "annotations": []}}')
     allowed = os.access
     monkeypatch.setattr(
         os, "access", lambda path, mode: Path(path).name != Path(file).name and allowed(path, mode)

@@ -1,6 +1,5 @@
 """A file that another file names, or that lies beside it, may be a link, but not to elsewhere."""
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -18,23 +17,6 @@ from radhar_cli.learning.images.opening import open_images
 HEADER = ["carrier_hz=77e9", "bandwidth_hz=1e9", "adc_rate_hz=1e6", "prf_hz=1000"]
 
 Case = tuple[Path, Callable[[], object]]  # the file that is not named by the user; who reads it
-
-
-def sigmf(folder: Path) -> Case:
-    about = {"core:datatype": "ci16_le", "core:version": "1.2.0", "core:sample_rate": 1e3}
-    text = json.dumps({"global": about, "captures": [{"core:sample_start": 0}], "annotations": []})
-    (folder / "x.sigmf-meta").write_text(text)
-    (folder / "x.sigmf-data").write_bytes(bytes(8000))
-    settings = read_settings(None, ["carrier_hz=1e9"])
-    out = folder / "o.h5"
-    return folder / "x.sigmf-data", lambda: import_capture([folder / "x.sigmf-meta"], out, settings)
-
-
-def sigmf_metadata(folder: Path) -> Case:
-    sigmf(folder)
-    settings = read_settings(None, ["carrier_hz=1e9"])
-    out = folder / "o.h5"
-    return folder / "x.sigmf-meta", lambda: import_capture([folder / "x.sigmf-data"], out, settings)
 
 
 def next_file_of_a_capture(folder: Path) -> Case:
@@ -89,7 +71,7 @@ def skeleton_beside_an_amc(folder: Path) -> Case:
 
 
 CASES = [
-    *(sigmf, sigmf_metadata, next_file_of_a_capture, recording_of_a_manifest, image_of_a_tree),
+    *(next_file_of_a_capture, recording_of_a_manifest, image_of_a_tree),
     *(image_to_train_on, motion_file_of_a_pattern, skeleton_beside_an_amc),
 ]
 

@@ -1,19 +1,16 @@
-"""SigMF, out and in again; what others wrote; what should not be read."""
+"""Recordings: what is written, and what should not be read."""
 
 import json
-import sys
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
 from command_line import radhar
-from sigmf import sigmffile
 from small import small_config
 
 from radhar_cli.capture.importing import import_capture, read_settings
 from radhar_cli.capture.recording import Recording, is_recording
-from radhar_cli.capture.sigmf_file import write_sigmf
 from radhar_cli.errors import CaptureError, FolderError, RadharError
 
 RADAR = ["carrier_hz=77e9", "bandwidth_hz=1e9", "adc_rate_hz=1e6", "prf_hz=1000"]
@@ -32,91 +29,13 @@ def recording(tmp_path: Path) -> Path:
     x = rng.integers(-999, 999, (3, 8, 40, 2)).astype("i2")
     np.save(tmp_path / "x.npy", x)
     overrides = [*RADAR, "axes=[receiver, sample, pulse, iq]", "beat=negative", "label=walking"]
-    overrides += ["frame_pulses=10", "frame_s=0.1", "start_time=2026-01-01T00:00:00Z", "person=ann"]
+    overrides += ["frame_pulses=10", "frame_s=0.1", "person=ann"]
     import_capture([tmp_path / "x.npy"], tmp_path / "x.h5", read_settings(None, overrides))
     return tmp_path / "x.h5"
 
 
-def test_export_and_import_are_inverse(recording: Path, tmp_path: Path) -> None:
-    done = radhar("import", tmp_path / "x.npy", "--to", "sigmf", "-o", tmp_path / "none")
-    assert done.returncode == 2
-    with Recording(recording) as one:
-        meta, _ = write_sigmf(one, tmp_path / "y")
-        info, times = one.info, one.segments.times(np.arange(40))
-        beat = one.beat(0, 40)
-    import_capture([meta], tmp_path / "again.h5", read_settings(None, []))
-    with Recording(tmp_path / "again.h5") as again:
-        assert np.array_equal(again.beat(0, 40), beat)
-        assert again.segments.times(np.arange(40)) == pytest.approx(times)
-        for key in ("carrier_hz", "prf_hz", "bandwidth_hz", "adc_rate_hz", "start_time"):
-            assert getattr(again.info, key) == pytest.approx(getattr(info, key))
-
-
-def test_the_sigmf_package_reads_exported_recordings(recording: Path, tmp_path: Path) -> None:
-    with Recording(recording) as one:
-        meta, _ = write_sigmf(one, tmp_path / "y")
-        beat = one.beat(0, 40)
-    found = sigmffile.fromfile(str(meta), autoscale=False)
-    found.validate()
-    stream = found.read_samples().reshape(40, 8, 3)
-    assert np.array_equal(stream.transpose(2, 1, 0), beat)
-    assert found.get_annotations()[0]["core:label"] == "walking"
-    assert len(found.get_captures()) == 4
-
-
-def test_slow_time_of_other_software_is_imported(tmp_path: Path) -> None:
-    """A continuous-wave radar recorded by a software radio: the rate is that of the pulses."""
-    x = np.exp(2j * np.pi * 0.1 * np.arange(500)).astype("c8")
-    x.tofile(tmp_path / "cw.sigmf-data")
-    about = {"core:datatype": "cf32_le", "core:version": "1.2.0", "core:sample_rate": 800.0}
-    captures = [{"core:sample_start": 0, "core:frequency": 24e9}]
-    meta = {"global": about, "captures": captures, "annotations": []}
-    (tmp_path / "cw.sigmf-meta").write_text(json.dumps(meta))
-    import_capture([tmp_path / "cw.sigmf-data"], tmp_path / "cw.h5", read_settings(None, []))
-    with Recording(tmp_path / "cw.h5") as one:
-        assert (one.info.carrier_hz, one.info.prf_hz, one.info.samples) == (24e9, 800, None)
-        assert np.array_equal(one.beat(0, 500)[0, 0], x)
-
-
-WRONG = [
-    ("core:datatype", "cf99_le", "is not valid SigMF"),
-    ("core:dataset", "../../etc/passwd", "core:dataset"),
-    ("core:sha512", "0" * 128, "differs from the core:sha512"),
-    ("core:num_channels", 900, "a pulse by"),
-    ("core:num_channels", 10**9, "at most"),
-    ("radhar:samples", "many", "samples"),
-    ("radhar:segment_start_s", [0, 1, 2, 10**400], "one time per capture"),
-    ("radhar:segment_start_s", [0], "one time per capture"),
-]
-
-
-@pytest.mark.parametrize(("key", "value", "expected"), WRONG)
-def test_wrong_metadata_are_refused_in_one_line(
-    recording: Path, tmp_path: Path, key: str, value: object, expected: str
-) -> None:
-    with Recording(recording) as one:
-        meta, _ = write_sigmf(one, tmp_path / "y")
-    document = json.loads(meta.read_text())
-    document["global"][key] = value
-    meta.write_text(json.dumps(document))
-    done = radhar("import", meta, "-o", tmp_path / "out.h5")
-    assert done.returncode == 2, done.stdout
-    assert expected in done.stderr
-    assert done.stderr.count("\n") == 1, done.stderr
-
-
-def test_without_the_package_it_says_what_to_install(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setitem(sys.modules, "sigmf.validate", None)
-    (tmp_path / "x.sigmf-meta").write_text("{}")
-    done = radhar("import", tmp_path / "x.sigmf-meta", "-o", tmp_path / "o.h5")
-    assert done.returncode == 2
-    assert "radhar[capture]" in done.stderr
-
-
 def test_simulate_writes_what_it_received(tmp_path: Path) -> None:
-    """The recording has the samples of the scene; SigMF holds the same."""
+    """The recording has the samples of the scene."""
     config = small_config(tmp_path, SMALL_RAW)
     command = ("simulate", config, "--no-figures", "--maps", "stft", "--raw", "-o", tmp_path / "s")
     assert radhar(*command).returncode == 0
@@ -126,14 +45,6 @@ def test_simulate_writes_what_it_received(tmp_path: Path) -> None:
         beat = one.beat(0, one.info.pulses)
         assert beat.shape == (1, 400, 100)
         assert one.info.labels[0].label == "walking"
-    done = radhar(*command, "--to", "sigmf")
-    assert done.returncode == 0, done.stderr
-    assert not path.exists()
-    meta = path.with_suffix(".sigmf-meta")
-    import_capture([meta], tmp_path / "again.h5", read_settings(None, []))
-    with Recording(tmp_path / "again.h5") as again:
-        assert np.array_equal(again.beat(0, 100), beat)
-    assert radhar(*command[:-4], "--to", "sigmf", "-o", tmp_path / "t").returncode == 2
 
 
 class TestHostileRecording:

@@ -96,11 +96,9 @@ def statistics(one: Map) -> dict[str, float]:
         "receding energy, %": numbers["receding_energy"],
         "envelope (95 %) over torso": float(np.percentile(envelope, 95) / numbers["torso_median"]),
         "envelope, median, m/s": float(np.median(envelope)),
-        "sd of Doppler in a column, m/s": numbers["column_spread"],
         "energy near the torso line, %": numbers["torso_energy"],
         "occupied cells, %": 100 * float(occupied[band].mean()),
         "torso ripple, m/s": numbers["torso_ripple"],
-        "zero line over floor, dB": numbers["zero_over_floor"],
     }
 
 

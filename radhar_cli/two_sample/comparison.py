@@ -1,38 +1,58 @@
-"""`radhar compare`: statistics, distances and the classifier test of two data sets."""
+"""`radhar compare`: statistics, distances and the classifier test of two data sets.
 
-from collections.abc import Mapping
+The test is that of D. Lopez-Paz and M. Oquab, "Revisiting classifier two-sample tests", ICLR 2017:
+accuracy on what was held out is 1/2 where both are drawn from one distribution. The classifier is
+logistic regression.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+from PIL import Image
+from scipy.stats import ks_2samp, wasserstein_distance
 
-from radhar_cli.arrays import Float, Index
+from radhar_cli.arrays import Bool, Float, Index
+from radhar_cli.learning.metrics import wilson
 from radhar_cli.progress import Progress
 from radhar_cli.randomness import TRAINING, stream
-from radhar_cli.two_sample.classifier_test import Tested, held_out, interval
-from radhar_cli.two_sample.description import Described, Scale, describe, span
-from radhar_cli.two_sample.distances import Difference, difference, uncovered
-from radhar_cli.two_sample.map_statistics import STATISTICS
-from radhar_cli.two_sample.sides import Side, open_sides
+from radhar_cli.two_sample.map_statistics import (
+    STATISTICS,
+    DopplerMap,
+    mask_statistics,
+    power_statistics,
+)
+from radhar_cli.two_sample.sides import ASSUMED_DB, Pair, Side, open_sides
 
 DIFFERENT = 0.02  # of edges, over their span
-FARTHEST = 5.0  # standard deviations of a statistic
+FEWEST = 5  # known values of a side, where it has as many maps
+ROUNDING = 1e-9  # of the largest value: a standard deviation below is none
+ZERO, BEYOND, NEAR = 0.05, 0.867, 0.025  # of the largest Doppler
+COARSE = (32, 16)  # rows and columns of the image that the classifier sees
+FOLDS = 5
+SHARED = 1.7  # times the variance of independent tests: the folds' classifiers share samples
+PENALTY = 10.0  # of the squared weights, relative to the sum of losses
 
 
-@dataclass(frozen=True)
-class Options:
-    """What is asked for."""
+class Spread(NamedTuple):
+    """Mean and standard deviation of some numbers, NaN of none, and how many there are."""
 
-    map_name: str | None = None  # which map; the first of each if None
-    # {class in one of the sets: common name, or None to leave it out}
-    names: Mapping[str, str | None] | None = None
-    resize: bool = False  # bring all images to the size of the measured ones
-    most: int = 200  # maps of a class and side, drawn at random where there are more
-    seed: int = 1  # of what is drawn
-    # half the width of the line at zero Doppler, Hz or rows; None for 5 % of the largest
-    zero: float | None = None
-    pictures: int = 6  # in a row of a figure
+    mean: float
+    sd: float
+    known: int
+
+
+class Difference(NamedTuple):
+    """Two samples of a number."""
+
+    simulated: Spread
+    measured: Spread
+    # Wasserstein distance (the mean of how far quantiles are apart) over the root of the mean of
+    # both variances; of all together where these are 0
+    distance: float
+    p: float  # of the test of Kolmogorov and Smirnov, where both were drawn from one distribution
 
 
 @dataclass(frozen=True)
@@ -40,243 +60,240 @@ class ClassCompared:
     """One class."""
 
     name: str
-    simulated: Described
-    measured: Described
+    rows: tuple[Index, Index]  # of as many simulated and measured maps, drawn
     differences: dict[str, Difference]  # {statistic: difference}, the largest first
-    # the classifier test, of as many maps of either side; None where a side has fewer than two
-    # persons or maps
-    tested: Tested | None
-    surest: Index  # rows of simulated maps, what is told from measured ones most surely first
-    uncovered: Float  # [measured] how far from anything simulated each is
-    far: Index  # rows of measured maps, what is least like simulated ones first
-    typical: tuple[Index, Index]  # rows of simulated and of measured maps, from the middle outwards
+    # how many of how many maps are told rightly; None where a side has fewer than two persons or
+    # maps
+    tested: tuple[int, int] | None
 
 
 @dataclass(frozen=True)
 class Comparison:
     """Two data sets compared."""
 
-    sides: tuple[Side, Side]  # simulated, measured
-    scale: Scale
-    shown: tuple[float, float]  # share of the rows, from the top, that pictures show
+    pair: Pair
     classes: tuple[ClassCompared, ...]
     warnings: tuple[str, ...]  # what a reader should know
-    options: Options
+
+    def unit(self, statistic: str) -> str:
+        """Unit of a statistic."""
+        unit = STATISTICS[statistic].unit
+        return self.pair.units.get(unit, unit)
 
     def numbers(self) -> dict[str, Any]:
         """What report.json holds."""
-        simulated, measured = self.sides
+        simulated, measured = (side.images for side in self.pair.sides)
         tests = [one.tested for one in self.classes if one.tested is not None]
         return {
-            "simulated": _about(simulated),
-            "measured": _about(measured),
-            "map": simulated.images.map or measured.images.map,
-            "seed": self.options.seed,
-            "most_per_class": self.options.most,
-            "units": self.scale.units(),
+            "simulated": str(simulated.where),
+            "measured": str(measured.where),
+            "map": simulated.map or measured.map,
+            "units": self.pair.units,
             "warnings": list(self.warnings),
-            "test": interval(tests) if tests else None,
-            "coverage": float(np.mean(np.concatenate([c.uncovered for c in self.classes]) <= 1)),
+            "test": interval(tests),
             "classes": {one.name: self._of_class(one) for one in self.classes},
         }
 
     def _of_class(self, one: ClassCompared) -> dict[str, Any]:
-        names = [side.images.names for side in self.sides]
         return {
-            "simulated": len(one.simulated.rows),
-            "measured": len(one.measured.rows),
-            "test": None if one.tested is None else interval([one.tested]),
-            "coverage": float(np.mean(one.uncovered <= 1)),
+            "maps": one.rows[0].size,
+            "test": interval([] if one.tested is None else [one.tested]),
             "statistics": {
                 name: {
                     "words": STATISTICS[name].words,
-                    "unit": self.scale.unit(name),
+                    "unit": self.unit(name),
                     **difference._asdict(),
                     "simulated": difference.simulated._asdict(),
                     "measured": difference.measured._asdict(),
                 }
                 for name, difference in one.differences.items()
             },
-            "surest_simulated": [names[0][row] for row in one.surest[: self.options.pictures]],
-            "least_covered": [names[1][row] for row in one.far[: self.options.pictures]],
         }
 
 
-def _about(side: Side) -> dict[str, Any]:
-    return {
-        "path": str(side.where),
-        "images": int(sum(rows.size for rows in side.classes.values())),
-        "left_out": side.left_out,
-        "masks": side.masks,
-        "persons_known": side.persons,
-        "dynamic_range_db": side.dynamic_range_db,
-    }
-
-
-def compare(simulated: Path, measured: Path, options: Options, progress: Progress) -> Comparison:
+def compare(
+    simulated: Path,
+    measured: Path,
+    progress: Progress,
+    map_name: str | None = None,
+    names: Mapping[str, str | None] | None = None,
+    most: int = 200,
+    seed: int = 1,
+) -> Comparison:
     """Compare two data sets class by class.
+
+    Args:
+        map_name: which map; the first of each if None.
+        names: {class in one of the sets: common name, or None to leave it out}.
+        most: maps of a class and side; where there are more, or the other side has fewer, they
+            are drawn at random.
+        seed: of what is drawn.
 
     Raises:
         FolderError: one cannot be read, or they do not fit each other.
-        RadharError: the line at zero is too wide.
     """
-    sides = open_sides(simulated, measured, options.map_name, options.names or {}, options.resize)
-    scale = Scale.of(sides, options.zero)
-    scale.refuse_zero(sides)
-    names = [*sides[0].classes]
-    drawn = {
-        name: [_drawn(side, name, n, options) for n, side in enumerate(sides)] for name in names
-    }
-    progress.stage("measuring", sum(rows.size for both in drawn.values() for rows in both), 0)
-    described: dict[str, tuple[Described, Described]] = {}
-    for name, both in drawn.items():
-        one, other = (describe(side, rows, scale) for side, rows in zip(sides, both, strict=True))
-        described[name] = one, other
-        progress.advance(one.rows.size + other.rows.size)
-    shown = span([one for both in described.values() for one in both])
-    classes = tuple(
-        _class(name, described[name], sides, scale, shown, options.seed) for name in names
+    pair = open_sides(simulated, measured, map_name, names or {})
+    drawn = {name: _drawn(pair, name, most, seed) for name in pair.sides[0].classes}
+    progress.stage("measuring", 2 * sum(one.size for one, _ in drawn.values()), 0)
+    classes = []
+    for name, rows in drawn.items():
+        classes.append(_class(name, rows, pair, seed))
+        progress.advance(2 * rows[0].size)
+    return Comparison(pair, tuple(classes), tuple(_warnings(pair, classes)))
+
+
+def _drawn(pair: Pair, name: str, most: int, seed: int) -> tuple[Index, Index]:
+    """Rows of a class, as many of either side."""
+    rows = [side.classes[name] for side in pair.sides]
+    count = min(most, *(some.size for some in rows))
+    rng = stream(seed, TRAINING, name=f"compare {name}")
+    first, second = (np.sort(rng.choice(some, count, replace=False)) for some in rows)
+    return first, second
+
+
+def _class(name: str, rows: tuple[Index, Index], pair: Pair, seed: int) -> ClassCompared:
+    both = list(zip(pair.sides, rows, strict=True))
+    features = np.array([[_features(side, row, pair) for row in some] for side, some in both])
+    names = [key for key, one in STATISTICS.items() if pair.power or not one.of_power]
+    found = {key: difference(*features[:, :, column]) for column, key in enumerate(names)}
+    order = sorted(found, key=lambda key: -np.nan_to_num(found[key].distance, nan=-1))
+    right = told_rightly(
+        np.concatenate(features),
+        np.repeat([True, False], rows[0].size),
+        np.concatenate([side.group[some] for side, some in both]),
+        int(stream(seed, TRAINING, name=f"compare test {name}").integers(2**31)),
     )
-    fine = described[names[0]][0].fine.shape[1]
-    return Comparison(
-        sides,
-        scale,
-        (shown.start / fine, shown.stop / fine),
-        classes,
-        tuple(_warnings(sides, scale, drawn, classes)),
-        options,
-    )
+    tested = None if right is None else (right, 2 * rows[0].size)
+    return ClassCompared(name, rows, {key: found[key] for key in order}, tested)
 
 
-def _drawn(side: Side, name: str, number: int, options: Options) -> Index:
-    rows = side.classes[name]
-    if rows.size <= options.most:
-        return rows
-    rng = stream(options.seed, TRAINING, number, name=f"compare {name}")
-    return np.sort(rng.choice(rows, options.most, replace=False))
+def _features(side: Side, row: int, pair: Pair) -> Float:
+    """Statistics of a map, then its image in few pixels."""
+    levels = side.levels(row)
+    left, right, bottom, top = pair.edges(side, row)
+    height = (top - bottom) / len(levels)
+    middle = top / height - 0.5  # where zero lies, in rows
+    if not pair.ranges:  # on a row or between two, so that slightly other axes measure alike
+        middle = round(2 * middle) / 2
+    doppler = height * (middle - np.arange(len(levels)))
+    largest = float(np.abs(doppler).max())
+    zero = -1.0 if pair.ranges else max(ZERO * largest, 1.001 * height)  # a row on either side
+    one, beyond = DopplerMap(side.power(levels), doppler), BEYOND * largest
+    occupied = levels >= 128 if side.masks else one.occupied(beyond)
+    values = mask_statistics(occupied, doppler, right - left, zero)
+    if pair.power:
+        values |= power_statistics(one, zero, beyond, NEAR * largest, values["active"] > 0)
+    statistics = [values[name] for name in STATISTICS if name in values]
+    picture = Image.fromarray(levels.astype(np.float32) / 255)
+    few = np.asarray(picture.resize(COARSE[::-1], Image.Resampling.BOX))
+    return np.concatenate([statistics, few.ravel()])
 
 
-def _class(
-    name: str,
-    both: tuple[Described, Described],
-    sides: tuple[Side, Side],
-    scale: Scale,
-    shown: slice,
-    seed: int,
-) -> ClassCompared:
-    rng = stream(seed, TRAINING, name=f"compare test {name}")
-    count = min(len(one.rows) for one in both)
-    some = [np.sort(rng.permutation(len(one.rows))[:count]) for one in both]
-    features = [one.features(shown) for one in both]
-    truth = np.repeat([True, False], count)
-    group = np.concatenate(
-        [side.group[one.rows[part]] for side, one, part in zip(sides, both, some, strict=True)]
-    )
-    equal = np.concatenate([one[part] for one, part in zip(features, some, strict=True)])
-    tested = held_out(equal, truth, group, rng)
-    surest = both[0].rows[some[0]]
-    if tested is not None:
-        surest = surest[np.argsort(-tested.score[truth], kind="stable")]
-    near = [_comparable(one, features[1], len(scale.names)) for one in features]
-    open_ = uncovered(*near)
-    far = both[1].rows[np.argsort(-open_, kind="stable")]
-    distances = {
-        key: difference(*(one.statistics[:, column] for one in both))
-        for column, key in enumerate(scale.names)
-    }
-    order = sorted(distances, key=lambda key: -np.nan_to_num(distances[key].distance, nan=-1))
-    typical = []  # from the middle outwards
-    for one, here in zip(both, near, strict=True):
-        away = ((here - np.median(here, axis=0)) ** 2).sum(axis=1)
-        typical.append(one.rows[np.argsort(away, kind="stable")])
-    return ClassCompared(
-        name,
-        *both,
-        {key: distances[key] for key in order},
-        tested,
-        surest,
-        open_,
-        far,
-        (typical[0], typical[1]),
-    )
+def difference(simulated: Float, measured: Float) -> Difference:
+    """Compare values [N] and [M]; NaN are left out, and all is NaN where fewer than 5 are left."""
+    x, y = (values[np.isfinite(values)] for values in (simulated, measured))
+    spreads = _spread(x), _spread(y)
+    if x.size < min(FEWEST, simulated.size) or y.size < min(FEWEST, measured.size):
+        return Difference(*spreads, np.nan, np.nan)
+    scale = float(np.hypot(spreads[0].sd, spreads[1].sd) / np.sqrt(2))
+    every = np.concatenate([x, y])
+    if scale <= ROUNDING * np.abs(every).max():
+        scale = float(every.std()) or 1.0
+    return Difference(*spreads, wasserstein_distance(x, y) / scale, float(ks_2samp(x, y).pvalue))
 
 
-def _comparable(features: Float, measured: Float, statistics: int) -> Float:
-    """Features [N, D] in the spread of the measured ones: all statistics weigh as much as pixels.
+def _spread(values: Float) -> Spread:
+    if not values.size:
+        return Spread(np.nan, np.nan, 0)
+    return Spread(float(values.mean()), float(values.std()), values.size)
 
-    Statistics end at 5 standard deviations; what is not known is the mean.
+
+def told_rightly(features: Float, truth: Bool, group: Index, seed: int) -> int | None:
+    """How many samples a classifier that has learned from others tells rightly.
+
+    Args:
+        features: [N, D]; what is not finite counts as the mean.
+        truth: [N] kind of each.
+        group: [N]; samples of one kind and group are held out together.
+
+    Returns:
+        None where a kind has fewer than two groups.
     """
-    known = np.ma.masked_invalid(measured)
-    mean, variance = known.mean(axis=0).filled(0), known.var(axis=0).filled(0)
-    away = np.nan_to_num(features - mean, nan=0.0)
-    sd = np.sqrt(variance[:statistics])
-    numbers = np.clip(away[:, :statistics] / np.where(sd > 0, sd, 1), -FARTHEST, FARTHEST)
-    pixels = away[:, statistics:] / max(np.sqrt(variance[statistics:].sum()), 1e-6)
-    return np.hstack([numbers / np.sqrt(statistics), pixels])
+    from sklearn.impute import SimpleImputer
+    from sklearn.linear_model import LogisticRegression
+    from sklearn.model_selection import StratifiedGroupKFold, cross_val_predict
+    from sklearn.pipeline import make_pipeline
+    from sklearn.preprocessing import StandardScaler
+
+    count = min(FOLDS, *(np.unique(group[truth == kind]).size for kind in (True, False)))
+    if count < 2:
+        return None
+    found = cross_val_predict(
+        make_pipeline(
+            SimpleImputer(keep_empty_features=True),
+            StandardScaler(),
+            LogisticRegression(C=1 / PENALTY, max_iter=1000),
+        ),
+        np.where(np.isfinite(features), features, np.nan),
+        truth,
+        groups=2 * group + truth,
+        cv=StratifiedGroupKFold(count, shuffle=True, random_state=seed),
+    )
+    return int((found == truth).sum())
 
 
-def _warnings(
-    sides: tuple[Side, Side],
-    scale: Scale,
-    drawn: dict[str, list[Index]],
-    classes: tuple[ClassCompared, ...],
-) -> list[str]:
+def interval(tests: Sequence[tuple[int, int]]) -> dict[str, Any] | None:
+    """Accuracy of some tests (right, of how many) together, with Wilson's interval of 95 %.
+
+    Samples are held out in turn, so that tests depend on each other: where nothing can be told,
+    accuracy varies with 1.6 to 1.7 times the variance of as many independent ones
+    (tests/two_sample). The interval is that of 1.7 times fewer.
+    """
+    right, count = sum(one[0] for one in tests), sum(one[1] for one in tests)
+    if not count:
+        return None
+    independent = round(count / SHARED)
+    return {
+        "images": count,
+        "right": right,
+        "accuracy": right / count,
+        "accuracy_95": list(wilson(round(right / count * independent), independent)),
+    }
+
+
+def _warnings(pair: Pair, classes: Sequence[ClassCompared]) -> Iterator[str]:
     """What a reader should know, in words."""
-    warnings = []
-    for side in sides:
+    simulated, measured = pair.sides
+    here, there = (side.images.where for side in pair.sides)
+    for side in pair.sides:
         if side.left_out:
             lost = ", ".join(f"{name} ({n})" for name, n in side.left_out.items())
-            warnings.append(f"{side.where}: left out, as it alone has them: {lost}")
-    simulated, measured = sides
+            yield f"{side.images.where}: left out, as it alone has them: {lost}"
+        if not side.masks and side.dynamic_range_db is None:
+            yield f"{side.images.where}: dynamic range unknown, {ASSUMED_DB:g} dB assumed"
+        if side.images.size != side.size:
+            sizes = ["{} x {} px".format(*size) for size in (side.images.size, side.size)]
+            yield f"{side.images.where}: images of {sizes[0]} are brought to {sizes[1]}"
     if simulated.masks != measured.masks:
-        kinds = ["masks" if side.masks else "grey levels" for side in sides]
-        warnings.append(
-            f"{simulated.where} has {kinds[0]}, {measured.where} {kinds[1]}: a classifier can use "
-            "that alone"
-        )
-    unknown = [side for side in sides if not side.masks and side.dynamic_range_db is None]
-    warnings += [f"{side.where}: dynamic range unknown, 40 dB assumed" for side in unknown]
-    spans = [side.dynamic_range_db for side in sides]
+        kinds = ["masks" if side.masks else "grey levels" for side in pair.sides]
+        yield f"{here} has {kinds[0]}, {there} {kinds[1]}: a classifier can use that alone"
+    spans = [side.dynamic_range_db for side in pair.sides]
     if None not in spans and spans[0] != spans[1]:
-        warnings.append(
-            f"levels span {spans[0]:g} dB in {simulated.where}, {spans[1]:g} dB in "
-            f"{measured.where}: should be the same"
-        )
-    if not scale.axes:
-        without = ", ".join(str(side.where) for side in sides if side.extent is None)
-        middle = "" if scale.ranges else "; zero Doppler is taken to be the middle row"
-        warnings.append(f"{without}: has no axes, so all is counted in px{middle}")
-    else:
-        warnings += _different_axes(sides, scale, drawn)
-    drawn_too = {h for one in classes for h in one.simulated.hashes if h is not None}
-    same = sum(h in drawn_too for one in classes for h in one.measured.hashes)
-    if same:
-        every = sum(len(one.measured.hashes) for one in classes)
-        warnings.append(
-            f"{same} of {every} images of {measured.where} are the same, pixel by pixel, in "
-            f"{simulated.where}: the sides should share none"
-        )
+        yield f"levels span {spans[0]:g} dB in {here}, {spans[1]:g} dB in {there}: should be alike"
+    if not pair.axes:
+        without = ", ".join(str(s.images.where) for s in pair.sides if s.extent is None)
+        middle = "" if pair.ranges else "; zero Doppler is taken to be the middle row"
+        yield f"{without}: has no axes, so all is counted in px{middle}"
     for one in classes:
-        if one.tested is None:
-            warnings.append(f"{one.name}: no test; each side should have two persons or maps")
-    return warnings
-
-
-def _different_axes(
-    sides: tuple[Side, Side], scale: Scale, drawn: dict[str, list[Index]]
-) -> list[str]:
-    warnings = []
-    for name, rows in drawn.items():
         edges = [
-            np.median([scale.edges(side, int(row)) for row in some], axis=0)
-            for side, some in zip(sides, rows, strict=True)
+            np.median([pair.edges(side, int(row)) for row in some], axis=0)
+            for side, some in zip(pair.sides, one.rows, strict=True)
         ]
-        left, right, bottom, top = edges[1]
-        size = np.array([right - left, right - left, top - bottom, top - bottom])
-        if (np.abs(edges[0] - edges[1]) > DIFFERENT * size).any():
+        size = np.repeat(np.diff(edges[1])[[0, 2]], 2)
+        if pair.axes and (np.abs(edges[0] - edges[1]) > DIFFERENT * size).any():
             told = [
-                f"{e[1] - e[0]:.4g} s, {e[2]:.4g} to {e[3]:.4g} {scale.units()['rows']}"
-                for e in edges
+                f"{e[1] - e[0]:.4g} s, {e[2]:.4g} to {e[3]:.4g} {pair.units['rows']}" for e in edges
             ]
-            warnings.append(f"{name}: axes differ, {told[0]} simulated, {told[1]} measured")
-    return warnings
+            yield f"{one.name}: axes differ, {told[0]} simulated, {told[1]} measured"
+        if one.tested is None:
+            yield f"{one.name}: no test; each side should have two persons or maps"

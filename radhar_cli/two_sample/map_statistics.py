@@ -1,6 +1,5 @@
 """What a radar engineer looks at in a Doppler-time map, in numbers."""
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +12,38 @@ JOINED = 2  # cells between two pieces that are one
 SHORT = 0.02  # of the energy: rows may lack so much below the floor, where it is not white
 SLOW = 1.8  # times the torso: limbs are faster
 EIGHT = np.ones((3, 3), bool)  # neighbours of a cell
+
+
+class Statistic(NamedTuple):
+    """What a statistic is called in tables."""
+
+    words: str  # for people
+    unit: str  # "%", "dB", "" of a number, "rows" (the unit of rows), "columns" (of columns)
+    of_power: bool = False  # whether it needs power, not occupied cells alone
+
+
+STATISTICS = {
+    "occupied": Statistic("occupied cells", "%"),
+    "receding": Statistic("cells that recede", "%"),
+    "width": Statistic("width of 95 % of the cells", "rows"),
+    "upper_envelope": Statistic("upper envelope, 95 %", "rows"),
+    "lower_envelope": Statistic("lower envelope, 5 %", "rows"),
+    "swings": Statistic("changes of direction", ""),
+    "active": Statistic("time active", "columns"),
+    "first": Statistic("quiet at the start", "columns"),
+    "start_height": Statistic("height of the first column", "rows"),
+    "zero_line": Statistic("columns with a zero line", "%"),
+    "zero_line_offset": Statistic("middle of the zero line", "rows"),
+    "stray": Statistic("stray cells", "%"),
+    "peak_over_floor": Statistic("peak over floor", "dB", True),
+    "noise_sd": Statistic("sd of the noise", "dB", True),
+    "limb_below_torso": Statistic("limb below torso", "dB", True),
+    "fast_energy": Statistic("energy above 1.8 x torso", "%", True),
+    "receding_energy": Statistic("receding energy", "%", True),
+    "torso_energy": Statistic("energy near the torso line", "%", True),
+    "torso_ripple": Statistic("ripple of the torso line", "rows", True),
+    "torso_median": Statistic("Doppler of the torso", "rows", True),
+}
 
 
 class DopplerMap(NamedTuple):
@@ -34,27 +65,15 @@ class DopplerMap(NamedTuple):
         """Cells [rows, columns] above the noise, in the mean of 3 x 3."""
         return np.asarray(uniform_filter(self.power, 3) > self.threshold(beyond))
 
-    def without_noise(self, zero: float, beyond: float) -> Float:
-        """Power [rows, columns] less the mean of the noise, 0 within `zero`: noise adds up to 0."""
-        clean: Float = self.power - self.noise(beyond).mean()
-        clean[np.abs(self.doppler) <= zero] = 0
-        return clean
-
-    def torso_line(self, zero: float) -> Float:
-        """Doppler of the torso [columns]: where the mean of five rows is largest, smoothed."""
-        moving = np.where(np.abs(self.doppler)[:, None] <= zero, 0, self.power)
-        line: Float = median_filter(self.doppler[uniform_filter(moving, (5, 1)).argmax(axis=0)], 9)
-        return line
-
 
 def power_statistics(
     one: DopplerMap, zero: float, beyond: float, near: float, body: bool = True
 ) -> dict[str, float]:
     """Statistics of power, under the names of `STATISTICS`.
 
-    Of energy above the noise, the line at zero left out. A limb is the 75th percentile of the
-    largest power of each column beyond 1.8 times the torso's Doppler, the torso the median of the
-    columns' peaks; ripple is 5 to 95 % of the torso's line. What noise leaves undefined is
+    Of energy above the noise, the line at zero left out. The torso is where the mean of five rows
+    is largest, smoothed, a limb the 75th percentile of the largest power of each column beyond 1.8
+    times its Doppler; ripple is 5 to 95 % of the torso's line. What noise leaves undefined is
     NaN: shares of an energy of which more than 2 % is missing in rows below the floor (after a
     canceller noise is weaker near zero), a limb that does not stand out.
 
@@ -65,14 +84,12 @@ def power_statistics(
         body: whether anybody moves; else what is said of torso and limbs is NaN, not noise's.
     """
     doppler, noise = one.doppler[:, None], one.noise(beyond)
-    floor, clean, torso = float(noise.mean()), one.without_noise(zero, beyond), one.torso_line(zero)
-    total, columns = clean.sum(), clean.sum(axis=0)
+    floor, still = float(noise.mean()), np.abs(doppler) <= zero
+    clean = np.where(still, 0, one.power - floor)  # noise adds up to 0
+    moving = uniform_filter(np.where(still, 0, one.power), (5, 1))
+    torso = median_filter(one.doppler[moving.argmax(axis=0)], 9)
     fast = doppler * np.sign(torso) > SLOW * np.abs(torso)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        mean = (doppler * clean).sum(axis=0) / columns
-        variance = ((doppler - mean) ** 2 * clean).sum(axis=0) / columns
-    spread = np.sqrt(variance[(columns > 0) & (variance > 0)])
-    below = -np.minimum(clean.sum(axis=1), 0).sum()
+    total, below = clean.sum(), -np.minimum(clean.sum(axis=1), 0).sum()
     known = total > 0 and below <= SHORT * total
 
     def share(cells: Float) -> float:
@@ -80,7 +97,6 @@ def power_statistics(
 
     limb = float(np.percentile(np.where(fast, clean, 0).max(axis=0), 75))
     limb = limb if limb + floor > one.threshold(beyond) else np.nan
-    at_zero = one.power[np.abs(one.doppler) <= zero].max(axis=0)
     low, high = np.percentile(torso, [5, 95])
     values = {
         "limb_below_torso": decibel(float(np.median(clean.max(axis=0))), limb),
@@ -89,12 +105,10 @@ def power_statistics(
         "torso_energy": share(clean[np.abs(doppler - torso) <= near]),
         "torso_ripple": float(high - low),
         "torso_median": float(np.median(torso)),
-        "column_spread": float(np.median(spread)) if known and spread.size else np.nan,
     }
     return (values if body else dict.fromkeys(values, np.nan)) | {
         "peak_over_floor": decibel(float(clean.max()), floor),
         "noise_sd": float(np.std(10 * np.log10(np.maximum(noise, 1e-30)))),
-        "zero_over_floor": decibel(float(np.median(at_zero)), floor),
     }
 
 
@@ -103,16 +117,8 @@ def decibel(above: float, below: float) -> float:
     return 10 * float(np.log10(above / below)) if min(above, below) > 0 else np.nan
 
 
-@dataclass(frozen=True)
-class Body:
-    """Which cells [rows, columns] of a map belong to who moves, and which are stray."""
-
-    cells: Bool
-    stray: Bool
-
-
-def body_of(occupied: Bool, at_zero: Bool) -> Body:
-    """The pieces of cells [rows, columns] that touch the rows `at_zero` [rows], or are tall.
+def body_of(occupied: Bool, at_zero: Bool) -> Bool:
+    """Cells [rows, columns] of who moves: pieces that touch the rows `at_zero` or are tall.
 
     The others are stray: lines of interference, single cells of noise.
     """
@@ -122,8 +128,7 @@ def body_of(occupied: Bool, at_zero: Bool) -> Body:
     for number, place in enumerate(find_objects(pieces), 1):
         kept[number] |= place[0].stop - place[0].start - 2 * JOINED >= TALL * len(occupied)
     kept[0] = False
-    mine = kept[pieces] & occupied
-    return Body(mine, occupied & ~mine)
+    return np.asarray(kept[pieces] & occupied)
 
 
 def mask_statistics(
@@ -144,86 +149,32 @@ def mask_statistics(
     row, column = abs(doppler[0] - doppler[-1]) / max(1, rows - 1), seconds / columns
     at_zero = np.abs(doppler) <= zero
     body = body_of(occupied, at_zero)
-    beyond = body.cells & ~at_zero[:, None]
-    counts = beyond.sum(axis=0)
+    beyond = body & ~at_zero[:, None]
+    cells, counts = max(1, (~at_zero).sum() * columns), beyond.sum(axis=0)
     active = counts > 0
-    line: Bool = np.asarray(body.cells[np.abs(doppler) <= zero / 2].any(axis=0))
-    quiet = body.cells[:, line & ~active]
-    values = dict.fromkeys((name for name, one in STATISTICS.items() if not one.of_power), np.nan)
-    values |= {
-        "occupied": 100 * float(beyond.sum() / max(1, (~at_zero).sum() * columns)),
-        "stray": 100 * float(body.stray.sum() / max(1, (~at_zero).sum() * columns)),
+    line: Bool = np.asarray(body[np.abs(doppler) <= zero / 2].any(axis=0))
+    quiet = body[:, line & ~active]
+    values = {key: np.nan for key, one in STATISTICS.items() if not one.of_power} | {
+        "occupied": 100 * float(beyond.sum() / cells),
+        "stray": 100 * float((occupied & ~body).sum() / cells),
         "active": float(active.sum() * column),
-        "start_height": float(body.cells[:, 0].sum() * row),
+        "start_height": float(body[:, 0].sum() * row),
         "zero_line": 100 * float(line.mean()),
-        "zero_line_end": 100 * float(line[-max(1, columns // 5) :].mean()),
     }
     if quiet.size:
-        values["zero_line_width"] = float(np.median(quiet.sum(axis=0)) * row)
         values["zero_line_offset"] = float((doppler @ quiet).sum() / quiet.sum())
     if not active.any():
         return values
     whole = np.repeat(doppler, beyond.sum(axis=1))
     low, high = np.percentile(whole, [2.5, 97.5])
-    times = np.flatnonzero(active)
-    shown = body.cells[:, active]
+    shown = body[:, active]
     top, bottom = shown.argmax(axis=0), rows - 1 - shown[::-1].argmax(axis=0)
-    mean = (doppler @ beyond)[active] / counts[active]
-    step = np.abs(np.diff(doppler[top]))[np.diff(times) == 1]
-    sign = np.sign(mean)
-    slowest, fastest = np.percentile(mean, [5, 95])
+    sign = np.sign((doppler @ beyond)[active])
     return values | {
         "receding": 100 * float((whole < 0).mean()),
         "width": float(high - low),
         "upper_envelope": float(np.percentile(doppler[top], 95)),
         "lower_envelope": float(np.percentile(doppler[bottom], 5)),
-        "first": float(times[0] * column),
-        "rest": float((columns - 1 - times[-1]) * column),
-        "column_height": float(np.median(counts[active]) * row),
-        "filled": 100 * float(np.mean(shown.sum(axis=0) / (bottom - top + 1))),
-        "ragged": float(step.mean()) if step.size else np.nan,
+        "first": float(active.argmax() * column),
         "swings": float((np.diff(sign[sign != 0]) != 0).sum()),
-        "ripple": float(fastest - slowest),
     }
-
-
-class Statistic(NamedTuple):
-    """What a statistic is called in tables."""
-
-    words: str  # for people
-    unit: str  # "%", "dB", "" of a number, "rows" (the unit of rows), "columns" (of columns)
-    of_range: bool = False  # whether it means something in a range-time map
-    of_power: bool = False  # whether it needs power, not occupied cells alone
-
-
-STATISTICS = {
-    "occupied": Statistic("occupied cells", "%", True),
-    "receding": Statistic("cells that recede", "%"),
-    "width": Statistic("width of 95 % of the cells", "rows", True),
-    "upper_envelope": Statistic("upper envelope, 95 %", "rows", True),
-    "lower_envelope": Statistic("lower envelope, 5 %", "rows", True),
-    "column_height": Statistic("height of an active column", "rows", True),
-    "filled": Statistic("filled from edge to edge", "%", True),
-    "ragged": Statistic("step of the upper edge", "rows", True),
-    "ripple": Statistic("ripple of the mean, 5 to 95 %", "rows", True),
-    "swings": Statistic("changes of direction", ""),
-    "active": Statistic("time active", "columns", True),
-    "first": Statistic("quiet at the start", "columns", True),
-    "rest": Statistic("quiet at the end", "columns", True),
-    "start_height": Statistic("height of the first column", "rows", True),
-    "zero_line": Statistic("columns with a zero line", "%"),
-    "zero_line_end": Statistic("columns with a zero line, last fifth", "%"),
-    "zero_line_width": Statistic("width of the zero line", "rows"),
-    "zero_line_offset": Statistic("middle of the zero line", "rows"),
-    "stray": Statistic("stray cells", "%", True),
-    "peak_over_floor": Statistic("peak over floor", "dB", of_power=True),
-    "noise_sd": Statistic("sd of the noise", "dB", of_power=True),
-    "limb_below_torso": Statistic("limb below torso", "dB", of_power=True),
-    "fast_energy": Statistic("energy above 1.8 x torso", "%", of_power=True),
-    "receding_energy": Statistic("receding energy", "%", of_power=True),
-    "torso_energy": Statistic("energy near the torso line", "%", of_power=True),
-    "torso_ripple": Statistic("ripple of the torso line", "rows", of_power=True),
-    "torso_median": Statistic("Doppler of the torso", "rows", of_power=True),
-    "column_spread": Statistic("sd of Doppler in a column", "rows", of_power=True),
-    "zero_over_floor": Statistic("zero line over floor", "dB", of_power=True),
-}

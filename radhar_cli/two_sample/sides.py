@@ -1,7 +1,7 @@
 """The two data sets that are compared, and what is known of their maps."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +11,7 @@ from radhar_cli.capture.images import is_image
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import FolderError, did_you_mean
 from radhar_cli.learning.images.folder import our_map
-from radhar_cli.learning.images.image_set import ImageSet
+from radhar_cli.learning.images.image_set import ImageSet, Resized
 from radhar_cli.learning.images.opening import is_h5, open_images
 
 MAX_SIDE = 512  # px; larger images are brought there
@@ -26,17 +26,13 @@ class Side:
     images: ImageSet
     classes: dict[str, Index]  # {class, by the common name: rows}
     left_out: dict[str, int]  # {class of its own: images} that are not compared
-    extent: Float | None  # [N, 4] edges (s; Hz or m) of every image; None where they are not known
+    size: tuple[int, int]  # (H, W), px, to which images are brought
+    # [N, 4] left, right, bottom, top (s; Hz or m) of every image; None where they are not known
+    extent: Float | None
     # [N] who is in it, where that is known, or which recording; else a number of its own
     group: Index
-    persons: bool  # whether it is known who
     dynamic_range_db: float | None  # that levels span; None where it is not known, or of masks
     masks: bool
-
-    @property
-    def where(self) -> Path:
-        """File or folder."""
-        return self.images.where
 
     def levels(self, row: int) -> Levels:
         """Levels [H, W] of an image.
@@ -48,48 +44,72 @@ class Side:
 
     def power(self, levels: Levels) -> Float:
         """Power of levels, over the largest."""
-        span = ASSUMED_DB if self.dynamic_range_db is None else self.dynamic_range_db
-        power: Float = 10 ** (span / 10 * (levels / 255.0 - 1))
+        power: Float = 10 ** ((self.dynamic_range_db or ASSUMED_DB) / 10 * (levels / 255.0 - 1))
         return power
 
 
+@dataclass(frozen=True)
+class Pair:
+    """Both data sets: simulated, measured."""
+
+    sides: tuple[Side, Side]
+
+    @property
+    def ranges(self) -> bool:
+        """Whether they hold range-time maps."""
+        return any(side.images.map == "rtm" for side in self.sides)
+
+    @property
+    def axes(self) -> bool:
+        """Whether edges of the images are used; else all is counted in px."""
+        return all(side.extent is not None for side in self.sides)
+
+    @property
+    def power(self) -> bool:
+        """Whether there are statistics of power."""
+        return not self.ranges and all(side.dynamic_range_db is not None for side in self.sides)
+
+    @property
+    def units(self) -> dict[str, str]:
+        """{"rows", "columns": unit}."""
+        if not self.axes:
+            return {"rows": "px", "columns": "px"}
+        return {"rows": "m" if self.ranges else "Hz", "columns": "s"}
+
+    def edges(self, side: Side, row: int) -> tuple[float, float, float, float]:
+        """Left, right, bottom, top of an image."""
+        if self.axes:
+            assert side.extent is not None
+            left, right, bottom, top = map(float, side.extent[row])
+            return left, right, bottom, top
+        height, width = side.size
+        bottom = 0.0 if self.ranges else -height / 2
+        return 0.0, float(width), bottom, bottom + height
+
+
 def open_sides(
-    simulated: Path,
-    measured: Path,
-    map_name: str | None,
-    names: Mapping[str, str | None],
-    resize: bool,
-) -> tuple[Side, Side]:
-    """Open both, classes matched by name.
+    simulated: Path, measured: Path, map_name: str | None, names: Mapping[str, str | None]
+) -> Pair:
+    """Open both, classes matched by name, images at the size of the measured ones.
 
     Args:
         map_name: which map; the first of each if None.
         names: {class in one of them: common name, or None to leave it out}.
 
     Raises:
-        FolderError: it is none of these, they have no class in common, or differ in map or size.
+        FolderError: it is none of these, they have no class in common, or differ in map.
     """
     paths = (simulated, measured)
-    given = [_open(path, map_name, None) for path in paths]
+    given = [_open(path, map_name) for path in paths]
     maps = [one.map for one in given]
     if None not in maps and maps[0] != maps[1]:
         raise FolderError(
             f"{simulated}: shows {maps[0]}, {measured} {maps[1]}; --map names one for both"
         )
-    sizes = [one.size for one in given]
-    if sizes[0] != sizes[1] and not resize:
-        here, there = (f"{height} x {width} px" for height, width in sizes)
-        raise FolderError(
-            f"{simulated}: images are {here}, those of {measured} {there}; --resize brings them to "
-            "one size"
-        )
-    size = (min(sizes[1][0], MAX_SIDE), min(sizes[1][1], MAX_SIDE))
-    if resize or size != sizes[1]:
-        given = [_open(path, map_name, size) for path in paths]
-    known = {name for one in given for name in one.classes}
+    known = sorted({name for one in given for name in one.classes})
     for name in names:
         if name not in known:
-            hint = did_you_mean(name, sorted(known), f"they have {', '.join(sorted(known))}")
+            hint = did_you_mean(name, known, f"they have {', '.join(known)}")
             raise FolderError(f"{simulated}, {measured}: no class {name!r} (--classes); {hint}")
     rows = [_rows(one, names) for one in given]
     both = [name for name in rows[0] if name in rows[1]]
@@ -98,19 +118,20 @@ def open_sides(
             f"{simulated}: its classes ({', '.join(rows[0])}) are none of those of {measured} "
             f"({', '.join(rows[1])}); --classes FILE maps names"
         )
+    height, width = (min(side, MAX_SIDE) for side in given[1].size)
     first, second = (
-        _side(path, one, {name: mine[name] for name in both})
+        _side(path, one, {name: mine[name] for name in both}, (height, width))
         for path, one, mine in zip(paths, given, rows, strict=True)
     )
-    return first, second
+    return Pair((first, second))
 
 
-def _open(path: Path, map_name: str | None, resize: tuple[int, int] | None) -> ImageSet:
+def _open(path: Path, map_name: str | None) -> ImageSet:
     """A foreign tree names no map: it has what it has."""
     foreign = path.is_dir() and not is_h5(path) and our_map(path) is None
     if foreign and map_name is not None and not (path / map_name).is_dir():
         map_name = None
-    return open_images(path, map_name, "gray", resize)
+    return open_images(path, map_name, "gray")
 
 
 def _rows(images: ImageSet, names: Mapping[str, str | None]) -> dict[str, Index]:
@@ -123,26 +144,22 @@ def _rows(images: ImageSet, names: Mapping[str, str | None]) -> dict[str, Index]
     return {name: np.flatnonzero(np.isin(images.label, own)) for name, own in numbers.items()}
 
 
-def _side(path: Path, images: ImageSet, classes: dict[str, Index]) -> Side:
+def _side(path: Path, images: ImageSet, classes: dict[str, Index], size: tuple[int, int]) -> Side:
     used = np.concatenate(list(classes.values()))
     lost = np.bincount(np.delete(images.label, used), minlength=len(images.classes)).tolist()
     left_out = {name: n for name, n in zip(images.classes, lost, strict=True) if n}
     some = used[:: max(1, used.size // TWO_VALUED)]
     masks = all(_two_valued(images.pixels.read(int(row))) for row in some)
-    group, extent, persons, decibels = np.arange(len(images)), None, False, None
+    group, extent, decibels = np.arange(len(images)), None, None
     if images.persons is not None:
         group = np.unique(images.persons, return_inverse=True)[1]
-    if is_h5(path):
-        assert images.map is not None
+    if images.map is not None and is_h5(path):
         with open_dataset(path) as data:
             extent, recorded = data.extents(images.map), data.config.recorded
-            masks |= data.config.image.kind == "cfar"
-            persons = images.persons is not None
-            if recorded is not None:
-                persons = all(part.person is not None for part in recorded.parts)
             if not masks and (recorded is None or not is_image(recorded.parts[0].file)):
                 decibels = data.config.image.dynamic_range_db
-    return Side(images, classes, left_out, extent, group, persons, decibels, masks)
+    at_size = replace(images, pixels=Resized(images.pixels, size))
+    return Side(at_size, classes, left_out, size, extent, group, decibels, masks)
 
 
 def _two_valued(levels: Levels) -> bool:

@@ -41,7 +41,7 @@ MISTAKES = {
     "convert none -o x --to webdataset": "no such file",
     "convert set/png -o x --to webdataset": "no such file",
     "convert set/config.yaml -o x --to parquet": "is not an HDF5 file",
-    f"{COMPARE} set -o x --zero x": "--zero x: should be a valid number",
+    f"{COMPARE} set -o x --per-class 1": "--per-class 1: should be",
     f"{COMPARE} none -o x": "none: no such file or folder",
     f"{COMPARE} set -o x --map stfd": "has no map 'stfd'",
     f"{COMPARE} set/dataset.h5 -o set/x": "lies in the data",

@@ -85,7 +85,7 @@ assert not {"torch", "timm", "safetensors", "jinja2"} & set(sys.modules)
         "verify {}/set --samples 1",
         "inspect {}/set/png/stft/train",
         "preview {}/set/png/stft/train -o {}/tree.png",
-        "compare {}/set {}/set -o {}/compared --map stft --per-class 2 --pictures 1",
+        "compare {}/set {}/set -o {}/compared --map stft --per-class 2",
     ],
 )
 def test_what_learns_nothing_needs_no_torch(small_set, words):

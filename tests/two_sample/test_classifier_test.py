@@ -3,7 +3,7 @@
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.two_sample.classifier_test import held_out, interval
+from radhar_cli.two_sample.comparison import interval, told_rightly
 
 COUNT = 40
 
@@ -19,26 +19,30 @@ def features(rng, shift=0.0):
 TRUTH = np.repeat([True, False], COUNT)
 
 
+def held_out(x, group, seed=0):
+    right = told_rightly(x, TRUTH, group, seed)
+    assert right is not None
+    found = interval([(right, 2 * COUNT)])
+    assert found is not None
+    return found
+
+
 def test_accuracy_is_half_for_equal_distributions_and_intervals_cover_it():
     found = []
     for seed in range(100):
         rng = np.random.default_rng(seed)
-        tested = held_out(features(rng), TRUTH, np.arange(2 * COUNT), rng)
-        assert tested is not None
-        found.append(interval([tested]))
+        found.append(held_out(features(rng), np.arange(2 * COUNT), seed))
     accuracy = np.array([one["accuracy"] for one in found])
     assert abs(accuracy.mean() - 0.5) < 0.03
     variance = accuracy.var() * 4 * 2 * COUNT
-    assert 1.2 < variance < 2.4, "tests depend on each other; classifier_test.SHARED allows 1.7"
+    assert 1.2 < variance < 2.4, "tests depend on each other; comparison.SHARED allows 1.7"
     inside = [one["accuracy_95"][0] <= 0.5 <= one["accuracy_95"][1] for one in found]
     assert np.mean(inside) > 0.88
 
 
 def test_different_distributions_are_told_apart():
     rng = np.random.default_rng(0)
-    tested = held_out(features(rng, 20.0), TRUTH, np.arange(2 * COUNT), rng)
-    assert tested is not None
-    assert interval([tested])["accuracy_95"][0] > 0.85
+    assert held_out(features(rng, 20.0), np.arange(2 * COUNT))["accuracy_95"][0] > 0.85
 
 
 def test_features_that_identify_persons_tell_nothing():
@@ -47,25 +51,17 @@ def test_features_that_identify_persons_tell_nothing():
     person = np.tile(np.repeat(np.arange(4), COUNT // 4), 2)
     who = rng.normal(size=(2, 4, 60))
     x = who[np.repeat([0, 1], COUNT), person] + 0.1 * rng.normal(size=(2 * COUNT, 60))
-    difference = held_out(x, TRUTH, person, rng)
-    mixed = held_out(x, TRUTH, np.arange(2 * COUNT), rng)
-    assert difference is not None
-    assert mixed is not None
-    assert interval([mixed])["accuracy"] == 1
-    assert interval([difference])["accuracy"] < 0.9
+    assert held_out(x, np.arange(2 * COUNT))["accuracy"] == 1
+    assert held_out(x, person)["accuracy"] < 0.9
 
 
 def test_one_person_cannot_be_held_out():
-    rng = np.random.default_rng(0)
-    assert held_out(features(rng), TRUTH, np.zeros(2 * COUNT, np.intp), rng) is None
+    x = features(np.random.default_rng(0))
+    assert told_rightly(x, TRUTH, np.zeros(2 * COUNT, np.intp), 0) is None
 
 
 def test_numbers_that_are_missing_or_constant_tell_nothing():
-    rng = np.random.default_rng(0)
-    x = features(rng, 20.0)
+    x = features(np.random.default_rng(0), 20.0)
     x = np.hstack([x, np.full((2 * COUNT, 1), np.nan), np.full((2 * COUNT, 1), 7.0)])
     x[3, 5] = np.nan
-    tested = held_out(x, TRUTH, np.arange(2 * COUNT), rng)
-    assert tested is not None
-    assert np.isfinite(tested.score).all()
-    assert interval([tested])["accuracy_95"][0] > 0.85
+    assert held_out(x, np.arange(2 * COUNT))["accuracy_95"][0] > 0.85

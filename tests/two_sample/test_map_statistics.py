@@ -31,17 +31,12 @@ def test_numbers_of_a_bump():
     expected = {
         "active": 1.5,
         "first": 1.0,
-        "rest": 1.5,
         "receding": 60.0,  # 75 of 125 columns
         "zero_line": 100.0,
-        "zero_line_end": 100.0,
-        "zero_line_width": 40.0,
         "zero_line_offset": 0.0,
         "start_height": 40.0,
         "upper_envelope": 95.0,
         "lower_envelope": -95.0,
-        "column_height": 160.0,
-        "filled": 100.0,
         "swings": 0.0,  # as much up as down, then down
         "stray": 0.0,
         "occupied": 100 * 8 * 125 / (96 * 200),
@@ -55,8 +50,7 @@ def test_a_shift_in_time_changes_times_alone():
     early = mask_statistics(map_of_a_bump(), DOPPLER, SECONDS, ZERO)
     late = mask_statistics(map_of_a_bump(25), DOPPLER, SECONDS, ZERO)
     assert late["first"] == pytest.approx(early["first"] + 0.5)
-    assert late["rest"] == pytest.approx(early["rest"] - 0.5)
-    assert all(late[n] == pytest.approx(early[n]) for n in early if n not in ("first", "rest"))
+    assert all(late[n] == pytest.approx(early[n]) for n in early if n != "first")
 
 
 def test_a_mirrored_map_recedes_as_much_as_it_approached():
@@ -82,7 +76,6 @@ def test_fading_of_the_zero_line():
     cells[:, 180:] = False
     found = mask_statistics(cells, DOPPLER, SECONDS, ZERO)
     assert found["zero_line"] == pytest.approx(90)
-    assert found["zero_line_end"] == pytest.approx(50)
 
 
 @pytest.mark.parametrize("full", [False, True])
@@ -128,7 +121,6 @@ def test_power_of_a_walker():
     assert found["fast_energy"] == pytest.approx(100 * share / (1 + share), abs=0.3)
     assert found["torso_energy"] == pytest.approx(100 / (1 + share), abs=0.3)
     assert abs(found["receding_energy"]) < 0.3
-    assert found["zero_over_floor"] == pytest.approx(20, abs=0.5)
 
 
 def test_a_brighter_limb_and_a_torso_that_ripples():
@@ -163,7 +155,7 @@ def test_shares_of_an_energy_that_noise_hides_are_left_out(limb_db):
     for weaker in 10 ** np.arange(-2.0, 5.0, 0.25):
         found = power_statistics(DopplerMap(noise + body / weaker, DOPPLER), ZERO, 430, 20)
         assert all(np.isnan(found[name]) or 0 <= found[name] <= 100 for name in shares)
-        assert len({bool(np.isnan(found[name])) for name in (*shares, "column_spread")}) == 1
+        assert len({bool(np.isnan(found[name])) for name in shares}) == 1
         known.append(np.isfinite(found["torso_energy"]))
         if np.isfinite(found["limb_below_torso"]):
             assert found["limb_below_torso"] == pytest.approx(limb_db, abs=1)
@@ -179,5 +171,5 @@ def test_where_nobody_is_seen_noise_is_no_torso():
     assert cells["active"] == 0
     found = power_statistics(one, ZERO, 430, 15, cells["active"] > 0)
     finite = {name for name, value in found.items() if np.isfinite(value)}
-    assert finite == {"peak_over_floor", "noise_sd", "zero_over_floor"}
+    assert finite == {"peak_over_floor", "noise_sd"}
     assert found.keys() == {name for name, statistic in STATISTICS.items() if statistic.of_power}

@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
-from radhar_cli.dataset.card import card, configurations, front_matter, png_files
+from radhar_cli.dataset.card import Files, card, configurations, front_matter
 from radhar_cli.dataset.files import refuse_links, write_whole
 from radhar_cli.dataset.gallery import gallery_png
 from radhar_cli.dataset.image_file import image_size
-from radhar_cli.dataset.layout import CARD, GALLERY, PNG
+from radhar_cli.dataset.layout import CARD, GALLERY, PNG, png_folder
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.table import write_metadata, wrong_metadata
 from radhar_cli.errors import FolderError
@@ -41,17 +41,26 @@ def loading(name: str) -> str:
 from datasets import load_dataset
 
 data = load_dataset("FOLDER OR NAME ON THE HUB", "{name}")  # one configuration a map
-sample = data["train"][0]     # image, label, index and the numbers of the sample
-sample["image"]               # numpy.asarray(...): grey levels; .convert("RGB"): colours
+sample = data["train"][0]
+sample["image"]  # numpy.asarray(...): grey levels; .convert("RGB"): colours
 ```"""
+
+
+def png_files(data: Dataset) -> Files:
+    """The configurations of a folder with PNGs: one a map."""
+    present = data.present_splits
+    return {
+        name: {split: f"{png_folder(name, n).as_posix()}/**" for n, split in present.items()}
+        for name in data.config.maps
+    }
 
 
 def folder_card(data: Dataset, png: bool) -> str:
     """The data card of an output folder."""
     name = data.config.maps[0]
     h5 = (
-        "`dataset.h5` holds everything for h5py and MATLAB: `/maps/<map>` (uint8), `/label`, "
-        "`/split`, `/scene/<column>`."
+        "`dataset.h5` holds everything for h5py and MATLAB: `/maps/<map>`, `/label`, `/split`, "
+        "`/scene/<column>`."
     )
     if not png:
         return card(
@@ -66,8 +75,8 @@ def folder_card(data: Dataset, png: bool) -> str:
         f"""\
 {loading(name)}
 
-The same images lie in class folders for torchvision's `ImageFolder("png/{name}/train")`, which
-numbers the classes by the alphabet. {h5}""",
+torchvision's `ImageFolder("png/{name}/train")` reads the same images, but numbers the classes by
+the alphabet. {h5}""",
     )
 
 

@@ -6,17 +6,19 @@ metadata.csv lies beside the images of a map and split: what `load_dataset` read
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from radhar_cli.config.schema import Config
+from radhar_cli.config.number import support
+from radhar_cli.config.schema import Config, for_activity
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.files import refuse_links, unfinished_path
 from radhar_cli.dataset.layout import METADATA, Rows, png_folder
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.errors import FolderError
 from radhar_cli.replacing import replacing
+from radhar_cli.scene import FALL, numbers
 from radhar_cli.untrusted import regular_size
 
 BLOCK = 256  # indices whose numbers are read at once
@@ -37,9 +39,27 @@ class Entry(NamedTuple):
 
 
 def number_names(config: Config) -> list[str]:
-    """Names of the numbers of a scene in the order of `Entry.values`; `subject` holds integers."""
-    names = [field.name for field in scene_fields.fields(config)]
+    """Names of the numbers that are drawn, not the same in all samples, as in `Entry.values`.
+
+    `subject` holds integers.
+    """
+    same = {scene_fields.ERROR.key}  # which is measured, not drawn
+    same |= {key for key, number in numbers(config) if _is_same(config, key, number)}
+    if isinstance(config.motion.fall, str):
+        same.add(FALL)
+    names = [field.name for field in scene_fields.fields(config) if field.key not in same]
     return [*names, "subject"] if config.split.subjects is not None else names
+
+
+def _is_same(config: Config, key: str, number: Any) -> bool:
+    """Whether a number is the same in all samples that it applies to."""
+    ends = {
+        end
+        for activity in config.chosen_activities
+        if config.depends_on(activity, key)
+        for end in support(for_activity(number, activity))
+    }
+    return len(ends) == 1
 
 
 def entries(data: Dataset) -> Iterator[Entry]:

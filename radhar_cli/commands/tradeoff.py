@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from radhar_cli.commands.options import Overrides, StartOver, resumable
+from radhar_cli.commands.options import Overrides
 from radhar_cli.commands.tell import report, tell
 
 
@@ -16,7 +16,6 @@ def tradeoff(
         bool, typer.Option("--quick", help="Three activities, three rounds: a first look.")
     ] = False,
     set_: Overrides = None,
-    overwrite: StartOver = False,
 ) -> None:
     """Measure what accuracy costs: tolerances, engines, physics.
 
@@ -24,33 +23,31 @@ def tradeoff(
 
       radhar tradeoff configs/paper/free_space.yaml -o out/tradeoff --quick
 
-    The same command, run again, resumes. Leave the machine idle meanwhile: a busy one distorts the
-    times, not the errors.
+    Leave the machine idle meanwhile: a busy one distorts the times, not the errors.
     """
     from radhar_cli.commands.learning_options import needs
 
     needs("tradeoff", ["skimage"])
     from radhar_cli.commands.terminal import BarProgress
-    from radhar_cli.dataset.folder import folder_lock
+    from radhar_cli.dataset.folder import refuse_file
     from radhar_cli.tradeoff.report import write_report
     from radhar_cli.tradeoff.settings import Scenes
-    from radhar_cli.tradeoff.study import ROUNDS, reserve, run_sweep
+    from radhar_cli.tradeoff.study import ROUNDS, run_sweep
     from radhar_cli.worker_process import prepare_process
 
+    refuse_file(out)
     scenes = Scenes(config, tuple(set_ or ()), quick)
-    loaded = scenes.config()
+    scenes.config()
     command = " ".join(
         ["radhar tradeoff", str(config), f"-o {out}"]
         + [f"--set {each}" for each in scenes.overrides]
         + ["--quick"] * quick
     )
-    with resumable(f"what is measured in {out}"), folder_lock(out):
-        prepare_process()
-        reserve(out, loaded, overwrite)
-        with BarProgress("step") as progress:
-            rows = run_sweep(scenes, out, progress)
-        conditions: dict[str, Any] = {"scenes": len(scenes.names()), "rounds": ROUNDS[quick]}
-        written = write_report(out, config.stem, command, rows, conditions)
+    prepare_process()
+    with BarProgress("step") as progress:
+        rows = run_sweep(scenes, progress)
+    conditions: dict[str, Any] = {"scenes": len(scenes.names()), "rounds": ROUNDS[quick]}
+    written = write_report(out, config.stem, command, rows, conditions)
     report(files=written)
     for file in written:
         tell(f"  {file}")

@@ -18,37 +18,44 @@ from radhar_cli.tradeoff.settings import Scenes, Setting
 QUIET = "snr_db=null"
 # How long a setting is timed in a round, at most this and one scene more.
 SECONDS = 0.6
-ECHO = (
-    *("motions", "paths", "direct", "echo", "signal_power", "slow_time", "signal"),
-    *("room", "snr_paths", "beat_cube", "range_profiles", "gate", "gated_echo", "range_signals"),
-)
 SSIM_WINDOW = 7
+
+
+class Errors(NamedTuple):
+    """How far a setting's data of a scene are from the exact ones, None where that says nothing."""
+
+    measured_error_db: float | None  # what the direct engine measured itself; None of the cube
+    signal_error_db: float | None
+    map_error_db: float | None
+    ssim: float | None
+    psnr_db: float | None
+    pixels_changed: float
 
 
 def relative_db(compared: Complex, exact: Complex) -> float | None:
     """Relative L2 error in dB; -inf where the two are the same, None where there is no signal."""
     size = float(np.linalg.norm(exact))
-    if size == 0:
+    if compared.shape != exact.shape or size == 0:
         return None
     error = float(np.linalg.norm(compared - exact)) / size
     return 20 * log10(error) if error > 0 else -inf
 
 
-def map_error_db(compared: Float, exact: Float, dynamic_range_db: float) -> tuple[float, float]:
-    """Root mean square and largest difference (dB) of two power maps as they are displayed.
+def map_error_db(compared: Float, exact: Float, dynamic_range_db: float) -> float | None:
+    """Root mean square difference (dB) of two power maps as they are displayed.
 
     Both are referred to their own maximum and cut at the dynamic range; cells that are at the floor
-    in both do not count.
+    in both do not count. None of maps of two shapes.
     """
+    if compared.shape != exact.shape:
+        return None
     one, other = (decibels(power, dynamic_range_db) for power in (compared, exact))
     seen = (one > -dynamic_range_db) | (other > -dynamic_range_db)
     difference = (one - other)[seen]
-    if difference.size == 0:
-        return 0.0, 0.0
-    return float(np.sqrt(np.mean(difference**2))), float(np.abs(difference).max())
+    return float(np.sqrt(np.mean(difference**2))) if difference.size else 0.0
 
 
-def image_scores(compared: Levels, exact: Levels) -> dict[str, float | None]:
+def image_scores(compared: Levels, exact: Levels) -> tuple[float | None, float | None, float]:
     """SSIM, PSNR (dB; None for equal images) and share of pixels whose level differs.
 
     SSIM has a window of 7 pixels, of 3 or 5 in smaller images, and is None below 3.
@@ -61,18 +68,15 @@ def image_scores(compared: Levels, exact: Levels) -> dict[str, float | None]:
     if compared.shape != exact.shape:
         size = (exact.shape[1], exact.shape[0])
         compared = np.asarray(Image.fromarray(compared).resize(size, Image.Resampling.BILINEAR))
-    same = bool(np.array_equal(compared, exact))
     window = min(SSIM_WINDOW, *(side - 1 + side % 2 for side in exact.shape))
-    similar = None
+    similar = psnr = None
     if window >= 3:
-        similar = metrics.structural_similarity(exact, compared, data_range=255, win_size=window)
-    return {
-        "ssim": None if similar is None else float(similar),
-        "psnr_db": None
-        if same
-        else float(metrics.peak_signal_noise_ratio(exact, compared, data_range=255)),
-        "pixels_changed": float(np.mean(compared != exact)),
-    }
+        similar = float(
+            metrics.structural_similarity(exact, compared, data_range=255, win_size=window)
+        )
+    if not np.array_equal(compared, exact):
+        psnr = float(metrics.peak_signal_noise_ratio(exact, compared, data_range=255))
+    return similar, psnr, float(np.mean(compared != exact))
 
 
 class SettingData(NamedTuple):
@@ -86,26 +90,23 @@ class SettingData(NamedTuple):
     engine_db: float | None
 
 
-class SceneDifferences:
+class SceneErrors:
     """All settings in one scene; what several of them refer to is made once."""
 
     def __init__(self, scenes: Scenes, slug: str) -> None:
         self._sample = cache(partial(_sample, scenes, slug))
 
-    def of(self, setting: Setting) -> dict[str, float | None]:
+    def of(self, setting: Setting) -> Errors:
         """How far the setting's data are from its reference, without noise."""
         quiet = () if setting.noisy else (QUIET,)
-        compared, right = (
-            self._sample((*setting.compared, *quiet)),
-            self._sample((*setting.exact, *quiet)),
+        compared = self._sample((*setting.compared, *quiet))
+        right = self._sample((*setting.exact, *quiet))
+        return Errors(
+            compared.engine_db,
+            relative_db(compared.signal, right.signal),
+            map_error_db(compared.power, right.power, right.dynamic_range_db),
+            *image_scores(compared.levels, right.levels),
         )
-        row: dict[str, float | None] = {"measured_error_db": compared.engine_db}
-        if compared.signal.shape == right.signal.shape:
-            row["signal_error_db"] = relative_db(compared.signal, right.signal)
-        if compared.power.shape == right.power.shape:
-            error, worst = map_error_db(compared.power, right.power, right.dynamic_range_db)
-            row |= {"map_error_db": error, "map_error_max_db": worst}
-        return row | image_scores(compared.levels, right.levels)
 
 
 def _sample(scenes: Scenes, slug: str, overrides: tuple[str, ...]) -> SettingData:
@@ -127,33 +128,28 @@ class Times(NamedTuple):
     """One round of one setting."""
 
     sample_ms: float  # from scene to levels and entropy, a sample
-    echo_ms: float  # of that, paths and echo
-    # ratio, echo_ratio: the same over those of the baseline
-    ratio: float
-    echo_ratio: float
+    ratio: float  # over that of the baseline
 
 
 def time_setting(scenes: Scenes, setting: Setting, turn: int) -> Times:
     """Time a setting and its baseline in turns, scene by scene, for a fraction of a second."""
     names = scenes.names()
-    own, usual = [0.0, 0.0], [0.0, 0.0]
-    count = 0
-    for step in range(len(names)):
-        slug = names[(turn + step) % len(names)]
-        both = [(setting.baseline, usual), (setting.overrides, own)]
-        for overrides, spent in both if (turn + step) % 2 else reversed(both):
-            for part, seconds in enumerate(_seconds(scenes, slug, overrides)):
-                spent[part] += seconds
-        count += 1
-        if own[0] + usual[0] > SECONDS:
+    own = usual = 0.0
+    for step in range(turn, turn + len(names)):
+        slug = names[step % len(names)]
+        if step % 2:
+            usual += _seconds(scenes, slug, setting.baseline)
+        own += _seconds(scenes, slug, setting.overrides)
+        if not step % 2:
+            usual += _seconds(scenes, slug, setting.baseline)
+        if own + usual > SECONDS:
             break
-    return Times(1e3 * own[0] / count, 1e3 * own[1] / count, own[0] / usual[0], own[1] / usual[1])
+    return Times(1e3 * own / (step - turn + 1), own / usual)
 
 
-def _seconds(scenes: Scenes, slug: str, overrides: tuple[str, ...]) -> tuple[float, float]:
+def _seconds(scenes: Scenes, slug: str, overrides: tuple[str, ...]) -> float:
     config = scenes.config(overrides)
     scene, plan = scenes.draw(slug, config), plan_images(config)
     start = process_time()
-    recording = run(plan, {"scene": scene})
-    whole = process_time() - start
-    return whole, sum(t for name, t in recording.seconds.items() if name in ECHO)
+    run(plan, {"scene": scene})
+    return process_time() - start

@@ -12,39 +12,18 @@ from radhar_cli.tradeoff.figure import ENGINES, tradeoff_png
 from radhar_cli.tradeoff.study import Record
 
 CSV, JSON, FIGURE, TEXT = "tradeoff.csv", "tradeoff.json", "pareto.png", "tradeoff.md"
-TIME = "{time_ratio:.2f} ({time_ratio_low:.2f} to {time_ratio_high:.2f})"
-ECHO = TIME.replace("time_", "echo_")
-ENGINE = {
+COLUMNS = {
     "setting": "{setting}{marked}",
     "sample ms": "{sample_ms:.1f}",
-    "time": TIME,
-    "echo time": ECHO,
+    "time": "{time_ratio:.2f} ({time_ratio_low:.2f} to {time_ratio_high:.2f})",
+    "relative to": "{time_over}",
     "signal error dB": "{signal_error_db:.1f}",
     "median dB": "{signal_error_median_db:.1f}",
     "measured dB": "{measured_error_db:.1f}",
     "map error dB": "{map_error_db:.4f}",
     "SSIM": "{ssim:.6f}",
-    "pixels changed": "{percent_changed:.3g} %",
-}
-SWITCH = {
-    "switch": "{setting}",
-    "time": TIME,
-    "relative to": "{time_over}",
-    "signal dB, median": "{signal_error_median_db:.1f}",
-    "worst": "{signal_error_db:.1f}",
-    "map dB": "{map_error_db:.2f}",
-    "SSIM": "{ssim:.4f}",
     "PSNR dB": "{psnr_db:.1f}",
-    "pixels changed": "{percent_changed:.3g} %",
-}
-IMAGE = {
-    "group": "{group}",
-    "setting": "{setting}",
-    "sample ms": "{sample_ms:.1f}",
-    "time": TIME,
-    "SSIM": "{ssim:.6f}",
-    "PSNR dB": "{psnr_db:.1f}",
-    "pixels changed": "{percent_changed:.3g} %",
+    "pixels changed": "{pixels_changed:.3%}",
 }
 
 
@@ -70,7 +49,6 @@ def markdown(
 ) -> str:
     """The whole report."""
     count, rounds = conditions["scenes"], conditions["rounds"]
-    scenes = "1 scene" if count == 1 else f"{count} scenes, one an activity,"
     return f"""\
 # What accuracy costs: {title}
 
@@ -78,49 +56,41 @@ def markdown(
 
 ![time against error]({FIGURE})
 
-{scenes} drawn from the config; errors without noise against the exact cube in \
-float64, the worst scene's unless it says median. Times of one process, {rounds} rounds \
-interleaved; ratios to the default (or what is named) on the same scenes in the same moment, with \
-quartiles. A sample is everything from the scene to levels and entropy; its echo is paths and \
-slow-time signal alone.
+{count} scene{"s" * (count > 1)}, one an activity, drawn from the config; errors without noise \
+against the exact cube in float64, the worst scene's unless it says median. Times of one process, \
+{rounds} rounds interleaved; ratios on the same scenes in the same moment, with \
+quartiles. A sample is everything from the scene to levels and entropy.
 
 ## Engine, budget, precision
 
-{_table(ENGINE, rows, ENGINES)}
+{_table(rows, ENGINES)}
 
 ## Physics and transforms that are left out
 
 Time is that of the switch on; errors are those of data without it against data with it. Noise \
 corner and interference line are added to the config's noise, on both sides.
 
-{_table(SWITCH, rows, ("switch",))}
+{_table(rows, ("switch",))}
 
 ## Image size and kind of map
 
 Images of another size are resized to the config's before they are compared.
 
-{_table(IMAGE, rows, ("image size", "image kind", "map"))}
+{_table(rows, ("image size", "image kind", "map"))}
 """
 
 
-def _table(columns: Mapping[str, str], rows: Sequence[Record], groups: Sequence[str]) -> str:
+def _table(rows: Sequence[Record], groups: Sequence[str]) -> str:
     cells = [
-        [_cell(name, form, row) for name, form in columns.items()]
-        for row in rows
-        if row["group"] in groups
+        [_cell(form, row) for form in COLUMNS.values()] for row in rows if row["group"] in groups
     ]
-    lines = [[*columns], ["---"] * len(columns), *cells]
+    lines = [[*COLUMNS], ["---"] * len(COLUMNS), *cells]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
-def _cell(name: str, form: str, row: Record) -> str:
-    changed = row["pixels_changed"]
-    values = {
-        **row,
-        "marked": " (default)" if row["default"] else "",
-        "percent_changed": None if changed is None else 100 * changed,
-    }
+def _cell(form: str, row: Record) -> str:
     try:
-        return form.format(**values).replace("-inf", "exact")
+        marked = " (default)" * row["default"]
+        return form.format(**row, marked=marked).replace("-inf", "exact")
     except TypeError:  # there is no such number
-        return "refused" if name.endswith("time") else ""
+        return "refused" if row["refused"] and "time" in form else ""

@@ -77,7 +77,6 @@ class Setting:
     # of the run that the time is divided by, on the same scenes, interleaved
     baseline: tuple[str, ...] = DIRECT
     baseline_name: str = "the default"  # as printed
-    of_signal: bool = True  # whether it changes the signal, not a map alone
     noisy: bool = False  # whether its errors are those of data with the config's noise
 
     @property
@@ -139,13 +138,12 @@ def _switches(config: Config) -> list[Setting]:
         _switch(*_other_motion(config)),
         _switch(f"scatterers: {other} instead of {own}", f"body.scatterers={other}"),
         _over("shadowing", bodies, "segments without shadowing"),
-        _over("range_sum: gated instead of coherent", gates, "the coherent STFT", False),
+        _over("range_sum: gated instead of coherent", gates, "the coherent STFT"),
         *(
             _over(
                 f"clutter: {kind} instead of {clutter}",
                 [(f"processing.clutter={one}",) for one in (kind, clutter)],
                 "the default",
-                False,
             )
             for kind in CLUTTER
             if kind != clutter
@@ -158,7 +156,6 @@ def _switches(config: Config) -> list[Setting]:
             "FSST at every sample",
             [("maps=[fsst]", dense), ("maps=[fsst]",)],
             "the FSST at the STFT's hop",
-            False,
         ),
     ]
     if config.motion.model == "human" and not config.people:
@@ -199,13 +196,11 @@ def _other_motion(config: Config) -> tuple[str, ...]:
     )
 
 
-def _over(
-    name: str, on_off: Sequence[Sequence[str]], off_name: str, of_signal: bool = True
-) -> Setting:
+def _over(name: str, on_off: Sequence[Sequence[str]], off_name: str) -> Setting:
     """A switch that is compared with something other than the default."""
     on, off = on_off
     without, exact = (*DIRECT, *off), (*CUBE, *on)
-    return Setting("switch", name, (*DIRECT, *on), without, exact, without, off_name, of_signal)
+    return Setting("switch", name, (*DIRECT, *on), without, exact, without, off_name)
 
 
 def _switch(name: str, *on: str) -> Setting:

@@ -96,7 +96,7 @@ def test_links_in_the_work_folder_are_refused(plant: Plant, tmp_path: Path, outs
 
 
 @pytest.mark.parametrize("more", [[], ["--overwrite"]], ids=["again", "overwrite"])
-@pytest.mark.parametrize("command", ["generate", "train", "tradeoff"])
+@pytest.mark.parametrize("command", ["generate", "train"])
 def test_every_writing_command_checks_the_folder_first(
     command: str, more: list[str], tmp_path: Path, outside: Path, good_set: Path
 ) -> None:

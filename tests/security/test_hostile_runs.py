@@ -242,11 +242,3 @@ def test_invalid_tables_are_refused(name: str, kind: str, run: Path) -> None:
     readers = {"history.csv": read_history, "trained_on.csv": read_trained_on}
     reader = readers.get(name, read_metadata)
     one_line(lambda: reader(run), name)
-
-
-def test_a_sweep_with_a_damaged_name_is_refused(tmp_path: Path, good_set: Path) -> None:
-    (tmp_path / "out/.radhar").mkdir(parents=True)
-    for text in ("{", "[]", '{"keys": 3}'):
-        (tmp_path / "out/.radhar/sweep.json").write_text(text)
-        words = ["tradeoff", str(good_set.parent / "set.yaml"), "-o", str(tmp_path / "out")]
-        one_line(lambda words=words: program()(words, standalone_mode=False), "sweep.json")

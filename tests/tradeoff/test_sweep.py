@@ -1,9 +1,7 @@
-"""`radhar tradeoff`: measured once, resumable, and what it writes."""
+"""`radhar tradeoff`: what it measures and writes."""
 
 import csv
 import json
-import re
-from shutil import copytree
 
 import numpy as np
 import pytest
@@ -12,7 +10,6 @@ from PIL import Image
 from typer.testing import CliRunner
 
 from radhar_cli.cli import program
-from radhar_cli.errors import FolderError
 from radhar_cli.scene import scene_numbers
 from radhar_cli.tradeoff import study
 from radhar_cli.tradeoff.figure import CostPoint, frontier
@@ -37,7 +34,6 @@ TRIED = (
     *("cfar", "clutter: mean instead of difference", "room: 3 reflectors"),
     *("noise corner at PRF/20", "interference line at PRF/8"),
 )
-FEW = ("-40 dB", "-80 dB", "cube")
 
 
 @pytest.fixture
@@ -45,13 +41,6 @@ def config(tmp_path):
     path = tmp_path / "c.yaml"
     path.write_text(CONFIG)
     return path
-
-
-@pytest.fixture
-def few(monkeypatch):
-    """Three settings are enough to see what is measured when."""
-    monkeypatch.setattr(study, "sweep", lambda config: [s for s in sweep(config) if s.name in FEW])
-    monkeypatch.setattr("radhar_cli.tradeoff.measures.SECONDS", 0.0)
 
 
 def tried(config):
@@ -83,11 +72,6 @@ def rows_of(out):
     return {row["setting"]: row for row in rows}
 
 
-def files_of(out):
-    return {path.name: path.read_bytes() for path in out.iterdir() if path.is_file()}
-
-
-@pytest.mark.usefixtures("few")
 class TestCommand:
     def test_writes_four_files_that_agree(self, done):
         config, out = done
@@ -140,66 +124,6 @@ class TestCommand:
         assert dense["time_over"] == "the FSST at the STFT's hop"
         assert rows["range_sum: gated instead of coherent"]["map_error_db"] > 0.1
         assert rows["cfar"]["pixels_changed"] < 0.05  # masks of the engine against the cube's
-
-    def test_a_second_sweep_measures_nothing(self, done, monkeypatch):
-        config, out = done
-        before = files_of(out)
-
-        def never(*_):
-            raise AssertionError("measured again")
-
-        monkeypatch.setattr(study, "sweep", tried)
-        monkeypatch.setattr(study, "time_setting", never)
-        monkeypatch.setattr(study, "_of", never)
-        assert tradeoff(config, out).exit_code == 0
-        assert files_of(out) == before
-
-    def test_resumes_where_it_was_interrupted(self, config, tmp_path, monkeypatch):
-        out, whole, measured = tmp_path / "out", study.time_setting, []
-
-        def stopping(scenes, setting, turn):
-            if len(measured) == 5:
-                raise KeyboardInterrupt
-            return going_on(scenes, setting, turn)
-
-        def going_on(scenes, setting, turn):
-            measured.append(setting.name)
-            return whole(scenes, setting, turn)
-
-        monkeypatch.setattr(study, "time_setting", stopping)
-        stopped = tradeoff(config, out)
-        assert stopped.exit_code == 130
-        assert "is kept" in stopped.output
-        measured.clear()
-        monkeypatch.setattr(study, "time_setting", going_on)
-        assert tradeoff(config, out).exit_code == 0
-        assert len(measured) == study.ROUNDS[True] * len(rows_of(out)) - 5
-
-    def test_another_config_is_refused(self, done, tmp_path):
-        config, out = done[0], tmp_path / "out"
-        copytree(done[1], out)
-        refused = tradeoff(config, out, "--set", "duration_s=2.0").exception
-        assert isinstance(refused, FolderError)
-        assert "duration_s: 1.0 there, 2.0 here" in str(refused)
-        assert tradeoff(config, out, "--set", "duration_s=2.0", "--overwrite").exit_code == 0
-
-    def test_a_folder_with_other_things_is_refused(self, config, tmp_path):
-        (tmp_path / "out").mkdir()
-        (tmp_path / "out" / "thesis.tex").touch()
-        refused = tradeoff(config, tmp_path / "out").exception
-        assert isinstance(refused, FolderError)
-        assert "thesis.tex" in str(refused)
-
-
-@pytest.mark.usefixtures("few")
-@pytest.mark.parametrize("text", ["{", "[" * 10**5, "[1]", "3"])
-def test_a_damaged_result_is_refused(text, done, tmp_path):
-    copytree(done[1], tmp_path / "out")
-    for kept in (tmp_path / "out/.radhar/measured").iterdir():
-        kept.write_text(text)
-    refused = tradeoff(done[0], tmp_path / "out").exception
-    assert isinstance(refused, FolderError)
-    assert re.search(r"measured.* is damaged", str(refused))
 
 
 class TestSettings:

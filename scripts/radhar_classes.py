@@ -4,8 +4,8 @@
 
 FOLDER: recordings `<class>*.npz` of boxing, jack, jump, squats and walk (github.com/nesl/RadHAR,
 Singh et al. 2019): `points` [N, 9] = frame, x (ahead), y, z (up) m, velocity (receding) m/s, ...;
-30 frames a second. Simulated ones come from configs/measured/radhar_1443.yaml. Both are cut to where
-people stand: what stands in the room is left out, static points of the body are not. Windows last
+30 frames a second. Simulated ones come from configs/measured/radhar_1443.yaml. Both are cut to
+where people stand: what stands in the room is left out, static points of the body are not. Windows last
 4 s, one begins every second. The network is that of `radhar train --model cloudnet`. Recordings are
 opened when it has learned. The last line is for programs; windows of a recording overlap, so n is
 not the number of independent ones.
@@ -119,7 +119,7 @@ def trained(x: Tensor, labels: Tensor, seed: int) -> nn.Module:
     steps = EPOCHS * -(-len(x) // BATCH)
     schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, 3e-3, total_steps=steps)
     for _ in range(EPOCHS):
-        for rows in torch.randperm(len(x)).split(BATCH):
+        for rows in torch.split(torch.randperm(len(x)), BATCH):
             logits = model(changed(x[rows]))
             loss = nn.functional.cross_entropy(logits, labels[rows], label_smoothing=0.1)
             optimiser.zero_grad()

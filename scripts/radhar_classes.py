@@ -5,10 +5,10 @@
 FOLDER: recordings `<class>*.npz` of boxing, jack, jump, squats and walk (github.com/nesl/RadHAR,
 Singh et al. 2019): `points` [N, 9] = frame, x (ahead), y, z (up) m, velocity (receding) m/s, ...;
 30 frames a second. Simulated ones come from configs/measured/radhar_1443.yaml. Both are cut to
-where people stand: what stands in the room is left out, static points of the body are not. Windows last
-4 s, one begins every second. The network is that of `radhar train --model cloudnet`. Recordings are
-opened when it has learned. The last line is for programs; windows of a recording overlap, so n is
-not the number of independent ones.
+where people stand: what stands in the room is left out, static points of the body are not. Windows
+last 4 s, one begins every second. The network is that of `radhar train --model cloudnet`; it has
+learned before the recordings are opened. The last line is for programs; windows of a recording
+overlap, so n is not the number of independent ones.
 """
 
 import argparse
@@ -108,7 +108,7 @@ def changed(x: Tensor) -> Tensor:
     y[:, :3] = x[:, :3] * size + 0.05 * torch.randn(count, 3, 1, 1)
     y[:, 1] *= side
     y = y.roll(int(torch.randint(FRAMES, (1,))), dims=2)
-    return y * kept
+    return y * (kept & (y[:, 5:] > 0))
 
 
 def trained(x: Tensor, labels: Tensor, seed: int) -> nn.Module:

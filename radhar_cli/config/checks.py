@@ -92,10 +92,17 @@ def _step_problems(c: Config) -> Iterator[Problem]:
         if (value is None) == (radar.waveform == "sfcw"):
             right = "should be given" if value is None else "should be null"
             yield Problem(f"radar.{key}", value, f"{right} with radar.waveform: {radar.waveform}")
+    if radar.waveform == "cw":
+        if "rtm" in c.maps:
+            right = "should be maps of Doppler: radar.waveform: cw has no range"
+            yield Problem("maps", list(c.maps), right)
+        if c.processing.range_sum == "gated":
+            right = "should be coherent with radar.waveform: cw, which has no range"
+            yield Problem("processing.range_sum", "gated", right)
     for key, number in radar.of_steps.items():
         value = getattr(radar, key)
         if not (isinstance(value, (int, float)) and abs(value - number) <= 1e-9 * number):
-            right = f"should be left out: steps and dwell_s give {number:.17g}"
+            right = f"should be left out: radar.waveform: {radar.waveform} gives {number:.17g}"
             yield Problem(f"radar.{key}", value, right)
 
 
@@ -251,7 +258,7 @@ def _waveform_problems(c: Config) -> Iterator[Problem]:
             yield Problem("radar.steps", radar.steps, right)
         else:
             yield Problem("radar.chirp_s", radar.chirp_s, right)
-    if fewest < 2:
+    if fewest < 2 and radar.waveform != "cw":
         right = f"should give at least 2 {samples} {fewest})"
         yield Problem("radar.adc_rate_hz", radar.adc_rate_hz, right)
     if most > 2**20:

@@ -247,8 +247,9 @@ class RadarConfig(Section):
     """Of the antennas' field; horizontal is along y."""
     beam: BeamConfig | None = None
     """Where both antennas look; null radiates evenly. A board has radar.half_power_deg."""
-    waveform: Literal["fmcw", "sfcw"] = "fmcw"
-    """sfcw: sweeps of steps, sampled once each; instead of adc_rate_hz and chirp_s."""
+    waveform: Literal["fmcw", "sfcw", "cw"] = "fmcw"
+    """sfcw: sweeps of steps, sampled once each; cw: one sample a pulse, at carrier_hz. Without
+    adc_rate_hz and chirp_s; cw without bandwidth_hz."""
     steps: Annotated[int, Field(ge=2, le=2**20, strict=True)] | None = None
     """Of a sweep of sfcw: frequencies carrier_hz + n bandwidth_hz/steps."""
     dwell_s: Annotated[float, Field(gt=0, le=1e3, strict=True)] | None = None
@@ -275,7 +276,9 @@ class RadarConfig(Section):
 
     @property
     def of_steps(self) -> dict[str, float]:
-        """Keys of the chirp with the same samples as the sweeps of sfcw; empty of fmcw."""
+        """Keys of the chirp with the same samples as sweeps of sfcw, or as cw; empty of fmcw."""
+        if self.waveform == "cw":
+            return {"adc_rate_hz": 1e9, "chirp_s": 1e-9, "bandwidth_hz": 1e3}
         if self.waveform == "fmcw" or self.steps is None or self.dwell_s is None:
             return {}
         return {"adc_rate_hz": 1 / self.dwell_s, "chirp_s": self.steps * self.dwell_s}
@@ -1602,6 +1605,8 @@ def possible_maps(config: Config) -> tuple[str, ...]:
     Of a board range, Doppler, its frames and the cube.
     """
     gated = config.processing.range_sum == "gated"
+    if config.radar.waveform == "cw":
+        return tuple(name for name in MAP_NAMES if name != "rtm")
     if config.radar.cfg is None:
         return tuple(name for name in MAP_NAMES if not (gated and name.startswith("fsst")))
     flat = {"range_elevation"} if len(elevations(config)) < 2 else set()

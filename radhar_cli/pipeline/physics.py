@@ -99,7 +99,7 @@ def waveform_of(config: Config) -> Waveform:
         prf=radar.prf_hz,
         duration=Numbers(config).duration_s,
         fft_length=config.processing.range_fft_length,
-        centred=config.processing.range_reference == "centre",
+        centred=config.processing.range_reference == "centre" and config.radar.waveform != "cw",
         residual_video_phase=radar.residual_video_phase,
     )
 

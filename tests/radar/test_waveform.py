@@ -1,6 +1,7 @@
 """Derived numbers of an FMCW waveform."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from hypothesis import strategies as st
 from radhar_cli.config import Config
 from radhar_cli.config.identity import resolved
 from radhar_cli.echo.beat import beat_matrix
+from radhar_cli.pipeline.motion_paths import MotionPaths
 from radhar_cli.pipeline.physics import waveform_of
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.simulation.simulate import simulate
@@ -153,3 +155,35 @@ def test_a_slow_sweep_and_a_short_fft_are_told_by_their_own_keys() -> None:
     with pytest.raises(ValueError, match=r"processing\.range_fft_length") as error:
         Config.model_validate(document | {"processing": {"range_fft_length": 4}})
     assert "radar.steps" in str(error.value)
+
+
+CW: dict[str, Any] = {
+    "radar": {"waveform": "cw", "carrier_hz": 24e9, "prf_hz": 500},
+    "activities": ["walking"],
+}
+
+
+@pytest.mark.parametrize("kind", ["direct", "cube"])
+def test_one_sample_a_pulse_without_modulation(kind: str) -> None:
+    """x = sum A exp(-j 2 pi fc tau), by both engines; Doppler of fc, no range."""
+    document = {"duration_s": 1, "snr_db": None, "maps": ["stft"], "engine": {"kind": kind}}
+    document["processing"] = {"clutter": "none"}
+    found = simulate(Config.model_validate(CW | document), nominal=True, maps=("stft",))
+    w = found.waveform
+    assert (w.n_adc, w.f0, w.n_bins) == (1, 24e9, 1)
+    paths = MotionPaths(found.motion, found.antennas, w.fc, None)(w.times(np.arange(5.0)))
+    expected = (paths.amplitude * np.exp(-2j * np.pi * w.fc * paths.delay)).sum(axis=0)
+    np.testing.assert_allclose(found.signals["raw"].x[0, 0, :5], expected, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        ({"maps": ["rtm"]}, r"maps.*should be maps of Doppler"),
+        ({"processing": {"range_sum": "gated"}}, r"range_sum.*coherent with radar.waveform: cw"),
+        ({"radar": CW["radar"] | {"chirp_s": 1e-5}}, r"radar.chirp_s.*should be left out"),
+    ],
+)
+def test_what_cw_does_not_have(more: dict[str, object], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        Config.model_validate(CW | {"maps": ["stft"]} | more)

@@ -20,8 +20,9 @@ def models(
 
       radhar models --size 128
 
-    fftnet is the paper's network, smallnet a plain one that learns in seconds; every other name is
-    one of timm's (pip install 'radhar[zoo]'). framenet and cloudnet learn sequences of boards.
+    fftnet is the paper's network, smallnet a plain one that learns in seconds, smallnet_bn the same
+    with batch norm, which `radhar adapt` gains more by; every other name is one of timm's
+    (pip install 'radhar[zoo]'). framenet and cloudnet learn sequences of boards.
     """
     from radhar_cli.commands.learning_options import needs_torch
 

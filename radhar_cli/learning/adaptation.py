@@ -37,8 +37,8 @@ from radhar_cli.randomness import TRAINING, stream
 from radhar_cli.worker_process import keep_memory
 
 MIN_IMAGES, BATCH = 16, 96
-MIXED = 64  # labelled images a step
-RATE = 1.5e-3  # of Adam, falls to zero by a cosine
+MIXED = 32  # labelled images a step
+RATE = 5e-4  # of Adam, falls to zero by a cosine
 
 
 @dataclass(frozen=True)

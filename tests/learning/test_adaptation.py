@@ -52,7 +52,7 @@ def learned(data, tmp_path_factory):
 def normed(tmp_path_factory):
     """A run of a network with batch norm."""
     folder = tmp_path_factory.mktemp("normed")
-    trained(split_tree(folder / "data", size=32), folder / "run", epochs=8, model="fftnet")
+    trained(split_tree(folder / "data", size=32), folder / "run", epochs=8, model="smallnet_bn")
     return folder / "run"
 
 

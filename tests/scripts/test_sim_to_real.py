@@ -152,9 +152,9 @@ def test_the_whole_experiment(
     assert re.fullmatch(r"seed_1: best.safetensors has SHA-256 [0-9a-f]{64}", lines[0])
     assert any(line.startswith("what it takes for something else") for line in lines)
     order = [command[0] for command in commands]
-    made = ["generate"] * 5 + ["train"]
-    assert order[:7] == [*made, "the masks"], "the network is fixed before they are opened"
-    assert set(order[7:]) == {"adapt"}
+    made = ["generate"] * 5 + ["train"] * 2
+    assert order[:8] == [*made, "the masks"], "the networks are fixed before they are opened"
+    assert set(order[8:]) == {"adapt"}
     commands.clear()
     script.main()
     assert capsys.readouterr().out.splitlines() == lines, "again: the same"

@@ -31,8 +31,8 @@ def build_model(
     """Build a network with fresh weights.
 
     Args:
-        name: fftnet, smallnet, or any name that timm knows (needs the extra `zoo`); of sequences
-            cloudnet, framenet.
+        name: fftnet, smallnet, smallnet_bn, or any name that timm knows (needs the extra `zoo`); of
+            sequences cloudnet, framenet.
         outputs: as many as classes, or as coordinates of all joints.
         size: of an image, (frames, points) of clouds.
         per_frame: every frame of a sequence has outputs.
@@ -57,13 +57,13 @@ def build_model(
                 f"of {STRIDE}"
             )
         return FFTNet(outputs, height, width)
-    if name == smallnet.NAME:
+    if name in (smallnet.NAME, smallnet.WITH_BATCH_NORM):
         if min(size) < smallnet.MIN_SIDE:
             raise ModelError(
-                f"model smallnet: images are {height} x {width} px; both sides should have at "
+                f"model {name}: images are {height} x {width} px; both sides should have at "
                 f"least {smallnet.MIN_SIDE}"
             )
-        return smallnet.SmallNet(outputs)
+        return smallnet.SmallNet(outputs, name == smallnet.WITH_BATCH_NORM)
     return zoo_model(name, outputs, size)
 
 

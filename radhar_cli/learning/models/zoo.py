@@ -12,7 +12,7 @@ from radhar_cli.learning.models import fftnet, smallnet
 from radhar_cli.learning.settings import OF_SEQUENCES
 
 _OPERATORS: Any = Library("torchvision", "FRAGMENT")  # type: ignore[no-untyped-call]  # forgets what it defines when it is let go
-OURS = (fftnet.NAME, smallnet.NAME)
+OURS = (fftnet.NAME, smallnet.NAME, smallnet.WITH_BATCH_NORM)
 
 
 def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:

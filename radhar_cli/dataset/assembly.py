@@ -1,4 +1,4 @@
-"""Shards -> dataset.h5, scenes.csv, config.yaml and the manifest of what was put together.
+"""Shards -> dataset.h5, scenes.csv and config.yaml.
 
 The layout of dataset.h5 is a contract, described in docs/dataset.md. Nothing here grows with the
 rows but the list of shards: columns go into the file as shards are read.
@@ -30,12 +30,10 @@ from radhar_cli.dataset.layout import (
     CONFIG,
     DATASET,
     LABELS,
-    MANIFEST,
     PERSON_LABEL,
     SCENES,
     SPLITS,
     TIME,
-    WORK,
     Rows,
     chunked,
     column_axis,
@@ -118,18 +116,14 @@ def assembled(
     try:
         with (  # replaced from the last to the first: dataset.h5 comes when the others are there
             replacing(folder / DATASET, unfinished_path(folder)) as unfinished,
-            replacing(folder / WORK / MANIFEST, unfinished_path(folder)) as manifest,
             replacing(folder / SCENES, unfinished_path(folder)) as table,
         ):
             with (
                 new_hdf5(unfinished, folder / DATASET) as (file, check),
                 table.open("w", newline="", encoding="utf-8") as text,
-                manifest.open("w") as held,
             ):
                 _describe_samples(file, config)
-                held.write(f'{{"identity": "{own_hash}", "rows": {count}, "shards": [\n')
-                flags = _copy_shards(file, check, config, shards, own_hash, progress, text, held)
-                held.write("]}\n")
+                flags = _copy_shards(file, check, config, shards, own_hash, progress, text)
                 messages = warnings(config, flags)
                 _root_attributes(file, config, messages)
                 file.attrs[DIGESTS] = json.dumps(attribute_digests(file), sort_keys=True)
@@ -150,9 +144,8 @@ def _copy_shards(
     own_hash: str,
     progress: Progress,
     table: io.TextIOBase,
-    manifest: io.TextIOBase,
 ) -> dict[Flags, int]:
-    """Copy maps and columns, each shard read and checked once, and write down what each held.
+    """Copy maps and columns, each shard read and checked once.
 
     Chunks are stored in runs of RUN rows, or of RUN_BYTES, dataset after dataset: the file's layout
     does not depend on how shards cut the rows, and who reads one map reads long stretches.
@@ -176,10 +169,7 @@ def _copy_shards(
     extents: dict[str, set[tuple[float, ...]]] = {f"extent/{name}": set() for name in config.maps}
     for shard in shards:
         start, stop, rows = shard.start, shard.stop, shard.stop - shard.start
-        data, checksum = shard.read(own_hash)
-        held = {"start": start, "stop": stop, "bytes": len(data), "sha256": checksum}
-        manifest.write(json.dumps(held) + (",\n" if stop < count else "\n"))
-        with UntrustedFile(shard.path, data) as part:
+        with UntrustedFile(shard.path, shard.read(own_hash)) as part:
             values = part.column("scene", np.float64, (rows, len(fields)))[:]
             here = part.column("flags", np.uint8, (rows,))[:]
             for name, (dtype, shape) in large.items():

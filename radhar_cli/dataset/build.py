@@ -11,16 +11,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.assembly import assembled
-from radhar_cli.dataset.batch import OUTCOME, Batch, Outcomes, check_rows, run_batch
+from radhar_cli.dataset.batch import Batch, check_scenes, run_batch
 from radhar_cli.dataset.folder import clean_up, folder_lock, reserve
 from radhar_cli.dataset.hub import write_hub_files
 from radhar_cli.dataset.identity import identity, identity_hash
-from radhar_cli.dataset.layout import DATASET, MANIFEST, WORK, Rows, row_bytes
-from radhar_cli.dataset.parts import Part, refuse_other_cuts, write_part_manifest
+from radhar_cli.dataset.layout import BUILT, DATASET, WORK, Rows, row_bytes
+from radhar_cli.dataset.parts import Part, refuse_other_cuts
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.png_files import write_missing_pngs
 from radhar_cli.dataset.sample import RowFactory
@@ -30,21 +28,18 @@ from radhar_cli.dataset.shards import (
     Shard,
     check_shards,
     listed_shards,
-    missing_and_repeated,
+    missing_rows,
 )
 from radhar_cli.dataset.split import split_rows, split_warnings
 from radhar_cli.dataset.untrusted_hdf5 import try_files
 from radhar_cli.dataset.workers import cores, parent_pid, run_tasks
 from radhar_cli.errors import FolderError, UnfinishedError
-from radhar_cli.pipeline.validity import Flags, warnings
 from radhar_cli.progress import Progress
 
 # Samples a batch: few at first; of many rows more, as each shard costs some ms of the assembly, but
 # no more than 1/64 of a worker's share, as much as a kill may lose.
 BATCH, MAX_BATCH, SHARE, BATCH_BYTES = 32, 1024, 64, 2**28
-CHECK_BATCH = 64
 PROCESSES_A_CORE = 8  # more would do nothing but take memory
-MAX_CHECKED_FIRST = 100_000  # rows; with more, workers check their own
 
 
 @dataclass(frozen=True)
@@ -91,8 +86,7 @@ def build(
     Raises:
         FolderError: the folder is in use or holds something else.
         UnfinishedError: it cannot be written, or a worker was killed; finished samples are kept.
-        SceneError: a scene outside the model; nothing was computed of a data set of at most
-            MAX_CHECKED_FIRST rows.
+        SceneError: a scene outside the model; some are checked before anything is computed.
     """
     folder, count = folder.absolute(), len(Rows.of(config))
     if part is not None:
@@ -142,8 +136,9 @@ class _Build:
     def part(self, part: Part, batch_size: int | None) -> BuildOutcome:
         """Make the shards of a part; they stay, for others to put together and write the PNGs."""
         rows, self.png = part.rows(len(self.split)), False
-        shards, made, shown = self._shards(rows, batch_size)
-        write_part_manifest(self.folder, part, rows, self.identity_hash, shards)
+        (self.folder / WORK / BUILT).unlink(missing_ok=True)
+        _, made, shown = self._shards(rows, batch_size)
+        (self.folder / WORK / BUILT).touch()
         return BuildOutcome(self.folder, len(rows), made, 0, shown)
 
     def _write_beside(self, source: Path) -> int:
@@ -159,33 +154,15 @@ class _Build:
     ) -> tuple[list[Shard], int, list[dict[str, Any]]]:
         """Shards of the rows, number of rows that this run made, and warnings."""
         shards = self._sound_shards(rows)
-        gaps, _ = missing_and_repeated(shards, rows.stop, rows.start)
-        # Others may be drawn again in each scene: who makes it checks it.
-        few = len(rows) <= MAX_CHECKED_FIRST and not self.config.people and self.factory is None
-        checked = self._check_scenes(rows, gaps) if few and gaps else None
+        gaps = missing_rows(shards, rows.stop, rows.start)
         shown: list[dict[str, Any]] = []
-        if checked is not None and not shards:
-            flags = checked["flags"]
-            counts = {flag: int(np.count_nonzero(flags & flag)) for flag in Flags}
-            shown = warnings(self.config, counts)
+        if not shards and self.factory is None:
+            _, shown = check_scenes(self.config)
         say_warnings(self.progress, shown)
-        made, left = self._batches(rows, gaps, checked, batch_size)
+        made, left = self._batches(rows, gaps, batch_size)
         return shards + made, left, shown
 
-    def _check_scenes(self, rows: range, gaps: Runs) -> Outcomes:
-        """Check the scenes of the rows in the gaps: an outcome a row."""
-        outcomes, left = np.zeros(len(rows), OUTCOME), sum(stop - start for start, stop in gaps)
-        self.progress.stage("checking scenes", left, 0)
-        size = max(1, min(CHECK_BATCH, -(-left // (4 * self.jobs))))
-        tasks = [(self.config, *cut, parent_pid()) for cut in _cuts(gaps, size)]
-        for start, found in run_tasks(check_rows, tasks, _processes(self.jobs, len(tasks))):
-            outcomes[start - rows.start :][: found.size] = found
-            self.progress.advance(found.size)
-        return outcomes
-
-    def _batches(
-        self, rows: range, gaps: Runs, checked: Outcomes | None, batch_size: int | None
-    ) -> tuple[list[Shard], int]:
+    def _batches(self, rows: range, gaps: Runs, batch_size: int | None) -> tuple[list[Shard], int]:
         """Make the rows in the gaps; return their shards, and how many they are."""
         config = self.config
         left = sum(stop - start for start, stop in gaps)
@@ -196,10 +173,9 @@ class _Build:
 
         def batches() -> Iterator[tuple[Batch]]:
             for start, stop in cuts:
-                own = None if checked is None else checked[start - rows.start : stop - rows.start]
                 where = (config, self.identity_hash, self.folder, start, stop)
                 split = self.split[start:stop]
-                yield (Batch(*where, own, split, table, parent_pid(), self.factory),)
+                yield (Batch(*where, split, table, parent_pid(), self.factory),)
 
         count = len(cuts)
         processes = _processes(self.jobs, count)
@@ -215,7 +191,6 @@ class _Build:
 
         A damaged one is removed, as new batches may be cut differently; a foreign one put aside.
         """
-        (self.folder / WORK / MANIFEST).unlink(missing_ok=True)
         sound, unusable = check_shards(listed_shards(self.folder, rows), self.identity_hash)
         for shard, error in unusable:
             self.progress.say(f"{shard.path}: {error}; its rows are made again")

@@ -23,7 +23,7 @@ from radhar_cli.config.identity import as_yaml, config_hash, resolved
 from radhar_cli.config.schema import FRAME_MAPS, Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.column_labels import label_names
-from radhar_cli.dataset.files import unfinished_path, write_whole
+from radhar_cli.dataset.files import digest_of, unfinished_path, write_whole
 from radhar_cli.dataset.identity import identity, identity_hash, versions
 from radhar_cli.dataset.layout import (
     COLUMN_LABEL,
@@ -72,6 +72,7 @@ from radhar_cli.scene import nominal_scene, subject_of
 SCHEMA_VERSION = 2
 RUN, RUN_BYTES = 128, 2**28
 COLUMN_RUN, CHUNK_BYTES = 4096, 2**16
+SCENES_DIGEST = "scenes_sha256"
 CONFIG_HEADING = "# The resolved config of this data set, every default filled in.\n"
 CFAR_TEXT = (
     "255 where a pixel exceeds its threshold over the mean of the training cells around it, else 0 "
@@ -124,6 +125,8 @@ def assembled(
             ):
                 _describe_samples(file, config)
                 flags = _copy_shards(file, check, config, shards, own_hash, progress, text)
+                text.flush()
+                file.attrs[SCENES_DIGEST] = digest_of(table)
                 messages = warnings(config, flags)
                 _root_attributes(file, config, messages)
                 file.attrs[DIGESTS] = json.dumps(attribute_digests(file), sort_keys=True)
@@ -164,7 +167,7 @@ def _copy_shards(
     fields = scene_fields.fields(config)
     scene = [_Column(file[f"scene/{field.name}"]) for field in fields]
     products = {name: _Ragged(file, config, name) for name in config.stored}
-    rows_csv = SceneTable(config, table)
+    rows_csv = _SceneTable(config, table)
     flags = dict.fromkeys(Flags, 0)
     extents: dict[str, set[tuple[float, ...]]] = {f"extent/{name}": set() for name in config.maps}
     for shard in shards:
@@ -358,7 +361,7 @@ def _root_attributes(file: h5py.File, config: Config, messages: list[dict[str, A
     file.attrs.update(described)
 
 
-class SceneTable:
+class _SceneTable:
     """scenes.csv, written some rows at a time."""
 
     def __init__(self, config: Config, table: io.TextIOBase) -> None:
@@ -366,7 +369,7 @@ class SceneTable:
         named = config.recorded is not None and config.split.subjects is not None
         self._persons = persons(config) if named else None
         self._writer = csv.writer(table, lineterminator="\n")
-        columns = (field.column for field in scene_fields.fields(config))
+        columns = (field.key for field in scene_fields.fields(config))
         self._writer.writerow(["label", "class", "slug", "index", "split", "subject", *columns])
 
     def write(self, start: int, values: Float) -> None:

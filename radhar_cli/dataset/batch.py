@@ -2,7 +2,6 @@
 
 import os
 import platform
-import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -61,7 +60,7 @@ def leave_if_orphaned(parent_pid: int) -> None:
     """End a worker whose parent was killed: nobody waits for it, and a new run may be at work."""
     if parent_pid == NO_PARENT:
         return
-    if os.getpid() != parent_pid and os.getppid() != parent_pid and sys.platform != "win32":
+    if os.getpid() != parent_pid and os.getppid() != parent_pid:
         os._exit(1)
 
 

@@ -70,7 +70,6 @@ class Dataset(Closing):
     def __init__(self, path: Path) -> None:
         self.path = path
         self.file = UntrustedFile(path)
-        self.splits = SPLITS
         try:
             self.config = stored_config(self.file.json("config"), str(path))
             self._check()

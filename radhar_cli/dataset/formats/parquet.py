@@ -1,7 +1,6 @@
 """Parquet files with the images in them, a folder a map, as the Hugging Face Hub keeps them."""
 
 import hashlib
-import json
 from collections.abc import Iterator
 from itertools import islice
 from math import prod
@@ -61,18 +60,11 @@ def _files_of_split(data: Dataset, split: int) -> Iterator[tuple[int, Iterator[E
 
 
 def schema_of(config: Config) -> pa.Schema:
-    """Columns, and what `datasets` makes of them."""
+    """Columns; the card says what `datasets` makes of them."""
     kinds = {one["name"]: one["dtype"] for one in number_features(config)}
     image = pa.struct([("bytes", pa.binary()), ("path", pa.string())])
     columns = [("image", image), ("label", pa.int64())]
-    features = {
-        "image": {"_type": "Image"},
-        "label": {"names": [a.slug for a in config.every_class], "_type": "ClassLabel"},
-        **{name: {"dtype": kind, "_type": "Value"} for name, kind in kinds.items()},
-    }
-    metadata = json.dumps({"info": {"features": features}})
-    numbers = [(name, pa.type_for_alias(kind)) for name, kind in kinds.items()]
-    return pa.schema([*columns, *numbers], metadata={"huggingface": metadata})
+    return pa.schema([*columns, *((name, pa.type_for_alias(kind)) for name, kind in kinds.items())])
 
 
 def _table(data: Dataset, name: str, here: list[Entry], schema: pa.Schema) -> pa.Table:

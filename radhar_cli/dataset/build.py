@@ -6,7 +6,7 @@ shards it finds; dataset.h5 comes last, so that a folder with one is complete.
 
 import errno
 import uuid
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -32,14 +32,13 @@ from radhar_cli.dataset.shards import (
 )
 from radhar_cli.dataset.split import split_rows, split_warnings
 from radhar_cli.dataset.untrusted_hdf5 import try_files
-from radhar_cli.dataset.workers import cores, parent_pid, run_tasks
+from radhar_cli.dataset.workers import parent_pid, run_tasks
 from radhar_cli.errors import FolderError, UnfinishedError
 from radhar_cli.progress import Progress
 
 # Samples a batch: few at first; of many rows more, as each shard costs some ms of the assembly, but
 # no more than 1/64 of a worker's share, as much as a kill may lose.
 BATCH, MAX_BATCH, SHARE, BATCH_BYTES = 32, 1024, 64, 2**28
-PROCESSES_A_CORE = 8  # more would do nothing but take memory
 
 
 @dataclass(frozen=True)
@@ -98,14 +97,16 @@ def build(
     try:
         with folder_lock(folder):
             reserve(folder, config, overwrite, None if part is None else str(part))
-            work = _Build(config, folder, jobs, progress, factory)
+            work = Build(config, folder, jobs, progress, factory)
             return work.whole(batch_size) if part is None else work.part(part, batch_size)
     except OSError as error:
         raise disk_error(folder, error) from error
 
 
 @dataclass
-class _Build:
+class Build:
+    """A build in a folder that was reserved for it."""
+
     config: Config
     folder: Path
     jobs: int
@@ -118,20 +119,39 @@ class _Build:
         self.png = self.config.output.png
 
     def whole(self, batch_size: int | None) -> BuildOutcome:
-        config, count = self.config, len(self.split)
+        """Make what is missing of a data set."""
         if (self.folder / DATASET).exists():
             pngs = self._write_beside(self.folder / DATASET)
             clean_up(self.folder)
-            return BuildOutcome(self.folder, count, 0, pngs)
-        for message in split_warnings(config, self.split):
+            return BuildOutcome(self.folder, len(self.split), 0, pngs)
+        self.warn_of_split()
+        shards, made, shown = self._shards(range(len(self.split)), batch_size)
+        return self.assemble(shards, made, shown)
+
+    def warn_of_split(self) -> None:
+        """Say what is missing in parts of the split."""
+        for message in split_warnings(self.config, self.split):
             self.progress.say(f"warning: {message}")
-        shards, made, shown = self._shards(range(count), batch_size)
-        self.progress.stage("assembling", count, 0)
-        with assembled(config, self.folder, shards, self.progress) as (unfinished, stored):
-            say_warnings(self.progress, [warning for warning in stored if warning not in shown])
-            pngs = self._write_beside(unfinished)
+
+    def assemble(
+        self,
+        shards: list[Shard],
+        made: int,
+        shown: Sequence[dict[str, Any]] = (),
+        remedy: Callable[[Runs], str] | None = None,
+    ) -> BuildOutcome:
+        """Make a data set of its shards, `made` rows of which are new.
+
+        Args:
+            shown: warnings that were given before.
+            remedy: as of `assembled`.
+        """
+        self.progress.stage("assembling", len(self.split), 0)
+        with assembled(self.config, self.folder, shards, self.progress, remedy) as (source, stored):
+            self._say_warnings([warning for warning in stored if warning not in shown])
+            pngs = self._write_beside(source)
         clean_up(self.folder)
-        return BuildOutcome(self.folder, count, made, pngs, stored)
+        return BuildOutcome(self.folder, len(self.split), made, pngs, stored)
 
     def part(self, part: Part, batch_size: int | None) -> BuildOutcome:
         """Make the shards of a part; they stay, for others to put together and write the PNGs."""
@@ -140,6 +160,10 @@ class _Build:
         _, made, shown = self._shards(rows, batch_size)
         (self.folder / WORK / BUILT).touch()
         return BuildOutcome(self.folder, len(rows), made, 0, shown)
+
+    def _say_warnings(self, messages: Sequence[dict[str, Any]]) -> None:
+        for warning in messages:
+            self.progress.say(f"warning: {warning['message']}")
 
     def _write_beside(self, source: Path) -> int:
         """Write the missing files next to dataset.h5; return the number of PNGs among them."""
@@ -158,7 +182,7 @@ class _Build:
         shown: list[dict[str, Any]] = []
         if not shards and self.factory is None:
             _, shown = check_scenes(self.config)
-        say_warnings(self.progress, shown)
+        self._say_warnings(shown)
         made, left = self._batches(rows, gaps, batch_size)
         return shards + made, left, shown
 
@@ -177,12 +201,7 @@ class _Build:
                 split = self.split[start:stop]
                 yield (Batch(*where, split, table, parent_pid(), self.factory),)
 
-        count = len(cuts)
-        processes = _processes(self.jobs, count)
-        if count > 0 and processes < self.jobs:
-            why = "one for each batch of samples" if processes == count else f"on {cores()} cores"
-            self.progress.say(f"{processes} of {self.jobs} processes, {why}")
-        for samples in run_tasks(run_batch, batches(), processes):
+        for samples in run_tasks(run_batch, batches(), max(1, min(self.jobs, len(cuts)))):
             self.progress.advance(samples)
         return [Shard(*cut, self.folder) for cut in cuts], left
 
@@ -211,19 +230,6 @@ def _batch_size(left: int, jobs: int, one: int) -> int:
     """Samples a batch, of `left` samples of `one` bytes each for `jobs` processes."""
     most = min(max(BATCH, left // (SHARE * jobs)), MAX_BATCH, BATCH_BYTES // one)
     return max(1, min(most, -(-left // (4 * jobs))))
-
-
-def say_warnings(progress: Progress, messages: list[dict[str, Any]]) -> None:
-    """Say physical warnings."""
-    for warning in messages:
-        progress.say(f"warning: {warning['message']}")
-
-
-def _processes(jobs: int, tasks: int) -> int:
-    """As many as were asked for, but no more than there are tasks, nor than memory bears."""
-    wanted = max(1, min(jobs, tasks))
-    # Counting cores loads joblib: 70 ms, for nothing where the build is one process.
-    return wanted if wanted == 1 else min(wanted, PROCESSES_A_CORE * cores())
 
 
 def disk_error(folder: Path, error: OSError) -> UnfinishedError:

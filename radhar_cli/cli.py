@@ -146,11 +146,9 @@ def _run(arguments: list[str]) -> int | None:
     """
     import typer
 
-    from radhar_cli.commands.generate import shard_named
-
     usage_error = typer.BadParameter.__mro__[1]  # of click, or of the copy that newer typers hold
     try:
-        return program()(shard_named(arguments), prog_name="radhar", standalone_mode=False)  # type: ignore[no-any-return]
+        return program()(arguments, prog_name="radhar", standalone_mode=False)  # type: ignore[no-any-return]
     except Exception as error:
         if not isinstance(error, usage_error):
             raise

@@ -28,7 +28,6 @@ from torch.utils.data import DataLoader
 from typer.main import get_command
 
 from radhar_cli.cli import program
-from radhar_cli.commands.generate import shard_named
 from radhar_cli.config import Config, load_config
 from radhar_cli.pipeline.validity import draw_valid_scene
 
@@ -62,8 +61,6 @@ SMALL = {
 ENVIRONMENT = {
     "SCRATCH": ".",
     "SLURM_ARRAY_TASK_ID": "1",
-    "SLURM_ARRAY_TASK_MIN": "1",
-    "SLURM_ARRAY_TASK_MAX": "1",
     "SLURM_ARRAY_TASK_COUNT": "1",
     "SLURM_CPUS_PER_TASK": "1",
 }
@@ -256,7 +253,7 @@ def answer_radhar(call: Call) -> Answer:
     """The command, made small."""
     command, *words = call.words
     if any(word in call.words for word in OPTIONS_ONLY):
-        get_command(program()).commands[command].make_context(command, shard_named(words))
+        get_command(program()).commands[command].make_context(command, words)
         return Answer()
     for name, options in SMALL.items():
         if {*name.split()} <= {*call.words}:

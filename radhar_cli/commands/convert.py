@@ -13,9 +13,7 @@ def convert(
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder to make.")],
     to: Annotated[
         str,
-        typer.Option(
-            metavar="FORMAT", help="webdataset or parquet; of point clouds mars, ros or ti."
-        ),
+        typer.Option(metavar="FORMAT", help="parquet; of point clouds mars, ros or ti."),
     ],
 ) -> None:
     """Write a data set, or its point clouds, as other tools read them.

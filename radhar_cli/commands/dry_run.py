@@ -4,7 +4,7 @@ from radhar_cli.activity import Activity
 from radhar_cli.commands.tell import report, tell
 from radhar_cli.commands.terminal import class_counts
 from radhar_cli.config.schema import Config
-from radhar_cli.dataset.batch import DRY_RUN_SCENES, checked_scene
+from radhar_cli.dataset.batch import check_scenes
 from radhar_cli.dataset.estimate import estimate
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.split import split_rows, split_warnings
@@ -12,8 +12,6 @@ from radhar_cli.pipeline.bodies import segment_paths
 from radhar_cli.pipeline.physics import antennas_of, motion_of, waveform_of
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.run import record
-from radhar_cli.pipeline.validity import Flags
-from radhar_cli.pipeline.validity import warnings as scene_warnings
 from radhar_cli.scene import nominal_scene
 
 
@@ -26,7 +24,7 @@ def print_plan(config: Config, jobs: int) -> None:
         tell("nothing was written")
         return
     plan = plan_images(config)
-    checked = [checked_scene(config, rows, row) for row in rows.spread(DRY_RUN_SCENES)]
+    checked, found = check_scenes(config)
     engine = config.engine
     tolerance = f", tolerance {engine.tolerance_db:g} dB" if engine.kind == "direct" else ""
     tell(f"stages of one sample ({engine.kind} engine{tolerance}):")
@@ -47,7 +45,7 @@ def print_plan(config: Config, jobs: int) -> None:
         f"samples     {cost.samples} = {rows.counted}, "
         f"{len(config.maps)} map{'s' if len(config.maps) > 1 else ''} each"
     )
-    redrawn = sum(scene.attempt > 0 for scene, _ in checked)
+    redrawn = sum(scene.attempt > 0 for scene in checked)
     tell(f"scenes      {len(checked)} of {len(rows)} checked: {redrawn} drawn again")
     images = f" + png {_size(cost.png_bytes)}" if config.output.png else ""
     tell(f"on disk     dataset.h5 {_size(cost.hdf5_bytes)}{images}")
@@ -55,9 +53,8 @@ def print_plan(config: Config, jobs: int) -> None:
         f"time        about {_duration(cost.seconds)} with {jobs} job{'s' if jobs > 1 else ''} "
         f"({cost.seconds_per_sample * 1e3:.1f} ms a sample, {cost.probes} samples timed just now)"
     )
-    counts = {flag: sum(flag in found for _, found in checked) for flag in Flags}
     warnings = split_warnings(config, split_rows(config))
-    warnings += [found["message"] for found in scene_warnings(config, counts, len(checked))]
+    warnings += [warning["message"] for warning in found]
     report(
         stages=[product.name for product in plan.products],
         classes=class_counts(rows),

@@ -1,8 +1,6 @@
 """`radhar generate`: a YAML file becomes a labelled data set."""
 
-import os
 from contextlib import nullcontext
-from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,8 +13,6 @@ from radhar_cli.errors import ConfigError
 if TYPE_CHECKING:
     from radhar_cli.config import Config
     from radhar_cli.dataset.sample import RowFactory
-
-ARRAY = "slurm"  # the part that the environment names
 
 
 def generate(
@@ -35,11 +31,7 @@ def generate(
     ] = False,
     shard: Annotated[
         str | None,
-        typer.Option(
-            metavar="[K/N]",
-            help="Make part K of N, for `radhar merge`; without K/N the part of this task of a "
-            "SLURM array.",
-        ),
+        typer.Option(metavar="K/N", help="Make part K of N, for `radhar merge`."),
     ] = None,
     cluster: Annotated[
         str | None,
@@ -89,9 +81,7 @@ def generate(
 
             print_plan(loaded, jobs)
         else:
-            part = None
-            if shard is not None:
-                part = Part.of_array_task(os.environ) if shard == ARRAY else Part.parse(shard)
+            part = None if shard is None else Part.parse(shard)
             most = min(jobs, len(Rows.of(loaded)))
             where = nullcontext(jobs) if cluster is None else on_cluster(cluster, most)
             with BarProgress() as progress, where as jobs:
@@ -100,15 +90,6 @@ def generate(
                 print_outcome(loaded, outcome)
             else:
                 print_part(outcome, out, str(part))
-
-
-def shard_named(arguments: list[str]) -> list[str]:
-    """The arguments with a value after each --shard; typer lets nobody leave a value out."""
-    named = list(arguments)
-    for place, (one, following) in reversed([*enumerate(pairwise([*arguments, "-"]))]):
-        if one == "--shard" and not following[:1].isdigit():
-            named.insert(place + 1, ARRAY)
-    return named
 
 
 def _measured(config: "Config", manifest: Path) -> "tuple[Config, RowFactory]":

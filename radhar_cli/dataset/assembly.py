@@ -1,4 +1,4 @@
-"""Shards -> dataset.h5, scenes.csv, config.yaml and the manifest of what was put together.
+"""Shards -> dataset.h5, scenes.csv and config.yaml.
 
 The layout of dataset.h5 is a contract, described in docs/dataset.md. Nothing here grows with the
 rows but the list of shards: columns go into the file as shards are read.
@@ -23,19 +23,17 @@ from radhar_cli.config.identity import as_yaml, config_hash, resolved
 from radhar_cli.config.schema import FRAME_MAPS, Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.column_labels import label_names
-from radhar_cli.dataset.files import unfinished_path, write_whole
+from radhar_cli.dataset.files import digest_of, unfinished_path, write_whole
 from radhar_cli.dataset.identity import identity, identity_hash, versions
 from radhar_cli.dataset.layout import (
     COLUMN_LABEL,
     CONFIG,
     DATASET,
     LABELS,
-    MANIFEST,
     PERSON_LABEL,
     SCENES,
     SPLITS,
     TIME,
-    WORK,
     Rows,
     chunked,
     column_axis,
@@ -74,6 +72,7 @@ from radhar_cli.scene import nominal_scene, subject_of
 SCHEMA_VERSION = 2
 RUN, RUN_BYTES = 128, 2**28
 COLUMN_RUN, CHUNK_BYTES = 4096, 2**16
+SCENES_DIGEST = "scenes_sha256"
 CONFIG_HEADING = "# The resolved config of this data set, every default filled in.\n"
 CFAR_TEXT = (
     "255 where a pixel exceeds its threshold over the mean of the training cells around it, else 0 "
@@ -118,18 +117,16 @@ def assembled(
     try:
         with (  # replaced from the last to the first: dataset.h5 comes when the others are there
             replacing(folder / DATASET, unfinished_path(folder)) as unfinished,
-            replacing(folder / WORK / MANIFEST, unfinished_path(folder)) as manifest,
             replacing(folder / SCENES, unfinished_path(folder)) as table,
         ):
             with (
                 new_hdf5(unfinished, folder / DATASET) as (file, check),
                 table.open("w", newline="", encoding="utf-8") as text,
-                manifest.open("w") as held,
             ):
                 _describe_samples(file, config)
-                held.write(f'{{"identity": "{own_hash}", "rows": {count}, "shards": [\n')
-                flags = _copy_shards(file, check, config, shards, own_hash, progress, text, held)
-                held.write("]}\n")
+                flags = _copy_shards(file, check, config, shards, own_hash, progress, text)
+                text.flush()
+                file.attrs[SCENES_DIGEST] = digest_of(table)
                 messages = warnings(config, flags)
                 _root_attributes(file, config, messages)
                 file.attrs[DIGESTS] = json.dumps(attribute_digests(file), sort_keys=True)
@@ -150,9 +147,8 @@ def _copy_shards(
     own_hash: str,
     progress: Progress,
     table: io.TextIOBase,
-    manifest: io.TextIOBase,
 ) -> dict[Flags, int]:
-    """Copy maps and columns, each shard read and checked once, and write down what each held.
+    """Copy maps and columns, each shard read and checked once.
 
     Chunks are stored in runs of RUN rows, or of RUN_BYTES, dataset after dataset: the file's layout
     does not depend on how shards cut the rows, and who reads one map reads long stretches.
@@ -171,15 +167,12 @@ def _copy_shards(
     fields = scene_fields.fields(config)
     scene = [_Column(file[f"scene/{field.name}"]) for field in fields]
     products = {name: _Ragged(file, config, name) for name in config.stored}
-    rows_csv = SceneTable(config, table)
+    rows_csv = _SceneTable(config, table)
     flags = dict.fromkeys(Flags, 0)
     extents: dict[str, set[tuple[float, ...]]] = {f"extent/{name}": set() for name in config.maps}
     for shard in shards:
         start, stop, rows = shard.start, shard.stop, shard.stop - shard.start
-        data, checksum = shard.read(own_hash)
-        held = {"start": start, "stop": stop, "bytes": len(data), "sha256": checksum}
-        manifest.write(json.dumps(held) + (",\n" if stop < count else "\n"))
-        with UntrustedFile(shard.path, data) as part:
+        with UntrustedFile(shard.path, shard.read(own_hash)) as part:
             values = part.column("scene", np.float64, (rows, len(fields)))[:]
             here = part.column("flags", np.uint8, (rows,))[:]
             for name, (dtype, shape) in large.items():
@@ -368,7 +361,7 @@ def _root_attributes(file: h5py.File, config: Config, messages: list[dict[str, A
     file.attrs.update(described)
 
 
-class SceneTable:
+class _SceneTable:
     """scenes.csv, written some rows at a time."""
 
     def __init__(self, config: Config, table: io.TextIOBase) -> None:
@@ -376,7 +369,7 @@ class SceneTable:
         named = config.recorded is not None and config.split.subjects is not None
         self._persons = persons(config) if named else None
         self._writer = csv.writer(table, lineterminator="\n")
-        columns = (field.column for field in scene_fields.fields(config))
+        columns = (field.key for field in scene_fields.fields(config))
         self._writer.writerow(["label", "class", "slug", "index", "split", "subject", *columns])
 
     def write(self, start: int, values: Float) -> None:

@@ -2,14 +2,12 @@
 
 import os
 import platform
-import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from radhar_cli.arrays import Levels
 from radhar_cli.config.schema import Config
@@ -22,16 +20,13 @@ from radhar_cli.dataset.sample import Row, RowFactory, synthesise
 from radhar_cli.dataset.shards import encode_shard, write_shard
 from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.dataset.workers import NO_PARENT
-from radhar_cli.errors import MachineError, SceneError
+from radhar_cli.errors import MachineError
 from radhar_cli.pipeline.products import plan_images
-from radhar_cli.pipeline.validity import Flags, draw_valid_scene
-from radhar_cli.scene import Scene, draw_scene
+from radhar_cli.pipeline.validity import Flags, draw_valid_scene, warnings
+from radhar_cli.scene import Scene
 from radhar_cli.worker_process import prepare_process
 
-DRY_RUN_SCENES = 120
-# Of each row: which draw is kept (`on_invalid: redraw`), and the Flags of its scene.
-OUTCOME = np.dtype([("attempt", "<u2"), ("flags", "u1")])
-Outcomes: TypeAlias = NDArray[Any]  # of OUTCOME
+CHECKED_SCENES = 120
 
 
 @dataclass(frozen=True)
@@ -43,31 +38,29 @@ class Batch:
     folder: Path  # the output folder, absolute: a worker may have another working directory
     start: int
     stop: int
-    # outcome of the check of each row, or None where the worker is to check
-    checked: Outcomes | None
     split: Levels
     table: Levels | None  # colour table [256, 3], or None without PNGs
     parent_pid: int  # process that asked; a worker that outlives it stops. NO_PARENT: on a cluster
     factory: RowFactory | None = None
 
 
-def checked_scene(config: Config, rows: Rows, row: int) -> tuple[Scene, Flags]:
-    """`draw_valid_scene` of a row; a refusal says whether a dry run could have known of it."""
-    try:
-        return draw_valid_scene(config, *rows[row])
-    except SceneError as error:
-        tried = rows.spread(DRY_RUN_SCENES)
-        known = "this one too" if row in tried else "not this one"
-        raise SceneError(
-            f"{error}; generate --dry-run checks {len(tried)} of the {len(rows)} scenes, {known}"
-        ) from None
+def check_scenes(config: Config) -> tuple[list[Scene], list[dict[str, Any]]]:
+    """Draw some scenes, spread over the classes; return them and what there is to warn of in them.
+
+    Raises:
+        SceneError: one is outside the model.
+    """
+    rows = Rows.of(config)
+    drawn = [draw_valid_scene(config, *rows[row]) for row in rows.spread(CHECKED_SCENES)]
+    counts = {flag: sum(flag in found for _, found in drawn) for flag in Flags}
+    return [scene for scene, _ in drawn], warnings(config, counts, len(drawn))
 
 
 def leave_if_orphaned(parent_pid: int) -> None:
     """End a worker whose parent was killed: nobody waits for it, and a new run may be at work."""
     if parent_pid == NO_PARENT:
         return
-    if os.getpid() != parent_pid and os.getppid() != parent_pid and sys.platform != "win32":
+    if os.getpid() != parent_pid and os.getppid() != parent_pid:
         os._exit(1)
 
 
@@ -125,30 +118,14 @@ def _made(batch: Batch) -> Iterator[tuple[Row, int]]:
     config, rows = batch.config, Rows.of(batch.config)
     if batch.factory is None:
         plan, columns = plan_images(config), scene_fields.fields(config)
-    for number, row in enumerate(range(batch.start, batch.stop)):
+    for row in range(batch.start, batch.stop):
         leave_if_orphaned(batch.parent_pid)
         if batch.factory is not None:
             yield batch.factory(config, row), 0
             continue
-        if batch.checked is None:
-            scene, flags = checked_scene(config, rows, row)
-        else:
-            attempt, flags = batch.checked[number].tolist()
-            scene = draw_scene(config, *rows[row], attempt)
+        scene, flags = draw_valid_scene(config, *rows[row])
         sample = synthesise(scene, plan)
         yield Row(sample, scene_fields.values(scene, columns, sample.error_db)), flags
-
-
-def check_rows(config: Config, start: int, stop: int, parent_pid: int) -> tuple[int, Outcomes]:
-    """Check the scenes of rows start .. stop - 1; return (start, outcome of each)."""
-    prepare_process()
-    leave_if_orphaned(parent_pid)
-    rows = Rows.of(config)
-    outcomes = np.empty(stop - start, dtype=OUTCOME)
-    for number, row in enumerate(range(start, stop)):
-        scene, flags = checked_scene(config, rows, row)
-        outcomes[number] = scene.attempt, flags
-    return start, outcomes
 
 
 def png_rows(

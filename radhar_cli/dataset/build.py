@@ -6,21 +6,19 @@ shards it finds; dataset.h5 comes last, so that a folder with one is complete.
 
 import errno
 import uuid
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.assembly import assembled
-from radhar_cli.dataset.batch import OUTCOME, Batch, Outcomes, check_rows, run_batch
+from radhar_cli.dataset.batch import Batch, check_scenes, run_batch
 from radhar_cli.dataset.folder import clean_up, folder_lock, reserve
 from radhar_cli.dataset.hub import write_hub_files
 from radhar_cli.dataset.identity import identity, identity_hash
-from radhar_cli.dataset.layout import DATASET, MANIFEST, WORK, Rows, row_bytes
-from radhar_cli.dataset.parts import Part, refuse_other_cuts, write_part_manifest
+from radhar_cli.dataset.layout import BUILT, DATASET, WORK, Rows, row_bytes
+from radhar_cli.dataset.parts import Part, refuse_other_cuts
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.png_files import write_missing_pngs
 from radhar_cli.dataset.sample import RowFactory
@@ -30,21 +28,17 @@ from radhar_cli.dataset.shards import (
     Shard,
     check_shards,
     listed_shards,
-    missing_and_repeated,
+    missing_rows,
 )
 from radhar_cli.dataset.split import split_rows, split_warnings
 from radhar_cli.dataset.untrusted_hdf5 import try_files
-from radhar_cli.dataset.workers import cores, parent_pid, run_tasks
+from radhar_cli.dataset.workers import parent_pid, run_tasks
 from radhar_cli.errors import FolderError, UnfinishedError
-from radhar_cli.pipeline.validity import Flags, warnings
 from radhar_cli.progress import Progress
 
 # Samples a batch: few at first; of many rows more, as each shard costs some ms of the assembly, but
 # no more than 1/64 of a worker's share, as much as a kill may lose.
 BATCH, MAX_BATCH, SHARE, BATCH_BYTES = 32, 1024, 64, 2**28
-CHECK_BATCH = 64
-PROCESSES_A_CORE = 8  # more would do nothing but take memory
-MAX_CHECKED_FIRST = 100_000  # rows; with more, workers check their own
 
 
 @dataclass(frozen=True)
@@ -91,8 +85,7 @@ def build(
     Raises:
         FolderError: the folder is in use or holds something else.
         UnfinishedError: it cannot be written, or a worker was killed; finished samples are kept.
-        SceneError: a scene outside the model; nothing was computed of a data set of at most
-            MAX_CHECKED_FIRST rows.
+        SceneError: a scene outside the model; some are checked before anything is computed.
     """
     folder, count = folder.absolute(), len(Rows.of(config))
     if part is not None:
@@ -104,14 +97,16 @@ def build(
     try:
         with folder_lock(folder):
             reserve(folder, config, overwrite, None if part is None else str(part))
-            work = _Build(config, folder, jobs, progress, factory)
+            work = Build(config, folder, jobs, progress, factory)
             return work.whole(batch_size) if part is None else work.part(part, batch_size)
     except OSError as error:
         raise disk_error(folder, error) from error
 
 
 @dataclass
-class _Build:
+class Build:
+    """A build in a folder that was reserved for it."""
+
     config: Config
     folder: Path
     jobs: int
@@ -124,27 +119,51 @@ class _Build:
         self.png = self.config.output.png
 
     def whole(self, batch_size: int | None) -> BuildOutcome:
-        config, count = self.config, len(self.split)
+        """Make what is missing of a data set."""
         if (self.folder / DATASET).exists():
             pngs = self._write_beside(self.folder / DATASET)
             clean_up(self.folder)
-            return BuildOutcome(self.folder, count, 0, pngs)
-        for message in split_warnings(config, self.split):
+            return BuildOutcome(self.folder, len(self.split), 0, pngs)
+        self.warn_of_split()
+        shards, made, shown = self._shards(range(len(self.split)), batch_size)
+        return self.assemble(shards, made, shown)
+
+    def warn_of_split(self) -> None:
+        """Say what is missing in parts of the split."""
+        for message in split_warnings(self.config, self.split):
             self.progress.say(f"warning: {message}")
-        shards, made, shown = self._shards(range(count), batch_size)
-        self.progress.stage("assembling", count, 0)
-        with assembled(config, self.folder, shards, self.progress) as (unfinished, stored):
-            say_warnings(self.progress, [warning for warning in stored if warning not in shown])
-            pngs = self._write_beside(unfinished)
+
+    def assemble(
+        self,
+        shards: list[Shard],
+        made: int,
+        shown: Sequence[dict[str, Any]] = (),
+        remedy: Callable[[Runs], str] | None = None,
+    ) -> BuildOutcome:
+        """Make a data set of its shards, `made` rows of which are new.
+
+        Args:
+            shown: warnings that were given before.
+            remedy: as of `assembled`.
+        """
+        self.progress.stage("assembling", len(self.split), 0)
+        with assembled(self.config, self.folder, shards, self.progress, remedy) as (source, stored):
+            self._say_warnings([warning for warning in stored if warning not in shown])
+            pngs = self._write_beside(source)
         clean_up(self.folder)
-        return BuildOutcome(self.folder, count, made, pngs, stored)
+        return BuildOutcome(self.folder, len(self.split), made, pngs, stored)
 
     def part(self, part: Part, batch_size: int | None) -> BuildOutcome:
         """Make the shards of a part; they stay, for others to put together and write the PNGs."""
         rows, self.png = part.rows(len(self.split)), False
-        shards, made, shown = self._shards(rows, batch_size)
-        write_part_manifest(self.folder, part, rows, self.identity_hash, shards)
+        (self.folder / WORK / BUILT).unlink(missing_ok=True)
+        _, made, shown = self._shards(rows, batch_size)
+        (self.folder / WORK / BUILT).touch()
         return BuildOutcome(self.folder, len(rows), made, 0, shown)
+
+    def _say_warnings(self, messages: Sequence[dict[str, Any]]) -> None:
+        for warning in messages:
+            self.progress.say(f"warning: {warning['message']}")
 
     def _write_beside(self, source: Path) -> int:
         """Write the missing files next to dataset.h5; return the number of PNGs among them."""
@@ -159,33 +178,15 @@ class _Build:
     ) -> tuple[list[Shard], int, list[dict[str, Any]]]:
         """Shards of the rows, number of rows that this run made, and warnings."""
         shards = self._sound_shards(rows)
-        gaps, _ = missing_and_repeated(shards, rows.stop, rows.start)
-        # Others may be drawn again in each scene: who makes it checks it.
-        few = len(rows) <= MAX_CHECKED_FIRST and not self.config.people and self.factory is None
-        checked = self._check_scenes(rows, gaps) if few and gaps else None
+        gaps = missing_rows(shards, rows.stop, rows.start)
         shown: list[dict[str, Any]] = []
-        if checked is not None and not shards:
-            flags = checked["flags"]
-            counts = {flag: int(np.count_nonzero(flags & flag)) for flag in Flags}
-            shown = warnings(self.config, counts)
-        say_warnings(self.progress, shown)
-        made, left = self._batches(rows, gaps, checked, batch_size)
+        if not shards and self.factory is None:
+            _, shown = check_scenes(self.config)
+        self._say_warnings(shown)
+        made, left = self._batches(rows, gaps, batch_size)
         return shards + made, left, shown
 
-    def _check_scenes(self, rows: range, gaps: Runs) -> Outcomes:
-        """Check the scenes of the rows in the gaps: an outcome a row."""
-        outcomes, left = np.zeros(len(rows), OUTCOME), sum(stop - start for start, stop in gaps)
-        self.progress.stage("checking scenes", left, 0)
-        size = max(1, min(CHECK_BATCH, -(-left // (4 * self.jobs))))
-        tasks = [(self.config, *cut, parent_pid()) for cut in _cuts(gaps, size)]
-        for start, found in run_tasks(check_rows, tasks, _processes(self.jobs, len(tasks))):
-            outcomes[start - rows.start :][: found.size] = found
-            self.progress.advance(found.size)
-        return outcomes
-
-    def _batches(
-        self, rows: range, gaps: Runs, checked: Outcomes | None, batch_size: int | None
-    ) -> tuple[list[Shard], int]:
+    def _batches(self, rows: range, gaps: Runs, batch_size: int | None) -> tuple[list[Shard], int]:
         """Make the rows in the gaps; return their shards, and how many they are."""
         config = self.config
         left = sum(stop - start for start, stop in gaps)
@@ -196,17 +197,11 @@ class _Build:
 
         def batches() -> Iterator[tuple[Batch]]:
             for start, stop in cuts:
-                own = None if checked is None else checked[start - rows.start : stop - rows.start]
                 where = (config, self.identity_hash, self.folder, start, stop)
                 split = self.split[start:stop]
-                yield (Batch(*where, own, split, table, parent_pid(), self.factory),)
+                yield (Batch(*where, split, table, parent_pid(), self.factory),)
 
-        count = len(cuts)
-        processes = _processes(self.jobs, count)
-        if count > 0 and processes < self.jobs:
-            why = "one for each batch of samples" if processes == count else f"on {cores()} cores"
-            self.progress.say(f"{processes} of {self.jobs} processes, {why}")
-        for samples in run_tasks(run_batch, batches(), processes):
+        for samples in run_tasks(run_batch, batches(), max(1, min(self.jobs, len(cuts)))):
             self.progress.advance(samples)
         return [Shard(*cut, self.folder) for cut in cuts], left
 
@@ -215,7 +210,6 @@ class _Build:
 
         A damaged one is removed, as new batches may be cut differently; a foreign one put aside.
         """
-        (self.folder / WORK / MANIFEST).unlink(missing_ok=True)
         sound, unusable = check_shards(listed_shards(self.folder, rows), self.identity_hash)
         for shard, error in unusable:
             self.progress.say(f"{shard.path}: {error}; its rows are made again")
@@ -236,19 +230,6 @@ def _batch_size(left: int, jobs: int, one: int) -> int:
     """Samples a batch, of `left` samples of `one` bytes each for `jobs` processes."""
     most = min(max(BATCH, left // (SHARE * jobs)), MAX_BATCH, BATCH_BYTES // one)
     return max(1, min(most, -(-left // (4 * jobs))))
-
-
-def say_warnings(progress: Progress, messages: list[dict[str, Any]]) -> None:
-    """Say physical warnings."""
-    for warning in messages:
-        progress.say(f"warning: {warning['message']}")
-
-
-def _processes(jobs: int, tasks: int) -> int:
-    """As many as were asked for, but no more than there are tasks, nor than memory bears."""
-    wanted = max(1, min(jobs, tasks))
-    # Counting cores loads joblib: 70 ms, for nothing where the build is one process.
-    return wanted if wanted == 1 else min(wanted, PROCESSES_A_CORE * cores())
 
 
 def disk_error(folder: Path, error: OSError) -> UnfinishedError:

@@ -58,23 +58,19 @@ def number_features(config: Config) -> list[dict[str, Any]]:
     return [{"name": name, "dtype": kind} for name, kind in kinds.items()]
 
 
-def data_files(files: Files) -> list[dict[str, Any]]:
-    """`configs` of the front matter: the files of each split of each configuration."""
+def configurations(config: Config, files: Files) -> list[dict[str, Any]]:
+    """`configs` of the front matter: files of each split, and columns (image, label, numbers)."""
+    names = {str(a.index): a.slug for a in config.every_class}
+    label = {"name": "label", "dtype": {"class_label": {"names": names}}}
+    features = [{"name": "image", "dtype": "image"}, label, *number_features(config)]
     return [
         {
             "config_name": name,
             "data_files": [{"split": split, "path": path} for split, path in parts.items()],
+            "features": features,
         }
         for name, parts in files.items()
     ]
-
-
-def configurations(config: Config, files: Files) -> list[dict[str, Any]]:
-    """`configs` of the front matter with their columns: image, label and numbers."""
-    names = {str(a.index): a.slug for a in config.every_class}
-    label = {"name": "label", "dtype": {"class_label": {"names": names}}}
-    features = [{"name": "image", "dtype": "image"}, label, *number_features(config)]
-    return [{**one, "features": features} for one in data_files(files)]
 
 
 def front_matter(path: Path) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 """Bounded reading of untrusted files; atomic writing inside an output folder."""
 
+import hashlib
 import os
 import uuid
 from pathlib import Path
@@ -60,6 +61,17 @@ def refuse_foreign_work(folder: Path) -> None:
                     f"{path}: should be a file or a folder, no link, pipe or device; radhar made "
                     "no such thing"
                 )
+
+
+def digest_of(path: Path) -> str:
+    """SHA-256 of a regular file.
+
+    Raises:
+        OSError: it is none, or cannot be read.
+    """
+    regular_size(path)
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def read_bytes(path: Path, most: int = MAX_TEXT) -> bytes:

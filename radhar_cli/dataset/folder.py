@@ -15,12 +15,12 @@ from radhar_cli.config.schema import Config
 from radhar_cli.dataset.files import refuse_foreign_work, refuse_links, unfinished_path, write_whole
 from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.dataset.layout import (
+    BUILT,
     CARD,
     CONFIG,
     DATASET,
     GALLERY,
     IDENTITY,
-    MANIFEST,
     PARTS,
     PNG,
     SCENES,
@@ -166,7 +166,7 @@ def holds_samples(folder: Path) -> bool:
 
 def clean_up(folder: Path) -> None:
     """Mark a folder as built (dataset.h5 may be damaged later); remove what only a build needs."""
-    (folder / WORK / "built").touch()
+    (folder / WORK / BUILT).touch()
     _remove_batches(folder)
     shutil.rmtree(folder / WORK / "unfinished", ignore_errors=True)
     (folder / WORK / IDENTITY).unlink(missing_ok=True)
@@ -188,7 +188,7 @@ def _clear(folder: Path, new: dict[str, Any]) -> None:
     The new name comes first and the old data set's file last but for the PNGs that were put aside,
     so that a kill in between leaves a folder that either run can go on with.
     """
-    ours = is_incomplete(folder) or (folder / WORK / "built").exists()
+    ours = is_incomplete(folder) or (folder / WORK / BUILT).exists()
     with suppress(FolderError):  # of radhar, or damaged
         ours = ours or stored_identity(folder) is not None
     if not ours:
@@ -197,7 +197,7 @@ def _clear(folder: Path, new: dict[str, Any]) -> None:
         put_aside = unfinished_path(folder)
         put_aside.parent.mkdir(parents=True, exist_ok=True)
         (folder / PNG).rename(put_aside)
-    for name in (SCENES, CONFIG, CARD, GALLERY, f"{WORK}/{MANIFEST}"):
+    for name in (SCENES, CONFIG, CARD, GALLERY):
         (folder / name).unlink(missing_ok=True)
     _remove_batches(folder)
     _name(folder, new)

@@ -23,7 +23,7 @@ CARD = "README.md"
 GALLERY = "gallery.png"
 WORK = ".radhar"
 IDENTITY = "identity.json"
-MANIFEST = "manifest.json"
+BUILT = "built"  # marks the work folder of a data set, or of a part, that was whole once
 PARTS = "parts"
 COLUMN_LABEL = "column_label"
 # Of scenes with `people`: which classes anybody shows, and the class of each person.

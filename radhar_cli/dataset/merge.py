@@ -7,18 +7,14 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from radhar_cli.config.schema import Config
-from radhar_cli.dataset.assembly import assembled
-from radhar_cli.dataset.build import BuildOutcome, disk_error, say_warnings
+from radhar_cli.dataset.build import Build, BuildOutcome, disk_error
 from radhar_cli.dataset.files import refuse_foreign_work
-from radhar_cli.dataset.folder import clean_up, folder_lock, reserve, stored_identity
-from radhar_cli.dataset.hub import write_hub_files
+from radhar_cli.dataset.folder import folder_lock, reserve, stored_identity
 from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.dataset.layout import PARTS, Rows
 from radhar_cli.dataset.parts import Part, rows_by_part
-from radhar_cli.dataset.png_files import write_missing_pngs
 from radhar_cli.dataset.reading import stored_config
 from radhar_cli.dataset.shards import Runs, Shard, listed_shards, require_tiling
-from radhar_cli.dataset.split import split_rows, split_warnings
 from radhar_cli.dataset.untrusted_hdf5 import try_files
 from radhar_cli.errors import FolderError
 from radhar_cli.progress import Progress
@@ -55,21 +51,14 @@ def merge(
     shards = _shards(places, count)
     require_tiling(out, shards, count, run_again)
     try_files([shard.path for shard in shards])
-    split = split_rows(config)
-    for message in split_warnings(config, split):
-        progress.say(f"warning: {message}")
+    work = Build(config, out, jobs, progress)
+    work.warn_of_split()
     try:
         with folder_lock(out):
             reserve(out, config, overwrite=False, allowed=(PARTS,))
-            progress.stage("merging", count, 0)
-            with assembled(config, out, shards, progress, run_again) as (unfinished, stored):
-                say_warnings(progress, stored)
-                pngs = write_missing_pngs(config, out, split, unfinished, jobs, progress)
-                write_hub_files(unfinished, out, config.output.png)
-            clean_up(out)
+            return config, work.assemble(shards, count, remedy=run_again)
     except OSError as error:
         raise disk_error(out, error) from error
-    return config, BuildOutcome(out, count, count, pngs, stored)
 
 
 def _places(folders: Iterable[Path]) -> list[_Place]:

@@ -1,25 +1,19 @@
 """Parts of a data set, built separately and merged by `radhar merge`.
 
 Part K of N holds the rows from (K - 1) rows/N to K rows/N, rounded down, in a folder of its own:
-lock, identity, shards and manifest are as in a build, so a part that was killed resumes.
+lock, identity and shards are as in a build, so a part that was killed resumes.
 """
 
-import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from radhar_cli.dataset.files import write_whole
-from radhar_cli.dataset.layout import MANIFEST, PARTS, WORK
-from radhar_cli.dataset.shards import Shard
+from radhar_cli.dataset.layout import PARTS
 from radhar_cli.errors import FolderError
 
 _NAME = re.compile(r"([1-9]\d{0,8})-of-([1-9]\d{0,8})")
 _TEXT = re.compile(r"([1-9]\d{0,8})/([1-9]\d{0,8})")
-_TASK, _FIRST, _LAST, _COUNT = (
-    f"SLURM_ARRAY_TASK_{name}" for name in ("ID", "MIN", "MAX", "COUNT")
-)
 
 
 @dataclass(frozen=True, order=True)
@@ -40,28 +34,6 @@ class Part:
         if match is None or int(match[1]) > int(match[2]):
             raise FolderError(f"{where} {text}: should be K/N with K from 1 to N, such as 3/8")
         return cls(int(match[2]), int(match[1]))
-
-    @classmethod
-    def of_array_task(cls, environment: Mapping[str, str]) -> "Part":
-        """The part that a task of a SLURM array makes.
-
-        Raises:
-            FolderError: this is no such task, or the array has gaps, as one that repeats some
-                tasks of another has.
-        """
-        try:
-            task, first, last, count = (int(environment[k]) for k in (_TASK, _FIRST, _LAST, _COUNT))
-        except (KeyError, ValueError):
-            raise FolderError(
-                f"--shard: without K/N needs the whole numbers {_TASK}, {_FIRST}, {_LAST} and "
-                f"{_COUNT} of a SLURM array in the environment"
-            ) from None
-        if last - first + 1 != count or not first <= task <= last:
-            raise FolderError(
-                f"--shard: the array has {count} tasks from {first} to {last}, task {task} among "
-                "them; without K/N it should be an array without gaps"
-            )
-        return cls(count, task - first + 1)
 
     def __str__(self) -> str:
         return f"{self.number}/{self.of}"
@@ -89,18 +61,6 @@ def refuse_other_cuts(out: Path, part: Part) -> None:
             f"{place}: holds parts of {min(others)}; this would be part {part}. To make one of "
             f"them again give --shard K/{min(others)}; for another N choose another folder"
         )
-
-
-def write_part_manifest(
-    folder: Path, part: Part, rows: range, own_hash: str, shards: Sequence[Shard]
-) -> None:
-    """Write down what a finished part holds: of each shard its rows, bytes and checksum."""
-    held = [
-        {"start": s.start, "stop": s.stop, "bytes": s.path.stat().st_size, "sha256": s.checksum()}
-        for s in sorted(shards)
-    ]
-    manifest = {"identity": own_hash, "part": str(part), "rows": len(rows), "shards": held}
-    write_whole(folder, folder / WORK / MANIFEST, json.dumps(manifest).encode())
 
 
 def rows_by_part(runs: Sequence[tuple[int, int]], of: int, count: int) -> list[Part]:

@@ -1,14 +1,11 @@
 """The PNG files of a data set: find missing ones, and write them."""
 
-import os
-from itertools import product
 from pathlib import Path
 
 import numpy as np
 
-from radhar_cli.arrays import Bool, Index, Levels
+from radhar_cli.arrays import Index, Levels
 from radhar_cli.config.schema import Config
-from radhar_cli.dataset import layout
 from radhar_cli.dataset.batch import png_rows
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
@@ -53,27 +50,8 @@ def write_missing_pngs(
 def rows_without_png(config: Config, folder: Path, split: Levels) -> Index:
     """Rows of which an image is missing."""
     rows = Rows.of(config)
-    missing = np.zeros(len(rows), dtype=bool)
-    for _, one_class in rows.classes():
-        for name in config.maps:
-            missing[one_class] |= ~_stored_pngs(
-                folder, name, rows, one_class.start, split[one_class]
-            )
-    return np.flatnonzero(missing)
-
-
-def _stored_pngs(out: Path, name: str, rows: Rows, first: int, split: Levels) -> Bool:
-    """Whether there is a PNG of each sample of the class from row `first` on, of one map."""
-    there = np.zeros(split.size, dtype=bool)
-    starts = range(first, first + split.size, layout.PNGS_A_FOLDER)
-    for number, start in product(np.unique(split).tolist(), starts):
-        folder = out / rows.png_path(name, number, start).parent
-        for entry in os.scandir(folder) if folder.is_dir() else ():
-            stem = entry.name.removesuffix(".png")
-            index = int(stem) if stem.isdecimal() else split.size
-            if index >= split.size or split[index] != number:
-                continue
-            path = rows.png_path(name, number, first + index)
-            if entry.name == path.name and folder == out / path.parent:
-                there[index] = True
-    return there
+    whole = (
+        all((folder / rows.png_path(name, part, row)).exists() for name in config.maps)
+        for row, part in enumerate(split.tolist())
+    )
+    return np.flatnonzero(~np.fromiter(whole, bool, len(rows)))

@@ -14,10 +14,10 @@ from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.folder import holds_samples, stored_identity
 from radhar_cli.dataset.identity import versions
 from radhar_cli.dataset.layout import (
+    BUILT,
     COLUMN_LABEL,
     DATASET,
     LABELS,
-    MANIFEST,
     PARTS,
     PERSON_LABEL,
     SPLITS,
@@ -70,7 +70,6 @@ class Dataset(Closing):
     def __init__(self, path: Path) -> None:
         self.path = path
         self.file = UntrustedFile(path)
-        self.splits = SPLITS
         try:
             self.config = stored_config(self.file.json("config"), str(path))
             self._check()
@@ -255,7 +254,7 @@ def _why_missing(path: Path) -> str:
     if not is_incomplete(path):
         return "no such file"
     part = (stored_identity(path) or {}).get("part")
-    if part is not None and (path / WORK / MANIFEST).exists():
+    if part is not None and (path / WORK / BUILT).exists():
         return f"{path} is part {part} alone; `radhar merge OUT` makes OUT of all parts"
     if not holds_samples(path):
         return f"no sample is made yet; `radhar generate CONFIG -o {path}` can build there"

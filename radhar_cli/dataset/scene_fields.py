@@ -23,17 +23,12 @@ _UNITS = {
 
 
 class Field(NamedTuple):
-    """A column: config key, name in dataset.h5, SI unit, factor from the key's unit to it."""
+    """A column: config key (its name in scenes.csv), name in dataset.h5, SI unit, factor to it."""
 
     key: str
     name: str
     unit: str
     factor: float
-
-    @property
-    def column(self) -> str:
-        """Name in scenes.csv: the config key, which carries its unit."""
-        return self.key
 
 
 # Sections whose columns are named after them.

@@ -56,8 +56,8 @@ class Shard(NamedTuple):
         """Of its file."""
         return shard_folder(self.folder) / f"rows-{self.start:09d}-{self.stop:09d}.h5"
 
-    def read(self, identity_hash: str) -> tuple[bytes, str]:
-        """Read the shard; return its bytes, an HDF5 file, and their checksum.
+    def read(self, identity_hash: str) -> bytes:
+        """The bytes of the shard, an HDF5 file.
 
         Raises:
             ShardError: it is gone, damaged, or holds other rows.
@@ -76,15 +76,7 @@ class Shard(NamedTuple):
             raise ForeignShardError("belongs to another data set")
         if (int(start), int(stop)) != (self.start, self.stop):
             raise ShardError(f"holds rows {start} to {int(stop) - 1}")
-        return data, checksum
-
-    def checksum(self) -> str:
-        """The checksum that a shard, which was read or written before, says that it has."""
-        with self.path.open("rb") as file:
-            header = _HEADER.fullmatch(file.read(USER_BLOCK))
-        if header is None:
-            raise UnfinishedError(f"{self.path}: was changed meanwhile; the same command resumes")
-        return header[4].decode()
+        return data
 
 
 def shard_folder(folder: Path) -> Path:
@@ -203,20 +195,14 @@ def check_shards(
 Runs: TypeAlias = Sequence[tuple[int, int]]  # first row, past-last row
 
 
-def missing_and_repeated(
-    shards: Sequence[Shard], count: int, first: int = 0
-) -> tuple[list[tuple[int, int]], list[tuple[int, int]]]:
-    """Runs (first row, past-last row) of first .. count - 1 that no shard or two shards hold."""
-    missing, repeated, row = [], [], first
-    for shard in sorted(shards):
+def missing_rows(shards: Sequence[Shard], count: int, first: int = 0) -> list[tuple[int, int]]:
+    """Runs (first row, past-last row) of first .. count - 1 that none of the shards holds."""
+    missing, row = [], first
+    for shard in (*sorted(shards), Shard(count, count, Path())):
         if shard.start > row:
             missing.append((row, shard.start))
-        elif shard.start < row:
-            repeated.append((shard.start, min(row, shard.stop)))
-        row = max(row, shard.stop)
-    if row < count:
-        missing.append((row, count))
-    return missing, repeated
+        row = shard.stop
+    return missing
 
 
 def require_tiling(
@@ -226,7 +212,7 @@ def require_tiling(
     remedy: Callable[[Runs], str] | None = None,
     unusable: Sequence[tuple[Shard, ShardError]] = (),
 ) -> None:
-    """Refuse shards that do not hold each of `count` rows once.
+    """Refuse shards, none of which share rows, that do not hold each of `count` rows.
 
     Args:
         remedy: what to do about rows, if not to run the same command again.
@@ -237,16 +223,11 @@ def require_tiling(
     """
     why = "".join(f", {shard.path} {error}" for shard, error in unusable[:RUNS_NAMED])
     why += ", ..." if len(unusable) > RUNS_NAMED else ""
-    missing, repeated = missing_and_repeated(shards, count)
-    for runs, fault in ((missing, "missing from"), (repeated, "more than once in")):
-        if runs:
-            raise UnfinishedError(
-                f"{folder}: rows {_rows(runs)} ({sum(b - a for a, b in runs)} of {count}) are "
-                f"{fault} the finished shards{why}; "
-                + (remedy(runs) if remedy else "the rest is kept, and the same command resumes")
-            )
-
-
-def _rows(runs: Runs) -> str:
-    named = [f"{a}-{b - 1}" if b - a > 1 else f"{a}" for a, b in runs[:RUNS_NAMED]]
-    return ", ".join(named) + (", ..." if len(runs) > RUNS_NAMED else "")
+    if runs := missing_rows(shards, count):
+        named = [f"{a}-{b - 1}" if b - a > 1 else f"{a}" for a, b in runs[:RUNS_NAMED]]
+        rows = ", ".join(named) + (", ..." if len(runs) > RUNS_NAMED else "")
+        raise UnfinishedError(
+            f"{folder}: rows {rows} ({sum(b - a for a, b in runs)} of {count}) are missing from "
+            f"the finished shards{why}; "
+            + (remedy(runs) if remedy else "the rest is kept, and the same command resumes")
+        )

@@ -16,7 +16,6 @@ import sys
 import zlib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from itertools import islice
 from math import prod
 from pathlib import Path
@@ -208,9 +207,9 @@ class UntrustedFile(Closing):
         self._claimed += size
         if self._claimed > self.bytes:
             raise FolderError(f"{where}: is larger than the file; it is damaged or truncated")
-        return Column(where, dataset, wanted, shape, [])
+        return Column(where, dataset)
 
-    def chunks(self, name: str, dtype: DTypeLike, shape: tuple[int, ...]) -> "Chunks":
+    def chunks(self, name: str, dtype: DTypeLike, shape: tuple[int, ...]) -> "Column":
         """Samples [N, ...], each in a chunk of its own, plain or gzip."""
         where, one, wanted = f"{self.path}: /{name}", (1, *shape[1:]), np.dtype(dtype)
         with _refusing_damage(where):
@@ -224,15 +223,15 @@ class UntrustedFile(Closing):
                 raise FolderError(
                     f"{where}: holds {dataset.id.get_num_chunks()} samples; should hold {shape[0]}"
                 )
-        return Chunks(where, dataset, wanted, shape, filters)
+        return Column(where, dataset, filters)
 
     def samples(self, name: str) -> "Numbers":
         """Real or complex numbers of any shape, plain or gzip, read in pieces."""
         where = f"{self.path}: /{name}"
         with _refusing_damage(where):
             dataset = self._dataset(name, where, None, None)
-            number, parts = _numbers(dataset.dtype, where)
             filters = _filters(dataset, where, [], [_DEFLATE], [_SHUFFLE, _DEFLATE])
+            found = Numbers(where, dataset, filters)
             size, chunk = dataset.dtype.itemsize * prod(dataset.shape), dataset.chunks
             if not dataset.shape or size == 0:
                 raise FolderError(f"{where}: has the shape {dataset.shape}; should hold numbers")
@@ -247,7 +246,7 @@ class UntrustedFile(Closing):
                     raise FolderError(f"{where}: lacks pieces; it is unfinished or damaged")
             if not filters and size > self.bytes:
                 raise FolderError(f"{where}: is larger than the file; it is damaged or truncated")
-        return Numbers(where, dataset, dataset.dtype, dataset.shape, filters, number, parts)
+        return found
 
     def numeric_names(self) -> list[str]:
         """Names of the datasets of numbers at the top of the file, at most 1000."""
@@ -301,40 +300,73 @@ class UntrustedFile(Closing):
         self._file.close()
 
 
-@dataclass(frozen=True)
 class Column:
-    """Numbers that were checked and are read when they are indexed."""
+    """Values that were checked and are read when they are indexed.
 
-    where: str
-    _dataset: h5py.Dataset
-    dtype: np.dtype[Any]
-    shape: tuple[int, ...]
-    _filters: list[int]
+    Attributes:
+        where: file and dataset, for messages.
+        shape: of the dataset.
+        chunk: shape of what is stored together.
+        dtype: of the values, in the byte order of this machine.
+    """
+
+    def __init__(self, where: str, dataset: h5py.Dataset, filters: Sequence[int] = ()) -> None:
+        self.where, self._dataset, self._filters = where, dataset, filters
+        self.shape: tuple[int, ...] = dataset.shape
+        self.chunk: tuple[int, ...] = dataset.chunks or (1,) * len(self.shape)
+        self.dtype: np.dtype[Any] = dataset.dtype.newbyteorder("=")
 
     def __len__(self) -> int:
         return self.shape[0]
 
+    def __getitem__(self, key: Any) -> NDArray[Any]:
+        if isinstance(key, slice) and key.step in (None, 1):
+            return self.rows(*key.indices(len(self))[:2])
+        rows = np.arange(len(self))[key]
+        if rows.ndim:
+            return np.stack([self[row] for row in rows.tolist()])
+        one: NDArray[Any] = self.rows(int(rows), int(rows) + 1)[0]
+        return one
+
     def rows(self, start: int, stop: int) -> NDArray[Any]:
         """Rows start .. stop - 1; no others are read."""
-        with _refusing_damage(self.where):
-            values: NDArray[Any] = self._dataset[start:stop]
-        return values.astype(self.dtype, copy=False)
+        stop = min(stop, len(self))
+        if stop <= start:
+            return np.empty((0, *self.shape[1:]), self.dtype)
+        return self.block((slice(start, stop), *(slice(0, n) for n in self.shape[1:])))
 
-    def __getitem__(self, key: Any) -> NDArray[Any]:
-        found: NDArray[Any] = self.rows(0, len(self))[key]
-        return found
+    def block(self, key: tuple[slice, ...]) -> NDArray[Any]:
+        """A block of the values; slices have a start and a stop within the shape."""
+        with _refusing_damage(self.where):
+            if not self._filters:
+                values: NDArray[Any] = self._dataset[key]
+                return values.astype(self.dtype, copy=False)
+            out = np.empty([one.stop - one.start for one in key], self.dtype)
+            for piece in self._dataset.iter_chunks(key):
+                corner = tuple(s.start // c * c for s, c in zip(piece, self.chunk, strict=True))
+                here, inside = (
+                    tuple(slice(s.start - f, s.stop - f) for s, f in zip(piece, first, strict=True))
+                    for first in ([one.start for one in key], corner)
+                )
+                out[here] = self._piece(corner)[inside]
+            return out
+
+    def stored(self, row: int) -> tuple[int, bytes]:
+        """Filter mask and bytes of a row's chunk as they lie in the file."""
+        with _refusing_damage(f"{self.where}[{row}]"):
+            return self._stored((row, *(0,) * (len(self.shape) - 1)))
 
     def _stored(self, corner: tuple[int, ...]) -> tuple[int, bytes]:
         """Deflate makes nothing longer by more than a thousandth: h5py refuses what is."""
-        raw = self.dtype.itemsize * prod(self._dataset.chunks)
+        raw = self.dtype.itemsize * prod(self.chunk)
         room = bytearray(raw + (raw // 1000 + 64 if self._filters else 0))
         mask, data = self._dataset.id.read_direct_chunk(corner, out=room)
         return mask, bytes(data)
 
-    def _piece(self, corner: tuple[int, ...], name: object) -> NDArray[Any]:
+    def _piece(self, corner: tuple[int, ...]) -> NDArray[Any]:
         """The chunk at a corner, inflated up to its size."""
-        raw = self.dtype.itemsize * prod(self._dataset.chunks)
-        with _refusing_damage(f"{self.where}[{name}]"):
+        raw = self.dtype.itemsize * prod(self.chunk)
+        with _refusing_damage(f"{self.where}[{corner[0]}]"):
             mask, data = self._stored(corner)
             for place, kind in reversed([*enumerate(self._filters)]):
                 if mask >> place & 1:
@@ -348,78 +380,25 @@ class Column:
                     raise zlib.error("too long or truncated")
             if len(data) != raw:
                 raise ValueError(f"is {len(data)} bytes; should be {raw}")
-            whole: NDArray[Any] = np.frombuffer(data, self.dtype).reshape(self._dataset.chunks)
-        return whole.copy()
+            return np.frombuffer(data, self._dataset.dtype).reshape(self.chunk)
 
 
-@dataclass(frozen=True)
-class Chunks(Column):
-    """Samples [N, ...], of which those that are indexed are read."""
-
-    def __getitem__(self, key: Any) -> NDArray[Any]:
-        rows = np.arange(len(self))[key]
-        if rows.ndim:
-            return np.stack([self[row] for row in rows.tolist()])
-        sample: NDArray[Any] = self._piece(self._corner(int(rows)), rows)[0]
-        return sample
-
-    def stored(self, row: int) -> tuple[int, bytes]:
-        """Filter mask and bytes of a row's chunk as they lie in the file."""
-        with _refusing_damage(f"{self.where}[{row}]"):
-            return self._stored(self._corner(row))
-
-    def _corner(self, row: int) -> tuple[int, ...]:
-        return row, *(0,) * (len(self.shape) - 1)
-
-
-@dataclass(frozen=True)
 class Numbers(Column):
-    """Numbers that were checked and are read in pieces.
+    """Real or complex numbers.
 
     Attributes:
-        where: file and dataset, for messages.
-        shape: of the dataset.
         number: type of the numbers.
         parts: 2 of complex numbers, 1 of real ones.
     """
 
-    number: np.dtype[Any]
-    parts: int
-
-    @property
-    def chunk(self) -> tuple[int, ...]:
-        """Shape of what is stored together."""
-        return self._dataset.chunks or (1,) * len(self.shape)
-
-    def rows(self, start: int, stop: int) -> NDArray[Any]:
-        """Rows start .. stop - 1 of the first axis, complex numbers as such."""
-        if stop == start:
-            return np.empty((0, *self.shape[1:]), self.dtype)
-        key = (slice(start, stop), *(slice(0, n) for n in self.shape[1:]))
-        found: NDArray[Any] = self.read(key).view(self.dtype.newbyteorder("="))[..., 0]
-        return found
+    def __init__(self, where: str, dataset: h5py.Dataset, filters: Sequence[int] = ()) -> None:
+        super().__init__(where, dataset, filters)
+        self.number, self.parts = _numbers(dataset.dtype, where)
 
     def read(self, key: tuple[slice, ...]) -> NDArray[Any]:
-        """A block [..., part] of the numbers; slices have a start and a stop within the shape."""
-        with _refusing_damage(self.where):
-            if not self._filters:
-                return self._in_parts(self._dataset[key])
-            out = np.empty([one.stop - one.start for one in key], self.dtype)
-            for piece in self._dataset.iter_chunks(key):
-                corner = tuple(s.start // c * c for s, c in zip(piece, self.chunk, strict=True))
-                inside = [
-                    slice(s.start - c, s.stop - c) for s, c in zip(piece, corner, strict=True)
-                ]
-                starts = [one.start for one in key]
-                here = [slice(s.start - k, s.stop - k) for s, k in zip(piece, starts, strict=True)]
-                out[tuple(here)] = self._piece(corner, corner)[tuple(inside)]
-            return self._in_parts(out)
-
-    def _in_parts(self, values: NDArray[Any]) -> NDArray[Any]:
-        """[...] as [..., part], two of complex and compound numbers."""
-        values = np.ascontiguousarray(values)
-        flat = values.view(self.number.newbyteorder(_order(values.dtype)))
-        return flat.astype(self.number, copy=False).reshape(*values.shape, self.parts)
+        """As `block`, [..., part]: two of complex and compound numbers."""
+        values = np.ascontiguousarray(self.block(key))
+        return values.view(self.number).reshape(*values.shape, self.parts)
 
 
 def _filters(dataset: h5py.Dataset, where: str, *right: list[int]) -> list[int]:
@@ -429,11 +408,6 @@ def _filters(dataset: h5py.Dataset, where: str, *right: list[int]) -> list[int]:
     if found not in right:
         raise FolderError(f"{where}: is stored through filters {found}; should be gzip")
     return found
-
-
-def _order(dtype: np.dtype[Any]) -> Any:
-    first = dtype if dtype.names is None else dtype[0]
-    return first.byteorder if first.byteorder in "<>" else "="
 
 
 def _numbers(dtype: np.dtype[Any], where: str) -> tuple[np.dtype[Any], int]:

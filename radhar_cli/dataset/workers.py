@@ -160,9 +160,6 @@ def parent_pid() -> int:
 @contextmanager
 def _interrupts_blocked() -> Iterator[None]:
     """Workers started meanwhile inherit the blocked signals: only the parent handles Ctrl-C."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
     _start_trackers()
     old = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
     try:

@@ -23,7 +23,7 @@ OTHERS = [
     ["simulate", "x.yaml"],
     ["simulate", "c.yaml", "--motion", "x.bvh"],
     ["simulate", "c.yaml", "--motion", "x.amc"],
-    ["convert", "x.h5", "--to", "webdataset"],
+    ["convert", "x.h5", "--to", "parquet"],
     ["merge", "x.parts"],
 ]
 
@@ -64,7 +64,7 @@ def test_a_folder_is_no_file(words, place):
     ("words", "file"),
     [
         (OTHERS[5], "x.h5"),
-        (["convert", "data", "--to", "webdataset"], "data/dataset.h5"),
+        (["convert", "data", "--to", "parquet"], "data/dataset.h5"),
         (
             ["generate", "c.yaml", "--recordings", "tree", "--set", "recordings.rows=[-1,1]"],
             "tree/a/0.png",

@@ -1,18 +1,15 @@
-"""Read what radhar wrote with `datasets`, `webdataset` and torchvision; print what they saw.
+"""Read what radhar wrote with `datasets` and torchvision; print what they saw.
 
-A program of its own: the three take seconds to import.
+A program of its own: the two take seconds to import.
 """
 
-import contextlib
 import hashlib
 import json
 import sys
 from pathlib import Path
-from typing import Any
 
 import datasets
 import numpy as np
-import webdataset
 
 from radhar_cli.learning.models.zoo import load_timm
 
@@ -41,33 +38,6 @@ def hub(folder, name):
     return {"parts": parts, "labels": rows.features["label"].names}
 
 
-def tars(folder):
-    """What webdataset reads."""
-    parts = {}
-    for split in ("train", "validation", "test"):
-        files = sorted(map(str, folder.glob(f"{split}-*.tar")))
-        made = webdataset.WebDataset(files, shardshuffle=False, empty_check=False).decode()
-        parts[split] = [
-            {
-                "key": one["__key__"],
-                "cls": one["cls"],
-                "json": one["json"],
-                "stft": hashlib.sha256(one["stft.png"]).hexdigest(),
-            }
-            for one in made
-        ]
-    return parts
-
-
-def snippet(folder):
-    """Key and image of the sample that the Python of a card reads."""
-    _, code, _ = (folder / "README.md").read_text().replace("```python", "```").split("```", 2)
-    held: dict[str, Any] = {}
-    with contextlib.chdir(folder):
-        exec(code, held)
-    return [held["sample"]["__key__"], digest(held["image"])]
-
-
 def tree(folder):
     """(file, class) of what ImageFolder reads."""
     found = ImageFolder(str(folder))
@@ -77,18 +47,11 @@ def tree(folder):
 if __name__ == "__main__":
     datasets.disable_progress_bars()
     place = Path(sys.argv[1])
-    in_tars = datasets.load_dataset(str(place / "webdataset"))
     print(
         json.dumps(
             {
                 "folder": {name: hub(place / "set", name) for name in ("rtm", "stft")},
                 "parquet": {name: hub(place / "parquet", name) for name in ("rtm", "stft")},
-                "tars": tars(place / "webdataset"),
-                "hub_tars": {
-                    split: [[row["cls"], row["json"], digest(row["stft.png"])] for row in rows]
-                    for split, rows in in_tars.items()
-                },
-                "snippet": snippet(place / "webdataset"),
                 "tree": tree(place / "set/png/stft/train"),
             }
         )

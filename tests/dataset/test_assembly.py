@@ -147,25 +147,6 @@ def test_a_damaged_shard_is_made_again_and_a_foreign_one_kept(
     assert left == {foreign, b"mine"}
 
 
-def test_manifest_counts_what_was_put_together(config: Config, tmp_path: Path) -> None:
-    folder, lines = tmp_path / "set", {}
-
-    def look() -> None:
-        for shard in listed_shards(folder):
-            lines[shard.start, shard.stop] = shard.path.read_bytes()
-
-    build(config, folder, 1, AtAssembly(look), batch_size=5)
-    manifest = json.loads((folder / ".radhar/manifest.json").read_text())
-    assert manifest["rows"] == 12
-    assert [(s["start"], s["stop"]) for s in manifest["shards"]] == [(0, 5), (5, 10), (10, 12)]
-    for shard in manifest["shards"]:
-        data = lines[shard["start"], shard["stop"]]
-        text = data[:512].rstrip(b"\0").decode()
-        assert f"radhar shard of {manifest['identity']}\n" in text
-        assert shard["sha256"] in text
-        assert shard["bytes"] == len(data)
-
-
 def test_chunk_layout_does_not_depend_on_the_shards(
     config: Config, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

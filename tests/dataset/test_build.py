@@ -51,10 +51,8 @@ def test_no_more_processes_than_batches_are_started(config, small_set, tmp_path,
         return run_tasks(function, tasks, 1)
 
     monkeypatch.setattr(build_module, "run_tasks", here)
-    notes = Listener()
-    build(config, tmp_path / "set", 3000, notes, batch_size=2)
-    assert asked == [9, 5], "of the checks, then of the batches"
-    assert "5 of 3000 processes, one for each batch of samples" in notes.messages
+    build(config, tmp_path / "set", 3000, Listener(), batch_size=2)
+    assert asked == [5]
     assert fingerprint(tmp_path / "set") == fingerprint(small_set)
 
 
@@ -196,50 +194,21 @@ def test_overwrite_killed_midway_resumes(config, small_set, tmp_path, monkeypatc
         assert fingerprint(folder) == fingerprint(small_set)
 
 
-def test_scenes_are_checked_by_the_workers_and_only_of_what_is_missing(tmp_path, monkeypatch):
-    """The warnings of a resumed build count all its rows."""
+def test_scenes_are_checked_by_the_workers(tmp_path):
+    """The warnings of a resumed build count all its rows; of a new one they come first."""
     text = SMALL.replace("seed: 7", "seed: 7\nwall: {}\non_invalid: keep")
     config = load_config(small_config(tmp_path, text), ["motion.range_m={uniform: [1, 3]}"])
-    make(config, tmp_path / "whole")
-    checks: list[tuple[int, int, int]] = []
-
-    def noted(function, tasks, jobs):
-        tasks = list(tasks)
-        if function is batch_module.check_rows:
-            checks.extend((start, stop, jobs) for _, start, stop, _ in tasks)
-        return run_tasks(function, tasks, 1)
-
-    with monkeypatch.context() as patch:
-        patch.setattr(build_module, "run_tasks", noted)
-        with full_disk_after(4):
-            build(config, tmp_path / "set", 3, Listener(), batch_size=2)
-        assert [row for start, stop, _ in checks for row in range(start, stop)] == list(range(9))
-        assert {jobs for *_, jobs in checks} == {3}
-        checks.clear()
-        again = Listener()
-        build(config, tmp_path / "set", 3, again, batch_size=2)
-        assert [row for start, stop, _ in checks for row in range(start, stop)] == list(range(4, 9))
-    (said,) = [one for one in again.messages if "passes through the wall" in one]
-    with h5py.File(tmp_path / "set/dataset.h5") as file:
-        assert said.removeprefix("warning: ") in file.attrs["warnings"]
-    assert fingerprint(tmp_path / "whole") == fingerprint(tmp_path / "set")
-
-
-def test_scenes_of_a_large_data_set_are_checked_by_the_workers(tmp_path, monkeypatch):
-    """The same bytes, redraws and warnings as where they are all checked first."""
-    text = SMALL.replace("seed: 7", "seed: 7\nwall: {}\non_invalid: keep")
-    config = load_config(small_config(tmp_path, text), ["motion.range_m={uniform: [1, 3]}"])
-    expected = []
-    for name, first in (("first", 9), ("by workers", 8)):
-        monkeypatch.setattr(build_module, "MAX_CHECKED_FIRST", first)
-        notes = Listener()
-        build(config, tmp_path / name, 2, notes, batch_size=2)
-        assert ("checking scenes" in notes.stages) == (name == "first")
+    first, again = Listener(), Listener()
+    build(config, tmp_path / "whole", 1, first)
+    with full_disk_after(4):
+        make(config, tmp_path / "set", batch_size=2)
+    build(config, tmp_path / "set", 3, again, batch_size=2)
+    for notes in (first, again):
         assert len(notes.messages) == len(set(notes.messages))
-        expected.append(set(notes.messages))
-    assert expected[0] == expected[1]
-    assert any("passes through the wall" in message for message in expected[0])
-    assert fingerprint(tmp_path / "first") == fingerprint(tmp_path / "by workers")
+        (said,) = [one for one in notes.messages if "passes through the wall" in one]
+        with h5py.File(tmp_path / "set/dataset.h5") as file:
+            assert said.removeprefix("warning: ") in file.attrs["warnings"]
+    assert fingerprint(tmp_path / "whole") == fingerprint(tmp_path / "set")
 
 
 def test_foreign_folder_file_and_live_folder_are_refused(config, tmp_path):
@@ -274,23 +243,6 @@ def test_scene_too_close_to_an_antenna_stops_before_any_echo(config, tmp_path, m
     with pytest.raises(SceneError) as caught:
         make(near, tmp_path / "set")
     assert re.search(r"sample .*/\d+: .* comes to .* cm from the transmitter", str(caught.value))
-    assert "generate --dry-run checks 9 of the 9 scenes, this one too" in str(caught.value)
-
-
-def test_a_refusal_says_where_a_dry_run_could_not_know(tmp_path, monkeypatch):
-    """Of 240 scenes of one class a dry run checks every other, the first not among them."""
-
-    def refuse(_, activity, index):
-        raise SceneError(f"sample {activity.slug}/{index}")
-
-    monkeypatch.setattr(batch_module, "draw_valid_scene", refuse)
-    config = load_config(small_config(tmp_path), ["activities=[S1]", "samples_per_class=240"])
-    rows = Rows.of(config)
-    assert rows.spread(120) == list(range(1, 240, 2))
-    with pytest.raises(SceneError, match="checks 120 of the 240 scenes, not this one"):
-        batch_module.checked_scene(config, rows, 0)
-    with pytest.raises(SceneError, match="checks 120 of the 240 scenes, this one too"):
-        batch_module.checked_scene(config, rows, 1)
 
 
 def test_physical_warnings_are_given_once_with_a_count_and_stored(config, tmp_path):

@@ -79,13 +79,12 @@ def test_column_labels_do_not_depend_on_batches_and_are_optional(config, whole, 
         assert "column_label" not in file
 
 
-@pytest.mark.parametrize(("number", "says"), [(3, "40 wrong columns"), (99, "should be 0 to 18")])
-def test_verify_finds_a_changed_label(whole, tmp_path, number, says):
+def test_verify_finds_a_changed_label(whole, tmp_path):
     assert verify(whole, 6).problems == []
     shutil.copytree(whole, tmp_path / "set")
     with h5py.File(tmp_path / "set/dataset.h5", "r+") as file:
-        file["column_label/rtm"][1] = np.where(file["column_label/rtm"][1] == 3, 2, number)
-    assert any(says in problem for problem in verify(tmp_path / "set", 6).problems)
+        file["column_label/rtm"][1] = np.where(file["column_label/rtm"][1] == 3, 2, 3)
+    assert any("40 wrong columns" in problem for problem in verify(tmp_path / "set", 6).problems)
 
 
 @pytest.mark.parametrize("model", ["paper", "human"])

@@ -1,11 +1,10 @@
-"""A data set in other formats, read with the libraries that they are made for."""
+"""A data set as a folder and as Parquet, read with the libraries that they are made for."""
 
 import hashlib
 import json
 import os
 import subprocess
 import sys
-import tarfile
 from pathlib import Path
 
 import h5py
@@ -21,13 +20,11 @@ from radhar_cli.config import load_config
 from radhar_cli.dataset import layout
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.folder import folder_lock
-from radhar_cli.dataset.formats import convert as checked
 from radhar_cli.dataset.formats import parquet
 from radhar_cli.dataset.formats.convert import convert
 from radhar_cli.dataset.table import number_names
 from radhar_cli.errors import FolderError
 
-FORMATS = ("webdataset", "parquet")
 READER = Path(__file__).with_name("read_by_others.py")
 CONFIG = """
 seed: 3
@@ -49,15 +46,14 @@ SPLITS = ("train", "validation", "test")
 
 @pytest.fixture(scope="module")
 def place(tmp_path_factory):
-    """A data set with small folders, and every format of it in several small files."""
+    """A data set with small folders, and Parquet of it in several small files."""
     place = tmp_path_factory.mktemp("formats")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(layout, "PNGS_A_FOLDER", 5)
-        patch.setattr(checked, "FILE_BYTES", 2 * 3 * 12 * 16)
+        patch.setattr(parquet, "FILE_BYTES", 6 * 12 * 16)
         patch.setattr(parquet, "GROUP", 2)
         build(load_config(small_config(place, CONFIG)), place / "set", 1, Listener())
-        for name in FORMATS:
-            assert convert(place / "set", place / name, name, Listener()) == 22
+        assert convert(place / "set", place / "parquet", "parquet", Listener()) == 22
     return place
 
 
@@ -87,7 +83,7 @@ def rows_of(h5, split):
     return sorted(rows, key=lambda row: (key[row, 1], row))
 
 
-def test_each_format_is_read_by_its_own_library(place, h5, tmp_path):
+def test_each_folder_is_read_by_the_libraries_it_is_for(place, h5, tmp_path):
     done = subprocess.run(
         [sys.executable, READER, place],
         capture_output=True,
@@ -111,19 +107,6 @@ def test_each_format_is_read_by_its_own_library(place, h5, tmp_path):
                     for row in rows_of(h5, split)
                 ]
                 assert there["parts"][split] == right
-    for split in SPLITS:
-        for row, one in zip(rows_of(h5, split), found["tars"][split], strict=True):
-            assert one["json"] == line(h5, row)
-            assert one["cls"] == h5["label"][row]
-            assert one["key"] == f"{one['json']['label']}-{one['json']['index']:05d}"
-            path = next((place / "set/png/stft").rglob(f"{one['key'].replace('-', '/**/')}.png"))
-            assert one["stft"] == hashlib.sha256(path.read_bytes()).hexdigest()
-        assert found["hub_tars"][split] == [
-            [h5["label"][row], line(h5, row), digest(h5["maps/stft"][row])]
-            for row in rows_of(h5, split)
-        ], "though the first samples lack numbers that others have"
-    first = rows_of(h5, "train")[0]
-    assert found["snippet"] == [found["tars"]["train"][0]["key"], digest(h5["maps/rtm"][first])]
     train = place / "set/png/stft/train"
     files = sorted(path.relative_to(train) for path in train.rglob("*.png"))
     assert sorted(found["tree"]) == [[str(path), path.parts[0]] for path in files]
@@ -140,7 +123,6 @@ def test_files_are_cut_and_groups_are_small(place, h5):
         count % 6 > 0
     )
     assert held[0].metadata.row_group(0).num_rows == 2
-    assert len([*(place / "webdataset").glob("train-*.tar")]) == -(-count // 3)
 
 
 def test_parquet_holds_the_png_files(place, h5):
@@ -150,15 +132,9 @@ def test_parquet_holds_the_png_files(place, h5):
             assert image["bytes"] == (place / "set/png/rtm" / split / image["path"]).read_bytes()
 
 
-def test_tars_hold_no_user_and_no_time(place):
-    with tarfile.open(place / "webdataset/train-000000.tar") as tar:
-        assert {(one.mtime, one.uid, one.uname, one.mode) for one in tar} == {(0, 0, "", 0o644)}
-
-
-@pytest.mark.parametrize("name", FORMATS)
-def test_every_format_has_a_card_and_the_same_bytes_again(place, tmp_path, name):
-    convert(place / "set/dataset.h5", tmp_path / "a", name, Listener())
-    convert(place / "set", tmp_path / "deep/b", name, Listener())
+def test_it_has_a_card_and_the_same_bytes_again(place, tmp_path):
+    convert(place / "set/dataset.h5", tmp_path / "a", "parquet", Listener())
+    convert(place / "set", tmp_path / "deep/b", "parquet", Listener())
     assert fingerprint(tmp_path / "a") == fingerprint(tmp_path / "deep/b")
     assert {path.name for path in tmp_path.iterdir()} == {"a", "deep"}
     card = (tmp_path / "a/README.md").read_text()
@@ -177,34 +153,33 @@ def test_the_licence_that_an_owner_chose_goes_along(place, tmp_path):
     text = (place / "set/README.md").read_text()
     chosen = "license: other\nlicense_name: radar-lab-1\n"
     card.write_text(text.replace("license: unknown\n", chosen))
-    convert(h5.parent, tmp_path / "webdataset", "webdataset", Listener())
-    made = (tmp_path / "webdataset/README.md").read_text()
+    convert(h5.parent, tmp_path / "parquet", "parquet", Listener())
+    made = (tmp_path / "parquet/README.md").read_text()
     front = yaml.safe_load(made.split("---\n")[1])
     assert (front["license"], front["license_name"]) == ("other", "radar-lab-1")
     assert "Licence: other." in made
 
 
 def test_what_a_killed_run_left_is_cleared_and_a_run_at_work_is_not(place, tmp_path):
-    left = tmp_path / ".webdataset.unfinished"
+    left = tmp_path / ".parquet.unfinished"
     (left / "set").mkdir(parents=True)
-    (left / "set/half.tar").write_bytes(b"half")
+    (left / "set/half.parquet").write_bytes(b"half")
     with folder_lock(left), pytest.raises(FolderError, match="another run is writing here"):
-        convert(place / "set", tmp_path / "webdataset", "webdataset", Listener())
-    assert (left / "set/half.tar").exists()
-    convert(place / "set", tmp_path / "webdataset", "webdataset", Listener())
-    assert [path.name for path in tmp_path.iterdir()] == ["webdataset"]
-    assert not (tmp_path / "webdataset/half.tar").exists()
-    (tmp_path / ".parquet.unfinished").symlink_to(tmp_path / "webdataset")
-    with pytest.raises(FolderError, match="is a symbolic link"):
         convert(place / "set", tmp_path / "parquet", "parquet", Listener())
+    assert (left / "set/half.parquet").exists()
+    convert(place / "set", tmp_path / "parquet", "parquet", Listener())
+    assert [path.name for path in tmp_path.iterdir()] == ["parquet"]
+    assert not (tmp_path / "parquet/half.parquet").exists()
+    (tmp_path / ".other.unfinished").symlink_to(tmp_path / "parquet")
+    with pytest.raises(FolderError, match="is a symbolic link"):
+        convert(place / "set", tmp_path / "other", "parquet", Listener())
 
 
-@pytest.mark.parametrize("name", FORMATS)
-def test_damaged_data_sets_are_not_converted(place, tmp_path, name):
+def test_damaged_data_sets_are_not_converted(place, tmp_path):
     damaged = tmp_path / "dataset.h5"
     with edited(place / "set/dataset.h5", damaged) as file:
         file["maps/stft"][7, 3, 3] ^= 1
-    done = radhar("convert", damaged, "-o", tmp_path / "out", "--to", name)
+    done = radhar("convert", damaged, "-o", tmp_path / "out", "--to", "parquet")
     assert done.returncode == 2
     assert done.stderr.splitlines()[-1].endswith("/maps/stft[7]: does not match its checksum")
     assert [path.name for path in tmp_path.iterdir()] == ["dataset.h5"], "nothing half written"
@@ -214,6 +189,6 @@ def test_a_label_of_another_row_is_refused(place, tmp_path):
     damaged = tmp_path / "dataset.h5"
     with edited(place / "set/dataset.h5", damaged) as file:
         file["label"][0] = 4
-    done = radhar("convert", damaged, "-o", tmp_path / "out", "--to", "webdataset")
+    done = radhar("convert", damaged, "-o", tmp_path / "out", "--to", "parquet")
     assert done.returncode == 2
     assert "/label[0]: is 4; should be 1, punching" in done.stderr

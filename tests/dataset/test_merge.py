@@ -1,7 +1,5 @@
 """Parts built separately merge into the data set of one build; gaps are refused."""
 
-import json
-import os
 import shutil
 import signal
 import subprocess
@@ -104,10 +102,8 @@ def test_damaged_shards_are_replaced_by_shards_of_other_rows(config, out, whole)
     assert merged(out) == whole
 
 
-def test_a_finished_part_checks_nothing_again(config, out):
-    notes = Listener()
-    assert build(config, out, 1, notes, part=Part(4, 2)).already_complete
-    assert "checking scenes" not in notes.stages
+def test_a_finished_part_makes_nothing_again(config, out):
+    assert build(config, out, 1, Listener(), part=Part(4, 2)).already_complete
 
 
 def test_parts_of_something_else_are_refused(config, out, tmp_path):
@@ -133,21 +129,11 @@ def test_reading_unmerged_parts_asks_to_merge(out, tmp_path):
         open_dataset(part)
     with pytest.raises(FolderError, match=f"not made yet; `radhar merge {out}`"):
         open_dataset(out)
-    (part / ".radhar/manifest.json").unlink()
+    (part / ".radhar/built").unlink()
     with pytest.raises(FolderError, match="unfinished; run `radhar generate` again"):
         open_dataset(part)
     with pytest.raises(FolderError, match="no such file"):
         open_dataset(tmp_path / "none")
-
-
-def test_the_manifest_of_a_part_has_rows_bytes_and_checksums(out):
-    folder = out / "parts/2-of-4"
-    manifest = json.loads((folder / ".radhar/manifest.json").read_text())
-    assert (manifest["part"], manifest["rows"]) == ("2/4", 2)
-    for held, shard in zip(manifest["shards"], listed_shards(folder), strict=True):
-        data, checksum = shard.read(manifest["identity"])
-        expected = {"start": shard.start, "stop": shard.stop, "bytes": len(data)}
-        assert held == {**expected, "sha256": checksum}
 
 
 def test_parts_hold_each_row_once():
@@ -156,32 +142,19 @@ def test_parts_hold_each_row_once():
         assert rows == list(range(count))
 
 
-def test_the_task_of_an_array_names_the_part(monkeypatch):
-    def part(task, first, last, count):
-        names = ("ID", "MIN", "MAX", "COUNT")
-        values = zip(names, (task, first, last, count), strict=True)
-        return str(Part.of_array_task({f"SLURM_ARRAY_TASK_{k}": str(v) for k, v in values}))
-
-    assert (part(0, 0, 7, 8), part(103, 101, 104, 4)) == ("1/8", "3/4")
-    with pytest.raises(FolderError, match="without gaps"):
-        part(7, 3, 7, 2)
-    with pytest.raises(FolderError, match="SLURM_ARRAY_TASK_ID"):
-        Part.of_array_task({})
+def test_a_part_is_k_of_n():
     for wrong in ("0/3", "4/3", "1", "a/b", "1/3/5"):
         with pytest.raises(FolderError, match="should be K/N"):
             Part.parse(wrong)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
-def test_the_program_makes_killed_parts_of_an_array_whole(whole, tmp_path):
+def test_the_program_makes_killed_parts_whole(whole, tmp_path):
     path, out = small_config(tmp_path), tmp_path / "set"
     arguments = ["generate", path, "-o", out, *(x for c in CHANGES for x in ("--set", c))]
     arguments = [*map(str, arguments), "--batch", "1", "--jobs", "1", "--shard"]
-    array = {f"SLURM_ARRAY_TASK_{k}": v for k, v in (("MIN", "5"), ("MAX", "6"), ("COUNT", "2"))}
     run = subprocess.Popen(
-        [sys.executable, "-m", "radhar_cli", *arguments],
-        env={**os.environ, **array, "SLURM_ARRAY_TASK_ID": "6"},
-        stdout=subprocess.DEVNULL,
+        [sys.executable, "-m", "radhar_cli", *arguments, "2/2"], stdout=subprocess.DEVNULL
     )
     part = out / "parts/2-of-2"
     while run.poll() is None and not listed_shards(part):

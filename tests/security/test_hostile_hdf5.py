@@ -280,8 +280,6 @@ attribute("warnings", None, "attribute warnings: is missing", "inspect")
 attribute("warnings", "[3]", "attribute warnings: should be a list of messages", "inspect")
 attribute("warnings", '[{"message": []}]', "should be a list of messages", "inspect")
 attribute("numpy_version", 3.0, "attribute numpy_version: should be text", "inspect", "verify")
-attribute("seed", "five", "attribute seed: should be a whole number", "verify")
-attribute("config_hash", None, "attribute config_hash: is missing", "verify")
 
 
 @hostile("attribute config: should be text of at most 1048576 characters")

@@ -1,37 +1,26 @@
 """A data set in a format that other tools read; the new folder appears when it is whole."""
 
-import hashlib
 import os
 import shutil
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable
 from importlib import import_module
-from itertools import islice
-from math import prod
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
-from radhar_cli.arrays import Levels
-from radhar_cli.config.identity import as_yaml
-from radhar_cli.dataset.card import card, owner_licence
+from radhar_cli.dataset.card import owner_licence
 from radhar_cli.dataset.files import refuse_links
 from radhar_cli.dataset.folder import folder_lock
-from radhar_cli.dataset.gallery import gallery_png
-from radhar_cli.dataset.layout import CARD, CONFIG, GALLERY
-from radhar_cli.dataset.png import encode_png
 from radhar_cli.dataset.reading import Dataset, open_dataset
-from radhar_cli.dataset.table import Entry, entries
 from radhar_cli.errors import FolderError, UnfinishedError
 from radhar_cli.progress import Progress
 
 # Module and function of each format.
 FORMATS = {
-    "webdataset": ("webdataset", "write"),
     "parquet": ("parquet", "write"),
     "mars": ("clouds", "write_mars"),
     "ros": ("clouds", "write_ros"),
     "ti": ("clouds", "write_ti"),
 }
-FILE_BYTES = 2**28  # of pixels per file
 Writer: TypeAlias = Callable[[Dataset, Path, Progress], None]
 
 
@@ -69,42 +58,3 @@ def convert(path: Path, out: Path, to: str, progress: Progress) -> int:
             finally:
                 shutil.rmtree(scratch, ignore_errors=True)
         return len(data)
-
-
-def checked_png(data: Dataset, table: Levels, map_name: str, row: int) -> bytes:
-    """The PNG file of a sample with a colour table [256, 3], as `generate` writes it.
-
-    Raises:
-        FolderError: its levels are not those that were stored.
-    """
-    name = f"maps/{map_name}"
-    levels, stored = data.large[name][row], data.sha256[name].rows(row, row + 1)[0]
-    if hashlib.sha256(levels.tobytes()).hexdigest().encode() != stored:
-        raise FolderError(f"{data.path}: /{name}[{row}]: does not match its checksum")
-    return encode_png(levels, table, data.config.output.png_level)
-
-
-def files_of_split(data: Dataset, split: int, maps: int) -> Iterator[tuple[int, Iterator[Entry]]]:
-    """The files that a split is cut into: how many there are, and the samples of each.
-
-    Args:
-        maps: images of each sample in a file.
-    """
-    count = int((data.split == split).sum())
-    most = max(1, FILE_BYTES // (maps * prod(data.config.image.size_px)))
-    here = (entry for entry in entries(data) if entry.split == split)
-    files = -(-count // most)
-    for _ in range(files):
-        yield files, islice(here, most)
-
-
-def describe(data: Dataset, folder: Path, loading: Mapping[str, Any], reading: str) -> None:
-    """Write the card of a converted data set, its picture and the resolved config.
-
-    Args:
-        loading: front matter that `load_dataset` reads; none where that cannot read the format.
-    """
-    front = {**loading, **owner_licence(data.path.parent)}
-    (folder / CARD).write_text(card(data, front, reading), encoding="utf-8")
-    (folder / GALLERY).write_bytes(gallery_png(data))
-    (folder / CONFIG).write_text(as_yaml(data.config), encoding="utf-8")

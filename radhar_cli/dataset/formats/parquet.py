@@ -1,6 +1,7 @@
 """Parquet files with the images in them, a folder a map, as the Hugging Face Hub keeps them."""
 
-import json
+import hashlib
+from collections.abc import Iterator
 from itertools import islice
 from math import prod
 from pathlib import Path
@@ -8,27 +9,31 @@ from pathlib import Path
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from radhar_cli.arrays import Levels
+from radhar_cli.config.identity import as_yaml
 from radhar_cli.config.schema import Config
-from radhar_cli.dataset.card import configurations, number_features
-from radhar_cli.dataset.formats.convert import checked_png, describe, files_of_split
+from radhar_cli.dataset.card import card, configurations, number_features, owner_licence
+from radhar_cli.dataset.gallery import gallery_png
 from radhar_cli.dataset.hub import loading
-from radhar_cli.dataset.layout import Rows
-from radhar_cli.dataset.png import colour_table
+from radhar_cli.dataset.layout import CARD, CONFIG, GALLERY, Rows
+from radhar_cli.dataset.png import colour_table, encode_png
 from radhar_cli.dataset.reading import Dataset
-from radhar_cli.dataset.table import Entry
+from radhar_cli.dataset.table import Entry, entries
+from radhar_cli.errors import FolderError
 from radhar_cli.progress import Progress
 
+FILE_BYTES = 2**28  # of pixels per file
 GROUP, GROUP_BYTES = 256, 2**26  # samples and bytes of pixels per row group
 
 
 def write(data: Dataset, folder: Path, progress: Progress) -> None:
-    """Write <map>/<split>-<number>-of-<files>.parquet."""
+    """Write <map>/<split>-<number>-of-<files>.parquet, card, picture and resolved config."""
     schema = schema_of(data.config)
     group = max(1, min(GROUP, GROUP_BYTES // prod(data.config.image.size_px)))
     for name in data.config.maps:
         (folder / name).mkdir()
         for split, part in data.present_splits.items():
-            for number, (files, here) in enumerate(files_of_split(data, split, 1)):
+            for number, (files, here) in enumerate(_files_of_split(data, split)):
                 path = folder / name / f"{part}-{number:05d}-of-{files:05d}.parquet"
                 with pq.ParquetWriter(path, schema, use_dictionary=False) as file:
                     while some := list(islice(here, group)):
@@ -39,29 +44,34 @@ def write(data: Dataset, folder: Path, progress: Progress) -> None:
     configs = configurations(data.config, files_of)
     reading = "Samples stand in turn, one of each class. `image.bytes` of a row is a PNG file."
     reading = f"{loading(data.config.maps[0])}\n\n{reading}"
-    describe(data, folder, {"configs": configs}, reading)
+    front = {"configs": configs, **owner_licence(data.path.parent)}
+    (folder / CARD).write_text(card(data, front, reading), encoding="utf-8")
+    (folder / GALLERY).write_bytes(gallery_png(data))
+    (folder / CONFIG).write_text(as_yaml(data.config), encoding="utf-8")
+
+
+def _files_of_split(data: Dataset, split: int) -> Iterator[tuple[int, Iterator[Entry]]]:
+    """The files that a split is cut into: how many there are, and the samples of each."""
+    most = max(1, FILE_BYTES // prod(data.config.image.size_px))
+    here = (entry for entry in entries(data) if entry.split == split)
+    files = -(-int((data.split == split).sum()) // most)
+    for _ in range(files):
+        yield files, islice(here, most)
 
 
 def schema_of(config: Config) -> pa.Schema:
-    """Columns, and what `datasets` makes of them."""
+    """Columns; the card says what `datasets` makes of them."""
     kinds = {one["name"]: one["dtype"] for one in number_features(config)}
     image = pa.struct([("bytes", pa.binary()), ("path", pa.string())])
     columns = [("image", image), ("label", pa.int64())]
-    features = {
-        "image": {"_type": "Image"},
-        "label": {"names": [a.slug for a in config.every_class], "_type": "ClassLabel"},
-        **{name: {"dtype": kind, "_type": "Value"} for name, kind in kinds.items()},
-    }
-    metadata = json.dumps({"info": {"features": features}})
-    numbers = [(name, pa.type_for_alias(kind)) for name, kind in kinds.items()]
-    return pa.schema([*columns, *numbers], metadata={"huggingface": metadata})
+    return pa.schema([*columns, *((name, pa.type_for_alias(kind)) for name, kind in kinds.items())])
 
 
 def _table(data: Dataset, name: str, here: list[Entry], schema: pa.Schema) -> pa.Table:
     rows, numbers = Rows.of(data.config), zip(*(entry.values for entry in here), strict=True)
     colours = colour_table(data.config.image.colour_map)
     images = [
-        {"bytes": checked_png(data, colours, name, one.row), "path": rows.file_name(one.row)}
+        {"bytes": _checked_png(data, colours, name, one.row), "path": rows.file_name(one.row)}
         for one in here
     ]
     columns = [
@@ -73,3 +83,16 @@ def _table(data: Dataset, name: str, here: list[Entry], schema: pa.Schema) -> pa
     ]
     arrays = [pa.array(c, f.type) for c, f in zip(columns, schema, strict=True)]
     return pa.Table.from_arrays(arrays, schema=schema)
+
+
+def _checked_png(data: Dataset, table: Levels, map_name: str, row: int) -> bytes:
+    """The PNG file of a sample with a colour table [256, 3], as `generate` writes it.
+
+    Raises:
+        FolderError: its levels are not those that were stored.
+    """
+    name = f"maps/{map_name}"
+    levels, stored = data.large[name][row], data.sha256[name].rows(row, row + 1)[0]
+    if hashlib.sha256(levels.tobytes()).hexdigest().encode() != stored:
+        raise FolderError(f"{data.path}: /{name}[{row}]: does not match its checksum")
+    return encode_png(levels, table, data.config.output.png_level)

@@ -76,13 +76,11 @@ def program() -> "typer.Typer":
 
 
 def _with_output_options(app: "typer.Typer") -> None:
-    """Give --json, --quiet and the completion of values to every command."""
-    from radhar_cli.commands.completion import complete_options
+    """Give --json and --quiet to every command."""
     from radhar_cli.commands.tell import with_output_options
 
     for command in app.registered_commands:
         assert command.callback is not None
-        complete_options(command.callback)
         command.callback = with_output_options(command.callback)
     for group in app.registered_groups:
         assert group.typer_instance is not None

@@ -88,12 +88,6 @@ def test_shipped_configs_resolve_and_show_round_trips(path, tmp_path):
     assert radhar("config", "show", tmp_path / "again.yaml", *kind).stdout == shown.stdout
 
 
-def test_schema_is_json_schema():
-    schema = json.loads(radhar("config", "schema").stdout)
-    assert schema["properties"]["radar"]
-    assert schema["additionalProperties"] is False
-
-
 @pytest.mark.parametrize("group", [[], ["config"]])
 def test_a_group_alone_shows_its_help(group):
     done = radhar(*group)
@@ -103,7 +97,7 @@ def test_a_group_alone_shows_its_help(group):
 
 def test_every_help_has_an_example():
     for command in (
-        *("generate", "simulate", "verify", "preview", "inspect", "config show", "config schema"),
+        *("generate", "simulate", "verify", "preview", "inspect", "config show"),
         *("train", "eval", "models", "export", "predict", "tradeoff", "import", "process", "fit"),
     ):
         done = ok(*command.split(), "--help")

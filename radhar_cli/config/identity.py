@@ -18,10 +18,15 @@ def resolved(config: Section) -> dict[str, Any]:
 
 def as_yaml(config: Section) -> str:
     """The resolved config as YAML, which reads back as the same config."""
+    return yaml_text(resolved(config))
+
+
+def yaml_text(document: dict[str, Any]) -> str:
+    """Plain values as YAML, the innermost in a line."""
     import yaml
 
     return yaml.safe_dump(
-        resolved(config), sort_keys=False, default_flow_style=None, width=100, allow_unicode=True
+        document, sort_keys=False, default_flow_style=None, width=100, allow_unicode=True
     )
 
 

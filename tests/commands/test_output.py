@@ -15,11 +15,11 @@ from small import small_config
 from radhar_cli import commands
 from radhar_cli.cli import program
 from radhar_cli.commands import tell
-from radhar_cli.commands.bars import Bars
+from radhar_cli.commands.terminal import BarProgress
 
 FOLDER = Path(str(commands.__file__)).parent
 # Modules that report for commands of others.
-FOR = {"terminal": ["generate", "merge"], "dry_run": ["generate"], "training_view": ["train"]}
+FOR = {"terminal": ["generate", "merge"]}
 
 
 def registered(app, prefix=""):
@@ -162,8 +162,8 @@ def test_progress_bars_show_on_terminals_only(monkeypatch, terminal, quiet, show
     monkeypatch.setattr(sys, "stderr", screen)
 
     def work():
-        bars = Bars()
-        bars.open("synthesis", 3, "sample")
+        bars = BarProgress()
+        bars.stage("synthesis", 3)
         bars.advance(3)
         bars.say("resuming: 2 of 3")
         bars.say("warning: far away")

@@ -49,11 +49,6 @@ def differences(one: Section, other: Section) -> dict[str, tuple[Any, Any]]:
     return dict(walk(resolved(one), resolved(other), ""))
 
 
-def flat(config: Config) -> dict[str, Any]:
-    """Return {dotted key: value} of every key that decides bytes, as `flat_document`."""
-    return flat_document(resolved(config))
-
-
 def flat_document(document: dict[str, Any]) -> dict[str, Any]:
     """{dotted key: value} of a resolved config, of every key that decides bytes.
 

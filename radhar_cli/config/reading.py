@@ -93,19 +93,6 @@ def load_section(kind: type[S], path: Path | None, overrides: Iterable[str] = ()
     return _load(kind, path, overrides)[0]
 
 
-def changed_section(section: S, overrides: Iterable[str]) -> S:
-    """A config with overrides applied, each as `load_section` has them.
-
-    Raises:
-        ConfigError: as `load_section`.
-    """
-    document, options = section.model_dump(mode="json"), {}
-    for option, text in map(_option_and_text, overrides):
-        key = _override(document, text)
-        options[key] = option or f"--set {key}"
-    return validated(type(section), document, "--set", {}, options)
-
-
 def _option_and_text(override: str) -> tuple[str, str]:
     """The option that an override names, if it does, and its text."""
     option, _, text = override.partition(" ") if override.startswith("--") else ("", "", override)

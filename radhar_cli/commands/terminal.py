@@ -158,7 +158,7 @@ def print_plan(config: "Config", jobs: int) -> None:
     tell(samples)
     tell(f"scenes      {len(checked)} of {len(rows)} checked: {redrawn} drawn again")
     tell(f"on disk     dataset.h5 {_mib(cost.hdf5_bytes)}, png {_mib(cost.png_bytes)}")
-    tell(f"time        about {cost.seconds:.0f} s with --jobs {jobs}")
+    tell(f"time        about {cost.seconds:.1f} s with --jobs {jobs}")
     for message in warnings:
         tell(f"warning: {message}")
     tell("nothing was written")

@@ -3,8 +3,8 @@
 import io
 import os
 import sys
-from collections.abc import Callable
 from contextlib import suppress
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from radhar_cli import interrupts
@@ -15,6 +15,14 @@ if TYPE_CHECKING:
     import typer
 
 DATA_SETS = "Data sets"
+COMMANDS = {
+    DATA_SETS: ("generate", "verify", "merge", "convert"),
+    "Look": ("simulate", "motion", "preview", "inspect"),
+    "Real radars": ("import", "process", "fit", "compare"),
+    "Learn": ("train", "eval", "predict", "adapt"),
+    "Networks and settings": ("models", "export", "tradeoff"),
+}
+MODULES = {"import": "import_", "eval": "evaluate"}  # and functions; of the others as the command
 STATUSES = (
     "Exit status: 0 done; 1 something differs or is missing, or the machine failed the run; 2 what "
     "was given cannot be used; 130 after Ctrl-C, 143 after SIGTERM: what is finished is kept."
@@ -25,29 +33,7 @@ def program() -> "typer.Typer":
     """The program and its commands."""
     import typer
 
-    from radhar_cli.commands import (
-        adapt,
-        compare,
-        config,
-        convert,
-        evaluate,
-        export,
-        fit,
-        generate,
-        import_,
-        inspect,
-        merge,
-        models,
-        motion,
-        predict,
-        preview,
-        process,
-        simulate,
-        tradeoff,
-        train,
-        verify,
-        version,
-    )
+    from radhar_cli.commands import config, version
     from radhar_cli.commands.headings import Headings
 
     app = typer.Typer(
@@ -59,30 +45,22 @@ def program() -> "typer.Typer":
         rich_markup_mode=None,
     )
     app.callback()(version.options)
-    groups: dict[str, list[Callable[..., None]]] = {
-        DATA_SETS: [generate.generate, verify.verify, merge.merge, convert.convert],
-        "Look": [simulate.simulate, motion.motion, preview.preview, inspect.inspect],
-        "Real radars": [import_.import_, process.process, fit.fit, compare.compare],
-        "Learn": [train.train, evaluate.evaluate, predict.predict, adapt.adapt],
-        "Networks and settings": [models.models, export.export, tradeoff.tradeoff],
-    }
-    names = {import_.import_: "import", evaluate.evaluate: "eval"}
-    for heading, commands in groups.items():
-        for one in commands:
-            app.command(names.get(one), rich_help_panel=heading)(one)
+    for heading, names in COMMANDS.items():
+        for name in names:
+            module = MODULES.get(name, name)
+            command = getattr(import_module(f"radhar_cli.commands.{module}"), module)
+            app.command(name, rich_help_panel=heading)(command)
     app.add_typer(config.group(), name="config", no_args_is_help=True, rich_help_panel=DATA_SETS)
     _with_output_options(app)
     return app
 
 
 def _with_output_options(app: "typer.Typer") -> None:
-    """Give --json, --quiet and the completion of values to every command."""
-    from radhar_cli.commands.completion import complete_options
+    """Give --json and --quiet to every command."""
     from radhar_cli.commands.tell import with_output_options
 
     for command in app.registered_commands:
         assert command.callback is not None
-        complete_options(command.callback)
         command.callback = with_output_options(command.callback)
     for group in app.registered_groups:
         assert group.typer_instance is not None

@@ -27,7 +27,7 @@ from scipy.interpolate import CubicSpline
 from scipy.signal import butter, sosfiltfilt
 from scipy.spatial import cKDTree
 
-from radhar_cli.config.reading import changed_section, validated
+from radhar_cli.config.reading import validated, with_overrides
 from radhar_cli.config.schema import Config
 from radhar_cli.motion.skeleton import JOINTS, PARENTS, cross_sections
 from radhar_cli.pipeline.run import record
@@ -200,8 +200,7 @@ def board_config(cfg: Path, seconds: float, seed: int, overrides: Sequence[str] 
         "cloud": {"chain": "board", "doppler_carrier": "start"},
         "maps": ["points"],
     }
-    config = validated(Config, document, "config", {})
-    return changed_section(config, overrides) if overrides else config
+    return validated(Config, with_overrides(document, overrides), "config", {})
 
 
 def simulated_clouds(

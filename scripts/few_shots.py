@@ -23,7 +23,7 @@ import numpy as np
 import torch
 
 from radhar_cli.arrays import Index
-from radhar_cli.config.reading import changed_section
+from radhar_cli.config.reading import with_overrides
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.split import TRAIN, VALIDATION
 from radhar_cli.learning.adaptation import Mixed, adapt_to
@@ -140,7 +140,8 @@ def few_shots(
     device = torch.device("cpu")
     opened = open_run(run.name, run, device)
     own = TrainConfig.model_validate(opened.metadata.config)
-    scratch = changed_section(own.model_copy(update={"device": "cpu"}), [*settings])
+    document = {**own.model_dump(mode="json"), "device": "cpu"}
+    scratch = TrainConfig.model_validate(with_overrides(document, settings))
     half = {"epochs": -(-scratch.epochs // 2), "warmup_epochs": scratch.warmup_epochs / 2}
     tuned = scratch.model_copy(update=half)
     measured = open_eval_set(opened, data, EvalOptions("all"))

@@ -306,7 +306,7 @@ def test_it_is_verified_and_listed(data: Path) -> None:
     for command in (("verify",), ("inspect",)):
         done = radhar(*command, data / "set")
         assert done.returncode == 0, done.stderr
-    assert "kicking 8" in done.stdout
+    assert "kicking: 8" in done.stdout
     first = (data / "set/png/stft/train/metadata.csv").read_text().splitlines()
     assert first[0].startswith("file_name,label,index,labels,")
     assert "kicking" in first[1].split(",")[3].split()

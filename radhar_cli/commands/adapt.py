@@ -52,9 +52,10 @@ def adapt(
     show the classes about as often as those it will be asked about; with --epochs, every class
     about equally often.
     """
-    from radhar_cli.commands.learning_options import StderrLog, apart, needs_torch
+    from radhar_cli.commands.learning_options import apart, needs_torch
 
     needs_torch()
+    from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.learning import adaptation
     from radhar_cli.learning.images.image_set import split_named
     from radhar_cli.learning.machine import choose_device
@@ -73,7 +74,7 @@ def adapt(
         overwrite,
         epochs,
         tuple(mix or ()),
-        StderrLog(),
+        BarProgress(),
     )
     report(folder=out, run=run, data=data, epochs=epochs)
     more = f", after {epochs} epoch{'s' * (epochs > 1)} without labels" if epochs else ""

@@ -1,6 +1,5 @@
 """`radhar compare`: how far two data sets of maps are apart, class by class."""
 
-from math import isfinite
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -8,8 +7,6 @@ import typer
 
 from radhar_cli.commands.learning_options import AnyMap, Classes
 from radhar_cli.commands.tell import report, tell
-
-SHOWN = 6  # statistics of a class on the terminal
 
 
 def compare(
@@ -56,8 +53,8 @@ def compare(
     numbers = comparison.numbers()
     report(files=files, **{key: numbers[key] for key in ("test", "classes", "warnings")})
     for name, one in numbers["classes"].items():
-        _tell_class(name, one)
-    tell(f"\nall classes: {_test(numbers['test'])}")
+        tell(f"{name}: {_test(one['test'])}")
+    tell(f"all classes: {_test(numbers['test'])}")
     for path in files:
         tell(f"  {path}")
 
@@ -70,17 +67,3 @@ def _test(test: dict[str, Any] | None) -> str:
         f"{100 * test['accuracy']:.1f} % told apart ({100 * low:.1f} to {100 * high:.1f} %, "
         f"n = {test['images']})"
     )
-
-
-def _tell_class(name: str, numbers: dict[str, Any]) -> None:
-    tell(f"\n{name}: {_test(numbers['test'])}")
-    columns = f"{'simulated':>24} {'measured':>24} {'distance':>9} {'p':>7}"
-    tell(f"  {'mean (standard deviation)':<38} {columns}")
-    known = [one for one in numbers["statistics"].values() if isfinite(one["distance"])]
-    for one in known[:SHOWN]:
-        words = one["words"] + (f", {one['unit']}" if one["unit"] else "")
-        cells = []
-        for of in (one["simulated"], one["measured"]):
-            fewer = f" n={of['known']}" if of["known"] < numbers["maps"] else ""  # noise hides it
-            cells.append(f"{of['mean']:.4g} ({of['sd']:.2g}){fewer}".rjust(24))
-        tell(f"  {words:<38} {' '.join(cells)} {one['distance']:>9.2f} {one['p']:>7.1g}")

@@ -1,4 +1,4 @@
-"""`radhar config`: start a config, show it resolved, compare two, and the schema of the file."""
+"""`radhar config`: start a config, or show it resolved."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -18,14 +18,14 @@ Training = Annotated[bool, typer.Option("--train", help="The file of train, not 
 def group() -> typer.Typer:
     """The subcommands."""
     app = typer.Typer(
-        help="""Start, show or compare configs, or print their schema.
+        help="""Start or show configs.
 
         Example:
 
           radhar config show configs/quickstart.yaml
         """
     )
-    for command in (init, show, diff, schema):
+    for command in (init, show):
         app.command()(command)
     return app
 
@@ -81,51 +81,6 @@ def show(
     loaded = load_section(_kind(train), config, set_ or [])
     report(**resolved(loaded))
     tell(as_yaml(loaded), nl=False)
-
-
-def diff(
-    one: Annotated[Path, typer.Argument(metavar="A", help="YAML file.")],
-    other: Annotated[Path, typer.Argument(metavar="B", help="YAML file.")],
-    train: Training = False,
-) -> None:
-    """Print in which keys two configs differ, defaults filled in.
-
-    Exit status 0 if they say the same, 1 if they differ.
-
-    Example:
-
-      radhar config diff configs/quickstart.yaml mine.yaml
-    """
-    import json
-
-    from radhar_cli.config.identity import differences
-    from radhar_cli.config.reading import load_section
-
-    differing = differences(*(load_section(_kind(train), path) for path in (one, other)))
-    report(different=differing)
-    width = max(map(len, differing), default=0)
-    for key, values in differing.items():
-        here, there = map(json.dumps, values)
-        tell(f"{key:<{width}}  {here} -> {there}")
-    if differing:
-        raise typer.Exit(1)
-
-
-def schema(train: Training = False) -> None:
-    """Print the JSON Schema of the config file, for editors.
-
-    Example:
-
-      radhar config schema > radhar.schema.json
-    """
-    import json
-
-    from radhar_cli.config.documents import BASE, BASE_SCHEMA
-
-    document = _kind(train).model_json_schema()
-    document["properties"][BASE] = BASE_SCHEMA
-    report(**document)
-    tell(json.dumps(document, indent=2))
 
 
 def _kind(train: bool) -> "type[Config] | type[TrainConfig]":

@@ -44,9 +44,10 @@ def evaluate(
 
     Several runs or data sets give the comparison: train at one SNR, test at all.
     """
-    from radhar_cli.commands.learning_options import StderrLog, apart, needs_torch, runs_and_data
+    from radhar_cli.commands.learning_options import apart, needs_torch, runs_and_data
 
     needs_torch()
+    from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.dataset.files import refuse_links
     from radhar_cli.learning.images.classes import read_classes
     from radhar_cli.learning.images.image_set import split_named
@@ -69,7 +70,7 @@ def evaluate(
     if out is None:
         refuse_links(inside, folder)
     apart(folder, data)
-    evaluation = test(runs, data, options, choose_device(device), StderrLog())
+    evaluation = test(runs, data, options, choose_device(device), BarProgress())
     evaluation.write(folder)
     found: dict[str, dict[str, dict[str, float]]] = {}
     for run, about in evaluation.numbers["runs"].items():

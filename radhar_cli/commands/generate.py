@@ -59,7 +59,12 @@ def generate(
     The same command, run again, resumes where it stopped and says so when the folder is complete.
     """
     with resumable(f"what is finished in {out}"):
-        from radhar_cli.commands.terminal import BarProgress, print_outcome, print_part
+        from radhar_cli.commands.terminal import (
+            BarProgress,
+            print_outcome,
+            print_part,
+            print_plan,
+        )
         from radhar_cli.config import load_config
         from radhar_cli.dataset.build import build
         from radhar_cli.dataset.layout import Rows
@@ -77,8 +82,6 @@ def generate(
                 f"{config}: recordings: --recordings MANIFEST should say where they lie"
             )
         if dry_run:
-            from radhar_cli.commands.dry_run import print_plan
-
             print_plan(loaded, jobs)
         else:
             part = None if shard is None else Part.parse(shard)

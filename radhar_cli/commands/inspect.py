@@ -1,11 +1,11 @@
 """`radhar inspect`: what is in a data set, a scene, a recording, or a tree of images."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from radhar_cli.commands.tell import report, talks
+from radhar_cli.commands.tell import report, tell
 
 
 def inspect(
@@ -27,7 +27,20 @@ def inspect(
         foreign = is_tree(path) and not (path / "scene.h5").exists()
         summary = summarise_tree(path) if foreign else summarise(path)
     report(**summary)
-    if talks():
-        from radhar_cli.commands.summary_view import print_summary
+    print_summary(summary)
 
-        print_summary(summary)
+
+def print_summary(summary: dict[str, Any]) -> None:
+    """Print plain values as YAML."""
+    from radhar_cli.config.identity import yaml_text
+
+    tell(yaml_text(_short(summary)), nl=False)
+
+
+def _short(value: Any) -> Any:
+    """The same values with six digits."""
+    if isinstance(value, dict):
+        return {key: _short(inner) for key, inner in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_short(inner) for inner in value]
+    return float(f"{value:.6g}") if isinstance(value, float) else value

@@ -6,7 +6,6 @@ from typing import Annotated, TypeAlias
 
 import typer
 
-from radhar_cli.commands.tell import tell, wanted
 from radhar_cli.errors import FolderError, MachineError
 
 Run: TypeAlias = Annotated[Path, typer.Argument(help="Folder that train wrote.")]
@@ -73,14 +72,6 @@ def runs_and_data(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:
     if not data:
         raise FolderError(f"{paths[-1]}: is a training run; give a data set after it")
     return runs, data
-
-
-class StderrLog:
-    """Writes messages to the error stream."""
-
-    def say(self, message: str) -> None:
-        if wanted(message):
-            tell(message, err=True)
 
 
 def apart(out: Path, data: Sequence[Path]) -> None:

@@ -147,7 +147,7 @@ def _looking_at(motion: Path, slug: str) -> list[str]:
 
 
 def _draw(simulation: "Simulation", out: Path, overlay: bool) -> list[Path]:
-    from radhar_cli.commands.bars import Bars
+    from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.figures import maps_panel, stickman
     from radhar_cli.simulation.scene_file import ANIMATION, CLOUD, FRAMES, MAPS
 
@@ -155,8 +155,8 @@ def _draw(simulation: "Simulation", out: Path, overlay: bool) -> list[Path]:
     if simulation.maps:
         maps_panel.draw_maps(maps_panel.of_simulation(simulation, overlay), out / MAPS)
         drawn.append(out / MAPS)
-    with Bars() as bars:
-        bars.open(ANIMATION, stickman.frame_count(simulation), "frame")
+    with BarProgress("frame") as bars:
+        bars.stage(ANIMATION, stickman.frame_count(simulation))
         stickman.draw_stickman(simulation, out / ANIMATION, bars.advance)
         drawn.append(out / ANIMATION)
         if simulation.board is not None and simulation.frames.keys() - {"cube"}:
@@ -166,7 +166,7 @@ def _draw(simulation: "Simulation", out: Path, overlay: bool) -> list[Path]:
             frames_panel.draw_frames(frames, out / FRAMES)
             drawn.append(out / FRAMES)
             if "cloud" in simulation.frames:
-                bars.open(CLOUD, simulation.board.frames, "frame")
+                bars.stage(CLOUD, simulation.board.frames)
                 frames_panel.draw_cloud(frames, out / CLOUD, bars.advance)
                 drawn.append(out / CLOUD)
     return drawn

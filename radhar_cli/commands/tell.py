@@ -34,11 +34,6 @@ class _Output:
 _output = _Output()
 
 
-def talks() -> bool:
-    """Whether text lines are printed."""
-    return not (_output.json or _output.quiet)
-
-
 def is_quiet() -> bool:
     """Whether no progress is shown."""
     return _output.quiet
@@ -46,7 +41,7 @@ def is_quiet() -> bool:
 
 def tell(message: object, *, err: bool = False, nl: bool = True) -> None:
     """Print a line of text; control characters are escaped."""
-    if err or talks():
+    if err or not (_output.json or _output.quiet):
         typer.echo(shown(message), err=err, nl=nl)
 
 

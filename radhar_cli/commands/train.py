@@ -1,5 +1,6 @@
 """`radhar train`: a data set becomes a trained network."""
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
@@ -7,6 +8,7 @@ import typer
 
 from radhar_cli.commands.learning_options import Classes
 from radhar_cli.commands.options import Overrides, StartOver, resumable
+from radhar_cli.commands.tell import report, tell
 
 
 def train(
@@ -60,9 +62,9 @@ def train(
     from radhar_cli.commands.learning_options import apart, needs_torch
 
     needs_torch()
-    from radhar_cli.commands.training_view import TrainingView
+    from radhar_cli.commands.terminal import TrainingView
     from radhar_cli.config.reading import load_section
-    from radhar_cli.learning import training
+    from radhar_cli.learning import run_files, training
     from radhar_cli.learning.images.classes import read_classes
     from radhar_cli.learning.settings import TrainConfig
 
@@ -76,4 +78,16 @@ def train(
     names = read_classes(classes) if classes else {}
     with resumable(f"the last finished epoch in {out}"), TrainingView() as view:
         outcome = training.train(settings, data, out, view, overwrite, names, init)
-    view.print_outcome(outcome)
+    best = outcome.best
+    report(
+        folder=out,
+        epochs=len(outcome.history),
+        resumed=outcome.resumed,
+        best=asdict(best),
+        weights=out / run_files.BEST,
+    )
+    if outcome.resumed == len(outcome.history):
+        tell(f"{out} is complete: {outcome.resumed} epochs; nothing to do")
+    tell(f"best epoch {best.epoch}: validation {outcome.score} {100 * best.val_accuracy:.2f} %")
+    for name in (run_files.BEST, run_files.CURVES, run_files.SUMMARY):
+        tell(f"  {out / name}")

@@ -16,10 +16,6 @@ Document: TypeAlias = dict[str, Any]
 Places: TypeAlias = dict[str, str]  # {dotted key: file:line}
 
 BASE = "base"
-BASE_SCHEMA = {
-    "description": "A file that says what this one leaves out; its path from this one's folder on.",
-    "type": ["string", "null"],
-}
 SUFFIXES = (".yaml", ".yml", ".json")
 MAX_CHAIN = 8  # files in a chain of bases
 _ONE_VALUE = {*FORMS, "sequence", "files"}  # mappings with such a key are replaced as a whole

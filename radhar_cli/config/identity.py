@@ -18,10 +18,15 @@ def resolved(config: Section) -> dict[str, Any]:
 
 def as_yaml(config: Section) -> str:
     """The resolved config as YAML, which reads back as the same config."""
+    return yaml_text(resolved(config))
+
+
+def yaml_text(document: dict[str, Any]) -> str:
+    """Plain values as YAML, the innermost in a line."""
     import yaml
 
     return yaml.safe_dump(
-        resolved(config), sort_keys=False, default_flow_style=None, width=100, allow_unicode=True
+        document, sort_keys=False, default_flow_style=None, width=100, allow_unicode=True
     )
 
 
@@ -42,11 +47,6 @@ def differences(one: Section, other: Section) -> dict[str, tuple[Any, Any]]:
             yield from walk(here.get(name), there.get(name), inner)
 
     return dict(walk(resolved(one), resolved(other), ""))
-
-
-def flat(config: Config) -> dict[str, Any]:
-    """Return {dotted key: value} of every key that decides bytes, as `flat_document`."""
-    return flat_document(resolved(config))
 
 
 def flat_document(document: dict[str, Any]) -> dict[str, Any]:

@@ -1,6 +1,5 @@
 """Read a YAML config, apply ``--set`` overrides, and say clearly what is wrong with it."""
 
-import difflib
 import json
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import islice
@@ -9,12 +8,13 @@ from typing import Any, TypeAlias, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from radhar_cli.config.annotations import section
 from radhar_cli.config.checks import Problem
 from radhar_cli.config.documents import BASE, Places, cfg_text, read_document, read_on_bases
 from radhar_cli.config.motion_files import with_files
 from radhar_cli.config.schema import Config, Section
 from radhar_cli.config.yaml_reader import parse_yaml
-from radhar_cli.errors import ConfigError
+from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.untrusted import parse_json, shown
 
 S = TypeVar("S", bound=Section)
@@ -91,19 +91,6 @@ def load_section(kind: type[S], path: Path | None, overrides: Iterable[str] = ()
         ConfigError: as `load_config`; of an overridden key it names the option.
     """
     return _load(kind, path, overrides)[0]
-
-
-def changed_section(section: S, overrides: Iterable[str]) -> S:
-    """A config with overrides applied, each as `load_section` has them.
-
-    Raises:
-        ConfigError: as `load_section`.
-    """
-    document, options = section.model_dump(mode="json"), {}
-    for option, text in map(_option_and_text, overrides):
-        key = _override(document, text)
-        options[key] = option or f"--set {key}"
-    return validated(type(section), document, "--set", {}, options)
 
 
 def _option_and_text(override: str) -> tuple[str, str]:
@@ -261,26 +248,17 @@ def _document_path(location: tuple[int | str, ...], document: Any) -> list[int |
 def _unknown(kind: type[BaseModel], names: list[int | str]) -> str:
     if kind is Config and (absent := ABSENT.get(str(names[-1]))):
         return absent
-    section: type[BaseModel] | None = kind
+    place: type[BaseModel] | None = kind
     for name in names[:-1]:
-        if isinstance(name, int):  # in a list of sections
-            continue
-        field = section.model_fields.get(str(name)) if section else None
-        section = next(
-            (
-                kind
-                for kind in (
-                    [field.annotation, *getattr(field.annotation, "__args__", ())] if field else []
-                )
-                if isinstance(kind, type) and issubclass(kind, BaseModel)
-            ),
-            None,
-        )
-    known = list(section.model_fields) if section else []
-    near = difflib.get_close_matches(str(names[-1]), known, n=1)
-    if near:
-        return f"is an unknown key; did you mean {near[0]!r}?"
-    return "is an unknown key" + (f"; known here: {', '.join(known)}" if known else "")
+        if isinstance(name, str):  # no place in a list of sections
+            field = place.model_fields.get(name) if place else None
+            place = section(field) if field else None
+    if place is None:
+        return "is an unknown key"
+    known = list(place.model_fields)
+    return "is an unknown key; " + did_you_mean(
+        str(names[-1]), known, f"known here: {', '.join(known)}"
+    )
 
 
 def _place(where: str, key: str, places: Places, options: Mapping[str, str]) -> str:

@@ -115,23 +115,7 @@ def _mapping(node: yaml.MappingNode, key: str, lines: Lines) -> dict[str, Any]:
             )
         if name in own:
             _refuse(name_node, f"the key {name!r} appears twice")
-        if name == "<<":
-            elsewhere: Lines = {}
-            own[name] = _merged(value_node, key, elsewhere)
-            lines.update((k, v) for k, v in elsewhere.items() if k not in lines)
-            continue
         inner = f"{key}.{name}" if key else name
         lines[inner] = name_node.start_mark.line + 1
         own[name] = _value(value_node, inner, lines)
-    return {**own.pop("<<", {}), **own}
-
-
-def _merged(node: yaml.Node, key: str, lines: Lines) -> dict[str, Any]:
-    """The mappings behind ``<<``; keys of an earlier one win."""
-    merged: dict[str, Any] = {}
-    sources = node.value if isinstance(node, yaml.SequenceNode) else [node]
-    for source in reversed(sources):
-        if not isinstance(source, yaml.MappingNode):
-            _refuse(source, "<< should stand before a mapping, or a list of mappings")
-        merged |= _mapping(source, key, lines)
-    return merged
+    return own

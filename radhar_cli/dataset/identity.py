@@ -5,7 +5,7 @@ import json
 from typing import Any
 
 from radhar_cli.build_version import build_version
-from radhar_cli.config.identity import config_hash, flat, resolved
+from radhar_cli.config.identity import config_hash, flat_document, resolved
 from radhar_cli.config.schema import Config
 from radhar_cli.registry import own_digest
 
@@ -35,7 +35,7 @@ def versions() -> dict[str, str]:
 def identity(config: Config) -> dict[str, Any]:
     """Plain values to store with a data set and to compare before continuing it."""
     return {
-        "keys": flat(config),
+        "keys": flat_document(resolved(config)),
         "versions": versions(),
         "hash": config_hash(config),
         "config": resolved(config),

@@ -17,7 +17,6 @@ from radhar_cli.dataset.shards import check_shards, listed_shards
 from radhar_cli.dataset.untrusted_hdf5 import Column, UntrustedFile
 from radhar_cli.errors import FolderError
 
-HISTOGRAM_BINS = 12
 MAX_VALUE = 1e30
 SCENE_FILE = "scene.h5"
 
@@ -104,21 +103,18 @@ def _spread(values: np.ndarray[Any, Any]) -> dict[str, float]:
 
 
 def _drawn(data: Dataset) -> dict[str, Any]:
-    """Histograms of the numbers that differ from sample to sample."""
+    """Extent of the numbers that differ from sample to sample."""
     units = {field.name: field.unit for field in data.fields}
-    histograms = {}
+    drawn = {}
     for name, column in data.scene.items():
         values = _known(column)
         if values.size and values.min() < values.max():
-            counts, edges = np.histogram(values, HISTOGRAM_BINS)
-            histograms[name] = {
+            drawn[name] = {
                 "unit": units.get(name, "1"),
                 **_spread(values),
                 "samples": int(values.size),
-                "counts": counts.tolist(),
-                "edges": edges.tolist(),
             }
-    return histograms
+    return drawn
 
 
 def _known(column: Column) -> np.ndarray[Any, Any]:

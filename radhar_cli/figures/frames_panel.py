@@ -1,20 +1,19 @@
 """frames.png and cloud.gif: frames of a board side by side; its cloud over the skeleton in time."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 
 from radhar_cli.arrays import Float
 from radhar_cli.config.schema import ImageConfig
 from radhar_cli.figures.maps_panel import title
 from radhar_cli.figures.page import page, write_figure
-from radhar_cli.figures.stickman import write_animation
+from radhar_cli.figures.sides import Advance, Film, Side, bones, colour_bar
 from radhar_cli.processing.frame_maps import FrameMaps
 from radhar_cli.processing.points import Cloud
 from radhar_cli.radar.board import Board
@@ -26,9 +25,6 @@ NAMES = {
     "range_azimuth": "range-azimuth",
     "range_elevation": "range-elevation",
 }
-# {view: (horizontal axis and its sign, vertical axis)} of points (ahead, left, up)
-VIEWS = {"from the radar": (1, -1.0, 2), "from the side": (0, 1.0, 2), "from above": (1, -1.0, 0)}
-LABELS = {0: "ahead (m)", 1: "right (m)", 2: "up (m)"}
 
 
 @dataclass(frozen=True)
@@ -74,14 +70,11 @@ def draw_frames(shown: Frames, path: Path) -> None:
         row[0].set_ylabel("range (m)", fontsize=7)
         figure.colorbar(drawn[0], ax=list(row), pad=0.01, label="dB").ax.tick_params(labelsize=6)
     if cloud is not None:
-        skeletons, limits = _joints(shown), _limits(shown)
-        views = [_View(axes, "from the radar", limits, shown.parents) for axes in grid[-1]]
-        for view, axes, frame in zip(views, grid[-1], chosen, strict=True):
-            view.show(_of_frame(cloud, frame), skeletons[frame])
+        sides = [Side(axes, "from the radar", *_limits(shown)) for axes in grid[-1]]
+        for side, axes, frame in zip(sides, grid[-1], chosen, strict=True):
+            side.show(*_moment(shown, frame))
             axes.set_title(f"points, {middles[frame]:.2f} s", fontsize=8)
-        bar = figure.colorbar(views[0].points, ax=list(grid[-1]), pad=0.01)
-        bar.set_label("approaching (m/s)", fontsize=7)
-        bar.ax.tick_params(labelsize=6)
+        colour_bar(figure, sides[0], ax=list(grid[-1]), pad=0.01)
     figure.suptitle(shown.title, fontsize=10)
     write_figure(figure, path, 90)
 
@@ -106,27 +99,14 @@ def _draw_map(axes: Axes, maps: FrameMaps, frame: int, shown: Frames) -> AxesIma
     return drawn
 
 
-def draw_cloud(shown: Frames, path: Path, advance: Callable[[int], object]) -> None:
-    """Write cloud.gif: every frame's points over its skeleton, from three sides, at true speed."""
-    cloud: Cloud = shown.made["cloud"]
-    figure = Figure(figsize=(12, 4.6), dpi=80)
-    figure.suptitle(shown.title, fontsize=9)
-    skeletons, limits, views = _joints(shown), _limits(shown), list[_View]()
-    for number, name in enumerate(VIEWS):
-        axes = figure.add_axes((0.05 + 0.31 * number, 0.12, 0.26, 0.74))
-        views.append(_View(axes, name, limits, shown.parents))
-    clock = figure.text(0.5, 0.02, "", ha="center", fontsize=9)
-    bar = figure.colorbar(views[0].points, cax=figure.add_axes((0.95, 0.15, 0.01, 0.66)))
-    bar.set_label("approaching (m/s)", fontsize=8)
+def draw_cloud(shown: Frames, path: Path, advance: Advance) -> None:
+    """Write cloud.gif: every frame's points over its skeleton, at true speed."""
+    film = Film(shown.title, *_limits(shown))
 
     def show(frame: int) -> None:
-        for view in views:
-            view.show(_of_frame(cloud, frame), skeletons[frame])
-        clock.set_text(f"t = {shown.board.middles[frame]:.2f} s")
+        film.show(*_moment(shown, frame), f"t = {shown.board.middles[frame]:.2f} s")
 
-    moving: list[Any] = [clock, *(artist for view in views for artist in view.artists)]
-    period = round(1000 * shown.board.period)
-    write_animation(figure, moving, show, shown.board.frames, period, path, advance)
+    film.write(path, show, shown.board.frames, round(1000 * shown.board.period), advance)
 
 
 def _joints(shown: Frames) -> Float:
@@ -135,57 +115,20 @@ def _joints(shown: Frames) -> Float:
     return np.empty((shown.board.frames, 0, 0, 3)) if skeletons is None else skeletons.positions
 
 
-class _View:
-    """Points and skeletons from one side."""
-
-    def __init__(
-        self, axes: Axes, name: str, limits: Float, parents: tuple[int | None, ...]
-    ) -> None:
-        self.across, self.sign, self.up = VIEWS[name]
-        self.pairs = [(parent, one) for one, parent in enumerate(parents) if parent is not None]
-        (self.bones,) = axes.plot([], [], color="0.6", linewidth=1.5)
-        fastest = limits[3, 1]
-        self.points = axes.scatter(
-            [],
-            [],
-            c=[],
-            s=14,
-            cmap="coolwarm",
-            vmin=-fastest,
-            vmax=fastest,
-            edgecolors="0.3",
-            linewidths=0.3,
-        )
-        self.points.set_zorder(3)
-        self.artists: list[Any] = [self.bones, self.points]
-        axes.set(xlim=sorted(self.sign * limits[self.across]), ylim=limits[self.up], aspect="equal")
-        axes.set_title(name, fontsize=9)
-        axes.set_xlabel(LABELS[self.across], fontsize=7)
-        axes.set_ylabel(LABELS[self.up], fontsize=7)
-        axes.tick_params(labelsize=6)
-
-    def show(self, points: Float, skeletons: Float) -> None:
-        """Points [n, 8] and joints [person, joint, 3]."""
-        ends = [body[list(pair)] for body in skeletons for pair in self.pairs]
-        gap = np.full((1, 3), np.nan)
-        lines = np.concatenate([part for end in ends for part in (end, gap)] or [gap])
-        self.bones.set_data(self.sign * lines[:, self.across], lines[:, self.up])
-        self.points.set_offsets(
-            np.stack([self.sign * points[:, self.across], points[:, self.up]], axis=1)
-        )
-        self.points.set_array(points[:, 3])
+def _moment(shown: Frames, frame: int) -> tuple[Float, Float, Float]:
+    """Points [n, 3] and speeds [n] of a frame, and its bones [bone, 2, 3]."""
+    cloud: Cloud = shown.made["cloud"]
+    points = cloud.points[cloud.start[frame] : cloud.start[frame + 1]]
+    ends = [bones(body, shown.parents) for body in _joints(shown)[frame]]
+    return points[:, :3], points[:, 3], np.concatenate([np.empty((0, 2, 3)), *ends])
 
 
-def _of_frame(cloud: Cloud, frame: int) -> Float:
-    return cloud.points[cloud.start[frame] : cloud.start[frame + 1]]
-
-
-def _limits(shown: Frames) -> Float:
-    """Lowest and highest (ahead, left, up, speed) [4, 2] of skeletons and most points."""
+def _limits(shown: Frames) -> tuple[Float, float]:
+    """Lowest and highest (ahead, left, up) [3, 2] of skeletons and most points; their speed."""
     points, joints = shown.made["cloud"].points, _joints(shown).reshape(-1, 3)
     seen = joints if len(joints) else points[:, :3]
-    low, high = np.array([(-1.0, -1.0, -1.0), (1.0, 1.0, 1.0)])
+    limits = np.array([(-1.0, -1.0, -1.0), (1.0, 1.0, 1.0)])
     if len(seen):
-        low, high = np.nanpercentile(seen, [1, 99], axis=0) + np.array([[-0.4], [0.4]])
-    speed = max(float(np.percentile(np.abs(points[:, 3]), 99)), 0.1) if len(points) else 1.0
-    return np.array([*zip(low, high, strict=True), (-speed, speed)], float)
+        limits = np.nanpercentile(seen, [1, 99], axis=0) + np.array([[-0.4], [0.4]])
+    fastest = max(float(np.percentile(np.abs(points[:, 3]), 99)), 0.1) if len(points) else 1.0
+    return limits.T, fastest

@@ -1,6 +1,6 @@
 """maps.png: the maps of one scene, all nine or some, on one page."""
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -125,37 +125,16 @@ def _draw_truth(axes: Axes, map_name: str, simulation: Simulation, unit: float) 
         )
 
 
-def places(names: Collection[str]) -> dict[str, tuple[slice, int]]:
-    """Rows and column of every map on a page that leaves at most one cell empty.
-
-    Up to four stand in one row. In two rows the range-time map has the left side, and the others
-    follow row by row: of all nine, the STFTs above and the FSSTs below, a column for each signal.
-    """
-    rows = 1 if len(names) <= ONE_ROW else 2
-    tall = [name for name in names if name == "rtm"]
-    others = [name for name in TITLES if name in names and name not in tall]
-    columns = max(1, -(-len(others) // rows))
-    cells = {name: (slice(0, rows), 0) for name in tall}
-    for number, name in enumerate(others):
-        row, column = divmod(number, columns)
-        cells[name] = (slice(row, row + 1), len(tall) + column)
-    return cells
-
-
 def draw_maps(shown: Shown, path: Path) -> None:
     """Write maps.png: the maps that were computed, one colour bar in dB."""
-    layout = places(shown.maps)
-    rows = max((where.stop for where, _ in layout.values()), default=1)
-    columns = 1 + max((column for _, column in layout.values()), default=0)
+    names = [name for name in TITLES if name in shown.maps]
+    rows = 1 if len(names) <= ONE_ROW else 2
+    columns = -(-len(names) // rows)
     figure = page(max(11.0, 3.7 * columns + 1), 4.1 * rows, apart=0.12)
-    grid = figure.add_gridspec(rows, columns)
-    drawn, panels = None, []
-    for name, where in layout.items():
-        panels.append(figure.add_subplot(grid[where]))
-        drawn = draw_map(panels[-1], name, shown)
-    if drawn is not None:
-        bar = figure.colorbar(drawn, ax=panels, shrink=0.8, pad=0.01)
-        bar.set_label("power (dB below the largest of each map)", fontsize=9)
+    panels = [figure.add_subplot(rows, columns, 1 + place) for place in range(len(names))]
+    drawn = [draw_map(axes, name, shown) for axes, name in zip(panels, names, strict=True)]
+    bar = figure.colorbar(drawn[0], ax=panels, shrink=0.8, pad=0.01)
+    bar.set_label("power (dB below the largest of each map)", fontsize=9)
     figure.suptitle(shown.title, fontsize=11)
     write_figure(figure, path, 90)
 

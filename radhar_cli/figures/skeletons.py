@@ -6,15 +6,14 @@ import numpy as np
 
 from radhar_cli.arrays import Float
 from radhar_cli.figures.page import page, png_bytes
+from radhar_cli.figures.sides import Parents, bones
 
 # What lies across and which way: seen from the radar left is left; from the person's left.
 SIDES = {"from the radar": (1, -1), "from the side": (0, 1)}
 REACH_M = 1.15
 
 
-def skeletons_png(
-    pairs: Sequence[tuple[Float, Float, str]], parents: Sequence[int | None], title: str
-) -> bytes:
+def skeletons_png(pairs: Sequence[tuple[Float, Float, str]], parents: Parents, title: str) -> bytes:
     """Draw (true [joint, 3], found [joint, 3], caption) as columns, from two sides.
 
     Args:
@@ -22,13 +21,12 @@ def skeletons_png(
     """
     figure = page(2.1 * len(pairs), 5.4)
     grid = figure.subplots(len(SIDES), len(pairs), squeeze=False)
-    bones = [(one, parent) for one, parent in enumerate(parents) if parent is not None]
     for row, (side, (across, sign)) in zip(grid, SIDES.items(), strict=True):
         for axes, (true, found, caption) in zip(row, pairs, strict=True):
             for joints, colour, name in ((true, "0.6", "true"), (found, "tab:red", "found")):
                 x, z = sign * joints[:, across], joints[:, 2]
-                for bone in bones:
-                    axes.plot(x[list(bone)], z[list(bone)], color=colour, linewidth=1.6)
+                for bone in bones(joints, parents):
+                    axes.plot(sign * bone[:, across], bone[:, 2], color=colour, linewidth=1.6)
                 axes.plot(x, z, "o", color=colour, markersize=2.5, label=name)
             middle = np.array([sign * true[:, across].mean(), true[:, 2].mean()])
             axes.set_xlim(middle[0] - REACH_M, middle[0] + REACH_M)

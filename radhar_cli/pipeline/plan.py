@@ -42,10 +42,6 @@ class Plan:
     def __contains__(self, name: str) -> bool:
         return any(product.name == name for product in self.products)
 
-    def consumers(self, name: str) -> tuple[str, ...]:
-        """The products made from this one; none where it is what was asked for."""
-        return tuple(product.name for product in self.products if name in product.needs)
-
     @cached_property
     def released_after(self) -> dict[str, tuple[str, ...]]:
         """{product: the products that are read for the last time when it is made}."""

@@ -12,14 +12,13 @@ import numpy as np
 from radhar_cli import __version__
 from radhar_cli.config.identity import as_yaml, resolved
 from radhar_cli.config.motion_files import alone
-from radhar_cli.config.schema import Config
 from radhar_cli.errors import FolderError, UnfinishedError
 from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.new_hdf5 import new_hdf5
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.replacing import UNFINISHED, replacing, write_text
-from radhar_cli.scene import Scene, scene_numbers
+from radhar_cli.scene import scene_numbers
 from radhar_cli.simulation.board_file import write_frames
 from radhar_cli.simulation.simulate import Simulation
 from radhar_cli.simulation.truth import Truth
@@ -58,7 +57,8 @@ def write_scene(simulation: Simulation, path: Path) -> None:
             write_frames(file, simulation.frames, simulation.board, simulation.config)
         _write_truth(file, simulation)
         file.attrs["scene"] = json.dumps(describe(simulation))
-        file.attrs["config"] = json.dumps(resolved(_alone(simulation.scene)))
+        own = alone(simulation.config, simulation.activity.slug)
+        file.attrs["config"] = json.dumps(resolved(own))
         file.attrs["radhar_version"] = __version__
 
 
@@ -179,16 +179,6 @@ def _accuracy(simulation: Simulation) -> dict[str, Any] | None:
     }
 
 
-def _as_config(scene: Scene) -> str:
-    command = f"radhar simulate {SCENE_YAML} -o OUT --index {scene.index}"
-    return f"# One scene, nothing left to draw: {command}\n{as_yaml(_alone(scene))}"
-
-
-def _alone(scene: Scene) -> Config:
-    """The scene's config with the motion file that it uses by its whole path."""
-    return alone(scene.config, scene.activity.slug)
-
-
 def write_all(simulation: Simulation, folder: Path) -> list[Path]:
     """Write scene.h5, scene.json and scene.yaml into a folder; return their paths.
 
@@ -201,7 +191,10 @@ def write_all(simulation: Simulation, folder: Path) -> list[Path]:
         folder.mkdir(parents=True, exist_ok=True)
         write_scene(simulation, folder / SCENE_FILE)
         write_text(folder / SCENE_JSON, json.dumps(describe(simulation), indent=2) + "\n")
-        write_text(folder / SCENE_YAML, _as_config(simulation.scene))
+        own = alone(simulation.config, simulation.activity.slug)
+        command = f"radhar simulate {SCENE_YAML} -o OUT --index {simulation.scene.index}"
+        head = f"# One scene, nothing left to draw: {command}\n"
+        write_text(folder / SCENE_YAML, head + as_yaml(own))
         for drawn in (MAPS, ANIMATION, FRAMES, CLOUD):  # of an earlier scene
             (folder / drawn).unlink(missing_ok=True)
     except OSError as error:

@@ -43,7 +43,7 @@ def test_inspect_counts_classes_splits_and_sizes(photos):
     }
     assert found["sizes"] == [{"size": [40, 30], "images": 6}, {"size": [64, 64], "images": 1}]
     table = " ".join(radhar("inspect", photos).stdout.split())
-    for word in ("7 images of 2 classes", "6 of 40 x 30 px", "big_dogs", "validation"):
+    for word in ("samples: 7", "size: [40, 30] images: 6", "big_dogs", "validation"):
         assert word in table
 
 

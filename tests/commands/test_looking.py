@@ -5,9 +5,7 @@ from pathlib import Path
 from shutil import copytree
 
 from command_line import ok, radhar
-from small import SMALL, small_config
-
-from radhar_cli.config.schema import MAP_NAMES
+from small import small_config
 
 
 def test_simulate_writes_everything(tmp_path):
@@ -95,26 +93,3 @@ def test_an_index_that_no_data_set_has_is_warned_of(tmp_path):
     done = ok(*what, "-o", tmp_path / "a", "--index", 3)
     assert "--index 3: a data set of this config has the samples 0 to 2 of walking" in done.stderr
     assert "--index" not in radhar(*what, "-o", tmp_path / "b", "--index", 2).stderr
-
-
-def test_inspect_folds_no_name_in_a_pipe(tmp_path, monkeypatch):
-    monkeypatch.delenv("COLUMNS", raising=False)
-    name = "a_class_of_our_own_with_quite_a_long_name_that_would_be_folded_at_eighty_columns"
-    text = SMALL.replace(
-        "activities:", f"classes: {{{name}: {{sequence: [grabbing]}}}}\nactivities:"
-    )
-    config = small_config(tmp_path, text.replace("S12]", f"{name}]").replace("paper", "human"))
-    ok("generate", config, "-o", tmp_path / "set", "--set", "output.png=false", "-j", "1")
-    assert name in radhar("inspect", tmp_path / "set").stdout
-
-
-def test_inspect_fits_a_terminal_of_80_columns(tmp_path, monkeypatch):
-    monkeypatch.setenv("COLUMNS", "80")
-    names = ", ".join(MAP_NAMES)
-    config = small_config(tmp_path, SMALL.replace("rtm, stft, fsst_compensated", names))
-    ok("generate", config, "-o", tmp_path / "set", "--set", "output.png=false")
-    lines = radhar("inspect", tmp_path / "set").stdout.splitlines()
-    assert max(map(len, lines)) <= 80
-    assert not any("…" in line for line in lines), "nothing is cut off"
-    (height,) = (line for line in lines if line.split()[:2] == ["height", "m"])
-    assert len(height.split()) >= 7, "numbers and histogram stand in one line"

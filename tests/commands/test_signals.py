@@ -15,7 +15,7 @@ from small import SMALL, small_config
 from typer.testing import CliRunner
 
 from radhar_cli.cli import main, program
-from radhar_cli.commands.training_view import TrainingView
+from radhar_cli.commands.terminal import TrainingView
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
 TERMINATED = 143

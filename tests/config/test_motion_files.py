@@ -9,7 +9,7 @@ from recorded import frames, write_bvh, write_npz
 
 from radhar_cli.activity import activity_named
 from radhar_cli.config import Config, config_from_json, load_config, resolved
-from radhar_cli.config.identity import config_hash, flat
+from radhar_cli.config.identity import config_hash, flat_document
 from radhar_cli.errors import ConfigError, MotionFileError
 from radhar_cli.pipeline.motion_files import file_motion
 from radhar_cli.scene import draw_scene, nominal_scene
@@ -45,7 +45,7 @@ def test_patterns_become_sorted_paths_with_checksums(place: Path) -> None:
         ("S8", "walking"),
         ("S13", "my_class"),
     ]
-    keys = flat(config)
+    keys = flat_document(resolved(config))
     assert len(keys["classes.walking.files.walk/0.bvh"]) == 64
     assert not any("folder" in key for key in keys)
 
@@ -77,7 +77,7 @@ def test_another_file_of_the_same_name_is_another_data_set(place: Path) -> None:
     file_motion(scene.people[0])
     known = config.model_dump()["classes"]["walking"]["files"]
     (place / "walk/1.bvh").write_bytes((place / "walk/2.bvh").read_bytes())
-    assert flat(load_config(place / "x.yaml")) != flat(config)
+    assert config_hash(load_config(place / "x.yaml")) != config_hash(config)
     text = f"classes: {{walking: {{files: {json.dumps(known)}}}}}\n"
     (place / "known.yaml").write_text(text)
     with pytest.raises(ConfigError, match=r"known\.yaml:1: classes\.walking\.files.*walk/1\.bvh"):

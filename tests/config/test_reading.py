@@ -103,18 +103,6 @@ def test_slug_and_label_are_the_same_config(tmp_path: Path) -> None:
     assert read(tmp_path, text.format("walking")) == read(tmp_path, text.format("S8"))
 
 
-def test_a_merge_key_gives_way_to_the_keys_beside_it(tmp_path: Path) -> None:
-    config = read(
-        tmp_path,
-        """
-        motion:
-          thigh_deg: &swing {normal: [30, 5], min: 20}
-          calf_deg: {<<: *swing, min: 25}
-        """,
-    )
-    assert config.motion.calf_deg == Normal(normal=(30, 5), min=25)
-
-
 def test_overrides(tmp_path: Path) -> None:
     config = read(
         tmp_path,

@@ -1,6 +1,5 @@
 """Figures are drawn whole, for scenes that are ordinary and for scenes that are not."""
 
-from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +9,7 @@ from PIL import Image
 from radhar_cli.config import MAP_NAMES, load_config
 from radhar_cli.dataset.contact_sheet import draw_contact_sheet
 from radhar_cli.dataset.reading import open_dataset
-from radhar_cli.figures.maps_panel import TITLES, decibels, draw_maps, of_simulation, places
+from radhar_cli.figures.maps_panel import decibels, draw_maps, of_simulation
 from radhar_cli.figures.stickman import draw_stickman, frame_count
 from radhar_cli.simulation.simulate import simulate
 
@@ -35,24 +34,6 @@ def test_maps_are_drawn(activity, overrides, joint, maps, tmp_path):
     simulation = simulate(load_config(WALL, overrides), activity, joint=joint, maps=maps)
     draw_maps(of_simulation(simulation, overlay=True), tmp_path / "maps.png")
     assert colours(tmp_path / "maps.png") > 200
-
-
-@pytest.mark.parametrize("count", range(1, len(TITLES) + 1))
-def test_any_choice_of_maps_fills_its_page(count):
-    for names in combinations(TITLES, count):
-        cells = [
-            (row, column)
-            for rows, column in places(names).values()
-            for row in range(rows.start, rows.stop)
-        ]
-        assert len(set(cells)) == len(cells), names
-        rows, columns = (1 + max(axis) for axis in zip(*cells, strict=True))
-        assert rows * columns - len(cells) <= 1, names
-    if count == len(TITLES):
-        assert [places(names)[f"fsst_{kind}"] for kind in ("denoised", "compensated")] == [
-            (slice(1, 2), 2),
-            (slice(1, 2), 3),
-        ]
 
 
 def test_stickman_plays_at_true_speed_and_moves(tmp_path):

@@ -21,7 +21,7 @@ from security.bounded import limited
 from security.mutations import mutate_file
 from small import fingerprint, full_disk_after
 
-from radhar_cli.commands.summary_view import print_summary
+from radhar_cli.commands.inspect import print_summary
 from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import load_config
 from radhar_cli.dataset.build import build

@@ -1,0 +1,125 @@
+"""Points over bones, seen from several sides, still or as a film."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from PIL import Image
+
+from radhar_cli.arrays import Float
+from radhar_cli.replacing import replacing
+
+Parents: TypeAlias = tuple[int | None, ...]
+Advance: TypeAlias = Callable[[int], object]
+# {view: (horizontal axis and its sign, vertical axis)} of points (ahead, left, up)
+VIEWS = {"from the radar": (1, -1.0, 2), "from the side": (0, 1.0, 2), "from above": (1, -1.0, 0)}
+LABELS = {0: "ahead (m)", 1: "right (m)", 2: "up (m)"}
+
+
+def bones(joints: Float, parents: Parents) -> Float:
+    """Joints [joint, 3] as the ends of bones [bone, 2, 3]."""
+    pairs = [(parent, one) for one, parent in enumerate(parents) if parent is not None]
+    ends: Float = joints[np.array(pairs, int).reshape(-1, 2)]
+    return ends
+
+
+class Side:
+    """Points, coloured by their speed, over bones, from one side."""
+
+    def __init__(self, axes: Axes, name: str, limits: Float, fastest: float) -> None:
+        """`limits` are the lowest and highest (ahead, left, up) [3, 2], `fastest` in m/s."""
+        self.across, self.sign, self.up = VIEWS[name]
+        (self.bones,) = axes.plot([], [], color="0.6", linewidth=1.5)
+        look: dict[str, Any] = {"s": 14, "edgecolors": "0.3", "linewidths": 0.3, "zorder": 3}
+        look |= {"cmap": "coolwarm", "vmin": -fastest, "vmax": fastest}
+        self.points = axes.scatter([], [], c=[], **look)
+        axes.set(xlim=sorted(self.sign * limits[self.across]), ylim=limits[self.up], aspect="equal")
+        axes.set_title(name, fontsize=9)
+        axes.set_xlabel(LABELS[self.across], fontsize=7)
+        axes.set_ylabel(LABELS[self.up], fontsize=7)
+        axes.tick_params(labelsize=6)
+
+    def show(self, points: Float, speed: Float, ends: Float) -> None:
+        """Points [n, 3], how fast they approach [n], and bones [bone, 2, 3]."""
+        lines = np.insert(ends, 2, np.nan, axis=1).reshape(-1, 3)
+        self.bones.set_data(self.sign * lines[:, self.across], lines[:, self.up])
+        places = points[:, [self.across, self.up]] * (self.sign, 1)
+        self.points.set_offsets(places)
+        self.points.set_array(speed)
+
+
+def colour_bar(figure: Figure, side: Side, **where: Any) -> None:
+    """Say what the colours of points mean."""
+    bar = figure.colorbar(side.points, **where)
+    bar.set_label("approaching (m/s)", fontsize=7)
+    bar.ax.tick_params(labelsize=6)
+
+
+class Film:
+    """Three sides and a clock, in the left `share` of a wide figure."""
+
+    def __init__(self, title: str, limits: Float, fastest: float, share: float = 1.0) -> None:
+        self.figure = Figure(figsize=(13, 4.6), dpi=80)
+        self.figure.suptitle(title, fontsize=9)
+        self.sides = [
+            Side(
+                self.figure.add_axes((share * (0.06 + 0.31 * number), 0.14, share * 0.24, 0.7)),
+                *(name, limits, fastest),
+            )
+            for number, name in enumerate(VIEWS)
+        ]
+        cax = self.figure.add_axes((share * 0.95, 0.15, 0.01, 0.66))
+        colour_bar(self.figure, self.sides[0], cax=cax)
+        self.clock = self.figure.text(share / 2, 0.02, "", ha="center", fontsize=9)
+
+    def show(self, points: Float, speed: Float, ends: Float, clock: str) -> None:
+        """What every side shows of a moment, and the time."""
+        for side in self.sides:
+            side.show(points, speed, ends)
+        self.clock.set_text(clock)
+
+    def write(
+        self,
+        path: Path,
+        show: Callable[[int], None],
+        count: int,
+        frame_ms: int,
+        advance: Advance,
+        others: Sequence[Any] = (),
+    ) -> None:
+        """Write a GIF; what never changes is drawn once.
+
+        Args:
+            path: ends in .gif.
+            show: shows a frame.
+            count: of frames.
+            frame_ms: duration of each.
+            advance: called with 1 after every frame.
+            others: artists that change besides the points, the bones and the clock.
+        """
+        moving = [self.clock, *others]
+        for side in self.sides:
+            moving += [side.bones, side.points]
+        canvas: Any = FigureCanvasAgg(self.figure)
+        for artist in moving:
+            artist.set_animated(True)
+        canvas.draw()
+        background = canvas.copy_from_bbox(self.figure.bbox)
+        frames: list[Image.Image] = []
+        palette: Image.Image | None = None
+        for frame in range(count):
+            canvas.restore_region(background)
+            show(frame)
+            for artist in moving:
+                self.figure.draw_artist(artist)
+            picture = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
+            palette = palette or picture.quantize(256, Image.Quantize.MAXCOVERAGE)
+            frames.append(picture.quantize(palette=palette, dither=Image.Dither.NONE))
+            advance(1)
+        options: dict[str, Any] = {"append_images": frames[1:], "duration": frame_ms, "loop": 0}
+        with replacing(path) as unfinished:
+            frames[0].save(unfinished, format="GIF", save_all=True, **options)

@@ -10,6 +10,7 @@ import pytest
 from radhar_cli.activity import activity_named
 from radhar_cli.config import load_config
 from radhar_cli.config.schema import Config
+from radhar_cli.dataset.scene_fields import fields
 from radhar_cli.errors import ConfigError
 from radhar_cli.pipeline.run import record
 from radhar_cli.pipeline.validity import Flags, check_scene
@@ -120,6 +121,9 @@ def test_rooms_are_drawn() -> None:
     drawn = config(room={"box_m": box, "faces": wet})
     found = {draw_scene(drawn, WALKING, index).config.room.model_dump_json() for index in range(3)}
     assert len(found) == 3
+    names = [field.name for field in fields(drawn)]
+    assert len(set(names)) == len(names)
+    assert {"room_x_from", "room_x_to", "room_height", "floor_eps_r"} <= set(names)
 
 
 @pytest.mark.parametrize(

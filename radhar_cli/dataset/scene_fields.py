@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.config.schema import Config
+from radhar_cli.config.schema import Config, FacesConfig
 from radhar_cli.scene import FALL, Scene, file_keys, keys_of_people, number_at, numbers
 
 _UNITS = {
@@ -32,7 +32,8 @@ class Field(NamedTuple):
 
 
 # Sections whose columns are named after them.
-PREFIXES = {"wall": "wall", "image.cfar": "cfar"}
+PREFIXES = {"wall": "wall", "image.cfar": "cfar", "radar.beam": "beam", "room.box_m": "room"}
+PREFIXES |= {f"room.faces.{name}": name for name in FacesConfig.model_fields}
 # And those of lists, with the number in the list.
 LISTS = {"room.reflectors": "reflector", "receiver.tones": "tone"}
 # The one number of a scene that is measured, not drawn.
@@ -98,9 +99,12 @@ def _field(key: str) -> Field:
     listed, _, number = section.rpartition(".")
     if listed in LISTS:
         stem = f"{LISTS[listed]}_{number}_{stem}"
+    ends = "xyz" if section != "room.box_m" else ("from", "to")
+    if section == "room.box_m":
+        unit = "m"
     parts = [
         *([PREFIXES[section]] if section in PREFIXES else []),
         stem,
-        *(["xyz"[int(axis)]] if axis else []),
+        *([ends[int(axis)]] if axis else []),
     ]
     return Field(key, "_".join(parts), unit, factor)

@@ -116,12 +116,12 @@ def adapt_to(
     if run.resolve() == folder.resolve():
         raise run_folder.RunError(f"{folder}: is the run itself; -o should name another folder")
     history = run_folder.read_history(run)
+    if metadata.settings.target == "labels":
+        raise ConfigError(f"{run}: finds several labels at a time; should be a run of classes")
     if not epochs and not any(isinstance(layer, _BatchNorm) for layer in model.modules()):
         raise ConfigError(
             f"epochs = 0: should be at least 1 for {metadata.model}, which has no batch norm"
         )
-    if metadata.settings.target == "labels":
-        raise ConfigError(f"{run}: finds several labels at a time; should be a run of classes")
     if rows.size < MIN_IMAGES:
         raise ConfigError(
             f"{images.where}: has {rows.size} images; should have at least {MIN_IMAGES}"

@@ -183,6 +183,7 @@ def test_weights_of_the_last_steps_are_averaged(data, tmp_path, monkeypatch):
 def test_statistics_of_averaged_weights_are_those_of_stored_images(data, tmp_path):
     """Not of the augmented ones, nor of other weights: what eval shows the network is clean."""
     changes = {"augment": {"noise": 1.0, "contrast": 0.9}, "input": "gray", "batch_size": 12}
+    changes |= {"model": "smallnet_bn"}
     trained(data, tmp_path / "run", average_last=0.5, **changes)
     metadata, model = run.load_best(tmp_path / "run")
     images = open_images(data, None, "gray")
@@ -278,7 +279,7 @@ def test_clipping_limits_the_gradient(data, tmp_path):
     assert moved[1] == pytest.approx(1e-3 * 0.01, rel=0.05)
 
 
-def test_weight_decay_spares_biases_and_batch_norms(data, tmp_path):
+def test_weight_decay_spares_biases_and_norms(data, tmp_path):
     work = prepared(data, tmp_path / "run", weight_decay=0.5)
     for name in ("adam", "adamw", "sgd"):
         optimiser = optimiser_for(settings(weight_decay=0.5, optimiser=name), work.model)
@@ -290,7 +291,7 @@ def test_weight_decay_spares_biases_and_batch_norms(data, tmp_path):
         }
         for layer in work.model.modules():
             for key, parameter in layer.named_parameters(recurse=False):
-                free = key == "bias" or isinstance(layer, nn.BatchNorm2d)
+                free = key == "bias" or isinstance(layer, nn.GroupNorm)
                 assert id(parameter) in (spared if free else decayed), (layer, key)
         assert len(decayed | spared) == len(list(work.model.parameters()))
     assert isinstance(optimiser_for(settings(), work.model), torch.optim.Adam)

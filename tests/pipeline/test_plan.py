@@ -124,7 +124,7 @@ def test_what_runs(maps, more, names):
 def test_only_a_wall_is_crossed(monkeypatch):
     crossed: list[str] = []
     for module, name in (
-        (motion_paths, "transmission"),
+        (motion_paths, "legs_through"),
         (motion_paths, "wall_delay"),
         (products, "wall_of"),
     ):
@@ -138,7 +138,7 @@ def test_only_a_wall_is_crossed(monkeypatch):
         monkeypatch.setattr(module, name, noted)
     for wall, expected in (
         ({}, set()),
-        (WALL, {"transmission", "wall_delay", "wall_of"}),
+        (WALL, {"legs_through", "wall_delay", "wall_of"}),
     ):
         crossed.clear()
         config = config_of("stft_compensated rtm", wall)

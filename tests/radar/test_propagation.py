@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from radhar_cli.radar.propagation import Antennas, amplitude, behind_mirror, bistatic_delay, leg
+from radhar_cli.radar.propagation import amplitude, bistatic_delay, leg
 
 # A few products and one root in doubles.
 ROUNDING = 1e-14
@@ -60,18 +60,3 @@ def test_every_scatterer_keeps_its_own_rcs_over_time() -> None:
     assert a.shape == (2, 3)
     np.testing.assert_allclose(a[1], 2 * a[0], rtol=ROUNDING)
     np.testing.assert_allclose(a[0] * r[0] ** 2, a[0, 0], rtol=ROUNDING)
-
-
-def test_a_mirror_shows_the_antennas_behind_it() -> None:
-    """As far from a scatterer as its mirror image is from the antennas, and reflected twice."""
-    antennas = Antennas((0.0, -0.2, 1.2), (0.1, 0.2, 1.0), gain=4.0, isolation_db=30.0)
-    behind = behind_mirror(antennas, 6.0, reflectance=0.25)
-    p = np.array([2.0, 0.7, 1.1])[:, None, None]
-    image = np.array([10.0, 0.7, 1.1])[:, None, None]
-    for seen, real in ((behind.tx, antennas.tx), (behind.rx, antennas.rx)):
-        assert leg(p, seen) == pytest.approx(leg(image, real))
-    there, again = (
-        amplitude(*(leg(p, at) for at in (one.tx, one.rx)), np.ones((1, 1)), one.gain, 0.05)
-        for one in (behind, Antennas(behind.tx, behind.rx, 4.0, 30.0))
-    )
-    assert there == pytest.approx(0.25 * again)

@@ -12,6 +12,7 @@ from radhar_cli.config import load_config
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.scene_fields import fields
 from radhar_cli.errors import ConfigError
+from radhar_cli.pipeline.physics import antennas_of
 from radhar_cli.pipeline.run import record
 from radhar_cli.pipeline.validity import Flags, check_scene
 from radhar_cli.scene import draw_scene, nominal_scene
@@ -145,6 +146,7 @@ def test_rooms_are_drawn() -> None:
             "room: {box_m: {x: [0, 9], y: [-2, 2], height: 1.2}, faces: {left: wood}}",
             r"radar.tx_m.*inside room.box_m",
         ),
+        ("room: {faces: {left: {eps_r: 0.5}}}", r"room.faces.left.eps_r = 0.5: should be 1"),
         ("radar: {beam: {azimuth_deg: 0}}", r"radar.beam.azimuth_deg"),
     ],
 )
@@ -152,6 +154,31 @@ def test_what_does_not_go_together(text: str, words: str, tmp_path: Path) -> Non
     (tmp_path / "wrong.yaml").write_text(text)
     with pytest.raises(ConfigError, match=words):
         load_config(tmp_path / "wrong.yaml")
+
+
+def test_a_beam_is_of_each_antenna() -> None:
+    """Two antennas far apart see a point from different sides."""
+    apart = {"tx_m": [0, -2, 1.5], "rx_m": [0, 2, 1.5]}
+    beam = {"azimuth_deg": 40, "elevation_deg": 40}
+    at = np.array([4.0, 2, 1.5])[:, None, None]
+    field = antennas_of(config(room={}, radar=RADAR | apart | {"beam": beam})).field(at)
+    assert field is not None
+    assert 20 * np.log10(field.item()) == pytest.approx(-12 * (45 / 40) ** 2, abs=1e-9)
+
+
+def test_points_of_side_walls_say_so_too(tmp_path: Path) -> None:
+    (tmp_path / "board.cfg").write_text(CFG)
+    (tmp_path / "room.yaml").write_text(
+        "radar: {device: IWR1443BOOST, cfg: board.cfg, position_m: [0.1, 0, 1]}\n"
+        "activities: [punching]\nmotion: {range_m: 1.6}\nduration_s: 0.6\nmaps: [points]\n"
+        "body: {scatterers: surfaces}\ncloud: {chain: board}\nsamples_per_class: 1\n"
+        "room: {box_m: {x: [0, 4], y: [-3, 0.9], height: 3}, faces: {left: metal}}\n"
+    )
+    scene = nominal_scene(load_config(tmp_path / "room.yaml"), activity_named("punching"))
+    found = record(scene, ["cloud", "points_kind"])
+    aside = found["cloud"].points[:, 1] > 0.7  # to the left, where nobody stands
+    assert aside.sum() > 5
+    assert (found["points_kind"][aside] > 0).mean() > 0.3
 
 
 def test_points_of_ghosts_say_so(tmp_path: Path) -> None:

@@ -99,10 +99,16 @@ def _step_problems(c: Config) -> Iterator[Problem]:
         if c.processing.range_sum == "gated":
             right = "should be coherent with radar.waveform: cw, which has no range"
             yield Problem("processing.range_sum", "gated", right)
+        right = "should be false with radar.waveform: cw, which has no chirp"
+        if radar.residual_video_phase:
+            yield Problem("radar.residual_video_phase", True, right)
+        if c.engine.motion_in_chirp:
+            yield Problem("engine.motion_in_chirp", True, right)
     for key, number in radar.of_steps.items():
         value = getattr(radar, key)
         if not (isinstance(value, (int, float)) and abs(value - number) <= 1e-9 * number):
-            right = f"should be left out: radar.waveform: {radar.waveform} gives {number:.17g}"
+            gives = f"gives {number:.17g}" if radar.waveform == "sfcw" else "has none"
+            right = f"should be left out: radar.waveform: {radar.waveform} {gives}"
             yield Problem(f"radar.{key}", value, right)
 
 
@@ -433,8 +439,8 @@ def _room_problems(c: Config) -> Iterator[Problem]:
     box, height = room.box_m, support(room.box_m.height)
     for key, (low, high) in (("x", box.x), ("y", box.y)):
         if support(low)[1] >= support(high)[0]:
-            right = "should be [lower, higher]"
-            yield Problem(f"room.box_m.{key}", [str(low), str(high)], right)
+            yield Problem(f"room.box_m.{key}", [low, high], "should be [lower, higher]")
+            return
     within = [(support(low)[1], support(high)[0]) for low, high in (box.x, box.y)]
     within.append((0.0, height[0]))
     for name in ("tx_m", "rx_m") if radar.cfg is None else ("position_m",):

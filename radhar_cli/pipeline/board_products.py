@@ -257,17 +257,19 @@ def owners_of(cloud: Cloud, skeletons: Skeletons, board: Board, scene: Scene) ->
 
 
 def _apparent(skeletons: Skeletons, board: Board, legs: tuple[Way, Way]) -> Float:
-    """Joints as skeletons have them, where echoes by way of faces seem to come from.
+    """Joints as skeletons have them, about where echoes by way of faces seem to come from.
 
-    The range is half of both legs, the direction that between those in which they leave and arrive.
+    The range is half of both legs. TI's arrays have their receivers in a row and a raised
+    transmitter: the azimuth is about that of the receiver's leg, the elevation the transmitter's.
     """
     here, axes = np.array(board.position), np.array(board.aim.axes)
     p = (skeletons.positions @ axes + here).T
     images = [way.image(p).T - here for way in legs]
     far = [np.linalg.norm(one, axis=-1, keepdims=True) for one in images]
-    between = images[0] / far[0] + images[1] / far[1]
-    length = np.maximum(np.linalg.norm(between, axis=-1, keepdims=True), 1e-9)
-    seen: Float = (0.5 * (far[0] + far[1]) * between / length) @ axes.T
+    tx, rx = (one / length @ axes.T for one, length in zip(images, far, strict=True))
+    left, up = rx[..., 1], tx[..., 2]
+    ahead = np.sqrt(np.maximum(1 - left**2 - up**2, 0))
+    seen: Float = 0.5 * (far[0] + far[1]) * np.stack([ahead, left, up], axis=-1)
     return seen
 
 

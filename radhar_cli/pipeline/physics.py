@@ -159,7 +159,7 @@ def beam_of(config: Config) -> Aim | None:
     half = sqrt(log(2) * 20 / (6 * log(10))) / 2  # -3 dB there, and not a half
     widths = half * beam.azimuth_deg, half * beam.elevation_deg
     axes = boresight_axes(radians(beam.pan_deg), radians(beam.tilt_deg))
-    return Aim((x, y, z), axes, widths, 10 ** (-beam.most_db / 10))
+    return Aim((x, y, z), axes, widths, 10 ** (-beam.most_db / 10), of_each=True)
 
 
 def ways_of(config: Config) -> list[tuple[Way, Way]]:

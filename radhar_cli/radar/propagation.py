@@ -20,12 +20,14 @@ class Aim(NamedTuple):
         axes: [3, 3], rows are ahead, left and up of the radar in the scene.
         half_power_deg: half-power half-widths (azimuth, elevation), one way.
         least: the pattern is nowhere below it.
+        of_each: seen from each antenna, and not from `position`.
     """
 
     position: Point
     axes: tuple[Point, ...]
     half_power_deg: tuple[float, float]
     least: float = 0.0
+    of_each: bool = False
 
     def to_radar(self, p: Float) -> Float:
         """Places p [3, ...] of the scene as the radar has them: ahead, left, up, m."""
@@ -85,10 +87,14 @@ class Antennas:
         """Two-way field [...] that pattern and bounces leave at p [3, ...]; None of all of it."""
         left = None
         if self.aim is not None:
-            (p_tx, _), (p_rx, _) = self.seen(p)
-            left = self.aim.two_way(p_tx)
-            if self.ways[0] != self.ways[1]:
-                left = np.sqrt(left * self.aim.two_way(p_rx))
+            (p_tx, tx), (p_rx, rx) = self.seen(p)
+            if self.aim.of_each:
+                aims = self.aim._replace(position=tx), self.aim._replace(position=rx)
+                left = np.sqrt(aims[0].two_way(p_tx) * aims[1].two_way(p_rx))
+            elif self.ways[0] == self.ways[1]:
+                left = self.aim.two_way(p_tx)
+            else:
+                left = np.sqrt(self.aim.two_way(p_tx) * self.aim.two_way(p_rx))
         for way, (image, antenna) in zip(self.ways, self.seen(p), strict=True):
             if way.faces:
                 bounced = way.field(image, antenna)

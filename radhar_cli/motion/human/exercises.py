@@ -103,16 +103,19 @@ class Exercising(Striking[Exercise]):
         one = self.strikes
         start = self.begin + one.first
         until = min(self.horizon + 1.0, start + one.duration)
-        return repetitions(start, one.period, until, one.paces, one.sizes)
+        return repetitions(start, one.period, max(until, start + 1e-9), one.paces, one.sizes)
 
     @cached_property
     def _blows(self) -> list[Step]:
         steps = []
+        hops, flights = self.strikes.hops, iter(self._flights)
         for start, pace, size in self._repetitions:
-            period = pace * self.strikes.period
+            period, in_air = pace * self.strikes.period, [next(flights) for _ in hops]
             for channel, change, *ways in self.strikes.moves:
-                for sign, (first, last) in zip((1, -1), ways, strict=True):
+                for n, (sign, (first, last)) in enumerate(zip((1, -1), ways, strict=True)):
                     at, length = start + period * first, period * (last - first)
+                    if hops and channel.endswith("_out"):  # feet move in the air alone
+                        at, length = in_air[n]
                     steps.append(Step(channel, sign * size * change, at, length))
         return steps
 
@@ -133,10 +136,16 @@ class Exercising(Striking[Exercise]):
     def _flights(self) -> list[tuple[float, float]]:
         """When the feet leave the floor, and for how long they are in the air, s."""
         one = self.strikes
-        return [
+        off = [
             (start + pace * one.period * hop, one.flight * size**0.5)
             for start, pace, size in self._repetitions
             for hop in one.hops
+        ]
+        after = [at for at, _ in off[1:]] + [inf]
+        # Whoever hops faster hops less high: the feet are on the floor in between.
+        return [
+            (at, max(min(air, later - at - 2.5 * ANKLES_S), 0.01))
+            for (at, air), later in zip(off, after, strict=False)
         ]
 
     @cached_property
@@ -275,7 +284,7 @@ EXERCISES = {
     "jumping_jacks": Exercise(
         "jumping",
         (
-            *both("out", 0.15, (0.085, 0.245), (0.585, 0.745)),
+            *both("out", 0.15, (0.08, 0.25), (0.58, 0.75)),  # while in the air
             *both("sideways", radians(150), (0.0, 0.4), (0.5, 0.9)),
         ),
         1.3,

@@ -113,6 +113,24 @@ def test_left_is_right_in_a_mirror(name: str) -> None:
     np.testing.assert_allclose(right, left[:, swapped], atol=1e-9)
 
 
+@pytest.mark.parametrize(("period", "size"), [(0.6, 1.1), (1.8, 0.5)])
+@pytest.mark.parametrize("name", ["jumping", "jumping_jacks"])
+def test_feet_do_not_slide_however_fast_people_jump(name: str, period: float, size: float) -> None:
+    usual = EXERCISES[name].period
+    motion = moving(name, period=period * usual, sizes=(size,) * 40, paces=(0.7, 1.3) * 20)
+    t = np.arange(0, 8, 1e-3)
+    feet = motion.positions(t)[:, FEET]
+    low = feet[2, :, 1:] < Physique(1.75).ankle + 1e-3
+    assert np.abs(np.diff(feet[:2], axis=2) / 1e-3).max(axis=0)[low].max() < 0.05
+
+
+def test_an_exercise_that_begins_after_the_recording_is_done_once() -> None:
+    motion = HumanMotion(
+        Physique(1.7), (EXERCISES["squatting"],), (3.0, 0.0), 0.0, 20.0, 8.0, Idle(Physique(1.7))
+    )
+    assert np.isfinite(motion.positions(np.arange(0, 8, 0.1))).all()
+
+
 def test_sizes_and_paces() -> None:
     t = np.arange(0, 8, 0.01)
     usual, small = (

@@ -20,26 +20,27 @@ def frame_count(simulation: Simulation) -> int:
 
 
 def draw_stickman(simulation: Simulation, path: Path, advance: Advance) -> None:
-    """Write the animation, which follows the body.
+    """Write the animation, which follows a body that is alone and else shows everybody's places.
 
     Args:
         path: ends in .gif.
         advance: called with 1 after every frame.
     """
     truth = simulation.truth
-    middle = truth.positions.mean(axis=1) * (1, 1, 0)
-    seen = (truth.positions - middle[:, None]).reshape(-1, 3)
+    everybody = [(truth, simulation.motion)]
+    everybody += [(one.truth, one.motion) for one in simulation.others]
+    middle = truth.positions.mean(axis=1) * (1, 1, 0) * (len(everybody) == 1)
+    seen = np.concatenate(
+        [(one.positions - middle[:, None]).reshape(-1, 3) for one, _ in everybody]
+    )
+    reach = np.stack([seen.min(axis=0) - 0.1, seen.max(axis=0) + 0.1], axis=1)
+    least = np.array([[-1, 1], [-1, 1], [0, 2]])
+    least[:2] += np.round(reach[:2].mean(axis=1, keepdims=True)).astype(int)
     limits = np.stack(
-        [
-            np.minimum(seen.min(axis=0) - 0.1, (-1, -1, 0)),
-            np.maximum(seen.max(axis=0) + 0.1, (1, 1, 2)),
-        ],
-        axis=1,
+        [np.minimum(reach[:, 0], least[:, 0]), np.maximum(reach[:, 1], least[:, 1])], axis=1
     )
     fastest = max(float(np.abs(truth.radial_velocity).max()), 0.1)
     film = Film(title(simulation), limits, fastest, share=0.7)
-    everybody = [(truth, simulation.motion)]
-    everybody += [(one.truth, one.motion) for one in simulation.others]
     cursor = []
     shown = [name for name in SHOWN_BESIDE if name in simulation.maps] or list(simulation.maps)
     if shown:
@@ -62,7 +63,8 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Advance) -> None:
             truth.positions[pulse] - here,
             -truth.radial_velocity[pulse],
             np.concatenate(lines) - here,
-            f"t = {t:.2f} s, at x = {here[0]:.1f} m, y = {here[1]:.1f} m"
+            f"t = {t:.2f} s"
+            + (f", at x = {here[0]:.1f} m, y = {here[1]:.1f} m" if here.any() else "")
             + ("" if under_way == WHOLE else f"   {under_way}"),
         )
         for line in cursor:

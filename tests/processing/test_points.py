@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from radhar_cli.arrays import Float
@@ -47,6 +47,7 @@ def test_an_approaching_scatterer() -> None:
     assert started[3] == pytest.approx(1.0673, abs=1e-4)
 
 
+@example(r=1.0, az=1.0625, el=0.0, seed=0)  # near: waves are not plane
 @settings(max_examples=40)
 @given(r=st.floats(1, 3), az=st.floats(-60, 60), el=st.floats(-20, 25), seed=st.integers(0, 1000))
 def test_places_of_what_stands_still(r: float, az: float, el: float, seed: int) -> None:
@@ -55,7 +56,7 @@ def test_places_of_what_stands_still(r: float, az: float, el: float, seed: int) 
     best = points(r * u, (0, 0, 0), STANDING, seed=seed)[0]
     distance = np.linalg.norm(best[:3])
     assert distance == pytest.approx(r, abs=0.0146 + 0.02 * r)
-    assert best[1] / distance == pytest.approx(u[1], abs=0.53 / 32 + 1e-3)
+    assert best[1] / distance == pytest.approx(u[1], abs=0.6 / 32 + 1e-3)
     assert best[2] / distance == pytest.approx(u[2], abs=0.005 + 1e-3)
 
 

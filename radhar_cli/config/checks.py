@@ -28,7 +28,7 @@ from radhar_cli.radar.waveform import Waveform
 MAX_PULSES = 2**24
 MAX_PADDING = 64
 MAX_CUBE = 2**27  # samples of all channels
-BOARD_PRODUCTS = (*FRAME_MAPS, *OF_POINTS, *OF_FRAMES, "cube")
+BOARD_PRODUCTS = (*FRAME_MAPS, *OF_POINTS, "points_kind", *OF_FRAMES, "cube")
 MAX_BIN_SAMPLES = 2**27  # of range bins in memory, 16 bytes each
 MIN_CUTOFF = 1e-4  # of PRF/2; below, rounding spoils a filter of order 10 in float64
 
@@ -104,7 +104,7 @@ def _step_problems(c: Config) -> Iterator[Problem]:
             yield Problem("radar.residual_video_phase", True, right)
         if c.engine.motion_in_chirp:
             yield Problem("engine.motion_in_chirp", True, right)
-    for key, number in radar.of_steps.items():
+    for key, number in radar.chirp_keys.items():
         value = getattr(radar, key)
         if not (isinstance(value, (int, float)) and abs(value - number) <= 1e-9 * number):
             gives = f"gives {number:.17g}" if radar.waveform == "sfcw" else "has none"
@@ -422,11 +422,12 @@ def _room_problems(c: Config) -> Iterator[Problem]:
     """Faces, box and antennas that do not go together."""
     room, radar = c.room, c.radar
     if radar.beam is not None and radar.cfg is not None:
-        yield Problem("radar.beam", "a beam", "should be null with radar.cfg: half_power_deg")
+        right = "should be null with radar.cfg, whose pattern is radar.half_power_deg"
+        yield Problem("radar.beam", radar.beam.model_dump(mode="json"), right)
     if room.faces is None:
         return
     if room.back_wall_m is not None:
-        right = "should be null with room.faces: back is one of them"
+        right = "should be null with room.faces, of which back is one"
         yield Problem("room.back_wall_m", room.back_wall_m, right)
     if radar.cfg is not None and c.snr_db is not None:
         right = "should be null with radar.cfg and room.faces: a board's noise is thermal"
@@ -449,7 +450,7 @@ def _room_problems(c: Config) -> Iterator[Problem]:
         before = places[0][1] < support(box.x[0])[0]
         inside = [low < a and b < high for (a, b), (low, high) in zip(places, within, strict=True)]
         if before and all(inside[1:]) and c.wall is None:
-            right = "should be in the room, or have a wall: to see through"
+            right = "should be inside room.box_m, or have a wall: to see through"
             yield Problem(f"radar.{name}", list(antenna), right)
         elif not all(inside[1:] if before else inside):
             right = "should be inside room.box_m, or before its front"

@@ -21,7 +21,7 @@ S = TypeVar("S", bound=Section)
 
 _UNION_TAGS = {
     *("number", "uniform", "normal", "choice", "vary", "same", "per_activity"),
-    *("movements", "recordings", "DielectricConfig"),
+    *("movements", "recordings", "material", "dielectric"),
 }
 Options: TypeAlias = dict[str, str]
 MAX_MISTAKES = 20
@@ -206,10 +206,6 @@ def _found(kind: type[BaseModel], error: ValidationError, document: Any) -> Iter
     for item in error.errors(include_url=False):
         if item["type"] == "across":
             yield from item["ctx"]["problems"]
-            continue
-        # Of a name or a section, the one that is not meant.
-        other = {"literal_error": dict, "model_type": str}.get(item["type"])
-        if other and item["loc"][:2] == ("room", "faces") and isinstance(item["input"], other):
             continue
         names = _document_path(item["loc"], document)
         key = ".".join(str(name) for name in names)

@@ -275,9 +275,9 @@ class RadarConfig(Section):
     """With receiver.noise_figure_db."""
 
     @property
-    def of_steps(self) -> dict[str, float]:
+    def chirp_keys(self) -> dict[str, float]:
         """Keys of the chirp with the same samples as sweeps of sfcw, or as cw; empty of fmcw."""
-        if self.waveform == "cw":
+        if self.waveform == "cw":  # of one sample; its length and band change nothing
             return {"adc_rate_hz": 1e9, "chirp_s": 1e-9, "bandwidth_hz": 1e3}
         if self.waveform == "fmcw" or self.steps is None or self.dwell_s is None:
             return {}
@@ -799,23 +799,31 @@ class BoxConfig(Section):
     """Of the ceiling, m."""
 
 
-_Face = Material | DielectricConfig | None
+def _material_kind(value: Any) -> str:
+    return "dielectric" if isinstance(value, (dict, DielectricConfig)) else "material"
+
+
+_Face = Annotated[
+    Annotated[Material, Tag("material")] | Annotated[DielectricConfig, Tag("dielectric")],
+    Discriminator(_material_kind),
+]
 
 
 class FacesConfig(Section):
     """What the faces of a room are made of: ITU-R P.2040's name, or {eps_r, loss_tangent}."""
 
-    floor: _Face = None
-    """Alone it needs no room.box_m."""
-    ceiling: _Face = None
-    """At the height of room.box_m."""
-    left: _Face = None
+    floor: _Face | None = None
+    """concrete, brick, plasterboard, wood, glass, ceiling_board, chipboard, floorboard, metal, or
+    {eps_r, loss_tangent}; alone it needs no room.box_m."""
+    ceiling: _Face | None = None
+    """As the floor, at the height of room.box_m."""
+    left: _Face | None = None
     """At the larger y."""
-    right: _Face = None
+    right: _Face | None = None
     """At the smaller y."""
-    front: _Face = None
+    front: _Face | None = None
     """At the smaller x."""
-    back: _Face = None
+    back: _Face | None = None
     """At the larger x."""
 
     @property
@@ -1175,7 +1183,7 @@ MAP_NAMES = (
 # Maps of a board, frame by frame: data sets hold them as arrays, and sheets of frames as images.
 FRAME_MAPS = ("range_doppler", "range_azimuth", "range_elevation", "points")
 # What comes with the points, and with any of these maps.
-OF_POINTS = ("points", "points_start", "points_person", "points_kind")  # the last of rooms
+OF_POINTS = ("points", "points_start", "points_person")
 OF_FRAMES = ("skeleton", "skeleton_velocity")
 
 
@@ -1394,7 +1402,8 @@ class Config(Section):
     def stored(self) -> tuple[str, ...]:
         """Products that a data set holds as arrays: those of `output.products` and of boards."""
         frames = [name for name in self.maps if name in FRAME_MAPS]
-        points = OF_POINTS[: 3 + bool(self.room.faces)] if "points" in frames else ()
+        ghosts = ("points_kind",) if self.room.faces is not None else ()
+        points = (*OF_POINTS, *ghosts) if "points" in frames else ()
         people = OF_FRAMES if frames else ()
         return tuple(dict.fromkeys((*frames, *points, *people, *self.output.products)))
 
@@ -1414,7 +1423,7 @@ class Config(Section):
                 changed.setdefault(name, {})[rest] = default.values.get(self.motion.model)
         if self.radar.cfg is not None:
             _fill_from_cfg(self, changed)
-        for key, number in self.radar.of_steps.items():
+        for key, number in self.radar.chirp_keys.items():
             if key not in self.radar.model_fields_set:
                 changed.setdefault("radar", {})[key] = number
         for name, value in changed.pop("", {}).items():

@@ -107,7 +107,7 @@ def _check_machine(batch: Batch) -> None:
         here = ", ".join(f"{library} {version}" for library, version in versions().items())
         raise MachineError(
             f"the worker on {platform.node()} has other versions, {here}; should have those of "
-            "`radhar version` here"
+            "`radhar --version` here"
         )
     if not (batch.folder / WORK / IDENTITY).exists():
         raise MachineError(f"the worker on {platform.node()} does not see {batch.folder}")

@@ -144,10 +144,12 @@ def title(simulation: Simulation) -> str:
     scene, waveform = simulation.scene, simulation.waveform
     snr, figure = scene.config.snr_db, scene.config.receiver.noise_figure_db
     noise = "no noise" if figure is None else f"noise figure {figure:g} dB"
+    cw = scene.config.radar.waveform == "cw"
+    band = " CW" if cw else f" + {waveform.bandwidth / 1e9:g} GHz"
     rooms = scene.config.room.faces is not None
     parts = [
         f"{scene.activity.label} {scene.activity.slug.replace('_', ' ')}",
-        f"{waveform.fc / 1e9:g} GHz + {waveform.bandwidth / 1e9:g} GHz, PRF {waveform.prf:g} Hz",
+        f"{waveform.fc / 1e9:g} GHz{band}, PRF {waveform.prf:g} Hz",
         "through a wall" if simulation.config.wall else "in a room" if rooms else "free space",
         noise if snr is None else f"SNR {snr:g} dB",
         f"seed {scene.config.seed}",

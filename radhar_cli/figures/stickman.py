@@ -29,7 +29,8 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Advance) -> None:
     truth = simulation.truth
     everybody = [(truth, simulation.motion)]
     everybody += [(one.truth, one.motion) for one in simulation.others]
-    middle = truth.positions.mean(axis=1) * (1, 1, 0) * (len(everybody) == 1)
+    alone = len(everybody) == 1
+    middle = truth.positions.mean(axis=1) * (alone, alone, 0)
     seen = np.concatenate(
         [(one.positions - middle[:, None]).reshape(-1, 3) for one, _ in everybody]
     )
@@ -64,7 +65,7 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Advance) -> None:
             -truth.radial_velocity[pulse],
             np.concatenate(lines) - here,
             f"t = {t:.2f} s"
-            + (f", at x = {here[0]:.1f} m, y = {here[1]:.1f} m" if here.any() else "")
+            + (f", at x = {here[0]:.1f} m, y = {here[1]:.1f} m" if alone else "")
             + ("" if under_way == WHOLE else f"   {under_way}"),
         )
         for line in cursor:

@@ -15,7 +15,7 @@ from radhar_cli.echo.direct import Accuracy
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.motion.protocol import Motion, remembered
 from radhar_cli.motion.reflectors import Reflectors
-from radhar_cli.pipeline.bodies import paths_of
+from radhar_cli.pipeline.bodies import sources_of, together
 from radhar_cli.pipeline.motion_paths import point_delay
 from radhar_cli.pipeline.physics import (
     board_of,
@@ -142,7 +142,7 @@ def channels(
     """The paths of every virtual channel; all are of the same motions, evaluated once."""
     once = tuple(remembered(motion) for motion in motions)
     return [
-        paths_of(scene, once, board.antennas(k, r), wall, board.seen_as, room)
+        together(sources_of(scene, once, board.antennas(k, r), wall, board.seen_as, room))
         for k, r in board.pairs
     ]
 

@@ -15,7 +15,7 @@ from radhar_cli.pipeline.segment_paths import Points, SegmentPaths, draw_points,
 from radhar_cli.pipeline.surface_paths import SurfacePaths, draw_surface
 from radhar_cli.radar.person_shadow import HALF_WIDTH_M
 from radhar_cli.radar.propagation import Antennas
-from radhar_cli.radar.room import names_of
+from radhar_cli.radar.room import Way
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene import Person, Scene
@@ -28,21 +28,14 @@ class Whose(NamedTuple):
 
     source: PathSource
     person: int  # 0 is the sample's own, -1 what stands in the room
-    kind: str  # faces of the leg of the transmitter/of the receiver
+    legs: tuple[Way, Way]  # of transmitter and receiver
 
 
-def paths_of(
-    scene: Scene,
-    motions: tuple[Motion, ...],
-    antennas: Antennas,
-    wall: Wall | None,
-    waveform: Waveform,
-    room: Reflectors | None = None,
-    mirrored: bool = True,
-) -> PathSource:
-    """The paths of everything in a scene, as `sources_of` has them."""
-    found = sources_of(scene, motions, antennas, wall, waveform, room, mirrored)
-    return found[0].source if len(found) == 1 else SumOfPaths(tuple(one.source for one in found))
+def together(sources: list[Whose]) -> PathSource:
+    """All their paths."""
+    if len(sources) == 1:
+        return sources[0].source
+    return SumOfPaths(tuple(one.source for one in sources))
 
 
 def sources_of(
@@ -62,7 +55,8 @@ def sources_of(
     sources: list[Whose] = []
     images = [antennas.by_way(*way) for way in ways_of(scene.config)] if mirrored else []
     people = scene.people
-    several = len(people) == len(motions) > 1 and scene.config.body.shadowing
+    own = len(people) == len(motions)  # not so where one body is seen in parts
+    several = own and len(people) > 1 and scene.config.body.shadowing
     if several or images:  # asked for the same times again and again
         motions = tuple(map(remembered, motions))
     shades = [shade_of(*one) for one in zip(people, motions, strict=True)] if several else []
@@ -72,23 +66,23 @@ def sources_of(
         if scene.config.body.scatterers != "points":
             whose = people[min(number, len(people) - 1)]
             make = segment_paths if scene.config.body.scatterers == "segments" else surface_paths
-            given = 0 if len(people) == len(motions) else number  # streams are the person's own
+            given = 0 if own else number  # streams are the person's own
             parts = make(whose, motion, antennas, wall, waveform, given)
             theirs += [parts] if parts else []
             rest = _without_segments(motion)
         if rest is not None:
             theirs.append(MotionPaths(rest, antennas, waveform.fc, wall))
         others = tuple(shade for at, shade in enumerate(shades) if at != number)
-        person = people[number].number if len(people) == len(motions) else number
+        person = people[number].number if own else number
         straight = [ShadowedPaths(one, others, waveform.fc) if others else one for one in theirs]
-        sources += [Whose(one, person, "-/-") for one in straight]
+        sources += [Whose(one, person, antennas.ways) for one in straight]
         sources += [
-            Whose(replace(one, antennas=seen), person, names_of(seen.ways))
+            Whose(replace(one, antennas=seen), person, seen.ways)
             for seen in images
             for one in theirs
         ]
     if room is not None:
-        sources.append(Whose(MotionPaths(room, antennas, waveform.fc, wall), -1, "-/-"))
+        sources.append(Whose(MotionPaths(room, antennas, waveform.fc, wall), -1, antennas.ways))
     return sources
 
 

@@ -14,7 +14,6 @@ import numpy as np
 from radhar_cli.activity import MOVEMENTS
 from radhar_cli.arrays import Float
 from radhar_cli.config.schema import SequenceConfig
-from radhar_cli.motion.human.exercises import Exercise
 from radhar_cli.motion.human.falling import FallBackward, FallForward
 from radhar_cli.motion.human.falling_sideways import FallSideways
 from radhar_cli.motion.human.getting_up import GetUp
@@ -234,13 +233,9 @@ def _repertoire(person: Person, duration: float | None, place: int = 0) -> Reper
         fall=_fall(person, duration),
         get_up=_lasting(duration, GetUp()),
         turn_around=_lasting(duration, AROUND),
-        exercise=Exercise(
-            "any",
-            (),
-            motion.exercise_period,
-            paces=_some(paces),
-            sizes=tuple((motion.exercise_size * np.minimum(sizes, 1.05)).tolist()),
-        ),
+        exercise_period=motion.exercise_period,
+        exercise_paces=_some(paces),
+        exercise_sizes=_some(motion.exercise_size * np.minimum(sizes, 1.05)),
     )
 
 

@@ -33,7 +33,7 @@ from radhar_cli.radar.board import DEVICES, Array, Board
 from radhar_cli.radar.detection import Detection
 from radhar_cli.radar.materials import permittivity
 from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes
-from radhar_cli.radar.room import FACES, Face, Way, names_of, ways
+from radhar_cli.radar.room import FACES, Box, Face, Way, names_of, ways
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.randomness import NOISE, stream
@@ -162,6 +162,14 @@ def beam_of(config: Config) -> Aim | None:
     return Aim((x, y, z), axes, widths, 10 ** (-beam.most_db / 10), of_each=True)
 
 
+def box_of(config: Config) -> Box | None:
+    """Where the faces of a scene's room are; None without faces, or of a floor alone."""
+    if config.room.faces is None or config.room.box_m is None:
+        return None
+    box = Numbers(config.room.box_m)
+    return Box(box.x, box.y, box.height)
+
+
 def ways_of(config: Config) -> list[tuple[Way, Way]]:
     """Ways of transmitter and receiver by faces of the room, or by the wall behind people."""
     room = Numbers(config.room)
@@ -171,11 +179,8 @@ def ways_of(config: Config) -> list[tuple[Way, Way]]:
         return [(way, way)]
     if config.room.faces is None:
         return []
-    at = {"floor": 0.0}
-    if config.room.box_m is not None:
-        box = Numbers(config.room.box_m)
-        at |= {"front": box.x[0], "back": box.x[1], "right": box.y[0], "left": box.y[1]}
-        at["ceiling"] = box.height
+    box = box_of(config)
+    at = {"floor": 0.0} if box is None else box.at
     normal = FACES["floor" if config.radar.polarisation == "vertical" else "left"]
     faces, radar = [], Numbers(config.radar)
     for name, material in config.room.faces.given.items():

@@ -30,7 +30,7 @@ from radhar_cli.echo.paths import PathSource
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.pipeline.board_products import board_products
-from radhar_cli.pipeline.bodies import paths_of
+from radhar_cli.pipeline.bodies import sources_of, together
 from radhar_cli.pipeline.motion_paths import point_delay
 from radhar_cli.pipeline.physics import (
     antennas_of,
@@ -136,7 +136,7 @@ def _physics(c: Config) -> Iterator[Product]:
         w: Waveform,
     ) -> PathSource:
         through = None if c.snr_reference == "free_space" else wall
-        return paths_of(scene, motions[:1], antennas, through, w, mirrored=False)
+        return together(sources_of(scene, motions[:1], antennas, through, w, mirrored=False))
 
     def torso_track(
         motions: tuple[Motion, ...], antennas: Antennas, wall: Wall | None, w: Waveform
@@ -159,7 +159,7 @@ def _physics(c: Config) -> Iterator[Product]:
     if room:
         yield Product("room", ("scene",), reflectors_of, "what stands in the room")
     parts = f"delay and amplitude of every {c.body.scatterers.removesuffix('s')}, {walled}"
-    yield Product("paths", ("scene", *seen, *room), paths_of, parts)
+    yield Product("paths", ("scene", *seen, *room), lambda *g: together(sources_of(*g)), parts)
     if _snr_of_other_paths(c):
         yield Product("snr_paths", ("scene", *seen), of_people, "paths of people, for the SNR")
     yield Product("torso_track", seen, torso_track, "delay of the torso at every pulse")

@@ -21,6 +21,7 @@ from radhar_cli.pipeline.motion_paths import point_delay, through_wall_delay
 from radhar_cli.pipeline.physics import (
     antennas_of,
     body_of,
+    box_of,
     motion_of,
     reflectors_of,
     wall_of,
@@ -29,6 +30,7 @@ from radhar_cli.pipeline.physics import (
 from radhar_cli.pipeline.segment_paths import Body
 from radhar_cli.pipeline.unused_keys import unused_keys
 from radhar_cli.radar.propagation import Antennas, bistatic_delay, leg
+from radhar_cli.radar.room import Box
 from radhar_cli.radar.transmission import transmission
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
@@ -147,20 +149,21 @@ def _checked(scene: Scene, person: Person) -> SceneCheck:
 def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
     antennas = antennas_of(scene.config)
     wall, waveform = wall_of(scene.config), waveform_of(scene.config)
+    box = box_of(scene.config)
     rate = max(GRID_HZ, GRID_PER_CYCLE * motion.highest_frequency)
     step = max(1, int(waveform.prf / rate))
     pulses = np.append(np.arange(0, waveform.n_pulses - 1, step), waveform.n_pulses - 1)
     body = body_of(person, motion) if scene.config.body.scatterers == "segments" else None
     blocks = [  # consecutive ones share a pulse, so that no step between two is missed
-        _check_block(motion, body, antennas, wall, waveform, pulses[first : first + GRID_CHUNK + 1])
+        _check_block(
+            motion, body, antennas, wall, box, waveform, pulses[first : first + GRID_CHUNK + 1]
+        )
         for first in range(0, pulses.size - 1, GRID_CHUNK)
     ]
     runs_out = isinstance(motion, FileMotion) and motion.runs_out
     flags = Flags.RUNS_OUT if runs_out else Flags(0)
     for block in blocks:
         flags |= block.flags
-    if _leaves_room(scene.config, motion, waveform.times(pulses.astype(float))):
-        flags |= Flags.WALL
     processing = scene.config.processing
     if processing.range_sum == "gated" and isinstance(processing.gate_m, tuple):
         low, high = processing.gate_m
@@ -171,21 +174,12 @@ def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
     return SceneCheck(min(block.closest for block in blocks), flags)
 
 
-def _leaves_room(config: Config, motion: Motion, t: Float) -> bool:
-    """Whether a scatterer is beyond a face of the room at any of times t [M] (s)."""
-    if config.room.faces is None or config.room.box_m is None:
-        return False
-    box = Numbers(config.room.box_m)
-    (x, y, z), top = motion.positions(t), box.height
-    outside = (x < box.x[0]) | (x > box.x[1]) | (y < box.y[0]) | (y > box.y[1]) | (z > top)
-    return bool(outside.any())
-
-
 def _check_block(
     motion: Motion,
     body: Body | None,
     antennas: Antennas,
     wall: Wall | None,
+    box: Box | None,
     waveform: Waveform,
     pulses: Index,
 ) -> SceneCheck:
@@ -199,6 +193,8 @@ def _check_block(
         tau += through_wall_delay(p, antennas, wall)
         if wall.contains(p).any():
             flags |= Flags.WALL
+    if box is not None and not box.holds(p):
+        flags |= Flags.WALL
     if tau.max() * SPEED_OF_LIGHT / 2 >= waveform.half_band_range:
         flags |= Flags.HALF_BAND
     doppler = np.abs(np.diff(tau, axis=1)).max(axis=0, initial=0.0) / np.maximum(np.diff(t), 1e-300)

@@ -85,9 +85,9 @@ class Antennas:
 
     def field(self, p: Float) -> Float | None:
         """Two-way field [...] that pattern and bounces leave at p [3, ...]; None of all of it."""
-        left = None
+        left, seen = None, tuple(self.seen(p))
         if self.aim is not None:
-            (p_tx, tx), (p_rx, rx) = self.seen(p)
+            (p_tx, tx), (p_rx, rx) = seen
             if self.aim.of_each:
                 aims = self.aim._replace(position=tx), self.aim._replace(position=rx)
                 left = np.sqrt(aims[0].two_way(p_tx) * aims[1].two_way(p_rx))
@@ -95,7 +95,7 @@ class Antennas:
                 left = self.aim.two_way(p_tx)
             else:
                 left = np.sqrt(self.aim.two_way(p_tx) * self.aim.two_way(p_rx))
-        for way, (image, antenna) in zip(self.ways, self.seen(p), strict=True):
+        for way, (image, antenna) in zip(self.ways, seen, strict=True):
             if way.faces:
                 bounced = way.field(image, antenna)
                 left = bounced if left is None else left * bounced

@@ -20,6 +20,27 @@ X, Y, Z = range(3)
 FACES = {"front": X, "back": X, "right": Y, "left": Y, "floor": Z, "ceiling": Z}
 
 
+class Box(NamedTuple):
+    """Where the faces of a room are, m; the floor is at 0."""
+
+    x: tuple[float, float]
+    y: tuple[float, float]
+    height: float
+
+    @property
+    def at(self) -> dict[str, float]:
+        """Where each face cuts the axis across which it lies, m."""
+        (front, back), (right, left) = self.x, self.y
+        ends = {"front": front, "back": back, "right": right, "left": left}
+        return {**ends, "floor": 0.0, "ceiling": self.height}
+
+    def holds(self, p: Float) -> bool:
+        """Whether all positions p [3, ...] (m) are between the walls and below the ceiling."""
+        x, y, z = p
+        beyond = (x < self.x[0]) | (x > self.x[1]) | (y < self.y[0]) | (y > self.y[1])
+        return not (beyond | (z > self.height)).any()
+
+
 class Face(NamedTuple):
     """A face of the room, endless, across an axis."""
 

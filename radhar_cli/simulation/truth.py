@@ -1,5 +1,6 @@
 """What really moved: positions, radial velocities, and which movement is under way."""
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -14,6 +15,7 @@ from radhar_cli.motion.protocol import Motion
 from radhar_cli.pipeline.bodies import Whose
 from radhar_cli.pipeline.motion_paths import point_delay
 from radhar_cli.radar.propagation import Antennas
+from radhar_cli.radar.room import Way, names_of
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
@@ -67,18 +69,22 @@ def path_truth(sources: list[Whose], t: Float) -> PathTruth:
     """Evaluate all paths at times t [M] (s)."""
     paths = [one.source(t) for one in sources]
     counts = [len(one.delay) for one in paths]
-    first = dict[tuple[int, str], int]()  # scatterer of a person and kind
+    first = Counter[tuple[int, tuple[Way, Way]]]()  # scatterer of a person by these legs
     scatterers = []
     for one, count in zip(sources, counts, strict=True):
-        begin = first.get(one[1:], 0)
+        begin = first[one[1:]]
         scatterers.append(np.arange(begin, begin + count))
-        first[one[1:]] = begin + count
-    bounces = [sum(leg != "-" and leg.count("+") + 1 for leg in s.kind.split("/")) for s in sources]
+        first[one[1:]] += count
+    bounces = [sum(len(way.faces) for way in one.legs) for one in sources]
     return PathTruth(
         t,
         np.concatenate([one.delay for one in paths]),
         np.concatenate([one.amplitude for one in paths]),
-        [one.kind for one, count in zip(sources, counts, strict=True) for _ in range(count)],
+        [
+            names_of(one.legs)
+            for one, count in zip(sources, counts, strict=True)
+            for _ in range(count)
+        ],
         np.repeat([one.person for one in sources], counts),
         np.concatenate(scatterers),
         np.repeat(bounces, counts),

@@ -32,23 +32,24 @@ ANKLES_S = 0.1  # for which the ankles stretch before the feet leave the floor, 
 CROUCH_S = 0.35  # to the first crouch, and from the last, s
 SIDE = ("right", "left")
 # Of each side: the foot ahead, outwards and up of where it rests, over the stature; the straight
-# leg raised outwards, the arm ahead and outwards, the elbow bent, rad.
-LIMBS = ("ahead", "out", "up", "leg", "forwards", "sideways", "elbow")
+# leg raised outwards, the arm ahead and outwards, rad.
+LIMBS = ("ahead", "out", "up", "leg", "forwards", "sideways")
 # The hip ahead, to the left and down, over the stature; the trunk ahead and to the left, rad.
 BODY = ("hip_ahead", "hip_left", "drop", "pitch", "lean")
 
-
 REST = (0.0, 0.0, 0.0)
 Knot = tuple[float, tuple[float, float, float]]  # time, and a value with two derivatives
+Span = tuple[float, float]  # from, to; shares of the period
+IN_THE_AIR = None  # of the first hop, and of the second
 
 
 class Move(NamedTuple):
-    """A channel changes within a repetition, and changes back; times are shares of the period."""
+    """A channel changes within a repetition, and changes back."""
 
     channel: str
     change: float
-    out: tuple[float, float]  # from, to
-    back: tuple[float, float]
+    out: Span | None
+    back: Span | None
 
 
 def both(channel: str, *rest: object) -> tuple[Move, ...]:
@@ -111,11 +112,12 @@ class Exercising(Striking[Exercise]):
         hops, flights = self.strikes.hops, iter(self._flights)
         for start, pace, size in self._repetitions:
             period, in_air = pace * self.strikes.period, [next(flights) for _ in hops]
-            for channel, change, *ways in self.strikes.moves:
-                for n, (sign, (first, last)) in enumerate(zip((1, -1), ways, strict=True)):
-                    at, length = start + period * first, period * (last - first)
-                    if hops and channel.endswith("_out"):  # feet move in the air alone
-                        at, length = in_air[n]
+            for channel, change, *spans in self.strikes.moves:
+                for hop, (sign, span) in enumerate(zip((1, -1), spans, strict=True)):
+                    if span is IN_THE_AIR:
+                        at, length = in_air[hop]
+                    else:
+                        at, length = start + period * span[0], period * (span[1] - span[0])
                     steps.append(Step(channel, sign * size * change, at, length))
         return steps
 
@@ -203,7 +205,7 @@ class Exercising(Striking[Exercise]):
         upper, fore = raised(
             trunk,
             limbs["forwards"] + idle.shoulders,
-            body.elbow + limbs["elbow"] + idle.elbows,
+            body.elbow + idle.elbows,
             limbs["sideways"],
         )
         return Pose(hip, trunk, joints, knees, ankles, upper, fore, idle.breath)
@@ -284,7 +286,7 @@ EXERCISES = {
     "jumping_jacks": Exercise(
         "jumping",
         (
-            *both("out", 0.15, (0.08, 0.25), (0.58, 0.75)),  # while in the air
+            *both("out", 0.15, IN_THE_AIR, IN_THE_AIR),
             *both("sideways", radians(150), (0.0, 0.4), (0.5, 0.9)),
         ),
         1.3,

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from math import inf, pi
 
-from radhar_cli.motion.human.exercises import EXERCISES, Exercise
+from radhar_cli.motion.human.exercises import EXERCISES
 from radhar_cli.motion.human.falling import FallBackward, FallForward
 from radhar_cli.motion.human.falling_sideways import FallSideways
 from radhar_cli.motion.human.getting_up import GetUp
@@ -19,7 +19,6 @@ from radhar_cli.motion.human.stepping import StepTo
 from radhar_cli.motion.human.turning import Turn
 from radhar_cli.motion.human.walking import Gait, Walk
 
-ANY = Exercise("any", (), 1.0)
 AROUND = StepTo(1.8, Place(turn=pi), steps=5, name="turning around")
 
 
@@ -40,7 +39,10 @@ class Repertoire:
     fall: FallForward | FallBackward | FallSideways = field(default_factory=FallForward)
     get_up: GetUp = field(default_factory=GetUp)
     turn_around: StepTo = AROUND
-    exercise: Exercise = ANY  # the usual period times its own, its paces and sizes
+    # of every exercise: its period over the usual one; of each repetition, over the usual ones
+    exercise_period: float = 1.0
+    exercise_paces: tuple[float, ...] = ()
+    exercise_sizes: tuple[float, ...] = ()
 
     def activity(self, number: int) -> tuple[Movement, ...]:
         """The movements of S`number`: what repeats does so from the first instant on."""
@@ -90,10 +92,13 @@ class Repertoire:
             "turning_around": self.turn_around,
         }
         if name in EXERCISES:
-            one, every = EXERCISES[name], self.exercise
-            period = every.period * one.period
+            one = EXERCISES[name]
             return replace(
-                one, duration=duration, period=period, paces=every.paces, sizes=every.sizes
+                one,
+                duration=duration,
+                period=self.exercise_period * one.period,
+                paces=self.exercise_paces,
+                sizes=self.exercise_sizes,
             )
         if name not in movements:
             known = ", ".join((*movements, *EXERCISES))

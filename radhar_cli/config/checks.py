@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from itertools import pairwise
+from math import ceil
 from typing import NamedTuple
 
 from radhar_cli.activity import ACTIVITIES, DEFAULT, Activity, activity_named, own_activities
@@ -11,18 +12,22 @@ from radhar_cli.config.number import MAX_NUMBER, nominal, support
 from radhar_cli.config.paths import at
 from radhar_cli.config.schema import (
     FRAME_MAPS,
+    MAP_NAMES,
     MIN_WINDOW,
     OF_FRAMES,
     OF_POINTS,
     Config,
     PerActivity,
     SequenceConfig,
+    WallConfig,
     class_activities,
     elevations,
     for_activity,
+    possible_maps,
 )
 from radhar_cli.light import SPEED_OF_LIGHT
 from radhar_cli.radar.board import DEVICES
+from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.waveform import Waveform
 
 MAX_PULSES = 2**24
@@ -53,6 +58,7 @@ def problems(c: Config) -> Iterator[Problem]:
         if frames:
             yield Problem("maps", frames, "should have the board that makes them: radar.cfg")
         yield from _step_problems(c)
+        yield from _impulse_problems(c)
         yield from _waveform_problems(c)
         yield from _signal_problems(c)
         yield from _clutter_problems(c)
@@ -110,6 +116,46 @@ def _step_problems(c: Config) -> Iterator[Problem]:
             gives = f"gives {number:.17g}" if radar.waveform == "sfcw" else "has none"
             right = f"should be left out: radar.waveform: {radar.waveform} {gives}"
             yield Problem(f"radar.{key}", value, right)
+
+
+def _impulse_problems(c: Config) -> Iterator[Problem]:
+    """What goes with an impulse radar alone, and what does not go with it."""
+    radar, processing, of = c.radar, c.processing, "with radar.waveform: impulse"
+    if radar.waveform != "impulse":
+        if radar.profile_m is not None:
+            right = f"should be null with radar.waveform: {radar.waveform}"
+            yield Problem("radar.profile_m", list(radar.profile_m), right)
+        if c.image.kind == "signed":
+            right = "should be decibel or cfar without radar.waveform: impulse"
+            yield Problem("image.kind", "signed", right)
+        return
+    if radar.profile_m is None or not 0 <= radar.profile_m[0] < radar.profile_m[1]:
+        value = radar.profile_m and list(radar.profile_m)
+        yield Problem("radar.profile_m", value, f"should be [from, to], 0 <= from < to, {of}")
+        return
+    fc, band = support(radar.carrier_hz)[1], support(radar.bandwidth_hz)[1]
+    step = (radar.profile_m[1] - radar.profile_m[0]) / radar.profile_samples
+    finest = SPEED_OF_LIGHT / (4 * (fc + 1.5 * band))
+    if step > finest:
+        fewest = ceil((radar.profile_m[1] - radar.profile_m[0]) / finest)
+        right = f"should be {fewest} or more: steps of {step:.3g} m are coarser than {finest:.3g} m"
+        yield Problem("radar.profile_samples", radar.profile_samples, right)
+    if c.engine.kind == "cube":
+        yield Problem("engine.kind", "cube", f"should be direct {of}, which has no beat")
+    if wrong := [name for name in c.maps if name in MAP_NAMES and name not in possible_maps(c)]:
+        yield Problem("maps", wrong, f"should be stft and rtm {of}, whose samples are real")
+    if "stft" in c.maps and processing.range_sum != "gated":
+        right = f"should be gated {of}, whose samples have no mean over range"
+        yield Problem("processing.range_sum", processing.range_sum, right)
+    if c.image.kind == "signed" and c.maps != ("rtm",):
+        yield Problem("maps", list(c.maps), "should be [rtm] with image.kind: signed")
+    if c.output.slow_time:
+        yield Problem("output.slow_time", True, f"should be false {of}: there is no sum over range")
+    if radar.residual_video_phase:
+        yield Problem("radar.residual_video_phase", True, f"should be false {of}")
+    for key in ("receiver.noise_corner_hz", "receiver.tones"):
+        if at(c, key) not in (0, ()):
+            yield Problem(key, at(c, key), f"should be left out {of}, whose samples are real")
 
 
 def _people_problems(c: Config) -> Iterator[Problem]:
@@ -248,7 +294,10 @@ def _waveform(c: Config, *largest: str) -> Waveform:
     )
     processing = c.processing
     length, centred = processing.range_fft_length, processing.range_reference == "centre"
-    return Waveform(fc, bandwidth, chirp, rate, prf, duration, length, centred)
+    given = fc, bandwidth, chirp, rate, prf, duration, length, centred
+    if c.radar.waveform == "impulse" and c.radar.profile_m is not None:
+        return Impulse(*given, profile=c.radar.profile_m, samples=c.radar.profile_samples)
+    return Waveform(*given)
 
 
 def _waveform_problems(c: Config) -> Iterator[Problem]:
@@ -381,11 +430,14 @@ def _too_many(c: Config, key: str, value: object, what: str) -> Iterator[Problem
 def _wall_problems(c: Config) -> Iterator[Problem]:
     if c.wall is None:
         return
+    yield from _layer_problems(c, c.wall)
+    depth = sum(support(layer.thickness_m)[1] for layer in c.wall.layers or ())
+    sizes = [depth if size is None else support(size)[1] for size in c.wall.size_m]
     for name in ("tx_m", "rx_m") if c.radar.cfg is None else ("position_m",):
         antenna = getattr(c.radar, name)
         inside = True
-        for place, centre, size in zip(antenna, c.wall.center_m, c.wall.size_m, strict=True):
-            half = support(size)[1] / 2
+        for place, centre, size in zip(antenna, c.wall.center_m, sizes, strict=True):
+            half = size / 2
             low, high = support(centre)[0] - half, support(centre)[1] + half
             inside &= support(place)[0] <= high and support(place)[1] >= low
         if inside:
@@ -395,6 +447,36 @@ def _wall_problems(c: Config) -> Iterator[Problem]:
                 "should be outside the wall, whose faces count as inside "
                 f"(wall.center_m = {list(c.wall.center_m)}, wall.size_m = {list(c.wall.size_m)})",
             )
+
+
+def _layer_problems(c: Config, wall: WallConfig) -> Iterator[Problem]:
+    """Layers and exact echoes that do not go with the rest."""
+    if (wall.layers is None) != (wall.size_m[0] is not None):
+        right = "should be [null, y, z] with wall.layers" if wall.layers else "should be numbers"
+        yield Problem("wall.size_m", list(wall.size_m), right)
+    for number, layer in enumerate(wall.layers or ()):
+        given = (layer.material is not None) + (layer.eps_r is not None)
+        if given != 1 or (layer.material and layer.loss_tangent):
+            right = "should have a material, or eps_r and loss_tangent"
+            yield Problem(f"wall.layers.{number}", layer.model_dump(mode="json"), right)
+    default = WallConfig()
+    for key in ("eps_r", "loss_tangent") if wall.layers else ():
+        if getattr(wall, key) != getattr(default, key):
+            yield Problem(f"wall.{key}", getattr(wall, key), "should be left to wall.layers")
+    if wall.echoes == "none":
+        if wall.layers:
+            yield Problem("wall.echoes", "none", "should be exact with wall.layers")
+        return
+    if wall.rays != "plane":
+        yield Problem("wall.rays", wall.rays, "should be plane with wall.echoes: exact")
+    if wall.fresnel != "normal":
+        right = "should be left out with wall.echoes: exact, which has radar.polarisation"
+        yield Problem("wall.fresnel", wall.fresnel, right)
+    if c.radar.cfg is not None:
+        yield Problem("wall.echoes", "exact", "should be none with radar.cfg")
+    elif c.engine.kind == "direct" and c.radar.waveform != "impulse":
+        right = "should be cube with wall.echoes: exact, which the direct engine does not have"
+        yield Problem("engine.kind", "direct", right)
 
 
 def _back_wall_problems(c: Config) -> Iterator[Problem]:

@@ -241,19 +241,24 @@ class RadarConfig(Section):
     """Only a raw echo shows the leakage."""
     residual_video_phase: Flag = False
     """Keep the term pi K tau^2."""
-    polarisation: Annotated[Literal["vertical", "horizontal"], Needs("room.faces", GIVEN)] = (
-        "vertical"
-    )
-    """Of the antennas' field; horizontal is along y."""
+    polarisation: Literal["vertical", "horizontal"] = "vertical"
+    """Of the antennas' field, for room.faces and wall.echoes; horizontal is along y."""
     beam: BeamConfig | None = None
     """Where both antennas look; null radiates evenly. A board has radar.half_power_deg."""
-    waveform: Literal["fmcw", "sfcw", "cw"] = "fmcw"
-    """sfcw: sweeps of steps, sampled once each; cw: one sample a pulse, at carrier_hz. Without
-    adc_rate_hz and chirp_s; cw without bandwidth_hz."""
+    waveform: Literal["fmcw", "sfcw", "cw", "impulse"] = "fmcw"
+    """sfcw: sweeps of steps, sampled once each; cw: one sample a pulse, at carrier_hz; impulse:
+    Gaussian pulses from carrier_hz to carrier_hz + bandwidth_hz (-10 dB). Without adc_rate_hz and
+    chirp_s; cw without bandwidth_hz."""
     steps: Annotated[int, Field(ge=2, le=2**20, strict=True)] | None = None
     """Of a sweep of sfcw: frequencies carrier_hz + n bandwidth_hz/steps."""
     dwell_s: Annotated[float, Field(gt=0, le=1e3, strict=True)] | None = None
     """On each step of sfcw."""
+    profile_m: tuple[Real, Real] | None = None
+    """[from, to] of the range axis of impulse."""
+    profile_samples: Annotated[
+        int, Field(ge=2, le=2**16, strict=True), Needs("radar.waveform", "impulse")
+    ] = 256
+    """Of that axis."""
     cfg: Annotated[str, Field(min_length=1, max_length=2**16)] | None = None
     """The .cfg of a TI board, which gives the waveform: a path from this file's folder on. A config
     that is written has its text."""
@@ -276,9 +281,11 @@ class RadarConfig(Section):
 
     @property
     def chirp_keys(self) -> dict[str, float]:
-        """Keys of the chirp with the same samples as sweeps of sfcw, or as cw; empty of fmcw."""
+        """Keys of the chirp that another waveform has instead; empty of fmcw."""
         if self.waveform == "cw":  # of one sample; its length and band change nothing
             return {"adc_rate_hz": 1e9, "chirp_s": 1e-9, "bandwidth_hz": 1e3}
+        if self.waveform == "impulse":  # whose middle is that of the band
+            return {"adc_rate_hz": 1e9, "chirp_s": 2e-9}
         if self.waveform == "fmcw" or self.steps is None or self.dwell_s is None:
             return {}
         return {"adc_rate_hz": 1 / self.dwell_s, "chirp_s": self.steps * self.dwell_s}
@@ -718,6 +725,18 @@ def _wrong(what: str) -> PydanticCustomError:
 Size: TypeAlias = Annotated[Positive, within(1e-6, 1e6, "m")]
 
 
+class LayerConfig(Section):
+    """A layer of a wall, of a material or of a permittivity."""
+
+    thickness_m: Size = 0.1
+    material: Material | None = None
+    """Of ITU-R P.2040, whose permittivity depends on frequency; null has eps_r."""
+    eps_r: Annotated[AtLeastOne | None, within(1, 1e6)] = None
+    """Relative permittivity."""
+    loss_tangent: Annotated[NotNegative, within(0, 1e12)] = 0.0
+    """With eps_r."""
+
+
 class WallConfig(Section):
     """Centre, size along x, y, z, relative permittivity and loss tangent of the wall.
 
@@ -726,8 +745,8 @@ class WallConfig(Section):
 
     center_m: Vector = (1.0, 0.0, 1.25)
     """Range, cross-range, height of its middle."""
-    size_m: tuple[Size, Size, Size] = (0.24, 5.0, 2.5)
-    """Extent in range, cross-range, height."""
+    size_m: tuple[Size | None, Size, Size] = (0.24, 5.0, 2.5)
+    """Extent in range, cross-range, height; of layers, whose depth is theirs, [null, y, z]."""
     eps_r: Annotated[AtLeastOne, within(1, 1e6)] = 6.0
     """Relative permittivity."""
     loss_tangent: Annotated[NotNegative, within(0, 1e12)] = 0.03
@@ -739,6 +758,14 @@ class WallConfig(Section):
     """Through the wall: the chord, a plane wave's at the same angle, or Snell's law."""
     fresnel: Literal["normal", "perpendicular", "parallel"] = "normal"
     """Loss of the faces: at normal incidence, or the ray's with the field so to its plane."""
+    echoes: Literal["none", "exact"] = "none"
+    """exact: reflections inside the wall, over frequency, by radar.polarisation; engine.kind: cube
+    or impulse."""
+    layers: Annotated[
+        Annotated[tuple[LayerConfig, ...], Field(min_length=1, max_length=16)] | None,
+        Needs("wall.echoes", "exact"),
+    ] = None
+    """Nearest first, with echoes: exact; null is one of size_m, eps_r and loss_tangent."""
 
 
 _SEGMENTS = Needs("body.scatterers", "segments")
@@ -948,6 +975,8 @@ class ProcessingConfig(Section):
     """Powers are added up, or (sum of the magnitudes)^2."""
     range_fft_length: Annotated[int, Field(ge=2, multiple_of=2, strict=True)] | None = None
     """Even, at least the samples of a chirp; null is found."""
+    range_gain_power: Annotated[float, Field(ge=0, le=8, strict=True), OnlyMaps("rtm")] = 0.0
+    """p of the gain (R/largest R)^p of the rtm's range bins, after canceller and noise."""
     range_reference: Literal["centre", "start"] = "centre"
     """Where in the chirp the phase is taken."""
     window_s: Annotated[float | None, Field(gt=0, le=1e7, strict=True), _SPECTRA] = None
@@ -1046,8 +1075,11 @@ class ImageConfig(Section):
 
     size_px: tuple[Pixels, Pixels] = (256, 256)
     """[height, width]; one number is a square."""
-    kind: Literal["decibel", "cfar"] = "decibel"
-    """Grey levels, or binary masks of what exceeds its background."""
+    kind: Literal["decibel", "cfar", "signed"] = "decibel"
+    """Grey levels; binary masks of what exceeds its background; or, of an impulse radar's rtm,
+    samples with their sign, 0 in the middle."""
+    clipped: Annotated[float, Field(ge=0, lt=1, strict=True), Needs("image.kind", "signed")] = 0.02
+    """Share of the samples that are black or white."""
     dynamic_range_db: Annotated[float, Field(gt=0, le=300, strict=True)] = 50.0
     """How far grey levels reach below the largest power (`kind: decibel`)."""
     cfar: Annotated[CfarConfig, Needs("image.kind", "cfar")] = CfarConfig()
@@ -1421,6 +1453,9 @@ class Config(Section):
             holder = getattr(self, name) if name else self
             if holder is not None and getattr(holder, rest) is None:
                 changed.setdefault(name, {})[rest] = default.values.get(self.motion.model)
+        wall = self.wall
+        if wall is not None and wall.layers and "size_m" not in wall.model_fields_set:
+            changed.setdefault("wall", {})["size_m"] = (None, *wall.size_m[1:])
         if self.radar.cfg is not None:
             _fill_from_cfg(self, changed)
         for key, number in self.radar.chirp_keys.items():
@@ -1614,6 +1649,8 @@ def possible_maps(config: Config) -> tuple[str, ...]:
     Of a board range, Doppler, its frames and the cube.
     """
     gated = config.processing.range_sum == "gated"
+    if config.radar.waveform == "impulse":
+        return ("rtm", "stft") if gated else ("rtm",)
     if config.radar.waveform == "cw":
         return tuple(name for name in MAP_NAMES if name != "rtm")
     if config.radar.cfg is None:

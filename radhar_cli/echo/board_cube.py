@@ -133,7 +133,7 @@ def measured_db(cube: Complex, channels: Sequence[PathSource], board: Board) -> 
             paths = channels[v](times[frame[some], loop[some], k])
             mine = virtual[some] == v
             at = frame[some][mine], loop[some][mine], v
-            delay, a = (part[:, mine] for part in paths)
+            delay, a = (part[:, mine] for part in paths[:2])
             exact = beat_matrix(delay, a, board.waveform).T * board.signs[v]
             error += float((np.abs(cube[at] - exact) ** 2).sum())
             total += float((np.abs(exact) ** 2).sum())

@@ -188,7 +188,7 @@ class DirectEcho:
         rows = max(1, BLOCK // some.size)
         for start in range(0, shape[0], rows):
             block = slice(start, start + rows)
-            delay, amplitude = (np.ascontiguousarray(part[some, block].T) for part in paths)
+            delay, amplitude = (np.ascontiguousarray(part[some, block].T) for part in paths[:2])
             cycles[block] = start_phase(delay, w, w.f0)
             g = table(w.slope / w.adc_rate * delay)
             np.multiply(g, (amplitude / unit).astype(g.real.dtype), out=envelope[block])

@@ -6,6 +6,7 @@ import numpy as np
 
 from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.echo.beat import BLOCK_SAMPLES, beat_matrix
+from radhar_cli.echo.dispersion import beat_of, power_of
 from radhar_cli.echo.motion_in_chirp import moving_beat_matrix
 from radhar_cli.echo.paths import Paths, PathSource
 from radhar_cli.processing.canceller import Fir
@@ -17,15 +18,14 @@ CHUNK_PULSES = 2**15
 
 
 def signal_power(source: PathSource, waveform: Waveform) -> float:
-    """P_s = mean over the pulses of sum_i A_i^2."""
+    """P_s = mean over the pulses of sum_i A_i^2, with what a layered wall leaves of A."""
     total = 0.0
     for start in range(0, waveform.n_pulses, BLOCK_SAMPLES):
         power = np.empty(min(BLOCK_SAMPLES, waveform.n_pulses - start))
         for first in range(0, power.size, CHUNK_PULSES):
             part = power[first : first + CHUNK_PULSES]
             pulses = np.arange(start + first, start + first + part.size, dtype=float)
-            a = source(waveform.times(pulses)).amplitude
-            part[:] = np.einsum("im,im->m", a, a)
+            part[:] = power_of(source(waveform.times(pulses)), waveform)
         total += float(power.sum())
     return total / waveform.n_pulses
 
@@ -52,7 +52,7 @@ def beat_blocks(
             beat = moving_beat_matrix(source, waveform, pulses)
         else:
             paths = source(waveform.times(pulses))
-            beat = beat_matrix(paths.delay, paths.amplitude, waveform)
+            beat = beat_of(paths, waveform)
         look = raw.part(start, start + pulses.size)
         for impairment in receiver:
             beat = impairment.apply(beat, look)
@@ -111,13 +111,12 @@ def beat_at(
     """
     needed = np.unique(pulses + np.arange(len(canceller))[:, None])
     paths = source(waveform.times(needed.astype(float)))
+    if sum(canceller) == 0:  # a path that stands still cancels itself exactly
+        moves = (paths.delay != paths.delay[:, :1]) | (paths.amplitude != paths.amplitude[:, :1])
+        paths = paths.only(moves.any(axis=1))
     at = [np.searchsorted(needed, pulses + lag) for lag in range(len(canceller))]
     delay = np.concatenate([paths.delay[:, some] for some in at])
     amplitude = np.concatenate(
         [c * paths.amplitude[:, some] for c, some in zip(canceller, at, strict=True)]
     )
-    if sum(canceller) == 0:  # a path that stands still cancels itself exactly
-        moves = (paths.delay != paths.delay[:, :1]) | (paths.amplitude != paths.amplitude[:, :1])
-        kept = np.tile(moves.any(axis=1), len(canceller))
-        delay, amplitude = delay[kept], amplitude[kept]
     return beat_matrix(delay, amplitude, waveform)

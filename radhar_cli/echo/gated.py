@@ -179,22 +179,22 @@ def _at_pulses(knots: Knots, kept: Index) -> Iterator[tuple[slice, Paths]]:
             first + start * knots.step, min(first + (start + segments) * knots.step, last)
         )
         if knots.step == 1:
-            yield pulses, Paths(*(part[kept, start : start + segments] for part in knots.paths))
+            yield pulses, knots.paths.only(kept, slice(start, start + segments))
             continue
         shift = knots.shift[start : start + segments]
         reach = slice(start, start + shift.size + BEFORE + AFTER)
         here = (pulses.start <= knots.exact_pulses) & (knots.exact_pulses < pulses.stop)
         found = []
-        for part, exact in zip(knots.paths, knots.exact, strict=True):
+        for part, exact in zip(knots.paths[:2], knots.exact[:2], strict=True):
             dense = upsample(part[kept, reach].T, knots.step, shift)
             dense[knots.exact_pulses[here] - pulses.start] = exact[kept][:, here].T
             found.append(dense[: pulses.stop - pulses.start].T)
-        yield pulses, Paths(*found)
+        yield pulses, Paths(found[0], found[1])
 
 
 def _bins(paths: Paths, w: Waveform, single: bool, first: int, count: int) -> Complex:
     """Bins first .. first + count - 1 of paths at some pulses [M, count]."""
-    delay, amplitude = (part.T for part in paths)
+    delay, amplitude = paths.delay.T, paths.amplitude.T
     turn = w.slope / w.adc_rate * delay  # cycles a sample
     low, high = float(turn.min()), float(turn.max())
     middle = round((low + high) / 2 * w.n_fft)

@@ -123,7 +123,7 @@ def _excess(paths: Paths, w: Waveform, spacing: Spacing) -> float:
     moved, least = 0.0, 1.0
     rows = max(1, BLOCK // paths.delay.shape[1])
     for start in range(0, len(paths.delay), rows):  # so that it stays in the cache
-        delay, a = (part[start : start + rows] for part in paths)
+        delay, a = (part[start : start + rows] for part in paths[:2])
         delay = np.diff(delay, axis=1)
         moved = max(moved, float(delay.max(initial=0.0)), -float(delay.min(initial=0.0)))
         with np.errstate(invalid="ignore"):  # 0/0 is no change
@@ -164,19 +164,19 @@ def all_knots(source: PathSource, waveform: Waveform, step: int) -> Iterator[Kno
 
 def columns(paths: Paths, some: slice | Index) -> Paths:
     """The paths at some of their times."""
-    return Paths(paths.delay[:, some], paths.amplitude[:, some])
+    return paths.only(slice(None), some)
 
 
 def only(kept: Bool, source: Callable[[Float], Paths]) -> Callable[[Float], Paths]:
     """A source of some of the paths."""
-    return lambda t: Paths(*(part[kept] for part in source(t)))
+    return lambda t: source(t).only(kept)
 
 
 def _differ(paths: Paths, since: Paths) -> Bool:
     """Which paths are not at all times as in the first column of `since`."""
     few = slice(None, None, max(1, paths.delay.shape[1] // 16))
     found: Bool = np.zeros(len(paths.delay), bool)
-    for part, first in zip(paths, since, strict=True):
+    for part, first in zip(paths[:2], since[:2], strict=True):
         for times in few, slice(None):
             rest = np.flatnonzero(~found)
             found[rest] = (part[rest, times] != first[rest, :1]).any(axis=1)

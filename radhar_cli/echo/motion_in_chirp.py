@@ -13,6 +13,7 @@ import numpy as np
 
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.echo.beat import start_phase
+from radhar_cli.echo.dispersion import Passed
 from radhar_cli.echo.interpolation import lagrange_basis
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.phasor import unit_phasor
@@ -48,13 +49,18 @@ def moving_beat_matrix(source: PathSource, waveform: Waveform, pulses: Float) ->
     t = waveform.times(pulses)[:, None] + within
     paths = source(t.ravel())
     beat = np.zeros((pulses.size, waveform.n_adc), dtype=complex)
-    for delay, amplitude in zip(paths.delay, paths.amplitude, strict=True):
+    passed = None if paths.through is None else Passed(paths.through, waveform)
+    for path, (delay, amplitude) in enumerate(zip(paths.delay, paths.amplitude, strict=True)):
         tau = _at_samples(delay.reshape(t.shape), waveform.n_adc)
         cycles = start_phase(tau, waveform, waveform.fc)
         tau *= waveform.slope * sample
         cycles += tau
         turning = unit_phasor(cycles)
         turning *= _at_samples(amplitude.reshape(t.shape), waveform.n_adc)
+        for cosine in [] if paths.through is None else paths.through.cosine[:, path]:
+            assert passed is not None
+            at_nodes = passed(cosine.reshape(t.shape))
+            turning *= np.einsum("nmk,kn->mn", at_nodes, chirp_weights(waveform.n_adc))
         beat += turning
     return beat.T
 

@@ -1,8 +1,37 @@
 """What an echo engine is given: paths, and a source that yields them at any time."""
 
+from collections.abc import Sequence
 from typing import NamedTuple, Protocol
 
-from radhar_cli.arrays import Float
+import numpy as np
+
+from radhar_cli.arrays import Bool, Float, Index
+from radhar_cli.radar.layers import Layers
+
+
+class Through(NamedTuple):
+    """Legs of paths through a layered wall, which acts on each frequency in its own way.
+
+    Attributes:
+        layers: the wall.
+        cosine: of the angle of incidence of both legs [2, I, M]; nan of one beside the wall.
+    """
+
+    layers: Layers
+    cosine: Float
+
+    @classmethod
+    def of(cls, layers: Layers | None, cosine: Float | None) -> "Through | None":
+        """Of both, or of none."""
+        return None if layers is None or cosine is None else cls(layers, cosine)
+
+    @classmethod
+    def joined(cls, several: "Sequence[Through | None]") -> "Through | None":
+        """Those of several paths, which pass the same wall or none."""
+        given = [one for one in several if one is not None]
+        if not given:
+            return None
+        return cls(given[0].layers, np.concatenate([one.cosine for one in given], axis=1))
 
 
 class Paths(NamedTuple):
@@ -11,10 +40,19 @@ class Paths(NamedTuple):
     Attributes:
         delay: tau [I, M], s.
         amplitude: A [I, M] for unit transmit power.
+        through: the layered wall that they pass; delay and amplitude are then those without it.
     """
 
     delay: Float
     amplitude: Float
+    through: Through | None = None
+
+    def only(self, paths: Bool | Index | slice, times: Index | slice = slice(None)) -> "Paths":
+        """Some of the paths, at some of the times."""
+        through = self.through
+        if through is not None:
+            through = through._replace(cosine=through.cosine[:, paths][..., times])
+        return Paths(self.delay[paths][:, times], self.amplitude[paths][:, times], through)
 
 
 class PathSource(Protocol):

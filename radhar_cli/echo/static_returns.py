@@ -31,8 +31,10 @@ def near_face_distance(antennas: Antennas, wall: Wall) -> float:
 def wall_echo(antennas: Antennas, wall: Wall, waveform: Waveform) -> StaticReturn:
     """Specular echo of the near face: |Gamma| G lambda/(4 pi 2 d), delay 2 d/c.
 
-    d is the `near_face_distance`, above 0.
+    d is the `near_face_distance`, above 0. Of layers, whose R depends on frequency, it is without
+    |Gamma|.
     """
     d = near_face_distance(antennas, wall)
-    amplitude = abs(wall.reflection) * antennas.gain * waveform.wavelength / (8 * pi * d)
+    reflected = abs(wall.reflection) if wall.layers is None else 1.0
+    amplitude = reflected * antennas.gain * waveform.wavelength / (8 * pi * d)
     return StaticReturn(2 * d / SPEED_OF_LIGHT, amplitude)

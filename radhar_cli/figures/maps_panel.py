@@ -69,15 +69,22 @@ def draw_map(axes: Axes, name: str, shown: Shown) -> AxesImage:
     is_range = power_map.rows.name == "range"
     unit = 1.0 if is_range or power_map.rows.values.max() < 2000 else 1e3
     left, right, low, high = power_map.extent
+    cells, low_level, high_level = power_map.power, -image.dynamic_range_db, 0.0
+    if power_map.real is not None:
+        cells = power_map.real
+        high_level = float(np.quantile(np.abs(cells), 1 - image.clipped)) or 1.0
+        low_level = -high_level
+    else:
+        cells = decibels(cells, image.dynamic_range_db)
     drawn = axes.imshow(
-        decibels(power_map.power, image.dynamic_range_db),
+        cells,
         extent=(left, right, low / unit, high / unit),
         origin="lower",
         aspect="auto",
         cmap=image.colour_map,
         interpolation="antialiased",
-        vmin=-image.dynamic_range_db,
-        vmax=0,
+        vmin=low_level,
+        vmax=high_level,
     )
     axes.set_title(f"{TITLES[name]}   {power_map.entropy:.2f} bit", fontsize=9)
     axes.set_xlim(left, right)
@@ -134,7 +141,9 @@ def draw_maps(shown: Shown, path: Path) -> None:
     panels = [figure.add_subplot(rows, columns, 1 + place) for place in range(len(names))]
     drawn = [draw_map(axes, name, shown) for axes, name in zip(panels, names, strict=True)]
     bar = figure.colorbar(drawn[0], ax=panels, shrink=0.8, pad=0.01)
-    bar.set_label("power (dB below the largest of each map)", fontsize=9)
+    signed = shown.image.kind == "signed"
+    label = "amplitude" if signed else "power (dB below the largest of each map)"
+    bar.set_label(label, fontsize=9)
     figure.suptitle(shown.title, fontsize=11)
     write_figure(figure, path, 90)
 
@@ -144,8 +153,9 @@ def title(simulation: Simulation) -> str:
     scene, waveform = simulation.scene, simulation.waveform
     snr, figure = scene.config.snr_db, scene.config.receiver.noise_figure_db
     noise = "no noise" if figure is None else f"noise figure {figure:g} dB"
-    cw = scene.config.radar.waveform == "cw"
-    band = " CW" if cw else f" + {waveform.bandwidth / 1e9:g} GHz"
+    kind = scene.config.radar.waveform
+    band = " CW" if kind == "cw" else f" + {waveform.bandwidth / 1e9:g} GHz"
+    band += " impulses" if kind == "impulse" else ""
     rooms = scene.config.room.faces is not None
     parts = [
         f"{scene.activity.label} {scene.activity.slug.replace('_', ' ')}",

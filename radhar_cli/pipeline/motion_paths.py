@@ -7,12 +7,12 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from radhar_cli.arrays import Float, Index
-from radhar_cli.echo.paths import Paths, PathSource
+from radhar_cli.echo.paths import Paths, PathSource, Through
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.motion.reflectors import Reflectors
 from radhar_cli.radar.person_shadow import left_of, light_past
 from radhar_cli.radar.propagation import Antennas, amplitude, bistatic_delay, leg
-from radhar_cli.radar.transmission import legs_through, wall_delay
+from radhar_cli.radar.transmission import pass_wall, wall_delay
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
@@ -54,11 +54,10 @@ class MotionPaths:
         a = amplitude(r_tx, r_rx, sigma, self.antennas.gain, SPEED_OF_LIGHT / self.fc)
         if (field := self.antennas.field(p)) is not None:
             a *= field
-        if self.wall is not None:
-            for through in legs_through(p, self.antennas, self.wall, self.fc):
-                tau += through.delay
-                a *= through.factor
-        return Paths(tau, a)
+        if self.wall is None:
+            return Paths(tau, a)
+        cosine = pass_wall(p, self.antennas, self.wall, self.fc, tau, a)
+        return Paths(tau, a, Through.of(self.wall.layers, cosine))
 
 
 class Placed(PathSource, Protocol):
@@ -112,7 +111,7 @@ class ShadowedPaths:
             for antenna in (self.source.antennas.tx, self.source.antennas.rx):
                 legs *= light_past(p, antenna, place, shade.half_width, shade.top, wavelength)
             left *= left_of(legs)
-        return Paths(paths.delay, paths.amplitude * left[which])
+        return paths._replace(amplitude=paths.amplitude * left[which])
 
 
 @dataclass(frozen=True)
@@ -138,8 +137,8 @@ class SumOfPaths:
 
     def __call__(self, t: Float) -> Paths:
         """Paths of all sources, one source after the other, at times t [M] (s)."""
-        delay, a = zip(*(source(t) for source in self.sources), strict=True)
-        return Paths(np.concatenate(delay), np.concatenate(a))
+        delay, a, through = zip(*(source(t) for source in self.sources), strict=True)
+        return Paths(np.concatenate(delay), np.concatenate(a), Through.joined(through))
 
 
 def point_delay(p: Float, antennas: Antennas, wall: Wall | None) -> Float:

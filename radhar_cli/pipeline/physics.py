@@ -1,5 +1,6 @@
 """Unpack a scene into the objects of the physics: here alone are keys and units of scenes read."""
 
+from collections.abc import Callable
 from dataclasses import fields, replace
 from functools import partial
 from math import inf, log, radians, sqrt
@@ -31,6 +32,8 @@ from radhar_cli.processing.signal import Signal
 from radhar_cli.processing.stft import Stft
 from radhar_cli.radar.board import DEVICES, Array, Board
 from radhar_cli.radar.detection import Detection
+from radhar_cli.radar.impulse import Impulse
+from radhar_cli.radar.layers import Layer, Layers
 from radhar_cli.radar.materials import permittivity
 from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes
 from radhar_cli.radar.room import FACES, Box, Face, Way, names_of, ways
@@ -91,7 +94,10 @@ def waveform_of(config: Config) -> Waveform:
     if config.radar.cfg is not None:
         return board_of(config).waveform
     radar = Numbers(config.radar)
-    return Waveform(
+    kind: Callable[..., Waveform] = Waveform
+    if config.radar.waveform == "impulse":
+        kind = partial(Impulse, profile=radar.profile_m, samples=config.radar.profile_samples)
+    return kind(
         fc=radar.carrier_hz,
         bandwidth=radar.bandwidth_hz,
         chirp=radar.chirp_s,
@@ -123,14 +129,29 @@ def wall_of(config: Config) -> Wall | None:
     """The wall of a scene's config, if there is one."""
     if config.wall is None:
         return None
-    wall = Numbers(config.wall)
+    wall, (depth, *across) = Numbers(config.wall), Numbers(config.wall).size_m
+    eps_r, loss_tangent = wall.eps_r, wall.loss_tangent
+    layers: tuple[Layer, ...] = (Layer(depth, eps_r * (1 - 1j * loss_tangent)),)
+    if wall.layers is not None:
+        layers = tuple(
+            Layer(one.thickness_m, one.material or one.eps_r * (1 - 1j * one.loss_tangent))
+            for one in wall.layers
+        )
+        radar = Numbers(config.radar)
+        depth = sum(layer.thickness for layer in layers)
+        middle = np.array(radar.carrier_hz + radar.bandwidth_hz / 2)
+        n = sum(layer.thickness * np.sqrt(layer.eps(middle)) for layer in layers) / depth
+        eps = complex(n * n)
+        eps_r, loss_tangent = eps.real, -eps.imag / eps.real
+    exact = Layers(layers, parallel=config.radar.polarisation == "horizontal")
     return Wall(
         center=wall.center_m,
-        size=wall.size_m,
-        eps_r=wall.eps_r,
-        loss_tangent=wall.loss_tangent,
+        size=(depth, *across),
+        eps_r=eps_r,
+        loss_tangent=loss_tangent,
         rays=wall.rays,
         fresnel=wall.fresnel,
+        layers=exact if wall.echoes == "exact" else None,
     )
 
 
@@ -201,7 +222,7 @@ def kinds_of(config: Config) -> list[str]:
 def _permittivity(material: str | DielectricConfig, frequency: float) -> complex:
     """eps = eps_r (1 - j tan delta), or of a named material at a frequency (Hz)."""
     if isinstance(material, str):
-        return permittivity(material, frequency)
+        return complex(permittivity(material, np.array(frequency)))
     numbers = Numbers(material)
     return complex(numbers.eps_r * (1 - 1j * numbers.loss_tangent))
 

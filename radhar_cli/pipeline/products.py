@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from itertools import chain, repeat
-from math import ceil, inf
+from math import ceil, inf, nan
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -25,6 +25,7 @@ from radhar_cli.echo.accuracy import AccuracyError
 from radhar_cli.echo.direct import Accuracy, DirectEcho
 from radhar_cli.echo.exact import beat_at, exact_echo, signal_power
 from radhar_cli.echo.gated import GatedEcho
+from radhar_cli.echo.impulse import impulse_echo, impulse_power
 from radhar_cli.echo.knots import mean_power
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.errors import SceneError
@@ -61,12 +62,14 @@ from radhar_cli.processing.image import (
     levels,
     reduced,
     reduced_map,
+    signed_levels,
     unclipped,
 )
-from radhar_cli.processing.look import Look, RangeBins, RangeSum
+from radhar_cli.processing.look import Look, ProfileSamples, RangeBins, RangeSum
 from radhar_cli.processing.power_map import Axis, MapImage, PowerMap
 from radhar_cli.processing.signal import Signal, shown_pulses
 from radhar_cli.processing.stft import Stft
+from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.wall import Wall
@@ -176,7 +179,10 @@ def _echo(c: Config) -> Iterator[Product]:
     yield Product("canceller", ("waveform",), lambda w: canceller_of(c, w.prf), _clutter(c))
     yield from _receiver(c)
     yield from _gate(c) if _gated(c) else ()
-    yield from _direct(c) if c.engine.kind == "direct" else _exact(c)
+    if c.radar.waveform == "impulse":
+        yield from _impulse(c)
+    else:
+        yield from _direct(c) if c.engine.kind == "direct" else _exact(c)
 
 
 def _gated(c: Config) -> bool:
@@ -421,6 +427,27 @@ def _exact(c: Config) -> Iterator[Product]:
         yield Product("range_signals", ("gate", *SEEN), range_signals, does)
 
 
+def _impulse(c: Config) -> Iterator[Product]:
+    """Everything from the samples of an impulse radar's profiles."""
+
+    def signal(
+        r: Float, w: Impulse, canceller: Canceller, receiver: tuple[Impairment, ...]
+    ) -> Signal:
+        look = Look.of_all("profiles", ProfileSamples(w))
+        return received(r.astype(complex), look, receiver, canceller)
+
+    power_of = "snr_paths" if _snr_of_other_paths(c) else "paths"
+    does = "real samples over range, a pulse at its delay for every path"
+    yield Product("profiles", ("paths", "waveform"), impulse_echo, does)
+    yield Product("signal_power", (power_of, "waveform"), impulse_power, "P_s, for snr_db")
+    needs = ("profiles", "waveform", "canceller", "receiver")
+    yield Product("range_signals", needs, signal, "receiver, then canceller")
+    shown = lambda x: x.columns(c.image.size_px[1])  # noqa: E731
+    yield Product("range_profiles", ("range_signals",), shown, "those that the map shows")
+    yield Product("signal", ("range_signals",), Signal.summed, "their sum over range")
+    yield Product("accuracy", (), lambda: Accuracy(1, 0, False, -inf), "paths at every pulse")
+
+
 def _signals(c: Config) -> Iterator[Product]:
     def compensated(x: Signal, torso_track: Float) -> Signal:
         return x.with_samples(compensate(x.x, torso_track, x.f0))
@@ -463,12 +490,18 @@ def _maps(c: Config, entropy: bool) -> Iterator[Product]:
     size, masks = c.image.size_px, ("cfar",) if c.image.kind == "cfar" else ()
 
     def rtm(profiles: Signal) -> PowerMap:
-        x, ranges = profiles.x, profiles.ranges
+        x, ranges, gain = profiles.x, profiles.ranges, c.processing.range_gain_power
         assert ranges is not None
+        if gain > 0:
+            x = x * ((ranges / ranges[-1]) ** gain)[:, None]
         power = (x.real**2 + x.imag**2).sum(axis=0)
-        return PowerMap(power, Axis("range", "m", ranges), Axis("time", "s", profiles.t))
+        real = x[0].real if c.image.kind == "signed" else None
+        return PowerMap(power, Axis("range", "m", ranges), Axis("time", "s", profiles.t), real)
 
     def map_image(power_map: PowerMap, cfar: CellAveraging | None = None) -> MapImage:
+        if power_map.real is not None:
+            grey = signed_levels(power_map.real, size, c.image.clipped)
+            return MapImage(grey, power_map.entropy if entropy else nan, power_map.extent)
         small = partial(reduced_map, power_map.power, size, entropy=entropy)
         return _image(c, cfar, small, power_map.extent, binary_exponent(power_map.power))
 

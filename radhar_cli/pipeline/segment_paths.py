@@ -13,12 +13,12 @@ from typing import NamedTuple
 import numpy as np
 
 from radhar_cli.arrays import Bool, Float, Index
-from radhar_cli.echo.paths import Paths
+from radhar_cli.echo.paths import Paths, Through
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.motion.segments import Placed, Segment, cross, place, soft_unit
 from radhar_cli.radar.ellipsoid import View, cross_section, shadow, square_height
 from radhar_cli.radar.propagation import Antennas, amplitude
-from radhar_cli.radar.transmission import legs_through
+from radhar_cli.radar.transmission import pass_wall
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
@@ -166,6 +166,7 @@ class SegmentPaths:
         still = np.logical_and.reduce([_constant(part) for part in placed])
         count = sum(self.points[s].share.size for s in self.kept)
         delay, strength = np.empty((2, count, t.size))
+        cosine = np.empty((2, count, t.size)) if self.wall and self.wall.layers else None
         for first in range(0, t.size, BLOCK):
             some = slice(first, first + BLOCK)
             self._fill(
@@ -173,16 +174,20 @@ class SegmentPaths:
                 still,
                 delay[:, some],
                 strength[:, some],
+                None if cosine is None else cosine[..., some],
             )
-        return Paths(delay, strength)
+        through = Through.of(self.wall.layers, cosine) if self.wall is not None else None
+        return Paths(delay, strength, through)
 
-    def _fill(self, frames: "Frames", still: Bool, delay: Float, strength: Float) -> None:
-        """Fill in delays and amplitudes [I, block] of all points.
+    def _fill(
+        self, frames: "Frames", still: Bool, delay: Float, strength: Float, cosine: Float | None
+    ) -> None:
+        """Fill in delays and amplitudes [I, block] of all points, and angles at a layered wall.
 
         Args:
             frames: of the segments.
             still: which of them do not move at any time asked for [S].
-            delay, strength: to be filled in.
+            delay, strength, cosine: to be filled in.
         """
         tx, rx = (frames.seen_from(antenna) for antenna in (self.antennas.tx, self.antennas.rx))
         # The sum of the unit vectors of both legs.
@@ -218,13 +223,10 @@ class SegmentPaths:
             np.subtract(seconds[0] + seconds[1], nearer[s], out=delay[some])
             np.multiply(points.share[:, None], a[s], out=strength[some])
             if self.wall is not None:
-                self._through_wall(frames.positions(s, points), delay[some], strength[some])
-
-    def _through_wall(self, p: Float, delay: Float, strength: Float) -> None:
-        assert self.wall is not None
-        for through in legs_through(p, self.antennas, self.wall, self.fc):
-            delay += through.delay
-            strength *= through.factor
+                p, given = frames.positions(s, points), (self.antennas, self.wall, self.fc)
+                angles = pass_wall(p, *given, delay[some], strength[some])
+                if cosine is not None:
+                    cosine[:, some] = angles
 
     def _light(self, frames: "Frames", way: Float, wavelength: float) -> Float:
         """Field left [S, M] by the segments that hide others, seen from between the antennas.

@@ -14,13 +14,13 @@ from typing import NamedTuple
 import numpy as np
 
 from radhar_cli.arrays import Complex, Float, Index
-from radhar_cli.echo.paths import Paths
+from radhar_cli.echo.paths import Paths, Through
 from radhar_cli.motion.protocol import recalled
 from radhar_cli.motion.segments import REFERENCE_STATURE, cross, soft_unit, unit
 from radhar_cli.pipeline.segment_paths import Body
 from radhar_cli.radar.propagation import Antennas, amplitude, bistatic_delay, leg
 from radhar_cli.radar.room import Point
-from radhar_cli.radar.transmission import legs_through
+from radhar_cli.radar.transmission import pass_wall
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
@@ -111,13 +111,13 @@ class SurfacePaths:
         r_tx, r_rx = leg(p, self.antennas.tx), leg(p, self.antennas.rx)
         tau = bistatic_delay(r_tx, r_rx)
         a = amplitude(r_tx, r_rx, field_**2, self.antennas.gain, SPEED_OF_LIGHT / self.fc)
+        cosine, layers = None, None
         if self.wall is not None:
-            for through in legs_through(p, self.antennas, self.wall, self.fc):
-                tau += through.delay
-                a *= through.factor
+            cosine = pass_wall(p, self.antennas, self.wall, self.fc, tau, a)
+            layers = self.wall.layers
         chosen = np.isin(self.drawn.segment, self.kept)
         tau -= (np.angle(self.drawn.weight) / (2 * pi * self.fc))[:, None]  # less than lambda/2
-        return Paths(tau[chosen], a[chosen])
+        return Paths(tau, a, Through.of(layers, cosine)).only(chosen)
 
     def _centre(self) -> Point:
         """What surfaces face: the array, or the middle of the antennas."""

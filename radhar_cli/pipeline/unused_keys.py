@@ -46,6 +46,8 @@ def _without_effect(config: Config) -> Iterator[tuple[str, str]]:
     for key, only in of_kind(Config, OnlyMaps):
         if not any(only.part in name for name in config.maps):
             yield key, _entry(config, "maps")
+    if config.room.faces is None and (config.wall is None or config.wall.echoes == "none"):
+        yield "radar.polarisation", "neither room.faces nor wall.echoes: exact"
     if config.snr_db is None or config.wall is None:
         yield "snr_reference", _entry(config, "snr_db" if config.snr_db is None else "wall")
     model = _entry(config, "motion.model")

@@ -105,6 +105,17 @@ def levels(power: Float, dynamic_range_db: float) -> Levels:
     return grey.astype(np.uint8)
 
 
+def signed_levels(x: Float, size: tuple[int, int], clipped: float) -> Levels:
+    """Levels round(127.5 (1 + clip(x/q, -1, 1))) of resized real samples [range, time].
+
+    q is the quantile 1 - clipped of |x|. Of zeros all are in the middle, 128.
+    """
+    scaled = np.ldexp(x.T, -binary_exponent(np.abs(x)))
+    cells = reduced([scaled], x.shape[1], size, entropy=False).cells.astype(float)
+    q = max(float(np.quantile(np.abs(cells), 1 - clipped)), np.finfo(float).tiny)
+    return np.rint(127.5 * (1 + np.clip(cells / q, -1, 1))).astype(np.uint8)
+
+
 def decibels(power: Float, dynamic_range_db: float) -> Float:
     """10 log10(P/max P), at least -dynamic_range_db, and that everywhere for a map of zeros."""
     largest = largest_power(power)

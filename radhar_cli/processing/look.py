@@ -134,6 +134,24 @@ class RangeBins(FastTime):
         return _colour(self.waveform, self.bins.start, self.bins.stop)
 
 
+@dataclass(frozen=True)
+class ProfileSamples(RangeBins):
+    """Real samples over range, as an impulse radar takes them: its own W, the identity."""
+
+    @property
+    def white(self) -> bool:
+        return True
+
+    def __call__(self, s: Complex) -> Complex:
+        return s
+
+    def colour(self, v: Complex, scale: float = 1.0) -> Complex:
+        """As real noise of variance scale^2."""
+        v.real *= scale * np.sqrt(2)
+        v.imag = 0
+        return v
+
+
 @lru_cache(maxsize=4)
 def _colour(waveform: Waveform, first: int, stop: int) -> Complex:
     """W W^H [k, k'] = sum_n exp(j 2 pi (k - k')(n - n0)/N_FFT); with W^H = Q R it is R^H R."""

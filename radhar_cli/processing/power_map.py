@@ -36,11 +36,18 @@ class PowerMap:
     Attributes:
         power: [rows, columns], lowest first.
         rows, columns: the axes; time runs along the columns of every map of a data set.
+        real: the samples with their sign [rows, columns], where those are shown.
     """
 
     power: Float
     rows: Axis
     columns: Axis
+    real: Float | None = None
+
+    @property
+    def shown(self) -> Float:
+        """The samples with their sign where those are shown, else the power."""
+        return self.power if self.real is None else self.real
 
     @property
     def entropy(self) -> float:

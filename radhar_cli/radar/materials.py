@@ -3,6 +3,10 @@
 from math import pi
 from typing import Literal, get_args
 
+import numpy as np
+
+from radhar_cli.arrays import Complex, Float
+
 EPSILON_0 = 8.8541878128e-12  # F/m
 
 Material = Literal[
@@ -31,7 +35,9 @@ NUMBERS = {
 MATERIALS: tuple[Material, ...] = get_args(Material)
 
 
-def permittivity(material: str, frequency: float) -> complex:
-    """Complex relative permittivity at a frequency (Hz)."""
+def permittivity(material: str, f: Float) -> Complex:
+    """Complex relative permittivity at frequencies f [...] (Hz)."""
     a, c, d = NUMBERS[material]
-    return complex(a, -c * (frequency * 1e-9) ** d / (2 * pi * frequency * EPSILON_0))
+    conductivity = c * (f * 1e-9) ** d  # S/m
+    eps: Complex = a - np.multiply(1j, conductivity) / (2 * pi * f * EPSILON_0)
+    return eps

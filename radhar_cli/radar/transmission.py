@@ -1,7 +1,8 @@
 """One leg through the wall, with the rays and the faces that the wall asks for."""
 
-from collections.abc import Iterator
 from typing import NamedTuple
+
+import numpy as np
 
 from radhar_cli.arrays import Float
 from radhar_cli.radar.fresnel import faces_factor
@@ -12,6 +13,7 @@ from radhar_cli.radar.wall import (
     Crossing,
     Wall,
     absorption,
+    both_faces,
     crossing,
     extra_delay,
     field_factor,
@@ -26,10 +28,34 @@ class Transmission(NamedTuple):
     factor: Float
 
 
-def legs_through(p: Float, antennas: Antennas, wall: Wall, fc: float) -> Iterator[Transmission]:
-    """Both legs to positions p [3, I, M] (m) through the wall at a frequency fc (Hz)."""
+def pass_wall(
+    p: Float, antennas: Antennas, wall: Wall, fc: float, delay: Float, amplitude: Float
+) -> Float | None:
+    """Take paths by positions p [3, I, M] (m) through a wall, at a frequency fc (Hz).
+
+    Args:
+        p, antennas, wall, fc: of both legs.
+        delay, amplitude: [I, M]; the wall's delay and loss change them in place.
+
+    Returns:
+        Of a wall of layers, which changes neither, the cosine of the angle at which both legs meet
+        it, nan beside it [2, I, M]; else None.
+    """
+    if wall.layers is not None:
+        return np.stack([_cosine(image, antenna, wall) for image, antenna in antennas.seen(p)])
     for image, antenna in antennas.seen(p):
-        yield transmission(image, antenna, wall, fc)
+        through = transmission(image, antenna, wall, fc)
+        delay += through.delay
+        amplitude *= through.factor
+    return None
+
+
+def _cosine(p: Float, antenna: Point, wall: Wall) -> Float:
+    way = p - np.reshape(antenna, (3,) + (1,) * (p.ndim - 1))
+    with np.errstate(invalid="ignore"):
+        cosine = np.abs(way[0]) / np.sqrt((way * way).sum(axis=0))
+    straight = crossing(p, antenna, wall)
+    return np.where(both_faces(straight, cosine, wall), cosine, np.nan)
 
 
 class _Ray(NamedTuple):

@@ -8,6 +8,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from radhar_cli.arrays import Bool, Float, Index
+from radhar_cli.radar.layers import Layers
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
 
@@ -22,6 +23,8 @@ class Wall:
         rays: chord of the straight ray, plane wave at its angle, or refracted (`refraction.py`).
         fresnel: transmission of a face at normal incidence, or at the ray's angle for a field
             perpendicular or parallel to the plane of incidence (`fresnel.py`).
+        layers: of a wall whose echoes are exact, instead of delay and loss at the carrier; eps_r
+            and loss_tangent are then those of a wall of the same depth and n.
     """
 
     center: tuple[float, float, float]
@@ -30,6 +33,7 @@ class Wall:
     loss_tangent: float
     rays: Literal["straight", "plane", "refracted"] = "straight"
     fresnel: Literal["normal", "perpendicular", "parallel"] = "normal"
+    layers: Layers | None = None
 
     @property
     def permittivity(self) -> complex:
@@ -130,6 +134,12 @@ def extra_delay(chord: Float, wall: Wall) -> Float:
     return chord * ((wall.refractive_index.real - 1) / SPEED_OF_LIGHT)
 
 
+def both_faces(straight: Crossing, cosine: Float, wall: Wall) -> Bool:
+    """Whether straight rays [I, M] at an angle pass both x faces."""
+    both: Bool = (straight.faces == 2) & (straight.chord * cosine > wall.size[0] * (1 - 1e-6))
+    return both
+
+
 def plane_wave(
     p: Float, antenna: tuple[float, float, float], wall: Wall, straight: Crossing
 ) -> tuple[Float, Float]:
@@ -144,7 +154,7 @@ def plane_wave(
     with np.errstate(invalid="ignore", divide="ignore"):
         cos = np.abs(way[0]) / reach
         n, depth = wall.refractive_index.real, wall.size[0]
-        both = (straight.faces == 2) & (straight.chord * cos > depth * (1 - 1e-6))
+        both = both_faces(straight, cos, wall)
         steps = (n - 1) * (n + 1)
         inside = np.sqrt(steps + cos * cos)  # n times the cosine inside
         delay = depth * steps / (inside + cos) / SPEED_OF_LIGHT

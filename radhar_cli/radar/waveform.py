@@ -91,6 +91,10 @@ class Waveform:
         """Radial speed (m/s) at which the Doppler reaches PRF/2."""
         return SPEED_OF_LIGHT * self.prf / (4 * self.f0)
 
+    def frequencies(self) -> Float:
+        """fc + K n/fs [N_ADC] at the fast-time samples of a chirp, Hz."""
+        return self.fc + self.slope * np.arange(self.n_adc) / self.adc_rate
+
     def times(self, pulses: Float) -> Float:
         """Slow times (s) of pulse numbers [...]."""
         return pulses / self.prf

@@ -65,7 +65,7 @@ def write_scene(simulation: Simulation, path: Path) -> None:
 def write_map(file: h5py.File, name: str, power_map: PowerMap) -> None:
     """Write /maps/<name> with its axes."""
     dataset = file.create_dataset(
-        f"maps/{name}", data=_float32(power_map.power), compression="gzip"
+        f"maps/{name}", data=_float32(power_map.shown), compression="gzip"
     )
     for dimension, axis in enumerate((power_map.rows, power_map.columns)):
         scale = file.create_dataset(f"axes/{name}/{axis.name}", data=axis.values)

@@ -15,7 +15,7 @@ from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.direct import Accuracy
 from radhar_cli.echo.exact import beat_blocks
 from radhar_cli.echo.paths import PathSource
-from radhar_cli.echo.static_returns import leakage, near_face_distance, wall_echo
+from radhar_cli.echo.static_returns import StaticReturn, leakage, near_face_distance, wall_echo
 from radhar_cli.errors import ConfigError, SceneError, did_you_mean
 from radhar_cli.motion.protocol import Motion, Only
 from radhar_cli.pipeline.bodies import sources_of
@@ -155,7 +155,7 @@ def simulate(
     frames = [product for name in maps for product in FRAMES.get(name, ())]
     frames += ["points_kind"] if "points" in maps and config.room.faces else []
     maps = tuple(name for name in maps if name not in FRAMES)
-    signals = SIGNALS[:1] if board else SIGNALS
+    signals = SIGNALS[:1] if board or config.radar.waveform == "impulse" else SIGNALS
     frames += ["cube"] if board and raw and "cube" not in frames else []
     asked = [*signals, *maps, *frames, "waveform", "antennas", "wall"]
     asked += ["board"] if board else []
@@ -249,7 +249,7 @@ def raw_echo(
     """
     blocks = beat_blocks(paths, waveform, receiver, scene.config.engine.motion_in_chirp)
     beat = np.concatenate(list(blocks), axis=1)
-    static = [leakage(antennas)]
+    beat += _steady_beat(leakage(antennas), waveform)
     if wall is not None:
         distance = near_face_distance(antennas, wall)
         if distance < MIN_DISTANCE_M:
@@ -258,11 +258,16 @@ def raw_echo(
                 f"is {distance * 100:.3g} cm from the middle of radar.tx_m and radar.rx_m; its "
                 f"echo in a raw recording holds from {MIN_DISTANCE_M * 100:g} cm on"
             )
-        static.append(wall_echo(antennas, wall, waveform))
-    delay = np.array([[one.delay] for one in static])
-    amplitude = np.array([[one.amplitude] for one in static])
-    beat += beat_matrix(delay, amplitude, waveform)
+        echo = _steady_beat(wall_echo(antennas, wall, waveform), waveform)
+        if wall.layers is not None:
+            reflected = wall.layers.scattered(waveform.frequencies(), np.ones(())).reflected
+            echo *= reflected[:, None]
+        beat += echo
     return beat
+
+
+def _steady_beat(one: StaticReturn, waveform: Waveform) -> Complex:
+    return beat_matrix(np.array([[one.delay]]), np.array([[one.amplitude]]), waveform)
 
 
 RAW_ECHO = Product(

@@ -1,0 +1,65 @@
+"""The echo of an impulse radar: r[k, m] = sum_i A_i p(2 R_k/c - tau_i).
+
+Through a layered wall it is Re of the integral of P(f) S(f) exp(j 2 pi f t) over f > 0, with the
+echo S(f) of `dispersion.py` at even frequencies.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from radhar_cli.arrays import Float, Index
+from radhar_cli.echo.dispersion import beat_of, power_of
+from radhar_cli.echo.paths import Paths, PathSource
+from radhar_cli.radar.impulse import Impulse
+from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
+
+CHUNK = 2**10  # pulses at once
+REACH = 9.0  # of a pulse to both sides, in s: exp(-REACH^2/2) is 3e-18
+LONGEST = 2.0  # times the end of the range axis, up to which echoes do not fold
+BAND = 64  # frequencies within 10 dB of the middle, over which a wall's loss is averaged
+
+
+def impulse_echo(source: PathSource, waveform: Impulse) -> Float:
+    """r [samples, M] at all pulses, without noise."""
+    r = np.zeros((waveform.samples, waveform.n_pulses))
+    for pulses, paths in _chunks(source, waveform):
+        r[:, pulses] = _spectral(paths, waveform) if paths.through else _pulses(paths, waveform)
+    return r
+
+
+def impulse_power(source: PathSource, waveform: Impulse) -> float:
+    """P_s = mean over the pulses of sum_i A_i^2/2; of a layered wall in the mean over the band."""
+    band = Waveform(waveform.fc, waveform.bandwidth, 1e-6, BAND * 1e6, 1.0, 1.0)
+    chunks = _chunks(source, waveform)
+    return sum(float(power_of(paths, band).sum()) for _, paths in chunks) / 2 / waveform.n_pulses
+
+
+def _chunks(source: PathSource, waveform: Impulse) -> Iterator[tuple[slice, Paths]]:
+    for first in range(0, waveform.n_pulses, CHUNK):
+        pulses = np.arange(first, min(first + CHUNK, waveform.n_pulses))
+        yield slice(first, first + pulses.size), source(waveform.times(pulses.astype(float)))
+
+
+def _pulses(paths: Paths, waveform: Impulse) -> Float:
+    """r [samples, M], each pulse added where it is."""
+    step, (first, _) = 2 * waveform.range_step / SPEED_OF_LIGHT, waveform.profile
+    half = int(REACH * waveform.width / step) + 1
+    around, pulse = np.arange(-half, half + 1)[:, None], np.arange(paths.delay.shape[1])
+    r = np.zeros((waveform.samples + 2 * half + 1, pulse.size))  # those beyond the axis, too
+    for tau, a in zip(paths.delay - 2 * first / SPEED_OF_LIGHT, paths.amplitude, strict=True):
+        middle: Index = np.clip(np.rint(tau / step), -half - 1, waveform.samples + half).astype(int)
+        rows = middle + around
+        there = (rows >= 0) & (rows < waveform.samples)
+        r[np.where(there, rows, waveform.samples), pulse] += a * waveform.pulse(rows * step - tau)
+    return r[: waveform.samples]
+
+
+def _spectral(paths: Paths, waveform: Impulse) -> Float:
+    """r [samples, M] from the echo at even frequencies, by a sum over them."""
+    stepped = waveform.stepped(waveform.profile[1] * LONGEST)
+    f = stepped.frequencies()
+    t = 2 * waveform.range_axis() / SPEED_OF_LIGHT
+    back = np.exp(2j * np.pi * np.outer(t, f)) * (waveform.spectrum(f) * (f[1] - f[0]))
+    r: Float = (back @ beat_of(paths, stepped)).real
+    return r

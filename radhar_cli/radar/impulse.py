@@ -1,0 +1,78 @@
+"""Impulse radar: a Gaussian pulse on a carrier, received in real samples over range.
+
+p(t) = exp(-t^2/(2 s^2)) cos(2 pi fm t), s = sqrt(ln 10)/(pi B), fm = fc + B/2: its spectrum is
+10 dB down at fc and fc + B.
+"""
+
+from dataclasses import dataclass
+from math import log, pi, sqrt
+
+import numpy as np
+
+from radhar_cli.arrays import Float
+from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
+
+
+@dataclass(frozen=True)
+class Impulse(Waveform):
+    """A train of pulses; range bins are the samples of its profile.
+
+    Attributes:
+        profile: where the range axis begins and ends, m.
+        samples: of a profile.
+    """
+
+    profile: tuple[float, float] = (0.0, 1.0)
+    samples: int = 256
+
+    @property
+    def width(self) -> float:
+        """s, in s."""
+        return sqrt(log(10)) / (pi * self.bandwidth)
+
+    @property
+    def n_bins(self) -> int:
+        """All samples of a profile."""
+        return self.samples
+
+    @property
+    def f0(self) -> float:
+        """Frequency at which Doppler is read: fm, Hz."""
+        return self.fc + self.bandwidth / 2
+
+    @property
+    def range_step(self) -> float:
+        """Spacing of the samples, m."""
+        first, last = self.profile
+        return (last - first) / self.samples
+
+    @property
+    def half_band_range(self) -> float:
+        """Where the range axis ends, m."""
+        return self.profile[1]
+
+    def range_axis(self) -> Float:
+        """R_k = from + k (to - from)/samples [samples], m."""
+        return self.profile[0] + np.arange(self.samples) * self.range_step
+
+    def pulse(self, t: Float) -> Float:
+        """p(t) at times t [...] (s)."""
+        p: Float = np.exp(-((t / self.width) ** 2) / 2) * np.cos(2 * pi * self.f0 * t)
+        return p
+
+    def spectrum(self, f: Float) -> Float:
+        """P(f) = s sqrt(2 pi) exp(-2 (pi s (f - fm))^2) at frequencies f [...] above 0 (Hz)."""
+        turn = pi * self.width * (f - self.f0)
+        p: Float = self.width * sqrt(2 * pi) * np.exp(-2 * turn * turn)
+        return p
+
+    def stepped(self, reach: float) -> Waveform:
+        """Frequencies that hold its spectrum, so close that echoes up to a range (m) do not fold.
+
+        P falls to 2e-10 within 2.2 B on both sides of fm.
+        """
+        low, high = max(self.f0 - 2.2 * self.bandwidth, 0.0), self.f0 + 2.2 * self.bandwidth
+        step = SPEED_OF_LIGHT / (4 * reach)
+        steps = int((high - low) / step) + 1
+        first, band = low + step / 2, steps * step
+        return Waveform(first, band, 1e-6, steps * 1e6, self.prf, self.duration)

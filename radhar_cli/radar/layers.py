@@ -1,0 +1,88 @@
+"""Layered walls over frequency: transfer matrices of plane waves, reflections inside included.
+
+With cos = |dx|/R of the straight ray, k0 = 2 pi f/c, and of each layer q = sqrt(eps - 1 + cos^2),
+u = k0 d q and the admittance Y = q (perpendicular) or eps/q (parallel), Y0 = cos or 1/cos outside,
+
+    M = [[cos u, j sin u/Y], [j Y sin u, cos u]],  (e, h) = M_1 ... M_L (1, Y0),
+    T = 2 Y0/(Y0 e + h),  R = (Y0 e - h)/(Y0 e + h)
+
+(Born and Wolf, Principles of Optics, section 1.6). Each M is computed without its factor exp(j u),
+which overflows in thick metal.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from radhar_cli.arrays import Complex, Float
+from radhar_cli.radar.materials import permittivity
+from radhar_cli.radar.waveform import SPEED_OF_LIGHT
+
+
+class Layer(NamedTuple):
+    """A homogeneous layer: thickness (m), and eps = eps_r (1 - j tan delta) or a material."""
+
+    thickness: float
+    material: complex | str
+
+    def eps(self, f: Float) -> Complex:
+        """Relative permittivity at frequencies f [...] (Hz)."""
+        if isinstance(self.material, str):
+            return permittivity(self.material, f)
+        return np.full(f.shape, self.material)
+
+
+class Scattered(NamedTuple):
+    """Coefficients of the field, 1 in front of the wall: behind it, and back from it."""
+
+    transmitted: Complex
+    reflected: Complex
+
+
+@dataclass(frozen=True)
+class Layers:
+    """A wall of layers, nearest first.
+
+    Attributes:
+        layers: of the wall.
+        parallel: whether the field lies in the plane of incidence (TM), or across it (TE).
+    """
+
+    layers: tuple[Layer, ...]
+    parallel: bool
+
+    @property
+    def depth(self) -> float:
+        """Thickness of all layers, m."""
+        return sum(layer.thickness for layer in self.layers)
+
+    def scattered(self, f: Float, cosine: Float) -> Scattered:
+        """T and R of a plane wave.
+
+        Args:
+            f: frequencies, Hz.
+            cosine: of the angle of incidence, above 0; the shapes broadcast.
+        """
+        outside = 1 / cosine if self.parallel else cosine
+        e, h = np.ones_like(outside, complex), outside.astype(complex)
+        left: Complex = np.ones_like(outside, complex)
+        for layer in reversed(self.layers):
+            eps = layer.eps(f)
+            q = np.sqrt(eps - 1 + cosine * cosine)  # Im <= 0: the wave decays
+            y = eps / q if self.parallel else q
+            once = np.exp(-2j * np.pi / SPEED_OF_LIGHT * layer.thickness * f * q)
+            even, odd = (1 + once * once) / 2, (1 - once * once) / 2
+            e, h = even * e + odd * h / y, odd * y * e + even * h
+            left = left * once
+        return Scattered(2 * outside * left / (outside * e + h), 1 - 2 * h / (outside * e + h))
+
+    def passed(self, f: Float, cosine: Float) -> Complex:
+        """H = T exp(j k0 D cos): what a leg keeps of its field where a wall stands instead of air.
+
+        Args:
+            f, cosine: as `scattered`.
+        """
+        air = np.exp(2j * np.pi / SPEED_OF_LIGHT * self.depth * f * cosine)
+        h: Complex = self.scattered(f, cosine).transmitted * air
+        return h

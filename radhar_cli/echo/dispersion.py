@@ -57,12 +57,13 @@ class Passed:
         given = through.cosine[np.isfinite(through.cosine)]
         self.low, self.high = given.min(initial=1.0), given.max(initial=0.0)
         self.low = min(self.low, self.high - NARROW)
-        self.coefficients = _polynomial(through.layers, waveform.frequencies(), self.low, self.high)
+        self.layers, self.f = through.layers, waveform.frequencies()
+        self.coefficients = _polynomial(self.layers, self.f, self.low, self.high)
 
     def both(self, through: Through) -> Iterator[tuple[slice, Complex]]:
         """Some pulses, and H_tx H_rx [N_ADC, I, some] of their paths, until there are no more."""
         _, paths, pulses = through.cosine.shape
-        length = max(1, BLOCK // (self.coefficients.shape[1] * max(paths, 1)))
+        length = max(1, BLOCK // (self.f.size * max(paths, 1)))
         for start in range(0, pulses, length):
             tx, rx = through.cosine[..., start : start + length]
             yield slice(start, start + length), self(tx) * self(rx)
@@ -71,14 +72,17 @@ class Passed:
         """H [N_ADC, ...] at cosines [...]; 1 where they are nan: beside the wall."""
         x = (2 * cosine - self.low - self.high) / (self.high - self.low)
         crossed = np.isfinite(x)
+        if self.coefficients is None:
+            f = self.f.reshape(-1, *(1,) * x.ndim)
+            return np.where(crossed, self.layers.passed(f, np.where(crossed, cosine, 1)), 1)
         terms = chebyshev.chebvander(np.where(crossed, x, 0).ravel(), len(self.coefficients) - 1)
         h = (terms @ self.coefficients.view(float)).view(complex).T.reshape(-1, *x.shape)
         return np.where(crossed, h, 1)
 
 
-def _polynomial(layers: Layers, f: Float, low: float, high: float) -> Complex:
-    """Coefficients [degree + 1, N] of Chebyshev polynomials in the cosine from low to high."""
-    found = np.empty((0, f.size), complex)
+def _polynomial(layers: Layers, f: Float, low: float, high: float) -> Complex | None:
+    """Coefficients [degree + 1, N] of Chebyshev polynomials in the cosine from low to high; None
+    of a wall that rings too sharply."""
     for degree in DEGREES:
         x = chebyshev.chebpts1(degree)
         cosine = low + (x + 1) * (high - low) / 2
@@ -88,4 +92,4 @@ def _polynomial(layers: Layers, f: Float, low: float, high: float) -> Complex:
         small = np.abs(found).max(axis=1) < ROUNDING * np.abs(found).max()
         if small[-2:].all():
             return np.ascontiguousarray(found[: np.flatnonzero(~small)[-1] + 1])
-    return found
+    return None

@@ -80,7 +80,7 @@ def naive_beat(paths: PathSource, w: Waveform) -> np.ndarray:
     """s_b[n, m], complex128, one vectorised exponential a scatterer: the formula as it stands."""
     n = np.arange(w.n_adc)[:, None]
     beat = np.zeros((w.n_adc, w.n_pulses), dtype=complex)
-    for tau, a in zip(*paths(w.times(np.arange(w.n_pulses, dtype=float))), strict=True):
+    for tau, a in zip(*paths(w.times(np.arange(w.n_pulses, dtype=float)))[:2], strict=True):
         beat += a * np.exp(-2j * np.pi * (w.fc * tau + w.slope * tau * n / w.adc_rate))
     return beat
 
@@ -204,7 +204,7 @@ def rows(rounds: int) -> dict[str, Any]:
         if number in (1, 7):
             paths, w = reference["paths"], reference["waveform"]
             beat, at = naive_beat(paths, w), np.arange(0, w.n_pulses, 97)
-            fast = beat_matrix(*paths(w.times(at.astype(float))), w)
+            fast = beat_matrix(*paths(w.times(at.astype(float)))[:2], w)
             gap = np.linalg.norm(fast - beat[:, at]) / np.linalg.norm(beat[:, at])
             errors["cube_against_naive"] = max(errors["cube_against_naive"], float(gap))
         if np.any(x):

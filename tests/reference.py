@@ -1,15 +1,16 @@
 """The model of docs/model.md, sections 3 to 5, as naively as it reads: what the tests compare with.
 
-Nothing here comes from radhar_cli. Loops where the package has matrices, one exponential a
-scatterer where it has products and tables; meant for small sizes.
+Nothing here comes from radhar_cli but the type of paths. Loops where the package has matrices, one
+exponential a scatterer where it has products and tables; meant for small sizes.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import floor, log2
-from typing import NamedTuple
 
 import numpy as np
+
+from radhar_cli.echo.paths import Paths
 
 C = 299_792_458.0
 
@@ -53,13 +54,6 @@ class Radar:
         return np.arange(round(self.duration * self.prf)) / self.prf
 
 
-class PathsAt(NamedTuple):
-    """Delays [I, M] and amplitudes [I, M] of paths at some times."""
-
-    delay: np.ndarray
-    amplitude: np.ndarray
-
-
 @dataclass
 class Points:
     """A source of paths without a body: points seen by a radar at the origin.
@@ -80,11 +74,11 @@ class Points:
     def __post_init__(self) -> None:
         self.asked: list[np.ndarray] = []
 
-    def __call__(self, t: np.ndarray) -> PathsAt:
+    def __call__(self, t: np.ndarray) -> Paths:
         self.asked.append(t)
         r = self.ranges(t)
         a = np.broadcast_to(np.atleast_1d(self.strength)[:, None] / r**2, r.shape).copy()
-        return PathsAt(2 * r / C, a)
+        return Paths(2 * r / C, a)
 
 
 def turn(cycles: np.ndarray) -> np.ndarray:

@@ -452,8 +452,8 @@ def _wall_problems(c: Config) -> Iterator[Problem]:
 def _layer_problems(c: Config, wall: WallConfig) -> Iterator[Problem]:
     """Layers and exact echoes that do not go with the rest."""
     if (wall.layers is None) != (wall.size_m[0] is not None):
-        right = "should be [null, y, z] with wall.layers" if wall.layers else "should be numbers"
-        yield Problem("wall.size_m", list(wall.size_m), right)
+        right = "should be null with wall.layers" if wall.layers else "should be a number"
+        yield Problem("wall.size_m.0", wall.size_m[0], right)
     for number, layer in enumerate(wall.layers or ()):
         given = (layer.material is not None) + (layer.eps_r is not None)
         if given != 1 or (layer.material and layer.loss_tangent):

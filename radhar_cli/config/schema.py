@@ -1570,6 +1570,8 @@ class Config(Section):
             return self.radar.cfg is None
         if key in ("receiver.noise_figure_db", "radar.transmit_power_dbm"):
             return self.receiver.noise_figure_db is not None and self.snr_db is None
+        if key in ("wall.eps_r", "wall.loss_tangent"):
+            return self.wall is not None and self.wall.layers is None
         if key == "room.back_wall_reflection_db":
             return self.room.back_wall_m is not None
         if key.startswith("image.cfar."):

@@ -35,7 +35,7 @@ class Field(NamedTuple):
 PREFIXES = {"wall": "wall", "image.cfar": "cfar", "radar.beam": "beam", "room.box_m": "room"}
 PREFIXES |= {f"room.faces.{name}": name for name in FacesConfig.model_fields}
 # And those of lists, with the number in the list.
-LISTS = {"room.reflectors": "reflector", "receiver.tones": "tone"}
+LISTS = {"room.reflectors": "reflector", "receiver.tones": "tone", "wall.layers": "layer"}
 # The one number of a scene that is measured, not drawn.
 ERROR = Field("error_db", "error_db", "dB", 1.0)
 

@@ -87,7 +87,7 @@ def interpolated_sum(
     cycles, real, imag = np.empty(shape), *np.empty((2, *shape), np.float32)
     square = 0.5 * w.slope if w.residual_video_phase else 0.0
     scale = (w.f0, square, w.slope / w.adc_rate, 1 / unit, bool(w.n0 % 1))
-    _machine_code(_at_knots)(*paths, some, scale, table.cubics, cycles, real, imag)
+    _machine_code(_at_knots)(*paths[:2], some, scale, table.cubics, cycles, real, imag)
     total = np.zeros(shift.size * step, dtype=complex)
     _machine_code(_add)(cycles, real, imag, shift, *_cubics(step), SINE, COSINE, total)
     return total

@@ -81,7 +81,8 @@ def write_map(file: h5py.File, name: str, power_map: PowerMap) -> None:
 
 def _float32(power: np.ndarray[Any, Any]) -> np.ndarray[Any, np.dtype[np.float32]]:
     limits = np.finfo(np.float32)
-    single: np.ndarray[Any, np.dtype[np.float32]] = np.clip(power, 0, limits.max).astype(np.float32)
+    single: np.ndarray[Any, np.dtype[np.float32]]
+    single = np.clip(power, -limits.max, limits.max).astype(np.float32)
     return single
 
 

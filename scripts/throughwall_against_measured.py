@@ -5,7 +5,7 @@
 The picture is that of JoeyBGOfficial's through-wall data (jet colours, no axes): 256 samples over
 256 profiles, near the radar at the bottom. A person of segments walks away from 0.7 to 2.3 GHz
 behind nothing, a wall without and with its reflections, with a floor, and in a room of order 1.
-OUT/beside.png shows all six. The table has, for each, by how much the trail differs from the
+OUT/beside.png shows all. The table has, for each, by how much the trail differs from the
 measured one: rms over the 17 stripes behind the first return, in dB of the mean amplitude.
 """
 
@@ -87,27 +87,27 @@ def trail(image: Float) -> Float:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("picture", type=Path)
+    parser.add_argument("picture", type=Path, nargs="?", help="without it nothing is compared")
     parser.add_argument("-o", "--out", type=Path, required=True)
     parser.add_argument("--seeds", type=int, default=5)
     given = parser.parse_args()
     given.out.mkdir(parents=True, exist_ok=True)
-    right = measured(given.picture)
-    matplotlib.use("Agg")
-    figure, axes = plt.subplots(2, 3, figsize=(12, 7), layout="constrained")
-    panels = iter(axes.ravel())
+    shown: dict[str, Float] = {}
+    right = None if given.picture is None else measured(given.picture)
     for name, scene in SCENES.items():
         images = [simulated(scene, seed) for seed in range(1, given.seeds + 1)]
-        apart = [np.sqrt(np.mean((trail(one) - trail(right)) ** 2)) for one in images]
-        print(f"{name:22s} {np.mean(apart):4.1f} dB ({min(apart):.1f} to {max(apart):.1f})")
-        _draw(next(panels), images[0], name)
-    _draw(next(panels), right, "measured")
+        shown[name] = images[0]
+        if right is not None:
+            apart = [np.sqrt(np.mean((trail(one) - trail(right)) ** 2)) for one in images]
+            print(f"{name:22s} {np.mean(apart):4.1f} dB ({min(apart):.1f} to {max(apart):.1f})")
+    if right is not None:
+        shown["measured"] = right
+    matplotlib.use("Agg")
+    figure, panels = plt.subplots(1, len(shown), figsize=(3 * len(shown), 3), layout="constrained")
+    for panel, (title, image) in zip(panels, shown.items(), strict=True):
+        panel.imshow(image, origin="lower", aspect="auto", cmap="jet", vmin=-1, vmax=1)
+        panel.set(title=title, xticks=[], yticks=[])
     figure.savefig(given.out / "beside.png", dpi=70)
-
-
-def _draw(panel: Any, image: Float, title: str) -> None:
-    panel.imshow(image, origin="lower", aspect="auto", cmap="jet", vmin=-1, vmax=1)
-    panel.set(title=title, xticks=[], yticks=[])
 
 
 if __name__ == "__main__":

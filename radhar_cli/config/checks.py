@@ -102,6 +102,9 @@ def _step_problems(c: Config) -> Iterator[Problem]:
         if "rtm" in c.maps:
             right = "should be maps of Doppler: radar.waveform: cw has no range"
             yield Problem("maps", list(c.maps), right)
+        if radar.output == "real" and (wrong := [n for n in c.maps if "compensated" in n]):
+            right = "should be others with radar.output: real, which has no sign of the Doppler"
+            yield Problem("maps", wrong, right)
         if c.processing.range_sum == "gated":
             right = "should be coherent with radar.waveform: cw, which has no range"
             yield Problem("processing.range_sum", "gated", right)

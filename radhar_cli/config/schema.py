@@ -249,6 +249,8 @@ class RadarConfig(Section):
     """sfcw: sweeps of steps, sampled once each; cw: one sample a pulse, at carrier_hz; impulse:
     Gaussian pulses from carrier_hz to carrier_hz + bandwidth_hz (-10 dB). Without adc_rate_hz and
     chirp_s; cw without bandwidth_hz."""
+    output: Annotated[Literal["iq", "real"], Needs("radar.waveform", "cw")] = "iq"
+    """Of cw: real is the in-phase channel alone, whose Doppler is symmetric."""
     steps: Annotated[int, Field(ge=2, le=2**20, strict=True)] | None = None
     """Of a sweep of sfcw: frequencies carrier_hz + n bandwidth_hz/steps."""
     dwell_s: Annotated[float, Field(gt=0, le=1e3, strict=True)] | None = None
@@ -1654,7 +1656,9 @@ def possible_maps(config: Config) -> tuple[str, ...]:
     if config.radar.waveform == "impulse":
         return ("rtm", "stft") if gated else ("rtm",)
     if config.radar.waveform == "cw":
-        return tuple(name for name in MAP_NAMES if name != "rtm")
+        real = config.radar.output == "real"
+        absent = "compensated" if real else "rtm"
+        return tuple(name for name in MAP_NAMES if name != "rtm" and absent not in name)
     if config.radar.cfg is None:
         return tuple(name for name in MAP_NAMES if not (gated and name.startswith("fsst")))
     flat = {"range_elevation"} if len(elevations(config)) < 2 else set()

@@ -127,7 +127,16 @@ def products(config: Config, entropy: bool = True) -> dict[str, Product]:
     board = config.radar.cfg is not None
     echo = board_products(config, entropy) if board else _echo(config)
     rows = (*_physics(config), *_signals(config), *_maps(config, entropy), *echo, *own_products())
-    return {row.name: row for row in rows}
+    found = {row.name: row for row in rows}
+    if config.radar.output == "real" and config.radar.waveform == "cw":
+        made = found["signal"]
+        found["signal"] = replace(made, make=lambda *given: in_phase(made.make(*given)))
+    return found
+
+
+def in_phase(signal: Signal) -> Signal:
+    """The real part of the samples."""
+    return signal.with_samples(signal.x.real.astype(complex))
 
 
 def _physics(c: Config) -> Iterator[Product]:

@@ -21,7 +21,7 @@ from radhar_cli.motion.protocol import Motion, Only
 from radhar_cli.pipeline.bodies import sources_of
 from radhar_cli.pipeline.physics import motion_of, reflectors_of
 from radhar_cli.pipeline.plan import Product
-from radhar_cli.pipeline.products import SIGNALS, EchoAccuracy, Fallback
+from radhar_cli.pipeline.products import SIGNALS, EchoAccuracy, Fallback, signal_of
 from radhar_cli.pipeline.run import Recording, record
 from radhar_cli.pipeline.validity import (
     BLACK,
@@ -155,7 +155,8 @@ def simulate(
     frames = [product for name in maps for product in FRAMES.get(name, ())]
     frames += ["points_kind"] if "points" in maps and config.room.faces else []
     maps = tuple(name for name in maps if name not in FRAMES)
-    signals = SIGNALS[:1] if board or config.radar.waveform == "impulse" else SIGNALS
+    of_maps = {signal_of(name) for name in possible if name in MAP_NAMES}
+    signals = [name for name in SIGNALS if name in of_maps] if not board else SIGNALS[:1]
     frames += ["cube"] if board and raw and "cube" not in frames else []
     asked = [*signals, *maps, *frames, "waveform", "antennas", "wall"]
     asked += ["board"] if board else []

@@ -168,6 +168,7 @@ CHANGES: dict[str, object] = {
     "radar.half_wavelength_m": 1.9e-3,
     "radar.transmit_power_dbm": 10.0,
     "radar.waveform": "sfcw",
+    "radar.output": "real",
     "radar.steps": 100,
     "radar.dwell_s": 1e-5,
     "radar.profile_m": (0.0, 5.0),

@@ -176,11 +176,28 @@ def test_one_sample_a_pulse_without_modulation(kind: str) -> None:
     np.testing.assert_allclose(found.signals["raw"].x[0, 0, :5], expected, rtol=1e-6)
 
 
+@pytest.mark.parametrize("kind", ["direct", "cube"])
+def test_the_doppler_of_real_samples_is_symmetric(kind: str) -> None:
+    document: dict[str, Any] = {"duration_s": 1, "snr_db": 10, "engine": {"kind": kind}}
+    radar = CW["radar"] | {"output": "real"}
+    config = Config.model_validate(CW | document | {"radar": radar, "maps": ["stft"]})
+    both = Config.model_validate(CW | document | {"maps": ["stft"]})
+    found, complex_ = (simulate(one, nominal=True, maps=("stft",)) for one in (config, both))
+    np.testing.assert_array_equal(found.signals["raw"].x, complex_.signals["raw"].x.real)
+    power = found.maps["stft"].power
+    odd = len(power) % 2 == 0  # -PRF/2 has no partner
+    assert np.abs(power[odd:] - power[odd:][::-1]).max() < 1e-12 * power.max()
+
+
 @pytest.mark.parametrize(
     ("more", "message"),
     [
         ({"maps": ["rtm"]}, r"maps.*should be maps of Doppler"),
         ({"processing": {"range_sum": "gated"}}, r"range_sum.*coherent with radar.waveform: cw"),
+        (
+            {"radar": {**CW["radar"], "output": "real"}, "maps": ["stft_compensated"]},
+            r"maps.*others with radar.output: real",
+        ),
         ({"radar": CW["radar"] | {"chirp_s": 1e-5}}, r"radar.chirp_s.*should be left out"),
     ],
 )

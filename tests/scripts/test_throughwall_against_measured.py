@@ -1,4 +1,4 @@
-"""scripts/throughwall_against_measured.py: reads a picture, measures what trails behind a return."""
+"""scripts/throughwall_against_measured.py: reads a picture, measures what trails in it."""
 
 import importlib.util
 from pathlib import Path

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from radhar_cli.radar.layers import Layer, Layers
 from radhar_cli.radar.materials import MATERIALS
+from radhar_cli.radar.wall import Crossing, Wall, field_factor
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
 EPS_6 = (Layer(0.24, 6 - 0.18j),)
@@ -69,7 +70,7 @@ layer = st.builds(Layer, st.floats(1e-3, 0.5), st.floats(1, 12).map(complex))
 )
 def test_without_loss_no_power_is_lost(several, f, cosine, parallel) -> None:
     t, r = Layers(tuple(several), parallel).scattered(one(f), one(cosine))
-    assert abs(t) ** 2 + abs(r) ** 2 == pytest.approx(1, abs=1e-11)
+    assert abs(t) ** 2 + abs(r) ** 2 == pytest.approx(1, abs=1e-12)
 
 
 def test_windows_of_half_and_quarter_a_wave() -> None:
@@ -91,6 +92,14 @@ def test_the_second_pass_is_21_dB_below_the_first() -> None:
     at_2 = np.abs(f - 2e9).argmin()
     assert 20 * log10(abs(second[at_2])) == pytest.approx(-21.48, abs=0.02)
     assert t == pytest.approx(single / (1 - second), abs=1e-12)
+
+
+def test_where_nothing_comes_back_it_is_the_loss_at_the_carrier() -> None:
+    # 1 m with a loss tangent of 0.1 swallows what is reflected inside.
+    thick = Wall((2.0, 0.0, 0.0), (1.0, 9.0, 9.0), 6.0, 0.1)
+    loss = field_factor(Crossing(one(1.0), np.array(2)), thick, 2e9)
+    left = Layers((Layer(1.0, thick.permittivity),), False).passed(one(2e9), one(1))
+    assert 20 * log10(abs(left) / loss) == pytest.approx(0, abs=0.02)
 
 
 @pytest.mark.parametrize("parallel", [False, True])

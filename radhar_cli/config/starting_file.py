@@ -110,7 +110,7 @@ def of_board(cfg: Path, folder: Path) -> str:
     path = os.path.relpath(cfg.resolve(), folder.resolve())
     what = f"{len(board.order)} transmitters and {len(board.receivers)} receivers"
     return f"""# {what}; {1 / board.period_s:.4g} frames a second of {board.loops} loops;
-# ranges to {range_step:.3g} m, speeds of +-{speed:.3g} m/s. docs/boards.md explains what comes out.
+# ranges to {range_step:.3g} m, speeds of +-{speed:.3g} m/s. What comes out: docs/guide/boards.md
 radar: {{device: {device}, cfg: {json.dumps(path)}, position_m: [0, 0, 1]}}
 samples_per_class: 20
 activities: [punching, kicking, grabbing, sitting_down, standing_up]

@@ -1,6 +1,6 @@
 """Write docs/reference/commands/*.md, a page a heading of `radhar --help`, out of the program.
 
-    python scripts/command_pages.py
+python scripts/command_pages.py
 """
 
 import re
@@ -26,7 +26,7 @@ def pages() -> dict[str, str]:
             f"# Commands: {heading.lower()}",
             "",
             f"After this page you know every argument and option of {', '.join(shown)}.",
-            "All commands also take `--json`, `--quiet` and `--help`: [output.md](../output.md).",
+            "All commands also take `--json`, `--quiet` and `--help`: [output](../output.md).",
         ]
         for name in names:
             lines += _command(f"radhar {name}", known.commands[name])

@@ -1,4 +1,4 @@
-"""Write what docs/reference has of keys and commands, out of the schema and the program.
+"""Write the tables of config keys into docs/reference, out of the schema.
 
     python scripts/config_tables.py
 
@@ -22,6 +22,7 @@ from radhar_cli.config.schema import Config, PerActivity, Section
 from radhar_cli.config.starting_file import as_text
 
 REFERENCE = Path(__file__).resolve().parents[1] / "docs/reference"
+PAGES = ("config.md", "config_signal.md", "limits.md")
 PLACE = re.compile(r"(<!-- (keys: [^>]*|limits) -->\n).*?(<!-- end -->)", re.DOTALL)
 
 
@@ -145,8 +146,8 @@ def _range(about: tuple[Any, ...]) -> str:
 
 
 def main() -> None:
-    """Write both pages."""
-    for page in (REFERENCE / "config.md", REFERENCE / "limits.md"):
+    """Write the pages."""
+    for page in map(REFERENCE.joinpath, PAGES):
         page.write_text(written(page.read_text()))
 
 

@@ -139,7 +139,7 @@ After this page you know what each of the nine maps shows of each of the twelve 
 
 All nine maps of all twelve classes, 50 dB from dark to bright, drawn and written by
 `python scripts/draw_gallery.py`. First people as they move (`motion.model: human`,
-[motion.md](../guide/motion.md)), one of each class of the human configs, facing the radar; then
+[motion](../guide/motion.md)), one of each class of the human configs, facing the radar; then
 the paper's motion in the scenes of its two figures: a person of 1.8 m at 2 m (S1 to S7) or 1 m
 (S8 to S12).
 """
@@ -148,7 +148,7 @@ Denoising (rows 3, 5, 7, 9) is a low-pass at 0.32 of PRF/2: it takes the fast li
 FSST (rows 6 to 9) is thinner than the STFT: a tone falls into one bin. Through the wall, the
 walkers of S8 to S12 start inside it (x = 1 m): their first moments are bright, and what follows
 lies 10 dB of wall and the growing range below. See also the limits in
-[model.md](../physics/model.md).
+[the model](../physics/model.md).
 """
 
 

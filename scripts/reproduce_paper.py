@@ -5,8 +5,8 @@
 Every step is a `radhar` command and resumes where it was stopped; run the same line again. Each
 finished run leaves one record, docs/records/paper/SCALE/RUN.json, which is committed; data sets and
 runs are not. The tables are made from the records alone, so a machine that has one run adds its
-row and the others stay; a row that has a record of all epochs is run --again only. See SCALES for what each
-scale does.
+row and the others stay; a row that has a record of all epochs is run --again only. See SCALES for
+what each scale does.
 
 Beside each data set and each run that it makes, the script notes commit and machine
 (NAME.made.json), for the record; --made-at says it of those that were made without it.

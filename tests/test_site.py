@@ -1,0 +1,97 @@
+"""The site builds without a warning, and its notebook runs."""
+
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import nbformat
+import pytest
+from command_line import ROOT
+from nbclient import NotebookClient
+
+import radhar_cli
+
+NOTEBOOK = ROOT / "notebooks/first_hour.ipynb"
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What `mkdocs build --strict` makes: a dead link, or a page that no menu has, fails."""
+    out = tmp_path_factory.mktemp("site")
+    build = (sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "-d", out)
+    done = subprocess.run(
+        [*map(str, build)],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        env={**os.environ, "NO_MKDOCS_2_WARNING": "1"},
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return out
+
+
+def test_every_page_is_there(site: Path) -> None:
+    for page in (ROOT / "docs").rglob("*.md"):
+        path = page.relative_to(ROOT / "docs").with_suffix("")
+        made = site / path / "index.html" if path.name != "index" else site / "index.html"
+        assert made.is_file(), path
+
+
+def test_python_page_has_the_interface(site: Path) -> None:
+    text = (site / "reference/python/index.html").read_text()
+    for name, module in radhar_cli._INTERFACE.items():
+        assert re.search(rf'id="{module}[\w.]*\.{name}"', text), name
+
+
+class _Loaded(HTMLParser):
+    """Addresses that a browser would fetch to show a page."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.found: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        known = dict(attrs)
+        if tag in ("script", "img", "iframe"):
+            self.found.append(known.get("src") or "")
+        elif tag == "link" and known.get("rel") == "stylesheet":
+            self.found.append(known.get("href") or "")
+
+
+def test_pages_fetch_nothing_from_elsewhere(site: Path) -> None:
+    for page in site.rglob("*.html"):
+        for address in _Loaded(page.read_text()).found:
+            assert not address.startswith(("http:", "https:", "//")), (page, address)
+
+
+def code_cells(notebook: Any) -> Iterator[Any]:
+    return (cell for cell in notebook.cells if cell.cell_type == "code")
+
+
+def test_the_notebook_is_stored_as_it_ran(site: Path) -> None:
+    """Cells in order, without an error, and shown on the site."""
+    notebook = nbformat.read(NOTEBOOK, 4)
+    cells = [*code_cells(notebook)]
+    assert [cell.execution_count for cell in cells] == [*range(1, len(cells) + 1)]
+    assert all(out.output_type != "error" for cell in cells for out in cell.outputs)
+    shown = (site / "guide/first_hour/index.html").read_text()
+    assert shown.count("data:image/") >= 4
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::RuntimeWarning:zmq")
+def test_the_notebook_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}")
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+    notebook = nbformat.read(NOTEBOOK, 4)
+    NotebookClient(notebook, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    *_, last = code_cells(notebook)
+    lines = "".join(out.text for out in last.outputs).splitlines()
+    assert [line.split(":")[0] for line in lines] == ["recorded"] * 2
+    assert all(line.split("/")[0].split()[1] in line.split(": ")[2] for line in lines), lines

@@ -255,8 +255,8 @@ class RadarConfig(Section):
     dwell_s: Annotated[float, Field(gt=0, le=1e3, strict=True)] | None = None
     """On each step of sfcw."""
     cfg: Annotated[str, Field(min_length=1, max_length=2**16)] | None = None
-    """The .cfg of a TI board, which gives the waveform: a path from this file's folder on. A config
-    that is written has its text."""
+    """The .cfg of a TI board, which gives the waveform: a path from this file's folder on, or a
+    known radar (docs/guide/boards.md). A config that is written has its text."""
     device: Literal[tuple(DEVICES)] | None = None  # type: ignore[valid-type]
     """The board that the .cfg runs on: its antenna array."""
     array: ArrayConfig | None = None

@@ -49,7 +49,7 @@ def test_commands_and_their_options_exist(page: Path) -> None:
         known: Any = get_command(program())
         for word in words:
             known = getattr(known, "commands", {}).get(word, known)
-        there = {name for parameter in known.params for name in parameter.opts}
+        there = {o for one in known.params for o in (*one.opts, *one.secondary_opts)}
         assert set(options) <= {*there, "--help"}, words
 
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import command_pages
 import config_tables
+import h5py
 import pytest
 from documents import DOCS, PAGES, Row, commands, leaves, rows, value_at, written
 from pydantic import BaseModel
@@ -16,6 +17,8 @@ from radhar_cli.config import Config
 from radhar_cli.config.reading import load_section
 from radhar_cli.config.schema import FilesConfig
 from radhar_cli.learning.settings import ScheduleConfig, TrainConfig
+from radhar_cli.simulation.scene_file import write_scene
+from radhar_cli.simulation.simulate import simulate
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = {page.name: page for page in DOCS}
@@ -84,6 +87,24 @@ def test_pages_of_commands_are_those_of_the_program() -> None:
     """`python scripts/command_pages.py` writes them."""
     found = {page.name: page.read_text() for page in command_pages.FOLDER.glob("*")}
     assert found == command_pages.pages()
+
+
+def test_every_entry_of_a_scene_is_documented(tmp_path: Path) -> None:
+    scene = simulate(
+        ROOT / "configs/human/people.yaml", "walking", maps=("rtm", "stft_compensated")
+    )
+    write_scene(scene, tmp_path / "scene.h5")
+    text, entries = PAGE["files.md"].read_text(), list[str]()
+    with h5py.File(tmp_path / "scene.h5") as file:
+        file.visititems(lambda name, item: entries.append(name) if hasattr(item, "shape") else None)
+        assert all(f"`{name}`" in text for name in file.attrs)
+    for name in entries:
+        name = re.sub(r"^truth/person_\d+/", "truth/", name)
+        name = re.sub(r"^truth/paths/.*", "truth/paths", name)
+        name = re.sub(r"^(maps|axes)/\w+", r"\1/<map>", name)
+        name = re.sub(r"(<map>/)\w+", r"\1<axis>", name)
+        name = re.sub(r"^slow_time/\w+", "slow_time/<stage>", name)
+        assert f"`/{name}`" in text, name
 
 
 OF_FILES = FilesConfig(files=("wave.bvh",))

@@ -11,12 +11,10 @@ from typing import Any
 
 import nbformat
 import pytest
+import run_notebook
 from command_line import ROOT
-from nbclient import NotebookClient
 
 import radhar_cli
-
-NOTEBOOK = ROOT / "notebooks/first_hour.ipynb"
 
 
 @pytest.fixture(scope="module")
@@ -76,7 +74,7 @@ def code_cells(notebook: Any) -> Iterator[Any]:
 
 def test_the_notebook_is_stored_as_it_ran(site: Path) -> None:
     """Cells in order, without an error, and shown on the site."""
-    notebook = nbformat.read(NOTEBOOK, 4)
+    notebook = nbformat.read(run_notebook.NOTEBOOK, 4)
     cells = [*code_cells(notebook)]
     assert [cell.execution_count for cell in cells] == [*range(1, len(cells) + 1)]
     assert all(out.output_type != "error" for cell in cells for out in cell.outputs)
@@ -86,12 +84,8 @@ def test_the_notebook_is_stored_as_it_ran(site: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::RuntimeWarning:zmq")
-def test_the_notebook_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("PATH", f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}")
-    monkeypatch.setenv("PYTHONPATH", str(ROOT))
-    notebook = nbformat.read(NOTEBOOK, 4)
-    NotebookClient(notebook, resources={"metadata": {"path": str(tmp_path)}}).execute()
-    *_, last = code_cells(notebook)
+def test_the_notebook_runs(tmp_path: Path) -> None:
+    *_, last = code_cells(run_notebook.executed(tmp_path))
     lines = "".join(out.text for out in last.outputs).splitlines()
     assert [line.split(":")[0] for line in lines] == ["recorded"] * 2
     assert all(line.split("/")[0].split()[1] in line.split(": ")[2] for line in lines), lines

@@ -46,26 +46,34 @@ def test_python_page_has_the_interface(site: Path) -> None:
         assert re.search(rf'id="{module}[\w.]*\.{name}"', text), name
 
 
-class _Loaded(HTMLParser):
-    """Addresses that a browser would fetch to show a page."""
+class _Addresses(HTMLParser):
+    """What a browser fetches to show a page, and where its links lead."""
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, page: Path) -> None:
         super().__init__()
-        self.found: list[str] = []
-        self.feed(text)
+        self.fetched: list[str] = []
+        self.links: list[str] = []
+        self.feed(page.read_text())
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         known = dict(attrs)
         if tag in ("script", "img", "iframe"):
-            self.found.append(known.get("src") or "")
+            self.fetched.append(known.get("src") or "")
         elif tag == "link" and known.get("rel") == "stylesheet":
-            self.found.append(known.get("href") or "")
+            self.fetched.append(known.get("href") or "")
+        elif tag == "a":
+            self.links.append(known.get("href") or "")
 
 
-def test_pages_fetch_nothing_from_elsewhere(site: Path) -> None:
-    for page in site.rglob("*.html"):
-        for address in _Loaded(page.read_text()).found:
-            assert not address.startswith(("http:", "https:", "//")), (page, address)
+def test_pages_fetch_nothing_from_elsewhere_and_their_links_lead_somewhere(site: Path) -> None:
+    """Those of the notebook too, which MkDocs does not look at."""
+    for page in {*site.rglob("*.html")} - {site / "404.html"}:
+        addresses = _Addresses(page)
+        for address in addresses.fetched + addresses.links:
+            elsewhere = re.match(r"https?:|//", address)
+            assert not (elsewhere and address in addresses.fetched), (page, address)
+            if not elsewhere and not address.startswith("data:"):
+                assert (page.parent / address.partition("#")[0]).exists(), (page, address)
 
 
 def code_cells(notebook: Any) -> Iterator[Any]:

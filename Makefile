@@ -58,6 +58,10 @@ test-all: $(DEV) ## The same with every test at full size, in twenty minutes
 	$(PYTEST) -m ""
 	$(MAKE) smoke
 
+.PHONY: site
+site: $(DEV) ## Build the documentation into build/site
+	$(BIN)/python -m mkdocs build --strict
+
 .PHONY: bench
 bench: $(DEV) ## Measure speed and memory (about fifteen minutes, on a quiet machine)
 	$(BIN)/python scripts/bench_generate.py

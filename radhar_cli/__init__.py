@@ -1,6 +1,6 @@
 """radhar: labelled FMCW radar data sets for human activity recognition.
 
-The packages, in the order in which imports go; docs/architecture.md has the way of the data:
+The packages, in the order in which imports go (docs/reference/architecture.md):
 
     motion        `Motion`: scatterers over time; the paper's model, the human one, their skeleton
     activity      the twelve activities, and user-defined classes
@@ -38,7 +38,7 @@ Axes: x is range, y cross-range, z height. Positions are ``p[axis, joint, time]`
 down: row 0 is the top, the highest Doppler or the farthest range. Approaching is positive Doppler.
 
 Source of the model: W. Gao, "RadHARSimulator V1: Model-Based FMCW Radar Human Activity
-Recognition Simulator", 2025; docs/model.md lists where and why we differ from it.
+Recognition Simulator", 2025; docs/physics/model.md lists where and why we differ from it.
 """
 
 __version__ = "0.1.0"

@@ -59,7 +59,7 @@ def keep_memory(up_to: int | None = None) -> None:
     """Stop glibc from returning memory after each array, unless the user has configured it.
 
     Fresh pages, mapped, zeroed and faulted in for every temporary array, would take most of a
-    sample's time, and two thirds of a training step's (docs/training.md).
+    sample's time, and two thirds of a training step's (docs/guide/training.md).
 
     Args:
         up_to: bytes of the largest array whose memory is kept, and half of what is kept in all;

@@ -1,4 +1,4 @@
-"""Write the tables of config keys into docs/config.md and docs/limits.md, out of the schema.
+"""Write the tables of config keys into docs/reference, out of the schema.
 
     python scripts/config_tables.py
 
@@ -21,7 +21,8 @@ from radhar_cli.config.number import MAX_NUMBER, Bounds, Choice, Normal, Uniform
 from radhar_cli.config.schema import Config, PerActivity, Section
 from radhar_cli.config.starting_file import as_text
 
-DOCS = Path(__file__).resolve().parents[1] / "docs"
+REFERENCE = Path(__file__).resolve().parents[1] / "docs/reference"
+PAGES = ("config.md", "config_signal.md", "limits.md")
 PLACE = re.compile(r"(<!-- (keys: [^>]*|limits) -->\n).*?(<!-- end -->)", re.DOTALL)
 
 
@@ -145,8 +146,8 @@ def _range(about: tuple[Any, ...]) -> str:
 
 
 def main() -> None:
-    """Write both pages."""
-    for page in (DOCS / "config.md", DOCS / "limits.md"):
+    """Write the pages."""
+    for page in map(REFERENCE.joinpath, PAGES):
         page.write_text(written(page.read_text()))
 
 

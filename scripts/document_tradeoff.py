@@ -1,4 +1,4 @@
-"""Put the results of `radhar tradeoff` into docs/tradeoff.md, between its markers.
+"""Put the results of `radhar tradeoff` into docs/results/tradeoff.md, between its markers.
 
     python scripts/document_tradeoff.py OUT [OUT ...]
 
@@ -13,7 +13,7 @@ from pathlib import Path
 from radhar_cli.tradeoff.report import FIGURE, TEXT
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
-PAGE, FIGURES = DOCS / "tradeoff.md", DOCS / "tradeoff"
+PAGE, FIGURES = DOCS / "results/tradeoff.md", DOCS / "images/tradeoff"
 
 
 def part(out: Path) -> tuple[str, str]:
@@ -23,7 +23,7 @@ def part(out: Path) -> tuple[str, str]:
     name = heading.rpartition(": ")[2]
     FIGURES.mkdir(exist_ok=True)
     (FIGURES / f"{name}.png").write_bytes((out / FIGURE).read_bytes())
-    text = text.replace(f"]({FIGURE})", f"]({FIGURES.name}/{name}.png)")
+    text = text.replace(f"]({FIGURE})", f"](../images/{FIGURES.name}/{name}.png)")
     return name, re.sub(r"^#", "##", text, flags=re.MULTILINE)
 
 

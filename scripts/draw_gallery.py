@@ -1,4 +1,4 @@
-"""Draw docs/overview.png, docs/gallery_*.png and write docs/gallery.md, from real builds.
+"""Draw docs/images/overview.png and gallery_*.png, write docs/results/gallery.md: real builds.
 
     python scripts/draw_gallery.py [-o docs]
 
@@ -135,16 +135,20 @@ def gallery_rows(scenario: str) -> tuple[tuple[str, str, str], ...]:
 INTRODUCTION = """
 # Gallery
 
+After this page you know what each of the nine maps shows of each of the twelve classes.
+
 All nine maps of all twelve classes, 50 dB from dark to bright, drawn and written by
 `python scripts/draw_gallery.py`. First people as they move (`motion.model: human`,
-[motion.md](motion.md)), one of each class of the human configs, facing the radar; then the paper's
-motion in the scenes of its two figures: a person of 1.8 m at 2 m (S1 to S7) or 1 m (S8 to S12).
+[motion](../guide/motion.md)), one of each class of the human configs, facing the radar; then
+the paper's motion in the scenes of its two figures: a person of 1.8 m at 2 m (S1 to S7) or 1 m
+(S8 to S12).
 """
 END = """
 Denoising (rows 3, 5, 7, 9) is a low-pass at 0.32 of PRF/2: it takes the fast limbs with it. The
 FSST (rows 6 to 9) is thinner than the STFT: a tone falls into one bin. Through the wall, the
 walkers of S8 to S12 start inside it (x = 1 m): their first moments are bright, and what follows
-lies 10 dB of wall and the growing range below. See also the limits in [model.md](model.md).
+lies 10 dB of wall and the growing range below. See also the limits in
+[the model](../physics/model.md).
 """
 
 
@@ -152,7 +156,7 @@ def words() -> str:
     lines = [INTRODUCTION.strip(), ""]
     for scenario, title in SCENARIOS.items():
         lines += [f"## {title[0].upper()}{title[1:]}", ""]
-        lines += [f"![{title}](gallery_{scenario}.png)", ""]
+        lines += [f"![{title}](../images/gallery_{scenario}.png)", ""]
     lines += ["## What each class shows, with the paper's motion", ""]
     for activity in ACTIVITIES:
         name = f"**{activity.label} {activity.slug.replace('_', ' ')}.**"
@@ -175,10 +179,10 @@ def main() -> None:
             path, overrides = CONFIGS[scenario]
             config = load_config(ROOT / "configs" / path, overrides)
             build(config, place / scenario, 1, BarProgress())
-        draw(place, OVERVIEW, 7.2, out / "overview.png")
+        draw(place, OVERVIEW, 7.2, out / "images/overview.png")
         for scenario in SCENARIOS:
-            draw(place, gallery_rows(scenario), 15, out / f"gallery_{scenario}.png")
-    (out / "gallery.md").write_text(words())
+            draw(place, gallery_rows(scenario), 15, out / f"images/gallery_{scenario}.png")
+    (out / "results/gallery.md").write_text(words())
 
 
 if __name__ == "__main__":

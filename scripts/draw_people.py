@@ -1,10 +1,10 @@
-"""Draw how people move: docs/people.gif, all twelve activities at true speed, and their frames.
+"""Draw how people move: docs/images/people.gif, twelve activities at true speed, and frames.
 
-    python scripts/draw_people.py [-o docs] [--index 1]
+    python scripts/draw_people.py [-o docs/images] [--index 1]
 
 Each cell shows the body from its side and, below, from where it faces at first; its right side is
-red. Scenes: configs/human/free_space_77GHz.yaml, facing the radar. docs/people_frames.png has a row
-of frames for each activity.
+red. Scenes: configs/human/free_space_77GHz.yaml, facing the radar. people_frames.png has a
+row of frames for each activity.
 """
 
 import argparse
@@ -107,7 +107,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("-o", "--out", type=Path, default=ROOT / "docs")
+    parser.add_argument("-o", "--out", type=Path, default=ROOT / "docs/images")
     parser.add_argument("--index", type=int, default=1, help="number of the sample in its class")
     given = parser.parse_args()
     config = load_config(ROOT / "configs/human/free_space_77GHz.yaml", OVERRIDES)

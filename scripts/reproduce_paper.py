@@ -1,12 +1,12 @@
-"""Build the paper's data sets, train its networks, evaluate them, and write docs/results.md.
+"""Build the paper's data sets, train its networks, evaluate them, and write docs/records/runs.md.
 
     python scripts/reproduce_paper.py --scale smoke|cpu|full [--only WORD ...] [--report-only]
 
 Every step is a `radhar` command and resumes where it was stopped; run the same line again. Each
-finished run leaves one record, docs/results/SCALE/RUN.json, which is committed; data sets and runs
-are not. The tables are made from the records alone, so a machine that has one run adds its row and
-the others stay; a row that has a record of all epochs is run --again only. See SCALES for what each
-scale does.
+finished run leaves one record, docs/records/paper/SCALE/RUN.json, which is committed; data sets and
+runs are not. The tables are made from the records alone, so a machine that has one run adds its
+row and the others stay; a row that has a record of all epochs is run --again only. See SCALES for
+what each scale does.
 
 Beside each data set and each run that it makes, the script notes commit and machine
 (NAME.made.json), for the record; --made-at says it of those that were made without it.
@@ -30,6 +30,7 @@ from typing import Any
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[1]
+FOLDER = "paper"  # of the records, beside the page
 BEGIN, END = "<!-- tables: scripts/reproduce_paper.py -->", "<!-- end of tables -->"
 SCENARIOS = {"free_space": "free space", "through_wall": "through the wall"}
 FRESH_SEED = 20261121
@@ -549,7 +550,7 @@ def rows_of(name: str, scale: Scale, records: dict[str, dict[str, Any]]) -> list
         other = Training(record["scenario"], record["snr_db"], record["model"])
         trainings.setdefault(key, replace(other, by_subject=record["subjects"] is not None))
     return [
-        Row(training, key, records.get(key), f"results/{name}/{key}.json")
+        Row(training, key, records.get(key), f"{FOLDER}/{name}/{key}.json")
         for key, training in trainings.items()
     ]
 
@@ -603,8 +604,8 @@ def not_reached(name: str, results: Path) -> list[str]:
         f"{record['px']} px costs, processor time, {record['kind']} (`python "
         "scripts/bench_train.py --models "
         f"{' '.join(RIVALS)} --px {record['px']} --batch {record['batch']} --json "
-        f"docs/results/seconds_a_step.json`, commit {record['commit']['commit'][:7]}); the rows of "
-        "other networks above say how much longer a run takes beside other work:",
+        f"docs/records/paper/seconds_a_step.json`, commit {record['commit']['commit'][:7]}); the "
+        "rows of other networks above say how much longer a run takes beside other work:",
         "",
         *table(
             ["network", "seconds a step", f"core hours for {PAPER_EPOCHS} epochs"],
@@ -679,7 +680,7 @@ def _one_network(rows: list[Row], specialists: list[Row]) -> list[str]:
         body.append([*cells, *[""] * (len(head) - len(cells))])
     words = (
         f"Trained on maps whose SNR is drawn (`snr_db: {{uniform: {[low, high]}}}`, "
-        "[robust.yaml](../configs/train/robust.yaml)), tested on the fresh seed, beside the "
+        "`configs/train/robust.yaml`), tested on the fresh seed, beside the "
         "networks of the table above that were trained at the SNR at which they are tested."
     )
     return ["### One network for every SNR", "", words, "", *table(head, body)]
@@ -808,7 +809,7 @@ def figures(name: str, results: Path, records: dict[str, dict[str, Any]]) -> lis
         line
         for file, caption in named
         if (results / name / file).exists()
-        for line in (f"![{caption}](results/{name}/{file})", "", caption, "")
+        for line in (f"![{caption}]({FOLDER}/{name}/{file})", "", caption, "")
     ]
 
 
@@ -816,7 +817,7 @@ def page_text(scales: tuple[str, ...], results: Path) -> str:
     """What stands between the markers of the page: every scale that has a record."""
     lines = [
         "Printed by `python scripts/reproduce_paper.py --scale cpu --report-only` from the records "
-        "in [results](results). Accuracy in per cent with Wilson's 95 % interval. The epoch is "
+        f"in docs/records/{FOLDER}. Accuracy in per cent with Wilson's 95 % interval. The epoch is "
         "chosen by the validation maps, so their accuracy is optimistic; no choice was made on the "
         "fresh seed. Core hours: seconds of all epochs times threads, with what else the machine "
         "did meanwhile. Commit: of the training. Networks are tested in float32, the best epoch is "
@@ -858,7 +859,7 @@ def wanted(scale: Scale, words: list[str], results: Path, again: bool) -> list[T
 
 def report(name: str, page: Path) -> None:
     """Write the page from the records beside it."""
-    results = page.parent / "results"
+    results = page.parent / FOLDER
     scales = PAGE_SCALES if name in PAGE_SCALES else (name,)
     for scale in scales:
         records = read_records(results / scale)
@@ -887,12 +888,12 @@ def main() -> None:
         metavar="COMMIT",
         help="commit at which data sets and runs without a note were made, on this machine",
     )
-    parser.add_argument("--page", type=Path, help="default: docs/results.md; smoke: in --runs")
+    parser.add_argument("--page", type=Path, help="default: docs/records/runs.md; smoke: in --runs")
     options = parser.parse_args()
     scale = SCALES[options.scale]
     smoke = options.scale not in PAGE_SCALES
-    page = options.page or (options.runs / "smoke.md" if smoke else ROOT / "docs" / "results.md")
-    results = page.parent / "results" / options.scale
+    page = options.page or (options.runs / "smoke.md" if smoke else ROOT / "docs/records/runs.md")
+    results = page.parent / FOLDER / options.scale
     made_at = options.made_at and _git("rev-parse", "--verify", f"{options.made_at}^{{commit}}")
     if options.made_at and not made_at:
         parser.error(f"--made-at {options.made_at}: no commit of this repository")

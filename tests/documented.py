@@ -1,4 +1,4 @@
-"""The keys that docs/output.md promises of a command's --json."""
+"""The keys that docs/reference/output.md promises of a command's --json."""
 
 import re
 
@@ -8,7 +8,7 @@ from command_line import ROOT
 def rows() -> dict[str, set[str]]:
     """{command: keys}, what stands in brackets aside."""
     found = {}
-    for line in (ROOT / "docs/output.md").read_text().splitlines():
+    for line in (ROOT / "docs/reference/output.md").read_text().splitlines():
         cells = [cell.strip() for cell in line.strip("|").split(" | ")]
         if len(cells) == 2 and cells[0].startswith("`"):
             told = re.sub(r"\([^)]*\)|\{[^}]*\}|; .*", "", cells[1])

@@ -24,7 +24,7 @@ SCENE: dict[str, Any] = {
 }
 
 
-# The budget that docs/limits.md speaks of, whatever the default.
+# The budget that docs/reference/limits.md speaks of, whatever the default.
 ENGINES = {"cube": {"kind": "cube"}, "direct": {"kind": "direct", "tolerance_db": -60}}
 
 

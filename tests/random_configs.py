@@ -1,7 +1,7 @@
 """Random configs for the fuzz test: every key, the extremes included, valid and broken.
 
-The ranges are those of docs/limits.md, ends included, so that a document made here is refused only
-for what spans several keys; `Drawer.broken` then spoils one key.
+The ranges are those of docs/reference/limits.md, ends included, so that a document made here is
+refused only for what spans several keys; `Drawer.broken` then spoils one key.
 """
 
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""The model of docs/model.md, sections 3 to 5, as naively as it reads: what the tests compare with.
+"""The model of docs/physics/model.md as naively as it reads: what the tests compare with.
 
 Nothing here comes from radhar_cli but the type of paths. Loops where the package has matrices, one
 exponential a scatterer where it has products and tables; meant for small sizes.

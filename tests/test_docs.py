@@ -4,9 +4,11 @@ import re
 from pathlib import Path
 from typing import Any
 
+import command_pages
 import config_tables
+import h5py
 import pytest
-from documents import PAGES, Row, commands, leaves, rows, value_at, written
+from documents import DOCS, PAGES, Row, commands, leaves, rows, value_at, written
 from pydantic import BaseModel
 from typer.main import get_command
 
@@ -15,8 +17,20 @@ from radhar_cli.config import Config
 from radhar_cli.config.reading import load_section
 from radhar_cli.config.schema import FilesConfig
 from radhar_cli.learning.settings import ScheduleConfig, TrainConfig
+from radhar_cli.simulation.scene_file import write_scene
+from radhar_cli.simulation.simulate import simulate
 
 ROOT = Path(__file__).resolve().parents[1]
+PAGE = {page.name: page for page in DOCS}
+
+
+def test_pages_are_short_and_begin_with_what_they_are_for() -> None:
+    assert len(PAGE) == len(DOCS), "two pages of one name"
+    for page in DOCS:
+        title, _, first, *_ = lines = page.read_text().splitlines()
+        assert len(lines) <= 300, page
+        assert title.startswith("# "), page
+        assert first.startswith("After this page you ") or page.name == "index.md", page
 
 
 @pytest.mark.parametrize("page", [*ROOT.glob("*.md"), *PAGES], ids=lambda p: p.name)
@@ -38,7 +52,7 @@ def test_commands_and_their_options_exist(page: Path) -> None:
         known: Any = get_command(program())
         for word in words:
             known = getattr(known, "commands", {}).get(word, known)
-        there = {name for parameter in known.params for name in parameter.opts}
+        there = {o for one in known.params for o in (*one.opts, *one.secondary_opts)}
         assert set(options) <= {*there, "--help"}, words
 
 
@@ -52,19 +66,45 @@ def sections(model: type[BaseModel], prefix: str = "") -> list[str]:
 
 
 @pytest.mark.parametrize(
-    ("kind", "page"), [(Config, "config.md"), (TrainConfig, "training.md")], ids=["data", "train"]
+    ("kind", "pages"),
+    [(Config, ["config.md", "config_signal.md"]), (TrainConfig, ["training.md"])],
+    ids=["data", "train"],
 )
-def test_every_config_key_is_documented(kind: type[BaseModel], page: str) -> None:
-    text = (ROOT / "docs" / page).read_text()
+def test_every_config_key_is_documented(kind: type[BaseModel], pages: list[str]) -> None:
+    text = "".join(PAGE[page].read_text() for page in pages)
     missing = [key for key in sections(kind) if key not in text]
     assert not missing
 
 
-@pytest.mark.parametrize("page", ["config.md", "limits.md"])
+@pytest.mark.parametrize("page", [*config_tables.PAGES])
 def test_tables_of_keys_are_those_of_the_schema(page: str) -> None:
     """`python scripts/config_tables.py` writes them."""
-    text = (ROOT / "docs" / page).read_text()
+    text = PAGE[page].read_text()
     assert config_tables.written(text) == text
+
+
+def test_pages_of_commands_are_those_of_the_program() -> None:
+    """`python scripts/command_pages.py` writes them."""
+    found = {page.name: page.read_text() for page in command_pages.FOLDER.glob("*")}
+    assert found == command_pages.pages()
+
+
+def test_every_entry_of_a_scene_is_documented(tmp_path: Path) -> None:
+    scene = simulate(
+        ROOT / "configs/human/people.yaml", "walking", maps=("rtm", "stft_compensated")
+    )
+    write_scene(scene, tmp_path / "scene.h5")
+    text, entries = PAGE["files.md"].read_text(), list[str]()
+    with h5py.File(tmp_path / "scene.h5") as file:
+        file.visititems(lambda name, item: entries.append(name) if hasattr(item, "shape") else None)
+        assert all(f"`{name}`" in text for name in file.attrs)
+    for name in entries:
+        name = re.sub(r"^truth/person_\d+/", "truth/", name)
+        name = re.sub(r"^truth/paths/.*", "truth/paths", name)
+        name = re.sub(r"^(maps|axes)/\w+", r"\1/<map>", name)
+        name = re.sub(r"(<map>/)\w+", r"\1<axis>", name)
+        name = re.sub(r"^slow_time/\w+", "slow_time/<stage>", name)
+        assert f"`/{name}`" in text, name
 
 
 OF_FILES = FilesConfig(files=("wave.bvh",))
@@ -72,7 +112,7 @@ TABLES: list[tuple[str, tuple[BaseModel, ...]]] = [
     ("training.md", (TrainConfig(),)),
     ("motion_files.md", (OF_FILES,)),
 ]
-ROWS = [(page, kinds, row) for page, kinds in TABLES for row in rows(ROOT / "docs" / page)]
+ROWS = [(page, kinds, row) for page, kinds in TABLES for row in rows(PAGE[page])]
 
 
 @pytest.mark.parametrize(

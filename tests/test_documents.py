@@ -101,55 +101,28 @@ def data_set(path: Path) -> None:
     ran("generate", "configs/quickstart.yaml", "-o", path, "--jobs", "1")
 
 
-def run(path: Path) -> None:
-    if not Path("datasets/quickstart").exists():
-        data_set(Path("datasets/quickstart"))
-    small = ("--model", "smallnet", "--set", "epochs=1", "--set", "workers=0")
-    ran("train", "datasets/quickstart", "-o", path, *small)
-
-
-def images(path: Path) -> None:
-    tree(path, FEW, {"train": 2, "val": 1})
-
-
-def one_image(path: Path) -> None:
-    tree(Path("of_somebody"), ["walking"], {"": 1})
-    shutil.copy("of_somebody/walking/000.png", path)
-
-
 def movement(path: Path) -> None:
     path.parent.mkdir(exist_ok=True)
     write = {".bvh": write_bvh, ".amc": write_amc, ".npz": write_npz}[path.suffix]
     write(path, frames("punching", 4.0))
 
 
-def capture(path: Path, seed: int = 0) -> None:
+def capture(path: Path) -> None:
     """Of TI's card, and what Studio says of the radar."""
     (path.parent / "setup.mmwave.json").write_text(json.dumps(CARD.studio()))
     motion = {"range_m": 2, "angle_deg": 0, "speed_mps": 0.7}
     walker = Config.model_validate({"duration_s": 4.2, "activities": ["S8"], "motion": motion})
-    beat = echo(CARD, body(walker), round(4.2e3 / CARD.period_ms), seed)
+    beat = echo(CARD, body(walker), round(4.2e3 / CARD.period_ms), 0)
     words(beat, len(CARD.transmitters)).tofile(path)
 
 
 CARD = Radar(samples=32, idle_us=2466.0, loops=8, period_ms=20.0, transmitters=(1,), receivers=0b1)
 
 
-def imported(path: Path) -> None:
-    capture(Path("second_Raw_0.bin"), seed=1)
-    ran("import", "second_Raw_0.bin", "--radar", "setup.mmwave.json", "-o", path)
-
-
 def array(path: Path) -> None:
     """Frames of a radar with two receivers."""
     beat = np.random.default_rng(0).normal(size=(2, 10, 32, 2, 64)).astype(np.float32)
     np.save(path, beat[0] + 1j * beat[1])
-
-
-def manifest(path: Path) -> None:
-    """Of eight persons who walked and fell, all in one recording."""
-    lines = [f"walk1.h5,{label},{n}" for n in range(8) for label in ("walking", "falling")]
-    path.write_text("\n".join(["file,label,person", *lines]))
 
 
 def masks(path: Path) -> None:
@@ -170,29 +143,16 @@ def idle(path: Path) -> None:
 
 FILES: dict[str, dict[str, Callable[[Path], object]]] = {
     "CONTRIBUTING.md": {".venv/bin/python": idle},
-    "README.md": {
-        "adc_data_Raw_0.bin": capture,
-        "my_images": images,
-        "measured": images,
-        "theirs": images,
-        "names.yaml": lambda path: path.write_text("their_walk: walking"),
-        "some_map.png": one_image,
-    },
     "cluster.md": {"CONFIG": few_samples, "config.yaml": few_samples},
     "config.md": {"lab.yaml": few_samples},
     "measured.md": {
         "adc_data_Raw_0.bin": capture,
-        "fall.h5": imported,
         "walk.npy": array,
-        "measured/manifest.csv": manifest,
-        "datasets/simulated": data_set,
-        "runs/simulated": run,
         "masks.npz": masks,
         "masks": lambda path: tree(path, [*FEW[:2], "picking_up"]),
         "names.yaml": lambda path: path.write_text("picking_up: grabbing"),
     },
     "motion_files.md": {
-        "wave.bvh": movement,
         "wave/one.bvh": movement,
         "cmu/02_01.amc": movement,
         "cmu/02_02.amc": movement,

@@ -12,8 +12,8 @@ import reproduce_paper
 from command_line import ROOT, radhar
 from reproduce_paper import Reproduction, Scale, Training
 
-PAGE = ROOT / "docs" / "results.md"
-RESULTS = ROOT / "docs" / "results"
+PAGE = ROOT / "docs/records/runs.md"
+RESULTS = ROOT / "docs/records/paper"
 
 # 500 pulses a second, two classes, maps of 32 px: everything that a run leaves, in seconds.
 QUICK = Scale(
@@ -41,7 +41,7 @@ def quick(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Reproduction]:
         assert done.returncode == 0, done.stderr
 
     work = Reproduction(
-        "quick", QUICK, folder / "data", folder / "runs", folder / "docs/results/quick", jobs=1
+        "quick", QUICK, folder / "data", folder / "runs", folder / "docs/paper/quick", jobs=1
     )
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(reproduce_paper, "radhar", run)
@@ -137,11 +137,11 @@ def test_runs_that_take_a_gpu_are_named_below_the_tables(
 
 
 def test_a_deleted_run_keeps_its_record_and_figures(quick: Reproduction, tmp_path: Path) -> None:
-    shutil.copytree(quick.results, tmp_path / "results" / "quick")
-    before = {file.name: file.read_bytes() for file in (tmp_path / "results/quick").iterdir()}
+    shutil.copytree(quick.results, tmp_path / "paper" / "quick")
+    before = {file.name: file.read_bytes() for file in (tmp_path / "paper/quick").iterdir()}
     assert f"{FIRST}_tsne.png" in before
     elsewhere = Reproduction(
-        "quick", QUICK, tmp_path / "data", tmp_path / "runs", tmp_path / "results" / "quick"
+        "quick", QUICK, tmp_path / "data", tmp_path / "runs", tmp_path / "paper" / "quick"
     )
     for training in QUICK.trainings:
         elsewhere.record(training)
@@ -149,7 +149,7 @@ def test_a_deleted_run_keeps_its_record_and_figures(quick: Reproduction, tmp_pat
 
 
 def test_the_page_needs_no_run(quick: Reproduction, tmp_path: Path) -> None:
-    shutil.copytree(quick.results, tmp_path / "results" / "quick")
+    shutil.copytree(quick.results, tmp_path / "paper" / "quick")
     page = tmp_path / "page.md"
     page.write_text(f"Before.\n{reproduce_paper.BEGIN}\nold\n{reproduce_paper.END}\nAfter.\n")
     reproduce_paper.report("quick", page)
@@ -159,8 +159,8 @@ def test_the_page_needs_no_run(quick: Reproduction, tmp_path: Path) -> None:
     assert "old" not in text
     assert "| free space | 30 | 2 (reduced) |" in text
     for figure in (f"{FIRST}_tsne.png", "free_space_snr.png"):
-        assert f"](results/quick/{figure})" in text
-        assert (tmp_path / "results" / "quick" / figure).exists()
+        assert f"](paper/quick/{figure})" in text
+        assert (tmp_path / "paper" / "quick" / figure).exists()
 
 
 def test_confusion_is_shown_where_there_are_mistakes_on_the_fresh_seed(

@@ -4,7 +4,7 @@ settings      the header of a capture, from a file or by hand
 dca1000       raw samples of TI's capture card
 array_files   .npy, .npz, .mat, HDF5
 findings      estimates from the samples: offset binary, sign of the beat, clipping, losses
-recording     the recording file itself: docs/measured.md
+recording     the recording file itself: docs/guide/measured.md
 importing     converts a capture of any of these formats into a recording
 chain         the maps of a recording; tracking: the torso's track; maps_file: maps.h5
 fitting       a simulation config, estimated from recordings

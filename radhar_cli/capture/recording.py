@@ -1,4 +1,4 @@
-"""The recording file: the samples that one radar received (docs/measured.md).
+"""The recording file: the samples that one radar received (docs/guide/measured.md).
 
 Beat signals follow radhar's sign: a target at range R lies at exp(-j 2 pi (fc tau + K tau t)).
 """

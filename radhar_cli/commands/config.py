@@ -34,14 +34,15 @@ def init(
     out: Annotated[Path, typer.Argument(help="YAML file to write.")],
     train: Training = False,
     radar: Annotated[
-        Path | None, typer.Option("--radar", help="The .cfg of a TI board: a short config of it.")
+        str | None,
+        typer.Option("--radar", help="A short config of a TI board: its .cfg, or iwr6843isk, ..."),
     ] = None,
 ) -> None:
     """Write a config to start from: every key, or a TI board's.
 
     Example:
 
-      radhar config init mine.yaml --radar configs/boards/iwr1443.cfg
+      radhar config init mine.yaml --radar iwr6843isk
     """
     from radhar_cli.config.starting_file import as_commented_yaml, of_board
     from radhar_cli.errors import FolderError, RadharError

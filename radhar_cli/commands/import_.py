@@ -39,7 +39,7 @@ def import_(
       radhar import adc_data_Raw_0.bin --radar setup.mmwave.json --label walking -o walk.h5
 
     Findings in the samples (offset binary, sign of the beat, gaps, losses, saturation) are printed
-    and can be overridden: --set coding=signed, --set beat=positive. All keys: docs/measured.md
+    and can be overridden: --set coding=signed, --set beat=positive. Keys: docs/guide/measured.md
     """
     import json
 

@@ -51,7 +51,7 @@ def wanted(message: str) -> bool:
 
 
 def report(**values: object) -> None:
-    """With --json, print an object of values on a line; docs/output.md lists all keys."""
+    """With --json, print an object of values on a line; docs/reference/output.md lists all keys."""
     interrupts.check()  # before it is called done
     if _output.json:
         typer.echo(json.dumps(plain(values), allow_nan=False))

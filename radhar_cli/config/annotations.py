@@ -1,6 +1,6 @@
 """What is said of a key beside its type and bounds, as annotations of its field in the schema.
 
-Checks, draws, warnings and the tables of docs/config.md and docs/limits.md are made of them.
+Checks, draws, warnings and the tables of docs/reference are made of them.
 """
 
 from collections.abc import Iterator, Mapping

@@ -17,6 +17,7 @@ Places: TypeAlias = dict[str, str]  # {dotted key: file:line}
 
 BASE = "base"
 SUFFIXES = (".yaml", ".yml", ".json")
+RADARS = {path.stem: path for path in sorted(Path(__file__).with_name("radars").glob("*.cfg"))}
 MAX_CHAIN = 8  # files in a chain of bases
 _ONE_VALUE = {*FORMS, "sequence", "files"}  # mappings with such a key are replaced as a whole
 
@@ -48,7 +49,7 @@ def read_document(path: Path) -> tuple[Document, Places]:
 
 
 def cfg_text(given: Any, folder: Path, where: str) -> Any:
-    """The text of a board's .cfg that `radar.cfg` names from a folder on; a text is left as it is.
+    """The text of a .cfg: of a known radar, or of a path from a folder on; a text is left as it is.
 
     Raises:
         ConfigError: it cannot be read.
@@ -56,11 +57,12 @@ def cfg_text(given: Any, folder: Path, where: str) -> Any:
     if not isinstance(given, str) or "\n" in given.strip():
         return given
     try:
-        return read_text(folder / given, MAX_TEXT)
+        return read_text(RADARS.get(given.lower(), folder / given), MAX_TEXT)
     except (OSError, ValueError) as error:
         told = getattr(error, "strerror", None) or error
         raise ConfigError(
-            f"{where}: radar.cfg = {json.dumps(given)}: should be the path of a TI .cfg ({told})"
+            f"{where}: radar.cfg = {json.dumps(given)}: should be the path of a TI .cfg ({told}), "
+            f"or one of {', '.join(RADARS)}"
         ) from None
 
 

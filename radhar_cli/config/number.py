@@ -254,7 +254,7 @@ class Bounds:
 
 
 def within(low: float, high: float, unit: str = "") -> Bounds:
-    """Bounds of a number's draws, with the unit that messages and docs/limits.md give."""
+    """Bounds of a number's draws, with the unit that messages and docs/reference/limits.md give."""
     return Bounds(low, high, unit)
 
 

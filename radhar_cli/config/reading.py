@@ -28,15 +28,15 @@ MAX_MISTAKES = 20
 MAX_VALUE, MAX_ADVICE = 120, 500  # characters of value and advice in a message
 
 _CHANNELS = (
-    "is not there: the receive channels of a board come with its .cfg (radar.cfg, docs/boards.md); "
+    "is not there: the receive channels of a board come with radar.cfg (docs/guide/boards.md); "
     "antennas= of record() simulates another channel of the default radar"
 )
 _PEOPLE = (
     "is not there: `people` has others in a scene, a list of `{activity, subject, motion, timing}` "
-    "(docs/scenes.md); split.subjects names how many persons a data set has"
+    "(docs/guide/scenes.md); split.subjects names how many persons a data set has"
 )
 _ROOMS = "is not there: a config has one room, under `room`; each of its numbers may be drawn"
-_DEVICE = "is not there: radar.device names a TI board, radar.cfg its .cfg (docs/boards.md)"
+_DEVICE = "is not there: radar.device names a TI board, radar.cfg its .cfg (docs/guide/boards.md)"
 # What people ask for and is not there, as a key or a map, and what to do instead.
 ABSENT = {
     **dict.fromkeys(("receivers", "transmitters", "channels", "antennas", "mimo"), _CHANNELS),

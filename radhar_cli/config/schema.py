@@ -262,8 +262,8 @@ class RadarConfig(Section):
     ] = 256
     """Of that axis."""
     cfg: Annotated[str, Field(min_length=1, max_length=2**16)] | None = None
-    """The .cfg of a TI board, which gives the waveform: a path from this file's folder on. A config
-    that is written has its text."""
+    """The .cfg of a TI board, which gives the waveform: a path from this file's folder on, or a
+    known radar (docs/guide/boards.md). A config that is written has its text."""
     device: Literal[tuple(DEVICES)] | None = None  # type: ignore[valid-type]
     """The board that the .cfg runs on: its antenna array."""
     array: ArrayConfig | None = None
@@ -742,7 +742,7 @@ class LayerConfig(Section):
 class WallConfig(Section):
     """Centre, size along x, y, z, relative permittivity and loss tangent of the wall.
 
-    `rays` and `fresnel` are optional physics; docs/engines.md has the size of their effects.
+    `rays` and `fresnel` are optional physics; docs/physics/engines.md has the size of it.
     """
 
     center_m: Vector = (1.0, 0.0, 1.25)
@@ -777,7 +777,7 @@ class BodyConfig(Section):
     """What of a person scatters: the joints as points, or the segments between them.
 
     `segments` are ellipsoids of `points_per_segment` points at most; how many a recording needs
-    follows from its speeds, window and wavelength. docs/bodies.md has what that brings and costs.
+    follows from its speeds, window and wavelength (docs/physics/bodies.md).
     """
 
     scatterers: Literal["points", "segments", "surfaces"] = "points"
@@ -1057,7 +1057,7 @@ class CfarConfig(Section):
 
 
 class CloudConfig(Section):
-    """How points are found in the frames of a board (docs/boards.md)."""
+    """How points are found in the frames of a board (docs/guide/boards.md)."""
 
     chain: Annotated[Literal["best", "board"], _POINTS] = "best"
     """What the data allow, or what TI's firmware does with the .cfg."""
@@ -1364,7 +1364,7 @@ class Config(Section):
     timing: TimingConfig = TimingConfig()
     body: BodyConfig = BodyConfig()
     people: Annotated[tuple[PersonConfig, ...], Field(max_length=7)] = ()
-    """Others in the scene; see docs/scenes.md."""
+    """Others in the scene; see docs/guide/scenes.md."""
     wall: WallConfig | None = None
     """null is free space."""
     room: RoomConfig = RoomConfig()
@@ -1390,7 +1390,7 @@ class Config(Section):
     engine: EngineConfig = EngineConfig()
     output: OutputConfig = OutputConfig()
     recordings: RecordingsConfig | None = None
-    """Of measured data instead of scenes: see docs/measured.md."""
+    """Of measured data instead of scenes: see docs/guide/measured.md."""
 
     @field_validator("classes")
     @classmethod

@@ -11,7 +11,7 @@ from textwrap import wrap
 from typing import Any, Literal, get_args, get_origin
 
 from radhar_cli.config.annotations import section
-from radhar_cli.config.documents import cfg_text
+from radhar_cli.config.documents import RADARS, cfg_text
 from radhar_cli.config.schema import Config, Section
 from radhar_cli.config.ti_header import board_header
 from radhar_cli.light import SPEED_OF_LIGHT
@@ -92,25 +92,27 @@ def as_text(value: object) -> str:
     return json.dumps(value)
 
 
-def of_board(cfg: Path, folder: Path) -> str:
+def of_board(cfg: str, folder: Path) -> str:
     """The text of a short config of the TI board that a .cfg is of.
 
     Args:
-        cfg: its path.
+        cfg: its path, or the name of a radar that radhar knows.
         folder: of the config, which names it from there.
 
     Raises:
         ConfigError: the .cfg cannot be read.
         CaptureError: it is wrong; names the line.
     """
-    board = board_header(cfg_text(str(cfg), Path(), str(cfg)), str(cfg))
+    board = board_header(cfg_text(cfg, Path(), "--radar"), cfg)
     device = "IWR6843ISK" if board.start_hz < 70e9 else "IWR1443BOOST"
+    path = os.path.relpath(Path(cfg).resolve(), folder.resolve())
+    if cfg.lower() in RADARS:
+        device, path = cfg.upper(), cfg.lower()
     range_step = SPEED_OF_LIGHT * board.adc_rate_hz / (2 * board.slope_hz)
     speed = SPEED_OF_LIGHT / (4 * board.carrier_hz * board.slot_s * len(board.order))
-    path = os.path.relpath(cfg.resolve(), folder.resolve())
     what = f"{len(board.order)} transmitters and {len(board.receivers)} receivers"
     return f"""# {what}; {1 / board.period_s:.4g} frames a second of {board.loops} loops;
-# ranges to {range_step:.3g} m, speeds of +-{speed:.3g} m/s. docs/boards.md explains what comes out.
+# ranges to {range_step:.3g} m, speeds of +-{speed:.3g} m/s. What comes out: docs/guide/boards.md
 radar: {{device: {device}, cfg: {json.dumps(path)}, position_m: [0, 0, 1]}}
 samples_per_class: 20
 activities: [punching, kicking, grabbing, sitting_down, standing_up]

@@ -1,7 +1,7 @@
 """Shards -> dataset.h5, scenes.csv and config.yaml.
 
-The layout of dataset.h5 is a contract, described in docs/dataset.md. Nothing here grows with the
-rows but the list of shards: columns go into the file as shards are read.
+The layout of dataset.h5 is a contract, described in docs/reference/files.md. Nothing here grows
+with the rows but the list of shards: columns go into the file as shards are read.
 """
 
 import csv

@@ -1,7 +1,7 @@
 """Samples of a data set synthesised one by one, without building the data set.
 
-Fields have the names, types and values that they have in dataset.h5 (docs/dataset.md), one row of
-each: `maps/stft`, `power/stft`, `entropy/stft`, `slow_time`, `scene/height`, `label`, ...
+Fields have the names, types and values that they have in dataset.h5 (docs/reference/files.md), one
+row of each: `maps/stft`, `power/stft`, `entropy/stft`, `slow_time`, `scene/height`, `label`, ...
 """
 
 from collections.abc import Iterable

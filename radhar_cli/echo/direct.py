@@ -2,7 +2,7 @@
 
 Paths are computed at knots and interpolated to the pulses, G is read from a table, phasors follow
 from one another by multiplication, maybe in single precision, as the tolerance has it (accuracy.py,
-docs/engines.md). Paths that do not move are left out where the canceller removes them.
+docs/physics/engines.md). Paths that do not move are left out where the canceller removes them.
 """
 
 from collections.abc import Callable

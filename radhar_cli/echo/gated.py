@@ -3,7 +3,7 @@
 y_k[m] = sum_n exp(j 2 pi k (n - n0)/N_FFT) s_b[n, m], n0 = N_ADC/2. All that moves lies within a
 few metres: seen from their middle, s_b turns so slowly in fast time that a few samples show all of
 it. Between breakpoints the paths are interpolated from knots, as in `direct`; the beat is made at P
-nodes instead of N_ADC samples, and one small matrix takes those to the bins (docs/engines.md).
+nodes instead of N_ADC samples, and a small matrix takes those to the bins; docs/physics/engines.md.
 """
 
 from collections.abc import Callable, Iterator

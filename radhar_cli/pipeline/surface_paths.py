@@ -4,7 +4,7 @@ Every segment has n points, uniform along it and within +-SPREAD of the side tha
 at DEPTH of its radius. A point's field goes with cos^1.9 of the angle between its normal and the
 line of sight and with sin^0.9 of that between segment and sight, times a circular Gaussian number
 of its own: as limbs turn, points slide over their surfaces and the echo speckles. The facing cross
-sections were fitted to measured clouds (docs/boards.md).
+sections were fitted to measured clouds (docs/guide/boards.md).
 """
 
 from dataclasses import dataclass, field

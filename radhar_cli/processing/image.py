@@ -1,4 +1,4 @@
-"""Power map -> grey levels: resize the linear power, then decibels (docs/model.md, Image)."""
+"""Power map -> grey levels: resize the linear power, then decibels (docs/physics/model.md)."""
 
 from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache

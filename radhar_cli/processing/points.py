@@ -111,7 +111,10 @@ def _frame_points(x: Complex, board: Board, detection: Detection, lsb: float, st
     if lsb > 0:
         symbols = np.round(symbols.real / lsb) + 1j * np.round(symbols.imag / lsb)
     if detection.coefficients:
-        symbols = symbols * np.array(detection.coefficients)
+        measured = np.array(detection.coefficients)
+        if abs(measured @ board.signs) > abs(measured.sum()):
+            measured *= board.signs  # which `range_spectrum` has taken out
+        symbols = symbols * measured
     signed = np.where(doppler < board.n_doppler / 2, doppler, doppler - board.n_doppler)
     turn = signed[:, None] / board.n_doppler * board.turns
     symbols = symbols * np.exp(-2j * np.pi * turn)

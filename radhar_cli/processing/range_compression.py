@@ -11,7 +11,7 @@ def range_compression(s: Complex, waveform: Waveform, bins: slice = slice(None))
     """S[k, m] = sum_n s[n, m] exp(+j 2 pi k (n - n0)/N_FFT), k < N_FFT/2.
 
     The conjugate kernel puts a target at range bin k = R/range_step; n0 = N_ADC/2 refers the bins
-    to mid-chirp (docs/model.md, "Where in the chirp the Doppler is read").
+    to mid-chirp (docs/physics/model.md, "Where in the chirp the Doppler is read").
 
     Args:
         s: beat matrix [N_ADC, M].

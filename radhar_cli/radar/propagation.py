@@ -1,4 +1,4 @@
-"""Bistatic delay and amplitude of a path (paper, section "Radar Echo Model"; docs/model.md)."""
+"""Bistatic delay and amplitude of a path (paper, "Radar Echo Model"; docs/physics/model.md)."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""Echoes by way of the faces of a room: image sources (docs/scenes.md, Rooms).
+"""Echoes by way of the faces of a room: image sources (docs/guide/scenes.md, Rooms).
 
 A leg from an antenna at a by way of the faces f1, ..., fn to p is as long as the straight one to
 the image p' = M_f1 ... M_fn p. Faces lie across the axes: p' = sign p + shift. Seen from p, the leg

@@ -1,4 +1,4 @@
-"""A homogeneous axis-aligned slab crossed at straight angles (docs/model.md, Propagation)."""
+"""A homogeneous axis-aligned slab crossed at straight angles (docs/physics/model.md)."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -140,7 +140,8 @@ def simulate(
     maps = possible if maps is None else maps
     absent = [name for name in maps if name in FRAMES and name not in possible]
     if absent:
-        raise ConfigError(f"{absent[0]} is of boards: the config has no radar.cfg (docs/boards.md)")
+        why = "is of boards: the config has no radar.cfg (docs/guide/boards.md)"
+        raise ConfigError(f"{absent[0]} {why}")
     if not set(maps) <= set(possible):
         raise ConfigError(
             "there is no fsst with processing.range_sum: gated, which sums bins without their "

@@ -60,7 +60,7 @@ def test_every_command_reports_and_has_its_keys_documented():
         names = FOR.get(module) or [name for name, of in found.items() if of == module]
         rows = [KEYS[row] for row in KEYS if row.partition(" --")[0] in names]
         for keywords in reports(module):
-            assert keywords <= set().union(*rows), f"{module}: docs/output.md should list them"
+            assert keywords <= set().union(*rows), f"{module}: output.md should list them"
             reported.update(names)
     assert found.keys() == reported, "should call tell.report"
 
@@ -187,7 +187,7 @@ def test_output_options_do_not_leak_into_the_next_command(capsys):
 
 
 def test_help_and_docs_name_every_status():
-    page = (ROOT / "docs/output.md").read_text()
+    page = (ROOT / "docs/reference/output.md").read_text()
     shown = " ".join(radhar("--help").stdout.split())
     for status in (0, 1, 2, 130, 143):
         assert f"| {status} | " in page

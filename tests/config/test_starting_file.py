@@ -5,13 +5,18 @@ from pathlib import Path
 from types import NoneType
 from typing import get_args
 
+import numpy as np
 import pytest
 
 from radhar_cli.config import Config, load_config
+from radhar_cli.config.documents import RADARS
 from radhar_cli.config.reading import load_section
 from radhar_cli.config.schema import Section, WallConfig
-from radhar_cli.config.starting_file import WIDTH, as_commented_yaml
+from radhar_cli.config.starting_file import WIDTH, as_commented_yaml, of_board
+from radhar_cli.errors import ConfigError
 from radhar_cli.learning.settings import TrainConfig
+from radhar_cli.radar.board import DEVICES
+from radhar_cli.simulation.simulate import simulate
 
 KINDS = pytest.mark.parametrize("kind", [Config, TrainConfig], ids=["data", "train"])
 
@@ -65,3 +70,29 @@ def test_a_commented_section_can_be_uncommented(tmp_path: Path) -> None:
     wall = "\n".join(line.removeprefix("# ") for line in block.splitlines()[1:])
     path.write_text(f"{before}{wall}\n\n{after}")
     assert load_config(path) == Config(wall=WallConfig())
+
+
+@pytest.mark.parametrize("name", RADARS)
+def test_a_known_radar_is_simulated(tmp_path: Path, name: str) -> None:
+    """Its profile keeps the ramp within the device's band, and a person gives points."""
+    text = of_board(name.upper(), tmp_path)
+    (tmp_path / "mine.yaml").write_text(text)
+    config = load_config(tmp_path / "mine.yaml", ["duration_s=0.2", "motion.range_m=2"])
+    scene = simulate(config, "punching", maps=("points", "range_doppler"))
+    board = scene.board
+    assert board is not None
+    assert board.array == DEVICES[name.upper()]
+    low, high = (60, 64) if "6843" in name else (76, 81)
+    (profile,) = re.findall(r"profileCfg (.*)", RADARS[name].read_text())
+    _, start, _, adc, ramp, _, _, slope, _, samples, rate, *_ = map(float, profile.split())
+    assert low <= start < start + slope * ramp / 1e3 <= high
+    assert adc + samples / rate * 1e3 <= ramp
+    assert f"+-{board.doppler_step() * board.n_doppler / 2:.1f} m/s" in RADARS[name].read_text()
+    points = scene.frames["cloud"].points
+    assert len(points) > 5
+    assert abs(np.median(np.linalg.norm(points[:, :3], axis=1)) - 2) < 0.5
+
+
+def test_an_unknown_radar_is_a_line_that_names_the_known_ones(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=r'"iwr6843": should be .* or one of iwr1443boost, .*isk'):
+        of_board("iwr6843", tmp_path)

@@ -21,7 +21,7 @@ from radhar_cli.scene import draw_scene
 
 pytestmark = pytest.mark.usefixtures("either_sum")
 
-ESTIMATE_DB = 13.0  # the error is an estimate from some dozens of pulses; docs/engines.md
+ESTIMATE_DB = 13.0  # the error is an estimate from some dozens of pulses; docs/physics/engines.md
 CUBE = {"kind": "cube"}
 
 

@@ -51,7 +51,7 @@ def test_table_error_with_the_phase_reference_at_the_start(oversampling, expecte
     radar = RADARS["start"]
     table = hbs.HalfBandTable(waveform(radar), oversampling)
     error = ref.error_db(table(U), ref.half_band_sum(U, radar))
-    assert error == pytest.approx(expected_db, abs=3)  # the trial of docs/model.md
+    assert error == pytest.approx(expected_db, abs=3)  # the trial of docs/physics/model.md
 
 
 @radars
@@ -107,7 +107,7 @@ def receding_target(radar: ref.Radar, start: float, speed: float) -> np.ndarray:
     ids=["77 GHz", "2 GHz"],
 )
 class TestWhereTheDopplerIsRead:
-    """A target that crosses dozens of bins within the half-band (docs/model.md, section 4)."""
+    """A target that crosses dozens of bins within the half-band (docs/physics/model.md)."""
 
     def lines(self, centred, fc, bandwidth, start, speed, prf, duration):
         """Frequencies, their level over the main line in dB, the line's place, and |y|."""

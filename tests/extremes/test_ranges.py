@@ -1,7 +1,7 @@
 """Accuracy of the signal over the full range of every parameter.
 
 The cube is compared with the naive formulas in extended precision (free space), the direct engine
-with the cube. docs/limits.md quotes what these tests print.
+with the cube. docs/reference/limits.md quotes what these tests print.
 """
 
 from typing import Any
@@ -32,7 +32,7 @@ from radhar_cli.pipeline.validity import scene_warnings
 from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene import draw_scene, nominal_scene
 
-DIRECT_DB = -60.0  # the promise of docs/engines.md
+DIRECT_DB = -60.0  # the promise of docs/physics/engines.md
 # Rounding of a phase of C cycles is about C 2^-52 turns; over the PRF it is compared with the
 # little that the MTI leaves. 1e-9 is -180 dB, far below anything a map shows.
 CUBE_ERROR = 1e-9

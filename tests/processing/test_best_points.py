@@ -14,7 +14,7 @@ def _strongest(cube: Float, board: object) -> Float:
     return found[found[:, 4].argmax()]
 
 
-@pytest.mark.parametrize("device", ["IWR1443BOOST", "IWR6843ISK", "IWR6843ISK-ODS"])
+@pytest.mark.parametrize("device", ["IWR1443BOOST", "IWR6843ISK", "IWR6843ISK-ODS", "IWR6843AOP"])
 def test_places_and_speeds_are_interpolated(device: str) -> None:
     """rms errors of moving scatterers at 20 dB a sample: millimetres, some 0.01 m/s."""
     errors = []

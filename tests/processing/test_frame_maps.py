@@ -53,7 +53,7 @@ def test_the_mean_removes_what_stands_still() -> None:
     assert left < 1e-25 * whole
 
 
-@pytest.mark.parametrize("device", ["IWR1443BOOST", "IWR6843ISK", "IWR6843ISK-ODS"])
+@pytest.mark.parametrize("device", ["IWR1443BOOST", "IWR6843ISK", "IWR6843ISK-ODS", "IWR6843AOP"])
 @pytest.mark.parametrize("degrees", [-40.0, 0.0, 25.0])
 def test_azimuth_is_positive_to_the_left(device: str, degrees: float) -> None:
     at = 3 * np.array([np.cos(np.radians(degrees)), np.sin(np.radians(degrees)), 0])

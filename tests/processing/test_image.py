@@ -110,7 +110,7 @@ def test_the_input_is_not_modified_in_any_layout():
 @pytest.mark.parametrize("size", [(256, 256), (64, 300), (300, 16), (7, 5)])
 @pytest.mark.parametrize("shape", [(2000, 90), (51, 700), (101, 20), (3, 2), (1, 1), (256, 256)])
 def test_resizing_is_pillows(shape, size):
-    """BILINEAR with antialiasing: the definition that docs/model.md gives."""
+    """BILINEAR with antialiasing: the definition that docs/physics/model.md gives."""
     power = np.random.default_rng(0).exponential(size=shape)
     picture = Image.fromarray(power[::-1].astype(np.float32))
     right = np.asarray(picture.resize(size[::-1], Image.Resampling.BILINEAR))

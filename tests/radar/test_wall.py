@@ -40,7 +40,7 @@ def through(chord: float, faces: int) -> Crossing:
 
 
 def test_the_papers_wall_costs_9_80_db() -> None:
-    """Two ways, normal incidence, 2 GHz: chord 6.42 dB, faces 3.38 dB (docs/model.md)."""
+    """Two ways, normal incidence, 2 GHz: chord 6.42 dB, faces 3.38 dB (docs/physics/model.md)."""
     assert decibel(through(0.24, 0)) == pytest.approx(6.42, abs=0.01)
     assert decibel(through(0.0, 2)) == pytest.approx(3.38, abs=0.01)
     crossed = crossing(np.array([[[2.0]], [[0.0]], [[1.2]]]), (0.4, 0.0, 1.2), WALL)

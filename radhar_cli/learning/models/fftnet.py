@@ -1,6 +1,6 @@
 """The paper's network: convolutions for what is near, a learned filter of the FFT for what is far.
 
-Source: paper, section IV and its network figure; docs/model.md, section 7.
+Source: paper, section IV and its network figure.
 """
 
 import torch

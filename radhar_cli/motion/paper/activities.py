@@ -1,6 +1,6 @@
 """Joint angles and torso displacement over time, activity by activity.
 
-Equations: paper, section "Human Kinematic Model", as corrected in ../docs/model.md: theta_i turns
+Equations: paper, "Human Kinematic Model", as docs/physics/model.md corrects it: theta_i turns
 the link that ends at joint i; the seat keeps the feet where they are; the gait fades in and out.
 """
 

@@ -14,7 +14,7 @@ def progress(t: Float, start: float, duration: float) -> Float:
         duration: s; 0 is a step, on at t >= start.
 
     Returns:
-        Values [...] from 0 to 1 (../docs/model.md, Activities).
+        Values [...] from 0 to 1 (../docs/physics/model.md, Activities).
     """
     if duration == 0:
         return (t >= start).astype(float)

@@ -1,0 +1,99 @@
+"""The site builds without a warning, and its notebook runs."""
+
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import nbformat
+import pytest
+import run_notebook
+from command_line import ROOT
+
+import radhar_cli
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What `mkdocs build --strict` makes: a dead link, or a page that no menu has, fails."""
+    out = tmp_path_factory.mktemp("site")
+    build = (sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "-d", out)
+    done = subprocess.run(
+        [*map(str, build)],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        env={**os.environ, "NO_MKDOCS_2_WARNING": "1"},
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return out
+
+
+def test_every_page_is_there(site: Path) -> None:
+    for page in (ROOT / "docs").rglob("*.md"):
+        path = page.relative_to(ROOT / "docs").with_suffix("")
+        made = site / path / "index.html" if path.name != "index" else site / "index.html"
+        assert made.is_file(), path
+
+
+def test_python_page_has_the_interface(site: Path) -> None:
+    text = (site / "reference/python/index.html").read_text()
+    for name, module in radhar_cli._INTERFACE.items():
+        assert re.search(rf'id="{module}[\w.]*\.{name}"', text), name
+
+
+class _Addresses(HTMLParser):
+    """What a browser fetches to show a page, and where its links lead."""
+
+    def __init__(self, page: Path) -> None:
+        super().__init__()
+        self.fetched: list[str] = []
+        self.links: list[str] = []
+        self.feed(page.read_text())
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        known = dict(attrs)
+        if tag in ("script", "img", "iframe"):
+            self.fetched.append(known.get("src") or "")
+        elif tag == "link" and known.get("rel") == "stylesheet":
+            self.fetched.append(known.get("href") or "")
+        elif tag == "a":
+            self.links.append(known.get("href") or "")
+
+
+def test_pages_fetch_nothing_from_elsewhere_and_their_links_lead_somewhere(site: Path) -> None:
+    """Those of the notebook too, which MkDocs does not look at."""
+    for page in {*site.rglob("*.html")} - {site / "404.html"}:
+        addresses = _Addresses(page)
+        for address in addresses.fetched + addresses.links:
+            elsewhere = re.match(r"https?:|//", address)
+            assert not (elsewhere and address in addresses.fetched), (page, address)
+            if not elsewhere and not address.startswith("data:"):
+                assert (page.parent / address.partition("#")[0]).exists(), (page, address)
+
+
+def code_cells(notebook: Any) -> Iterator[Any]:
+    return (cell for cell in notebook.cells if cell.cell_type == "code")
+
+
+def test_the_notebook_is_stored_as_it_ran(site: Path) -> None:
+    """Cells in order, without an error, and shown on the site."""
+    notebook = nbformat.read(run_notebook.NOTEBOOK, 4)
+    cells = [*code_cells(notebook)]
+    assert [cell.execution_count for cell in cells] == [*range(1, len(cells) + 1)]
+    assert all(out.output_type != "error" for cell in cells for out in cell.outputs)
+    shown = (site / "guide/first_hour/index.html").read_text()
+    assert shown.count("data:image/") >= 4
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore::RuntimeWarning:zmq")
+def test_the_notebook_runs(tmp_path: Path) -> None:
+    *_, last = code_cells(run_notebook.executed(tmp_path))
+    lines = "".join(out.text for out in last.outputs).splitlines()
+    assert [line.split(":")[0] for line in lines] == ["recorded"] * 2
+    assert all(line.split("/")[0].split()[1] in line.split(": ")[2] for line in lines), lines

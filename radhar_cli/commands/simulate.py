@@ -35,7 +35,7 @@ def simulate(
     ] = None,
     nominal: Nominal = False,
     motion: Annotated[
-        Path | None, typer.Option("--motion", help="A motion file (.bvh, .amc, .npz) to look at.")
+        Path | None, typer.Option("--motion", help="A motion file (.bvh, .npz) to look at.")
     ] = None,
     set_: Overrides = None,
     tolerance: Tolerance = None,

@@ -63,7 +63,7 @@ def _clip(one: FilesConfig, folder: Path, path: str, checksum: str) -> Clip:
     if key in _clips:
         _clips.move_to_end(key)
         return _clips[key]
-    read = read_motion(folder / path, None if one.skeleton is None else folder / one.skeleton)
+    read = read_motion(folder / path)
     if checksum and read.checksum != checksum:
         raise MotionFileError(f"{read.path}: is not the file it was: its SHA-256 is another")
     clip = clip_of(

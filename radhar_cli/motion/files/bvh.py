@@ -57,8 +57,6 @@ class Bvh:
     start: int
     line: int
 
-    unit, bones = None, False
-
     @property
     def names(self) -> tuple[str, ...]:
         return tuple(joint.name for joint in self.joints)

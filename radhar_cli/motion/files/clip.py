@@ -87,7 +87,7 @@ def clip_of(
     legs = np.linalg.norm(p[:, len(JOINTS) :] - p[:, _KNEES], axis=2)
     legs += np.linalg.norm(p[:, _KNEES] - p[:, _ANKLES], axis=2)
     units = float(np.median(legs)) / LEG  # the stature in units of the file
-    stature = _stature(units, unit or file.unit, file.where)
+    stature = _stature(units, unit, file.where)
     _refuse_jumps(file, p, rate, (stature if stature == stature else 1.75) / units)
     up = up or _up(file, wanted, p)
     p = np.stack([sign * p[..., axis] for axis, sign in _AXES[up]], axis=-1)

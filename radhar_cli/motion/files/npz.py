@@ -42,7 +42,7 @@ class Npz:
     rate: float
     values: NDArray[Any]
 
-    rest, unit, bones = None, None, False
+    rest = None
 
     @property
     def parents(self) -> tuple[int | None, ...]:

@@ -24,8 +24,6 @@ class Recording(Protocol):
         parents: number of the joint that each hangs on, None for a root.
         rest: positions [J, 3] of the skeleton without rotations; None where the file has none.
         rate: frames per second; None where the file does not say.
-        unit: length of a file unit, m; None where the file does not say.
-        bones: names are of bones, and the joint is the bone's end (ASF).
     """
 
     @property
@@ -38,10 +36,6 @@ class Recording(Protocol):
     def rest(self) -> Float | None: ...
     @property
     def rate(self) -> float | None: ...
-    @property
-    def unit(self) -> float | None: ...
-    @property
-    def bones(self) -> bool: ...
 
     def positions(self, joints: Sequence[int]) -> Float:
         """Positions [frames, len(joints), 3] of some joints.

@@ -48,9 +48,8 @@ _INTERFACE = {
     "simulate": "radhar_cli.simulation.simulate",
     "open_dataset": "radhar_cli.dataset.reading",
     "sample": "radhar_cli.dataset.on_demand",
-    "Samples": "radhar_cli.learning.stream",
+    "Samples": "radhar_cli.learning.samples",
     "Sequences": "radhar_cli.learning.sequences",
-    "Stream": "radhar_cli.learning.stream",
 }
 
 

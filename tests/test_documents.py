@@ -163,9 +163,11 @@ FILES: dict[str, dict[str, Callable[[Path], object]]] = {
 }
 
 
-def first_batch(stream: Any, batch_size: int, num_workers: int = 0) -> object:
-    """What a loader of endless data gives first, without processes."""
-    return islice(DataLoader(stream, batch_size=min(batch_size, 4)), 1)
+def first_batch(
+    samples: Any, batch_size: int, shuffle: bool = False, num_workers: int = 0
+) -> object:
+    """What a loader gives first, without processes."""
+    return islice(DataLoader(samples, batch_size=min(batch_size, 4), shuffle=shuffle), 1)
 
 
 def tell(page: Path, folder: Path) -> None:

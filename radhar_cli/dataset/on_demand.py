@@ -189,8 +189,8 @@ class Recipe:
         self.__dict__.update(state)
 
 
-def whole(name: str, value: int, least: int = 0) -> int:
-    """An argument that should be a whole number from `least` to 2^63 - 1, of numpy's too.
+def whole(name: str, value: int) -> int:
+    """An argument that should be a whole number from 0 to 2^63 - 1, of numpy's too.
 
     Raises:
         ConfigError: it is none.
@@ -199,8 +199,8 @@ def whole(name: str, value: int, least: int = 0) -> int:
         number = whole_number(value)
     except TypeError:
         number = -1
-    if not least <= number < 2**63:
-        raise ConfigError(f"{name} = {value!r}: should be a whole number from {least} to 2^63 - 1")
+    if not 0 <= number < 2**63:
+        raise ConfigError(f"{name} = {value!r}: should be a whole number from 0 to 2^63 - 1")
     return number
 
 

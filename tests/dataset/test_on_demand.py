@@ -219,14 +219,14 @@ def test_it_needs_no_torch_and_the_package_stays_light():
     assert radhar.sample is sample
 
 
-def test_without_torch_a_stream_says_what_to_install():
+def test_without_torch_samples_say_what_to_install():
     done = process(
         "-c",
         "import sys, radhar_cli as radhar\n"
         "sys.modules['torch'] = None\n"
         "try:\n"
-        "    radhar.Stream\n"
+        "    radhar.Samples\n"
         "except ImportError as error:\n"
         "    print(error)\n",
     )
-    assert done.stdout == "radhar.Stream needs PyTorch: pip install 'radhar[train]'\n", done.stderr
+    assert done.stdout == "radhar.Samples needs PyTorch: pip install 'radhar[train]'\n", done.stderr

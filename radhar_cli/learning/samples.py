@@ -1,0 +1,73 @@
+"""A data set for PyTorch whose samples are synthesised, in the workers of a DataLoader."""
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from torch.utils.data import Dataset, get_worker_info
+
+from radhar_cli.arrays import Index
+from radhar_cli.config.schema import Config
+from radhar_cli.dataset.identity import identity, identity_hash
+from radhar_cli.dataset.layout import Rows
+from radhar_cli.dataset.on_demand import Recipe
+from radhar_cli.dataset.split import split_rows
+from radhar_cli.errors import ConfigError
+from radhar_cli.learning.images.image_set import SPLIT_NAMES, split_named
+from radhar_cli.worker_process import prepare_process
+
+
+class Samples(Dataset[dict[str, Any]]):
+    """The rows of a data set without building it: each is synthesised when it is indexed.
+
+    Row i is row i of the dataset.h5 that `radhar generate` would write, bit for bit, whichever
+    process makes it; a DataLoader may shuffle them or share them out with DistributedSampler.
+
+    Attributes:
+        config: of the data set.
+        label: [N] place in `class_slugs`.
+        class_slugs: slug of every label.
+        identity: hash of all that decides the samples: config, seed, versions.
+    """
+
+    def __init__(
+        self,
+        config: Config | str | Path,
+        seed: int | None = None,
+        *,
+        fields: Iterable[str] | None = None,
+        split: str = "all",
+    ) -> None:
+        """The samples of a config.
+
+        Args:
+            config: of the data set, or its path.
+            seed: instead of the config's.
+            fields: names in dataset.h5 of what an item has (`radhar_cli.sample`).
+            split: train, val or test, for those rows alone.
+
+        Raises:
+            ConfigError: an unknown field, a config of measured data, a split without samples.
+        """
+        self._recipe = Recipe.of(config, fields, seed)
+        self.config = self._recipe.config
+        self._rows = Rows.of(self.config)
+        numbers = np.arange(len(self._rows))
+        if split_named(split) != "all":
+            numbers = np.flatnonzero(split_rows(self.config) == SPLIT_NAMES[split])
+        if not numbers.size:
+            raise ConfigError(f"split.{split}: leaves no sample for it; should be larger")
+        self._numbers = numbers
+        labels = [activity.index for activity in self._rows.activities]
+        self.label: Index = np.repeat(labels, self._rows.counts)[numbers]
+        self.class_slugs = self._recipe.class_slugs
+        self.identity = identity_hash(identity(self.config))
+
+    def __len__(self) -> int:
+        return len(self._numbers)
+
+    def __getitem__(self, row: int) -> dict[str, Any]:
+        if get_worker_info() is not None:
+            prepare_process()
+        return self._recipe(*self._rows[int(self._numbers[row])])

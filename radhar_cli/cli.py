@@ -19,8 +19,8 @@ COMMANDS = {
     DATA_SETS: ("generate", "verify", "merge", "convert"),
     "Look": ("simulate", "motion", "preview", "inspect"),
     "Real radars": ("import", "process", "fit", "compare"),
-    "Learn": ("train", "eval", "predict", "adapt"),
-    "Networks and settings": ("models", "export", "tradeoff"),
+    "Learn": ("train", "eval", "predict", "adapt", "export"),
+    "Settings": ("tradeoff",),
 }
 MODULES = {"import": "import_", "eval": "evaluate"}  # and functions; of the others as the command
 STATUSES = (

@@ -44,7 +44,6 @@ NOT_RUN = {
 OPTIONS_ONLY = {
     "--cluster": "other machines; tests/dataset/test_cluster.py has some",
     "tradeoff": "takes minutes; tests/tradeoff runs its parts",
-    "models": "builds seven networks; tests/learning/test_models.py does",
 }
 # What makes a config small, and a command: it stands after its own words.
 FEW = ["stationary", "walking", "walking_to_falling"]

@@ -31,8 +31,7 @@ def train(
     model: Annotated[
         str | None,
         typer.Option(
-            help="fftnet, smallnet, or a name of timm's, see radhar models; of sequences framenet "
-            "or cloudnet."
+            help="fftnet, smallnet, or a name of timm's; of sequences framenet or cloudnet."
         ),
     ] = None,
     target: Annotated[

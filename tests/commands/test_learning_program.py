@@ -66,19 +66,11 @@ def test_json_of_learning_commands(place):
         "eval": ("eval", run, data, "-o", place / "told-eval"),
         "predict": ("predict", run, one),
         "adapt": ("adapt", run, data, "-o", place / "told-adapted", "--epochs", 1),
-        "models": ("models", "smallnet", "--size", 32),
     }
     for name, command in commands.items():
         done = ok(*command, "--json")
         (line,) = done.stdout.splitlines()
         assert json.loads(line).keys() == KEYS[name]
-
-
-def test_models_lists_our_networks_and_the_papers_rivals(place):
-    done = ok("models")
-    assert "6,496,012" in done.stdout
-    assert "99,228" in done.stdout
-    assert "resnet50" in done.stdout
 
 
 @pytest.mark.parametrize(

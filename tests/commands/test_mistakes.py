@@ -59,7 +59,6 @@ MISTAKES = {
     "predict run train.json": "is not a data set",
     "adapt run tree -o x --mix tree": "--mix: needs --epochs",
     "export tree -o x.onnx": "holds no best.safetensors",
-    "models resnet5O": "did you mean 'resnet50'",
 }
 
 

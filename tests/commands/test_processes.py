@@ -80,7 +80,7 @@ assert not {"torch", "timm", "safetensors", "jinja2"} & set(sys.modules)
 @pytest.mark.parametrize(
     "words",
     [
-        *("train --help", "eval --help", "models --help", "export --help", "predict --help"),
+        *("train --help", "eval --help", "export --help", "predict --help"),
         "generate {}/small.yaml -o {}/set",
         "verify {}/set --samples 1",
         "inspect {}/set/png/stft/train",

@@ -83,7 +83,7 @@ def test_a_group_alone_shows_its_help(group):
 def test_every_help_has_an_example():
     for command in (
         *("generate", "simulate", "verify", "preview", "inspect", "config show"),
-        *("train", "eval", "models", "export", "predict", "tradeoff", "import", "process", "fit"),
+        *("train", "eval", "export", "predict", "tradeoff", "import", "process", "fit"),
     ):
         done = ok(*command.split(), "--help")
         assert "Example" in done.stdout, command

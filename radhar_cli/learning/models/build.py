@@ -11,9 +11,6 @@ from radhar_cli.learning.models import cloudnet, framenet, smallnet
 from radhar_cli.learning.models.fftnet import NAME, STRIDE, FFTNet
 from radhar_cli.learning.models.zoo import zoo_model
 
-# The paper's rivals (Table III) under their timm names.
-RIVALS = ("mobilenetv2_100", "resnet50", "vgg19", "vit_base_patch16_224", "convnext_tiny")
-
 
 @dataclass(frozen=True)
 class Cost:

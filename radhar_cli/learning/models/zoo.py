@@ -38,7 +38,7 @@ def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
         ) from None
     if not timm.is_model(name):
         hint = did_you_mean(
-            name, (*OF_SEQUENCES, *timm.list_models()), "`radhar models` lists some"
+            name, (*OF_SEQUENCES, *timm.list_models()), "timm.list_models() has them all"
         )
         raise ModelError(
             f"model {name!r}: is none of {', '.join(OURS)} nor a name of timm's; {hint}"

@@ -10,20 +10,17 @@ import argparse
 import re
 from pathlib import Path
 
-from radhar_cli.tradeoff.report import FIGURE, TEXT
+from radhar_cli.tradeoff.report import TEXT
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
-PAGE, FIGURES = DOCS / "results/tradeoff.md", DOCS / "images/tradeoff"
+PAGE = DOCS / "results/tradeoff.md"
 
 
 def part(out: Path) -> tuple[str, str]:
-    """Name of a result, and its text one heading lower, with the figure's new place."""
+    """Name of a result, and its text one heading lower."""
     text = (out / TEXT).read_text()
     heading = text.partition("\n")[0]
     name = heading.rpartition(": ")[2]
-    FIGURES.mkdir(exist_ok=True)
-    (FIGURES / f"{name}.png").write_bytes((out / FIGURE).read_bytes())
-    text = text.replace(f"]({FIGURE})", f"](../images/{FIGURES.name}/{name}.png)")
     return name, re.sub(r"^#", "##", text, flags=re.MULTILINE)
 
 

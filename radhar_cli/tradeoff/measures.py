@@ -1,4 +1,4 @@
-"""What a setting costs: errors of signal, map and image, against exact data; time of a sample."""
+"""What a setting costs: errors of signal and image, against exact data; time of a sample."""
 
 from functools import cache, partial
 from math import inf, log10
@@ -6,13 +6,11 @@ from time import process_time
 from typing import Any, NamedTuple
 
 import numpy as np
-from PIL import Image
 
-from radhar_cli.arrays import Complex, Float, Levels
+from radhar_cli.arrays import Complex, Levels
 from radhar_cli.echo.direct import Accuracy
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.run import record, run
-from radhar_cli.processing.image import decibels
 from radhar_cli.tradeoff.settings import Scenes, Setting
 
 QUIET = "snr_db=null"
@@ -26,9 +24,7 @@ class Errors(NamedTuple):
 
     measured_error_db: float | None  # what the direct engine measured itself; None of the cube
     signal_error_db: float | None
-    map_error_db: float | None
     ssim: float | None
-    psnr_db: float | None
     pixels_changed: float
 
 
@@ -41,51 +37,28 @@ def relative_db(compared: Complex, exact: Complex) -> float | None:
     return 20 * log10(error) if error > 0 else -inf
 
 
-def map_error_db(compared: Float, exact: Float, dynamic_range_db: float) -> float | None:
-    """Root mean square difference (dB) of two power maps as they are displayed.
-
-    Both are referred to their own maximum and cut at the dynamic range; cells that are at the floor
-    in both do not count. None of maps of two shapes.
-    """
-    if compared.shape != exact.shape:
-        return None
-    one, other = (decibels(power, dynamic_range_db) for power in (compared, exact))
-    seen = (one > -dynamic_range_db) | (other > -dynamic_range_db)
-    difference = (one - other)[seen]
-    return float(np.sqrt(np.mean(difference**2))) if difference.size else 0.0
-
-
-def image_scores(compared: Levels, exact: Levels) -> tuple[float | None, float | None, float]:
-    """SSIM, PSNR (dB; None for equal images) and share of pixels whose level differs.
+def image_scores(compared: Levels, exact: Levels) -> tuple[float | None, float]:
+    """SSIM and share of pixels whose level differs, of images of one size.
 
     SSIM has a window of 7 pixels, of 3 or 5 in smaller images, and is None below 3.
-
-    An image of another size is brought to the reference's by bilinear interpolation first.
     """
     import skimage.metrics
 
     metrics: Any = skimage.metrics
-    if compared.shape != exact.shape:
-        size = (exact.shape[1], exact.shape[0])
-        compared = np.asarray(Image.fromarray(compared).resize(size, Image.Resampling.BILINEAR))
     window = min(SSIM_WINDOW, *(side - 1 + side % 2 for side in exact.shape))
-    similar = psnr = None
+    similar = None
     if window >= 3:
         similar = float(
             metrics.structural_similarity(exact, compared, data_range=255, win_size=window)
         )
-    if not np.array_equal(compared, exact):
-        psnr = float(metrics.peak_signal_noise_ratio(exact, compared, data_range=255))
-    return similar, psnr, float(np.mean(compared != exact))
+    return similar, float(np.mean(compared != exact))
 
 
 class SettingData(NamedTuple):
     """One scene under one setting."""
 
     signal: Complex  # x [M] after the canceller
-    power: Float  # the first map of the config
-    levels: Levels
-    dynamic_range_db: float
+    levels: Levels  # of the first map of the config
     # the error that the direct engine measured itself, dB; None of the cube
     engine_db: float | None
 
@@ -104,7 +77,6 @@ class SceneErrors:
         return Errors(
             compared.engine_db,
             relative_db(compared.signal, right.signal),
-            map_error_db(compared.power, right.power, right.dynamic_range_db),
             *image_scores(compared.levels, right.levels),
         )
 
@@ -112,14 +84,12 @@ class SceneErrors:
 def _sample(scenes: Scenes, slug: str, overrides: tuple[str, ...]) -> SettingData:
     config = scenes.config(overrides)
     name = config.maps[0]
-    asked = ["signal", name, f"image:{name}"] + ["accuracy"] * (config.engine.kind == "direct")
+    asked = ["signal", f"image:{name}"] + ["accuracy"] * (config.engine.kind == "direct")
     products = record(scenes.draw(slug, config), asked).products
     accuracy = products.get("accuracy")
     return SettingData(
         products["signal"].x[0, 0],
-        products[name].power,
         products[f"image:{name}"].levels,
-        config.image.dynamic_range_db,
         accuracy.error_db if isinstance(accuracy, Accuracy) else None,
     )
 

@@ -1,4 +1,4 @@
-"""tradeoff.csv, tradeoff.json, pareto.png and tradeoff.md of the rows of a sweep."""
+"""tradeoff.csv, tradeoff.json and tradeoff.md of the rows of a sweep."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -8,10 +8,10 @@ from typing import Any
 
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.learning.report_folder import csv_text
-from radhar_cli.tradeoff.figure import ENGINES, tradeoff_png
 from radhar_cli.tradeoff.study import Record
 
-CSV, JSON, FIGURE, TEXT = "tradeoff.csv", "tradeoff.json", "pareto.png", "tradeoff.md"
+CSV, JSON, TEXT = "tradeoff.csv", "tradeoff.json", "tradeoff.md"
+ENGINES = ("budget", "precision", "engine")
 COLUMNS = {
     "setting": "{setting}{marked}",
     "sample ms": "{sample_ms:.1f}",
@@ -20,9 +20,7 @@ COLUMNS = {
     "signal error dB": "{signal_error_db:.1f}",
     "median dB": "{signal_error_median_db:.1f}",
     "measured dB": "{measured_error_db:.1f}",
-    "map error dB": "{map_error_db:.4f}",
     "SSIM": "{ssim:.6f}",
-    "PSNR dB": "{psnr_db:.1f}",
     "pixels changed": "{pixels_changed:.3%}",
 }
 
@@ -30,13 +28,12 @@ COLUMNS = {
 def write_report(
     folder: Path, title: str, command: str, rows: Sequence[Record], conditions: Mapping[str, Any]
 ) -> list[Path]:
-    """Write the four files; return their paths. JSON has null for the error of what is exact."""
+    """Write the three files; return their paths. JSON has null for the error of what is exact."""
     finite = [{key: None if value == -inf else value for key, value in row.items()} for row in rows]
     numbers = {"command": command, **conditions, "settings": finite}
     files = {
         CSV: csv_text([*rows[0]], (row.values() for row in rows)).encode(),
         JSON: (json.dumps(numbers, indent=2) + "\n").encode(),
-        FIGURE: tradeoff_png(title, rows),
         TEXT: markdown(title, command, rows, conditions).encode(),
     }
     for name, data in files.items():
@@ -54,8 +51,6 @@ def markdown(
 
 `{command}`
 
-![time against error]({FIGURE})
-
 {count} scene{"s" * (count > 1)}, one an activity, drawn from the config; errors without noise \
 against the exact cube in float64, the worst scene's unless it says median. Times of one process, \
 {rounds} rounds interleaved; ratios on the same scenes in the same moment, with \
@@ -71,12 +66,6 @@ Time is that of the switch on; errors are those of data without it against data 
 corner and interference line are added to the config's noise, on both sides.
 
 {_table(rows, ("switch",))}
-
-## Image size and kind of map
-
-Images of another size are resized to the config's before they are compared.
-
-{_table(rows, ("image size", "image kind", "map"))}
 """
 
 

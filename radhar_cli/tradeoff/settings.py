@@ -1,36 +1,20 @@
 """Scenes of the sweep; settings, each with a baseline for time and exact data for error."""
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache, reduce
-from operator import getitem
+from functools import cache
 from pathlib import Path
 
 from radhar_cli.config import load_config
-from radhar_cli.config.identity import resolved
 from radhar_cli.config.number import nominal
-from radhar_cli.config.schema import MAP_NAMES, Config, EngineConfig
+from radhar_cli.config.schema import Config, EngineConfig
 from radhar_cli.pipeline.validity import draw_valid_scene
 from radhar_cli.scene import Scene
 
 # Of what differs most: a standing person's arms, a walk, a fall.
 QUICK = ("punching", "walking", "walking_to_falling")
-
-
 BUDGETS = (-20, -30, -40, -50, -60, -70, -80, -100, -120)
-SIZES = (64, 128, 256, 512)
 CLUTTER = ("difference", "mean", "highpass", "none")
-# What has a default by model, and is not of the motion itself.
-KEPT = (
-    "duration_s",
-    "on_invalid",
-    "radar.bandwidth_hz",
-    "radar.prf_hz",
-    "motion.range_m",
-    "motion.angle_deg",
-    "processing.window_s",
-)
 CUBE = ("engine.kind=cube",)
 DIRECT = ("engine.kind=direct", f"engine.tolerance_db={EngineConfig().tolerance_db:g}")
 
@@ -68,7 +52,7 @@ def _config(path: Path, overrides: tuple[str, ...]) -> Config:
 class Setting:
     """One row of the sweep. All overrides are dotted `key=value` pairs."""
 
-    group: str  # budget, precision, engine, image size, image kind, map or switch
+    group: str  # budget, precision, engine or switch
     name: str  # as printed
     overrides: tuple[str, ...]  # the setting itself; its time is measured with them
     # of the data whose error is measured: `overrides`, or for a switch, without it
@@ -87,7 +71,7 @@ class Setting:
 
 def sweep(config: Config) -> list[Setting]:
     """The settings that make sense for a config."""
-    return [*_engines(), *_images(config), *_switches(config)]
+    return [*_engines(), *_switches(config)]
 
 
 def _engines() -> list[Setting]:
@@ -108,20 +92,6 @@ CORRIDOR = (
 BEAM = "radar.beam={azimuth_deg: 70, elevation_deg: 30}"
 
 
-def _images(config: Config) -> list[Setting]:
-    sizes = {f"{size} px": (*DIRECT, f"image.size_px={size}") for size in SIZES}
-    kind = "cfar" if config.image.kind == "decibel" else "decibel"
-    others = {("image kind", kind): f"image.kind={kind}"}
-    others |= {("map", name): f"maps=[{name}]" for name in MAP_NAMES}
-    return [
-        *(Setting("image size", name, sized, sized, CUBE) for name, sized in sizes.items()),
-        *(
-            Setting(*named, (*DIRECT, on), (*DIRECT, on), (*CUBE, on))
-            for named, on in others.items()
-        ),
-    ]
-
-
 def _switches(config: Config) -> list[Setting]:
     """Physics and transforms that a config may leave out; clutter changes the length."""
     own, clutter = config.body.scatterers, config.processing.clutter
@@ -135,7 +105,6 @@ def _switches(config: Config) -> list[Setting]:
         "interference line at PRF/8": (*DIRECT, f"receiver.tones=[{{doppler_hz: {prf / 8:g}}}]"),
     }
     switches = [
-        _switch(*_other_motion(config)),
         _switch(f"scatterers: {other} instead of {own}", f"body.scatterers={other}"),
         _over("shadowing", bodies, "segments without shadowing"),
         _over("range_sum: gated instead of coherent", gates, "the coherent STFT"),
@@ -178,22 +147,6 @@ def _switches(config: Config) -> list[Setting]:
             _switch("Fresnel, parallel", "wall.fresnel=parallel"),
         ]
     return switches
-
-
-def _other_motion(config: Config) -> tuple[str, ...]:
-    """Name and overrides of the other model of motion; all else stays, whatever its defaults."""
-    other = "paper" if config.motion.model == "human" else "human"
-    kept = resolved(config)
-    if config.processing.window_s is None:
-        duration, prf = nominal(config.duration_s), nominal(config.radar.prf_hz)
-        pulses = config.processing.window_pulses(duration, prf, nominal(config.radar.carrier_hz))
-        kept["processing"]["window_s"] = pulses / prf
-    name = f"motion: {other} instead of {config.motion.model}"
-    return (
-        name,
-        f"motion.model={other}",
-        *(f"{key}={json.dumps(reduce(getitem, key.split('.'), kept))}" for key in KEPT),
-    )
 
 
 def _over(name: str, on_off: Sequence[Sequence[str]], off_name: str) -> Setting:

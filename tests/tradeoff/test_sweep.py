@@ -3,16 +3,13 @@
 import csv
 import json
 
-import numpy as np
 import pytest
 from listener import Listener
-from PIL import Image
 from typer.testing import CliRunner
 
 from radhar_cli.cli import program
 from radhar_cli.scene import scene_numbers
 from radhar_cli.tradeoff import study
-from radhar_cli.tradeoff.figure import CostPoint, frontier
 from radhar_cli.tradeoff.settings import Scenes, sweep
 
 CONFIG = """
@@ -24,14 +21,14 @@ maps: [stft]
 image: {size_px: 48, cfar: {guard: [2, 1], training: [10, 5]}}
 """
 TRIED = (
-    *("-40 dB", "-60 dB", "-80 dB", "-100 dB", "-120 dB", "cube", "double", "64 px", "fsst"),
+    *("-40 dB", "-60 dB", "-80 dB", "-100 dB", "-120 dB", "cube", "double"),
     *("residual video phase", "FSST at every sample", "refracted rays"),
     *(
         "scatterers: segments instead of points",
         "shadowing",
         "range_sum: gated instead of coherent",
     ),
-    *("cfar", "clutter: mean instead of difference", "room: 3 reflectors"),
+    *("clutter: mean instead of difference", "room: 3 reflectors"),
     *("noise corner at PRF/20", "interference line at PRF/8"),
 )
 
@@ -73,7 +70,7 @@ def rows_of(out):
 
 
 class TestCommand:
-    def test_writes_four_files_that_agree(self, done):
+    def test_writes_three_files_that_agree(self, done):
         config, out = done
         rows = rows_of(out)
         with (out / "tradeoff.csv").open() as file:
@@ -82,7 +79,6 @@ class TestCommand:
         text = (out / "tradeoff.md").read_text()
         assert all(name in text for name in rows)
         assert str(config) in text
-        assert np.asarray(Image.open(out / "pareto.png")).std() > 0
 
     def test_numbers_are_what_they_should_be(self, done):
         rows = rows_of(done[1])
@@ -96,7 +92,7 @@ class TestCommand:
         cube = rows["cube"]
         assert cube["exact"]
         assert cube["signal_error_db"] is None
-        assert (cube["pixels_changed"], cube["map_error_db"], cube["psnr_db"]) == (0, 0, None)
+        assert cube["pixels_changed"] == 0
         assert cube["time_ratio"] > 0
         assert rows["double"]["measured_error_db"] < -80
         assert sum(row["default"] for row in rows.values()) == 1
@@ -119,11 +115,9 @@ class TestCommand:
         mean = rows["clutter: mean instead of difference"]
         assert mean["signal_error_db"] is None  # one pulse more: nothing to subtract
         dense = rows["FSST at every sample"]
-        assert dense["map_error_db"] is None  # other columns: no cell to compare with
         assert max(dense["ssim"], mean["ssim"]) < 0.999
         assert dense["time_over"] == "the FSST at the STFT's hop"
-        assert rows["range_sum: gated instead of coherent"]["map_error_db"] > 0.1
-        assert rows["cfar"]["pixels_changed"] < 0.05  # masks of the engine against the cube's
+        assert rows["range_sum: gated instead of coherent"]["pixels_changed"] > 0.1
 
 
 class TestSettings:
@@ -143,13 +137,13 @@ class TestSettings:
                     assert scenes.config(overrides)
 
     def test_one_that_the_config_forbids_is_left_out_and_named(self, config):
-        """A filter longer than the recording: the denoised maps cannot be, the others can."""
+        """A high-pass above PRF/2 cannot be, the other settings can."""
         listener = Listener()
-        scenes = self.scenes(config, "processing.savgol={order: 1, frame: 1001}")
+        scenes = self.scenes(config, "processing.highpass.cutoff_hz=600")
         possible = study.possible(scenes, listener)
-        assert not any("denoised" in setting.name for setting in possible)
-        assert len(listener.messages) == 4
-        assert all("processing.savgol.frame" in message for message in listener.messages)
+        assert not any("highpass" in setting.name for setting in possible)
+        (message,) = listener.messages
+        assert "processing.highpass" in message
 
     def test_names_are_told_apart_and_one_is_the_default(self, config):
         settings = sweep(self.scenes(config, "wall={}").config())
@@ -161,19 +155,7 @@ class TestSettings:
         usual = scene_numbers(scenes.draw("walking", scenes.config()))
         for setting in sweep(scenes.config()):
             scene = scenes.draw("walking", scenes.config(setting.overrides))
-            if not setting.name.startswith("motion: "):
-                assert usual.items() <= scene_numbers(scene).items()
-
-    def test_the_other_motion_begins_at_the_same_place(self, config):
-        scenes = self.scenes(config, "motion.range_m={uniform: [4, 5]}")
-        (row,) = (s for s in sweep(scenes.config()) if s.name == "motion: human instead of paper")
-        one, other = (
-            scene_numbers(scenes.draw("walking", scenes.config(overrides)))
-            for overrides in ((), row.overrides)
-        )
-        assert "motion.arm_swing" in other.keys() - one.keys()
-        for key in ("motion.range_m", "motion.angle_deg", "subject.height_m"):
-            assert one[key] == other[key]
+            assert usual.items() <= scene_numbers(scene).items()
 
     def test_people_and_rays_that_a_config_does_not_have_are_tried(self, tmp_path):
         path = tmp_path / "people.yaml"
@@ -181,20 +163,6 @@ class TestSettings:
         names = {setting.name for setting in sweep(Scenes(path, (), quick=True).config())}
         assert {"another person, who walks", "straight rays", "refracted rays"} <= names
         assert "plane rays" not in names
-
-    @pytest.mark.parametrize("model", ["human", "paper"])
-    def test_the_other_motion_leaves_radar_duration_and_window(self, tmp_path, model):
-        """Where the config leaves them out they would be those of the other model."""
-        (tmp_path / "short.yaml").write_text(f"motion: {{model: {model}}}")
-        scenes = Scenes(tmp_path / "short.yaml", (), quick=True)
-        (row,) = (s for s in sweep(scenes.config()) if s.name.startswith("motion: "))
-        one, other = scenes.config(), scenes.config(row.overrides)
-        assert one.motion.model != other.motion.model
-        assert (one.duration_s, one.radar, one.on_invalid) == (
-            *(other.duration_s, other.radar, other.on_invalid),
-        )
-        windows = [c.processing.window_pulses(c.duration_s, 1e4, 77e9) for c in (one, other)]
-        assert windows[0] == windows[1]
 
     def test_the_other_body_setting_is_the_one_the_config_lacks(self, config):
         scenes = self.scenes(config, "body.scatterers=segments")
@@ -206,18 +174,3 @@ class TestSettings:
         scenes = self.scenes(config, "maps=[stft, fsst]")
         names = [setting.name for setting in study.possible(scenes, Listener())]
         assert "range_sum: gated instead of coherent" in names
-
-
-class TestFrontier:
-    def point(self, name, time, error_db):
-        return CostPoint(name, time, time, time, error_db, False)
-
-    def test_keeps_undominated_settings(self):
-        points = [
-            self.point("exact", 30, -np.inf),
-            self.point("slow and bad", 3, -20),
-            self.point("fast and bad", 1, -20),
-            self.point("fast and as bad", 1.1, -20),
-            self.point("good", 2, -60),
-        ]
-        assert [p.name for p in frontier(points)] == ["fast and bad", "good", "exact"]

@@ -1,6 +1,5 @@
 """A data set for PyTorch whose samples are synthesised, in the workers of a DataLoader."""
 
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -36,7 +35,6 @@ class Samples(Dataset[dict[str, Any]]):
         config: Config | str | Path,
         seed: int | None = None,
         *,
-        fields: Iterable[str] | None = None,
         split: str = "all",
     ) -> None:
         """The samples of a config.
@@ -44,13 +42,12 @@ class Samples(Dataset[dict[str, Any]]):
         Args:
             config: of the data set, or its path.
             seed: instead of the config's.
-            fields: names in dataset.h5 of what an item has (`radhar_cli.sample`).
             split: train, val or test, for those rows alone.
 
         Raises:
-            ConfigError: an unknown field, a config of measured data, a split without samples.
+            ConfigError: a config of measured data, a split without samples.
         """
-        self._recipe = Recipe.of(config, fields, seed)
+        self._recipe = Recipe.of(config, seed)
         self.config = self._recipe.config
         self._rows = Rows.of(self.config)
         numbers = np.arange(len(self._rows))
@@ -61,7 +58,7 @@ class Samples(Dataset[dict[str, Any]]):
         self._numbers = numbers
         labels = [activity.index for activity in self._rows.activities]
         self.label: Index = np.repeat(labels, self._rows.counts)[numbers]
-        self.class_slugs = self._recipe.class_slugs
+        self.class_slugs = [activity.slug for activity in self.config.every_class]
         self.identity = identity_hash(identity(self.config))
 
     def __len__(self) -> int:

@@ -1,4 +1,4 @@
-"""A sample on demand is the one of the data set, bit for bit, and nothing else is computed."""
+"""A sample on demand is the one of the data set, bit for bit, and all of its fields."""
 
 import pickle
 
@@ -12,11 +12,10 @@ import radhar_cli as radhar
 from radhar_cli.config import load_config
 from radhar_cli.dataset import on_demand
 from radhar_cli.dataset.build import build
-from radhar_cli.dataset.on_demand import Recipe, field_names, sample
+from radhar_cli.dataset.on_demand import Recipe, sample
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import ConfigError, SceneError
 from radhar_cli.pipeline.products import plan_images
-from radhar_cli.pipeline.run import run
 
 EVERYTHING = """
 on_invalid: redraw
@@ -56,12 +55,13 @@ def stored(data, row, name):
 
 
 def test_every_field_of_every_sample_is_that_of_the_data_set(config, built):
-    names = [name for name in field_names(config) if not name.startswith("largest_db/")]
     with open_dataset(built) as data:
+        first = sample(config, data.class_slugs[data.label[0]], 0)
+        names = [name for name in first if not name.startswith("largest_db/")]
         assert {"maps/rtm", "power/stft", "slow_time", "entropy/rtm", "scene/snr"} <= {*names}
         for row in range(len(data)):
             number, index = data.sample_key[row]
-            made = sample(config, data.class_slugs[number], int(index), names)
+            made = sample(config, data.class_slugs[number], int(index))
             for name in names:
                 there, here = stored(data, row, name), np.asarray(made[name])
                 assert here.tobytes() == np.asarray(there, here.dtype).tobytes(), (row, name)
@@ -70,52 +70,9 @@ def test_every_field_of_every_sample_is_that_of_the_data_set(config, built):
                     assert made[name].flags.c_contiguous
 
 
-@pytest.mark.parametrize(
-    "fields", [["maps/stft"], ["maps/fsst_compensated", "slow_time"], ["entropy/stft"]]
-)
-def test_a_field_does_not_depend_on_what_else_is_asked_for(config, fields):
-    whole, alone = sample(config, "S12", 1, field_names(config)), sample(config, "S12", 1, fields)
-    assert list(alone) == ["label", "sample_key", *fields]
-    for name in alone:
-        assert np.array_equal(alone[name], whole[name], equal_nan=name == "slow_time")
-
-
-@pytest.mark.parametrize(
-    ("fields", "runs", "not_runs"),
-    [
-        (["maps/rtm"], {"image:rtm"}, {"echo", "signal", "image:stft", "accuracy"}),
-        (["maps/stft"], {"image:stft"}, {"rtm", "torso_track", "image:fsst_compensated"}),
-        (["slow_time"], {"signal"}, {"image:stft", "rtm", "frames"}),
-        (["scene/height"], set(), {"paths", "echo", "signal", "waveform"}),
-    ],
-)
-def test_nothing_is_synthesised_that_is_not_asked_for(config, fields, runs, not_runs, monkeypatch):
-    ran: set[str] = set()
-
-    def watched(steps, given):
-        found = run(steps, given)
-        ran.update(found.seconds)
-        return found
-
-    monkeypatch.setattr("radhar_cli.dataset.sample.run", watched)
-    sample(config, "walking", 0, fields)
-    assert runs <= ran
-    assert not not_runs & ran
-
-
-def test_entropy_is_summed_up_only_where_it_is_asked_for(config, monkeypatch):
-    def refuse(*_):
-        raise AssertionError("an entropy")
-
-    monkeypatch.setattr("radhar_cli.processing.entropy.EntropySum.add", refuse)
-    sample(config, "walking", 0, ["maps/rtm", "maps/stft"])
-    with pytest.raises(AssertionError, match="an entropy"):
-        sample(config, "walking", 0, ["maps/rtm", "entropy/rtm"])
-
-
 def test_seed_and_index_name_a_sample_beyond_the_data_set_too(config):
-    def levels(seed, index, more=()):
-        made = sample(config, "walking", index, ["maps/stft", *more], seed)
+    def levels(seed, index):
+        made = sample(config, "walking", index, seed)
         return bytes(made["maps/stft"].tobytes())
 
     other = config.model_copy(update={"seed": 99, "samples_per_class": 5000})
@@ -124,7 +81,7 @@ def test_seed_and_index_name_a_sample_beyond_the_data_set_too(config):
 
 
 def test_samples_can_be_pickled(config):
-    recipe = Recipe.of(config, ["maps/stft"])
+    recipe = Recipe.of(config)
     activity = config.chosen_activities[1]
     first = recipe(activity, 2)["maps/stft"]
     again = pickle.loads(pickle.dumps(recipe))
@@ -135,30 +92,18 @@ def test_samples_can_be_pickled(config):
 def test_the_plan_is_made_once_for_one_config(config, monkeypatch):
     made = []
 
-    def counted(config, entropy):
-        made.append(entropy)
-        return plan_images(config, entropy)
+    def counted(config):
+        made.append(config)
+        return plan_images(config)
 
     monkeypatch.setattr(on_demand, "plan_images", counted)
     own = config.model_copy(update={"seed": 3})
     for index in range(3):
-        sample(own, "walking", index, ["maps/rtm"])
-    assert made == [False]
+        sample(own, "walking", index)
+    assert made == [own]
 
 
 def test_mistakes_are_refused_in_one_line(config):
-    plain = config.model_copy(
-        update={"output": config.output.model_copy(update={"power": None, "slow_time": False})}
-    )
-    for fields, words in (
-        (["maps/sfft"], "did you mean 'maps/stft'"),
-        (["power/stft"], "output.power: float16 makes it"),
-        (["slow_time"], "output.slow_time: true makes it"),
-        (["maps/fsst"], "is not in this data set"),
-        (["split"], "is not in this data set"),
-    ):
-        with pytest.raises(ConfigError, match=words):
-            sample(plain, "walking", 0, fields)
     for more, words in (
         ({"index": -1}, "index = -1: should be a whole number from 0 to 2"),
         ({"index": 1.5}, "index = 1.5: should be a whole number"),
@@ -167,9 +112,6 @@ def test_mistakes_are_refused_in_one_line(config):
         ({"seed": 1.5}, "seed = 1.5: should be a whole number"),
         ({"seed": 2**64}, "seed = 18446744073709551616: should be"),
         ({"seed": [1]}, "seed = .1.: should be"),
-        ({"fields": "maps/stft"}, "fields = 'maps/stft': should be a list of names"),
-        ({"fields": [1]}, "fields = .1.: should be a list of names"),
-        ({"fields": 1}, "fields = 1: should be a list of names"),
         ({"activity": 7}, "activity = 7: should be a slug"),
         ({"config": "x.yaml"}, r"x\.yaml: no such file"),
         ({"config": 7}, "config = 7: should be the path of a YAML file, or a Config"),
@@ -182,18 +124,17 @@ def test_mistakes_are_refused_in_one_line(config):
 
 def test_a_config_may_be_a_path(tmp_path):
     path = small_config(tmp_path)
-    right = sample(load_config(path), "punching", 1, ["maps/stft"])["maps/stft"]
+    right = sample(load_config(path), "punching", 1)["maps/stft"]
     for given in (path, str(path)):
-        assert np.array_equal(sample(given, "punching", 1, ["maps/stft"])["maps/stft"], right)
+        assert np.array_equal(sample(given, "punching", 1)["maps/stft"], right)
         assert Recipe.of(given) == Recipe.of(load_config(path))
 
 
 def test_numpy_integers_are_accepted(config):
-    fields = ["scene/height"]
-    one = sample(config, "walking", np.int64(2), fields, np.uint8(5))
-    other = sample(config, "walking", 2, fields, 5)
+    one = sample(config, "walking", np.int64(2), np.uint8(5))
+    other = sample(config, "walking", 2, 5)
     assert one["scene/height"] == other["scene/height"]
-    assert sample(config, "walking", 2**63 - 1, fields)["sample_key"].dtype == np.int64
+    assert sample(config, "walking", 2**63 - 1)["sample_key"].dtype == np.int64
 
 
 def test_scenes_outside_the_model_are_refused_or_drawn_again_as_in_a_build(config):
@@ -202,9 +143,9 @@ def test_scenes_outside_the_model_are_refused_or_drawn_again_as_in_a_build(confi
         return config.model_copy(update={"on_invalid": on_invalid, "motion": motion})
 
     with pytest.raises(SceneError, match="no scene inside the model"):
-        sample(within("redraw"), "walking", 0, ["scene/height"])
+        sample(within("redraw"), "walking", 0)
     with pytest.raises(SceneError, match="on_invalid: error"):
-        sample(within("error"), "walking", 0, ["scene/height"])
+        sample(within("error"), "walking", 0)
 
 
 def test_it_needs_no_torch_and_the_package_stays_light():

@@ -31,7 +31,6 @@ DOCUMENT: dict[str, Any] = {
     "image": {"size_px": 16},
     "split": {"train": 0.5, "validation": 0.5},
 }
-ONE_MAP = ["maps/stft"]
 
 
 def config(**more):
@@ -43,19 +42,19 @@ def keys(batch):
 
 
 def test_samples_are_the_rows_of_the_data_set():
-    samples, rows = Samples(config(), fields=ONE_MAP), Rows.of(config())
+    samples, rows = Samples(config()), Rows.of(config())
     assert len(samples) == 12
     found = dict(enumerate(DataLoader(samples, batch_size=None, num_workers=2)))
     for row, made in found.items():
         one, index = rows[row]
         assert made["sample_key"].tolist() == [one.index, index]
         assert samples.label[row] == made["label"] == one.index
-        there = sample(config(), one, index, ONE_MAP)
+        there = sample(config(), one, index)
         assert np.array_equal(made["maps/stft"], there["maps/stft"])
 
 
 def test_samples_of_a_split_are_those_rows_alone():
-    samples = Samples(config(), split="val", fields=["scene/height"])
+    samples = Samples(config(), split="val")
     rows = np.flatnonzero(split_rows(config()) == VALIDATION)
     assert len(samples) == rows.size
     order = Rows.of(config())
@@ -65,7 +64,7 @@ def test_samples_of_a_split_are_those_rows_alone():
 
 
 def test_a_distributed_sampler_shares_the_rows():
-    samples = Samples(config(), fields=["scene/height"])
+    samples = Samples(config())
     found: list[tuple[int, int]] = []
     for rank in range(2):
         sampler = DistributedSampler(samples, 2, rank, shuffle=True, seed=3)
@@ -86,10 +85,10 @@ def test_power_and_slow_time_come_as_tensors():
 @pytest.mark.parametrize("workers", [0, 1])
 def test_on_invalid_error_ends_a_loader(workers):
     far = config(motion={"model": "paper", "range_m": {"uniform": [1, 40]}}, on_invalid="error")
-    samples = Samples(far, fields=["scene/range"])
+    samples = Samples(far)
     with pytest.raises(SceneError, match=r"sample \w+/\d+: a scatterer leaves the range half-band"):
         [*DataLoader(samples, 2, num_workers=workers)]
-    again = Samples(far.model_copy(update={"on_invalid": "redraw"}), fields=["scene/range"])
+    again = Samples(far.model_copy(update={"on_invalid": "redraw"}))
     assert all(math.isfinite(again[row]["scene/range"]) for row in range(len(again)))
 
 
@@ -105,7 +104,7 @@ def test_user_defined_classes_are_known_to_workers(monkeypatch):
     """A spawned worker begins without it, and gets the samples as bytes."""
     monkeypatch.setattr(activity, "_OWN", {})
     add_activity("swinging_ball", swinging)
-    samples = Samples(config(activities=["walking", "swinging_ball"]), fields=ONE_MAP)
+    samples = Samples(config(activities=["walking", "swinging_ball"]))
     here, handed = [samples[0], samples[4]], pickle.dumps(samples)
     monkeypatch.setattr(activity, "_OWN", {})
     there = [pickle.loads(handed)[row] for row in (0, 4)]
@@ -120,7 +119,6 @@ def test_mistakes_are_refused_in_one_line():
         (lambda: Samples(config(), 2**63), "seed = 9223372036854775808: should be"),
         (lambda: Samples("x.yaml"), r"x\.yaml: no such file"),
         (lambda: Samples(7), "config = 7: should be the path"),
-        (lambda: Samples(config(), fields=["maps/fsst"]), "is not in this data set"),
         (lambda: Samples(config(split={"train": 1, "validation": 0}), split="val"), "no sample"),
     ):
         with pytest.raises(ConfigError, match=words):

@@ -22,7 +22,6 @@ from pydantic import (
     Discriminator,
     Field,
     GetCoreSchemaHandler,
-    GetJsonSchemaHandler,
     Tag,
     ValidationInfo,
     field_validator,
@@ -108,17 +107,6 @@ class Section(BaseModel):
             and isinstance(text.value, ast.Constant)
             and isinstance(text.value.value, str)
         }
-
-    @classmethod
-    def __get_pydantic_json_schema__(
-        cls, schema: CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        document = handler(schema)
-        properties = handler.resolve_ref_schema(document)["properties"]
-        for name, text in cls.descriptions().items():
-            if name in properties:
-                properties[name]["description"] = text
-        return document
 
 
 T = TypeVar("T")

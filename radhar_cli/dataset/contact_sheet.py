@@ -1,11 +1,9 @@
 """A contact sheet: some samples of every class of a data set."""
 
-from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from radhar_cli.arrays import Levels
 from radhar_cli.dataset.layout import row_axis
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.figures.page import DPI, page_of_rows, write_figure
@@ -39,15 +37,4 @@ def draw_contact_sheet(data: Dataset, name: str, per_class: int, path: Path) -> 
     power = f"power, {image.dynamic_range_db:g} dB down from the largest of each map"
     shown = "cells that the CFAR sets" if image.kind == "cfar" else power
     figure.suptitle(f"{name}: {shown}", fontsize=9)
-    write_figure(figure, path, DPI)
-
-
-def draw_image_sheet(classes: Mapping[str, Sequence[Levels]], title: str, path: Path) -> None:
-    """Write a PNG with a row of RGB images [H, W, 3], of any sizes, for every class."""
-    rows = {name.replace("_", "\n"): images for name, images in classes.items()}
-    figure, panels = page_of_rows(rows, (1.5, 1.5), (1.6, 0.5))
-    for panel, image in panels:
-        panel.imshow(image)
-        panel.set(xticks=[], yticks=[])
-    figure.suptitle(title, fontsize=9)
     write_figure(figure, path, DPI)

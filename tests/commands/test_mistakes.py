@@ -71,7 +71,7 @@ def place(small_set, tmp_path_factory):
     (folder / "set").symlink_to(small_set)
     (folder / "names.yaml").write_text("walkin: walking\n")
     (folder / "train.json").write_text(json.dumps(BASE))
-    (folder / "broken.bvh").write_text("MOTION\n")
+    (folder / "broken.bvh").write_text("hello\n")
     split_tree(folder / "tree", 2, 1)
     tree(folder / "alone", ("walking",), {"train": 2, "val": 1})
     trained(folder / "tree", folder / "run", epochs=1)

@@ -84,7 +84,7 @@ assert not {"torch", "timm", "safetensors", "jinja2"} & set(sys.modules)
         "generate {}/small.yaml -o {}/set",
         "verify {}/set --samples 1",
         "inspect {}/set/png/stft/train",
-        "preview {}/set/png/stft/train -o {}/tree.png",
+        "preview {}/set -o {}/sheet.png",
         "compare {}/set {}/set -o {}/compared --map stft --per-class 2",
     ],
 )

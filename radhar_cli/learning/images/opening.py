@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.arrays import Levels
 from radhar_cli.dataset.image_file import image_size
 from radhar_cli.dataset.layout import DATASET, SPLITS, is_incomplete
 from radhar_cli.errors import FolderError
@@ -100,15 +99,4 @@ def summarise_tree(root: Path) -> dict[str, Any]:
         "map": images.map,
         "sizes": [{"size": list(size), "images": n} for size, n in sizes.most_common()],
         "classes": {name: counts(number) for number, name in enumerate(images.classes)},
-    }
-
-
-def first_of_each(images: ImageSet, per_class: int, classes: int) -> dict[str, list[Levels]]:
-    """The first RGB images of the first classes."""
-    return {
-        name: [
-            images.pixels.read(int(row))
-            for row in np.flatnonzero(images.label == label)[:per_class]
-        ]
-        for label, name in enumerate(images.classes[:classes])
     }

@@ -113,9 +113,9 @@ def test_the_program_refuses_them_in_one_line(tmp_path: Path) -> None:
         assert "\n" not in refused(answer)
 
 
-# (first case, cases): a tenth of them in every run.
+# (first case, cases): a tenth of them in every run, one that stays readable among them.
 @pytest.mark.parametrize(
-    ("first", "count"), [(30, 40), pytest.param(70, 400, marks=pytest.mark.slow)]
+    ("first", "count"), [(30, 40), pytest.param(0, 440, marks=pytest.mark.slow)]
 )
 def test_damage_is_refused_or_does_no_harm(tmp_path: Path, first: int, count: int) -> None:
     p = frames(seconds=0.3)

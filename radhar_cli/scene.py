@@ -1,7 +1,7 @@
 """(config, class, index) -> one scene: a config with nothing left to draw."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, lru_cache, partial
 from math import nan
 from typing import Any, TypeAlias
@@ -92,12 +92,14 @@ class Person:
         activity: what they do.
         config: whose `subject`, `motion`, `timing` and `classes` are theirs.
         number: 0 for the sample's own person, else their place in `people`, from 1 on.
+        held: what was made of them and is needed again.
     """
 
     scene: "Scene"
     activity: Activity
     config: Config
     number: int = 0
+    held: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
 
     @property
     def prefix(self) -> str:
@@ -161,7 +163,7 @@ class Scene:
         """How messages call this sample."""
         return f"{self.activity.slug}/{self.index}"
 
-    @property
+    @cached_property
     def people(self) -> tuple[Person, ...]:
         """Everybody in the scene, the sample's own person first."""
         others = (

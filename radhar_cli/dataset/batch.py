@@ -3,7 +3,7 @@
 import os
 import platform
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -53,7 +53,8 @@ def check_scenes(config: Config) -> tuple[list[Scene], list[dict[str, Any]]]:
     rows = Rows.of(config)
     drawn = [draw_valid_scene(config, *rows[row]) for row in rows.spread(CHECKED_SCENES)]
     counts = {flag: sum(flag in found for _, found in drawn) for flag in Flags}
-    return [scene for scene, _ in drawn], warnings(config, counts, len(drawn))
+    # Without the motions that they hold.
+    return [replace(scene) for scene, _ in drawn], warnings(config, counts, len(drawn))
 
 
 def leave_if_orphaned(parent_pid: int) -> None:

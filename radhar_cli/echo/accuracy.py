@@ -56,6 +56,11 @@ def settings(aim_db: float, waveform: Waveform, highest_frequency: float) -> Set
     )
 
 
+def first_aim(tolerance_db: float) -> float:
+    """The error (dB) that settings for a tolerance are first chosen for."""
+    return max(tolerance_db - MARGIN_DB, MIN_AIM_DB)
+
+
 class AccuracyError(ValueError):
     """The direct engine cannot be as accurate as asked.
 

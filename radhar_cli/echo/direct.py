@@ -16,12 +16,12 @@ import numpy as np
 from radhar_cli.arrays import Bool, Complex, Float, Index
 from radhar_cli.echo import compiled
 from radhar_cli.echo.accuracy import (
-    MARGIN_DB,
     MIN_AIM_DB,
     REFINE_DB,
     SPARE_DB,
     AccuracyError,
     Settings,
+    first_aim,
     measured_db,
     settings,
 )
@@ -91,7 +91,7 @@ class DirectEcho:
         Raises:
             AccuracyError: the tolerance is below what float64 leaves of this signal.
         """
-        aim, best = self._aim, 0.0
+        aim, best = first_aim(self.tolerance_db), 0.0
         chosen, motion = self._settings(aim), self._motion
         while True:
             chosen = chosen._replace(single=chosen.single and self._single_will_do(motion))
@@ -109,13 +109,9 @@ class DirectEcho:
             chosen = self._settings(aim)._replace(single=False)
             motion = resolve(self.source, self.waveform, chosen.spacing)
 
-    @property
-    def _aim(self) -> float:
-        return max(self.tolerance_db - MARGIN_DB, MIN_AIM_DB)
-
     @cached_property
     def _motion(self) -> Motion:
-        return resolve(self.source, self.waveform, self._settings(self._aim).spacing)
+        return resolve(self.source, self.waveform, self._settings(first_aim(self.tolerance_db)).spacing)
 
     def _settings(self, aim_db: float) -> Settings:
         chosen = settings(aim_db, self.waveform, self.source.highest_frequency)

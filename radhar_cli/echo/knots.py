@@ -9,11 +9,12 @@ import numpy as np
 from radhar_cli.arrays import Bool, Float, Index
 from radhar_cli.echo.interpolation import AFTER, BEFORE, EXACT, shifts, upsample
 from radhar_cli.echo.paths import Paths, PathSource
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 CHUNK_KNOTS, BLOCK = 32768, 2**15
 MIN_KNOTS = 64  # per recording
 SKIP, MIN_SKIPPED = 8, 512  # of many knots every eighth is tried first
+FASTEST = 2 * 12.0 / SPEED_OF_LIGHT  # of most delays of people, s/s: a foot that kicks
 FEW_PULSES = 1024  # up to which all are cheaper than finding the spacing
 POWER_PER_SECOND, POWER_PER_CYCLE, POWER_CHANGE = 40.0, 20.0, 0.1
 MIN_STEP = 3  # fewer pulses from knot to knot are not worth interpolating
@@ -40,13 +41,18 @@ class Knots(NamedTuple):
 
     def power(self) -> float:
         """Sum over the pulses of sum_i A_i^2."""
-        power = np.einsum("im,im->m", self.paths.amplitude, self.paths.amplitude)
-        if self.step > 1:
-            first, last = self.pulses
-            power = upsample(power, self.step, self.shift)[: last - first]
-            exact = self.exact.amplitude
-            power[self.exact_pulses - first] = np.einsum("im,im->m", exact, exact)
-        return float(power.sum())
+        at, exact = self.paths.amplitude, self.exact.amplitude
+        powers = np.einsum("im,im->m", at, at), np.einsum("im,im->m", exact, exact)
+        return float(self.interpolated(*powers).sum())
+
+    def interpolated(self, at_knots: Float, exact: Float) -> Float:
+        """A quantity at all the pulses [M], of its values where `paths` and `exact` are."""
+        if self.step == 1:
+            return at_knots
+        first, last = self.pulses
+        values = upsample(at_knots, self.step, self.shift)[: last - first]
+        values[self.exact_pulses - first] = exact
+        return values
 
 
 class Spacing(NamedTuple):
@@ -82,8 +88,11 @@ class Motion(NamedTuple):
 
 def resolve(source: PathSource, waveform: Waveform, spacing: Spacing) -> Motion:
     """Place knots that resolve the motion of a source: as far apart as the spacing allows."""
-    step = int(min(waveform.prf // spacing.per_second, waveform.n_pulses // MIN_KNOTS))
-    if source.smooth and step >= MIN_STEP and waveform.n_pulses // step > MIN_SKIPPED:
+    step = widest_step(waveform, spacing.per_second)
+    # Of a wide band knots must be closer, as nobody knows how much beforehand.
+    delay = spacing.phase_change / _fastest_cycles(waveform)
+    narrow = delay * waveform.prf > FASTEST * max(step, 1)
+    if source.smooth and step >= MIN_STEP and waveform.n_pulses // step > MIN_SKIPPED and not narrow:
         # A few of the knots show nearly how close all have to be.
         excess = _excess_at(source, waveform, spacing, SKIP * step) / SKIP
         step = int(step / max(excess, 1))
@@ -100,6 +109,22 @@ def resolve(source: PathSource, waveform: Waveform, spacing: Spacing) -> Motion:
         if excess <= 1:
             return Motion(step, moving, power / waveform.n_pulses, largest, kept)
         step = min(step - 1, int(step / excess))
+
+
+def widest_step(waveform: Waveform, per_second: float) -> int:
+    """Pulses from knot to knot that are `per_second` or more, and MIN_KNOTS in all."""
+    return int(min(waveform.prf // per_second, waveform.n_pulses // MIN_KNOTS))
+
+
+def delay_track(source: PathSource, waveform: Waveform, per_second: float) -> Float:
+    """Delay [M] (s) of the one path of a source at every pulse, by way of knots."""
+    step = widest_step(waveform, per_second)
+    step = step if source.smooth and step >= MIN_STEP else 1
+    parts = (
+        knots.interpolated(knots.paths.delay[0], knots.exact.delay[0])
+        for knots in all_knots(source, waveform, step)
+    )
+    return np.concatenate(list(parts))
 
 
 def mean_power(source: PathSource, waveform: Waveform) -> float:
@@ -129,12 +154,16 @@ def _excess(paths: Paths, w: Waveform, spacing: Spacing) -> float:
         with np.errstate(invalid="ignore"):  # 0/0 is no change
             kept = np.minimum(a[:, 1:], a[:, :-1]) / np.maximum(a[:, 1:], a[:, :-1])
         least = float(np.fmin.reduce(kept, axis=None, initial=least))
-    # Referred to mid-chirp, the ends of the chirp, which turn fastest, weigh next to nothing.
-    cycles = w.bandwidth / 4 if w.centred else w.bandwidth
     return max(
         (1 - least) / spacing.amplitude_change,
-        cycles * moved / spacing.phase_change,
+        _fastest_cycles(w) * moved / spacing.phase_change,
     )
+
+
+def _fastest_cycles(w: Waveform) -> float:
+    """By how much G's fastest component turns for a delay, cycles/s."""
+    # Referred to mid-chirp, the ends of the chirp, which turn fastest, weigh next to nothing.
+    return w.bandwidth / 4 if w.centred else w.bandwidth
 
 
 def knots_of(source: PathSource, waveform: Waveform, step: int, pulses: tuple[int, int]) -> Knots:

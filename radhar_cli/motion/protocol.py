@@ -7,7 +7,8 @@ from typing import Any, Protocol, TypeVar
 from radhar_cli.arrays import Float
 
 T = TypeVar("T")
-KEPT_TIMES = 8  # of a motion that is remembered: chirps of the transmitters of a board
+KEPT_TIMES = 8  # sets of times of a motion that is remembered: chirps of a board's transmitters
+KEPT_INSTANTS = 2**16  # of all of them together, or of one that is longer
 
 
 class Motion(Protocol):
@@ -92,9 +93,14 @@ class Only:
 
 
 def remembered(motion: Motion) -> Motion:
-    """A motion that is asked for the same times again and again, such as by several channels."""
+    """A motion that is asked for the same times again and again, such as by several channels.
+
+    What it returns is not to be changed.
+    """
     if isinstance(motion, Only):
         return Only(remembered(motion.motion), motion.kept)
+    if isinstance(motion, _Remembered):
+        return motion  # type: ignore[return-value]
     held: Motion = _Remembered(motion)  # the rest of it comes by __getattr__
     return held
 
@@ -103,23 +109,36 @@ class _Remembered:
     def __init__(self, motion: Motion) -> None:
         self._motion = motion
         self._held: dict[tuple[object, bytes], Any] = {}
+        self._instants = 0
 
     def __getattr__(self, name: str) -> Any:
         found = getattr(self._motion, name)
-        if name not in ("landmark_positions", "torso"):
+        if name != "landmark_positions":
             return found
         return lambda t: self.kept(name, t, lambda: found(t))
 
     def positions(self, t: Float) -> Float:
-        """Positions [3, I, M] (m), which are not to be changed."""
+        """Positions [3, I, M] (m)."""
         return self.kept("positions", t, lambda: self._motion.positions(t))
+
+    def torso(self, t: Float) -> Float:
+        """Positions [3, 1, M] (m), of all joints where these are known."""
+        if "torso" in self._motion.names:
+            place = self._motion.names.index("torso")
+            for name in ("positions", "landmark_positions"):
+                if (whole := self._held.get((name, t.tobytes()))) is not None:
+                    torso: Float = whole[:, place : place + 1]
+                    return torso
+        return self.kept("torso", t, lambda: self._motion.torso(t))
 
     def kept(self, name: object, t: Float, make: Callable[[], T]) -> T:
         """What was made for these times, or is made now."""
         key = (name, t.tobytes())
         if key not in self._held:
-            if len(self._held) >= KEPT_TIMES:
+            if len(self._held) >= KEPT_TIMES or self._instants + t.size > KEPT_INSTANTS:
                 self._held.clear()
+                self._instants = 0
+            self._instants += t.size
             self._held[key] = make()
         found: T = self._held[key]
         return found

@@ -60,6 +60,35 @@ class MotionPaths:
         return Paths(tau, a, Through.of(self.wall.layers, cosine))
 
 
+@dataclass(frozen=True)
+class TorsoPath:
+    """The path of a person's torso, of amplitude 1: a `PathSource`."""
+
+    motion: Motion
+    antennas: Antennas
+    wall: Wall | None
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Instants (s) at which the torso does not move smoothly."""
+        return self.motion.breakpoints
+
+    @property
+    def highest_frequency(self) -> float:
+        """Fundamental of the fastest motion, Hz."""
+        return self.motion.highest_frequency
+
+    @property
+    def smooth(self) -> bool:
+        """Paths kink where a leg passes an edge of the wall."""
+        return self.wall is None
+
+    def __call__(self, t: Float) -> Paths:
+        """The path at times t [M] (s)."""
+        delay = point_delay(self.motion.torso(t), self.antennas, self.wall)
+        return Paths(delay, np.ones_like(delay))
+
+
 class Placed(PathSource, Protocol):
     """Paths that say where they end."""
 

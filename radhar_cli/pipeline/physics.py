@@ -12,7 +12,7 @@ from radhar_cli.config.number import support
 from radhar_cli.config.schema import Config, DielectricConfig
 from radhar_cli.motion.paper.activities import Gait, Timing
 from radhar_cli.motion.paper.body import PaperBody
-from radhar_cli.motion.protocol import Motion, Only
+from radhar_cli.motion.protocol import Motion, Only, remembered
 from radhar_cli.motion.reflectors import TONES, Reflectors
 from radhar_cli.motion.segments import found_segments, landmarks_of, thickness
 from radhar_cli.pipeline.motion_files import file_motion
@@ -162,6 +162,14 @@ def motion_of(person: Person) -> Motion:
     if person.config.files_of(person.activity) is not None:
         return file_motion(person)
     return human_motion(person) if person.motion.model == "human" else _paper_body(person)
+
+
+def moving(person: Person) -> Motion:
+    """`motion_of`, built once a person; its positions are remembered."""
+    if "motion" not in person.held:
+        person.held["motion"] = remembered(motion_of(person))
+    found: Motion = person.held["motion"]
+    return found
 
 
 def body_of(person: Person, motion: Motion) -> Body:

@@ -21,18 +21,18 @@ import numpy as np
 
 from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.config.schema import MAP_NAMES, MAX_TOLERANCE_DB, Config
-from radhar_cli.echo.accuracy import AccuracyError
+from radhar_cli.echo.accuracy import AccuracyError, first_aim, settings
 from radhar_cli.echo.direct import Accuracy, DirectEcho
 from radhar_cli.echo.exact import beat_at, exact_echo, signal_power
 from radhar_cli.echo.gated import GatedEcho
 from radhar_cli.echo.impulse import impulse_echo, impulse_power
-from radhar_cli.echo.knots import mean_power
+from radhar_cli.echo.knots import delay_track, mean_power
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.pipeline.board_products import board_products
 from radhar_cli.pipeline.bodies import sources_of, together
-from radhar_cli.pipeline.motion_paths import point_delay
+from radhar_cli.pipeline.motion_paths import TorsoPath
 from radhar_cli.pipeline.physics import (
     antennas_of,
     canceller_of,
@@ -42,7 +42,7 @@ from radhar_cli.pipeline.physics import (
     fsst_frames_of,
     gate_of,
     impairments_of,
-    motion_of,
+    moving,
     noise_stream,
     reflectors_of,
     wall_of,
@@ -79,7 +79,6 @@ from radhar_cli.receiver.noise import WhiteNoise, noise_variance
 from radhar_cli.registry import own_products
 from radhar_cli.scene import Scene
 
-CHUNK = 2**18  # pulses per chunk of pulse-by-pulse work
 SMALLEST_POWER = float(np.finfo(float).tiny)  # below it squares lose their digits, or are 0
 SINGLE_RANGE_DB = 70.0  # of images in float32, in which a pixel in 1e5 differs by a level
 # In the order in which few are held at once: each follows the one it is made from.
@@ -153,11 +152,12 @@ def _physics(c: Config) -> Iterator[Product]:
     def torso_track(
         motions: tuple[Motion, ...], antennas: Antennas, wall: Wall | None, w: Waveform
     ) -> Float:
-        track = np.empty(w.n_pulses)
-        for first in range(0, track.size, CHUNK):
-            t = w.times(np.arange(first, min(first + CHUNK, track.size), dtype=float))
-            track[first : first + CHUNK] = point_delay(motions[0].torso(t), antennas, wall)[0]
-        return track
+        torso, per_second = TorsoPath(motions[0], antennas, wall), inf
+        if c.engine.kind == "direct":
+            # The echo's own knots, unless a wide band needs closer ones: positions are known there.
+            chosen = settings(first_aim(c.engine.tolerance_db), w, torso.highest_frequency)
+            per_second = chosen.spacing.per_second
+        return delay_track(torso, w, per_second)
 
     seen = ("motions", "antennas", "wall", "waveform")
     walled = "through the wall" if c.wall is not None else "through air"
@@ -165,7 +165,7 @@ def _physics(c: Config) -> Iterator[Product]:
     yield Product("antennas", ("scene",), lambda s: antennas_of(s.config), "positions and gains")
     yield Product("wall", ("scene",), lambda s: wall_of(s.config), "the slab, or none")
     yield Product(
-        "motions", ("scene",), lambda s: tuple(map(motion_of, s.people)), "scatterers that move"
+        "motions", ("scene",), lambda s: tuple(map(moving, s.people)), "scatterers that move"
     )
     room = ("room",) if c.room.reflectors else ()
     if room:

@@ -1,7 +1,7 @@
 """Check scenes before any echo is computed: what lies outside the model, and what to warn of."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import IntFlag
 from math import log10
 from typing import Any, NamedTuple
@@ -11,10 +11,8 @@ import numpy as np
 from radhar_cli.activity import Activity
 from radhar_cli.arrays import Float, Index
 from radhar_cli.config.checks import timing_warnings, tone_warnings
-from radhar_cli.config.paths import changed
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import SceneError
-from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.motion.human.two_link import OutOfReachError
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.pipeline.motion_paths import point_delay, through_wall_delay
@@ -22,7 +20,7 @@ from radhar_cli.pipeline.physics import (
     antennas_of,
     body_of,
     box_of,
-    motion_of,
+    moving,
     reflectors_of,
     wall_of,
     waveform_of,
@@ -125,7 +123,12 @@ def check_scene(scene: Scene) -> SceneCheck:
     Raises:
         SceneError: no body can do this.
     """
-    checks = [_checked(scene, person) for person in scene.people]
+    return _check_people(scene, scene.people)
+
+
+def _check_people(scene: Scene, people: tuple[Person, ...]) -> SceneCheck:
+    """`check_scene` of some of the people, and of what stands in the room."""
+    checks = [_checked(scene, person) for person in people]
     flags, closest = checks[0].flags, min(check.closest for check in checks)
     for check in checks[1:]:
         flags |= check.flags & ~Flags.GATE  # which follows the sample's own person
@@ -140,7 +143,7 @@ def check_scene(scene: Scene) -> SceneCheck:
 def _checked(scene: Scene, person: Person) -> SceneCheck:
     """`check_scene` of one person."""
     try:
-        return _check(scene, person, motion_of(person))
+        return _check(scene, person, moving(person))
     except OutOfReachError as error:
         keys = f"{person.prefix}motion.*, {person.prefix}timing.*"
         raise SceneError(f"{scene.name}: {error} ({keys})") from None
@@ -160,8 +163,7 @@ def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
         )
         for first in range(0, pulses.size - 1, GRID_CHUNK)
     ]
-    runs_out = isinstance(motion, FileMotion) and motion.runs_out
-    flags = Flags.RUNS_OUT if runs_out else Flags(0)
+    flags = Flags.RUNS_OUT if getattr(motion, "runs_out", False) else Flags(0)
     for block in blocks:
         flags |= block.flags
     processing = scene.config.processing
@@ -257,7 +259,7 @@ def draw_valid_scene(config: Config, activity: Activity, index: int) -> tuple[Sc
     check: SceneCheck | None = None
     for attempt in range(MAX_ATTEMPTS if config.on_invalid == "redraw" else 1):
         scene = draw_scene(config, activity, index, attempt)
-        check = check_scene(replace(scene, config=changed(scene.config, {"people": ()})))
+        check = _check_people(scene, scene.people[:1])
         if check.invalid is None or (config.on_invalid == "keep" and not check.too_close):
             return _with_others(config, scene, check.flags)
     assert check is not None
@@ -314,7 +316,7 @@ def too_near(scene: Scene, last: int | None = None) -> int | None:
         if last is not None and person.number > last:
             break
         try:
-            torso = motion_of(person).torso(t)[:2, 0]
+            torso = moving(person).torso(t)[:2, 0]
         except OutOfReachError:
             return None
         if any(np.hypot(*(torso - other)).min() < TORSOS_APART_M for other in torsos):

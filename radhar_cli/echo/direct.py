@@ -111,7 +111,9 @@ class DirectEcho:
 
     @cached_property
     def _motion(self) -> Motion:
-        return resolve(self.source, self.waveform, self._settings(first_aim(self.tolerance_db)).spacing)
+        return resolve(
+            self.source, self.waveform, self._settings(first_aim(self.tolerance_db)).spacing
+        )
 
     def _settings(self, aim_db: float) -> Settings:
         chosen = settings(aim_db, self.waveform, self.source.highest_frequency)

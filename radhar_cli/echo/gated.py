@@ -1,82 +1,80 @@
-"""Range bins without a beat matrix, for a gate.
+"""Range bins in closed form, for a gate.
 
-y_k[m] = sum_n exp(j 2 pi k (n - n0)/N_FFT) s_b[n, m], n0 = N_ADC/2. All that moves lies within a
-few metres: seen from their middle, s_b turns so slowly in fast time that a few samples show all of
-it. Between breakpoints the paths are interpolated from knots, as in `direct`; the beat is made at P
-nodes instead of N_ADC samples, and a small matrix takes those to the bins; docs/physics/engines.md.
+    y_k[m] = exp(-j pi k/N_FFT) sum_i A_i exp(-j 2 pi phi_i) D(k/N_FFT - u_i),
+    D(x) = sin(pi N x)/sin(pi x),  u = K tau/fs,  phi the phase of a path in mid-chirp,
+
+of the bins referred to mid-chirp, sum_n exp(j 2 pi k (n - N/2)/N_FFT) s_b[n, m]. Over the ranges of
+a body D is a sum of few Chebyshev polynomials T_p, whose sums over the paths are made instead of
+the bins'. As in `direct`, phasors follow from one another, and the envelopes A T_p, which are
+real, are interpolated from knots; docs/physics/engines.md.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from math import ceil, inf, isqrt
-from typing import NamedTuple
+from math import ceil, inf
+from typing import Any
 
 import numpy as np
-import scipy.fft
 
 from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.echo.accuracy import Settings, probed_pulses, relative_db
-from radhar_cli.echo.beat import powers, start_phase
-from radhar_cli.echo.direct import Accuracy, DirectEcho
+from radhar_cli.echo.beat import start_phase
+from radhar_cli.echo.direct import SINGLE_DEGREE, Accuracy, DirectEcho
 from radhar_cli.echo.exact import beat_at
-from radhar_cli.echo.interpolation import AFTER, BEFORE, upsample
-from radhar_cli.echo.knots import Knots, Motion
+from radhar_cli.echo.interpolation import (
+    AFTER,
+    BEFORE,
+    EXACT,
+    NODES,
+    REACH,
+    TAPS,
+    lagrange_basis,
+    stencils,
+)
+from radhar_cli.echo.knots import Knots, Motion, columns
 from radhar_cli.echo.paths import Paths
+from radhar_cli.echo.phase_recurrence import phasors_between_knots
 from radhar_cli.phasor import unit_phasor
 from radhar_cli.processing.canceller import NO_CANCELLER, Fir
 from radhar_cli.processing.look import Look, RangeBins
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.radar.waveform import Waveform
 
-SEGMENTS = 32  # knot intervals per block, in which the body hardly moves
-PULSES = 512  # pulses per block where paths are evaluated at every pulse
-VALUES, NODES = 2**20, 10  # phasors per block, and about how many a path and pulse takes
-MAX_NODES = 400  # designing that many takes a second; beyond, all samples are nodes
-WIDTHS = 8  # bins to which extents are rounded up, so that few designs are needed
+PULSES = 512  # pulses per block of the error
+VALUES = 2**17  # envelopes at knots per block, which stay in the cache
+AT_PEAK = 1e-9  # sine of the denominator below which D is N
+MORE_NODES = 24, 48  # than D has half waves, in single and in double precision
+SMALLEST = 3e-8, 1e-15  # coefficient over N that is kept, likewise
 
 
-class Nodes(NamedTuple):
-    """Nodes in fast time for echoes within some bins of the middle."""
-
-    size: int  # P
-    spacing: float  # samples; they lie symmetrically about the middle of the chirp
-    # takes the beat at the nodes to that at the samples [N_ADC, P]; None where these are the nodes
-    to_samples: Complex | None
+@lru_cache(maxsize=128)
+def _weights(step: int, shift: int) -> Float:
+    """Weights [TAPS, step] of a segment's knots, shifted, for its pulses."""
+    return lagrange_basis(NODES + shift, np.arange(step) / step)
 
 
-@lru_cache(maxsize=8)
-def nodes(samples: int, width: int, single: bool) -> Nodes:
-    """Nodes from which exp(-j 2 pi d n) follows for every |d| <= width/(2 samples).
+def kernel(u: Float, k: Index, samples: int, n_fft: int) -> Float:
+    """D(k/N_FFT - u) = sin(pi N x)/sin(pi x) [..., K] of beat frequencies u [...], cycles a sample.
 
-    A weighted sum by least squares over such d, cut off where rounding would count for more: the
-    nodes are `over` times as dense as the sampling theorem asks, and reach beyond the chirp.
+    Args:
+        u: K tau/fs.
+        k: bins [K].
+        samples: N.
+        n_fft: N_FFT.
     """
-    over, beyond, cut = (1.25, 8, 1e-7) if single else (1.5, 12, 1e-14)
-    spacing = samples / (over * width)
-    count = ceil((samples - 1) / spacing) + 1 + 2 * beyond
-    if count >= min(0.7 * samples, MAX_NODES):
-        return Nodes(samples, 1.0, None)
-    d = -np.cos(np.pi * (np.arange(2 * count) + 0.5) / (2 * count)) * width / (2 * samples)
-    at_nodes = unit_phasor(np.outer(d, _about_zero(count) * spacing))
-    at_samples = unit_phasor(np.outer(d, _about_zero(samples)))
-    to_samples = np.linalg.lstsq(at_nodes, at_samples, rcond=cut)[0].T
-    return Nodes(count, spacing, np.asarray(to_samples, dtype=complex))
-
-
-@lru_cache(maxsize=32)
-def to_bins(waveform: Waveform, width: int, single: bool, first: int, count: int) -> Complex:
-    """From the beat at the nodes to bins first .. first + count - 1 from the middle one [P, K]."""
-    n = np.arange(waveform.n_adc) - waveform.n_adc / 2
-    kernel = unit_phasor(np.outer(n, -np.arange(first, first + count)) / waveform.n_fft)
-    to_samples = nodes(waveform.n_adc, width, single).to_samples
-    assert to_samples is not None
-    taken: Complex = to_samples.T @ kernel
-    return taken.astype(np.complex64) if single else taken
-
-
-def _about_zero(count: int) -> Float:
-    return np.arange(count) - (count - 1) / 2
+    at, turn = np.pi / n_fft * k, np.pi * u[..., None]
+    found: Float = np.sin(samples * at) * np.cos(samples * turn)
+    found -= np.cos(samples * at) * np.sin(samples * turn)
+    below = np.sin(at) * np.cos(turn)
+    below -= np.cos(at) * np.sin(turn)
+    peak = np.abs(below) < AT_PEAK
+    if peak.any():  # x is a whole number
+        whole = np.rint(np.broadcast_to(k / n_fft - u[..., None], peak.shape)[peak])
+        found[peak] = samples * (1 - 2 * (whole * (samples - 1) % 2))
+        below[peak] = 1
+    found /= below
+    return found
 
 
 @dataclass(frozen=True)
@@ -108,10 +106,9 @@ class GatedEcho(DirectEcho):
         """
         return self.slow_time()
 
-    def _settings(self, aim_db: float) -> Settings:
-        chosen = super()._settings(aim_db)
-        # There is no envelope to interpolate that turns with the ends of the chirp.
-        return chosen._replace(spacing=chosen.spacing._replace(phase_change=inf))
+    def _single_will_do(self, motion: Motion) -> bool:
+        """At every pulse, too: envelopes cost more than the paths."""
+        return motion.step == 1 or super()._single_will_do(motion)
 
     def _needed(self) -> tuple[Index, Index]:
         if self.needed is not None:
@@ -126,13 +123,60 @@ class GatedEcho(DirectEcho):
             return y
         low, high = self._needed()
         for knots in motion.knots(self.source, w):
-            for pulses, paths in _at_pulses(knots, kept):
-                first, stop = int(low[pulses].min()), int(high[pulses].max())
-                if stop > first:
-                    rows = slice(first - self.bins.start, stop - self.bins.start)
-                    paths = paths._replace(amplitude=paths.amplitude / unit)
-                    y[rows, pulses] = _bins(paths, w, chosen.single, first, stop - first).T
+            (first, last), step = knots.pulses, knots.step
+            knots = knots._replace(paths=knots.paths.only(kept), exact=knots.exact.only(kept))
+            count = max(1, VALUES // (kept.size * int((high - low)[first:last].max(initial=1))))
+            for start in range(0, -(-(last - first) // step), count):
+                pulses = slice(first + start * step, min(first + (start + count) * step, last))
+                k = np.arange(low[pulses].min(), high[pulses].max())
+                if k.size:
+                    part = self._block(chosen, knots, slice(start, start + count), k, unit)
+                    y[k - self.bins.start, pulses] = part[:, : pulses.stop - pulses.start]
+        y *= unit_phasor(np.arange(self.bins.start, self.bins.stop)[:, None] / (2 * w.n_fft))
         return y
+
+    def _block(self, chosen: Settings, knots: Knots, some: slice, k: Index, unit: float) -> Complex:
+        """Bins k of the paths at some of the segments of knots [K, segments * step]."""
+        if knots.step == 1:
+            return self._at_pulses(chosen, columns(knots.paths, some), k, unit)
+        step, shift = knots.step, knots.shift[some]
+        reach = slice(some.start, some.start + shift.size + BEFORE + AFTER)
+        terms = self._terms(chosen, columns(knots.paths, reach), k, unit)
+        x = _interpolated_sum(*terms, shift, step)
+        first = knots.pulses[0] + some.start * step
+        here = np.searchsorted(knots.exact_pulses, [first, first + shift.size * step])
+        if here[1] > here[0]:
+            exact = columns(knots.exact, slice(*here))
+            x[:, knots.exact_pulses[slice(*here)] - first] = self._at_pulses(chosen, exact, k, unit)
+        return x
+
+    def _at_pulses(self, chosen: Settings, paths: Paths, k: Index, unit: float) -> Complex:
+        """Bins k of paths [K, M] without interpolation."""
+        cycles, envelope, coefficients = self._terms(chosen, paths, k, unit)
+        turning = unit_phasor(cycles, complex_of(envelope))
+        both = np.stack([turning.real, turning.imag], axis=1)  # [M, 2, I]
+        x = (both @ envelope.transpose(1, 2, 0)) @ coefficients  # [M, 2, K]
+        return (x[:, 0] + 1j * x[:, 1]).T
+
+    def _terms(
+        self, chosen: Settings, paths: Paths, k: Index, unit: float
+    ) -> tuple[Float, Float, Float]:
+        """Phases phi (cycles) [M, I], A T_p over the unit [P, M, I], D's coefficients [P, K]."""
+        w, real = self.waveform, np.dtype(np.float32 if chosen.single else np.float64)
+        delay, amplitude = (np.ascontiguousarray(part.T) for part in paths[:2])
+        u = w.slope / w.adc_rate * delay
+        middle, half = (u.max() + u.min()) / 2, max((u.max() - u.min()) / 2, 1e-12)
+        coefficients = chebyshev(middle, half, k, w, real)
+        x = ((u - middle) / half).astype(real)
+        envelope = np.empty((len(coefficients), *x.shape), real)
+        envelope[0] = amplitude / unit
+        np.multiply(x, envelope[0], out=envelope[1])
+        x *= 2
+        for p in range(2, len(envelope)):
+            np.multiply(x, envelope[p - 1], out=envelope[p])
+            envelope[p] -= envelope[p - 2]
+        in_middle = w.fc + w.slope / w.adc_rate * (w.n_adc - 1) / 2
+        return start_phase(delay, w, in_middle), envelope, coefficients
 
     def _error(self, y: Complex, exact: Callable[[Float], Paths], unit: float) -> float:
         """Relative L2 error (dB) of the bins that count after the canceller; see `measured_db`."""
@@ -169,66 +213,57 @@ def _between(low: Index, k: Index, high: Index) -> Float:
     return ((low <= k) & (k < high)).astype(float)
 
 
-def _at_pulses(knots: Knots, kept: Index) -> Iterator[tuple[slice, Paths]]:
-    """The kept paths at consecutive blocks of pulses."""
-    first, last = knots.pulses
-    length = min(SEGMENTS * knots.step, PULSES) if knots.step > 1 else PULSES
-    segments = max(1, min(length, VALUES // (2 * NODES * kept.size)) // knots.step)
-    for start in range(0, -(-(last - first) // knots.step), segments):
-        pulses = slice(
-            first + start * knots.step, min(first + (start + segments) * knots.step, last)
-        )
-        if knots.step == 1:
-            yield pulses, knots.paths.only(kept, slice(start, start + segments))
-            continue
-        shift = knots.shift[start : start + segments]
-        reach = slice(start, start + shift.size + BEFORE + AFTER)
-        here = (pulses.start <= knots.exact_pulses) & (knots.exact_pulses < pulses.stop)
-        found = []
-        for part, exact in zip(knots.paths[:2], knots.exact[:2], strict=True):
-            dense = upsample(part[kept, reach].T, knots.step, shift)
-            dense[knots.exact_pulses[here] - pulses.start] = exact[kept][:, here].T
-            found.append(dense[: pulses.stop - pulses.start].T)
-        yield pulses, Paths(found[0], found[1])
+def chebyshev(middle: float, half: float, k: Index, w: Waveform, real: np.dtype[Any]) -> Float:
+    """Coefficients [P, K] of D(k/N_FFT - u) = sum_p c_p T_p((u - middle)/half), P at least 2."""
+    double = real == np.float64
+    count = ceil((np.pi * w.n_adc * half + MORE_NODES[double]) / 8) * 8
+    angle = np.pi * (np.arange(count) + 0.5) / count
+    values = kernel(middle + half * np.cos(angle), k, w.n_adc, w.n_fft)
+    c = _cosines(count) @ values
+    kept = np.flatnonzero(np.abs(c).max(axis=1) > SMALLEST[double] * w.n_adc)
+    return c[: max(2, int(kept.max(initial=0)) + 1)].astype(real)
 
 
-def _bins(paths: Paths, w: Waveform, single: bool, first: int, count: int) -> Complex:
-    """Bins first .. first + count - 1 of paths at some pulses [M, count]."""
-    delay, amplitude = paths.delay.T, paths.amplitude.T
-    turn = w.slope / w.adc_rate * delay  # cycles a sample
-    low, high = float(turn.min()), float(turn.max())
-    middle = round((low + high) / 2 * w.n_fft)
-    width = ceil(((high - low) * w.n_adc + 2) / WIDTHS) * WIDTHS
-    at = nodes(w.n_adc, width, single)
-    cycles = start_phase(delay, w, w.fc + w.slope * w.n_adc / 2 / w.adc_rate)
-    turn -= middle / w.n_fft
-    beat = _at_nodes(cycles, turn, amplitude, at, single)
-    if at.to_samples is not None:
-        # From a multiple of 16 on, so that few matrices are needed.
-        skipped = (first - middle) % 16
-        whole = -(-(skipped + count) // 16) * 16
-        matrix = to_bins(w, width, single, first - middle - skipped, whole)
-        return beat @ matrix[:, skipped : skipped + count]
-    k = np.arange(first, first + count) - middle
-    bins = scipy.fft.ifft(beat, w.n_fft, axis=1, norm="forward")[:, k % w.n_fft]
-    found: Complex = bins * unit_phasor(k * (w.n_adc / 2 / w.n_fft))
-    return found
+@lru_cache(maxsize=32)
+def _cosines(count: int) -> Float:
+    """From values at Chebyshev points to coefficients [count, count]."""
+    angle = np.pi * (np.arange(count) + 0.5) / count
+    cosines: Float = 2 / count * np.cos(np.outer(np.arange(count), angle))
+    cosines[0] /= 2
+    return cosines
 
 
-def _at_nodes(cycles: Float, turn: Float, amplitude: Float, nodes: Nodes, single: bool) -> Complex:
-    """sum_i A exp(-j 2 pi (cycles + turn (n_p - n0))) [M, P] at nodes n_p, of [M, I].
+def complex_of(x: Float) -> np.dtype[Any]:
+    """The complex type of the precision of x."""
+    return np.result_type(x.dtype, np.complex64)
 
-    As in `beat_matrix`, with the phase taken in the middle, from which float32 errs least.
+
+def _interpolated_sum(
+    cycles: Float, envelope: Float, coefficients: Float, shift: Index, step: int
+) -> Complex:
+    """Bins [K, segments * step] at the pulses of segments.
+
+    Args:
+        cycles: phases phi at the knots [BEFORE + segments + AFTER, I].
+        envelope: A T_p at the knots [P, BEFORE + segments + AFTER, I].
+        coefficients: c_p of the bins [P, K].
+        shift: of the stencils [segments].
+        step: pulses from knot to knot.
     """
-    (count, spacing, _), dtype = nodes, np.complex64 if single else np.complex128
-    coarse = isqrt(count - 1) + 1
-    fine = -(-count // coarse)
-    origin = coarse // 2 * fine
-    first = unit_phasor(cycles + turn * ((origin - (count - 1) / 2) * spacing - 0.5), dtype)
-    first *= amplitude
-    slow = powers(unit_phasor(turn * (fine * spacing), dtype), coarse)  # [coarse, M, I]
-    first *= slow[coarse // 2].conj()
-    slow *= first
-    fast = powers(unit_phasor(turn * spacing, dtype), fine)
-    beat: Complex = slow.transpose(1, 0, 2) @ fast.transpose(1, 2, 0)  # [M, coarse, fine]
-    return beat.reshape(len(cycles), coarse * fine)[:, :count]
+    dtype = complex_of(envelope)
+    degree = SINGLE_DEGREE if dtype == np.complex64 else TAPS - 1
+    turning = phasors_between_knots(stencils(cycles, shift), step, degree, dtype)
+    both = np.concatenate([turning.real, turning.imag]).transpose(1, 2, 0)  # [segments, I, 2 step]
+    shift = np.where(shift == EXACT, 0, shift)  # which are overwritten
+    first, knots = BEFORE - REACH + shift, envelope.transpose(1, 0, 2)  # [knots, P, I]
+    sums = np.empty((shift.size, TAPS, len(envelope), 2 * step), both.dtype)
+    for segment, at in enumerate((first + np.arange(shift.size)).tolist()):
+        np.matmul(knots[at : at + TAPS], both[segment], out=sums[segment])
+    z = np.empty((len(envelope), 2, shift.size, step), both.dtype)
+    for moved in np.unique(shift).tolist():
+        rows = np.flatnonzero(shift == moved)
+        taps = sums[rows].reshape(-1, TAPS, len(envelope), 2, step)
+        z[:, :, rows] = np.einsum("stpcm,tm->pcsm", taps, _weights(step, moved).astype(z.dtype))
+    x = coefficients.T @ z.reshape(len(z), -1)
+    real, imag = x.reshape(-1, 2, shift.size * step).swapaxes(0, 1)
+    return real + 1j * imag

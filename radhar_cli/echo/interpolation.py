@@ -81,10 +81,11 @@ def stencils(knots: Values, shift: Index) -> Values:
     for tap in range(TAPS):
         found[tap] = knots[first + tap : first + tap + shift.size]
     moved = np.flatnonzero((shift != 0) & (shift != EXACT))
-    for segment, some in zip(moved.tolist(), shift[moved].tolist(), strict=True):
-        place = first + segment + some
+    for some in np.unique(shift[moved]).tolist():
+        segments = moved[shift[moved] == some]
+        at = first + some + segments + np.arange(TAPS)[:, None]
         weights = shifted_weights(some).astype(knots.real.dtype, copy=False)
-        found[:, segment] = weights @ knots[place : place + TAPS]
+        found[:, segments] = np.tensordot(weights, knots[at], 1)
     return found
 
 

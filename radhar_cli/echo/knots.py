@@ -92,7 +92,12 @@ def resolve(source: PathSource, waveform: Waveform, spacing: Spacing) -> Motion:
     # Of a wide band knots must be closer, as nobody knows how much beforehand.
     delay = spacing.phase_change / _fastest_cycles(waveform)
     narrow = delay * waveform.prf > FASTEST * max(step, 1)
-    if source.smooth and step >= MIN_STEP and waveform.n_pulses // step > MIN_SKIPPED and not narrow:
+    if (
+        source.smooth
+        and step >= MIN_STEP
+        and waveform.n_pulses // step > MIN_SKIPPED
+        and not narrow
+    ):
         # A few of the knots show nearly how close all have to be.
         excess = _excess_at(source, waveform, spacing, SKIP * step) / SKIP
         step = int(step / max(excess, 1))

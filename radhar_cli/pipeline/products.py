@@ -547,7 +547,9 @@ def _doppler_maps(c: Config, signal: str, entropy: bool) -> Iterator[Product]:
     """
     suffix = signal.removeprefix("signal")
     masks = ("cfar",) if c.image.kind == "cfar" else ()
-    shallow = c.image.dynamic_range_db <= SINGLE_RANGE_DB and not (masks or c.output.power)
+    # A mask compares cells with their neighbours, down to the noise, if there is any.
+    shallow = c.snr_db is not None if masks else c.image.dynamic_range_db <= SINGLE_RANGE_DB
+    shallow = shallow and not c.output.power
     kinds: dict[str, tuple[tuple[str, ...], str]]
     kinds = {"stft": ((signal, "frames"), "STFT"), "fsst": ((signal, "fsst_frames"), "FSST")}
     if _gated(c):

@@ -6,10 +6,11 @@ over bins, so that it may be applied to whichever of them is at hand.
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
-from radhar_cli.arrays import Complex
+from radhar_cli.arrays import Complex, Float
 
 
 class Canceller(ABC):
@@ -102,10 +103,19 @@ class HighPass(Canceller):
         return self.remove_mean
 
     def __call__(self, s: Complex) -> Complex:
-        from scipy.signal import butter, sosfilt  # slow to import
+        from scipy.signal import sosfilt  # slow to import
 
-        sections = butter(self.order, self.cutoff, "highpass", output="sos")
+        sections = _butterworth(self.order, self.cutoff)
         y: Complex = sosfilt(sections, MeanRemoval()(s) if self.remove_mean else s)
         if self.zero_phase:
             y = sosfilt(sections, y[..., ::-1])[..., ::-1]
         return y
+
+
+@lru_cache(maxsize=8)
+def _butterworth(order: int, cutoff: float) -> Float:
+    """Second-order sections of a high-pass."""
+    from scipy.signal import butter
+
+    sections: Float = butter(order, cutoff, "highpass", output="sos")
+    return sections

@@ -132,33 +132,38 @@ class GatedEcho(DirectEcho):
                 if k.size:
                     part = self._block(chosen, knots, slice(start, start + count), k, unit)
                     y[k - self.bins.start, pulses] = part[:, : pulses.stop - pulses.start]
-        y *= unit_phasor(np.arange(self.bins.start, self.bins.stop)[:, None] / (2 * w.n_fft))
         return y
 
     def _block(self, chosen: Settings, knots: Knots, some: slice, k: Index, unit: float) -> Complex:
         """Bins k of the paths at some of the segments of knots [K, segments * step]."""
         if knots.step == 1:
-            return self._at_pulses(chosen, columns(knots.paths, some), k, unit)
+            return self.at_pulses(chosen, columns(knots.paths, some), k, unit)
         step, shift = knots.step, knots.shift[some]
         reach = slice(some.start, some.start + shift.size + BEFORE + AFTER)
-        terms = self._terms(chosen, columns(knots.paths, reach), k, unit)
+        terms = self._envelopes(chosen, columns(knots.paths, reach), k, unit)
         x = _interpolated_sum(*terms, shift, step)
+        x *= self._half_a_sample(k)
         first = knots.pulses[0] + some.start * step
         here = np.searchsorted(knots.exact_pulses, [first, first + shift.size * step])
         if here[1] > here[0]:
             exact = columns(knots.exact, slice(*here))
-            x[:, knots.exact_pulses[slice(*here)] - first] = self._at_pulses(chosen, exact, k, unit)
+            x[:, knots.exact_pulses[slice(*here)] - first] = self.at_pulses(chosen, exact, k, unit)
         return x
 
-    def _at_pulses(self, chosen: Settings, paths: Paths, k: Index, unit: float) -> Complex:
-        """Bins k of paths [K, M] without interpolation."""
-        cycles, envelope, coefficients = self._terms(chosen, paths, k, unit)
+    def at_pulses(self, chosen: Settings, paths: Paths, k: Index, unit: float) -> Complex:
+        """Bins k of paths at M instants [K, M], each of which is computed."""
+        cycles, envelope, coefficients = self._envelopes(chosen, paths, k, unit)
         turning = unit_phasor(cycles, complex_of(envelope))
         both = np.stack([turning.real, turning.imag], axis=1)  # [M, 2, I]
         x = (both @ envelope.transpose(1, 2, 0)) @ coefficients  # [M, 2, K]
-        return (x[:, 0] + 1j * x[:, 1]).T
+        bins: Complex = (x[:, 0] + 1j * x[:, 1]).T * self._half_a_sample(k)
+        return bins
 
-    def _terms(
+    def _half_a_sample(self, k: Index) -> Complex:
+        """exp(-j pi k/N_FFT) [K, 1]: the middle of the samples lies that far before n = N/2."""
+        return unit_phasor(k[:, None] / (2 * self.waveform.n_fft))
+
+    def _envelopes(
         self, chosen: Settings, paths: Paths, k: Index, unit: float
     ) -> tuple[Float, Float, Float]:
         """Phases phi (cycles) [M, I], A T_p over the unit [P, M, I], D's coefficients [P, K]."""

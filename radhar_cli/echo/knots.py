@@ -15,8 +15,7 @@ CHUNK_KNOTS, BLOCK = 32768, 2**15
 MIN_KNOTS = 64  # per recording
 SKIP, MIN_SKIPPED = 8, 512  # of many knots every eighth is tried first
 FASTEST = 2 * 12.0 / SPEED_OF_LIGHT  # of most delays of people, s/s: a foot that kicks
-FEW_PULSES = 1024  # up to which all are cheaper than finding the spacing
-POWER_PER_SECOND, POWER_PER_CYCLE, POWER_CHANGE = 40.0, 20.0, 0.1
+POWER_CHANGE = 0.1  # of amplitudes from knot to knot, where the mean power is all that is asked for
 MIN_STEP = 3  # fewer pulses from knot to knot are not worth interpolating
 
 
@@ -132,11 +131,8 @@ def delay_track(source: PathSource, waveform: Waveform, per_second: float) -> Fl
     return np.concatenate(list(parts))
 
 
-def mean_power(source: PathSource, waveform: Waveform) -> float:
-    """P_s = mean over the pulses of sum_i A_i^2, from as few knots as show the amplitudes."""
-    per_second = max(POWER_PER_SECOND, POWER_PER_CYCLE * source.highest_frequency)
-    if waveform.n_pulses <= FEW_PULSES:
-        per_second = inf
+def mean_power(source: PathSource, waveform: Waveform, per_second: float) -> float:
+    """P_s = mean over the pulses of sum_i A_i^2, by way of knots."""
     return resolve(source, waveform, Spacing(per_second, POWER_CHANGE, inf)).power
 
 

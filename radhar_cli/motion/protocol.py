@@ -100,7 +100,7 @@ def remembered(motion: Motion) -> Motion:
     if isinstance(motion, Only):
         return Only(remembered(motion.motion), motion.kept)
     if isinstance(motion, _Remembered):
-        return motion  # type: ignore[return-value]
+        return motion
     held: Motion = _Remembered(motion)  # the rest of it comes by __getattr__
     return held
 

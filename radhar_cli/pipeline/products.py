@@ -310,6 +310,11 @@ def _direct(c: Config) -> Iterator[Product]:
         double = engine.precision == "double"
         return DirectEcho(source, w, engine.tolerance_db, double, canceller)
 
+    def power(source: PathSource, w: Waveform) -> float:
+        # The echo's own knots: positions are known there.
+        aim = first_aim(engine.tolerance_db)
+        return mean_power(source, w, settings(aim, w, source.highest_frequency).spacing.per_second)
+
     def signal(
         echo: tuple[Complex, EchoAccuracy],
         made_by: DirectEcho,
@@ -341,7 +346,7 @@ def _direct(c: Config) -> Iterator[Product]:
     yield Product("range_profiles", SEEN, range_profiles, does)
     made = "gated" if _gated(c) else "direct"  # from the knots that are there anyway
     if _snr_of_other_paths(c):
-        yield Product("signal_power", ("snr_paths", "waveform"), mean_power, "P_s, for snr_db")
+        yield Product("signal_power", ("snr_paths", "waveform"), power, "P_s, for snr_db")
     else:
         yield Product("signal_power", (made,), DirectEcho.signal_power, "P_s, for snr_db")
     echo = "gated_echo" if _gated(c) else "echo"
@@ -540,11 +545,7 @@ class DopplerPower(NamedTuple):
 
 
 def _doppler_maps(c: Config, signal: str, entropy: bool) -> Iterator[Product]:
-    """STFT and FSST of a signal, whole in float64, and their images.
-
-    Images of the STFT come from float32. Those of the FSST do not: a coefficient that lies within
-    float32's rounding of the border between two bins would move its power to another pixel.
-    """
+    """STFT and FSST of a signal, whole in float64, and their images from float32."""
     suffix = signal.removeprefix("signal")
     masks = ("cfar",) if c.image.kind == "cfar" else ()
     # A mask compares cells with their neighbours, down to the noise, if there is any.
@@ -558,7 +559,7 @@ def _doppler_maps(c: Config, signal: str, entropy: bool) -> Iterator[Product]:
         kinds = {"stft": (from_bins, f"STFTs, {summed} summed over the gate")}
     for kind, (needs, does) in kinds.items():
         power = partial(_doppler_power, c, kind)
-        single = kind == "stft" and c.engine.precision == "auto" and shallow
+        single = c.engine.precision == "auto" and shallow
         yield Product(kind + suffix, needs, partial(_doppler_map, power), f"power of the {does}")
         yield Product(
             f"image:{kind}{suffix}",
@@ -576,10 +577,11 @@ def _doppler_power(
 ) -> DopplerPower:
     """Power at the bins whose middle lies within `image.doppler_limits_mps`, with its axes."""
     bins = c.processing.stft_fft_length if kind == "stft" else None
-    stft = Stft(x, frames, bins, single, gate, c.processing.gate_sum == "magnitude")
+    of_stft = single and kind == "stft"
+    stft = Stft(x, frames, bins, of_stft, gate, c.processing.gate_sum == "magnitude")
     power = stft.power_blocks()
     if kind == "fsst":
-        power = fsst.power_blocks(stft, c.processing.fsst_threshold)
+        power = fsst.power_blocks(stft, c.processing.fsst_threshold, single)
     kept, frequency = slice(None), stft.frequency
     if c.image.doppler_limits_mps is not None:
         limits = np.array(c.image.doppler_limits_mps) * 2 * x.f0 / SPEED_OF_LIGHT

@@ -21,34 +21,37 @@ def synchrosqueeze(v: Complex, slope: Complex, least: float) -> tuple[Float, Flo
     Returns:
         Real and imaginary part of T, each [frames, L] in float64.
     """
-    length = v.shape[1]
-    power = np.abs(v).ravel()
-    power *= power
-    kept = np.flatnonzero(power >= max(least**2, float(np.finfo(power.dtype).tiny)))
-    a, b = v.ravel()[kept], slope.ravel()[kept]
+    frames, length = v.shape
+    power = v.real**2
+    power += v.imag**2
+    dropped = power < max(least**2, float(np.finfo(power.dtype).tiny))
+    power[dropped] = 1
     # Im(-V'/V) = Im(V conj V')/|V|^2
-    shift = b.real * a.imag
-    shift -= b.imag * a.real
-    shift /= power[kept]
-    shift *= length / (2 * np.pi)
-    shift += 0.5
-    np.floor(shift, out=shift)
-    row = kept // length * length
-    k = shift.astype(np.intp)
-    k += kept - row
-    k -= k // length * length
-    k += row
-    real = np.bincount(k, a.real, minlength=v.size).reshape(v.shape)
-    imag = np.bincount(k, a.imag, minlength=v.size).reshape(v.shape)
+    k = slope.real * v.imag
+    k -= slope.imag * v.real
+    k /= power
+    k *= length / (2 * np.pi)
+    k += 0.5
+    np.floor(k, out=k)
+    k += np.arange(length)
+    k -= length * np.floor(k / length)
+    np.clip(k, 0, length - 1, out=k)  # of shifts beyond the digits of a double
+    k += length * np.arange(frames)[:, None]
+    to = k.astype(np.intp).ravel()
+    v = np.where(dropped, 0, v).ravel()
+    real = np.bincount(to, v.real, minlength=v.size).reshape(frames, length)
+    imag = np.bincount(to, v.imag, minlength=v.size).reshape(frames, length)
     return real.astype(float, copy=False), imag.astype(float, copy=False)
 
 
-def power_blocks(stft: Stft, threshold: float) -> Iterator[Float]:
+def power_blocks(stft: Stft, threshold: float, single: bool = False) -> Iterator[Float]:
     """|T|^2 summed over the channels of a signal of one row [some frames, frequency].
 
     Args:
         stft: of the signal, with N = L.
         threshold: coefficients below it times the largest |V| of the whole map are dropped.
+        single: whether the powers are float32; the coefficients are not, as one within float32's
+            rounding of the border between two bins would move its power to another pixel.
     """
     rows, frames = stft.signal.x[:, 0], stft.frames
 
@@ -70,4 +73,5 @@ def power_blocks(stft: Stft, threshold: float) -> Iterator[Float]:
             power += imag
             total = power if total is None else total + power
         assert total is not None
-        yield np.fft.fftshift(total.astype(each[0].real.dtype), axes=1)
+        kind = np.float32 if single else each[0].real.dtype
+        yield np.fft.fftshift(total.astype(kind), axes=1)

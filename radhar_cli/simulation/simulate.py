@@ -19,7 +19,7 @@ from radhar_cli.echo.static_returns import StaticReturn, leakage, near_face_dist
 from radhar_cli.errors import ConfigError, SceneError, did_you_mean
 from radhar_cli.motion.protocol import Motion, Only
 from radhar_cli.pipeline.bodies import sources_of
-from radhar_cli.pipeline.physics import moving, reflectors_of
+from radhar_cli.pipeline.physics import motion_of, reflectors_of
 from radhar_cli.pipeline.plan import Product
 from radhar_cli.pipeline.products import SIGNALS, EchoAccuracy, Fallback, signal_of
 from radhar_cli.pipeline.run import Recording, record
@@ -150,7 +150,7 @@ def simulate(
     config = config.model_copy(update={"maps": maps, **({} if seed is None else {"seed": seed})})
     scene = scene_of(config, activity, index, nominal)
     warnings = scene_warnings(scene)
-    motion, *others = map(moving, scene.people)
+    motion, *others = map(motion_of, scene.people)
     kept = motion if joint is None else Only(motion, (_joint(joint, motion.names),))
     board = config.radar.cfg is not None
     frames = [product for name in maps for product in FRAMES.get(name, ())]

@@ -15,7 +15,6 @@ from peak_memory import PEAK
 from radhar_cli.activity import activity_named
 from radhar_cli.config.schema import MAP_NAMES, Config
 from radhar_cli.echo import exact as exact_module
-from radhar_cli.pipeline import products as products_module
 from radhar_cli.pipeline import validity as validity_module
 from radhar_cli.pipeline.plan import plan
 from radhar_cli.pipeline.products import plan_images, products
@@ -51,7 +50,6 @@ def test_blocks_and_chunks_change_nothing(monkeypatch, engine, processing):
     document = SMALL | {"engine": {"kind": engine}, "processing": WINDOW | processing}
     whole = recorded(document, *MAP_NAMES, *IMAGES)
     monkeypatch.setattr(stft_module, "BLOCK_COEFFICIENTS", 7 * 50)
-    monkeypatch.setattr(products_module, "CHUNK", 37)
     monkeypatch.setattr(exact_module, "BLOCK_SAMPLES", 37 * adc_samples(document))
     parts = recorded(document, *MAP_NAMES, *IMAGES)
     for name in MAP_NAMES:

@@ -470,6 +470,84 @@ def scatterers(rounds: int, against: Path | None = None) -> dict[str, Any]:
     return results
 
 
+_PEOPLE = """
+import json, sys
+from collections import Counter
+from time import process_time
+from radhar_cli.config import load_config
+from radhar_cli.dataset.layout import Rows
+from radhar_cli.pipeline.products import plan_images
+from radhar_cli.pipeline.run import run
+from radhar_cli.pipeline.validity import draw_valid_scene
+try:
+    from radhar_cli.worker_process import prepare_process
+except ImportError:  # an older tree
+    from radhar_cli.process import prepare_process
+
+prepare_process()
+config = load_config(sys.argv[1], sys.argv[3:])
+rows, plan, stages, count = Rows.of(config), plan_images(config), Counter(), int(sys.argv[2])
+
+def sample(row):
+    start = process_time()
+    scene, _ = draw_valid_scene(config, *rows[row])
+    seconds = {"draw, check": process_time() - start}
+    return seconds | run(plan, {"scene": scene}).seconds
+
+each = [len(rows) * number // count for number in range(count)]
+for row in each[:3]:
+    sample(row)
+start = process_time()
+for row in each:
+    stages.update(sample(row))
+total = 1e3 * (process_time() - start) / count
+print(json.dumps({"total": total} | {k: 1e3 * v / count for k, v in stages.items()}))
+"""
+PEOPLE = {  # of which people: config, settings beside it
+    "paper, free space": ("paper/free_space", ()),
+    "quickstart": ("quickstart", ()),
+    "77 GHz, points": ("human/free_space_77GHz", ("body.scatterers=points",)),
+    "77 GHz, segments": ("human/free_space_77GHz", ()),
+    "Glasgow, gate of 21 bins": ("measured/glasgow_5p8GHz", ()),
+    "MMRGait, gate, segments": ("measured/mmrgait_77GHz", ()),
+}
+PEOPLE_SAMPLES = 24
+
+
+def people(rounds: int, against: Path | None = None) -> dict[str, Any]:
+    """Processor time of a sample without its files, by stage; one process, one thread."""
+    trees = {"this": ROOT} | ({"against": against.resolve()} if against else {})
+    one_thread = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    program = [sys.executable, "-c", _PEOPLE]
+    print("\nscenes to images, ms of processor time a sample, and the largest stages")
+    results: dict[str, Any] = {}
+    for label, (config, more) in PEOPLE.items():
+        found: dict[str, list[dict[str, float]]] = {name: [] for name in trees}
+        for _ in range(rounds):
+            for name, tree in trees.items():
+                done = subprocess.run(
+                    [*program, f"configs/{config}.yaml", str(PEOPLE_SAMPLES), *more],
+                    env=os.environ | one_thread | {"PYTHONPATH": str(tree)},
+                    cwd=tree,
+                    capture_output=True,
+                    text=True,
+                    check=True,
+                )
+                found[name].append(json.loads(done.stdout))
+        for name, of_rounds in found.items():
+            stages = {stage: median(one[stage] for one in of_rounds) for stage in of_rounds[0]}
+            results.setdefault(label, {})[name] = stages
+            most = sorted(stages, key=stages.__getitem__, reverse=True)[1:6]
+            line = ", ".join(f"{stage} {stages[stage]:.1f}" for stage in most)
+            print(f"  {label:<26}{name:>8}{stages['total']:8.1f}   {line}", flush=True)
+        if against:
+            pairs = zip(found["against"], found["this"], strict=True)
+            each = [old["total"] / new["total"] for old, new in pairs]
+            results[label]["ratio"] = median(each)
+            print(f"  {'':<34}{median(each):8.2f} times ({', '.join(f'{r:.2f}' for r in each)})")
+    return results
+
+
 BUILDS = {  # what is built: config, settings beside it
     "free space": ("free_space", ()),
     "free space, double": ("free_space", ("engine.precision=double",)),
@@ -534,6 +612,7 @@ def _generate_seconds(
 SECTIONS = {
     "rows": rows,
     "builds": builds,
+    "people": people,
     "scatterers": scatterers,
     "maps": maps,
     "jobs": jobs,
@@ -550,11 +629,11 @@ def main() -> None:
     parser.add_argument("--json", type=Path, default=Path("build/bench_generate.json"))
     parser.add_argument("--only", default=",".join(SECTIONS), help="sections, comma separated")
     parser.add_argument(
-        "--against", type=Path, help="another tree of radhar, for builds and scatterers"
+        "--against", type=Path, help="another tree of radhar, for builds, people and scatterers"
     )
     arguments = parser.parse_args()
     prepare_process()
-    more = {name: {"against": arguments.against} for name in ("builds", "scatterers")}
+    more = {name: {"against": arguments.against} for name in ("builds", "people", "scatterers")}
     results = {
         name: SECTIONS[name](arguments.rounds, **more.get(name, {}))
         for name in arguments.only.split(",")

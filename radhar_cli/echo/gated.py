@@ -42,7 +42,7 @@ from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.radar.waveform import Waveform
 
 PULSES = 512  # pulses per block of the error
-VALUES = 2**17  # envelopes at knots per block, which stay in the cache
+VALUES = 2**18  # envelopes at knots per block
 AT_PEAK = 1e-9  # sine of the denominator below which D is N
 MORE_NODES = 24, 48  # than D has half waves, in single and in double precision
 SMALLEST = 3e-8, 1e-15  # coefficient over N that is kept, likewise

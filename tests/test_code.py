@@ -132,6 +132,13 @@ def test_reading_a_data_set_needs_no_physics() -> None:
     assert run(sys.executable, "-c", code).stdout.strip() == "[]"
 
 
+def test_building_maps_needs_no_slow_parts_of_scipy() -> None:
+    code = "import sys, radhar_cli.dataset.build;"
+    slow = [f"scipy.{part}" for part in ("stats", "signal", "interpolate", "ndimage", "optimize")]
+    code += f"print([m for m in {slow} if m in sys.modules])"
+    assert run(sys.executable, "-c", code).stdout.strip() == "[]"
+
+
 # Each kind of file from elsewhere is opened in one place, and one place writes to the terminal.
 ONE_PLACE = [
     ("yaml", {"config/yaml_reader.py"}, {"safe_dump", "YAMLError", "MarkedYAMLError"}),

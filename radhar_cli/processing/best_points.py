@@ -8,8 +8,7 @@ reference cells has the distribution F(2 V, 2 V R) of V channels, from which the
 from functools import partial
 
 import numpy as np
-from scipy.ndimage import maximum_filter, uniform_filter
-from scipy.stats import f as f_distribution
+from scipy.special import fdtri
 
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.processing.frame_maps import spectra, without_turns
@@ -53,8 +52,10 @@ def _frame_points(x: Complex, board: Board, pfa: float, step: float, bias: float
     power = (
         (x.real.astype(float) ** 2 + x.imag.astype(float) ** 2).mean(axis=1).T
     )  # [range, Doppler]
+    from scipy.ndimage import maximum_filter  # slow to import
+
     noise, cells = _noise(power)
-    factor = f_distribution.isf(pfa, 2 * board.channels, 2 * board.channels * cells)
+    factor = 1 / fdtri(2 * board.channels * cells, 2 * board.channels, pfa)  # F that pfa exceeds
     hit = (power > factor * noise) & (power > 0)
     ranges = np.flatnonzero(hit.any(axis=1))
     if not ranges.size:
@@ -88,6 +89,8 @@ def _frame_points(x: Complex, board: Board, pfa: float, step: float, bias: float
 
 def _noise(power: Float) -> tuple[Float, int]:
     """Mean of the reference cells around each cell, and how many they are."""
+    from scipy.ndimage import uniform_filter  # slow to import
+
     inner = [min(2 * g + 1, n) for g, n in zip(GUARD, power.shape, strict=True)]
     outer = [min(2 * (g + t) + 1, n) for g, t, n in zip(GUARD, TRAINING, power.shape, strict=True)]
     area = outer[0] * outer[1], inner[0] * inner[1]

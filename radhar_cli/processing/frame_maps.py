@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.fft
-from scipy.signal.windows import hann
 
 from radhar_cli.arrays import Complex, Float
 from radhar_cli.processing.power_map import Axis
@@ -73,6 +72,11 @@ def without_turns(x: Complex, board: Board) -> Complex:
     return compensated
 
 
+def hann(count: int) -> Float:
+    """Periodic Hann window [count]."""
+    return np.hanning(count + 1)[:-1]
+
+
 def ascending(count: int) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
     """Numbers of FFT bins from -count/2 + 1 to count/2, as a sort of 0 .. count - 1."""
     return np.arange(-(count // 2) + 1, count // 2 + 1) % count
@@ -91,7 +95,7 @@ def range_axis(board: Board) -> Axis:
 
 def spectra(cube: Complex, board: Board, remove_mean: bool) -> Iterator[tuple[slice, Complex]]:
     """(frames, X [frame, Doppler, virtual, range]) of some frames at a time, with Hann windows."""
-    fast, slow = hann(board.samples, sym=False), hann(board.loops, sym=False)
+    fast, slow = hann(board.samples), hann(board.loops)
     for first in range(0, len(cube), BLOCK_FRAMES):
         some = slice(first, min(first + BLOCK_FRAMES, len(cube)))
         x = range_spectrum(cube[some], board, fast)
@@ -125,7 +129,7 @@ def range_angle(cube: Complex, board: Board, remove_mean: bool, axis: int) -> Fr
     rows = longest_rows(board, axis)
     taper = np.sin(np.pi * np.arange(1, len(rows[0]) + 1) / (len(rows[0]) + 1)) ** 2
     sines = np.sin(np.radians(angles))[:, None]
-    window = hann(board.loops, sym=False)
+    window = hann(board.loops)
     level = board.n_doppler * float((window**2).sum() / window.sum() ** 2)
     power = np.zeros((len(cube), board.n_fft, angles.size), np.float32)
     for some, x in spectra(cube, board, remove_mean):

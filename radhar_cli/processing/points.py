@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy.fft
-from scipy.signal.windows import blackman, hann
 
 from radhar_cli.arrays import Bool, Complex, Float, Index
 from radhar_cli.processing.frame_maps import (
@@ -62,7 +61,7 @@ def board_points(
         quantise: round as fixed-point numbers do, whose unit follows from the noise.
         carrier: frequency of the Doppler axis, Hz; None is the centre frequency.
     """
-    fast, slow = blackman(board.samples), hann(board.loops)
+    fast, slow = np.blackman(board.samples), np.hanning(board.loops)
     fast, slow = fast / fast.sum(), slow / slow.sum()
     lsb = noise_rms(cube, board, fast, slow) / NOISE_LSB if quantise else 0.0
     step = board.doppler_step(carrier)

@@ -11,10 +11,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf, radians
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.interpolate import BPoly
 
 from radhar_cli.arrays import Float
 from radhar_cli.motion.human.arms import raised
@@ -26,6 +25,9 @@ from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.pose import SIDES, Pose, axes
 from radhar_cli.motion.human.repetitions import Repetition, Striking, repetitions
 from radhar_cli.motion.human.two_link import AHEAD, two_link
+
+if TYPE_CHECKING:
+    from scipy.interpolate import BPoly
 
 G = 9.81  # m/s^2
 ANKLES_S = 0.1  # for which the ankles stretch before the feet leave the floor, and bend after, s
@@ -57,9 +59,11 @@ def both(channel: str, *rest: object) -> tuple[Move, ...]:
     return tuple(Move(f"{side}_{channel}", *rest) for side in SIDE)  # type: ignore[arg-type]
 
 
-def _smooth(knots: Sequence[Knot]) -> BPoly[np.float64]:
+def _smooth(knots: Sequence[Knot]) -> "BPoly[np.float64]":
     """Quintics between knots, twice continuously differentiable."""
     times, values = np.array([at for at, _ in knots]), np.array([value for _, value in knots])
+    from scipy.interpolate import BPoly  # slow to import
+
     return BPoly.from_derivatives(times, values)
 
 
@@ -151,7 +155,7 @@ class Exercising(Striking[Exercise]):
         ]
 
     @cached_property
-    def _hop(self) -> tuple[BPoly[np.float64], BPoly[np.float64]] | None:
+    def _hop(self) -> "tuple[BPoly[np.float64], BPoly[np.float64]] | None":
         """Heights of feet and of the hip beyond their course, m, over time."""
         if not self._flights:
             return None

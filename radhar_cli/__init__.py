@@ -50,6 +50,7 @@ _INTERFACE = {
     "sample": "radhar_cli.dataset.on_demand",
     "Samples": "radhar_cli.learning.samples",
     "Sequences": "radhar_cli.learning.sequences",
+    "torch_dataset": "radhar_cli.learning.torch_dataset",
 }
 
 

@@ -64,6 +64,11 @@ class Samples(Dataset[dict[str, Any]]):
     def __len__(self) -> int:
         return len(self._numbers)
 
+    def __repr__(self) -> str:
+        maps, seed = ", ".join(self.config.maps), self.config.seed
+        classes = ", ".join(self.class_slugs[n] for n in np.unique(self.label))
+        return f"<Samples: {len(self)} of {classes}, synthesised from seed {seed}; maps {maps}>"
+
     def __getitem__(self, row: int) -> dict[str, Any]:
         if get_worker_info() is not None:
             prepare_process()

@@ -73,6 +73,11 @@ class Sequences(Dataset[dict[str, Any]]):
     def __len__(self) -> int:
         return len(self._rows)
 
+    def __repr__(self) -> str:
+        classes = ", ".join(self.class_slugs[n] for n in np.unique(self.label))
+        of = f"{self.frames} frames of {self._reader.product}"
+        return f"<Sequences {self._reader.path}: {len(self)} x {of}; classes {classes}>"
+
     def __getitem__(self, row: int) -> dict[str, Any]:
         place, reader = int(self._rows[row]), self._reader
         read: Tensor = torch.from_numpy(np.ascontiguousarray(reader.read(place)))

@@ -82,7 +82,7 @@ class Simulation:
     waveform: Waveform
     antennas: Antennas
     wall: Wall | None
-    motion: Motion = field(repr=False)
+    motion: Motion
     joint: str | None
     maps: dict[str, PowerMap]
     signals: dict[str, Signal]
@@ -92,9 +92,19 @@ class Simulation:
     accuracy: Accuracy | None = None
     beat: Complex | None = None
     board: Board | None = None
-    frames: dict[str, Any] = field(default_factory=dict, repr=False)
-    others: list[Other] = field(default_factory=list, repr=False)
+    frames: dict[str, Any] = field(default_factory=dict)
+    others: list[Other] = field(default_factory=list)
     paths: PathTruth | None = None
+
+    def __repr__(self) -> str:
+        made = {name: one.power.shape for name, one in self.maps.items()}
+        parts = [" ".join(f"{name} {list(shape)}" for name, shape in made.items()) or "no maps"]
+        parts += [f"frames: {', '.join(self.frames)}"] if self.frames else []
+        parts += [f"signals: {', '.join(self.signals)}"] + ["beat"] * (self.beat is not None)
+        parts += [f"{1 + len(self.others)} people"] * bool(self.others)
+        parts += [f"{len(self.warnings)} warnings"] * bool(self.warnings)
+        seconds, seed = self.config.duration_s, self.config.seed
+        return f"<Simulation {self.scene.name}, seed {seed}, {seconds:g} s: {'; '.join(parts)}>"
 
     @property
     def config(self) -> Config:

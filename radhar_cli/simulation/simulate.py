@@ -74,7 +74,7 @@ class Simulation:
         board: the board, or None.
         frames: what its frames gave: {map name: FrameMaps}, and `cube`, `cloud`, `skeletons`,
             `points_person` where asked for.
-        others: in the scene besides the sample's own person.
+        others: in the scene besides the sample's main person.
         paths: every path, of several people or of a room with faces; else None.
     """
 
@@ -134,7 +134,7 @@ def simulate(
         seed: instead of the config's.
         index: number of the sample within its class.
         nominal: take the middle of every range instead of drawing.
-        joint: keep this scatterer of the sample's own person alone.
+        joint: keep this scatterer of the sample's main person alone.
         maps: which to compute; None is all that the config allows.
         raw: compute the raw beat matrix too, static returns included.
 

@@ -26,6 +26,8 @@ from radhar_cli.learning.metrics import wilson
 
 LARGEST = 2e6  # bytes of weights
 TEST_SEED = 1001
+GIT = ("git", "describe", "--always", "--dirty", "--exclude=*")
+COMMIT = subprocess.run(GIT, capture_output=True, text=True, cwd=ROOT).stdout.strip() or "unknown"
 
 
 @dataclass(frozen=True)
@@ -36,8 +38,8 @@ class Network:
         config: of the data that it is trained on.
         per_class: samples of each class.
         options: of `radhar train`.
-        reads: what it is given.
-        not_for: what it is no good for.
+        reads: its input.
+        not_for: what it is not good for.
     """
 
     config: Path
@@ -53,8 +55,8 @@ NETWORKS = {
         20,
         (),
         "Doppler-time maps (`stft`, 128 x 128 px, coloured) of one person in free space at 24 GHz",
-        "It was never tested on measured maps, and maps of another radar, range of Doppler "
-        "frequencies, dynamic range or colour map are not what it has learned.",
+        "It was never tested on measured maps, and not trained on maps of another radar, another "
+        "range of Doppler frequencies, dynamic range or colour map.",
     ),
     "glasgow": Network(
         sim_to_real.SIMULATED,
@@ -63,9 +65,8 @@ NETWORKS = {
         "outlines of Doppler-time masks at 5.8 GHz (32 x 32 px, grey), as `network_image` of "
         "scripts/sim_to_real.py makes them",
         "The simulation was tuned on part of the measured maps of docs/results/transfer.md, so "
-        "accuracy on them is optimistic. Other radars, other "
-        "activities, several people and the maps themselves instead of their outlines are not "
-        "what it has learned.",
+        "accuracy on them is optimistic. It was not trained for other radars, other activities, "
+        "several people, or the maps themselves instead of their outlines.",
     ),
     "board": Network(
         ROOT / "configs/boards/iwr1443.yaml",
@@ -114,10 +115,6 @@ def card(
 ) -> str:
     """The text of NAME.md."""
     network, about = NETWORKS[name], json.loads((run / "metrics.json").read_text())
-    git = ["git", "describe", "--always", "--dirty", "--exclude=*"]
-    commit = (
-        subprocess.run(git, capture_output=True, text=True, cwd=ROOT).stdout.strip() or "unknown"
-    )
     table = []
     for data, share, count in rows:
         low, high = wilson(round(share * count), count)
@@ -133,7 +130,7 @@ Reads {network.reads}; gives the probabilities of {", ".join(about["classes"])}.
 | network | {about["model"]}, {about["parameters"]:,} parameters, {weights.stat().st_size:,} bytes |
 | trained on | {about["data"]["train"]} simulated samples of {network.config.relative_to(ROOT)}; \
 best of {about["epochs"]} epochs on {about["data"]["val"]} others |
-| made by | `python scripts/make_networks.py -o OUT --only {name}{options}`, commit {commit} |
+| made by | `python scripts/make_networks.py -o OUT --only {name}{options}`, commit {COMMIT} |
 | SHA-256 | {hashlib.sha256(weights.read_bytes()).hexdigest()} |
 | licence | MIT, as radhar |
 

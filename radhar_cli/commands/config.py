@@ -20,7 +20,7 @@ Training = Annotated[
 def group() -> typer.Typer:
     """The subcommands."""
     app = typer.Typer(
-        help="""Start or show configs.
+        help="""Write or show configs.
 
         Example:
 

@@ -47,8 +47,8 @@ def sample(
     Raises:
         ConfigError: an unknown activity, an index or seed that is not a whole number from 0 to
             2^63 - 1, no config, a config of measured data, or as `load_config`.
-        SceneError: a scene outside the model (`on_invalid`), or one that the direct engine does not
-            reach its tolerance in.
+        SceneError: a scene outside the model (`on_invalid`), or one in which the direct engine
+            does not reach its tolerance.
     """
     make = _recipe(ByIdentity(as_config(config)), None if seed is None else whole("seed", seed))
     return make(activity_of(activity, make.config), index)

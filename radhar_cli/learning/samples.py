@@ -27,7 +27,7 @@ class Samples(Dataset[dict[str, Any]]):
         config: of the data set.
         label: [N] place in `class_slugs`.
         class_slugs: slug of every label.
-        identity: hash of all that decides the samples: config, seed, versions.
+        identity: hash of everything that determines the samples: config, seed, versions.
     """
 
     def __init__(
@@ -42,10 +42,10 @@ class Samples(Dataset[dict[str, Any]]):
         Args:
             config: of the data set, or its path.
             seed: instead of the config's.
-            split: train, val or test, for those rows alone.
+            split: train, val or test for only those rows.
 
         Raises:
-            ConfigError: a config of measured data, a split without samples.
+            ConfigError: a config of measured data, or a split without samples.
         """
         self._recipe = Recipe.of(config, seed)
         self.config = self._recipe.config

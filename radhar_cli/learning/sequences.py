@@ -32,7 +32,7 @@ class Sequences(Dataset[dict[str, Any]]):
     Attributes:
         label: [N].
         class_slugs: slug of every label.
-        frames: of an item.
+        frames: number per item.
     """
 
     def __init__(
@@ -50,8 +50,8 @@ class Sequences(Dataset[dict[str, Any]]):
             path: folder that `radhar generate` wrote, or dataset.h5.
             of: points, range_doppler, range_azimuth or range_elevation.
             split: train, val, test or all.
-            frames: of an item, the middle ones of a longer sample; None is as many as the longest.
-            points: of a frame, those of the highest SNR.
+            frames: number per item, the middle ones of longer samples; None for all of the longest.
+            points: number per frame, those of the highest SNR.
 
         Raises:
             ConfigError: frames or points below 1.

@@ -60,22 +60,22 @@ class Simulation:
     """One simulated scene.
 
     Attributes:
-        scene: what was simulated; `scene.config` has nothing left to draw.
-        waveform, antennas, wall: the radar's and the wall's, with everything that follows from it.
+        scene: what was simulated; in `scene.config` every number is fixed.
+        waveform, antennas, wall: of the radar and the wall, with derived quantities.
         motion: all that moves, whatever was left out of the echo.
-        joint: the single scatterer that was kept, or None.
+        joint: name of the only scatterer that was kept, or None.
         maps: {map name: PowerMap}.
         signals: {raw | compensated | denoised | compensated_denoised: Signal}.
         truth: kinematics at every pulse.
-        warnings: what lies outside the model, in words.
+        warnings: what lies outside the limits of the model, in words.
         seconds: {product: time it took}.
-        accuracy: how the direct engine made the signal, and its error; None of the cube.
-        beat: raw echo [N_ADC, M] with static leakage and wall return, where asked for.
+        accuracy: settings and error of the direct engine; None for the cube.
+        beat: raw echo [N_ADC, M] with static leakage and wall return, with `raw`.
         board: the board, or None.
-        frames: what its frames gave: {map name: FrameMaps}, and `cube`, `cloud`, `skeletons`,
-            `points_person` where asked for.
-        others: in the scene besides the sample's main person.
-        paths: every path, of several people or of a room with faces; else None.
+        frames: of a board: {map name: FrameMaps}, and `cube`, `cloud`, `skeletons`,
+            `points_person` if asked for.
+        others: other people in the scene.
+        paths: every path, if there are several people or a room with faces; else None.
     """
 
     scene: Scene
@@ -133,9 +133,9 @@ def simulate(
         activity: slug, label or Activity; None where the config has but one.
         seed: instead of the config's.
         index: number of the sample within its class.
-        nominal: take the middle of every range instead of drawing.
-        joint: keep this scatterer of the sample's main person alone.
-        maps: which to compute; None is all that the config allows.
+        nominal: use the middle of every range instead of random draws.
+        joint: keep only this scatterer of the sample's main person.
+        maps: which to compute; None for all that the config allows.
         raw: compute the raw beat matrix too, static returns included.
 
     Raises:

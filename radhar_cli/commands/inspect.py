@@ -9,9 +9,7 @@ from radhar_cli.commands.tell import report, tell
 
 
 def inspect(
-    path: Annotated[
-        Path, typer.Argument(help="File or folder written by radhar, or a tree of class folders.")
-    ],
+    path: Annotated[Path, typer.Argument(help="What radhar wrote, or a tree of class folders.")],
 ) -> None:
     """Summarise a data set, a scene, a recording or a tree of images.
 

@@ -8,11 +8,9 @@ import typer
 
 from radhar_cli.errors import FolderError, MachineError
 
-Run: TypeAlias = Annotated[
-    Path, typer.Argument(help="Folder written by train, or its .safetensors file.")
-]
+Run: TypeAlias = Annotated[Path, typer.Argument(help="Folder of a run, or its .safetensors file.")]
 TrainedMap: TypeAlias = Annotated[
-    str | None, typer.Option("--map", help="Use another map than the one trained on.")
+    str | None, typer.Option("--map", help="Another map than the one trained on.")
 ]
 AnyMap: TypeAlias = Annotated[
     str | None, typer.Option("--map", help="Which map; default: the first one.")

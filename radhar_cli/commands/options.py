@@ -14,18 +14,18 @@ from radhar_cli.errors import INTERRUPTED, FolderError
 Overrides: TypeAlias = Annotated[
     list[str] | None,
     typer.Option(
-        "--set", metavar="KEY=VALUE", help="Override a key, such as radar.prf_hz=128; may repeat."
+        "--set", metavar="KEY=VALUE", help="Override a key: radar.prf_hz=128; may repeat."
     ),
 ]
 Activity: TypeAlias = Annotated[
     str | None,
-    typer.Option("--activity", "-a", help="Slug or label; optional if the config has only one."),
+    typer.Option("--activity", "-a", help="Slug or label; optional if there is only one."),
 ]
 Nominal: TypeAlias = Annotated[
-    bool, typer.Option("--nominal", help="Use nominal values instead of random draws.")
+    bool, typer.Option("--nominal", help="Use nominal values, draw nothing.")
 ]
 Maps: TypeAlias = Annotated[
-    str | None, typer.Option(help="Comma-separated maps, instead of those in the config.")
+    str | None, typer.Option(help="Comma-separated maps; override the config.")
 ]
 Figures: TypeAlias = Annotated[
     bool, typer.Option("--figures/--no-figures", help="Draw the figures.")

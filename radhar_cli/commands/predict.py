@@ -14,9 +14,7 @@ def predict(
     paths: Annotated[
         list[Path], typer.Argument(metavar="IMAGE_OR_DATA...", help="Images or data sets.")
     ],
-    top: Annotated[
-        int, typer.Option(min=1, help="Number of classes to print, most likely first.")
-    ] = 3,
+    top: Annotated[int, typer.Option(min=1, help="Classes to print, most likely first.")] = 3,
     map_: TrainedMap = None,
     split: Split = "all",
     resize: Resize = False,

@@ -15,7 +15,7 @@ def preview(
     per_class: Annotated[int, typer.Option(min=1, max=50, help="Samples per class.")] = 4,
     out: Annotated[
         Path | None,
-        typer.Option("-o", "--out", help="PNG file; default: preview_<map>.png next to the data."),
+        typer.Option("-o", "--out", help="PNG; default: preview_<map>.png beside the data."),
     ] = None,
 ) -> None:
     """Draw a contact sheet of a data set.

@@ -34,7 +34,7 @@ def options(
             "--version",
             callback=_print,
             is_eager=True,
-            help="Print the versions of radhar and its libraries.",
+            help="Print the versions of radhar and libraries.",
         ),
     ] = False,
 ) -> None:

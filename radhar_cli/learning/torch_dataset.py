@@ -1,6 +1,7 @@
 """The labelled images of a data set for PyTorch."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,33 +16,32 @@ from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.settings import Kind
 
 
+@dataclass(frozen=True, repr=False)
 class LabelledImages(Dataset[tuple[Any, int]]):
-    """Pairs (image, label) of one map: float32 [C, H, W] from 0 to 1, and a place in `classes`.
+    """Pairs (image, label) of one map: float32 [C, H, W] from 0 to 1, and a place in `classes`."""
 
-    Attributes:
-        classes: name of every label; the same in every split.
-        label: [N].
-        names: [N] class and number of each image.
-    """
+    images: ImageSet
+    channels: int
+    transform: Callable[[Tensor], Any] | None
 
-    def __init__(
-        self, images: ImageSet, gray: bool, transform: Callable[[Tensor], Any] | None
-    ) -> None:
-        self.classes, self.label, self.names = images.classes, images.label, images.names
-        self._images, self._channels, self._transform = images, 1 if gray else 3, transform
+    @property
+    def classes(self) -> tuple[str, ...]:
+        """Name of every label; the same in every split."""
+        return self.images.classes
 
     def __len__(self) -> int:
-        return len(self.label)
+        return len(self.images)
 
     def __getitem__(self, row: int) -> tuple[Any, int]:
         row = range(len(self))[row]  # of a negative number, and an IndexError beyond the end
-        levels = self._images.pixels.read(row)[..., : self._channels]
+        levels = self.images.pixels.read(row)[..., : self.channels]
         image = torch.from_numpy(np.ascontiguousarray(levels.transpose(2, 0, 1))).float() / 255
-        return image if self._transform is None else self._transform(image), int(self.label[row])
+        shown = image if self.transform is None else self.transform(image)
+        return shown, int(self.images.label[row])
 
     def __repr__(self) -> str:
-        size, some = self._images.size, self._images
-        shape = f"float32 [{self._channels}, {size[0]}, {size[1]}]"
+        some = self.images
+        shape = f"float32 {[self.channels, *some.size]}"
         of_map = "" if some.map is None else f" of map {some.map}"
         classes = ", ".join(self.classes)
         return f"<LabelledImages {some.where}: {len(self)} x {shape}{of_map}; classes {classes}>"
@@ -76,7 +76,5 @@ def torch_dataset(
     if input not in ("rgb", "gray"):
         raise ConfigError(f"input = {input!r}: should be rgb or gray")
     images = open_images(Path(path), map, input)
-    rows = images.rows(split)
-    return LabelledImages(
-        images if split == "all" else images.some(rows), input == "gray", transform
-    )
+    images = images.some(images.rows(split))
+    return LabelledImages(images, 1 if input == "gray" else 3, transform)

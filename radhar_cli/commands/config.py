@@ -46,7 +46,7 @@ def init(
         bool, typer.Option("--minimal", help="About 15 lines instead of every key.")
     ] = False,
 ) -> None:
-    """Write a config to start from: every key, the most important ones, or a TI board's.
+    """Write a config to start from: all keys, a minimum, or a TI board's.
 
     Example:
 

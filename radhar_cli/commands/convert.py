@@ -16,7 +16,7 @@ def convert(
         typer.Option(metavar="FORMAT", help="parquet; for point clouds mars, ros or ti."),
     ],
 ) -> None:
-    """Convert a data set, or its point clouds, to a format of other tools.
+    """Convert a data set, or its point clouds, for other tools.
 
     Example:
 

@@ -20,7 +20,7 @@ def predict(
     resize: Resize = False,
     device: Device = "auto",
 ) -> None:
-    """Print the most likely classes of every image, with probabilities.
+    """Print the most likely classes of every image.
 
     Example:
 

@@ -18,7 +18,9 @@ def verify(
         typer.Option("--motion", help="Folder to which the paths of motion files are relative."),
     ] = None,
 ) -> None:
-    """Check a data set: compare checksums, labels and counts, and synthesise some samples again.
+    """Check a data set, and synthesise some of its samples again.
+
+    Checksums, labels and counts are compared.
 
     Exit status 0 if everything agrees, 1 if something differs.
 

@@ -41,6 +41,17 @@ Source of the model: W. Gao, "RadHARSimulator V1: Model-Based FMCW Radar Human A
 Recognition Simulator", 2025; docs/physics/model.md lists where and why we differ from it.
 """
 
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:  # for the completion of editors
+    from radhar_cli.config import load_config as load_config
+    from radhar_cli.dataset.on_demand import sample as sample
+    from radhar_cli.dataset.reading import open_dataset as open_dataset
+    from radhar_cli.learning.samples import Samples as Samples
+    from radhar_cli.learning.sequences import Sequences as Sequences
+    from radhar_cli.learning.torch_dataset import torch_dataset as torch_dataset
+    from radhar_cli.simulation.simulate import simulate as simulate
+
 __version__ = "0.1.0"
 
 _INTERFACE = {
@@ -50,6 +61,7 @@ _INTERFACE = {
     "sample": "radhar_cli.dataset.on_demand",
     "Samples": "radhar_cli.learning.samples",
     "Sequences": "radhar_cli.learning.sequences",
+    "torch_dataset": "radhar_cli.learning.torch_dataset",
 }
 
 

@@ -91,7 +91,7 @@ class Person:
         scene: in which they are.
         activity: what they do.
         config: whose `subject`, `motion`, `timing` and `classes` are theirs.
-        number: 0 for the sample's own person, else their place in `people`, from 1 on.
+        number: 0 for the sample's main person, else their place in `people`, from 1 on.
         held: what was made of them and is needed again.
     """
 
@@ -165,7 +165,7 @@ class Scene:
 
     @cached_property
     def people(self) -> tuple[Person, ...]:
-        """Everybody in the scene, the sample's own person first."""
+        """Everybody in the scene, the sample's main person first."""
         others = (
             Person(
                 self, self.config.activities_of(number)[0], self.config.of_person(number), number

@@ -100,6 +100,11 @@ def data_set(path: Path) -> None:
     ran("generate", "configs/quickstart.yaml", "-o", path, "--jobs", "1")
 
 
+def network(path: Path) -> None:
+    ran("train", "datasets/quickstart", "-o", "runs/made", "--set", "epochs=1")
+    shutil.copy("runs/made/best.safetensors", path)
+
+
 def movement(path: Path) -> None:
     path.parent.mkdir(exist_ok=True)
     write = {".bvh": write_bvh, ".npz": write_npz}[path.suffix]
@@ -158,7 +163,8 @@ FILES: dict[str, dict[str, Callable[[Path], object]]] = {
         "beds/low.npz": movement,
     },
     "output.md": {"CONFIG": few_samples, "datasets/mine": data_set},
-    "training.md": {"datasets/quickstart": data_set},
+    "stream.md": {"datasets/quickstart": data_set},
+    "training.md": {"datasets/quickstart": data_set, "networks/quickstart.safetensors": network},
 }
 
 

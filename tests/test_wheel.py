@@ -81,5 +81,5 @@ def test_it_works_in_an_empty_environment(wheel: Path, tmp_path: Path) -> None:
     run(radhar, "config", "diff", "mine.yaml", "mine.yaml", folder=tmp_path)
     small_config(tmp_path)
     run(radhar, "generate", "small.yaml", "-o", "set", "--jobs", 1, folder=tmp_path)
-    assert "synthesised anew" in run(radhar, "verify", "set", "--samples", 1, folder=tmp_path)
+    assert "synthesised again" in run(radhar, "verify", "set", "--samples", 1, folder=tmp_path)
     assert "no torch" in run(radhar, "--version", folder=tmp_path)

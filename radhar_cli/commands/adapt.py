@@ -14,7 +14,7 @@ from radhar_cli.errors import ConfigError
 def adapt(
     run: Run,
     data: Annotated[
-        Path, typer.Argument(help="A data set or a tree of images; classes are not looked at.")
+        Path, typer.Argument(help="A data set or a tree of images; its classes are not used.")
     ],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder of the adapted run.")],
     map_: TrainedMap = None,
@@ -24,33 +24,33 @@ def adapt(
         typer.Option(
             min=0,
             max=1000,
-            help="Passes in which it also learns from the images: to be sure of each, and of every "
-            "class equally often.",
+            help="Epochs of training on the images: towards confident predictions, with all "
+            "classes equally frequent. 0 adapts batch norm only.",
         ),
     ] = 0,
     mix: Annotated[
         list[Path] | None,
         typer.Option(
             metavar="DATA",
-            help="Of --epochs: labelled data that RUN learned from, shown at the same time; may "
-            "repeat.",
+            help="With --epochs: labelled data that RUN was trained on, used at the same time; "
+            "may repeat.",
         ),
     ] = None,
     resize: Resize = False,
     overwrite: StartOver = False,
     device: Device = "auto",
 ) -> None:
-    """Fit a copy of a run to another radar's images, without labels.
+    """Adapt a copy of a run to another radar's images, without labels.
 
-    Its batch-norm statistics are taken from them, and with --epochs it learns from them.
+    Batch-norm statistics are recomputed on the images; with --epochs the copy is trained on them.
 
     Example:
 
       radhar adapt runs/simulated measured -o runs/adapted --epochs 20 --mix datasets/simulated
 
-    For a network that learned from simulated maps and is to work on a radar's. The images should
-    show the classes about as often as those it will be asked about; with --epochs, every class
-    about equally often.
+    This is for a network that was trained on simulated maps and will be used with a real radar.
+    The classes should be about as frequent in the images as in later use; with --epochs, about
+    equally frequent.
     """
     from radhar_cli.commands.learning_options import apart, needs_torch
 
@@ -61,7 +61,7 @@ def adapt(
     from radhar_cli.learning.machine import choose_device
 
     if mix and not epochs:
-        raise ConfigError("--mix: needs --epochs, in which it is shown")
+        raise ConfigError("--mix: needs --epochs, during which its data are used")
     apart(out, [data, *(mix or [])])
     adaptation.adapt(
         run,

@@ -13,7 +13,7 @@ def compare(
     simulated: Annotated[
         Path, typer.Argument(help="Data set: a folder of `generate`, or a tree of class folders.")
     ],
-    measured: Annotated[Path, typer.Argument(help="Another, of measured maps.")],
+    measured: Annotated[Path, typer.Argument(help="Data set of measured maps, in either form.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder of the report.")],
     map_: AnyMap = None,
     classes: Classes = None,
@@ -23,17 +23,17 @@ def compare(
             min=2, max=5000, help="Maximum maps per class and data set (a random subset)."
         ),
     ] = 200,
-    seed: Annotated[int, typer.Option(min=0, help="Of what is drawn.")] = 1,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the random subset.")] = 1,
 ) -> None:
-    """Say how far simulated maps are from measured ones.
+    """Measure how much simulated maps differ from measured ones.
 
-    Statistics, their distances, and a two-sample test.
+    Prints statistics, their distances, and the result of a two-sample test.
 
     Example:
 
       radhar compare datasets/like_measured datasets/measured -o out/compared
 
-    50 % told apart: nobody can tell simulated from measured.
+    The test trains a classifier: 50 % means that it cannot tell simulated from measured maps.
     """
     from radhar_cli.commands.learning_options import apart, needs
 

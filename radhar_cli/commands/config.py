@@ -12,13 +12,15 @@ if TYPE_CHECKING:
     from radhar_cli.config import Config
     from radhar_cli.learning.settings import TrainConfig
 
-Training = Annotated[bool, typer.Option("--train", help="The file of train, not of generate.")]
+Training = Annotated[
+    bool, typer.Option("--train", help="A training config instead of a data set's.")
+]
 
 
 def group() -> typer.Typer:
     """The subcommands."""
     app = typer.Typer(
-        help="""Start or show configs.
+        help="""Write or show configs.
 
         Example:
 
@@ -35,33 +37,40 @@ def init(
     train: Training = False,
     radar: Annotated[
         str | None,
-        typer.Option("--radar", help="A short config of a TI board: its .cfg, or iwr6843isk, ..."),
+        typer.Option(
+            "--radar",
+            help="A short config for a TI board: its .cfg file, or a name such as iwr6843isk.",
+        ),
     ] = None,
+    minimal: Annotated[
+        bool, typer.Option("--minimal", help="About 15 lines instead of every key.")
+    ] = False,
 ) -> None:
-    """Write a config to start from: every key, or a TI board's.
+    """Write a config to start from: all keys, a minimum, or a TI board's.
 
     Example:
 
-      radhar config init mine.yaml --radar iwr6843isk
+      radhar config init mine.yaml --minimal
     """
-    from radhar_cli.config.starting_file import as_commented_yaml, of_board
+    from radhar_cli.config.starting_file import MINIMAL, as_commented_yaml, of_board
     from radhar_cli.errors import FolderError, RadharError
     from radhar_cli.replacing import write_text
 
     if out.exists() or out.is_symlink() or not out.parent.is_dir():
         why = "exists already" if out.parent.is_dir() else "there is no such folder"
         raise FolderError(f"{out}: {why}; should be a new file")
-    if radar is not None and train:
-        raise RadharError("--radar is of generate, not of --train; should be one of the two")
+    if (radar is not None) + train + minimal > 1:
+        raise RadharError("--radar, --train and --minimal: should be only one of them")
     if radar is not None:
         write_text(out, of_board(radar, out.parent))
         report(file=out)
         tell(f"{out}: the board of {radar}; radar.device should be the one that runs it")
         tell(f"  then        radhar simulate {out} --activity punching -o OUT")
         return
-    write_text(out, as_commented_yaml(_kind(train)))
+    write_text(out, MINIMAL if minimal else as_commented_yaml(_kind(train)))
     report(file=out)
-    tell(f"{out}: all keys with their defaults; leave out what should stay as it is")
+    if not minimal:
+        tell(f"{out}: every key with its default; delete those that should keep it")
     tell(f"  then        radhar {'train DATA --config' if train else 'generate'} {out} -o OUT")
 
 

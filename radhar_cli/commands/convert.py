@@ -10,13 +10,13 @@ from radhar_cli.commands.tell import report, tell
 
 def convert(
     dataset: Annotated[Path, typer.Argument(help="Folder that `generate` wrote, or dataset.h5.")],
-    out: Annotated[Path, typer.Option("-o", "--out", help="Folder to make.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder to create.")],
     to: Annotated[
         str,
-        typer.Option(metavar="FORMAT", help="parquet; of point clouds mars, ros or ti."),
+        typer.Option(metavar="FORMAT", help="parquet; for point clouds mars, ros or ti."),
     ],
 ) -> None:
-    """Write a data set, or its point clouds, as other tools read them.
+    """Convert a data set, or its point clouds, for other tools.
 
     Example:
 
@@ -24,8 +24,8 @@ def convert(
 
       radhar convert datasets/boards -o shared/mars --to mars
 
-    Labels and splits go with it, and with images a data card and the numbers drawn. The folder
-    appears when it is whole. Parquet needs `pip install 'radhar[formats]'`.
+    Labels and splits are included; with images also a data card and the random numbers of each
+    scene. The folder appears when it is complete. Parquet needs `pip install 'radhar[formats]'`.
     """
     from radhar_cli.commands.learning_options import needs
     from radhar_cli.commands.terminal import BarProgress

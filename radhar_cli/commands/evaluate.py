@@ -16,22 +16,22 @@ def evaluate(
         list[Path],
         typer.Argument(
             metavar="RUN... DATA...",
-            help="Folders that train wrote, and the data to evaluate them on; one or more of each.",
+            help="Training runs, and the data to evaluate them on; one or more of each.",
         ),
     ],
     out: Annotated[
-        Path | None, typer.Option("-o", "--out", help="Folder of the report; RUN/eval if none.")
+        Path | None, typer.Option("-o", "--out", help="Folder of the report; default: RUN/eval.")
     ] = None,
     split: Split = "val",
     map_: TrainedMap = None,
     tsne: Annotated[
-        bool, typer.Option("--tsne", help="Draw t-SNE of the maps and of the last features.")
+        bool, typer.Option("--tsne", help="Draw t-SNE plots of the maps and of the last features.")
     ] = False,
     in_place_vs_moving: Annotated[
         bool,
-        typer.Option("--in-place-vs-moving", help="Also the two groups S1 to S7 and S8 to S12."),
+        typer.Option("--in-place-vs-moving", help="Also report the groups S1 to S7 and S8 to S12."),
     ] = False,
-    batch: Annotated[int, typer.Option(min=1, help="Images at once.")] = 32,
+    batch: Annotated[int, typer.Option(min=1, help="Batch size.")] = 32,
     resize: Resize = False,
     classes: Classes = None,
     device: Device = "auto",
@@ -42,7 +42,7 @@ def evaluate(
 
       radhar eval runs/quickstart datasets/quickstart --tsne
 
-    Several runs or data sets give the comparison: train at one SNR, test at all.
+    Several runs or data sets give a comparison, such as training at one SNR and testing at all.
     """
     from radhar_cli.commands.learning_options import apart, needs_torch, runs_and_data
 

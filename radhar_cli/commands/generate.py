@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 def generate(
     config: Annotated[Path, typer.Argument(help="YAML file that describes the data set.")],
-    out: Annotated[Path, typer.Option("-o", "--out", help="Folder to build it in.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder of the data set.")],
     set_: Overrides = None,
     tolerance: Tolerance = None,
     jobs: Annotated[
-        int | None, typer.Option("--jobs", "-j", min=1, help="Processes; all cores if not given.")
+        int | None, typer.Option("--jobs", "-j", min=1, help="Processes; default: all cores.")
     ] = None,
     batch: Annotated[
-        int | None, typer.Option(min=1, help="Samples a batch; changes no byte of the result.")
+        int | None, typer.Option(min=1, help="Samples per batch; does not change the result.")
     ] = None,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Print the plan and an estimate; write nothing.")
@@ -44,8 +44,8 @@ def generate(
         Path | None,
         typer.Option(
             metavar="MANIFEST",
-            help="Instead of scenes: CSV or YAML of recordings (file, label, person, start, stop), "
-            "or a tree of class folders, or an .npz of masks.",
+            help="Use recordings instead of scenes: CSV or YAML (file, label, person, start, "
+            "stop), a tree of class folders, or an .npz of masks.",
         ),
     ] = None,
     overwrite: StartOver = False,
@@ -56,7 +56,7 @@ def generate(
 
       radhar generate configs/paper/through_wall.yaml -o datasets/ttw_10dB --set snr_db=10 --jobs 2
 
-    The same command, run again, resumes where it stopped and says so when the folder is complete.
+    The same command resumes an interrupted build; it does nothing if the folder is complete.
     """
     with resumable(f"what is finished in {out}"):
         from radhar_cli.commands.terminal import (

@@ -14,7 +14,7 @@ def import_(
         list[Path],
         typer.Argument(
             metavar="CAPTURE...",
-            help=".bin of a DCA1000 (the first is enough), .npy, .npz, .mat or HDF5.",
+            help=".bin of a DCA1000 (name only the first), .npy, .npz, .mat or HDF5.",
         ),
     ],
     out: Annotated[Path, typer.Option("-o", "--out", help="Recording to write, such as walk.h5.")],

@@ -8,22 +8,24 @@ import typer
 
 from radhar_cli.errors import FolderError, MachineError
 
-Run: TypeAlias = Annotated[Path, typer.Argument(help="Folder that train wrote.")]
+Run: TypeAlias = Annotated[Path, typer.Argument(help="Folder of a run, or its .safetensors file.")]
 TrainedMap: TypeAlias = Annotated[
-    str | None, typer.Option("--map", help="Another map than the one it was trained on.")
+    str | None, typer.Option("--map", help="Another map than the one trained on.")
 ]
 AnyMap: TypeAlias = Annotated[
-    str | None, typer.Option("--map", help="Which map; the first if not given.")
+    str | None, typer.Option("--map", help="Which map; default: the first one.")
 ]
 Split: TypeAlias = Annotated[str, typer.Option(help="train, val, test or all.")]
 Device: TypeAlias = Annotated[str, typer.Option(help="auto, cpu, cuda or mps.")]
 Resize: TypeAlias = Annotated[
     bool,
-    typer.Option("--resize", help="Resize images to the size that the network was trained on."),
+    typer.Option("--resize", help="Resize images to the size used in training."),
 ]
 Classes: TypeAlias = Annotated[
     Path | None,
-    typer.Option(metavar="FILE", help="YAML, foreign class: our class; null leaves a class out."),
+    typer.Option(
+        metavar="FILE", help="YAML that renames classes, `theirs: ours`; null leaves a class out."
+    ),
 ]
 
 

@@ -18,9 +18,9 @@ def merge(
         int | None, typer.Option("--jobs", "-j", min=1, help="Processes that write PNGs.")
     ] = None,
 ) -> None:
-    """Merge the parts of a data set, which are only read.
+    """Merge the parts of a data set; the parts are not changed.
 
-    Says which rows are missing, and with which --shard to make them. Exit status 1 then.
+    If rows are missing, prints them with the --shard that makes them, and exits with status 1.
 
     Example:
 

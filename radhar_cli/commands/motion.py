@@ -13,7 +13,7 @@ def motion(
     config: Annotated[Path, typer.Argument(help="YAML config that the scene is drawn from.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="The .bvh file to write.")],
     activity: Activity = None,
-    index: Annotated[int, typer.Option(min=0, help="Which sample of its class.")] = 0,
+    index: Annotated[int, typer.Option(min=0, help="Number of the sample within its class.")] = 0,
     nominal: Nominal = False,
     rate: Annotated[float, typer.Option(min=1, max=10_000, help="Frames per second.")] = 120.0,
     overwrite: Replace = False,
@@ -43,4 +43,4 @@ def motion(
     except OSError as error:
         raise UnfinishedError(f"{out}: {error.strerror}; nothing was written") from None
     report(file=out, frames=frames, rate_hz=rate)
-    tell(f"{out}: {frames} frames, {rate:g} a second")
+    tell(f"{out}: {frames} frames, {rate:g} per second")

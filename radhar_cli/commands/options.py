@@ -13,34 +13,36 @@ from radhar_cli.errors import INTERRUPTED, FolderError
 
 Overrides: TypeAlias = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Change one dotted key; may repeat."),
+    typer.Option(
+        "--set", metavar="KEY=VALUE", help="Override a key: radar.prf_hz=128; may repeat."
+    ),
 ]
 Activity: TypeAlias = Annotated[
     str | None,
-    typer.Option("--activity", "-a", help="Slug or label; not needed if the config has one."),
+    typer.Option("--activity", "-a", help="Slug or label; optional if there is only one."),
 ]
 Nominal: TypeAlias = Annotated[
-    bool, typer.Option("--nominal", help="Take mid-points instead of drawing.")
+    bool, typer.Option("--nominal", help="Use nominal values, draw nothing.")
 ]
 Maps: TypeAlias = Annotated[
-    str | None, typer.Option(help="Comma-separated maps, instead of the config's.")
+    str | None, typer.Option(help="Comma-separated maps; override the config.")
 ]
 Figures: TypeAlias = Annotated[
     bool, typer.Option("--figures/--no-figures", help="Draw the figures.")
 ]
 StartOver: TypeAlias = Annotated[
-    bool, typer.Option("--overwrite", help="Start over in a folder that was written before.")
+    bool, typer.Option("--overwrite", help="Start over in an existing folder.")
 ]
 Replace: TypeAlias = Annotated[bool, typer.Option("--overwrite", help="Replace an existing file.")]
 Tolerance: TypeAlias = Annotated[
     float | None,
-    typer.Option(metavar="DB", help="Tolerance of the direct engine, instead of the config's."),
+    typer.Option(metavar="DB", help="Tolerance of the direct engine; overrides the config."),
 ]
 
 
 @contextmanager
 def resumable(kept: str) -> Iterator[None]:
-    """Say what is kept when Ctrl-C (status 130) or SIGTERM (status 143) ends the work."""
+    """Report what is kept when Ctrl-C (status 130) or SIGTERM (status 143) ends the work."""
     try:
         yield
         interrupts.check()

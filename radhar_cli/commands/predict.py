@@ -1,4 +1,4 @@
-"""`radhar predict`: the class of single maps."""
+"""`radhar predict`: classify single maps."""
 
 from pathlib import Path
 from typing import Annotated
@@ -12,15 +12,15 @@ from radhar_cli.commands.tell import report, tell
 def predict(
     run: Run,
     paths: Annotated[
-        list[Path], typer.Argument(metavar="IMAGE_OR_DATA...", help="Images, or data sets.")
+        list[Path], typer.Argument(metavar="IMAGE_OR_DATA...", help="Images or data sets.")
     ],
-    top: Annotated[int, typer.Option(min=1, help="Classes to print, the most likely first.")] = 3,
+    top: Annotated[int, typer.Option(min=1, help="Classes to print, most likely first.")] = 3,
     map_: TrainedMap = None,
     split: Split = "all",
     resize: Resize = False,
     device: Device = "auto",
 ) -> None:
-    """Print the class of every image and its probabilities.
+    """Print the most likely classes of every image.
 
     Example:
 

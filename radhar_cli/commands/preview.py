@@ -12,9 +12,10 @@ from radhar_cli.commands.tell import report, tell
 def preview(
     dataset: Annotated[Path, typer.Argument(help="Folder that `generate` wrote, or dataset.h5.")],
     map_: AnyMap = None,
-    per_class: Annotated[int, typer.Option(min=1, max=50, help="Samples a class.")] = 4,
+    per_class: Annotated[int, typer.Option(min=1, max=50, help="Samples per class.")] = 4,
     out: Annotated[
-        Path | None, typer.Option("-o", "--out", help="PNG; preview_<map>.png next to the data.")
+        Path | None,
+        typer.Option("-o", "--out", help="PNG; default: preview_<map>.png beside the data."),
     ] = None,
 ) -> None:
     """Draw a contact sheet of a data set.

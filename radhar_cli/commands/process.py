@@ -14,7 +14,7 @@ def process(
         Path, typer.Argument(help="Recording written by import or simulate --raw.")
     ],
     config: Annotated[
-        Path, typer.Option(help="YAML file whose processing, image and maps are used.")
+        Path, typer.Option(help="YAML file; its processing, image and maps are used.")
     ],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the results.")],
     set_: Overrides = None,

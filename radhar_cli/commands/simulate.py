@@ -1,4 +1,4 @@
-"""`radhar simulate`: one scene with everything there is to see of it."""
+"""`radhar simulate`: one scene with all maps, ground truth and figures."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -28,23 +28,23 @@ def simulate(
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the results.")],
     activity: Activity = None,
     index: Annotated[
-        int, typer.Option(min=0, help="Which sample of its class, as in /sample_key.")
+        int, typer.Option(min=0, help="Number of the sample within its class, as in /sample_key.")
     ] = 0,
     seed: Annotated[
-        int | None, typer.Option(min=0, max=2**63 - 1, help="Instead of the config's.")
+        int | None, typer.Option(min=0, max=2**63 - 1, help="Seed; overrides the config.")
     ] = None,
     nominal: Nominal = False,
     motion: Annotated[
-        Path | None, typer.Option("--motion", help="A motion file (.bvh, .npz) to look at.")
+        Path | None, typer.Option("--motion", help="Play this motion file (.bvh, .npz).")
     ] = None,
     set_: Overrides = None,
     tolerance: Tolerance = None,
     maps: Maps = None,
     joint: Annotated[
-        str | None, typer.Option(help="Keep this scatterer alone, such as right_ankle.")
+        str | None, typer.Option(help="Keep only this scatterer, such as right_ankle.")
     ] = None,
     overlay: Annotated[
-        bool, typer.Option("--overlay", help="Draw every joint's true Doppler over the maps.")
+        bool, typer.Option("--overlay", help="Draw the true Doppler of every joint over the maps.")
     ] = False,
     raw: Annotated[
         bool,
@@ -52,9 +52,9 @@ def simulate(
     ] = False,
     figures: Figures = True,
 ) -> None:
-    """Simulate one scene: its maps, its truth and an animation.
+    """Simulate one scene: maps, ground truth and an animation.
 
-    Written are scene.h5, scene.json, maps.png and an animated stickman.
+    Writes scene.h5, scene.json, maps.png and an animated stickman.
 
     Example:
 

@@ -17,12 +17,8 @@ from radhar_cli import interrupts
 from radhar_cli.plain_json import plain
 from radhar_cli.untrusted import shown
 
-Json = Annotated[
-    bool, typer.Option("--json", help="Print values as JSON, for programs, and nothing else.")
-]
-Quiet = Annotated[
-    bool, typer.Option("--quiet", "-q", help="Say nothing but warnings and what is wrong.")
-]
+Json = Annotated[bool, typer.Option("--json", help="Print only values, as JSON, for programs.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print warnings and errors only.")]
 
 
 @dataclass

@@ -13,7 +13,7 @@ def tradeoff(
     config: Annotated[Path, typer.Argument(help="YAML config whose scenes are measured.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder for the results.")],
     quick: Annotated[
-        bool, typer.Option("--quick", help="Three activities, three rounds: a first look.")
+        bool, typer.Option("--quick", help="Only three activities and three rounds.")
     ] = False,
     set_: Overrides = None,
 ) -> None:
@@ -23,7 +23,7 @@ def tradeoff(
 
       radhar tradeoff configs/paper/free_space.yaml -o out/tradeoff --quick
 
-    Leave the machine idle meanwhile: a busy one distorts the times, not the errors.
+    Keep the machine idle during the run: load distorts the times, but not the errors.
     """
     from radhar_cli.commands.learning_options import needs
 

@@ -22,16 +22,16 @@ def train(
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder of the run.")],
     config: Annotated[
         Path | None,
-        typer.Option(help="YAML file; settings that suit small data sets if not given."),
+        typer.Option(help="YAML file; the defaults suit small data sets."),
     ] = None,
     set_: Overrides = None,
     map_: Annotated[
-        str | None, typer.Option("--map", help="Which map to learn; the first one if not given.")
+        str | None, typer.Option("--map", help="Which map to learn from; default: the first one.")
     ] = None,
     model: Annotated[
         str | None,
         typer.Option(
-            help="fftnet, smallnet, or a name of timm's; of sequences framenet or cloudnet."
+            help="smallnet, fftnet or a network of timm; for sequences framenet or cloudnet."
         ),
     ] = None,
     target: Annotated[
@@ -41,7 +41,7 @@ def train(
         ),
     ] = None,
     init: Annotated[
-        Path | None, typer.Option(help="A run whose best weights are the initial ones.")
+        Path | None, typer.Option(help="Run whose best weights are used as initial weights.")
     ] = None,
     classes: Classes = None,
     overwrite: StartOver = False,
@@ -56,7 +56,7 @@ def train(
 
       radhar train datasets/measured -o runs/tuned --init runs/simulated --set learning_rate=1e-4
 
-    The same command, run again, resumes after the last finished epoch.
+    The same command resumes an interrupted run after its last finished epoch.
     """
     from radhar_cli.commands.learning_options import apart, needs_torch
 

@@ -10,17 +10,19 @@ from radhar_cli.commands.tell import report, tell
 
 def verify(
     out: Annotated[Path, typer.Argument(help="Folder that `radhar generate` wrote.")],
-    samples: Annotated[int, typer.Option(min=0, help="Samples to synthesise anew.")] = 24,
+    samples: Annotated[
+        int, typer.Option(min=0, help="Number of samples to synthesise again.")
+    ] = 24,
     motion: Annotated[
         Path | None,
-        typer.Option("--motion", help="Folder that the paths of motion files are relative to."),
+        typer.Option("--motion", help="Folder to which the paths of motion files are relative."),
     ] = None,
 ) -> None:
-    """Check a data set, and synthesise some of its samples anew.
+    """Check a data set, and synthesise some of its samples again.
 
     Checksums, labels and counts are compared.
 
-    Exit status 0 if all is well, 1 if something differs.
+    Exit status 0 if everything agrees, 1 if something differs.
 
     Example:
 
@@ -41,13 +43,11 @@ def verify(
     if outcome.problems:
         raise typer.Exit(1)
     within = f"within {outcome.worst_level} grey level"
-    anew = f"synthesised anew and equal {within if outcome.other_versions else 'byte for byte'}"
+    anew = f"synthesised again and equal {within if outcome.other_versions else 'byte for byte'}"
     tell(
-        f"{out}: {outcome.samples} samples; checksums, labels and counts right; "
-        + (f"{outcome.resynthesised} {anew}" if outcome.resynthesised else "none made anew")
+        f"{out}: {outcome.samples} samples; checksums, labels and counts correct; "
+        + (f"{outcome.resynthesised} {anew}" if outcome.resynthesised else "none synthesised again")
         + (f"; {outcome.pngs} PNG files show the same" if outcome.pngs else "")
     )
     if outcome.unmade:
-        tell(
-            f"{outcome.unmade} samples use motion files; --motion FOLDER synthesises them anew too"
-        )
+        tell(f"{outcome.unmade} samples use motion files; --motion FOLDER checks them, too")

@@ -31,7 +31,10 @@ def options(
     version: Annotated[
         bool,
         typer.Option(
-            "--version", callback=_print, is_eager=True, help="Print versions, also of libraries."
+            "--version",
+            callback=_print,
+            is_eager=True,
+            help="Print the versions of radhar and libraries.",
         ),
     ] = False,
 ) -> None:

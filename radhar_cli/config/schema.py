@@ -1305,7 +1305,7 @@ def _name_or_choice(value: object) -> object:
 
 
 class PersonConfig(Section):
-    """Somebody besides the sample's own person."""
+    """Somebody besides the sample's main person."""
 
     REPEATS: ClassVar = True  # sections of the top level
 

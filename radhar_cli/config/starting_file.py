@@ -26,6 +26,23 @@ NUMBERS = """\
 # {choice: [a, b]}, {vary: [nominal, fraction]}; under motion and timing it may also differ:
 # {per_activity: {default: 2, walking: 1}}.
 """
+MINIMAL = """\
+# A short config, ready for `radhar generate`; `radhar config init FILE` writes one with every key.
+seed: 1                                   # same config, seed and versions: same bytes
+samples_per_class: 20
+activities: [walking, punching, sitting_down, walking_to_falling]  # all: the twelve
+duration_s: 6
+radar:
+  carrier_hz: 24e9
+  bandwidth_hz: 1e9                       # range resolution c/2B: 0.15 m
+  prf_hz: 3500                            # radial speeds up to +-10.7 m/s
+subject:
+  height_m: {uniform: [1.5, 1.9]}         # drawn for each sample; any number may be
+snr_db: {choice: [30, 20, 10]}
+maps: [rtm, stft]                         # range-time map, Doppler-time map
+image: {size_px: 128, dynamic_range_db: 40}
+split: {train: 0.8, validation: 0.2}
+"""
 
 
 def as_commented_yaml(kind: type[Section]) -> str:

@@ -190,7 +190,7 @@ def _classes(data: Dataset) -> str:
         shown = zip(data.class_slugs, data.labels.sum(axis=0).tolist(), strict=True)
         listed = ", ".join(f"`{slug}` {count}" for slug, count in shown if count)
         others = (
-            "\n\nThe class is what the sample's own person does. Others are there too: column "
+            "\n\nThe class is what the sample's main person does. Others are there too: column "
             f"`labels` has what anybody does ({listed})."
         )
     return _table(["label", "class", *present.values()], lines) + others

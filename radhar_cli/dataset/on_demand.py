@@ -32,7 +32,7 @@ def sample(
     activity: str | Activity | None,
     index: int = 0,
     seed: int | None = None,
-) -> dict[str, Any]:
+) -> "Sample":
     """Synthesise one sample of a data set: the same as in a dataset.h5 of this config, bit for bit.
 
     Args:
@@ -47,11 +47,22 @@ def sample(
     Raises:
         ConfigError: an unknown activity, an index or seed that is not a whole number from 0 to
             2^63 - 1, no config, a config of measured data, or as `load_config`.
-        SceneError: a scene outside the model (`on_invalid`), or one that the direct engine does not
-            reach its tolerance in.
+        SceneError: a scene outside the model (`on_invalid`), or one in which the direct engine
+            does not reach its tolerance.
     """
     make = _recipe(ByIdentity(as_config(config)), None if seed is None else whole("seed", seed))
     return make(activity_of(activity, make.config), index)
+
+
+class Sample(dict[str, Any]):
+    """{name in dataset.h5: array or number} of one sample."""
+
+    def __repr__(self) -> str:
+        scene = sum(name.startswith("scene/") for name in self)
+        shapes = {name: list(getattr(value, "shape", ())) for name, value in self.items()}
+        shown = [f"{name} {shape}" for name, shape in shapes.items() if len(shape) > 1]
+        rest = len(self) - scene - len(shown)
+        return f"<Sample: {', '.join(shown)}; {scene} scene fields, {rest} others>"
 
 
 @dataclass(frozen=True)
@@ -74,7 +85,7 @@ class Recipe:
             config = config.model_copy(update={"seed": whole("seed", seed)})
         return cls(config)
 
-    def __call__(self, activity: Activity, index: int) -> dict[str, Any]:
+    def __call__(self, activity: Activity, index: int) -> Sample:
         """The fields of one sample.
 
         Raises:
@@ -85,11 +96,8 @@ class Recipe:
         with one_thread():
             scene, _ = draw_valid_scene(self.config, activity, index)
             made = synthesise(scene, self._plan)
-        found: dict[str, Any] = {
-            "label": activity.index,
-            "sample_key": np.array([activity.index, index]),
-            **made.labels,
-        }
+        found = Sample(label=activity.index, sample_key=np.array([activity.index, index]))
+        found.update(made.labels)
         for name, (_, shape) in chunked(self.config).items():
             found[name] = np.ascontiguousarray(made.chunk(name, shape))
         for name, image in made.images.items():

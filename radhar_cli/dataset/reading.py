@@ -119,6 +119,18 @@ class Dataset(Closing):
     def __len__(self) -> int:
         return len(self.label)
 
+    def __repr__(self) -> str:
+        numbers = np.bincount(self.split, minlength=len(SPLITS))
+        splits = ", ".join(f"{numbers[n]} {name}" for n, name in self.present_splits.items())
+        products = f"; products {', '.join(self.products)}" if self.products else ""
+        maps = (
+            f"maps {', '.join(self.maps)} of {' x '.join(map(str, self.config.image.size_px))} px"
+        )
+        classes = ", ".join(self.class_slugs[n] for n in np.unique(self.label))
+        return (
+            f"<Dataset {self.path}: {len(self)} samples ({splits}) of {classes}; {maps}{products}>"
+        )
+
     @property
     def present_splits(self) -> dict[int, str]:
         """{number: name} of the splits that have samples."""

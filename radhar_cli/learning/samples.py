@@ -27,7 +27,7 @@ class Samples(Dataset[dict[str, Any]]):
         config: of the data set.
         label: [N] place in `class_slugs`.
         class_slugs: slug of every label.
-        identity: hash of all that decides the samples: config, seed, versions.
+        identity: hash of everything that determines the samples: config, seed, versions.
     """
 
     def __init__(
@@ -42,10 +42,10 @@ class Samples(Dataset[dict[str, Any]]):
         Args:
             config: of the data set, or its path.
             seed: instead of the config's.
-            split: train, val or test, for those rows alone.
+            split: train, val or test for only those rows.
 
         Raises:
-            ConfigError: a config of measured data, a split without samples.
+            ConfigError: a config of measured data, or a split without samples.
         """
         self._recipe = Recipe.of(config, seed)
         self.config = self._recipe.config
@@ -63,6 +63,11 @@ class Samples(Dataset[dict[str, Any]]):
 
     def __len__(self) -> int:
         return len(self._numbers)
+
+    def __repr__(self) -> str:
+        maps, seed = ", ".join(self.config.maps), self.config.seed
+        classes = ", ".join(self.class_slugs[n] for n in np.unique(self.label))
+        return f"<Samples: {len(self)} of {classes}, synthesised from seed {seed}; maps {maps}>"
 
     def __getitem__(self, row: int) -> dict[str, Any]:
         if get_worker_info() is not None:

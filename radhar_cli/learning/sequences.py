@@ -32,7 +32,7 @@ class Sequences(Dataset[dict[str, Any]]):
     Attributes:
         label: [N].
         class_slugs: slug of every label.
-        frames: of an item.
+        frames: number per item.
     """
 
     def __init__(
@@ -50,8 +50,8 @@ class Sequences(Dataset[dict[str, Any]]):
             path: folder that `radhar generate` wrote, or dataset.h5.
             of: points, range_doppler, range_azimuth or range_elevation.
             split: train, val, test or all.
-            frames: of an item, the middle ones of a longer sample; None is as many as the longest.
-            points: of a frame, those of the highest SNR.
+            frames: number per item, the middle ones of longer samples; None for all of the longest.
+            points: number per frame, those of the highest SNR.
 
         Raises:
             ConfigError: frames or points below 1.
@@ -72,6 +72,11 @@ class Sequences(Dataset[dict[str, Any]]):
 
     def __len__(self) -> int:
         return len(self._rows)
+
+    def __repr__(self) -> str:
+        classes = ", ".join(self.class_slugs[n] for n in np.unique(self.label))
+        of = f"{self.frames} frames of {self._reader.product}"
+        return f"<Sequences {self._reader.path}: {len(self)} x {of}; classes {classes}>"
 
     def __getitem__(self, row: int) -> dict[str, Any]:
         place, reader = int(self._rows[row]), self._reader

@@ -85,7 +85,7 @@ class TrainConfig(Section):
     model: Annotated[str, Field(min_length=1)] = "smallnet"
     """smallnet, the paper's network fftnet, any name of timm's; of sequences framenet, cloudnet."""
     target: Target = "classes"
-    """The own person's class; labels: what anybody does; count: how many people; skeleton, of
+    """The main person's class; labels: what anybody does; count: how many people; skeleton, of
     sequences: the joints in every frame."""
     map: str | None = None
     """Which map; null is the first one."""

@@ -60,29 +60,29 @@ class Simulation:
     """One simulated scene.
 
     Attributes:
-        scene: what was simulated; `scene.config` has nothing left to draw.
-        waveform, antennas, wall: the radar's and the wall's, with everything that follows from it.
+        scene: what was simulated; in `scene.config` every number is fixed.
+        waveform, antennas, wall: of the radar and the wall, with derived quantities.
         motion: all that moves, whatever was left out of the echo.
-        joint: the single scatterer that was kept, or None.
+        joint: name of the only scatterer that was kept, or None.
         maps: {map name: PowerMap}.
         signals: {raw | compensated | denoised | compensated_denoised: Signal}.
         truth: kinematics at every pulse.
-        warnings: what lies outside the model, in words.
+        warnings: what lies outside the limits of the model, in words.
         seconds: {product: time it took}.
-        accuracy: how the direct engine made the signal, and its error; None of the cube.
-        beat: raw echo [N_ADC, M] with static leakage and wall return, where asked for.
+        accuracy: settings and error of the direct engine; None for the cube.
+        beat: raw echo [N_ADC, M] with static leakage and wall return, with `raw`.
         board: the board, or None.
-        frames: what its frames gave: {map name: FrameMaps}, and `cube`, `cloud`, `skeletons`,
-            `points_person` where asked for.
-        others: in the scene besides the sample's own person.
-        paths: every path, of several people or of a room with faces; else None.
+        frames: of a board: {map name: FrameMaps}, and `cube`, `cloud`, `skeletons`,
+            `points_person` if asked for.
+        others: other people in the scene.
+        paths: every path, if there are several people or a room with faces; else None.
     """
 
     scene: Scene
     waveform: Waveform
     antennas: Antennas
     wall: Wall | None
-    motion: Motion = field(repr=False)
+    motion: Motion
     joint: str | None
     maps: dict[str, PowerMap]
     signals: dict[str, Signal]
@@ -92,9 +92,19 @@ class Simulation:
     accuracy: Accuracy | None = None
     beat: Complex | None = None
     board: Board | None = None
-    frames: dict[str, Any] = field(default_factory=dict, repr=False)
-    others: list[Other] = field(default_factory=list, repr=False)
+    frames: dict[str, Any] = field(default_factory=dict)
+    others: list[Other] = field(default_factory=list)
     paths: PathTruth | None = None
+
+    def __repr__(self) -> str:
+        made = {name: one.power.shape for name, one in self.maps.items()}
+        parts = [" ".join(f"{name} {list(shape)}" for name, shape in made.items()) or "no maps"]
+        parts += [f"frames: {', '.join(self.frames)}"] if self.frames else []
+        parts += [f"signals: {', '.join(self.signals)}"] + ["beat"] * (self.beat is not None)
+        parts += [f"{1 + len(self.others)} people"] * bool(self.others)
+        parts += [f"{len(self.warnings)} warnings"] * bool(self.warnings)
+        seconds, seed = self.config.duration_s, self.config.seed
+        return f"<Simulation {self.scene.name}, seed {seed}, {seconds:g} s: {'; '.join(parts)}>"
 
     @property
     def config(self) -> Config:
@@ -123,9 +133,9 @@ def simulate(
         activity: slug, label or Activity; None where the config has but one.
         seed: instead of the config's.
         index: number of the sample within its class.
-        nominal: take the middle of every range instead of drawing.
-        joint: keep this scatterer of the sample's own person alone.
-        maps: which to compute; None is all that the config allows.
+        nominal: use the middle of every range instead of random draws.
+        joint: keep only this scatterer of the sample's main person.
+        maps: which to compute; None for all that the config allows.
         raw: compute the raw beat matrix too, static returns included.
 
     Raises:

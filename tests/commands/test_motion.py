@@ -27,7 +27,7 @@ def test_a_motion_is_exported_and_read_back(tmp_path):
     common = [path, "--activity", "kicking", "--nominal"]
     done = radhar("motion", *common, "-o", bvh, "--rate", 200)
     assert (done.returncode, done.stderr) == (0, "")
-    assert f"{bvh}: 301 frames, 200 a second" in done.stdout
+    assert f"{bvh}: 301 frames, 200 per second" in done.stdout
     again = radhar("motion", *common, "-o", bvh)
     assert (again.returncode, again.stderr) == (
         *(2, f"radhar: {bvh}: already exists; --overwrite replaces it\n"),

@@ -7,12 +7,14 @@ from typing import get_args
 
 import numpy as np
 import pytest
+from command_line import ok, radhar
 
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.documents import RADARS
 from radhar_cli.config.reading import load_section
 from radhar_cli.config.schema import Section, WallConfig
 from radhar_cli.config.starting_file import WIDTH, as_commented_yaml, of_board
+from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import ConfigError
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.radar.board import DEVICES
@@ -91,6 +93,33 @@ def test_a_known_radar_is_simulated(tmp_path: Path, name: str) -> None:
     points = scene.frames["cloud"].points
     assert len(points) > 5
     assert abs(np.median(np.linalg.norm(points[:, :3], axis=1)) - 2) < 0.5
+
+
+@pytest.mark.parametrize("name", RADARS)
+def test_a_data_set_of_a_known_radar_is_built(tmp_path: Path, name: str) -> None:
+    """Its frames hold people's points."""
+    ok("config", "init", tmp_path / "mine.yaml", "--radar", name)
+    tiny = ("samples_per_class=1", "activities=[punching]", "duration_s=0.4", "split.train=1")
+    changes = [word for one in (*tiny, "split.validation=0") for word in ("--set", one)]
+    ok("generate", tmp_path / "mine.yaml", "-o", tmp_path / "data", *changes)
+    with open_dataset(tmp_path / "data") as data:
+        assert len(data.products["points"][0]) > 5
+
+
+def test_the_minimal_file_is_short_and_can_be_built_at_once(tmp_path: Path) -> None:
+    path = tmp_path / "mine.yaml"
+    said = ok("config", "init", path, "--minimal").stdout
+    lines = path.read_text().splitlines()
+    assert len(lines) <= 16
+    assert max(map(len, lines)) <= WIDTH
+    assert f"radhar generate {path} -o OUT" in said
+    ok("generate", path, "-o", tmp_path / "data", "--set", "samples_per_class=2")
+    with open_dataset(tmp_path / "data") as data:
+        assert data.config.maps == ("rtm", "stft")
+        assert len(data) == 2 * len(load_config(path).activities)
+    both = radhar("config", "init", tmp_path / "other.yaml", "--minimal", "--train")
+    assert both.returncode == 2
+    assert "should be only one of them" in both.stderr
 
 
 def test_an_unknown_radar_is_a_line_that_names_the_known_ones(tmp_path: Path) -> None:

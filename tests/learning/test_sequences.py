@@ -1,6 +1,7 @@
 """Sequences of frames and clouds: how they are read, learned from, and evaluated."""
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -86,6 +87,7 @@ def test_a_loader_with_workers_makes_batches_of_them(boards: Path) -> None:
     clouds = radhar_cli.Sequences(boards / "data", frames=7, points=16)
     batch = next(iter(DataLoader(clouds, batch_size=10, num_workers=2)))
     assert batch["clouds"].shape == (10, 7, 16, 6)
+    assert re.fullmatch(r"<Sequences .*dataset.h5: 10 x 7 frames of points; .*>", repr(clouds))
     assert batch["skeleton"].shape == (10, 7, 13, 3)
     assert batch["skeleton"].isnan().any(3).any(2).nonzero()[:, 1].tolist() == [5, 6] * 10
     assert batch["label"].bincount().tolist() == [5, 5] or len(clouds.class_slugs) == 12

@@ -95,7 +95,7 @@ def measured(path: Path, config: Path, per_class: int) -> int:
         long = ["duration_s=10"] if slug == "walking" else []
         settings = load_config(config, long)
         for index in range(per_class):
-            image = sample(settings, slug, index, ["maps/stft"], seed=77)["maps/stft"]
+            image = sample(settings, slug, index, seed=77)["maps/stft"]
             masks.append(np.packbits(image > 0, axis=1))
             label.append(number)
     masks.append(masks[0])

@@ -145,7 +145,7 @@ def _describe(data: Dataset, folder: Path, reading: str) -> None:
     """Write what the files hold, and the config that they follow from."""
     licence = owner_licence(data.path.parent).get("license", data.config.output.license)
     people = (
-        " Others are in the scenes too: class and joints are those of the sample's own person."
+        " Others are in the scenes too: class and joints are those of the sample's main person."
         if data.config.people
         else ""
     )

@@ -98,7 +98,7 @@ class ImageSet:
     kind: Kind = "rgb"
     channels: int = 3  # colours, columns of a cloud, or frames of a sequence of frames
     joints: tuple[str, ...] = ()  # names of what `pixels.joints` reads
-    # [N] class of everybody in each, the sample's own person first; None where there is one person
+    # [N] class of everybody in each, the sample's main person first; None where there is one person
     everybody: tuple[tuple[str, ...], ...] | None = None
 
     def __post_init__(self) -> None:
@@ -134,7 +134,7 @@ class ImageSet:
     def learned_as(self, target: Target) -> "ImageSet":
         """The same images with the classes of a target: numbers of people, or all that are shown.
 
-        The label of target labels is still that of the sample's own person.
+        The label of target labels is still that of the sample's main person.
         """
         if target == "labels":
             classes = class_order({name for names in self.done for name in names})

@@ -1,0 +1,80 @@
+"""The labelled images of a data set for PyTorch."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor
+from torch.utils.data import Dataset
+
+from radhar_cli.errors import ConfigError
+from radhar_cli.learning.images.image_set import SPLIT_NAMES, ImageSet
+from radhar_cli.learning.images.opening import open_images
+from radhar_cli.learning.settings import Kind
+
+
+@dataclass(frozen=True, repr=False)
+class LabelledImages(Dataset[tuple[Any, int]]):
+    """Pairs (image, label) of one map: float32 [C, H, W] from 0 to 1, and a place in `classes`."""
+
+    images: ImageSet
+    channels: int
+    transform: Callable[[Tensor], Any] | None
+
+    @property
+    def classes(self) -> tuple[str, ...]:
+        """Name of every label; the same in every split."""
+        return self.images.classes
+
+    def __len__(self) -> int:
+        return len(self.images)
+
+    def __getitem__(self, row: int) -> tuple[Any, int]:
+        row = range(len(self))[row]  # of a negative number, and an IndexError beyond the end
+        levels = self.images.pixels.read(row)[..., : self.channels]
+        image = torch.from_numpy(np.ascontiguousarray(levels.transpose(2, 0, 1))).float() / 255
+        shown = image if self.transform is None else self.transform(image)
+        return shown, int(self.images.label[row])
+
+    def __repr__(self) -> str:
+        some = self.images
+        shape = f"float32 {[self.channels, *some.size]}"
+        of_map = "" if some.map is None else f" of map {some.map}"
+        classes = ", ".join(self.classes)
+        return f"<LabelledImages {some.where}: {len(self)} x {shape}{of_map}; classes {classes}>"
+
+
+def torch_dataset(
+    path: str | Path,
+    map: str | None = None,
+    split: str = "all",
+    transform: Callable[[Tensor], Any] | None = None,
+    *,
+    input: Kind = "rgb",
+) -> LabelledImages:
+    """The labelled images of a data set, for a DataLoader with any number of workers.
+
+    Every worker opens the file for itself.
+
+    Args:
+        path: folder that `radhar generate` wrote, dataset.h5, or a tree of class folders.
+        map: which map; None is the first one.
+        split: train, val, test or all.
+        transform: called with each image, float32 [C, H, W] from 0 to 1.
+        input: rgb, 3 channels as the PNGs are coloured; or gray, the levels as 1 channel.
+
+    Raises:
+        ConfigError: no such split or input.
+        FolderError: it is no data set, or has no such map or no image of that split; the message
+            says what it has.
+    """
+    if split not in (*SPLIT_NAMES, "all"):
+        raise ConfigError(f"split = {split!r}: should be train, val, test or all")
+    if input not in ("rgb", "gray"):
+        raise ConfigError(f"input = {input!r}: should be rgb or gray")
+    images = open_images(Path(path), map, input)
+    images = images.some(images.rows(split))
+    return LabelledImages(images, 1 if input == "gray" else 3, transform)

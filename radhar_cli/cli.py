@@ -117,11 +117,7 @@ def _open_standard_streams() -> None:
 
 
 def _run(arguments: list[str]) -> int | None:
-    """Run the program and return its status.
-
-    Raises:
-        RadharError: an option or argument is mistaken; one line, as of all our errors.
-    """
+    """Run the program and return its status."""
     import typer
 
     usage_error = typer.BadParameter.__mro__[1]  # of click, or of the copy that newer typers hold

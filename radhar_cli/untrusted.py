@@ -80,11 +80,7 @@ def read_text(path: Path, most: int) -> str:
 
 
 def read_json(path: Path) -> Any:
-    """The content of a JSON file.
-
-    Raises:
-        FolderError: it is missing, unreadable, damaged, or beyond the bounds of `parse_json`.
-    """
+    """The content of a JSON file."""
     try:
         return parse_json(read_text(path, MAX_JSON))
     except OSError as error:

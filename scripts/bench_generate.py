@@ -363,34 +363,6 @@ def memory(rounds: int) -> dict[str, Any]:
     return results
 
 
-def dry_run(rounds: int) -> dict[str, Any]:
-    """The estimate of `--dry-run` over the time of the whole command."""
-    results = {}
-    print("\nestimate of --dry-run over the whole run")
-    for label, path, per_class, count in (
-        ("free space, 1200 samples, 2 jobs", PAPER, 100, 2),
-        ("free space, 600 samples, 1 job", PAPER, 50, 1),
-        ("through the wall, 2400 samples, 2 jobs", PAPER.with_name("through_wall.yaml"), 200, 2),
-        ("quickstart, 240 samples, 2 jobs", ROOT / "configs/quickstart.yaml", 20, 2),
-    ):
-        options = ["--jobs", str(count), "--set", f"samples_per_class={per_class}"]
-        with tempfile.TemporaryDirectory() as place:
-            command = [sys.executable, "-m", "radhar_cli", "generate", path, "-o", f"{place}/o"]
-            said = subprocess.run(
-                [*map(str, command), *options, "--dry-run"],
-                capture_output=True,
-                text=True,
-                check=True,
-                cwd=ROOT,
-            ).stdout
-            line = next(line for line in said.splitlines() if line.startswith("time"))
-            estimate = float(line.split("about ")[1].split()[0])
-            took = radhar("generate", path, "-o", f"{place}/o", *options)
-        results[label] = {"estimate_s": estimate, "took_s": took, "ratio": estimate / took}
-        print(f"  {label:<42}{estimate:8.1f} s over {took:6.1f} s = {estimate / took:.2f}")
-    return results
-
-
 _SCATTERERS = """
 import json, sys
 from time import thread_time
@@ -617,7 +589,6 @@ SECTIONS = {
     "maps": maps,
     "jobs": jobs,
     "memory": memory,
-    "dry_run": dry_run,
 }
 
 

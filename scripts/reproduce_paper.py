@@ -9,7 +9,7 @@ row and the others stay; a row that has a record of all epochs is run --again on
 what each scale does.
 
 Beside each data set and each run that it makes, the script notes commit and machine
-(NAME.made.json), for the record; --made-at says it of those that were made without it.
+(NAME.made.json), for the record.
 """
 
 import argparse
@@ -171,7 +171,6 @@ class Reproduction:
     Attributes:
         name: of the scale.
         results: folder of the records and figures that are committed.
-        made_at: commit of data sets and runs without a note, made on this machine.
     """
 
     name: str
@@ -180,7 +179,6 @@ class Reproduction:
     runs_root: Path
     results: Path
     jobs: int | None = None
-    made_at: str | None = None
 
     def data(self, scenario: str, snr_db: int | None, kind: str = "") -> Path:
         """Folder of a data set; `kind` is fresh or subjects."""
@@ -289,7 +287,7 @@ class Reproduction:
             "command": f"python scripts/reproduce_paper.py --scale {self.name} --only {run.name}",
             "note": None,
             "training": {
-                **self._made(run),
+                **read_note(run),
                 "versions": metrics["versions"],
                 "device": metrics["device"],
                 "precision": metrics["precision"],
@@ -298,7 +296,7 @@ class Reproduction:
                 "core_hours": round(seconds * metrics["threads"] / 3600, 3),
             },
             "data": {
-                **self._made(data),
+                **read_note(data),
                 **{key: metrics["data"][key] for key in ("hash", "train", "val")},
             },
             "evaluation": {**read_note(self._reports(run, "val")), "threads": own["threads"]},
@@ -309,7 +307,7 @@ class Reproduction:
             "labels": metrics["classes"],
             "validation": validation,
             "fresh": {
-                str(snr): {**self._made(folder), **parts[folder.name]}
+                str(snr): {**read_note(folder), **parts[folder.name]}
                 for snr, folder in fresh.items()
             },
             "history": {
@@ -317,12 +315,6 @@ class Reproduction:
                 for key in ("train_loss", "train_accuracy", "val_loss", "val_accuracy", "seconds")
             },
         }
-
-    def _made(self, folder: Path) -> dict[str, Any]:
-        """Commits and machine at which a folder was made."""
-        if _note_file(folder).exists() or self.made_at is None:
-            return read_note(folder)
-        return {"commits": [{"commit": self.made_at, "dirty": None}], "machine": machine()}
 
     def _reports(self, run: Path, kind: str) -> Path:
         return self.runs_root / f"reports_{self.name}" / f"{run.name}_{kind}"
@@ -883,20 +875,12 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, help="processes that generate")
     parser.add_argument("--datasets", type=Path, default=ROOT / "datasets" / "results")
     parser.add_argument("--runs", type=Path, default=ROOT / "runs" / "results")
-    parser.add_argument(
-        "--made-at",
-        metavar="COMMIT",
-        help="commit at which data sets and runs without a note were made, on this machine",
-    )
     parser.add_argument("--page", type=Path, help="default: docs/records/runs.md; smoke: in --runs")
     options = parser.parse_args()
     scale = SCALES[options.scale]
     smoke = options.scale not in PAGE_SCALES
     page = options.page or (options.runs / "smoke.md" if smoke else ROOT / "docs/records/runs.md")
     results = page.parent / FOLDER / options.scale
-    made_at = options.made_at and _git("rev-parse", "--verify", f"{options.made_at}^{{commit}}")
-    if options.made_at and not made_at:
-        parser.error(f"--made-at {options.made_at}: no commit of this repository")
     names = [run_name(scale, training) for training in scale.trainings]
     if not any(all(word in name for word in options.only) for name in names):
         parser.error(f"--only {' '.join(options.only)}: no run has that; runs: {', '.join(names)}")
@@ -905,7 +889,7 @@ def main() -> None:
         print("there is a record of all epochs of what is asked for; --again runs it again")
     # Commands run in the root of the repository, whatever the folder this was called in.
     folders = options.datasets.absolute(), options.runs.absolute()
-    work = Reproduction(options.scale, scale, *folders, results, options.jobs, made_at)
+    work = Reproduction(options.scale, scale, *folders, results, options.jobs)
     for training in todo:
         work.train(training)
         work.record(training)

@@ -26,7 +26,7 @@ def test_a_copy_is_the_same_build(package: Path) -> None:
 
 @pytest.mark.parametrize(
     ("path", "another"),
-    [("echo/beat.py", True), ("dataset/hub.py", True), ("learning/report.py", False)],
+    [("echo/beat.py", True), ("dataset/card.py", True), ("learning/report.py", False)],
 )
 def test_what_decides_bytes_decides_the_build(package: Path, path: str, another: bool) -> None:
     before = build()

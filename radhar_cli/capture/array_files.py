@@ -34,11 +34,7 @@ _ORDER: tuple[AxisName, ...] = ("transmitter", "receiver", "sample", "frame", "p
 
 
 class Array:
-    """An array that `load` maps or returns, read in blocks like `Numbers`.
-
-    Raises:
-        CaptureError: it cannot be read, is empty, or holds something other than numbers.
-    """
+    """An array that `load` maps or returns, read in blocks like `Numbers`."""
 
     def __init__(self, where: str, load: Callable[[], NDArray[Any]]) -> None:
         with refusing(where):
@@ -63,11 +59,7 @@ def open_arrays(path: Path, settings: CaptureSettings, scratch: Path) -> Source:
 
     Args:
         path: of the file, whose first bytes tell the format.
-        settings: the name of the dataset, and of its axes.
         scratch: folder for unpacked arrays.
-
-    Raises:
-        CaptureError, FolderError: it cannot be read, or does not agree with the settings.
     """
     try:
         regular_size(path)
@@ -211,14 +203,8 @@ def as_source(
     """An array as a source, its axes put in order.
 
     Args:
-        path: of the file.
-        array: the samples.
         settings: the names of its axes, and its header.
-        times: of the pulses, s.
         of_matlab: its axes are reversed, as MATLAB stores them in HDF5.
-
-    Raises:
-        CaptureError: the axes do not fit the array.
     """
     axes = _axes(array, settings, of_matlab)
     sizes = dict(zip(axes, array.shape, strict=True))
@@ -280,11 +266,7 @@ def _by_frame(low: int, high: int, per_frame: int) -> Iterator[tuple[slice, slic
 
 
 def _axes(array: Array | Numbers, s: CaptureSettings, of_matlab: bool) -> tuple[AxisName, ...]:
-    """Names of the axes as they lie in the file.
-
-    Raises:
-        CaptureError: they do not fit the array or contradict the header.
-    """
+    """Names of the axes as they lie in the file."""
     shape = array.shape[::-1] if of_matlab else array.shape
     axes = s.axes or USUAL_AXES.get(len(shape), ())
     if of_matlab and s.axes is None and len(shape) == 2 and 1 in shape:  # a vector of MATLAB's

@@ -32,13 +32,9 @@ def frames_of_recording(
     """{product: what its frames gave} of a recording, and the board with so many frames.
 
     Args:
-        recording: an open one, of all virtual channels.
         config: with the board's `radar.cfg`.
         asked: products of a cube, such as range_doppler or cloud.
         start, stop: which part, s; frames that are whole within it are used.
-
-    Raises:
-        CaptureError: the recording is not of this board.
     """
     board = _board(recording, config)
     first, _, segments = pulses_between(recording, start, stop)

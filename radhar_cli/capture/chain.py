@@ -57,14 +57,9 @@ def maps_of(
     """Make maps of a recording.
 
     Args:
-        recording: an open one.
         config: its `processing` and `image` are used.
-        names: of the maps.
         start, stop: which part, s; None is from the start, to the end.
         receiver: one of them, or None for the sum of all maps' powers.
-
-    Raises:
-        CaptureError: the part is empty or too long, or the recording cannot be processed so.
     """
     receivers = recording.info.receivers
     if receiver is not None and not 0 <= receiver < receivers:
@@ -136,11 +131,7 @@ def maps_of(
 def pulses_between(
     recording: Recording, start: float | None, stop: float | None
 ) -> tuple[int, int, PulseTimes]:
-    """(first, last + 1) of the pulses from start to stop, s, and their segments.
-
-    Raises:
-        CaptureError: there are none.
-    """
+    """(first, last + 1) of the pulses from start to stop, s, and their segments."""
     segments = recording.segments
     times = segments.times(np.arange(segments.pulses))
     origin = float(times[0])
@@ -192,17 +183,7 @@ def bins_of_part(
     first: int,
     last: int,
 ) -> Complex:
-    """Range bins [receiver, K, M] of pulses first .. last - 1, referred to the chirp's start.
-
-    Args:
-        recording: an open one.
-        w: its chirps.
-        chosen: receivers.
-        first, last: pulses.
-
-    Raises:
-        CaptureError: they are more than MAX_BYTES.
-    """
+    """Range bins [receiver, K, M] of pulses first .. last - 1, referred to the chirp's start."""
     _refuse_too_much(recording, w.n_bins, len(chosen), first, last)
     w = replace(w, centred=False)
     x = np.empty((len(chosen), w.n_bins, last - first), dtype=complex)

@@ -65,12 +65,7 @@ class Words:
 
 
 def whole_capture(paths: Sequence[Path]) -> tuple[Path, ...]:
-    """All files of a capture: `..._Raw_0.bin` is followed by `..._Raw_1.bin` and so on.
-
-    Raises:
-        CaptureError: one in between is missing.
-        FolderError: one of the others is a link that leads elsewhere.
-    """
+    """All files of a capture: `..._Raw_0.bin` is followed by `..._Raw_1.bin` and so on."""
     numbered = _NUMBERED.fullmatch(paths[0].name)
     if len(paths) > 1 or numbered is None or int(numbered[2]) != 0:
         return tuple(paths)
@@ -95,11 +90,7 @@ def open_dca1000(paths: Sequence[Path], settings: CaptureSettings, header: str) 
 
     Args:
         paths: its files, or the first of those that are numbered.
-        settings: its header.
         header: file of the header, for messages.
-
-    Raises:
-        CaptureError: the header lacks something, or does not fit the files.
     """
     files = whole_capture(paths)
     for key in ("samples", "receivers"):

@@ -20,11 +20,7 @@ LARGEST = 1e15  # sample whose squares and sums remain finite
 
 
 def probe(source: Source) -> list[Parts]:
-    """Consecutive pulses from places spread over a capture, each [receiver, sample, pulse, part].
-
-    Raises:
-        CaptureError: as `checked`.
-    """
+    """Consecutive pulses from places all over a capture, each [receiver, sample, pulse, part]."""
     length = min(PROBED, source.pulses)
     starts = np.unique(np.linspace(0, source.pulses - length, PROBES).astype(int))
     return [checked(source.read(at, at + length), at, source.name)[0] for at in map(int, starts)]
@@ -198,13 +194,8 @@ def checked(raw: Parts, first: int, where: str, coding: Coding = PLAIN) -> tuple
     """Numbers [receiver, sample, pulse, part] with 0 for NaN, and which pulses [pulse] have some.
 
     Args:
-        raw: the numbers.
         first: number of the first pulse, for messages.
-        where: file, for messages.
         coding: in which they will be decoded.
-
-    Raises:
-        CaptureError: a number is infinite, beyond LARGEST, or invalid in the coding; names it.
     """
     raw = raw.astype(np.float32) if raw.dtype == np.float16 else raw
     low, high = (-(2**15), 2**16 - 1) if coding.words else (-LARGEST, LARGEST)

@@ -116,13 +116,7 @@ class Fit:
 
 
 def fit(paths: Sequence[Path]) -> Fit:
-    """Estimate waveform, SNR, ranges and noise floor from recordings of one radar.
-
-    Raises:
-        CaptureError: two hold the same samples or differ in radar, they are slow time or too short,
-            or nobody moves in any.
-        FolderError: a file is not a recording.
-    """
+    """Estimate waveform, SNR, ranges and noise floor from recordings of one radar."""
     waveform, seconds = _waveform(paths)
     parts = [part for path in paths for part in parts_of(path)]
     if not any(np.isfinite(part.snr_db) for part in parts):
@@ -135,18 +129,12 @@ def fit(paths: Sequence[Path]) -> Fit:
 def _waveform(paths: Sequence[Path]) -> tuple[Waveform, float]:
     """The common waveform of all recordings, and their median duration (s)."""
     waveform, seconds = None, []
-    known: dict[bytes, Path] = {}
     for path in paths:
         with Recording(path) as recording:
             one = recording.info.waveform()
-            if waveform is not None and _differs(one, waveform):
+            pairs = ((getattr(one, n), getattr(waveform or one, n)) for n in RADAR.values())
+            if any(abs(here / there - 1) > 1e-3 for here, there in pairs):
                 raise CaptureError(f"{path}: differs in radar from {paths[0]}")
-            samples = recording.digest()
-            if samples in known:
-                raise CaptureError(
-                    f"{path}: has the same samples as {known[samples]}; should be given once"
-                )
-            known[samples] = path
             waveform = waveform or one
             seconds.append(recording.segments.duration)
     if max(seconds) < MIN_S:
@@ -156,10 +144,6 @@ def _waveform(paths: Sequence[Path]) -> tuple[Waveform, float]:
         )
     assert waveform is not None
     return waveform, float(np.median(seconds))
-
-
-def _differs(one: Waveform, other: Waveform) -> bool:
-    return any(abs(getattr(one, n) / getattr(other, n) - 1) > 1e-3 for n in RADAR.values())
 
 
 def parts_of(path: Path) -> Iterator[Part]:

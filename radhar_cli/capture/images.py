@@ -42,11 +42,7 @@ def is_image(file: str) -> bool:
 
 
 def listed(path: Path, packed: bool) -> Listed:
-    """The images of a tree of class folders, or of an .npz.
-
-    Raises:
-        CaptureError, FolderError: there are none, or they cannot be read.
-    """
+    """The images of a tree of class folders, or of an .npz."""
     if path.is_dir():
         return _of_tree(path)
     with refusing(str(path)):
@@ -123,11 +119,7 @@ def _as_text(values: NDArray[Any]) -> NDArray[Any]:
 
 
 def read_image(folder: Path, file: str, size: tuple[int, int], packed: bool) -> Levels:
-    """Levels [H, W] of a part's image.
-
-    Raises:
-        CaptureError, FolderError: it cannot be read, or has another size.
-    """
+    """Levels [H, W] of a part's image."""
     place = PurePosixPath(file)
     if place.parent.suffix.lower() != ".npz":
         return read_gray(folder / file, size)

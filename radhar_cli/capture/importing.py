@@ -33,11 +33,7 @@ JITTER = 0.1  # in pulse intervals, above which it is reported
 
 
 def read_settings(header: Path | None, overrides: Sequence[str]) -> CaptureSettings:
-    """Settings from a header (TI's JSON or .cfg, or YAML with our keys) and `--set`.
-
-    Raises:
-        CaptureError, ConfigError: names file, field, value and what would be right.
-    """
+    """Settings from a header (TI's JSON or .cfg, or YAML with our keys) and `--set`."""
     document: dict[str, Any] = {}
     if header is not None:
         ti = header.suffix.lower() in TI_HEADERS
@@ -51,25 +47,17 @@ def import_capture(
     out: Path,
     settings: CaptureSettings,
     header: str = "--set",
-    overwrite: bool = True,
 ) -> RecordingInfo:
     """Read a capture in pieces and write it as a recording; findings are in `source.found`.
 
     Args:
         paths: its files, or the first of those that are numbered.
-        out: the recording to write.
-        settings: its header.
         header: file of the header, for messages.
-        overwrite: replace a recording that is there.
-
-    Raises:
-        CaptureError, FolderError: the capture cannot be read, or does not fit its header.
-        UnfinishedError: the recording cannot be written.
     """
     out.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=f".{out.name}.", dir=out.parent) as scratch:
         source, settings = _opened(paths, settings, header, Path(scratch))
-        return _written(source, out, settings, header, exclusive=not overwrite)
+        return _written(source, out, settings, header)
 
 
 def _opened(
@@ -92,9 +80,7 @@ def _opened(
     return source, validated(CaptureSettings, document, source.name, {})
 
 
-def _written(
-    source: Source, out: Path, s: CaptureSettings, header: str, exclusive: bool
-) -> RecordingInfo:
+def _written(source: Source, out: Path, s: CaptureSettings, header: str) -> RecordingInfo:
     notes = [*source.notes]
     probed = findings.probe(source)
     coding = _coding(probed, s, source.name, notes)
@@ -122,7 +108,7 @@ def _written(
             yield first, values
 
     number, parts = probed[0].dtype, source.parts
-    return write_recording(out, info, number, parts, pieces(), segments, damage, exclusive)
+    return write_recording(out, info, number, parts, pieces(), segments, damage)
 
 
 def _coding(
@@ -271,15 +257,9 @@ def write_simulated(
     """Write simulated samples as a recording.
 
     Args:
-        out: the file.
         beat: [receiver, N_ADC, M].
-        waveform: its chirps.
-        label: of all of it.
         segments: of the pulses; None has no gap.
         delays: of each receiver's pulses, s.
-
-    Raises:
-        UnfinishedError: it cannot be written.
     """
     receivers, samples, pulses = beat.shape
     segments = segments or PulseTimes.even(pulses, waveform.prf)

@@ -31,11 +31,7 @@ TRACK_UNITS = {
 
 
 def write_maps(maps: Maps, config: Config, info: RecordingInfo, folder: Path) -> list[Path]:
-    """Write maps.h5 into a folder; return its path.
-
-    Raises:
-        UnfinishedError: the folder cannot be written.
-    """
+    """Write maps.h5 into a folder; return its path."""
     path = folder / MAPS_FILE
     try:
         folder.mkdir(parents=True, exist_ok=True)

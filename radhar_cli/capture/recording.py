@@ -3,9 +3,8 @@
 Beat signals follow radhar's sign: a target at range R lies at exp(-j 2 pi (fc tau + K tau t)).
 """
 
-import hashlib
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -16,7 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from radhar_cli import __version__
 from radhar_cli.arrays import Complex
 from radhar_cli.capture.findings import CLIPPED, LOST, Damage, checked
-from radhar_cli.capture.source import PIECE_BYTES, Parts
+from radhar_cli.capture.source import Parts
 from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.errors import CaptureError, FolderError, UnfinishedError
 from radhar_cli.new_hdf5 import new_hdf5
@@ -82,11 +81,7 @@ class RecordingInfo(_Part):
     source: SourceNote
 
     def waveform(self, fft_length: int | None = None, centred: bool = True) -> Waveform:
-        """The waveform; `duration` leaves out the gaps.
-
-        Raises:
-            CaptureError: the recording is slow time.
-        """
+        """The waveform; `duration` leaves out the gaps."""
         if self.samples is None or self.adc_rate_hz is None or self.bandwidth_hz is None:
             raise CaptureError("the recording is slow time, which has no ranges")
         return Waveform(
@@ -109,23 +104,14 @@ def write_recording(
     pieces: Iterable[tuple[int, Parts]],
     segments: PulseTimes,
     damage: Damage | None = None,
-    exclusive: bool = False,
 ) -> RecordingInfo:
     """Write a recording under another name, then rename it into place.
 
     Args:
-        path: of the file.
-        info: its description.
         number: type of the numbers, one of NUMBERS.
         parts: 2 of complex numbers, 1 of real ones.
         pieces: (first pulse, numbers [receiver, sample, pulse, part]).
-        segments: of the pulses.
         damage: filled while the pieces are made; None: no flags.
-        exclusive: leave a file alone that another process made meanwhile.
-
-    Raises:
-        CaptureError: no pulse is sound.
-        UnfinishedError: it cannot be written.
     """
     dtype = number
     if parts == 2:
@@ -138,7 +124,7 @@ def write_recording(
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with (
-            replacing(path, exclusive=exclusive) as unfinished,
+            replacing(path) as unfinished,
             new_hdf5(unfinished, path) as (file, check),
         ):
             name = "slow_time" if info.samples is None else "beat"
@@ -166,10 +152,6 @@ def write_recording(
             file.attrs["schema_version"] = SCHEMA_VERSION
             file.attrs["recording"] = json.dumps(info.model_dump())
             file.attrs["radhar_version"] = __version__
-    except FileExistsError:
-        raise FolderError(
-            f"{path}: was written by another process meanwhile; --overwrite replaces it"
-        ) from None
     except OSError as error:
         raise UnfinishedError(
             f"{error.filename or path}: {error.strerror or error}; nothing was written"
@@ -194,9 +176,6 @@ class Recording(Closing):
         samples: [receiver, sample, pulse], of slow time [receiver, pulse].
         segments: of the pulses.
         flags: uint8 [pulse]: 1 samples lost, 2 clipped.
-
-    Raises:
-        FolderError: it is not a recording, or damaged; names file and field.
     """
 
     def __init__(self, path: Path) -> None:
@@ -240,11 +219,7 @@ class Recording(Closing):
         return PulseTimes(start, first, self.info.pulses, self.info.prf_hz)
 
     def parts(self, first: int, stop: int) -> Parts:
-        """Numbers [receiver, sample, stop - first, part] as stored; one sample of slow time.
-
-        Raises:
-            CaptureError: one is infinite or beyond bounds, or NaN in a pulse not flagged as lost.
-        """
+        """Numbers [receiver, sample, stop - first, part] as stored; one sample of slow time."""
         receivers, samples = slice(0, self.info.receivers), self.info.samples
         if samples is None:
             values = self.samples.read((receivers, slice(first, stop)))[:, None]
@@ -267,23 +242,6 @@ class Recording(Closing):
         if values.shape[3] == 2:
             out.imag = values[..., 1]
         return out
-
-    def pieces(self) -> Iterator[Parts]:
-        """All pulses as `parts`, some PIECE_BYTES at a time."""
-        info = self.info
-        pulse = (
-            info.receivers * (info.samples or 1) * self.samples.number.itemsize * self.samples.parts
-        )
-        step = max(PIECE_BYTES // pulse, 1)
-        for first in range(0, info.pulses, step):
-            yield self.parts(first, min(first + step, info.pulses))
-
-    def digest(self) -> bytes:
-        """SHA-256 of the samples."""
-        found = hashlib.sha256()
-        for piece in self.pieces():
-            found.update(piece.tobytes())
-        return found.digest()
 
     def close(self) -> None:
         """Close the file."""
@@ -312,11 +270,7 @@ def _info(document: Any, path: Path) -> RecordingInfo:
 
 
 def summarise_recording(path: Path) -> dict[str, Any]:
-    """Summarise a recording for `radhar inspect`.
-
-    Raises:
-        FolderError: it is not a recording, or damaged.
-    """
+    """Summarise a recording for `radhar inspect`."""
     with Recording(path) as one:
         info, flags = one.info, one.flags
         summary: dict[str, Any] = {

@@ -97,7 +97,6 @@ def track_torso(bins: Complex, segments: PulseTimes, waveform: Waveform) -> Tors
 
     Args:
         bins: range bins [receiver, bin, pulse] with static echoes removed.
-        segments: of the pulses.
         waveform: its range axis is that of the bins.
     """
     length = min(max(round(WINDOW_S * segments.prf), 8), int(segments.lengths.max()))

@@ -38,9 +38,6 @@ def read_manifest(path: Path) -> list[dict[str, Any]]:
     """Rows of a manifest: CSV with a heading, or a YAML list of mappings.
 
     Columns: file (below the manifest's folder), label, and if wanted person, start and stop (s).
-
-    Raises:
-        ConfigError: it cannot be read, or has another column; names file, row, column and value.
     """
     try:
         text = read_text(path, MAX_MANIFEST)
@@ -92,12 +89,7 @@ def _slug(label: str) -> str:
 
 
 def with_recordings(config: Config, manifest: Path) -> Config:
-    """The config of a data set of the manifest's recordings, which are opened for their length.
-
-    Raises:
-        ConfigError: the manifest, or what it asks for, is not as it should be.
-        FolderError: a recording is none, or a link that leads elsewhere.
-    """
+    """The config of a data set of the manifest's recordings, which are opened for their length."""
     if are_images(manifest):
         return _with_images(config, manifest)
     parts, sums = read_manifest(manifest), dict[str, str]()

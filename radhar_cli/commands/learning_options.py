@@ -30,20 +30,12 @@ Classes: TypeAlias = Annotated[
 
 
 def needs_torch() -> None:
-    """Check that PyTorch and what else training needs are installed.
-
-    Raises:
-        MachineError: names the extra.
-    """
+    """Check that PyTorch and what else training needs are installed."""
     needs("train", ("torch", "safetensors", "sklearn", "jinja2"))
 
 
 def needs(extra: str, modules: Sequence[str]) -> None:
-    """Check that the modules of an extra are installed.
-
-    Raises:
-        MachineError: names the extra.
-    """
+    """Check that the modules of an extra are installed."""
     from importlib.util import find_spec
 
     for module in modules:
@@ -55,11 +47,7 @@ def needs(extra: str, modules: Sequence[str]) -> None:
 
 
 def runs_and_data(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:
-    """Tell trained networks from data: a run holds best.safetensors or run.json.
-
-    Raises:
-        FolderError: one of the two is missing.
-    """
+    """Tell trained networks from data: a run holds best.safetensors or run.json."""
     from radhar_cli.learning.run_files import is_run
 
     for path in paths:
@@ -77,11 +65,7 @@ def runs_and_data(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:
 
 
 def apart(out: Path, data: Sequence[Path]) -> None:
-    """Refuse an output folder that lies in the data, or that is data.
-
-    Raises:
-        FolderError: names both.
-    """
+    """Refuse an output folder that lies in the data, or that is data."""
     from radhar_cli.dataset.folder import refuse_file
 
     for path in data:

@@ -58,11 +58,7 @@ def resumable(kept: str) -> Iterator[None]:
 
 
 def refuse_to_replace(path: Path, replace: bool, example: str) -> None:
-    """Refuse an output file that is there, or is a folder.
-
-    Raises:
-        FolderError: names the path and what would be right.
-    """
+    """Refuse an output file that is there, or is a folder."""
     if path.is_dir():
         raise FolderError(f"{path}: is a folder; -o should name a file, such as {example}")
     if path.exists() and not replace:

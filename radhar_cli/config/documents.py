@@ -23,11 +23,7 @@ _ONE_VALUE = {*FORMS, "sequence", "files"}  # mappings with such a key are repla
 
 
 def read_document(path: Path) -> tuple[Document, Places]:
-    """A file of keys and values, and where each key stands.
-
-    Raises:
-        ConfigError: unreadable file, bad YAML, or no mapping.
-    """
+    """A file of keys and values, and where each key stands."""
     try:
         text = read_text(path, MAX_TEXT)
     except FileNotFoundError:
@@ -49,11 +45,7 @@ def read_document(path: Path) -> tuple[Document, Places]:
 
 
 def cfg_text(given: Any, folder: Path, where: str) -> Any:
-    """The text of a .cfg: of a known radar, or of a path from a folder on; a text is left as it is.
-
-    Raises:
-        ConfigError: it cannot be read.
-    """
+    """The text of a .cfg: of a known radar, or of a path; a text is left as it is."""
     if not isinstance(given, str) or "\n" in given.strip():
         return given
     try:
@@ -72,10 +64,6 @@ def read_on_bases(path: Path | None, given: Mapping[str, Any]) -> tuple[Document
     Args:
         path: of the file; None for an empty one.
         given: may have a `base` instead of the file's own, as seen from the current folder.
-
-    Raises:
-        ConfigError: as `read_document`; of a base also what names it. Bases that are circular
-            or too many.
     """
     document, places = read_document(path) if path else ({}, {})
     files = [path] if path else []

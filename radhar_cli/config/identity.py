@@ -2,10 +2,8 @@
 
 import hashlib
 import json
-from collections.abc import Iterator
 from typing import Any
 
-from radhar_cli.config.number import FORMS
 from radhar_cli.config.schema import Config, Section
 
 NOT_IDENTITY = ("output.png", "output.license")
@@ -28,25 +26,6 @@ def yaml_text(document: dict[str, Any]) -> str:
     return yaml.safe_dump(
         document, sort_keys=False, default_flow_style=None, width=100, allow_unicode=True
     )
-
-
-def differences(one: Section, other: Section) -> dict[str, tuple[Any, Any]]:
-    """{dotted key: (value of one, value of the other)} where they are not the same.
-
-    A number's distribution is one value; what only one of them has is null in the other.
-    """
-
-    def walk(here: Any, there: Any, key: str) -> Iterator[tuple[str, tuple[Any, Any]]]:
-        sections = isinstance(here, dict) and isinstance(there, dict)
-        if not sections or {*here, *there} & {*FORMS}:
-            if here != there:
-                yield key, (here, there)
-            return
-        for name in {**here, **there}:
-            inner = f"{key}.{name}" if key else name
-            yield from walk(here.get(name), there.get(name), inner)
-
-    return dict(walk(resolved(one), resolved(other), ""))
 
 
 def flat_document(document: dict[str, Any]) -> dict[str, Any]:

@@ -20,13 +20,7 @@ def with_files(config: Config, folder: Path, refuse: Refuse) -> Config:
 
     Args:
         config: whose `classes` may name files.
-        folder: that of the config file.
         refuse: makes an error of (key, value, what would be right).
-
-    Raises:
-        ConfigError: no such file, too many, another checksum; names key and value.
-        MotionFileError: a file that cannot be read.
-        FolderError: a pattern finds a link that leads out of the folder that it names.
     """
     classes = {slug: one for slug, one in config.classes.items() if isinstance(one, FilesConfig)}
     if not classes:
@@ -76,11 +70,7 @@ def _expanded(one: FilesConfig, root: Path, key: str, refuse: Refuse) -> Iterato
 
 
 def with_folder(config: Config, folder: Path) -> Config:
-    """A stored config whose files lie in a folder, and nowhere else.
-
-    Raises:
-        FolderError: a class names a file outside of it.
-    """
+    """A stored config whose files lie in a folder, and nowhere else."""
     root = folder.resolve()
     for slug, one in config.classes.items():
         if not isinstance(one, FilesConfig):

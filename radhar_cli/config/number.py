@@ -116,15 +116,7 @@ class Normal(Distribution):
 class Choice(Distribution):
     """``{choice: [a, b, c]}``: one of the values, equally likely."""
 
-    choice: tuple[Real, ...]
-
-    @model_validator(mode="after")
-    def _some(self) -> "Choice":
-        if not self.choice:
-            raise PydanticCustomError(
-                "choice", "should be {choice: [a, b, ...]} with 1 value or more"
-            )
-        return self
+    choice: Annotated[tuple[Real, ...], Field(min_length=1)]
 
     @property
     def support(self) -> tuple[float, float]:

@@ -27,22 +27,11 @@ Options: TypeAlias = dict[str, str]
 MAX_MISTAKES = 20
 MAX_VALUE, MAX_ADVICE = 120, 500  # characters of value and advice in a message
 
-_CHANNELS = (
-    "is not there: the receive channels of a board come with radar.cfg (docs/guide/boards.md); "
-    "antennas= of record() simulates another channel of the default radar"
-)
-_PEOPLE = (
-    "is not there: `people` has others in a scene, a list of `{activity, subject, motion, timing}` "
-    "(docs/guide/scenes.md); split.subjects names how many persons a data set has"
-)
-_ROOMS = "is not there: a config has one room, under `room`; each of its numbers may be drawn"
-_DEVICE = "is not there: radar.device names a TI board, radar.cfg its .cfg (docs/guide/boards.md)"
-# What people ask for and is not there, as a key or a map, and what to do instead.
+_CHANNELS = "is not there: channels of a board come with radar.cfg (docs/guide/boards.md)"
+_PEOPLE = "is not there: `people` has others in a scene (docs/guide/scenes.md)"
 ABSENT = {
     **dict.fromkeys(("receivers", "transmitters", "channels", "antennas", "mimo"), _CHANNELS),
     **dict.fromkeys(("persons", "targets", "subjects"), _PEOPLE),
-    **dict.fromkeys(("rooms", "environments"), _ROOMS),
-    **dict.fromkeys(("chip", "board", "sensor", "profile"), _DEVICE),
     **dict.fromkeys(("point_cloud", "pointcloud", "cloud"), "is called points"),
     **dict.fromkeys(("range_angle", "range_azimuth_map"), "is called range_azimuth"),
     "doppler_angle": "is not there: boards have range_doppler and range_azimuth",
@@ -70,11 +59,7 @@ def load_config(path: str | Path, overrides: Iterable[str] = ()) -> Config:
 
 
 def as_config(config: Config | str | Path) -> Config:
-    """A config, or the one in a file.
-
-    Raises:
-        ConfigError: it is neither, or as `load_config`.
-    """
+    """A config, or the one in a file."""
     if isinstance(config, (str, Path)):
         return load_config(config)
     if not isinstance(config, Config):
@@ -86,9 +71,6 @@ def load_section(kind: type[S], path: Path | None, overrides: Iterable[str] = ()
     """Read a file that holds one `kind` of config, or its defaults, and apply overrides.
 
     An override may name the option that it stands for: `--tolerance engine.tolerance_db=-60`.
-
-    Raises:
-        ConfigError: as `load_config`; of an overridden key it names the option.
     """
     return _load(kind, path, overrides)[0]
 
@@ -116,11 +98,7 @@ def _load(kind: type[S], path: Path | None, overrides: Iterable[str]) -> tuple[S
 
 
 def load_mapping(path: Path) -> dict[str, Any]:
-    """Read a file of plain keys and values.
-
-    Raises:
-        ConfigError: unreadable file, or bad YAML.
-    """
+    """Read a file of plain keys and values."""
     return read_document(path)[0]
 
 
@@ -139,9 +117,6 @@ def validated(
     """Turn a parsed document into a config, or raise a ConfigError with one line per mistake.
 
     Args:
-        kind: of config.
-        document: as it was parsed.
-        where: its file.
         places: {dotted key: file:line} of what stands in it, or in a file under it.
         options: {dotted key: option} of what an option of the command line says instead.
     """
@@ -158,11 +133,7 @@ def validated(
 
 
 def with_overrides(document: dict[str, Any], overrides: Iterable[str]) -> dict[str, Any]:
-    """The document, changed by ``key.sub=value`` texts.
-
-    Raises:
-        ConfigError: a text is none, or its value no YAML.
-    """
+    """The document, changed by ``key.sub=value`` texts."""
     for override in overrides:
         _override(document, override)
     return document

@@ -1496,11 +1496,7 @@ class Config(Section):
 
     @property
     def board(self) -> "BoardHeader":
-        """What `radar.cfg` says.
-
-        Raises:
-            CaptureError: a line of it is missing or wrong.
-        """
+        """What `radar.cfg` says."""
         from radhar_cli.config.ti_header import board_header  # which knows this schema
 
         assert self.radar.cfg is not None

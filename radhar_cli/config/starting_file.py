@@ -115,10 +115,6 @@ def of_board(cfg: str, folder: Path) -> str:
     Args:
         cfg: its path, or the name of a radar that radhar knows.
         folder: of the config, which names it from there.
-
-    Raises:
-        ConfigError: the .cfg cannot be read.
-        CaptureError: it is wrong; names the line.
     """
     board = board_header(cfg_text(cfg, Path(), "--radar"), cfg)
     device = "IWR6843ISK" if board.start_hz < 70e9 else "IWR1443BOOST"

@@ -93,12 +93,7 @@ class _Studio(_Ti):
 
 
 def read_header(path: Path) -> dict[str, Any]:
-    """Settings (`CaptureSettings`) from a TI header.
-
-    Raises:
-        CaptureError: it is not a TI header, or describes a capture that radhar cannot use; names
-            file, field, value.
-    """
+    """Settings (`CaptureSettings`) from a TI header."""
     try:
         if path.suffix.lower() == ".json":
             device = validated(_Studio, _studio(path), str(path), {}).devices[0]
@@ -322,11 +317,7 @@ class BoardHeader:
 
 @lru_cache(maxsize=16)
 def board_header(text: str, where: str = "radar.cfg") -> BoardHeader:
-    """A board from the text of its .cfg.
-
-    Raises:
-        CaptureError: a line is missing, wrong, or asks for what is not simulated; names it.
-    """
+    """A board from the text of its .cfg."""
     try:
         device = validated(_Device, *_demo(text, where))
     except ConfigError as error:

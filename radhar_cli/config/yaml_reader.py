@@ -29,11 +29,7 @@ _WORDS = {
 
 
 def parse_yaml(text: str, where: str) -> tuple[Any, Lines]:
-    """The value of one YAML document, and {dotted key: line}.
-
-    Raises:
-        ConfigError: it is not YAML, or beyond the bounds; names `where` and the line.
-    """
+    """The value of one YAML document, and {dotted key: line}."""
     lines: Lines = {}
     try:
         node = _Loader(text).get_single_node()

@@ -53,10 +53,8 @@ from radhar_cli.dataset.shards import (
 )
 from radhar_cli.dataset.split import split_rows
 from radhar_cli.dataset.untrusted_hdf5 import (
-    DIGESTS,
     Numbers,
     UntrustedFile,
-    attribute_digests,
     remember,
 )
 from radhar_cli.errors import UnfinishedError
@@ -102,14 +100,8 @@ def assembled(
     On exit the file is renamed to dataset.h5.
 
     Args:
-        config: the data set's.
-        folder: the output folder.
         shards: that hold every row once.
-        progress: receives the rows that are copied.
         remedy: advice on rows that are missing, if not to run the same command again.
-
-    Raises:
-        UnfinishedError: rows are missing, held twice, or in a shard that cannot be used.
     """
     count, own_hash, shards = len(Rows.of(config)), identity_hash(identity(config)), sorted(shards)
     require_tiling(folder, shards, count, remedy)
@@ -129,7 +121,6 @@ def assembled(
                 file.attrs[SCENES_DIGEST] = digest_of(table)
                 messages = warnings(config, flags)
                 _root_attributes(file, config, messages)
-                file.attrs[DIGESTS] = json.dumps(attribute_digests(file), sort_keys=True)
             remember(unfinished)
             yield unfinished, messages
             write_whole(folder, folder / CONFIG, (CONFIG_HEADING + as_yaml(config)).encode())
@@ -206,6 +197,11 @@ def _copy_shards(
     file.attrs["columns_sha256"] = json.dumps(digests)
     for name in config.maps:
         _describe_map(file, config, name, extents[f"extent/{name}"])
+    _describe_products(file, config)
+    return flags
+
+
+def _describe_products(file: h5py.File, config: Config) -> None:
     if "products/points" in file:
         file["products/points"].attrs["columns"] = [*COLUMNS]
     recorded = any(config.files_of(one) is not None for one in config.chosen_activities)
@@ -222,7 +218,6 @@ def _copy_shards(
         )
     if config.output.slow_time:
         file["slow_time"].attrs.update({"axes": ["sample", "pulse"], "meaning": SLOW_TIME_TEXT})
-    return flags
 
 
 class _Ragged:

@@ -45,11 +45,7 @@ class Batch:
 
 
 def check_scenes(config: Config) -> tuple[list[Scene], list[dict[str, Any]]]:
-    """Draw some scenes, spread over the classes; return them and what there is to warn of in them.
-
-    Raises:
-        SceneError: one is outside the model.
-    """
+    """Draw some scenes, spread over the classes; return them and what to warn of in them."""
     rows = Rows.of(config)
     drawn = [draw_valid_scene(config, *rows[row]) for row in rows.spread(CHECKED_SCENES)]
     counts = {flag: sum(flag in found for _, found in drawn) for flag in Flags}
@@ -99,11 +95,7 @@ def _write(batch: Batch) -> int:
 
 
 def _check_machine(batch: Batch) -> None:
-    """Refuse a machine that would make other bytes, or make them elsewhere.
-
-    Raises:
-        MachineError: names the machine.
-    """
+    """Refuse a machine that would make other bytes, or make them elsewhere."""
     if identity_hash(identity(batch.config)) != batch.identity_hash:
         here = ", ".join(f"{library} {version}" for library, version in versions().items())
         raise MachineError(

@@ -14,8 +14,8 @@ from typing import Any
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.assembly import assembled
 from radhar_cli.dataset.batch import Batch, check_scenes, run_batch
+from radhar_cli.dataset.card import write_card
 from radhar_cli.dataset.folder import clean_up, folder_lock, reserve
-from radhar_cli.dataset.hub import write_hub_files
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.layout import BUILT, DATASET, WORK, Rows, row_bytes
 from radhar_cli.dataset.parts import Part, refuse_other_cuts
@@ -81,11 +81,6 @@ def build(
         batch_size: samples a shard; it changes no byte of the result.
         factory: makes the rows of a data set that is not simulated.
         part: make these rows alone, in their folder below `folder`.
-
-    Raises:
-        FolderError: the folder is in use or holds something else.
-        UnfinishedError: it cannot be written, or a worker was killed; finished samples are kept.
-        SceneError: a scene outside the model; some are checked before anything is computed.
     """
     folder, count = folder.absolute(), len(Rows.of(config))
     if part is not None:
@@ -170,7 +165,7 @@ class Build:
         pngs = write_missing_pngs(
             self.config, self.folder, self.split, source, self.jobs, self.progress
         )
-        write_hub_files(source, self.folder, self.config.output.png)
+        write_card(source, self.folder)
         return pngs
 
     def _shards(

@@ -1,7 +1,5 @@
-"""The data card, README.md: a data set described for readers and for the Hugging Face Hub."""
+"""The data card, README.md: a data set described for its readers."""
 
-import json
-import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -9,22 +7,11 @@ from typing import Any
 import numpy as np
 import yaml
 
-from radhar_cli.config.identity import NOT_IDENTITY, differences
-from radhar_cli.config.schema import Config
-from radhar_cli.config.yaml_reader import parse_yaml
-from radhar_cli.dataset.layout import CARD, GALLERY, SPLITS, Rows, column_axis, row_axis
+from radhar_cli.dataset.files import refuse_links, write_whole
+from radhar_cli.dataset.layout import CARD, SPLITS, Rows, column_axis, row_axis
 from radhar_cli.dataset.reading import Dataset
-from radhar_cli.dataset.table import number_names
-from radhar_cli.errors import ConfigError, FolderError
-from radhar_cli.untrusted import read_text
 
-MAX_CARD = 2**20
-MAX_VALUE = 200  # characters of a config's value
 SIZES = ("n<1K", "1K<n<10K", "10K<n<100K", "100K<n<1M", "1M<n<10M", "10M<n<100M", "n>100M")
-_LICENCE = ("license", "license_name", "license_link")
-_FRONT = re.compile(r"\s*---\n(.*?)\n---(?:\n|$)", re.DOTALL)
-# {configuration: {split: files}}
-Files = Mapping[str, Mapping[str, str]]
 
 _NOISE_TELLS = (
     "noise alone tells `stationary` from most classes, as levels are relative to what the "
@@ -51,59 +38,30 @@ BIBTEX = """\
 """
 
 
-def number_features(config: Config) -> list[dict[str, Any]]:
-    """Columns of numbers, as `datasets` writes them down: index, and what was drawn."""
-    kinds = {"index": "int64"} | ({"labels": "string"} if config.people else {})
-    kinds |= {n: "int64" if n == "subject" else "float64" for n in number_names(config)}
-    return [{"name": name, "dtype": kind} for name, kind in kinds.items()]
+def write_card(source: Path, folder: Path) -> None:
+    """Write the card of an output folder where there is none.
 
-
-def configurations(config: Config, files: Files) -> list[dict[str, Any]]:
-    """`configs` of the front matter: files of each split, and columns (image, label, numbers)."""
-    names = {str(a.index): a.slug for a in config.every_class}
-    label = {"name": "label", "dtype": {"class_label": {"names": names}}}
-    features = [{"name": "image", "dtype": "image"}, label, *number_features(config)]
-    return [
-        {
-            "config_name": name,
-            "data_files": [{"split": split, "path": path} for split, path in parts.items()],
-            "features": features,
-        }
-        for name, parts in files.items()
-    ]
-
-
-def front_matter(path: Path) -> dict[str, Any]:
-    """The front matter of a card, which may have been edited; empty where it has none.
-
-    Raises:
-        FolderError: the card cannot be read.
+    Args:
+        source: dataset.h5, or what is going to be it.
     """
-    try:
-        found = _FRONT.match(read_text(path, MAX_CARD).replace("\r\n", "\n"))
-        document, _ = parse_yaml(found[1] if found else "", path.name)
-    except (OSError, UnicodeDecodeError, ConfigError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise FolderError(f"{path}: cannot be read ({reason})") from None
-    return document if isinstance(document, dict) else {}
-
-
-def owner_licence(folder: Path) -> dict[str, Any]:
-    """What the card in a folder says of the licence, which its owner may have chosen.
-
-    Raises:
-        FolderError: the card cannot be read.
-    """
-    matter = front_matter(folder / CARD) if (folder / CARD).exists() else {}
-    return {key: matter[key] for key in _LICENCE if matter.get(key) is not None}
+    refuse_links(folder, folder / CARD)
+    if (folder / CARD).exists():
+        return
+    with Dataset(source) as data:
+        name = data.config.maps[0]
+        reading = f"""\
+`dataset.h5` holds everything for h5py and MATLAB: `/maps/<map>`, `/label`, `/split`,
+`/scene/<column>`. torchvision's `ImageFolder("png/{name}/train")` reads the images, where there are
+any, but numbers the classes by the alphabet. `radhar convert . -o OUT --to parquet` makes what
+`datasets.load_dataset` reads."""
+        write_whole(folder, folder / CARD, card(data, {}, reading).encode())
 
 
 def card(data: Dataset, more: Mapping[str, Any], reading: str) -> str:
     """The text of README.md.
 
     Args:
-        data: the data set.
-        more: front matter: what `load_dataset` reads, and a licence where it is not the config's.
+        more: front matter: what `load_dataset` reads.
         reading: Markdown, how to read the files next to the card.
     """
     config, measured = data.config, data.config.recorded is not None
@@ -115,13 +73,11 @@ def card(data: Dataset, more: Mapping[str, Any], reading: str) -> str:
         "size_categories": [SIZES[sum(len(data) >= 10**n for n in range(3, 9))]],
         **more,
     }
-    licence, version = front["license"], data.file.text("radhar_version")
-    if licence == "unknown":
-        licence = "not chosen; who publishes this puts it into the first lines of this file"
+    licence, version = config.output.license, data.file.text("radhar_version")
+    licence = licence or "not chosen; who publishes this puts it into the first lines of this file"
     parts = [
         f"---\n{yaml.safe_dump(front, sort_keys=False, default_flow_style=None, width=100)}---",
         f"# {title}",
-        f"![Some samples of each class]({GALLERY})",
         _summary(data),
         reading,
         _maps(data),
@@ -131,7 +87,7 @@ def card(data: Dataset, more: Mapping[str, Any], reading: str) -> str:
         "## Known biases and limits",
         "\n".join(f"- {' '.join(one.split())}" for one in _limits(data)),
         "## Licence and citation",
-        f"Licence: {' '.join(str(licence).split())}. Please cite:",
+        f"Licence: {licence}. Please cite:",
         f"```bibtex\n{BIBTEX.replace('VERSION', version)}```",
     ]
     return "\n\n".join(parts) + "\n"
@@ -197,20 +153,13 @@ def _classes(data: Dataset) -> str:
 
 
 def _making(data: Dataset) -> str:
-    """The command, versions, and in a fold what the config says."""
     config = data.config
     made = ", ".join(f"{library} {version}" for library, version in data.versions.items())
     if config.recorded is not None:
         return f"`radhar generate --recordings`, seed {config.seed}; {made}."
-    keys = "\n".join(
-        f"{key}: {json.dumps(value)[:MAX_VALUE]}"
-        for key, (_, value) in differences(Config(), config).items()
-        if key not in NOT_IDENTITY
-    )
     return (
         f"`radhar generate config.yaml -o OUT`, seed {config.seed}, makes the same bytes again "
-        f"with {made}.\n\n<details><summary>Keys of config.yaml that are not the defaults</summary>"
-        f"\n\n```yaml\n{keys}\n```\n\n</details>"
+        f"with {made}."
     )
 
 

@@ -5,13 +5,12 @@ from time import perf_counter
 
 import numpy as np
 
-from radhar_cli.arrays import Float, Levels
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table, encode_png
-from radhar_cli.dataset.sample import Sample, synthesise
+from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.shards import encode_shard
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.validity import draw_valid_scene
@@ -40,16 +39,20 @@ class Estimate:
 def estimate(config: Config, jobs: int) -> Estimate:
     """Time samples spread over the classes and scale up; nothing is written."""
     prepare_process()
-    rows = Rows.of(config)
+    rows, plan, columns = Rows.of(config), plan_images(config), scene_fields.fields(config)
     table = colour_table(config.image.colour_map) if config.output.png else None
-    _probe(config, 0, table)  # imports, tables and caches are not part of a sample
     samples, values, png_bytes = [], [], 0
+    # Imports, tables and caches are not part of a sample.
+    synthesise(draw_valid_scene(config, *rows[0])[0], plan)
     start = perf_counter()
     for row in rows.spread(PROBES):
-        sample, numbers, pngs = _probe(config, row, table)
+        scene, _ = draw_valid_scene(config, *rows[row])
+        sample = synthesise(scene, plan)
         samples.append(sample)
-        values.append(numbers)
-        png_bytes += pngs
+        values.append(scene_fields.values(scene, columns, sample.error_db))
+        if table is not None:
+            level, images = config.output.png_level, sample.images.values()
+            png_bytes += sum(len(encode_png(one.levels, table, level)) for one in images)
         if perf_counter() - start > PROBE_SECONDS:
             break
     done = len(samples)
@@ -70,16 +73,3 @@ def estimate(config: Config, jobs: int) -> Estimate:
         png_bytes=png_bytes * len(rows) // done,
         seconds=seconds,
     )
-
-
-def _probe(config: Config, row: int, table: Levels | None) -> tuple[Sample, Float, int]:
-    """Make one sample as a worker would: it, numbers of its scene, bytes of its PNGs."""
-    activity, index = Rows.of(config)[row]
-    scene, _ = draw_valid_scene(config, activity, index)
-    sample = synthesise(scene, plan_images(config))
-    numbers = scene_fields.values(scene, scene_fields.fields(config), sample.error_db)
-    pngs = 0
-    if table is not None:
-        level = config.output.png_level
-        pngs = sum(len(encode_png(i.levels, table, level)) for i in sample.images.values())
-    return sample, numbers, pngs

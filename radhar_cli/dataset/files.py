@@ -14,11 +14,7 @@ MAX_TEXT = 2**20
 
 
 def write_whole(folder: Path, path: Path, data: bytes) -> None:
-    """Write a file inside an output folder atomically: under a name in its work folder, renamed.
-
-    Raises:
-        FolderError: a folder on the way is a symbolic link.
-    """
+    """Write a file inside an output folder atomically: under a name in its work folder, renamed."""
     unfinished = unfinished_path(folder)
     refuse_links(folder, unfinished.parent)
     refuse_links(folder, path.parent)
@@ -34,11 +30,7 @@ def unfinished_path(folder: Path) -> Path:
 
 
 def refuse_links(folder: Path, path: Path) -> None:
-    """Refuse a path inside a folder if a part of it below the folder is a symbolic link.
-
-    Raises:
-        FolderError: names the link.
-    """
+    """Refuse a path inside a folder if a part of it below the folder is a symbolic link."""
     for part in (path, *path.parents):
         if part == folder:
             return
@@ -47,11 +39,7 @@ def refuse_links(folder: Path, path: Path) -> None:
 
 
 def refuse_foreign_work(folder: Path) -> None:
-    """Refuse a work folder with anything in it but files and folders, links above all.
-
-    Raises:
-        FolderError: names what is there.
-    """
+    """Refuse a work folder with anything in it but files and folders, links above all."""
     refuse_links(folder, folder / WORK)
     for place, folders, files in os.walk(folder / WORK):
         for name in (*folders, *files):

@@ -19,7 +19,6 @@ from radhar_cli.dataset.layout import (
     CARD,
     CONFIG,
     DATASET,
-    GALLERY,
     IDENTITY,
     PARTS,
     PNG,
@@ -32,23 +31,14 @@ from radhar_cli.untrusted import read_json
 
 
 def refuse_file(folder: Path) -> None:
-    """Refuse an output folder that is a file.
-
-    Raises:
-        FolderError: it is one.
-    """
+    """Refuse an output folder that is a file."""
     if folder.exists() and not folder.is_dir():
         raise FolderError(f"{folder}: is a file; -o should name a folder")
 
 
 @contextmanager
 def folder_lock(folder: Path) -> Iterator[None]:
-    """Hold an output folder; a second run on it is refused. A dead run's lock is free at once.
-
-    Raises:
-        FolderError: another run holds it, it cannot be written to, or its work folder is or holds
-            a link, which might lead elsewhere.
-    """
+    """Hold an output folder; a second run on it is refused. A dead run's lock is free at once."""
     refuse_file(folder)
     refuse_links(folder, folder / WORK)
     try:
@@ -78,9 +68,6 @@ def reserve(
     Args:
         part: which one this is, K/N.
         allowed: names that a folder without a data set may hold already.
-
-    Raises:
-        FolderError: it holds something else; the message names the keys that differ.
     """
     new = identity(config) | ({} if part is None else {"part": part})
     if overwrite:
@@ -146,11 +133,7 @@ def stored_identity(folder: Path) -> dict[str, Any] | None:
 
 
 def checked_identity(value: Any, path: Path) -> dict[str, Any]:
-    """An identity that was read from a file.
-
-    Raises:
-        FolderError: it is none.
-    """
+    """An identity that was read from a file."""
     parts = ("keys", "versions")
     if not isinstance(value, dict) or not all(isinstance(value.get(p), dict) for p in parts):
         raise FolderError(f"{path}: is damaged: its identity should have keys and versions")
@@ -197,7 +180,7 @@ def _clear(folder: Path, new: dict[str, Any]) -> None:
         put_aside = unfinished_path(folder)
         put_aside.parent.mkdir(parents=True, exist_ok=True)
         (folder / PNG).rename(put_aside)
-    for name in (SCENES, CONFIG, CARD, GALLERY):
+    for name in (SCENES, CONFIG, CARD):
         (folder / name).unlink(missing_ok=True)
     _remove_batches(folder)
     _name(folder, new)

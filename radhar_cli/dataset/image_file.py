@@ -22,11 +22,7 @@ SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp"}
 
 
 def image_size(path: Path) -> tuple[int, int]:
-    """(H, W) of an image file, from its header.
-
-    Raises:
-        FolderError: it is none that can be read, or too large.
-    """
+    """(H, W) of an image file, from its header."""
     with _opened(path, None) as image:
         return image.height, image.width
 
@@ -36,9 +32,6 @@ def read_rgb(path: Path, size: tuple[int, int] | None = None) -> Levels:
 
     Args:
         size: (H, W) that it should have, or None.
-
-    Raises:
-        FolderError: it is damaged, too large, or of another size.
     """
     with _opened(path, size) as image:
         return _rgb(image)

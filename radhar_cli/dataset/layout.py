@@ -18,9 +18,7 @@ DATASET = "dataset.h5"
 CONFIG = "config.yaml"
 SCENES = "scenes.csv"
 PNG = "png"
-METADATA = "metadata.csv"
 CARD = "README.md"
-GALLERY = "gallery.png"
 WORK = ".radhar"
 IDENTITY = "identity.json"
 BUILT = "built"  # marks the work folder of a data set, or of a part, that was whole once
@@ -110,11 +108,6 @@ def is_incomplete(folder: Path) -> bool:
     return any((folder / WORK / name).exists() for name in (IDENTITY, "shards"))
 
 
-def png_folder(map_name: str, split: int) -> Path:
-    """Where the class folders and metadata.csv of a map and split lie inside the output folder."""
-    return Path(PNG, map_name, SPLIT_FOLDERS[split])
-
-
 @dataclass(frozen=True)
 class Rows:
     """The fixed, class-major order of a data set's samples."""
@@ -156,7 +149,7 @@ class Rows:
 
     def png_path(self, map_name: str, split: int, row: int) -> Path:
         """Path of a PNG inside the output folder, the layout that ImageFolder reads."""
-        return png_folder(map_name, split) / self.file_name(row)
+        return Path(PNG, map_name, SPLIT_FOLDERS[split], self.file_name(row))
 
     def file_name(self, row: int) -> str:
         """Path of a row's PNG below the folder of its map and split.

@@ -33,10 +33,6 @@ def merge(
 
     Args:
         folders: of parts, or that hold parts, in addition to those below `out`.
-
-    Raises:
-        FolderError: parts differ, or are none.
-        UnfinishedError: rows are missing or damaged; names them and the parts to run again.
     """
     out = out.absolute()
     own = [out] if (out / PARTS).is_dir() else []

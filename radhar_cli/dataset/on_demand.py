@@ -16,7 +16,7 @@ from radhar_cli.activity import Activity, know_activities, own_activities
 from radhar_cli.config.reading import as_config
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
-from radhar_cli.dataset.layout import COLUMN_LABEL, chunked
+from radhar_cli.dataset.layout import chunked
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.errors import ConfigError
 from radhar_cli.pipeline.plan import Plan
@@ -97,15 +97,9 @@ class Recipe:
             scene, _ = draw_valid_scene(self.config, activity, index)
             made = synthesise(scene, self._plan)
         found = Sample(label=activity.index, sample_key=np.array([activity.index, index]))
-        found.update(made.labels)
+        found.update(made.columns)
         for name, (_, shape) in chunked(self.config).items():
             found[name] = np.ascontiguousarray(made.chunk(name, shape))
-        for name, image in made.images.items():
-            found[f"entropy/{name}"] = np.float32(image.entropy)
-            found[f"extent/{name}"] = np.array(image.extent)
-            if self.config.output.power is not None:
-                found[f"largest_db/{name}"] = image.largest_db
-        found |= {f"{COLUMN_LABEL}/{name}": labels for name, labels in made.column_labels.items()}
         every = scene_fields.fields(self.config)
         fields = tuple(field for field in every if field is not scene_fields.ERROR)
         for field, value in zip(fields, scene_fields.values(scene, fields), strict=True):
@@ -128,11 +122,7 @@ class Recipe:
 
 
 def whole(name: str, value: int) -> int:
-    """An argument that should be a whole number from 0 to 2^63 - 1, of numpy's too.
-
-    Raises:
-        ConfigError: it is none.
-    """
+    """An argument that should be a whole number from 0 to 2^63 - 1, of numpy's too."""
     try:
         number = whole_number(value)
     except TypeError:

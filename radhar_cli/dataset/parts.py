@@ -25,11 +25,7 @@ class Part:
 
     @classmethod
     def parse(cls, text: str, where: str = "--shard") -> "Part":
-        """The part that is written K/N.
-
-        Raises:
-            FolderError: it is none.
-        """
+        """The part that is written K/N."""
         match = _TEXT.fullmatch(text)
         if match is None or int(match[1]) > int(match[2]):
             raise FolderError(f"{where} {text}: should be K/N with K from 1 to N, such as 3/8")
@@ -48,11 +44,7 @@ class Part:
 
 
 def refuse_other_cuts(out: Path, part: Part) -> None:
-    """Refuse a part where there are parts of another N: their rows would overlap.
-
-    Raises:
-        FolderError: names the number.
-    """
+    """Refuse a part where there are parts of another N: their rows would overlap."""
     place = out / PARTS
     names = (_NAME.fullmatch(path.name) for path in (place.iterdir() if place.is_dir() else ()))
     others = {int(name[2]) for name in names if name} - {part.of}

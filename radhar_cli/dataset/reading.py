@@ -184,11 +184,7 @@ class Dataset(Closing):
             yield edges
 
     def map_name(self, name: str | None) -> str:
-        """The map of that name, or the first.
-
-        Raises:
-            FolderError: the data set does not have it.
-        """
+        """The map of that name, or the first."""
         if name is None:
             return self.config.maps[0]
         if name not in self.maps:
@@ -234,11 +230,7 @@ def _small(column: Column, below: int) -> Levels:
 
 
 def stored_config(document: Any, where: str) -> Config:
-    """The config that is stored with a data set, from its plain values.
-
-    Raises:
-        FolderError: it is not a config.
-    """
+    """The config that is stored with a data set, from its plain values."""
     try:
         with any_name():
             return validated(Config, document, f"{where}: the stored config", {})

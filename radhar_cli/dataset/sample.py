@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from radhar_cli.arrays import Complex, Float, Levels
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.column_labels import column_labels
-from radhar_cli.dataset.layout import LABELS, PERSON_LABEL
+from radhar_cli.dataset.layout import COLUMN_LABEL, LABELS, PERSON_LABEL
 from radhar_cli.echo.direct import Accuracy
 from radhar_cli.errors import SceneError
 from radhar_cli.pipeline.plan import Plan
@@ -37,6 +37,17 @@ class Sample(NamedTuple):
     products: Mapping[str, NDArray[Any]] = MappingProxyType({})
     # {name: values}: LABELS and PERSON_LABEL of scenes with `people`
     labels: Mapping[str, NDArray[Any]] = MappingProxyType({})
+
+    @property
+    def columns(self) -> dict[str, Any]:
+        """{name in dataset.h5: what it holds of this sample}, of the small datasets."""
+        found = dict[str, Any](self.labels)
+        for name, image in self.images.items():
+            found[f"entropy/{name}"] = np.float32(image.entropy)
+            found[f"extent/{name}"] = np.array(image.extent)
+            if image.decibels is not None:
+                found[f"largest_db/{name}"] = image.largest_db
+        return found | {f"{COLUMN_LABEL}/{name}": one for name, one in self.column_labels.items()}
 
     def chunk(self, name: str, shape: tuple[int, ...]) -> NDArray[Any]:
         """What a large dataset (`layout.chunked`) holds of this sample, in its shape."""

@@ -17,15 +17,7 @@ import numpy as np
 from radhar_cli.arrays import Float, Levels
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.files import write_whole
-from radhar_cli.dataset.layout import (
-    COLUMN_LABEL,
-    LABELS,
-    PERSON_LABEL,
-    WORK,
-    checksum_of,
-    chunked,
-    count_of,
-)
+from radhar_cli.dataset.layout import WORK, checksum_of, chunked, count_of
 from radhar_cli.dataset.png import deflated
 from radhar_cli.dataset.sample import Sample
 from radhar_cli.errors import SceneError, UnfinishedError
@@ -60,8 +52,7 @@ class Shard(NamedTuple):
         """The bytes of the shard, an HDF5 file.
 
         Raises:
-            ShardError: it is gone, damaged, or holds other rows.
-            ForeignShardError: it belongs to another data set.
+            ShardError: it is gone, damaged, of another data set, or holds other rows.
         """
         if not self.path.is_file():
             raise ShardError("is not there")
@@ -123,16 +114,9 @@ def encode_shard(
                 target.id.write_direct_chunk((row, *[0] * len(shape)), stored)
                 checksums.append(hashlib.sha256(raw).hexdigest())
             file[checksum_of(name)] = np.array(checksums, dtype="S64")
-        for name in config.maps:
-            images = [sample.images[name] for sample in samples]
-            file[f"entropy/{name}"] = np.array([i.entropy for i in images], dtype=np.float32)
-            file[f"extent/{name}"] = np.array([i.extent for i in images], dtype=float)
-            if config.output.power is not None:
-                file[f"largest_db/{name}"] = np.array([i.largest_db for i in images])
-            if config.output.column_labels:
-                file[f"{COLUMN_LABEL}/{name}"] = np.stack([s.column_labels[name] for s in samples])
-        for name in (LABELS, PERSON_LABEL) if config.people else ():
-            file[name] = np.stack([sample.labels[name] for sample in samples])
+        every = [sample.columns for sample in samples]
+        for name in every[0]:
+            file[name] = np.stack([one[name] for one in every])
         for name in config.stored:
             arrays = [sample.products[name] for sample in samples]
             if len({(array.dtype, array.shape[1:]) for array in arrays}) > 1:
@@ -217,9 +201,6 @@ def require_tiling(
     Args:
         remedy: what to do about rows, if not to run the same command again.
         unusable: shards that were left out, and why.
-
-    Raises:
-        UnfinishedError: names the rows, the shards left out, and the remedy.
     """
     why = "".join(f", {shard.path} {error}" for shard, error in unusable[:RUNS_NAMED])
     why += ", ..." if len(unusable) > RUNS_NAMED else ""

@@ -7,7 +7,6 @@ Types and shapes are checked before anything is read, and compressed pieces are 
 the size that they should have: HDF5 would inflate them to any.
 """
 
-import hashlib
 import io
 import os
 import signal
@@ -56,11 +55,7 @@ def _refusing_damage(where: str) -> Iterator[None]:
 
 
 def try_files(paths: Sequence[Path]) -> None:
-    """Read the structure of files in another process.
-
-    Raises:
-        FolderError: HDF5 crashes on one, or takes too much time or memory.
-    """
+    """Read the structure of files in another process."""
     if not paths:
         return
     names = b"".join(os.fsencode(path) + b"\0" for path in paths)
@@ -87,50 +82,17 @@ def remember(path: Path) -> None:
     os.environ[_TRIED] = " ".join([*others[-99:], _version_of(path)])
 
 
-def _try_once(path: Path) -> None:
-    if _version_of(path) not in os.environ.get(_TRIED, "").split():
-        try_files([path])
-        remember(path)
-
-
 def _version_of(path: Path) -> str:
     """What changes when a file is written or replaced."""
     status = path.stat()
     return f"{status.st_dev}:{status.st_ino}:{status.st_size}:{status.st_ctime_ns}"
 
 
-DIGESTS = "attributes_sha256"
-
-
-def attribute_digests(file: h5py.File) -> dict[str, str]:
-    """{name: digest of the attributes} of all that a file holds, links left out.
-
-    Shapes are not asked for: HDF5 would open the files that a virtual dataset names.
-    """
-    found = {"/": _attribute_digest(file)}
-    file.visititems(lambda name, held: found.__setitem__(name, _attribute_digest(held)))
-    return found
-
-
-def _attribute_digest(held: Any) -> str:
-    attributes = dict[str, Any]()
-    for name in sorted(held.attrs):
-        if name != DIGESTS:
-            plain = hdf5_check.is_plain(held.attrs.get_id(name))
-            attributes[name] = np.asarray(held.attrs[name]).tolist() if plain else "another type"
-    return hashlib.sha256(repr(attributes).encode()).hexdigest()[:16]
-
-
 class UntrustedFile(Closing):
     """An HDF5 file, opened for reading.
 
     Args:
-        path: of the file.
         data: its bytes, of a file that was made here or tried already.
-
-    Raises:
-        FolderError: it is not a regular file, or not HDF5. So do all methods, for whatever is not
-            as it should be; the message names file and field.
     """
 
     def __init__(self, path: Path, data: bytes | None = None) -> None:
@@ -138,8 +100,9 @@ class UntrustedFile(Closing):
         self._claimed = 0
         try:
             self.bytes = regular_size(path) if data is None else len(data)
-            if data is None:
-                _try_once(path)
+            if data is None and _version_of(path) not in os.environ.get(_TRIED, "").split():
+                try_files([path])
+                remember(path)
         except OSError as error:
             raise FolderError(f"{path}: {error.strerror}") from None
         try:
@@ -173,11 +136,6 @@ class UntrustedFile(Closing):
             return parse_json(self.text(name))
         except ValueError as error:
             raise FolderError(f"{self.path}: attribute {name}: is not JSON ({error})") from None
-
-    def attribute_digests(self) -> dict[str, str]:
-        """As the function of that name."""
-        with _refusing_damage(f"{self.path}: attributes"):
-            return attribute_digests(self._file)
 
     def whole_number(self, name: str) -> int:
         """A whole number among the attributes of the file."""

@@ -14,7 +14,6 @@ from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.assembly import CONFIG_HEADING, SCENES_DIGEST
 from radhar_cli.dataset.column_labels import label_names
 from radhar_cli.dataset.files import digest_of, read_bytes
-from radhar_cli.dataset.hub import wrong_hub_files
 from radhar_cli.dataset.identity import versions
 from radhar_cli.dataset.image_file import SUFFIXES, read_gray, read_rgb
 from radhar_cli.dataset.layout import COLUMN_LABEL, CONFIG, PNG, SCENES, WORK, Rows, checksum_of
@@ -23,7 +22,6 @@ from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.dataset.recorded import persons
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.split import split_rows
-from radhar_cli.dataset.untrusted_hdf5 import DIGESTS
 from radhar_cli.errors import FolderError
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.validity import draw_valid_scene
@@ -58,9 +56,6 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Verificati
         samples: how many to synthesise anew, spread evenly over the rows.
         motion: folder of the motion files of its classes; None re-synthesises no sample of them: a
             stored config is not trusted to name files.
-
-    Raises:
-        FolderError: there is no readable data set of radhar, or no such folder of motion files.
     """
     if motion is not None and not motion.is_dir():
         raise FolderError(f"{motion}: no such folder; should hold the motion files of the data set")
@@ -75,7 +70,6 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Verificati
         ]
         if _structure(data, report):
             _checksums(data, report)
-            _attributes(data, report)
             if data.config.recorded is None:  # whose recordings may lie anywhere
                 _resynthesise(data, samples, report, motion)
             if (beside / PNG).is_dir():
@@ -84,7 +78,6 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Verificati
                 report.problems.append(f"{PNG}: is missing; `radhar generate` makes it again")
             if (beside / WORK).is_dir():
                 _config_and_table(data, beside, report)
-            report.problems += wrong_hub_files(data, beside)
         return report
 
 
@@ -114,7 +107,9 @@ def _checksums(data: Dataset, report: Verification) -> None:
         for row in range(len(data)):
             if hashlib.sha256(chunks[row].tobytes()).hexdigest().encode() != stored[row]:
                 report.problems.append(f"/{name}[{row}]: does not match its checksum")
-    stored_digests = _mapping(data, "columns_sha256", report)
+    stored_digests = data.file.json("columns_sha256")
+    if not isinstance(stored_digests, dict):
+        raise FolderError(f"{data.path}: attribute columns_sha256: should be a mapping")
     for name, column in data.small.items():
         if name.startswith(checksum_of("")):
             continue
@@ -123,25 +118,6 @@ def _checksums(data: Dataset, report: Verification) -> None:
             digest.update(column.rows(start, start + ROWS).tobytes())
         if stored_digests.get(name) != digest.hexdigest():
             report.problems.append(f"/{name}: does not match its checksum")
-
-
-def _mapping(data: Dataset, name: str, report: Verification) -> dict[str, Any]:
-    """An attribute of the file that holds a mapping."""
-    found = data.file.json(name)
-    if isinstance(found, dict):
-        return found
-    report.problems.append(f"attribute {name}: should be a mapping")
-    return {}
-
-
-def _attributes(data: Dataset, report: Verification) -> None:
-    """Compare names and attributes with those of when it was built."""
-    there, built = data.file.attribute_digests(), _mapping(data, DIGESTS, report)
-    for name in sorted(there.keys() | built.keys()):
-        if there.get(name) != built.get(name):
-            what = "attributes differ from those that were built"
-            what = "was not built" if name not in built else what
-            report.problems.append(f"{name}: {'is missing' if name not in there else what}")
 
 
 def _config_and_table(data: Dataset, folder: Path, report: Verification) -> None:

@@ -74,11 +74,7 @@ def _with_own(
 
 
 def _run_on(client: Any, tasks: Iterable[tuple[Any, ...]]) -> Iterator[Any]:
-    """Yield _with_own(*task) for every task, in any order; tasks of a lost worker are run again.
-
-    Raises:
-        UnfinishedError: the scheduler is gone, or one task lost several workers.
-    """
+    """Yield _with_own(*task) for every task, in any order; tasks of a lost worker are run again."""
     from distributed import as_completed
     from distributed.client import FutureCancelledError
     from distributed.comm import CommClosedError
@@ -120,9 +116,6 @@ def on_cluster(address: str, jobs: int) -> Iterator[int]:
     Args:
         address: of the scheduler, such as tcp://host:8786, or `local`: workers on this machine.
         jobs: processes of `local`.
-
-    Raises:
-        MachineError: no scheduler answers, or dask is not installed.
     """
     try:
         import dask

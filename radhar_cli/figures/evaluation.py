@@ -10,11 +10,10 @@ from matplotlib import colormaps
 from matplotlib.ticker import FormatStrFormatter, LogLocator, MaxNLocator, NullFormatter
 from numpy.typing import NDArray
 
-from radhar_cli.arrays import Float, Index, Levels
+from radhar_cli.arrays import Float, Index
 from radhar_cli.figures.page import page, png_bytes
 
 MAX_NUMBERED = 32  # classes; with more, cells of a confusion matrix have no numbers
-COLUMNS = 4  # of images with captions
 
 
 def curves_png(
@@ -81,38 +80,6 @@ def confusion_png(counts: NDArray[np.int64], names: Sequence[str], title: str) -
     axes.set_ylabel("true")
     figure.colorbar(drawn, ax=axes, shrink=0.75, label="share of the true class (%)")
     axes.set_title(title, fontsize=10)
-    return png_bytes(figure)
-
-
-def reliability_png(confidence: Float, accuracy: Float, count: Float, title: str) -> bytes:
-    """Draw accuracy against mean confidence, both [bins]; `count` [bins] is the size of a dot."""
-    figure = page(4.8, 4.6)
-    axes = figure.subplots()
-    used = count > 0
-    axes.plot([0, 1], [0, 1], ":", color="gray", linewidth=1)
-    axes.scatter(
-        confidence[used], accuracy[used], s=20 + 180 * count[used] / count.sum(), alpha=0.7
-    )
-    axes.set_xlabel("mean probability of the predicted class")
-    axes.set_ylabel("share that is right")
-    axes.set_xlim(0, 1.02)
-    axes.set_ylim(-0.02, 1.05)
-    axes.grid(alpha=0.3)
-    axes.set_title(title, fontsize=8)
-    return png_bytes(figure)
-
-
-def captioned_png(images: Sequence[Levels], captions: Sequence[str], title: str) -> bytes:
-    """Draw RGB images [H, W, 3], four a row."""
-    rows = -(-len(images) // COLUMNS)
-    figure = page(2.4 * COLUMNS, 2.5 * rows + 0.4)
-    panels = figure.subplots(rows, COLUMNS, squeeze=False).ravel()
-    for panel in panels:
-        panel.set_axis_off()
-    for panel, image, caption in zip(panels, images, captions, strict=False):
-        panel.imshow(image, interpolation="nearest", aspect="auto")
-        panel.set_title(caption, fontsize=7)
-    figure.suptitle(title, fontsize=10)
     return png_bytes(figure)
 
 

@@ -94,9 +94,6 @@ class Film:
         """Write a GIF; what never changes is drawn once.
 
         Args:
-            path: ends in .gif.
-            show: shows a frame.
-            count: of frames.
             frame_ms: duration of each.
             advance: called with 1 after every frame.
             others: artists that change besides the points, the bones and the clock.

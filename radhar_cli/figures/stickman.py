@@ -23,7 +23,6 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Advance) -> None:
     """Write the animation, which follows a body that is alone and else shows everybody's places.
 
     Args:
-        path: ends in .gif.
         advance: called with 1 after every frame.
     """
     truth = simulation.truth

@@ -86,10 +86,6 @@ def adapt(
         resize: bring images to the model's size.
         epochs: passes in which it learns from the images.
         mix: labelled data sets that it shows as well, those that the run learned from.
-
-    Raises:
-        RunError, FolderError: one of them cannot be used.
-        ConfigError: neither epochs nor batch norm, or fewer than MIN_IMAGES images.
     """
     metadata, _ = load_best(run)
     images = open_for(metadata, data, map_name, labelled=False, resize=resize)
@@ -188,9 +184,6 @@ class _Learner:
         The mutual information of images and predictions grows; without labels, batch norm as in
         training, in the batches of `adapt_batch_norm`. Mixed images, in batches of their own, add
         their cross-entropy, smoothed as in training.
-
-        Raises:
-            RunError: the loss is not finite.
         """
         model, metadata = self.model, self.metadata
         learned = [p for name, p in model.named_parameters() if not is_of_last_layer(name, model)]

@@ -27,6 +27,10 @@ from radhar_cli.learning.run_folder import RunError, RunMetadata, load_best
 
 WARM_UP, REPEATS, BATCH_REPEATS = 3, 15, 5
 PREDICT_BATCH = 32
+SPEEDS = (
+    *("load_s", "image_s", "load_and_image_s"),
+    *("batch", "images_per_s", "images_per_s_with_loading"),
+)
 
 
 @dataclass(frozen=True)
@@ -63,9 +67,6 @@ def open_for(
         labelled: keep the classes that the model knows, and no other.
         resize: bring images to the model's size.
         names: {class there: class here, or None to leave it out}.
-
-    Raises:
-        FolderError: no class or another size than the model's, or a map that must be named.
     """
     images = _opened_images(metadata, path, map_name or _map_there(metadata, path), resize)
     if (images.size, images.channels) != (metadata.size, metadata.channels):
@@ -97,11 +98,7 @@ def _opened_images(
 
 
 def _map_there(metadata: RunMetadata, path: Path) -> str | None:
-    """The model's map if a data set has several; a tree of images has its own and no other.
-
-    Raises:
-        FolderError: the model does not know its map, and there are several.
-    """
+    """The model's map if a data set has several; a tree of images has its own and no other."""
     if not is_h5(path):
         inside = metadata.map is not None and (path / metadata.map).is_dir()
         return metadata.map if inside else None
@@ -139,9 +136,6 @@ def predict_batches(
     """Yield (probabilities [B, classes], features [B, F]) of some rows, batch by batch.
 
     The model is in evaluation mode and on the device; float32, whatever it was trained in.
-
-    Raises:
-        RunError: a logit is not finite.
     """
     reader = Reader(pixels, None)
     with torch.inference_mode():
@@ -189,10 +183,6 @@ def predict_paths(
         paths: images, folders of images, or data sets.
         map_name: of a data set, if not the one of the run.
         split: of a data set.
-
-    Raises:
-        RunError: no such run.
-        FolderError: an image that cannot be read, or of another size.
     """
     metadata, model = load_best(run)
     if metadata.finds_joints:
@@ -236,9 +226,8 @@ def speed(
     program that is already running.
 
     Returns:
-        load_s: reading the weights and building the network; image_s: median of one image;
-        load_and_image_s: until the first answer, loading included; batch: images at once;
-        images_per_s: throughput at that batch; images_per_s_with_loading: of a single batch.
+        SPEEDS: reading the weights and building the network; the median of one image; until the
+        first answer, loading included; images at once; throughput at that batch; of a single one.
     """
     one = torch.from_numpy(images.pixels.read(row).transpose(2, 0, 1).copy())[None]
     many = one.expand(batch, -1, -1, -1)
@@ -260,11 +249,6 @@ def speed(
         image = statistics.median(ask(one) for _ in range(REPEATS))
         ask(many)
         batch_time = statistics.median(ask(many) for _ in range(BATCH_REPEATS))
-    return {
-        "load_s": loaded - began,
-        "image_s": image,
-        "load_and_image_s": first - began,
-        "batch": batch,
-        "images_per_s": batch / batch_time,
-        "images_per_s_with_loading": batch / (loaded - began + batch_time),
-    }
+    with_loading = batch / (loaded - began + batch_time)
+    found = (loaded - began, image, first - began, batch, batch / batch_time, with_loading)
+    return dict(zip(SPEEDS, found, strict=True))

@@ -21,11 +21,7 @@ def repeatable(device: torch.device) -> None:
 
 
 def choose_device(wanted: str) -> torch.device:
-    """The device asked for, or the best there is.
-
-    Raises:
-        MachineError: it is not there.
-    """
+    """The device asked for, or the best there is."""
     there = {
         "cuda": torch.cuda.is_available(),
         "mps": torch.backends.mps.is_available(),

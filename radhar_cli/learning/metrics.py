@@ -2,12 +2,10 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from statistics import NormalDist
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from radhar_cli.arrays import Float, Index
 
@@ -26,24 +24,10 @@ def wilson(correct: float, count: float) -> tuple[float, float]:
     return max(0.0, low), min(1.0, high)
 
 
-def _ratio(above: Float, below: NDArray[np.int64]) -> Float:
-    return np.divide(above, below, out=np.zeros_like(above), where=below > 0)
+def calibration_error(truth: Index, probabilities: Float) -> float:
+    """Expected calibration error of the winning class's probability, in 15 equal bins.
 
-
-@dataclass(frozen=True)
-class Calibration:
-    """Predictions by confidence: mean confidence, accuracy and number of each bin; their gap."""
-
-    confidence: Float
-    accuracy: Float
-    count: NDArray[np.int64]
-    # expected calibration error, sum over bins of share |accuracy - confidence| (Guo et al., 2017),
-    # 15 equal bins
-    error: float
-
-
-def calibration(truth: Index, probabilities: Float) -> Calibration:
-    """Calibration of the winning class's probability.
+    The sum over bins of their share times |accuracy - confidence| (Guo et al., 2017).
 
     Args:
         truth: [N].
@@ -51,11 +35,8 @@ def calibration(truth: Index, probabilities: Float) -> Calibration:
     """
     confidence, correct = probabilities.max(1), probabilities.argmax(1) == truth
     bins = np.clip(np.ceil(confidence * CALIBRATION_BINS).astype(int) - 1, 0, CALIBRATION_BINS - 1)
-    count = np.bincount(bins, minlength=CALIBRATION_BINS)
-    mean_confidence = _ratio(np.bincount(bins, confidence, CALIBRATION_BINS).astype(float), count)
-    accuracy = _ratio(np.bincount(bins, correct, CALIBRATION_BINS).astype(float), count)
-    gap = float((count * np.abs(accuracy - mean_confidence)).sum() / max(1, truth.size))
-    return Calibration(mean_confidence, accuracy, count.astype(np.int64), gap)
+    gaps = np.bincount(bins, correct - confidence, CALIBRATION_BINS)
+    return float(np.abs(gaps).sum() / max(1, truth.size))
 
 
 def summary(truth: Index, probabilities: Float, classes: Sequence[str]) -> dict[str, Any]:
@@ -78,7 +59,7 @@ def summary(truth: Index, probabilities: Float, classes: Sequence[str]) -> dict[
         "accuracy": correct / truth.size,
         "accuracy_95": list(wilson(correct, truth.size)),
         "macro_f1": float(f1[occurs].mean()),
-        "calibration_error": calibration(truth, probabilities).error,
+        "calibration_error": calibration_error(truth, probabilities),
         "classes": {
             name: {
                 "precision": float(precision[i]),

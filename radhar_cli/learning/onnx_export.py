@@ -38,9 +38,6 @@ def export(run: Path, path: Path) -> float:
 
     Returns:
         The largest difference of a logit; relative to the largest logit where that is above 1.
-
-    Raises:
-        RunError: no such run, or the two differ by more than 1e-4; then nothing is written.
     """
     import onnx
     import onnxruntime

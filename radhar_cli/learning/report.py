@@ -10,7 +10,7 @@ import torch
 from radhar_cli.dataset.layout import DATASET
 from radhar_cli.errors import FolderError
 from radhar_cli.figures.evaluation import Point, curves_png, robustness_png
-from radhar_cli.learning.evaluation import speed
+from radhar_cli.learning.evaluation import SPEEDS, speed
 from radhar_cli.learning.images.classes import unknown_message
 from radhar_cli.learning.report_files import Report
 from radhar_cli.learning.run_files import BEST
@@ -26,6 +26,8 @@ from radhar_cli.learning.single_result import (
 from radhar_cli.learning.targets import LOSSES, SCORES
 from radhar_cli.progress import Messages
 
+NETWORK = ("model", "parameters", "multiply_adds", "best_epoch")
+
 
 def evaluate(
     runs: Sequence[Path],
@@ -34,12 +36,7 @@ def evaluate(
     device: torch.device,
     progress: Messages,
 ) -> Report:
-    """Evaluate every run on every data set.
-
-    Raises:
-        RunError: a run that cannot be read.
-        FolderError: data that does not fit a run.
-    """
+    """Evaluate every run on every data set."""
     opened = [open_run(name, path, device) for name, path in _named(runs).items()]
     check_options(opened, options)
     named_data = _named(data)
@@ -48,11 +45,6 @@ def evaluate(
         for run in opened
         for name, path in named_data.items()
     }
-    for message in dict.fromkeys(
-        unknown_message(eval_set.images, options.names) for eval_set in eval_sets.values()
-    ):
-        if message:
-            progress.say(f"warning: {message}")
     report = Report(
         {
             "split": options.split,
@@ -64,9 +56,19 @@ def evaluate(
             "runs": {},
         }
     )
+
+    def say(line: str) -> None:
+        progress.say(line)
+        report.lines.append(line)
+
+    for message in dict.fromkeys(
+        unknown_message(eval_set.images, options.names) for eval_set in eval_sets.values()
+    ):
+        if message:
+            say(f"warning: {message}")
     lines: dict[str, list[Point]] = {}
     for run in opened:
-        progress.say(f"{run.name}: {run.metadata.model}, {len(run.metadata.classes)} classes")
+        say(f"{run.name}: {run.metadata.model}, {len(run.metadata.classes)} classes")
         results = {}
         for data_name in named_data:
             one = len(opened) == len(named_data) == 1
@@ -74,36 +76,43 @@ def evaluate(
             eval_set = eval_sets[run.name, data_name]
             numbers = evaluate_one(report, run, data_name, eval_set, stem, options, device)
             results[data_name] = numbers
-            progress.say(f"  {data_name}, {numbers['split']}: {_found(numbers)}")
+            say(f"  {data_name}, {numbers['split']}: {_found(numbers)}")
             if "accuracy" in numbers:
                 interval = numbers["accuracy_95"]
                 point = Point(data_name, eval_set.images.snr_db, numbers["accuracy"], *interval)
                 lines.setdefault(run.name, []).append(point)
             if run.metadata.settings.target == "labels" and eval_set.images.everybody is None:
-                progress.say(f"  warning: {data_name} says of one person alone what they do")
+                say(f"  warning: {data_name} says of one person alone what they do")
             seen = numbers["seen_in_training"]
             if any(seen.values()):
-                progress.say(
+                say(
                     f"  warning: {seen['images']} of these {numbers['images']} images, and the "
                     f"person and motion of {seen['scenes']}, were trained on: this does not test "
                     "on unseen data"
                 )
         first = eval_sets[run.name, next(iter(named_data))]
-        price = run.metadata.cost
-        report.numbers["runs"][run.name] = {
-            "model": run.metadata.model,
-            "parameters": price.parameters,
-            "multiply_adds": price.multiply_adds,
-            "size_px": list(run.metadata.size),
-            "map": run.metadata.map,
-            "trained_on": run.metadata.data,
-            "epochs": len(run.history),
-            "best_epoch": best_epoch(run.history).epoch if run.history else None,
-            "speed": speed(run.folder, first.images, int(first.rows[0]), device, options.batch),
-            "data": results,
-        }
+        timed = speed(run.folder, first.images, int(first.rows[0]), device, options.batch)
+        report.numbers["runs"][run.name] = _about(run) | {"speed": timed, "data": results}
+    about = report.numbers["runs"].items()
+    networks = ([n, *(one[key] for key in NETWORK), *one["speed"].values()] for n, one in about)
+    report.table("networks.csv", ["run", *NETWORK, *SPEEDS], networks)
     _compare(report, opened, lines)
     return report
+
+
+def _about(run: Run) -> dict[str, Any]:
+    """What report.json says of a run, whatever it is evaluated on."""
+    metadata, price = run.metadata, run.metadata.cost
+    return {
+        "model": metadata.model,
+        "parameters": price.parameters,
+        "multiply_adds": price.multiply_adds,
+        "size_px": list(metadata.size),
+        "map": metadata.map,
+        "trained_on": metadata.data,
+        "epochs": len(run.history),
+        "best_epoch": best_epoch(run.history).epoch if run.history else None,
+    }
 
 
 def _found(numbers: Mapping[str, Any]) -> str:
@@ -123,7 +132,8 @@ def _found(numbers: Mapping[str, Any]) -> str:
     low, high = numbers["accuracy_95"]
     return (
         f"{100 * numbers['accuracy']:.2f} % ({100 * low:.2f} to {100 * high:.2f} %) of "
-        f"{numbers['images']}"
+        f"{numbers['images']}, macro F1 {numbers['macro_f1']:.4f}, calibration error "
+        f"{numbers['calibration_error']:.4f}"
     )
 
 
@@ -152,9 +162,6 @@ def _named(paths: Sequence[Path]) -> dict[str, Path]:
     """A short name for every path: its last part, with more of it where two are alike.
 
     dataset.h5 and best.safetensors go by their folder.
-
-    Raises:
-        FolderError: the same path twice.
     """
     whole = [path.resolve() for path in paths]
     whole = [p.parent if p.is_file() and p.name in (DATASET, BEST) else p for p in whole]

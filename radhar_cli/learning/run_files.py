@@ -8,9 +8,8 @@ LAST = "last.ckpt"
 HISTORY = "history.csv"
 CURVES = "curves.png"
 METRICS = "metrics.json"
-SUMMARY = "summary.txt"
 TRAINED_ON = "trained_on.csv"
-ALL = (ABOUT, BEST, LAST, HISTORY, CURVES, METRICS, SUMMARY, TRAINED_ON)
+ALL = (ABOUT, BEST, LAST, HISTORY, CURVES, METRICS, TRAINED_ON)
 
 
 def is_run(path: Path) -> bool:

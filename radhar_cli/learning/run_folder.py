@@ -145,11 +145,7 @@ def best_epoch(history: Sequence[Epoch]) -> Epoch:
 
 
 def reserve_run(folder: Path, metadata: RunMetadata, overwrite: bool) -> None:
-    """Take a locked folder for this run, or refuse it.
-
-    Raises:
-        RunError: it holds something else; the message names what differs.
-    """
+    """Take a locked folder for this run, or refuse it."""
     ours = (folder / ABOUT).exists()
     if ours and (overwrite or not (folder / LAST).exists()):
         for name in reversed(ALL):
@@ -179,11 +175,7 @@ def differences(old: RunMetadata, new: RunMetadata) -> list[str]:
 
 
 def read_metadata(folder: Path) -> RunMetadata:
-    """Metadata of the run in a folder.
-
-    Raises:
-        RunError: there is none, or it is damaged.
-    """
+    """Metadata of the run in a folder."""
     path = folder / ABOUT
     try:
         return RunMetadata.model_validate_json(read_bytes(path))
@@ -230,11 +222,7 @@ def write_history(folder: Path, history: Sequence[Epoch]) -> None:
 
 
 def read_history(folder: Path) -> list[Epoch]:
-    """The epochs of a run.
-
-    Raises:
-        RunError: history.csv is missing or damaged.
-    """
+    """The epochs of a run."""
     path = folder / HISTORY
     try:
         rows = csv.DictReader(io.StringIO(_text(path), newline=""))
@@ -274,9 +262,6 @@ def load_best(folder: Path) -> tuple[RunMetadata, nn.Module]:
 
     Args:
         folder: of the run, or a .safetensors file; it is not trusted.
-
-    Raises:
-        RunError: no such file, or a damaged or foreign one.
     """
     path = folder / BEST if folder.is_dir() else folder
     if not path.exists():
@@ -341,11 +326,7 @@ def write_last(folder: Path, checkpoint: dict[str, Any]) -> None:
 
 
 def read_last(folder: Path) -> dict[str, Any] | None:
-    """The last epoch's checkpoint, None before the first one; tensors and plain values only.
-
-    Raises:
-        RunError: it is damaged, or asks for code to be run.
-    """
+    """The last epoch's checkpoint, None before the first one; tensors and plain values only."""
     path = folder / LAST
     if not path.exists():
         return None

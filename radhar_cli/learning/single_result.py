@@ -12,12 +12,10 @@ from sklearn.metrics import confusion_matrix
 from torch import nn
 
 from radhar_cli.activity import ACTIVITIES
-from radhar_cli.arrays import Index, Levels
+from radhar_cli.arrays import Index
 from radhar_cli.figures.evaluation import (
-    captioned_png,
     confusion_png,
     embeddings_png,
-    reliability_png,
 )
 from radhar_cli.learning import metrics
 from radhar_cli.learning.evaluation import Predictions, open_for, predict, rows_of
@@ -35,7 +33,6 @@ from radhar_cli.learning.run_folder import (
 )
 from radhar_cli.learning.skeleton_result import evaluate_skeletons, found_and_true
 
-MAX_MISTAKES = 12
 MIN_EMBEDDED = 2
 GROUPS = ("in place", "moving")
 
@@ -72,21 +69,13 @@ class EvalSet:
 
 
 def open_eval_set(run: Run, path: Path, options: EvalOptions) -> EvalSet:
-    """Open a data set for a run.
-
-    Raises:
-        FolderError: it does not fit the run.
-    """
+    """Open a data set for a run."""
     images = open_for(run.metadata, path, options.map, resize=options.resize, names=options.names)
     return EvalSet(images, *rows_of(images, options.split))
 
 
 def check_options(runs: Sequence[Run], options: EvalOptions) -> None:
-    """Refuse figures that cannot be drawn, before anything is computed.
-
-    Raises:
-        RunError: of sequences or of several labels, or classes whose group is unknown.
-    """
+    """Refuse figures that cannot be drawn, before anything is computed."""
     ours = {activity.slug for activity in ACTIVITIES}
     for run in runs:
         if options.tsne and run.metadata.input not in ("rgb", "gray"):
@@ -146,12 +135,9 @@ def evaluate_one(
     caption = f"Confusion matrix of {shown.title}: counts, and shares of the true class."
     title = f"{shown.title}: {right:.2f} % of {rows.size}"
     shown.confusion("confusion", caption, counts, names, title)
-    shown.predictions_table()
+    shown.tables(numbers["classes"])
     if options.in_place_vs_moving:
         numbers["in_place_vs_moving"] = shown.in_place_vs_moving()
-    shown.reliability()
-    if images.kind in ("rgb", "gray"):
-        shown.hardest()
     if options.tsne:
         numbers["silhouette"] = shown.tsne()
     return numbers
@@ -178,11 +164,6 @@ class _Shown:
     stem: str
     title: str
 
-    @property
-    def narrow_title(self) -> str:
-        """In two lines, for a small figure."""
-        return self.title.replace(" on ", "\non ", 1)
-
     def figure(self, name: str, caption: str, png: bytes) -> None:
         self.report.figure(f"{name}{self.stem}.png", caption, png)
 
@@ -194,15 +175,19 @@ class _Shown:
         rows = ([one, *row] for one, row in zip(classes, counts.tolist(), strict=True))
         self.report.table(f"{name}{self.stem}.csv", ["true \\ predicted", *classes], rows)
 
-    def predictions_table(self) -> None:
+    def tables(self, classes: Mapping[str, Mapping[str, float]]) -> None:
+        """Numbers of each class, and what was predicted of each image."""
+        each = ([name, *(f"{n:.4g}" for n in one.values())] for name, one in classes.items())
+        head = ("class", "precision", "recall", "f1", "images")
+        self.report.table(f"classes{self.stem}.csv", head, each)
         found, names = self.predictions, self.names
         columns = (found.rows, found.truth, found.predicted, found.probabilities.max(1))
         rows = (
             (found.images.names[row], names[true], names[guess], f"{probability:.6f}")
             for row, true, guess, probability in zip(*columns, strict=True)
         )
-        head = ("image", "true", "predicted", "probability")
-        self.report.table(f"predictions{self.stem}.csv", head, rows)
+        of_image = ("image", "true", "predicted", "probability")
+        self.report.table(f"predictions{self.stem}.csv", of_image, rows)
 
     def in_place_vs_moving(self) -> list[list[int]]:
         """The paper's two groups: S1 to S7 against S8 to S12; counts [true, predicted]."""
@@ -212,33 +197,10 @@ class _Shown:
         counts = confusion_matrix(truth, predicted, labels=[0, 1])
         share = 100 * np.trace(counts) / max(1, counts.sum())
         caption = f"Standing activities (S1 to S7) against moving ones (S8 to S12), {self.title}."
-        title = f"{self.narrow_title}\n{share:.2f} %"
+        title = self.title.replace(" on ", "\non ", 1) + f"\n{share:.2f} %"
         self.confusion("in_place_vs_moving", caption, counts, GROUPS, title)
         found: list[list[int]] = counts.tolist()
         return found
-
-    def reliability(self) -> None:
-        bins = metrics.calibration(self.predictions.truth, self.predictions.probabilities)
-        title = f"{self.narrow_title}\ncalibration error {100 * bins.error:.2f} %"
-        png = reliability_png(bins.confidence, bins.accuracy, bins.count.astype(float), title)
-        self.figure("reliability", f"Reliability: accuracy by confidence, {self.title}.", png)
-
-    def hardest(self) -> None:
-        """The most confident mistakes; where there are none, the least confident predictions."""
-        found = self.predictions
-        sure, wrong = found.probabilities.max(1), found.predicted != found.truth
-        order = np.argsort(-sure, kind="stable")
-        chosen, what = order[wrong[order]][:MAX_MISTAKES], "Most confident mistakes"
-        if not chosen.size:
-            chosen = order[::-1][: MAX_MISTAKES // 3]
-            what = "No mistakes; the least sure predictions"
-        plain = [name.replace("_", " ") for name in self.names]
-        captions = [
-            f"{plain[found.truth[i]]}\n-> {plain[found.predicted[i]]}, {100 * sure[i]:.0f} %"
-            for i in chosen
-        ]
-        png = captioned_png(self._levels(chosen), captions, f"{what}: {self.title}")
-        self.figure("hardest", f"{what}, {self.title}.", png)
 
     def tsne(self) -> dict[str, float | None]:
         """Silhouettes of maps and of features."""
@@ -248,7 +210,7 @@ class _Shown:
         if found.rows.size < MIN_EMBEDDED:
             raise RunError(f"--tsne: needs at least {MIN_EMBEDDED} images; there is one")
         picked = chosen(found.rows.size)
-        maps = np.stack([shrunk(rgb) for rgb in self._levels(picked)])
+        maps = np.stack([shrunk(found.images.pixels.read(int(row))) for row in found.rows[picked]])
         features, label = found.features[picked], found.truth[picked]
         before, after = separation(maps, label), separation(features, label)
         panels = {"input maps": embed(maps), "features before the last layer": embed(features)}
@@ -260,8 +222,3 @@ class _Shown:
             embeddings_png(panels, label, self.names, self.title),
         )
         return {"maps": before, "features": after}
-
-    def _levels(self, chosen: Index) -> list[Levels]:
-        """RGB [H, W, 3] of some predictions."""
-        found = self.predictions
-        return [found.images.pixels.read(int(found.rows[i])) for i in chosen]

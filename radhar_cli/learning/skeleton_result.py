@@ -28,11 +28,7 @@ def found_and_true(
     device: torch.device,
     batch: int,
 ) -> tuple[Float, Float]:
-    """Joints that a network finds, and those that are there, [N, T, joint, 3] in m.
-
-    Raises:
-        RunError: a joint is not finite.
-    """
+    """Joints that a network finds, and those that are there, [N, T, joint, 3] in m."""
     reader = Reader(images.pixels, images.skeletons)
     found, true = list[Float](), list[Float]()
     with torch.inference_mode():

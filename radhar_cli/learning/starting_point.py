@@ -27,10 +27,6 @@ def start_from(run: Path, model: nn.Module, config: TrainConfig, images: ImageSe
     """Load the best weights of a run into a new model.
 
     Where the classes differ, the last layer keeps its random weights.
-
-    Raises:
-        RunError: the run cannot be read.
-        ConfigError: it is of another model, input or image size.
     """
     metadata, earlier = load_best(run)
     for what, theirs, ours in (

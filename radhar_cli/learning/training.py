@@ -146,11 +146,7 @@ def train_on(
 def checked_images(
     config: TrainConfig, data: Path | Sequence[Path], names: Mapping[str, str | None] | None = None
 ) -> ImageSet:
-    """Open a data set, or several as one, and make sure that it can be learned from.
-
-    Raises:
-        FolderError: fewer than two classes, a class without training images, no validation images.
-    """
+    """Open a data set, or several as one, and make sure that it can be learned from."""
     paths = [data] if isinstance(data, Path) else list(data)
     if config.data_weights is not None and len(config.data_weights) != len(paths):
         raise ConfigError(
@@ -240,7 +236,7 @@ class _Training:
             self._keep()
         run.write_history(self.folder, self.history)
         if resumed < config.epochs or not (self.folder / run_files.METRICS).exists():
-            write_run_summary(self.folder, self.metadata, self.history, self.model, device)
+            write_run_summary(self.folder, self.metadata, self.history, device)
         return Outcome(self.folder, self.history, resumed, SCORES[config.target])
 
     def _restore(self) -> int:
@@ -272,11 +268,7 @@ class _Training:
         return len(self.history)
 
     def _ensure_best(self) -> None:
-        """Make sure that the best weights are there; write them again if they are the last ones.
-
-        Raises:
-            RunError: they are gone, or damaged.
-        """
+        """Make sure that the best weights are there; write them again if they are the last ones."""
         best = best_epoch(self.history)
         try:
             run.load_best(self.folder)

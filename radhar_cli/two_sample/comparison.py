@@ -127,10 +127,6 @@ def compare(
         names: {class in one of the sets: common name, or None to leave it out}.
         most: maps of a class and side; where there are more, or the other side has fewer, they
             are drawn at random.
-        seed: of what is drawn.
-
-    Raises:
-        FolderError: one cannot be read, or they do not fit each other.
     """
     pair = open_sides(simulated, measured, map_name, names or {})
     drawn = {name: _drawn(pair, name, most, seed) for name in pair.sides[0].classes}

@@ -35,11 +35,7 @@ class Side:
     masks: bool
 
     def levels(self, row: int) -> Levels:
-        """Levels [H, W] of an image.
-
-        Raises:
-            FolderError: it cannot be read.
-        """
+        """Levels [H, W] of an image."""
         return self.images.pixels.read(row)[..., 0]
 
     def power(self, levels: Levels) -> Float:
@@ -95,9 +91,6 @@ def open_sides(
     Args:
         map_name: which map; the first of each if None.
         names: {class in one of them: common name, or None to leave it out}.
-
-    Raises:
-        FolderError: it is none of these, they have no class in common, or differ in map.
     """
     paths = (simulated, measured)
     given = [_open(path, map_name) for path in paths]

@@ -131,15 +131,6 @@ def test_the_config_that_is_written_loads_and_builds_a_data_set(tmp_path: Path) 
     assert built.returncode == 0, built.stderr
 
 
-def test_a_recording_counts_once(tmp_path: Path) -> None:
-    path, other = recorded(tmp_path), recorded(tmp_path, seed=2)
-    (tmp_path / "link.h5").hardlink_to(path)
-    (tmp_path / "copy.h5").write_bytes(path.read_bytes())
-    for again in (path.name, "link.h5", "copy.h5"):
-        with pytest.raises(CaptureError, match=f"{again}: has the same samples as {path};"):
-            fit([path, other, tmp_path / again])
-
-
 def test_a_recording_too_short_for_anybody_to_move_is_refused_as_such(tmp_path: Path) -> None:
     with pytest.raises(CaptureError, match=r"lasts 0\.2 s; should last at least 0\.5 s"):
         fit([recorded(tmp_path, "duration_s=0.2")])

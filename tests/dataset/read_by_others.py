@@ -50,7 +50,6 @@ if __name__ == "__main__":
     print(
         json.dumps(
             {
-                "folder": {name: hub(place / "set", name) for name in ("rtm", "stft")},
                 "parquet": {name: hub(place / "parquet", name) for name in ("rtm", "stft")},
                 "tree": tree(place / "set/png/stft/train"),
             }

@@ -97,16 +97,15 @@ def test_each_folder_is_read_by_the_libraries_it_is_for(place, h5, tmp_path):
     )
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)
-    for form in ("folder", "parquet"):
-        for name in ("rtm", "stft"):
-            there = found[form][name]
-            assert there["labels"] == list(h5.attrs["class_slugs"])
-            for split in SPLITS:
-                right = [
-                    {"image": digest(h5[f"maps/{name}"][row]), **line(h5, row)}
-                    for row in rows_of(h5, split)
-                ]
-                assert there["parts"][split] == right
+    for name in ("rtm", "stft"):
+        there = found["parquet"][name]
+        assert there["labels"] == list(h5.attrs["class_slugs"])
+        for split in SPLITS:
+            right = [
+                {"image": digest(h5[f"maps/{name}"][row]), **line(h5, row)}
+                for row in rows_of(h5, split)
+            ]
+            assert there["parts"][split] == right
     train = place / "set/png/stft/train"
     files = sorted(path.relative_to(train) for path in train.rglob("*.png"))
     assert sorted(found["tree"]) == [[str(path), path.parts[0]] for path in files]
@@ -143,21 +142,6 @@ def test_it_has_a_card_and_the_same_bytes_again(place, tmp_path):
     for one in front.get("configs", []):
         for part in one["data_files"]:
             assert [*(tmp_path / "a").glob(part["path"])]
-    assert (tmp_path / "a/gallery.png").read_bytes() == (place / "set/gallery.png").read_bytes()
-
-
-def test_the_licence_that_an_owner_chose_goes_along(place, tmp_path):
-    h5, card = tmp_path / "set/dataset.h5", tmp_path / "set/README.md"
-    h5.parent.mkdir()
-    h5.symlink_to(place / "set/dataset.h5")
-    text = (place / "set/README.md").read_text()
-    chosen = "license: other\nlicense_name: radar-lab-1\n"
-    card.write_text(text.replace("license: unknown\n", chosen))
-    convert(h5.parent, tmp_path / "parquet", "parquet", Listener())
-    made = (tmp_path / "parquet/README.md").read_text()
-    front = yaml.safe_load(made.split("---\n")[1])
-    assert (front["license"], front["license_name"]) == ("other", "radar-lab-1")
-    assert "Licence: other." in made
 
 
 def test_what_a_killed_run_left_is_cleared_and_a_run_at_work_is_not(place, tmp_path):

@@ -16,8 +16,6 @@ from radhar_cli.config import load_config
 from radhar_cli.dataset import build as build_module
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.png import colour_table
-from radhar_cli.dataset.reading import Dataset
-from radhar_cli.dataset.table import write_metadata, wrong_metadata
 
 ROWS, MANY, FEW, SIZE, BATCH = 150_000, 15_000, 9_000, 16, 32
 BYTES_A_ROW = 16
@@ -58,21 +56,3 @@ def test_the_master_of_150_000_rows_holds_a_few_bytes_a_row(tmp_path, monkeypatc
         assert file["maps/stft"].id.get_num_chunks() == ROWS
     with (tmp_path / "large/set/scenes.csv").open() as table:
         assert sum(1 for _ in table) == ROWS + 1
-
-
-@pytest.mark.slow
-def test_metadata_of_many_rows_take_no_memory_of_theirs(tmp_path, monkeypatch):
-    built(MANY, tmp_path / "set", monkeypatch)
-    folder = tmp_path / "set/set"
-    with Dataset(folder / "dataset.h5") as data:
-        tracemalloc.start()
-        try:
-            write_metadata(data, folder)
-            peak = tracemalloc.get_traced_memory()[1]
-        finally:
-            tracemalloc.stop()
-        assert wrong_metadata(data, folder) == []
-    lines = [path.read_bytes().count(b"\n") for path in folder.rglob("metadata.csv")]
-    assert sum(lines) == MANY + len(lines)
-    print(f"{peak / 2**20:.1f} MiB of memory for {MANY} rows")
-    assert peak < 2**22

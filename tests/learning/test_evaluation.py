@@ -66,9 +66,9 @@ def test_report_of_a_good_run(learned, tmp_path):
     page = (out / "report.html").read_text()
     assert "://" not in page
     sources = re.findall(r'src="([^"]{0,30})', page)
-    assert len(sources) == len(report.figures) == 6
+    assert len(sources) == len(report.figures) == 4
     assert all(source.startswith("data:image/png;base64,") for source in sources)
-    for name in ("confusion", "reliability", "hardest", "tsne", "curves"):
+    for name in ("confusion", "tsne", "curves"):
         assert (out / f"{name}.png").read_bytes().startswith(b"\x89PNG"), name
     with (out / "predictions.csv").open() as file:
         rows = list(csv.DictReader(file))

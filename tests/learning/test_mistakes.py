@@ -109,7 +109,7 @@ def test_missing_best_weights_are_reported_or_restored(best, data, copy):
 
 
 def test_derived_files_are_written_again(data, run_dir, copy):
-    for name in (run_files.HISTORY, run_files.METRICS, run_files.CURVES, run_files.SUMMARY):
+    for name in (run_files.HISTORY, run_files.METRICS, run_files.CURVES):
         (copy / name).unlink()
     trained(data, copy)
     assert {p.name for p in copy.iterdir()} >= set(run_files.ALL)

@@ -189,7 +189,7 @@ def test_joints_are_found_nearer_than_by_a_person_who_stands_still(boards: Path)
     assert numbers["mean_absolute_error_cm"] == pytest.approx(100 * np.abs(found - true).mean())
     assert numbers["joints"]["head"]["mpjpe_cm"] == pytest.approx(off[..., 1].mean(), rel=1e-5)
     assert numbers["mpjpe_cm"] < 25
-    assert "joints within 15 cm" in (run / "summary.txt").read_text()
+    assert "joints within 15 cm" in (run / "metrics.json").read_text()
     for name in ("joints.csv", "joints.png", "skeletons.png", "report.html"):
         assert (boards / "eval_joints" / name).exists()
 

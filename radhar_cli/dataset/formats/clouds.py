@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from radhar_cli.arrays import Float
 from radhar_cli.config.identity import as_yaml
 from radhar_cli.config.ti_header import board_header
-from radhar_cli.dataset.card import owner_licence
 from radhar_cli.dataset.layout import CARD, CONFIG, Rows
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.dataset.table import Entry, entries
@@ -143,7 +142,7 @@ def _ti_axes(places: Float) -> Float:
 
 def _describe(data: Dataset, folder: Path, reading: str) -> None:
     """Write what the files hold, and the config that they follow from."""
-    licence = owner_licence(data.path.parent).get("license", data.config.output.license)
+    licence = data.config.output.license
     people = (
         " Others are in the scenes too: class and joints are those of the sample's main person."
         if data.config.people

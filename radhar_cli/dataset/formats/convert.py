@@ -7,7 +7,6 @@ from importlib import import_module
 from pathlib import Path
 from typing import TypeAlias
 
-from radhar_cli.dataset.card import owner_licence
 from radhar_cli.dataset.files import refuse_links
 from radhar_cli.dataset.folder import folder_lock
 from radhar_cli.dataset.reading import Dataset, open_dataset
@@ -25,13 +24,7 @@ Writer: TypeAlias = Callable[[Dataset, Path, Progress], None]
 
 
 def convert(path: Path, out: Path, to: str, progress: Progress) -> int:
-    """Write a data set in another format; return its number of samples.
-
-    Raises:
-        FolderError: the data set cannot be read or is damaged, there is something at `out`, or
-            another run is making it.
-        UnfinishedError: `out` cannot be written.
-    """
+    """Write a data set in another format; return its number of samples."""
     if out.exists() or out.is_symlink():
         raise FolderError(f"{out}: already exists; -o should name a new folder")
     module, function = FORMATS[to]
@@ -41,7 +34,6 @@ def convert(path: Path, out: Path, to: str, progress: Progress) -> int:
             raise FolderError(
                 f"{path}: has no points; {to} needs a board's data set, maps: [points]"
             )
-        owner_licence(data.path.parent)  # refused before anything is written
         scratch = out.absolute().with_name(f".{out.name}.unfinished")
         refuse_links(scratch.parent, scratch)
         unfinished = scratch / "set"

@@ -12,22 +12,30 @@ import pyarrow.parquet as pq
 from radhar_cli.arrays import Levels
 from radhar_cli.config.identity import as_yaml
 from radhar_cli.config.schema import Config
-from radhar_cli.dataset.card import card, configurations, number_features, owner_licence
-from radhar_cli.dataset.gallery import gallery_png
-from radhar_cli.dataset.hub import loading
-from radhar_cli.dataset.layout import CARD, CONFIG, GALLERY, Rows
+from radhar_cli.dataset.card import card
+from radhar_cli.dataset.layout import CARD, CONFIG, Rows
 from radhar_cli.dataset.png import colour_table, encode_png
 from radhar_cli.dataset.reading import Dataset
-from radhar_cli.dataset.table import Entry, entries
+from radhar_cli.dataset.table import Entry, entries, number_names
 from radhar_cli.errors import FolderError
 from radhar_cli.progress import Progress
 
 FILE_BYTES = 2**28  # of pixels per file
 GROUP, GROUP_BYTES = 256, 2**26  # samples and bytes of pixels per row group
+READING = """\
+```python
+from datasets import load_dataset
+
+data = load_dataset("FOLDER OR NAME ON THE HUB", "{}")  # one configuration a map
+sample = data["train"][0]
+sample["image"]  # numpy.asarray(...): grey levels; .convert("RGB"): colours
+```
+
+Samples stand in turn, one of each class. `image.bytes` of a row is a PNG file."""
 
 
 def write(data: Dataset, folder: Path, progress: Progress) -> None:
-    """Write <map>/<split>-<number>-of-<files>.parquet, card, picture and resolved config."""
+    """Write <map>/<split>-<number>-of-<files>.parquet, card and resolved config."""
     schema = schema_of(data.config)
     group = max(1, min(GROUP, GROUP_BYTES // prod(data.config.image.size_px)))
     for name in data.config.maps:
@@ -40,13 +48,19 @@ def write(data: Dataset, folder: Path, progress: Progress) -> None:
                         file.write_table(_table(data, name, some, schema))
                         progress.advance(len(some) if name == data.config.maps[0] else 0)
     parts = data.present_splits.values()
-    files_of = {n: {part: f"{n}/{part}-*.parquet" for part in parts} for n in data.maps}
-    configs = configurations(data.config, files_of)
-    reading = "Samples stand in turn, one of each class. `image.bytes` of a row is a PNG file."
-    reading = f"{loading(data.config.maps[0])}\n\n{reading}"
-    front = {"configs": configs, **owner_licence(data.path.parent)}
-    (folder / CARD).write_text(card(data, front, reading), encoding="utf-8")
-    (folder / GALLERY).write_bytes(gallery_png(data))
+    names = {str(a.index): a.slug for a in data.config.every_class}
+    label = {"name": "label", "dtype": {"class_label": {"names": names}}}
+    features = [{"name": "image", "dtype": "image"}, label, *_number_features(data.config)]
+    configs = [
+        {
+            "config_name": name,
+            "data_files": [{"split": part, "path": f"{name}/{part}-*.parquet"} for part in parts],
+            "features": features,
+        }
+        for name in data.maps
+    ]
+    reading = READING.format(data.config.maps[0])
+    (folder / CARD).write_text(card(data, {"configs": configs}, reading), encoding="utf-8")
     (folder / CONFIG).write_text(as_yaml(data.config), encoding="utf-8")
 
 
@@ -59,9 +73,16 @@ def _files_of_split(data: Dataset, split: int) -> Iterator[tuple[int, Iterator[E
         yield files, islice(here, most)
 
 
+def _number_features(config: Config) -> list[dict[str, str]]:
+    """Columns of numbers, as `datasets` writes them down: index, and what was drawn."""
+    kinds = {"index": "int64"} | ({"labels": "string"} if config.people else {})
+    kinds |= {n: "int64" if n == "subject" else "float64" for n in number_names(config)}
+    return [{"name": name, "dtype": kind} for name, kind in kinds.items()]
+
+
 def schema_of(config: Config) -> pa.Schema:
     """Columns; the card says what `datasets` makes of them."""
-    kinds = {one["name"]: one["dtype"] for one in number_features(config)}
+    kinds = {one["name"]: one["dtype"] for one in _number_features(config)}
     image = pa.struct([("bytes", pa.binary()), ("path", pa.string())])
     columns = [("image", image), ("label", pa.int64())]
     return pa.schema([*columns, *((name, pa.type_for_alias(kind)) for name, kind in kinds.items())])
@@ -86,11 +107,7 @@ def _table(data: Dataset, name: str, here: list[Entry], schema: pa.Schema) -> pa
 
 
 def _checked_png(data: Dataset, table: Levels, map_name: str, row: int) -> bytes:
-    """The PNG file of a sample with a colour table [256, 3], as `generate` writes it.
-
-    Raises:
-        FolderError: its levels are not those that were stored.
-    """
+    """The PNG file of a sample with a colour table [256, 3], as `generate` writes it."""
     name = f"maps/{map_name}"
     levels, stored = data.large[name][row], data.sha256[name].rows(row, row + 1)[0]
     if hashlib.sha256(levels.tobytes()).hexdigest().encode() != stored:

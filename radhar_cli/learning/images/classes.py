@@ -10,11 +10,7 @@ from radhar_cli.learning.images.image_set import ImageSet
 
 
 def read_classes(path: Path) -> dict[str, str | None]:
-    """Read `foreign name: our name`, or `null` for a class to leave out.
-
-    Raises:
-        ConfigError: unreadable file, or a value that is not a name.
-    """
+    """Read `foreign name: our name`, or `null` for a class to leave out."""
     names = load_mapping(path)
     for foreign, ours in names.items():
         if ours is not None and (not isinstance(ours, str) or not ours):
@@ -26,11 +22,7 @@ def read_classes(path: Path) -> dict[str, str | None]:
 
 
 def renamed(images: ImageSet, names: Mapping[str, str | None]) -> ImageSet:
-    """The images under the names that `--classes FILE` gives them.
-
-    Raises:
-        FolderError: the file names a class that is not there, or leaves none.
-    """
+    """The images under the names that `--classes FILE` gives them."""
     for name in names:
         if name not in images.classes:
             hint = did_you_mean(name, images.classes, f"it has {', '.join(images.classes)}")
@@ -39,11 +31,7 @@ def renamed(images: ImageSet, names: Mapping[str, str | None]) -> ImageSet:
 
 
 def refuse_mistyped(names: Mapping[str, str | None], known: Sequence[str]) -> None:
-    """Refuse names of classes that neither the model nor radhar knows.
-
-    Raises:
-        ConfigError: names the first.
-    """
+    """Refuse names of classes that neither the model nor radhar knows."""
     every = [*known, *(activity.slug for activity in ACTIVITIES if activity.slug not in known)]
     for foreign, ours in names.items():
         if ours is not None and ours not in every:
@@ -52,11 +40,7 @@ def refuse_mistyped(names: Mapping[str, str | None], known: Sequence[str]) -> No
 
 
 def known_to(images: ImageSet, known: Sequence[str]) -> ImageSet:
-    """The images of the classes that a model knows.
-
-    Raises:
-        FolderError: it knows none of them.
-    """
+    """The images of the classes that a model knows."""
     unknown = [name for name in images.classes if name not in known]
     if len(unknown) == len(images.classes):
         hint = did_you_mean(unknown[0], known, f"the model knows {', '.join(known)}")

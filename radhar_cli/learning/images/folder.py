@@ -30,11 +30,7 @@ class FilePixels:
     size: tuple[int, int] | None  # (H, W) that all of them should have, None for any
 
     def read(self, row: int) -> Levels:
-        """RGB [H, W, 3] of a row, or one channel three times.
-
-        Raises:
-            FolderError: it is damaged, or of another size.
-        """
+        """RGB [H, W, 3] of a row, or one channel three times."""
         if self.kind == "rgb":
             return read_rgb(self.files[row], self.size)
         return repeated(read_gray(self.files[row], self.size))
@@ -45,9 +41,6 @@ def folder_images(root: Path, map_name: str | None, kind: str, any_size: bool = 
 
     Args:
         any_size: images may differ in size; `size` is that of the first.
-
-    Raises:
-        FolderError: it is no such tree; the message says what is there.
     """
     own, inside = our_map(root), root
     if map_name is not None and map_name != own:
@@ -114,11 +107,7 @@ def our_map(inside: Path) -> str | None:
 
 
 def _folders(root: Path, inside: Path) -> list[str]:
-    """Names of the folders in `root`, of which each may become a class.
-
-    Raises:
-        FolderError: a link that leads out of `inside`, or a name that is not plain text.
-    """
+    """Names of the folders in `root`, of which each may become a class."""
     names = sorted(p.name for p in _visible(root, inside) if p.is_dir())
     for name in names:
         if not name.isprintable():
@@ -127,11 +116,7 @@ def _folders(root: Path, inside: Path) -> list[str]:
 
 
 def image_files(folder: Path, inside: Path) -> list[Path]:
-    """Image files of a class folder and of numbered folders in it, in the order of their names.
-
-    Raises:
-        FolderError: a link that leads out of `inside`.
-    """
+    """Image files of a class folder and of numbered folders in it, in the order of their names."""
     numbered = (p for p in _visible(folder, inside) if p.name.isdecimal() and p.is_dir())
     places = (folder, *sorted(numbered))
     return sorted(p for place in places for p in _visible(place, inside) if is_image(p))

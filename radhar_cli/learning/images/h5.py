@@ -34,11 +34,7 @@ class H5Pixels(Opened):
     table: Levels
 
     def read(self, row: int) -> Levels:
-        """RGB [H, W, 3] of a row.
-
-        Raises:
-            FolderError: the file is damaged there.
-        """
+        """RGB [H, W, 3] of a row."""
         rgb: Levels = self.table[self.data.maps[self.map][row]]
         return rgb
 
@@ -62,9 +58,6 @@ def h5_sequences(
         product: which; the first of that kind if None.
         frames: of a sequence; auto is as many as the longest sample has.
         points: most points of a frame.
-
-    Raises:
-        FolderError: it has none.
     """
     with open_dataset(path) as data:
         name = sequence_product(data, kind, product)

@@ -24,11 +24,7 @@ class Pixels(Protocol):
     """Reads images by row; can be pickled for worker processes."""
 
     def read(self, row: int) -> Levels:
-        """RGB [H, W, 3] of a row, or a sequence (`SequenceReader.read`).
-
-        Raises:
-            FolderError: it cannot be read; the message names the file.
-        """
+        """RGB [H, W, 3] of a row, or a sequence (`SequenceReader.read`)."""
 
 
 @dataclass(frozen=True)
@@ -58,18 +54,20 @@ class Skeletons:
 
 
 @dataclass(frozen=True)
-class SomeRows:
-    """A selection of the rows of other pixels."""
+class Chosen:
+    """Rows of one or several `Pixels`: row i is row `rows[i]` of `parts[part[i]]`."""
 
-    pixels: Pixels
+    parts: tuple[Pixels, ...]
+    part: Index
     rows: Index
 
     def read(self, row: int) -> Levels:
-        return self.pixels.read(int(self.rows[row]))
+        parts, which = self.parts, int(self.part[row])
+        return parts[which].read(int(self.rows[row]))
 
     def joints(self, row: int) -> Float:
         """As `SequenceReader.joints`."""
-        return Skeletons(self.pixels)[int(self.rows[row])]
+        return Skeletons(self.parts[int(self.part[row])])[int(self.rows[row])]
 
 
 @dataclass(frozen=True)
@@ -153,11 +151,7 @@ class ImageSet:
         return Skeletons(self.pixels)
 
     def rows(self, split: str) -> Index:
-        """Rows of a split: train, val, test or all.
-
-        Raises:
-            FolderError: there are none.
-        """
+        """Rows of a split: train, val, test or all."""
         if split == "all":
             return np.arange(len(self))
         if self.split is None:
@@ -170,11 +164,7 @@ class ImageSet:
         return numbers
 
     def renamed(self, names: Mapping[str, str | None]) -> "ImageSet":
-        """The same images with some classes under other names; None leaves a class out.
-
-        Raises:
-            FolderError: no class is left.
-        """
+        """The same images with some classes under other names; None leaves a class out."""
         new = [names.get(name, name) for name in self.classes]
         classes = class_order({name for name in new if name is not None})
         if not classes:
@@ -203,18 +193,14 @@ class ImageSet:
             split=None if self.split is None else self.split[rows],
             names=tuple(self.names[row] for row in rows),
             scenes=None if self.scenes is None else tuple(self.scenes[row] for row in rows),
-            pixels=SomeRows(self.pixels, rows),
+            pixels=Chosen((self.pixels,), np.zeros_like(rows), rows),
             source=self.source[rows],
             persons=None if self.persons is None else tuple(self.persons[row] for row in rows),
             everybody=None if self.everybody is None else tuple(self.everybody[r] for r in rows),
         )
 
     def cut(self, share: float, seed: int) -> "ImageSet":
-        """The same images, split class by class into train and validation if they have no split.
-
-        Raises:
-            FolderError: a class of one image, which cannot be cut.
-        """
+        """The same images, split class by class into train and validation if they have no split."""
         if self.split is not None:
             return self
         split = np.full(len(self), TRAIN, dtype=np.uint8)
@@ -248,11 +234,7 @@ def class_order(names: set[str]) -> tuple[str, ...]:
 
 
 def labels_for(images: ImageSet, known: Sequence[str]) -> Index:
-    """Labels [N] in the numbering of another list of classes, matched by name.
-
-    Raises:
-        FolderError: a class that is not in the list.
-    """
+    """Labels [N] in the numbering of another list of classes, matched by name."""
     for name in images.classes:
         if name not in known:
             hint = did_you_mean(name, known, f"the model knows {', '.join(known)}")
@@ -266,11 +248,7 @@ def repeated(levels: Levels) -> Levels:
 
 
 def split_named(name: str) -> str:
-    """Check the name of a split.
-
-    Raises:
-        FolderError: no such split.
-    """
+    """Check the name of a split."""
     known = {**SPLIT_NAMES, "all": -1}
     if name not in known:
         hint = did_you_mean(name, known, "the splits are train, val, test and all")

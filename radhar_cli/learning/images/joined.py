@@ -1,39 +1,18 @@
 """Several sets of images as one."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
-from radhar_cli.arrays import Float, Index, Levels
+from radhar_cli.arrays import Float, Index
 from radhar_cli.errors import FolderError
-from radhar_cli.learning.images.image_set import ImageSet, Pixels, Skeletons, class_order
-
-
-@dataclass(frozen=True)
-class JoinedPixels:
-    """Several `Pixels`, concatenated; `first` [parts] is the first row of each."""
-
-    parts: tuple[Pixels, ...]
-    first: Index
-
-    def read(self, row: int) -> Levels:
-        part = int(np.searchsorted(self.first, row, side="right")) - 1
-        return self.parts[part].read(row - int(self.first[part]))
-
-    def joints(self, row: int) -> Float:
-        """As `SequenceReader.joints`."""
-        part = int(np.searchsorted(self.first, row, side="right")) - 1
-        return Skeletons(self.parts[part])[row - int(self.first[part])]
+from radhar_cli.learning.images.image_set import Chosen, ImageSet, class_order
 
 
 def joined(sets: Sequence[ImageSet]) -> ImageSet:
-    """One set of all images, classes matched by name.
-
-    Raises:
-        FolderError: they differ in size, or some are split and others not.
-    """
+    """One set of all images, classes matched by name."""
     if len(sets) == 1:
         return sets[0]
     for one, other in pairwise(sets):
@@ -45,7 +24,8 @@ def joined(sets: Sequence[ImageSet]) -> ImageSet:
     several = any(one.everybody for one in sets)
     classes = class_order({name for one in sets for name in one.classes})
     numbers = [np.array([classes.index(name) for name in one.classes]) for one in sets]
-    count = np.array([len(one) for one in sets])
+    source = np.repeat(np.arange(len(sets)), [len(one) for one in sets])
+    rows = np.concatenate([np.arange(len(one)) for one in sets])
     scenes = [one.scenes or ("",) * len(one) for one in sets]
     return replace(
         sets[0],
@@ -54,10 +34,10 @@ def joined(sets: Sequence[ImageSet]) -> ImageSet:
         split=np.concatenate([one.split for one in sets if one.split is not None]),
         names=tuple(name for one in sets for name in one.names),
         scenes=tuple(scene for each in scenes for scene in each),
-        pixels=JoinedPixels(tuple(one.pixels for one in sets), np.cumsum(count) - count),
+        pixels=Chosen(tuple(one.pixels for one in sets), source, rows),
         snr_db=sets[0].snr_db if len({one.snr_db for one in sets}) == 1 else None,
         left_out={name: n for one in sets for name, n in one.left_out.items()},
-        source=np.repeat(np.arange(len(sets)), count),
+        source=source,
         persons=None,
         everybody=tuple(names for one in sets for names in one.done) if several else None,
     )

@@ -18,11 +18,7 @@ from radhar_cli.learning.settings import OF_SEQUENCES, Kind, TrainConfig
 
 
 def open_inputs(path: Path, map_name: str | None, config: TrainConfig) -> ImageSet:
-    """Open what a network reads: images as `open_images`, or sequences of a dataset.h5.
-
-    Raises:
-        FolderError: it is neither, or it is damaged.
-    """
+    """Open what a network reads: images as `open_images`, or sequences of a dataset.h5."""
     if config.model not in OF_SEQUENCES:
         return open_images(path, map_name, config.input)
     if not is_h5(path):
@@ -39,9 +35,6 @@ def open_images(
         map_name: which map; the first one if None.
         kind: "rgb" as the PNGs are coloured, or "gray", one channel three times.
         resize: (H, W) to bring every image to; they may then differ in size.
-
-    Raises:
-        FolderError: it is none of these, or it is damaged.
     """
     if not path.exists():
         raise FolderError(f"{path}: no such file or folder")
@@ -74,11 +67,7 @@ def is_h5(path: Path) -> bool:
 
 
 def summarise_tree(root: Path) -> dict[str, Any]:
-    """Count the images of a tree by class, split and size; pixels are not read.
-
-    Raises:
-        FolderError: it is no such tree, or a file is not an image.
-    """
+    """Count the images of a tree by class, split and size; pixels are not read."""
     images = open_images(root, None, "rgb")
     assert isinstance(images.pixels, FilePixels)
     files = images.pixels.files

@@ -30,9 +30,6 @@ def scan(images: ImageSet, rows: Sequence[int] | Index) -> Scan:
     """Read some images once; a damaged one is found here.
 
     Numbers with a unit, as clouds have them, have no statistics.
-
-    Raises:
-        FolderError: an image cannot be read.
     """
     channels = images.channels if images.kind in ("rgb", "gray") else 1
     digests, histogram = list[str](), np.zeros((channels, 256), dtype=np.int64)

@@ -58,11 +58,7 @@ class Opened:
 
     @property
     def data(self) -> Dataset:
-        """The data set, opened in this process.
-
-        Raises:
-            FolderError: it is damaged.
-        """
+        """The data set, opened in this process."""
         mine = self._open.get(os.getpid())
         if mine is None:
             self._open.clear()
@@ -98,11 +94,7 @@ class SequenceReader(Opened):
 
 
 def sequence_product(data: Dataset, kind: Kind, name: str | None = None) -> str:
-    """The product of a data set that is read as sequences of a kind; the first if none is named.
-
-    Raises:
-        FolderError: it is not there.
-    """
+    """The product of a data set that is read as sequences of a kind; the first if none is named."""
     wanted = [one for one in FRAME_MAPS if (one == CLOUDS) == (kind == "clouds")]
     have = [one for one in wanted if one in data.products]
     if not have or name not in (*have, None):

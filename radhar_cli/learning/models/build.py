@@ -33,9 +33,6 @@ def build_model(
         outputs: as many as classes, or as coordinates of all joints.
         size: of an image, (frames, points) of clouds.
         per_frame: every frame of a sequence has outputs.
-
-    Raises:
-        ModelError: unknown name, or images it cannot take.
     """
     height, width = size
     if name == cloudnet.NAME:

@@ -16,11 +16,7 @@ OURS = (fftnet.NAME, smallnet.NAME, smallnet.WITH_BATCH_NORM)
 
 
 def zoo_model(name: str, classes: int, size: tuple[int, int]) -> nn.Module:
-    """Build a network of timm with fresh weights for images of that size.
-
-    Raises:
-        ModelError: timm is not installed, does not know the name, or cannot take the size.
-    """
+    """Build a network of timm with fresh weights for images of that size."""
     ours = did_you_mean(name, OURS, "")
     if ours:
         raise ModelError(f"model {name!r}: is unknown; {ours}")

@@ -1,0 +1,128 @@
+"""The data card, and PNG folders of large classes."""
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from command_line import ROOT
+from listener import Listener
+from small import fingerprint, small_config
+
+from radhar_cli.config import Config, load_config
+from radhar_cli.dataset import layout
+from radhar_cli.dataset.build import build
+from radhar_cli.dataset.card import BIBTEX
+from radhar_cli.dataset.identity import versions
+from radhar_cli.dataset.verify import verify
+from radhar_cli.learning.images.opening import open_images
+
+CHANGES = [
+    "maps=[rtm, stft]",
+    "image.size_px=[12, 16]",
+    "split={by: subject, subjects: 3, train: 0.34, validation: 0.33, test: 0.33}",
+    "output.license=cc-by-4.0",
+]
+
+
+def config(place: Path, *more: str) -> Config:
+    return load_config(small_config(place), [*CHANGES, *more])
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("card")
+    build(config(place), place / "set", 1, Listener())
+    return place / "set"
+
+
+@pytest.fixture
+def copy(whole: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copytree(whole, tmp_path / "set"))
+
+
+def test_the_card_describes_the_data_set(whole: Path) -> None:
+    text = (whole / "README.md").read_text()
+    assert "| 7 | `walking` | 1 | 1 | 1 |" in text
+    assert "none of the 3 is in two of its parts" in text
+    assert "a joint moves faster than the Doppler PRF/2" in text
+    for library, version in versions().items():
+        assert f"{library} {version}" in text
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ("seed=7", True),
+        ("processing={clutter: highpass, highpass: {cutoff_hz: 10}}", True),
+        ("processing.clutter=mean", False),
+        ("snr_db=null", False),
+    ],
+)
+def test_the_card_says_what_noise_alone_tells(change: str, said: bool, tmp_path: Path) -> None:
+    """Of a canceller that removes slow motion, where there is noise to be left."""
+    build(config(tmp_path, change), tmp_path / "set", 1, Listener())
+    found = "noise alone tells `stationary`" in (tmp_path / "set/README.md").read_text()
+    assert found == said
+
+
+def test_the_citation_is_that_of_the_project() -> None:
+    wanted = yaml.safe_load((ROOT / "CITATION.cff").read_text())
+    paper = wanted["preferred-citation"]
+    who = paper["authors"][0]
+    for text in (
+        wanted["title"],
+        paper["title"],
+        str(paper["year"]),
+        f"{who['family-names']}, {who['given-names']}",
+    ):
+        assert f"{{{text}}}" in BIBTEX
+
+
+def test_a_missing_card_is_written_again(copy: Path, tmp_path: Path) -> None:
+    before = fingerprint(copy)
+    (copy / "README.md").unlink()
+    build(config(tmp_path), copy, 1, Listener())
+    assert fingerprint(copy) == before
+
+
+def test_an_edited_card_is_kept_until_overwrite(copy: Path, tmp_path: Path) -> None:
+    card = copy / "README.md"
+    text = card.read_text().replace("cc-by-4.0", "mit").replace("# Simulated", "# My simulated")
+    card.write_text(text)
+    build(config(tmp_path), copy, 1, Listener())
+    assert card.read_text() == text
+    assert verify(copy, 0).problems == []
+    build(config(tmp_path), copy, 1, Listener(), overwrite=True)
+    assert "license: cc-by-4.0" in card.read_text()
+
+
+def test_every_reader_finds_the_subfolders_of_large_classes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(layout, "PNGS_A_FOLDER", 2)
+    folder = tmp_path / "set"
+    sizes = "samples_per_class={per_activity: {default: 2, walking: 5}}"
+    few = config(tmp_path, sizes, "split={train: 0.6, validation: 0.4}")
+    build(few, folder, 1, Listener())
+    tree = folder / "png/stft"
+    named = sorted(p.relative_to(tree).as_posix().split("/", 1)[1] for p in tree.rglob("*.png"))
+    assert named == [
+        *(f"punching/0000{n}.png" for n in (0, 1)),
+        *(f"walking/000{n // 2}/0000{n}.png" for n in range(5)),
+        *(f"walking_to_falling/0000{n}.png" for n in (0, 1)),
+    ]
+    report = verify(folder, 0)
+    assert (report.pngs, report.problems) == (18, [])
+    before = fingerprint(folder)
+    for path in sorted(folder.rglob("00003.png")):
+        path.unlink()
+    assert build(few, folder, 1, Listener()).pngs == 2
+    assert fingerprint(folder) == before
+    images, ours = open_images(tree, None, "gray"), open_images(folder, "stft", "gray")
+    assert sorted(images.names) == sorted(ours.names)
+    for row, name in enumerate(images.names):
+        same = ours.names.index(name)
+        assert images.classes[images.label[row]] == ours.classes[ours.label[same]]
+        assert np.array_equal(images.pixels.read(row), ours.pixels.read(same))

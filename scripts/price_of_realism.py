@@ -75,8 +75,8 @@ ROWS = (
     Row("another person, gate on the own", ("processing.range_sum=gated",), OTHER),
     Row("a room, one bounce", (), ROOM),
     Row("beams of 70 x 30 degrees", (), (BEAM,)),
-    Row("the same beams in the room", ROOM, (BEAM,)),
-    Row("reflections inside a wall", WALL, EXACT),
+    Row("the same beams in the room", ROOM, (BEAM,), learned=False),
+    Row("reflections inside a wall", WALL, EXACT, learned=False),
     Row("reflections inside a wall, range-time", (*WALL, "maps=[rtm]"), EXACT, "rtm"),
     Row("a room, two bounces", (), (*ROOM, TWICE), learned=False),  # a second a map
     Row("the second bounce alone", ROOM, (TWICE,), learned=False),

@@ -11,10 +11,10 @@ from radhar_cli.activity import activity_named
 from radhar_cli.config import load_config
 from radhar_cli.config.schema import Config
 from radhar_cli.dataset.scene_fields import fields
-from radhar_cli.errors import ConfigError
+from radhar_cli.errors import ConfigError, SceneError
 from radhar_cli.pipeline.physics import antennas_of
 from radhar_cli.pipeline.run import record
-from radhar_cli.pipeline.validity import Flags, check_scene
+from radhar_cli.pipeline.validity import Flags, check_scene, config_warnings, draw_valid_scene
 from radhar_cli.scene import draw_scene, nominal_scene
 from radhar_cli.simulation.scene_file import write_all
 from radhar_cli.simulation.simulate import simulate
@@ -116,6 +116,28 @@ def test_who_leaves_the_room_is_warned_of() -> None:
     assert Flags.WALL in check_scene(outside).flags
 
 
+def test_who_cannot_stay_in_the_room_is_told_where_they_were(tmp_path: Path) -> None:
+    near = {"range_m": 5, "angle_deg": 180, "cross_range_m": 2.4, "speed_mps": 1.0}
+    for whose, more in (("", {"motion": near}), ("people.0.", {"people": [{"motion": near}]})):
+        drawn = rf"{whose}motion.range_m = 5, {whose}motion.cross_range_m = 2.4"
+        with pytest.raises(SceneError, match=drawn):
+            draw_valid_scene(config(on_invalid="error", **more), WALKING, 0)
+
+
+def test_ghosts_beyond_the_half_band_are_warned_of() -> None:
+    """By way of the wall at 7 m a person at 5 m is seen at up to 9 m."""
+    told = "echoes by way of room.faces come from up to"
+    for rate, order, warned in (
+        (4e6, 1, False),
+        (2e6, 1, True),
+        (2.4e6, 1, False),
+        (2.4e6, 2, True),
+    ):
+        room = {"box_m": BOX, "faces": {"back": "metal"}, "order": order}
+        given = config(radar=RADAR | {"adc_rate_hz": rate}, room=room)
+        assert any(told in line for line in config_warnings(given)) == warned, (rate, order)
+
+
 def test_rooms_are_drawn() -> None:
     box = {**BOX, "x": [0, {"uniform": [6, 8]}]}
     wet = {"floor": {"eps_r": {"uniform": [4, 9]}}}
@@ -145,6 +167,21 @@ def test_rooms_are_drawn() -> None:
         (
             "room: {box_m: {x: [0, 9], y: [-2, 2], height: 1.2}, faces: {left: wood}}",
             r"radar.tx_m.*inside room.box_m",
+        ),
+        ("room: {faces: {floor: wood}}\nradar: {rx_m: [0, 0, -1]}", r"radar.rx_m.*above the floor"),
+        (
+            "room: {box_m: {x: [0, 7]}, faces: {left: wood}}\nmotion: {range_m: 8}",
+            r"motion.range_m = 8.0: should be inside room.box_m.x, 0 to 7 m",
+        ),
+        (
+            "room: {box_m: {x: [0, 20]}, faces: {left: wood}}\nmotion: {range_m: 8}\n"
+            "people: [{motion: {range_m: 8, cross_range_m: {uniform: [3, 4]}}}]",
+            r"people.0.motion.cross_range_m = .*inside room.box_m.y, -2.5 to 2.5 m",
+        ),
+        (
+            "room: {box_m: {x: [0, 20], height: 1.6}, faces: {left: wood}}\n"
+            "subject: {height_m: 1.8}",
+            r"room.box_m.height = 1.6: should be above people, 1.8 m tall",
         ),
         ("room: {faces: {left: {eps_r: 0.5}}}", r"room.faces.left.eps_r = 0.5: should be 1"),
         ("radar: {beam: {azimuth_deg: 0}}", r"radar.beam.azimuth_deg"),

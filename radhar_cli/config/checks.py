@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from itertools import pairwise
 from math import ceil
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from radhar_cli.activity import ACTIVITIES, DEFAULT, Activity, activity_named, own_activities
 from radhar_cli.config.annotations import Limits, People, of_kind
@@ -23,7 +23,6 @@ from radhar_cli.config.schema import (
     class_activities,
     elevations,
     for_activity,
-    possible_maps,
 )
 from radhar_cli.light import SPEED_OF_LIGHT
 from radhar_cli.radar.board import DEVICES
@@ -98,6 +97,9 @@ def _step_problems(c: Config) -> Iterator[Problem]:
         if (value is None) == (radar.waveform == "sfcw"):
             right = "should be given" if value is None else "should be null"
             yield Problem(f"radar.{key}", value, f"{right} with radar.waveform: {radar.waveform}")
+    if radar.output == "real" and radar.waveform != "cw":
+        right = f"should be iq with radar.waveform: {radar.waveform}; cw alone can be real"
+        yield Problem("radar.output", "real", right)
     if radar.waveform == "cw":
         if "rtm" in c.maps:
             right = "should be maps of Doppler: radar.waveform: cw has no range"
@@ -145,7 +147,7 @@ def _impulse_problems(c: Config) -> Iterator[Problem]:
         yield Problem("radar.profile_samples", radar.profile_samples, right)
     if c.engine.kind == "cube":
         yield Problem("engine.kind", "cube", f"should be direct {of}, which has no beat")
-    if wrong := [name for name in c.maps if name in MAP_NAMES and name not in possible_maps(c)]:
+    if wrong := [name for name in c.maps if name in MAP_NAMES and name not in ("rtm", "stft")]:
         yield Problem("maps", wrong, f"should be stft and rtm {of}, whose samples are real")
     if "stft" in c.maps and processing.range_sum != "gated":
         right = f"should be gated {of}, whose samples have no mean over range"
@@ -166,7 +168,7 @@ def _people_problems(c: Config) -> Iterator[Problem]:
     if c.people and (c.motion.model == "paper" or c.recorded is not None):
         why = "motion.model: paper" if c.recorded is None else "recordings"
         right = f"should be empty with {why}, where one person is the sample"
-        yield Problem("people", f"{len(c.people)} persons", right)
+        yield Problem("people", len(c.people), right)
         return
     if c.people and c.radar.cfg is not None and c.snr_db is not None:
         right = "should be null with radar.cfg and people: a board's noise is thermal"
@@ -309,6 +311,12 @@ def _waveform_problems(c: Config) -> Iterator[Problem]:
     shortest_interval = 1 / support(radar.prf_hz)[1]
     samples = "ADC samples per chirp (adc_rate_hz * chirp_s is"
     key = "processing.range_fft_length"
+    if radar.waveform in ("cw", "impulse"):
+        right = f"should be left out with radar.waveform: {radar.waveform}, which has no chirp"
+        for key in ("processing.range_fft_length", "processing.range_reference"):
+            if at(c, key) not in (None, "centre"):
+                yield Problem(key, at(c, key), right)
+        return
     if not support(radar.chirp_s)[1] < shortest_interval:
         right = f"should be shorter than the pulse interval 1/prf_hz = {shortest_interval:g} s"
         if radar.waveform == "sfcw":
@@ -316,7 +324,7 @@ def _waveform_problems(c: Config) -> Iterator[Problem]:
             yield Problem("radar.steps", radar.steps, right)
         else:
             yield Problem("radar.chirp_s", radar.chirp_s, right)
-    if fewest < 2 and radar.waveform != "cw":
+    if fewest < 2:
         right = f"should give at least 2 {samples} {fewest})"
         yield Problem("radar.adc_rate_hz", radar.adc_rate_hz, right)
     if most > 2**20:
@@ -391,7 +399,7 @@ def _gate_problems(c: Config) -> Iterator[Problem]:
     if processing.range_sum != "gated":
         return
     fsst = [name for name in c.maps if name.startswith("fsst")]
-    if fsst:
+    if fsst and c.radar.waveform != "impulse":  # which says so itself
         yield Problem(
             "maps",
             fsst,
@@ -489,18 +497,24 @@ def _back_wall_problems(c: Config) -> Iterator[Problem]:
     if c.wall is not None:
         right = "should be null with a wall in front: one of the two is simulated"
         yield Problem(key, wall, right)
-    everybody = [("", c.motion.range_m, c.chosen_activities)]
+    for at_range, _, ends in _places(c, "range_m"):
+        farthest = max([0.0, *(end for _, end in ends)])
+        if support(wall)[0] <= farthest:
+            where = f"at up to {farthest:g} m ({at_range})"
+            yield Problem(key, wall, f"should be beyond the people, who stand {where}")
+
+
+def _places(c: Config, name: str) -> Iterator[tuple[str, Any, list[tuple[float, float]]]]:
+    """Key and value of a coordinate of everybody, and its least and most of each activity."""
+    everybody = [("", c.motion, c.chosen_activities)]
     with suppress(ValueError):  # of an unknown activity, which is told by itself
         everybody += [
-            (f"people.{n}.", one.motion.range_m, c.activities_of(n + 1))
-            for n, one in enumerate(c.people)
+            (f"people.{n}.", one.motion, c.activities_of(n + 1)) for n, one in enumerate(c.people)
         ]
-    for whose, number, activities in everybody:
-        ranges = [for_activity(number, one) for one in activities]
-        farthest = max([0.0, *(support(one)[1] for one in ranges if one is not None)])
-        if support(wall)[0] <= farthest:
-            where = f"at up to {farthest:g} m ({whose}motion.range_m)"
-            yield Problem(key, wall, f"should be beyond the people, who stand {where}")
+    for whose, motion, activities in everybody:
+        value = getattr(motion, name)
+        numbers = [for_activity(value, one) for one in activities]
+        yield f"{whose}motion.{name}", value, [support(one) for one in numbers if one is not None]
 
 
 def _room_problems(c: Config) -> Iterator[Problem]:
@@ -518,6 +532,10 @@ def _room_problems(c: Config) -> Iterator[Problem]:
         right = "should be null with radar.cfg and room.faces: a board's noise is thermal"
         yield Problem("snr_db", c.snr_db, right)
     if room.box_m is None:
+        for name in ("tx_m", "rx_m") if radar.cfg is None else ("position_m",):
+            if support(getattr(radar, name)[2])[0] <= 0:
+                right = "should be above the floor of room.faces, at a height of 0"
+                yield Problem(f"radar.{name}", list(getattr(radar, name)), right)
         if walls := [name for name in room.faces.given if name != "floor"]:
             right = f"should say where {', '.join(walls)} of room.faces are; a floor needs none"
             yield Problem("room.box_m", None, right)
@@ -527,6 +545,10 @@ def _room_problems(c: Config) -> Iterator[Problem]:
         if support(low)[1] >= support(high)[0]:
             yield Problem(f"room.box_m.{key}", [low, high], "should be [lower, higher]")
             return
+    tall = support(c.subject.height_m)[0]
+    if height[1] <= tall:
+        right = f"should be above people, {tall:g} m tall or more (subject.height_m)"
+        yield Problem("room.box_m.height", box.height, right)
     within = [(support(low)[1], support(high)[0]) for low, high in (box.x, box.y)]
     within.append((0.0, height[0]))
     for name in ("tx_m", "rx_m") if radar.cfg is None else ("position_m",):
@@ -540,6 +562,12 @@ def _room_problems(c: Config) -> Iterator[Problem]:
         elif not all(inside[1:] if before else inside):
             right = "should be inside room.box_m, or before its front"
             yield Problem(f"radar.{name}", list(antenna), right)
+    for key, name, ends_of_box in (("x", "range_m", box.x), ("y", "cross_range_m", box.y)):
+        low, high = support(ends_of_box[0])[0], support(ends_of_box[1])[1]
+        for where, value, ends in _places(c, name):
+            if any(most <= low or least >= high for least, most in ends):
+                right = f"should be inside room.box_m.{key}, {low:g} to {high:g} m"
+                yield Problem(where, value, right)
 
 
 def _image_problems(c: Config) -> Iterator[Problem]:

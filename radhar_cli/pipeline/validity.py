@@ -24,6 +24,7 @@ from radhar_cli.pipeline.physics import (
     reflectors_of,
     wall_of,
     waveform_of,
+    ways_of,
 )
 from radhar_cli.pipeline.segment_paths import Body
 from radhar_cli.pipeline.unused_keys import unused_keys
@@ -263,14 +264,14 @@ def draw_valid_scene(config: Config, activity: Activity, index: int) -> tuple[Sc
         if check.invalid is None or (config.on_invalid == "keep" and not check.too_close):
             return _with_others(config, scene, check.flags)
     assert check is not None
+    why, cure = f"{check.invalid}{_drawn(scene.people[0])}", _cure(config, check)
     if config.on_invalid == "redraw":
         raise SceneError(
             f"sample {activity.slug}/{index}: no scene inside the model in {MAX_ATTEMPTS} draws "
-            f"(on_invalid: redraw); the last: {check.invalid}; {_cure(config, check)}"
+            f"(on_invalid: redraw); the last: {why}; {cure}"
         )
     raise SceneError(
-        f"sample {activity.slug}/{index}: {check.invalid} (on_invalid: {config.on_invalid}); "
-        f"{_cure(config, check)}"
+        f"sample {activity.slug}/{index}: {why} (on_invalid: {config.on_invalid}); {cure}"
     )
 
 
@@ -291,6 +292,7 @@ def _with_others(config: Config, scene: Scene, flags: Flags) -> tuple[Scene, Fla
             check = _checked(scene, person)
             kept = config.on_invalid != "redraw" and not check.too_close
             why = None if kept and config.on_invalid == "keep" else check.invalid
+            why = why and why + _drawn(person)
             if why is None and too_near(scene, number) is None:
                 flags |= check.flags & ~Flags.GATE  # which follows the sample's own person
                 break
@@ -325,6 +327,14 @@ def too_near(scene: Scene, last: int | None = None) -> int | None:
     return None
 
 
+def _drawn(person: Person) -> str:
+    """The numbers that have put a person where they are."""
+    whose = f"people.{person.number - 1}." if person.number else ""
+    drawn = {one: getattr(person.motion, one) for one in ("range_m", "cross_range_m")}
+    shown = (f"{whose}motion.{key} = {one:.4g}" for key, one in drawn.items() if one is not None)
+    return f", with {', '.join(shown)}"
+
+
 def _crowded(number: int) -> str:
     return f"people.{number - 1} comes within {TORSOS_APART_M} m of another person"
 
@@ -336,7 +346,9 @@ def _cure(config: Config, check: SceneCheck) -> str:
     if check.flags & Flags.HALF_BAND and config.radar.cfg is not None and not check.too_close:
         return "a smaller motion.range_m stays in the range that the board's .cfg sees"
     if config.on_invalid == "redraw" and check.flags & Flags.HALF_BAND and not check.too_close:
-        return "a smaller radar.bandwidth_hz has a longer half-band, a smaller motion.range_m room"
+        impulse = config.radar.waveform == "impulse"
+        longer = "radar.profile_m that ends later" if impulse else "smaller radar.bandwidth_hz"
+        return f"a {longer} reaches farther, a smaller motion.range_m leaves room"
     if config.on_invalid == "redraw":
         return "motion.range_m and motion.angle_deg should leave people room"
     return "on_invalid: redraw draws such scenes again"
@@ -346,7 +358,28 @@ def config_warnings(config: Config) -> list[str]:
     """Say which keys and lines of a .cfg have no effect, and which interference lines alias."""
     cfg = config.board.unknown if config.radar.cfg is not None else ()
     lines = [f"radar.cfg: {command} is not known and has no effect" for command in cfg]
-    return unused_keys(config) + tone_warnings(config) + lines + _opaque(config)
+    return unused_keys(config) + tone_warnings(config) + lines + _opaque(config) + _folded(config)
+
+
+def _folded(config: Config) -> list[str]:
+    """Say that some echoes by way of faces come from beyond the ranges that the radar has."""
+    if config.room.faces is None or config.radar.waveform in ("cw", "impulse"):
+        return []
+    farthest, reach = 0.0, 0.0
+    for activity in config.chosen_activities:
+        scene = nominal_scene(config, activity)
+        antennas, motion = antennas_of(scene.config), scene.people[0].motion
+        p = np.array([motion.range_m or 0.0, motion.cross_range_m or 0.0, 1.0])[:, None, None]
+        for tx, rx in ways_of(scene.config):
+            way = leg(tx.image(p), antennas.tx) + leg(rx.image(p), antennas.rx)
+            farthest = max(farthest, float(way[0, 0]) / 2)
+        reach = waveform_of(scene.config).half_band_range
+    if farthest < reach:
+        return []
+    return [
+        f"echoes by way of room.faces come from up to {farthest:.3g} m, beyond the range half-band "
+        f"of {reach:.3g} m: they are missing from maps, or alias (radar.adc_rate_hz, room.order)"
+    ]
 
 
 def _opaque(config: Config) -> list[str]:

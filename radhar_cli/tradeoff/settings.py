@@ -129,6 +129,8 @@ def _switches(config: Config) -> list[Setting]:
     ]
     if config.motion.model == "human" and not config.people:
         switches.append(_switch("another person, who walks", "people=[{}]"))
+    if config.radar.beam is None:
+        switches.append(_switch("beams of 70 x 30 degrees", BEAM))
     if config.room.faces is None and config.room.back_wall_m is None:
         order_2 = (*CORRIDOR, "room.order=2")
         switches += [
@@ -137,7 +139,9 @@ def _switches(config: Config) -> list[Setting]:
             _over("the same seen by beams", [(*CORRIDOR, BEAM), (BEAM,)], "beams in the open"),
         ]
     if config.wall is not None:
+        on, off = ((*CUBE, "wall.rays=plane", f"wall.echoes={kind}") for kind in ("exact", "none"))
         switches += [
+            Setting("switch", "reflections inside the wall", on, off, on, off, "the cube"),
             *(
                 _switch(f"{rays} rays", f"wall.rays={rays}")
                 for rays in ("straight", "plane", "refracted")

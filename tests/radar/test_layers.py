@@ -94,6 +94,17 @@ def test_the_second_pass_is_21_dB_below_the_first() -> None:
     assert t == pytest.approx(single / (1 - second), abs=1e-12)
 
 
+def test_over_a_band_and_both_ways_it_is_15_dB_below_and_59_cm_behind() -> None:
+    f, away = np.linspace(1e9, 3e9, 400), np.linspace(0, 1.5, 1501)
+    turn = np.exp(4j * np.pi / SPEED_OF_LIGHT * f * away[:, None])
+    both = Layers(EPS_6, False).passed(f, np.ones(1)) ** 2
+    level = 20 * np.log10(np.abs(turn @ (np.hanning(f.size) * both)))
+    first = int(level.argmax())
+    behind = first + 400 + int(level[first + 400 : first + 800].argmax())
+    assert level[behind] - level[first] == pytest.approx(-15.2, abs=0.1)
+    assert away[behind] - away[first] == pytest.approx(0.59, abs=0.005)
+
+
 def test_where_nothing_comes_back_it_is_the_loss_at_the_carrier() -> None:
     # 1 m with a loss tangent of 0.1 swallows what is reflected inside.
     thick = Wall((2.0, 0.0, 0.0), (1.0, 9.0, 9.0), 6.0, 0.1)

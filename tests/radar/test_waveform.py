@@ -199,6 +199,9 @@ def test_the_doppler_of_real_samples_is_symmetric(kind: str) -> None:
             r"maps.*others with radar.output: real",
         ),
         ({"radar": CW["radar"] | {"chirp_s": 1e-5}}, r"radar.chirp_s.*should be left out"),
+        ({"processing": {"range_fft_length": 64}}, r"range_fft_length.*should be left out"),
+        ({"processing": {"range_reference": "start"}}, r"range_reference.*should be left out"),
+        ({"radar": {"output": "real"}}, r"radar.output.*should be iq with .* fmcw"),
     ],
 )
 def test_what_cw_does_not_have(more: dict[str, object], message: str) -> None:

@@ -162,6 +162,7 @@ class TestSettings:
         path.write_text(CONFIG.replace("model: paper", "model: human") + "wall: {}\n")
         names = {setting.name for setting in sweep(Scenes(path, (), quick=True).config())}
         assert {"another person, who walks", "straight rays", "refracted rays"} <= names
+        assert {"beams of 70 x 30 degrees", "reflections inside the wall"} <= names
         assert "plane rays" not in names
 
     def test_the_other_body_setting_is_the_one_the_config_lacks(self, config):

@@ -1,0 +1,158 @@
+"""Draw what scenes add to a map: docs/images/crossing.png, corner.png, ringing.png.
+
+    python scripts/draw_scenes.py [-o docs/images]
+
+crossing: two people who pass each other, and how much of its echo each keeps behind the other.
+corner: a walk by two walls with and without echoes by way of them. ringing: a walk behind a wall,
+with and without the reflections inside it. Nominal scenes of this file, without noise.
+"""
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+
+from radhar_cli.activity import activity_named
+from radhar_cli.config import Config
+from radhar_cli.pipeline.physics import antennas_of, motion_of, ways_of
+from radhar_cli.pipeline.run import record
+from radhar_cli.processing.power_map import PowerMap
+from radhar_cli.radar.layers import Layer, Layers
+from radhar_cli.radar.propagation import leg
+from radhar_cli.radar.waveform import SPEED_OF_LIGHT
+from radhar_cli.scene import Scene, nominal_scene
+
+ROOT = Path(__file__).resolve().parents[1]
+WALKING = activity_named("walking")
+WALK: dict[str, Any] = {"activities": ["walking"], "snr_db": None, "on_invalid": "keep"}
+CROSSING: dict[str, Any] = {
+    "radar": {"carrier_hz": 24e9, "bandwidth_hz": 2e9, "prf_hz": 2000},
+    "duration_s": 4,
+    "motion": {"range_m": 2.0, "cross_range_m": -0.9, "angle_deg": 31, "speed_mps": 1.17},
+    "people": [
+        {"motion": {"range_m": 7, "cross_range_m": 0.9, "angle_deg": 211, "speed_mps": 1.17}}
+    ],
+}
+CORNER: dict[str, Any] = {
+    "radar": {"carrier_hz": 24e9, "bandwidth_hz": 2e9, "prf_hz": 2000},
+    "duration_s": 4,
+    "motion": {"range_m": 5.5, "cross_range_m": -1.5, "angle_deg": 150, "speed_mps": 1.0},
+}
+CORNER_WALLS = {
+    "box_m": {"x": [-1, 7], "y": [-9, 1.5], "height": 2.8},
+    "faces": {"left": "concrete", "back": "concrete"},
+    "order": 2,
+}
+RINGING: dict[str, Any] = {
+    "radar": {"carrier_hz": 1e9, "bandwidth_hz": 2e9, "prf_hz": 256, "adc_rate_hz": 5e6},
+    "duration_s": 4,
+    "motion": {"range_m": 6, "angle_deg": 180, "speed_mps": 0.8},
+    "engine": {"kind": "cube"},
+}
+WALL = {"center_m": [1, 0, 1.25], "size_m": [0.24, 8, 3], "eps_r": 6, "loss_tangent": 0.03}
+WALLS = {
+    "0.24 m, eps 6": Layers((Layer(0.24, 6 * (1 - 0.03j)),), False),
+    "cavity of brick": Layers((Layer(0.1, "brick"), Layer(0.1, 1), Layer(0.1, "brick")), False),
+    "none": Layers((Layer(0.24, 1),), False),
+}
+
+
+def scene_of(document: dict[str, Any], **more: Any) -> Scene:
+    return nominal_scene(Config.model_validate(WALK | document | more), WALKING)
+
+
+def show(panel: Axes, shown: PowerMap, title: str, least: float, most: float) -> None:
+    """The rows of a map between two values, the strongest 50 dB."""
+    rows = shown.rows.values
+    kept = (rows >= least) & (rows <= most)
+    level = 10 * np.log10(np.maximum(shown.power[kept], 1e-300) / shown.power.max())
+    times = shown.columns.values
+    extent = (times[0], times[-1], rows[kept][0], rows[kept][-1])
+    panel.imshow(level, origin="lower", aspect="auto", cmap="jet", vmin=-50, vmax=0, extent=extent)
+    panel.set(title=title, xlabel="time (s)")
+
+
+def crossing(path: Path) -> None:
+    """Plan, range-time, Doppler, and what shadows leave of each person's echo."""
+    figure, (plan, ranges, doppler, kept) = plt.subplots(
+        1, 4, figsize=(14, 3.4), layout="constrained"
+    )
+    scene = scene_of(CROSSING, body={"scatterers": "segments"})
+    maps = record(scene, ["rtm", "stft"])
+    show(ranges, maps["rtm"], "range (m)", 0, 9)
+    show(doppler, maps["stft"], "Doppler (Hz)", -700, 700)
+    t = np.linspace(0, 4, 400)
+    one, two = (
+        record(scene_of(CROSSING, body={"shadowing": on}), ["paths"])["paths"](t).amplitude
+        for on in (True, False)
+    )
+    for person, (name, colour) in zip(scene.people, (("own", "C0"), ("other", "C3")), strict=True):
+        x, y, _ = motion_of(person).torso(t)[:, 0]
+        plan.plot(y, x, colour, label=name)
+        plan.plot(y[::100], x[::100], "o", color=colour)
+        mine = slice(13 * person.number, 13 * person.number + 13)
+        left = (one[mine] ** 2).sum(axis=0) / (two[mine] ** 2).sum(axis=0)
+        kept.plot(t, 10 * np.log10(left), colour, label=name)
+    plan.plot(0, 0.4, "k^")
+    plan.set(title="plan, a mark each second", xlabel="y (m)", ylabel="x (m)", xlim=(-2, 2))
+    plan.invert_xaxis()
+    kept.set(title="echo kept behind the other (dB)", xlabel="time (s)")
+    kept.legend()
+    figure.savefig(path, dpi=80)
+
+
+def corner(path: Path) -> None:
+    """Range-time and Doppler without and with two walls; where each kind of path should be."""
+    figure, panels = plt.subplots(2, 2, figsize=(9, 6.5), layout="constrained")
+    for walls, (ranges, doppler) in zip(({}, CORNER_WALLS), panels, strict=True):
+        scene = scene_of(CORNER, body={"scatterers": "segments"}, room=walls)
+        maps, name = record(scene, ["rtm", "stft"]), "two walls" if walls else "in the open"
+        show(ranges, maps["rtm"], f"{name}: range (m)", 0, 13)
+        show(doppler, maps["stft"], f"{name}: Doppler (Hz)", -400, 400)
+        t, antennas = np.array([0.0, 4.0]), antennas_of(scene.config)
+        p = motion_of(scene.people[0]).torso(t)
+        for tx, rx in ways_of(scene.config):
+            way = (leg(tx.image(p), antennas.tx) + leg(rx.image(p), antennas.rx))[0] / 2
+            if tx.name <= rx.name and "+" not in rx.name:  # the other way round is as long
+                ranges.text(4.05, way[1], f"{tx.name}/{rx.name}", fontsize=7, va="center")
+                ranges.plot(4.0, way[1], "k<", markersize=3, clip_on=False)
+        ranges.set_xlim(0, 4)
+    figure.savefig(path, dpi=80)
+
+
+def ringing(path: Path) -> None:
+    """Range-time with one pass of the wall and with all, and what a still point looks like."""
+    figure, panels = plt.subplots(1, 3, figsize=(11, 3.4), layout="constrained")
+    for echoes, panel, name in zip(("none", "exact"), panels, ("one pass", "all"), strict=False):
+        scene = scene_of(RINGING, wall={**WALL, "echoes": echoes})
+        show(panel, record(scene, ["rtm"])["rtm"], f"{name}: range (m)", 1, 8)
+    f = np.linspace(1e9, 3e9, 400)
+    away = np.linspace(-0.5, 2.5, 600)
+    turn = np.exp(4j * np.pi / SPEED_OF_LIGHT * f * away[:, None])
+    for name, wall in WALLS.items():
+        left = np.abs(turn @ (np.hanning(f.size) * wall.passed(f, np.ones(1)) ** 2))
+        panels[2].plot(away, 20 * np.log10(left / left.max()), label=name)
+    panels[2].set(title="a point behind the wall, Hann (dB)", xlabel="range behind it (m)")
+    panels[2].set(ylim=(-60, 2))
+    panels[2].legend()
+    figure.savefig(path, dpi=80)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("-o", "--out", type=Path, default=ROOT / "docs/images")
+    out = parser.parse_args().out
+    matplotlib.use("Agg")
+    out.mkdir(parents=True, exist_ok=True)
+    for draw in (crossing, corner, ringing):
+        draw(out / f"{draw.__name__}.png")
+
+
+if __name__ == "__main__":
+    main()

@@ -17,6 +17,7 @@ from radhar_cli.config.schema import (
     OF_FRAMES,
     OF_POINTS,
     Config,
+    Falls,
     PerActivity,
     SequenceConfig,
     WallConfig,
@@ -581,7 +582,10 @@ def _image_problems(c: Config) -> Iterator[Problem]:
 
 
 def _gets_up_after_a_fall(names: tuple[str, ...]) -> bool:
-    return ("falling", "getting_up") in pairwise(names)
+    return any(
+        later in ("getting_up", "trying_to_get_up") and name.startswith("falling")
+        for name, later in pairwise(names)
+    )
 
 
 # Where the motion of people holds, {key: (least, most)}; beyond, legs would be too short.
@@ -596,8 +600,9 @@ def _human_problems(c: Config) -> Iterator[Problem]:
     """Numbers beyond what people do, of the activities that depend on them."""
     sequences = {slug: getattr(one, "sequence", ()) for slug, one in c.classes.items()}
     lying = [slug for slug, names in sequences.items() if _gets_up_after_a_fall(names)]
-    if lying and c.motion.fall != "forward":
-        right = f"should be forward: classes.{lying[0]} gets up from lying on the belly"
+    fall = c.motion.fall
+    if lying and "sideways" in (fall.choice if isinstance(fall, Falls) else (fall,)):
+        right = f"should not be sideways: in classes.{lying[0]} people get up, from belly or back"
         yield Problem("motion.fall", c.motion.fall, right)
     for key, (low, high) in HUMAN_LIMITS.items():
         number = at(c, key)

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
-from itertools import pairwise
 from math import ceil
 from typing import NamedTuple
 
@@ -17,7 +16,6 @@ from radhar_cli.config.schema import (
     OF_FRAMES,
     OF_POINTS,
     Config,
-    Falls,
     PerActivity,
     SequenceConfig,
     WallConfig,
@@ -581,13 +579,6 @@ def _image_problems(c: Config) -> Iterator[Problem]:
         yield Problem("image.doppler_limits_mps", list(limits), right)
 
 
-def _gets_up_after_a_fall(names: tuple[str, ...]) -> bool:
-    return any(
-        later in ("getting_up", "trying_to_get_up") and name.startswith("falling")
-        for name, later in pairwise(names)
-    )
-
-
 # Where the motion of people holds, {key: (least, most)}; beyond, legs would be too short.
 _limits: tuple[tuple[str, Limits | People], ...] = (
     *of_kind(Config, Limits),
@@ -598,12 +589,6 @@ HUMAN_LIMITS = {key: (one.low, one.high) for key, one in _limits if one.high < M
 
 def _human_problems(c: Config) -> Iterator[Problem]:
     """Numbers beyond what people do, of the activities that depend on them."""
-    sequences = {slug: getattr(one, "sequence", ()) for slug, one in c.classes.items()}
-    lying = [slug for slug, names in sequences.items() if _gets_up_after_a_fall(names)]
-    fall = c.motion.fall
-    if lying and "sideways" in (fall.choice if isinstance(fall, Falls) else (fall,)):
-        right = f"should not be sideways: in classes.{lying[0]} people get up, from belly or back"
-        yield Problem("motion.fall", c.motion.fall, right)
     for key, (low, high) in HUMAN_LIMITS.items():
         number = at(c, key)
         users = [one for one in c.chosen_activities if c.depends_on(one, key)]

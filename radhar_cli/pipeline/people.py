@@ -23,7 +23,7 @@ from radhar_cli.motion.human.falling import (
     Supine,
 )
 from radhar_cli.motion.human.falling_from_seat import FallFromSeat
-from radhar_cli.motion.human.falling_sideways import FallSideways
+from radhar_cli.motion.human.falling_sideways import FallingSideways, FallSideways, RiseFromSide
 from radhar_cli.motion.human.getting_up import GetUp, TryToGetUp
 from radhar_cli.motion.human.grabbing import Grab
 from radhar_cli.motion.human.idle import (
@@ -195,10 +195,17 @@ def _sequence(person: Person) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
         can = _repertoire(person, duration, place)
         (movement,) = can.sequence([name], [inf if duration is None else duration])
         if isinstance(movement, GetUp | TryToGetUp) and movements:
-            lies = movements[-1].part(Physique(1.7), 0.0, 0.0).after
-            movement = replace(movement, before=lies)
+            movement = _after(movements[-1], movement)
         movements.append(movement)
     return tuple(movements), numbers.pauses_s
+
+
+def _after(fall: Movement, up: GetUp | TryToGetUp) -> Movement:
+    """How people get up who have fallen, or tried to get up, so."""
+    fell = fall.part(Physique(1.7), 0.0, 0.0)
+    if isinstance(fell, FallingSideways):
+        return RiseFromSide(fell.fall, up.duration, isinstance(up, TryToGetUp))
+    return replace(up, before=fell.after)
 
 
 def _repertoire(person: Person, duration: float | None, place: int = 0) -> Repertoire:

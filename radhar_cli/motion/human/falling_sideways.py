@@ -17,9 +17,10 @@ from radhar_cli.motion.human.pose import SIDES, Pose, axes, shoulder_points
 from radhar_cli.motion.human.sitting import Seat
 from radhar_cli.motion.human.two_link import AHEAD, two_link
 
+ON_SIDE = "lying on the side"
 CHANNELS = (
     *("legs", "behind", "length", "pelvis", "trunk"),
-    *("curl", "arms", "elbows", "hands", "still"),
+    *("curl", "arms", "elbows", "hands", "still", "near"),
 )
 
 
@@ -55,7 +56,7 @@ class FallingSideways:
     fall: FallSideways
     begin: float
 
-    after = "lying on the side"
+    after = ON_SIDE
     place = Place()
 
     @property
@@ -121,7 +122,8 @@ class FallingSideways:
     def pose(self, t: Float, idle: IdleState) -> Pose:
         """The body at times t [M] (s)."""
         body, fall = self.person, self.fall
-        legs, behind, length, pelvis, trunk, curl, arms, elbows, share, still = self.course(t)
+        legs, behind, length, pelvis, trunk, *others, still, near = self.course(t)
+        curl, arms, elbows, share = others
         own, nothing = 1 - still, np.zeros(t.size)
         stands = own * (fall.seat is None)
         lean, roll = behind + stands * idle.lean, fall.side * legs + stands * idle.legs_roll
@@ -140,9 +142,79 @@ class FallingSideways:
         flexion = (arms + own * idle.shoulders, elbows + own * idle.elbows)
         bent = fall.bent if fall.seat is None else fall.curled
         lies = body.leg * 2 * bent + fall.hands[1] * body.stature
-        floor = np.array([[fall.hands[0] * body.stature], [fall.side * lies], [HAND]])[:, None]
-        floor = np.broadcast_to(floor, (3, 2, t.size))
+        beside = fall.side * (lies + near * (0.22 * body.stature - lies))
+        ahead = np.full(t.size, fall.hands[0] * body.stature)
+        hand = np.stack([ahead, beside, np.full(t.size, HAND)])[:, None]
+        floor = np.broadcast_to(hand, (3, 2, t.size))
         shoulders = shoulder_points(body, hip, upper_body)
         off_floor = np.array([[0.0, 0.0], [-0.35 * fall.side] * 2, [-1.0, -1.0]])
         upper, fore = supported(body, upper_body, shoulders, flexion, floor, share, off_floor)
         return Pose(hip, upper_body, joints, knees, ankles, upper, fore, idle.breath)
+
+
+@dataclass(frozen=True)
+class RiseFromSide:
+    """From lying after a fall to standing over a crouch above the feet, within `duration` s.
+
+    Who tries alone lifts the trunk and sinks back. The way is a guess.
+    """
+
+    fall: FallSideways
+    duration: float = 3.0
+    tries: bool = False
+
+    def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "RisingFromSide":
+        """The movement from `begin` (s) on."""
+        return RisingFromSide(person, self.fall, begin, self)
+
+
+@dataclass(frozen=True)
+class RisingFromSide(FallingSideways):
+    """Getting up from the side; see `part.Part`."""
+
+    rise: RiseFromSide
+
+    before = ON_SIDE  # type: ignore[assignment]
+
+    @property
+    def after(self) -> str:  # type: ignore[override]
+        """Standing, or on the side again."""
+        return ON_SIDE if self.rise.tries else STANDING
+
+    @property
+    def end(self) -> float:
+        """When the body is at rest again, s."""
+        return self.begin + self.rise.duration
+
+    @property
+    def phases(self) -> tuple[Phase, ...]:
+        """Getting up, then standing or lying."""
+        after = "lying" if self.rise.tries else STANDING
+        return (Phase(self.begin, "getting up"), Phase(self.end, after))
+
+    @cached_property
+    def course(self) -> Course:
+        """Trunk and hands first, then the hip over the feet, then up."""
+        body, fell = self.person, FallingSideways(self.person, self.fall, 0.0)
+        down = fell.course.at(fell.end)
+        if self.rise.tries:
+            lift = {"trunk": -0.4 * down["trunk"], "curl": radians(12), "pelvis": radians(-8)}
+            steps = [Step(one, angle, 0.0, 0.5) for one, angle in lift.items()]
+            steps += [Step(one, -angle, 0.6, 0.4) for one, angle in lift.items()]
+        else:
+            low, high = 0.6 * body.leg, body.rest_height - body.ankle
+            steps = [
+                Step("trunk", 0.4 * -down["trunk"], 0.0, 0.40),
+                Step("trunk", 0.6 * -down["trunk"], 0.35, 0.40),
+                Step("near", 1.0, 0.10, 0.45),
+                Step("hands", -1.0, 0.50, 0.30),
+                Step("length", low - down["length"], 0.15, 0.40),
+                Step("length", high - low, 0.58, 0.42),
+                Step("curl", radians(52) - down["curl"], 0.15, 0.45),
+                Step("curl", radians(-52), 0.60, 0.40),
+                Step("arms", radians(45) - down["arms"], 0.2, 0.3),
+                Step("arms", radians(-45), 0.60, 0.40),
+                *(Step(one, -down[one], 0.22, 0.40) for one in ("legs", "pelvis")),
+                Step("still", -1.0, 0.6, 0.4),
+            ]
+        return Course.of(down, timed(steps, self.begin, self.rise.duration))

@@ -20,7 +20,7 @@ from radhar_cli.motion.human.falling import (
     Sitting,
 )
 from radhar_cli.motion.human.falling_from_seat import FallFromSeat
-from radhar_cli.motion.human.falling_sideways import FallSideways
+from radhar_cli.motion.human.falling_sideways import FallSideways, RiseFromSide
 from radhar_cli.motion.human.getting_up import GetUp, TryToGetUp
 from radhar_cli.motion.human.grabbing import Grab
 from radhar_cli.motion.human.idle import FIDGETS, SWAY_HZ, Breath, Fidget, Idle, Sway, Waves
@@ -80,6 +80,11 @@ def both_ways_up(lying: str) -> tuple[Movement, ...]:
     return TryToGetUp(before=lying), GetUp(before=lying)
 
 
+def and_up(fall: FallSideways) -> tuple[Movement, ...]:
+    """The same of who has fallen to the side."""
+    return fall, RiseFromSide(fall, tries=True), RiseFromSide(fall)
+
+
 def walks_of(gait: Gait) -> dict[str, tuple[Movement, ...]]:
     """The twelve activities, and what else a person can do."""
     steady, off = Walk(gait, from_rest=False), Walk(gait)
@@ -113,11 +118,11 @@ def walks_of(gait: Gait) -> dict[str, tuple[Movement, ...]]:
         "topples on rising": (FallFromSeat(rising=0.8, seat=Seat(recline=0.4, lap=0.0)),),
         "slides off": (FallFromSeat(ahead=False), *both_ways_up(ON_FLOOR)),
         "misses the seat": (FallFromSeat(ahead=False, rising=0.8), *both_ways_up(SUPINE)),
-        "off to the side": (FallSideways(side=-1.0, seat=Seat(recline=0.2, height=0.33)),),
-        "aside on rising": (FallSideways(seat=Seat(height=0.24), rising=0.8),),
+        "off to the side": and_up(FallSideways(side=-1.0, seat=Seat(recline=0.2, height=0.33))),
+        "aside on rising": and_up(FallSideways(seat=Seat(height=0.24), rising=0.8)),
         "on the hands": (FallForward(prone=OnFours(), kneel=0.3), *both_ways_up(ON_FOURS)),
         "back on the hands": (stopping, FallBackward(supine=Sitting()), *both_ways_up(PROPPED)),
-        "aside on the hands": (FallSideways(caught=0.6),),
+        "aside on the hands": and_up(FallSideways(caught=0.6)),
         "stumbles": (*STUMBLES.values(), replace(STUMBLES["sideways"], place=Place(0.0, -0.3))),
         "trips": (Walk(replace(gait, trip=0.6), 3.0),),
         "slowly off": (Grab(haste=0.6), Walk(replace(gait, start=2.0))),

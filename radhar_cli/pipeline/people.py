@@ -55,8 +55,16 @@ from radhar_cli.scene import Numbers, Person
 
 Fall = FallForward | FallBackward | FallSideways
 M = TypeVar(
-    *("M", SitDown, StandUp, GetUp, TryToGetUp, StepTo),
-    *(FallForward, FallBackward, FallSideways, FallFromSeat),
+    "M",
+    SitDown,
+    StandUp,
+    GetUp,
+    TryToGetUp,
+    StepTo,
+    FallForward,
+    FallBackward,
+    FallSideways,
+    FallFromSeat,
 )
 
 RAGGED_HZ = (0.1, 0.25, 0.4)
@@ -253,10 +261,10 @@ def _repertoire(person: Person, duration: float | None, place: int = 0) -> Reper
             paces=_some(paces),
             sizes=_some(sizes),
         ),
-        fall=_lasting(duration, _fall(person)),
-        fall_on_hands=_lasting(duration, _fall(person, caught=True)),
-        fall_off_seat=_lasting(duration, _fall_from(seat, person)),
-        fall_on_rising=_fall_from(seat, person, 1.7 if duration is None else duration),
+        fall=_fall(person, duration),
+        fall_on_hands=_fall(person, duration, caught=True),
+        fall_off_seat=_fall_from(seat, person, 1.0 if duration is None else duration),
+        fall_on_rising=_fall_from(seat, person, 1.7 if duration is None else duration, 0.5),
         stumble=_lasting(duration, _stumble(person)),
         trip=radians(motion.stumble_deg),
         get_up=_lasting(duration, GetUp()),
@@ -289,20 +297,24 @@ def _side(person: Person) -> float:
     return 1.0 if person.stream("motion.fall/side").random() < 0.5 else -1.0
 
 
-def _fall(person: Person, caught: bool = False) -> Fall:
+def _fall(person: Person, duration: float | None, caught: bool = False) -> Fall:
     """A fall from standing, broken by the hands or not."""
     motion = person.motion
     if motion.fall == "forward":
         prone = OnFours() if caught else Prone()
-        return FallForward(prone=prone, kneel=motion.kneel_s, heels=radians(motion.heels_deg))
+        ahead = FallForward(prone=prone, kneel=motion.kneel_s, heels=radians(motion.heels_deg))
+        return _lasting(duration, ahead)
     if motion.fall == "backward":
-        return FallBackward(supine=Sitting() if caught else Supine())
-    return FallSideways(side=_side(person), caught=radians(36) if caught else 0.0)
+        return _lasting(duration, FallBackward(supine=Sitting() if caught else Supine()))
+    aside = FallSideways(side=_side(person), caught=radians(36) if caught else 0.0)
+    return _lasting(duration, aside)
 
 
-def _fall_from(seat: Seat, person: Person, whole: float = 0.0) -> FallFromSeat | FallSideways:
-    """A fall off a seat, or one on rising from it that takes a `whole` duration, s."""
-    rising, duration = 0.5 * whole, 0.625 * whole or 1.0
+def _fall_from(
+    seat: Seat, person: Person, whole: float, rises: float = 0.0
+) -> FallFromSeat | FallSideways:
+    """A fall off a seat within a `whole` duration, s, of which people rise for a share."""
+    rising, duration = rises * whole, (1 - 0.75 * rises) * whole
     if person.motion.fall == "sideways":
         return FallSideways(duration, _side(person), seat=seat, rising=rising)
     return FallFromSeat(duration, person.motion.fall == "forward", rising, seat)

@@ -94,6 +94,6 @@ class FallFromSeat:
         steps += [Step(one, angle, begin, self.rising) for one, angle in risen]
         course = Course.of(seated, steps)
         end = max(course.breakpoints)
-        phases = (Phase(begin, "standing up"),) if self.rising else ()
-        phases += (Phase(falls, "falling"), Phase(end, "lying"))
+        rises = (Phase(begin, "standing up"),) if self.rising else ()
+        phases = (*rises, Phase(falls, "falling"), Phase(end, "lying"))
         return Planted(person, course, begin, end, phases, SEATED, after)

@@ -174,7 +174,7 @@ class RisingFromSide(FallingSideways):
 
     rise: RiseFromSide
 
-    before = ON_SIDE  # type: ignore[assignment]
+    before = ON_SIDE
 
     @property
     def after(self) -> str:  # type: ignore[override]

@@ -38,9 +38,7 @@ RANGE_STEP, SPEED_STEP = 0.0436, 0.615  # of the radar, m and m/s
 ROOM = 0.8  # of all frames have a still point in a range bin of the room
 NEAR_M, FAR_M, HIGH_M = 0.7, 2.9, 0.9
 BANDS_HZ = (0.1, 0.4, 0.8, 1.4, 2.4, 4.0, 15.0)
-# Of each simulated window, changed; how far people drift, m; threshold, its changes from frame to
-# frame, dB; frames without points.
-COPIES, DRIFT_M, THRESHOLD_DB, FADING_DB, LOST = 5, 0.2, (17.0, 26.0), 2.0, 0.2
+COPIES, LOST, DRIFT_M = 5, 0.3, 0.2  # of each simulated window, changed; most points lost, drift
 PENALTY = 0.005  # C of the regression
 
 
@@ -103,15 +101,9 @@ def features(rows: Float) -> Float:
 
 
 def changed(cloud: Cloud, rng: np.random.Generator) -> Cloud:
-    """What another threshold, echoes that fade, and a person who drifts would give; or a mirror."""
-    frame, points = cloud.frame, cloud.points.copy()
-    frames = int(frame.max(initial=0)) + 1
-    threshold = min(rng.uniform(*THRESHOLD_DB), float(np.percentile(points[:, 4], 85)))
-    fading = threshold + rng.uniform(0, FADING_DB) * rng.standard_normal(frames)
-    lost = rng.random(frames) < rng.uniform(0, LOST)
-    kept = (points[:, 4] > fading[frame]) & ~lost[frame]
-    kept &= rng.random(len(points)) > rng.uniform(0, 0.3)
-    frame, points = frame[kept], points[kept]
+    """Fewer points, of a person who drifts to and fro, or of one in a mirror."""
+    kept = rng.random(len(cloud.frame)) > rng.uniform(0, LOST)
+    frame, points = cloud.frame[kept], cloud.points[kept]
     omega, size = 2 * np.pi * rng.uniform(0.15, 0.5), rng.uniform(0, DRIFT_M)
     phase = omega * frame / RATE + rng.uniform(0, 2 * np.pi)
     drift = size * np.sin(phase)

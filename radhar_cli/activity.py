@@ -10,11 +10,15 @@ if TYPE_CHECKING:
 
 
 class Movement(NamedTuple):
-    """A movement of people: states it begins and ends in, its usual duration (s)."""
+    """A movement of people: states it begins and ends in, its usual duration (s).
+
+    `like` names another, whose numbers of the config it depends on too.
+    """
 
     before: str
     after: str
     seconds: float | None  # None: as long as it is asked for
+    like: str | None = None
 
 
 EXERCISES = (
@@ -46,6 +50,12 @@ MOVEMENTS = {
     "body_rotating": Movement("standing", "standing", None),
     "walking": Movement("standing", "standing", None),
     "falling": Movement("standing", "lying", 1.1),
+    "falling_on_hands": Movement("standing", "lying", 1.1, "falling"),
+    "falling_off_seat": Movement("seated", "lying", 1.0),
+    "falling_on_rising": Movement("seated", "lying", 1.7),
+    "stumbling": Movement("standing", "standing", 1.3),
+    "tripping": Movement("standing", "standing", None, "walking"),
+    "trying_to_get_up": Movement("lying", "lying", 3.0),
     "getting_up": Movement("lying", "standing", 3.0),
     "turning_around": Movement("standing", "standing", 1.8),
     **{name: Movement("standing", "standing", None) for name in EXERCISES},

@@ -1,10 +1,11 @@
 """Draw how people move: docs/images/people.gif, twelve activities at true speed, and frames.
 
-    python scripts/draw_people.py [-o docs/images] [--index 1]
+    python scripts/draw_people.py [-o docs/images] [--index 1] [--falls]
 
 Each cell shows the body from its side and, below, from where it faces at first; its right side is
 red. Scenes: configs/human/free_space_77GHz.yaml, facing the radar. people_frames.png has a
-row of frames for each activity.
+row of frames for each activity. --falls draws falls.png instead: what people of
+configs/human/older.yaml do around falls, from their side.
 """
 
 import argparse
@@ -29,6 +30,18 @@ OVERRIDES = (
 )
 CELL, VIEW, PIXELS_PER_METRE = 150, 120, 52
 FRAMES_PER_SECOND, FRAMES = 10, 13
+# Movements, and the direction of the fall.
+FALLS = (
+    ("falling_off_seat getting_up", "forward"),
+    ("falling_off_seat trying_to_get_up", "backward"),
+    ("falling_on_rising getting_up", "backward"),
+    ("falling_on_rising getting_up", "sideways"),
+    ("falling_on_hands getting_up", "forward"),
+    ("falling_on_hands trying_to_get_up", "backward"),
+    ("stumbling", "forward"),
+    ("stumbling", "sideways"),
+    ("tripping", "forward"),
+)
 COLOURS = {"right": (200, 60, 60), "left": (60, 60, 200)}
 
 
@@ -97,6 +110,21 @@ def draw_people(config: Config, index: int, out: Path) -> None:
     _tiled(rows).save(out / "people_frames.png", optimize=True)
 
 
+def draw_falls(index: int, out: Path) -> None:
+    """Write falls.png, a row of frames for each of FALLS."""
+    rows = []
+    for sequence, direction in FALLS:
+        own = f"classes={{own: {{sequence: [{sequence.replace(' ', ', ')}]}}}}"
+        chosen = (own, "activities=[own]", f"motion.fall={direction}", "motion.angle_deg=180")
+        config = load_config(ROOT / "configs/human/older.yaml", chosen)
+        motion = motion_of(draw_scene(config, config.chosen_activities[0], index).people[0])
+        assert isinstance(motion, HumanMotion)
+        end = min(motion.parts[-1][0].end, 6.0)
+        names = f"{sequence.split()[0].removeprefix('falling_').replace('_', ' ')} {direction}"
+        rows.append(frames(motion, np.linspace(0.0, end, FRAMES), names))
+    _tiled(rows).save(out / "falls.png", optimize=True)
+
+
 def _tiled(cells: list[list[Image.Image]]) -> Image.Image:
     """Pictures of one size in rows, of 16 colours."""
     whole = np.concatenate([np.concatenate([np.asarray(c) for c in row], axis=1) for row in cells])
@@ -109,7 +137,11 @@ def main() -> None:
     )
     parser.add_argument("-o", "--out", type=Path, default=ROOT / "docs/images")
     parser.add_argument("--index", type=int, default=1, help="number of the sample in its class")
+    parser.add_argument("--falls", action="store_true", help="draw falls.png instead")
     given = parser.parse_args()
+    if given.falls:
+        draw_falls(given.index, given.out)
+        return
     config = load_config(ROOT / "configs/human/free_space_77GHz.yaml", OVERRIDES)
     draw_people(config, given.index, given.out)
 

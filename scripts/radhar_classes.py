@@ -1,153 +1,209 @@
 """Five activities in the point clouds of RadHAR, learned from simulated clouds alone.
 
-    python scripts/radhar_classes.py FOLDER -o OUT [--per-class 60] [--seeds 3]
+    python scripts/radhar_classes.py FOLDER -o OUT [--per-class 30] [--seeds 5] [--half 2]
 
 FOLDER: recordings `<class>*.npz` of boxing, jack, jump, squats and walk (github.com/nesl/RadHAR,
-Singh et al. 2019): `points` [N, 9] = frame, x (ahead), y, z (up) m, velocity (receding) m/s, ...;
-30 frames a second. Simulated ones come from configs/measured/radhar_1443.yaml. Both are cut to
-where people stand: what stands in the room is left out, static points of the body are not. Windows
-last 4 s, one begins every second. The network is that of `radhar train --model cloudnet`; it has
-learned before the recordings are opened. The last line is for programs; windows of a recording
-overlap, so n is not the number of independent ones.
+Singh et al. 2019): `points` [N, 9] = frame, x (ahead), y, z (up) m, velocity (receding) m/s,
+intensity dB, range m, ...; 30 frames a second. Simulated ones come from
+configs/measured/radhar_1443.yaml. Range bins in which something stands still in most frames of all
+recordings are the room's and the device's, and left out; points at 0.7 to 2.9 m, within 0.9 m of
+the height of the radar, are then the person's. Windows last 4 s, one begins every second. Of each,
+ten series over time (how many points, where, how far apart, how many move) give means, spreads and
+power in six bands; a logistic regression tells the classes. It has learned before the recordings
+are opened. The last line is for programs; windows of a recording overlap, so n is not the number of
+independent ones.
 """
 
 import argparse
 import subprocess
 import sys
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
-import torch
 from numpy.typing import NDArray
-from torch import Tensor, nn
+from sklearn.linear_model import LogisticRegression
+from sklearn.pipeline import Pipeline, make_pipeline
+from sklearn.preprocessing import StandardScaler
 
 from radhar_cli.dataset.reading import open_dataset
-from radhar_cli.learning.models.cloudnet import CloudNet
 
 Float = NDArray[np.float64]
+Whole = NDArray[np.intp]
 ROOT = Path(__file__).resolve().parents[1]
 CONFIG = ROOT / "configs" / "measured" / "radhar_1443.yaml"
 CLASSES = ("boxing", "jack", "jump", "squats", "walk")
-FRAMES, EVERY = 120, 30  # of a window, and from one to the next
-POINTS = 24
-NEAR_M, FAR_M, ASIDE_M = 0.7, 2.6, 1.0
-EPOCHS, BATCH = 40, 32
+RATE, FRAMES, EVERY = 30, 120, 30  # Hz; frames of a window, and from one to the next
+RANGE_STEP, SPEED_STEP = 0.0436, 0.615  # of the radar, m and m/s
+ROOM = 0.8  # of all frames have a still point in a range bin of the room
+NEAR_M, FAR_M, HIGH_M = 0.7, 2.9, 0.9
+BANDS_HZ = (0.1, 0.4, 0.8, 1.4, 2.4, 4.0, 15.0)
+COPIES, LOST, DRIFT_M = 5, 0.3, 0.2  # of each simulated window, changed; most points lost, drift
+PENALTY = 0.005  # C of the regression
 
 
-def window(frame: NDArray[np.intp], points: Float, first: int) -> NDArray[np.float32]:
-    """FRAMES frames from `first` on as [6, FRAMES, POINTS]: x, y, z about their median, Doppler.
+class Cloud(NamedTuple):
+    """Frame of each point [N]; x, y, z (m), approaching speed (m/s), dB, range (m) [N, 6]."""
 
-    Args:
-        frame: of each point [N].
-        points: x ahead, y left, z up (m), Doppler approaching (m/s) [N, 4].
-        first: frame.
-    """
-    found = np.zeros((FRAMES, POINTS, 6), np.float32)
-    here = (frame >= first) & (frame < first + FRAMES) & (np.abs(points[:, 1]) < ASIDE_M)
-    reach = np.hypot(points[:, 0], points[:, 1])
-    here &= (reach > NEAR_M) & (reach < FAR_M)
-    some, at = points[here].copy(), frame[here] - first
-    if len(some):
-        some[:, :3] -= np.median(some[:, :3], axis=0)
-    for number in range(FRAMES):
-        mine = some[at == number][:POINTS]
-        found[number, : len(mine), :4] = mine
-        found[number, : len(mine), 5] = 1
-    return found.transpose(2, 0, 1)
+    frame: Whole
+    points: Float
 
 
-def simulated(out: Path, per_class: int, jobs: int) -> tuple[Tensor, Tensor]:
-    """Windows [N, 6, T, K] and classes [N] of a data set that is built in `out`."""
-    command = ["generate", str(CONFIG), "-o", str(out), "--jobs", str(jobs)]
-    command += [
-        "--set",
-        f"samples_per_class={per_class}",
-        "--set",
-        f"duration_s={FRAMES / 30 + 0.05}",
+def series(cloud: Cloud, first: int) -> Float:
+    """Ten series [10, FRAMES] from frame `first` on, scaled to about the same size."""
+    frame, points = cloud.frame - first, cloud.points
+    here = (frame >= 0) & (frame < FRAMES) & (np.abs(points[:, 2]) < HIGH_M)
+    here &= (points[:, 5] > NEAR_M) & (points[:, 5] < FAR_M)
+    frame, (_, y, z, speed, level, reach) = frame[here], points[here].T
+    if not frame.size:
+        return np.zeros((10, FRAMES))
+    count = np.bincount(frame, minlength=FRAMES)
+    seen = np.flatnonzero(count)
+
+    def number(which: Float) -> Float:
+        return np.bincount(frame, which, minlength=FRAMES)
+
+    def filled(values: Float) -> Float:
+        return np.interp(np.arange(FRAMES), seen, values[seen])
+
+    def mean(values: Float) -> Float:
+        return filled(number(values - np.median(values)) / np.maximum(count, 1))
+
+    def most(values: Float) -> Float:
+        found = np.full(FRAMES, -np.inf)
+        np.maximum.at(found, frame, values)
+        return filled(found)
+
+    away, moving, strongest = reach - np.median(reach), np.abs(speed) > SPEED_STEP / 2, most(level)
+    rows = [
+        count / 5,
+        3 * mean(reach),
+        3 * most(away),
+        -3 * most(-away),
+        number(moving.astype(float)) / 3,
+        number(np.sign(speed) * moving) / 3,
+        number((np.abs(speed) > 1.5 * SPEED_STEP).astype(float)) / 2,
+        3 * mean(y),
+        3 * mean(z),
+        (strongest - np.median(strongest)) / 4,
     ]
+    return np.stack(rows)
+
+
+def features(rows: Float) -> Float:
+    """Mean, standard deviation, 5 to 95 % and log power in six bands of each series [90]."""
+    power = np.abs(np.fft.rfft((rows - rows.mean(1, keepdims=True)) * np.hanning(FRAMES))) ** 2
+    band = np.searchsorted(BANDS_HZ, np.fft.rfftfreq(FRAMES, 1 / RATE), side="right")
+    bands = [power[:, band == number].sum(1) for number in range(1, len(BANDS_HZ))]
+    low, high = np.percentile(rows, [5, 95], axis=1)
+    shape = [rows.mean(1), rows.std(1), high - low, *np.log(np.array(bands) + 1e-2)]
+    return np.concatenate(shape)
+
+
+def changed(cloud: Cloud, rng: np.random.Generator) -> Cloud:
+    """Fewer points, of a person who drifts to and fro, or of one in a mirror."""
+    kept = rng.random(len(cloud.frame)) > rng.uniform(0, LOST)
+    frame, points = cloud.frame[kept], cloud.points[kept]
+    omega, size = 2 * np.pi * rng.uniform(0.15, 0.5), rng.uniform(0, DRIFT_M)
+    phase = omega * frame / RATE + rng.uniform(0, 2 * np.pi)
+    drift = size * np.sin(phase)
+    points[:, :3] *= 1 + (drift / np.maximum(points[:, 5], 1e-6))[:, None]
+    points[:, 5] += drift
+    speed = points[:, 3] - size * omega * np.cos(phase)
+    points[:, 3] = SPEED_STEP * np.round(speed / SPEED_STEP)
+    points[:, 1] *= rng.choice([-1, 1])
+    return Cloud(frame, points)
+
+
+def simulated(out: Path, per_class: int, jobs: int) -> tuple[list[Cloud], list[int]]:
+    """Clouds and classes of a data set that is built in `out`."""
+    command = ["generate", str(CONFIG), "-o", str(out), "--jobs", str(jobs)]
+    for number in (f"samples_per_class={per_class}", f"duration_s={FRAMES / RATE + 0.05}"):
+        command += ["--set", number]
     done = subprocess.run([sys.executable, "-m", "radhar_cli", *command], stdout=sys.stderr)
     if done.returncode:
         sys.exit(done.returncode)
-    windows, labels = [], []
+    clouds = []
     with open_dataset(out) as data:
-        names = [data.class_slugs[label] for label in data.label[:]]
-        for row, name in enumerate(names):
-            points = np.asarray(data.products["points"][row], float)[:, :4]
+        labels = [CLASSES.index(data.class_slugs[label]) for label in data.label[:]]
+        for row in range(len(labels)):
             start = data.products["points_start"][row]
             frame = np.repeat(np.arange(len(start) - 1), np.diff(start))
-            windows.append(window(frame, points, 0))
-            labels.append(CLASSES.index(name))
-    return torch.from_numpy(np.stack(windows)), torch.tensor(labels)
+            points = np.asarray(data.products["points"][row], float)[: len(frame), :5]
+            points[:, 4] = 10 * np.log10(np.maximum(points[:, 4], 1))
+            reach = np.linalg.norm(points[:, :3], axis=1)
+            clouds.append(Cloud(frame, np.column_stack([points, reach])))
+    return clouds, labels
 
 
-def measured(folder: Path) -> tuple[Tensor, Tensor]:
-    """Windows and classes of all recordings of a folder."""
-    windows, labels = [], []
+def measured(folder: Path) -> tuple[list[Cloud], list[int]]:
+    """Recordings of a folder without the room, and their classes."""
+    clouds, labels = [], []
     for path in sorted(folder.glob("*.npz")):
         name = next((one for one in CLASSES if path.name.startswith(one)), None)
         if name is None:
             continue
         with np.load(path, allow_pickle=False) as file:
             rows = file["points"].astype(float)
-        frame, points = rows[:, 0].astype(np.intp), rows[:, 1:5] * [1, 1, 1, -1]
-        for first in range(0, int(frame.max()) - FRAMES + 2, EVERY):
-            windows.append(window(frame, points, first))
-            labels.append(CLASSES.index(name))
-    if not windows:
+        clouds.append(Cloud(rows[:, 0].astype(np.intp), rows[:, 1:7] * [1, 1, 1, -1, 1, 1]))
+        labels.append(CLASSES.index(name))
+    if not clouds:
         sys.exit(f"radhar_classes: {folder}: has no recording <class>*.npz of {', '.join(CLASSES)}")
-    return torch.from_numpy(np.stack(windows)), torch.tensor(labels)
+    bins = [np.round(one.points[:, 5] / RANGE_STEP).astype(int) for one in clouds]
+    frames, still = 0, np.zeros(1 + max(int(one.max()) for one in bins))
+    for one, at in zip(clouds, bins, strict=True):
+        frames += int(one.frame.max()) + 1
+        stands = one.points[:, 3] == 0
+        pairs = np.unique(np.stack([one.frame[stands], at[stands]]), axis=1)
+        still += np.bincount(pairs[1], minlength=len(still))
+    room = still > ROOM * frames
+    kept = [~room[at] | (one.points[:, 3] != 0) for one, at in zip(clouds, bins, strict=True)]
+    without = [Cloud(one.frame[k], one.points[k]) for one, k in zip(clouds, kept, strict=True)]
+    return without, labels
 
 
-def changed(x: Tensor) -> Tensor:
-    """Windows with a share of points left out, larger or smaller, moved, mirrored, later."""
-    count = len(x)
-    kept = torch.rand(count, 1, 1, 1).mul(0.6) < torch.rand(count, 1, FRAMES, POINTS)
-    size = 1 + 0.15 * torch.randn(count, 3, 1, 1)
-    side = torch.where(torch.rand(count, 1, 1) < 0.5, -1.0, 1.0)
-    y = x.clone()
-    y[:, :3] = x[:, :3] * size + 0.05 * torch.randn(count, 3, 1, 1)
-    y[:, 1] *= side
-    y = y.roll(int(torch.randint(FRAMES, (1,))), dims=2)
-    return y * (kept & (y[:, 5:] > 0))
+def windows(
+    clouds: list[Cloud], labels: list[int], half: int | None
+) -> tuple[Float, NDArray[np.int_]]:
+    """Features and classes of all windows, or of those within a half of each recording, 1 or 2."""
+    rows, truth = [], []
+    for cloud, label in zip(clouds, labels, strict=True):
+        frames = int(cloud.frame.max()) + 1
+        first = frames // 2 if half == 2 else 0
+        last = frames // 2 if half == 1 else frames
+        for begin in range(first, last - FRAMES + 1, EVERY):
+            rows.append(features(series(cloud, begin)))
+            truth.append(label)
+    return np.stack(rows), np.array(truth)
 
 
-def trained(x: Tensor, labels: Tensor, seed: int) -> nn.Module:
-    """A network that has learned all windows."""
-    torch.manual_seed(seed)
-    model = CloudNet(len(CLASSES))
-    optimiser = torch.optim.AdamW(model.parameters(), 2e-3, weight_decay=1e-2)
-    steps = EPOCHS * -(-len(x) // BATCH)
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, 3e-3, total_steps=steps)
-    for _ in range(EPOCHS):
-        for rows in torch.split(torch.randperm(len(x)), BATCH):
-            logits = model(changed(x[rows]))
-            loss = nn.functional.cross_entropy(logits, labels[rows], label_smoothing=0.1)
-            optimiser.zero_grad()
-            loss.backward()  # type: ignore[no-untyped-call]
-            optimiser.step()
-            schedule.step()
-    return model.eval()
+def trained(clouds: list[Cloud], labels: list[int], seed: int) -> Pipeline:
+    """A regression that has learned changed copies of all clouds."""
+    rng = np.random.default_rng(seed)
+    rows = [features(series(changed(one, rng), 0)) for one in clouds for _ in range(COPIES)]
+    model = make_pipeline(StandardScaler(), LogisticRegression(C=PENALTY, max_iter=3000))
+    return model.fit(np.stack(rows), np.repeat(labels, COPIES))
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("folder", type=Path, help="recordings, <class>*.npz")
     parser.add_argument("-o", "--out", type=Path, required=True)
-    parser.add_argument("--per-class", type=int, default=60, help="simulated samples of each class")
-    parser.add_argument("--seeds", type=int, default=3, help="networks")
+    parser.add_argument("--per-class", type=int, default=30, help="simulated samples of each class")
+    parser.add_argument("--seeds", type=int, default=5, help="of the changes")
+    parser.add_argument("--half", type=int, choices=(1, 2), help="of each recording alone")
     parser.add_argument("--jobs", type=int, default=2, help="processes that generate")
     given = parser.parse_args()
     if not given.folder.is_dir():
         sys.exit(f"radhar_classes: {given.folder}: no such folder")
-    x, labels = simulated(given.out / "simulated", given.per_class, given.jobs)
-    models = [trained(x, labels, seed) for seed in range(1, given.seeds + 1)]
-    seen, truth = measured(given.folder)
+    clouds, labels = simulated(given.out / "simulated", given.per_class, given.jobs)
+    models = [trained(clouds, labels, seed) for seed in range(1, given.seeds + 1)]
+    seen, truth = windows(*measured(given.folder), given.half)
     confusion, shares = np.zeros((5, 5), int), []
     for model in models:
-        with torch.inference_mode():
-            found = torch.cat([model(part).argmax(1) for part in torch.split(seen, 64)])
-        np.add.at(confusion, (truth.numpy(), found.numpy()), 1)
-        shares.append(float((found == truth).float().mean()))
+        found = model.predict(seen)
+        np.add.at(confusion, (truth, found), 1)
+        shares.append(float((found == truth).mean()))
     print("rows are true classes, all seeds\n" + " " * 8 + "".join(f"{n:>8}" for n in CLASSES))
     for name, row in zip(CLASSES, confusion, strict=True):
         print(f"{name:8}" + "".join(f"{count:8d}" for count in row))

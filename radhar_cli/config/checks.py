@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
-from itertools import pairwise
 from math import ceil
 from typing import Any, NamedTuple
 
@@ -608,7 +607,6 @@ def _image_problems(c: Config) -> Iterator[Problem]:
         yield Problem("image.doppler_limits_mps", list(limits), right)
 
 
-GETS_UP = ("falling", "getting_up")  # after a fall
 # Where the motion of people holds, {key: (least, most)}; beyond, legs would be too short.
 _limits: tuple[tuple[str, Limits | People], ...] = (
     *of_kind(Config, Limits),
@@ -619,11 +617,6 @@ HUMAN_LIMITS = {key: (one.low, one.high) for key, one in _limits if one.high < M
 
 def _human_problems(c: Config) -> Iterator[Problem]:
     """Numbers beyond what people do, of the activities that depend on them."""
-    sequences = {slug: getattr(one, "sequence", ()) for slug, one in c.classes.items()}
-    lying = [slug for slug, names in sequences.items() if GETS_UP in pairwise(names)]
-    if lying and c.motion.fall != "forward":
-        right = f"should be forward: classes.{lying[0]} gets up from lying on the belly"
-        yield Problem("motion.fall", c.motion.fall, right)
     for key, (low, high) in HUMAN_LIMITS.items():
         number = at(c, key)
         users = [one for one in c.chosen_activities if c.depends_on(one, key)]

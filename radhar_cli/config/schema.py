@@ -318,6 +318,9 @@ FallName = Literal["forward", "backward", "sideways"]
 FALLS: tuple[FallName, ...] = FallName.__args__  # type: ignore[attr-defined]
 
 
+SEATS = "sitting_down standing_up falling_off_seat falling_on_rising"
+
+
 class Falls(Section):
     """``{choice: [forward, forward, sideways]}``: one of the directions, equally likely."""
 
@@ -456,17 +459,15 @@ class MotionConfig(Section):
     """Time at the floor."""
     rise_overlap: Annotated[By[Ratio], People("grabbing", 0, 0.6)] = 0.0
     """Fraction of the descent overlapped by the rise."""
-    seat_height: Annotated[By[Ratio], People("sitting_down standing_up", 0.24, 0.33)] = normal(
-        0.285, 0.015, 0.25, 0.32
-    )
+    seat_height: Annotated[By[Ratio], People(SEATS, 0.24, 0.33)] = normal(0.285, 0.015, 0.25, 0.32)
     """Height of the seated hip, relative to the stature."""
     lean_deg: Annotated[By[Angle], People("sitting_down standing_up", 0, 60), PERSONAL] = normal(
         42.0, 8.0, 25.0, 58.0
     )
     """Trunk ahead while rising."""
-    recline_deg: Annotated[By[Angle], People("sitting_down standing_up", -10, 45)] = 0.0
+    recline_deg: Annotated[By[Angle], People(SEATS, -10, 45)] = 0.0
     """Trunk backwards in the seat."""
-    hands_on_lap: Annotated[By[Ratio], People("sitting_down standing_up", 0, 1)] = 1.0
+    hands_on_lap: Annotated[By[Ratio], People(SEATS, 0, 1)] = 1.0
     """0 is beside the seat, 1 on the lap."""
     recline_from: Annotated[By[Ratio], People("sitting_down", 0, 1)] = 0.7
     """Share of the duration from which on the trunk leans back."""
@@ -490,8 +491,13 @@ class MotionConfig(Section):
     """Pause on the knees in a forward fall."""
     heels_deg: Annotated[By[Angle], People("falling", 0, 90), UNSTEADY] = 0.0
     """How far the shanks swing up as people land on their knees in a forward fall."""
-    fall: Annotated[FallName | Falls, People("falling")] = "forward"
+    fall: Annotated[
+        FallName | Falls,
+        People("falling falling_off_seat falling_on_rising stumbling"),
+    ] = "forward"
     """Direction, or drawn: {choice: [forward, forward, sideways]}."""
+    stumble_deg: Annotated[By[Angle], People("stumbling tripping", 0, 45)] = uniform(15.0, 40.0)
+    """How far the trunk goes ahead before a stumble is caught; backwards and sideways 0.4 of it."""
     fidget_hz: Annotated[By[Frequency], People("", 0, 2), UNSTEADY] = uniform(0.0, 0.4)
     """How often a standing or seated person fidgets."""
     fidget_size: Annotated[By[Ratio], People("", 0, 2)] = uniform(0.5, 1.5)
@@ -1625,6 +1631,7 @@ def class_activities(classes: Mapping[str, ClassConfig]) -> dict[str, Activity]:
             continue
         number += 1
         movements = one.sequence if isinstance(one, SequenceConfig) else ()
+        movements += tuple(other for name in movements if (other := MOVEMENTS[name].like))
         activities[slug] = Activity(number, slug, movements)
     return activities
 

@@ -27,6 +27,7 @@ PHASES = (
     "lunging",
     "jumping",
     "raising",
+    "stumbling",
 )
 
 

@@ -14,9 +14,17 @@ import numpy as np
 from radhar_cli.activity import MOVEMENTS
 from radhar_cli.arrays import Float
 from radhar_cli.config.schema import SequenceConfig
-from radhar_cli.motion.human.falling import FallBackward, FallForward
-from radhar_cli.motion.human.falling_sideways import FallSideways
-from radhar_cli.motion.human.getting_up import GetUp
+from radhar_cli.motion.human.falling import (
+    FallBackward,
+    FallForward,
+    OnFours,
+    Prone,
+    Sitting,
+    Supine,
+)
+from radhar_cli.motion.human.falling_from_seat import FallFromSeat
+from radhar_cli.motion.human.falling_sideways import FallingSideways, FallSideways, RiseFromSide
+from radhar_cli.motion.human.getting_up import GetUp, TryToGetUp
 from radhar_cli.motion.human.grabbing import Grab
 from radhar_cli.motion.human.idle import (
     FIDGETS,
@@ -40,12 +48,24 @@ from radhar_cli.motion.human.punching import Punch
 from radhar_cli.motion.human.repertoire import AROUND, Repertoire
 from radhar_cli.motion.human.sitting import Rise, Seat, SitDown, StandUp
 from radhar_cli.motion.human.standing import Stand
-from radhar_cli.motion.human.stepping import StepTo
+from radhar_cli.motion.human.stepping import STUMBLES, StepTo
 from radhar_cli.motion.human.turning import Turn
 from radhar_cli.motion.human.walking import Gait
 from radhar_cli.scene import Numbers, Person
 
-M = TypeVar("M", SitDown, StandUp, GetUp, StepTo, FallForward, FallBackward, FallSideways)
+Fall = FallForward | FallBackward | FallSideways
+M = TypeVar(
+    "M",
+    SitDown,
+    StandUp,
+    GetUp,
+    TryToGetUp,
+    StepTo,
+    FallForward,
+    FallBackward,
+    FallSideways,
+    FallFromSeat,
+)
 
 RAGGED_HZ = (0.1, 0.25, 0.4)
 MIN_STRIDE_S = 0.5  # no stride is shorter
@@ -181,8 +201,19 @@ def _sequence(person: Person) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
         usual = MOVEMENTS[name].seconds
         duration = usual if given is None else given
         can = _repertoire(person, duration, place)
-        movements += can.sequence([name], [inf if duration is None else duration])
+        (movement,) = can.sequence([name], [inf if duration is None else duration])
+        if isinstance(movement, GetUp | TryToGetUp) and movements:
+            movement = _after(movements[-1], movement)
+        movements.append(movement)
     return tuple(movements), numbers.pauses_s
+
+
+def _after(fall: Movement, up: GetUp | TryToGetUp) -> Movement:
+    """How people get up who have fallen, or tried to get up, so."""
+    fell = fall.part(Physique(1.7), 0.0, 0.0)
+    if isinstance(fell, FallingSideways):
+        return RiseFromSide(fell.fall, up.duration, isinstance(up, TryToGetUp))
+    return replace(up, before=fell.after)
 
 
 def _repertoire(person: Person, duration: float | None, place: int = 0) -> Repertoire:
@@ -231,7 +262,13 @@ def _repertoire(person: Person, duration: float | None, place: int = 0) -> Reper
             sizes=_some(sizes),
         ),
         fall=_fall(person, duration),
+        fall_on_hands=_fall(person, duration, caught=True),
+        fall_off_seat=_fall_from(seat, person, 1.0 if duration is None else duration),
+        fall_on_rising=_fall_from(seat, person, 1.7 if duration is None else duration, 0.5),
+        stumble=_lasting(duration, _stumble(person)),
+        trip=radians(motion.stumble_deg),
         get_up=_lasting(duration, GetUp()),
+        try_to_get_up=_lasting(duration, TryToGetUp()),
         turn_around=_lasting(duration, AROUND),
         exercise_period=motion.exercise_period,
         exercise_paces=_some(paces),
@@ -255,16 +292,43 @@ def _lags(person: Person, place: int) -> tuple[Lags, Lags]:
     return down, up
 
 
-def _fall(person: Person, duration: float | None) -> FallForward | FallBackward | FallSideways:
+def _side(person: Person) -> float:
+    """To which side people fall: 1 to the left, -1 to the right."""
+    return 1.0 if person.stream("motion.fall/side").random() < 0.5 else -1.0
+
+
+def _fall(person: Person, duration: float | None, caught: bool = False) -> Fall:
+    """A fall from standing, broken by the hands or not."""
     motion = person.motion
     if motion.fall == "forward":
-        return _lasting(
-            duration, FallForward(kneel=motion.kneel_s, heels=radians(motion.heels_deg))
-        )
+        prone = OnFours() if caught else Prone()
+        ahead = FallForward(prone=prone, kneel=motion.kneel_s, heels=radians(motion.heels_deg))
+        return _lasting(duration, ahead)
     if motion.fall == "backward":
-        return _lasting(duration, FallBackward())
-    left = person.stream("motion.fall/side").random() < 0.5
-    return _lasting(duration, FallSideways(side=1.0 if left else -1.0))
+        return _lasting(duration, FallBackward(supine=Sitting() if caught else Supine()))
+    aside = FallSideways(side=_side(person), caught=radians(36) if caught else 0.0)
+    return _lasting(duration, aside)
+
+
+def _fall_from(
+    seat: Seat, person: Person, whole: float, rises: float = 0.0
+) -> FallFromSeat | FallSideways:
+    """A fall off a seat within a `whole` duration, s, of which people rise for a share."""
+    rising, duration = rises * whole, (1 - 0.75 * rises) * whole
+    if person.motion.fall == "sideways":
+        return FallSideways(duration, _side(person), seat=seat, rising=rising)
+    return FallFromSeat(duration, person.motion.fall == "forward", rising, seat)
+
+
+def _stumble(person: Person) -> StepTo:
+    motion = person.motion
+    one, pitch = STUMBLES[motion.fall], radians(motion.stumble_deg)
+    if motion.fall == "forward":
+        return replace(one, pitch=pitch)
+    if motion.fall == "backward":
+        return replace(one, pitch=-0.4 * pitch)
+    side = _side(person)
+    return replace(one, place=Place(0.0, side * one.place.left), lean=side * 0.4 * pitch)
 
 
 def _gait(person: Person, place: int) -> Gait:

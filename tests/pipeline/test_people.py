@@ -11,6 +11,7 @@ from radhar_cli.activity import ACTIVITIES, MOVEMENTS, activity_named
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.checks import HUMAN_LIMITS
 from radhar_cli.config.reading import validated
+from radhar_cli.config.schema import FALLS
 from radhar_cli.errors import ConfigError
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.skeleton import JOINTS, PARENTS, links
@@ -476,13 +477,18 @@ def test_impossible_sequences_are_refused(
     assert "classes" in str(error.value)
 
 
-def test_who_gets_up_has_fallen_forward(tmp_path: Path) -> None:
-    path = tmp_path / "own.yaml"
-    path.write_text(
-        "motion: {model: human, fall: backward}\nclasses: {up: {sequence: [falling, getting_up]}}"
-    )
-    with pytest.raises(ConfigError, match=r"motion.fall = \"backward\": should be forward"):
-        load_config(path)
+@pytest.mark.parametrize("direction", FALLS)
+@pytest.mark.parametrize("name", [name for name in MOVEMENTS if name.startswith("falling")])
+def test_whoever_falls_however_tries_to_get_up_and_stands(name: str, direction: str) -> None:
+    own = {"sequence": [name, "trying_to_get_up", "getting_up", "stationary"]}
+    config = people(classes={"own": own}, activities=["own"], motion={"fall": direction})
+    motion = moving(draw_scene(config, config.chosen_activities[0], 0))
+    names = [phase.name for phase in motion.phases]
+    assert [n for n in names if n != "standing up"][1:] == [
+        *("falling", "getting up", "getting up", "standing")
+    ]
+    head = motion.positions(np.array([motion.parts[-1][0].begin]))[2, 1, 0]
+    assert head > 0.8 * motion.person.stature
 
 
 def test_the_papers_model_has_no_sequences(tmp_path: Path) -> None:
@@ -514,7 +520,7 @@ def document(key: str, value: float) -> dict[str, Any]:
         "duration_s": 5.0,
         "radar": {"prf_hz": 500},
         "motion": {"model": "human"},
-        "classes": {"squats": {"sequence": ["squatting"]}},
+        "classes": {"squats": {"sequence": ["squatting"]}, "trips": {"sequence": ["tripping"]}},
     }
     if not section:
         return base | {name: value}

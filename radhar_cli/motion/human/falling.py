@@ -20,9 +20,11 @@ from radhar_cli.motion.human.planted import (
     timed,
 )
 
+GIVE = radians(9)  # by how much the trunk goes on over arms that break a fall
 LANDED = 0.7  # of the duration: the knees are down
 SWING = 0.35, 0.45  # of the shanks, up and down, s
-PRONE, SUPINE = "lying prone", "lying on the back"
+PRONE, SUPINE, ON_FOURS = "lying prone", "lying on the back", "lying on hands and knees"
+ON_FLOOR, PROPPED = "lying against the seat", "lying on the hands"
 
 
 @dataclass(frozen=True)
@@ -48,8 +50,26 @@ class Prone:
 
 
 @dataclass(frozen=True)
+class OnFours(Prone):
+    """On hands and knees, of who breaks a fall with the hands."""
+
+    thigh: float = radians(4)
+    trunk: float = radians(84)
+    reach: float = 0.57  # of the hands ahead of the ankles, fraction of the stature
+
+    def posture(self, person: Physique) -> dict[str, float]:
+        """The posture on hands and knees."""
+        hands = {"hands_ahead": self.reach * person.stature, "hands_beside": person.shoulder}
+        return super().posture(person) | hands
+
+
+@dataclass(frozen=True)
 class FallForward:
-    """From standing over the knees to lying; `duration` (s) from the loss of balance to impact."""
+    """From standing over the knees to lying; `duration` (s) from the loss of balance to impact.
+
+    Who is `prone` on hands and knees has broken the fall with the hands: the arms give way, then
+    push the trunk back.
+    """
 
     duration: float = 1.1
     prone: Prone = field(default_factory=Prone)
@@ -79,7 +99,13 @@ class FallForward:
                 Step("heels", self.heels, LANDED, up),
                 Step("heels", -self.heels, LANDED + up, down),
             ]
-        return _falling(person, begin, self.duration, rest, steps, PRONE, self.kneel)
+        if not isinstance(self.prone, OnFours):
+            return _falling(person, begin, self.duration, rest, steps, PRONE, self.kneel)
+        steps += [
+            Step("trunk", GIVE, kneel + 0.7, 0.35),
+            Step("trunk", -GIVE, kneel + 1.05, 0.6),
+        ]
+        return _falling(person, begin, self.duration, rest, steps, ON_FOURS, self.kneel)
 
 
 @dataclass(frozen=True)
@@ -99,11 +125,43 @@ class Supine:
 
 
 @dataclass(frozen=True)
+class Sitting:
+    """How people sit on the floor, knees up, hands down; heights and lengths over the stature."""
+
+    hip_height: float = 0.057
+    shank: float = radians(-55)
+    trunk: float = radians(-40)
+    feet: float = 0.0  # how far they slid ahead
+    # of the hands behind the hip, and beside the shoulders
+    hands: tuple[float, float] = (0.22, 0.06)
+
+    def posture(self, person: Physique) -> dict[str, float]:
+        """The posture on the floor."""
+        leg, stature = person.leg, person.stature
+        rise = (self.hip_height * stature - person.ankle) / leg - cos(self.shank)
+        sitting = posture(self.shank, -acos(rise), self.trunk, 0.0, person.elbow, upright=0.0)
+        hip = self.feet * stature + leg * (sin(self.shank) - sin(acos(rise)))
+        return sitting | {
+            "feet": self.feet * stature,
+            "hands": 1.0,
+            "hands_ahead": hip - self.hands[0] * stature,
+            "hands_beside": person.shoulder + self.hands[1] * stature,
+        }
+
+
+AGAINST_SEAT = Sitting(shank=radians(-45), trunk=radians(-18), feet=0.30, hands=(0.0, 0.13))
+
+
+@dataclass(frozen=True)
 class FallBackward:
-    """From standing onto the buttocks, then the back, within about `duration` s."""
+    """From standing onto the buttocks, then the back, within about `duration` s.
+
+    Who ends `Sitting` has broken the fall with the hands, which land with the pelvis (within
+    0.04 s: Hsiao and Robinovitch, J. Biomechanics 31 (1998) 1).
+    """
 
     duration: float = 1.1  # to the impact of the trunk, s
-    supine: Supine = field(default_factory=Supine)
+    supine: "Supine | Sitting" = field(default_factory=Supine)
     bow: float = radians(28)  # by how much the trunk bends ahead at first, rad
     arms: float = radians(55)  # how far the arms go ahead at first, rad
 
@@ -120,7 +178,11 @@ class FallBackward:
             *both(SHOULDERS, change["right_shoulder"] - self.arms, 0.55, 0.55),
             *both(ELBOWS, change["right_elbow"], 0.10, 0.90),
         ]
-        return _falling(person, begin, self.duration, rest, steps, SUPINE)
+        if isinstance(self.supine, Supine):
+            return _falling(person, begin, self.duration, rest, steps, SUPINE)
+        rest |= {channel: supine[channel] for channel in ("hands_ahead", "hands_beside")}
+        steps.append(Step("hands", 1.0, 0.40, 0.48))
+        return _falling(person, begin, self.duration, rest, steps, PROPPED)
 
 
 def _falling(

@@ -1,8 +1,8 @@
-"""A fall to the side: the legs tilt and give way, hip and shoulder meet the floor."""
+"""A fall to the side, from standing or a seat: legs tilt and give way, the hip meets the floor."""
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import acos, radians
+from math import acos, atan2, hypot, radians, sin
 
 import numpy as np
 
@@ -10,26 +10,38 @@ from radhar_cli.arrays import Float
 from radhar_cli.motion.human.arms import supported
 from radhar_cli.motion.human.idle import IdleState
 from radhar_cli.motion.human.minimum_jerk import Course, Step
-from radhar_cli.motion.human.part import STANDING, Phase, Place
+from radhar_cli.motion.human.part import SEATED, STANDING, Phase, Place
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import HAND, timed
 from radhar_cli.motion.human.pose import SIDES, Pose, axes, shoulder_points
+from radhar_cli.motion.human.sitting import Seat
 from radhar_cli.motion.human.two_link import AHEAD, two_link
+
+ON_SIDE = "lying on the side"
+CHANNELS = (
+    *("legs", "behind", "length", "pelvis", "trunk"),
+    *("curl", "arms", "elbows", "hands", "still", "near"),
+)
 
 
 @dataclass(frozen=True)
 class FallSideways:
-    """From standing to lying on one side; angles in rad."""
+    """From standing or a seat to lying on one side; angles in rad."""
 
     duration: float = 1.1  # from the loss of balance to the impact of the shoulder, s
     side: float = 1.0  # 1 to the left, -1 to the right
     hip_height: float = 0.097  # of the hip on the floor, over the stature
     bent: float = 0.78  # distance from hip to ankles at the end, over thigh and shank
+    curled: float = 0.62  # likewise of who falls off a seat
     tilt: float = radians(80)  # of pelvis and trunk to the side at the end
+    # how far the trunk comes back from there over the hands that break the fall
+    caught: float = 0.0
     curl: float = radians(8)  # pitch of the trunk at the end
     arms: float = radians(55)  # flexion of the shoulders as the hands look for the floor
     # where they end, ahead of the ankles and beyond the hip, over the stature
     hands: tuple[float, float] = (0.20, 0.20)
+    seat: Seat | None = None  # off which people fall
+    rising: float = 0.0  # how long they rise from it first, s
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "FallingSideways":
         """The movement from `begin` (s) on."""
@@ -44,39 +56,63 @@ class FallingSideways:
     fall: FallSideways
     begin: float
 
-    before = STANDING
-    after = "lying on the side"
+    after = ON_SIDE
     place = Place()
+
+    @property
+    def before(self) -> str:
+        """Standing, or on the seat."""
+        return STANDING if self.fall.seat is None else SEATED
+
+    @property
+    def falls(self) -> float:
+        """When the balance is lost, s."""
+        return self.begin + 0.75 * self.fall.rising
 
     @property
     def end(self) -> float:
         """When the body lies, s."""
-        return self.begin + 1.1 * self.fall.duration
+        return self.falls + 1.1 * self.fall.duration
 
     @property
     def phases(self) -> tuple[Phase, ...]:
         """Falling, then lying."""
-        return (Phase(self.begin, "falling"), Phase(self.end, "lying"))
+        rising = (Phase(self.begin, "standing up"),) if self.fall.rising else ()
+        return (*rising, Phase(self.falls, "falling"), Phase(self.end, "lying"))
 
     @cached_property
     def course(self) -> Course:
         """Tilt and length of the legs, tilt of pelvis and trunk, arms."""
         body, fall = self.person, self.fall
-        standing, bent = body.rest_height - body.ankle, fall.bent * 2 * body.leg
+        length = body.rest_height - body.ankle
+        bent = (fall.bent if fall.seat is None else fall.curled) * 2 * body.leg
         legs = acos((fall.hip_height * body.stature - body.ankle) / bent)
+        risen, initial = dict[str, float](), {"length": length, "elbows": body.elbow}
+        if fall.seat is not None:
+            sits = fall.seat.posture(body)
+            ahead = body.leg * (sin(sits["shank"]) + sin(sits["thigh"]))
+            up = fall.seat.height * body.stature - body.ankle
+            initial = {"behind": atan2(ahead, up), "length": hypot(ahead, up)}
+            initial |= {"arms": sits["right_shoulder"], "elbows": sits["right_elbow"]}
+            initial |= {"curl": sits["trunk"]}
+            if fall.rising:
+                risen = {"length": 0.06, "behind": -initial["behind"] / 3, "curl": radians(36)}
         steps = [
             Step("legs", legs, 0.0, 0.90, late=True),
-            Step("length", bent - standing, 0.10, 0.55),
+            Step("behind", -initial.get("behind", 0.0), 0.1, 0.9, late=True),
+            Step("length", bent - initial["length"], 0.10, 0.55),
             Step("pelvis", fall.tilt, 0.15, 0.75, late=True),
-            Step("trunk", fall.tilt, 0.0, 1.0, late=True),
-            Step("curl", fall.curl, 0.2, 0.8),
-            Step("arms", fall.arms, 0.1, 0.6),
+            Step("trunk", fall.tilt - fall.caught, 0.0, 1.0, late=True),
+            Step("curl", fall.curl - initial.get("curl", 0.0), 0.2, 0.8),
+            Step("arms", fall.arms - initial.get("arms", 0.0), 0.1, 0.6),
+            Step("elbows", body.elbow - initial["elbows"], 0.1, 0.6),
             Step("hands", 1.0, 0.30, 0.70),
             Step("still", 1.0, 0.0, 0.6),
         ]
-        channels = ("legs", "length", "pelvis", "trunk", "curl", "arms", "hands", "still")
-        initial = dict.fromkeys(channels, 0.0) | {"length": standing}
-        return Course.of(initial, timed(steps, self.begin, fall.duration))
+        steps += [Step(one, -angle, 0.2, 0.8) for one, angle in risen.items()]
+        steps = timed(steps, self.falls, fall.duration)
+        steps += [Step(one, angle, self.begin, fall.rising) for one, angle in risen.items()]
+        return Course.of(dict.fromkeys(CHANNELS, 0.0) | initial, steps)
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
@@ -86,9 +122,11 @@ class FallingSideways:
     def pose(self, t: Float, idle: IdleState) -> Pose:
         """The body at times t [M] (s)."""
         body, fall = self.person, self.fall
-        legs, length, pelvis, trunk, curl, arms, share, still = self.course(t)
+        legs, behind, length, pelvis, trunk, *others, still, near = self.course(t)
+        curl, arms, elbows, share = others
         own, nothing = 1 - still, np.zeros(t.size)
-        lean, roll = own * idle.lean, fall.side * legs + own * idle.legs_roll
+        stands = own * (fall.seat is None)
+        lean, roll = behind + stands * idle.lean, fall.side * legs + stands * idle.legs_roll
         hip = length * np.stack(
             [np.sin(lean), np.cos(lean) * np.sin(roll), np.cos(lean) * np.cos(roll)]
         )
@@ -101,11 +139,82 @@ class FallingSideways:
         upper_body = axes(
             curl + own * idle.pitch, own * idle.yaw, fall.side * trunk + own * idle.roll
         )
-        flexion = (arms + own * idle.shoulders, body.elbow + own * idle.elbows)
-        lies = body.leg * 2 * fall.bent + fall.hands[1] * body.stature
-        floor = np.array([[fall.hands[0] * body.stature], [fall.side * lies], [HAND]])[:, None]
-        floor = np.broadcast_to(floor, (3, 2, t.size))
+        flexion = (arms + own * idle.shoulders, elbows + own * idle.elbows)
+        bent = fall.bent if fall.seat is None else fall.curled
+        lies = body.leg * 2 * bent + fall.hands[1] * body.stature
+        beside = fall.side * (lies + near * (0.22 * body.stature - lies))
+        ahead = np.full(t.size, fall.hands[0] * body.stature)
+        hand = np.stack([ahead, beside, np.full(t.size, HAND)])[:, None]
+        floor = np.broadcast_to(hand, (3, 2, t.size))
         shoulders = shoulder_points(body, hip, upper_body)
         off_floor = np.array([[0.0, 0.0], [-0.35 * fall.side] * 2, [-1.0, -1.0]])
         upper, fore = supported(body, upper_body, shoulders, flexion, floor, share, off_floor)
         return Pose(hip, upper_body, joints, knees, ankles, upper, fore, idle.breath)
+
+
+@dataclass(frozen=True)
+class RiseFromSide:
+    """From lying after a fall to standing over a crouch above the feet, within `duration` s.
+
+    Who tries alone lifts the trunk and sinks back. The way is a guess.
+    """
+
+    fall: FallSideways
+    duration: float = 3.0
+    tries: bool = False
+
+    def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "RisingFromSide":
+        """The movement from `begin` (s) on."""
+        return RisingFromSide(person, self.fall, begin, self)
+
+
+@dataclass(frozen=True)
+class RisingFromSide(FallingSideways):
+    """Getting up from the side; see `part.Part`."""
+
+    rise: RiseFromSide
+
+    before = ON_SIDE
+
+    @property
+    def after(self) -> str:  # type: ignore[override]
+        """Standing, or on the side again."""
+        return ON_SIDE if self.rise.tries else STANDING
+
+    @property
+    def end(self) -> float:
+        """When the body is at rest again, s."""
+        return self.begin + self.rise.duration
+
+    @property
+    def phases(self) -> tuple[Phase, ...]:
+        """Getting up, then standing or lying."""
+        after = "lying" if self.rise.tries else STANDING
+        return (Phase(self.begin, "getting up"), Phase(self.end, after))
+
+    @cached_property
+    def course(self) -> Course:
+        """Trunk and hands first, then the hip over the feet, then up."""
+        body, fell = self.person, FallingSideways(self.person, self.fall, 0.0)
+        down = fell.course.at(fell.end)
+        if self.rise.tries:
+            lift = {"trunk": -0.4 * down["trunk"], "curl": radians(12), "pelvis": radians(-8)}
+            steps = [Step(one, angle, 0.0, 0.5) for one, angle in lift.items()]
+            steps += [Step(one, -angle, 0.6, 0.4) for one, angle in lift.items()]
+        else:
+            low, high = 0.6 * body.leg, body.rest_height - body.ankle
+            steps = [
+                Step("trunk", 0.4 * -down["trunk"], 0.0, 0.40),
+                Step("trunk", 0.6 * -down["trunk"], 0.35, 0.40),
+                Step("near", 1.0, 0.10, 0.45),
+                Step("hands", -1.0, 0.50, 0.30),
+                Step("length", low - down["length"], 0.15, 0.40),
+                Step("length", high - low, 0.58, 0.42),
+                Step("curl", radians(52) - down["curl"], 0.15, 0.45),
+                Step("curl", radians(-52), 0.60, 0.40),
+                Step("arms", radians(45) - down["arms"], 0.2, 0.3),
+                Step("arms", radians(-45), 0.60, 0.40),
+                *(Step(one, -down[one], 0.22, 0.40) for one in ("legs", "pelvis")),
+                Step("still", -1.0, 0.6, 0.4),
+            ]
+        return Course.of(down, timed(steps, self.begin, self.rise.duration))

@@ -1,50 +1,160 @@
-"""The first half of S11: from lying prone over hands and knees to standing.
+"""What comes after a fall: getting up, as in the first half of S11, or trying to.
 
-Young people take 3 to 4 s, those of 50 to 90 years 4.1 +- 1.1 s (Bohannon and Lusardi, 2004).
+From prone or hands and knees over the knees; from the back or the buttocks by sitting up, drawing
+the feet in and rising from a squat, as young people do most often (VanSant, Phys. Ther. 68 (1988)
+185). Young people take 3 to 4 s, those of 50 to 90 years 4.1 +- 1.1 s (Bohannon and Lusardi, 2004);
+of 66 people over 90 who fell 80 % could not get up at least once (Fleming and Brayne, BMJ 337
+(2008) a2227).
 """
 
-from dataclasses import dataclass, field
-from math import radians
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import radians, sin
 
-from radhar_cli.motion.human.falling import PRONE, Prone
+from radhar_cli.motion.human.falling import (
+    AGAINST_SEAT,
+    ON_FLOOR,
+    ON_FOURS,
+    PRONE,
+    PROPPED,
+    SUPINE,
+    OnFours,
+    Prone,
+    Sitting,
+    Supine,
+)
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import STANDING, Phase
 from radhar_cli.motion.human.physique import Physique
-from radhar_cli.motion.human.planted import Planted, at_rest, timed
+from radhar_cli.motion.human.planted import ELBOWS, SHOULDERS, Planted, at_rest, both, timed
+
+DOWN: dict[str, Callable[[Physique], dict[str, float]]] = {
+    PRONE: Prone().posture,
+    ON_FOURS: OnFours().posture,
+    SUPINE: Supine().posture,
+    ON_FLOOR: AGAINST_SEAT.posture,
+    PROPPED: Sitting().posture,
+}
+ON_BELLY = (PRONE, ON_FOURS)
+
+
+def _down(person: Physique, before: str) -> dict[str, float]:
+    """How people lie or sit on the floor, seen from where their feet are.
+
+    Raises:
+        ValueError: nobody gets up so.
+    """
+    if before not in DOWN:
+        raise ValueError(f"getting up begins {' or '.join(DOWN)}, not {before}")
+    down = DOWN[before](person)
+    down["hands_ahead"] -= down["feet"]
+    return down | {"feet": 0.0}
 
 
 @dataclass(frozen=True)
 class GetUp:
-    """From lying prone to standing within `duration` s; angles in rad."""
+    """From the floor to standing within `duration` s; angles in rad."""
 
     duration: float = 3.0
-    prone: Prone = field(default_factory=Prone)
+    before: str = PRONE  # how they lie
     hands: float = 0.57  # where they push, ahead of the ankles, fraction of the stature
     on_knees: float = radians(84)  # pitch of the trunk on hands and knees
     # shank, thigh, trunk: in the crouch that follows
     shank: float = radians(38)
     thigh: float = radians(-70)
     trunk: float = radians(50)
+    # shank, thigh, trunk: sitting, feet drawn in, and the thigh of the squat that follows
+    sitting: tuple[float, float, float] = (radians(4), radians(-155), radians(12))
+    squat: float = radians(-112)
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
         """The movement from `begin` (s) on."""
-        prone, rest = self.prone.posture(person), at_rest(person)
-        push = self.hands * person.stature
+        down, rest = _down(person, self.before), at_rest(person)
+        ways = self._over_knees if self.before in ON_BELLY else self._over_squat
         steps = [
-            Step("shank", self.shank - prone["shank"], 0.28, 0.34),
-            Step("shank", rest["shank"] - self.shank, 0.56, 0.44),
-            Step("thigh", self.thigh - prone["thigh"], 0.05, 0.55),
-            Step("thigh", rest["thigh"] - self.thigh, 0.55, 0.45),
-            Step("trunk", self.on_knees - prone["trunk"], 0.05, 0.30),
-            Step("trunk", self.trunk - self.on_knees, 0.34, 0.28),
-            Step("trunk", rest["trunk"] - self.trunk, 0.56, 0.44),
-            Step("hands_ahead", push - prone["hands_ahead"], 0.0, 0.30),
-            Step("hands_beside", person.shoulder - prone["hands_beside"], 0.0, 0.25),
-            Step("hands", -1.0, 0.48, 0.42),
+            *ways(person, down, rest),
             Step("standing", 1.0, 0.5, 0.5),
             Step("upright", 1.0, 0.2, 0.8),
         ]
-        course = Course.of(prone, timed(steps, begin, self.duration))
+        course = Course.of(down, timed(steps, begin, self.duration))
         end = begin + self.duration
         phases = (Phase(begin, "getting up"), Phase(end, "standing"))
-        return Planted(person, course, begin, end, phases, PRONE, STANDING)
+        return Planted(person, course, begin, end, phases, self.before, STANDING)
+
+    def _over_knees(
+        self, person: Physique, down: dict[str, float], rest: dict[str, float]
+    ) -> list[Step]:
+        push = self.hands * person.stature
+        return [
+            Step("shank", self.shank - down["shank"], 0.28, 0.34),
+            Step("shank", rest["shank"] - self.shank, 0.56, 0.44),
+            Step("thigh", self.thigh - down["thigh"], 0.05, 0.55),
+            Step("thigh", rest["thigh"] - self.thigh, 0.55, 0.45),
+            Step("trunk", self.on_knees - down["trunk"], 0.05, 0.30),
+            Step("trunk", self.trunk - self.on_knees, 0.34, 0.28),
+            Step("trunk", rest["trunk"] - self.trunk, 0.56, 0.44),
+            Step("hands_ahead", push - down["hands_ahead"], 0.0, 0.30),
+            Step("hands_beside", person.shoulder - down["hands_beside"], 0.0, 0.25),
+            Step("hands", -1.0, 0.48, 0.42),
+        ]
+
+    def _over_squat(
+        self, person: Physique, down: dict[str, float], rest: dict[str, float]
+    ) -> list[Step]:
+        shank, thigh, trunk = self.sitting
+        ahead = sin(down["shank"]) + sin(down["thigh"]) - sin(shank) - sin(thigh)
+        steps = [
+            Step("feet", person.leg * ahead, 0.10, 0.34),
+            Step("shank", shank - down["shank"], 0.10, 0.34),
+            Step("shank", self.shank - shank, 0.40, 0.28),
+            Step("shank", rest["shank"] - self.shank, 0.58, 0.42),
+            Step("thigh", thigh - down["thigh"], 0.10, 0.34),
+            Step("thigh", self.squat - thigh, 0.42, 0.24),
+            Step("thigh", rest["thigh"] - self.squat, 0.58, 0.42),
+            Step("trunk", trunk - down["trunk"], 0.0, 0.42),
+            Step("trunk", self.trunk - trunk, 0.34, 0.28),
+            Step("trunk", rest["trunk"] - self.trunk, 0.60, 0.40),
+            *both(SHOULDERS, radians(90), 0.05, 0.4),
+            *both(SHOULDERS, rest["right_shoulder"] - down["right_shoulder"], 0.5, 0.45),
+            *both(SHOULDERS, -radians(90), 0.58, 0.42),
+            *both(ELBOWS, rest["right_elbow"] - down["right_elbow"], 0.3, 0.5),
+        ]
+        if down["hands"]:
+            steps.append(Step("hands", -1.0, 0.05, 0.35))
+        return steps
+
+
+# How far people get who try to get up: channel, rad.
+TRIES = {
+    PRONE: {"trunk": radians(-22), "thigh": radians(-38)},
+    ON_FOURS: {"trunk": radians(-16), "thigh": radians(-22)},
+    SUPINE: {"trunk": radians(46), "right_shoulder": radians(25), "left_shoulder": radians(25)},
+    ON_FLOOR: {"trunk": radians(42), "thigh": radians(12), "shank": radians(6)},
+    PROPPED: {"trunk": radians(50), "thigh": radians(10), "shank": radians(6)},
+}
+
+
+@dataclass(frozen=True)
+class TryToGetUp:
+    """Part of the way up within `duration` s, and sinking back."""
+
+    duration: float = 3.0
+    before: str = PRONE  # how they lie
+    dwell: float = 0.12  # at the highest point, share of the duration
+
+    def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
+        """The movement from `begin` (s) on."""
+        down, up = _down(person, self.before), 0.55 - self.dwell / 2
+        steps = []
+        for number, (channel, angle) in enumerate(TRIES[self.before].items()):
+            later = 0.06 * number
+            steps.append(Step(channel, angle, later, up - later))
+            steps.append(Step(channel, -angle, up + self.dwell, 1 - up - self.dwell))
+        if self.before == PRONE:
+            push = 0.40 * person.stature
+            steps.append(Step("hands_ahead", -push, 0.0, 0.25))
+            steps.append(Step("hands_ahead", push, up + self.dwell, 1 - up - self.dwell))
+        course = Course.of(down, timed(steps, begin, self.duration))
+        end = begin + self.duration
+        phases = (Phase(begin, "getting up"), Phase(end, "lying"))
+        return Planted(person, course, begin, end, phases, self.before, self.before)

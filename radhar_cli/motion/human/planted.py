@@ -37,7 +37,7 @@ def posture(
     """Angles (rad), and how much of the sway legs and trunk take part in, by channel.
 
     "hands" is how far the hands are on the floor, at "hands_ahead" (m), "hands_beside"; "heels"
-    how far (rad) the shanks of who lies on the knees are lifted.
+    how far (rad) the shanks of who lies on the knees are lifted; "feet" how far they slid, m.
     """
     return {
         "shank": shank,
@@ -53,6 +53,7 @@ def posture(
         "hands_ahead": 0.0,
         "hands_beside": 0.0,
         "heels": 0.0,
+        "feet": 0.0,
     }
 
 
@@ -87,8 +88,8 @@ class Planted:
 
     @property
     def place(self) -> Place:
-        """The feet stay where they are."""
-        return Place()
+        """The feet stay where they are, unless they slide."""
+        return Place(self.course.at(self.end)["feet"])
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
@@ -98,7 +99,8 @@ class Planted:
     def pose(self, t: Float, idle: IdleState) -> Pose:
         """The body at times t [M] (s)."""
         body = self.person
-        shank, thigh, trunk, *arms, standing, upright, share, far, beside, heels = self.course(t)
+        shank, thigh, trunk, *others, heels, feet = self.course(t)
+        *arms, standing, upright, share, far, beside = others
         ankle = np.stack([np.zeros((2, 1)), body.hip * SIDES, np.full((2, 1), body.ankle)])
         ankles = np.broadcast_to(ankle, (3, 2, t.size))
         knee, hip = legs(body, shank, thigh, standing * idle.lean, standing * idle.legs_roll)
@@ -106,6 +108,9 @@ class Planted:
             up = shank + heels
             lifted = knee - body.leg * np.stack([np.sin(up), np.zeros(t.size), np.cos(up)])
             ankles = ankles + np.where(heels, lifted, 0.0)[:, None]
+        if feet.any():
+            slid = np.stack([feet, 0 * feet, 0 * feet])
+            ankles, knee, hip = ankles + slid[:, None], knee + slid, hip + slid
         hip[2] += body.ankle
         tilted = axes(trunk + upright * idle.pitch, upright * idle.yaw, upright * idle.roll)
         shoulder = np.stack(arms[:2]) + upright * idle.shoulders

@@ -2,12 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from math import inf, pi
+from math import inf, pi, radians
 
 from radhar_cli.motion.human.exercises import EXERCISES
-from radhar_cli.motion.human.falling import FallBackward, FallForward
+from radhar_cli.motion.human.falling import FallBackward, FallForward, OnFours
+from radhar_cli.motion.human.falling_from_seat import FallFromSeat
 from radhar_cli.motion.human.falling_sideways import FallSideways
-from radhar_cli.motion.human.getting_up import GetUp
+from radhar_cli.motion.human.getting_up import GetUp, TryToGetUp
 from radhar_cli.motion.human.grabbing import Grab
 from radhar_cli.motion.human.kicking import Kick
 from radhar_cli.motion.human.motion import Movement
@@ -15,10 +16,11 @@ from radhar_cli.motion.human.part import Place
 from radhar_cli.motion.human.punching import Punch
 from radhar_cli.motion.human.sitting import SitDown, StandUp
 from radhar_cli.motion.human.standing import Stand
-from radhar_cli.motion.human.stepping import StepTo
+from radhar_cli.motion.human.stepping import STUMBLES, StepTo
 from radhar_cli.motion.human.turning import Turn
 from radhar_cli.motion.human.walking import Gait, Walk
 
+ON_HANDS, ON_RISING = FallForward(prone=OnFours()), FallFromSeat(rising=0.9)
 AROUND = StepTo(1.8, Place(turn=pi), steps=5, name="turning around")
 
 
@@ -37,7 +39,13 @@ class Repertoire:
     turn: Turn = field(default_factory=Turn)
     # in which direction people fall, and how
     fall: FallForward | FallBackward | FallSideways = field(default_factory=FallForward)
+    fall_on_hands: FallForward | FallBackward | FallSideways = ON_HANDS
+    fall_off_seat: FallFromSeat | FallSideways = field(default_factory=FallFromSeat)
+    fall_on_rising: FallFromSeat | FallSideways = ON_RISING
+    stumble: StepTo = STUMBLES["forward"]
+    trip: float = radians(30)  # by how much the trunk pitches in a trip, rad
     get_up: GetUp = field(default_factory=GetUp)
+    try_to_get_up: TryToGetUp = field(default_factory=TryToGetUp)
     turn_around: StepTo = AROUND
     # of every exercise: its period over the usual one; of each repetition, over the usual ones
     exercise_period: float = 1.0
@@ -67,10 +75,9 @@ class Repertoire:
         """Movements by name, one after the other, each from rest.
 
         Args:
-            names: slugs of activities that are one movement, and `falling`, `getting_up`,
-                `turning_around`.
-            durations: how long each of walking, punching, kicking, rotating and standing lasts,
-                s; of the others unused. Infinity for the last of them goes on.
+            names: of `activity.MOVEMENTS`.
+            durations: how long each of walking, tripping, punching, kicking, rotating and standing
+                lasts, s; of the others unused. Infinity for the last of them goes on.
 
         Raises:
             ValueError: a name that is none of a movement.
@@ -88,7 +95,13 @@ class Repertoire:
             "body_rotating": replace(self.turn, duration=duration, from_rest=True),
             "walking": Walk(self.gait, duration),
             "falling": self.fall,
+            "falling_on_hands": self.fall_on_hands,
+            "falling_off_seat": self.fall_off_seat,
+            "falling_on_rising": self.fall_on_rising,
+            "stumbling": self.stumble,
+            "tripping": Walk(replace(self.gait, trip=self.trip), duration),
             "getting_up": self.get_up,
+            "trying_to_get_up": self.try_to_get_up,
             "turning_around": self.turn_around,
         }
         if name in EXERCISES:

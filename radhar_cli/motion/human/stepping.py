@@ -1,4 +1,4 @@
-"""Steps to another stance: a shuffle of some centimetres, or a turn on the spot.
+"""Steps to another stance: a shuffle of some centimetres, a turn on the spot, or a fall caught.
 
 The body goes to the new place by minimum jerk, the feet follow in turn; each step goes to where the
 stance is a little later, the last two to where it ends.
@@ -6,6 +6,7 @@ stance is a little later, the last two to where it ends.
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import radians
 
 import numpy as np
 
@@ -16,11 +17,13 @@ from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import STANDING, Phase, Place
 from radhar_cli.motion.human.pelvis import hip_joints, swayed, swayed_hip
 from radhar_cli.motion.human.physique import Physique
+from radhar_cli.motion.human.planted import timed
 from radhar_cli.motion.human.pose import SIDES, Axes, Pose, axes, turned
 from radhar_cli.motion.human.two_link import two_link
 
 RIGHT, LEFT = 0, 1
 HERE = Place()
+UPSET = (0.05, 0.35), (0.45, 0.55)  # when the trunk goes ahead and comes back, shares of the whole
 
 
 @dataclass(frozen=True)
@@ -32,6 +35,12 @@ class StepTo:
     steps: int = 2  # how many, at least 2
     lift: float = 0.03  # of a stepping foot, m
     name: str = "stepping"  # what this is called among the phases
+    # how far trunk and arms go ahead and the trunk to the left on the way, rad; the hip down, m
+    pitch: float = 0.0
+    arms: float = 0.0
+    lean: float = 0.0
+    drop: float = 0.0
+    hurry: float = 1.0  # share of the duration in which the body gets there
 
     def __post_init__(self) -> None:
         if self.steps < 2:
@@ -70,14 +79,19 @@ class Stepping:
 
     @cached_property
     def course(self) -> Course:
-        """Share of the way that the body has gone, and of each step."""
+        """Share of the way that the body has gone, how far it is upset, and share of each step."""
         slot = self.step.duration / self.step.steps
         channels = [f"step {n}" for n in range(self.step.steps)]
-        steps = [Step("body", 1.0, self.begin, self.step.duration)]
+        steps = [
+            Step("body", 1.0, 0.0, self.step.hurry),
+            Step("upset", 1.0, *UPSET[0]),
+            Step("upset", -1.0, *UPSET[1]),
+        ]
+        steps = timed(steps, self.begin, self.step.duration)
         steps += [
             Step(channel, 1.0, self.begin + n * slot, slot) for n, channel in enumerate(channels)
         ]
-        return Course.of(dict.fromkeys(("body", *channels), 0.0), steps)
+        return Course.of(dict.fromkeys(("body", "upset", *channels), 0.0), steps)
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
@@ -113,17 +127,44 @@ class Stepping:
     def pose(self, t: Float, idle: IdleState) -> Pose:
         """The body at times t [M] (s)."""
         body, place = self.person, self.step.place
-        share, *steps = self.course(t)
+        share, upset, *steps = self.course(t)
         turn = share * place.turn
         ankles = self._ankles(np.stack(steps))
         aside = hip_joints(body, turn, np.zeros(t.size))
         sway = swayed(body.rest_height - body.ankle, idle.lean, idle.legs_roll)
         way = share * np.array([[place.ahead], [place.left]])
-        hip = swayed_hip(body, body.tallest, way, aside, ankles, body.softness, turned(sway, turn))
+        standing = body.tallest - self.step.drop * upset
+        hip = swayed_hip(body, standing, way, aside, ankles, body.softness, turned(sway, turn))
         joints = hip[:, None] + aside
         ahead = np.stack([np.cos(turn), np.sin(turn), np.zeros(t.size)])
         knees = two_link(joints, ankles, body.leg, body.leg, ahead[:, None])
-        upright = axes(idle.pitch, idle.yaw, idle.roll)
+        pitch, lean = self.step.pitch * upset, self.step.lean * upset
+        upright = axes(idle.pitch + pitch, idle.yaw, idle.roll + lean)
         trunk = Axes(*(turned(axis, turn) for axis in vars(upright).values()))
-        upper, fore = swung(trunk, idle.shoulders, body.elbow + idle.elbows)
+        upper, fore = swung(
+            trunk,
+            idle.shoulders + self.step.arms * upset,
+            body.elbow + idle.elbows + 0.5 * self.step.arms * upset,
+        )
         return Pose(hip, trunk, joints, knees, ankles, upper, fore, idle.breath)
+
+
+# Who loses the balance and catches it: steps of 15 to 35 % of the stature ahead (Hsiao-Wecksler and
+# Robinovitch, Clin. Biomech. 22 (2007) 574); aside 2.3 to 2.7 steps of 0.3 to 0.45 m in all within
+# 1.2 to 1.5 s (old people in BMC Geriatrics 20 (2020) 246). Trunk, arms and knees are guesses.
+STUMBLES = {
+    "forward": StepTo(
+        1.3, Place(0.8), 3, 0.06, "stumbling", radians(34), radians(60), drop=0.06, hurry=0.8
+    ),
+    "backward": StepTo(
+        1.3, Place(-0.55), 3, 0.04, "stumbling", radians(-11), radians(75), drop=0.05, hurry=0.8
+    ),
+    "sideways": StepTo(
+        1.3,
+        Place(0.0, 0.35),
+        2,
+        *(0.04, "stumbling", radians(8), radians(40), radians(14)),
+        drop=0.04,
+        hurry=0.8,
+    ),
+}

@@ -31,6 +31,7 @@ from radhar_cli.motion.human.planted import (
     arms_down,
     at_rest,
     legs,
+    timed,
 )
 from radhar_cli.motion.human.pose import Pose, axes, turned
 from radhar_cli.motion.human.two_link import AHEAD, two_link
@@ -40,6 +41,10 @@ EARLIEST_SWING = 0.3
 # The hip is fastest here, in double support, for a short time, and slow for longer (CMU motion
 # capture, subject 02: 0.88 to 1.14 times the walking speed at 1.2 m/s).
 SURGE_PHASE, SHARPNESS = 0.04, 0.08
+# Of a trip, in strides: the trunk pitches and comes back over quick steps. Old people who fell
+# bent more, and later loaded the other leg (Pavol et al., J. Gerontol. 56A (2001) M428): the sizes
+# are guesses.
+TRIP = Step("phase", 0.3, 0.0, 1.2), Step("upset", 1.0, 0.05, 0.4), Step("upset", -1.0, 0.5, 0.7)
 
 
 @dataclass(frozen=True)
@@ -74,6 +79,8 @@ class Gait:
     jitter: tuple[float, ...] = ()
     widths: tuple[float, ...] = ()  # further half width of each stride, m
     lane: Lane | None = None  # where the walker turns round; None for never
+    # by how much trunk and arms go ahead where the walker trips half way and catches the fall, rad
+    trip: float = 0.0
 
     def __post_init__(self) -> None:
         if not self.speed > 0:
@@ -234,22 +241,29 @@ class Walking:
             u += self._jitter(t)[0]
         return u
 
+    @property
+    def _trips(self) -> float:
+        """When the walker trips if ever, s."""
+        return self.begin + min(self.stop - self.begin, 5.0) / 2
+
     @cached_property
     def _jitter(self) -> Course | None:
-        """Phase gained, by minimum jerk from stride to stride."""
-        if not self.gait.jitter:
+        """Phase gained, by minimum jerk from stride to stride, and how far a trip upsets."""
+        if not self.gait.jitter and not self.gait.trip:
             return None
         gains = np.diff(self.gait.jitter, prepend=0.0)
-        steps = (
+        steps = [
             Step("phase", float(gain), self.begin + k * self.stride, self.stride)
             for k, gain in enumerate(gains)
-        )
-        return Course.of({"phase": 0.0}, steps)
+        ]
+        if self.gait.trip:
+            steps += timed(TRIP, self._trips, self.stride)
+        return Course.of({"phase": 0.0, "upset": 0.0}, steps)
 
     def _when(self, u: Float) -> Float:
         """Times [N] (s) of phases u [N]."""
         t = self.begin + (u - self.phase(np.full(1, self.begin))) * self.stride
-        if self.gait.ragged.amplitudes or self.gait.jitter or self._slower.size:
+        if self.gait.ragged.amplitudes or self._jitter is not None or self._slower.size:
             for _ in range(60):  # a contraction, by some hundredths; in turns by a quarter
                 late = self.phase(t) - u
                 t = t - late * self.stride
@@ -281,8 +295,11 @@ class Walking:
     @property
     def phases(self) -> tuple[Phase, ...]:
         """Walking, then standing."""
-        walking = Phase(self.begin, "walking")
-        return (walking, Phase(self.end, "standing")) if self.stops else (walking,)
+        walking = [Phase(self.begin, "walking")]
+        if self.gait.trip:
+            walking.append(Phase(self._trips, "stumbling"))
+            walking.append(Phase(self._trips + 1.2 * self.stride, "walking"))
+        return (*walking, Phase(self.end, "standing")) if self.stops else tuple(walking)
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
@@ -448,6 +465,9 @@ class Walking:
             hands = other["hands"], other["hands_ahead"], other["hands_beside"]
         else:
             hip = np.stack([*way, hip_height(body, standing, way, aside, ankles, softness)])
+        if self.gait.trip and self._jitter is not None:
+            upset = self.gait.trip * g * self._jitter(t)[1]
+            pitch, arms = pitch + upset, arms + 1.5 * upset
         trunk = axes(pitch, twist, lean)
         upper, fore = arms_down(body, hip, trunk, (arms[0], arms[1]), *hands)
         joints = hip[:, None] + aside

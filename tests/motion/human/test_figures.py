@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from radhar_cli.motion.human import boulic_thalmann as curves
-from radhar_cli.motion.human.falling import FallBackward, FallForward
+from radhar_cli.motion.human.falling import FallBackward, FallForward, OnFours, Sitting
+from radhar_cli.motion.human.falling_from_seat import FallFromSeat
 from radhar_cli.motion.human.falling_sideways import FallSideways
-from radhar_cli.motion.human.getting_up import GetUp
+from radhar_cli.motion.human.getting_up import TRIES, GetUp, TryToGetUp
 from radhar_cli.motion.human.grabbing import Grab
 from radhar_cli.motion.human.idle import Breath, Fidget, Idle, Sway, Waves
 from radhar_cli.motion.human.kicking import Kick
@@ -17,7 +18,9 @@ from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.motion import HumanMotion, Movement
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.punching import Punch
-from radhar_cli.motion.human.sitting import SitDown, StandUp
+from radhar_cli.motion.human.sitting import Seat, SitDown, StandUp
+from radhar_cli.motion.human.standing import Stand
+from radhar_cli.motion.human.stepping import STUMBLES
 from radhar_cli.motion.human.turning import Turn
 from radhar_cli.motion.human.walking import Gait, Walk
 from radhar_cli.motion.skeleton import JOINTS
@@ -144,6 +147,77 @@ def test_falls_are_as_fast_as_real_ones(fall: Movement) -> None:
     lying = p[2, :, -1]
     assert lying[[joint("head"), joint("torso"), joint("hip")]].max() < 0.35
     assert lying.min() > 0.02
+
+
+@pytest.mark.parametrize(
+    "fall",
+    [
+        *(FallFromSeat(ahead=ahead, rising=r) for ahead in (True, False) for r in (0.0, 0.8)),
+        *(FallSideways(1.0, seat=Seat(), rising=rising) for rising in (0.0, 0.8)),
+    ],
+)
+def test_falls_off_a_seat_are_slower_and_do_not_rise(fall: Movement) -> None:
+    """From half the height the pelvis lands slower than from standing, on the floor."""
+    p = positions(fall, 3.0)
+    hip = p[2, joint("hip")]
+    assert 0.9 < -np.diff(hip).min() / DT < 2.1
+    assert -np.diff(p[2, joint("head")]).min() / DT < 2.9 + 0.9
+    assert hip[-1] < 0.2
+    assert hip.max() < hip[0] + (0.32 if fall.rising else 0.08)
+
+
+def test_hands_are_down_when_the_trunk_is_that_break_a_fall() -> None:
+    """Before the trunk is at its lowest, and the head stays off the floor."""
+    for fall, hand in (
+        (FallForward(prone=OnFours()), "right_hand"),
+        (FallBackward(supine=Sitting()), "right_hand"),
+        (FallSideways(caught=0.6), "left_hand"),
+    ):
+        z = positions(fall, 2.5)[2]
+        assert np.flatnonzero(z[joint(hand)] < 0.08)[0] <= z[joint("torso")].argmin()
+        assert z[joint("head"), -1] > 0.45
+
+
+@pytest.mark.parametrize("direction", STUMBLES)
+def test_a_stumble_is_caught_by_quick_steps(direction: str) -> None:
+    """Steps of 15 to 35 % of the stature, and the trunk comes back."""
+    p = positions(STUMBLES[direction], 1.5)
+    feet = p[:2, [joint("right_ankle"), joint("left_ankle")]]
+    first = np.linalg.norm(np.diff(feet[:, :, [0, 450]], axis=2)[..., 0], axis=0).max()
+    assert 0.15 < first / 1.75 < 0.35
+    trunk = p[:, joint("head")] - p[:, joint("hip")]
+    leant = np.degrees(np.arccos(trunk[2] / np.linalg.norm(trunk, axis=0)))
+    assert 10 < leant.max() < 36
+    assert leant[-1] < 0.1
+    assert p[2, joint("hip"), -1] == pytest.approx(p[2, joint("hip"), 0], abs=1e-6)
+
+
+def test_a_walker_who_trips_pitches_steps_quickly_and_walks_on() -> None:
+    trips, walks = (positions(Walk(Gait(0.7, trip=trip), 5.0), 8.0) for trip in (radians(30), 0.0))
+    ahead = (trips - walks)[0, joint("head")]
+    assert 0.25 < ahead[2400:4500].max() < 0.4
+    assert np.abs(ahead[-1]) < 0.01
+    moving = np.abs(np.diff(trips[0, joint("right_ankle")])) > 1e-5
+    plain = np.abs(np.diff(walks[0, joint("right_ankle")])) > 1e-5
+    assert moving[2500:4200].mean() != plain[2500:4200].mean()
+
+
+@pytest.mark.parametrize("lies", TRIES)
+def test_who_tries_to_get_up_comes_part_of_the_way_and_sinks_back(lies: str) -> None:
+    p = positions(TryToGetUp(before=lies), 3.2)
+    head = p[2, joint("head")]
+    assert 0.05 < head.max() - head[0] < 0.6
+    np.testing.assert_allclose(p[..., -1], p[..., 0], atol=1e-9)
+
+
+@pytest.mark.parametrize("lies", TRIES)
+def test_whoever_lies_on_belly_or_back_gets_up(lies: str) -> None:
+    """Within human speeds, to where standing people are."""
+    p = positions(GetUp(before=lies), 3.2)
+    standing = positions(Stand(1.0), 1.0)
+    np.testing.assert_allclose(p[2, :, -1], standing[2, :, 0], atol=1e-9)
+    assert speed(p, "head") < 1.8
+    assert speed(p, "right_ankle") < 1.2
 
 
 def test_a_fall_ahead_lies_flat() -> None:

@@ -9,9 +9,19 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from radhar_cli.motion.human.exercises import EXERCISES
-from radhar_cli.motion.human.falling import FallBackward, FallForward
-from radhar_cli.motion.human.falling_sideways import FallSideways
-from radhar_cli.motion.human.getting_up import GetUp
+from radhar_cli.motion.human.falling import (
+    ON_FLOOR,
+    ON_FOURS,
+    PROPPED,
+    SUPINE,
+    FallBackward,
+    FallForward,
+    OnFours,
+    Sitting,
+)
+from radhar_cli.motion.human.falling_from_seat import FallFromSeat
+from radhar_cli.motion.human.falling_sideways import FallSideways, RiseFromSide
+from radhar_cli.motion.human.getting_up import GetUp, TryToGetUp
 from radhar_cli.motion.human.grabbing import Grab
 from radhar_cli.motion.human.idle import FIDGETS, SWAY_HZ, Breath, Fidget, Idle, Sway, Waves
 from radhar_cli.motion.human.kicking import Kick
@@ -23,7 +33,7 @@ from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.punching import Punch
 from radhar_cli.motion.human.sitting import Seat, SitDown, StandUp
 from radhar_cli.motion.human.standing import Stand
-from radhar_cli.motion.human.stepping import StepTo
+from radhar_cli.motion.human.stepping import STUMBLES, StepTo
 from radhar_cli.motion.human.turning import Turn
 from radhar_cli.motion.human.walking import Gait, Walk
 from radhar_cli.motion.skeleton import JOINTS, PARENTS, links
@@ -65,6 +75,16 @@ LEGS_LAG = Lags(0.6, {"shank": 1.0, "thigh": 0.7, "right_elbow": 0.4})
 TRUNK_LAGS = Lags(0.6, {"trunk": 1.0, "right_shoulder": 0.5, "left_elbow": 0.9})
 
 
+def both_ways_up(lying: str) -> tuple[Movement, ...]:
+    """Who lies so tries to get up, then does."""
+    return TryToGetUp(before=lying), GetUp(before=lying)
+
+
+def and_up(fall: FallSideways) -> tuple[Movement, ...]:
+    """The same of who has fallen to the side."""
+    return fall, RiseFromSide(fall, tries=True), RiseFromSide(fall)
+
+
 def walks_of(gait: Gait) -> dict[str, tuple[Movement, ...]]:
     """The twelve activities, and what else a person can do."""
     steady, off = Walk(gait, from_rest=False), Walk(gait)
@@ -94,6 +114,17 @@ def walks_of(gait: Gait) -> dict[str, tuple[Movement, ...]]:
             StandUp(seat=Seat(recline=0.4, lap=0.0), lags=LEGS_LAG),
         ),
         "over the knees": (stopping, FallForward(kneel=0.6, heels=1.4)),
+        "topples off": (FallFromSeat(), TryToGetUp(), GetUp()),
+        "topples on rising": (FallFromSeat(rising=0.8, seat=Seat(recline=0.4, lap=0.0)),),
+        "slides off": (FallFromSeat(ahead=False), *both_ways_up(ON_FLOOR)),
+        "misses the seat": (FallFromSeat(ahead=False, rising=0.8), *both_ways_up(SUPINE)),
+        "off to the side": and_up(FallSideways(side=-1.0, seat=Seat(recline=0.2, height=0.33))),
+        "aside on rising": and_up(FallSideways(seat=Seat(height=0.24), rising=0.8)),
+        "on the hands": (FallForward(prone=OnFours(), kneel=0.3), *both_ways_up(ON_FOURS)),
+        "back on the hands": (stopping, FallBackward(supine=Sitting()), *both_ways_up(PROPPED)),
+        "aside on the hands": and_up(FallSideways(caught=0.6)),
+        "stumbles": (*STUMBLES.values(), replace(STUMBLES["sideways"], place=Place(0.0, -0.3))),
+        "trips": (Walk(replace(gait, trip=0.6), 3.0),),
         "slowly off": (Grab(haste=0.6), Walk(replace(gait, start=2.0))),
         "rightwards": (stopping, FallSideways(side=-1.0)),
         "everything": (
@@ -189,7 +220,20 @@ def test_positions_and_velocities_are_continuous(what: str) -> None:
     assert worst[1] < worst[0] / 6  # 1/8, and acceleration that the coarse rate does not resolve
 
 
-@pytest.mark.parametrize("what", ["S9", "S10", "S11", "S12", "backwards", "everything"])
+@pytest.mark.parametrize(
+    "what",
+    [
+        "S9",
+        "S10",
+        "S11",
+        "S12",
+        "backwards",
+        "everything",
+        "topples off",
+        "slides off",
+        "on the hands",
+    ],
+)
 def test_position_and_velocity_are_continuous_across_movements(what: str) -> None:
     fidgets = tuple(Fidget(channel, 0.05, 0.1 * k, 0.7) for k, channel in enumerate(FIDGETS))
     motion = moving(what, idle=Idle(Physique(1.75), fidgets=fidgets))

@@ -1,0 +1,99 @@
+"""Falls off a seat, while sitting or on rising from it: toppling ahead, sliding down, missing it.
+
+Of 306 filmed falls of older people between a seat and standing 64 % began on rising, mostly
+backwards (Komisar et al., Arch. Phys. Med. Rehabil. 104 (2023) 533); of 58 out of wheelchairs most
+went backwards and 90 % ended on the pelvis (J. Am. Med. Dir. Assoc. 25 (2024) 796). Nobody seems to
+have measured how long they take: the durations are guesses below those of falls from standing.
+"""
+
+from dataclasses import dataclass, field
+from math import radians
+
+from radhar_cli.motion.human.falling import (
+    AGAINST_SEAT,
+    ON_FLOOR,
+    PRONE,
+    SUPINE,
+    Prone,
+    Supine,
+)
+from radhar_cli.motion.human.minimum_jerk import Course, Step
+from radhar_cli.motion.human.part import SEATED, Phase
+from radhar_cli.motion.human.physique import Physique
+from radhar_cli.motion.human.planted import (
+    ELBOWS,
+    SHOULDERS,
+    Planted,
+    both,
+    timed,
+)
+from radhar_cli.motion.human.sitting import Seat
+
+# Share of the way from the seat to the floor, by channel: start and length in units of the
+# duration, and whether the step is late.
+Shares = tuple[tuple[str, float, float, float, bool], ...]
+TOPPLE: Shares = (  # the trunk goes over the knees, which go to the floor; then the hips sink
+    ("trunk", 1.0, 0.0, 1.0, True),
+    ("shank", 1.0, 0.10, 0.80, True),
+    ("thigh", 0.48, 0.25, 0.80, True),
+    ("thigh", 0.52, 0.80, 0.80, False),
+)
+SLIDE: Shares = (  # hips and feet slide ahead, then the hips drop over the edge
+    ("feet", 1.0, 0.0, 0.90, False),
+    ("shank", 1.0, 0.15, 0.80, False),
+    ("thigh", 1.0, 0.15, 0.85, True),
+    ("trunk", 1.0, 0.10, 0.90, False),
+)
+MISS: Shares = (  # the hips go down behind the feet, then the trunk
+    ("shank", 1.0, 0.0, 0.80, True),
+    ("thigh", 1.0, 0.0, 0.80, True),
+    ("trunk", 1.0, 0.15, 0.95, True),
+)
+# Half of standing up, rad; in which part of the fall it is undone, ahead and backwards.
+RISEN = {"thigh": radians(48), "trunk": radians(36), "shank": radians(10)}
+UNDONE = (0.35, 0.65), (0.0, 0.75)
+
+
+@dataclass(frozen=True)
+class FallFromSeat:
+    """To the floor within about `duration` s, after half of a `rising` that lasts so long, s."""
+
+    duration: float = 1.0
+    ahead: bool = True  # or backwards: off the seat's edge, on rising behind the feet
+    rising: float = 0.0
+    seat: Seat = field(default_factory=Seat)
+    arms: float = radians(45)  # flexion of the shoulders as the hands look for the floor
+
+    def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
+        """The movement from `begin` (s) on."""
+        seated, shares, after = self.seat.posture(person), TOPPLE, PRONE
+        lying = Prone().posture(person)
+        if not self.ahead:
+            lying, shares, after = AGAINST_SEAT.posture(person), SLIDE, ON_FLOOR
+            if self.rising:
+                lying, shares, after = Supine().posture(person), MISS, SUPINE
+        change = {channel: lying[channel] - seated[channel] for channel in seated}
+        steps = [
+            Step(channel, share * change[channel], start, length, late)
+            for channel, share, start, length, late in shares
+        ]
+        steps += [Step(arm, change[arm], 0.1, 0.8) for arm in (*SHOULDERS, *ELBOWS)]
+        steps += both(SHOULDERS, self.arms, 0.05, 0.4) + both(SHOULDERS, -self.arms, 0.5, 0.5)
+        steps += [Step("upright", -1.0, 0.0, 0.8)]
+        if lying["hands"]:  # of who topples first where the shoulders then are
+            near = lying["hands_ahead"] - (0.3 * person.stature if self.ahead else 0.0)
+            seated |= {"hands_ahead": near, "hands_beside": lying["hands_beside"]}
+            steps += [
+                Step("hands", 1.0, 0.25, 0.65),
+                Step("hands_ahead", lying["hands_ahead"] - near, 0.8, 0.8),
+            ]
+        falls = begin + 0.75 * self.rising
+        risen = RISEN.items() if self.rising else ()
+        steps += [Step(one, -angle, *UNDONE[not self.ahead]) for one, angle in risen]
+        steps = timed(steps, falls, self.duration)
+        steps += [Step(one, angle, begin, self.rising) for one, angle in risen]
+        course = Course.of(seated, steps)
+        end = max(course.breakpoints)
+        rises = (Phase(begin, "standing up"),) if self.rising else ()
+        phases = (*rises, Phase(falls, "falling"), Phase(end, "lying"))
+        return Planted(person, course, begin, end, phases, SEATED, after)

@@ -77,7 +77,7 @@ def _of_sample(data: Dataset, row: int, extents: dict[str, NDArray[Any]]) -> Ent
     scene = _scene(data, row, notes)
     if scene is not None:
         made = scene_page.moving(scene, tuple(map(motion_of, scene.people)))
-        where = f"{where}   |   {made['title'].partition('   |   ')[2]}"
+        where = f"{where} | {made['title'].partition(' | ')[2]}"
     stored = {f.key: data.scene[f.name].rows(row, row + 1)[0] / f.factor for f in data.fields}
     numbers = {key: value for key, value in stored.items() if np.isfinite(value)}
     scale = scene_page.scale_of(config.image.kind, config.image.dynamic_range_db)
@@ -93,7 +93,7 @@ def _of_sample(data: Dataset, row: int, extents: dict[str, NDArray[Any]]) -> Ent
     if config.radar.cfg is not None:
         board = board_of((scene or nominal_scene(config, activity)).config)
         made |= {} if scene is not None else _stored_joints(data, row, board)
-        maps += _frames(data, row, board)
+        maps += _frames(data, row, board, made.get("farthest", np.inf))
         if "points" in data.products:
             points, start = _product(data, row, "points", (8,)), _product(data, row, "points_start")
             pose = board if scene is not None else None
@@ -133,7 +133,7 @@ def _product(data: Dataset, row: int, name: str, shape: tuple[int | None, ...] =
     return values
 
 
-def _frames(data: Dataset, row: int, board: Board) -> Iterator[Entry]:
+def _frames(data: Dataset, row: int, board: Board, farthest: float) -> Iterator[Entry]:
     """Frame maps that are stored, as grey levels."""
     scale = scene_page.scale_of("decibel", data.config.image.dynamic_range_db)
     for name in FRAME_MAPS[:3]:
@@ -142,8 +142,8 @@ def _frames(data: Dataset, row: int, board: Board) -> Iterator[Entry]:
             if name != "range_doppler":
                 columns = Axis(name.removeprefix("range_"), "degree", np.arange(-90.0, 91.0))
             grey = _product(data, row, name, (board.n_fft, columns.values.size))
-            times = _times(board, len(grey))
-            yield scene_page.frames_entry(name, grey, scale, columns, range_axis(board), times)
+            axes, times = (columns, range_axis(board)), _times(board, len(grey))
+            yield scene_page.frames_entry(name, grey, scale, *axes, times, farthest)
 
 
 def _stored_joints(data: Dataset, row: int, board: Board) -> Entry:
@@ -173,7 +173,8 @@ def _scene(data: Dataset, row: int, notes: list[str]) -> Scene | None:
         notes.append("Measured: there are no true joints.")
         return None
     if config.files_of(activity) is not None:
-        notes.append("Motion files are not opened: there is no skeleton.")
+        kept = "those that are stored" if "skeleton" in data.products else "not known"
+        notes.append(f"Motion files are not opened: joints are {kept}.")
         return None
     try:
         scene, _ = draw_valid_scene(config, activity, index)

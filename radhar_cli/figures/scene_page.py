@@ -16,10 +16,10 @@ from radhar_cli.arrays import Float, Index, Levels
 from radhar_cli.config.schema import ImageConfig
 from radhar_cli.figures.frames_panel import NAMES
 from radhar_cli.figures.maps_panel import TITLES, described, folded
-from radhar_cli.figures.maps_panel import of_simulation as maps_of
 from radhar_cli.figures.maps_panel import title as title_of
 from radhar_cli.figures.stickman import KNEES
 from radhar_cli.motion.protocol import Motion
+from radhar_cli.pipeline.motion_paths import point_delay
 from radhar_cli.pipeline.run import record
 from radhar_cli.plain_json import plain
 from radhar_cli.processing.frame_maps import FrameMaps
@@ -43,7 +43,8 @@ def of_simulation(simulation: Simulation) -> Entry:
     """What the page shows of a simulated scene."""
     config, board = simulation.config, simulation.board
     motions = (simulation.motion, *(one.motion for one in simulation.others))
-    made, farthest = moving(simulation.scene, motions), maps_of(simulation, overlay=False).farthest
+    made = moving(simulation.scene, motions)
+    farthest = made["farthest"]
     maps = [
         map_entry(name, one, config.image, simulation.waveform.f0, farthest)
         for name, one in simulation.maps.items()
@@ -58,7 +59,7 @@ def of_simulation(simulation: Simulation) -> Entry:
         cloud = simulation.frames["cloud"]
         made["cloud"] = cloud_entry(cloud.points, cloud.start, board.middles, board)
     return made | {
-        "title": title_of(simulation),
+        "title": title_of(simulation).replace("   |   ", " | "),
         "notes": list(simulation.warnings),
         "maps": maps,
         "colours": colours(config.image),
@@ -77,14 +78,16 @@ def moving(scene: Scene, motions: tuple[Motion, ...]) -> Entry:
     owners = [f"{person.number} " if len(true) > 1 else "" for person, _, _ in everybody]
     names = [who + joint for who, one in zip(owners, motions, strict=True) for joint in one.names]
     phases = [name if name != WHOLE else "" for name in true[0].phases]
+    far = max(point_delay(one.positions.T, antennas, wall).max() for one in true)
     boxes = {} if wall is None else {"wall": wall.bounds}
     if scene.config.room.faces is not None:
         box = Numbers(scene.config.room).box_m
         boxes["room"] = (box.x, box.y, (0.0, box.height))
     return {
-        "title": "   |   ".join(described(scene, w)),
+        "title": " | ".join(described(scene, w)),
         "numbers": scene_numbers(scene),
         "f0": w.f0,
+        "farthest": round(1.3 * far * SPEED_OF_LIGHT / 2 + 0.5, 2),
         "time": fine[::FINER],
         "people": [_person(f"{p.activity.label} {p.activity.slug}", m, t) for p, m, t in everybody],
         "curves": {

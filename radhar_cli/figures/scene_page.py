@@ -147,7 +147,7 @@ def map_entry(
 
 def scale_of(kind: str, dynamic_range_db: float) -> tuple[float, float, str]:
     """What the lowest and the highest grey level of an image stand for, and the unit."""
-    fixed = {"signed": (-1.0, 1.0, "of the largest"), "cfar": (0.0, 1.0, "detected")}
+    fixed = {"signed": (-1.0, 1.0, "relative amplitude"), "cfar": (0.0, 1.0, "detected")}
     return fixed.get(kind, (-dynamic_range_db, 0.0, "dB re peak"))
 
 

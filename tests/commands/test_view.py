@@ -143,6 +143,13 @@ def test_motion_files_that_a_data_set_names_are_not_opened(tmp_path):
     assert joints.shape == (len(shown["time"]), 13, 3)
     assert shown["axes"][0] == "ahead (m)"
     assert [one["title"] for one in shown["maps"]] == ["STFT", "range-Doppler", "range-azimuth"]
+    with edited(tmp_path / "set/dataset.h5", tmp_path / "dataset.h5") as file:
+        points = file["products/points"][:, :3]
+        del file["products/points"]
+        file["products/points"] = points
+    refused = radhar("view", tmp_path / "dataset.h5")
+    assert refused.returncode == 2
+    assert "dataset.h5: /products/points: should be numbers [n, 8]" in refused.stderr
 
 
 @pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium: apt-get install chromium")

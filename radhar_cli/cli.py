@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 DATA_SETS = "Data sets"
 COMMANDS = {
     DATA_SETS: ("generate", "verify", "merge", "convert"),
-    "Look": ("simulate", "motion", "preview", "inspect"),
+    "Look": ("simulate", "motion", "preview", "view", "inspect"),
     "Real radars": ("import", "process", "fit", "compare"),
     "Learn": ("train", "eval", "predict", "adapt", "export"),
     "Settings": ("tradeoff",),

@@ -100,6 +100,7 @@ LIBRARIES: dict[str, set[str]] = {
     "timm": {"learning"},
     "sklearn": {"learning", "two_sample"},
     "skimage": {"tradeoff"},
+    "plotly": {"figures"},
 }
 
 

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from radhar_cli.commands.learning_options import needs
 from radhar_cli.commands.options import (
     Activity,
     Figures,
@@ -50,6 +51,9 @@ def simulate(
         bool,
         typer.Option("--raw", help="Write recording.h5: the beat matrix, static returns included."),
     ] = False,
+    html: Annotated[
+        bool, typer.Option("--html", help="Write view.html: skeleton, maps and clouds in motion.")
+    ] = False,
     figures: Figures = True,
 ) -> None:
     """Simulate one scene: maps, ground truth and an animation.
@@ -60,6 +64,9 @@ def simulate(
 
       radhar simulate configs/quickstart.yaml --activity walking --seed 7 -o out/walk
     """
+    if html:
+        needs("view", ("plotly",))
+
     from radhar_cli.config import load_config
     from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.folder import refuse_file
@@ -94,6 +101,11 @@ def simulate(
         written.append(_record(simulation, out / RECORDING))
     if figures:
         written += _draw(simulation, out, overlay)
+    if html:
+        from radhar_cli.figures.scene_page import of_simulation, write_page
+
+        write_page([of_simulation(simulation)], out / scene_file.PAGE)
+        written.append(out / scene_file.PAGE)
     _say(simulation, written)
 
 

@@ -9,12 +9,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
 
+from radhar_cli.arrays import Float
 from radhar_cli.config.schema import ImageConfig
 from radhar_cli.figures.page import page, write_figure
 from radhar_cli.pipeline.motion_paths import point_delay
 from radhar_cli.processing.image import decibels
 from radhar_cli.processing.power_map import PowerMap
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT
+from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
+from radhar_cli.scene import Scene
 from radhar_cli.simulation.simulate import Simulation
 
 TITLES: Mapping[str, str] = {
@@ -117,12 +119,10 @@ def _draw_truth(axes: Axes, map_name: str, simulation: Simulation, unit: float) 
     if "compensated" in map_name:
         doppler = doppler - truth.doppler[:, :1]
     every = max(1, truth.time.size // 1500)
-    for curve in doppler[::every].T:
-        folded = (curve + prf / 2) % prf - prf / 2
-        folded[1:][np.abs(np.diff(folded)) > prf / 2] = np.nan
+    for curve in folded(doppler[::every], prf).T:
         axes.plot(
             truth.time[::every],
-            folded / unit,
+            curve / unit,
             scalex=False,
             scaley=False,
             color="white",
@@ -130,6 +130,13 @@ def _draw_truth(axes: Axes, map_name: str, simulation: Simulation, unit: float) 
             alpha=0.6,
             linestyle="--",
         )
+
+
+def folded(doppler: Float, prf: float) -> Float:
+    """Doppler [time, curve] within +-PRF/2, NaN where a curve begins again at the other edge."""
+    seen: Float = (doppler + prf / 2) % prf - prf / 2
+    seen[1:][np.abs(np.diff(seen, axis=0)) > prf / 2] = np.nan
+    return seen
 
 
 def draw_maps(shown: Shown, path: Path) -> None:
@@ -150,20 +157,23 @@ def draw_maps(shown: Shown, path: Path) -> None:
 
 def title(simulation: Simulation) -> str:
     """One line that says what was simulated."""
-    scene, waveform = simulation.scene, simulation.waveform
+    alone = simulation.joint
+    more = [] if alone is None else [f"{alone.replace('_', ' ')} alone"]
+    return "   |   ".join([*described(simulation.scene, simulation.waveform), *more])
+
+
+def described(scene: Scene, waveform: Waveform) -> list[str]:
+    """What a scene is of, in a few words each."""
     snr, figure = scene.config.snr_db, scene.config.receiver.noise_figure_db
     noise = "no noise" if figure is None else f"noise figure {figure:g} dB"
     kind = scene.config.radar.waveform
     band = " CW" if kind == "cw" else f" + {waveform.bandwidth / 1e9:g} GHz"
     band += " impulses" if kind == "impulse" else ""
     rooms = scene.config.room.faces is not None
-    parts = [
+    return [
         f"{scene.activity.label} {scene.activity.slug.replace('_', ' ')}",
         f"{waveform.fc / 1e9:g} GHz{band}, PRF {waveform.prf:g} Hz",
-        "through a wall" if simulation.config.wall else "in a room" if rooms else "free space",
+        "through a wall" if scene.config.wall else "in a room" if rooms else "free space",
         noise if snr is None else f"SNR {snr:g} dB",
         f"seed {scene.config.seed}",
     ]
-    if simulation.joint is not None:
-        parts.append(f"{simulation.joint.replace('_', ' ')} alone")
-    return "   |   ".join(parts)

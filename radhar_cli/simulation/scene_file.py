@@ -27,8 +27,9 @@ SCENE_FILE = "scene.h5"
 SCENE_JSON = "scene.json"
 SCENE_YAML = "scene.yaml"
 MAPS, ANIMATION = "maps.png", "stickman.gif"
-FRAMES, CLOUD = "frames.png", "cloud.gif"
-FILES = (SCENE_FILE, SCENE_JSON, SCENE_YAML, MAPS, ANIMATION, FRAMES, CLOUD)
+FRAMES, CLOUD, PAGE = "frames.png", "cloud.gif", "view.html"
+DRAWN = (MAPS, ANIMATION, FRAMES, CLOUD, PAGE)
+FILES = (SCENE_FILE, SCENE_JSON, SCENE_YAML, *DRAWN)
 
 
 def refuse_foreign(folder: Path) -> None:
@@ -196,7 +197,7 @@ def write_all(simulation: Simulation, folder: Path) -> list[Path]:
         command = f"radhar simulate {SCENE_YAML} -o OUT --index {simulation.scene.index}"
         head = f"# One scene, nothing left to draw: {command}\n"
         write_text(folder / SCENE_YAML, head + as_yaml(own))
-        for drawn in (MAPS, ANIMATION, FRAMES, CLOUD):  # of an earlier scene
+        for drawn in DRAWN:  # of an earlier scene
             (folder / drawn).unlink(missing_ok=True)
     except OSError as error:
         raise UnfinishedError(

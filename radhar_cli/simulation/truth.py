@@ -25,7 +25,7 @@ WHOLE = "the whole activity"
 
 @dataclass(frozen=True)
 class Truth:
-    """Kinematics at every pulse.
+    """Kinematics at every pulse, or at other times.
 
     Attributes:
         time: t_m [M], s.
@@ -91,9 +91,16 @@ def path_truth(sources: list[Whose], t: Float) -> PathTruth:
     )
 
 
-def truth(motion: Motion, antennas: Antennas, wall: Wall | None, waveform: Waveform) -> Truth:
-    """Evaluate the kinematics of all scatterers at every pulse."""
-    t = waveform.times(np.arange(waveform.n_pulses, dtype=float))
+def truth(
+    motion: Motion,
+    antennas: Antennas,
+    wall: Wall | None,
+    waveform: Waveform,
+    t: Float | None = None,
+) -> Truth:
+    """Evaluate the kinematics of all scatterers at times t [M] (s), at every pulse if None."""
+    if t is None:
+        t = waveform.times(np.arange(waveform.n_pulses, dtype=float))
 
     def rate(slab: Wall | None) -> Float:
         return _rate(lambda at: point_delay(motion.positions(at), antennas, slab), t)

@@ -54,7 +54,7 @@ def test_masks_of_an_npz(config: Path, packed: bool) -> None:
         names = [CLASSES[label[n]].lower().replace("-", "_") for n in part]
         assert slugs.tolist() == names
         assert data.extent("stft") == (0, 5, -500, 500)
-    for command in (("verify", out), ("inspect", out), ("preview", out)):
+    for command in (("verify", out), ("inspect", out), ("preview", out), ("view", out)):
         done = radhar(*command)
         assert done.returncode == 0, done.stdout + done.stderr
 

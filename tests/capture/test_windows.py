@@ -86,7 +86,12 @@ def test_every_command_accepts_it(recordings: Path, tmp_path: Path) -> None:
     out = tmp_path / "set"
     generate(recordings, out)
     assert "is complete" in generate(recordings, out)
-    for command in (("verify", out), ("inspect", out), ("preview", out, "--map", "stft")):
+    for command in (
+        ("verify", out),
+        ("inspect", out),
+        ("preview", out, "--map", "stft"),
+        ("view", out),
+    ):
         done = radhar(*command)
         assert done.returncode == 0, done.stdout + done.stderr
     images = open_images(out, "stft", "rgb")

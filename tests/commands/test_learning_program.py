@@ -80,6 +80,8 @@ def test_json_of_learning_commands(place):
         ("safetensors", ["eval", "x", "y"], "radhar[train]"),
         ("sklearn", ["predict", "x", "y"], "radhar[train]"),
         ("onnx", ["export", "x", "-o", "y"], "radhar[onnx]"),
+        ("plotly", ["view", "x"], "radhar[view]"),
+        ("plotly", ["simulate", "x", "-o", "y", "--html"], "radhar[view]"),
     ],
 )
 def test_a_missing_package_is_named_with_its_extra(missing, arguments, extra, monkeypatch):

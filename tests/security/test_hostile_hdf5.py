@@ -20,7 +20,7 @@ from radhar_cli.dataset.untrusted_hdf5 import UntrustedFile
 from radhar_cli.errors import FolderError
 
 Change = Callable[[h5py.File, Path], None]
-COMMANDS = ("inspect", "preview", "verify", "eval")
+COMMANDS = ("inspect", "preview", "view", "verify", "eval")
 HOSTILE: dict[str, tuple[Change, str, tuple[str, ...]]] = {}
 RAW = 32 * 32
 _packer = zlib.compressobj()
@@ -403,6 +403,7 @@ def command(name: str, folder: Path, run: Path) -> list[object]:
     return {
         "inspect": ["inspect", folder],
         "preview": ["preview", folder],
+        "view": ["view", folder],
         "verify": ["verify", folder, "--samples", 0],
         "eval": ["eval", run, folder, "--split", "all", "-o", folder.parent / "report"],
     }[name]

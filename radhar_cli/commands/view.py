@@ -1,0 +1,46 @@
+"""`radhar view`: a page to look at samples of a data set."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from radhar_cli.commands.learning_options import needs
+from radhar_cli.commands.tell import report, tell
+
+
+def view(
+    dataset: Annotated[Path, typer.Argument(help="Folder that `generate` wrote, or dataset.h5.")],
+    sample: Annotated[
+        list[str] | None,
+        typer.Option(metavar="CLASS/INDEX", help="May repeat; else the first of each class."),
+    ] = None,
+    split: Annotated[
+        str | None, typer.Option(help="Those of train, val or test, not of all.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", help="HTML file; view.html next to the data.")
+    ] = None,
+) -> None:
+    """Make a page to look at samples: maps, clouds, and the skeletons behind them, in motion.
+
+    It is one HTML file, for any browser. Skeletons are simulated again from the stored config.
+
+    Example:
+
+      radhar view datasets/quickstart --sample walking/3
+    """
+    needs("view", ("plotly",))
+
+    from radhar_cli.dataset.files import refuse_links
+    from radhar_cli.dataset.reading import open_dataset
+    from radhar_cli.dataset.sample_page import chosen_rows, of_samples
+    from radhar_cli.figures.scene_page import write_page
+
+    with open_dataset(dataset) as data:
+        rows = chosen_rows(data, sample or [], split)
+        path = out or data.path.parent / "view.html"
+        refuse_links(path.parent, path)
+        write_page(of_samples(data, rows), path)
+    report(file=path, samples=len(rows))
+    tell(str(path))

@@ -11,14 +11,17 @@ UNFINISHED = ".radhar-unfinished-"
 
 
 @contextmanager
-def replacing(path: Path, unfinished: Path | None = None) -> Iterator[Path]:
+def replacing(
+    path: Path, unfinished: Path | None = None, exclusive: bool = False
+) -> Iterator[Path]:
     """Yield where to write what takes the place of `path` at the end, unless something fails.
 
     That is `unfinished`, a name that no other process uses, on the same file system; if none is
     given, a new one beside it, where what killed processes left goes. Errors name `path`, also of a
-    full disk, which says no name.
+    full disk, which says no name. With `exclusive` a file that another process made stays.
 
     Raises:
+        FileExistsError: there is one, with `exclusive`.
         OSError: `path` is a folder or a device, or it cannot be written.
     """
     if path.exists() and not path.is_file():
@@ -31,7 +34,10 @@ def replacing(path: Path, unfinished: Path | None = None) -> Iterator[Path]:
                     fcntl.flock(held, fcntl.LOCK_EX)
                 _remove_leftovers(path.parent)
             yield other
-            other.replace(path)
+            if exclusive:
+                path.hardlink_to(other)
+            else:
+                other.replace(path)
     except OSError as error:
         if error.filename in (None, str(other)):
             error.filename = str(path)

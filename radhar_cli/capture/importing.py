@@ -47,17 +47,19 @@ def import_capture(
     out: Path,
     settings: CaptureSettings,
     header: str = "--set",
+    overwrite: bool = True,
 ) -> RecordingInfo:
     """Read a capture in pieces and write it as a recording; findings are in `source.found`.
 
     Args:
         paths: its files, or the first of those that are numbered.
         header: file of the header, for messages.
+        overwrite: replace a recording that is there.
     """
     out.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=f".{out.name}.", dir=out.parent) as scratch:
         source, settings = _opened(paths, settings, header, Path(scratch))
-        return _written(source, out, settings, header)
+        return _written(source, out, settings, header, exclusive=not overwrite)
 
 
 def _opened(
@@ -80,7 +82,9 @@ def _opened(
     return source, validated(CaptureSettings, document, source.name, {})
 
 
-def _written(source: Source, out: Path, s: CaptureSettings, header: str) -> RecordingInfo:
+def _written(
+    source: Source, out: Path, s: CaptureSettings, header: str, exclusive: bool
+) -> RecordingInfo:
     notes = [*source.notes]
     probed = findings.probe(source)
     coding = _coding(probed, s, source.name, notes)
@@ -108,7 +112,7 @@ def _written(source: Source, out: Path, s: CaptureSettings, header: str) -> Reco
             yield first, values
 
     number, parts = probed[0].dtype, source.parts
-    return write_recording(out, info, number, parts, pieces(), segments, damage)
+    return write_recording(out, info, number, parts, pieces(), segments, damage, exclusive)
 
 
 def _coding(

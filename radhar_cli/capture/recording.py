@@ -104,6 +104,7 @@ def write_recording(
     pieces: Iterable[tuple[int, Parts]],
     segments: PulseTimes,
     damage: Damage | None = None,
+    exclusive: bool = False,
 ) -> RecordingInfo:
     """Write a recording under another name, then rename it into place.
 
@@ -112,6 +113,7 @@ def write_recording(
         parts: 2 of complex numbers, 1 of real ones.
         pieces: (first pulse, numbers [receiver, sample, pulse, part]).
         damage: filled while the pieces are made; None: no flags.
+        exclusive: leave a file alone that another process made meanwhile.
     """
     dtype = number
     if parts == 2:
@@ -124,7 +126,7 @@ def write_recording(
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with (
-            replacing(path) as unfinished,
+            replacing(path, exclusive=exclusive) as unfinished,
             new_hdf5(unfinished, path) as (file, check),
         ):
             name = "slow_time" if info.samples is None else "beat"
@@ -152,6 +154,10 @@ def write_recording(
             file.attrs["schema_version"] = SCHEMA_VERSION
             file.attrs["recording"] = json.dumps(info.model_dump())
             file.attrs["radhar_version"] = __version__
+    except FileExistsError:
+        raise FolderError(
+            f"{path}: was written by another process meanwhile; --overwrite replaces it"
+        ) from None
     except OSError as error:
         raise UnfinishedError(
             f"{error.filename or path}: {error.strerror or error}; nothing was written"

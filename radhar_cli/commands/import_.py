@@ -52,7 +52,7 @@ def import_(
     if out.resolve() in {path.resolve() for path in captures}:
         raise FolderError(f"{out}: is the capture itself; -o should name another file")
     refuse_to_replace(out, overwrite, "walk.h5")
-    info = import_capture(captures, out, settings, str(radar) if radar else "--set")
+    info = import_capture(captures, out, settings, str(radar) if radar else "--set", overwrite)
     for line in info.source.found:
         tell(f"  {line}")
     shape = f"{info.receivers} receiver{'s' * (info.receivers > 1)}, "

@@ -53,8 +53,10 @@ from radhar_cli.dataset.shards import (
 )
 from radhar_cli.dataset.split import split_rows
 from radhar_cli.dataset.untrusted_hdf5 import (
+    DIGESTS,
     Numbers,
     UntrustedFile,
+    attribute_digests,
     remember,
 )
 from radhar_cli.errors import UnfinishedError
@@ -121,6 +123,7 @@ def assembled(
                 file.attrs[SCENES_DIGEST] = digest_of(table)
                 messages = warnings(config, flags)
                 _root_attributes(file, config, messages)
+                file.attrs[DIGESTS] = json.dumps(attribute_digests(file), sort_keys=True)
             remember(unfinished)
             yield unfinished, messages
             write_whole(folder, folder / CONFIG, (CONFIG_HEADING + as_yaml(config)).encode())

@@ -7,6 +7,7 @@ Types and shapes are checked before anything is read, and compressed pieces are 
 the size that they should have: HDF5 would inflate them to any.
 """
 
+import hashlib
 import io
 import os
 import signal
@@ -88,6 +89,28 @@ def _version_of(path: Path) -> str:
     return f"{status.st_dev}:{status.st_ino}:{status.st_size}:{status.st_ctime_ns}"
 
 
+DIGESTS = "attributes_sha256"
+
+
+def attribute_digests(file: h5py.File) -> dict[str, str]:
+    """{name: digest of the attributes} of all that a file holds, links left out.
+
+    Shapes are not asked for: HDF5 would open the files that a virtual dataset names.
+    """
+    found = {"/": _attribute_digest(file)}
+    file.visititems(lambda name, held: found.__setitem__(name, _attribute_digest(held)))
+    return found
+
+
+def _attribute_digest(held: Any) -> str:
+    attributes = dict[str, Any]()
+    for name in sorted(held.attrs):
+        if name != DIGESTS:
+            plain = hdf5_check.is_plain(held.attrs.get_id(name))
+            attributes[name] = np.asarray(held.attrs[name]).tolist() if plain else "another type"
+    return hashlib.sha256(repr(attributes).encode()).hexdigest()[:16]
+
+
 class UntrustedFile(Closing):
     """An HDF5 file, opened for reading.
 
@@ -136,6 +159,11 @@ class UntrustedFile(Closing):
             return parse_json(self.text(name))
         except ValueError as error:
             raise FolderError(f"{self.path}: attribute {name}: is not JSON ({error})") from None
+
+    def attribute_digests(self) -> dict[str, str]:
+        """As the function of that name."""
+        with _refusing_damage(f"{self.path}: attributes"):
+            return attribute_digests(self._file)
 
     def whole_number(self, name: str) -> int:
         """A whole number among the attributes of the file."""

@@ -22,6 +22,7 @@ from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.dataset.recorded import persons
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.split import split_rows
+from radhar_cli.dataset.untrusted_hdf5 import DIGESTS
 from radhar_cli.errors import FolderError
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.validity import draw_valid_scene
@@ -70,6 +71,7 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Verificati
         ]
         if _structure(data, report):
             _checksums(data, report)
+            _attributes(data, report)
             if data.config.recorded is None:  # whose recordings may lie anywhere
                 _resynthesise(data, samples, report, motion)
             if (beside / PNG).is_dir():
@@ -107,9 +109,7 @@ def _checksums(data: Dataset, report: Verification) -> None:
         for row in range(len(data)):
             if hashlib.sha256(chunks[row].tobytes()).hexdigest().encode() != stored[row]:
                 report.problems.append(f"/{name}[{row}]: does not match its checksum")
-    stored_digests = data.file.json("columns_sha256")
-    if not isinstance(stored_digests, dict):
-        raise FolderError(f"{data.path}: attribute columns_sha256: should be a mapping")
+    stored_digests = _mapping(data, "columns_sha256", report)
     for name, column in data.small.items():
         if name.startswith(checksum_of("")):
             continue
@@ -118,6 +118,25 @@ def _checksums(data: Dataset, report: Verification) -> None:
             digest.update(column.rows(start, start + ROWS).tobytes())
         if stored_digests.get(name) != digest.hexdigest():
             report.problems.append(f"/{name}: does not match its checksum")
+
+
+def _mapping(data: Dataset, name: str, report: Verification) -> dict[str, Any]:
+    """An attribute of the file that holds a mapping."""
+    found = data.file.json(name)
+    if isinstance(found, dict):
+        return found
+    report.problems.append(f"attribute {name}: should be a mapping")
+    return {}
+
+
+def _attributes(data: Dataset, report: Verification) -> None:
+    """Compare names and attributes with those of when it was built."""
+    there, built = data.file.attribute_digests(), _mapping(data, DIGESTS, report)
+    for name in sorted(there.keys() | built.keys()):
+        if there.get(name) != built.get(name):
+            what = "attributes differ from those that were built"
+            what = "was not built" if name not in built else what
+            report.problems.append(f"{name}: {'is missing' if name not in there else what}")
 
 
 def _config_and_table(data: Dataset, folder: Path, report: Verification) -> None:

@@ -11,7 +11,7 @@ from command_line import radhar
 from radhar_cli.capture.findings import LOST
 from radhar_cli.capture.importing import import_capture, read_settings
 from radhar_cli.capture.recording import Recording
-from radhar_cli.errors import CaptureError
+from radhar_cli.errors import CaptureError, FolderError
 
 SET = [word for one in RADAR for word in ("--set", one)]
 CONFIG = "maps: [stft]\nimage: {size_px: 32}\nprocessing: {clutter: mean}\n"
@@ -161,6 +161,18 @@ def test_tiny_numbers_are_processed(tmp_path: Path) -> None:
     )
     assert done.returncode == 0
     assert "None" not in done.stderr
+
+
+def test_one_of_several_imports_to_a_file_succeeds(tmp_path: Path) -> None:
+    """What another process wrote meanwhile stays."""
+    path, out = save(tmp_path / "x.npy", longer()), tmp_path / "o.h5"
+    settings = read_settings(None, RADAR)
+    import_capture([path], out, settings, overwrite=False)
+    before = out.read_bytes()
+    with pytest.raises(FolderError, match="was written by another process meanwhile"):
+        import_capture([path], out, settings, overwrite=False)
+    assert out.read_bytes() == before
+    assert sorted(one.name for one in tmp_path.iterdir()) == ["o.h5", "x.npy"]
 
 
 def test_words_of_12_bits_as_other_numbers_lie_around_zero(tmp_path: Path) -> None:

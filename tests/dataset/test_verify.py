@@ -21,6 +21,7 @@ from radhar_cli.config.identity import document_hash
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.png import colour_table, encode_png
 from radhar_cli.dataset.summary import summarise
+from radhar_cli.dataset.untrusted_hdf5 import DIGESTS, attribute_digests
 from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import FolderError
 
@@ -66,6 +67,10 @@ def _resplit(file: h5py.File) -> None:
     file["split"][:] = 1 - file["split"][:]
 
 
+def _reseed(file: h5py.File) -> None:
+    file.attrs["seed"] = 8
+
+
 def _move(file: h5py.File) -> None:
     file["scene/range"][4] += 0.1
 
@@ -77,6 +82,7 @@ def _move(file: h5py.File) -> None:
         (_flip_level_and_checksum, "differs by up to 1 grey level"),
         (_relabel, "/label: 1 wrong"),
         (_resplit, "/split"),
+        (_reseed, "/: attributes differ"),
         (_move, "/scene/range[4]"),
     ],
 )
@@ -89,11 +95,45 @@ def test_damage_is_found(
     assert any(expected in problem for problem in verify(tmp_path / "set", 9).problems)
 
 
+ATTRIBUTES = {
+    "/": ("class_slugs", "class_names", "warnings", "identity", "columns_sha256"),
+    "maps/stft": ("row_top", "row_unit", "dynamic_range_db", "kind", "levels"),
+    "scene/snr": ("unit", "config_key"),
+    "extent/stft": ("columns",),
+}
+
+
+@pytest.mark.parametrize("way", ["changed", "deleted"])
+@pytest.mark.parametrize(
+    ("place", "name"), [(place, name) for place, names in ATTRIBUTES.items() for name in names]
+)
+def test_attributes_are_those_that_were_built(
+    whole: Path, tmp_path: Path, place: str, name: str, way: str
+) -> None:
+    shutil.copytree(whole, tmp_path / "set")
+    with h5py.File(tmp_path / "set/dataset.h5", "r+") as file:
+        if way == "deleted" and name not in ("class_slugs", "class_names", "warnings", "identity"):
+            del file[place].attrs[name]
+        elif isinstance(file[place].attrs[name], str):
+            text = file[place].attrs[name]
+            file[place].attrs[name] = text.replace('"', "' '") if text[:1] in "{[" else text + "!"
+        else:
+            file[place].attrs[name] = 7
+    try:
+        problems = verify(tmp_path / "set", 1).problems
+    except FolderError as error:  # of what nothing can be read without
+        problems = [str(error)]
+    assert problems
+
+
 def test_what_was_not_built_is_named(whole: Path, tmp_path: Path) -> None:
     shutil.copytree(whole, tmp_path / "set")
+    with h5py.File(tmp_path / "set/dataset.h5", "r+") as file:
+        file["maps/foo"] = [1, 2]
     shutil.copytree(tmp_path / "set/png/stft", tmp_path / "set/png/stft2")
     shutil.rmtree(tmp_path / "set/png/rtm")
     problems = verify(tmp_path / "set", 1).problems
+    assert "maps/foo: was not built" in problems
     assert "png/stft2: is no map of this data set" in problems
     assert "png/rtm: is missing" in problems
     shutil.rmtree(tmp_path / "set/png")
@@ -118,12 +158,14 @@ def test_persons_are_those_of_the_config(tmp_path: Path) -> None:
     assert "/scene/subject: 1 wrong values" in verify(tmp_path / "set", 0).problems
 
 
-def test_checksums_that_are_no_mapping_are_refused(whole: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", ["columns_sha256", "attributes_sha256"])
+def test_checksums_that_are_no_mapping_are_a_problem(
+    whole: Path, tmp_path: Path, name: str
+) -> None:
     shutil.copytree(whole, tmp_path / "set")
     with h5py.File(tmp_path / "set/dataset.h5", "r+") as file:
-        file.attrs["columns_sha256"] = "[]"
-    with pytest.raises(FolderError, match="columns_sha256: should be a mapping"):
-        verify(tmp_path / "set", 0)
+        file.attrs[name] = "[]"
+    assert f"attribute {name}: should be a mapping" in verify(tmp_path / "set", 0).problems
 
 
 def test_files_that_a_virtual_dataset_names_are_not_opened(whole: Path, tmp_path: Path) -> None:
@@ -137,7 +179,8 @@ def test_files_that_a_virtual_dataset_names_are_not_opened(whole: Path, tmp_path
         file.create_virtual_dataset("extra", layout)
     command = [sys.executable, "-m", "radhar_cli", "verify", str(tmp_path / "set"), "--samples"]
     done = subprocess.run([*command, "0"], capture_output=True, text=True, timeout=120)
-    assert done.returncode == 0, done.stderr
+    assert done.returncode == 1
+    assert "WRONG extra: was not built" in done.stdout + done.stderr
 
 
 def _widen_an_extent(folder: Path) -> None:
@@ -201,6 +244,11 @@ def test_the_largest_decibels_are_checked(config: Config, tmp_path: Path) -> Non
     assert problems == ["/largest_db/stft: does not match its checksum"]
 
 
+def _digest_anew(file: h5py.File) -> None:
+    """As where the attributes were built so."""
+    file.attrs[DIGESTS] = json.dumps(attribute_digests(file))
+
+
 def test_a_data_set_from_before_newer_keys_is_of_another_version_and_not_wrong(
     whole: Path, tmp_path: Path
 ) -> None:
@@ -211,6 +259,7 @@ def test_a_data_set_from_before_newer_keys_is_of_another_version_and_not_wrong(
         file.attrs["config"] = json.dumps(stored)
         file.attrs["config_hash"] = document_hash(stored)
         file.attrs["radhar_version"] = "0.1.0+before"
+        _digest_anew(file)
     report = verify(tmp_path / "set", 2)
     assert report.problems == []
     assert report.other_versions[0].startswith("radhar 0.1.0+before there")
@@ -221,6 +270,7 @@ def test_other_versions_compare_within_one_level(whole: Path, tmp_path: Path) ->
     with h5py.File(tmp_path / "set/dataset.h5", "r+") as file:
         file.attrs["numpy_version"] = "1.0"
         _flip_level_and_checksum(file)
+        _digest_anew(file)
     shutil.rmtree(tmp_path / "set/png")
     shutil.rmtree(tmp_path / "set/.radhar")
     report = verify(tmp_path / "set", 9)
@@ -235,6 +285,7 @@ def test_a_version_that_is_not_named_is_another(whole: Path, tmp_path: Path) -> 
     with h5py.File(tmp_path / "dataset.h5", "r+") as file:
         here = file.attrs["isal_version"]
         del file.attrs["isal_version"]
+        _digest_anew(file)
     report = verify(tmp_path, 9)
     assert report.other_versions == [f"isal unknown there, {here} here"]
     assert report.problems == []

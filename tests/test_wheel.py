@@ -46,7 +46,7 @@ def test_the_wheel_holds_the_package_and_nothing_else(wheel: Path) -> None:
         about = file.read(metadata).decode()
         points = file.read(metadata.replace("METADATA", "entry_points.txt")).decode()
         licences = [name for name in file.namelist() if name.endswith("licenses/LICENSE")]
-    found = (path for suffix in ("py", "cfg") for path in PACKAGE.rglob(f"*.{suffix}"))
+    found = (path for suffix in ("py", "cfg", "html") for path in PACKAGE.rglob(f"*.{suffix}"))
     ours = {str(path.relative_to(ROOT)) for path in found}
     assert names == ours | {"radhar_cli/py.typed", "radhar_cli/dataset/viridis.rgb"}
     assert "radhar = radhar_cli.cli:main" in points

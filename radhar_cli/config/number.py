@@ -116,7 +116,15 @@ class Normal(Distribution):
 class Choice(Distribution):
     """``{choice: [a, b, c]}``: one of the values, equally likely."""
 
-    choice: Annotated[tuple[Real, ...], Field(min_length=1)]
+    choice: tuple[Real, ...]
+
+    @model_validator(mode="after")
+    def _some(self) -> "Choice":
+        if not self.choice:  # Field(min_length=1) also complains where all values are wrong
+            raise PydanticCustomError(
+                "choice", "should be {choice: [a, b, ...]} with 1 value or more"
+            )
+        return self
 
     @property
     def support(self) -> tuple[float, float]:

@@ -263,7 +263,7 @@ BROKEN = [
         "should be a valid number",
     ),
     Broken("snr_db: {vary: [10, 2]}", '1: snr_db = {"vary": [10, 2]}', "fraction from 0 to 1"),
-    Broken("snr_db: {choice: []}", "1: snr_db.choice = []", "at least 1 item"),
+    Broken("snr_db: {choice: []}", '1: snr_db = {"choice": []}', "1 value or more"),
     Broken(
         "snr_db: {uniform: [1, 2], choice: [1]}",
         '1: snr_db = {"uniform": [1, 2], "choice": [1]}',

@@ -96,7 +96,7 @@ def test_verify_opens_no_file_that_a_data_set_names(place):
     report = verify(place / "out", 24, place)
     assert (report.problems, report.resynthesised, report.unmade) == ([], 24, 0)
     done = radhar("verify", place / "out", "--samples", 4)
-    assert "--motion FOLDER synthesises them anew" in done.stdout
+    assert "--motion FOLDER checks them" in done.stdout
 
 
 def test_a_written_scene_is_the_same_recording(place, tmp_path):

@@ -467,7 +467,7 @@ def sample(row):
     return seconds | run(plan, {"scene": scene}).seconds
 
 each = [len(rows) * number // count for number in range(count)]
-for row in each[:3]:
+for row in each[::2]:  # each class: what is imported then is no part of a sample
     sample(row)
 start = process_time()
 for row in each:

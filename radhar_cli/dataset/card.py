@@ -1,16 +1,20 @@
 """The data card, README.md: a data set described for its readers."""
 
+import io
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import yaml
+from PIL import Image, ImageDraw, ImageFont
 
 from radhar_cli.dataset.files import refuse_links, write_whole
-from radhar_cli.dataset.layout import CARD, SPLITS, Rows, column_axis, row_axis
+from radhar_cli.dataset.layout import CARD, GALLERY, SPLITS, Rows, column_axis, row_axis
+from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset
 
+SIDE, GAP, LINE = 160, 6, 16  # px
 SIZES = ("n<1K", "1K<n<10K", "10K<n<100K", "100K<n<1M", "1M<n<10M", "10M<n<100M", "n>100M")
 
 _NOISE_TELLS = (
@@ -39,22 +43,47 @@ BIBTEX = """\
 
 
 def write_card(source: Path, folder: Path) -> None:
-    """Write the card of an output folder where there is none.
+    """Write the card of an output folder and its picture where there are none.
 
     Args:
         source: dataset.h5, or what is going to be it.
     """
-    refuse_links(folder, folder / CARD)
-    if (folder / CARD).exists():
+    missing = [name for name in (CARD, GALLERY) if not (folder / name).exists()]
+    for name in missing:
+        refuse_links(folder, folder / name)
+    if not missing:
         return
     with Dataset(source) as data:
-        name = data.config.maps[0]
+        name = next((one for one in data.config.maps if one != "rtm"), data.config.maps[0])
+        if GALLERY in missing:
+            write_whole(folder, folder / GALLERY, gallery_png(data, name))
+        if CARD not in missing:
+            return
         reading = f"""\
 `dataset.h5` holds everything for h5py and MATLAB: `/maps/<map>`, `/label`, `/split`,
 `/scene/<column>`. torchvision's `ImageFolder("png/{name}/train")` reads the images, where there are
 any, but numbers the classes by the alphabet. `radhar convert . -o OUT --to parquet` makes what
 `datasets.load_dataset` reads."""
-        write_whole(folder, folder / CARD, card(data, {}, reading).encode())
+        picture = f"![{name}, one sample of each class]({GALLERY})"
+        write_whole(folder, folder / CARD, card(data, {}, f"{picture}\n\n{reading}").encode())
+
+
+def gallery_png(data: Dataset, name: str) -> bytes:
+    """PNG of map `name` of the first sample of each of the first 16 classes."""
+    order, table = Rows.of(data.config), colour_table(data.config.image.colour_map)
+    classes = list(order.classes())[:16]
+    columns = min(len(classes), 4)
+    step, lines = SIDE + GAP, -(-len(classes) // columns)
+    page = Image.new("RGB", (columns * step, lines * (step + LINE)), "white")
+    draw, font = ImageDraw.Draw(page), ImageFont.load_default(11)
+    for number, (activity, rows) in enumerate(classes):
+        x, y = number % columns * step, number // columns * (step + LINE)
+        image = Image.fromarray(table[data.maps[name][rows.start]])
+        page.paste(image.resize((SIDE, SIDE), Image.Resampling.BILINEAR), (x, y + LINE))
+        draw.text((x, y), activity.slug, "black", font)
+    buffer = io.BytesIO()
+    page.save(buffer, "png", compress_level=data.config.output.png_level)
+    return buffer.getvalue()
 
 
 def card(data: Dataset, more: Mapping[str, Any], reading: str) -> str:
@@ -113,8 +142,7 @@ def _summary(data: Dataset) -> str:
     return (
         f"{len(data):,} samples of {len(config.chosen_activities)} classes, {maps} "
         f"map{'s' * (maps > 1)} of each, {height} x {width} pixels: {what} {split}\n\n"
-        "Columns: `label`, `index` (which sample of its class) and what was drawn, in SI units, "
-        "empty where it does not apply; /scene of dataset.h5 has units and keys of config.yaml."
+        "`scenes.csv` and /scene of dataset.h5 have the numbers that were drawn for each sample."
     )
 
 
@@ -122,7 +150,11 @@ def _maps(data: Dataset) -> str:
     lines = []
     for name in data.config.maps:
         edges = data.extent(name)
-        reach = ", ".join(f"{edge:.5g}" for edge in edges) if edges else "/extent of dataset.h5"
+        reach = (
+            ", ".join(f"{round(edge, 9):.5g}" for edge in edges)
+            if edges
+            else "/extent of dataset.h5"
+        )
         axes = (f"{quantity}, {unit}" for quantity, unit in (row_axis(name), column_axis(name)))
         lines.append([f"`{name}`", *axes, reach])
     image = data.config.image

@@ -19,6 +19,7 @@ from radhar_cli.dataset.layout import (
     CARD,
     CONFIG,
     DATASET,
+    GALLERY,
     IDENTITY,
     PARTS,
     PNG,
@@ -180,7 +181,7 @@ def _clear(folder: Path, new: dict[str, Any]) -> None:
         put_aside = unfinished_path(folder)
         put_aside.parent.mkdir(parents=True, exist_ok=True)
         (folder / PNG).rename(put_aside)
-    for name in (SCENES, CONFIG, CARD):
+    for name in (SCENES, CONFIG, CARD, GALLERY):
         (folder / name).unlink(missing_ok=True)
     _remove_batches(folder)
     _name(folder, new)

@@ -19,6 +19,7 @@ CONFIG = "config.yaml"
 SCENES = "scenes.csv"
 PNG = "png"
 CARD = "README.md"
+GALLERY = "gallery.png"
 WORK = ".radhar"
 IDENTITY = "identity.json"
 BUILT = "built"  # marks the work folder of a data set, or of a part, that was whole once

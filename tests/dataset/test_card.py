@@ -8,6 +8,7 @@ import pytest
 import yaml
 from command_line import ROOT
 from listener import Listener
+from PIL import Image
 from small import fingerprint, small_config
 
 from radhar_cli.config import Config, load_config
@@ -49,6 +50,9 @@ def test_the_card_describes_the_data_set(whole: Path) -> None:
     assert "a joint moves faster than the Doppler PRF/2" in text
     for library, version in versions().items():
         assert f"{library} {version}" in text
+    assert "(gallery.png)" in text
+    with Image.open(whole / "gallery.png") as picture:
+        assert picture.width > 4 * 160
 
 
 @pytest.mark.parametrize(

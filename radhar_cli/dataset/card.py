@@ -74,7 +74,7 @@ def gallery_png(data: Dataset, name: str) -> bytes:
     classes = list(order.classes())[:16]
     columns = min(len(classes), 4)
     step, lines = SIDE + GAP, -(-len(classes) // columns)
-    page = Image.new("RGB", (columns * step, lines * (step + LINE)), "white")
+    page = Image.fromarray(np.full((lines * (step + LINE), columns * step, 3), 255, np.uint8))
     draw, font = ImageDraw.Draw(page), ImageFont.load_default(11)
     for number, (activity, rows) in enumerate(classes):
         x, y = number % columns * step, number // columns * (step + LINE)

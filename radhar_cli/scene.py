@@ -177,11 +177,7 @@ class Scene:
 
 
 def draw_scene(
-    config: Config,
-    activity: Activity,
-    index: int,
-    attempt: int = 0,
-    again: tuple[int, ...] = (),
+    config: Config, activity: Activity, index: int, attempt: int = 0, again: tuple[int, ...] = ()
 ) -> Scene:
     """Draw every number of one sample, each from its own stream.
 

@@ -27,14 +27,7 @@ from radhar_cli.echo.accuracy import (
 )
 from radhar_cli.echo.beat import start_phase
 from radhar_cli.echo.half_band_sum import half_band_table
-from radhar_cli.echo.interpolation import (
-    AFTER,
-    BEFORE,
-    NODES,
-    TAPS,
-    lagrange_basis,
-    stencils,
-)
+from radhar_cli.echo.interpolation import AFTER, BEFORE, NODES, TAPS, lagrange_basis, stencils
 from radhar_cli.echo.knots import Knots, Motion, only, resolve
 from radhar_cli.echo.paths import Paths, PathSource
 from radhar_cli.echo.phase_recurrence import nodes, phasors_between_knots

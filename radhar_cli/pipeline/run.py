@@ -62,11 +62,7 @@ def record(
 
 
 def process(
-    signal: Signal,
-    config: Config,
-    asked: Iterable[str],
-    more: Iterable[Product] = (),
-    **given: Any,
+    signal: Signal, config: Config, asked: Iterable[str], more: Iterable[Product] = (), **given: Any
 ) -> Recording:
     """Make products of a recorded signal: a sum over range after the canceller, or range bins
     before it. Powers of its channels are added up.

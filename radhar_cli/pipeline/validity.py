@@ -211,12 +211,7 @@ def _check_block(
 
 
 def _closest(
-    motion: Motion,
-    antennas: Antennas,
-    waveform: Waveform,
-    p: Float,
-    pulses: Index,
-    near: Approach,
+    motion: Motion, antennas: Antennas, waveform: Waveform, p: Float, pulses: Index, near: Approach
 ) -> Approach:
     """Nearest passage on the grid, or at every pulse where the grid cannot rule out 5 cm."""
     if np.diff(pulses).max() == 1:

@@ -10,11 +10,7 @@ import numpy as np
 import scipy.fft
 
 from radhar_cli.arrays import Bool, Complex, Float, Index
-from radhar_cli.processing.frame_maps import (
-    doppler_spectrum,
-    longest_rows,
-    range_spectrum,
-)
+from radhar_cli.processing.frame_maps import doppler_spectrum, longest_rows, range_spectrum
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.detection import Cfar, Detection
 
@@ -46,11 +42,7 @@ class Cloud(NamedTuple):
 
 
 def board_points(
-    cube: Complex,
-    board: Board,
-    detection: Detection,
-    quantise: bool,
-    carrier: float | None = None,
+    cube: Complex, board: Board, detection: Detection, quantise: bool, carrier: float | None = None
 ) -> Cloud:
     """The points of every frame.
 

@@ -207,10 +207,7 @@ class Exercising(Striking[Exercise]):
         knees = two_link(joints, ankles, body.leg, body.leg, AHEAD)
         trunk = axes(pitch + idle.pitch, idle.yaw, idle.roll + lean)
         upper, fore = raised(
-            trunk,
-            limbs["forwards"] + idle.shoulders,
-            body.elbow + idle.elbows,
-            limbs["sideways"],
+            trunk, limbs["forwards"] + idle.shoulders, body.elbow + idle.elbows, limbs["sideways"]
         )
         return Pose(hip, trunk, joints, knees, ankles, upper, fore, idle.breath)
 

@@ -101,10 +101,7 @@ class FallForward:
             ]
         if not isinstance(self.prone, OnFours):
             return _falling(person, begin, self.duration, rest, steps, PRONE, self.kneel)
-        steps += [
-            Step("trunk", GIVE, kneel + 0.7, 0.35),
-            Step("trunk", -GIVE, kneel + 1.05, 0.6),
-        ]
+        steps += [Step("trunk", GIVE, kneel + 0.7, 0.35), Step("trunk", -GIVE, kneel + 1.05, 0.6)]
         return _falling(person, begin, self.duration, rest, steps, ON_FOURS, self.kneel)
 
 

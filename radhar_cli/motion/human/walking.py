@@ -15,12 +15,7 @@ from radhar_cli.motion.human import boulic_thalmann as curves
 from radhar_cli.motion.human.footsteps import Footfalls, FootTrack
 from radhar_cli.motion.human.idle import IdleState, Waves
 from radhar_cli.motion.human.lane import Lane, along
-from radhar_cli.motion.human.minimum_jerk import (
-    Course,
-    Step,
-    minimum_jerk,
-    minimum_jerk_integral,
-)
+from radhar_cli.motion.human.minimum_jerk import Course, Step, minimum_jerk, minimum_jerk_integral
 from radhar_cli.motion.human.part import STANDING, Phase, Place
 from radhar_cli.motion.human.pelvis import hip_height, hip_joints, swayed_hip
 from radhar_cli.motion.human.physique import Physique

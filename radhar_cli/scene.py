@@ -60,11 +60,7 @@ OfOther: TypeAlias = Callable[[int, str], float]
 
 
 class Numbers:
-    """A section of a scene's config, with its numbers as floats.
-
-    Raises:
-        TypeError: a number is still to be drawn.
-    """
+    """A section of a scene's config, with its numbers as floats; a TypeError of one to be drawn."""
 
     def __init__(self, section: Section) -> None:
         self._section = section
@@ -182,11 +178,8 @@ def draw_scene(
     """Draw every number of one sample, each from its own stream.
 
     Persons come from (seed, subject, field), the rest from (seed, class, index, field): no draw
-    depends on another, on the maps, on the engine, or on the order of work.
-
-    Args:
-        attempt: how often the scene was drawn before, outside the model.
-        again: how often each of `people` was, too near to somebody or outside the model.
+    depends on another, on the maps, on the engine, or on the order of work. `attempt` counts draws
+    outside the model before, `again` those of each of `people` who did not fit.
     """
     subject = subject_of(config, index)
 

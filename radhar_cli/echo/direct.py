@@ -187,13 +187,9 @@ class DirectEcho:
 
 
 def _interpolated_sum(cycles: Float, envelope: Complex, shift: Index, step: int) -> Complex:
-    """sum_i envelope exp(-j 2 pi cycles) at the pulses [segments * step].
+    """sum_i envelope exp(-j 2 pi cycles) at the pulses [segments * step], in envelope's precision.
 
-    Args:
-        cycles: phases at the knots [BEFORE + segments + AFTER, I].
-        envelope: at the knots, in the precision that phasors shall have.
-        shift: of the stencils [segments].
-        step: pulses from knot to knot.
+    Both are given at the knots [BEFORE + segments + AFTER, I].
     """
     degree = SINGLE_DEGREE if envelope.dtype == np.complex64 else TAPS - 1
     to_nodes, to_pulses = _weights(step, degree)

@@ -55,14 +55,7 @@ def _weights(step: int, shift: int) -> Float:
 
 
 def kernel(u: Float, k: Index, samples: int, n_fft: int) -> Float:
-    """D(k/N_FFT - u) = sin(pi N x)/sin(pi x) [..., K] of beat frequencies u [...], cycles a sample.
-
-    Args:
-        u: K tau/fs.
-        k: bins [K].
-        samples: N.
-        n_fft: N_FFT.
-    """
+    """D(k/N_FFT - u) = sin(pi N x)/sin(pi x) [..., K] of beat frequencies u [...], cycles/sample."""
     at, turn = np.pi / n_fft * k, np.pi * u[..., None]
     found: Float = np.sin(samples * at) * np.cos(samples * turn)
     found -= np.cos(samples * at) * np.sin(samples * turn)
@@ -248,12 +241,8 @@ def _interpolated_sum(
 ) -> Complex:
     """Bins [K, segments * step] at the pulses of segments.
 
-    Args:
-        cycles: phases phi at the knots [BEFORE + segments + AFTER, I].
-        envelope: A T_p at the knots [P, BEFORE + segments + AFTER, I].
-        coefficients: c_p of the bins [P, K].
-        shift: of the stencils [segments].
-        step: pulses from knot to knot.
+    At the knots [BEFORE + segments + AFTER, I] are phases, in cycles, and A T_p over the unit
+    [P, ...]; coefficients are c_p of the bins [P, K].
     """
     dtype = complex_of(envelope)
     degree = SINGLE_DEGREE if dtype == np.complex64 else TAPS - 1

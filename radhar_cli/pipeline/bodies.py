@@ -108,11 +108,7 @@ def segment_paths(
 ) -> SegmentPaths | None:
     """The paths of a motion's segments, or None where its joints have none.
 
-    Args:
-        person: whose body it is, and the processing settings of whose scene hold.
-        motion: whole, or `Only` some joints of one.
-        antennas, wall, waveform: what it is seen with.
-        number: of the motion among several.
+    The motion is whole, or `Only` some joints of one; `number` is its own among several.
     """
     body = body_of(person, motion)
     kept = [n for joint in motion.names for n in covered(joint, body.segments)]

@@ -57,12 +57,7 @@ class Plan:
 
 
 def plan(table: Mapping[str, Product], asked: Iterable[str], given: Iterable[str] = ()) -> Plan:
-    """Return the products that these need, in running order.
-
-    Args:
-        table: every product there could be, by name.
-        asked: names of the products to keep.
-        given: names of products that are there already.
+    """The products of a table {name: product} that these need, less those given, in running order.
 
     Raises:
         KeyError: a product is neither in the table nor given.

@@ -101,12 +101,7 @@ def signal_of(map_name: str) -> str:
 
 
 def plan_images(config: Config, entropy: bool = True) -> Plan:
-    """The plan of a data set: the image of every map, those of one signal together.
-
-    Args:
-        config: of the data set.
-        entropy: whether the maps' entropies are asked for.
-    """
+    """The plan of a data set: the image of every map, with or without entropy, by signal."""
     own = {product.name for product in own_products()}
     of_signals = [name for name in config.maps if name in MAP_NAMES and name not in own]
     maps = sorted(of_signals, key=lambda name: SIGNALS.index(signal_of(name)))
@@ -264,11 +259,7 @@ def signal_of_look(x: Complex, look: Look) -> Signal:
 def received(
     x: Complex, look: Look, receiver: tuple[Impairment, ...], canceller: Canceller | None = None
 ) -> Signal:
-    """What a receiver adds to an echo [K, M] as one look shows it, and the canceller after it.
-
-    Raises:
-        SceneError: an impairment does more than add.
-    """
+    """What a receiver adds to an echo [K, M] as one look shows it, and the canceller after it."""
     for impairment in receiver:
         if not impairment.additive:
             raise SceneError(
@@ -610,14 +601,9 @@ def _image(
     extent: tuple[float, float, float, float],
     exponent: int,
 ) -> MapImage:
-    """The image of a map, and its unclipped decibels where they are stored.
+    """The image of a map from its resized power, and its unclipped decibels where they are stored.
 
-    Args:
-        c: the config.
-        cfar: of masks.
-        resize: makes the resized map of a function of its power, or of the power itself.
-        extent: of the map.
-        exponent: of the power of two that is the unit of what `resize` makes.
+    `resize` resizes a function of the power, or the power itself, in units of 2^exponent.
     """
     masks_decibels = cfar is not None and cfar.decibel
     small = resize(decibels_of if masks_decibels else None)

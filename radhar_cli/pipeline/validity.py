@@ -119,11 +119,7 @@ class SceneCheck:
 
 
 def check_scene(scene: Scene) -> SceneCheck:
-    """Check one scene on a grid of pulses dense enough for its motion.
-
-    Raises:
-        SceneError: no body can do this.
-    """
+    """Check one scene on a grid of pulses dense enough for its motion."""
     return _check_people(scene, scene.people)
 
 
@@ -271,11 +267,7 @@ def draw_valid_scene(config: Config, activity: Activity, index: int) -> tuple[Sc
 
 
 def _with_others(config: Config, scene: Scene, flags: Flags) -> tuple[Scene, Flags]:
-    """The scene of an own person who stays, with others drawn until they fit, one after the other.
-
-    Raises:
-        SceneError: one of them finds no place, or may not be drawn again.
-    """
+    """The scene of an own person who stays; others are drawn until they fit, one after the other."""
     again = [0] * len(config.people)
     for number in range(1, len(config.people) + 1):
         why: str | None = None
@@ -398,11 +390,7 @@ def _opaque(config: Config) -> list[str]:
 
 
 def scene_warnings(scene: Scene) -> list[str]:
-    """Check one scene and return what to warn of, in words.
-
-    Raises:
-        SceneError: a scatterer comes within 5 cm of an antenna.
-    """
+    """Check one scene, which keeps 5 cm from antennas, and return what to warn of, in words."""
     number = too_near(scene)
     if number is not None:
         raise SceneError(f"{scene.name}: {_crowded(number)}; {ROOM}")
@@ -418,13 +406,7 @@ def scene_warnings(scene: Scene) -> list[str]:
 def warnings(
     config: Config, counts: Mapping[Flags, int], recordings: int | None = None
 ) -> list[dict[str, Any]]:
-    """What to say once per run: [{kind, recordings, message}].
-
-    Args:
-        config: of the run.
-        counts: how many of its recordings have each flag.
-        recordings: of so many; None is all.
-    """
+    """What to say once per run: [{kind, recordings, message}]; counts are of so many recordings."""
     recordings = recordings or sum(map(config.samples_of, config.chosen_activities))
     messages: list[dict[str, Any]] = [
         {

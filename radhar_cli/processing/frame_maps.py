@@ -46,13 +46,9 @@ def range_spectrum(cube: Complex, board: Board, window: Float) -> Complex:
 
 
 def doppler_spectrum(x: Complex, board: Board, window: Float, remove_mean: bool) -> Complex:
-    """X [frame, Doppler, virtual, range], Doppler as FFTs have it: 0 first, approaching positive.
+    """X [frame, Doppler, virtual, range] of x [frame, loop, virtual, range], windowed over loops.
 
-    Args:
-        x: [frame, loop, virtual, range].
-        board: whose bins.
-        window: over the loops.
-        remove_mean: take the mean over each frame's loops out first.
+    Doppler is as FFTs have it: 0 first, approaching positive.
     """
     if remove_mean:
         x = x - x.mean(axis=1, keepdims=True)
@@ -117,13 +113,8 @@ def range_angle(cube: Complex, board: Board, remove_mean: bool, axis: int) -> Fr
 
     Doppler bins are compensated for the transmitters' turns and summed: sum_d |w^H x_d|^2 =
     w^H R w with the covariance R = sum_d x_d x_d^H. The taper of n elements is
-    sin^2(pi (i + 1)/(n + 1)); of several rows as long, powers are averaged.
-
-    Args:
-        cube: samples.
-        board: the radar.
-        remove_mean: take out what stands still.
-        axis: 0 for azimuth, positive left, 1 for elevation, positive up.
+    sin^2(pi (i + 1)/(n + 1)); of several rows as long, powers are averaged. Axis 0 is azimuth,
+    positive left, 1 elevation, positive up.
     """
     angles = np.arange(-90.0, 91.0)
     rows = longest_rows(board, axis)

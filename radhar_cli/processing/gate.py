@@ -28,10 +28,7 @@ class Gate:
     def needed(self, frames: Frames, pulses: int, more: int) -> tuple[Index, Index]:
         """(first [M], last + 1 [M]) of the bins that some frame shows which a pulse belongs to.
 
-        Args:
-            frames: of the signal.
-            pulses: M.
-            more: pulses beside a frame on which its samples depend.
+        Samples depend on `more` pulses beside a frame.
         """
         if self.first.size == 1:
             return np.full(pulses, self.bins.start), np.full(pulses, self.bins.stop)
@@ -56,10 +53,7 @@ class Gate:
 def around(torso: Float, within: float, ranges: Float) -> Gate:
     """The 2 floor(within/step) + 1 bins about the one nearest to the torso, shifted into the axis.
 
-    Args:
-        torso: range in the middle of every frame [frames], m.
-        within: half the width of the gate, m.
-        ranges: of all bins, evenly spaced, m.
+    Of the torso's range in the middle of every frame [frames], and evenly spaced ranges, m.
     """
     step = _step(ranges)
     count = min(bins_within(within, step), ranges.size)

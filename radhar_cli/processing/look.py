@@ -230,11 +230,7 @@ class Look:
         return taken
 
     def in_order(self, following: Callable[[int], Complex]) -> Complex:
-        """`taken` of a process [rank, pulses] that is made in the order of the pulses.
-
-        Args:
-            following: makes as many of the next pulses as it is asked for.
-        """
+        """`taken` of a process [rank, pulses] of which `following` makes the next so many pulses."""
         pulses, reach = np.asarray(self.pulses), len(self.taps) - 1
         if reach == 0 and self.count == pulses[-1] - pulses[0] + 1:
             return following(self.count)

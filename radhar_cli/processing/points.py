@@ -44,14 +44,10 @@ class Cloud(NamedTuple):
 def board_points(
     cube: Complex, board: Board, detection: Detection, quantise: bool, carrier: float | None = None
 ) -> Cloud:
-    """The points of every frame.
+    """The points of every frame of a cube [frame, loop, virtual, sample].
 
-    Args:
-        cube: samples [frame, loop, virtual, sample].
-        board: the radar.
-        detection: thresholds and switches.
-        quantise: round as fixed-point numbers do, whose unit follows from the noise.
-        carrier: frequency of the Doppler axis, Hz; None is the centre frequency.
+    `quantise` rounds as fixed-point numbers do, whose unit follows from the noise; `carrier` (Hz)
+    is that of the Doppler axis, None the centre frequency.
     """
     fast, slow = np.blackman(board.samples), np.hanning(board.loops)
     fast, slow = fast / fast.sum(), slow / slow.sum()
@@ -68,10 +64,7 @@ def board_points(
 def noise_rms(cube: Complex, board: Board, fast: Float, slow: Float) -> float:
     """Rms of the noise of a range-Doppler cell: people fill less than half of the cells.
 
-    Args:
-        cube: samples [frame, loop, virtual, sample].
-        board: the radar.
-        fast, slow: windows, whose sums are 1.
+    The sums of the windows are 1.
     """
     some = np.unique(np.linspace(0, len(cube) - 1, min(len(cube), NOISE_FRAMES)).astype(int))
     x = doppler_spectrum(range_spectrum(cube[some], board, fast), board, slow, False)

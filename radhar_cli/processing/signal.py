@@ -93,9 +93,7 @@ class Signal:
     def cancelled(self, canceller: Canceller, spans: Sequence[slice] | None = None) -> "Signal":
         """The same after a canceller, stretch by stretch; those too short for it are left out.
 
-        Args:
-            canceller: along the pulses.
-            spans: pulses of each row that count, of a signal without gaps; the others become 0.
+        `spans` are the pulses of each row that count, of a signal without gaps; others become 0.
         """
         whole = self.stretches(canceller.lost + 1)
         times = whole.times.shortened(canceller.lost, canceller.delay)

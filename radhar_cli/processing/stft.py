@@ -59,11 +59,7 @@ class Stft:
 
     @cached_property
     def exponent(self) -> int:
-        """Binary exponent of the largest real or imaginary part of the signal.
-
-        Raises:
-            RadharError: one is an infinity or a NaN.
-        """
+        """Binary exponent of the largest real or imaginary part of the signal, which is finite."""
         x = self.signal.x
         largest = float(
             np.max([abs(f(part)) for part in (x.real, x.imag) for f in (np.min, np.max)])

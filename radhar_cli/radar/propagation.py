@@ -120,13 +120,9 @@ def bistatic_delay(r_tx: Float, r_rx: Float) -> Float:
 
 
 def amplitude(r_tx: Float, r_rx: Float, sigma: Float, gain: float, wavelength: float) -> Float:
-    """A = sqrt(G_tx G_rx lambda^2 sigma/(4 pi)^3)/(R_tx R_rx) for unit transmit power.
+    """A = sqrt(G_tx G_rx lambda^2 sigma/(4 pi)^3)/(R_tx R_rx) [I, M] for unit transmit power.
 
-    Args:
-        r_tx, r_rx: legs [I, M], m.
-        sigma: RCS [I, M] or [I, 1], m^2.
-        gain: linear gain of each antenna.
-        wavelength: m.
+    Legs [I, M] and the wavelength in m, sigma [I, M] or [I, 1] in m^2; gain of each antenna.
     """
     scale = gain * wavelength / (4 * pi) ** 1.5 * np.sqrt(sigma)
     a: Float = scale / (r_tx * r_rx)

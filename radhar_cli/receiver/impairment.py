@@ -17,10 +17,8 @@ class Impairment:
     additive: bool = True
 
     def apply(self, x: Complex, look: Look) -> Complex:
-        """What becomes of an echo.
+        """What becomes of an echo [K, M] as `look` shows it: of `RawSamples` unless it is additive.
 
-        Args:
-            x: [K, M], as `look` shows it; consecutive blocks of a recording share `look.memory`.
-            look: what is looked at; of `RawSamples` unless the impairment is additive.
+        Consecutive blocks of a recording share `look.memory`.
         """
         raise RadharError(f"{type(self).__name__}: has no method apply; should have it")

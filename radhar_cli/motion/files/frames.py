@@ -23,11 +23,7 @@ def numbers(text: bytes) -> Float | None:
 
 
 def bvh_frames(data: bytes, start: int, line: int, columns: int, where: str) -> Iterator[Float]:
-    """Blocks [frames, columns] of a text with a frame a line, from byte `start` in `line` on.
-
-    Raises:
-        MotionFileError: a line with something that is no number, or too many or too few.
-    """
+    """Blocks [frames, columns] of a text with a frame a line, from byte `start` in `line` on."""
     while start < len(data):
         stop = data.find(b"\n", min(start + BLOCK, len(data) - 1)) + 1 or len(data)
         piece = data[start:stop]
@@ -70,11 +66,7 @@ def _odd(text: bytes) -> str:
 
 
 def stacked(parts: Iterator[Float], where: str) -> Float:
-    """The blocks [frames, ...] one after the other.
-
-    Raises:
-        MotionFileError: there are too many frames.
-    """
+    """The blocks [frames, ...] one after the other; a MotionFileError if there are too many."""
     kept, count = [], 0
     for part in parts:
         kept.append(part)

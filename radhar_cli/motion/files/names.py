@@ -35,9 +35,7 @@ _PREFIX = re.compile(r"^(?:.*:|bip\d+|mixamorig\d*)")
 def joint_numbers(file: Recording, own: Mapping[str, str]) -> list[int | None]:
     """Numbers in the file of the thirteen joints, then of the hip joints, None where it has none.
 
-    Args:
-        file: whose names are read.
-        own: {our name: the file's}, before the tables.
+    `own` is {our name: the file's}, before the tables.
 
     Raises:
         MotionFileError: one of the thirteen is not there.

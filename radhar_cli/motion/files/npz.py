@@ -64,11 +64,7 @@ class Npz:
 
 
 def read_npz(data: bytes, where: str) -> Npz:
-    """Read an npz file.
-
-    Raises:
-        MotionFileError: names the file, the array and what is missing or odd.
-    """
+    """Read an npz file; a MotionFileError names the file, the array and what is missing or odd."""
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             names = _array(archive, "names", MAX_NAMES_BYTES, where)

@@ -54,10 +54,8 @@ _NUMBERS = [(*JOINTS, *HIP_JOINTS).index(node.joint) for node in NODES]
 def bvh_text(positions: Float, rate: float) -> str:
     """A BVH file of joints over frames; each link comes back to 1e-7 m.
 
-    Args:
-        positions: [frames, 15, 3], m: the thirteen joints, then right and left hip joint; x ahead,
-            y left, z up.
-        rate: frames per second.
+    Positions [frames, 15, 3], m: the thirteen joints, then right and left hip joint; x ahead,
+    y left, z up. `rate` is frames per second.
     """
     p = PER_METRE * positions[:, _NUMBERS][..., [1, 2, 0]]  # x left, y up, z ahead
     parents = [node.parent for node in NODES]

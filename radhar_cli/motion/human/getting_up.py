@@ -39,11 +39,7 @@ ON_BELLY = (PRONE, ON_FOURS)
 
 
 def _down(person: Physique, before: str) -> dict[str, float]:
-    """How people lie or sit on the floor, seen from where their feet are.
-
-    Raises:
-        ValueError: nobody gets up so.
-    """
+    """How people lie or sit on the floor, seen from where their feet are."""
     if before not in DOWN:
         raise ValueError(f"getting up begins {' or '.join(DOWN)}, not {before}")
     down = DOWN[before](person)

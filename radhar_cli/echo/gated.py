@@ -55,7 +55,7 @@ def _weights(step: int, shift: int) -> Float:
 
 
 def kernel(u: Float, k: Index, samples: int, n_fft: int) -> Float:
-    """D(k/N_FFT - u) = sin(pi N x)/sin(pi x) [..., K] of beat frequencies u [...], cycles/sample."""
+    """D(k/N_FFT - u) = sin(pi N x)/sin(pi x) [..., K] at beat frequencies u [...], per sample."""
     at, turn = np.pi / n_fft * k, np.pi * u[..., None]
     found: Float = np.sin(samples * at) * np.cos(samples * turn)
     found -= np.cos(samples * at) * np.sin(samples * turn)

@@ -177,7 +177,6 @@ def _sigma(echo: Echo, board: Board, scene: Scene) -> float:
 
 
 def _received(echo: Echo, sigma: float, board: Board, scene: Scene) -> Complex:
-    """The echo with errors of its channels and white noise."""
     receiver = Numbers(scene.config.receiver)
     cube: Complex = echo.cube
     if receiver.channel_gain_db > 0 or receiver.channel_phase_deg > 0:
@@ -204,7 +203,6 @@ def _range_angle(still: bool, axis: int, cube: Complex, board: Board) -> FrameMa
 
 
 def _cloud(c: Config, cube: Complex, board: Board) -> Cloud:
-    """The points of a cube by the chain of a config."""
     cloud, detection = c.cloud, detection_of(c)
     carrier = board.start if cloud.doppler_carrier == "start" else None
     if cloud.chain == "board":

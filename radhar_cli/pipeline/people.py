@@ -171,7 +171,6 @@ def _what(person: Person) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
 
 
 def _stepping(person: Person, movements: tuple[Movement, ...]) -> tuple[Movement, ...]:
-    """Movements and the steps before and after them, `motion.step_m` long."""
     length, rng = person.motion.step_m, person.stream("motion.step_m/ways")
     if not length:
         return movements
@@ -192,7 +191,6 @@ def _ends(movements: Iterable[Movement], begin: float) -> float:
 
 
 def _sequence(person: Person) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
-    """The movements of a class of `classes:`."""
     one = person.config.classes[person.activity.slug]
     assert isinstance(one, SequenceConfig)
     movements: list[Movement] = []
@@ -293,7 +291,7 @@ def _lags(person: Person, place: int) -> tuple[Lags, Lags]:
 
 
 def _side(person: Person) -> float:
-    """To which side people fall: 1 to the left, -1 to the right."""
+    """1 for a fall to the left, -1 to the right."""
     return 1.0 if person.stream("motion.fall/side").random() < 0.5 else -1.0
 
 

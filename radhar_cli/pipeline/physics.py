@@ -228,7 +228,6 @@ def kinds_of(config: Config) -> list[str]:
 
 
 def _permittivity(material: str | DielectricConfig, frequency: float) -> complex:
-    """eps = eps_r (1 - j tan delta), or of a named material at a frequency (Hz)."""
     if isinstance(material, str):
         return complex(permittivity(material, np.array(frequency)))
     numbers = Numbers(material)

@@ -194,7 +194,6 @@ def _gated(c: Config) -> bool:
 
 
 def _clutter(c: Config) -> str:
-    """One line on the canceller."""
     kind, highpass = c.processing.clutter, c.processing.highpass
     if kind != "highpass":
         return {
@@ -473,7 +472,6 @@ def _signals(c: Config) -> Iterator[Product]:
 
 
 def _gate(c: Config) -> Iterator[Product]:
-    """Which bins a gate shows."""
     within = c.processing.gate_m
 
     def gate(ranges: Float, frames: Frames, canceller: Canceller, torso_track: Float) -> Gate:

@@ -287,7 +287,6 @@ class _Seen(NamedTuple):
 
 
 def _constant(p: Float) -> Bool:
-    """Which of S [3, S, M] are the same at all M."""
     same: Bool = (p == p[..., :1]).all(axis=(0, 2))
     return same
 

@@ -124,7 +124,6 @@ def check_scene(scene: Scene) -> SceneCheck:
 
 
 def _check_people(scene: Scene, people: tuple[Person, ...]) -> SceneCheck:
-    """`check_scene` of some of the people, and of what stands in the room."""
     checks = [_checked(scene, person) for person in people]
     flags, closest = checks[0].flags, min(check.closest for check in checks)
     for check in checks[1:]:
@@ -138,7 +137,6 @@ def _check_people(scene: Scene, people: tuple[Person, ...]) -> SceneCheck:
 
 
 def _checked(scene: Scene, person: Person) -> SceneCheck:
-    """`check_scene` of one person."""
     try:
         return _check(scene, person, moving(person))
     except OutOfReachError as error:
@@ -267,7 +265,7 @@ def draw_valid_scene(config: Config, activity: Activity, index: int) -> tuple[Sc
 
 
 def _with_others(config: Config, scene: Scene, flags: Flags) -> tuple[Scene, Flags]:
-    """The scene of an own person who stays; others are drawn until they fit, one after the other."""
+    """The scene of an own person who stays; others are drawn until they fit, one by one."""
     again = [0] * len(config.people)
     for number in range(1, len(config.people) + 1):
         why: str | None = None
@@ -315,7 +313,6 @@ def too_near(scene: Scene, last: int | None = None) -> int | None:
 
 
 def _drawn(person: Person) -> str:
-    """The numbers that have put a person where they are."""
     whose = f"people.{person.number - 1}." if person.number else ""
     drawn = {one: getattr(person.motion, one) for one in ("range_m", "cross_range_m")}
     shown = (f"{whose}motion.{key} = {one:.4g}" for key, one in drawn.items() if one is not None)

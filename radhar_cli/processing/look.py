@@ -230,7 +230,7 @@ class Look:
         return taken
 
     def in_order(self, following: Callable[[int], Complex]) -> Complex:
-        """`taken` of a process [rank, pulses] of which `following` makes the next so many pulses."""
+        """`taken` of a process [rank, pulses] of which `following` makes the next few pulses."""
         pulses, reach = np.asarray(self.pulses), len(self.taps) - 1
         if reach == 0 and self.count == pulses[-1] - pulses[0] + 1:
             return following(self.count)

@@ -224,7 +224,6 @@ def _flanks(m: Float, peak: int) -> Index:
 
 
 def _in_view(points: Float, detection: Detection) -> Bool:
-    """Points in the fields of view of aoaFovCfg and cfarFovCfg."""
     x, y, z, doppler = points[:, :4].T
     angles = np.degrees(np.arctan2(-y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
     seen = np.ones(len(points), bool)

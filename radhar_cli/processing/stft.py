@@ -119,7 +119,6 @@ class Stft:
             yield np.fft.fftshift(total, axes=1)
 
     def _shown(self, row: int, block: slice) -> Bool:
-        """Which frames of a block show a row."""
         if self.gate is None:
             return np.ones(block.stop - block.start, bool)
         first = np.broadcast_to(self.gate.first - self.signal.first, self.starts.size)[block]

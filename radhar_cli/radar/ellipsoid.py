@@ -37,7 +37,7 @@ class View(NamedTuple):
 def square_height(
     view: View, radius: Float | float, half: Float | float, flatness: Float | float = 1.0
 ) -> Float:
-    """h^2 (m^2), times the square of the viewing vector's length; semi-axes across and along in m."""
+    """h^2 (m^2), times the square of the viewing vector's length; semi-axes in m, f 1 or more."""
     along, aside = view.along * view.along, view.aside * view.aside
     depth = radius / flatness
     height: Float = depth * depth * (view.square - along - aside) + half * half * along

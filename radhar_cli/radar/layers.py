@@ -58,7 +58,7 @@ class Layers:
         return sum(layer.thickness for layer in self.layers)
 
     def scattered(self, f: Float, cosine: Float) -> Scattered:
-        """T and R of a plane wave of frequencies f (Hz); shapes of f and cosine (above 0) broadcast."""
+        """T and R of a plane wave of frequencies f (Hz), which broadcast with the cosines."""
         outside = 1 / cosine if self.parallel else cosine
         e, h = np.ones_like(outside, complex), outside.astype(complex)
         left: Complex = np.ones_like(outside, complex)

@@ -57,7 +57,6 @@ def _line_by_line(piece: bytes, first: int, columns: int, where: str) -> Float:
 
 
 def _odd(text: bytes) -> str:
-    """The first word that is no finite number."""
     for word in text.split():
         value = numbers(word)
         if value is None or value.size != 1 or not np.isfinite(value).all():

@@ -67,7 +67,6 @@ def joint_numbers(file: Recording, own: Mapping[str, str]) -> list[int | None]:
 
 
 def _written(joint: str) -> list[str]:
-    """Every plain name that a joint may have."""
     side, _, part = joint.partition("_")
     if part not in _WORDS:
         return list(_WORDS[joint])

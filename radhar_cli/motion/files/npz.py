@@ -93,7 +93,6 @@ def _kind(array: NDArray[Any]) -> str:
 
 
 def _array(archive: zipfile.ZipFile, name: str, most: int, where: str) -> NDArray[Any]:
-    """An array of the archive, of at most `most` bytes."""
     try:
         member = archive.getinfo(f"{name}.npy")
     except KeyError:

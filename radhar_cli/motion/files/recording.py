@@ -38,7 +38,7 @@ class Recording(Protocol):
     def rate(self) -> float | None: ...
 
     def positions(self, joints: Sequence[int]) -> Float:
-        """Positions [frames, len(joints), 3] of some joints; a MotionFileError says what is wrong."""
+        """Positions [frames, len(joints), 3] of some joints; MotionFileError of what is wrong."""
         ...
 
     def place(self, frame: int) -> str:

@@ -52,7 +52,6 @@ class FallFromSeat:
     arms: float = radians(45)  # flexion of the shoulders as the hands look for the floor
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
-        """The movement from `begin` (s) on."""
         seated, shares, after = self.seat.posture(person), TOPPLE, PRONE
         lying = Prone().posture(person)
         if not self.ahead:

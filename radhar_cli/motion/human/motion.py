@@ -183,7 +183,6 @@ def _overlapped(before: tuple[Part, Place], part: Part) -> tuple[tuple[Part, Pla
 
 
 def _beyond(place: Place, way: Place) -> Place:
-    """The place reached from `place` by going `way`."""
     c, s = cos(place.turn), sin(place.turn)
     return Place(
         place.ahead + c * way.ahead - s * way.left,

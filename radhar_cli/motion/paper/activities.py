@@ -58,12 +58,10 @@ class Posture:
 
 
 def _stationary(t: Float, gait: Gait, timing: Timing) -> Posture:
-    """S1."""
     return Posture()
 
 
 def _punching(t: Float, gait: Gait, timing: Timing) -> Posture:
-    """S2."""
     phase = 2 * pi * gait.frequency * t
     swing, stretch = gait.arm * np.sin(phase), gait.calf * np.cos(phase)
     return Posture(
@@ -77,7 +75,6 @@ def _punching(t: Float, gait: Gait, timing: Timing) -> Posture:
 
 
 def _kicking(t: Float, gait: Gait, timing: Timing) -> Posture:
-    """S3."""
     swing = np.sin(2 * pi * gait.frequency * t)
     return Posture(
         angles={"right_knee": gait.thigh * swing, "right_ankle": pi / 6 + gait.calf * swing}
@@ -99,17 +96,14 @@ def _grabbing(t: Float, gait: Gait, timing: Timing) -> Posture:
 
 
 def _sitting_down(t: Float, gait: Gait, timing: Timing) -> Posture:
-    """S5."""
     return Posture(seated=progress(t, timing.seat_start, timing.seat_duration))
 
 
 def _standing_up(t: Float, gait: Gait, timing: Timing) -> Posture:
-    """S6."""
     return Posture(seated=1 - progress(t, timing.seat_start, timing.seat_duration))
 
 
 def _body_rotating(t: Float, gait: Gait, timing: Timing) -> Posture:
-    """S7."""
     return Posture(twist=gait.turn * np.sin(2 * pi * gait.frequency * t))
 
 

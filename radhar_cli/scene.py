@@ -81,20 +81,13 @@ def _plain(value: Any) -> Any:
 
 @dataclass(frozen=True)
 class Person:
-    """One person of a scene.
+    """One person of a scene."""
 
-    Attributes:
-        scene: in which they are.
-        activity: what they do.
-        config: whose `subject`, `motion`, `timing` and `classes` are theirs.
-        number: 0 for the sample's main person, else their place in `people`, from 1 on.
-        held: what was made of them and is needed again.
-    """
-
-    scene: "Scene"
-    activity: Activity
-    config: Config
-    number: int = 0
+    scene: "Scene"  # in which they are
+    activity: Activity  # what they do
+    config: Config  # whose `subject`, `motion`, `timing` and `classes` are theirs
+    number: int = 0  # 0 for the sample's main person, else their place in `people`, from 1 on
+    # what was made of them and is needed again
     held: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
 
     @property
@@ -137,22 +130,17 @@ class Person:
 
 @dataclass(frozen=True)
 class Scene:
-    """One recording to be simulated.
+    """One recording to be simulated."""
 
-    Attributes:
-        config: with every number of SCENE_KEYS fixed; written to YAML and simulated again with the
-            same activity and index, it gives the same recording.
-        activity: what is performed.
-        index: number of the sample within its class; names its noise, with the seed and the class.
-        subject: number of the person, or None where every sample is a person of its own.
-        attempt: how often the scene was redrawn (`on_invalid: redraw`).
-    """
-
+    # with every number of SCENE_KEYS fixed; written to YAML and simulated again with the same
+    # activity and index, it gives the same recording
     config: Config
-    activity: Activity
+    activity: Activity  # what is performed
+    # number of the sample within its class; names its noise, with the seed and the class
     index: int
+    # number of the person, or None where every sample is a person of its own
     subject: int | None = None
-    attempt: int = 0
+    attempt: int = 0  # how often the scene was redrawn (`on_invalid: redraw`)
 
     @property
     def name(self) -> str:

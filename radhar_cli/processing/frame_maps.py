@@ -19,18 +19,13 @@ BLOCK_FRAMES = 16
 
 @dataclass(frozen=True)
 class FrameMaps:
-    """Power of every frame for unit transmit power.
+    """Power of every frame for unit transmit power."""
 
-    Attributes:
-        power: [frame, rows, columns], lowest first.
-        rows, columns: the axes.
-        times: middles of the frames, s.
-    """
-
-    power: Float
+    power: Float  # [frame, rows, columns], lowest first
+    # rows, columns: the axes
     rows: Axis
     columns: Axis
-    times: Float
+    times: Float  # middles of the frames, s
 
 
 def range_spectrum(cube: Complex, board: Board, window: Float) -> Complex:

@@ -23,15 +23,10 @@ NOISE_FRAMES = 8  # that noise is estimated from
 
 
 class Cloud(NamedTuple):
-    """Points of all frames, one frame after the other.
+    """Points of all frames, one frame after the other."""
 
-    Attributes:
-        points: float32 [N, 8], columns as COLUMNS.
-        start: int64 [frames + 1]; points start[f] .. start[f + 1] - 1 are frame f's.
-    """
-
-    points: Float
-    start: Index
+    points: Float  # float32 [N, 8], columns as COLUMNS
+    start: Index  # int64 [frames + 1]; points start[f] .. start[f + 1] - 1 are frame f's.
 
     @classmethod
     def of(cls, frames: list[Float]) -> "Cloud":

@@ -22,16 +22,12 @@ BEHIND, BEHIND_WIDTH = 0.06, 0.03  # start of a shadow behind its occluder, and 
 
 
 class View(NamedTuple):
-    """A vector towards the observer, of any length.
+    """A vector towards the observer, of any length."""
 
-    Attributes:
-        along, aside: its components along the axis, and across where flat bodies are wide.
-        square: of its length.
-    """
-
+    # along, aside: its components along the axis, and across where flat bodies are wide
     along: Float
     aside: Float
-    square: Float
+    square: Float  # of its length
 
 
 def square_height(

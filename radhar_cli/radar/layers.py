@@ -42,15 +42,10 @@ class Scattered(NamedTuple):
 
 @dataclass(frozen=True)
 class Layers:
-    """A wall of layers, nearest first.
+    """A wall of layers, nearest first."""
 
-    Attributes:
-        layers: of the wall.
-        parallel: whether the field lies in the plane of incidence (TM), or across it (TE).
-    """
-
-    layers: tuple[Layer, ...]
-    parallel: bool
+    layers: tuple[Layer, ...]  # of the wall
+    parallel: bool  # whether the field lies in the plane of incidence (TM), or across it (TE)
 
     @property
     def depth(self) -> float:

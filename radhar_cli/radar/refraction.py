@@ -27,17 +27,12 @@ MAX_STEPS = 64
 
 
 class Bent(NamedTuple):
-    """Refracted rays.
+    """Refracted rays."""
 
-    Attributes:
-        crossed: chord inside the wall (m) and faces [I, M]; the straight ray's where not bent.
-        delay: beyond free space [I, M], s.
-        tangent: t of the angle outside [I, M]; NaN where not bent.
-    """
-
+    # chord inside the wall (m) and faces [I, M]; the straight ray's where not bent
     crossed: Crossing
-    delay: Float
-    tangent: Float
+    delay: Float  # beyond free space [I, M], s
+    tangent: Float  # t of the angle outside [I, M]; NaN where not bent
 
 
 def refract(p: Float, antenna: tuple[float, float, float], wall: Wall, straight: Crossing) -> Bent:

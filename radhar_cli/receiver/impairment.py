@@ -6,14 +6,11 @@ from radhar_cli.processing.look import Look
 
 
 class Impairment:
-    """Base of impairments: all that one needs is `apply`.
+    """Base of impairments: all that one needs is `apply`."""
 
-    Attributes:
-        additive: whether it adds to the echo something that does not depend on it. Only then does
-            it hold for echoes from which what stands still was left out, and for sums over samples;
-            others need raw samples of the whole echo, and make the plan take the exact engine.
-    """
-
+    # whether it adds to the echo something that does not depend on it. Only then does it hold for
+    # echoes from which what stands still was left out, and for sums over samples; others need raw
+    # samples of the whole echo, and make the plan take the exact engine.
     additive: bool = True
 
     def apply(self, x: Complex, look: Look) -> Complex:

@@ -7,7 +7,7 @@ comes from streams named by (seed, class, index) and in sizes of the config, 0 f
 from collections.abc import Iterable
 from dataclasses import replace
 from math import ceil, inf, pi, radians
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -53,19 +53,11 @@ from radhar_cli.motion.human.turning import Turn
 from radhar_cli.motion.human.walking import Gait
 from radhar_cli.scene import Numbers, Person
 
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
 Fall = FallForward | FallBackward | FallSideways
-M = TypeVar(
-    "M",
-    SitDown,
-    StandUp,
-    GetUp,
-    TryToGetUp,
-    StepTo,
-    FallForward,
-    FallBackward,
-    FallSideways,
-    FallFromSeat,
-)
+M = TypeVar("M", bound="DataclassInstance")  # a movement with a duration
 
 RAGGED_HZ = (0.1, 0.25, 0.4)
 MIN_STRIDE_S = 0.5  # no stride is shorter

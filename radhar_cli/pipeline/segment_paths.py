@@ -16,6 +16,7 @@ from radhar_cli.arrays import Bool, Float, Index
 from radhar_cli.echo.paths import Paths, Through
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.motion.segments import Placed, Segment, cross, place, soft_unit
+from radhar_cli.pipeline.motion_paths import OfMotion
 from radhar_cli.radar.ellipsoid import View, cross_section, shadow, square_height
 from radhar_cli.radar.propagation import Antennas, amplitude
 from radhar_cli.radar.transmission import pass_wall
@@ -114,7 +115,7 @@ def point_counts(
 
 
 @dataclass(frozen=True)
-class SegmentPaths:
+class SegmentPaths(OfMotion):
     """A source of paths: `PathSource` for a body of segments seen through air or a wall."""
 
     body: Body  # whose segments
@@ -127,19 +128,9 @@ class SegmentPaths:
     kept: tuple[int, ...]
 
     @property
-    def breakpoints(self) -> tuple[float, ...]:
-        """Instants (s) at which positions are not smooth."""
-        return self.body.motion.breakpoints
-
-    @property
-    def highest_frequency(self) -> float:
-        """Fundamental of the fastest motion, Hz."""
-        return self.body.motion.highest_frequency
-
-    @property
-    def smooth(self) -> bool:
-        """Paths kink where a leg passes an edge of the wall."""
-        return self.wall is None
+    def motion(self) -> Motion:  # type: ignore[override]
+        """Of the body."""
+        return self.body.motion
 
     @cached_property
     def _coefficients(self) -> list[Float]:

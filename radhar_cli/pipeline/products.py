@@ -553,7 +553,7 @@ def _doppler_maps(c: Config, signal: str, entropy: bool) -> Iterator[Product]:
         yield Product(
             f"image:{kind}{suffix}",
             (*masks, *needs),
-            partial(_doppler_mask if masks else _doppler_image, c, power, single, entropy),
+            partial(_doppler_image, c, power, single, entropy),
             f"power of the {does}{', in float32' * single}; its {_shape(c, entropy)}",
         )
 
@@ -621,20 +621,10 @@ def _doppler_map(make: MakePower, *given: Any) -> PowerMap:
     return PowerMap(power.T, doppler.rows, doppler.columns)
 
 
-def _doppler_mask(
-    c: Config, make: MakePower, single: bool, entropy: bool, cfar: CellAveraging, *given: Any
-) -> MapImage:
-    return _doppler_image(c, make, single, entropy, *given, cfar=cfar)
-
-
 def _doppler_image(
-    c: Config,
-    make: MakePower,
-    single: bool,
-    entropy: bool,
-    *given: Any,
-    cfar: CellAveraging | None = None,
+    c: Config, make: MakePower, single: bool, entropy: bool, *given: Any
 ) -> MapImage:
+    cfar, given = (given[0], given[1:]) if c.image.kind == "cfar" else (None, given)
     doppler = make(single, *given)
     again = (make(single, *given).blocks for _ in repeat(None))
     passes = chain([doppler.blocks], again)

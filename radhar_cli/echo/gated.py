@@ -26,10 +26,9 @@ from radhar_cli.echo.interpolation import (
     AFTER,
     BEFORE,
     EXACT,
-    NODES,
     REACH,
     TAPS,
-    lagrange_basis,
+    lagrange_weights,
     stencils,
 )
 from radhar_cli.echo.knots import Knots, Motion, columns
@@ -46,12 +45,6 @@ VALUES = 2**18  # envelopes at knots per block
 AT_PEAK = 1e-9  # sine of the denominator below which D is N
 MORE_NODES = 24, 48  # than D has half waves, in single and in double precision
 SMALLEST = 3e-8, 1e-15  # coefficient over N that is kept, likewise
-
-
-@lru_cache(maxsize=128)
-def _weights(step: int, shift: int) -> Float:
-    """Weights [TAPS, step] of a segment's knots, shifted, for its pulses."""
-    return lagrange_basis(NODES + shift, np.arange(step) / step)
 
 
 def kernel(u: Float, k: Index, samples: int, n_fft: int) -> Float:
@@ -257,7 +250,9 @@ def _interpolated_sum(
     for moved in np.unique(shift).tolist():
         rows = np.flatnonzero(shift == moved)
         taps = sums[rows].reshape(-1, TAPS, len(envelope), 2, step)
-        z[:, :, rows] = np.einsum("stpcm,tm->pcsm", taps, _weights(step, moved).astype(z.dtype))
+        z[:, :, rows] = np.einsum(
+            "stpcm,tm->pcsm", taps, lagrange_weights(step, moved).astype(z.dtype)
+        )
     x = coefficients.T @ z.reshape(len(z), -1)
     real, imag = x.reshape(-1, 2, shift.size * step).swapaxes(0, 1)
     return real + 1j * imag

@@ -32,9 +32,9 @@ def lagrange_basis(nodes: Float, at: Float) -> Float:
 
 
 @lru_cache(maxsize=128)
-def lagrange_weights(step: int) -> Float:
-    """Weights [TAPS, step] of the knots -2 .. 3 of a segment for each of its `step` pulses."""
-    return lagrange_basis(NODES, np.arange(step) / step)
+def lagrange_weights(step: int, shift: int = 0) -> Float:
+    """Weights [TAPS, step] of a segment's knots -2 .. 3, shifted, for each of its pulses."""
+    return lagrange_basis(NODES + shift, np.arange(step) / step)
 
 
 def shifts(times: Float, breakpoints: tuple[float, ...]) -> Index:

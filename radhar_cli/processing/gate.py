@@ -56,7 +56,7 @@ def around(torso: Float, within: float, ranges: Float) -> Gate:
     Of the torso's range in the middle of every frame [frames], and evenly spaced ranges, m.
     """
     step = _step(ranges)
-    count = min(bins_within(within, step), ranges.size)
+    count = min(2 * floor(within / step) + 1, ranges.size)
     first = np.rint((torso - ranges[0]) / step) - count // 2
     return Gate(np.clip(first, 0, ranges.size - count).astype(np.intp), count)
 
@@ -66,11 +66,6 @@ def interval(low: float, high: float, ranges: Float) -> Gate:
     bins = np.rint((np.array([low, high]) - ranges[0]) / _step(ranges))
     first, last = np.clip(bins, 0, ranges.size - 1).astype(np.intp)
     return Gate(np.array([first]), int(last - first) + 1)
-
-
-def bins_within(within: float, step: float) -> int:
-    """How many bins a gate has that reaches so far (m) to both sides."""
-    return 2 * floor(within / step) + 1
 
 
 def _step(ranges: Float) -> float:

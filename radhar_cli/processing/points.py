@@ -47,12 +47,13 @@ def board_points(
     fast, slow = np.blackman(board.samples), np.hanning(board.loops)
     fast, slow = fast / fast.sum(), slow / slow.sum()
     lsb = noise_rms(cube, board, fast, slow) / NOISE_LSB if quantise else 0.0
-    step = board.doppler_step(carrier)
-    found = []
+    step, found = board.doppler_step(carrier), list[Float]()
+    # Bins in TI's order: the conjugate of a signal has the opposite frequency.
+    negated = -np.arange(board.n_doppler) % board.n_doppler
     for frame in range(len(cube)):
         x = range_spectrum(cube[frame : frame + 1], board, fast)
         spectrum = doppler_spectrum(x, board, slow, detection.remove_mean)[0].conj()
-        found.append(_frame_points(spectrum[_negated(board)], board, detection, lsb, step))
+        found.append(_frame_points(spectrum[negated], board, detection, lsb, step))
     return Cloud.of(found)
 
 
@@ -65,11 +66,6 @@ def noise_rms(cube: Complex, board: Board, fast: Float, slow: Float) -> float:
     x = doppler_spectrum(range_spectrum(cube[some], board, fast), board, slow, False)
     moving = x[:, 2:-1] if board.n_doppler > 4 else x  # what stands still fills three bins
     return float(np.sqrt(np.median(moving.real**2 + moving.imag**2) / np.log(2)))
-
-
-def _negated(board: Board) -> Index:
-    """Doppler bins in TI's order: the conjugate of a signal has the opposite frequency."""
-    return -np.arange(board.n_doppler) % board.n_doppler
 
 
 def _frame_points(x: Complex, board: Board, detection: Detection, lsb: float, step: float) -> Float:

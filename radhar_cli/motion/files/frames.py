@@ -29,16 +29,12 @@ def bvh_frames(data: bytes, start: int, line: int, columns: int, where: str) -> 
         piece = data[start:stop]
         values = numbers(piece)
         whole = values is not None and np.isfinite(values).all()
-        if not whole or values is None or values.size != columns * count_lines(piece):
+        lines = piece.count(b"\n") + (not piece.endswith(b"\n"))
+        if not whole or values is None or values.size != columns * lines:
             values = _line_by_line(piece, line, columns, where)
         if values.size:
             yield values.reshape(-1, columns)
         start, line = stop, line + piece.count(b"\n")
-
-
-def count_lines(text: bytes) -> int:
-    """Lines of a text, the last one without its end too."""
-    return text.count(b"\n") + (not text.endswith(b"\n"))
 
 
 def _line_by_line(piece: bytes, first: int, columns: int, where: str) -> Float:

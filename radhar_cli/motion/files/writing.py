@@ -130,7 +130,7 @@ def _tree(number: int, rest: Float, channels: list[list[str]], indent: str) -> I
     inner = indent + "  "
     yield f"{indent}{'ROOT' if node.parent is None else 'JOINT'} {node.name}"
     yield indent + "{"
-    yield f"{inner}OFFSET {_three(rest[number])}"
+    yield f"{inner}OFFSET {' '.join(f'{value:.9f}' for value in rest[number].tolist())}"
     yield f"{inner}CHANNELS {len(names)} {' '.join(names)}".rstrip()
     children = [n for n, one in enumerate(NODES) if one.parent == number]
     for child in children:
@@ -138,7 +138,3 @@ def _tree(number: int, rest: Float, channels: list[list[str]], indent: str) -> I
     if not children:
         yield from (f"{inner}End Site", inner + "{", f"{inner}  OFFSET 0 0 0", inner + "}")
     yield indent + "}"
-
-
-def _three(vector: Float) -> str:
-    return " ".join(f"{value:.9f}" for value in vector.tolist())

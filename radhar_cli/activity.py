@@ -160,11 +160,7 @@ def is_new_slug(slug: str) -> bool:
 
 
 def activity_named(name: str, classes: Mapping[str, Activity] | None = None) -> Activity:
-    """Find an activity by slug or label, whatever the case.
-
-    Args:
-        name: of the activity.
-        classes: {slug: activity} of a config's own classes.
+    """Find an activity by slug or label, whatever the case, among the known and {slug: activity}.
 
     Raises:
         ValueError: no such activity; the message suggests the nearest name, or lists them all.

@@ -60,11 +60,7 @@ OfOther: TypeAlias = Callable[[int, str], float]
 
 
 class Numbers:
-    """A section of a scene's config, with its numbers as floats.
-
-    Raises:
-        TypeError: a number is still to be drawn.
-    """
+    """A section of a scene's config, with its numbers as floats; a TypeError of one to be drawn."""
 
     def __init__(self, section: Section) -> None:
         self._section = section
@@ -85,20 +81,13 @@ def _plain(value: Any) -> Any:
 
 @dataclass(frozen=True)
 class Person:
-    """One person of a scene.
+    """One person of a scene."""
 
-    Attributes:
-        scene: in which they are.
-        activity: what they do.
-        config: whose `subject`, `motion`, `timing` and `classes` are theirs.
-        number: 0 for the sample's main person, else their place in `people`, from 1 on.
-        held: what was made of them and is needed again.
-    """
-
-    scene: "Scene"
-    activity: Activity
-    config: Config
-    number: int = 0
+    scene: "Scene"  # in which they are
+    activity: Activity  # what they do
+    config: Config  # whose `subject`, `motion`, `timing` and `classes` are theirs
+    number: int = 0  # 0 for the sample's main person, else their place in `people`, from 1 on
+    # what was made of them and is needed again
     held: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
 
     @property
@@ -141,22 +130,17 @@ class Person:
 
 @dataclass(frozen=True)
 class Scene:
-    """One recording to be simulated.
+    """One recording to be simulated."""
 
-    Attributes:
-        config: with every number of SCENE_KEYS fixed; written to YAML and simulated again with the
-            same activity and index, it gives the same recording.
-        activity: what is performed.
-        index: number of the sample within its class; names its noise, with the seed and the class.
-        subject: number of the person, or None where every sample is a person of its own.
-        attempt: how often the scene was redrawn (`on_invalid: redraw`).
-    """
-
+    # with every number of SCENE_KEYS fixed; written to YAML and simulated again with the same
+    # activity and index, it gives the same recording
     config: Config
-    activity: Activity
+    activity: Activity  # what is performed
+    # number of the sample within its class; names its noise, with the seed and the class
     index: int
+    # number of the person, or None where every sample is a person of its own
     subject: int | None = None
-    attempt: int = 0
+    attempt: int = 0  # how often the scene was redrawn (`on_invalid: redraw`)
 
     @property
     def name(self) -> str:
@@ -177,20 +161,13 @@ class Scene:
 
 
 def draw_scene(
-    config: Config,
-    activity: Activity,
-    index: int,
-    attempt: int = 0,
-    again: tuple[int, ...] = (),
+    config: Config, activity: Activity, index: int, attempt: int = 0, again: tuple[int, ...] = ()
 ) -> Scene:
     """Draw every number of one sample, each from its own stream.
 
     Persons come from (seed, subject, field), the rest from (seed, class, index, field): no draw
-    depends on another, on the maps, on the engine, or on the order of work.
-
-    Args:
-        attempt: how often the scene was drawn before, outside the model.
-        again: how often each of `people` was, too near to somebody or outside the model.
+    depends on another, on the maps, on the engine, or on the order of work. `attempt` counts draws
+    outside the model before, `again` those of each of `people` who did not fit.
     """
     subject = subject_of(config, index)
 

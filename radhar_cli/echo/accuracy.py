@@ -80,19 +80,12 @@ def measured_db(
     canceller: Canceller,
     unit: float,
 ) -> float:
-    """Relative L2 error (dB) of a slow-time signal after a canceller, estimated at some pulses.
+    """Relative L2 error (dB) of y [M], in units of `unit`, after a canceller, from some pulses.
 
     Half of the pulses are spread evenly, half by the power of the signal, so that a jump which
     holds most of it, as of a limb that crosses a wall's face, is among them. The estimate of
     sum |e|^2 divides each |e|^2 by the density of the pulses; sum |x|^2 is known. e is the error
     after the canceller where few pulses show that; before it otherwise, and bounds what is left.
-
-    Args:
-        y: before the canceller [M], in units of `unit`.
-        source: of the paths that it is the sum of.
-        waveform: the radar.
-        canceller: by which y becomes x.
-        unit: of the amplitudes.
     """
     shown = canceller if isinstance(canceller, Fir) else NO_CANCELLER
     probes, density, total = probed_pulses(_power(y, canceller))

@@ -34,18 +34,11 @@ def powers(w: Complex, count: int) -> Complex:
 
 
 def beat_matrix(delay: Float, amplitude: Float, waveform: Waveform) -> Complex:
-    """s_b[n, m] = sum_i A_i exp(-j 2 pi (fc tau_i + K tau_i n/fs)).
+    """s_b[n, m] = sum_i A_i exp(-j 2 pi (fc tau_i + K tau_i n/fs)) [N_ADC, M] of paths [I, M].
 
     With n = a fine + b the exponential is a product of one in a and one in b, so the sum over the
     paths is, pulse by pulse, a product of two small matrices: the same numbers to rounding, with
     two exponentials a path instead of N_ADC.
-
-    Args:
-        delay, amplitude: [I, M], s and 1.
-        waveform: the radar.
-
-    Returns:
-        [N_ADC, M], fast time first.
     """
     coarse = isqrt(waveform.n_adc - 1) + 1
     fine = -(-waveform.n_adc // coarse)

@@ -29,12 +29,7 @@ MOST_TERMS = 24
 def exact_cube(channels: Sequence[PathSource], board: Board) -> tuple[Complex, float]:
     """Samples [frame, loop, virtual, sample] in double precision, and P_s.
 
-    Args:
-        channels: the paths of every virtual element.
-        board: whose times and chirps hold.
-
-    Returns:
-        The samples and P_s, the mean over frames, loops and channels of sum_i A_i^2.
+    P_s is the mean over frames, loops and channels of sum_i A_i^2.
     """
     cube = np.empty((board.frames, board.loops, board.channels, board.samples), complex)
     power = 0.0

@@ -49,11 +49,7 @@ def pays(terms: int) -> bool:
 
 @cache
 def _machine_code(function: Callable[..., None]) -> Callable[..., None]:
-    """Compile a function, or take it from the cache beside this file or in the user's own folder.
-
-    Raises:
-        MachineError: numba is there and does not work.
-    """
+    """Compile a function, or take it from the cache beside this file or in the user's folder."""
     try:
         from numba import njit
     except ImportError as error:
@@ -75,13 +71,8 @@ def interpolated_sum(
 ) -> Complex:
     """sum_i A_i G_i exp(-j 2 pi f0 tau_i) at the pulses [segments * step], in units of `unit`.
 
-    Args:
-        paths: at the knots.
-        some: numbers of the paths to be summed.
-        unit: of the amplitudes.
-        table: of G, single.
-        shift: of the stencils [segments].
-        step: pulses from knot to knot.
+    Paths are given at the knots; `some` are summed, with a `table` of G, and the `shift` of each
+    segment's stencil.
     """
     w, shape = table.waveform, (paths.delay.shape[1], some.size)
     cycles, real, imag = np.empty(shape), *np.empty((2, *shape), np.float32)

@@ -27,14 +27,7 @@ from radhar_cli.echo.accuracy import (
 )
 from radhar_cli.echo.beat import start_phase
 from radhar_cli.echo.half_band_sum import half_band_table
-from radhar_cli.echo.interpolation import (
-    AFTER,
-    BEFORE,
-    NODES,
-    TAPS,
-    lagrange_basis,
-    stencils,
-)
+from radhar_cli.echo.interpolation import AFTER, BEFORE, NODES, TAPS, lagrange_basis, stencils
 from radhar_cli.echo.knots import Knots, Motion, only, resolve
 from radhar_cli.echo.paths import Paths, PathSource
 from radhar_cli.echo.phase_recurrence import nodes, phasors_between_knots
@@ -194,13 +187,9 @@ class DirectEcho:
 
 
 def _interpolated_sum(cycles: Float, envelope: Complex, shift: Index, step: int) -> Complex:
-    """sum_i envelope exp(-j 2 pi cycles) at the pulses [segments * step].
+    """sum_i envelope exp(-j 2 pi cycles) at the pulses [segments * step], in envelope's precision.
 
-    Args:
-        cycles: phases at the knots [BEFORE + segments + AFTER, I].
-        envelope: at the knots, in the precision that phasors shall have.
-        shift: of the stencils [segments].
-        step: pulses from knot to knot.
+    Both are given at the knots [BEFORE + segments + AFTER, I].
     """
     degree = SINGLE_DEGREE if envelope.dtype == np.complex64 else TAPS - 1
     to_nodes, to_pulses = _weights(step, degree)

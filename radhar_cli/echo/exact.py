@@ -36,14 +36,7 @@ def beat_blocks(
     receiver: Sequence[Impairment] = (),
     motion_in_chirp: bool = False,
 ) -> Iterator[Complex]:
-    """Yield s_b[n, m] [N_ADC, block] of consecutive blocks of pulses.
-
-    Args:
-        source: the paths.
-        waveform: the radar.
-        receiver: what it does to the raw samples, in this order.
-        motion_in_chirp: whether paths go on moving during a chirp, instead of stop-and-hop.
-    """
+    """s_b[n, m] [N_ADC, block] of consecutive blocks of pulses, after the receiver."""
     raw = Look.of_all("beat", RawSamples(waveform))
     length = max(2, min(BLOCK_SAMPLES // waveform.n_adc, CHUNK_PULSES))
     for start in range(0, waveform.n_pulses, length):
@@ -68,13 +61,9 @@ def exact_echo(
 ) -> list[Complex]:
     """x [K, M] of every look at one echo, in one pass through its beat matrix.
 
-    Args:
-        source: the paths.
-        looks: of one waveform, with the same taps.
-        receiver: what it does to the raw samples.
-        static: whether what stands still matters. If not, the first pulse is taken out of every
-            one: of an echo that does not move, however strong, nothing is left to round.
-        motion_in_chirp: whether paths go on moving during a chirp.
+    Looks are of one waveform, with the same taps. Where what stands still does not matter
+    (`static`), the first pulse is taken out of every one: of an echo that does not move, however
+    strong, nothing is left to round.
     """
     waveform, taps = looks[0].fast.waveform, looks[0].taps
     found = [np.empty((look.fast.rows, look.count), complex) for look in looks]

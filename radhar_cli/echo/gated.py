@@ -26,10 +26,9 @@ from radhar_cli.echo.interpolation import (
     AFTER,
     BEFORE,
     EXACT,
-    NODES,
     REACH,
     TAPS,
-    lagrange_basis,
+    lagrange_weights,
     stencils,
 )
 from radhar_cli.echo.knots import Knots, Motion, columns
@@ -48,21 +47,8 @@ MORE_NODES = 24, 48  # than D has half waves, in single and in double precision
 SMALLEST = 3e-8, 1e-15  # coefficient over N that is kept, likewise
 
 
-@lru_cache(maxsize=128)
-def _weights(step: int, shift: int) -> Float:
-    """Weights [TAPS, step] of a segment's knots, shifted, for its pulses."""
-    return lagrange_basis(NODES + shift, np.arange(step) / step)
-
-
 def kernel(u: Float, k: Index, samples: int, n_fft: int) -> Float:
-    """D(k/N_FFT - u) = sin(pi N x)/sin(pi x) [..., K] of beat frequencies u [...], cycles a sample.
-
-    Args:
-        u: K tau/fs.
-        k: bins [K].
-        samples: N.
-        n_fft: N_FFT.
-    """
+    """D(k/N_FFT - u) = sin(pi N x)/sin(pi x) [..., K] at beat frequencies u [...], per sample."""
     at, turn = np.pi / n_fft * k, np.pi * u[..., None]
     found: Float = np.sin(samples * at) * np.cos(samples * turn)
     found -= np.cos(samples * at) * np.sin(samples * turn)
@@ -248,12 +234,8 @@ def _interpolated_sum(
 ) -> Complex:
     """Bins [K, segments * step] at the pulses of segments.
 
-    Args:
-        cycles: phases phi at the knots [BEFORE + segments + AFTER, I].
-        envelope: A T_p at the knots [P, BEFORE + segments + AFTER, I].
-        coefficients: c_p of the bins [P, K].
-        shift: of the stencils [segments].
-        step: pulses from knot to knot.
+    At the knots [BEFORE + segments + AFTER, I] are phases, in cycles, and A T_p over the unit
+    [P, ...]; coefficients are c_p of the bins [P, K].
     """
     dtype = complex_of(envelope)
     degree = SINGLE_DEGREE if dtype == np.complex64 else TAPS - 1
@@ -268,7 +250,9 @@ def _interpolated_sum(
     for moved in np.unique(shift).tolist():
         rows = np.flatnonzero(shift == moved)
         taps = sums[rows].reshape(-1, TAPS, len(envelope), 2, step)
-        z[:, :, rows] = np.einsum("stpcm,tm->pcsm", taps, _weights(step, moved).astype(z.dtype))
+        z[:, :, rows] = np.einsum(
+            "stpcm,tm->pcsm", taps, lagrange_weights(step, moved).astype(z.dtype)
+        )
     x = coefficients.T @ z.reshape(len(z), -1)
     real, imag = x.reshape(-1, 2, shift.size * step).swapaxes(0, 1)
     return real + 1j * imag

@@ -36,7 +36,6 @@ class HalfBandTable:
         object.__setattr__(self, "cubics", cubics)
 
     def _tabulate(self) -> tuple[Complex, ...]:
-        """The cubics."""
         waveform, size = self.waveform, self.oversampling * self.waveform.n_adc
         n = np.arange(waveform.n_adc) - waveform.n0
         d = weights(waveform)

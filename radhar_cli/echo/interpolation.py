@@ -32,21 +32,16 @@ def lagrange_basis(nodes: Float, at: Float) -> Float:
 
 
 @lru_cache(maxsize=128)
-def lagrange_weights(step: int) -> Float:
-    """Weights [TAPS, step] of the knots -2 .. 3 of a segment for each of its `step` pulses."""
-    return lagrange_basis(NODES, np.arange(step) / step)
+def lagrange_weights(step: int, shift: int = 0) -> Float:
+    """Weights [TAPS, step] of a segment's knots -2 .. 3, shifted, for each of its pulses."""
+    return lagrange_basis(NODES + shift, np.arange(step) / step)
 
 
 def shifts(times: Float, breakpoints: tuple[float, ...]) -> Index:
-    """Shift of the stencil of each segment, or EXACT where it holds a breakpoint.
+    """Shift of the stencil of each segment [segments], or EXACT where it holds a breakpoint.
 
-    Args:
-        times: of the knots [BEFORE + segments + AFTER], s.
-        breakpoints: instants at which what is interpolated is not smooth, s, in order; each
-            belongs to what follows it.
-
-    Returns:
-        [segments].
+    Of knots [BEFORE + segments + AFTER] (s) and breakpoints (s) in order, at which what is
+    interpolated is not smooth; each belongs to what follows it.
     """
     segment = np.arange(BEFORE, times.size - AFTER)
     if not breakpoints:
@@ -70,11 +65,7 @@ def stencils(knots: Values, shift: Index) -> Values:
     """Values [TAPS, segments, ...] at the knots -2 .. 3 of every segment.
 
     Where the stencil is shifted, they are those of the polynomial through the shifted stencil.
-    Segments marked EXACT are left without a meaning.
-
-    Args:
-        knots: [BEFORE + segments + AFTER, ...].
-        shift: from `shifts` [segments].
+    Segments marked EXACT are left without a meaning. Knots are [BEFORE + segments + AFTER, ...].
     """
     first = BEFORE - REACH
     found = np.empty_like(knots, shape=(TAPS, shift.size, *knots.shape[1:]))

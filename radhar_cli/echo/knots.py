@@ -156,8 +156,7 @@ def _excess(paths: Paths, w: Waveform, spacing: Spacing) -> float:
             kept = np.minimum(a[:, 1:], a[:, :-1]) / np.maximum(a[:, 1:], a[:, :-1])
         least = float(np.fmin.reduce(kept, axis=None, initial=least))
     return max(
-        (1 - least) / spacing.amplitude_change,
-        _fastest_cycles(w) * moved / spacing.phase_change,
+        (1 - least) / spacing.amplitude_change, _fastest_cycles(w) * moved / spacing.phase_change
     )
 
 

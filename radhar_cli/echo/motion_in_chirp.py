@@ -34,16 +34,7 @@ def chirp_weights(count: int) -> Float:
 
 
 def moving_beat_matrix(source: PathSource, waveform: Waveform, pulses: Float) -> Complex:
-    """s_b[n, m] = sum_i A_i exp(-j 2 pi (fc tau_i + K tau_i n/fs)), A and tau at t_m + n/fs.
-
-    Args:
-        source: the paths.
-        waveform: the radar.
-        pulses: numbers m [M].
-
-    Returns:
-        [N_ADC, M], fast time first.
-    """
+    """[N_ADC, M]: sum_i A_i exp(-j 2 pi (fc tau_i + K tau_i n/fs)), A and tau at t_m + n/fs."""
     sample = np.arange(waveform.n_adc) / waveform.adc_rate
     within = (chebyshev_nodes() + 1) / 2 * sample[-1]
     t = waveform.times(pulses)[:, None] + within

@@ -10,15 +10,10 @@ from radhar_cli.radar.layers import Layers
 
 
 class Through(NamedTuple):
-    """Legs of paths through a layered wall, which acts on each frequency in its own way.
+    """Legs of paths through a layered wall, which acts on each frequency in its own way."""
 
-    Attributes:
-        layers: the wall.
-        cosine: of the angle of incidence of both legs [2, I, M]; nan of one beside the wall.
-    """
-
-    layers: Layers
-    cosine: Float
+    layers: Layers  # the wall
+    cosine: Float  # of the angle of incidence of both legs [2, I, M]; nan of one beside the wall
 
     @classmethod
     def of(cls, layers: Layers | None, cosine: Float | None) -> "Through | None":
@@ -35,16 +30,11 @@ class Through(NamedTuple):
 
 
 class Paths(NamedTuple):
-    """Paths at some times.
+    """Paths at some times."""
 
-    Attributes:
-        delay: tau [I, M], s.
-        amplitude: A [I, M] for unit transmit power.
-        through: the layered wall that they pass; delay and amplitude are then those without it.
-    """
-
-    delay: Float
-    amplitude: Float
+    delay: Float  # tau [I, M], s
+    amplitude: Float  # A [I, M] for unit transmit power
+    # the layered wall that they pass; delay and amplitude are then those without it
     through: Through | None = None
 
     def only(self, paths: Bool | Index | slice, times: Index | slice = slice(None)) -> "Paths":

@@ -61,11 +61,7 @@ def runs(step: int, degree: int) -> Runs:
 def phasors_between_knots(cycles: Float, step: int, degree: int, dtype: Any) -> Complex:
     """exp(-j 2 pi phase) at the pulses of all segments [step, segments, I].
 
-    Args:
-        cycles: phases at the knots -2 .. 3 of every segment [TAPS, segments, I].
-        step: pulses from knot to knot.
-        degree: d, of the polynomials.
-        dtype: of the result.
+    Of `cycles` at the knots -2 .. 3 of every segment [TAPS, segments, I]; `degree` is d.
     """
     length, differences = runs(step, degree)
     shape = (*differences.shape[:2], *cycles.shape[1:])

@@ -36,11 +36,7 @@ def phase_numbers(
 ) -> Levels:
     """Number in `names` of the phase under way at times t [M] (s), `other` where it has none.
 
-    Args:
-        phases: (start in s, name), in their order.
-        t: s.
-        names: at most 256.
-        other: number before the first phase, and of a phase whose name is not among `names`.
+    Phases are (start in s, name), in their order.
     """
     numbers = np.full(t.size, other, dtype=np.uint8)
     for start, name in phases:

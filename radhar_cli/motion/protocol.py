@@ -49,15 +49,10 @@ class Motion(Protocol):
 
 @dataclass(frozen=True)
 class Only:
-    """A motion with some of its scatterers alone.
+    """A motion with some of its scatterers alone."""
 
-    Attributes:
-        motion: the whole.
-        kept: numbers of the scatterers that are kept.
-    """
-
-    motion: Motion
-    kept: tuple[int, ...]
+    motion: Motion  # the whole
+    kept: tuple[int, ...]  # numbers of the scatterers that are kept
 
     @property
     def names(self) -> tuple[str, ...]:

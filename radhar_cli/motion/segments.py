@@ -128,13 +128,9 @@ class Placed(NamedTuple):
 
 
 def place(motion: Motion, segments: tuple[Segment, ...], stature: float, t: Float) -> Placed:
-    """Where the segments of a motion are at times t [M] (s).
+    """Where segments (`found_segments`) of a motion are at times t [M] (s).
 
-    Args:
-        motion: with the joints that these segments were found from.
-        segments: from `found_segments`.
-        stature: of the person, m; for the size of feet.
-        t: [M], s.
+    `stature` (m) is for the size of feet.
     """
     p = motion.landmark_positions(t) if isinstance(motion, Landmarks) else motion.positions(t)
     at = dict(zip(landmarks_of(motion), p.swapaxes(0, 1), strict=True))
@@ -203,9 +199,5 @@ def soft_unit(v: Float) -> Float:
 def cross(a: Float, b: Float) -> Float:
     """a x b [3, ...]; numpy.cross takes ten times as long."""
     return np.stack(
-        [
-            a[1] * b[2] - a[2] * b[1],
-            a[2] * b[0] - a[0] * b[2],
-            a[0] * b[1] - a[1] * b[0],
-        ]
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
     )

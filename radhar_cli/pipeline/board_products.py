@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from functools import partial
-from math import log10, sqrt
+from math import inf, log10, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -29,12 +29,10 @@ from radhar_cli.pipeline.physics import (
 from radhar_cli.pipeline.plan import Product
 from radhar_cli.processing.best_points import best_points
 from radhar_cli.processing.canceller import NO_CANCELLER, MeanRemoval
-from radhar_cli.processing.frame_maps import FrameMaps, range_angle, range_doppler
+from radhar_cli.processing.frame_maps import range_angle, range_doppler
 from radhar_cli.processing.frame_sheets import cloud_sheet, maps_sheet
 from radhar_cli.processing.frames import Frames
-from radhar_cli.processing.gate import Gate
 from radhar_cli.processing.points import Cloud, board_points
-from radhar_cli.processing.power_map import MapImage
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.signal import Signal
 from radhar_cli.radar.board import Board
@@ -54,7 +52,11 @@ class Echo(NamedTuple):
 
     cube: Complex  # samples [frame, loop, virtual, sample]
     power: float  # P_s of a sample, mean over frames, loops and channels
-    error_db: float | None  # of the fast sum, measured; None of the exact one
+    error_db: float  # of the fast sum, measured; -inf of the exact one
+
+    def accuracy(self) -> Accuracy:
+        """As the direct engine's."""
+        return Accuracy(1, 1, self.cube.dtype == np.complex64, self.error_db)
 
 
 class Skeletons(NamedTuple):
@@ -75,19 +77,15 @@ def board_products(c: Config, entropy: bool = True) -> Iterator[Product]:
     yield Product("channels", seen, channels, "paths of every virtual channel")
     made = "sums in matrix products" if c.engine.kind == "direct" else "exact sums"
     yield Product("echo", ("channels", "board"), partial(_echo, c), f"raw samples, {made}")
-    yield Product("accuracy", ("echo",), _accuracy, "its measured error")
+    yield Product("accuracy", ("echo",), Echo.accuracy, "its measured error")
     yield Product("signal_power", ("echo",), lambda echo: echo.power, "P_s, for snr_db")
     yield Product("noise_sigma", ("echo", "board", "scene"), _sigma, "of a raw sample")
     needs = ("echo", "noise_sigma", "board", "scene")
     yield Product("cube", needs, _received, "raw samples with noise and channel errors")
-    yield Product(
-        "range_doppler",
-        ("cube", "board"),
-        lambda cube, board: range_doppler(cube, board, still),
-        "range-Doppler maps of the frames",
-    )
+    make = partial(range_doppler, remove_mean=still)
+    yield Product("range_doppler", ("cube", "board"), make, "range-Doppler maps of the frames")
     for axis, name in enumerate(("range_azimuth", "range_elevation")):
-        make = partial(_range_angle, still, axis)
+        make = partial(range_angle, remove_mean=still, axis=axis)
         yield Product(name, ("cube", "board"), make, f"{name.replace('_', '-')} maps of the frames")
     chain = f"points of the frames, chain: {c.cloud.chain}"
     yield Product("cloud", ("cube", "board"), partial(_cloud, c), chain)
@@ -117,7 +115,12 @@ def board_products(c: Config, entropy: bool = True) -> Iterator[Product]:
     yield Product("torso_track", ("motions", "board", "wall"), torso_track, "delay of the torso")
     if c.processing.range_sum == "gated":
         of_gate = ("board_bins", "range_signals", "frames", "torso_track")
-        yield Product("gate", of_gate, partial(_gate, c), "range bins of each window")
+        yield Product(
+            "gate",
+            of_gate,
+            lambda x, after, frames, track: gate_in_windows(c, after, frames, x.t, track),
+            "range bins of each window",
+        )
     for name in ("range_doppler", "range_azimuth", "range_elevation"):
         sheet = partial(
             maps_sheet,
@@ -127,7 +130,12 @@ def board_products(c: Config, entropy: bool = True) -> Iterator[Product]:
         )
         yield Product(f"image:{name}", (name,), sheet, "sheet of frames")
     shown = ("cloud", "skeletons", "motions")
-    yield Product("image:points", shown, partial(_points_sheet, c), "front views of frames")
+    yield Product(
+        "image:points",
+        shown,
+        lambda cloud, s, of: cloud_sheet(cloud, s.positions, of[0].parents, c.image.size_px),
+        "front views of frames",
+    )
     for name, of in (("frames", frames_of), ("fsst_frames", fsst_frames_of)):
         yield Product(name, ("board",), partial(_windows, c, of), "windows, within frames")
 
@@ -153,12 +161,7 @@ def _echo(c: Config, sources: list[PathSource], board: Board) -> Echo:
         if error_db <= c.engine.tolerance_db - SPARE_DB:
             return Echo(cube, power, error_db)
     cube, power = exact_cube(sources, board)
-    return Echo(cube, power, None)
-
-
-def _accuracy(echo: Echo) -> Accuracy:
-    single = echo.cube.dtype == np.complex64
-    return Accuracy(1, 1, single, float("-inf") if echo.error_db is None else echo.error_db)
+    return Echo(cube, power, -inf)
 
 
 def _sigma(echo: Echo, board: Board, scene: Scene) -> float:
@@ -177,7 +180,6 @@ def _sigma(echo: Echo, board: Board, scene: Scene) -> float:
 
 
 def _received(echo: Echo, sigma: float, board: Board, scene: Scene) -> Complex:
-    """The echo with errors of its channels and white noise."""
     receiver = Numbers(scene.config.receiver)
     cube: Complex = echo.cube
     if receiver.channel_gain_db > 0 or receiver.channel_phase_deg > 0:
@@ -199,12 +201,7 @@ def _received(echo: Echo, sigma: float, board: Board, scene: Scene) -> Complex:
     return cube
 
 
-def _range_angle(still: bool, axis: int, cube: Complex, board: Board) -> FrameMaps:
-    return range_angle(cube, board, still, axis)
-
-
 def _cloud(c: Config, cube: Complex, board: Board) -> Cloud:
-    """The points of a cube by the chain of a config."""
     cloud, detection = c.cloud, detection_of(c)
     carrier = board.start if cloud.doppler_carrier == "start" else None
     if cloud.chain == "board":
@@ -296,13 +293,3 @@ def _windows(c: Config, of: Callable[..., Frames], board: Board) -> Frames:
     length = min(whole.length, board.loops)
     gaps = len(board.pulses) > 1
     return Frames(length, board.loops if gaps else min(whole.hop, length))
-
-
-def _gate(c: Config, x: Signal, after: Signal, frames: Frames, track: Float) -> Gate:
-    return gate_in_windows(c, after, frames, x.t, track)
-
-
-def _points_sheet(
-    c: Config, cloud: Cloud, skeletons: Skeletons, motions: tuple[Motion, ...]
-) -> MapImage:
-    return cloud_sheet(cloud, skeletons.positions, motions[0].parents, c.image.size_px)

@@ -65,9 +65,8 @@ def sources_of(
         rest: Motion | None = motion
         if scene.config.body.scatterers != "points":
             whose = people[min(number, len(people) - 1)]
-            make = segment_paths if scene.config.body.scatterers == "segments" else surface_paths
             given = 0 if own else number  # streams are the person's own
-            parts = make(whose, motion, antennas, wall, waveform, given)
+            parts = body_paths(whose, motion, antennas, wall, waveform, given)
             theirs += [parts] if parts else []
             rest = _without_segments(motion)
         if rest is not None:
@@ -98,63 +97,36 @@ def shade_of(person: Person, motion: Motion) -> Shade:
     return Shade(motion, place, HALF_WIDTH_M * thickness(stature, weight), stature)
 
 
-def segment_paths(
+def body_paths(
     person: Person,
     motion: Motion,
     antennas: Antennas,
     wall: Wall | None,
     waveform: Waveform,
     number: int = 0,
-) -> SegmentPaths | None:
-    """The paths of a motion's segments, or None where its joints have none.
+) -> SegmentPaths | SurfacePaths | None:
+    """The paths of the segments of a motion or of their surfaces, None where its joints have none.
 
-    Args:
-        person: whose body it is, and the processing settings of whose scene hold.
-        motion: whole, or `Only` some joints of one.
-        antennas, wall, waveform: what it is seen with.
-        number: of the motion among several.
+    The motion is whole, or `Only` some joints of one; `number` is its own among several.
     """
-    body = body_of(person, motion)
-    kept = [n for joint in motion.names for n in covered(joint, body.segments)]
+    body, config = body_of(person, motion), person.scene.config
+    kept = tuple(sorted({n for joint in motion.names for n in covered(joint, body.segments)}))
     if not kept:
         return None
-    config = person.scene.config
-    window = frames_of(config, waveform.duration, waveform.prf, waveform.f0).length / waveform.prf
-    counts = point_counts(
-        body,
-        antennas,
-        waveform.wavelength,
-        window,
-        waveform.duration,
-        config.body.points_per_segment,
-    )
+    most, seen = config.body.points_per_segment, (antennas, waveform.fc, wall)
+    if config.body.scatterers == "surfaces":
+        rng = person.stream(f"surface/{number}")
+        return SurfacePaths(
+            body, draw_surface(len(body.segments), min(most, POINTS), rng), *seen, kept
+        )
+    duration, prf = waveform.duration, waveform.prf
+    window = frames_of(config, duration, prf, waveform.f0).length / prf
+    counts = point_counts(body, antennas, waveform.wavelength, window, duration, most)
     points = tuple(
         _tapered(draw_points(count, person.own_stream(f"body/{number}/{one.name}")))
         for one, count in zip(body.segments, counts, strict=True)
     )
-    shadowing = config.body.shadowing
-    return SegmentPaths(
-        body, points, antennas, waveform.fc, wall, shadowing, tuple(sorted(set(kept)))
-    )
-
-
-def surface_paths(
-    person: Person,
-    motion: Motion,
-    antennas: Antennas,
-    wall: Wall | None,
-    waveform: Waveform,
-    number: int = 0,
-) -> SurfacePaths | None:
-    """The paths of the surfaces of a motion's segments; arguments as `segment_paths`."""
-    body = body_of(person, motion)
-    kept = sorted({n for joint in motion.names for n in covered(joint, body.segments)})
-    if not kept:
-        return None
-    rng = person.stream(f"surface/{number}")
-    points = min(person.scene.config.body.points_per_segment, POINTS)
-    drawn = draw_surface(len(body.segments), points, rng)
-    return SurfacePaths(body, drawn, antennas, waveform.fc, wall, tuple(kept))
+    return SegmentPaths(body, points, *seen, config.body.shadowing, kept)
 
 
 def _tapered(points: Points) -> Points:

@@ -17,11 +17,7 @@ _clips: OrderedDict[tuple[Any, ...], Clip] = OrderedDict()
 
 
 def file_motion(person: Person) -> FileMotion:
-    """The motion of a person whose class has files.
-
-    Raises:
-        MotionFileError: the file cannot be used; names file, line and what is missing or odd.
-    """
+    """The motion of a person whose class has files; MotionFileError of one that cannot be used."""
     one, slug, folder = (
         person.config.files_of(person.activity),
         person.activity.slug,

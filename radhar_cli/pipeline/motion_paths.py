@@ -17,14 +17,11 @@ from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
 
-@dataclass(frozen=True)
-class MotionPaths:
-    """A source of paths: `PathSource` for a motion seen through air or a wall."""
+class OfMotion:
+    """What sources of paths through air or a wall have of what moves."""
 
-    motion: Motion | Reflectors  # scatterer positions over time
-    antennas: Antennas  # where the legs start and end
-    fc: float  # carrier, Hz
-    wall: Wall | None  # the slab between, or None
+    motion: Motion | Reflectors
+    wall: Wall | None
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
@@ -40,6 +37,16 @@ class MotionPaths:
     def smooth(self) -> bool:
         """Paths kink where a leg passes an edge of the wall."""
         return self.wall is None
+
+
+@dataclass(frozen=True)
+class MotionPaths(OfMotion):
+    """A source of paths: `PathSource` for a motion seen through air or a wall."""
+
+    motion: Motion | Reflectors  # scatterer positions over time
+    antennas: Antennas  # where the legs start and end
+    fc: float  # carrier, Hz
+    wall: Wall | None  # the slab between, or None
 
     def places(self, t: Float) -> tuple[Float, Index]:
         """Positions [3, I, M] (m) that shadows fall on, and which of them each path has [I]."""
@@ -61,27 +68,12 @@ class MotionPaths:
 
 
 @dataclass(frozen=True)
-class TorsoPath:
+class TorsoPath(OfMotion):
     """The path of a person's torso, of amplitude 1: a `PathSource`."""
 
     motion: Motion
     antennas: Antennas
     wall: Wall | None
-
-    @property
-    def breakpoints(self) -> tuple[float, ...]:
-        """Instants (s) at which the torso does not move smoothly."""
-        return self.motion.breakpoints
-
-    @property
-    def highest_frequency(self) -> float:
-        """Fundamental of the fastest motion, Hz."""
-        return self.motion.highest_frequency
-
-    @property
-    def smooth(self) -> bool:
-        """Paths kink where a leg passes an edge of the wall."""
-        return self.wall is None
 
     def __call__(self, t: Float) -> Paths:
         """The path at times t [M] (s)."""

@@ -7,7 +7,7 @@ comes from streams named by (seed, class, index) and in sizes of the config, 0 f
 from collections.abc import Iterable
 from dataclasses import replace
 from math import ceil, inf, pi, radians
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -53,19 +53,11 @@ from radhar_cli.motion.human.turning import Turn
 from radhar_cli.motion.human.walking import Gait
 from radhar_cli.scene import Numbers, Person
 
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
 Fall = FallForward | FallBackward | FallSideways
-M = TypeVar(
-    "M",
-    SitDown,
-    StandUp,
-    GetUp,
-    TryToGetUp,
-    StepTo,
-    FallForward,
-    FallBackward,
-    FallSideways,
-    FallFromSeat,
-)
+M = TypeVar("M", bound="DataclassInstance")  # a movement with a duration
 
 RAGGED_HZ = (0.1, 0.25, 0.4)
 MIN_STRIDE_S = 0.5  # no stride is shorter
@@ -171,7 +163,6 @@ def _what(person: Person) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
 
 
 def _stepping(person: Person, movements: tuple[Movement, ...]) -> tuple[Movement, ...]:
-    """Movements and the steps before and after them, `motion.step_m` long."""
     length, rng = person.motion.step_m, person.stream("motion.step_m/ways")
     if not length:
         return movements
@@ -192,7 +183,6 @@ def _ends(movements: Iterable[Movement], begin: float) -> float:
 
 
 def _sequence(person: Person) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
-    """The movements of a class of `classes:`."""
     one = person.config.classes[person.activity.slug]
     assert isinstance(one, SequenceConfig)
     movements: list[Movement] = []
@@ -293,7 +283,7 @@ def _lags(person: Person, place: int) -> tuple[Lags, Lags]:
 
 
 def _side(person: Person) -> float:
-    """To which side people fall: 1 to the left, -1 to the right."""
+    """1 for a fall to the left, -1 to the right."""
     return 1.0 if person.stream("motion.fall/side").random() < 0.5 else -1.0
 
 

@@ -228,7 +228,6 @@ def kinds_of(config: Config) -> list[str]:
 
 
 def _permittivity(material: str | DielectricConfig, frequency: float) -> complex:
-    """eps = eps_r (1 - j tan delta), or of a named material at a frequency (Hz)."""
     if isinstance(material, str):
         return complex(permittivity(material, np.array(frequency)))
     numbers = Numbers(material)
@@ -316,13 +315,9 @@ def canceller_of(config: Config, prf: float) -> Canceller:
 
 
 def gate_of(config: Config, ranges: Float, torso: Float | None) -> Gate:
-    """The gate of a config.
+    """The gate of a config in range bins at `ranges`, m.
 
-    Args:
-        config: of a scene, or of the processing of a recording.
-        ranges: of the range bins, m.
-        torso: range of the torso in the middle of every frame [frames], m; None of a gate that
-            does not follow it.
+    A gate that follows the torso needs its range in the middle of every frame [frames], m.
     """
     within = config.processing.gate_m
     if isinstance(within, tuple):
@@ -332,14 +327,9 @@ def gate_of(config: Config, ranges: Float, torso: Float | None) -> Gate:
 
 
 def gate_in_windows(config: Config, after: Signal, frames: Frames, t: Float, track: Float) -> Gate:
-    """The gate of a config in every window of a signal.
+    """The gate of a config in every window `frames` of the signal after the canceller.
 
-    Args:
-        config: as `gate_of`.
-        after: the signal after the canceller.
-        frames: its windows.
-        t: times of the pulses before the canceller, s.
-        track: delay of the torso there, s.
+    `track` is the delay (s) of the torso at the pulses before the canceller, at times t (s).
     """
     assert after.ranges is not None
     middle = np.interp(Stft(after, frames).time.values, t, range(track.size))

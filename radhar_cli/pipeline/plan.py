@@ -12,32 +12,20 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Product:
-    """One row of the table of products.
+    """One row of the table of products."""
 
-    Attributes:
-        name: ``kind`` or ``kind:variant``.
-        needs: the products that it is made from.
-        make: makes it; called with those products, in that order.
-        does: one line for people.
-    """
-
-    name: str
-    needs: tuple[str, ...]
-    make: Callable[..., Any]
-    does: str
+    name: str  # ``kind`` or ``kind:variant``
+    needs: tuple[str, ...]  # the products that it is made from
+    make: Callable[..., Any]  # makes it; called with those products, in that order
+    does: str  # one line for people
 
 
 @dataclass(frozen=True)
 class Plan:
-    """The products of one request, each after everything it needs.
+    """The products of one request, each after everything it needs."""
 
-    Attributes:
-        products: in running order.
-        asked: the products that were asked for, which are kept.
-    """
-
-    products: tuple[Product, ...]
-    asked: tuple[str, ...]
+    products: tuple[Product, ...]  # in running order
+    asked: tuple[str, ...]  # the products that were asked for, which are kept
 
     def __contains__(self, name: str) -> bool:
         return any(product.name == name for product in self.products)
@@ -57,12 +45,7 @@ class Plan:
 
 
 def plan(table: Mapping[str, Product], asked: Iterable[str], given: Iterable[str] = ()) -> Plan:
-    """Return the products that these need, in running order.
-
-    Args:
-        table: every product there could be, by name.
-        asked: names of the products to keep.
-        given: names of products that are there already.
+    """The products of a table {name: product} that these need, less those given, in running order.
 
     Raises:
         KeyError: a product is neither in the table nor given.

@@ -101,12 +101,7 @@ def signal_of(map_name: str) -> str:
 
 
 def plan_images(config: Config, entropy: bool = True) -> Plan:
-    """The plan of a data set: the image of every map, those of one signal together.
-
-    Args:
-        config: of the data set.
-        entropy: whether the maps' entropies are asked for.
-    """
+    """The plan of a data set: the image of every map, with or without entropy, by signal."""
     own = {product.name for product in own_products()}
     of_signals = [name for name in config.maps if name in MAP_NAMES and name not in own]
     maps = sorted(of_signals, key=lambda name: SIGNALS.index(signal_of(name)))
@@ -199,7 +194,6 @@ def _gated(c: Config) -> bool:
 
 
 def _clutter(c: Config) -> str:
-    """One line on the canceller."""
     kind, highpass = c.processing.clutter, c.processing.highpass
     if kind != "highpass":
         return {
@@ -264,11 +258,7 @@ def signal_of_look(x: Complex, look: Look) -> Signal:
 def received(
     x: Complex, look: Look, receiver: tuple[Impairment, ...], canceller: Canceller | None = None
 ) -> Signal:
-    """What a receiver adds to an echo [K, M] as one look shows it, and the canceller after it.
-
-    Raises:
-        SceneError: an impairment does more than add.
-    """
+    """What a receiver adds to an echo [K, M] as one look shows it, and the canceller after it."""
     for impairment in receiver:
         if not impairment.additive:
             raise SceneError(
@@ -482,7 +472,6 @@ def _signals(c: Config) -> Iterator[Product]:
 
 
 def _gate(c: Config) -> Iterator[Product]:
-    """Which bins a gate shows."""
     within = c.processing.gate_m
 
     def gate(ranges: Float, frames: Frames, canceller: Canceller, torso_track: Float) -> Gate:
@@ -564,7 +553,7 @@ def _doppler_maps(c: Config, signal: str, entropy: bool) -> Iterator[Product]:
         yield Product(
             f"image:{kind}{suffix}",
             (*masks, *needs),
-            partial(_doppler_mask if masks else _doppler_image, c, power, single, entropy),
+            partial(_doppler_image, c, power, single, entropy),
             f"power of the {does}{', in float32' * single}; its {_shape(c, entropy)}",
         )
 
@@ -610,14 +599,9 @@ def _image(
     extent: tuple[float, float, float, float],
     exponent: int,
 ) -> MapImage:
-    """The image of a map, and its unclipped decibels where they are stored.
+    """The image of a map from its resized power, and its unclipped decibels where they are stored.
 
-    Args:
-        c: the config.
-        cfar: of masks.
-        resize: makes the resized map of a function of its power, or of the power itself.
-        extent: of the map.
-        exponent: of the power of two that is the unit of what `resize` makes.
+    `resize` resizes a function of the power, or the power itself, in units of 2^exponent.
     """
     masks_decibels = cfar is not None and cfar.decibel
     small = resize(decibels_of if masks_decibels else None)
@@ -637,20 +621,10 @@ def _doppler_map(make: MakePower, *given: Any) -> PowerMap:
     return PowerMap(power.T, doppler.rows, doppler.columns)
 
 
-def _doppler_mask(
-    c: Config, make: MakePower, single: bool, entropy: bool, cfar: CellAveraging, *given: Any
-) -> MapImage:
-    return _doppler_image(c, make, single, entropy, *given, cfar=cfar)
-
-
 def _doppler_image(
-    c: Config,
-    make: MakePower,
-    single: bool,
-    entropy: bool,
-    *given: Any,
-    cfar: CellAveraging | None = None,
+    c: Config, make: MakePower, single: bool, entropy: bool, *given: Any
 ) -> MapImage:
+    cfar, given = (given[0], given[1:]) if c.image.kind == "cfar" else (None, given)
     doppler = make(single, *given)
     again = (make(single, *given).blocks for _ in repeat(None))
     passes = chain([doppler.blocks], again)

@@ -48,25 +48,17 @@ def run(steps: Plan, given: Mapping[str, Any]) -> Recording:
 def record(
     scene: Scene, asked: Iterable[str], more: Iterable[Product] = (), **given: Any
 ) -> Recording:
-    """Make products of a scene.
+    """Make products of a scene, by name (`radhar_cli.pipeline.products`).
 
-    Args:
-        scene: what is simulated, by the settings in its config.
-        asked: names of products (`radhar_cli.pipeline.products`).
-        more: further products, or others in place of those of the same name.
-        given: products that are there already, instead of the scene's own: `motions=`, `antennas=`,
-            `paths=` and so on. Antennas other than the config's have noise of their own; equal ones
-            have it by `channel=1`, `channel=2`, ...
+    `more` are further products, or others in place of those of the same name. Given are products
+    that are there already: `motions=`, `antennas=`, `paths=` and so on. Antennas other than the
+    config's have noise of their own; equal ones have it by `channel=1`, `channel=2`, ...
     """
     return _made(scene.config, asked, more, {"scene": scene, **given})
 
 
 def process(
-    signal: Signal,
-    config: Config,
-    asked: Iterable[str],
-    more: Iterable[Product] = (),
-    **given: Any,
+    signal: Signal, config: Config, asked: Iterable[str], more: Iterable[Product] = (), **given: Any
 ) -> Recording:
     """Make products of a recorded signal: a sum over range after the canceller, or range bins
     before it. Powers of its channels are added up.

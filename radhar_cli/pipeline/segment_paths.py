@@ -16,6 +16,7 @@ from radhar_cli.arrays import Bool, Float, Index
 from radhar_cli.echo.paths import Paths, Through
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.motion.segments import Placed, Segment, cross, place, soft_unit
+from radhar_cli.pipeline.motion_paths import OfMotion
 from radhar_cli.radar.ellipsoid import View, cross_section, shadow, square_height
 from radhar_cli.radar.propagation import Antennas, amplitude
 from radhar_cli.radar.transmission import pass_wall
@@ -96,18 +97,10 @@ class Body:
 def point_counts(
     body: Body, antennas: Antennas, wavelength: float, window: float, duration: float, most: int
 ) -> tuple[int, ...]:
-    """n = min(ceil(2 dv T_w/lambda), most), 1 or more, of each segment.
+    """n = min(ceil(2 dv T_w/lambda), most), 1 or more, of each segment; lambda in m, times in s.
 
     dv is the largest difference of the radial speeds of the segment's ends: n points are less than
-    a Doppler cell of the window apart, so that no gaps show between their lines.
-
-    Args:
-        body: whose segments.
-        antennas: what speeds are radial to.
-        wavelength: m.
-        window: T_w of the time-frequency maps, s.
-        duration: of the recording, s.
-        most: at most this many a segment.
+    a Doppler cell of the window T_w apart, so that no gaps show between their lines.
     """
     count = int(np.clip(RATES_PER_SECOND * duration, 64, MAX_RATES))
     t = np.linspace(0, duration, count)
@@ -122,7 +115,7 @@ def point_counts(
 
 
 @dataclass(frozen=True)
-class SegmentPaths:
+class SegmentPaths(OfMotion):
     """A source of paths: `PathSource` for a body of segments seen through air or a wall."""
 
     body: Body  # whose segments
@@ -135,19 +128,9 @@ class SegmentPaths:
     kept: tuple[int, ...]
 
     @property
-    def breakpoints(self) -> tuple[float, ...]:
-        """Instants (s) at which positions are not smooth."""
-        return self.body.motion.breakpoints
-
-    @property
-    def highest_frequency(self) -> float:
-        """Fundamental of the fastest motion, Hz."""
-        return self.body.motion.highest_frequency
-
-    @property
-    def smooth(self) -> bool:
-        """Paths kink where a leg passes an edge of the wall."""
-        return self.wall is None
+    def motion(self) -> Motion:  # type: ignore[override]
+        """Of the body."""
+        return self.body.motion
 
     @cached_property
     def _coefficients(self) -> list[Float]:
@@ -182,13 +165,7 @@ class SegmentPaths:
     def _fill(
         self, frames: "Frames", still: Bool, delay: Float, strength: Float, cosine: Float | None
     ) -> None:
-        """Fill in delays and amplitudes [I, block] of all points, and angles at a layered wall.
-
-        Args:
-            frames: of the segments.
-            still: which of them do not move at any time asked for [S].
-            delay, strength, cosine: to be filled in.
-        """
+        """Fill in delays and amplitudes [I, block] of all points, and angles at a layered wall."""
         tx, rx = (frames.seen_from(antenna) for antenna in (self.antennas.tx, self.antennas.rx))
         # The sum of the unit vectors of both legs.
         square = 2 + 2 * _dot(tx.way, rx.way) / (tx.distance * rx.distance)
@@ -229,13 +206,7 @@ class SegmentPaths:
                     cosine[:, some] = angles
 
     def _light(self, frames: "Frames", way: Float, wavelength: float) -> Float:
-        """Field left [S, M] by the segments that hide others, seen from between the antennas.
-
-        Args:
-            frames: of the segments.
-            way: from there to their centres [3, S, M], m.
-            wavelength: m.
-        """
+        """Field left [S, M] by the segments that hide others, seen along ways [3, S, M] (m)."""
         distance, left = np.sqrt(_dot(way, way)), np.ones(way.shape[1:])
         for o, one in enumerate(self.body.segments):
             if not one.occludes:
@@ -307,7 +278,6 @@ class _Seen(NamedTuple):
 
 
 def _constant(p: Float) -> Bool:
-    """Which of S [3, S, M] are the same at all M."""
     same: Bool = (p == p[..., :1]).all(axis=(0, 2))
     return same
 

@@ -15,8 +15,9 @@ import numpy as np
 
 from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.echo.paths import Paths, Through
-from radhar_cli.motion.protocol import recalled
+from radhar_cli.motion.protocol import Motion, recalled
 from radhar_cli.motion.segments import REFERENCE_STATURE, cross, soft_unit, unit
+from radhar_cli.pipeline.motion_paths import OfMotion
 from radhar_cli.pipeline.segment_paths import Body
 from radhar_cli.radar.propagation import Antennas, amplitude, bistatic_delay, leg
 from radhar_cli.radar.room import Point
@@ -72,7 +73,7 @@ def draw_surface(segments: int, points: int, rng: np.random.Generator) -> Drawn:
 
 
 @dataclass(frozen=True)
-class SurfacePaths:
+class SurfacePaths(OfMotion):
     """A source of paths: `PathSource` for surfaces seen through air or a wall."""
 
     body: Body  # whose segments
@@ -83,19 +84,9 @@ class SurfacePaths:
     kept: tuple[int, ...]  # numbers of the segments whose paths are wanted
 
     @property
-    def breakpoints(self) -> tuple[float, ...]:
-        """Instants (s) at which positions are not smooth."""
-        return self.body.motion.breakpoints
-
-    @property
-    def highest_frequency(self) -> float:
-        """Fundamental of the fastest motion, Hz."""
-        return self.body.motion.highest_frequency
-
-    @property
-    def smooth(self) -> bool:
-        """Paths kink where a leg passes an edge of the wall."""
-        return self.wall is None
+    def motion(self) -> Motion:  # type: ignore[override]
+        """Of the body."""
+        return self.body.motion
 
     def places(self, t: Float) -> tuple[Float, Index]:
         """Middles [3, S, M] (m) of the segments, and that of each path [I]."""
@@ -105,9 +96,7 @@ class SurfacePaths:
     def __call__(self, t: Float) -> Paths:
         """Paths of the points at times t [M] (s)."""
         places = tuple(way.antenna(self._centre()) for way in self.antennas.ways)
-        p, field_ = recalled(
-            self.body.motion, ("surface", places), t, lambda: self._seen(t, *places)
-        )
+        p, field_ = recalled(self.motion, ("surface", places), t, lambda: self._seen(t, *places))
         r_tx, r_rx = leg(p, self.antennas.tx), leg(p, self.antennas.rx)
         tau = bistatic_delay(r_tx, r_rx)
         a = amplitude(r_tx, r_rx, field_**2, self.antennas.gain, SPEED_OF_LIGHT / self.fc)

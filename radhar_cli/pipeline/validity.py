@@ -119,16 +119,11 @@ class SceneCheck:
 
 
 def check_scene(scene: Scene) -> SceneCheck:
-    """Check one scene on a grid of pulses dense enough for its motion.
-
-    Raises:
-        SceneError: no body can do this.
-    """
+    """Check one scene on a grid of pulses dense enough for its motion."""
     return _check_people(scene, scene.people)
 
 
 def _check_people(scene: Scene, people: tuple[Person, ...]) -> SceneCheck:
-    """`check_scene` of some of the people, and of what stands in the room."""
     checks = [_checked(scene, person) for person in people]
     flags, closest = checks[0].flags, min(check.closest for check in checks)
     for check in checks[1:]:
@@ -142,7 +137,6 @@ def _check_people(scene: Scene, people: tuple[Person, ...]) -> SceneCheck:
 
 
 def _checked(scene: Scene, person: Person) -> SceneCheck:
-    """`check_scene` of one person."""
     try:
         return _check(scene, person, moving(person))
     except OutOfReachError as error:
@@ -211,12 +205,7 @@ def _check_block(
 
 
 def _closest(
-    motion: Motion,
-    antennas: Antennas,
-    waveform: Waveform,
-    p: Float,
-    pulses: Index,
-    near: Approach,
+    motion: Motion, antennas: Antennas, waveform: Waveform, p: Float, pulses: Index, near: Approach
 ) -> Approach:
     """Nearest passage on the grid, or at every pulse where the grid cannot rule out 5 cm."""
     if np.diff(pulses).max() == 1:
@@ -276,11 +265,7 @@ def draw_valid_scene(config: Config, activity: Activity, index: int) -> tuple[Sc
 
 
 def _with_others(config: Config, scene: Scene, flags: Flags) -> tuple[Scene, Flags]:
-    """The scene of an own person who stays, with others drawn until they fit, one after the other.
-
-    Raises:
-        SceneError: one of them finds no place, or may not be drawn again.
-    """
+    """The scene of an own person who stays; others are drawn until they fit, one by one."""
     again = [0] * len(config.people)
     for number in range(1, len(config.people) + 1):
         why: str | None = None
@@ -328,7 +313,6 @@ def too_near(scene: Scene, last: int | None = None) -> int | None:
 
 
 def _drawn(person: Person) -> str:
-    """The numbers that have put a person where they are."""
     whose = f"people.{person.number - 1}." if person.number else ""
     drawn = {one: getattr(person.motion, one) for one in ("range_m", "cross_range_m")}
     shown = (f"{whose}motion.{key} = {one:.4g}" for key, one in drawn.items() if one is not None)
@@ -403,11 +387,7 @@ def _opaque(config: Config) -> list[str]:
 
 
 def scene_warnings(scene: Scene) -> list[str]:
-    """Check one scene and return what to warn of, in words.
-
-    Raises:
-        SceneError: a scatterer comes within 5 cm of an antenna.
-    """
+    """Check one scene, which keeps 5 cm from antennas, and return what to warn of, in words."""
     number = too_near(scene)
     if number is not None:
         raise SceneError(f"{scene.name}: {_crowded(number)}; {ROOM}")
@@ -423,13 +403,7 @@ def scene_warnings(scene: Scene) -> list[str]:
 def warnings(
     config: Config, counts: Mapping[Flags, int], recordings: int | None = None
 ) -> list[dict[str, Any]]:
-    """What to say once per run: [{kind, recordings, message}].
-
-    Args:
-        config: of the run.
-        counts: how many of its recordings have each flag.
-        recordings: of so many; None is all.
-    """
+    """What to say once per run: [{kind, recordings, message}]; counts are of so many recordings."""
     recordings = recordings or sum(map(config.samples_of, config.chosen_activities))
     messages: list[dict[str, Any]] = [
         {

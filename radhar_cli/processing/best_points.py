@@ -30,15 +30,10 @@ def best_points(
     carrier: float | None = None,
     bias: float = 0.0,
 ) -> Cloud:
-    """The points of every frame; intensity is the power of a cell's echo, for unit transmit power.
+    """The points of every frame of a cube [frame, loop, virtual, sample].
 
-    Args:
-        cube: samples [frame, loop, virtual, sample].
-        board: the radar.
-        remove_mean: take the mean over each frame's loops out first.
-        pfa: rate of false alarms of a cell.
-        carrier: frequency of the Doppler axis, Hz; None is the centre frequency.
-        bias: of ranges, m.
+    Intensity is the power of a cell's echo, for unit transmit power; `pfa` the rate of false alarms
+    of a cell; `carrier` (Hz) that of the Doppler axis, None the centre's; `bias` of ranges, m.
     """
     step, found = board.doppler_step(carrier), list[Float]()
     for _, x in spectra(cube, board, remove_mean):

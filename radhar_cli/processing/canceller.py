@@ -114,7 +114,6 @@ class HighPass(Canceller):
 
 @lru_cache(maxsize=8)
 def _butterworth(order: int, cutoff: float) -> Float:
-    """Second-order sections of a high-pass."""
     from scipy.signal import butter
 
     sections: Float = butter(order, cutoff, "highpass", output="sos")

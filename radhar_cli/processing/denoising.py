@@ -8,15 +8,10 @@ from radhar_cli.arrays import Complex, Float
 
 
 def savgol(x: Complex, order: int, frame: int) -> Complex:
-    """Every sample becomes the value there of the polynomial fitted to the frame around it.
+    """Every sample of x [M] becomes the value there of the polynomial fitted to its frame.
 
     The first and last half frame are read off the first and the last fit (SciPy's edge mode
     `interp`). Order 5, frame 11 is a low-pass at 0.32 of PRF/2.
-
-    Args:
-        x: [M].
-        order: of the polynomial, below `frame`.
-        frame: odd, at most M.
     """
     basis, half = _polynomials(order, frame), frame // 2
     smooth = np.empty_like(x)

@@ -35,11 +35,7 @@ class EntropySum:
 
 
 def entropy_bits(power: Float) -> float:
-    """H = -sum p log2 p of a whole map, p = power/sum(power); 0 for a map of zeros.
-
-    Raises:
-        RadharError: the map has an infinity or a NaN.
-    """
+    """H = -sum p log2 p of a finite map, p = power/sum(power); 0 for a map of zeros."""
     entropy, largest = EntropySum(), largest_power(power)
     if largest > 0:
         entropy.add(power / largest)
@@ -47,11 +43,7 @@ def entropy_bits(power: Float) -> float:
 
 
 def largest_power(power: Float) -> float:
-    """The largest power of a map, 0 of none.
-
-    Raises:
-        RadharError: the map has an infinity or a NaN.
-    """
+    """The largest power of a map, 0 of none; a RadharError of an infinity or a NaN."""
     largest = float(power.max(initial=0.0))
     if not np.isfinite(largest):
         raise RadharError(f"the power map should be finite; its largest value is {largest}")

@@ -19,18 +19,13 @@ BLOCK_FRAMES = 16
 
 @dataclass(frozen=True)
 class FrameMaps:
-    """Power of every frame for unit transmit power.
+    """Power of every frame for unit transmit power."""
 
-    Attributes:
-        power: [frame, rows, columns], lowest first.
-        rows, columns: the axes.
-        times: middles of the frames, s.
-    """
-
-    power: Float
+    power: Float  # [frame, rows, columns], lowest first
+    # rows, columns: the axes
     rows: Axis
     columns: Axis
-    times: Float
+    times: Float  # middles of the frames, s
 
 
 def range_spectrum(cube: Complex, board: Board, window: Float) -> Complex:
@@ -46,13 +41,9 @@ def range_spectrum(cube: Complex, board: Board, window: Float) -> Complex:
 
 
 def doppler_spectrum(x: Complex, board: Board, window: Float, remove_mean: bool) -> Complex:
-    """X [frame, Doppler, virtual, range], Doppler as FFTs have it: 0 first, approaching positive.
+    """X [frame, Doppler, virtual, range] of x [frame, loop, virtual, range], windowed over loops.
 
-    Args:
-        x: [frame, loop, virtual, range].
-        board: whose bins.
-        window: over the loops.
-        remove_mean: take the mean over each frame's loops out first.
+    Doppler is as FFTs have it: 0 first, approaching positive.
     """
     if remove_mean:
         x = x - x.mean(axis=1, keepdims=True)
@@ -117,13 +108,8 @@ def range_angle(cube: Complex, board: Board, remove_mean: bool, axis: int) -> Fr
 
     Doppler bins are compensated for the transmitters' turns and summed: sum_d |w^H x_d|^2 =
     w^H R w with the covariance R = sum_d x_d x_d^H. The taper of n elements is
-    sin^2(pi (i + 1)/(n + 1)); of several rows as long, powers are averaged.
-
-    Args:
-        cube: samples.
-        board: the radar.
-        remove_mean: take out what stands still.
-        axis: 0 for azimuth, positive left, 1 for elevation, positive up.
+    sin^2(pi (i + 1)/(n + 1)); of several rows as long, powers are averaged. Axis 0 is azimuth,
+    positive left, 1 elevation, positive up.
     """
     angles = np.arange(-90.0, 91.0)
     rows = longest_rows(board, axis)

@@ -36,14 +36,7 @@ def _tiles(frames: int, size: Size) -> tuple[Index, list[tuple[slice, slice]]]:
 def maps_sheet(
     maps: FrameMaps, size: Size, dynamic_range_db: float, entropy: bool = True
 ) -> MapImage:
-    """Frames side by side, in decibels below the peak of all of them; row 0 is the farthest.
-
-    Args:
-        maps: of all frames.
-        size: (height, width).
-        dynamic_range_db: of the grey levels.
-        entropy: whether that of the power is asked for.
-    """
+    """Frames side by side, in decibels below the peak of all of them; row 0 is the farthest."""
     shown, places = _tiles(len(maps.power), size)
     cells = np.zeros(size, np.float32)
     scaled = np.ldexp(maps.power[shown].astype(float), -binary_exponent(maps.power))
@@ -61,11 +54,7 @@ def cloud_sheet(
 ) -> MapImage:
     """Front views of frames side by side, as the radar sees them: points over the skeletons.
 
-    Args:
-        cloud: the points.
-        skeletons: positions of joints [frame, person, joint, 3], m.
-        parents: of the joints.
-        size: (height, width).
+    Skeletons are positions of joints [frame, person, joint, 3], m.
     """
     shown, places = _tiles(len(cloud.start) - 1, size)
     sheet = np.zeros(size, np.uint8)

@@ -9,17 +9,11 @@ from radhar_cli.processing.stft import Stft
 
 
 def synchrosqueeze(v: Complex, slope: Complex, least: float) -> tuple[Float, Float]:
-    """T[l, k]: V[l, k] added up at bin k + round(Im(-V'/V) L/(2 pi)) modulo L.
+    """T[l, k], real and imaginary: V[l, k] added up at bin k + round(Im(-V'/V) L/(2 pi)) modulo L.
 
-    V' is the transform with the window's slope. Both have their phase referenced to sample L//2
-    of the frame, so that sum_k T = L g[L//2] x[l hop + L//2] where nothing is dropped.
-
-    Args:
-        v, slope: V and V' [frames, L].
-        least: coefficients below this magnitude are dropped, and those whose square is zero.
-
-    Returns:
-        Real and imaginary part of T, each [frames, L] in float64.
+    V, and V' with the window's slope, are [frames, L]. Both have their phase referenced to sample
+    L//2 of the frame, so that sum_k T = L g[L//2] x[l hop + L//2] where nothing is dropped, as are
+    coefficients below `least`, and those whose square is zero.
     """
     frames, length = v.shape
     power = v.real**2
@@ -47,11 +41,9 @@ def synchrosqueeze(v: Complex, slope: Complex, least: float) -> tuple[Float, Flo
 def power_blocks(stft: Stft, threshold: float, single: bool = False) -> Iterator[Float]:
     """|T|^2 summed over the channels of a signal of one row [some frames, frequency].
 
-    Args:
-        stft: of the signal, with N = L.
-        threshold: coefficients below it times the largest |V| of the whole map are dropped.
-        single: whether the powers are float32; the coefficients are not, as one within float32's
-            rounding of the border between two bins would move its power to another pixel.
+    Coefficients below `threshold` times the largest |V| of the map are dropped. Powers may be
+    float32; the coefficients are not, as one within float32's rounding of the border between two
+    bins would move its power to another pixel.
     """
     rows, frames = stft.signal.x[:, 0], stft.frames
 

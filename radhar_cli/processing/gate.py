@@ -28,10 +28,7 @@ class Gate:
     def needed(self, frames: Frames, pulses: int, more: int) -> tuple[Index, Index]:
         """(first [M], last + 1 [M]) of the bins that some frame shows which a pulse belongs to.
 
-        Args:
-            frames: of the signal.
-            pulses: M.
-            more: pulses beside a frame on which its samples depend.
+        Samples depend on `more` pulses beside a frame.
         """
         if self.first.size == 1:
             return np.full(pulses, self.bins.start), np.full(pulses, self.bins.stop)
@@ -56,13 +53,10 @@ class Gate:
 def around(torso: Float, within: float, ranges: Float) -> Gate:
     """The 2 floor(within/step) + 1 bins about the one nearest to the torso, shifted into the axis.
 
-    Args:
-        torso: range in the middle of every frame [frames], m.
-        within: half the width of the gate, m.
-        ranges: of all bins, evenly spaced, m.
+    Of the torso's range in the middle of every frame [frames], and evenly spaced ranges, m.
     """
     step = _step(ranges)
-    count = min(bins_within(within, step), ranges.size)
+    count = min(2 * floor(within / step) + 1, ranges.size)
     first = np.rint((torso - ranges[0]) / step) - count // 2
     return Gate(np.clip(first, 0, ranges.size - count).astype(np.intp), count)
 
@@ -72,11 +66,6 @@ def interval(low: float, high: float, ranges: Float) -> Gate:
     bins = np.rint((np.array([low, high]) - ranges[0]) / _step(ranges))
     first, last = np.clip(bins, 0, ranges.size - 1).astype(np.intp)
     return Gate(np.array([first]), int(last - first) + 1)
-
-
-def bins_within(within: float, step: float) -> int:
-    """How many bins a gate has that reaches so far (m) to both sides."""
-    return 2 * floor(within / step) + 1
 
 
 def _step(ranges: Float) -> float:

@@ -33,15 +33,9 @@ def reduced(
 ) -> Reduced:
     """Resize a power map that comes in blocks of columns, and sum up its entropy.
 
-    Resizing is Pillow's BILINEAR with antialiasing, a weighted sum over rows and then columns.
-
-    Args:
-        blocks: power [some columns, rows], the lowest row first, in the order of time; of a scale
-            near 1.
-        columns: of all blocks together.
-        size: (height, width), pixels.
-        of: what is resized instead of the power itself, such as its decibels.
-        entropy: whether it is asked for.
+    Blocks [some columns, rows] are of a scale near 1, the lowest row first, in the order of time.
+    Resizing is Pillow's BILINEAR with antialiasing, a weighted sum over rows and then columns; of a
+    function `of` the power instead if there is one, such as its decibels.
 
     Raises:
         RadharError: the map has an infinity or a NaN.
@@ -81,12 +75,7 @@ def binary_exponent(power: Float) -> int:
 
 
 def unclipped(power: Float, exponent: int) -> tuple[Half, float]:
-    """Decibels [height, width] of resized power below its largest, and that largest (dB).
-
-    Args:
-        power: in units of 2^exponent.
-        exponent: of the unit.
-    """
+    """Decibels [height, width] below the largest of power in units of 2^exponent, and that (dB)."""
     level = decibels(power.astype(float), -FLOOR_DB)
     largest = max(largest_power(power), 10 ** (FLOOR_DB / 10))
     return level.astype(np.float16), 10 * (log10(largest) + exponent * log10(2))

@@ -89,15 +89,10 @@ class RangeSum(FastTime):
 
 @dataclass(frozen=True)
 class RangeBins(FastTime):
-    """Range bins, all of the kept ones or some consecutive of them, referred to as the waveform is.
+    """Range bins, all that are kept or some consecutive ones, referred to as the waveform is."""
 
-    Attributes:
-        waveform: the radar.
-        bins: of the N_FFT/2; None is all.
-    """
-
-    waveform: Waveform
-    bins: slice | None = None
+    waveform: Waveform  # the radar
+    bins: slice | None = None  # of the N_FFT/2; None is all
 
     @property
     def rows(self) -> int:
@@ -183,22 +178,15 @@ def noise_gain(waveform: Waveform) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """x[k, m], as the module has it.
+    """x[k, m], as the module has it."""
 
-    Attributes:
-        name: of the look, and of its random streams.
-        fast: W.
-        pulses: p_m [M], rising.
-        taps: of a canceller that x is seen after.
-        spans: where rows are drawn one after the other, the pulses of each that count.
-        memory: what impairments keep from one block of pulses to the next.
-    """
-
-    name: str
-    fast: FastTime
-    pulses: Index | range
-    taps: tuple[float, ...] = (1.0,)
+    name: str  # of the look, and of its random streams
+    fast: FastTime  # W
+    pulses: Index | range  # p_m [M], rising
+    taps: tuple[float, ...] = (1.0,)  # of a canceller that x is seen after
+    # where rows are drawn one after the other, the pulses of each that count
     spans: Sequence[slice] | None = None
+    # what impairments keep from one block of pulses to the next
     memory: dict[str, Any] = field(default_factory=dict)
 
     @classmethod
@@ -230,11 +218,7 @@ class Look:
         return taken
 
     def in_order(self, following: Callable[[int], Complex]) -> Complex:
-        """`taken` of a process [rank, pulses] that is made in the order of the pulses.
-
-        Args:
-            following: makes as many of the next pulses as it is asked for.
-        """
+        """`taken` of a process [rank, pulses] of which `following` makes the next few pulses."""
         pulses, reach = np.asarray(self.pulses), len(self.taps) - 1
         if reach == 0 and self.count == pulses[-1] - pulses[0] + 1:
             return following(self.count)

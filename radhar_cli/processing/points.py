@@ -10,11 +10,7 @@ import numpy as np
 import scipy.fft
 
 from radhar_cli.arrays import Bool, Complex, Float, Index
-from radhar_cli.processing.frame_maps import (
-    doppler_spectrum,
-    longest_rows,
-    range_spectrum,
-)
+from radhar_cli.processing.frame_maps import doppler_spectrum, longest_rows, range_spectrum
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.detection import Cfar, Detection
 
@@ -27,15 +23,10 @@ NOISE_FRAMES = 8  # that noise is estimated from
 
 
 class Cloud(NamedTuple):
-    """Points of all frames, one frame after the other.
+    """Points of all frames, one frame after the other."""
 
-    Attributes:
-        points: float32 [N, 8], columns as COLUMNS.
-        start: int64 [frames + 1]; points start[f] .. start[f + 1] - 1 are frame f's.
-    """
-
-    points: Float
-    start: Index
+    points: Float  # float32 [N, 8], columns as COLUMNS
+    start: Index  # int64 [frames + 1]; points start[f] .. start[f + 1] - 1 are frame f's.
 
     @classmethod
     def of(cls, frames: list[Float]) -> "Cloud":
@@ -46,50 +37,35 @@ class Cloud(NamedTuple):
 
 
 def board_points(
-    cube: Complex,
-    board: Board,
-    detection: Detection,
-    quantise: bool,
-    carrier: float | None = None,
+    cube: Complex, board: Board, detection: Detection, quantise: bool, carrier: float | None = None
 ) -> Cloud:
-    """The points of every frame.
+    """The points of every frame of a cube [frame, loop, virtual, sample].
 
-    Args:
-        cube: samples [frame, loop, virtual, sample].
-        board: the radar.
-        detection: thresholds and switches.
-        quantise: round as fixed-point numbers do, whose unit follows from the noise.
-        carrier: frequency of the Doppler axis, Hz; None is the centre frequency.
+    `quantise` rounds as fixed-point numbers do, whose unit follows from the noise; `carrier` (Hz)
+    is that of the Doppler axis, None the centre frequency.
     """
     fast, slow = np.blackman(board.samples), np.hanning(board.loops)
     fast, slow = fast / fast.sum(), slow / slow.sum()
     lsb = noise_rms(cube, board, fast, slow) / NOISE_LSB if quantise else 0.0
-    step = board.doppler_step(carrier)
-    found = []
+    step, found = board.doppler_step(carrier), list[Float]()
+    # Bins in TI's order: the conjugate of a signal has the opposite frequency.
+    negated = -np.arange(board.n_doppler) % board.n_doppler
     for frame in range(len(cube)):
         x = range_spectrum(cube[frame : frame + 1], board, fast)
         spectrum = doppler_spectrum(x, board, slow, detection.remove_mean)[0].conj()
-        found.append(_frame_points(spectrum[_negated(board)], board, detection, lsb, step))
+        found.append(_frame_points(spectrum[negated], board, detection, lsb, step))
     return Cloud.of(found)
 
 
 def noise_rms(cube: Complex, board: Board, fast: Float, slow: Float) -> float:
     """Rms of the noise of a range-Doppler cell: people fill less than half of the cells.
 
-    Args:
-        cube: samples [frame, loop, virtual, sample].
-        board: the radar.
-        fast, slow: windows, whose sums are 1.
+    The sums of the windows are 1.
     """
     some = np.unique(np.linspace(0, len(cube) - 1, min(len(cube), NOISE_FRAMES)).astype(int))
     x = doppler_spectrum(range_spectrum(cube[some], board, fast), board, slow, False)
     moving = x[:, 2:-1] if board.n_doppler > 4 else x  # what stands still fills three bins
     return float(np.sqrt(np.median(moving.real**2 + moving.imag**2) / np.log(2)))
-
-
-def _negated(board: Board) -> Index:
-    """Doppler bins in TI's order: the conjugate of a signal has the opposite frequency."""
-    return -np.arange(board.n_doppler) % board.n_doppler
 
 
 def _frame_points(x: Complex, board: Board, detection: Detection, lsb: float, step: float) -> Float:
@@ -239,7 +215,6 @@ def _flanks(m: Float, peak: int) -> Index:
 
 
 def _in_view(points: Float, detection: Detection) -> Bool:
-    """Points in the fields of view of aoaFovCfg and cfarFovCfg."""
     x, y, z, doppler = points[:, :4].T
     angles = np.degrees(np.arctan2(-y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
     seen = np.ones(len(points), bool)

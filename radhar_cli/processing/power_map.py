@@ -10,17 +10,11 @@ from radhar_cli.processing.entropy import entropy_bits
 
 @dataclass(frozen=True)
 class Axis:
-    """What the rows or the columns of a map mean.
+    """What the rows or the columns of a map mean."""
 
-    Attributes:
-        name: frequency, range, time, ...
-        unit: Hz, m, s, ...
-        values: of every row or column, evenly spaced, lowest first.
-    """
-
-    name: str
-    unit: str
-    values: Float
+    name: str  # frequency, range, time, ...
+    unit: str  # Hz, m, s, ...
+    values: Float  # of every row or column, evenly spaced, lowest first
 
     @property
     def edges(self) -> tuple[float, float]:
@@ -31,18 +25,13 @@ class Axis:
 
 @dataclass(frozen=True)
 class PowerMap:
-    """Power for unit transmit power.
+    """Power for unit transmit power."""
 
-    Attributes:
-        power: [rows, columns], lowest first.
-        rows, columns: the axes; time runs along the columns of every map of a data set.
-        real: the samples with their sign [rows, columns], where those are shown.
-    """
-
-    power: Float
+    power: Float  # [rows, columns], lowest first
+    # rows, columns: the axes; time runs along the columns of every map of a data set
     rows: Axis
     columns: Axis
-    real: Float | None = None
+    real: Float | None = None  # the samples with their sign [rows, columns], where those are shown
 
     @property
     def shown(self) -> Float:
@@ -62,22 +51,16 @@ class PowerMap:
 
 @dataclass(frozen=True)
 class MapImage:
-    """The image of a map.
+    """The image of a map."""
 
-    Attributes:
-        levels: grey levels [height, width], row 0 at the top.
-        entropy: of the power map, bits; NaN where it is not requested.
-        extent: outer edges of the map (columns from, columns to, rows from, rows to).
-        decibels: of the resized power below its largest, float16 [height, width], or None where
-            they are not requested.
-        largest_db: that largest power, dB for unit transmit power.
-    """
-
-    levels: Levels
-    entropy: float
+    levels: Levels  # grey levels [height, width], row 0 at the top
+    entropy: float  # of the power map, bits; NaN where it is not requested
+    # outer edges of the map (columns from, columns to, rows from, rows to)
     extent: tuple[float, float, float, float]
+    # of the resized power below its largest, float16 [height, width], or None where they are not
+    # requested
     decibels: Half | None = None
-    largest_db: float = nan
+    largest_db: float = nan  # that largest power, dB for unit transmit power
 
     @property
     def sha256(self) -> str:

@@ -8,18 +8,10 @@ from radhar_cli.radar.waveform import Waveform
 
 
 def range_compression(s: Complex, waveform: Waveform, bins: slice = slice(None)) -> Complex:
-    """S[k, m] = sum_n s[n, m] exp(+j 2 pi k (n - n0)/N_FFT), k < N_FFT/2.
+    """S[k, m] [K, M] = sum_n s[n, m] exp(+j 2 pi k (n - n0)/N_FFT), k < N_FFT/2, of s [N_ADC, M].
 
     The conjugate kernel puts a target at range bin k = R/range_step; n0 = N_ADC/2 refers the bins
     to mid-chirp (docs/physics/model.md, "Where in the chirp the Doppler is read").
-
-    Args:
-        s: beat matrix [N_ADC, M].
-        waveform: the radar.
-        bins: which of them are wanted.
-
-    Returns:
-        [K, M].
     """
     # The transform runs along contiguous memory where s is the transpose of [M, N_ADC].
     kept: Complex = scipy.fft.ifft(s.T, waveform.n_fft, axis=1, norm="forward").T

@@ -26,21 +26,13 @@ def nearest(values: Float, wanted: Float) -> Index:
 
 @dataclass(frozen=True)
 class Signal:
-    """Complex samples of receive channels and range bins, pulse by pulse.
+    """Complex samples of receive channels and range bins, pulse by pulse."""
 
-    Attributes:
-        x: [channel, row, pulse]; rows are range bins, or one coherent sum over them.
-        times: of the pulses.
-        f0: frequency at which the Doppler is read, Hz.
-        ranges: of the rows, m; None of a sum over range.
-        first: number of the first row's range bin, as a `Gate` counts them.
-    """
-
-    x: Complex
-    times: PulseTimes
-    f0: float
-    ranges: Float | None = None
-    first: int = 0
+    x: Complex  # [channel, row, pulse]; rows are range bins, or one coherent sum over them
+    times: PulseTimes  # of the pulses
+    f0: float  # frequency at which the Doppler is read, Hz
+    ranges: Float | None = None  # of the rows, m; None of a sum over range
+    first: int = 0  # number of the first row's range bin, as a `Gate` counts them
 
     @property
     def pulses(self) -> int:
@@ -93,9 +85,7 @@ class Signal:
     def cancelled(self, canceller: Canceller, spans: Sequence[slice] | None = None) -> "Signal":
         """The same after a canceller, stretch by stretch; those too short for it are left out.
 
-        Args:
-            canceller: along the pulses.
-            spans: pulses of each row that count, of a signal without gaps; the others become 0.
+        `spans` are the pulses of each row that count, of a signal without gaps; others become 0.
         """
         whole = self.stretches(canceller.lost + 1)
         times = whole.times.shortened(canceller.lost, canceller.delay)

@@ -59,11 +59,7 @@ class Stft:
 
     @cached_property
     def exponent(self) -> int:
-        """Binary exponent of the largest real or imaginary part of the signal.
-
-        Raises:
-            RadharError: one is an infinity or a NaN.
-        """
+        """Binary exponent of the largest real or imaginary part of the signal, which is finite."""
         x = self.signal.x
         largest = float(
             np.max([abs(f(part)) for part in (x.real, x.imag) for f in (np.min, np.max)])
@@ -123,7 +119,6 @@ class Stft:
             yield np.fft.fftshift(total, axes=1)
 
     def _shown(self, row: int, block: slice) -> Bool:
-        """Which frames of a block show a row."""
         if self.gate is None:
             return np.ones(block.stop - block.start, bool)
         first = np.broadcast_to(self.gate.first - self.signal.first, self.starts.size)[block]

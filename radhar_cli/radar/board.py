@@ -24,17 +24,13 @@ Places: TypeAlias = tuple[tuple[float, float], ...]  # (left, up) in half wavele
 
 
 class Array(NamedTuple):
-    """Antenna elements of a device.
+    """Antenna elements of a device."""
 
-    Attributes:
-        tx, rx: places of the elements.
-        rx_sign: +1, or -1 of a receiver that is fed the other way round.
-        half_power_deg: half-power half-widths (azimuth, elevation) of an element, one way.
-    """
-
+    # tx, rx: places of the elements
     tx: Places
     rx: Places
-    rx_sign: tuple[float, ...]
+    rx_sign: tuple[float, ...]  # +1, or -1 of a receiver that is fed the other way round
+    # half-power half-widths (azimuth, elevation) of an element, one way
     half_power_deg: tuple[float, float]
 
 
@@ -63,45 +59,28 @@ DEVICES: Mapping[str, Array] = MappingProxyType(
 
 @dataclass(frozen=True)
 class Board:
-    """A board as its chirp profile, its frames and its place in the scene have it.
+    """A board as its chirp profile, its frames and its place in the scene have it."""
 
-    Attributes:
-        array: its elements.
-        start: frequency at which a ramp starts, Hz.
-        fc: frequency at the first sample that is kept, Hz.
-        slope: K, Hz/s.
-        adc_rate: fs, Hz.
-        samples: of a chirp.
-        slot: from chirp to chirp, s.
-        order: numbers of the transmitters, in their order within a loop.
-        receivers: numbers of those that are on.
-        loops, frames: of a frame; of the recording.
-        period: from frame to frame, s.
-        position: of the array's origin, m.
-        yaw, tilt: of boresight from the x axis, rad; to the left, and down.
-        half_power_deg: as `Array`.
-        half_wavelength: unit of the elements' places, m; None is c/(2 f_c).
-        gain: linear, of each antenna.
-    """
-
-    array: Array
-    start: float
-    fc: float
-    slope: float
-    adc_rate: float
-    samples: int
-    slot: float
-    order: tuple[int, ...]
-    receivers: tuple[int, ...]
+    array: Array  # its elements
+    start: float  # frequency at which a ramp starts, Hz
+    fc: float  # frequency at the first sample that is kept, Hz
+    slope: float  # K, Hz/s
+    adc_rate: float  # fs, Hz
+    samples: int  # of a chirp
+    slot: float  # from chirp to chirp, s
+    order: tuple[int, ...]  # numbers of the transmitters, in their order within a loop
+    receivers: tuple[int, ...]  # numbers of those that are on
+    # loops, frames: of a frame; of the recording
     loops: int
     frames: int
-    period: float
-    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    period: float  # from frame to frame, s
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)  # of the array's origin, m
+    # yaw, tilt: of boresight from the x axis, rad; to the left, and down
     yaw: float = 0.0
     tilt: float = 0.0
-    half_power_deg: tuple[float, float] | None = None
-    half_wavelength: float | None = None
-    gain: float = 1.0
+    half_power_deg: tuple[float, float] | None = None  # as `Array`
+    half_wavelength: float | None = None  # unit of the elements' places, m; None is c/(2 f_c)
+    gain: float = 1.0  # linear, of each antenna
 
     @property
     def centre(self) -> float:

@@ -8,46 +8,34 @@ CA, CAGO, CASO = range(3)
 
 
 class Cfar(NamedTuple):
-    """One `cfarCfg`: averaging of decibels along an axis.
+    """One `cfarCfg`: averaging of decibels along an axis."""
 
-    Attributes:
-        mode: CA, CAGO or CASO.
-        window, guard: cells on each side.
-        cyclic: whether the axis closes.
-        threshold_db: over the average.
-    """
-
-    mode: int
+    mode: int  # CA, CAGO or CASO
+    # window, guard: cells on each side
     window: int
     guard: int
-    cyclic: bool
-    threshold_db: float
+    cyclic: bool  # whether the axis closes
+    threshold_db: float  # over the average
 
 
 @dataclass(frozen=True)
 class Detection:
-    """What a .cfg says of detection.
+    """What a .cfg says of detection."""
 
-    Attributes:
-        along_range, along_doppler: the CFAR; both must fire where there are two.
-        grouping: whether peaks alone are kept, along range, along Doppler.
-        first_bin, last_bin: ranges that points may have.
-        second_peak: least height of a second peak over angle, over the first; None is no second.
-        remove_mean: take out what stands still.
-        bias: range bias, m.
-        coefficients: of the virtual channels [V], complex.
-        azimuth_deg, elevation_deg, range_m, doppler_mps: fields of view, or None.
-    """
-
+    # along_range, along_doppler: the CFAR; both must fire where there are two
     along_range: Cfar
     along_doppler: Cfar | None = None
+    # whether peaks alone are kept, along range, along Doppler
     grouping: tuple[bool, bool] = (False, False)
+    # first_bin, last_bin: ranges that points may have
     first_bin: int = 0
     last_bin: int | None = None
+    # least height of a second peak over angle, over the first; None is no second
     second_peak: float | None = None
-    remove_mean: bool = False
-    bias: float = 0.0
-    coefficients: tuple[complex, ...] = ()
+    remove_mean: bool = False  # take out what stands still
+    bias: float = 0.0  # range bias, m
+    coefficients: tuple[complex, ...] = ()  # of the virtual channels [V], complex
+    # azimuth_deg, elevation_deg, range_m, doppler_mps: fields of view, or None
     azimuth_deg: tuple[float, float] | None = None
     elevation_deg: tuple[float, float] | None = None
     range_m: tuple[float, float] | None = None

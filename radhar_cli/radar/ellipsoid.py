@@ -22,28 +22,18 @@ BEHIND, BEHIND_WIDTH = 0.06, 0.03  # start of a shadow behind its occluder, and 
 
 
 class View(NamedTuple):
-    """A vector towards the observer, of any length.
+    """A vector towards the observer, of any length."""
 
-    Attributes:
-        along, aside: its components along the axis, and across where flat bodies are wide.
-        square: of its length.
-    """
-
+    # along, aside: its components along the axis, and across where flat bodies are wide
     along: Float
     aside: Float
-    square: Float
+    square: Float  # of its length
 
 
 def square_height(
     view: View, radius: Float | float, half: Float | float, flatness: Float | float = 1.0
 ) -> Float:
-    """h^2 (m^2), times the square of the viewing vector's length.
-
-    Args:
-        view: of the ellipsoid.
-        radius, half: semi-axes across (mean) and along, m.
-        flatness: f, 1 or more.
-    """
+    """h^2 (m^2), times the square of the viewing vector's length; semi-axes in m, f 1 or more."""
     along, aside = view.along * view.along, view.aside * view.aside
     depth = radius / flatness
     height: Float = depth * depth * (view.square - along - aside) + half * half * along
@@ -54,30 +44,18 @@ def square_height(
 def cross_section(
     square_height: Float, radius: Float | float, half: Float | float, reflectance: float
 ) -> Float:
-    """sigma = |Gamma|^2 pi r^4 c^2/h^4, m^2.
-
-    Args:
-        square_height: h^2 for a unit vector, m^2.
-        radius, half: semi-axes across (mean) and along, m.
-        reflectance: |Gamma|^2.
-    """
+    """sigma = |Gamma|^2 pi r^4 c^2/h^4, m^2, r across (mean), c along, h for a unit vector."""
     size = pi * reflectance * radius**4 * half**2
     sigma: Float = size / (square_height * square_height)
     return sigma
 
 
 def shadow(clearance: Float, behind: Float, radius: Float | float, wavelength: float) -> Float:
-    """Field left (1) of a path whose ray passes an occluder.
+    """Field left (1) of a path whose ray passes an occluder and ends `behind` (m) it.
 
     A logistic edge of width w, half the field at the edge, a tenth at 2.2 w behind it: as a knife
-    edge 0.4 m in front has it, w = 2.5 cm at 77 GHz and 15 cm at 2 GHz.
-
-    Args:
-        clearance: (distance of the ray from the occluder's centre over the way to its surface
-            there)^2: 0 through the centre, 1 at the edge.
-        behind: how much farther than the occluder the path ends, m.
-        radius: of the occluder, m.
-        wavelength: m.
+    edge 0.4 m in front has it, w = 2.5 cm at 77 GHz and 15 cm at 2 GHz. `clearance` is (distance of
+    the ray from the occluder's centre over the way to its surface there)^2: 1 at the edge.
     """
     edge = 2 * PENUMBRA * np.sqrt(wavelength)
     covered = expit((1 - clearance) * (radius / edge))

@@ -11,15 +11,10 @@ Polarisation = Literal["perpendicular", "parallel"]
 
 
 def reflection(cosine: Float, eps: complex, polarisation: Polarisation) -> Complex:
-    """Gamma(theta) [...] of a face between air and a medium.
+    """Gamma(theta) [...] of a face between air and a medium of complex eps, by the cosine in air.
 
     With w = sqrt(eps - sin^2 theta): (cos - w)/(cos + w) for a field perpendicular to the plane of
     incidence (TE, s), (w - eps cos)/(w + eps cos) for a parallel one (TM, p).
-
-    Args:
-        cosine: of the angle theta in air [...], 0 to 1.
-        eps: complex relative permittivity of the medium.
-        polarisation: of the electric field.
     """
     w, x = _medium(cosine, eps), _air(cosine, eps, polarisation)
     gamma: Complex = (x - w) / (x + w) if polarisation == "perpendicular" else (w - x) / (w + x)
@@ -43,13 +38,8 @@ def faces_factor(
 ) -> Float:
     """Field [I, M] that passes the faces of the wall on the way from an antenna to p [3, I, M].
 
-    Args:
-        p: positions, m.
-        antenna: outside the wall.
-        wall: the slab; its `fresnel` names the polarisation.
-        crossed: `crossing` of the rays.
-        tangent: of the angle outside where a ray is refracted [I, M], NaN where it is straight;
-            None where all are straight.
+    `tangent` is of the angle outside where a ray is refracted [I, M], NaN where it is straight;
+    None where all are straight.
     """
     assert wall.fresnel != "normal"
     step = np.abs([p[axis] - antenna[axis] for axis in range(3)])

@@ -15,15 +15,10 @@ from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 @dataclass(frozen=True)
 class Impulse(Waveform):
-    """A train of pulses; range bins are the samples of its profile.
+    """A train of pulses; range bins are the samples of its profile."""
 
-    Attributes:
-        profile: where the range axis begins and ends, m.
-        samples: of a profile.
-    """
-
-    profile: tuple[float, float] = (0.0, 1.0)
-    samples: int = 256
+    profile: tuple[float, float] = (0.0, 1.0)  # where the range axis begins and ends, m
+    samples: int = 256  # of a profile
 
     @property
     def width(self) -> float:

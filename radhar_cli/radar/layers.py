@@ -42,15 +42,10 @@ class Scattered(NamedTuple):
 
 @dataclass(frozen=True)
 class Layers:
-    """A wall of layers, nearest first.
+    """A wall of layers, nearest first."""
 
-    Attributes:
-        layers: of the wall.
-        parallel: whether the field lies in the plane of incidence (TM), or across it (TE).
-    """
-
-    layers: tuple[Layer, ...]
-    parallel: bool
+    layers: tuple[Layer, ...]  # of the wall
+    parallel: bool  # whether the field lies in the plane of incidence (TM), or across it (TE)
 
     @property
     def depth(self) -> float:
@@ -58,12 +53,7 @@ class Layers:
         return sum(layer.thickness for layer in self.layers)
 
     def scattered(self, f: Float, cosine: Float) -> Scattered:
-        """T and R of a plane wave.
-
-        Args:
-            f: frequencies, Hz.
-            cosine: of the angle of incidence, above 0; the shapes broadcast.
-        """
+        """T and R of a plane wave of frequencies f (Hz), which broadcast with the cosines."""
         outside = 1 / cosine if self.parallel else cosine
         e, h = np.ones_like(outside, complex), outside.astype(complex)
         left: Complex = np.ones_like(outside, complex)
@@ -78,11 +68,7 @@ class Layers:
         return Scattered(2 * outside * left / (outside * e + h), 1 - 2 * h / (outside * e + h))
 
     def passed(self, f: Float, cosine: Float) -> Complex:
-        """H = T exp(j k0 D cos): what a leg keeps of its field where a wall stands instead of air.
-
-        Args:
-            f, cosine: as `scattered`.
-        """
+        """H = T exp(j k0 D cos): what a leg keeps of its field, a wall there instead of air."""
         air = np.exp(2j * np.pi / SPEED_OF_LIGHT * self.depth * f * cosine)
         h: Complex = self.scattered(f, cosine).transmitted * air
         return h

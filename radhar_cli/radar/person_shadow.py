@@ -25,15 +25,9 @@ def light_past(
     top: float,
     wavelength: float,
 ) -> Float:
-    """Field [I, M] of legs from an antenna to positions p [3, I, M], 1 where nobody is between.
+    """Field [I, M] of legs from an antenna to positions p [3, I, M] (m), 1 with nobody between.
 
-    Args:
-        p: m.
-        antenna: m.
-        place: where the person stands [3, 1, M], m; the height there is not used.
-        half_width: to either side of that, m.
-        top: stature, m.
-        wavelength: m.
+    The person stands at `place` [3, 1, M] (m), whose height is not used; `top` is the stature, m.
     """
     way = p[:2] - np.reshape(antenna[:2], (2, 1, 1))
     to = place[:2] - np.reshape(antenna[:2], (2, 1, 1))

@@ -13,21 +13,13 @@ from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
 
 class Aim(NamedTuple):
-    """Where an antenna looks, and how its gain falls off to the sides.
+    """Where an antenna looks, and how its gain falls off to the sides."""
 
-    Attributes:
-        position: of the array, m.
-        axes: [3, 3], rows are ahead, left and up of the radar in the scene.
-        half_power_deg: half-power half-widths (azimuth, elevation), one way.
-        least: the pattern is nowhere below it.
-        of_each: seen from each antenna, and not from `position`.
-    """
-
-    position: Point
-    axes: tuple[Point, ...]
-    half_power_deg: tuple[float, float]
-    least: float = 0.0
-    of_each: bool = False
+    position: Point  # of the array, m
+    axes: tuple[Point, ...]  # [3, 3], rows are ahead, left and up of the radar in the scene
+    half_power_deg: tuple[float, float]  # half-power half-widths (azimuth, elevation), one way
+    least: float = 0.0  # the pattern is nowhere below it
+    of_each: bool = False  # seen from each antenna, and not from `position`
 
     def to_radar(self, p: Float) -> Float:
         """Places p [3, ...] of the scene as the radar has them: ahead, left, up, m."""
@@ -51,22 +43,15 @@ def boresight_axes(yaw: float, tilt: float) -> tuple[Point, ...]:
 
 @dataclass(frozen=True)
 class Antennas:
-    """Transmitter and receiver.
+    """Transmitter and receiver."""
 
-    Attributes:
-        tx, rx: positions (x, y, z), m; of an echo by way of a room's faces, of the images.
-        gain: linear gain of each antenna.
-        isolation_db: between the two; used by the static leakage alone.
-        aim: where both look, with their pattern; None radiates evenly.
-        ways: of the legs of both, by way of faces or straight.
-    """
-
+    # tx, rx: positions (x, y, z), m; of an echo by way of a room's faces, of the images
     tx: Point
     rx: Point
-    gain: float
-    isolation_db: float
-    aim: Aim | None = None
-    ways: tuple[Way, Way] = (STRAIGHT, STRAIGHT)
+    gain: float  # linear gain of each antenna
+    isolation_db: float  # between the two; used by the static leakage alone
+    aim: Aim | None = None  # where both look, with their pattern; None radiates evenly
+    ways: tuple[Way, Way] = (STRAIGHT, STRAIGHT)  # of the legs of both, by way of faces or straight
 
     def by_way(self, tx: Way, rx: Way) -> "Antennas":
         """As their images by way of faces: what these see is seen by way of those."""
@@ -120,13 +105,9 @@ def bistatic_delay(r_tx: Float, r_rx: Float) -> Float:
 
 
 def amplitude(r_tx: Float, r_rx: Float, sigma: Float, gain: float, wavelength: float) -> Float:
-    """A = sqrt(G_tx G_rx lambda^2 sigma/(4 pi)^3)/(R_tx R_rx) for unit transmit power.
+    """A = sqrt(G_tx G_rx lambda^2 sigma/(4 pi)^3)/(R_tx R_rx) [I, M] for unit transmit power.
 
-    Args:
-        r_tx, r_rx: legs [I, M], m.
-        sigma: RCS [I, M] or [I, 1], m^2.
-        gain: linear gain of each antenna.
-        wavelength: m.
+    Legs [I, M] and the wavelength in m, sigma [I, M] or [I, 1] in m^2; gain of each antenna.
     """
     scale = gain * wavelength / (4 * pi) ** 1.5 * np.sqrt(sigma)
     a: Float = scale / (r_tx * r_rx)

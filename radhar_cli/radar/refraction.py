@@ -27,30 +27,19 @@ MAX_STEPS = 64
 
 
 class Bent(NamedTuple):
-    """Refracted rays.
+    """Refracted rays."""
 
-    Attributes:
-        crossed: chord inside the wall (m) and faces [I, M]; the straight ray's where not bent.
-        delay: beyond free space [I, M], s.
-        tangent: t of the angle outside [I, M]; NaN where not bent.
-    """
-
+    # chord inside the wall (m) and faces [I, M]; the straight ray's where not bent
     crossed: Crossing
-    delay: Float
-    tangent: Float
+    delay: Float  # beyond free space [I, M], s
+    tangent: Float  # t of the angle outside [I, M]; NaN where not bent
 
 
 def refract(p: Float, antenna: tuple[float, float, float], wall: Wall, straight: Crossing) -> Bent:
     """Bend the rays from an antenna to positions p [3, I, M] (m) that meet parallel faces.
 
     A ray that enters and leaves through faces of different axes (around a corner) keeps its
-    straight chord; one that misses is untouched.
-
-    Args:
-        p: positions, m.
-        antenna: outside the wall.
-        wall: the slab.
-        straight: `crossing` of the same rays.
+    straight chord; one that misses is untouched. `straight` is the `crossing` of the same rays.
     """
     entered, left = faces_met(p, antenna, wall)
     bends = (straight.faces == 1) | ((straight.faces == 2) & (entered == left))
@@ -90,16 +79,9 @@ def _q(t: Float, n: float) -> Float:
 
 
 def outside_tangent(outside: Float, depth: Float, offset: Float, n: float) -> Float:
-    """Solve f(t) = 0.
+    """t [R] with f(t) = 0, so that the ray misses its end by rounding of rho alone.
 
-    Args:
-        outside: a + b [R], m; above 0.
-        depth: d [R], m.
-        offset: rho [R], m.
-        n: real refractive index, at least 1.
-
-    Returns:
-        t [R], so that the ray misses its end by rounding of rho alone.
+    Of a + b above 0, d and rho [R], m, and a real refractive index of 1 or more.
     """
     t: Float = offset / (outside + depth / n)
     open_ = np.arange(t.size)

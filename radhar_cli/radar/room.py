@@ -52,11 +52,7 @@ class Face(NamedTuple):
     fixed: float | None = None  # field left after a bounce, whatever the angle
 
     def reflected(self, cosine: Float) -> Float:
-        """Field [...] left of 1 after one bounce, the real part of Fresnel's coefficient.
-
-        Args:
-            cosine: of the angle of incidence [...].
-        """
+        """Field [...] left of 1 after one bounce, the real part of Fresnel's coefficient."""
         if self.fixed is not None:
             return np.full(cosine.shape, self.fixed)
         if self.parallel:

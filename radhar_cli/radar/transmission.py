@@ -31,15 +31,10 @@ class Transmission(NamedTuple):
 def pass_wall(
     p: Float, antennas: Antennas, wall: Wall, fc: float, delay: Float, amplitude: Float
 ) -> Float | None:
-    """Take paths by positions p [3, I, M] (m) through a wall, at a frequency fc (Hz).
+    """Take paths [I, M] by positions p [3, I, M] (m) through a wall, at a frequency fc (Hz).
 
-    Args:
-        p, antennas, wall, fc: of both legs.
-        delay, amplitude: [I, M]; the wall's delay and loss change them in place.
-
-    Returns:
-        Of a wall of layers, which changes neither, the cosine of the angle at which both legs meet
-        it, nan beside it [2, I, M]; else None.
+    The wall's delay and loss change them in place; not of a wall of layers, for which the cosine
+    of the angle at which both legs meet it is returned, nan beside it [2, I, M]; else None.
     """
     if wall.layers is not None:
         return np.stack([_cosine(image, antenna, wall) for image, antenna in antennas.seen(p)])

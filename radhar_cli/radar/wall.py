@@ -14,25 +14,20 @@ from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
 @dataclass(frozen=True)
 class Wall:
-    """The slab.
+    """The slab."""
 
-    Attributes:
-        center, size: (x, y, z), m.
-        eps_r: relative permittivity, real part.
-        loss_tangent: tan delta; eps = eps_r (1 - j tan delta).
-        rays: chord of the straight ray, plane wave at its angle, or refracted (`refraction.py`).
-        fresnel: transmission of a face at normal incidence, or at the ray's angle for a field
-            perpendicular or parallel to the plane of incidence (`fresnel.py`).
-        layers: of a wall whose echoes are exact, instead of delay and loss at the carrier; eps_r
-            and loss_tangent are then those of a wall of the same depth and n.
-    """
-
+    # center, size: (x, y, z), m
     center: tuple[float, float, float]
     size: tuple[float, float, float]
-    eps_r: float
-    loss_tangent: float
+    eps_r: float  # relative permittivity, real part
+    loss_tangent: float  # tan delta; eps = eps_r (1 - j tan delta)
+    # chord of the straight ray, plane wave at its angle, or refracted (`refraction.py`)
     rays: Literal["straight", "plane", "refracted"] = "straight"
+    # transmission of a face at normal incidence, or at the ray's angle for a field perpendicular or
+    # parallel to the plane of incidence (`fresnel.py`)
     fresnel: Literal["normal", "perpendicular", "parallel"] = "normal"
+    # of a wall whose echoes are exact, instead of delay and loss at the carrier; eps_r and
+    # loss_tangent are then those of a wall of the same depth and n
     layers: Layers | None = None
 
     @property

@@ -12,29 +12,18 @@ from radhar_cli.rounding import half_up
 
 @dataclass(frozen=True)
 class Waveform:
-    """A train of linear chirps.
+    """A train of linear chirps."""
 
-    Attributes:
-        fc: carrier at the start of a chirp, Hz.
-        bandwidth: B, Hz.
-        chirp: Tp, s.
-        adc_rate: fs, Hz.
-        prf: pulses per second, Hz.
-        duration: T, s.
-        fft_length: N_FFT, or None for N_ADC (rounded up to even).
-        centred: whether range bins are referred to mid-chirp (n0 = N_ADC/2) or to its start.
-        residual_video_phase: whether the term + pi K tau^2 is kept.
-    """
-
-    fc: float
-    bandwidth: float
-    chirp: float
-    adc_rate: float
-    prf: float
-    duration: float
-    fft_length: int | None = None
+    fc: float  # carrier at the start of a chirp, Hz
+    bandwidth: float  # B, Hz
+    chirp: float  # Tp, s
+    adc_rate: float  # fs, Hz
+    prf: float  # pulses per second, Hz
+    duration: float  # T, s
+    fft_length: int | None = None  # N_FFT, or None for N_ADC (rounded up to even)
+    # whether range bins are referred to mid-chirp (n0 = N_ADC/2) or to its start
     centred: bool = True
-    residual_video_phase: bool = False
+    residual_video_phase: bool = False  # whether the term + pi K tau^2 is kept
 
     @property
     def slope(self) -> float:

@@ -21,18 +21,12 @@ class FlickerNoise(Impairment):
 
     White over fast-time samples; along slow time a sum of first-order processes, two a decade from
     0.1/T to PRF/2, which meets the spectrum within 1 dB. Every fast-time sample has its own.
-
-    Attributes:
-        sigma: standard deviation of the white noise per complex raw sample.
-        stream: makes the random stream of a name.
-        corner: where both are equally strong, Hz.
-        slope: dB per decade.
     """
 
-    sigma: float
-    stream: Callable[[str], np.random.Generator]
-    corner: float
-    slope: float
+    sigma: float  # standard deviation of the white noise per complex raw sample
+    stream: Callable[[str], np.random.Generator]  # makes the random stream of a name
+    corner: float  # where both are equally strong, Hz
+    slope: float  # dB per decade
 
     def apply(self, x: Complex, look: Look) -> Complex:
         """x + sigma v, v as white noise over fast time: W W^H."""

@@ -6,21 +6,16 @@ from radhar_cli.processing.look import Look
 
 
 class Impairment:
-    """Base of impairments: all that one needs is `apply`.
+    """Base of impairments: all that one needs is `apply`."""
 
-    Attributes:
-        additive: whether it adds to the echo something that does not depend on it. Only then does
-            it hold for echoes from which what stands still was left out, and for sums over samples;
-            others need raw samples of the whole echo, and make the plan take the exact engine.
-    """
-
+    # whether it adds to the echo something that does not depend on it. Only then does it hold for
+    # echoes from which what stands still was left out, and for sums over samples; others need raw
+    # samples of the whole echo, and make the plan take the exact engine.
     additive: bool = True
 
     def apply(self, x: Complex, look: Look) -> Complex:
-        """What becomes of an echo.
+        """What becomes of an echo [K, M] as `look` shows it: of `RawSamples` unless it is additive.
 
-        Args:
-            x: [K, M], as `look` shows it; consecutive blocks of a recording share `look.memory`.
-            look: what is looked at; of `RawSamples` unless the impairment is additive.
+        Consecutive blocks of a recording share `look.memory`.
         """
         raise RadharError(f"{type(self).__name__}: has no method apply; should have it")

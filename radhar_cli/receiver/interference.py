@@ -21,25 +21,17 @@ class Line(Impairment):
 
     So a line, such as a power supply's, lies at all ranges, in each bin with another strength. A
     real one, 2 a c[n] cos(2 pi f m/PRF), is as strong at -f.
-
-    Attributes:
-        amplitude: a, of a raw sample.
-        frequency: f, Hz; beyond PRF/2 it aliases.
-        waveform: the radar.
-        stream: makes the random stream of a name.
-        name: of the line.
-        on, off: mean times for which it is there and is not, s; always there where off is 0.
-        real: whether it is on both sides of zero.
     """
 
-    amplitude: float
-    frequency: float
-    waveform: Waveform
-    stream: Callable[[str], np.random.Generator]
-    name: str
+    amplitude: float  # a, of a raw sample
+    frequency: float  # f, Hz; beyond PRF/2 it aliases
+    waveform: Waveform  # the radar
+    stream: Callable[[str], np.random.Generator]  # makes the random stream of a name
+    name: str  # of the line
+    # on, off: mean times for which it is there and is not, s; always there where off is 0
     on: float = 1.0
     off: float = 0.0
-    real: bool = False
+    real: bool = False  # whether it is on both sides of zero
 
     @cached_property
     def code(self) -> Complex:

@@ -52,15 +52,10 @@ def white_noise(look: Look, rng: np.random.Generator, sigma: float = 1.0) -> Com
 
 @dataclass(frozen=True)
 class WhiteNoise(Impairment):
-    """White noise of one receive channel.
+    """White noise of one receive channel."""
 
-    Attributes:
-        sigma: standard deviation per complex raw sample.
-        stream: makes the random stream of a name.
-    """
-
-    sigma: float
-    stream: Callable[[str], np.random.Generator]
+    sigma: float  # standard deviation per complex raw sample
+    stream: Callable[[str], np.random.Generator]  # makes the random stream of a name
 
     def apply(self, x: Complex, look: Look) -> Complex:
         """x + sigma v, v of covariance W W^H: of raw samples blocks of any length give the same."""

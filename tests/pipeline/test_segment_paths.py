@@ -13,7 +13,7 @@ from radhar_cli.errors import SceneError
 from radhar_cli.motion.protocol import Only
 from radhar_cli.motion.segments import SEGMENTS, Segment
 from radhar_cli.motion.skeleton import JOINTS
-from radhar_cli.pipeline.bodies import segment_paths
+from radhar_cli.pipeline.bodies import body_paths
 from radhar_cli.pipeline.physics import motion_of
 from radhar_cli.pipeline.run import record
 from radhar_cli.pipeline.segment_paths import (
@@ -412,4 +412,4 @@ def test_no_segments_no_paths():
     found = record(scene, ["antennas", "waveform"])
     ball = replace(WithSword(None, None))
     only = Only(ball, (3,))
-    assert segment_paths(scene.people[0], only, found["antennas"], None, found["waveform"]) is None
+    assert body_paths(scene.people[0], only, found["antennas"], None, found["waveform"]) is None

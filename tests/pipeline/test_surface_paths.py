@@ -7,7 +7,7 @@ import pytest
 
 from radhar_cli.config.schema import Config
 from radhar_cli.motion.protocol import remembered
-from radhar_cli.pipeline.bodies import surface_paths
+from radhar_cli.pipeline.bodies import body_paths
 from radhar_cli.pipeline.motion_paths import leg
 from radhar_cli.pipeline.physics import antennas_of, motion_of, waveform_of
 from radhar_cli.pipeline.surface_paths import DEPTH, FACING_DBSM, SurfacePaths, draw_surface
@@ -31,7 +31,7 @@ def scene(seed: int = 1) -> Scene:
 def source(seed: int = 1) -> SurfacePaths:
     one = scene(seed)
     motion, config = motion_of(one.people[0]), one.config
-    made = surface_paths(one.people[0], motion, antennas_of(config), None, waveform_of(config))
+    made = body_paths(one.people[0], motion, antennas_of(config), None, waveform_of(config))
     assert made is not None
     return made
 
@@ -105,7 +105,7 @@ def test_several_channels_evaluate_a_body_once() -> None:
     antennas, w = antennas_of(one.config), waveform_of(one.config)
     for shift in (0.0, 0.01, 0.02):
         moved = replace(antennas, tx=(0.4, -0.1 + shift, 1.5), rx=(0.4, 0.1 - shift, 1.5))
-        made = surface_paths(one.people[0], held, moved, None, w)
+        made = body_paths(one.people[0], held, moved, None, w)
         assert made is not None
         made(T)
     assert len(asked) == 1

@@ -69,9 +69,6 @@ def clip_of(
         rate: frames per second, instead of the file's.
         low_pass: Butterworth, both ways, 3 dB down here, Hz; None leaves the frames as they are,
             and so do fewer than 2.5 frames a period of it.
-
-    Raises:
-        MotionFileError: names file and line or frame, and what is missing or odd.
     """
     numbers = joint_numbers(file, joints or {})
     own_hips = all(number is not None for number in numbers[-len(HIP_JOINTS) :])

@@ -23,26 +23,18 @@ def numbers(text: bytes) -> Float | None:
 
 
 def bvh_frames(data: bytes, start: int, line: int, columns: int, where: str) -> Iterator[Float]:
-    """Blocks [frames, columns] of a text with a frame a line, from byte `start` in `line` on.
-
-    Raises:
-        MotionFileError: a line with something that is no number, or too many or too few.
-    """
+    """Blocks [frames, columns] of a text with a frame a line, from byte `start` in `line` on."""
     while start < len(data):
         stop = data.find(b"\n", min(start + BLOCK, len(data) - 1)) + 1 or len(data)
         piece = data[start:stop]
         values = numbers(piece)
         whole = values is not None and np.isfinite(values).all()
-        if not whole or values is None or values.size != columns * count_lines(piece):
+        lines = piece.count(b"\n") + (not piece.endswith(b"\n"))
+        if not whole or values is None or values.size != columns * lines:
             values = _line_by_line(piece, line, columns, where)
         if values.size:
             yield values.reshape(-1, columns)
         start, line = stop, line + piece.count(b"\n")
-
-
-def count_lines(text: bytes) -> int:
-    """Lines of a text, the last one without its end too."""
-    return text.count(b"\n") + (not text.endswith(b"\n"))
 
 
 def _line_by_line(piece: bytes, first: int, columns: int, where: str) -> Float:
@@ -61,7 +53,6 @@ def _line_by_line(piece: bytes, first: int, columns: int, where: str) -> Float:
 
 
 def _odd(text: bytes) -> str:
-    """The first word that is no finite number."""
     for word in text.split():
         value = numbers(word)
         if value is None or value.size != 1 or not np.isfinite(value).all():
@@ -70,11 +61,7 @@ def _odd(text: bytes) -> str:
 
 
 def stacked(parts: Iterator[Float], where: str) -> Float:
-    """The blocks [frames, ...] one after the other.
-
-    Raises:
-        MotionFileError: there are too many frames.
-    """
+    """The blocks [frames, ...] one after the other; a MotionFileError if there are too many."""
     kept, count = [], 0
     for part in parts:
         kept.append(part)

@@ -64,7 +64,6 @@ class FileMotion:
 
     @cached_property
     def _last(self) -> float:
-        """Last second of the clip that is used."""
         seconds = self.clip.seconds
         return seconds if self.end is None else min(self.end, seconds)
 

@@ -35,9 +35,7 @@ _PREFIX = re.compile(r"^(?:.*:|bip\d+|mixamorig\d*)")
 def joint_numbers(file: Recording, own: Mapping[str, str]) -> list[int | None]:
     """Numbers in the file of the thirteen joints, then of the hip joints, None where it has none.
 
-    Args:
-        file: whose names are read.
-        own: {our name: the file's}, before the tables.
+    `own` is {our name: the file's}, before the tables.
 
     Raises:
         MotionFileError: one of the thirteen is not there.
@@ -69,7 +67,6 @@ def joint_numbers(file: Recording, own: Mapping[str, str]) -> list[int | None]:
 
 
 def _written(joint: str) -> list[str]:
-    """Every plain name that a joint may have."""
     side, _, part = joint.partition("_")
     if part not in _WORDS:
         return list(_WORDS[joint])

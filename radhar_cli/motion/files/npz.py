@@ -64,11 +64,7 @@ class Npz:
 
 
 def read_npz(data: bytes, where: str) -> Npz:
-    """Read an npz file.
-
-    Raises:
-        MotionFileError: names the file, the array and what is missing or odd.
-    """
+    """Read an npz file; a MotionFileError names the file, the array and what is missing or odd."""
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             names = _array(archive, "names", MAX_NAMES_BYTES, where)
@@ -97,7 +93,6 @@ def _kind(array: NDArray[Any]) -> str:
 
 
 def _array(archive: zipfile.ZipFile, name: str, most: int, where: str) -> NDArray[Any]:
-    """An array of the archive, of at most `most` bytes."""
     try:
         member = archive.getinfo(f"{name}.npy")
     except KeyError:

@@ -38,11 +38,7 @@ class Recording(Protocol):
     def rate(self) -> float | None: ...
 
     def positions(self, joints: Sequence[int]) -> Float:
-        """Positions [frames, len(joints), 3] of some joints.
-
-        Raises:
-            MotionFileError: names the file, the line and what is wrong there.
-        """
+        """Positions [frames, len(joints), 3] of some joints; MotionFileError of what is wrong."""
         ...
 
     def place(self, frame: int) -> str:

@@ -54,10 +54,8 @@ _NUMBERS = [(*JOINTS, *HIP_JOINTS).index(node.joint) for node in NODES]
 def bvh_text(positions: Float, rate: float) -> str:
     """A BVH file of joints over frames; each link comes back to 1e-7 m.
 
-    Args:
-        positions: [frames, 15, 3], m: the thirteen joints, then right and left hip joint; x ahead,
-            y left, z up.
-        rate: frames per second.
+    Positions [frames, 15, 3], m: the thirteen joints, then right and left hip joint; x ahead,
+    y left, z up. `rate` is frames per second.
     """
     p = PER_METRE * positions[:, _NUMBERS][..., [1, 2, 0]]  # x left, y up, z ahead
     parents = [node.parent for node in NODES]
@@ -132,7 +130,7 @@ def _tree(number: int, rest: Float, channels: list[list[str]], indent: str) -> I
     inner = indent + "  "
     yield f"{indent}{'ROOT' if node.parent is None else 'JOINT'} {node.name}"
     yield indent + "{"
-    yield f"{inner}OFFSET {_three(rest[number])}"
+    yield f"{inner}OFFSET {' '.join(f'{value:.9f}' for value in rest[number].tolist())}"
     yield f"{inner}CHANNELS {len(names)} {' '.join(names)}".rstrip()
     children = [n for n, one in enumerate(NODES) if one.parent == number]
     for child in children:
@@ -140,7 +138,3 @@ def _tree(number: int, rest: Float, channels: list[list[str]], indent: str) -> I
     if not children:
         yield from (f"{inner}End Site", inner + "{", f"{inner}  OFFSET 0 0 0", inner + "}")
     yield indent + "}"
-
-
-def _three(vector: Float) -> str:
-    return " ".join(f"{value:.9f}" for value in vector.tolist())

@@ -17,10 +17,7 @@ SOFTNESS = 25.0  # of that bound, 1/m
 def swung(trunk: Axes, shoulder: Float, elbow: Float) -> tuple[Float, Float]:
     """Unit vectors of upper arms and forearms [3, 2, M] that hang from a trunk.
 
-    Args:
-        trunk: axes [3, M].
-        shoulder: flexion, right and left [2, M], rad, ahead.
-        elbow: flexion [2, M], rad.
+    Shoulders are flexed ahead and elbows by angles [2, M], right and left, rad.
     """
     angles = np.stack([shoulder, shoulder + elbow])
     ahead, down = np.sin(angles), np.cos(angles)
@@ -41,11 +38,8 @@ def raised(trunk: Axes, shoulder: Float, elbow: Float, outwards: Float) -> tuple
 def directed(trunk: Axes, hands: Float, poles: Float, arm: float) -> tuple[Float, Float]:
     """Unit vectors of upper arms and forearms [3, 2, M] whose hands are where they should be.
 
-    Args:
-        trunk: axes [3, M].
-        hands: relative to the shoulders, in the trunk's frame (ahead, left, up) [3, 2, M], m.
-        poles: to where the elbows bend, in that frame [3, 2, M].
-        arm: length of the upper arm, and of the forearm, m.
+    In the trunk's frame (ahead, left, up) [3, 2, M]: hands relative to the shoulders, m, and
+    poles, to where the elbows bend. `arm` is the length of upper arm, and of forearm, m.
     """
     elbows = two_link(np.zeros_like(hands), hands, arm, arm, poles)
     frame = np.stack([trunk.ahead, trunk.left, trunk.up], axis=1)
@@ -78,16 +72,9 @@ def supported(
     """Arms between hanging (share 0) and hands on the floor (1), as far as they reach.
 
     A hand is on the line from shoulder to floor, at a distance below both the floor's and the
-    stretched arm's: -ln(exp(-k d) + exp(-k d_max))/k.
-
-    Args:
-        body: whose arms.
-        trunk: axes [3, M].
-        shoulders: [3, 2, M], m.
-        flexion: of hanging shoulders and elbows [2, M], rad.
-        floor: where the hands would be [3, 2, M], m.
-        share: [M].
-        elbows: to where they bend when the hands are down, in the trunk's frame [3, 2].
+    stretched arm's: -ln(exp(-k d) + exp(-k d_max))/k. Shoulders, floor [3, 2, M] in m; flexion of
+    hanging shoulders and elbows [2, M] in rad; share [M]. In the trunk's frame [3, 2] `elbows` is
+    to where they bend when the hands are down.
     """
     frame = np.stack([trunk.ahead, trunk.left, trunk.up])
     way = np.einsum("axm,xim->aim", frame, floor - shoulders)

@@ -86,7 +86,6 @@ class Exercise:
     sizes: tuple[float, ...] = ()
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Exercising":
-        """The movement from `begin` (s) on, repeated until `horizon` (s)."""
         return Exercising(person, self, begin, horizon)
 
 
@@ -95,7 +94,6 @@ class Exercising(Striking[Exercise]):
 
     @property
     def before(self) -> str:
-        """Feet side by side."""
         return STANDING
 
     @property
@@ -127,7 +125,6 @@ class Exercising(Striking[Exercise]):
 
     @property
     def _leaves(self) -> float:
-        """When the last repetition is over, s."""
         start, pace, _ = self._repetitions[-1]
         end = start + pace * self.strikes.period
         return inf if self.strikes.duration == inf else end + CROUCH_S * bool(self.strikes.hops)
@@ -181,12 +178,10 @@ class Exercising(Striking[Exercise]):
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Both ends of every step, and of every flight, s."""
         knots = [] if self._hop is None else [at for one in self._hop for at in one.x.tolist()]
         return (*self.course.breakpoints, *knots)
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
-        """The body at times t [M] (s)."""
         body = self.person
         values = iter(self.course(t))
         limbs = {channel: np.stack([next(values), next(values)]) for channel in LIMBS}
@@ -207,10 +202,7 @@ class Exercising(Striking[Exercise]):
         knees = two_link(joints, ankles, body.leg, body.leg, AHEAD)
         trunk = axes(pitch + idle.pitch, idle.yaw, idle.roll + lean)
         upper, fore = raised(
-            trunk,
-            limbs["forwards"] + idle.shoulders,
-            body.elbow + idle.elbows,
-            limbs["sideways"],
+            trunk, limbs["forwards"] + idle.shoulders, body.elbow + idle.elbows, limbs["sideways"]
         )
         return Pose(hip, trunk, joints, knees, ankles, upper, fore, idle.breath)
 

@@ -38,7 +38,6 @@ class Prone:
     hands: tuple[float, float] = (0.12, 0.05)
 
     def posture(self, person: Physique) -> dict[str, float]:
-        """The posture on the floor."""
         shank = acos((self.knee_height - person.ankle) / person.leg)
         lying = posture(shank, self.thigh, self.trunk, 0.0, person.elbow, upright=0.0)
         shoulders = person.leg * (sin(shank) + sin(self.thigh))
@@ -58,7 +57,6 @@ class OnFours(Prone):
     reach: float = 0.57  # of the hands ahead of the ankles, fraction of the stature
 
     def posture(self, person: Physique) -> dict[str, float]:
-        """The posture on hands and knees."""
         hands = {"hands_ahead": self.reach * person.stature, "hands_beside": person.shoulder}
         return super().posture(person) | hands
 
@@ -79,7 +77,6 @@ class FallForward:
     heels: float = 0.0  # how far the shanks swing up behind the knees on which the body lands, rad
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
-        """The movement from `begin` (s) on."""
         rest, prone = at_rest(person), self.prone.posture(person)
         change = {channel: prone[channel] - rest[channel] for channel in rest}
         rest |= {channel: prone[channel] for channel in ("hands_ahead", "hands_beside")}
@@ -101,10 +98,7 @@ class FallForward:
             ]
         if not isinstance(self.prone, OnFours):
             return _falling(person, begin, self.duration, rest, steps, PRONE, self.kneel)
-        steps += [
-            Step("trunk", GIVE, kneel + 0.7, 0.35),
-            Step("trunk", -GIVE, kneel + 1.05, 0.6),
-        ]
+        steps += [Step("trunk", GIVE, kneel + 0.7, 0.35), Step("trunk", -GIVE, kneel + 1.05, 0.6)]
         return _falling(person, begin, self.duration, rest, steps, ON_FOURS, self.kneel)
 
 
@@ -136,7 +130,6 @@ class Sitting:
     hands: tuple[float, float] = (0.22, 0.06)
 
     def posture(self, person: Physique) -> dict[str, float]:
-        """The posture on the floor."""
         leg, stature = person.leg, person.stature
         rise = (self.hip_height * stature - person.ankle) / leg - cos(self.shank)
         sitting = posture(self.shank, -acos(rise), self.trunk, 0.0, person.elbow, upright=0.0)
@@ -166,7 +159,6 @@ class FallBackward:
     arms: float = radians(55)  # how far the arms go ahead at first, rad
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
-        """The movement from `begin` (s) on."""
         rest, supine = at_rest(person), self.supine.posture(person)
         change = {channel: supine[channel] - rest[channel] for channel in rest}
         steps = [

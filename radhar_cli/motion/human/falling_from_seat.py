@@ -9,24 +9,11 @@ have measured how long they take: the durations are guesses below those of falls
 from dataclasses import dataclass, field
 from math import radians
 
-from radhar_cli.motion.human.falling import (
-    AGAINST_SEAT,
-    ON_FLOOR,
-    PRONE,
-    SUPINE,
-    Prone,
-    Supine,
-)
+from radhar_cli.motion.human.falling import AGAINST_SEAT, ON_FLOOR, PRONE, SUPINE, Prone, Supine
 from radhar_cli.motion.human.minimum_jerk import Course, Step
 from radhar_cli.motion.human.part import SEATED, Phase
 from radhar_cli.motion.human.physique import Physique
-from radhar_cli.motion.human.planted import (
-    ELBOWS,
-    SHOULDERS,
-    Planted,
-    both,
-    timed,
-)
+from radhar_cli.motion.human.planted import ELBOWS, SHOULDERS, Planted, both, timed
 from radhar_cli.motion.human.sitting import Seat
 
 # Share of the way from the seat to the floor, by channel: start and length in units of the
@@ -65,7 +52,6 @@ class FallFromSeat:
     arms: float = radians(45)  # flexion of the shoulders as the hands look for the floor
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
-        """The movement from `begin` (s) on."""
         seated, shares, after = self.seat.posture(person), TOPPLE, PRONE
         lying = Prone().posture(person)
         if not self.ahead:

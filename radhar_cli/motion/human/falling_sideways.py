@@ -44,7 +44,6 @@ class FallSideways:
     rising: float = 0.0  # how long they rise from it first, s
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "FallingSideways":
-        """The movement from `begin` (s) on."""
         return FallingSideways(person, self, begin)
 
 
@@ -61,7 +60,6 @@ class FallingSideways:
 
     @property
     def before(self) -> str:
-        """Standing, or on the seat."""
         return STANDING if self.fall.seat is None else SEATED
 
     @property
@@ -71,12 +69,10 @@ class FallingSideways:
 
     @property
     def end(self) -> float:
-        """When the body lies, s."""
         return self.falls + 1.1 * self.fall.duration
 
     @property
     def phases(self) -> tuple[Phase, ...]:
-        """Falling, then lying."""
         rising = (Phase(self.begin, "standing up"),) if self.fall.rising else ()
         return (*rising, Phase(self.falls, "falling"), Phase(self.end, "lying"))
 
@@ -116,11 +112,9 @@ class FallingSideways:
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Both ends of every step, s."""
         return self.course.breakpoints
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
-        """The body at times t [M] (s)."""
         body, fall = self.person, self.fall
         legs, behind, length, pelvis, trunk, *others, still, near = self.course(t)
         curl, arms, elbows, share = others
@@ -164,7 +158,6 @@ class RiseFromSide:
     tries: bool = False
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "RisingFromSide":
-        """The movement from `begin` (s) on."""
         return RisingFromSide(person, self.fall, begin, self)
 
 
@@ -183,12 +176,10 @@ class RisingFromSide(FallingSideways):
 
     @property
     def end(self) -> float:
-        """When the body is at rest again, s."""
         return self.begin + self.rise.duration
 
     @property
     def phases(self) -> tuple[Phase, ...]:
-        """Getting up, then standing or lying."""
         after = "lying" if self.rise.tries else STANDING
         return (Phase(self.begin, "getting up"), Phase(self.end, after))
 

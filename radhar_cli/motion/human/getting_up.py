@@ -39,11 +39,7 @@ ON_BELLY = (PRONE, ON_FOURS)
 
 
 def _down(person: Physique, before: str) -> dict[str, float]:
-    """How people lie or sit on the floor, seen from where their feet are.
-
-    Raises:
-        ValueError: nobody gets up so.
-    """
+    """How people lie or sit on the floor, seen from where their feet are."""
     if before not in DOWN:
         raise ValueError(f"getting up begins {' or '.join(DOWN)}, not {before}")
     down = DOWN[before](person)
@@ -68,7 +64,6 @@ class GetUp:
     squat: float = radians(-112)
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
-        """The movement from `begin` (s) on."""
         down, rest = _down(person, self.before), at_rest(person)
         ways = self._over_knees if self.before in ON_BELLY else self._over_squat
         steps = [
@@ -143,7 +138,6 @@ class TryToGetUp:
     dwell: float = 0.12  # at the highest point, share of the duration
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
-        """The movement from `begin` (s) on."""
         down, up = _down(person, self.before), 0.55 - self.dwell / 2
         steps = []
         for number, (channel, angle) in enumerate(TRIES[self.before].items()):

@@ -33,7 +33,6 @@ class Grab:
     rising: Lags = field(default_factory=Lags)
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
-        """The movement from `begin` (s) on."""
         rest = at_rest(person)
         shank, thigh, trunk, reach = (
             abs(self.squat) * further * self.trunk

@@ -206,7 +206,6 @@ class Idle:
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Instants (s) at which a fidget begins or ends."""
         return self.course.breakpoints
 
     def __call__(self, t: Float) -> IdleState:

@@ -38,7 +38,6 @@ class Kick:
     sizes: tuple[float, ...] = ()
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Kicking":
-        """The movement from `begin` (s) on, with kicks until `horizon` (s)."""
         return Kicking(person, self, begin, horizon)
 
     def steps(self) -> list[Step]:
@@ -91,7 +90,6 @@ class Kicking(Striking[Kick]):
         return Course.of(initial, steps)
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
-        """The body at times t [M] (s)."""
         body = self.person
         thigh, knee, pitch, free, bend = self.course(t)
         height = 2 * body.leg * np.cos(bend)

@@ -44,11 +44,7 @@ def _arc() -> tuple[Chebyshev, Chebyshev]:
 def along(s: Float, begins: Float, arc: float, side: float) -> tuple[Float, Float, Float]:
     """x, y (m) and heading (rad) [M] of a walker who has gone s [M] (m).
 
-    Args:
-        s: way gone, m.
-        begins: where on it half turns begin [K], m, farther apart than one is long.
-        arc: length of a turn, m.
-        side: 1 to the left, -1 to the right.
+    Half turns of a length `arc` begin at `begins` [K] (m), to the left (side 1) or right (-1).
     """
     forth, across = _arc()
     x, y, heading = s.copy(), np.zeros_like(s), np.zeros_like(s)

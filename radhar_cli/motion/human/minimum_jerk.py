@@ -57,11 +57,7 @@ class Course:
 
     @classmethod
     def of(cls, initial: Mapping[str, float], steps: Iterable[Step]) -> "Course":
-        """Collect steps of channels that begin at `initial`.
-
-        Raises:
-            ValueError: a step of no length.
-        """
+        """Collect steps of channels that begin at `initial`; ValueError of a step of no length."""
         channels = tuple(initial)
         columns: dict[tuple[float, float, bool], Float] = {}
         for step in steps:

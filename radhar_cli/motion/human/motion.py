@@ -55,11 +55,7 @@ class HumanMotion:
 
     @cached_property
     def parts(self) -> tuple[tuple[Part, Place], ...]:
-        """Each part and where it begins in the room.
-
-        Raises:
-            ValueError: a movement that does not begin as the one before ends.
-        """
+        """Each part and where it begins in the room; ValueError where one does not fit the last."""
         begin, place = self.begin, Place(*self.start, self.heading)
         parts: list[tuple[Part, Place]] = []
         pauses = (*self.pauses, *[0.0] * len(self.movements))
@@ -174,11 +170,7 @@ class HumanMotion:
 
 
 def _overlapped(before: tuple[Part, Place], part: Part) -> tuple[tuple[Part, Place], Part]:
-    """A part and the one that begins before it ends, each aware of the other.
-
-    Raises:
-        ValueError: neither is a walk, or the later one begins before the earlier.
-    """
+    """A part and the one that begins before it ends, each aware of the other."""
     last, place = before
     if part.begin >= last.begin:
         if isinstance(part, Walking) and isinstance(last, Planted):
@@ -191,7 +183,6 @@ def _overlapped(before: tuple[Part, Place], part: Part) -> tuple[tuple[Part, Pla
 
 
 def _beyond(place: Place, way: Place) -> Place:
-    """The place reached from `place` by going `way`."""
     c, s = cos(place.turn), sin(place.turn)
     return Place(
         place.ahead + c * way.ahead - s * way.left,

@@ -10,9 +10,7 @@ from radhar_cli.motion.human.pose import SIDES
 def hip_joints(person: Physique, yaw: Float, roll: Float) -> Float:
     """Hip joints, right and left, relative to the hip point [3, 2, M].
 
-    Args:
-        yaw: of the pelvis [M], rad, right hip ahead.
-        roll: of the pelvis [M], rad, left hip down.
+    Of a pelvis turned by `yaw` (right hip ahead) and `roll` (left hip down) [M], rad.
     """
     angles = np.stack([yaw, roll])
     (cy, cr), (sy, sr) = np.cos(angles), np.sin(angles)
@@ -32,14 +30,8 @@ def hip_height(
 
     z_i = z_ankle + sqrt(D^2 - rho^2) - z of the hip joint, rho the horizontal distance from hip
     joint to ankle; softmin = -ln(sum exp(-k z))/k is below the least, so the reach D holds exactly.
-
-    Args:
-        person: whose legs.
-        standing: z_stand [M] or a number, m.
-        hip: x and y of the hip point [2, M], m.
-        aside: hip joints relative to it [3, 2, M], m.
-        ankles: [3, 2, M], m.
-        softness: k [M] or a number, 1/m.
+    Given are z_stand (m), x and y of the hip point [2, M], hip joints relative to it and ankles
+    [3, 2, M] (m), and k (1/m).
     """
     dx = hip[0] + aside[0] - ankles[0]
     dy = hip[1] + aside[1] - ankles[1]
@@ -70,11 +62,8 @@ def swayed_hip(
     """The hip point [3, M] of a body that sways over its ankles, at a height its legs can reach.
 
     At rest the body turns about its ankles as a whole; the soft minimum is not quite the circle
-    on which the hip is then, so the difference between the two is added.
-
-    Args:
-        person, standing, hip, aside, ankles, softness: as for `hip_height`.
-        sway: what `swayed` returns for a hip at its height at rest [3, M].
+    on which the hip is then, so the difference between the two is added. `sway` is of a hip at
+    its height at rest [3, M], from `swayed`; all else as for `hip_height`.
     """
     x, y = hip[0] + sway[0], hip[1] + sway[1]
     z = hip_height(person, standing, np.stack([x, y]), aside, ankles, softness)

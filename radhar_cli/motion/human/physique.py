@@ -13,9 +13,6 @@ class Physique:
 
     Ankle height: Winter, Biomechanics and Motor Control, after Drillis and Contini. Hip width:
     CMU motion capture, subject 02.
-
-    Raises:
-        ValueError: no stature.
     """
 
     stature: float  # m

@@ -93,11 +93,9 @@ class Planted:
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Both ends of every step, s."""
         return self.course.breakpoints
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
-        """The body at times t [M] (s)."""
         body = self.person
         shank, thigh, trunk, *others, heels, feet = self.course(t)
         *arms, standing, upright, share, far, beside = others

@@ -55,7 +55,6 @@ class Punch:
     sizes: tuple[float, ...] = ()
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Punching":
-        """The movement from `begin` (s) on, with punches until `horizon` (s)."""
         return Punching(person, self, begin, horizon)
 
 
@@ -86,7 +85,6 @@ class Punching(Striking[Punch]):
         return Course.of({"right": 0.0, "left": 0.0, **dict.fromkeys(ENTRY, taken)}, steps)
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
-        """The body at times t [M] (s)."""
         body, punch = self.person, self.strikes
         scale = body.stature / REFERENCE_STATURE
         right, left, *feet, guard = self.course(t)

@@ -72,15 +72,10 @@ class Repertoire:
         return movements[number]
 
     def sequence(self, names: Sequence[str], durations: Sequence[float]) -> tuple[Movement, ...]:
-        """Movements by name, one after the other, each from rest.
+        """Movements of `activity.MOVEMENTS` by name, one after the other, each from rest.
 
-        Args:
-            names: of `activity.MOVEMENTS`.
-            durations: how long each of walking, tripping, punching, kicking, rotating and standing
-                lasts, s; of the others unused. Infinity for the last of them goes on.
-
-        Raises:
-            ValueError: a name that is none of a movement.
+        Durations (s) are of walking, tripping, punching, kicking, rotating, standing and exercises;
+        of the others unused. Infinity for the last of them goes on.
         """
         return tuple(self._movement(*act) for act in zip(names, durations, strict=True))
 

@@ -78,18 +78,15 @@ class Striking(Generic[S]):
 
     @property
     def before(self) -> str:
-        """Standing, or in the stance."""
         return STANDING if self.strikes.from_rest else self.stance
 
     @property
     def _first(self) -> float:
-        """When the first blow begins, s."""
         entry = self.strikes.entry if self.strikes.from_rest else 0.0
         return self.begin + self.strikes.first + entry
 
     @property
     def _until(self) -> float:
-        """When no blow begins any more, s."""
         return min(self.horizon + 1.0, self._first + self.strikes.duration)
 
     @cached_property
@@ -98,7 +95,6 @@ class Striking(Generic[S]):
 
     @cached_property
     def _leaves(self) -> float:
-        """When the stance is left, s."""
         if isinf(self.strikes.duration):
             return inf
         return max((step.start + step.length for step in self._blows), default=self.begin)
@@ -116,12 +112,10 @@ class Striking(Generic[S]):
 
     @property
     def end(self) -> float:
-        """When the body is at rest again, s."""
         return self._leaves + self.strikes.entry
 
     @property
     def phases(self) -> tuple[Phase, ...]:
-        """The blows, then standing."""
         under_way = Phase(self.begin, self.name)
         return (under_way,) if isinf(self.end) else (under_way, Phase(self.end, "standing"))
 
@@ -132,5 +126,4 @@ class Striking(Generic[S]):
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Both ends of every step, s."""
         return self.course.breakpoints

@@ -35,7 +35,6 @@ class Seat:
     lap: float = 1.0
 
     def posture(self, person: Physique) -> dict[str, float]:
-        """The posture on the seat."""
         rise = self.height * person.stature - person.ankle - person.leg * cos(self.shank)
         thigh = -acos(rise / person.leg)
         shoulder, hanging = self.lap * self.shoulder, (1 - self.lap) * person.elbow
@@ -82,7 +81,6 @@ class StandUp:
     lags: Lags = field(default_factory=Lags)
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
-        """The movement from `begin` (s) on."""
         steps = timed(self.lags(self.rise.steps(person, self.seat)), begin, self.duration)
         course = Course.of(self.seat.posture(person), steps)
         end = begin + self.duration
@@ -102,7 +100,6 @@ class SitDown:
     lags: Lags = field(default_factory=Lags)  # which joints lead and which lag
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
-        """The movement from `begin` (s) on."""
         upright = replace(self.seat, recline=0.0)
         steps = self.lags(mirrored(self.rise.steps(person, upright), 1.0))
         backwards = timed(steps, begin, self.duration)

@@ -16,6 +16,5 @@ class Stand:
     duration: float = inf
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
-        """The movement from `begin` (s) on."""
         course = Course.of(at_rest(person), ())
         return Planted(person, course, begin, begin + self.duration, (Phase(begin, "standing"),))

@@ -47,7 +47,6 @@ class StepTo:
             raise ValueError(f"a stance is reached within at least 2 steps, not {self.steps}")
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Stepping":
-        """The movement from `begin` (s) on."""
         return Stepping(person, self, begin)
 
 
@@ -64,17 +63,14 @@ class Stepping:
 
     @property
     def end(self) -> float:
-        """When both feet stand in the new stance, s."""
         return self.begin + self.step.duration
 
     @property
     def place(self) -> Place:
-        """Where the new stance is."""
         return self.step.place
 
     @property
     def phases(self) -> tuple[Phase, ...]:
-        """Stepping, then standing."""
         return (Phase(self.begin, self.step.name), Phase(self.end, "standing"))
 
     @cached_property
@@ -95,7 +91,6 @@ class Stepping:
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Both ends of every step, s."""
         return self.course.breakpoints
 
     def _ankles(self, shares: Float) -> Float:
@@ -125,7 +120,6 @@ class Stepping:
         )
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
-        """The body at times t [M] (s)."""
         body, place = self.person, self.step.place
         share, upset, *steps = self.course(t)
         turn = share * place.turn

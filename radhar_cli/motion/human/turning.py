@@ -34,7 +34,6 @@ class Turn:
     sizes: tuple[float, ...] = ()
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> "Turning":
-        """The movement from `begin` (s) on, its turns different until `horizon` (s)."""
         return Turning(person, self, begin, horizon)
 
 
@@ -52,17 +51,14 @@ class Turning:
 
     @property
     def before(self) -> str:
-        """Standing, or turning."""
         return STANDING if self.turn.from_rest else "turning"
 
     @property
     def end(self) -> float:
-        """When the body is at rest again, s."""
         return self.begin + self.turn.duration
 
     @property
     def phases(self) -> tuple[Phase, ...]:
-        """Turning, then standing."""
         turning = Phase(self.begin, "turning")
         return (turning,) if isinf(self.end) else (turning, Phase(self.end, "standing"))
 
@@ -100,13 +96,11 @@ class Turning:
 
     @property
     def breakpoints(self) -> tuple[float, ...]:
-        """Both ends of the entry, of the exit and of every turn, s."""
         turns = tuple(self._starts.tolist())
         ends = tuple(start + 1 / self.turn.frequency for start in turns)
         return (*self.course.breakpoints, *turns, *ends)
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
-        """The body at times t [M] (s)."""
         body, turn, (drive, size) = self.person, self.turn, self.course(t)
         phase, drive = 2 * pi * self._cycles(t), drive * size
         yaw = drive * turn.angle * np.sin(phase)

@@ -15,12 +15,7 @@ from radhar_cli.motion.human import boulic_thalmann as curves
 from radhar_cli.motion.human.footsteps import Footfalls, FootTrack
 from radhar_cli.motion.human.idle import IdleState, Waves
 from radhar_cli.motion.human.lane import Lane, along
-from radhar_cli.motion.human.minimum_jerk import (
-    Course,
-    Step,
-    minimum_jerk,
-    minimum_jerk_integral,
-)
+from radhar_cli.motion.human.minimum_jerk import Course, Step, minimum_jerk, minimum_jerk_integral
 from radhar_cli.motion.human.part import STANDING, Phase, Place
 from radhar_cli.motion.human.pelvis import hip_height, hip_joints, swayed_hip
 from radhar_cli.motion.human.physique import Physique
@@ -243,7 +238,6 @@ class Walking:
 
     @property
     def _trips(self) -> float:
-        """When the walker trips if ever, s."""
         return self.begin + min(self.stop - self.begin, 5.0) / 2
 
     @cached_property
@@ -273,7 +267,6 @@ class Walking:
 
     @cached_property
     def end(self) -> float:
-        """When both feet have come to rest, s."""
         if not self.stops:
             return inf
         last = max(float(track.falls.down[-1]) for track in self._feet)
@@ -281,7 +274,6 @@ class Walking:
 
     @cached_property
     def place(self) -> Place:
-        """Where the feet come to rest."""
         if not self.stops:
             return Place()
         x, y, heading = self._where(np.array([self._way]))
@@ -294,7 +286,6 @@ class Walking:
 
     @property
     def phases(self) -> tuple[Phase, ...]:
-        """Walking, then standing."""
         walking = [Phase(self.begin, "walking")]
         if self.gait.trip:
             walking.append(Phase(self._trips, "stumbling"))

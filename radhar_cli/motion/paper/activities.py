@@ -58,12 +58,10 @@ class Posture:
 
 
 def _stationary(t: Float, gait: Gait, timing: Timing) -> Posture:
-    """S1."""
     return Posture()
 
 
 def _punching(t: Float, gait: Gait, timing: Timing) -> Posture:
-    """S2."""
     phase = 2 * pi * gait.frequency * t
     swing, stretch = gait.arm * np.sin(phase), gait.calf * np.cos(phase)
     return Posture(
@@ -77,7 +75,6 @@ def _punching(t: Float, gait: Gait, timing: Timing) -> Posture:
 
 
 def _kicking(t: Float, gait: Gait, timing: Timing) -> Posture:
-    """S3."""
     swing = np.sin(2 * pi * gait.frequency * t)
     return Posture(
         angles={"right_knee": gait.thigh * swing, "right_ankle": pi / 6 + gait.calf * swing}
@@ -98,18 +95,7 @@ def _grabbing(t: Float, gait: Gait, timing: Timing) -> Posture:
     )
 
 
-def _sitting_down(t: Float, gait: Gait, timing: Timing) -> Posture:
-    """S5."""
-    return Posture(seated=progress(t, timing.seat_start, timing.seat_duration))
-
-
-def _standing_up(t: Float, gait: Gait, timing: Timing) -> Posture:
-    """S6."""
-    return Posture(seated=1 - progress(t, timing.seat_start, timing.seat_duration))
-
-
 def _body_rotating(t: Float, gait: Gait, timing: Timing) -> Posture:
-    """S7."""
     return Posture(twist=gait.turn * np.sin(2 * pi * gait.frequency * t))
 
 
@@ -134,46 +120,7 @@ def _walking(t: Float, gait: Gait, timing: Timing) -> Posture:
     return Posture(angles=_swing(t, gait, 1.0), travelled=gait.speed * t)
 
 
-def _walk_from(t: Float, gait: Gait, timing: Timing, posture: Posture) -> Posture:
-    """Add a gait whose time and ramp start at `walk_start` (S9, S11)."""
-    on = progress(t, timing.walk_start, timing.blend)
-    posture.angles = _swing(t - timing.walk_start, gait, on)
-    posture.travelled = gait.speed * progress_integral(t, timing.walk_start, timing.blend)
-    return posture
-
-
-def _walk_until(t: Float, gait: Gait, timing: Timing, posture: Posture) -> Posture:
-    """Add a gait that runs from t = 0 and fades out from `walk_stop` on (S10, S12)."""
-    off = progress(t, timing.walk_stop, timing.blend)
-    posture.angles = _swing(t, gait, 1 - off)
-    posture.travelled = gait.speed * (t - progress_integral(t, timing.walk_stop, timing.blend))
-    return posture
-
-
-def _sitting_to_walking(t: Float, gait: Gait, timing: Timing) -> Posture:
-    """S9."""
-    risen = progress(t, timing.rise_start, timing.rise_duration)
-    return _walk_from(t, gait, timing, Posture(seated=1 - risen))
-
-
-def _walking_to_sitting(t: Float, gait: Gait, timing: Timing) -> Posture:
-    """S10."""
-    seated = progress(t, timing.walk_stop, timing.sit_duration)
-    return _walk_until(t, gait, timing, Posture(seated=seated))
-
-
-def _falling_to_walking(t: Float, gait: Gait, timing: Timing) -> Posture:
-    """S11."""
-    lying = 1 - progress(t, timing.rise_start, timing.rise_duration)
-    return _walk_from(t, gait, timing, Posture(pitch=pi / 2 * lying, lying=lying))
-
-
-def _walking_to_falling(t: Float, gait: Gait, timing: Timing) -> Posture:
-    """S12."""
-    lying = progress(t, timing.walk_stop, timing.fall_duration)
-    return _walk_until(t, gait, timing, Posture(pitch=pi / 2 * lying, lying=lying))
-
-
+Postures: TypeAlias = Callable[[Float, Gait, Timing], Posture]
 Instants: TypeAlias = Callable[[Timing], tuple[tuple[float, float], ...]]
 Phases: TypeAlias = Callable[[Timing], tuple[tuple[float, str], ...]]
 
@@ -182,7 +129,7 @@ Phases: TypeAlias = Callable[[Timing], tuple[tuple[float, str], ...]]
 class PaperActivity:
     """How the paper moves a body in one activity."""
 
-    posture: Callable[[Float, Gait, Timing], Posture]  # what it asks of the body at times t [M] (s)
+    posture: Postures  # what it asks of the body at times t [M] (s)
     phases: Phases  # (start in s, name) of the movements within it (`motion.phases.PHASES`)
     ramps: Instants = lambda timing: ()  # (start, duration) in s of its raised-cosine ramps
     swings: bool = False  # whether limbs swing at the gait frequency
@@ -198,84 +145,91 @@ class PaperActivity:
         return max([0.0, *ramps, *([gait.frequency] if self.swings else [])])
 
 
-def _always(name: str) -> Phases:
-    return lambda timing: ((-inf, name),)
+def _repeated(posture: Postures, phase: str, swings: bool = True) -> PaperActivity:
+    """S1 to S4, S7, S8: all the time the same."""
+    return PaperActivity(posture, lambda timing: ((-inf, phase),), swings=swings)
 
 
-def _seat_phases(before: str, moving: str, after: str) -> Phases:
-    return lambda timing: (
-        (-inf, before),
-        (timing.seat_start, moving),
-        (timing.seat_start + timing.seat_duration, after),
-    )
+def _on_seat(leaves: bool, before: str, moving: str, after: str) -> PaperActivity:
+    """S5, S6."""
+
+    def posture(t: Float, gait: Gait, timing: Timing) -> Posture:
+        taken = progress(t, timing.seat_start, timing.seat_duration)
+        return Posture(seated=1 - taken if leaves else taken)
+
+    def phases(timing: Timing) -> tuple[tuple[float, str], ...]:
+        start, end = timing.seat_start, timing.seat_start + timing.seat_duration
+        return (-inf, before), (start, moving), (end, after)
+
+    return PaperActivity(posture, phases, lambda t: ((t.seat_start, t.seat_duration),))
 
 
-def _seat_ramp(timing: Timing) -> tuple[tuple[float, float], ...]:
-    return ((timing.seat_start, timing.seat_duration),)
+def _rising(down: Callable[[Float], Posture], before: str, moving: str) -> PaperActivity:
+    """S9, S11: from the seat or the floor into a gait whose time and ramp start at `walk_start`."""
+
+    def posture(t: Float, gait: Gait, timing: Timing) -> Posture:
+        now = down(1 - progress(t, timing.rise_start, timing.rise_duration))
+        on = progress(t, timing.walk_start, timing.blend)
+        now.angles = _swing(t - timing.walk_start, gait, on)
+        now.travelled = gait.speed * progress_integral(t, timing.walk_start, timing.blend)
+        return now
+
+    def phases(timing: Timing) -> tuple[tuple[float, str], ...]:
+        risen = timing.rise_start + timing.rise_duration
+        rising = (timing.rise_start, moving), (risen, "standing")
+        return (-inf, before), *rising, (timing.walk_start, "walking")
+
+    def ramps(timing: Timing) -> tuple[tuple[float, float], ...]:
+        return (timing.rise_start, timing.rise_duration), (timing.walk_start, timing.blend)
+
+    return PaperActivity(posture, phases, ramps, swings=True)
 
 
-def _rise_ramps(timing: Timing) -> tuple[tuple[float, float], ...]:
-    return (timing.rise_start, timing.rise_duration), (timing.walk_start, timing.blend)
+def _stopping(
+    down: Callable[[Float], Posture], takes: Callable[[Timing], float], moving: str, after: str
+) -> PaperActivity:
+    """S10, S12: a gait that fades out from `walk_stop` on, onto the seat or the floor."""
+
+    def posture(t: Float, gait: Gait, timing: Timing) -> Posture:
+        now = down(progress(t, timing.walk_stop, takes(timing)))
+        off = progress(t, timing.walk_stop, timing.blend)
+        now.angles = _swing(t, gait, 1 - off)
+        now.travelled = gait.speed * (t - progress_integral(t, timing.walk_stop, timing.blend))
+        return now
+
+    def phases(timing: Timing) -> tuple[tuple[float, str], ...]:
+        end = timing.walk_stop + max(takes(timing), timing.blend)
+        return (-inf, "walking"), (timing.walk_stop, moving), (end, after)
+
+    def ramps(timing: Timing) -> tuple[tuple[float, float], ...]:
+        return (timing.walk_stop, takes(timing)), (timing.walk_stop, timing.blend)
+
+    return PaperActivity(posture, phases, ramps, swings=True)
 
 
-def _rise_phases(before: str, rising: str) -> Phases:
-    return lambda timing: (
-        (-inf, before),
-        (timing.rise_start, rising),
-        (timing.rise_start + timing.rise_duration, "standing"),
-        (timing.walk_start, "walking"),
-    )
+def _seated(share: Float) -> Posture:
+    return Posture(seated=share)
 
 
-def _stop_ramps(length: Callable[[Timing], float]) -> Instants:
-    return lambda timing: ((timing.walk_stop, length(timing)), (timing.walk_stop, timing.blend))
-
-
-def _stop_phases(length: Callable[[Timing], float], moving: str, after: str) -> Phases:
-    return lambda timing: (
-        (-inf, "walking"),
-        (timing.walk_stop, moving),
-        (timing.walk_stop + max(length(timing), timing.blend), after),
-    )
-
-
-def _sit(timing: Timing) -> float:
-    return timing.sit_duration
-
-
-def _fall(timing: Timing) -> float:
-    return timing.fall_duration
+def _lying(share: Float) -> Posture:
+    return Posture(pitch=pi / 2 * share, lying=share)
 
 
 PAPER_ACTIVITIES: dict[str, PaperActivity] = {
-    "stationary": PaperActivity(_stationary, _always("standing")),
-    "punching": PaperActivity(_punching, _always("punching"), swings=True),
-    "kicking": PaperActivity(_kicking, _always("kicking"), swings=True),
-    "grabbing": PaperActivity(_grabbing, _always("picking up"), swings=True),
-    "sitting_down": PaperActivity(
-        _sitting_down, _seat_phases("standing", "sitting down", "seated"), _seat_ramp
+    "stationary": _repeated(_stationary, "standing", swings=False),
+    "punching": _repeated(_punching, "punching"),
+    "kicking": _repeated(_kicking, "kicking"),
+    "grabbing": _repeated(_grabbing, "picking up"),
+    "sitting_down": _on_seat(False, "standing", "sitting down", "seated"),
+    "standing_up": _on_seat(True, "seated", "standing up", "standing"),
+    "body_rotating": _repeated(_body_rotating, "turning"),
+    "walking": _repeated(_walking, "walking"),
+    "sitting_to_walking": _rising(_seated, "seated", "standing up"),
+    "walking_to_sitting": _stopping(
+        _seated, lambda timing: timing.sit_duration, "sitting down", "seated"
     ),
-    "standing_up": PaperActivity(
-        _standing_up, _seat_phases("seated", "standing up", "standing"), _seat_ramp
-    ),
-    "body_rotating": PaperActivity(_body_rotating, _always("turning"), swings=True),
-    "walking": PaperActivity(_walking, _always("walking"), swings=True),
-    "sitting_to_walking": PaperActivity(
-        _sitting_to_walking, _rise_phases("seated", "standing up"), _rise_ramps, swings=True
-    ),
-    "walking_to_sitting": PaperActivity(
-        _walking_to_sitting,
-        _stop_phases(_sit, "sitting down", "seated"),
-        _stop_ramps(_sit),
-        swings=True,
-    ),
-    "falling_to_walking": PaperActivity(
-        _falling_to_walking, _rise_phases("lying", "getting up"), _rise_ramps, swings=True
-    ),
-    "walking_to_falling": PaperActivity(
-        _walking_to_falling,
-        _stop_phases(_fall, "falling", "lying"),
-        _stop_ramps(_fall),
-        swings=True,
+    "falling_to_walking": _rising(_lying, "lying", "getting up"),
+    "walking_to_falling": _stopping(
+        _lying, lambda timing: timing.fall_duration, "falling", "lying"
     ),
 }

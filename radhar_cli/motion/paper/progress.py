@@ -6,15 +6,9 @@ from radhar_cli.arrays import Float
 
 
 def progress(t: Float, start: float, duration: float) -> Float:
-    """P(t; start, duration) = (1 - cos(pi clip((t - start)/duration, 0, 1)))/2.
+    """P(t; start, duration) = (1 - cos(pi clip((t - start)/duration, 0, 1)))/2 [...], times in s.
 
-    Args:
-        t: times [...], s.
-        start: s.
-        duration: s; 0 is a step, on at t >= start.
-
-    Returns:
-        Values [...] from 0 to 1 (../docs/physics/model.md, Activities).
+    A duration of 0 is a step, on at t >= start (docs/physics/model.md, Activities).
     """
     if duration == 0:
         return (t >= start).astype(float)

@@ -5,13 +5,12 @@ from pathlib import Path
 import numpy as np
 
 from radhar_cli.figures.maps_panel import draw_map, of_simulation, title
-from radhar_cli.figures.sides import Advance, Film, bones
+from radhar_cli.figures.sides import Advance, Film, limbs
 from radhar_cli.simulation.simulate import Simulation
 from radhar_cli.simulation.truth import WHOLE
 
 FRAMES_PER_SECOND = 20
 SHOWN_BESIDE = ("stft", "fsst", "stft_compensated", "rtm")
-KNEES = (9, 11)
 
 
 def frame_count(simulation: Simulation) -> int:
@@ -53,10 +52,8 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Advance) -> None:
         pulse = int(np.searchsorted(truth.time, t).clip(max=truth.time.size - 1))
         lines = []
         for one, motion in everybody:
-            lines.append(bones(one.positions[pulse], motion.parents))
-            if one.hip_joints is not None:  # thighs hang on the hip joints
-                linked = [joint for joint, up in enumerate(motion.parents) if up is not None]
-                lines[-1][[linked.index(knee) for knee in KNEES], 0] = one.hip_joints[pulse]
+            hips = None if one.hip_joints is None else one.hip_joints[pulse]
+            lines.append(limbs(one.positions[pulse], motion.parents, hips))
         here = middle[pulse]
         under_way = truth.phases[truth.phase_label[pulse]]
         film.show(

@@ -78,14 +78,13 @@ def _of_sample(data: Dataset, row: int, extents: dict[str, NDArray[Any]]) -> Ent
         maps += _frames(data, row, board, seen)
         if "points" in data.products:
             points, start = _product(data, row, "points", (8,)), _product(data, row, "points_start")
-            if scene is not None:
-                points = scene_page.in_scene(points, board)
             cloud = _times(board, len(start) - 1), start, points
     stored = {f.key: data.scene[f.name].rows(row, row + 1)[0] / f.factor for f in data.fields}
     numbers = {key: value for key, value in stored.items() if np.isfinite(value)}
     title = f"{activity.label} {activity.slug}/{index}, {SPLITS[data.split[row]]}"
-    plots = [scene_page.space(seen, cloud), *maps] if seen.bodies or cloud else maps
-    return scene_page.entry(seen, plots, title, notes, numbers)
+    if seen.bodies or cloud:
+        maps = [scene_page.space(seen, cloud, board if scene is not None else None), *maps]
+    return scene_page.entry(seen, maps, title, notes, numbers)
 
 
 def _cells(low: float, high: float, cells: int) -> NDArray[Any]:

@@ -38,6 +38,7 @@ MAX_CELLS = 4_000_000  # of all frames of a board's map
 SCALES = {"signed": (-1.0, 1.0, "relative amplitude"), "cfar": (0.0, 1.0, "detected")}
 CALLED = {"s": "time", "Hz": "Doppler", "m/s": "approaching"}
 Entry: TypeAlias = dict[str, Any]  # what JSON holds
+Points: TypeAlias = tuple[Float, Index, Float]  # times and starts of frames, points of all
 
 
 class Body(NamedTuple):
@@ -81,9 +82,9 @@ def of_simulation(simulation: Simulation) -> Entry:
             grey, axes = levels(one.power, image.dynamic_range_db), (one.columns, one.rows)
             plots.append(heat(seen, name, grey, (image, "decibel"), axes, one.times))
     if board is not None and "cloud" in frames:
-        cloud = board.middles, frames["cloud"].start, in_scene(frames["cloud"].points, board)
-    title, notes = title_of(simulation).replace("   |   ", " | "), simulation.warnings
-    return entry(seen, [space(seen, cloud), *plots], title, notes, scene_numbers(simulation.scene))
+        cloud = board.middles, frames["cloud"].start, frames["cloud"].points
+    plots, numbers = [space(seen, cloud, board), *plots], scene_numbers(simulation.scene)
+    return entry(seen, plots, title_of(simulation), simulation.warnings, numbers)
 
 
 def entry(
@@ -118,14 +119,8 @@ def clock(start: float, end: float) -> Float:
     return np.linspace(start, end, min(int((end - start) * FRAMES_PER_SECOND) + 2, MAX_FRAMES))
 
 
-def in_scene(points: Float, board: Board) -> Float:
-    """Points of a board (x, y, z, approaching) in the axes of the scene."""
-    xyz = points[:, :3] @ np.array(board.aim.axes) + board.position
-    return np.concatenate([xyz, points[:, 3:4]], axis=1)
-
-
-def space(seen: Seen, cloud: tuple[Float, Index, Float] | None) -> Entry:
-    """Skeletons and points in 3-D; of the cloud times, starts of frames, and points."""
+def space(seen: Seen, cloud: Points | None, board: Board | None) -> Entry:
+    """Skeletons and points in 3-D, in the axes of the scene where the board's place is known."""
     traces, moves = list[Entry](), list[Entry]()
     around, fastest = [np.array(seen.radar)], 0.5
     for body in seen.bodies:
@@ -137,6 +132,9 @@ def space(seen: Seen, cloud: tuple[Float, Index, Float] | None) -> Entry:
         moves.append(_moves(np.arange(len(bones)), bones))
     if cloud is not None:
         times, start, points = cloud
+        if board is not None:
+            xyz = points[:, :3] @ np.array(board.aim.axes) + board.position
+            points = np.concatenate([xyz, points[:, 3:4]], axis=1)
         if not seen.bodies and len(points):
             around.append(np.percentile(points[:, :3], [2, 98], axis=0))
         traces.append({"name": "points", "mode": "markers", "marker": {"symbol": "square"}})
@@ -182,7 +180,9 @@ def heat(
     low, high, unit = SCALES.get(kind, (-image.dynamic_range_db, 0.0, "dB re peak"))
     every = [-(-grey.size // MAX_CELLS), *(-(-cells // MAX_SIDE) for cells in grey.shape[1:])]
     values = low + (high - low) / 255 * grey[:: every[0], :: every[1], :: every[2]]
-    z = [_packed(one.astype(np.float32)) for one in values]
+    packed = (base64.b64encode(one.astype("<f4").tobytes()).decode() for one in values)
+    shape = "{}, {}".format(*values.shape[1:])
+    z = [{"dtype": "f4", "bdata": data, "shape": shape} for data in packed]
     title = {**TITLES, **NAMES}.get(name, name)
     colours = [(n / 32, to_hex(colormaps[image.colour_map](n / 32))) for n in range(33)]
     trace: Entry = {"type": "heatmap", "name": title, "z": z[0], "colorscale": colours}
@@ -204,12 +204,6 @@ def heat(
         return plot | {"moves": [{"at": at, "frames": {"z": z}}]}
     plot["data"] += _curves(seen, "compensated" in name) if more and seen.curves else []
     return plot | {"cursor": axes[0].unit == "s"}
-
-
-def _packed(cells: Float) -> Entry:
-    """Cells [row, column] as plotly reads them from base64."""
-    data = base64.b64encode(np.ascontiguousarray(cells).tobytes()).decode()
-    return {"dtype": "f4", "bdata": data, "shape": f"{cells.shape[0]}, {cells.shape[1]}"}
 
 
 def _curves(seen: Seen, compensated: bool) -> list[Entry]:

@@ -23,12 +23,7 @@ from radhar_cli.pipeline.physics import motion_of, reflectors_of
 from radhar_cli.pipeline.plan import Product
 from radhar_cli.pipeline.products import SIGNALS, EchoAccuracy, Fallback, signal_of
 from radhar_cli.pipeline.run import Recording, record
-from radhar_cli.pipeline.validity import (
-    BLACK,
-    MIN_DISTANCE_M,
-    draw_valid_scene,
-    scene_warnings,
-)
+from radhar_cli.pipeline.validity import BLACK, MIN_DISTANCE_M, draw_valid_scene, scene_warnings
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.processing.signal import Signal, shown_pulses
 from radhar_cli.radar.board import Board
@@ -175,10 +170,7 @@ def simulate(
     asked += ["raw_echo"] if raw and not board else []
     recorded = record(scene, asked, [RAW_ECHO], motions=(kept, *(others if joint is None else ())))
     true = partial(
-        truth,
-        antennas=recorded["antennas"],
-        wall=recorded["wall"],
-        waveform=recorded["waveform"],
+        truth, antennas=recorded["antennas"], wall=recorded["wall"], waveform=recorded["waveform"]
     )
     accuracy: EchoAccuracy | None = recorded.products.get("accuracy")
     if isinstance(accuracy, Fallback):

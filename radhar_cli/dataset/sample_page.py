@@ -104,12 +104,11 @@ def _product(data: Dataset, row: int, name: str, shape: tuple[int | None, ...] =
         FolderError: it is not of that shape.
     """
     values = data.products[name][row]
-    same = len(values.shape) == 1 + len(shape) and all(
-        right in (None, n) for right, n in zip(shape, values.shape[1:], strict=True)
-    )
-    if not same or values.dtype.kind not in "iuf":
-        wanted = ", ".join(["n", *("any" if n is None else str(n) for n in shape)])
-        raise FolderError(f"{data.path}: /products/{name}: should be numbers [{wanted}]")
+    there = values.shape[1:]
+    wanted = tuple(n or there[at] if at < len(there) else n for at, n in enumerate(shape))
+    if values.ndim == 0 or there != wanted or values.dtype.kind not in "iuf":
+        named = ", ".join(["n", *(str(n or "any") for n in shape)])
+        raise FolderError(f"{data.path}: /products/{name}: should be numbers [{named}]")
     return values
 
 

@@ -29,15 +29,12 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Advance) -> None:
     everybody += [(one.truth, one.motion) for one in simulation.others]
     alone = len(everybody) == 1
     middle = truth.positions.mean(axis=1) * (alone, alone, 0)
-    seen = np.concatenate(
-        [(one.positions - middle[:, None]).reshape(-1, 3) for one, _ in everybody]
-    )
-    reach = np.stack([seen.min(axis=0) - 0.1, seen.max(axis=0) + 0.1], axis=1)
-    least = np.array([[-1, 1], [-1, 1], [0, 2]])
-    least[:2] += np.round(reach[:2].mean(axis=1, keepdims=True)).astype(int)
-    limits = np.stack(
-        [np.minimum(reach[:, 0], least[:, 0]), np.maximum(reach[:, 1], least[:, 1])], axis=1
-    )
+    seen = np.concatenate([one.positions - middle[:, None] for one, _ in everybody], axis=1)
+    low, high = seen.min(axis=(0, 1)) - 0.1, seen.max(axis=(0, 1)) + 0.1
+    around = np.round((low + high) / 2) * (1, 1, 0)
+    low = np.minimum(low, around - (1, 1, 0))
+    high = np.maximum(high, np.add(around, (1, 1, 2)))
+    limits = np.stack([low, high], axis=1)
     fastest = max(float(np.abs(truth.radial_velocity).max()), 0.1)
     film = Film(title(simulation), limits, fastest, share=0.7)
     cursor = []
@@ -54,19 +51,14 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Advance) -> None:
         for one, motion in everybody:
             hips = None if one.hip_joints is None else one.hip_joints[pulse]
             lines.append(limbs(one.positions[pulse], motion.parents, hips))
-        here = middle[pulse]
-        under_way = truth.phases[truth.phase_label[pulse]]
-        film.show(
-            truth.positions[pulse] - here,
-            -truth.radial_velocity[pulse],
-            np.concatenate(lines) - here,
-            f"t = {t:.2f} s"
-            + (f", at x = {here[0]:.1f} m, y = {here[1]:.1f} m" if alone else "")
-            + ("" if under_way == WHOLE else f"   {under_way}"),
-        )
+        here, under_way = middle[pulse], truth.phases[truth.phase_label[pulse]]
+        clock = f"t = {t:.2f} s"
+        clock += f", at x = {here[0]:.1f} m, y = {here[1]:.1f} m" if alone else ""
+        clock += "" if under_way == WHOLE else f"   {under_way}"
+        joints, ends = truth.positions[pulse] - here, np.concatenate(lines) - here
+        film.show(joints, -truth.radial_velocity[pulse], ends, clock)
         for line in cursor:
             line.set_xdata([t, t])
 
-    film.write(
-        path, show, frame_count(simulation), 1000 // FRAMES_PER_SECOND, advance, others=cursor
-    )
+    count, frame_ms = frame_count(simulation), 1000 // FRAMES_PER_SECOND
+    film.write(path, show, count, frame_ms, advance, others=cursor)

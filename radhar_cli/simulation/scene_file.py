@@ -119,7 +119,7 @@ def describe(simulation: Simulation) -> dict[str, Any]:
         "activity": {"label": scene.activity.label, "slug": scene.activity.slug},
         "seed": scene.config.seed,
         "people": [one.person.activity.slug for one in simulation.others],
-        "motion_file": _motion_file(simulation),
+        "motion_file": _motion_file(simulation.motion),
         "joint": simulation.joint,
         "engine": "cube (fallback)" if fallback else kind,
         "accuracy": _accuracy(simulation),
@@ -139,9 +139,8 @@ def describe(simulation: Simulation) -> dict[str, Any]:
     }
 
 
-def _motion_file(simulation: Simulation) -> dict[str, Any] | None:
+def _motion_file(motion: Motion) -> dict[str, Any] | None:
     """Which part of which file was the motion; null where a model made it."""
-    motion = simulation.motion
     if not isinstance(motion, FileMotion):
         return None
     return {

@@ -78,7 +78,7 @@ def _of_sample(data: Dataset, row: int, extents: dict[str, NDArray[Any]]) -> Ent
         maps += _frames(data, row, board, seen)
         if "points" in data.products:
             points, start = _product(data, row, "points", (8,)), _product(data, row, "points_start")
-            cloud = _times(board, len(start) - 1), start, points
+            cloud = _times(board, len(start) - 1), start.astype(int), points
     stored = {f.key: data.scene[f.name].rows(row, row + 1)[0] / f.factor for f in data.fields}
     numbers = {key: value for key, value in stored.items() if np.isfinite(value)}
     title = f"{activity.label} {activity.slug}/{index}, {SPLITS[data.split[row]]}"
@@ -103,10 +103,11 @@ def _product(data: Dataset, row: int, name: str, shape: tuple[int | None, ...] =
     Raises:
         FolderError: it is not of that shape.
     """
-    values = data.products[name][row]
+    values = np.atleast_1d(data.products[name][row])
     there = values.shape[1:]
     wanted = tuple(n or there[at] if at < len(there) else n for at, n in enumerate(shape))
-    if values.ndim == 0 or there != wanted or values.dtype.kind not in "iuf":
+    least = {"points": 0, "points_start": 2}.get(name, 1)
+    if there != wanted or len(values) < least or values.dtype.kind not in "iuf":
         named = ", ".join(["n", *(str(n or "any") for n in shape)])
         raise FolderError(f"{data.path}: /products/{name}: should be numbers [{named}]")
     return values

@@ -155,8 +155,8 @@ def space(seen: Seen, cloud: Points | None, board: Board | None) -> Entry:
 
 def _moves(at: Index, frames: Sequence[Float] | Float) -> Entry:
     """What a trace shows: frames of (x, y, z, approaching), and which one at each time."""
-    keys = enumerate(("x", "y", "z", "marker.color"))
-    return {"at": at, "frames": {key: [one[:, n].round(3) for one in frames] for n, key in keys}}
+    keys, exact = enumerate(("x", "y", "z", "marker.color")), [one.astype(float) for one in frames]
+    return {"at": at, "frames": {key: [one[:, n].round(3) for one in exact] for n, key in keys}}
 
 
 def _nearest(times: Float, wanted: Float) -> Index:

@@ -12,8 +12,7 @@ def convert(
     dataset: Annotated[Path, typer.Argument(help="Folder that `generate` wrote, or dataset.h5.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder to create.")],
     to: Annotated[
-        str,
-        typer.Option(metavar="FORMAT", help="parquet; for point clouds mars, ros or ti."),
+        str, typer.Option(metavar="FORMAT", help="parquet; for point clouds mars, ros or ti.")
     ],
 ) -> None:
     """Convert a data set, or its point clouds, for other tools.

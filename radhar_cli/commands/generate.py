@@ -30,8 +30,7 @@ def generate(
         bool, typer.Option("--dry-run", help="Print the plan and an estimate; write nothing.")
     ] = False,
     shard: Annotated[
-        str | None,
-        typer.Option(metavar="K/N", help="Make part K of N, for `radhar merge`."),
+        str | None, typer.Option(metavar="K/N", help="Make part K of N, for `radhar merge`.")
     ] = None,
     cluster: Annotated[
         str | None,
@@ -59,12 +58,7 @@ def generate(
     The same command resumes an interrupted build; it does nothing if the folder is complete.
     """
     with resumable(f"what is finished in {out}"):
-        from radhar_cli.commands.terminal import (
-            BarProgress,
-            print_outcome,
-            print_part,
-            print_plan,
-        )
+        from radhar_cli.commands.terminal import BarProgress, print_outcome, print_part, print_plan
         from radhar_cli.config import load_config
         from radhar_cli.dataset.build import build
         from radhar_cli.dataset.layout import Rows

@@ -18,8 +18,7 @@ AnyMap: TypeAlias = Annotated[
 Split: TypeAlias = Annotated[str, typer.Option(help="train, val, test or all.")]
 Device: TypeAlias = Annotated[str, typer.Option(help="auto, cpu, cuda or mps.")]
 Resize: TypeAlias = Annotated[
-    bool,
-    typer.Option("--resize", help="Resize images to the size used in training."),
+    bool, typer.Option("--resize", help="Resize images to the size used in training.")
 ]
 Classes: TypeAlias = Annotated[
     Path | None,

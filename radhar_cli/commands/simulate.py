@@ -113,15 +113,10 @@ def _say(simulation: "Simulation", written: list[Path]) -> None:
     """Print what was simulated and where it lies."""
     from radhar_cli.simulation.scene_file import describe
 
-    took = sum(simulation.seconds.values())
-    report(
-        activity=simulation.activity.slug,
-        label=simulation.activity.label,
-        seconds=took,
-        warnings=simulation.warnings,
-        files=written,
-    )
-    tell(f"{simulation.activity.label} {simulation.activity.slug}: synthesised in {took:.2f} s")
+    one, took = simulation.activity, sum(simulation.seconds.values())
+    shown = {"seconds": took, "warnings": simulation.warnings, "files": written}
+    report(activity=one.slug, label=one.label, **shown)
+    tell(f"{one.label} {one.slug}: synthesised in {took:.2f} s")
     file = describe(simulation)["motion_file"]
     if file is not None:
         tell(
@@ -163,22 +158,17 @@ def _draw(simulation: "Simulation", out: Path, overlay: bool) -> list[Path]:
     from radhar_cli.figures import maps_panel, stickman
     from radhar_cli.simulation.scene_file import ANIMATION, CLOUD, FRAMES, MAPS
 
-    drawn = list[Path]()
     if simulation.maps:
         maps_panel.draw_maps(maps_panel.of_simulation(simulation, overlay), out / MAPS)
-        drawn.append(out / MAPS)
     with BarProgress("frame") as bars:
         bars.stage(ANIMATION, stickman.frame_count(simulation))
         stickman.draw_stickman(simulation, out / ANIMATION, bars.advance)
-        drawn.append(out / ANIMATION)
         if simulation.board is not None and simulation.frames.keys() - {"cube"}:
             from radhar_cli.figures import frames_panel
 
             frames = frames_panel.of_simulation(simulation)
             frames_panel.draw_frames(frames, out / FRAMES)
-            drawn.append(out / FRAMES)
             if "cloud" in simulation.frames:
                 bars.stage(CLOUD, simulation.board.frames)
                 frames_panel.draw_cloud(frames, out / CLOUD, bars.advance)
-                drawn.append(out / CLOUD)
-    return drawn
+    return [out / one for one in (MAPS, ANIMATION, FRAMES, CLOUD) if (out / one).exists()]

@@ -21,8 +21,7 @@ def train(
     ],
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder of the run.")],
     config: Annotated[
-        Path | None,
-        typer.Option(help="YAML file; the defaults suit small data sets."),
+        Path | None, typer.Option(help="YAML file; the defaults suit small data sets.")
     ] = None,
     set_: Overrides = None,
     map_: Annotated[

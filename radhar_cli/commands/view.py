@@ -15,9 +15,6 @@ def view(
         list[str] | None,
         typer.Option(metavar="CLASS/INDEX", help="May repeat; else the first of each class."),
     ] = None,
-    split: Annotated[
-        str | None, typer.Option(help="Those of train, val or test, not of all.")
-    ] = None,
     out: Annotated[
         Path | None, typer.Option("-o", "--out", help="HTML file; view.html next to the data.")
     ] = None,
@@ -38,7 +35,7 @@ def view(
     from radhar_cli.figures.scene_page import write_page
 
     with open_dataset(dataset) as data:
-        rows = chosen_rows(data, sample or [], split)
+        rows = chosen_rows(data, sample or [])
         path = out or data.path.parent / "view.html"
         refuse_links(path.parent, path)
         write_page(of_samples(data, rows), path)

@@ -65,15 +65,10 @@ def confusion_png(counts: NDArray[np.int64], names: Sequence[str], title: str) -
     drawn = axes.imshow(100 * shares, cmap="Blues", vmin=0, vmax=100)
     for (row, column), count in np.ndenumerate(counts):
         if count and len(names) <= MAX_NUMBERED:
-            axes.text(
-                column,
-                row,
-                f"{count}\n{100 * shares[row, column]:.1f} %",
-                ha="center",
-                va="center",
-                fontsize=7,
-                color="white" if shares[row, column] > 0.55 else "black",
-            )
+            share = shares[row, column]
+            look: dict[str, Any] = {"color": "white" if share > 0.55 else "black", "fontsize": 7}
+            text = f"{count}\n{100 * share:.1f} %"
+            axes.text(column, row, text, ha="center", va="center", **look)
     axes.set_xticks(range(len(names)), shown, rotation=40, ha="right", fontsize=8)
     axes.set_yticks(range(len(names)), shown, fontsize=8)
     axes.set_xlabel("predicted")
@@ -131,19 +126,10 @@ def robustness_png(lines: Mapping[str, Sequence[Point]]) -> bytes:
         else:
             x = [names.index(p.data) + 0.08 * (number - (len(lines) - 1) / 2) for p in points]
         y = [100 * p.accuracy for p in points]
-        spread = [
-            [100 * max(0.0, p.accuracy - p.low) for p in points],
-            [100 * max(0.0, p.high - p.accuracy) for p in points],
-        ]
-        axes.errorbar(
-            x,
-            y,
-            spread,
-            fmt="o-" if by_snr else "o",
-            capsize=3,
-            color=f"C{number % 10}",
-            label=name,
-        )
+        ends = ([p.accuracy - p.low for p in points], [p.high - p.accuracy for p in points])
+        spread = [[100 * max(0.0, length) for length in one] for one in ends]
+        look: dict[str, Any] = {"fmt": "o-" if by_snr else "o", "color": f"C{number % 10}"}
+        axes.errorbar(x, y, spread, capsize=3, label=name, **look)
     if by_snr:
         axes.set_xlabel("SNR of the data (dB)")
     else:

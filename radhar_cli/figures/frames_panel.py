@@ -62,13 +62,11 @@ def draw_frames(shown: Frames, path: Path) -> None:
     figure = page(2.6 * COLUMNS + 1, 2.7 * rows + 0.6, apart=0.06)
     grid = figure.subplots(rows, COLUMNS, squeeze=False)
     for row, (name, one) in zip(grid, maps.items(), strict=False):
-        drawn = [
-            _draw_map(axes, one, frame, shown) for axes, frame in zip(row, chosen, strict=True)
-        ]
         for axes, frame in zip(row, chosen, strict=True):
+            drawn = _draw_map(axes, one, frame, shown)
             axes.set_title(f"{NAMES[name]}, {middles[frame]:.2f} s", fontsize=8)
         row[0].set_ylabel("range (m)", fontsize=7)
-        figure.colorbar(drawn[0], ax=list(row), pad=0.01, label="dB").ax.tick_params(labelsize=6)
+        figure.colorbar(drawn, ax=list(row), pad=0.01, label="dB").ax.tick_params(labelsize=6)
     if cloud is not None:
         sides = [Side(axes, "from the radar", *_limits(shown)) for axes in grid[-1]]
         for side, axes, frame in zip(sides, grid[-1], chosen, strict=True):
@@ -82,15 +80,10 @@ def draw_frames(shown: Frames, path: Path) -> None:
 def _draw_map(axes: Axes, maps: FrameMaps, frame: int, shown: Frames) -> AxesImage:
     with np.errstate(divide="ignore"):
         level = 10 * np.log10(maps.power[frame] / maps.power.max())
-    drawn = axes.imshow(
-        level,
-        extent=(*maps.columns.edges, *maps.rows.edges),
-        origin="lower",
-        aspect="auto",
-        cmap=shown.image.colour_map,
-        vmin=-shown.image.dynamic_range_db,
-        vmax=0,
-    )
+    look: dict[str, Any] = {"cmap": shown.image.colour_map, "origin": "lower", "aspect": "auto"}
+    extent = (*maps.columns.edges, *maps.rows.edges)
+    lowest = -shown.image.dynamic_range_db
+    drawn = axes.imshow(level, extent=extent, vmin=lowest, vmax=0, **look)
     axes.set_ylim(0, min(shown.farthest or np.inf, maps.rows.edges[1]))
     if maps.columns.name == "azimuth":  # left of the radar is left
         axes.invert_xaxis()

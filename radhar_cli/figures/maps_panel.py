@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -71,23 +72,16 @@ def draw_map(axes: Axes, name: str, shown: Shown) -> AxesImage:
     is_range = power_map.rows.name == "range"
     unit = 1.0 if is_range or power_map.rows.values.max() < 2000 else 1e3
     left, right, low, high = power_map.extent
-    cells, low_level, high_level = power_map.power, -image.dynamic_range_db, 0.0
-    if power_map.real is not None:
-        cells = power_map.real
-        high_level = float(np.quantile(np.abs(cells), 1 - image.clipped)) or 1.0
-        low_level = -high_level
+    look: dict[str, Any] = {"cmap": image.colour_map, "origin": "lower", "aspect": "auto"}
+    if power_map.real is None:
+        cells = decibels(power_map.power, image.dynamic_range_db)
+        look |= {"vmin": -image.dynamic_range_db, "vmax": 0}
     else:
-        cells = decibels(cells, image.dynamic_range_db)
-    drawn = axes.imshow(
-        cells,
-        extent=(left, right, low / unit, high / unit),
-        origin="lower",
-        aspect="auto",
-        cmap=image.colour_map,
-        interpolation="antialiased",
-        vmin=low_level,
-        vmax=high_level,
-    )
+        cells = power_map.real
+        most = float(np.quantile(np.abs(cells), 1 - image.clipped)) or 1.0
+        look |= {"vmin": -most, "vmax": most}
+    extent = (left, right, low / unit, high / unit)
+    drawn = axes.imshow(cells, extent=extent, interpolation="antialiased", **look)
     axes.set_title(f"{TITLES[name]}   {power_map.entropy:.2f} bit", fontsize=9)
     axes.set_xlim(left, right)
     axes.set_xlabel("time (s)", fontsize=8)
@@ -95,15 +89,13 @@ def draw_map(axes: Axes, name: str, shown: Shown) -> AxesImage:
     if is_range:
         axes.set_ylabel("range (m)", fontsize=8)
         axes.set_ylim(0, min(high, shown.farthest))
-        if shown.over is not None:
-            shown.over(axes, name, unit)
-        return drawn
-    axes.set_ylabel("Doppler (kHz)" if unit > 1 else "Doppler (Hz)", fontsize=8)
-    speed = SPEED_OF_LIGHT / (2 * shown.f0) * unit
-    scale = (partial(np.multiply, speed), partial(np.multiply, 1 / speed))
-    second = axes.secondary_yaxis("right", functions=scale)
-    second.set_ylabel("approaching (m/s)", fontsize=8)
-    second.tick_params(labelsize=7)
+    else:
+        axes.set_ylabel("Doppler (kHz)" if unit > 1 else "Doppler (Hz)", fontsize=8)
+        speed = SPEED_OF_LIGHT / (2 * shown.f0) * unit
+        scale = (partial(np.multiply, speed), partial(np.multiply, 1 / speed))
+        second = axes.secondary_yaxis("right", functions=scale)
+        second.set_ylabel("approaching (m/s)", fontsize=8)
+        second.tick_params(labelsize=7)
     if shown.over is not None:
         shown.over(axes, name, unit)
     return drawn
@@ -120,16 +112,8 @@ def _draw_truth(axes: Axes, map_name: str, simulation: Simulation, unit: float) 
         doppler = doppler - truth.doppler[:, :1]
     every = max(1, truth.time.size // 1500)
     for curve in folded(doppler[::every], prf).T:
-        axes.plot(
-            truth.time[::every],
-            curve / unit,
-            scalex=False,
-            scaley=False,
-            color="white",
-            linewidth=0.5,
-            alpha=0.6,
-            linestyle="--",
-        )
+        look: dict[str, Any] = {"color": "white", "linewidth": 0.5, "alpha": 0.6}
+        axes.plot(truth.time[::every], curve / unit, "--", scalex=False, scaley=False, **look)
 
 
 def folded(doppler: Float, prf: float) -> Float:

@@ -2,11 +2,11 @@
 
 import base64
 import gzip
-import json
 from collections.abc import Iterable, Mapping, Sequence
 from importlib.resources import files
+from itertools import pairwise
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from matplotlib import colormaps
@@ -15,230 +15,219 @@ from matplotlib.colors import to_hex
 from radhar_cli.arrays import Float, Index, Levels
 from radhar_cli.config.schema import ImageConfig
 from radhar_cli.figures.frames_panel import NAMES
-from radhar_cli.figures.maps_panel import TITLES, described, folded
+from radhar_cli.figures.maps_panel import TITLES, folded
 from radhar_cli.figures.maps_panel import title as title_of
-from radhar_cli.figures.stickman import KNEES
+from radhar_cli.figures.sides import limbs
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.pipeline.motion_paths import point_delay
 from radhar_cli.pipeline.run import record
-from radhar_cli.plain_json import plain
 from radhar_cli.processing.frame_maps import FrameMaps
 from radhar_cli.processing.image import levels, reduced_map, signed_levels
-from radhar_cli.processing.power_map import Axis, PowerMap
+from radhar_cli.processing.power_map import Axis
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 from radhar_cli.replacing import write_text
-from radhar_cli.scene import Numbers, Scene, scene_numbers
+from radhar_cli.scene import Scene, scene_numbers
 from radhar_cli.simulation.simulate import Simulation
-from radhar_cli.simulation.truth import WHOLE, Truth, truth
+from radhar_cli.simulation.truth import truth
 
 FRAMES_PER_SECOND, MAX_FRAMES = 25, 600
 FINER = 4  # points of a Doppler curve a frame
 MAX_SIDE = 400  # cells of a map
 MAX_CELLS = 4_000_000  # of all frames of a board's map
+SCALES = {"signed": (-1.0, 1.0, "relative amplitude"), "cfar": (0.0, 1.0, "detected")}
+CALLED = {"s": "time", "Hz": "Doppler", "m/s": "approaching"}
 Entry: TypeAlias = dict[str, Any]  # what JSON holds
+Points: TypeAlias = tuple[Float, Index, Float]  # times and starts of frames, points of all
+
+
+class Body(NamedTuple):
+    """Somebody's name, joints, and bones (x, y, z, approaching) [time, joint, 2, 4]."""
+
+    name: str
+    joints: Sequence[str]
+    bones: Float
+
+
+class Seen(NamedTuple):
+    """What a page shows of a scene besides its maps."""
+
+    time: Float  # at which something is shown, s
+    bodies: Sequence[Body] = ()
+    axes: Sequence[str] = ("x, range (m)", "y, cross-range (m)", "z, height (m)")
+    radar: Any = ((0.0, 0.0, 0.0),)  # places of antennas, m
+    curves: Mapping[str, Float] = {}  # true Doppler of joints, the torso's first, Hz
+    prf: float = 1.0  # to which they are folded, Hz
+    hertz: float = 0.0  # Doppler of 1 m/s, 0 where it is not known
+    farthest: float = np.inf  # range that maps show, m
 
 
 def of_simulation(simulation: Simulation) -> Entry:
     """What the page shows of a simulated scene."""
-    config, board = simulation.config, simulation.board
+    image, board, frames = simulation.config.image, simulation.board, simulation.frames
     motions = (simulation.motion, *(one.motion for one in simulation.others))
-    made = moving(simulation.scene, motions)
-    farthest = made["farthest"]
-    maps = [
-        map_entry(name, one, config.image, simulation.waveform.f0, farthest)
-        for name, one in simulation.maps.items()
-    ]
-    for name, one in simulation.frames.items():
+    seen, plots, cloud = moving(simulation.scene, motions), list[Entry](), None
+    for name, one in simulation.maps.items():
+        kept = (one.rows.values <= seen.farthest) | (one.rows.unit != "m")
+        rows, cells = Axis(one.rows.name, one.rows.unit, one.rows.values[kept]), one.shown[kept]
+        size, kind = (min(MAX_SIDE, len(cells)), min(MAX_SIDE, cells.shape[1])), "signed"
+        if one.real is not None:
+            grey = signed_levels(cells, size, image.clipped)
+        else:
+            cells, kind = reduced_map(cells, size, entropy=False).cells, "decibel"
+            grey = levels(cells, image.dynamic_range_db)
+        plots.append(heat(seen, name, grey[None, ::-1], (image, kind), (one.columns, rows)))
+    for name, one in frames.items():
         if isinstance(one, FrameMaps):
-            scale = scale_of("decibel", config.image.dynamic_range_db)
-            grey = levels(one.power, config.image.dynamic_range_db)
-            axes = (one.columns, one.rows)
-            maps.append(frames_entry(name, grey, scale, *axes, one.times, farthest))
-    if board is not None and "cloud" in simulation.frames:
-        cloud = simulation.frames["cloud"]
-        made["cloud"] = cloud_entry(cloud.points, cloud.start, board.middles, board)
-    return made | {
-        "title": title_of(simulation).replace("   |   ", " | "),
-        "notes": list(simulation.warnings),
-        "maps": maps,
-        "colours": colours(config.image),
-    }
+            grey, axes = levels(one.power, image.dynamic_range_db), (one.columns, one.rows)
+            plots.append(heat(seen, name, grey, (image, "decibel"), axes, one.times))
+    if board is not None and "cloud" in frames:
+        cloud = board.middles, frames["cloud"].start, frames["cloud"].points
+    plots, numbers = [space(seen, cloud, board), *plots], scene_numbers(simulation.scene)
+    return entry(seen, plots, title_of(simulation), simulation.warnings, numbers)
 
 
-def moving(scene: Scene, motions: tuple[Motion, ...]) -> Entry:
-    """Skeletons, their true Doppler, what stands around, and the times of the page."""
-    seen = record(scene, ("antennas", "wall", "waveform"), motions=motions)
-    antennas, wall, w = seen["antennas"], seen["wall"], seen["waveform"]
-    end = float(w.times(np.array([w.n_pulses - 1.0]))[0])
-    fine = np.linspace(0, end, FINER * (clock(0, end).size - 1) + 1)
-    true = [truth(motion, antennas, wall, w, fine) for motion in motions]
-    everybody = list(zip(scene.people, motions, true, strict=True))
-    doppler = np.concatenate([one.doppler for one in true], axis=1)
-    owners = [f"{person.number} " if len(true) > 1 else "" for person, _, _ in everybody]
-    names = [who + joint for who, one in zip(owners, motions, strict=True) for joint in one.names]
-    phases = [name if name != WHOLE else "" for name in true[0].phases]
-    far = max(point_delay(one.positions.T, antennas, wall).max() for one in true)
-    boxes = {} if wall is None else {"wall": wall.bounds}
-    if scene.config.room.faces is not None:
-        box = Numbers(scene.config.room).box_m
-        boxes["room"] = (box.x, box.y, (0.0, box.height))
-    return {
-        "title": " | ".join(described(scene, w)),
-        "numbers": scene_numbers(scene),
-        "f0": w.f0,
-        "farthest": round(1.3 * far * SPEED_OF_LIGHT / 2 + 0.5, 2),
-        "time": fine[::FINER],
-        "people": [_person(f"{p.activity.label} {p.activity.slug}", m, t) for p, m, t in everybody],
-        "curves": {
-            "time": fine,
-            "names": names,
-            "plain": folded(doppler, w.prf).T.round(1),
-            "compensated": folded(doppler - true[0].doppler[:, :1], w.prf).T.round(1),
-        },
-        "phase": [phases[number] for number in true[0].phase_label[::FINER]],
-        "radar": [antennas.tx, antennas.rx],
-        "boxes": boxes,
-        "axes": ["x, range (m)", "y, cross-range (m)", "z, height (m)"],
-    }
+def entry(
+    seen: Seen, plots: list[Entry], title: str, notes: list[str], numbers: Mapping[str, float]
+) -> Entry:
+    """All that the page shows of a scene."""
+    shown = {key: f"{value:.6g}" for key, value in numbers.items()}
+    return {"title": title, "notes": notes, "numbers": shown, "time": seen.time, "plots": plots}
+
+
+def moving(scene: Scene, motions: Sequence[Motion]) -> Seen:
+    """Everybody's skeleton and true Doppler."""
+    made = record(scene, ("antennas", "wall", "waveform"), motions=tuple(motions))
+    antennas, wall, w = made["antennas"], made["wall"], made["waveform"]
+    time = clock(0, float(w.times(np.array([w.n_pulses - 1.0]))[0]))
+    fine = np.linspace(0, time[-1], FINER * (time.size - 1) + 1)
+    bodies, curves, far = [], dict[str, Float](), 0.0
+    for person, motion in zip(scene.people, motions, strict=True):
+        true = truth(motion, antennas, wall, w, fine)
+        joints = np.concatenate([true.positions, -true.radial_velocity[..., None]], axis=2)
+        ends = limbs(joints, motion.parents, true.hip_joints)[::FINER]
+        bodies.append(Body(f"{person.activity.label} {person.activity.slug}", motion.names, ends))
+        who = f"{person.number} " if len(motions) > 1 else ""
+        curves |= {who + one: true.doppler[:, n] for n, one in enumerate(motion.names)}
+        far = max(far, point_delay(true.positions.T, antennas, wall).max() * SPEED_OF_LIGHT / 2)
+    seen = Seen(time, bodies, radar=(antennas.tx, antennas.rx), curves=curves, prf=w.prf)
+    return seen._replace(hertz=2 * w.f0 / SPEED_OF_LIGHT, farthest=1.3 * far + 0.5)
 
 
 def clock(start: float, end: float) -> Float:
     """Times at which the page shows something, s."""
-    count = min(int((end - start) * FRAMES_PER_SECOND) + 2, MAX_FRAMES)
-    return np.linspace(start, end, count)
+    return np.linspace(start, end, min(int((end - start) * FRAMES_PER_SECOND) + 2, MAX_FRAMES))
 
 
-def _person(label: str, motion: Motion, true: Truth) -> Entry:
-    """A body: joints, bones as pairs of places, and how fast each joint approaches."""
-    places = true.positions
-    bones = [[parent, one] for one, parent in enumerate(motion.parents) if parent is not None]
-    if true.hip_joints is not None:  # thighs hang on the hip joints
-        places = np.concatenate([places, true.hip_joints], axis=1)
-        for hip, knee in enumerate(KNEES):
-            next(bone for bone in bones if bone[1] == knee)[0] = len(motion.names) + hip
-        bones.append([len(motion.names), len(motion.names) + 1])
-    return {
-        "label": label,
-        "joints": motion.names,
-        "bones": bones,
-        "places": places[::FINER].round(3),
-        "speed": -true.radial_velocity[::FINER].round(2),
+def space(seen: Seen, cloud: Points | None, board: Board | None) -> Entry:
+    """Skeletons and points in 3-D, in the axes of the scene where the board's place is known."""
+    traces, moves = list[Entry](), list[Entry]()
+    around, fastest = [np.array(seen.radar)], 0.5
+    for body in seen.bodies:
+        bones = np.insert(body.bones, 2, np.nan, axis=2).reshape(len(seen.time), -1, 4)  # with gaps
+        around.append(bones[..., :3].reshape(-1, 3))
+        fastest = max(fastest, float(np.nanmax(np.abs(bones[..., 3]), initial=0)))
+        text = [name.replace("_", " ") for name in body.joints for _ in range(3)]
+        traces.append({"name": body.name, "mode": "lines+markers", "text": text})
+        moves.append(_moves(np.arange(len(bones)), bones))
+    if cloud is not None:
+        times, start, points = cloud
+        if board is not None:
+            xyz = points[:, :3] @ np.array(board.aim.axes) + board.position
+            points = np.concatenate([xyz, points[:, 3:4]], axis=1)
+        if not seen.bodies and len(points):
+            around.append(np.percentile(points[:, :3], [2, 98], axis=0))
+        traces.append({"name": "points", "mode": "markers", "marker": {"symbol": "square"}})
+        frames = [points[a:b] for a, b in pairwise(start)]
+        moves.append(_moves(_nearest(times[: len(frames)], seen.time), frames))
+    place = dict(zip("xyz", around[0].T, strict=True))
+    red = {"symbol": "diamond", "color": "#d62728"}
+    traces.append({"name": "radar", "mode": "markers", "marker": red, **place})
+    low, high = (edge(np.concatenate(around), axis=0) for edge in (np.nanmin, np.nanmax))
+    box = {
+        f"{letter}axis": {"title": {"text": name}, "range": (least - 0.3, most + 0.3)}
+        for letter, name, least, most in zip("xyz", seen.axes, low, high, strict=True)
     }
+    layout = {"scene": box, "coloraxis": {"cmin": -fastest, "cmax": fastest}}
+    traces = [{"type": "scatter3d", **one} for one in traces]
+    return {"data": traces, "layout": layout, "moves": moves}
 
 
-def map_entry(
-    name: str, power_map: PowerMap, image: ImageConfig, f0: float, farthest: float
-) -> Entry:
-    """A map, of ranges up to `farthest` (m), in at most MAX_SIDE cells a side."""
-    rows, values = power_map.rows, power_map.shown
-    if rows.unit == "m":
-        near = rows.values <= farthest
-        rows, values = Axis(rows.name, rows.unit, rows.values[near]), values[near]
-    size = min(MAX_SIDE, values.shape[0]), min(MAX_SIDE, values.shape[1])
-    if power_map.real is not None:
-        grey, kind = signed_levels(values, size, image.clipped), "signed"
-    else:
-        cells = reduced_map(values, size, entropy=False).cells
-        grey, kind = levels(cells, image.dynamic_range_db), "decibel"
-    scale = scale_of(kind, image.dynamic_range_db)
-    return image_entry(name, grey, scale, power_map.columns, rows, f0)
+def _moves(at: Index, frames: Sequence[Float] | Float) -> Entry:
+    """What a trace shows: frames of (x, y, z, approaching), and which one at each time."""
+    keys, exact = enumerate(("x", "y", "z", "marker.color")), [one.astype(float) for one in frames]
+    return {"at": at, "frames": {key: [one[:, n].round(3) for one in exact] for n, key in keys}}
 
 
-def scale_of(kind: str, dynamic_range_db: float) -> tuple[float, float, str]:
-    """What the lowest and the highest grey level of an image stand for, and the unit."""
-    fixed = {"signed": (-1.0, 1.0, "relative amplitude"), "cfar": (0.0, 1.0, "detected")}
-    return fixed.get(kind, (-dynamic_range_db, 0.0, "dB re peak"))
+def _nearest(times: Float, wanted: Float) -> Index:
+    nearest: Index = np.abs(times - wanted[:, None]).argmin(axis=1)
+    return nearest
 
 
-def image_entry(
+def heat(
+    seen: Seen,
     name: str,
     grey: Levels,
-    scale: tuple[float, float, str],
-    columns: Axis,
-    rows: Axis,
-    f0: float | None,
+    look: tuple[ImageConfig, str],
+    axes: tuple[Axis, Axis],
+    times: Float | None = None,
 ) -> Entry:
-    """Grey levels [height, width], row 0 at the top; of axes the edges count."""
-    doppler = rows.unit == "Hz"
-    return _entry(TITLES.get(name, name), grey[None, ::-1], scale, columns, rows) | {
-        "cursor": columns.unit == "s",
-        "curves": ("compensated" if "compensated" in name else "plain") if doppler else None,
-        "mps": SPEED_OF_LIGHT / (2 * f0) if doppler and f0 else None,
-    }
+    """A map: levels [frame, row, column], lowest first, of a kind of image, and (columns, rows).
+
+    With times (s) it shows the frame of the instant, else a cursor where its columns are times.
+    """
+    (image, kind), more = look, ""
+    low, high, unit = SCALES.get(kind, (-image.dynamic_range_db, 0.0, "dB re peak"))
+    every = [-(-grey.size // MAX_CELLS), *(-(-cells // MAX_SIDE) for cells in grey.shape[1:])]
+    values = low + (high - low) / 255 * grey[:: every[0], :: every[1], :: every[2]]
+    packed = (base64.b64encode(one.astype("<f4").tobytes()).decode() for one in values)
+    shape = "{}, {}".format(*values.shape[1:])
+    z = [{"dtype": "f4", "bdata": data, "shape": shape} for data in packed]
+    title = {**TITLES, **NAMES}.get(name, name)
+    colours = [(n / 32, to_hex(colormaps[image.colour_map](n / 32))) for n in range(33)]
+    trace: Entry = {"type": "heatmap", "name": title, "z": z[0], "colorscale": colours}
+    trace |= {"zmin": low, "zmax": high, "colorbar": {"title": {"text": unit}}}
+    layout: Entry = {"title": {"text": title}}
+    for letter, axis, cells in zip("xy", axes, values.shape[:0:-1], strict=True):
+        (first, last), label = axis.edges, CALLED.get(axis.unit, axis.name) + f" ({axis.unit})"
+        if axis.unit == "Hz" and seen.hertz:
+            first, last, more = first / seen.hertz, last / seen.hertz, f"{seen.hertz:.3g} Hz"
+            label = f"approaching (m/s), 1 m/s = {more}"
+        step = (last - first) / cells
+        trace |= {f"{letter}0": first + step / 2, f"d{letter}": step}
+        last = min(last, seen.farthest) if axis.unit == "m" else last
+        ends = (last, first) if axis.name == "azimuth" else (first, last)  # left is left
+        layout[f"{letter}axis"] = {"title": {"text": label}, "range": ends}
+    plot: Entry = {"data": [trace], "layout": layout, "moves": []}
+    if times is not None:
+        at = _nearest(times[: len(grey)][:: every[0]], seen.time)
+        return plot | {"moves": [{"at": at, "frames": {"z": z}}]}
+    plot["data"] += _curves(seen, "compensated" in name) if more and seen.curves else []
+    return plot | {"cursor": axes[0].unit == "s"}
 
 
-def frames_entry(
-    name: str,
-    grey: Levels,
-    scale: tuple[float, float, str],
-    columns: Axis,
-    rows: Axis,
-    times: Float,
-    farthest: float = np.inf,
-) -> Entry:
-    """Frames of a board [frame, range, column], nearest first, below the peak of all of them."""
-    near = rows.values <= farthest
-    every = -(-grey[:, near].size // MAX_CELLS)
-    rows = Axis(rows.name, rows.unit, rows.values[near])
-    return _entry(NAMES.get(name, name), grey[::every, near], scale, columns, rows) | {
-        "times": times[::every],
-        "mirrored": columns.name == "azimuth",  # left of the radar is left
-    }
+def _curves(seen: Seen, compensated: bool) -> list[Entry]:
+    """True Doppler of the joints, as the radar folds it; a click at the legend shows it."""
+    doppler = np.stack(list(seen.curves.values()), axis=1)
+    shown = folded(doppler - doppler[:, :1] * compensated, seen.prf).T / seen.hertz
+    look = {"type": "scatter", "dx": seen.time[-1] / (len(doppler) - 1)}
+    named = zip(seen.curves, shown.round(2), strict=True)
+    key = {**look, "y": [None], "name": "true Doppler: click", "showlegend": True}
+    return [key, *({**look, "y": y, "name": name, "showlegend": False} for name, y in named)]
 
 
-def _entry(
-    name: str, grey: Levels, scale: tuple[float, float, str], columns: Axis, rows: Axis
-) -> Entry:
-    called = {"s": "time", "Hz": "Doppler", "m/s": "approaching"}
-    x, y = (
-        [*axis.edges, f"{called.get(axis.unit, axis.name)} ({axis.unit})"]
-        for axis in (columns, rows)
-    )
-    packed = base64.b64encode(np.ascontiguousarray(grey).tobytes()).decode()
-    return {"title": name, "levels": packed, "shape": grey.shape, "scale": scale, "x": x, "y": y}
-
-
-def cloud_entry(points: Float, start: Index, times: Float, board: Board | None) -> Entry:
-    """Points of frames; in the axes of the scene where the board's place there is known."""
-    xyz = points[:, :3].astype(float)
-    if board is not None:
-        xyz = xyz @ np.array(board.aim.axes) + board.position
-    return {
-        "times": times[: len(start) - 1],
-        "start": start,
-        "points": np.concatenate([xyz, points[:, 3:4]], axis=1).round(3),
-    }
-
-
-def colours(image: ImageConfig) -> list[list[Any]]:
-    """The colour map of images, as plotly has it."""
-    shares = np.linspace(0, 1, 33)
-    return [[share, to_hex(colormaps[image.colour_map](share))] for share in shares.tolist()]
-
-
-def write_page(scenes: Iterable[Mapping[str, Any]], path: Path) -> None:
+def write_page(scenes: Iterable[Entry], path: Path) -> None:
     """Write the page.
 
     What scenes say is text from strangers: it is packed in base64, and the page's script gives it
     to the browser as text alone.
     """
+    from plotly.io.json import to_json_plotly
     from plotly.offline import get_plotlyjs
 
-    document = json.dumps(plain(_lists(list(scenes))), allow_nan=False, separators=(",", ":"))
+    document = to_json_plotly(list(scenes), engine="json")
     page = files(__package__).joinpath("scene_page.html").read_text(encoding="utf-8")
     for name, text in (("PLOTLY", get_plotlyjs()), ("SCENES", document)):
         packed = gzip.compress(text.encode(), mtime=0)
         page = page.replace(f"@{name}@", base64.b64encode(packed).decode())
     write_text(path, page)
-
-
-def _lists(value: Any) -> Any:
-    """Arrays as lists."""
-    if isinstance(value, Mapping):
-        return {key: _lists(inner) for key, inner in value.items()}
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    if isinstance(value, Sequence) and not isinstance(value, str):
-        return [_lists(inner) for inner in value]
-    return value

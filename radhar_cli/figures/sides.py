@@ -17,13 +17,22 @@ Parents: TypeAlias = tuple[int | None, ...]
 Advance: TypeAlias = Callable[[int], object]
 # {view: (horizontal axis and its sign, vertical axis)} of points (ahead, left, up)
 VIEWS = {"from the radar": (1, -1.0, 2), "from the side": (0, 1.0, 2), "from above": (1, -1.0, 0)}
+KNEES = (9, 11)
 LABELS = {0: "ahead (m)", 1: "right (m)", 2: "up (m)"}
 
 
 def bones(joints: Float, parents: Parents) -> Float:
-    """Joints [joint, 3] as the ends of bones [bone, 2, 3]."""
-    pairs = [(parent, one) for one, parent in enumerate(parents) if parent is not None]
-    ends: Float = joints[np.array(pairs, int).reshape(-1, 2)]
+    """Joints [..., joint, n] as ends of bones [..., joint, 2, n]: from a joint's parent to it."""
+    pairs = [(one if parent is None else parent, one) for one, parent in enumerate(parents)]
+    ends: Float = joints[..., np.array(pairs, int).reshape(-1, 2), :]
+    return ends
+
+
+def limbs(joints: Float, parents: Parents, hips: Float | None) -> Float:
+    """`bones` whose thighs hang on the hip joints [..., 2, 3], where there are some."""
+    ends = bones(joints, parents)
+    if hips is not None:
+        ends[..., KNEES, 0, :3] = hips
     return ends
 
 

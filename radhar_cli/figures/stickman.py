@@ -5,13 +5,12 @@ from pathlib import Path
 import numpy as np
 
 from radhar_cli.figures.maps_panel import draw_map, of_simulation, title
-from radhar_cli.figures.sides import Advance, Film, bones
+from radhar_cli.figures.sides import Advance, Film, limbs
 from radhar_cli.simulation.simulate import Simulation
 from radhar_cli.simulation.truth import WHOLE
 
 FRAMES_PER_SECOND = 20
 SHOWN_BESIDE = ("stft", "fsst", "stft_compensated", "rtm")
-KNEES = (9, 11)
 
 
 def frame_count(simulation: Simulation) -> int:
@@ -30,15 +29,12 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Advance) -> None:
     everybody += [(one.truth, one.motion) for one in simulation.others]
     alone = len(everybody) == 1
     middle = truth.positions.mean(axis=1) * (alone, alone, 0)
-    seen = np.concatenate(
-        [(one.positions - middle[:, None]).reshape(-1, 3) for one, _ in everybody]
-    )
-    reach = np.stack([seen.min(axis=0) - 0.1, seen.max(axis=0) + 0.1], axis=1)
-    least = np.array([[-1, 1], [-1, 1], [0, 2]])
-    least[:2] += np.round(reach[:2].mean(axis=1, keepdims=True)).astype(int)
-    limits = np.stack(
-        [np.minimum(reach[:, 0], least[:, 0]), np.maximum(reach[:, 1], least[:, 1])], axis=1
-    )
+    seen = np.concatenate([one.positions - middle[:, None] for one, _ in everybody], axis=1)
+    low, high = seen.min(axis=(0, 1)) - 0.1, seen.max(axis=(0, 1)) + 0.1
+    around = np.round((low + high) / 2) * (1, 1, 0)
+    low = np.minimum(low, around - (1, 1, 0))
+    high = np.maximum(high, np.add(around, (1, 1, 2)))
+    limits = np.stack([low, high], axis=1)
     fastest = max(float(np.abs(truth.radial_velocity).max()), 0.1)
     film = Film(title(simulation), limits, fastest, share=0.7)
     cursor = []
@@ -53,23 +49,16 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Advance) -> None:
         pulse = int(np.searchsorted(truth.time, t).clip(max=truth.time.size - 1))
         lines = []
         for one, motion in everybody:
-            lines.append(bones(one.positions[pulse], motion.parents))
-            if one.hip_joints is not None:  # thighs hang on the hip joints
-                linked = [joint for joint, up in enumerate(motion.parents) if up is not None]
-                lines[-1][[linked.index(knee) for knee in KNEES], 0] = one.hip_joints[pulse]
-        here = middle[pulse]
-        under_way = truth.phases[truth.phase_label[pulse]]
-        film.show(
-            truth.positions[pulse] - here,
-            -truth.radial_velocity[pulse],
-            np.concatenate(lines) - here,
-            f"t = {t:.2f} s"
-            + (f", at x = {here[0]:.1f} m, y = {here[1]:.1f} m" if alone else "")
-            + ("" if under_way == WHOLE else f"   {under_way}"),
-        )
+            hips = None if one.hip_joints is None else one.hip_joints[pulse]
+            lines.append(limbs(one.positions[pulse], motion.parents, hips))
+        here, under_way = middle[pulse], truth.phases[truth.phase_label[pulse]]
+        clock = f"t = {t:.2f} s"
+        clock += f", at x = {here[0]:.1f} m, y = {here[1]:.1f} m" if alone else ""
+        clock += "" if under_way == WHOLE else f"   {under_way}"
+        joints, ends = truth.positions[pulse] - here, np.concatenate(lines) - here
+        film.show(joints, -truth.radial_velocity[pulse], ends, clock)
         for line in cursor:
             line.set_xdata([t, t])
 
-    film.write(
-        path, show, frame_count(simulation), 1000 // FRAMES_PER_SECOND, advance, others=cursor
-    )
+    count, frame_ms = frame_count(simulation), 1000 // FRAMES_PER_SECOND
+    film.write(path, show, count, frame_ms, advance, others=cursor)

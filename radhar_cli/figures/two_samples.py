@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from radhar_cli.arrays import Levels
 from radhar_cli.figures.page import page_of_rows, png_bytes
@@ -27,15 +28,8 @@ def pictures_png(
     """
     figure, panels = page_of_rows(rows, (2.0, 1.75), (1.2, 0.8))
     for panel, one in panels:
-        panel.imshow(
-            one.levels,
-            extent=one.extent,
-            aspect="auto",
-            cmap="viridis",
-            vmin=0,
-            vmax=255,
-            interpolation="nearest",
-        )
+        look: dict[str, Any] = {"cmap": "viridis", "vmin": 0, "vmax": 255, "aspect": "auto"}
+        panel.imshow(one.levels, extent=one.extent, interpolation="nearest", **look)
         panel.set_title(one.words, fontsize=7)
         panel.locator_params(nbins=4)
         panel.tick_params(labelsize=6, length=2)

@@ -65,9 +65,9 @@ def write_scene(simulation: Simulation, path: Path) -> None:
 
 def write_map(file: h5py.File, name: str, power_map: PowerMap) -> None:
     """Write /maps/<name> with its axes."""
-    dataset = file.create_dataset(
-        f"maps/{name}", data=_float32(power_map.shown), compression="gzip"
-    )
+    most = np.finfo(np.float32).max
+    single = np.clip(power_map.shown, -most, most).astype(np.float32)
+    dataset = file.create_dataset(f"maps/{name}", data=single, compression="gzip")
     for dimension, axis in enumerate((power_map.rows, power_map.columns)):
         scale = file.create_dataset(f"axes/{name}/{axis.name}", data=axis.values)
         scale.make_scale(f"{axis.name} ({axis.unit})")
@@ -78,13 +78,6 @@ def write_map(file: h5py.File, name: str, power_map: PowerMap) -> None:
     dataset.attrs["meaning"] = (
         f"power for unit transmit power, [{power_map.rows.name}, {power_map.columns.name}]"
     )
-
-
-def _float32(power: np.ndarray[Any, Any]) -> np.ndarray[Any, np.dtype[np.float32]]:
-    limits = np.finfo(np.float32)
-    single: np.ndarray[Any, np.dtype[np.float32]]
-    single = np.clip(power, -limits.max, limits.max).astype(np.float32)
-    return single
 
 
 def _write_truth(file: h5py.File, simulation: Simulation) -> None:
@@ -103,34 +96,32 @@ def _write_truth(file: h5py.File, simulation: Simulation) -> None:
 
 def _write_person(group: h5py.Group, truth: Truth, motion: Motion) -> None:
     """Write the truth of one person."""
-    group["time"] = truth.time
-    group["time"].attrs["unit"] = "s"
-    group["positions"] = truth.positions
-    group["positions"].attrs["unit"] = "m"
-    group["positions"].attrs["axes"] = ["pulse", "joint", "x y z"]
-    if truth.hip_joints is not None:
-        group["hip_joints"] = truth.hip_joints
-        group["hip_joints"].attrs["unit"] = "m"
-        group["hip_joints"].attrs["axes"] = ["pulse", "right left", "x y z"]
-    group["radial_velocity"] = truth.radial_velocity
-    group["radial_velocity"].attrs["unit"] = "m/s, positive receding"
-    group["doppler"] = truth.doppler
-    group["doppler"].attrs["unit"] = "Hz, positive approaching, before aliasing"
-    group["phase_label"] = truth.phase_label
-    group["phase_label"].attrs["meaning"] = list(truth.phases)
+    meant: dict[str, dict[str, Any]] = {
+        "time": {"unit": "s"},
+        "positions": {"unit": "m", "axes": ["pulse", "joint", "x y z"]},
+        "hip_joints": {"unit": "m", "axes": ["pulse", "right left", "x y z"]},
+        "radial_velocity": {"unit": "m/s, positive receding"},
+        "doppler": {"unit": "Hz, positive approaching, before aliasing"},
+        "phase_label": {"meaning": list(truth.phases)},
+    }
+    for name, attributes in meant.items():
+        if (values := getattr(truth, name)) is not None:
+            group[name] = values
+            group[name].attrs.update(attributes)
     group.attrs["joints"] = list(motion.names)
 
 
 def describe(simulation: Simulation) -> dict[str, Any]:
     """Every parameter with its unit, warnings, entropies and times, as plain values."""
-    waveform, scene = simulation.waveform, simulation.scene
+    waveform, scene, kind = simulation.waveform, simulation.scene, simulation.config.engine.kind
+    fallback = kind == "direct" and simulation.accuracy is None
     return {
         "activity": {"label": scene.activity.label, "slug": scene.activity.slug},
         "seed": scene.config.seed,
         "people": [one.person.activity.slug for one in simulation.others],
-        "motion_file": _motion_file(simulation),
+        "motion_file": _motion_file(simulation.motion),
         "joint": simulation.joint,
-        "engine": _engine(simulation),
+        "engine": "cube (fallback)" if fallback else kind,
         "accuracy": _accuracy(simulation),
         "parameters": scene_numbers(scene),
         "derived": {
@@ -148,9 +139,8 @@ def describe(simulation: Simulation) -> dict[str, Any]:
     }
 
 
-def _motion_file(simulation: Simulation) -> dict[str, Any] | None:
+def _motion_file(motion: Motion) -> dict[str, Any] | None:
     """Which part of which file was the motion; null where a model made it."""
-    motion = simulation.motion
     if not isinstance(motion, FileMotion):
         return None
     return {
@@ -160,11 +150,6 @@ def _motion_file(simulation: Simulation) -> dict[str, Any] | None:
         "lasts_s": motion.clip.seconds,
         "stature_m": motion.clip.stature,
     }
-
-
-def _engine(simulation: Simulation) -> str:
-    kind = simulation.config.engine.kind
-    return "cube (fallback)" if kind == "direct" and simulation.accuracy is None else kind
 
 
 def _accuracy(simulation: Simulation) -> dict[str, Any] | None:

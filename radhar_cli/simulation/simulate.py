@@ -1,7 +1,6 @@
 """Simulate one scene: every map, every signal, the truth behind them."""
 
 from dataclasses import dataclass, field
-from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -23,12 +22,7 @@ from radhar_cli.pipeline.physics import motion_of, reflectors_of
 from radhar_cli.pipeline.plan import Product
 from radhar_cli.pipeline.products import SIGNALS, EchoAccuracy, Fallback, signal_of
 from radhar_cli.pipeline.run import Recording, record
-from radhar_cli.pipeline.validity import (
-    BLACK,
-    MIN_DISTANCE_M,
-    draw_valid_scene,
-    scene_warnings,
-)
+from radhar_cli.pipeline.validity import BLACK, MIN_DISTANCE_M, draw_valid_scene, scene_warnings
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.processing.signal import Signal, shown_pulses
 from radhar_cli.radar.board import Board
@@ -174,12 +168,7 @@ def simulate(
     asked += ["accuracy"] if config.engine.kind == "direct" else []
     asked += ["raw_echo"] if raw and not board else []
     recorded = record(scene, asked, [RAW_ECHO], motions=(kept, *(others if joint is None else ())))
-    true = partial(
-        truth,
-        antennas=recorded["antennas"],
-        wall=recorded["wall"],
-        waveform=recorded["waveform"],
-    )
+    radar = {name: recorded[name] for name in ("antennas", "wall", "waveform")}
     accuracy: EchoAccuracy | None = recorded.products.get("accuracy")
     if isinstance(accuracy, Fallback):
         warnings.append(f"computed by the cube (engine.fallback): {accuracy.reason}")
@@ -187,18 +176,16 @@ def simulate(
     warnings += [f"{', '.join(black)}: {BLACK}"] if black else []
     return Simulation(
         scene=scene,
-        waveform=recorded["waveform"],
-        antennas=recorded["antennas"],
-        wall=recorded["wall"],
+        **radar,
         motion=motion,
         joint=None if joint is None else kept.names[0],
         maps={name: recorded[name] for name in maps},
         signals={
             name.removeprefix("signal").lstrip("_") or "raw": recorded[name] for name in signals
         },
-        truth=true(motion),
+        truth=truth(motion, **radar),
         others=[
-            Other(person, one, true(one))
+            Other(person, one, truth(one, **radar))
             for person, one in zip(scene.people[1:], others, strict=True)
         ],
         warnings=warnings,

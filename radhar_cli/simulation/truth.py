@@ -80,11 +80,7 @@ def path_truth(sources: list[Whose], t: Float) -> PathTruth:
         t,
         np.concatenate([one.delay for one in paths]),
         np.concatenate([one.amplitude for one in paths]),
-        [
-            names_of(one.legs)
-            for one, count in zip(sources, counts, strict=True)
-            for _ in range(count)
-        ],
+        np.repeat([names_of(one.legs) for one in sources], counts).tolist(),
         np.repeat([one.person for one in sources], counts),
         np.concatenate(scatterers),
         np.repeat(bounces, counts),

@@ -8,12 +8,13 @@ console.error = see;
 const wait = ms => new Promise(resolve => setTimeout(resolve, ms));
 
 async function views() {
+  const [space, ...others] = plots, z = plot => JSON.stringify(plot.box.data[0].z);
   return {
-    cursor: maps.filter(map => map.cursor).map(map => map.line.offsetLeft),
-    frames: maps.filter(map => map.times).map(map => JSON.stringify(map.box.data[0].z)),
+    cursor: plots.filter(plot => plot.cursor).map(plot => plot.line.offsetLeft),
+    frames: others.filter(plot => plot.moves.length).map(z),
     clock: [at("clock").textContent],
-    traces: at("space").data.map(one => JSON.stringify(one.x)),
-    picture: [await Plotly.toImage("space", {width: 400, height: 400})],
+    traces: space.box.data.map(one => JSON.stringify(one.x)),
+    picture: [await Plotly.toImage(space.box, {width: 400, height: 400})],
   };
 }
 
@@ -25,12 +26,14 @@ async function drive() {
   await wait(1000);
   const after = await views();
   for (const key in before) moved[key] = before[key].map((one, i) => one !== after[key][i]);
-  const visible = () => maps[1].box.data.filter(one => one.visible === true).length, hidden = visible();
-  at("truth").click();
-  await wait(500);
-  const curves = visible() - hidden;
+  const doppler = plots.find(plot => plot.data.length > 1 && plot.cursor).box;
+  const visible = () => doppler._fullData.filter(one => one.visible === true).length, hidden = visible();
+  for (const kind of ["mousedown", "mouseup"])
+    doppler.querySelector(".legendtoggle").dispatchEvent(new MouseEvent(kind, {bubbles: true}));
+  await wait(1000);
+  const curves = visible() - hidden - 1;  // one is the key of the legend
   await choose(1);
-  const headings = maps.map(map => map.box.querySelector(".gtitle").textContent);
+  const headings = plots.slice(1).map(plot => plot.box.querySelector(".gtitle").textContent);
   return {moved, curves, headings, title: document.title, images: document.images.length};
 }
 

@@ -7,6 +7,7 @@ import json
 import re
 import shutil
 import subprocess
+from copy import deepcopy
 from pathlib import Path
 
 import numpy as np
@@ -33,6 +34,10 @@ def packed(page: str, name: str) -> str:
 
 def scenes(path: Path) -> list[dict]:
     return json.loads(packed(path.read_text(), "scenes"))
+
+
+def headings(maps: list[dict]) -> list[str]:
+    return [one["layout"]["title"]["text"] for one in maps]
 
 
 @pytest.fixture(scope="module")
@@ -62,27 +67,37 @@ def test_a_page_shows_the_truth_of_everybody():
     made = simulate(ROOT / "configs/human/people.yaml", "walking", maps=("rtm", "stft_compensated"))
     shown = of_simulation(made)
     people = [f"{one.activity.label} {one.activity.slug}" for one in made.scene.people]
-    assert [one["label"] for one in shown["people"]] == people
+    space, rtm, stft = shown["plots"]
+    assert [one["name"] for one in space["data"]] == [*people, "radar"]
     frame = 30
     pulse = round(shown["time"][frame] * made.waveform.prf)
-    own = shown["people"][0]
-    assert np.abs(own["places"][frame][:13] - made.truth.positions[pulse]).max() < 2e-3
-    assert np.abs(own["speed"][frame] + made.truth.radial_velocity[pulse]).max() < 0.05
+    own = space["moves"][0]["frames"]
+    places = np.stack([own[axis][frame][1::3] for axis in "xyz"], axis=1)
+    assert np.abs(places - made.truth.positions[pulse]).max() < 2e-3
+    speed = own["marker.color"][frame][1::3]
+    assert np.abs(speed + made.truth.radial_velocity[pulse]).max() < 0.05
     assert np.median(np.diff(shown["time"])) == pytest.approx(0.04, abs=2e-3)
-    rtm, stft = shown["maps"]
-    assert rtm["y"][2] == "range (m)"
-    assert stft["curves"] == "compensated"
-    grey = np.frombuffer(base64.b64decode(stft["levels"]), np.uint8).reshape(stft["shape"])[0]
-    own_power = grey[len(grey) // 2 - 3 : len(grey) // 2 + 3].max(axis=0).mean()
-    assert own_power > grey.mean() + 50, "the compensated torso is in the middle"
+    assert rtm["layout"]["yaxis"]["title"]["text"] == "range (m)"
+    key, torso, *_ = stft["data"][1:]
+    assert key["name"] == "true Doppler: click"
+    assert np.abs(torso["y"]).max() < 1e-9, "the torso's Doppler is compensated"
+    z = stft["data"][0]["z"]
+    height, width = map(int, z["shape"].split(","))
+    power = np.frombuffer(base64.b64decode(z["bdata"]), np.float32).reshape(height, width)
+    own_power = power[height // 2 - 3 : height // 2 + 3].max(axis=0).mean()
+    assert own_power > power.mean() + 10, "dB: the compensated torso is in the middle"
 
 
 def test_points_lie_on_the_body_of_a_tilted_board():
     tilted = ["duration_s=0.5", "radar.tilt_deg=15", "radar.yaw_deg=10"]
     shown = of_simulation(simulate(load_config(BOARD, tilted), "punching", maps=("points",)))
-    joints = shown["people"][0]["places"][5]
-    apart = shown["cloud"]["points"][:, None, :3] - joints
-    assert np.median(np.linalg.norm(apart, axis=2).min(axis=1)) < 0.3
+    body, points = (
+        np.stack([one["frames"][axis][one["at"][12]] for axis in "xyz"], axis=1)
+        for one in shown["plots"][0]["moves"]
+    )
+    apart = np.linalg.norm(points[:, None] - body[1::3], axis=2).min(axis=1)
+    assert len(points) > 3
+    assert np.median(apart) < 0.3
 
 
 def test_view_shows_the_first_sample_of_each_class(small_set, tmp_path):
@@ -92,14 +107,12 @@ def test_view_shows_the_first_sample_of_each_class(small_set, tmp_path):
     found = scenes(page)
     titles = [one["title"].partition(",")[0] for one in found]
     assert titles == ["S2 punching/0", "S8 walking/0", "S12 walking_to_falling/0"]
-    maps = [one["title"] for one in found[1]["maps"]]
-    assert maps == ["range-time map", "STFT", "FSST, compensated"]
-    assert found[1]["numbers"]["motion.speed_mps"] > 0
-    assert len(found[1]["people"]) == 1
+    space, *maps = found[1]["plots"]
+    assert headings(maps) == ["range-time map", "STFT", "FSST, compensated"]
+    assert float(found[1]["numbers"]["motion.speed_mps"]) > 0
+    assert [one["name"] for one in space["data"]] == ["S8 walking", "radar"]
     ok("view", small_set, "-o", page, "--sample", "S8/2", "--sample", "punching/1")
     assert [one["title"][:9] for one in scenes(page)] == ["S8 walkin", "S2 punchi"]
-    ok("view", small_set, "-o", page, "--split", "val")
-    assert all(", validation" in one["title"] for one in scenes(page))
 
 
 @pytest.mark.parametrize(
@@ -107,8 +120,7 @@ def test_view_shows_the_first_sample_of_each_class(small_set, tmp_path):
     [
         (("--sample", "walking/3"), "--sample walking/3: should be walking/0 to walking/2"),
         (("--sample", "dancing/0"), "--sample dancing/0: no such class; there are punching,"),
-        (("--split", "test"), "has no samples in --split test"),
-        (("--split", "tset"), "--split tset: should be one of train, val, test, all"),
+        (("--sample", "walking/0") * 51, "--sample: 51 samples; a page holds 50 at most"),
     ],
 )
 def test_view_says_what_it_cannot_show(small_set, options, said, tmp_path):
@@ -123,9 +135,8 @@ def test_a_skeleton_is_of_the_stored_scene_or_not_there(small_set, tmp_path):
         file["scene/snr"][0] = 29.5
     ok("view", tmp_path / "dataset.h5", "--sample", "punching/0")
     (shown,) = scenes(tmp_path / "view.html")
-    assert "people" not in shown
     assert "draws another scene than the one stored" in shown["notes"][0]
-    assert len(shown["maps"]) == 3
+    assert headings(shown["plots"]) == ["range-time map", "STFT", "FSST, compensated"]
     assert shown["time"][-1] == pytest.approx(4, abs=0.1)
 
 
@@ -139,10 +150,11 @@ def test_motion_files_that_a_data_set_names_are_not_opened(tmp_path):
     ok("view", tmp_path / "set")
     (shown,) = scenes(tmp_path / "set/view.html")
     assert shown["notes"] == ["Motion files are not opened: joints are those that are stored."]
-    joints = np.array(shown["people"][0]["places"], float)
-    assert joints.shape == (len(shown["time"]), 13, 3)
-    assert shown["axes"][0] == "ahead (m)"
-    assert [one["title"] for one in shown["maps"]] == ["STFT", "range-Doppler", "range-azimuth"]
+    space, *maps = shown["plots"]
+    joints = np.array(space["moves"][0]["frames"]["x"], float)
+    assert joints.shape == (len(shown["time"]), 13 * 3)
+    assert space["layout"]["scene"]["xaxis"]["title"]["text"] == "ahead (m)"
+    assert headings(maps) == ["STFT", "range-Doppler", "range-azimuth"]
     with edited(tmp_path / "set/dataset.h5", tmp_path / "dataset.h5") as file:
         points = file["products/points"][:, :3]
         del file["products/points"]
@@ -154,10 +166,14 @@ def test_motion_files_that_a_data_set_names_are_not_opened(tmp_path):
 
 @pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium: apt-get install chromium")
 def test_a_browser_moves_all_views_and_takes_texts_as_texts(board, tmp_path):
-    foreign = {**board, "title": FOREIGN, "notes": [FOREIGN], "numbers": {FOREIGN: FOREIGN}}
-    foreign["maps"] = [{**one, "title": FOREIGN} for one in board["maps"]]
-    person = board["people"][0]
-    foreign["people"] = [{**person, "label": FOREIGN, "joints": [FOREIGN] * len(person["joints"])}]
+    foreign = deepcopy({**board, "title": FOREIGN, "notes": [FOREIGN]})
+    foreign["numbers"] = {FOREIGN: FOREIGN}
+    space, *maps = foreign["plots"]
+    for one in maps:
+        one["layout"]["title"]["text"] = FOREIGN
+    person = space["data"][0]
+    joints = len(person["text"]) // 3
+    person |= {"name": FOREIGN, "text": [FOREIGN] * 3 * joints}
     page = tmp_path / "page.html"
     write_page([board, foreign], page)
     drive = Path(__file__).with_name("drive_page.js").read_text()
@@ -172,11 +188,11 @@ def test_a_browser_moves_all_views_and_takes_texts_as_texts(board, tmp_path):
     found = json.loads(html.unescape(dumped[1]))
     assert found["wrong"] == []
     moved = found["moved"]
-    assert moved.pop("traces") == [True, True, True, False], "bones, joints, points; not the radar"
+    assert moved.pop("traces") == [True, True, False], "bones and points; not the radar"
     counts = {name: len(values) for name, values in moved.items()}
     assert counts == {"cursor": 2, "frames": 3, "clock": 1, "picture": 1}
     assert all(map(all, moved.values()))
-    assert found["curves"] == len(person["joints"])
+    assert found["curves"] == joints
     assert found["title"] == " ".join(FOREIGN.split())
-    assert found["headings"] == [FOREIGN] * len(board["maps"])
+    assert found["headings"] == [FOREIGN] * len(maps)
     assert found["images"] == 0

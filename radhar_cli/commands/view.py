@@ -19,7 +19,7 @@ def view(
         Path | None, typer.Option("-o", "--out", help="HTML file; view.html next to the data.")
     ] = None,
 ) -> None:
-    """Make a page to look at samples: maps, clouds, and the skeletons behind them, in motion.
+    """Make a page on which samples of a data set move, for any browser.
 
     It is one HTML file, for any browser. Skeletons are simulated again from the stored config.
 

@@ -33,7 +33,7 @@ def group() -> typer.Typer:
 
 
 def init(
-    out: Annotated[Path, typer.Argument(help="YAML file to write.")],
+    out: Annotated[Path, typer.Argument(help="YAML file to write.")] = Path("radhar.yaml"),
     train: Training = False,
     radar: Annotated[
         str | None,

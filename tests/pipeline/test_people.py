@@ -489,6 +489,9 @@ def test_whoever_falls_however_tries_to_get_up_and_stands(name: str, direction: 
     ]
     head = motion.positions(np.array([motion.parts[-1][0].begin]))[2, 1, 0]
     assert head > 0.8 * motion.person.stature
+    for part, _ in motion.parts[1:]:
+        before, after = (motion.positions(np.array([part.begin + d])) for d in (-1e-6, 1e-6))
+        assert np.abs(after - before).max() < 1e-4
 
 
 def test_the_papers_model_has_no_sequences(tmp_path: Path) -> None:

@@ -119,7 +119,7 @@ class FallingSideways:
         legs, behind, length, pelvis, trunk, *others, still, near = self.course(t)
         curl, arms, elbows, share = others
         own, nothing = 1 - still, np.zeros(t.size)
-        stands = own * (fall.seat is None)
+        stands = own * (self.before != SEATED)  # who sits does not sway
         lean, roll = behind + stands * idle.lean, fall.side * legs + stands * idle.legs_roll
         hip = length * np.stack(
             [np.sin(lean), np.cos(lean) * np.sin(roll), np.cos(lean) * np.cos(roll)]

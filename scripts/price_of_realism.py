@@ -151,7 +151,8 @@ def main() -> None:
     sizes = {"learned": given.per_class, "tested": given.tested}
     study = Study(given.out, sizes, range(1, given.seeds + 1))
     print(
-        "| added | time | pixels | without, without | without, with | with, without | with, with |"
+        "| added | time | pixels | trained and tested without | trained without, tested with "
+        "| trained with, tested without | trained and tested with |"
     )
     print("| --- | ---: | ---: | --- | --- | --- | --- |", flush=True)
     for row in ROWS:

@@ -48,6 +48,8 @@ def import_(
 
     named = {"label": label, "person": person}
     overrides = [f"{key}={json.dumps(value)}" for key, value in named.items() if value is not None]
+    if missing := [str(path) for path in captures if not path.exists()]:
+        raise FolderError(f"{missing[0]}: no such file")
     settings = read_settings(radar, [*(set_ or []), *overrides])
     if out.resolve() in {path.resolve() for path in captures}:
         raise FolderError(f"{out}: is the capture itself; -o should name another file")

@@ -11,11 +11,11 @@ real, are interpolated from knots; docs/physics/engines.md.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 from math import ceil, inf
 from typing import Any
 
 import numpy as np
+import scipy.fft
 
 from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.echo.accuracy import Settings, probed_pulses, relative_db
@@ -41,7 +41,7 @@ from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.radar.waveform import Waveform
 
 PULSES = 512  # pulses per block of the error
-VALUES = 2**18  # envelopes at knots per block
+VALUES = 2**19  # envelopes at knots per block
 AT_PEAK = 1e-9  # sine of the denominator below which D is N
 MORE_NODES = 24, 48  # than D has half waves, in single and in double precision
 SMALLEST = 3e-8, 1e-15  # coefficient over N that is kept, likewise
@@ -111,7 +111,9 @@ class GatedEcho(DirectEcho):
         for knots in motion.knots(self.source, w):
             (first, last), step = knots.pulses, knots.step
             knots = knots._replace(paths=knots.paths.only(kept), exact=knots.exact.only(kept))
-            count = max(1, VALUES // (kept.size * int((high - low)[first:last].max(initial=1))))
+            extent = w.slope / w.adc_rate * np.ptp(knots.paths.delay) * w.n_adc  # in bins
+            wide = max(int((high - low)[first:last].max(initial=1)), int(np.pi / 2 * extent))
+            count = max(1, VALUES // (kept.size * wide))
             for start in range(0, -(-(last - first) // step), count):
                 pulses = slice(first + start * step, min(first + (start + count) * step, last))
                 k = np.arange(low[pulses].min(), high[pulses].max())
@@ -210,18 +212,10 @@ def chebyshev(middle: float, half: float, k: Index, w: Waveform, real: np.dtype[
     count = ceil((np.pi * w.n_adc * half + MORE_NODES[double]) / 8) * 8
     angle = np.pi * (np.arange(count) + 0.5) / count
     values = kernel(middle + half * np.cos(angle), k, w.n_adc, w.n_fft)
-    c = _cosines(count) @ values
+    c = scipy.fft.dct(values, axis=0) / count
+    c[0] /= 2
     kept = np.flatnonzero(np.abs(c).max(axis=1) > SMALLEST[double] * w.n_adc)
     return c[: max(2, int(kept.max(initial=0)) + 1)].astype(real)
-
-
-@lru_cache(maxsize=32)
-def _cosines(count: int) -> Float:
-    """From values at Chebyshev points to coefficients [count, count]."""
-    angle = np.pi * (np.arange(count) + 0.5) / count
-    cosines: Float = 2 / count * np.cos(np.outer(np.arange(count), angle))
-    cosines[0] /= 2
-    return cosines
 
 
 def complex_of(x: Float) -> np.dtype[Any]:

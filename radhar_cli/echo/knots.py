@@ -88,7 +88,7 @@ class Motion(NamedTuple):
 def resolve(source: PathSource, waveform: Waveform, spacing: Spacing) -> Motion:
     """Place knots that resolve the motion of a source: as far apart as the spacing allows."""
     step = widest_step(waveform, spacing.per_second)
-    # Of a wide band knots must be closer, as nobody knows how much beforehand.
+    # Only a wide band needs closer knots than that for people.
     delay = spacing.phase_change / _fastest_cycles(waveform)
     narrow = delay * waveform.prf > FASTEST * max(step, 1)
     if (

@@ -147,12 +147,9 @@ def _physics(c: Config) -> Iterator[Product]:
     def torso_track(
         motions: tuple[Motion, ...], antennas: Antennas, wall: Wall | None, w: Waveform
     ) -> Float:
-        torso, per_second = TorsoPath(motions[0], antennas, wall), inf
-        if c.engine.kind == "direct":
-            # The echo's own knots, unless a wide band needs closer ones: positions are known there.
-            chosen = settings(first_aim(c.engine.tolerance_db), w, torso.highest_frequency)
-            per_second = chosen.spacing.per_second
-        return delay_track(torso, w, per_second)
+        torso = TorsoPath(motions[0], antennas, wall)
+        exact = c.engine.kind != "direct"
+        return delay_track(torso, w, inf if exact else _knots_per_second(c, torso, w))
 
     seen = ("motions", "antennas", "wall", "waveform")
     walled = "through the wall" if c.wall is not None else "through air"
@@ -170,6 +167,12 @@ def _physics(c: Config) -> Iterator[Product]:
     if _snr_of_other_paths(c):
         yield Product("snr_paths", ("scene", *seen), of_people, "paths of people, for the SNR")
     yield Product("torso_track", seen, torso_track, "delay of the torso at every pulse")
+
+
+def _knots_per_second(c: Config, source: PathSource, w: Waveform) -> float:
+    """Knots of the echo, where positions are known, unless a wide band needs closer ones."""
+    aim = first_aim(c.engine.tolerance_db)
+    return settings(aim, w, source.highest_frequency).spacing.per_second
 
 
 def _snr_of_other_paths(c: Config) -> bool:
@@ -301,9 +304,7 @@ def _direct(c: Config) -> Iterator[Product]:
         return DirectEcho(source, w, engine.tolerance_db, double, canceller)
 
     def power(source: PathSource, w: Waveform) -> float:
-        # The echo's own knots: positions are known there.
-        aim = first_aim(engine.tolerance_db)
-        return mean_power(source, w, settings(aim, w, source.highest_frequency).spacing.per_second)
+        return mean_power(source, w, _knots_per_second(c, source, w))
 
     def signal(
         echo: tuple[Complex, EchoAccuracy],

@@ -80,4 +80,4 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *_INTERFACE})
+    return sorted(("__version__", *_INTERFACE))

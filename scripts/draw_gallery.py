@@ -1,4 +1,4 @@
-"""Draw docs/images/overview.png and gallery_*.png, write docs/results/gallery.md: real builds.
+"""Draw docs/images/overview.png and gallery_*.png of docs/results/gallery.md: real builds.
 
     python scripts/draw_gallery.py [-o docs]
 
@@ -8,7 +8,6 @@ configs/paper/figures_free_space.yaml and figures_through_wall.yaml.
 
 import argparse
 import tempfile
-import textwrap
 from pathlib import Path
 
 import h5py
@@ -51,51 +50,6 @@ OVERVIEW = (
     ("people_wall", "stft", "people, 2 GHz,\nwall (Hz)"),
     ("free_space", "stft", "paper's motion,\n77 GHz (kHz)"),
 )
-WORDS = {
-    1: (
-        "Nothing moves and the MTI leaves nothing of the body: noise alone, shaped by the first "
-        "difference, dark at zero Doppler."
-    ),
-    2: (
-        "Two arms in antiphase: forearms reach about 400 Hz towards and 700 Hz away from the radar "
-        "at 77 GHz, repeating every second. Torso and legs are static and invisible."
-    ),
-    3: (
-        "One leg: the ankle's swing fills the whole Doppler band at 77 GHz (5.1 m/s, it touches "
-        "PRF/2), the knee lies inside it; the range map shows the two sinusoids."
-    ),
-    4: (
-        "The trunk bends to pi and back once a second about the torso point: head and arms on both "
-        "signs of Doppler at once, feet and hips planted."
-    ),
-    5: (
-        "One slow hump from 0.5 to 2.5 s: the torso moves back towards the radar (positive "
-        "Doppler), then settles; compensation flattens it to a line."
-    ),
-    6: "The same hump backwards: away from the radar first as the person rises, then at rest.",
-    7: (
-        "Shoulders and arms circle the torso's axis in antiphase: two interleaved chains, "
-        "symmetric about zero; the torso itself is static."
-    ),
-    8: (
-        "A steady torso line at -2 v f0/c: -790 Hz at 77 GHz + 2 GHz, -25 Hz at 2.5 GHz, with the "
-        "limbs' pulses around it twice a second; ankles alias at the top edge. Compensation puts "
-        "the torso at zero. Range grows by 1.5 m/s and power falls by 12 dB a doubling of range."
-    ),
-    9: (
-        "The hump of rising until 2 s, then the gait fades in. Through the wall, joints that "
-        "cross its far face change amplitude at once: the bright stripes."
-    ),
-    10: "Gait until 2 s, fading out within 0.3 s, then the faint hump of sitting down far away.",
-    11: (
-        "A fan from 0.5 to 2 s: lying flat, the body turns up about the torso, head and feet in "
-        "opposite senses; then the gait."
-    ),
-    12: (
-        "Gait until 2 s, then a fast fan of 0.8 s: the feet swing back towards the radar (positive "
-        "Doppler) while the head goes forward and down."
-    ),
-}
 
 
 def draw(place: Path, rows: tuple[tuple[str, str, str], ...], height: float, out: Path) -> None:
@@ -109,7 +63,9 @@ def draw(place: Path, rows: tuple[tuple[str, str, str], ...], height: float, out
             left, right, low, high = file[f"extent/{name}"][0]
             extent = (left, right, low / unit, high / unit)
             for panel, levels in zip(row, file[f"maps/{name}"], strict=True):
-                panel.imshow(levels, extent=extent, aspect="auto", cmap="viridis")
+                drawn = panel.imshow(
+                    levels / 5.1 - 50, extent=extent, aspect="auto", vmin=-50, vmax=0
+                )
                 panel.tick_params(labelsize=7)
         if name == "rtm":
             row[0].set_ylim(0, 11 if scenario.startswith("people") else 7.4)
@@ -118,6 +74,7 @@ def draw(place: Path, rows: tuple[tuple[str, str, str], ...], height: float, out
         panel.set_title(f"{activity.label} {activity.slug.replace('_', ' ')}", fontsize=9)
     for panel in axes[-1]:
         panel.set_xlabel("time (s)", fontsize=8)
+    figure.colorbar(drawn, ax=axes, pad=0.005, aspect=60, label="power (dB below the largest)")
     figure.savefig(out, dpi=80)
     plt.close(figure)
     with Image.open(out) as picture:
@@ -130,40 +87,6 @@ def gallery_rows(scenario: str) -> tuple[tuple[str, str, str], ...]:
     labels = {name: f"{TITLES[name]}\n({unit})".replace(", ", ",\n") for name in MAP_NAMES}
     labels["rtm"] = "range (m)"
     return tuple((scenario, name, labels[name]) for name in MAP_NAMES)
-
-
-INTRODUCTION = """
-# Gallery
-
-After this page you know what each of the nine maps shows of each of the twelve classes.
-
-All nine maps of all twelve classes, 50 dB from dark to bright, drawn and written by
-`python scripts/draw_gallery.py`. First people as they move (`motion.model: human`,
-[motion](../guide/motion.md)), one of each class of the human configs, facing the radar; then
-the paper's motion in the scenes of its two figures: a person of 1.8 m at 2 m (S1 to S7) or 1 m
-(S8 to S12).
-"""
-END = """
-Denoising (rows 3, 5, 7, 9) is a low-pass at 0.32 of PRF/2: it takes the fast limbs with it. The
-FSST (rows 6 to 9) is thinner than the STFT: a tone falls into one bin. Through the wall, the
-walkers of S8 to S12 start inside it (x = 1 m): their first moments are bright, and what follows
-lies 10 dB of wall and the growing range below. See also the limits in
-[the model](../physics/model.md).
-"""
-
-
-def words() -> str:
-    lines = [INTRODUCTION.strip(), ""]
-    for scenario, title in SCENARIOS.items():
-        lines += [f"## {title[0].upper()}{title[1:]}", ""]
-        lines += [f"![{title}](../images/gallery_{scenario}.png)", ""]
-    lines += ["## What each class shows, with the paper's motion", ""]
-    for activity in ACTIVITIES:
-        name = f"**{activity.label} {activity.slug.replace('_', ' ')}.**"
-        lines.append(
-            textwrap.fill(f"- {name} {WORDS[activity.number]}", 100, subsequent_indent="  ")
-        )
-    return "\n".join([*lines, END])
 
 
 def main() -> None:
@@ -182,7 +105,6 @@ def main() -> None:
         draw(place, OVERVIEW, 7.2, out / "images/overview.png")
         for scenario in SCENARIOS:
             draw(place, gallery_rows(scenario), 15, out / f"images/gallery_{scenario}.png")
-    (out / "results/gallery.md").write_text(words())
 
 
 if __name__ == "__main__":

@@ -66,25 +66,26 @@ def scene_of(document: dict[str, Any], **more: Any) -> Scene:
 
 
 def show(panel: Axes, shown: PowerMap, title: str, least: float, most: float) -> None:
-    """The rows of a map between two values, the strongest 50 dB."""
+    """The rows of a map between two values, the strongest 50 dB, with a colour bar."""
     rows = shown.rows.values
     kept = (rows >= least) & (rows <= most)
     level = 10 * np.log10(np.maximum(shown.power[kept], 1e-300) / shown.power.max())
     times = shown.columns.values
     extent = (times[0], times[-1], rows[kept][0], rows[kept][-1])
-    panel.imshow(level, origin="lower", aspect="auto", cmap="jet", vmin=-50, vmax=0, extent=extent)
-    panel.set(title=title, xlabel="time (s)")
+    drawn = panel.imshow(level, origin="lower", aspect="auto", vmin=-50, vmax=0, extent=extent)
+    panel.set(title=title, xlabel="time (s)", ylabel=f"{shown.rows.name} ({shown.rows.unit})")
+    plt.colorbar(drawn, ax=panel, label="power (dB below the largest)")
 
 
 def crossing(path: Path) -> None:
     """Plan, range-time, Doppler, and what shadows leave of each person's echo."""
     figure, (plan, ranges, doppler, kept) = plt.subplots(
-        1, 4, figsize=(14, 3.4), layout="constrained"
+        1, 4, figsize=(16, 3.6), layout="constrained"
     )
     scene = scene_of(CROSSING, body={"scatterers": "segments"})
     maps = record(scene, ["rtm", "stft"])
-    show(ranges, maps["rtm"], "range (m)", 0, 9)
-    show(doppler, maps["stft"], "Doppler (Hz)", -700, 700)
+    show(ranges, maps["rtm"], "range-time", 0, 9)
+    show(doppler, maps["stft"], "Doppler-time", -700, 700)
     t = np.linspace(0, 4, 400)
     one, two = (
         record(scene_of(CROSSING, body={"shadowing": on}), ["paths"])["paths"](t).amplitude
@@ -107,18 +108,26 @@ def crossing(path: Path) -> None:
 
 def corner(path: Path) -> None:
     """Range-time and Doppler without and with two walls; where each kind of path should be."""
-    figure, panels = plt.subplots(2, 2, figsize=(9, 6.5), layout="constrained")
+    figure, panels = plt.subplots(2, 2, figsize=(11, 6.5), layout="constrained")
     for walls, (ranges, doppler) in zip(({}, CORNER_WALLS), panels, strict=True):
         scene = scene_of(CORNER, body={"scatterers": "segments"}, room=walls)
         maps, name = record(scene, ["rtm", "stft"]), "two walls" if walls else "in the open"
-        show(ranges, maps["rtm"], f"{name}: range (m)", 0, 13)
-        show(doppler, maps["stft"], f"{name}: Doppler (Hz)", -400, 400)
+        show(ranges, maps["rtm"], name, 0, 13)
+        show(doppler, maps["stft"], name, -400, 400)
         t, antennas = np.array([0.0, 4.0]), antennas_of(scene.config)
         p = motion_of(scene.people[0]).torso(t)
         for tx, rx in ways_of(scene.config):
             way = (leg(tx.image(p), antennas.tx) + leg(rx.image(p), antennas.rx))[0] / 2
             if tx.name <= rx.name and "+" not in rx.name:  # the other way round is as long
-                ranges.text(4.05, way[1], f"{tx.name}/{rx.name}", fontsize=7, va="center")
+                ranges.text(
+                    3.92,
+                    way[1],
+                    f"{tx.name}/{rx.name}",
+                    fontsize=7,
+                    va="center",
+                    ha="right",
+                    color="w",
+                )
                 ranges.plot(4.0, way[1], "k<", markersize=3, clip_on=False)
         ranges.set_xlim(0, 4)
     figure.savefig(path, dpi=80)
@@ -126,10 +135,12 @@ def corner(path: Path) -> None:
 
 def ringing(path: Path) -> None:
     """Range-time with one pass of the wall and with all, and what a still point looks like."""
-    figure, panels = plt.subplots(1, 3, figsize=(11, 3.4), layout="constrained")
-    for echoes, panel, name in zip(("none", "exact"), panels, ("one pass", "all"), strict=False):
+    figure, panels = plt.subplots(1, 3, figsize=(13, 3.6), layout="constrained")
+    for echoes, panel, name in zip(
+        ("none", "exact"), panels, ("one pass", "all passes"), strict=False
+    ):
         scene = scene_of(RINGING, wall={**WALL, "echoes": echoes})
-        show(panel, record(scene, ["rtm"])["rtm"], f"{name}: range (m)", 1, 8)
+        show(panel, record(scene, ["rtm"])["rtm"], f"behind a wall, {name}", 1, 8)
     f = np.linspace(1e9, 3e9, 400)
     away = np.linspace(-0.5, 2.5, 600)
     turn = np.exp(4j * np.pi / SPEED_OF_LIGHT * f * away[:, None])

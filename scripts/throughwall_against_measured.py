@@ -26,6 +26,7 @@ from radhar_cli.pipeline.run import record
 from radhar_cli.scene import draw_scene
 
 SIZE, STRIPE_M, STRIPE_ROWS, STRIPES = 256, 0.1, 5.96, 17
+SECONDS, NEAREST_M, REACH_M = 2.0, 0.6, SIZE * STRIPE_M / STRIPE_ROWS
 CONCRETE = dict.fromkeys(("floor", "ceiling", "left", "right", "back"), "concrete")
 WALL = {"center_m": [0.6, 0, 1.25], "size_m": [0.24, 8, 3], "eps_r": 6, "loss_tangent": 0.03}
 EXACT = {"wall": WALL | {"echoes": "exact"}}
@@ -41,14 +42,15 @@ SCENES: dict[str, dict[str, Any]] = {
 
 def simulated(scene: dict[str, Any], seed: int) -> Float:
     """A signed range-time image [256, 256] from -1 to 1, near the radar first."""
-    reach = SIZE * STRIPE_M / STRIPE_ROWS
     radar = {"carrier_hz": 0.7e9, "bandwidth_hz": 1.6e9, "prf_hz": 128, "waveform": "impulse"}
     place = {"tx_m": [0.2, -0.1, 1.3], "rx_m": [0.2, 0.1, 1.3]}
     document = {
         "seed": seed,
-        "duration_s": 2.0,
+        "duration_s": SECONDS,
         "activities": ["walking"],
-        "radar": radar | place | {"profile_m": [0.6, 0.6 + reach], "profile_samples": SIZE},
+        "radar": radar
+        | place
+        | {"profile_m": [NEAREST_M, NEAREST_M + REACH_M], "profile_samples": SIZE},
         "motion": {"range_m": {"uniform": [1.6, 2.0]}, "angle_deg": 0},
         "body": {"scatterers": "segments"},
         "processing": {"clutter": "mean", "range_gain_power": 2},
@@ -103,10 +105,17 @@ def main() -> None:
     if right is not None:
         shown["measured"] = right
     matplotlib.use("Agg")
-    figure, panels = plt.subplots(1, len(shown), figsize=(3 * len(shown), 3), layout="constrained")
+    figure, panels = plt.subplots(
+        1, len(shown), figsize=(3 * len(shown), 3), sharey=True, layout="constrained"
+    )
+    extent = (0, SECONDS, NEAREST_M, NEAREST_M + REACH_M)
     for panel, (title, image) in zip(panels, shown.items(), strict=True):
-        panel.imshow(image, origin="lower", aspect="auto", cmap="jet", vmin=-1, vmax=1)
-        panel.set(title=title, xticks=[], yticks=[])
+        drawn = panel.imshow(
+            image, origin="lower", aspect="auto", cmap="RdBu_r", vmin=-1, vmax=1, extent=extent
+        )
+        panel.set(title=title, xlabel="time (s)")
+    panels[0].set_ylabel("range (m)")
+    figure.colorbar(drawn, ax=panels, label="amplitude over the largest")
     figure.savefig(given.out / "beside.png", dpi=70)
 
 

@@ -21,7 +21,7 @@ def view(
 ) -> None:
     """Make a page on which samples of a data set move, for any browser.
 
-    It is one HTML file, for any browser. Skeletons are simulated again from the stored config.
+    It is one HTML file. Skeletons are simulated again from the stored config.
 
     Example:
 

@@ -26,12 +26,12 @@ MOST = 50  # samples of a page
 
 
 def chosen_rows(data: Dataset, samples: Sequence[str]) -> list[int]:
-    """Rows of samples CLASS/INDEX, or of the first one of each class.
+    """Rows of samples CLASS/INDEX, or of the first of each class, stationary people last.
 
     Raises:
         FolderError: there is no such sample, or there are too many.
     """
-    classes = list(Rows.of(data.config).classes())
+    classes = sorted(Rows.of(data.config).classes(), key=lambda part: part[0].slug == "stationary")
     if len(samples) > MOST:
         raise FolderError(f"--sample: {len(samples)} samples; a page holds {MOST} at most")
     if not samples:

@@ -1,7 +1,7 @@
 """A power map with its axes, and its image."""
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import nan
 
 from radhar_cli.arrays import Float, Half, Levels
@@ -14,7 +14,7 @@ class Axis:
 
     name: str  # frequency, range, time, ...
     unit: str  # Hz, m, s, ...
-    values: Float  # of every row or column, evenly spaced, lowest first
+    values: Float = field(repr=False)  # of every row or column, evenly spaced, lowest first
 
     @property
     def edges(self) -> tuple[float, float]:
@@ -27,11 +27,12 @@ class Axis:
 class PowerMap:
     """Power for unit transmit power."""
 
-    power: Float  # [rows, columns], lowest first
+    power: Float = field(repr=False)  # [rows, columns], lowest first
     # rows, columns: the axes; time runs along the columns of every map of a data set
     rows: Axis
     columns: Axis
-    real: Float | None = None  # the samples with their sign [rows, columns], where those are shown
+    # the samples with their sign [rows, columns], where those are shown
+    real: Float | None = field(default=None, repr=False)
 
     @property
     def shown(self) -> Float:
@@ -53,13 +54,13 @@ class PowerMap:
 class MapImage:
     """The image of a map."""
 
-    levels: Levels  # grey levels [height, width], row 0 at the top
+    levels: Levels = field(repr=False)  # grey levels [height, width], row 0 at the top
     entropy: float  # of the power map, bits; NaN where it is not requested
     # outer edges of the map (columns from, columns to, rows from, rows to)
     extent: tuple[float, float, float, float]
     # of the resized power below its largest, float16 [height, width], or None where they are not
     # requested
-    decibels: Half | None = None
+    decibels: Half | None = field(default=None, repr=False)
     largest_db: float = nan  # that largest power, dB for unit transmit power
 
     @property

@@ -96,7 +96,7 @@ class Simulation:
         parts += [f"frames: {', '.join(self.frames)}"] if self.frames else []
         parts += [f"signals: {', '.join(self.signals)}"] + ["beat"] * (self.beat is not None)
         parts += [f"{1 + len(self.others)} people"] * bool(self.others)
-        parts += [f"{len(self.warnings)} warnings"] * bool(self.warnings)
+        parts += [f"warnings: {len(self.warnings)}"] * bool(self.warnings)
         seconds, seed = self.config.duration_s, self.config.seed
         return f"<Simulation {self.scene.name}, seed {seed}, {seconds:g} s: {'; '.join(parts)}>"
 

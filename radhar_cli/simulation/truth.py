@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -37,13 +37,13 @@ class Truth:
         hip_joints: where thighs begin, right and left [M, 2, 3], m; None where it is the hip.
     """
 
-    time: Float
-    positions: Float
-    radial_velocity: Float
-    doppler: Float
-    phase_label: Levels
+    time: Float = field(repr=False)
+    positions: Float = field(repr=False)
+    radial_velocity: Float = field(repr=False)
+    doppler: Float = field(repr=False)
+    phase_label: Levels = field(repr=False)
     phases: tuple[str, ...]
-    hip_joints: Float | None = None
+    hip_joints: Float | None = field(default=None, repr=False)
 
 
 class PathTruth(NamedTuple):

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
-SECONDS, BYTES = 20, 2 * 10**9
+SECONDS, BYTES = 60, 2 * 10**9
 
 # Memory is what a case may map beyond what the program had mapped before it.
 PROGRAM = """

@@ -29,6 +29,13 @@ def walking() -> Simulation:
     return simulate(load_config(FREE, ["snr_db=null"]), "walking")
 
 
+def test_what_a_prompt_shows_fits_a_few_lines(walking: Simulation) -> None:
+    for shown in (walking, walking.maps["stft"], walking.truth, walking.maps["stft"].rows):
+        assert len(repr(shown)) < 400
+    assert set(dir(radhar)) >= {"simulate", "sample", "open_dataset", "__version__"}
+    assert not [name for name in dir(radhar) if name.isupper()]
+
+
 def test_every_product_is_there_with_its_axes(walking: Simulation) -> None:
     pulses = walking.waveform.n_pulses
     assert tuple(walking.maps) == MAP_NAMES

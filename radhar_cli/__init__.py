@@ -4,12 +4,12 @@ The packages, in the order in which imports go (docs/reference/architecture.md):
 
     motion        `Motion`: scatterers over time; the paper's model, the human one, their skeleton
     activity      the twelve activities, and user-defined classes
+    radar         waveform, propagation (delay, amplitude), wall (refraction, Fresnel)
     config        the schema of the YAML file, its checks, and how it is read
     scene         (config, class, index) -> one scene: a config with nothing left to draw
-    radar         waveform, propagation (delay, amplitude), wall (refraction, Fresnel)
     processing    cancellers, range compression, compensation, STFT, FSST, entropy, image
-    echo          paths -> echo: `cube` (exact reference), `direct` (closed form), range profiles
     receiver      impairments between echo and processing; noise
+    echo          paths -> echo: exact (the reference), direct (closed form), gated, impulse, boards
     pipeline      scene -> maps: the table of products, the plan of a request, the check of scenes
     simulation    one scene with its truth, and its files
     figures       panels, animations, confusion matrices, curves

@@ -124,7 +124,7 @@ def add_activity(
 ) -> Activity:
     """Make a class beyond the twelve known, under a slug that configs may name from then on.
 
-    Its label is 12 for the first such class in a config's `activities`, 13 for the next, and so on.
+    The first such class in a config's `activities` is number 12 of the data set, the next 13.
 
     Args:
         slug: lower-case letters, digits and underscores.

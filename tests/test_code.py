@@ -88,6 +88,22 @@ def test_imports_follow_the_layers() -> None:
     assert not back
 
 
+def test_the_page_has_the_imports_between_packages() -> None:
+    small = PACKAGES[: PACKAGES.index("motion")]
+    found: dict[str, set[str]] = {name: set() for name in PACKAGES[len(small) : -1]}
+    for path in files():
+        inner = {m.split(".")[1] for m in imports(path) if m.startswith("radhar_cli.")}
+        if package(path) in found:
+            found[package(path)] |= inner & found.keys() - {package(path)}
+    rows = [
+        f"| `{name}` | {', '.join(f'`{one}`' for one in PACKAGES if one in some)} |"
+        for name, some in found.items()
+    ]
+    page = (ROOT / "docs/reference/architecture.md").read_text()
+    assert "\n".join(["| package | imports |", "| --- | --- |", *rows]) in page
+    assert not [name for name in small if f"`{name}`" not in page]
+
+
 LIBRARIES: dict[str, set[str]] = {
     "typer": {"commands", "cli"},
     "h5py": {"new_hdf5", "dataset", "simulation"},

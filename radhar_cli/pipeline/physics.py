@@ -1,4 +1,4 @@
-"""Unpack a scene into the objects of the physics: here alone are keys and units of scenes read."""
+"""Unpack a scene into the objects of the physics: keys and units of radar, wall, room, receiver."""
 
 from collections.abc import Callable
 from dataclasses import fields, replace

@@ -28,7 +28,7 @@ from radhar_cli.echo.gated import GatedEcho
 from radhar_cli.echo.impulse import impulse_echo, impulse_power
 from radhar_cli.echo.knots import delay_track, mean_power
 from radhar_cli.echo.paths import PathSource
-from radhar_cli.errors import SceneError
+from radhar_cli.errors import ConfigError, SceneError
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.pipeline.board_products import board_products
 from radhar_cli.pipeline.bodies import sources_of, together
@@ -117,8 +117,17 @@ def plan_images(config: Config, entropy: bool = True) -> Plan:
 
 
 def products(config: Config, entropy: bool = True) -> dict[str, Product]:
-    """Every product there could be under a config, by name; images with or without entropy."""
+    """Every product there could be under a config, by name; images with or without entropy.
+
+    Raises:
+        ConfigError: a product of a user's own would replace one that a board does not have.
+    """
     board = config.radar.cfg is not None
+    for own in own_products() if board else ():
+        if own.name in ("antennas", "paths", "noise", "receiver"):
+            raise ConfigError(
+                f"product {own.name}: has no effect with radar.cfg; should be 'channels' or 'cube'"
+            )
     echo = board_products(config, entropy) if board else _echo(config)
     rows = (*_physics(config), *_signals(config), *_maps(config, entropy), *echo, *own_products())
     found = {row.name: row for row in rows}

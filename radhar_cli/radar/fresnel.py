@@ -1,4 +1,7 @@
-"""Transmission of a face at an angle: Fresnel's equations (Born and Wolf, 1.5.2 and 14.2)."""
+"""Transmission of a face at an angle: Fresnel's equations (Born and Wolf, 1.5.2 and 14.2).
+
+Faces at normal incidence: `wall.field_factor`; all reflections within layers: `layers.Layers`.
+"""
 
 from typing import Literal
 

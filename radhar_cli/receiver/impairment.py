@@ -10,7 +10,7 @@ class Impairment:
 
     # whether it adds to the echo something that does not depend on it. Only then does it hold for
     # echoes from which what stands still was left out, and for sums over samples; others need raw
-    # samples of the whole echo, and make the plan take the exact engine.
+    # samples of the whole echo, which the direct engine does not make: it refuses them.
     additive: bool = True
 
     def apply(self, x: Complex, look: Look) -> Complex:

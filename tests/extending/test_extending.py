@@ -15,13 +15,13 @@ from signals import signal
 from radhar_cli import activity, registry
 from radhar_cli.activity import activity_named, add_activity
 from radhar_cli.arrays import Complex, Float
-from radhar_cli.config import Config
+from radhar_cli.config import Config, load_config
 from radhar_cli.config.schema import ToneConfig, possible_maps
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.verify import verify
-from radhar_cli.errors import RadharError, SceneError
+from radhar_cli.errors import ConfigError, RadharError, SceneError
 from radhar_cli.pipeline.physics import antennas_of, impairments_of, motion_of, waveform_of
 from radhar_cli.pipeline.plan import Product
 from radhar_cli.pipeline.products import plan_images
@@ -394,6 +394,15 @@ def test_a_data_set_is_read_where_its_products_are_not_known(tmp_path: Path) -> 
         assert data.maps["range_speed"][0].any()
     with pytest.raises(ValidationError, match="should be 'rtm'"):
         Config.model_validate({"maps": ["range_speed"]})
+
+
+@pytest.mark.usefixtures("own")
+@pytest.mark.parametrize("name", ["antennas", "receiver"])
+def test_a_board_refuses_products_that_it_has_not(name: str) -> None:
+    registry.add_product(OWN[name])
+    board = load_config("configs/boards/iwr1443.yaml")
+    with pytest.raises(ConfigError, match=f"product {name}: has no effect with radar.cfg"):
+        plan_images(board)
 
 
 @pytest.mark.usefixtures("own")

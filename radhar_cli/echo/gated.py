@@ -41,7 +41,6 @@ from radhar_cli.processing.look import Look, RangeBins
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.radar.waveform import Waveform
 
-PULSES = 512  # pulses per block of the error
 VALUES = 2**20  # envelopes at knots per block
 AT_PEAK = 1e-9  # sine of the denominator below which D is N
 MORE_NODES = 24, 48  # than D has half waves, in single and in double precision
@@ -181,17 +180,9 @@ class GatedEcho(DirectEcho):
         low = lags(low, shown.lost + 1).max(axis=1)
         high = lags(high, shown.lost + 1).min(axis=1)
         k = np.arange(self.bins.start, self.bins.stop)[:, None]
-        power = np.zeros(low.size)
-        whole = y if isinstance(self.canceller, Fir) else self.canceller(y)
-        for start in range(0, power.size, PULSES):
-            part = slice(start, min(start + PULSES, power.size))
-            rows = slice(
-                low[part].min() - k[0, 0], max(high[part].max(), low[part].min()) - k[0, 0]
-            )
-            x = whole[rows, start : part.stop + shown.lost]
-            x = self.canceller(x) if isinstance(self.canceller, Fir) else x
-            inside = _between(low[part], k[rows], high[part])
-            power[part] = np.einsum("km,km->m", x.real**2 + x.imag**2, inside)
+        inside = (low <= k) & (k < high)
+        pairs = np.where(inside, self.canceller(y), 0).view(float)
+        power = np.einsum("km,km->m", pairs, pairs).reshape(-1, 2).sum(axis=1)
         probes, density, total = probed_pulses(power)
         if total == 0:
             return -inf
@@ -199,12 +190,8 @@ class GatedEcho(DirectEcho):
         right = range_compression(beat_at(exact, w, probes, shown.taps), centred, self.bins) / unit
         for lag, c in enumerate(shown.taps):
             right -= c * y[:, probes + lag]
-        right *= _between(low[probes], k, high[probes])
+        right *= inside[:, probes]
         return relative_db((right.real**2 + right.imag**2).sum(axis=0), density, total)
-
-
-def _between(low: Index, k: Index, high: Index) -> Float:
-    return ((low <= k) & (k < high)).astype(float)
 
 
 def chebyshev(middle: float, half: float, k: Index, w: Waveform, real: np.dtype[Any]) -> Float:

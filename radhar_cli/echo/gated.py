@@ -11,6 +11,7 @@ real, are interpolated from knots; docs/physics/engines.md.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from math import ceil, inf
 from typing import Any
 
@@ -40,11 +41,10 @@ from radhar_cli.processing.look import Look, RangeBins
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.radar.waveform import Waveform
 
-PULSES = 512  # pulses per block of the error
-VALUES = 2**19  # envelopes at knots per block
+VALUES = 2**20  # envelopes at knots per block
 AT_PEAK = 1e-9  # sine of the denominator below which D is N
 MORE_NODES = 24, 48  # than D has half waves, in single and in double precision
-SMALLEST = 3e-8, 1e-15  # coefficient over N that is kept, likewise
+SMALLEST = 3e-7, 1e-15  # coefficient over N that is kept, and singular value, likewise
 
 
 def kernel(u: Float, k: Index, samples: int, n_fft: int) -> Float:
@@ -180,17 +180,9 @@ class GatedEcho(DirectEcho):
         low = lags(low, shown.lost + 1).max(axis=1)
         high = lags(high, shown.lost + 1).min(axis=1)
         k = np.arange(self.bins.start, self.bins.stop)[:, None]
-        power = np.zeros(low.size)
-        whole = y if isinstance(self.canceller, Fir) else self.canceller(y)
-        for start in range(0, power.size, PULSES):
-            part = slice(start, min(start + PULSES, power.size))
-            rows = slice(
-                low[part].min() - k[0, 0], max(high[part].max(), low[part].min()) - k[0, 0]
-            )
-            x = whole[rows, start : part.stop + shown.lost]
-            x = self.canceller(x) if isinstance(self.canceller, Fir) else x
-            inside = _between(low[part], k[rows], high[part])
-            power[part] = np.einsum("km,km->m", x.real**2 + x.imag**2, inside)
+        inside = (low <= k) & (k < high)
+        pairs = np.where(inside, self.canceller(y), 0).view(float)
+        power = np.einsum("km,km->m", pairs, pairs).reshape(-1, 2).sum(axis=1)
         probes, density, total = probed_pulses(power)
         if total == 0:
             return -inf
@@ -198,12 +190,8 @@ class GatedEcho(DirectEcho):
         right = range_compression(beat_at(exact, w, probes, shown.taps), centred, self.bins) / unit
         for lag, c in enumerate(shown.taps):
             right -= c * y[:, probes + lag]
-        right *= _between(low[probes], k, high[probes])
+        right *= inside[:, probes]
         return relative_db((right.real**2 + right.imag**2).sum(axis=0), density, total)
-
-
-def _between(low: Index, k: Index, high: Index) -> Float:
-    return ((low <= k) & (k < high)).astype(float)
 
 
 def chebyshev(middle: float, half: float, k: Index, w: Waveform, real: np.dtype[Any]) -> Float:
@@ -235,18 +223,28 @@ def _interpolated_sum(
     degree = SINGLE_DEGREE if dtype == np.complex64 else TAPS - 1
     turning = phasors_between_knots(stencils(cycles, shift), step, degree, dtype)
     both = np.concatenate([turning.real, turning.imag]).transpose(1, 2, 0)  # [segments, I, 2 step]
+    few, coefficients = _fewer(coefficients)
+    knots = few @ envelope.transpose(1, 0, 2)  # [knots, R, I]
+    around = np.lib.stride_tricks.sliding_window_view(knots, TAPS, axis=0)
+    around = around.transpose(0, 3, 1, 2).reshape(-1, TAPS * len(few), knots.shape[2])
+    z = np.empty((len(few), 2, shift.size, step), both.dtype)
     shift = np.where(shift == EXACT, 0, shift)  # which are overwritten
-    first, knots = BEFORE - REACH + shift, envelope.transpose(1, 0, 2)  # [knots, P, I]
-    sums = np.empty((shift.size, TAPS, len(envelope), 2 * step), both.dtype)
-    for segment, at in enumerate((first + np.arange(shift.size)).tolist()):
-        np.matmul(knots[at : at + TAPS], both[segment], out=sums[segment])
-    z = np.empty((len(envelope), 2, shift.size, step), both.dtype)
-    for moved in np.unique(shift).tolist():
-        rows = np.flatnonzero(shift == moved)
-        taps = sums[rows].reshape(-1, TAPS, len(envelope), 2, step)
-        z[:, :, rows] = np.einsum(
-            "stpcm,tm->pcsm", taps, lagrange_weights(step, moved).astype(z.dtype)
-        )
-    x = coefficients.T @ z.reshape(len(z), -1)
+    changes = np.flatnonzero(np.diff(shift, prepend=-EXACT, append=-EXACT)).tolist()
+    for start, stop in pairwise(changes):
+        moved = int(shift[start])
+        first = BEFORE - REACH + start + moved
+        taps = around[first : first + stop - start] @ both[start:stop]
+        taps = taps.reshape(-1, TAPS, len(few), 2, step)
+        weights = lagrange_weights(step, moved).astype(z.dtype)
+        z[:, :, start:stop] = np.einsum("strcm,tm->rcsm", taps, weights)
+    x = coefficients.T @ z.reshape(len(few), -1)
     real, imag = x.reshape(-1, 2, shift.size * step).swapaxes(0, 1)
     return real + 1j * imag
+
+
+def _fewer(coefficients: Float) -> tuple[Float, Float]:
+    """Q [R, P] and Q c [R, K] of coefficients c [P, K] that are nearly Q^T Q c, R a third less."""
+    double = coefficients.dtype == np.float64
+    u, s, v = np.linalg.svd(coefficients, full_matrices=False)
+    kept = s > SMALLEST[double] * s[0]
+    return np.ascontiguousarray(u[:, kept].T), s[kept, None] * v[kept]

@@ -2,7 +2,7 @@
 
 import fcntl
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
 from errno import EINVAL
 from pathlib import Path
 from uuid import uuid4
@@ -28,8 +28,8 @@ def replacing(
         raise OSError(EINVAL, "is not a regular file", str(path))
     other = unfinished or path.with_name(UNFINISHED + uuid4().hex)
     try:
-        with other.open("xb") as held:
-            if unfinished is None:
+        with nullcontext() if unfinished else other.open("xb") as held:
+            if held:
                 with suppress(OSError):  # a file system without locks
                     fcntl.flock(held, fcntl.LOCK_EX)
                 _remove_leftovers(path.parent)

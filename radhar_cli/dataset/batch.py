@@ -26,7 +26,7 @@ from radhar_cli.pipeline.validity import Flags, draw_valid_scene, warnings
 from radhar_cli.scene import Scene
 from radhar_cli.worker_process import prepare_process
 
-CHECKED_SCENES = 120
+CHECKED_SCENES = 24  # before a build; each is checked as it is made
 
 
 @dataclass(frozen=True)

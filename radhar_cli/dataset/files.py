@@ -16,9 +16,8 @@ MAX_TEXT = 2**20
 def write_whole(folder: Path, path: Path, data: bytes) -> None:
     """Write a file inside an output folder atomically: under a name in its work folder, renamed."""
     unfinished = unfinished_path(folder)
-    refuse_links(folder, unfinished.parent)
-    refuse_links(folder, path.parent)
     for one in (unfinished.parent, path.parent):
+        refuse_links(folder, one)
         one.mkdir(parents=True, exist_ok=True)
     with replacing(path, unfinished):
         unfinished.write_bytes(data)

@@ -14,10 +14,12 @@ CUDA_WORKERS = 8
 def repeatable(device: torch.device) -> None:
     """Ask for algorithms that give the same bits each time; elsewhere than on the CPU, if it can.
 
-    cuBLAS needs its workspace fixed before its first use.
+    cuBLAS needs its workspace fixed before its first use. No layer reads memory that it did not
+    write, which is thus not filled first.
     """
     os.environ.setdefault("CUBLAS_WORKSPACE_CONFIG", ":4096:8")
     torch.use_deterministic_algorithms(True, warn_only=device.type != "cpu")
+    torch.utils.deterministic.fill_uninitialized_memory = False  # type: ignore[attr-defined]
 
 
 def choose_device(wanted: str) -> torch.device:

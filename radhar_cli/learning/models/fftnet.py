@@ -48,11 +48,13 @@ class GlobalFilter(nn.Module):
 
 def convolution(inputs: int, outputs: int, stride: int = 1) -> nn.Sequential:
     """3 x 3 convolution with a bias, batch norm, ReLU."""
-    return nn.Sequential(
+    layers = nn.Sequential(
         nn.Conv2d(inputs, outputs, 3, stride, padding=1),
         nn.BatchNorm2d(outputs),
         nn.ReLU(inplace=True),
     )
+    layers.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
+    return layers
 
 
 class Block(nn.Module):

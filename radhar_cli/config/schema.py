@@ -409,24 +409,13 @@ class MotionConfig(Section):
         0.063, 0.011, 0.03, 0.1
     )
     """Between a walker's feet, relative to the stature."""
-    step_asymmetry: Annotated[By[Signed], People("walking", -0.05, 0.05), PERSONAL] = normal(
-        0.0, 0.02, -0.05, 0.05
-    )
-    """Of left relative to right steps."""
     speed_ripple: Annotated[By[Ratio], People("walking", 0, 0.2), PERSONAL] = normal(
         0.125, 0.015, 0.09, 0.17
     )
     """Amplitude of the hip's speed within each step, relative to the mean speed."""
-    speed_ripple_asymmetry: Annotated[By[Signed], People("walking", -0.1, 0.1), PERSONAL] = normal(
-        0.0, 0.05, -0.1, 0.1
-    )
-    """Of the right step's ripple relative to the left one's."""
     speed_variation: Annotated[By[Ratio], People("walking", 0, 0.06), UNSTEADY] = uniform(0.0, 0.06)
-    """Standard deviation of the speed over time, relative to the speed."""
-    stride_jitter: Annotated[By[Ratio], People("walking", 0, 0.03), UNSTEADY] = uniform(0.0, 0.03)
-    """Standard deviation of the stride time, relative to it."""
-    width_jitter_m: Annotated[By[Ratio], People("walking", 0, 0.02), UNSTEADY] = uniform(0.0, 0.02)
-    """Standard deviation of half the step width from stride to stride, m."""
+    """Standard deviation of the speed over time, relative to the speed; of stride times it is half
+    as much, of half the step width a third, in metres."""
     lane_m: Annotated[By[Coordinate], People("walking", 0, 1000)] = 0.0
     """Distance after which walkers turn round, every time again; 0 is never."""
     lane_start: Annotated[By[Ratio], People("walking", 0, 1)] = uniform(0.0, 1.0)

@@ -312,7 +312,7 @@ def test_samples_differ_and_are_reproducible(slug: str) -> None:
 
 
 def test_strides_punches_and_kicks_vary() -> None:
-    config = people({"tempo_jitter": 0.1, "size_jitter": 0.1, "stride_jitter": 0.03})
+    config = people({"tempo_jitter": 0.1, "size_jitter": 0.1, "speed_variation": 0.06})
     punch, kick = (
         moving(draw_scene(config, activity_named(slug), 0)).parts[0][0].course
         for slug in ("punching", "kicking")

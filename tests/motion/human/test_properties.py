@@ -62,7 +62,6 @@ GAITS = st.builds(
     phase=st.floats(0, 1),
     arm_swing=st.floats(0.6, 1.3),
     trunk_pitch=st.floats(-0.05, 0.15),
-    asymmetry=st.floats(-0.03, 0.03),
     ragged=st.builds(
         Waves.low_pass, st.floats(0.0, 0.08), PHASES.map(lambda p: p[:3]), st.just((0.1, 0.25, 0.4))
     ),

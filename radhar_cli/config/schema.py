@@ -446,8 +446,6 @@ class MotionConfig(Section):
     """Pitch of the trunk."""
     dwell_s: Annotated[By[Seconds], People("grabbing", 0, 60)] = uniform(0.2, 0.6)
     """Time at the floor."""
-    rise_overlap: Annotated[By[Ratio], People("grabbing", 0, 0.6)] = 0.0
-    """Fraction of the descent overlapped by the rise."""
     seat_height: Annotated[By[Ratio], People(SEATS, 0.24, 0.33)] = normal(0.285, 0.015, 0.25, 0.32)
     """Height of the seated hip, relative to the stature."""
     lean_deg: Annotated[By[Angle], People("sitting_down standing_up", 0, 60), PERSONAL] = normal(
@@ -460,12 +458,6 @@ class MotionConfig(Section):
     """0 is beside the seat, 1 on the lap."""
     recline_from: Annotated[By[Ratio], People("sitting_down", 0, 1)] = 0.7
     """Share of the duration from which on the trunk leans back."""
-    squat: Annotated[By[Signed], People("grabbing", -1, 1)] = uniform(-1.0, 1.0)
-    """From over straight legs (-1) to deep in the knees (1)."""
-    reach_deg: Annotated[By[Angle], People("grabbing", -10, 60)] = 12.0
-    """Of the right arm ahead of the vertical."""
-    free_arm: Annotated[By[Signed], People("grabbing", -0.5, 1)] = 0.55
-    """Motion of the left arm relative to the right one; below 0 it swings back."""
     joint_lag: Annotated[
         By[Ratio], People("grabbing sitting_down standing_up", 0, 0.6), UNSTEADY
     ] = 0.0
@@ -476,10 +468,6 @@ class MotionConfig(Section):
     """Turn of the trunk to look behind."""
     settle_size: Annotated[By[Ratio], People("S4 S5 S6", 0, 3), UNSTEADY] = uniform(0.0, 3.0)
     """Size of the fidgets around the end."""
-    kneel_s: Annotated[By[Seconds], People("falling", 0, 3), UNSTEADY] = uniform(0.0, 0.6)
-    """Pause on the knees in a forward fall."""
-    heels_deg: Annotated[By[Angle], People("falling", 0, 90), UNSTEADY] = 0.0
-    """How far the shanks swing up as people land on their knees in a forward fall."""
     fall: Annotated[
         FallName | Falls,
         People("falling falling_off_seat falling_on_rising stumbling"),

@@ -236,10 +236,6 @@ def _repertoire(person: Person, duration: float | None, place: int = 0) -> Reper
             up=moving * 1.3 / 2.5,
             thigh=radians(-62) * bend / 72,
             trunk=radians(bend),
-            reach=radians(motion.reach_deg),
-            other_arm=motion.free_arm,
-            squat=motion.squat,
-            haste=motion.rise_overlap,
             lowering=lags[0],
             rising=lags[1],
         ),
@@ -291,9 +287,7 @@ def _fall(person: Person, duration: float | None, caught: bool = False) -> Fall:
     """A fall from standing, broken by the hands or not."""
     motion = person.motion
     if motion.fall == "forward":
-        prone = OnFours() if caught else Prone()
-        ahead = FallForward(prone=prone, kneel=motion.kneel_s, heels=radians(motion.heels_deg))
-        return _lasting(duration, ahead)
+        return _lasting(duration, FallForward(prone=OnFours() if caught else Prone()))
     if motion.fall == "backward":
         return _lasting(duration, FallBackward(supine=Sitting() if caught else Supine()))
     aside = FallSideways(side=_side(person), caught=radians(36) if caught else 0.0)

@@ -60,6 +60,7 @@ SLUGS = tuple(dict.fromkeys(CLASSES.values()))
 LONG = "walking"  # its maps last twice as long as those of the others
 SIDE, BAND_HZ, SHOWN_HZ, LINE_HZ, SHOWN_S = 32, 500.0, 160.0, 24.0, 5
 MEDIAN, BLUR = (5, 5), 3  # cells of a mask, rows and columns of 39 ms; pixels of an image
+COMPRESSED, FINE = 0.65, 8  # exponent of the Doppler axis; samples of it a pixel
 TOWARDS = (  # walks that begin towards the radar, one in five
     "motion.angle_deg={uniform: [165, 195]}",
     "motion.range_m={uniform: [7.4, 8.2]}",
@@ -90,20 +91,22 @@ def network_image(mask: Bool, slug: str) -> Levels:
     Single cells and lines of interference go by a median, what is not connected with the line at
     zero goes too, holes are filled. Then the first 5 s within SHOWN_HZ, without what lies within
     LINE_HZ: how thick the line at zero is depends on the room and on SNR more than on who moves.
-    Without the first columns, in which filter and STFT start. Simulated and measured masks go the
-    same way.
+    A pixel lies at ((|f| - LINE_HZ) / (SHOWN_HZ - LINE_HZ))^COMPRESSED of the way out, as who sits
+    down or bends is hardly faster than LINE_HZ. Without the first columns, in which filter and STFT
+    start. Simulated and measured masks go the same way.
     """
     height, width = mask.shape
     centre = height // 2
-    reach, line = (round(centre * hz / BAND_HZ) for hz in (SHOWN_HZ, LINE_HZ))
     body = mask[:, : width // 2] if slug == LONG else mask[:, ::2]  # columns as far apart in each
     body = ndimage.median_filter(body, size=MEDIAN)
     body[centre - 3 : centre + 3] = True
     parts, _ = ndimage.label(body)
     body = ndimage.binary_fill_holes(parts == parts[centre, 0])
-    body[centre - line : centre + line] = False
-    shown = body[centre - reach : centre + reach]
-    shown[:, : shown.shape[1] // SIDE] = False
+    body[:, : body.shape[1] // SIDE] = False
+    way_out = (np.arange(FINE * SIDE // 2) + 0.5) / (FINE * SIDE // 2)
+    hz = LINE_HZ + (SHOWN_HZ - LINE_HZ) * way_out ** (1 / COMPRESSED)
+    above, below = (centre + sign * hz * centre / BAND_HZ for sign in (-1, 1))
+    shown = body[np.concatenate([above[::-1], below]).astype(int)]
     levels = Image.fromarray(shown.astype(np.uint8) * 255)
     small = np.asarray(levels.resize((SIDE, SIDE), Image.Resampling.BOX))
     return ndimage.uniform_filter(small, BLUR)
@@ -367,7 +370,8 @@ def mistakes_png(found: Predicted, simulated: ImageSet) -> bytes | None:
             row += [_picture(of_class[number], f"simulated {slug}") for number in nearest]
         rows[f"{names[true]}\n{count} as\n{names[taken]}"] = row
     title = "Measured images that are taken for another class, and the nearest simulated ones"
-    return pictures_png(rows, title, "time (s)", "Doppler (Hz)") if rows else None
+    axis = f"Doppler ({LINE_HZ:g} Hz at 0, {SHOWN_HZ:g} Hz at 1; exponent {COMPRESSED})"
+    return pictures_png(rows, title, "time (s)", axis) if rows else None
 
 
 def _grey(images: ImageSet, rows: Iterable[int]) -> Levels:
@@ -376,7 +380,7 @@ def _grey(images: ImageSet, rows: Iterable[int]) -> Levels:
 
 
 def _picture(levels: Levels, words: str) -> Picture:
-    return Picture(levels, (0, SHOWN_S, -SHOWN_HZ, SHOWN_HZ), words)
+    return Picture(levels, (0, SHOWN_S, -1, 1), words)
 
 
 def report(

@@ -409,24 +409,13 @@ class MotionConfig(Section):
         0.063, 0.011, 0.03, 0.1
     )
     """Between a walker's feet, relative to the stature."""
-    step_asymmetry: Annotated[By[Signed], People("walking", -0.05, 0.05), PERSONAL] = normal(
-        0.0, 0.02, -0.05, 0.05
-    )
-    """Of left relative to right steps."""
     speed_ripple: Annotated[By[Ratio], People("walking", 0, 0.2), PERSONAL] = normal(
         0.125, 0.015, 0.09, 0.17
     )
     """Amplitude of the hip's speed within each step, relative to the mean speed."""
-    speed_ripple_asymmetry: Annotated[By[Signed], People("walking", -0.1, 0.1), PERSONAL] = normal(
-        0.0, 0.05, -0.1, 0.1
-    )
-    """Of the right step's ripple relative to the left one's."""
     speed_variation: Annotated[By[Ratio], People("walking", 0, 0.06), UNSTEADY] = uniform(0.0, 0.06)
-    """Standard deviation of the speed over time, relative to the speed."""
-    stride_jitter: Annotated[By[Ratio], People("walking", 0, 0.03), UNSTEADY] = uniform(0.0, 0.03)
-    """Standard deviation of the stride time, relative to it."""
-    width_jitter_m: Annotated[By[Ratio], People("walking", 0, 0.02), UNSTEADY] = uniform(0.0, 0.02)
-    """Standard deviation of half the step width from stride to stride, m."""
+    """Standard deviation of the speed over time, relative to the speed; of stride times it is half
+    as much, of half the step width a third, in metres."""
     lane_m: Annotated[By[Coordinate], People("walking", 0, 1000)] = 0.0
     """Distance after which walkers turn round, every time again; 0 is never."""
     lane_start: Annotated[By[Ratio], People("walking", 0, 1)] = uniform(0.0, 1.0)
@@ -457,8 +446,6 @@ class MotionConfig(Section):
     """Pitch of the trunk."""
     dwell_s: Annotated[By[Seconds], People("grabbing", 0, 60)] = uniform(0.2, 0.6)
     """Time at the floor."""
-    rise_overlap: Annotated[By[Ratio], People("grabbing", 0, 0.6)] = 0.0
-    """Fraction of the descent overlapped by the rise."""
     seat_height: Annotated[By[Ratio], People(SEATS, 0.24, 0.33)] = normal(0.285, 0.015, 0.25, 0.32)
     """Height of the seated hip, relative to the stature."""
     lean_deg: Annotated[By[Angle], People("sitting_down standing_up", 0, 60), PERSONAL] = normal(
@@ -471,12 +458,6 @@ class MotionConfig(Section):
     """0 is beside the seat, 1 on the lap."""
     recline_from: Annotated[By[Ratio], People("sitting_down", 0, 1)] = 0.7
     """Share of the duration from which on the trunk leans back."""
-    squat: Annotated[By[Signed], People("grabbing", -1, 1)] = uniform(-1.0, 1.0)
-    """From over straight legs (-1) to deep in the knees (1)."""
-    reach_deg: Annotated[By[Angle], People("grabbing", -10, 60)] = 12.0
-    """Of the right arm ahead of the vertical."""
-    free_arm: Annotated[By[Signed], People("grabbing", -0.5, 1)] = 0.55
-    """Motion of the left arm relative to the right one; below 0 it swings back."""
     joint_lag: Annotated[
         By[Ratio], People("grabbing sitting_down standing_up", 0, 0.6), UNSTEADY
     ] = 0.0
@@ -487,10 +468,6 @@ class MotionConfig(Section):
     """Turn of the trunk to look behind."""
     settle_size: Annotated[By[Ratio], People("S4 S5 S6", 0, 3), UNSTEADY] = uniform(0.0, 3.0)
     """Size of the fidgets around the end."""
-    kneel_s: Annotated[By[Seconds], People("falling", 0, 3), UNSTEADY] = uniform(0.0, 0.6)
-    """Pause on the knees in a forward fall."""
-    heels_deg: Annotated[By[Angle], People("falling", 0, 90), UNSTEADY] = 0.0
-    """How far the shanks swing up as people land on their knees in a forward fall."""
     fall: Annotated[
         FallName | Falls,
         People("falling falling_off_seat falling_on_rising stumbling"),

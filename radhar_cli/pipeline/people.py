@@ -236,10 +236,6 @@ def _repertoire(person: Person, duration: float | None, place: int = 0) -> Reper
             up=moving * 1.3 / 2.5,
             thigh=radians(-62) * bend / 72,
             trunk=radians(bend),
-            reach=radians(motion.reach_deg),
-            other_arm=motion.free_arm,
-            squat=motion.squat,
-            haste=motion.rise_overlap,
             lowering=lags[0],
             rising=lags[1],
         ),
@@ -291,9 +287,7 @@ def _fall(person: Person, duration: float | None, caught: bool = False) -> Fall:
     """A fall from standing, broken by the hands or not."""
     motion = person.motion
     if motion.fall == "forward":
-        prone = OnFours() if caught else Prone()
-        ahead = FallForward(prone=prone, kneel=motion.kneel_s, heels=radians(motion.heels_deg))
-        return _lasting(duration, ahead)
+        return _lasting(duration, FallForward(prone=OnFours() if caught else Prone()))
     if motion.fall == "backward":
         return _lasting(duration, FallBackward(supine=Sitting() if caught else Supine()))
     aside = FallSideways(side=_side(person), caught=radians(36) if caught else 0.0)
@@ -324,10 +318,9 @@ def _stumble(person: Person) -> StepTo:
 def _gait(person: Person, place: int) -> Gait:
     motion = person.motion
     strides = ceil(person.seconds / MIN_STRIDE_S) + 8
-    rng = person.stream(f"motion.stride_jitter/{place}")
+    rng, varies = person.stream(f"motion.speed_variation/{place}"), motion.speed_variation
     # The duration of a stride is the difference of two deviations.
-    jitter = motion.stride_jitter / 2**0.5 * rng.standard_normal(strides)
-    widths = person.stream(f"motion.width_jitter_m/{place}").standard_normal(strides)
+    jitter, widths = (share * varies * rng.standard_normal(strides) for share in (8**-0.5, 1 / 3))
     return Gait(
         speed=motion.speed_mps,
         period_scale=motion.period_scale,
@@ -336,12 +329,10 @@ def _gait(person: Person, place: int) -> Gait:
         trunk_pitch=radians(motion.trunk_pitch_deg),
         half_width=motion.step_width / 2,
         surge=motion.speed_ripple,
-        surge_asymmetry=motion.speed_ripple_asymmetry,
         start=motion.speed_up,
-        asymmetry=motion.step_asymmetry,
-        ragged=_waves(motion, motion.speed_variation, RAGGED_HZ, 0.7),
+        ragged=_waves(motion, varies, RAGGED_HZ, 0.7),
         jitter=_some(np.clip(jitter, -0.03, 0.03)),
-        widths=_some(np.clip(motion.width_jitter_m * widths, -0.02, 0.03)),
+        widths=_some(np.clip(widths, -0.02, 0.03)),
         lane=_lane(person, place),
     )
 

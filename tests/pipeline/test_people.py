@@ -184,17 +184,6 @@ def test_joints_lead_and_lag_out_of_step_and_no_movement_takes_longer() -> None:
     assert np.ptp(leads[4:]) > 0.05
 
 
-def test_who_picks_up_reaches_ahead_and_the_free_arm_does_as_it_likes() -> None:
-    at, hands = np.array([1.8]), {}
-    for reach, free in ((0.0, 0.5), (50.0, 0.5), (0.0, -0.4)):
-        motion = QUIET | {"reach_deg": reach, "free_arm": free, "dwell_s": 0.4, "bend_deg": 72}
-        person = moving(nominal_scene(people(motion), activity_named("grabbing")))
-        p = person.positions(at)[0, :, 0]
-        hands[reach, free] = [p[JOINTS.index(f"{side}_hand")] for side in ("right", "left")]
-    assert hands[50.0, 0.5][0] > hands[0.0, 0.5][0] + 0.2
-    assert hands[0.0, -0.4][1] < hands[0.0, 0.5][1] - 0.2
-
-
 def test_hands_are_on_the_lap_or_beside_the_seat_and_people_lean_back_when_they_like() -> None:
     at, hand = np.arange(0, 6, 0.01), JOINTS.index("right_hand")
     ahead = {}
@@ -256,38 +245,6 @@ def test_walkers_turn_round_where_the_lane_ends() -> None:
     assert straight.parts[0][0].gait.lane is None
 
 
-def test_a_fall_by_way_of_the_knees_takes_longer() -> None:
-    ends = [
-        moving(draw_scene(people({"kneel_s": kneel}), activity_named("S12"), 0)).phases[-1][0]
-        for kneel in (0.0, 0.5)
-    ]
-    assert ends[1] - ends[0] == pytest.approx(0.5)
-
-
-def test_feet_swing_up_as_a_fall_lands_on_the_knees_and_come_down_again() -> None:
-    t, foot = np.arange(0, 6, 0.01), JOINTS.index("right_ankle")
-    up = {}
-    for heels in (0.0, 60.0):
-        config = people(QUIET | {"heels_deg": heels})
-        up[heels] = moving(draw_scene(config, activity_named("S12"), 0)).positions(t)[2, foot]
-    raised = up[60.0] - up[0.0]
-    assert raised.max() == pytest.approx(up[0.0][-1] + 0.3, abs=0.15)
-    assert raised[-1] == pytest.approx(0.0, abs=1e-9)
-    assert np.count_nonzero(raised > 0.01) * 0.01 < 0.9
-
-
-def test_who_is_in_haste_never_comes_to_rest_at_the_floor() -> None:
-    t, still = np.arange(0, 6, 0.01), {}
-    for rise_overlap in (0.0, 0.5):
-        config = people(QUIET | {"rise_overlap": rise_overlap, "dwell_s": 0.0})
-        motion = moving(nominal_scene(config, activity_named("grabbing")))
-        trunk = motion.parts[0][0].course(t)[2]
-        bent = trunk > 0.5 * trunk.max()
-        rate = np.abs(np.gradient(trunk, t))
-        still[rise_overlap] = np.count_nonzero(rate[bent] < 0.3) * 0.01
-    assert still[0.5] < 0.5 * still[0.0]
-
-
 def test_who_gains_speed_slowly_falls_behind_by_half_of_that_time() -> None:
     t, x = np.arange(0, 6, 0.01), {}
     for strides in (0.6, 1.6):
@@ -312,7 +269,7 @@ def test_samples_differ_and_are_reproducible(slug: str) -> None:
 
 
 def test_strides_punches_and_kicks_vary() -> None:
-    config = people({"tempo_jitter": 0.1, "size_jitter": 0.1, "stride_jitter": 0.03})
+    config = people({"tempo_jitter": 0.1, "size_jitter": 0.1, "speed_variation": 0.06})
     punch, kick = (
         moving(draw_scene(config, activity_named(slug), 0)).parts[0][0].course
         for slug in ("punching", "kicking")

@@ -21,8 +21,6 @@ from radhar_cli.motion.human.planted import (
 )
 
 GIVE = radians(9)  # by how much the trunk goes on over arms that break a fall
-LANDED = 0.7  # of the duration: the knees are down
-SWING = 0.35, 0.45  # of the shanks, up and down, s
 PRONE, SUPINE, ON_FOURS = "lying prone", "lying on the back", "lying on hands and knees"
 ON_FLOOR, PROPPED = "lying against the seat", "lying on the hands"
 
@@ -73,33 +71,24 @@ class FallForward:
     prone: Prone = field(default_factory=Prone)
     buckle: float = radians(26)  # by how much the thighs give way at first, rad
     arms: float = radians(80)  # flexion of the shoulders as the hands look for the floor, rad
-    kneel: float = 0.0  # how long the trunk stays over the knees before it falls too, s
-    heels: float = 0.0  # how far the shanks swing up behind the knees on which the body lands, rad
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
         rest, prone = at_rest(person), self.prone.posture(person)
         change = {channel: prone[channel] - rest[channel] for channel in rest}
         rest |= {channel: prone[channel] for channel in ("hands_ahead", "hands_beside")}
-        kneel = self.kneel / self.duration
         steps = [
             Step("shank", change["shank"], 0.0, 0.78, late=True),
-            Step("thigh", change["thigh"], kneel + 0.08, 0.92, late=True),
+            Step("thigh", change["thigh"], 0.08, 0.92, late=True),
             Step("thigh", -self.buckle, 0.0, 0.50),
-            Step("thigh", self.buckle, kneel + 0.42, 0.58),
-            Step("trunk", change["trunk"], kneel + 0.10, 1.0, late=True),
-            *both(SHOULDERS, self.arms, kneel + 0.05, 0.7),
-            Step("hands", 1.0, kneel + 0.25, 0.65),
+            Step("thigh", self.buckle, 0.42, 0.58),
+            Step("trunk", change["trunk"], 0.10, 1.0, late=True),
+            *both(SHOULDERS, self.arms, 0.05, 0.7),
+            Step("hands", 1.0, 0.25, 0.65),
         ]
-        if self.heels:
-            up, down = (time / self.duration for time in SWING)
-            steps += [
-                Step("heels", self.heels, LANDED, up),
-                Step("heels", -self.heels, LANDED + up, down),
-            ]
         if not isinstance(self.prone, OnFours):
-            return _falling(person, begin, self.duration, rest, steps, PRONE, self.kneel)
-        steps += [Step("trunk", GIVE, kneel + 0.7, 0.35), Step("trunk", -GIVE, kneel + 1.05, 0.6)]
-        return _falling(person, begin, self.duration, rest, steps, ON_FOURS, self.kneel)
+            return _falling(person, begin, self.duration, rest, steps, PRONE)
+        steps += [Step("trunk", GIVE, 0.7, 0.35), Step("trunk", -GIVE, 1.05, 0.6)]
+        return _falling(person, begin, self.duration, rest, steps, ON_FOURS)
 
 
 @dataclass(frozen=True)
@@ -184,7 +173,6 @@ def _falling(
     rest: dict[str, float],
     steps: list[Step],
     after: str,
-    kneel: float = 0.0,
 ) -> Planted:
     """A fall of some steps, in units of the duration, in which the sway comes to its end."""
     steps += [Step("standing", -1.0, 0.0, 0.5), Step("upright", -1.0, 0.0, 1.0)]

@@ -53,8 +53,6 @@ class Gait:
     trunk_pitch: float = radians(3)  # rad ahead
     half_width: float = 0.0315  # of the stance, fraction of the stature
     surge: float = 0.125  # speed of the hip's surge, twice a stride, over the speed
-    # of the right step's surge over the left one's, over twice the speed
-    surge_asymmetry: float = 0.0
     sidewards: float = 0.018  # of the hip from side to side, m
     sink: float = 0.003  # of the standing height while walking, fraction of the stature
     softness: float = 80.0  # of the pelvis's height (`Physique.softness`) while walking, 1/m
@@ -68,7 +66,6 @@ class Gait:
     lag: float = 0.21
     ramp: float = 0.6  # in which a walk gains and loses its speed, fraction of a stride
     start: float | None = None  # in which it gains it from rest, likewise; as ramp if None
-    asymmetry: float = 0.0  # of left over right step lengths, fraction of a step
     ragged: Waves = field(default_factory=Waves)  # relative deviation of the speed over time
     # by how much the phase is ahead after each stride, fractions of a stride
     jitter: tuple[float, ...] = ()
@@ -351,7 +348,7 @@ class Walking:
         off, toe, down, above = times
         usual = side * gait.half_width * self.person.stature
         rest = side * self.person.hip
-        way = self.path(above) + side * gait.asymmetry * gait.speed * self.stride / 4
+        way = self.path(above)
         sides = np.full(above.size, usual)
         widths = side * np.array(gait.widths[: sides.size])
         sides[: widths.size] += widths
@@ -384,7 +381,6 @@ class Walking:
         surge = sum(
             curves.harmonic(k, share * cycle / k, SURGE_PHASE + 1 / (4 * k))
             for k, share in (
-                (1, gait.surge_asymmetry),
                 (2, gait.surge),
                 (4, SHARPNESS * gait.surge),
             )

@@ -73,19 +73,6 @@ def test_ankles_are_fastest_late_and_before_them_knees() -> None:
     assert 2.2 < one[joint("right_knee")].max() < 2.4
 
 
-def test_surges_differ_from_right_to_left() -> None:
-    """What the right step gains, the left one loses."""
-    walk = Walk(Gait(1.2, surge_asymmetry=0.05), from_rest=False)
-    torso = np.diff(positions(walk, 4.0)[0, joint("torso")]) / DT / 1.2
-    stride = walk.part(Physique(1.75), 0.0, 4.0).stride
-    fastest = [
-        torso[round((1 + u) * stride / DT) :][: round(0.3 * stride / DT)].max()
-        for u in (0.89, 1.39)
-    ]
-    even = 1 + 0.125 * 1.08
-    np.testing.assert_allclose(fastest, [even + 0.05, even - 0.05], atol=0.005)
-
-
 def test_knee_angles_of_a_walker() -> None:
     """Swing 65 to 73 degrees, stance about 20: the contract of the gait."""
     person = Physique(1.75)

@@ -43,6 +43,7 @@ from radhar_cli.radar.waveform import Waveform
 
 VALUES = 2**20  # envelopes at knots per block
 AT_PEAK = 1e-9  # sine of the denominator below which D is N
+MOST = 128  # polynomials of which combinations are looked for, at a cost of the cube of them
 MORE_NODES = 24, 48  # than D has half waves, in single and in double precision
 SMALLEST = 3e-7, 1e-15  # coefficient over N that is kept, and singular value, likewise
 
@@ -223,21 +224,23 @@ def _interpolated_sum(
     degree = SINGLE_DEGREE if dtype == np.complex64 else TAPS - 1
     turning = phasors_between_knots(stencils(cycles, shift), step, degree, dtype)
     both = np.concatenate([turning.real, turning.imag]).transpose(1, 2, 0)  # [segments, I, 2 step]
-    few, coefficients = _fewer(coefficients)
-    knots = few @ envelope.transpose(1, 0, 2)  # [knots, R, I]
+    knots = envelope.transpose(1, 0, 2)
+    if len(coefficients) <= MOST:
+        few, coefficients = _fewer(coefficients)
+        knots = few @ knots  # [knots, R, I]
     around = np.lib.stride_tricks.sliding_window_view(knots, TAPS, axis=0)
-    around = around.transpose(0, 3, 1, 2).reshape(-1, TAPS * len(few), knots.shape[2])
-    z = np.empty((len(few), 2, shift.size, step), both.dtype)
+    around = around.transpose(0, 3, 1, 2).reshape(-1, TAPS * len(coefficients), knots.shape[2])
+    z = np.empty((len(coefficients), 2, shift.size, step), both.dtype)
     shift = np.where(shift == EXACT, 0, shift)  # which are overwritten
     changes = np.flatnonzero(np.diff(shift, prepend=-EXACT, append=-EXACT)).tolist()
     for start, stop in pairwise(changes):
         moved = int(shift[start])
         first = BEFORE - REACH + start + moved
         taps = around[first : first + stop - start] @ both[start:stop]
-        taps = taps.reshape(-1, TAPS, len(few), 2, step)
+        taps = taps.reshape(-1, TAPS, len(coefficients), 2, step)
         weights = lagrange_weights(step, moved).astype(z.dtype)
         z[:, :, start:stop] = np.einsum("strcm,tm->rcsm", taps, weights)
-    x = coefficients.T @ z.reshape(len(few), -1)
+    x = coefficients.T @ z.reshape(len(coefficients), -1)
     real, imag = x.reshape(-1, 2, shift.size * step).swapaxes(0, 1)
     return real + 1j * imag
 

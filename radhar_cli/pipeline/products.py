@@ -279,7 +279,8 @@ def received(
             )
         x = impairment.apply(x, look)
     signal = signal_of_look(x, look)
-    return signal if canceller is None else signal.cancelled(canceller, look.spans)
+    spans = look.spans if isinstance(canceller, Fir) else None  # others see all pulses
+    return signal if canceller is None else signal.cancelled(canceller, spans)
 
 
 def _exactly(c: Config, seen: Seen, looks: list[Look]) -> list[Signal]:

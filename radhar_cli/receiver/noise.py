@@ -35,8 +35,8 @@ def white_noise(look: Look, rng: np.random.Generator, sigma: float = 1.0) -> Com
     if look.spans is not None and fast.white:
         v = np.zeros((rank, look.count), complex)
         for row, span in zip(v, look.spans, strict=True):
-            row[span] = fast.colour(circular_gaussian(rng, row[span].shape), sigma)
-        return v
+            rng.standard_normal(out=row[span].view(float))
+        return fast.colour(v, sigma * np.sqrt(0.5))
     if look.spans is not None:
         v = circular_gaussian(rng, (rank, look.count))
     elif look.count == 1 or reach == 0 or np.all(np.diff(look.pulses) > reach):

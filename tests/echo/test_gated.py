@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.config.schema import Config
+from radhar_cli.echo import gated
 from radhar_cli.echo.accuracy import AccuracyError, Settings
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.gated import GatedEcho, kernel
@@ -206,3 +207,11 @@ def test_a_body_outside_the_gate_leaves_its_side_lobes():
     assert np.abs(right).max() > 0
     assert ref.error_db(np.diff(y), np.diff(right)) < -80
     assert accuracy.error_db < -80
+
+
+@pytest.mark.parametrize("tolerance_db", [-60.0, -110.0])
+def test_many_polynomials_are_left_as_they_are(monkeypatch, tolerance_db):
+    """Looking for combinations of them takes the cube of their number."""
+    combined = echo(tolerance_db).rows()[0]
+    monkeypatch.setattr(gated, "MOST", 0)
+    assert ref.error_db(echo(tolerance_db).rows()[0], combined) < tolerance_db - 10

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from math import frexp
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -28,7 +28,7 @@ from radhar_cli.echo.accuracy import (
 from radhar_cli.echo.beat import start_phase
 from radhar_cli.echo.half_band_sum import half_band_table
 from radhar_cli.echo.interpolation import AFTER, BEFORE, NODES, TAPS, lagrange_basis, stencils
-from radhar_cli.echo.knots import Knots, Motion, only, resolve
+from radhar_cli.echo.knots import MIN_STEP, Knots, Motion, Spacing, only, resolve
 from radhar_cli.echo.paths import Paths, PathSource
 from radhar_cli.echo.phase_recurrence import nodes, phasors_between_knots
 from radhar_cli.phasor import unit_phasor
@@ -63,6 +63,7 @@ class DirectEcho:
     tolerance_db: float  # largest relative L2 error after the canceller
     double: bool = False  # keep to double precision whatever the tolerance
     canceller: Canceller = FIRST_DIFFERENCE  # after which the signal will be seen
+    min_step: ClassVar[int] = MIN_STEP  # fewest pulses from knot to knot
 
     def signal_power(self) -> float:
         """P_s = mean over the pulses of sum_i A_i^2."""
@@ -100,13 +101,14 @@ class DirectEcho:
                 raise AccuracyError(best + SPARE_DB)
             aim = max(aim - max(REFINE_DB, error - self.tolerance_db), MIN_AIM_DB)
             chosen = self._settings(aim)._replace(single=False)
-            motion = resolve(self.source, self.waveform, chosen.spacing)
+            motion = self._resolved(chosen.spacing)
 
     @cached_property
     def _motion(self) -> Motion:
-        return resolve(
-            self.source, self.waveform, self._settings(first_aim(self.tolerance_db)).spacing
-        )
+        return self._resolved(self._settings(first_aim(self.tolerance_db)).spacing)
+
+    def _resolved(self, spacing: Spacing) -> Motion:
+        return resolve(self.source, self.waveform, spacing, self.min_step)
 
     def _settings(self, aim_db: float) -> Settings:
         chosen = settings(aim_db, self.waveform, self.source.highest_frequency)
@@ -129,7 +131,8 @@ class DirectEcho:
         some = np.arange(0, paths.delay.shape[1] - 1, max(1, paths.delay.shape[1] // SAMPLED))
         turn = self.waveform.f0 / motion.step * (paths.delay[:, some + 1] - paths.delay[:, some])
         amplitude = paths.amplitude[:, some] * kept[:, None]
-        left = sum(c * unit_phasor(k * turn) for k, c in enumerate(self.canceller.taps))
+        taps = enumerate(self.canceller.taps)
+        left = sum(c * unit_phasor(k * turn, np.complex64) for k, c in taps)
         rounding_db = SINGLE_ROUNDING_DB - (self.tolerance_db - SPARE_DB)
         least = 10 ** (rounding_db / 10) * np.sum(amplitude**2)
         return bool(np.sum(np.abs(left * amplitude) ** 2) > least)

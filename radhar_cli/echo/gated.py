@@ -13,7 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from math import ceil, inf
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import scipy.fft
@@ -73,6 +73,7 @@ class GatedEcho(DirectEcho):
     # all
     needed: tuple[Index, Index] | None = None
     spans: list[slice] | None = None  # the pulses of each bin that count; None is all
+    min_step: ClassVar[int] = 6  # envelopes from fewer cost more than at every pulse
 
     @property
     def look(self) -> Look:

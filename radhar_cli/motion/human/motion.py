@@ -11,7 +11,9 @@ import numpy as np
 
 from radhar_cli.arrays import Float
 from radhar_cli.motion import skeleton
+from radhar_cli.motion.human.exercises import Exercise
 from radhar_cli.motion.human.idle import Idle
+from radhar_cli.motion.human.kicking import Kick
 from radhar_cli.motion.human.part import LYING, SEATED, STANDING, Part, Phase, Place
 from radhar_cli.motion.human.physique import Physique
 from radhar_cli.motion.human.planted import Planted
@@ -19,7 +21,7 @@ from radhar_cli.motion.human.pose import Pose
 from radhar_cli.motion.human.walking import Walking
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
 
-BLOCK = 1024  # instants at once: what a block needs stays in the cache
+BLOCK = 4096  # instants at once: what a block needs stays in the cache
 
 
 class Movement(Protocol):
@@ -51,7 +53,11 @@ class HumanMotion:
     names = JOINTS
     parents = PARENTS
     landmarks = (*JOINTS, "right_hip", "left_hip")
-    highest_frequency = 4.0
+
+    @property
+    def highest_frequency(self) -> float:
+        """What the fastest movement counts as, Hz: kicks and exercises more than all others."""
+        return 4.0 if any(isinstance(one, Kick | Exercise) for one in self.movements) else 3.0
 
     @cached_property
     def parts(self) -> tuple[tuple[Part, Place], ...]:

@@ -30,7 +30,6 @@ from radhar_cli.echo.knots import delay_track, mean_power
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.protocol import Motion
-from radhar_cli.pipeline.board_products import board_products
 from radhar_cli.pipeline.bodies import sources_of, together
 from radhar_cli.pipeline.motion_paths import TorsoPath
 from radhar_cli.pipeline.physics import (
@@ -118,8 +117,12 @@ def plan_images(config: Config, entropy: bool = True) -> Plan:
 
 def products(config: Config, entropy: bool = True) -> dict[str, Product]:
     """Every product there could be under a config, by name; images with or without entropy."""
-    board = config.radar.cfg is not None
-    echo = board_products(config, entropy) if board else _echo(config)
+    if config.radar.cfg is None:
+        echo = _echo(config)
+    else:
+        from radhar_cli.pipeline.board_products import board_products  # slow to import
+
+        echo = board_products(config, entropy)
     rows = (*_physics(config), *_signals(config), *_maps(config, entropy), *echo, *own_products())
     found = {row.name: row for row in rows}
     if config.radar.output == "real" and config.radar.waveform == "cw":

@@ -15,6 +15,7 @@ from pydantic import (
     Field,
     GetCoreSchemaHandler,
     Tag,
+    TypeAdapter,
     model_validator,
 )
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
@@ -187,7 +188,7 @@ def _form(value: Any) -> str | None:
     return None
 
 
-Number: TypeAlias = Annotated[
+_Number: TypeAlias = Annotated[
     Annotated[Real, Tag("number")]
     | Annotated[Uniform, Tag("uniform")]
     | Annotated[Normal, Tag("normal")]
@@ -202,6 +203,19 @@ Number: TypeAlias = Annotated[
         ),
     ),
 ]
+
+
+_VALIDATE = TypeAdapter(_Number).validator.validate_python
+
+
+class _Once:
+    def __get_pydantic_core_schema__(
+        self, source: object, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(_VALIDATE)
+
+
+Number: TypeAlias = Annotated[float | Uniform | Normal | Choice | Vary, _Once()]
 
 
 def support(number: Number | None) -> tuple[float, float]:

@@ -15,8 +15,6 @@ from radhar_cli.motion.paper.body import PaperBody
 from radhar_cli.motion.protocol import Motion, Only, remembered
 from radhar_cli.motion.reflectors import TONES, Reflectors
 from radhar_cli.motion.segments import found_segments, landmarks_of, thickness
-from radhar_cli.pipeline.motion_files import file_motion
-from radhar_cli.pipeline.people import human_motion
 from radhar_cli.pipeline.segment_paths import Body
 from radhar_cli.processing.canceller import (
     FIRST_DIFFERENCE,
@@ -160,8 +158,14 @@ def motion_of(person: Person) -> Motion:
     if person.activity.motion is not None:
         return person.activity.motion(person)
     if person.config.files_of(person.activity) is not None:
+        from radhar_cli.pipeline.motion_files import file_motion
+
         return file_motion(person)
-    return human_motion(person) if person.motion.model == "human" else _paper_body(person)
+    if person.motion.model == "human":
+        from radhar_cli.pipeline.people import human_motion  # slow to import
+
+        return human_motion(person)
+    return _paper_body(person)
 
 
 def moving(person: Person) -> Motion:

@@ -30,7 +30,6 @@ from radhar_cli.echo.knots import delay_track, mean_power
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.errors import ConfigError, SceneError
 from radhar_cli.motion.protocol import Motion
-from radhar_cli.pipeline.board_products import board_products
 from radhar_cli.pipeline.bodies import sources_of, together
 from radhar_cli.pipeline.motion_paths import TorsoPath
 from radhar_cli.pipeline.physics import (
@@ -122,13 +121,18 @@ def products(config: Config, entropy: bool = True) -> dict[str, Product]:
     Raises:
         ConfigError: a product of a user's own would replace one that a board does not have.
     """
-    board = config.radar.cfg is not None
-    for own in own_products() if board else ():
-        if own.name in ("antennas", "paths", "noise", "receiver"):
-            raise ConfigError(
-                f"product {own.name}: has no effect with radar.cfg; should be 'channels' or 'cube'"
-            )
-    echo = board_products(config, entropy) if board else _echo(config)
+    if config.radar.cfg is None:
+        echo = _echo(config)
+    else:
+        from radhar_cli.pipeline.board_products import board_products  # slow to import
+
+        for own in own_products():
+            if own.name in ("antennas", "paths", "noise", "receiver"):
+                raise ConfigError(
+                    f"product {own.name}: has no effect with radar.cfg; should be 'channels' or "
+                    "'cube'"
+                )
+        echo = board_products(config, entropy)
     rows = (*_physics(config), *_signals(config), *_maps(config, entropy), *echo, *own_products())
     found = {row.name: row for row in rows}
     if config.radar.output == "real" and config.radar.waveform == "cw":

@@ -107,12 +107,22 @@ def _roll_shape() -> Float:
 
 
 def _periodic(points: Points) -> Float:
-    from scipy.interpolate import PchipInterpolator  # slow to import
+    """Of PCHIP (Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300) through points.
 
+    That of SciPy is slow to import.
+    """
     x, y = np.array(points).T
-    around = PchipInterpolator(np.concatenate([x - 1, x, x + 1]), np.tile(y, 3))
+    x, y = np.concatenate([x - 1, x, x + 1]), np.tile(y, 3)
+    h, rise = np.diff(x), np.diff(y) / np.diff(x)
+    product, both = rise[:-1] * rise[1:], h[:-1] + h[1:]
+    weighed = (both + h[1:]) * rise[1:] + (both + h[:-1]) * rise[:-1]
+    slope = np.zeros(x.size)  # 0 at peaks
+    np.divide(3 * both * product, weighed, out=slope[1:-1], where=product > 0)
     u = np.arange(_SAMPLES) / _SAMPLES
-    return _coefficients(around(u))
+    i = np.searchsorted(x, u, "right") - 1
+    s, start, end, mean = (u - x[i]) / h[i], slope[i], slope[i + 1], rise[i]
+    bent = 3 * mean - 2 * start - end + s * (start + end - 2 * mean)
+    return _coefficients(y[i] + s * h[i] * (start + s * bent))
 
 
 def _coefficients(curve: Float) -> Float:

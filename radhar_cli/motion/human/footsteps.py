@@ -8,15 +8,12 @@ late in a swing. Everything is twice continuously differentiable.
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from radhar_cli.arrays import Float
 from radhar_cli.motion.human.physique import Physique
-
-if TYPE_CHECKING:
-    from scipy.interpolate import PPoly
 
 DEGREE = 8
 LIFT_SHAPE = np.array([0, 0, 0, 1, -5, 10, -10, 5, -1]) / (0.375**3 * 0.625**5)  # peak 1 at 3/8
@@ -54,7 +51,11 @@ class FootTrack:
 
     def __call__(self, t: Float) -> Float:
         """Ankle [3, M] at times t [M] (s)."""
-        x, y, z, beta, heading = self._polynomials(t).T
+        events, polynomials = self._polynomials
+        piece = np.searchsorted(events, t, "right")
+        since = t - np.concatenate([events[:1], events])[piece]
+        powers = np.vander(since, DEGREE + 1, increasing=True)
+        x, y, z, beta, heading = np.einsum("mak,mk->am", polynomials[piece], powers)
         cos, sin = np.cos(beta), np.sin(beta)
         ball, high = self.person.toes, self.person.ankle
         ahead = ball * (1 - cos) + high * sin
@@ -65,10 +66,10 @@ class FootTrack:
         return np.stack([x, y, z + ball * sin + high * cos])
 
     @cached_property
-    def _polynomials(self) -> "PPoly":
-        """x, y, z - z_a of an unrolled foot, beta, heading [M, 5], in seconds from each event."""
-        from scipy.interpolate import PPoly  # slow to import
-
+    def _polynomials(self) -> tuple[Float, Float]:
+        """When events are, s; before and after each [3 N + 1, 5, power of s since then] x, y,
+        z - z_a of an unrolled foot, beta, heading.
+        """
         f, n = self.falls, self.falls.off.size
         c = np.zeros((DEGREE + 1, 3 * n + 1, 5))  # lowest power first
         planted, rolling, swinging = c[:, 0::3], c[:, 1::3], c[:, 2::3]
@@ -88,8 +89,7 @@ class FootTrack:
         swinging[:, :, 2] += np.outer(LIFT_SHAPE, self.lift * f.size)
         swinging /= (length ** np.arange(DEGREE + 1)[:, None])[..., None]
         events = np.stack([f.off, f.toe, f.down], axis=1).ravel()
-        ends = np.concatenate([events[:1] - 1, events, events[-1:] + 1])
-        return PPoly.construct_fast(np.ascontiguousarray(c[::-1]), ends)
+        return events, np.ascontiguousarray(c.transpose(1, 2, 0))
 
     def _toe_off(self) -> tuple[tuple[Float, Float, Float], tuple[Float, Float, Float]]:
         """Way, velocity and acceleration at toe-off, ahead and of z - z_a."""

@@ -122,7 +122,7 @@ def walks_of(gait: Gait) -> dict[str, tuple[Movement, ...]]:
         "aside on the hands": and_up(FallSideways(caught=0.6)),
         "stumbles": (*STUMBLES.values(), replace(STUMBLES["sideways"], place=Place(0.0, -0.3))),
         "trips": (Walk(replace(gait, trip=0.6), 3.0),),
-        "slowly off": (Grab(), Walk(replace(gait, start=2.0))),
+        "slowly off": (Grab(dwell=-2.0), Walk(replace(gait, start=2.0))),
         "rightwards": (stopping, FallSideways(side=-1.0)),
         "everything": (
             Punch(0.5, from_rest=True),

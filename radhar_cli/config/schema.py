@@ -468,6 +468,8 @@ class MotionConfig(Section):
     """Turn of the trunk to look behind."""
     settle_size: Annotated[By[Ratio], People("S4 S5 S6", 0, 3), UNSTEADY] = uniform(0.0, 3.0)
     """Size of the fidgets around the end."""
+    heels_deg: Annotated[By[Angle], People("falling", 0, 90), UNSTEADY] = 0.0
+    """How far the shanks swing up as people land on their knees in a forward fall."""
     fall: Annotated[
         FallName | Falls,
         People("falling falling_off_seat falling_on_rising stumbling"),

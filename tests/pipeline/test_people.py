@@ -245,6 +245,18 @@ def test_walkers_turn_round_where_the_lane_ends() -> None:
     assert straight.parts[0][0].gait.lane is None
 
 
+def test_feet_swing_up_as_a_fall_lands_on_the_knees_and_come_down_again() -> None:
+    t, foot = np.arange(0, 6, 0.01), JOINTS.index("right_ankle")
+    up = {}
+    for heels in (0.0, 60.0):
+        config = people(QUIET | {"heels_deg": heels})
+        up[heels] = moving(draw_scene(config, activity_named("S12"), 0)).positions(t)[2, foot]
+    raised = up[60.0] - up[0.0]
+    assert raised.max() == pytest.approx(up[0.0][-1] + 0.3, abs=0.15)
+    assert raised[-1] == pytest.approx(0.0, abs=1e-9)
+    assert np.count_nonzero(raised > 0.01) * 0.01 < 0.9
+
+
 def test_who_rises_before_the_descent_ends_never_comes_to_rest_at_the_floor() -> None:
     t, still = np.arange(0, 6, 0.01), {}
     for dwell_s in (0.0, -0.6):

@@ -111,6 +111,7 @@ def walks_of(gait: Gait) -> dict[str, tuple[Movement, ...]]:
             SitDown(seat=Seat(recline=0.4, lap=0.0), recline=(0.0, 1.0), lags=TRUNK_LAGS),
             StandUp(seat=Seat(recline=0.4, lap=0.0), lags=LEGS_LAG),
         ),
+        "over the knees": (stopping, FallForward(heels=1.4)),
         "topples off": (FallFromSeat(), TryToGetUp(), GetUp()),
         "topples on rising": (FallFromSeat(rising=0.8, seat=Seat(recline=0.4, lap=0.0)),),
         "slides off": (FallFromSeat(ahead=False), *both_ways_up(ON_FLOOR)),

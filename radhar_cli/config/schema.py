@@ -444,8 +444,8 @@ class MotionConfig(Section):
     """Relative standard deviation of the size from one punch, kick or turn to the next."""
     bend_deg: Annotated[By[Angle], People("grabbing", 30, 85)] = normal(72.0, 5.0, 60.0, 85.0)
     """Pitch of the trunk."""
-    dwell_s: Annotated[By[Seconds], People("grabbing", 0, 60)] = uniform(0.2, 0.6)
-    """Time at the floor."""
+    dwell_s: Annotated[By[Coordinate], People("grabbing", -1, 60)] = uniform(0.2, 0.6)
+    """Time at the floor; below 0 the rise begins before the descent ends, by at most 0.6 of it."""
     seat_height: Annotated[By[Ratio], People(SEATS, 0.24, 0.33)] = normal(0.285, 0.015, 0.25, 0.32)
     """Height of the seated hip, relative to the stature."""
     lean_deg: Annotated[By[Angle], People("sitting_down standing_up", 0, 60), PERSONAL] = normal(
@@ -468,6 +468,8 @@ class MotionConfig(Section):
     """Turn of the trunk to look behind."""
     settle_size: Annotated[By[Ratio], People("S4 S5 S6", 0, 3), UNSTEADY] = uniform(0.0, 3.0)
     """Size of the fidgets around the end."""
+    heels_deg: Annotated[By[Angle], People("falling", 0, 90), UNSTEADY] = 0.0
+    """How far the shanks swing up as people land on their knees in a forward fall."""
     fall: Annotated[
         FallName | Falls,
         People("falling falling_off_seat falling_on_rising stumbling"),

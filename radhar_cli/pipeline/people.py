@@ -287,7 +287,8 @@ def _fall(person: Person, duration: float | None, caught: bool = False) -> Fall:
     """A fall from standing, broken by the hands or not."""
     motion = person.motion
     if motion.fall == "forward":
-        return _lasting(duration, FallForward(prone=OnFours() if caught else Prone()))
+        prone, heels = OnFours() if caught else Prone(), radians(motion.heels_deg)
+        return _lasting(duration, FallForward(prone=prone, heels=heels))
     if motion.fall == "backward":
         return _lasting(duration, FallBackward(supine=Sitting() if caught else Supine()))
     aside = FallSideways(side=_side(person), caught=radians(36) if caught else 0.0)

@@ -245,6 +245,30 @@ def test_walkers_turn_round_where_the_lane_ends() -> None:
     assert straight.parts[0][0].gait.lane is None
 
 
+def test_feet_swing_up_as_a_fall_lands_on_the_knees_and_come_down_again() -> None:
+    t, foot = np.arange(0, 6, 0.01), JOINTS.index("right_ankle")
+    up = {}
+    for heels in (0.0, 60.0):
+        config = people(QUIET | {"heels_deg": heels})
+        up[heels] = moving(draw_scene(config, activity_named("S12"), 0)).positions(t)[2, foot]
+    raised = up[60.0] - up[0.0]
+    assert raised.max() == pytest.approx(up[0.0][-1] + 0.3, abs=0.15)
+    assert raised[-1] == pytest.approx(0.0, abs=1e-9)
+    assert np.count_nonzero(raised > 0.01) * 0.01 < 0.9
+
+
+def test_who_rises_before_the_descent_ends_never_comes_to_rest_at_the_floor() -> None:
+    t, still = np.arange(0, 6, 0.01), {}
+    for dwell_s in (0.0, -0.6):
+        motion = moving(
+            nominal_scene(people(QUIET | {"dwell_s": dwell_s}), activity_named("grabbing"))
+        )
+        trunk = motion.parts[0][0].course(t)[2]
+        bent = trunk > 0.5 * trunk.max()
+        still[dwell_s] = np.count_nonzero(np.abs(np.gradient(trunk, t))[bent] < 0.3) * 0.01
+    assert still[-0.6] < 0.5 * still[0.0]
+
+
 def test_who_gains_speed_slowly_falls_behind_by_half_of_that_time() -> None:
     t, x = np.arange(0, 6, 0.01), {}
     for strides in (0.6, 1.6):

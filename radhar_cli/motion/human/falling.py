@@ -21,6 +21,8 @@ from radhar_cli.motion.human.planted import (
 )
 
 GIVE = radians(9)  # by how much the trunk goes on over arms that break a fall
+LANDED = 0.7  # of the duration: the knees are down
+SWING = 0.35, 0.45  # of the shanks, up and down, s
 PRONE, SUPINE, ON_FOURS = "lying prone", "lying on the back", "lying on hands and knees"
 ON_FLOOR, PROPPED = "lying against the seat", "lying on the hands"
 
@@ -71,6 +73,7 @@ class FallForward:
     prone: Prone = field(default_factory=Prone)
     buckle: float = radians(26)  # by how much the thighs give way at first, rad
     arms: float = radians(80)  # flexion of the shoulders as the hands look for the floor, rad
+    heels: float = 0.0  # how far the shanks swing up behind the knees on which the body lands, rad
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:
         rest, prone = at_rest(person), self.prone.posture(person)
@@ -85,6 +88,12 @@ class FallForward:
             *both(SHOULDERS, self.arms, 0.05, 0.7),
             Step("hands", 1.0, 0.25, 0.65),
         ]
+        if self.heels:
+            up, down = (time / self.duration for time in SWING)
+            steps += [
+                Step("heels", self.heels, LANDED, up),
+                Step("heels", -self.heels, LANDED + up, down),
+            ]
         if not isinstance(self.prone, OnFours):
             return _falling(person, begin, self.duration, rest, steps, PRONE)
         steps += [Step("trunk", GIVE, 0.7, 0.35), Step("trunk", -GIVE, 1.05, 0.6)]

@@ -11,7 +11,10 @@ from radhar_cli.motion.human.planted import Planted, at_rest
 
 @dataclass(frozen=True)
 class Grab:
-    """Down, a dwell, and up, s; angles at the floor in rad."""
+    """Down, a dwell, and up, s; angles at the floor in rad.
+
+    A negative dwell lets the rise begin before the descent ends, by at most 0.6 of it.
+    """
 
     down: float = 1.2
     dwell: float = 0.4
@@ -35,7 +38,7 @@ class Grab:
             "right_shoulder": arm,
             "left_shoulder": self.other_arm * arm,
         }
-        rises = begin + self.down + self.dwell
+        rises = begin + self.down + max(self.dwell, -0.6 * self.down)
         steps = self.lowering(
             Step(channel, angle - rest[channel], begin, self.down)
             for channel, angle in bent.items()

@@ -36,8 +36,8 @@ def posture(
 ) -> dict[str, float]:
     """Angles (rad), and how much of the sway legs and trunk take part in, by channel.
 
-    "hands" is how far the hands are on the floor, at "hands_ahead" (m), "hands_beside"; "feet"
-    how far they slid, m.
+    "hands" is how far the hands are on the floor, at "hands_ahead" (m), "hands_beside"; "heels"
+    how far (rad) the shanks of who lies on the knees are lifted; "feet" how far they slid, m.
     """
     return {
         "shank": shank,
@@ -52,6 +52,7 @@ def posture(
         "hands": 0.0,
         "hands_ahead": 0.0,
         "hands_beside": 0.0,
+        "heels": 0.0,
         "feet": 0.0,
     }
 
@@ -96,11 +97,15 @@ class Planted:
 
     def pose(self, t: Float, idle: IdleState) -> Pose:
         body = self.person
-        shank, thigh, trunk, *others, feet = self.course(t)
+        shank, thigh, trunk, *others, heels, feet = self.course(t)
         *arms, standing, upright, share, far, beside = others
         ankle = np.stack([np.zeros((2, 1)), body.hip * SIDES, np.full((2, 1), body.ankle)])
         ankles = np.broadcast_to(ankle, (3, 2, t.size))
         knee, hip = legs(body, shank, thigh, standing * idle.lean, standing * idle.legs_roll)
+        if heels.any():
+            up = shank + heels
+            lifted = knee - body.leg * np.stack([np.sin(up), np.zeros(t.size), np.cos(up)])
+            ankles = ankles + np.where(heels, lifted, 0.0)[:, None]
         if feet.any():
             slid = np.stack([feet, 0 * feet, 0 * feet])
             ankles, knee, hip = ankles + slid[:, None], knee + slid, hip + slid

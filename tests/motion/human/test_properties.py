@@ -111,6 +111,7 @@ def walks_of(gait: Gait) -> dict[str, tuple[Movement, ...]]:
             SitDown(seat=Seat(recline=0.4, lap=0.0), recline=(0.0, 1.0), lags=TRUNK_LAGS),
             StandUp(seat=Seat(recline=0.4, lap=0.0), lags=LEGS_LAG),
         ),
+        "over the knees": (stopping, FallForward(heels=1.4)),
         "topples off": (FallFromSeat(), TryToGetUp(), GetUp()),
         "topples on rising": (FallFromSeat(rising=0.8, seat=Seat(recline=0.4, lap=0.0)),),
         "slides off": (FallFromSeat(ahead=False), *both_ways_up(ON_FLOOR)),
@@ -122,7 +123,7 @@ def walks_of(gait: Gait) -> dict[str, tuple[Movement, ...]]:
         "aside on the hands": and_up(FallSideways(caught=0.6)),
         "stumbles": (*STUMBLES.values(), replace(STUMBLES["sideways"], place=Place(0.0, -0.3))),
         "trips": (Walk(replace(gait, trip=0.6), 3.0),),
-        "slowly off": (Grab(), Walk(replace(gait, start=2.0))),
+        "slowly off": (Grab(dwell=-2.0), Walk(replace(gait, start=2.0))),
         "rightwards": (stopping, FallSideways(side=-1.0)),
         "everything": (
             Punch(0.5, from_rest=True),

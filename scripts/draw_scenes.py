@@ -113,9 +113,9 @@ def corner(path: Path) -> None:
         maps, name = record(scene, ["rtm", "stft"]), "two walls" if walls else "in the open"
         show(ranges, maps["rtm"], f"{name}: range (m)", 0, 13)
         show(doppler, maps["stft"], f"{name}: Doppler (Hz)", -400, 400)
-        t, antennas = np.array([0.0, 4.0]), antennas_of(scene.config)
+        t, antennas = np.array([0.0, 4.0]), antennas_of(scene)
         p = motion_of(scene.people[0]).torso(t)
-        for tx, rx in ways_of(scene.config):
+        for tx, rx in ways_of(scene):
             way = (leg(tx.image(p), antennas.tx) + leg(rx.image(p), antennas.rx))[0] / 2
             if tx.name <= rx.name and "+" not in rx.name:  # the other way round is as long
                 ranges.text(4.05, way[1], f"{tx.name}/{rx.name}", fontsize=7, va="center")

@@ -27,6 +27,7 @@ from radhar_cli.processing.signal import Signal, nearest
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
+from radhar_cli.scene import Numbers
 
 MAX_BYTES = 3 * 2**29  # of range bins that are held at once
 PIECE_SAMPLES = 2**20
@@ -94,7 +95,7 @@ def maps_of(
             duration=segments.pulses / prf,
         )
         if config.radar.cfg is not None:  # whose samples have no half band
-            waveform = replace(board_of(config).waveform, centred=centred)
+            waveform = replace(board_of(Numbers(config.radar)).waveform, centred=centred)
         x = filled(bins_of_part(recording, waveform, chosen, first, last), lost)
         track = track_torso(without_static(x), segments, waveform)
         notes += [] if track else ["nothing moves: no torso was found"]

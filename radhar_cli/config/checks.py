@@ -195,21 +195,14 @@ def _people_problems(c: Config) -> Iterator[Problem]:
 
 def _board_problems(c: Config) -> Iterator[Problem]:
     """What a board cannot do, or is not simulated for one."""
-    board, radar, clutter = c.board, c.radar, c.processing.clutter
-    known = DEVICES.get(str(radar.device))
-    tx, rx = (
-        (len(radar.array.tx), len(radar.array.rx))
-        if radar.array
-        else (len(known.tx), len(known.rx))
-        if known
-        else (0, 0)
-    )
-    if not tx:
+    board, radar, clutter = c.radar.header, c.radar, c.processing.clutter
+    if radar.elements is None:
         right = (
             f"should name the board that radar.cfg runs on: {', '.join(DEVICES)}; or radar.array"
         )
         yield Problem("radar.device", radar.device, right)
         return
+    tx, rx = len(radar.elements.tx), len(radar.elements.rx)
     if max(board.order) >= tx or max(board.receivers) >= rx:
         masks = [1 << n for n in board.order]
         right = (

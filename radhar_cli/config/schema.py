@@ -73,7 +73,7 @@ from radhar_cli.errors import did_you_mean
 from radhar_cli.light import SPEED_OF_LIGHT
 from radhar_cli.motion.files.names import WANTED
 from radhar_cli.motion.files.reading import SUFFIXES
-from radhar_cli.radar.board import DEVICES
+from radhar_cli.radar.board import DEVICES, EVEN, Array
 from radhar_cli.radar.materials import Material
 from radhar_cli.registry import is_known, own_products
 from radhar_cli.rounding import half_up
@@ -279,6 +279,21 @@ class RadarConfig(Section):
         if self.waveform == "fmcw" or self.steps is None or self.dwell_s is None:
             return {}
         return {"adc_rate_hz": 1 / self.dwell_s, "chirp_s": self.steps * self.dwell_s}
+
+    @property
+    def header(self) -> "BoardHeader":
+        """What `cfg` says."""
+        from radhar_cli.config.ti_header import board_header  # which knows this schema
+
+        assert self.cfg is not None
+        return board_header(self.cfg)
+
+    @property
+    def elements(self) -> Array | None:
+        """Antenna elements of a board: those of `array`, or its device's."""
+        if self.array is None:
+            return DEVICES.get(str(self.device))
+        return Array(self.array.tx, self.array.rx, (1.0,) * len(self.array.rx), EVEN)
 
 
 Metres = Annotated[NotNegative, within(0, 1, "m")]
@@ -1500,14 +1515,6 @@ class Config(Section):
             raise PydanticCustomError("across", "{problems}", {"problems": mistakes})
         return self
 
-    @property
-    def board(self) -> "BoardHeader":
-        """What `radar.cfg` says."""
-        from radhar_cli.config.ti_header import board_header  # which knows this schema
-
-        assert self.radar.cfg is not None
-        return board_header(self.radar.cfg)
-
     def samples_of(self, activity: Activity) -> int:
         """How many samples of an activity there are."""
         if self.recorded is not None:
@@ -1588,7 +1595,7 @@ def _fill_from_cfg(c: Config, changed: dict[str, dict[str, Any]]) -> None:
     from radhar_cli.errors import CaptureError
 
     try:
-        board = c.board
+        board = c.radar.header
     except CaptureError as error:
         raise PydanticCustomError("cfg", "{what}", {"what": str(error)}) from None
     radar = {
@@ -1657,7 +1664,7 @@ def possible_maps(config: Config) -> tuple[str, ...]:
 
 def elevations(config: Config) -> set[float]:
     """Heights of the virtual elements of a board, half wavelengths."""
-    array = config.radar.array or DEVICES[str(config.radar.device)]
-    board = config.board
+    array, board = config.radar.elements, config.radar.header
+    assert array is not None
     rows = (array.tx[t][1] + array.rx[r][1] for t in board.order for r in board.receivers)
     return {round(row, 6) for row in rows}

@@ -67,7 +67,7 @@ from radhar_cli.pipeline.validity import Flags, warnings
 from radhar_cli.processing.points import COLUMNS
 from radhar_cli.progress import Progress
 from radhar_cli.replacing import replacing
-from radhar_cli.scene import nominal_scene, subject_of
+from radhar_cli.scene import subject_of
 
 SCHEMA_VERSION = 2
 RUN, RUN_BYTES = 128, 2**28
@@ -209,9 +209,7 @@ def _describe_products(file: h5py.File, config: Config) -> None:
         file["products/points"].attrs["columns"] = [*COLUMNS]
     recorded = any(config.files_of(one) is not None for one in config.chosen_activities)
     if "products/points_kind" in file:
-        file["products/points_kind"].attrs["kinds"] = kinds_of(
-            nominal_scene(config, config.chosen_activities[0]).config
-        )
+        file["products/points_kind"].attrs["kinds"] = kinds_of(config)
     if "products/skeleton" in file and not recorded:
         file["products/skeleton"].attrs["joint_names"] = [*JOINTS]
     if config.people:

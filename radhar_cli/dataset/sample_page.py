@@ -65,7 +65,8 @@ def _of_sample(data: Dataset, row: int, extents: dict[str, NDArray[Any]]) -> Ent
         seen = scene_page.moving(scene, tuple(map(motion_of, scene.people)))
     board = None
     if config.radar.cfg is not None:
-        board = board_of((scene or nominal_scene(config, activity)).config)
+        drawn = scene or nominal_scene(config, activity)
+        board = board_of(drawn.radar, drawn.seconds)
         seen = seen if scene is not None else _stored_joints(data, row, board, seen)
     for name in data.maps:
         if name not in FRAME_MAPS:  # whose images are sheets of what is stored as frames

@@ -153,9 +153,9 @@ def _physics(c: Config) -> Iterator[Product]:
 
     seen = ("motions", "antennas", "wall", "waveform")
     walled = "through the wall" if c.wall is not None else "through air"
-    yield Product("waveform", ("scene",), lambda s: waveform_of(s.config), "chirps and pulses")
-    yield Product("antennas", ("scene",), lambda s: antennas_of(s.config), "positions and gains")
-    yield Product("wall", ("scene",), lambda s: wall_of(s.config), "the slab, or none")
+    yield Product("waveform", ("scene",), waveform_of, "chirps and pulses")
+    yield Product("antennas", ("scene",), antennas_of, "positions and gains")
+    yield Product("wall", ("scene",), wall_of, "the slab, or none")
     yield Product(
         "motions", ("scene",), lambda s: tuple(map(moving, s.people)), "scatterers that move"
     )
@@ -209,14 +209,13 @@ def _clutter(c: Config) -> str:
 
 def _receiver(c: Config) -> Iterator[Product]:
     def noise(scene: Scene, power: float, w: Waveform, channel: object) -> WhiteNoise:
-        assert isinstance(scene.config.snr_db, (int, float))
         if not SMALLEST_POWER <= power < inf:
             raise SceneError(
-                f"{scene.name}: the echo's power is {power:g}; snr_db = {scene.config.snr_db:g} "
+                f"{scene.name}: the echo's power is {power:g}; snr_db = {scene.snr_db:g} "
                 f"needs one from {SMALLEST_POWER:.3g} on (wall.loss_tangent, radar.carrier_hz, "
                 "motion.range_m), or should be null"
             )
-        sigma = np.sqrt(noise_variance(power, scene.config.snr_db))
+        sigma = np.sqrt(noise_variance(power, scene.snr_db))
         return WhiteNoise(float(sigma), partial(noise_stream, scene, channel=channel))
 
     if c.snr_db is None:

@@ -86,7 +86,7 @@ def distance_at(scene: Scene, approach: Approach) -> float:
 
 def brute_delay(scene: Scene) -> np.ndarray:
     """Delay [13, M] at every pulse, the wall's included."""
-    p, wall = at_every_pulse(scene), wall_of(scene.config)
+    p, wall = at_every_pulse(scene), wall_of(scene)
     tau = np.zeros(p.shape[1:])
     for key in ("tx", "rx"):
         at = antenna(scene, key)
@@ -172,7 +172,7 @@ def test_half_band_aliasing_and_wall_as_at_every_pulse(setting: Any, activity: A
     mid = v["radar.carrier_hz"] + v["radar.bandwidth_hz"] / 2
     doppler = np.abs(np.diff(tau, axis=1)).max() * v["radar.prf_hz"] * mid
     half_band = C * 10e6 / (4 * v["radar.bandwidth_hz"] / 40e-6)
-    wall = wall_of(scene.config)
+    wall = wall_of(scene)
     assert (Flags.ALIASING in found.flags) == (doppler > v["radar.prf_hz"] / 2)
     assert (Flags.HALF_BAND in found.flags) == (tau.max() * C / 2 >= half_band)
     assert (Flags.WALL in found.flags) == (

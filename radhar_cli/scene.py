@@ -351,7 +351,7 @@ def scene_numbers(scene: Scene) -> dict[str, float]:
 class ByIdentity:
     """A config as a key: equal to itself alone, whatever it holds."""
 
-    def __init__(self, config: Config) -> None:
+    def __init__(self, config: Any) -> None:
         self.config = config
 
     def __hash__(self) -> int:
@@ -364,7 +364,8 @@ class ByIdentity:
 @lru_cache(maxsize=64)
 def _of_person(same: ByIdentity, number: int) -> Config:
     """One config of a person for all scenes: drawing keeps what it finds by its identity."""
-    return same.config.of_person(number)
+    config: Config = same.config
+    return config.of_person(number)
 
 
 @lru_cache(maxsize=64)

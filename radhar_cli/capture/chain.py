@@ -14,7 +14,7 @@ from radhar_cli.arrays import Bool, Complex
 from radhar_cli.capture.findings import LOST
 from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.tracking import TorsoTrack, track_torso, without_static
-from radhar_cli.config.schema import Config
+from radhar_cli.config.schema import AnyConfig
 from radhar_cli.errors import CaptureError
 from radhar_cli.phasor import unit_phasor
 from radhar_cli.pipeline.physics import board_of, canceller_of, frames_of, fsst_frames_of
@@ -49,7 +49,7 @@ class Maps:
 
 def maps_of(
     recording: Recording,
-    config: Config,
+    config: AnyConfig,
     names: Sequence[str],
     start: float | None = None,
     stop: float | None = None,
@@ -199,7 +199,7 @@ def bins_of_part(
 def _windows(
     signal: Signal,
     canceller: Canceller,
-    config: Config,
+    config: AnyConfig,
     names: Sequence[str],
     recording: Recording,
     notes: list[str],
@@ -242,7 +242,7 @@ def _even(power_map: PowerMap) -> PowerMap:
     return PowerMap(power_map.power[:, columns] * there, power_map.rows, even)
 
 
-def _refuse_without_ranges(recording: Recording, config: Config, names: Sequence[str]) -> None:
+def _refuse_without_ranges(recording: Recording, config: AnyConfig, names: Sequence[str]) -> None:
     wrong = [name for name in names if name == "rtm" or "compensated" in name]
     if wrong or config.processing.range_sum == "gated":
         raise CaptureError(

@@ -9,7 +9,7 @@ import numpy as np
 
 from radhar_cli.arrays import Float
 from radhar_cli.config.number import nominal, support
-from radhar_cli.config.schema import Config
+from radhar_cli.config.schema import AnyConfig, Config
 from radhar_cli.motion.paper.activities import Gait, Timing
 from radhar_cli.motion.paper.body import PaperBody
 from radhar_cli.motion.protocol import Motion, Only, remembered
@@ -291,7 +291,7 @@ def _paper_body(person: Person) -> PaperBody:
     )
 
 
-def canceller_of(config: Config, prf: float) -> Canceller:
+def canceller_of(config: AnyConfig, prf: float) -> Canceller:
     """The canceller of a config, for pulses per second."""
     given = config.processing.highpass
     match config.processing.clutter:
@@ -304,7 +304,7 @@ def canceller_of(config: Config, prf: float) -> Canceller:
     return HighPass(given.order, given.cutoff(prf), given.zero_phase, given.remove_mean)
 
 
-def gate_of(config: Config, ranges: Float, torso: Float | None) -> Gate:
+def gate_of(config: AnyConfig, ranges: Float, torso: Float | None) -> Gate:
     """The gate of a config in range bins at `ranges`, m.
 
     A gate that follows the torso needs its range in the middle of every frame [frames], m.
@@ -316,7 +316,7 @@ def gate_of(config: Config, ranges: Float, torso: Float | None) -> Gate:
     return around(torso, within, ranges)
 
 
-def gate_in_windows(config: Config, after: Signal, frames: Frames, t: Float, track: Float) -> Gate:
+def gate_in_windows(c: AnyConfig, after: Signal, frames: Frames, t: Float, track: Float) -> Gate:
     """The gate of a config in every window `frames` of the signal after the canceller.
 
     `track` is the delay (s) of the torso at the pulses before the canceller, at times t (s).
@@ -324,16 +324,16 @@ def gate_in_windows(config: Config, after: Signal, frames: Frames, t: Float, tra
     assert after.ranges is not None
     middle = np.interp(Stft(after, frames).time.values, t, range(track.size))
     torso = track[np.rint(np.round(middle, 6)).astype(np.intp)] * (SPEED_OF_LIGHT / 2)
-    return gate_of(config, after.ranges, torso)
+    return gate_of(c, after.ranges, torso)
 
 
-def max_samples(config: Config) -> int:
+def max_samples(config: AnyConfig) -> int:
     """Length of the longest slow-time signal after the canceller that a config draws."""
     pulses = half_up(support(config.duration_s)[1], support(config.radar.prf_hz)[1])
     return pulses - 1 if config.processing.clutter == "difference" else pulses
 
 
-def cfar_of(config: Config) -> CellAveraging:
+def cfar_of(config: AnyConfig) -> CellAveraging:
     """The CFAR of a scene's config; of another's, its numbers at their middle."""
     cfar = config.image.cfar
     return CellAveraging(
@@ -346,14 +346,14 @@ def cfar_of(config: Config) -> CellAveraging:
     )
 
 
-def frames_of(config: Config, duration: float, prf: float, f0: float) -> Frames:
+def frames_of(config: AnyConfig, duration: float, prf: float, f0: float) -> Frames:
     """The frames of the STFT in a recording (s, pulses per s), whose Doppler is one of f0 (Hz)."""
     processing = config.processing
     length = processing.window_pulses(duration, prf, f0)
     return Frames.of(length, processing.overlap_fraction)
 
 
-def fsst_frames_of(config: Config, duration: float, prf: float, f0: float) -> Frames:
+def fsst_frames_of(config: AnyConfig, duration: float, prf: float, f0: float) -> Frames:
     """`frames_of`, with the hop of the FSST where it has its own."""
     frames, hop = frames_of(config, duration, prf, f0), config.processing.fsst_hop_pulses
     return frames if hop is None else Frames(frames.length, hop)

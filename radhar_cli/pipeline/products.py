@@ -20,7 +20,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from radhar_cli.arrays import Complex, Float, Index
-from radhar_cli.config.schema import MAP_NAMES, MAX_TOLERANCE_DB, Config
+from radhar_cli.config.schema import MAP_NAMES, MAX_TOLERANCE_DB, AnyConfig, Config
 from radhar_cli.echo.accuracy import AccuracyError, first_aim, settings
 from radhar_cli.echo.direct import Accuracy, DirectEcho
 from radhar_cli.echo.exact import beat_at, exact_echo, signal_power
@@ -128,6 +128,12 @@ def products(config: Config, entropy: bool = True) -> dict[str, Product]:
     return found
 
 
+def products_of_signals(config: AnyConfig) -> dict[str, Product]:
+    """Every product of a recorded signal, by name."""
+    rows = (*_signals(config), *_maps(config, entropy=True), *_gate(config), *own_products())
+    return {row.name: row for row in rows}
+
+
 def in_phase(signal: Signal) -> Signal:
     """The real part of the samples."""
     return signal.with_samples(signal.x.real.astype(complex))
@@ -185,14 +191,14 @@ def _snr_of_other_paths(c: Config) -> bool:
 def _echo(c: Config) -> Iterator[Product]:
     yield Product("canceller", ("waveform",), lambda w: canceller_of(c, w.prf), _clutter(c))
     yield from _receiver(c)
-    yield from _gate(c) if _gated(c) else ()
+    yield from _gate(c)
     if c.radar.waveform == "impulse":
         yield from _impulse(c)
     else:
         yield from _direct(c) if c.engine.kind == "direct" else _exact(c)
 
 
-def _gated(c: Config) -> bool:
+def _gated(c: AnyConfig) -> bool:
     return c.processing.range_sum == "gated"
 
 
@@ -452,7 +458,7 @@ def _impulse(c: Config) -> Iterator[Product]:
     yield Product("accuracy", (), lambda: Accuracy(1, 0, False, -inf), "paths at every pulse")
 
 
-def _signals(c: Config) -> Iterator[Product]:
+def _signals(c: AnyConfig) -> Iterator[Product]:
     def compensated(x: Signal, torso_track: Float) -> Signal:
         return x.with_samples(compensate(x.x, torso_track, x.f0))
 
@@ -471,7 +477,7 @@ def _signals(c: Config) -> Iterator[Product]:
         yield Product(f"{raw}_compensated_denoised", (f"{raw}_compensated",), denoised, smooth)
 
 
-def _gate(c: Config) -> Iterator[Product]:
+def _gate(c: AnyConfig) -> Iterator[Product]:
     within = c.processing.gate_m
 
     def gate(ranges: Float, frames: Frames, canceller: Canceller, torso_track: Float) -> Gate:
@@ -479,6 +485,8 @@ def _gate(c: Config) -> Iterator[Product]:
         middle = np.rint(starts + (frames.length - 1) / 2 + canceller.delay).astype(np.intp)
         return gate_of(c, ranges, torso_track[middle] * (SPEED_OF_LIGHT / 2))
 
+    if not _gated(c):
+        return
     yield Product("range_axis", ("waveform",), Waveform.range_axis, "ranges of the bins")
     if isinstance(within, tuple):
         place = f"range bins from {within[0]:g} to {within[1]:g} m"
@@ -489,7 +497,7 @@ def _gate(c: Config) -> Iterator[Product]:
         yield Product("gate", needs, gate, place)
 
 
-def _maps(c: Config, entropy: bool) -> Iterator[Product]:
+def _maps(c: AnyConfig, entropy: bool) -> Iterator[Product]:
     size, masks = c.image.size_px, ("cfar",) if c.image.kind == "cfar" else ()
 
     def rtm(profiles: Signal) -> PowerMap:
@@ -520,7 +528,7 @@ def _maps(c: Config, entropy: bool) -> Iterator[Product]:
         yield from _doppler_maps(c, signal, entropy)
 
 
-def _frames(c: Config, of: Callable[..., Frames], w: Waveform) -> Frames:
+def _frames(c: AnyConfig, of: Callable[..., Frames], w: Waveform) -> Frames:
     return of(c, w.duration, w.prf, w.f0)
 
 
@@ -533,7 +541,7 @@ class DopplerPower(NamedTuple):
     columns: Axis
 
 
-def _doppler_maps(c: Config, signal: str, entropy: bool) -> Iterator[Product]:
+def _doppler_maps(c: AnyConfig, signal: str, entropy: bool) -> Iterator[Product]:
     """STFT and FSST of a signal, whole in float64, and their images from float32."""
     suffix = signal.removeprefix("signal")
     masks = ("cfar",) if c.image.kind == "cfar" else ()
@@ -562,7 +570,7 @@ MakePower: TypeAlias = Callable[..., DopplerPower]
 
 
 def _doppler_power(
-    c: Config, kind: str, single: bool, x: Signal, frames: Frames, gate: Gate | None = None
+    c: AnyConfig, kind: str, single: bool, x: Signal, frames: Frames, gate: Gate | None = None
 ) -> DopplerPower:
     """Power at the bins whose middle lies within `image.doppler_limits_mps`, with its axes."""
     bins = c.processing.stft_fft_length if kind == "stft" else None
@@ -580,12 +588,12 @@ def _doppler_power(
     return DopplerPower((block[:, kept] for block in power), stft.exponent, rows, stft.time)
 
 
-def _shape(c: Config, entropy: bool) -> str:
+def _shape(c: AnyConfig, entropy: bool) -> str:
     shape = "CFAR mask" if c.image.kind == "cfar" else "image"
     return f"{shape} and entropy" if entropy else shape
 
 
-def image_of(config: Config, power_map: PowerMap) -> MapImage:
+def image_of(config: AnyConfig, power_map: PowerMap) -> MapImage:
     """The image of a map that was measured, as a data set shows it; masks by fixed numbers."""
     cfar = cfar_of(config) if config.image.kind == "cfar" else None
     small = partial(reduced_map, power_map.power, config.image.size_px)
@@ -593,7 +601,7 @@ def image_of(config: Config, power_map: PowerMap) -> MapImage:
 
 
 def _image(
-    c: Config,
+    c: AnyConfig,
     cfar: CellAveraging | None,
     resize: Callable[[Callable[[Float], Float] | None], Reduced],
     extent: tuple[float, float, float, float],
@@ -622,7 +630,7 @@ def _doppler_map(make: MakePower, *given: Any) -> PowerMap:
 
 
 def _doppler_image(
-    c: Config, make: MakePower, single: bool, entropy: bool, *given: Any
+    c: AnyConfig, make: MakePower, single: bool, entropy: bool, *given: Any
 ) -> MapImage:
     cfar, given = (given[0], given[1:]) if c.image.kind == "cfar" else (None, given)
     doppler = make(single, *given)

@@ -400,12 +400,9 @@ def scene_warnings(scene: Scene) -> list[str]:
     )
 
 
-def warnings(
-    config: Config, counts: Mapping[Flags, int], recordings: int | None = None
-) -> list[dict[str, Any]]:
-    """What to say once per run: [{kind, recordings, message}]; counts are of so many recordings."""
-    recordings = recordings or sum(map(config.samples_of, config.chosen_activities))
-    messages: list[dict[str, Any]] = [
+def flagged(counts: Mapping[Flags, int], recordings: int) -> list[dict[str, Any]]:
+    """What to say of flags: [{kind, recordings, message}]; counts are of so many recordings."""
+    return [
         {
             "kind": str(flag.name).lower(),
             "recordings": n,
@@ -414,11 +411,18 @@ def warnings(
         for flag, n in counts.items()
         if n
     ]
-    messages += [
+
+
+def warnings(
+    config: Config, counts: Mapping[Flags, int], recordings: int | None = None
+) -> list[dict[str, Any]]:
+    """What to say once per run: that, and of the config; `recordings` are its own if not given."""
+    recordings = recordings or sum(map(config.samples_of, config.chosen_activities))
+    messages = [
         {"kind": "config", "recordings": recordings, "message": message}
         for message in config_warnings(config)
     ]
-    return messages + [
+    return [*flagged(counts, recordings), *messages] + [
         {"kind": "timing", "recordings": config.samples_of(activity), "message": message}
         for activity in config.chosen_activities
         for message in timing_warnings(config, (activity,))

@@ -20,7 +20,9 @@ def split_rows(config: AnyConfig) -> Levels:
     """
     rows, split, everyone = Rows.of(config), config.split, persons(config)
     if everyone is not None:
-        numbers: Levels = split_persons(config)[everyone]
+        assert split.subjects is not None
+        cut = _cut(split, split.subjects, stream(config.seed, SPLIT, name="subjects"))
+        numbers: Levels = cut[everyone]
         return numbers
     return np.concatenate(
         [
@@ -39,13 +41,6 @@ def persons(config: AnyConfig) -> Index | None:
         names = [str(window.part.person) for window in windows(config)]
         return np.searchsorted(config.recordings.persons, names)
     return np.concatenate([np.arange(count) % subjects for count in Rows.of(config).counts])
-
-
-def split_persons(config: AnyConfig) -> Levels:
-    """Split number of every named person [subjects]."""
-    assert config.split.subjects is not None
-    rng = stream(config.seed, SPLIT, name="subjects")
-    return _cut(config.split, config.split.subjects, rng)
 
 
 def split_warnings(config: AnyConfig, split: Levels) -> list[str]:

@@ -124,7 +124,8 @@ def products(config: Config, entropy: bool = True) -> dict[str, Product]:
     found = {row.name: row for row in rows}
     if config.radar.output == "real" and config.radar.waveform == "cw":
         made = found["signal"]
-        found["signal"] = replace(made, make=lambda *given: in_phase(made.make(*given)))
+        real = lambda *g: (x := made.make(*g)).with_samples(x.x.real.astype(complex))  # noqa: E731
+        found["signal"] = replace(made, make=real)
     return found
 
 
@@ -132,11 +133,6 @@ def products_of_signals(config: AnyConfig) -> dict[str, Product]:
     """Every product of a recorded signal, by name."""
     rows = (*_signals(config), *_maps(config, entropy=True), *_gate(config), *own_products())
     return {row.name: row for row in rows}
-
-
-def in_phase(signal: Signal) -> Signal:
-    """The real part of the samples."""
-    return signal.with_samples(signal.x.real.astype(complex))
 
 
 def _physics(c: Config) -> Iterator[Product]:
@@ -522,14 +518,10 @@ def _maps(c: AnyConfig, entropy: bool) -> Iterator[Product]:
     for name in ("rtm", *(product.name for product in own_products())):
         yield Product(f"image:{name}", (name, *masks), map_image, f"its {_shape(c, entropy)}")
     for name, of in ("frames", frames_of), ("fsst_frames", fsst_frames_of):
-        make = partial(_frames, c, of)
+        make = lambda w, of=of: of(c, w.duration, w.prf, w.f0)  # noqa: E731
         yield Product(name, ("waveform",), make, f"of the {'FSST' if 'fsst' in name else 'STFT'}")
     for signal in SIGNALS:
         yield from _doppler_maps(c, signal, entropy)
-
-
-def _frames(c: AnyConfig, of: Callable[..., Frames], w: Waveform) -> Frames:
-    return of(c, w.duration, w.prf, w.f0)
 
 
 class DopplerPower(NamedTuple):

@@ -8,7 +8,6 @@ import numpy as np
 
 from radhar_cli.arrays import Float, Index, Levels
 from radhar_cli.capture.images import is_image
-from radhar_cli.config.schema import MeasuredConfig
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import FolderError, did_you_mean
 from radhar_cli.learning.images.folder import our_map
@@ -149,10 +148,9 @@ def _side(path: Path, images: ImageSet, classes: dict[str, Index], size: tuple[i
         group = np.unique(images.persons, return_inverse=True)[1]
     if images.map is not None and is_h5(path):
         with open_dataset(path) as data:
-            extent, config = data.extents(images.map), data.config
-            images_of = isinstance(config, MeasuredConfig) and config.recordings.parts[0].file
-            if not masks and not (images_of and is_image(images_of)):
-                decibels = config.image.dynamic_range_db
+            extent, recorded = data.extents(images.map), data.config.recordings
+            if not masks and (recorded is None or not is_image(recorded.parts[0].file)):
+                decibels = data.config.image.dynamic_range_db
     at_size = replace(images, pixels=Resized(images.pixels, size))
     return Side(at_size, classes, left_out, size, extent, group, decibels, masks)
 

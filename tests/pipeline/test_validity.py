@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from radhar_cli.activity import ACTIVITIES, activity_named
-from radhar_cli.config import Config, config_from_json
+from radhar_cli.config import Config
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.pipeline import validity as module
@@ -331,7 +331,7 @@ def test_no_warning_for_keys_with_effect() -> None:
         receiver={"tones": [{"doppler_hz": 2000}]},
     )
     assert config_warnings(config) == []
-    assert config_warnings(config_from_json(config.model_dump_json(), "here")) == []
+    assert config_warnings(Config.model_validate_json(config.model_dump_json())) == []
 
 
 def test_no_warning_for_scenes_inside_the_model() -> None:

@@ -178,11 +178,7 @@ def _refuse_too_much(
 
 
 def bins_of_part(
-    recording: Recording,
-    w: Waveform,
-    chosen: Sequence[int],
-    first: int,
-    last: int,
+    recording: Recording, w: Waveform, chosen: Sequence[int], first: int, last: int
 ) -> Complex:
     """Range bins [receiver, K, M] of pulses first .. last - 1, referred to the chirp's start."""
     _refuse_too_much(recording, w.n_bins, len(chosen), first, last)

@@ -88,10 +88,7 @@ class Section(BaseModel):
     """Base of all config models."""
 
     model_config = ConfigDict(
-        extra="forbid",
-        frozen=True,
-        validate_default=True,
-        allow_inf_nan=False,
+        extra="forbid", frozen=True, validate_default=True, allow_inf_nan=False
     )
 
     @classmethod
@@ -133,8 +130,7 @@ class _Either:
             _by_slug, core_schema.dict_schema(core_schema.str_schema(), one)
         )
         fields = core_schema.dataclass_args_schema(
-            "PerActivity",
-            [core_schema.dataclass_field("per_activity", numbers)],
+            "PerActivity", [core_schema.dataclass_field("per_activity", numbers)]
         )
         strict = core_schema.CoreConfig(extra_fields_behavior="forbid")
         many = core_schema.dataclass_schema(PerActivity, fields, ["per_activity"], config=strict)
@@ -507,8 +503,7 @@ class MotionConfig(Section):
     heels_deg: Annotated[By[Angle], People("falling", 0, 90), UNSTEADY] = 0.0
     """How far the shanks swing up as people land on their knees in a forward fall."""
     fall: Annotated[
-        FallName | Falls,
-        People("falling falling_off_seat falling_on_rising stumbling"),
+        FallName | Falls, People("falling falling_off_seat falling_on_rising stumbling")
     ] = "forward"
     """Direction, or drawn: {choice: [forward, forward, sideways]}."""
     stumble_deg: Annotated[By[Angle], People("stumbling tripping", 0, 45)] = uniform(15.0, 40.0)
@@ -798,11 +793,7 @@ class BodyConfig(Section):
 class ReflectorConfig(Section):
     """Something that stands in the room, with a residual motion along the line of sight."""
 
-    position_m: Vector = (
-        uniform(1.0, 6.0),
-        uniform(-3.0, 3.0),
-        uniform(0.0, 2.5),
-    )
+    position_m: Vector = (uniform(1.0, 6.0), uniform(-3.0, 3.0), uniform(0.0, 2.5))
     """Range, cross-range, height."""
     rcs_dbsm: Annotated[Number, within(-120, 120, "dBsm")] = uniform(-10.0, 10.0)
     """Its radar cross-section."""

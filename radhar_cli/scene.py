@@ -79,6 +79,11 @@ def _plain(value: Any) -> Any:
     return Numbers(value) if isinstance(value, Section) else value
 
 
+def _section(name: str) -> cached_property[Any]:
+    """What a config has of that name, with its numbers as floats."""
+    return cached_property(lambda self: _plain(getattr(self.config, name)))
+
+
 @dataclass(frozen=True)
 class Person:
     """One person of a scene."""
@@ -90,6 +95,8 @@ class Person:
     # what was made of them and is needed again
     held: dict[str, Any] = field(default_factory=dict, init=False, compare=False, repr=False)
 
+    subject, motion, timing = map(_section, ("subject", "motion", "timing"))
+
     @property
     def prefix(self) -> str:
         """Of the names of their random streams."""
@@ -98,22 +105,12 @@ class Person:
     @property
     def seconds(self) -> float:
         """Of the recording."""
-        return float(_plain(self.scene.config.duration_s))
+        return float(self.scene.seconds)
 
     @cached_property
-    def subject(self) -> Numbers:
-        """Numbers of the body."""
-        return Numbers(self.config.subject)
-
-    @cached_property
-    def motion(self) -> Numbers:
-        """Numbers of the motion."""
-        return Numbers(self.config.motion)
-
-    @cached_property
-    def timing(self) -> Numbers:
-        """Numbers of the timing."""
-        return Numbers(self.config.timing)
+    def own_class(self) -> Any:
+        """What `classes` has of their activity, with its numbers as floats."""
+        return _plain(self.config.classes[self.activity.slug])
 
     def stream(self, name: str) -> np.random.Generator:
         """The random stream of a name for what this person does in this scene."""
@@ -141,6 +138,9 @@ class Scene:
     # number of the person, or None where every sample is a person of its own
     subject: int | None = None
     attempt: int = 0  # how often the scene was redrawn (`on_invalid: redraw`)
+
+    radar, wall, room, receiver = map(_section, ("radar", "wall", "room", "receiver"))
+    seconds, snr_db = map(_section, ("duration_s", "snr_db"))
 
     @property
     def name(self) -> str:
@@ -351,7 +351,7 @@ def scene_numbers(scene: Scene) -> dict[str, float]:
 class ByIdentity:
     """A config as a key: equal to itself alone, whatever it holds."""
 
-    def __init__(self, config: Config) -> None:
+    def __init__(self, config: Any) -> None:
         self.config = config
 
     def __hash__(self) -> int:
@@ -364,7 +364,8 @@ class ByIdentity:
 @lru_cache(maxsize=64)
 def _of_person(same: ByIdentity, number: int) -> Config:
     """One config of a person for all scenes: drawing keeps what it finds by its identity."""
-    return same.config.of_person(number)
+    config: Config = same.config
+    return config.of_person(number)
 
 
 @lru_cache(maxsize=64)

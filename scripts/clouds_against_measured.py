@@ -233,7 +233,7 @@ def _of_run(
     frames = pairs.number[run] - pairs.number[run][0]
     config = board_config(cfg, (int(frames[-1]) + 1) / RATE, seed, overrides)
     scene: Scene = draw_scene(config, config.chosen_activities[0], number)
-    board = config.board
+    board = config.radar.header
     chirps = board.loops * len(board.order) * board.slot_s
     motion = motion_of(pairs, run, offset, CLOUD_LATE_S + chirps / 2)
     cloud = record(scene, ["cloud"], motions=(motion,))["cloud"]

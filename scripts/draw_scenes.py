@@ -114,9 +114,9 @@ def corner(path: Path) -> None:
         maps, name = record(scene, ["rtm", "stft"]), "two walls" if walls else "in the open"
         show(ranges, maps["rtm"], name, 0, 13)
         show(doppler, maps["stft"], name, -400, 400)
-        t, antennas = np.array([0.0, 4.0]), antennas_of(scene.config)
+        t, antennas = np.array([0.0, 4.0]), antennas_of(scene)
         p = motion_of(scene.people[0]).torso(t)
-        for tx, rx in ways_of(scene.config):
+        for tx, rx in ways_of(scene):
             way = (leg(tx.image(p), antennas.tx) + leg(rx.image(p), antennas.rx))[0] / 2
             if tx.name <= rx.name and "+" not in rx.name:  # the other way round is as long
                 ranges.text(

@@ -198,7 +198,8 @@ def test_a_beam_is_of_each_antenna() -> None:
     apart = {"tx_m": [0, -2, 1.5], "rx_m": [0, 2, 1.5]}
     beam = {"azimuth_deg": 40, "elevation_deg": 40}
     at = np.array([4.0, 2, 1.5])[:, None, None]
-    field = antennas_of(config(room={}, radar=RADAR | apart | {"beam": beam})).field(at)
+    scene = nominal_scene(config(room={}, radar=RADAR | apart | {"beam": beam}), WALKING)
+    field = antennas_of(scene).field(at)
     assert field is not None
     assert 20 * np.log10(field.item()) == pytest.approx(-12 * (45 / 40) ** 2, abs=1e-9)
 

@@ -16,6 +16,7 @@ from radhar_cli.pipeline.plan import plan
 from radhar_cli.pipeline.products import products
 from radhar_cli.pipeline.run import run
 from radhar_cli.radar.board import Board
+from radhar_cli.scene import Numbers
 
 # {map of a board: products of its recording that are behind it}
 OF_FRAMES = {name: (name,) for name in (*FRAME_MAPS, "cube")} | {"points": ("cloud",)}
@@ -54,7 +55,7 @@ def _board(recording: Recording, config: Config) -> Board:
     """The board of a config, which must be the recording's."""
     if config.radar.cfg is None:
         raise CaptureError(f"{recording.path}: frames need the board's .cfg: radar.cfg")
-    board, info = board_of(config), recording.info
+    board, info = board_of(Numbers(config.radar)), recording.info
     ours = {
         "receivers": board.channels,
         "samples": board.samples,

@@ -14,7 +14,7 @@ from radhar_cli.arrays import Bool, Complex
 from radhar_cli.capture.findings import LOST
 from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.tracking import TorsoTrack, track_torso, without_static
-from radhar_cli.config.schema import Config
+from radhar_cli.config.schema import AnyConfig
 from radhar_cli.errors import CaptureError
 from radhar_cli.phasor import unit_phasor
 from radhar_cli.pipeline.physics import board_of, canceller_of, frames_of, fsst_frames_of
@@ -27,6 +27,7 @@ from radhar_cli.processing.signal import Signal, nearest
 from radhar_cli.radar.board import Board
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
+from radhar_cli.scene import Numbers
 
 MAX_BYTES = 3 * 2**29  # of range bins that are held at once
 PIECE_SAMPLES = 2**20
@@ -48,7 +49,7 @@ class Maps:
 
 def maps_of(
     recording: Recording,
-    config: Config,
+    config: AnyConfig,
     names: Sequence[str],
     start: float | None = None,
     stop: float | None = None,
@@ -94,7 +95,7 @@ def maps_of(
             duration=segments.pulses / prf,
         )
         if config.radar.cfg is not None:  # whose samples have no half band
-            waveform = replace(board_of(config).waveform, centred=centred)
+            waveform = replace(board_of(Numbers(config.radar)).waveform, centred=centred)
         x = filled(bins_of_part(recording, waveform, chosen, first, last), lost)
         track = track_torso(without_static(x), segments, waveform)
         notes += [] if track else ["nothing moves: no torso was found"]
@@ -177,11 +178,7 @@ def _refuse_too_much(
 
 
 def bins_of_part(
-    recording: Recording,
-    w: Waveform,
-    chosen: Sequence[int],
-    first: int,
-    last: int,
+    recording: Recording, w: Waveform, chosen: Sequence[int], first: int, last: int
 ) -> Complex:
     """Range bins [receiver, K, M] of pulses first .. last - 1, referred to the chirp's start."""
     _refuse_too_much(recording, w.n_bins, len(chosen), first, last)
@@ -198,7 +195,7 @@ def bins_of_part(
 def _windows(
     signal: Signal,
     canceller: Canceller,
-    config: Config,
+    config: AnyConfig,
     names: Sequence[str],
     recording: Recording,
     notes: list[str],
@@ -241,7 +238,7 @@ def _even(power_map: PowerMap) -> PowerMap:
     return PowerMap(power_map.power[:, columns] * there, power_map.rows, even)
 
 
-def _refuse_without_ranges(recording: Recording, config: Config, names: Sequence[str]) -> None:
+def _refuse_without_ranges(recording: Recording, config: AnyConfig, names: Sequence[str]) -> None:
     wrong = [name for name in names if name == "rtm" or "compensated" in name]
     if wrong or config.processing.range_sum == "gated":
         raise CaptureError(

@@ -9,7 +9,6 @@ from matplotlib.axes import Axes
 from radhar_cli import __version__
 from radhar_cli.capture.chain import Maps
 from radhar_cli.capture.recording import RecordingInfo
-from radhar_cli.capture.tracking import TorsoTrack
 from radhar_cli.config.identity import resolved
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import UnfinishedError
@@ -72,12 +71,8 @@ def _draw_maps(maps: Maps, config: Config, title: str, path: Path) -> None:
 
     def over(axes: Axes, name: str, unit: float) -> None:
         if track is not None and name == "rtm":
-            _draw_track(axes, track)
+            sure = np.where(track.confidence >= SURE, track.range, np.nan)
+            axes.plot(track.time, track.range, "w:", linewidth=0.8, scalex=False, scaley=False)
+            axes.plot(track.time, sure, "w-", linewidth=1.0, scalex=False, scaley=False)
 
     draw_maps(Shown(maps.maps, config.image, maps.f0, float(far), title, over), path)
-
-
-def _draw_track(axes: Axes, track: TorsoTrack) -> None:
-    confident = np.where(track.confidence >= SURE, track.range, np.nan)
-    axes.plot(track.time, track.range, "w:", linewidth=0.8, scalex=False, scaley=False)
-    axes.plot(track.time, confident, "w-", linewidth=1.0, scalex=False, scaley=False)

@@ -18,15 +18,15 @@ from radhar_cli.capture.images import are_images, is_image, listed, read_image
 from radhar_cli.capture.recording import Recording, RecordingInfo
 from radhar_cli.config.identity import resolved
 from radhar_cli.config.reading import validated
-from radhar_cli.config.schema import Config, RecordingsConfig
+from radhar_cli.config.schema import Config, MeasuredConfig, RecordingsConfig
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.dataset.recorded import windows
 from radhar_cli.dataset.sample import Row, Sample
 from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.pipeline.products import image_of
-from radhar_cli.pipeline.unused_keys import unused_keys
 from radhar_cli.processing.entropy import entropy_bits
 from radhar_cli.processing.power_map import MapImage
+from radhar_cli.scene import nominal_scene
 from radhar_cli.untrusted import read_text, refuse_outside
 
 MAX_MANIFEST = 2**20  # bytes
@@ -88,14 +88,17 @@ def _slug(label: str) -> str:
     return TWELVE.get(name, name)
 
 
-def with_recordings(config: Config, manifest: Path) -> Config:
-    """The config of a data set of the manifest's recordings, which are opened for their length."""
+def with_recordings(config: Config, manifest: Path) -> MeasuredConfig:
+    """The config of a data set of the manifest's recordings, which are opened for their length.
+
+    Numbers that `config` draws take their middle.
+    """
     if are_images(manifest):
         return _with_images(config, manifest)
     parts, sums = read_manifest(manifest), dict[str, str]()
     lengths: dict[str, float] = {}
-    document = resolved(config)
-    given = document.get("recordings") or {}
+    document = _shared(config)
+    given = document["recordings"]
     checked = [{**part, "start_s": part["start_s"] or 0.0, "stop_s": 0.0} for part in parts]
     # Names are checked before any file is opened.
     validated(RecordingsConfig, {**given, "parts": checked}, str(manifest), {})
@@ -122,7 +125,14 @@ def with_recordings(config: Config, manifest: Path) -> Config:
     return _whole(config, document, manifest)
 
 
-def _with_images(config: Config, path: Path) -> Config:
+def _shared(config: Config) -> dict[str, Any]:
+    """What a config says of measured data too, as plain values."""
+    every = resolved(nominal_scene(config, config.chosen_activities[0]).config)
+    document = {key: every[key] for key in MeasuredConfig.model_fields}
+    return document | {"recordings": every["recordings"] or {}}
+
+
+def _with_images(config: Config, path: Path) -> MeasuredConfig:
     """The config of a data set of images that exist already; each lasts recordings.window_s."""
     given = config.recordings or RecordingsConfig()
     if len(config.maps) != 1 or given.rows is None or not given.rows[0] < given.rows[1]:
@@ -130,7 +140,9 @@ def _with_images(config: Config, path: Path) -> Config:
             f"{path}: of images, maps should name the one map that they show, and "
             "recordings.rows=[low, high] the edges of its rows (Hz, or m)"
         )
-    images, document = listed(path, given.packed), resolved(config)
+    if config.output.power is not None:
+        raise ConfigError("output.power: should be null; images have no power behind them")
+    images, document = listed(path, given.packed), _shared(config)
     window = {"start_s": 0.0, "stop_s": given.window_s}
     parts = [{**part, "label": _slug(part["label"]), **window} for part in images.parts]
     document["recordings"] |= {"parts": parts, "sha256": images.sha256}
@@ -138,15 +150,12 @@ def _with_images(config: Config, path: Path) -> Config:
     return _whole(config, document, path)
 
 
-def _whole(config: Config, document: dict[str, Any], manifest: Path) -> Config:
-    parts, window = document["recordings"]["parts"], document["recordings"].get("window_s", 4.0)
-    document |= {"duration_s": window, "snr_db": None}
+def _whole(config: Config, document: dict[str, Any], manifest: Path) -> MeasuredConfig:
+    parts = document["recordings"]["parts"]
     document["split"] = _split(config, parts, manifest)
     if len(json.dumps(document)) > MAX_CONFIG:
         raise ConfigError(f"{manifest}: has {len(parts)} rows, too many for one data set")
-    made = validated(Config, document, str(manifest), {})
-    _refuse_what_cannot_be(made, manifest)
-    return made
+    return validated(MeasuredConfig, document, str(manifest), {})
 
 
 def _radar(info: RecordingInfo) -> dict[str, float]:
@@ -173,26 +182,9 @@ def _split(config: Config, parts: Sequence[dict[str, Any]], manifest: Path) -> d
     return split
 
 
-def _refuse_what_cannot_be(config: Config, manifest: Path) -> None:
-    if config.recorded is None:
-        assert config.recordings is not None
-        window = config.recordings.window_s
-        raise ConfigError(f"{manifest}: no part is as long as recordings.window_s = {window:g}")
-    if config.output.column_labels:
-        raise ConfigError("output.column_labels: should be false; recordings have no phases")
-    if config.output.slow_time:
-        raise ConfigError("output.slow_time: should be false; recordings hold it themselves")
-    if config.output.power is not None and is_image(config.recorded.parts[0].file):
-        raise ConfigError("output.power: should be null; images have no power behind them")
-    if config.image.kind == "cfar" and not isinstance(config.image.cfar.pfa, float | int):
-        raise ConfigError("image.cfar.pfa: should be one number; nothing is drawn here")
-
-
-def warnings_of(config: Config) -> list[str]:
+def warnings_of(config: MeasuredConfig) -> list[str]:
     """What a user should know of a data set of recordings, in words."""
-    recorded, warnings = config.recorded, []
-    assert recorded is not None
-    warnings += unused_keys(config)
+    recorded, warnings = config.recordings, list[str]()
     if is_image(recorded.parts[0].file):
         height, width = config.image.size_px
         if height == 8 * width and not recorded.packed:
@@ -218,10 +210,9 @@ class WindowFactory:
 
     folder: Path  # of the manifest, absolute
 
-    def __call__(self, config: Config, row: int) -> Row:
+    def __call__(self, config: MeasuredConfig, row: int) -> Row:
         """Sample and values of a row."""
-        recorded = config.recorded
-        assert recorded is not None
+        recorded = config.recordings
         number, part, start = windows(config)[row]
         if is_image(part.file):
             return Row(self._image(config, part.file), np.array([number, start, nan]))
@@ -237,9 +228,8 @@ class WindowFactory:
         sure = nan if made.track is None else float(made.track.confidence.mean())
         return Row(Sample(images, nan, False, {}), np.array([number, start, sure]))
 
-    def _image(self, config: Config, file: str) -> Sample:
-        recorded = config.recorded
-        assert recorded is not None
+    def _image(self, config: MeasuredConfig, file: str) -> Sample:
+        recorded = config.recordings
         assert recorded.rows is not None
         levels = read_image(self.folder, file, config.image.size_px, recorded.packed)
         extent = (0.0, recorded.window_s, *recorded.rows)

@@ -11,7 +11,7 @@ from radhar_cli.commands.tell import tell
 from radhar_cli.errors import ConfigError
 
 if TYPE_CHECKING:
-    from radhar_cli.config import Config
+    from radhar_cli.config.schema import AnyConfig, Config
     from radhar_cli.dataset.sample import RowFactory
 
 
@@ -67,34 +67,38 @@ def generate(
 
         loaded, factory = load_config(config, with_tolerance(set_, tolerance)), None
         jobs = jobs or cores()
+        made: AnyConfig = loaded
         if recordings is not None:
             if shard is not None or cluster is not None:
                 raise ConfigError("--recordings: cannot be combined with --shard or --cluster")
-            loaded, factory = _measured(loaded, recordings)
+            made, factory = _measured(loaded, recordings)
         elif loaded.recordings is not None:
             raise ConfigError(
                 f"{config}: recordings: --recordings MANIFEST should say where they lie"
             )
         if dry_run:
-            print_plan(loaded, jobs)
+            print_plan(made, jobs)
         else:
             part = None if shard is None else Part.parse(shard)
-            most = min(jobs, len(Rows.of(loaded)))
+            most = min(jobs, len(Rows.of(made)))
             where = nullcontext(jobs) if cluster is None else on_cluster(cluster, most)
             with BarProgress() as progress, where as jobs:
-                outcome = build(loaded, out, jobs, progress, overwrite, batch, factory, part)
+                outcome = build(made, out, jobs, progress, overwrite, batch, factory, part)
             if part is None:
-                print_outcome(loaded, outcome)
+                print_outcome(made, outcome)
             else:
                 print_part(outcome, out, str(part))
 
 
-def _measured(config: "Config", manifest: Path) -> "tuple[Config, RowFactory]":
+def _measured(config: "Config", manifest: Path) -> "tuple[AnyConfig, RowFactory]":
     """The config of a data set of recordings, and what makes its rows."""
     from radhar_cli.capture.windows import WindowFactory, warnings_of, with_recordings
+    from radhar_cli.pipeline.unused_keys import unused_keys
 
     measured = with_recordings(config, manifest)
-    for warning in warnings_of(measured):
+    unused = unused_keys(config)
+    used = [one for one in unused if one.partition(".")[0] in type(measured).model_fields]
+    for warning in (*used, *warnings_of(measured)):
         tell(f"warning: {warning}", err=True)
     folder = manifest if manifest.is_dir() else manifest.parent
     return measured, WindowFactory(folder.absolute())

@@ -43,9 +43,11 @@ def process(
     from radhar_cli.dataset.files import refuse_links
     from radhar_cli.dataset.folder import refuse_file
     from radhar_cli.pipeline.unused_keys import unused_keys
+    from radhar_cli.scene import nominal_scene
     from radhar_cli.simulation.simulate import map_names
 
     loaded = load_config(config, set_ or [])
+    fixed = nominal_scene(loaded, loaded.chosen_activities[0]).config
     names = loaded.maps if maps is None else map_names(maps.split(","))
     refuse_file(out)
     for name in maps_file.FILES:
@@ -54,9 +56,9 @@ def process(
     signals = tuple(name for name in names if name not in OF_FRAMES)
     with Recording(recording) as opened:
         info, gaps = opened.info, len(opened.segments) - 1
-        made = maps_of(opened, loaded, signals, start, stop, receiver)
+        made = maps_of(opened, fixed, signals, start, stop, receiver)
         if frames:
-            made.frames, made.board = frames_of_recording(opened, loaded, frames, start, stop)
+            made.frames, made.board = frames_of_recording(opened, fixed, frames, start, stop)
     if gaps:
         tell(f"{gaps} gap{'s' * (gaps > 1)}: the stretches between are processed separately")
     for note in [*unused_keys(loaded.model_copy(update={"maps": names})), *made.notes]:

@@ -12,7 +12,7 @@ from radhar_cli.commands.tell import is_quiet, report, tell, wanted
 from radhar_cli.untrusted import Closing, shown
 
 if TYPE_CHECKING:
-    from radhar_cli.config.schema import Config
+    from radhar_cli.config.schema import AnyConfig
     from radhar_cli.dataset.build import BuildOutcome
     from radhar_cli.dataset.layout import Rows
     from radhar_cli.learning.run_folder import Epoch
@@ -83,7 +83,7 @@ def _class_counts(rows: "Rows") -> dict[str, int]:
     return {one.slug: count for one, count in zip(rows.activities, rows.counts, strict=True)}
 
 
-def print_outcome(config: "Config", outcome: "BuildOutcome") -> None:
+def print_outcome(config: "AnyConfig", outcome: "BuildOutcome") -> None:
     """Print what was written and where."""
     from radhar_cli.dataset.layout import DATASET, SPLITS, Rows
     from radhar_cli.dataset.split import split_rows
@@ -120,8 +120,9 @@ def print_part(outcome: "BuildOutcome", out: Path, part: str) -> None:
     tell(f"  when all parts are: radhar merge {out}")
 
 
-def print_plan(config: "Config", jobs: int) -> None:
+def print_plan(config: "AnyConfig", jobs: int) -> None:
     """Print stages, samples, bytes and time; write nothing."""
+    from radhar_cli.config.schema import MeasuredConfig
     from radhar_cli.dataset.batch import check_scenes
     from radhar_cli.dataset.estimate import estimate
     from radhar_cli.dataset.layout import Rows
@@ -130,7 +131,7 @@ def print_plan(config: "Config", jobs: int) -> None:
 
     rows = Rows.of(config)
     samples = f"samples     {len(rows)} = {rows.counted}"
-    if config.recorded is not None:
+    if isinstance(config, MeasuredConfig):
         report(samples=len(rows), classes=_class_counts(rows), maps=config.maps)
         tell(f"{samples}\nnothing was written")
         return

@@ -15,7 +15,9 @@ from radhar_cli.config.schema import (
     MIN_WINDOW,
     OF_FRAMES,
     OF_POINTS,
+    AnyConfig,
     Config,
+    MeasuredConfig,
     PerActivity,
     SequenceConfig,
     WallConfig,
@@ -57,14 +59,11 @@ def problems(c: Config) -> Iterator[Problem]:
             yield Problem("maps", frames, "should have the board that makes them: radar.cfg")
         yield from _step_problems(c)
         yield from _impulse_problems(c)
-        yield from _waveform_problems(c)
-        yield from _signal_problems(c)
-        yield from _clutter_problems(c)
-        yield from _gate_problems(c)
+    yield from _processing_problems(c)
     yield from _wall_problems(c)
     yield from _back_wall_problems(c)
     yield from _room_problems(c)
-    yield from _image_problems(c)
+    yield from _tone_problems(c)
     if c.motion.model == "human":
         yield from _human_problems(c)
     yield from _class_problems(c)
@@ -86,6 +85,32 @@ def problems(c: Config) -> Iterator[Problem]:
             f"should be at most samples_per_class = {c.samples_of(fewest)}{whose}: "
             "every person performs every activity",
         )
+
+
+def measured_problems(c: MeasuredConfig) -> Iterator[Problem]:
+    """What does not go together in a data set of recordings."""
+    if not c.recordings.counts:
+        right = "should be at most as long as the longest part of a recording"
+        yield Problem("recordings.window_s", c.recordings.window_s, right)
+    if others := [name for name in c.maps if name not in MAP_NAMES]:
+        yield Problem("maps", others, f"should be some of {', '.join(MAP_NAMES)}, of recordings")
+    for key in ("column_labels", "slow_time", "products"):
+        if value := getattr(c.output, key):
+            yield Problem(f"output.{key}", value, "should be left out: recordings have none")
+    named = {part.person for part in c.recordings.parts}
+    if c.split.subjects is not None and (None in named or c.split.subjects != len(named)):
+        right = f"should be the number of persons, {len(named - {None})}; every part names one"
+        yield Problem("split.subjects", c.split.subjects, right)
+    yield from _processing_problems(c)
+
+
+def _processing_problems(c: AnyConfig) -> Iterator[Problem]:
+    if c.radar.cfg is None:
+        yield from _waveform_problems(c)
+        yield from _signal_problems(c)
+        yield from _clutter_problems(c)
+        yield from _gate_problems(c)
+    yield from _image_problems(c)
 
 
 def _step_problems(c: Config) -> Iterator[Problem]:
@@ -164,9 +189,8 @@ def _impulse_problems(c: Config) -> Iterator[Problem]:
 
 def _people_problems(c: Config) -> Iterator[Problem]:
     """What others in a scene cannot do."""
-    if c.people and (c.motion.model == "paper" or c.recorded is not None):
-        why = "motion.model: paper" if c.recorded is None else "recordings"
-        right = f"should be empty with {why}, where one person is the sample"
+    if c.people and c.motion.model == "paper":
+        right = "should be empty with motion.model: paper, where one person is the sample"
         yield Problem("people", len(c.people), right)
         return
     if c.people and c.radar.cfg is not None and c.snr_db is not None:
@@ -195,21 +219,14 @@ def _people_problems(c: Config) -> Iterator[Problem]:
 
 def _board_problems(c: Config) -> Iterator[Problem]:
     """What a board cannot do, or is not simulated for one."""
-    board, radar, clutter = c.board, c.radar, c.processing.clutter
-    known = DEVICES.get(str(radar.device))
-    tx, rx = (
-        (len(radar.array.tx), len(radar.array.rx))
-        if radar.array
-        else (len(known.tx), len(known.rx))
-        if known
-        else (0, 0)
-    )
-    if not tx:
+    board, radar, clutter = c.radar.header, c.radar, c.processing.clutter
+    if radar.elements is None:
         right = (
             f"should name the board that radar.cfg runs on: {', '.join(DEVICES)}; or radar.array"
         )
         yield Problem("radar.device", radar.device, right)
         return
+    tx, rx = len(radar.elements.tx), len(radar.elements.rx)
     if max(board.order) >= tx or max(board.receivers) >= rx:
         masks = [1 << n for n in board.order]
         right = (
@@ -290,7 +307,7 @@ def _unknown_activities(c: Config) -> Iterator[Problem]:
 ENDS = ("carrier_hz", "bandwidth_hz", "chirp_s", "adc_rate_hz", "prf_hz", "duration_s")
 
 
-def _waveform(c: Config, *largest: str) -> Waveform:
+def _waveform(c: AnyConfig, *largest: str) -> Waveform:
     """The waveform of the smallest numbers that a config draws, but for those named."""
     numbers = {key: c.duration_s if key == "duration_s" else getattr(c.radar, key) for key in ENDS}
     fc, bandwidth, chirp, rate, prf, duration = (
@@ -304,7 +321,7 @@ def _waveform(c: Config, *largest: str) -> Waveform:
     return Waveform(*given)
 
 
-def _waveform_problems(c: Config) -> Iterator[Problem]:
+def _waveform_problems(c: AnyConfig) -> Iterator[Problem]:
     radar, fft_length = c.radar, c.processing.range_fft_length
     fewest, most = _waveform(c).n_adc, _waveform(c, *ENDS).n_adc
     shortest_interval = 1 / support(radar.prf_hz)[1]
@@ -337,7 +354,7 @@ def _waveform_problems(c: Config) -> Iterator[Problem]:
         yield Problem(key, fft_length, right)
 
 
-def _window(c: Config, w: Waveform) -> int:
+def _window(c: AnyConfig, w: Waveform) -> int:
     """Pulses of the STFT's window of a waveform."""
     return c.processing.window_pulses(w.duration, w.prf, w.f0)
 
@@ -345,7 +362,7 @@ def _window(c: Config, w: Waveform) -> int:
 HIGHEST_F0 = ("carrier_hz", "bandwidth_hz", "chirp_s", "adc_rate_hz")
 
 
-def _signal_problems(c: Config) -> Iterator[Problem]:
+def _signal_problems(c: AnyConfig) -> Iterator[Problem]:
     processing, padding = c.processing, c.processing.stft_fft_length
     shortest, longest = _waveform(c, *HIGHEST_F0), _waveform(c, "duration_s", "prf_hz")
     pulses, most = shortest.n_pulses, longest.n_pulses
@@ -377,7 +394,7 @@ def _signal_problems(c: Config) -> Iterator[Problem]:
         yield Problem("processing.stft_fft_length", padding, right)
 
 
-def _clutter_problems(c: Config) -> Iterator[Problem]:
+def _clutter_problems(c: AnyConfig) -> Iterator[Problem]:
     processing, prf = c.processing, support(c.radar.prf_hz)
     given = processing.highpass.cutoff_hz
     if processing.clutter == "highpass" and given is not None:
@@ -393,7 +410,7 @@ def _clutter_problems(c: Config) -> Iterator[Problem]:
         yield from _too_many(c, "processing.clutter", processing.clutter, "the rtm")
 
 
-def _gate_problems(c: Config) -> Iterator[Problem]:
+def _gate_problems(c: AnyConfig) -> Iterator[Problem]:
     processing = c.processing
     if processing.range_sum != "gated":
         return
@@ -424,7 +441,7 @@ def _gate_problems(c: Config) -> Iterator[Problem]:
     yield from _too_many(c, "processing.range_sum", "gated", "the gate")
 
 
-def _too_many(c: Config, key: str, value: object, what: str) -> Iterator[Problem]:
+def _too_many(c: AnyConfig, key: str, value: object, what: str) -> Iterator[Problem]:
     """A request for which range bins of all pulses have to be held."""
     w = _waveform(c, *ENDS)
     bins, pulses = w.n_bins, w.n_pulses
@@ -569,7 +586,7 @@ def _room_problems(c: Config) -> Iterator[Problem]:
                 yield Problem(where, value, right)
 
 
-def _image_problems(c: Config) -> Iterator[Problem]:
+def _tone_problems(c: Config) -> Iterator[Problem]:
     for key, extra in (
         ("tones", c.receiver.tones),
         ("noise_corner_hz", support(c.receiver.noise_corner_hz)[1] > 0),
@@ -578,6 +595,9 @@ def _image_problems(c: Config) -> Iterator[Problem]:
             yield Problem(
                 "snr_db", None, f"should be a number: receiver.{key} is relative to the noise"
             )
+
+
+def _image_problems(c: AnyConfig) -> Iterator[Problem]:
     cfar, size = c.image.cfar, c.image.size_px
     reach = [2 * (g + t) + 1 for g, t in zip(cfar.guard, cfar.training, strict=True)]
     if c.image.kind == "cfar" and not any(cfar.training):

@@ -4,7 +4,7 @@ import hashlib
 import json
 from typing import Any
 
-from radhar_cli.config.schema import Config, Section
+from radhar_cli.config.schema import AnyConfig, Section
 
 NOT_IDENTITY = ("output.png", "output.license")
 
@@ -43,7 +43,7 @@ def flat_document(document: dict[str, Any]) -> dict[str, Any]:
     return {k: v for k, v in walk(document, "") if k not in NOT_IDENTITY}
 
 
-def config_hash(config: Config) -> str:
+def config_hash(config: AnyConfig) -> str:
     """Return the SHA-256 of the keys that decide bytes, in hex."""
     return document_hash(resolved(config))
 

@@ -15,7 +15,7 @@ from radhar_cli.config.motion_files import with_files
 from radhar_cli.config.schema import Config, Section
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.errors import ConfigError, did_you_mean
-from radhar_cli.untrusted import parse_json, shown
+from radhar_cli.untrusted import shown
 
 S = TypeVar("S", bound=Section)
 
@@ -100,15 +100,6 @@ def _load(kind: type[S], path: Path | None, overrides: Iterable[str]) -> tuple[S
 def load_mapping(path: Path) -> dict[str, Any]:
     """Read a file of plain keys and values."""
     return read_document(path)[0]
-
-
-def config_from_json(text: str, where: str) -> Config:
-    """Rebuild a resolved config from the JSON stored with a data set."""
-    try:
-        document = parse_json(text)
-    except ValueError as error:
-        raise ConfigError(f"{where}: the stored config is not JSON ({error})") from None
-    return validated(Config, document, where, {})
 
 
 def validated(

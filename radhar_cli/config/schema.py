@@ -73,7 +73,7 @@ from radhar_cli.errors import did_you_mean
 from radhar_cli.light import SPEED_OF_LIGHT
 from radhar_cli.motion.files.names import WANTED
 from radhar_cli.motion.files.reading import SUFFIXES
-from radhar_cli.radar.board import DEVICES
+from radhar_cli.radar.board import DEVICES, EVEN, Array
 from radhar_cli.radar.materials import Material
 from radhar_cli.registry import is_known, own_products
 from radhar_cli.rounding import half_up
@@ -88,10 +88,7 @@ class Section(BaseModel):
     """Base of all config models."""
 
     model_config = ConfigDict(
-        extra="forbid",
-        frozen=True,
-        validate_default=True,
-        allow_inf_nan=False,
+        extra="forbid", frozen=True, validate_default=True, allow_inf_nan=False
     )
 
     @classmethod
@@ -133,8 +130,7 @@ class _Either:
             _by_slug, core_schema.dict_schema(core_schema.str_schema(), one)
         )
         fields = core_schema.dataclass_args_schema(
-            "PerActivity",
-            [core_schema.dataclass_field("per_activity", numbers)],
+            "PerActivity", [core_schema.dataclass_field("per_activity", numbers)]
         )
         strict = core_schema.CoreConfig(extra_fields_behavior="forbid")
         many = core_schema.dataclass_schema(PerActivity, fields, ["per_activity"], config=strict)
@@ -279,6 +275,21 @@ class RadarConfig(Section):
         if self.waveform == "fmcw" or self.steps is None or self.dwell_s is None:
             return {}
         return {"adc_rate_hz": 1 / self.dwell_s, "chirp_s": self.steps * self.dwell_s}
+
+    @property
+    def header(self) -> "BoardHeader":
+        """What `cfg` says."""
+        from radhar_cli.config.ti_header import board_header  # which knows this schema
+
+        assert self.cfg is not None
+        return board_header(self.cfg)
+
+    @property
+    def elements(self) -> Array | None:
+        """Antenna elements of a board: those of `array`, or its device's."""
+        if self.array is None:
+            return DEVICES.get(str(self.device))
+        return Array(self.array.tx, self.array.rx, (1.0,) * len(self.array.rx), EVEN)
 
 
 Metres = Annotated[NotNegative, within(0, 1, "m")]
@@ -471,8 +482,7 @@ class MotionConfig(Section):
     heels_deg: Annotated[By[Angle], People("falling", 0, 90), UNSTEADY] = 0.0
     """How far the shanks swing up as people land on their knees in a forward fall."""
     fall: Annotated[
-        FallName | Falls,
-        People("falling falling_off_seat falling_on_rising stumbling"),
+        FallName | Falls, People("falling falling_off_seat falling_on_rising stumbling")
     ] = "forward"
     """Direction, or drawn: {choice: [forward, forward, sideways]}."""
     stumble_deg: Annotated[By[Angle], People("stumbling tripping", 0, 45)] = uniform(15.0, 40.0)
@@ -762,11 +772,7 @@ class BodyConfig(Section):
 class ReflectorConfig(Section):
     """Something that stands in the room, with a residual motion along the line of sight."""
 
-    position_m: Vector = (
-        uniform(1.0, 6.0),
-        uniform(-3.0, 3.0),
-        uniform(0.0, 2.5),
-    )
+    position_m: Vector = (uniform(1.0, 6.0), uniform(-3.0, 3.0), uniform(0.0, 2.5))
     """Range, cross-range, height."""
     rcs_dbsm: Annotated[Number, within(-120, 120, "dBsm")] = uniform(-10.0, 10.0)
     """Its radar cross-section."""
@@ -1311,14 +1317,40 @@ class PersonConfig(Section):
         return (self.activity,) if isinstance(self.activity, str) else self.activity.choice
 
 
+def _own_classes(value: dict[str, ClassConfig]) -> dict[str, ClassConfig]:
+    twelve = {activity.slug for activity in ACTIVITIES}
+    for slug, one in value.items():
+        if not (is_new_slug(slug) or (isinstance(one, FilesConfig) and slug in twelve)):
+            raise _wrong(f"should have a new name of a-z, 0-9 and _ instead of {slug!r}")
+    if sum(len(one.files) for one in value.values() if isinstance(one, FilesConfig)) > MAX_FILES:
+        raise _wrong(f"should have at most {MAX_FILES} files in all")
+    return value
+
+
+def _maps_in_order(value: tuple[str, ...]) -> tuple[str, ...]:
+    if not value:
+        raise PydanticCustomError("maps", "should name at least 1 map")
+    if len(set(value)) != len(value):
+        raise PydanticCustomError("maps", "should name each map once")
+    known = (*MAP_NAMES, *FRAME_MAPS)
+    own = [name for name in value if name not in known]
+    return (*sorted(set(value) - set(own), key=known.index), *own)
+
+
+# Of data sets of scenes and of recordings; labels are uint8.
+Seed = Annotated[int, Field(ge=0, lt=2**63, strict=True)]
+Classes = Annotated[dict[str, ClassConfig], Field(max_length=200), AfterValidator(_own_classes)]
+Maps = Annotated[tuple[MapName, ...], AfterValidator(_maps_in_order)]
+
+
 class Config(Section):
     """A data set: what to draw, what to compute, how to store it."""
 
-    seed: Annotated[int, Field(ge=0, lt=2**63, strict=True)] = 1
+    seed: Seed = 1
     """0 to 2^63 - 1."""
     samples_per_class: By[Samples] = 300
     """May differ: `{per_activity: {default: 300, walking: 100}}`."""
-    classes: Annotated[dict[str, ClassConfig], Field(max_length=200)] = {}  # labels are uint8
+    classes: Classes = {}
     """Your own: `{name: {sequence: [...]}}` of movements, `{name: [walk/*.bvh]}` of files."""
     activities: Literal["all"] | tuple[str, ...] = "all"
     """The twelve and those of `classes`; or a list of slugs or labels, [walking, S12]."""
@@ -1353,7 +1385,7 @@ class Config(Section):
     processing: ProcessingConfig = ProcessingConfig()
     cloud: CloudConfig = CloudConfig()
     image: ImageConfig = ImageConfig()
-    maps: tuple[MapName, ...] = ("stft",)
+    maps: Maps = ("stft",)
     """Of `rtm`, `stft`, `fsst`; the latter two with `_denoised`, `_compensated`,
     `_compensated_denoised`. Of boards also `range_doppler`, `range_azimuth`, `range_elevation`,
     `points`."""
@@ -1361,21 +1393,7 @@ class Config(Section):
     engine: EngineConfig = EngineConfig()
     output: OutputConfig = OutputConfig()
     recordings: RecordingsConfig | None = None
-    """Of measured data instead of scenes: see docs/guide/measured.md."""
-
-    @field_validator("classes")
-    @classmethod
-    def _names(cls, value: dict[str, ClassConfig]) -> dict[str, ClassConfig]:
-        twelve = {activity.slug for activity in ACTIVITIES}
-        for slug, one in value.items():
-            if not (is_new_slug(slug) or (isinstance(one, FilesConfig) and slug in twelve)):
-                raise _wrong(f"should have a new name of a-z, 0-9 and _ instead of {slug!r}")
-        if (
-            sum(len(one.files) for one in value.values() if isinstance(one, FilesConfig))
-            > MAX_FILES
-        ):
-            raise _wrong(f"should have at most {MAX_FILES} files in all")
-        return value
+    """How `radhar generate --recordings` cuts them: see docs/guide/measured.md."""
 
     @field_validator("activities", mode="before")
     @classmethod
@@ -1391,17 +1409,6 @@ class Config(Section):
             raise PydanticCustomError("activity", "should name at least one activity, each once")
         # User-defined ones last: those of `classes`, then those of `add_activity`.
         return tuple(a.slug for a in sorted(chosen, key=lambda a: (a.motion is not None, a.number)))
-
-    @field_validator("maps")
-    @classmethod
-    def _each_once(cls, value: tuple[str, ...]) -> tuple[str, ...]:
-        if not value:
-            raise PydanticCustomError("maps", "should name at least 1 map")
-        if len(set(value)) != len(value):
-            raise PydanticCustomError("maps", "should name each map once")
-        known = (*MAP_NAMES, *FRAME_MAPS)
-        own = [name for name in value if name not in known]
-        return (*sorted(set(value) - set(own), key=known.index), *own)
 
     @property
     def stored(self) -> tuple[str, ...]:
@@ -1479,25 +1486,10 @@ class Config(Section):
             raise PydanticCustomError("across", "{problems}", {"problems": mistakes})
         return self
 
-    @property
-    def board(self) -> "BoardHeader":
-        """What `radar.cfg` says."""
-        from radhar_cli.config.ti_header import board_header  # which knows this schema
-
-        assert self.radar.cfg is not None
-        return board_header(self.radar.cfg)
-
     def samples_of(self, activity: Activity) -> int:
         """How many samples of an activity there are."""
-        if self.recorded is not None:
-            return self.recorded.counts.get(activity.slug, 0)
         samples: int = for_activity(self.samples_per_class, activity)
         return samples
-
-    @property
-    def recorded(self) -> RecordingsConfig | None:
-        """The windows of recordings that this is a data set of; None of scenes."""
-        return self.recordings if self.recordings is not None and self.recordings.counts else None
 
     @property
     def every_class(self) -> tuple[Activity, ...]:
@@ -1512,12 +1504,6 @@ class Config(Section):
         All of them are those of `classes` alone with `motion.model: file`.
         """
         own = class_activities(self.classes)
-        if self.recorded is not None:
-            known = {a.slug: a for a in (*ACTIVITIES, *own.values())}
-            new = sorted(self.recorded.counts.keys() - known.keys())
-            after = 1 + max(a.number for a in known.values())
-            known |= {slug: Activity(after + n, slug) for n, slug in enumerate(new)}
-            return tuple(a for slug, a in known.items() if slug in self.recorded.counts)
         if self.activities == "all":
             twelve = {} if self.motion.model == "file" else {a.slug: a for a in ACTIVITIES}
             return (*sorted((twelve | own).values(), key=lambda a: a.number),)
@@ -1562,12 +1548,64 @@ class Config(Section):
         return one if isinstance(one, FilesConfig) else None
 
 
+class MeasuredConfig(Section):
+    """A data set of recordings, which `radhar generate --recordings` makes of a `Config`."""
+
+    # What else data sets are asked for: here are no other people, no noise, no further products.
+    people: ClassVar[tuple[PersonConfig, ...]] = ()
+    snr_db: ClassVar[None] = None
+    stored: ClassVar[tuple[str, ...]] = ()
+    engine: ClassVar[EngineConfig] = EngineConfig()
+
+    seed: Seed
+    classes: Classes
+    radar: RadarConfig
+    processing: ProcessingConfig
+    image: ImageConfig
+    maps: Maps
+    split: SplitConfig
+    output: OutputConfig
+    recordings: RecordingsConfig
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "MeasuredConfig":
+        from radhar_cli.config.checks import measured_problems  # which knows this schema
+
+        if mistakes := list(measured_problems(self)):
+            raise PydanticCustomError("across", "{problems}", {"problems": mistakes})
+        return self
+
+    @property
+    def duration_s(self) -> float:
+        """Of a window."""
+        return self.recordings.window_s
+
+    def samples_of(self, activity: Activity) -> int:
+        """How many windows of an activity there are."""
+        return self.recordings.counts.get(activity.slug, 0)
+
+    @cached_property
+    def every_class(self) -> tuple[Activity, ...]:
+        """Every class by label: the twelve, those of `classes`, then new labels by the alphabet."""
+        known = {a.slug: a for a in ACTIVITIES} | class_activities(self.classes)
+        new = sorted(self.recordings.counts.keys() - known.keys())
+        return (*known.values(), *(Activity(len(known) + n, slug) for n, slug in enumerate(new, 1)))
+
+    @property
+    def chosen_activities(self) -> tuple[Activity, ...]:
+        """Those of which there is a window."""
+        return tuple(filter(self.samples_of, self.every_class))
+
+
+AnyConfig: TypeAlias = Config | MeasuredConfig
+
+
 def _fill_from_cfg(c: Config, changed: dict[str, dict[str, Any]]) -> None:
     """Note what the .cfg of a board gives, and the defaults of boards, of what was not given."""
     from radhar_cli.errors import CaptureError
 
     try:
-        board = c.board
+        board = c.radar.header
     except CaptureError as error:
         raise PydanticCustomError("cfg", "{what}", {"what": str(error)}) from None
     radar = {
@@ -1636,7 +1674,7 @@ def possible_maps(config: Config) -> tuple[str, ...]:
 
 def elevations(config: Config) -> set[float]:
     """Heights of the virtual elements of a board, half wavelengths."""
-    array = config.radar.array or DEVICES[str(config.radar.device)]
-    board = config.board
+    array, board = config.radar.elements, config.radar.header
+    assert array is not None
     rows = (array.tx[t][1] + array.rx[r][1] for t in board.order for r in board.receivers)
     return {round(row, 6) for row in rows}

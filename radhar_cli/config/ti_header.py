@@ -422,14 +422,6 @@ def _grouping(found: dict[str, Any], values: list[float], channels: int) -> None
     found["first_bin"], found["last_bin"] = int(first), int(last)
 
 
-def _several(found: dict[str, Any], values: list[float], channels: int) -> None:
-    found["second_peak"] = values[1] if values[0] else None
-
-
-def _clutter(found: dict[str, Any], values: list[float], channels: int) -> None:
-    found["remove_mean"] = bool(values[0])
-
-
 def _bias(found: dict[str, Any], values: list[float], channels: int) -> None:
     found["bias"] = values[0]
     pairs = zip(values[1::2], values[2::2], strict=True)
@@ -439,22 +431,17 @@ def _bias(found: dict[str, Any], values: list[float], channels: int) -> None:
     found["coefficients"] = () if set(coefficients) == {1 + 0j} else coefficients
 
 
-def _view(found: dict[str, Any], values: list[float], channels: int) -> None:
-    found["azimuth_deg"], found["elevation_deg"] = (*values[:2],), (*values[2:],)
-
-
-def _cells(found: dict[str, Any], values: list[float], channels: int) -> None:
-    found["doppler_mps" if values[0] else "range_m"] = (*values[1:],)
-
-
 _Read: TypeAlias = Callable[[dict[str, Any], list[float], int], None]
 # {command: (how many numbers it has, what reads them)}; SDK 3 has the sub-frame in front as well.
 _LINES: dict[str, tuple[tuple[int, ...], _Read]] = {
     "cfarCfg": ((7, 8), _cfar),
     "peakGrouping": ((5,), _grouping),
-    "multiObjBeamForming": ((2,), _several),
-    "clutterRemoval": ((1,), _clutter),
+    "multiObjBeamForming": ((2,), lambda to, v, _: to.update(second_peak=v[1] if v[0] else None)),
+    "clutterRemoval": ((1,), lambda to, v, _: to.update(remove_mean=bool(v[0]))),
     "compRangeBiasAndRxChanPhase": ((*range(3, 26, 2),), _bias),
-    "aoaFovCfg": ((4,), _view),
-    "cfarFovCfg": ((3,), _cells),
+    "aoaFovCfg": ((4,), lambda to, v, _: to.update(azimuth_deg=(*v[:2],), elevation_deg=(*v[2:],))),
+    "cfarFovCfg": (
+        (3,),
+        lambda to, v, _: to.update({"doppler_mps" if v[0] else "range_m": (*v[1:],)}),
+    ),
 }

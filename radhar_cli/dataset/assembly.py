@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from radhar_cli.arrays import Float
 from radhar_cli.config.identity import as_yaml, config_hash, resolved
-from radhar_cli.config.schema import FRAME_MAPS, Config
+from radhar_cli.config.schema import FRAME_MAPS, AnyConfig, Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.column_labels import label_names
 from radhar_cli.dataset.files import digest_of, unfinished_path, write_whole
@@ -42,7 +42,6 @@ from radhar_cli.dataset.layout import (
     row_axis,
     row_bytes,
 )
-from radhar_cli.dataset.recorded import persons
 from radhar_cli.dataset.shards import (
     Runs,
     Shard,
@@ -51,7 +50,7 @@ from radhar_cli.dataset.shards import (
     chunked_dataset,
     require_tiling,
 )
-from radhar_cli.dataset.split import split_rows
+from radhar_cli.dataset.split import persons, split_rows
 from radhar_cli.dataset.untrusted_hdf5 import (
     DIGESTS,
     Numbers,
@@ -63,11 +62,10 @@ from radhar_cli.errors import UnfinishedError
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.new_hdf5 import new_hdf5
 from radhar_cli.pipeline.physics import kinds_of
-from radhar_cli.pipeline.validity import Flags, warnings
+from radhar_cli.pipeline.validity import Flags, flagged, warnings
 from radhar_cli.processing.points import COLUMNS
 from radhar_cli.progress import Progress
 from radhar_cli.replacing import replacing
-from radhar_cli.scene import nominal_scene, subject_of
 
 SCHEMA_VERSION = 2
 RUN, RUN_BYTES = 128, 2**28
@@ -91,7 +89,7 @@ SLOW_TIME_TEXT = (
 
 @contextmanager
 def assembled(
-    config: Config,
+    config: AnyConfig,
     folder: Path,
     shards: Sequence[Shard],
     progress: Progress,
@@ -121,7 +119,9 @@ def assembled(
                 flags = _copy_shards(file, check, config, shards, own_hash, progress, text)
                 text.flush()
                 file.attrs[SCENES_DIGEST] = digest_of(table)
-                messages = warnings(config, flags)
+                messages = flagged(flags, count)
+                if isinstance(config, Config):
+                    messages = warnings(config, flags, count)
                 _root_attributes(file, config, messages)
                 file.attrs[DIGESTS] = json.dumps(attribute_digests(file), sort_keys=True)
             remember(unfinished)
@@ -136,7 +136,7 @@ def assembled(
 def _copy_shards(
     file: h5py.File,
     check: Callable[[], None],
-    config: Config,
+    config: AnyConfig,
     shards: Sequence[Shard],
     own_hash: str,
     progress: Progress,
@@ -200,7 +200,8 @@ def _copy_shards(
     file.attrs["columns_sha256"] = json.dumps(digests)
     for name in config.maps:
         _describe_map(file, config, name, extents[f"extent/{name}"])
-    _describe_products(file, config)
+    if isinstance(config, Config):
+        _describe_products(file, config)
     return flags
 
 
@@ -209,9 +210,7 @@ def _describe_products(file: h5py.File, config: Config) -> None:
         file["products/points"].attrs["columns"] = [*COLUMNS]
     recorded = any(config.files_of(one) is not None for one in config.chosen_activities)
     if "products/points_kind" in file:
-        file["products/points_kind"].attrs["kinds"] = kinds_of(
-            nominal_scene(config, config.chosen_activities[0]).config
-        )
+        file["products/points_kind"].attrs["kinds"] = kinds_of(config)
     if "products/skeleton" in file and not recorded:
         file["products/skeleton"].attrs["joint_names"] = [*JOINTS]
     if config.people:
@@ -226,7 +225,7 @@ def _describe_products(file: h5py.File, config: Config) -> None:
 class _Ragged:
     """An array of all samples one after the other along its first axis."""
 
-    def __init__(self, file: h5py.File, config: Config, name: str) -> None:
+    def __init__(self, file: h5py.File, config: AnyConfig, name: str) -> None:
         self._file, self._name = file, f"products/{name}"
         self._level = config.output.hdf5_level
 
@@ -274,7 +273,7 @@ class _Column:
         return self._digest.hexdigest()
 
 
-def _describe_samples(file: h5py.File, config: Config) -> None:
+def _describe_samples(file: h5py.File, config: AnyConfig) -> None:
     rows = Rows.of(config)
     count = len(rows)
     labels = np.repeat(np.array([a.index for a in rows.activities], np.uint8), rows.counts)
@@ -286,16 +285,12 @@ def _describe_samples(file: h5py.File, config: Config) -> None:
     file["split"].attrs["meaning"] = ", ".join(f"{i} {name}" for i, name in enumerate(SPLITS))
     keys = file.create_dataset("sample_key", (count, 2), np.int64)
     keys.attrs["columns"] = ["class", "index"]
-    subjects = config.split.subjects
-    if subjects is not None:
-        file.create_dataset("scene/subject", (count,), np.int64).attrs["unit"] = "1"
+    if (everyone := persons(config)) is not None:
+        subject = file.create_dataset("scene/subject", (count,), np.int64, data=everyone)
+        subject.attrs["unit"] = "1"
     for activity, here in rows.classes():
         indices = np.arange(here.stop - here.start)
         keys[here, 0], keys[here, 1] = activity.index, indices
-        if subjects is not None and config.recorded is None:
-            file["scene/subject"][here] = indices % subjects
-    if subjects is not None and config.recorded is not None:
-        file["scene/subject"][:] = persons(config)
     for field in scene_fields.fields(config):
         dataset = file.create_dataset(f"scene/{field.name}", (count,), np.float64)
         dataset.attrs["unit"] = field.unit
@@ -303,7 +298,7 @@ def _describe_samples(file: h5py.File, config: Config) -> None:
 
 
 def _describe_map(
-    file: h5py.File, config: Config, name: str, extents: set[tuple[float, ...]]
+    file: h5py.File, config: AnyConfig, name: str, extents: set[tuple[float, ...]]
 ) -> None:
     """Attributes of a map of these extents; of more than one, two are enough."""
     same = len(extents) == 1
@@ -342,7 +337,7 @@ def _describe_map(
         labels["meaning"] = "number in names of what is under way at the middle of each column"
 
 
-def _root_attributes(file: h5py.File, config: Config, messages: list[dict[str, Any]]) -> None:
+def _root_attributes(file: h5py.File, config: AnyConfig, messages: list[dict[str, Any]]) -> None:
     named = identity(config)
     named = {part: named[part] for part in ("keys", "versions", "hash")}
     described = {
@@ -362,10 +357,9 @@ def _root_attributes(file: h5py.File, config: Config, messages: list[dict[str, A
 class _SceneTable:
     """scenes.csv, written some rows at a time."""
 
-    def __init__(self, config: Config, table: io.TextIOBase) -> None:
+    def __init__(self, config: AnyConfig, table: io.TextIOBase) -> None:
         self._config, self._rows, self._split = config, Rows.of(config), split_rows(config)
-        named = config.recorded is not None and config.split.subjects is not None
-        self._persons = persons(config) if named else None
+        self._persons = persons(config)
         self._writer = csv.writer(table, lineterminator="\n")
         columns = (field.key for field in scene_fields.fields(config))
         self._writer.writerow(["label", "class", "slug", "index", "split", "subject", *columns])
@@ -374,9 +368,8 @@ class _SceneTable:
         """Write the rows from `start` on, of values [rows, fields]."""
         for row, numbers in enumerate(values.tolist(), start):
             activity, index = self._rows[row]
-            subject = self._persons[row] if self._persons else subject_of(self._config, index)
             self._writer.writerow(
                 [activity.index, activity.label, activity.slug, index, SPLITS[self._split[row]]]
-                + ["" if subject is None else subject]
+                + ["" if self._persons is None else self._persons[row]]
                 + ["" if value != value else repr(value) for value in numbers]
             )

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from radhar_cli.arrays import Levels
-from radhar_cli.config.schema import Config
+from radhar_cli.config.schema import AnyConfig, Config, MeasuredConfig
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.identity import identity, identity_hash, versions
@@ -33,7 +33,7 @@ CHECKED_SCENES = 24  # before a build; each is checked as it is made
 class Batch:
     """Rows start .. stop - 1 and all that a worker needs to make them."""
 
-    config: Config
+    config: AnyConfig
     identity_hash: str
     folder: Path  # the output folder, absolute: a worker may have another working directory
     start: int
@@ -109,11 +109,12 @@ def _check_machine(batch: Batch) -> None:
 def _made(batch: Batch) -> Iterator[tuple[Row, int]]:
     """Each row, and its Flags."""
     config, rows = batch.config, Rows.of(batch.config)
-    if batch.factory is None:
+    if isinstance(config, Config):
         plan, columns = plan_images(config), scene_fields.fields(config)
     for row in range(batch.start, batch.stop):
         leave_if_orphaned(batch.parent_pid)
-        if batch.factory is not None:
+        if isinstance(config, MeasuredConfig):
+            assert batch.factory is not None
             yield batch.factory(config, row), 0
             continue
         scene, flags = draw_valid_scene(config, *rows[row])
@@ -122,7 +123,7 @@ def _made(batch: Batch) -> Iterator[tuple[Row, int]]:
 
 
 def png_rows(
-    config: Config,
+    config: AnyConfig,
     folder: Path,
     source: Path,
     rows: list[tuple[int, int]],

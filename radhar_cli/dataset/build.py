@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from radhar_cli.config.schema import Config
+from radhar_cli.config.schema import AnyConfig, Config
 from radhar_cli.dataset.assembly import assembled
 from radhar_cli.dataset.batch import Batch, check_scenes, run_batch
 from radhar_cli.dataset.card import write_card
@@ -66,7 +66,7 @@ class BuildOutcome:
 
 
 def build(
-    config: Config,
+    config: AnyConfig,
     folder: Path,
     jobs: int,
     progress: Progress,
@@ -102,7 +102,7 @@ def build(
 class Build:
     """A build in a folder that was reserved for it."""
 
-    config: Config
+    config: AnyConfig
     folder: Path
     jobs: int
     progress: Progress
@@ -175,7 +175,7 @@ class Build:
         shards = self._sound_shards(rows)
         gaps = missing_rows(shards, rows.stop, rows.start)
         shown: list[dict[str, Any]] = []
-        if not shards and self.factory is None:
+        if not shards and isinstance(self.config, Config):
             _, shown = check_scenes(self.config)
         self._say_warnings(shown)
         made, left = self._batches(rows, gaps, batch_size)

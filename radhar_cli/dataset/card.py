@@ -9,6 +9,7 @@ import numpy as np
 import yaml
 from PIL import Image, ImageDraw, ImageFont
 
+from radhar_cli.config.schema import MeasuredConfig
 from radhar_cli.dataset.files import refuse_links, write_whole
 from radhar_cli.dataset.layout import CARD, GALLERY, SPLITS, Rows, column_axis, row_axis
 from radhar_cli.dataset.png import colour_table
@@ -93,7 +94,7 @@ def card(data: Dataset, more: Mapping[str, Any], reading: str) -> str:
         more: front matter: what `load_dataset` reads.
         reading: Markdown, how to read the files next to the card.
     """
-    config, measured = data.config, data.config.recorded is not None
+    config, measured = data.config, isinstance(data.config, MeasuredConfig)
     title = f"{'Measured' if measured else 'Simulated'} radar maps of human activities"
     front = {
         "license": config.output.license or "unknown",
@@ -129,9 +130,10 @@ def _table(head: Sequence[str], lines: Sequence[Sequence[object]]) -> str:
 
 def _summary(data: Dataset) -> str:
     config, (height, width) = data.config, data.config.image.size_px
-    maps, recorded = len(config.maps), config.recorded
-    if recorded is not None:
-        what = f"what a radar recorded of people, cut into windows of {recorded.window_s:g} s."
+    maps = len(config.maps)
+    if isinstance(config, MeasuredConfig):
+        window = config.recordings.window_s
+        what = f"what a radar recorded of people, cut into windows of {window:g} s."
     else:
         whom = "several moving people" if config.people else "one moving person"
         where = "through a wall" if config.wall is not None else "in free space"
@@ -187,7 +189,7 @@ def _classes(data: Dataset) -> str:
 def _making(data: Dataset) -> str:
     config = data.config
     made = ", ".join(f"{library} {version}" for library, version in data.versions.items())
-    if config.recorded is not None:
+    if isinstance(config, MeasuredConfig):
         return f"`radhar generate --recordings`, seed {config.seed}; {made}."
     return (
         f"`radhar generate config.yaml -o OUT`, seed {config.seed}, makes the same bytes again "
@@ -197,7 +199,7 @@ def _making(data: Dataset) -> str:
 
 def _limits(data: Dataset) -> list[str]:
     config, notes = data.config, [str(warning["message"]) for warning in data.warnings]
-    if config.recorded is not None:
+    if isinstance(config, MeasuredConfig):
         return [*notes, "config.yaml names files and persons as the recordings' manifest does"]
     if config.snr_db is not None and config.processing.clutter in ("difference", "highpass"):
         notes.append(_NOISE_TELLS)

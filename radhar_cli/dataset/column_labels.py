@@ -3,14 +3,14 @@
 import numpy as np
 
 from radhar_cli.arrays import Levels
-from radhar_cli.config.schema import Config
+from radhar_cli.config.schema import AnyConfig
 from radhar_cli.motion.phases import PHASES, phase_numbers
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.processing.power_map import MapImage
 from radhar_cli.scene import Scene
 
 
-def label_names(config: Config) -> tuple[str, ...]:
+def label_names(config: AnyConfig) -> tuple[str, ...]:
     """What the numbers mean: PHASES, then every class beyond the twelve by its slug."""
     return (*PHASES, *(activity.slug for activity in config.every_class if activity.number > 12))
 

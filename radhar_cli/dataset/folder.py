@@ -11,7 +11,7 @@ from typing import Any
 
 from filelock import FileLock, Timeout
 
-from radhar_cli.config.schema import Config
+from radhar_cli.config.schema import AnyConfig
 from radhar_cli.dataset.files import refuse_foreign_work, refuse_links, unfinished_path, write_whole
 from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.dataset.layout import (
@@ -59,7 +59,7 @@ def folder_lock(folder: Path) -> Iterator[None]:
 
 def reserve(
     folder: Path,
-    config: Config,
+    config: AnyConfig,
     overwrite: bool,
     part: str | None = None,
     allowed: tuple[str, ...] = (),

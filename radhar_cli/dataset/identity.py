@@ -6,7 +6,7 @@ from typing import Any
 
 from radhar_cli.build_version import build_version
 from radhar_cli.config.identity import config_hash, flat_document, resolved
-from radhar_cli.config.schema import Config
+from radhar_cli.config.schema import AnyConfig
 from radhar_cli.registry import own_digest
 
 
@@ -32,7 +32,7 @@ def versions() -> dict[str, str]:
     }
 
 
-def identity(config: Config) -> dict[str, Any]:
+def identity(config: AnyConfig) -> dict[str, Any]:
     """Plain values to store with a data set and to compare before continuing it."""
     return {
         "keys": flat_document(resolved(config)),

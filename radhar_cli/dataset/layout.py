@@ -12,7 +12,7 @@ from typing import TypeAlias
 import numpy as np
 
 from radhar_cli.activity import Activity
-from radhar_cli.config.schema import MAP_NAMES, Config
+from radhar_cli.config.schema import MAP_NAMES, AnyConfig
 
 DATASET = "dataset.h5"
 CONFIG = "config.yaml"
@@ -34,7 +34,7 @@ Parts: TypeAlias = dict[str, tuple[str, tuple[int, ...]]]
 SPLIT_FOLDERS = ("train", "val", "test")
 
 
-def chunked(config: Config) -> Parts:
+def chunked(config: AnyConfig) -> Parts:
     """The large datasets, one sample a chunk; each has its checksums at `checksum_of`."""
     size = config.image.size_px
     parts: Parts = {f"maps/{name}": ("u1", size) for name in config.maps}
@@ -57,7 +57,7 @@ def count_of(name: str) -> str:
     return f"products/{name}_count"
 
 
-def columns(config: Config) -> Parts:
+def columns(config: AnyConfig) -> Parts:
     """The small datasets that a shard has beside the large ones and the scenes."""
     parts: Parts = {checksum_of(name): ("S64", ()) for name in chunked(config)}
     parts |= {count_of(name): ("i8", ()) for name in config.stored}
@@ -99,7 +99,7 @@ def column_axis(name: str) -> tuple[str, str]:
     return TIME if name in MAP_NAMES else ("columns of the product", "1")
 
 
-def row_bytes(config: Config) -> int:
+def row_bytes(config: AnyConfig) -> int:
     """Bytes of the large datasets of one sample, before compression."""
     return sum(np.dtype(t).itemsize * prod(shape) for t, shape in chunked(config).values())
 
@@ -117,11 +117,8 @@ class Rows:
     counts: tuple[int, ...]
 
     @classmethod
-    def of(cls, config: Config) -> "Rows":
+    def of(cls, config: AnyConfig) -> "Rows":
         activities = config.chosen_activities
-        if config.recorded is not None:
-            counts = config.recorded.counts
-            return cls(activities, tuple(counts[a.slug] for a in activities))
         return cls(activities, tuple(map(config.samples_of, activities)))
 
     @cached_property

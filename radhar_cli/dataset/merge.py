@@ -6,7 +6,7 @@ from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from radhar_cli.config.schema import Config
+from radhar_cli.config.schema import AnyConfig
 from radhar_cli.dataset.build import Build, BuildOutcome, disk_error
 from radhar_cli.dataset.files import refuse_foreign_work
 from radhar_cli.dataset.folder import folder_lock, reserve, stored_identity
@@ -28,7 +28,7 @@ class _Place(NamedTuple):
 
 def merge(
     out: Path, folders: Sequence[Path], jobs: int, progress: Progress
-) -> tuple[Config, BuildOutcome]:
+) -> tuple[AnyConfig, BuildOutcome]:
     """Make the data set in `out` of its parts, which are only read.
 
     Args:
@@ -79,7 +79,7 @@ def _places(folders: Iterable[Path]) -> list[_Place]:
     return sorted(places.values(), key=lambda place: place.part)
 
 
-def _config(places: Sequence[_Place]) -> Config:
+def _config(places: Sequence[_Place]) -> AnyConfig:
     """The config that all parts have."""
     first = places[0]
     for place in places[1:]:

@@ -79,8 +79,6 @@ class Recipe:
             ConfigError: as `sample`.
         """
         config = as_config(config)
-        if config.recorded is not None:
-            raise ConfigError("recordings: are measured; should be a config of scenes to simulate")
         if seed is not None:
             config = config.model_copy(update={"seed": whole("seed", seed)})
         return cls(config)

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from radhar_cli.arrays import Index, Levels
-from radhar_cli.config.schema import Config
+from radhar_cli.config.schema import AnyConfig
 from radhar_cli.dataset.batch import png_rows
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
@@ -16,7 +16,7 @@ ROWS = 32  # rows per task
 
 
 def write_missing_pngs(
-    config: Config, folder: Path, split: Levels, source: Path, jobs: int, progress: Progress
+    config: AnyConfig, folder: Path, split: Levels, source: Path, jobs: int, progress: Progress
 ) -> int:
     """Write PNGs that are not there: asked for later, deleted, or lost with a killed run.
 
@@ -47,7 +47,7 @@ def write_missing_pngs(
     return missing.size * len(config.maps)
 
 
-def rows_without_png(config: Config, folder: Path, split: Levels) -> Index:
+def rows_without_png(config: AnyConfig, folder: Path, split: Levels) -> Index:
     """Rows of which an image is missing."""
     rows = Rows.of(config)
     whole = (

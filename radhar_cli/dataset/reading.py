@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from radhar_cli.arrays import Float, Index, Levels
 from radhar_cli.config.reading import validated
-from radhar_cli.config.schema import Config
+from radhar_cli.config.schema import AnyConfig, Config, MeasuredConfig
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.folder import holds_samples, stored_identity
 from radhar_cli.dataset.identity import versions
@@ -229,11 +229,13 @@ def _small(column: Column, below: int) -> Levels:
     return values
 
 
-def stored_config(document: Any, where: str) -> Config:
+def stored_config(document: Any, where: str) -> AnyConfig:
     """The config that is stored with a data set, from its plain values."""
+    measured = isinstance(document, dict) and document.get("recordings") is not None
+    kind: type[AnyConfig] = MeasuredConfig if measured else Config
     try:
         with any_name():
-            return validated(Config, document, f"{where}: the stored config", {})
+            return validated(kind, document, f"{where}: the stored config", {})
     except ConfigError as error:
         raise FolderError(str(error).splitlines()[0]) from None
 

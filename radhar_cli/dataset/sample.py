@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from radhar_cli.arrays import Complex, Float, Levels
-from radhar_cli.config.schema import Config
+from radhar_cli.config.schema import MeasuredConfig
 from radhar_cli.dataset.column_labels import column_labels
 from radhar_cli.dataset.layout import COLUMN_LABEL, LABELS, PERSON_LABEL
 from radhar_cli.echo.direct import Accuracy
@@ -72,7 +72,7 @@ class Row(NamedTuple):
 
 
 # Makes a row of a data set that is not simulated; what it holds can be pickled.
-RowFactory: TypeAlias = Callable[[Config, int], Row]
+RowFactory: TypeAlias = Callable[[MeasuredConfig, int], Row]
 
 
 def synthesise(scene: Scene, plan: Plan) -> Sample:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.config.schema import FRAME_MAPS
+from radhar_cli.config.schema import FRAME_MAPS, Config, MeasuredConfig
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.layout import SPLITS, Rows, column_axis, row_axis
 from radhar_cli.dataset.reading import Dataset
@@ -64,8 +64,9 @@ def _of_sample(data: Dataset, row: int, extents: dict[str, NDArray[Any]]) -> Ent
     if scene is not None:
         seen = scene_page.moving(scene, tuple(map(motion_of, scene.people)))
     board = None
-    if config.radar.cfg is not None:
-        board = board_of((scene or nominal_scene(config, activity)).config)
+    if isinstance(config, Config) and config.radar.cfg is not None:
+        drawn = scene or nominal_scene(config, activity)
+        board = board_of(drawn.radar, drawn.seconds)
         seen = seen if scene is not None else _stored_joints(data, row, board, seen)
     for name in data.maps:
         if name not in FRAME_MAPS:  # whose images are sheets of what is stored as frames
@@ -143,7 +144,7 @@ def _stored_joints(data: Dataset, row: int, board: Board, seen: Seen) -> Seen:
 def _scene(data: Dataset, row: int) -> tuple[Scene | None, list[str]]:
     """The scene of a sample, drawn again; None, and why, where that is not the one stored."""
     config, (activity, index) = data.config, Rows.of(data.config)[row]
-    if config.recorded is not None:
+    if isinstance(config, MeasuredConfig):
         return None, ["Measured: there are no true joints."]
     if config.files_of(activity) is not None:
         kept = "those that are stored" if "skeleton" in data.products else "not known"

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.config.schema import Config, FacesConfig
+from radhar_cli.config.schema import AnyConfig, FacesConfig, MeasuredConfig
 from radhar_cli.scene import FALL, Scene, file_keys, keys_of_people, number_at, numbers
 
 _UNITS = {
@@ -48,12 +48,12 @@ RECORDED = (
 )
 
 
-def fields(config: Config) -> tuple[Field, ...]:
+def fields(config: AnyConfig) -> tuple[Field, ...]:
     """Every number that any scene of this config depends on, in the order of the schema.
 
     Last comes the measured error of the direct engine, where it is at work.
     """
-    if config.recorded is not None:
+    if isinstance(config, MeasuredConfig):
         return RECORDED
     keys = [
         key

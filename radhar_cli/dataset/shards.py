@@ -15,7 +15,7 @@ import h5py
 import numpy as np
 
 from radhar_cli.arrays import Float, Levels
-from radhar_cli.config.schema import Config
+from radhar_cli.config.schema import AnyConfig
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.layout import WORK, checksum_of, chunked, count_of
 from radhar_cli.dataset.png import deflated
@@ -75,7 +75,7 @@ def shard_folder(folder: Path) -> Path:
     return folder / WORK / "shards"
 
 
-def chunked_dataset(file: h5py.File, name: str, count: int, config: Config) -> h5py.Dataset:
+def chunked_dataset(file: h5py.File, name: str, count: int, config: AnyConfig) -> h5py.Dataset:
     """Create an empty large dataset [count, ...], one sample a chunk, compressed."""
     dtype, shape = chunked(config)[name]
     level = config.output.hdf5_level
@@ -90,7 +90,7 @@ def chunked_dataset(file: h5py.File, name: str, count: int, config: Config) -> h
 
 
 def encode_shard(
-    config: Config,
+    config: AnyConfig,
     identity_hash: str,
     start: int,
     samples: Sequence[Sample],

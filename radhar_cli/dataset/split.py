@@ -2,33 +2,28 @@
 
 import numpy as np
 
-from radhar_cli.arrays import Levels
-from radhar_cli.config.schema import Config, SplitConfig
+from radhar_cli.arrays import Index, Levels
+from radhar_cli.config.schema import AnyConfig, FilesConfig, MeasuredConfig, SplitConfig
 from radhar_cli.dataset.layout import SPLITS, Rows
-from radhar_cli.dataset.recorded import persons
+from radhar_cli.dataset.recorded import windows
 from radhar_cli.randomness import SPLIT, stream
 from radhar_cli.rounding import half_up
-from radhar_cli.scene import subject_of
 
 TRAIN, VALIDATION, TEST = 0, 1, 2
 
 
-def split_rows(config: Config) -> Levels:
+def split_rows(config: AnyConfig) -> Levels:
     """Split numbers [N]: 0 train, 1 validation, 2 test.
 
     By sample, each class is shuffled by its own stream and cut at round(share n). By subject the
     persons are shuffled and cut, and every sample goes where its person goes.
     """
-    rows = Rows.of(config)
-    split = config.split
-    if split.subjects is not None:
-        by_person = split_persons(config)
-        if config.recorded is not None:
-            numbers: Levels = by_person[np.array(persons(config), dtype=int)]
-            return numbers
-        everyone = [subject_of(config, index) for index in range(max(rows.counts))]
-        largest_class = by_person[np.array(everyone, dtype=int)]
-        return np.concatenate([largest_class[:count] for count in rows.counts])
+    rows, split, everyone = Rows.of(config), config.split, persons(config)
+    if everyone is not None:
+        assert split.subjects is not None
+        cut = _cut(split, split.subjects, stream(config.seed, SPLIT, name="subjects"))
+        numbers: Levels = cut[everyone]
+        return numbers
     return np.concatenate(
         [
             _cut(split, count, stream(config.seed, SPLIT, activity.index, name="samples"))
@@ -37,20 +32,24 @@ def split_rows(config: Config) -> Levels:
     )
 
 
-def split_persons(config: Config) -> Levels:
-    """Split number of every named person [subjects]."""
-    assert config.split.subjects is not None
-    rng = stream(config.seed, SPLIT, name="subjects")
-    return _cut(config.split, config.split.subjects, rng)
+def persons(config: AnyConfig) -> Index | None:
+    """Number of the person in every row, or None; of recordings by the alphabet."""
+    subjects = config.split.subjects
+    if subjects is None:
+        return None
+    if isinstance(config, MeasuredConfig):
+        names = [str(window.part.person) for window in windows(config)]
+        return np.searchsorted(config.recordings.persons, names)
+    return np.concatenate([np.arange(count) % subjects for count in Rows.of(config).counts])
 
 
-def split_warnings(config: Config, split: Levels) -> list[str]:
+def split_warnings(config: AnyConfig, split: Levels) -> list[str]:
     """Warn of parts without samples of a class, and of persons that share motion files."""
     rows, warnings = Rows.of(config), []
     people = config.split.subjects or 0
     for activity in rows.activities:
-        one = config.files_of(activity)
-        if one is not None and one.file is None and len(one.files) < people:
+        one = config.classes.get(activity.slug)
+        if isinstance(one, FilesConfig) and one.file is None and len(one.files) < people:
             warnings.append(
                 f"classes.{activity.slug}: {len(one.files)} files for split.subjects = {people}: "
                 "persons of training and validation share them"

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from radhar_cli.config.number import support
-from radhar_cli.config.schema import Config, for_activity
+from radhar_cli.config.schema import AnyConfig, Config, for_activity
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.reading import Dataset
@@ -30,15 +30,15 @@ class Entry(NamedTuple):
     labels: str = ""
 
 
-def number_names(config: Config) -> list[str]:
+def number_names(config: AnyConfig) -> list[str]:
     """Names of the numbers that are drawn, not the same in all samples, as in `Entry.values`.
 
     `subject` holds integers.
     """
     same = {scene_fields.ERROR.key}  # which is measured, not drawn
-    same |= {key for key, number in numbers(config) if _is_same(config, key, number)}
-    if isinstance(config.motion.fall, str):
-        same.add(FALL)
+    if isinstance(config, Config):
+        same |= {key for key, number in numbers(config) if _is_same(config, key, number)}
+        same |= {FALL} if isinstance(config.motion.fall, str) else set()
     names = [field.name for field in scene_fields.fields(config) if field.key not in same]
     return [*names, "subject"] if config.split.subjects is not None else names
 

@@ -254,11 +254,7 @@ class UntrustedFile(Closing):
             return list(self._dataset(name, f"{self.path}: /{name}", None, None).shape)
 
     def _dataset(
-        self,
-        name: str,
-        where: str,
-        dtype: np.dtype[Any] | None,
-        shape: tuple[int, ...] | None,
+        self, name: str, where: str, dtype: np.dtype[Any] | None, shape: tuple[int, ...] | None
     ) -> h5py.Dataset:
         place: Any = self._file
         for part in name.split("/"):

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from radhar_cli.config.identity import as_yaml
 from radhar_cli.config.motion_files import with_folder
+from radhar_cli.config.schema import Config
 from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.assembly import CONFIG_HEADING, SCENES_DIGEST
 from radhar_cli.dataset.column_labels import label_names
@@ -19,9 +20,8 @@ from radhar_cli.dataset.image_file import SUFFIXES, read_gray, read_rgb
 from radhar_cli.dataset.layout import COLUMN_LABEL, CONFIG, PNG, SCENES, WORK, Rows, checksum_of
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset, open_dataset
-from radhar_cli.dataset.recorded import persons
 from radhar_cli.dataset.sample import synthesise
-from radhar_cli.dataset.split import split_rows
+from radhar_cli.dataset.split import persons, split_rows
 from radhar_cli.dataset.untrusted_hdf5 import DIGESTS
 from radhar_cli.errors import FolderError
 from radhar_cli.pipeline.products import plan_images
@@ -72,8 +72,8 @@ def verify(folder: Path, samples: int, motion: Path | None = None) -> Verificati
         if _structure(data, report):
             _checksums(data, report)
             _attributes(data, report)
-            if data.config.recorded is None:  # whose recordings may lie anywhere
-                _resynthesise(data, samples, report, motion)
+            if isinstance(data.config, Config):  # recordings may lie anywhere
+                _resynthesise(data, data.config, samples, report, motion)
             if (beside / PNG).is_dir():
                 _pngs(data, beside, report)
             elif (beside / WORK).is_dir() and data.config.output.png:
@@ -93,10 +93,8 @@ def _structure(data: Dataset, report: Verification) -> bool:
         ("split", data.split, split_rows(config)),
         ("sample_key", data.sample_key[:], np.stack([label, index], axis=1)),
     ]
-    if config.split.subjects is not None:
-        measured = config.recorded is not None
-        right = np.array(persons(config)) if measured else index % config.split.subjects
-        follows.append(("scene/subject", data.scene["subject"][:], right))
+    if (everyone := persons(config)) is not None:
+        follows.append(("scene/subject", data.scene["subject"][:], everyone))
     for name, stored, right in follows:
         if (stored != right).any():
             report.problems.append(f"/{name}: {np.count_nonzero(stored != right)} wrong values")
@@ -152,8 +150,10 @@ def _config_and_table(data: Dataset, folder: Path, report: Verification) -> None
         report.problems.append(f"{SCENES}: is not that of dataset.h5")
 
 
-def _resynthesise(data: Dataset, samples: int, report: Verification, motion: Path | None) -> None:
-    config = data.config if motion is None else with_folder(data.config, motion)
+def _resynthesise(
+    data: Dataset, config: Config, samples: int, report: Verification, motion: Path | None
+) -> None:
+    config = config if motion is None else with_folder(config, motion)
     rows, plan = Rows.of(config), plan_images(config)
     columns = data.fields
     scene_values = {field.name: data.scene[field.name][:] for field in columns}

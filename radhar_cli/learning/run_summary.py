@@ -15,10 +15,7 @@ from radhar_cli.learning.targets import LOSSES, SCORES
 
 
 def write_run_summary(
-    folder: Path,
-    metadata: RunMetadata,
-    history: Sequence[Epoch],
-    device: torch.device,
+    folder: Path, metadata: RunMetadata, history: Sequence[Epoch], device: torch.device
 ) -> None:
     """Write metrics.json and curves.png of a finished run."""
     best, count = best_epoch(history), int(metadata.data["val"])

@@ -31,11 +31,7 @@ class Samples(Dataset[dict[str, Any]]):
     """
 
     def __init__(
-        self,
-        config: Config | str | Path,
-        seed: int | None = None,
-        *,
-        split: str = "all",
+        self, config: Config | str | Path, seed: int | None = None, *, split: str = "all"
     ) -> None:
         """The samples of a config.
 

@@ -13,10 +13,7 @@ from torch import nn
 
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.arrays import Index
-from radhar_cli.figures.evaluation import (
-    confusion_png,
-    embeddings_png,
-)
+from radhar_cli.figures.evaluation import confusion_png, embeddings_png
 from radhar_cli.learning import metrics
 from radhar_cli.learning.evaluation import Predictions, open_for, predict, rows_of
 from radhar_cli.learning.images.image_set import ImageSet

@@ -42,13 +42,7 @@ def found_and_true(
 
 
 def evaluate_skeletons(
-    report: Report,
-    found: Float,
-    true: Float,
-    images: ImageSet,
-    rows: Index,
-    stem: str,
-    title: str,
+    report: Report, found: Float, true: Float, images: ImageSet, rows: Index, stem: str, title: str
 ) -> dict[str, Any]:
     """Errors in cm of joints [N, T, joint, 3]; figures and tables go to `report`.
 

@@ -40,7 +40,7 @@ from radhar_cli.radar.room import Way
 from radhar_cli.radar.wall import Wall
 from radhar_cli.randomness import NOISE, stream
 from radhar_cli.receiver.noise import circular_gaussian, noise_variance
-from radhar_cli.scene import Numbers, Scene
+from radhar_cli.scene import Scene
 
 BOLTZMANN_T0 = 1.380649e-23 * 290.0  # k T0, W/Hz
 VELOCITY_STEP_S = 1e-3
@@ -73,7 +73,7 @@ def board_products(c: Config, entropy: bool = True) -> Iterator[Product]:
     seen = ("scene", "motions", "board", "wall", *(("room",) if c.room.reflectors else ()))
     still = c.processing.clutter == "mean"
     does = "canceller of each frame"
-    yield Product("board", ("scene",), lambda scene: board_of(scene.config), "array and chirps")
+    yield Product("board", ("scene",), lambda s: board_of(s.radar, s.seconds), "array and chirps")
     yield Product("channels", seen, channels, "paths of every virtual channel")
     made = "sums in matrix products" if c.engine.kind == "direct" else "exact sums"
     yield Product("echo", ("channels", "board"), partial(_echo, c), f"raw samples, {made}")
@@ -166,21 +166,17 @@ def _echo(c: Config, sources: list[PathSource], board: Board) -> Echo:
 
 def _sigma(echo: Echo, board: Board, scene: Scene) -> float:
     """Standard deviation of the noise of a raw sample, for unit transmit power; 0 without noise."""
-    config = scene.config
-    if config.snr_db is not None:
-        return sqrt(noise_variance(echo.power, Numbers(config).snr_db))
-    if config.receiver.noise_figure_db is None:
+    if scene.snr_db is not None:
+        return sqrt(noise_variance(echo.power, scene.snr_db))
+    figure = scene.receiver.noise_figure_db
+    if figure is None:
         return 0.0
-    figure, power = (
-        Numbers(config.receiver).noise_figure_db,
-        Numbers(config.radar).transmit_power_dbm,
-    )
     thermal_db = 10 * log10(BOLTZMANN_T0 * board.adc_rate) + figure
-    return float(10 ** ((thermal_db - power + 30) / 20))
+    return float(10 ** ((thermal_db - scene.radar.transmit_power_dbm + 30) / 20))
 
 
 def _received(echo: Echo, sigma: float, board: Board, scene: Scene) -> Complex:
-    receiver = Numbers(scene.config.receiver)
+    receiver = scene.receiver
     cube: Complex = echo.cube
     if receiver.channel_gain_db > 0 or receiver.channel_phase_deg > 0:
         name = "receiver.channel_errors"
@@ -241,7 +237,7 @@ def owners_of(cloud: Cloud, skeletons: Skeletons, board: Board, scene: Scene) ->
     frame = np.repeat(np.arange(len(cloud.start) - 1), np.diff(cloud.start))
     best = np.full(len(frame), np.inf)
     owners = Owners(*np.full((2, len(frame)), -1, np.int16))
-    for kind, legs in enumerate([None, *ways_of(scene.config)]):
+    for kind, legs in enumerate([None, *ways_of(scene)]):
         joints = skeletons.positions if legs is None else _apparent(skeletons, board, legs)
         apart = joints[frame] - cloud.points[:, None, None, :3]
         square = np.nan_to_num((apart**2).sum(axis=-1), nan=np.inf)

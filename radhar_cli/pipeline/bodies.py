@@ -53,7 +53,7 @@ def sources_of(
     there again, unshadowed, unless not `mirrored`.
     """
     sources: list[Whose] = []
-    images = [antennas.by_way(*way) for way in ways_of(scene.config)] if mirrored else []
+    images = [antennas.by_way(*way) for way in ways_of(scene)] if mirrored else []
     people = scene.people
     own = len(people) == len(motions)  # not so where one body is seen in parts
     several = own and len(people) > 1 and scene.config.body.shadowing

@@ -10,7 +10,7 @@ from radhar_cli.errors import MotionFileError
 from radhar_cli.motion.files.clip import Clip, clip_of
 from radhar_cli.motion.files.motion import FileMotion
 from radhar_cli.motion.files.reading import read_motion
-from radhar_cli.scene import Numbers, Person
+from radhar_cli.scene import Person
 
 KEPT_BYTES = 2**26  # size of the cache of clips in a process
 _clips: OrderedDict[tuple[Any, ...], Clip] = OrderedDict()
@@ -25,7 +25,7 @@ def file_motion(person: Person) -> FileMotion:
     )
     assert one is not None
     assert one.file is not None
-    numbers = Numbers(one)
+    numbers = person.own_class
     path, checksum = [*one.files.items()][one.file]
     if folder is None:
         raise MotionFileError(f"{path}: where the files of {slug} lie is not known: motion.folder")

@@ -13,7 +13,6 @@ import numpy as np
 
 from radhar_cli.activity import MOVEMENTS
 from radhar_cli.arrays import Float
-from radhar_cli.config.schema import SequenceConfig
 from radhar_cli.motion.human.falling import (
     FallBackward,
     FallForward,
@@ -183,11 +182,8 @@ def _ends(movements: Iterable[Movement], begin: float) -> float:
 
 
 def _sequence(person: Person) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
-    one = person.config.classes[person.activity.slug]
-    assert isinstance(one, SequenceConfig)
-    movements: list[Movement] = []
-    numbers = Numbers(one)
-    for place, (name, given) in enumerate(zip(one.sequence, numbers.durations_s, strict=True)):
+    one, movements = person.own_class, list[Movement]()
+    for place, (name, given) in enumerate(zip(one.sequence, one.durations_s, strict=True)):
         usual = MOVEMENTS[name].seconds
         duration = usual if given is None else given
         can = _repertoire(person, duration, place)
@@ -195,7 +191,7 @@ def _sequence(person: Person) -> tuple[tuple[Movement, ...], tuple[float, ...]]:
         if isinstance(movement, GetUp | TryToGetUp) and movements:
             movement = _after(movements[-1], movement)
         movements.append(movement)
-    return tuple(movements), numbers.pauses_s
+    return tuple(movements), one.pauses_s
 
 
 def _after(fall: Movement, up: GetUp | TryToGetUp) -> Movement:

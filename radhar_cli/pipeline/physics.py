@@ -8,8 +8,8 @@ from math import inf, log, radians, sqrt
 import numpy as np
 
 from radhar_cli.arrays import Float
-from radhar_cli.config.number import support
-from radhar_cli.config.schema import Config, DielectricConfig
+from radhar_cli.config.number import nominal, support
+from radhar_cli.config.schema import AnyConfig, Config
 from radhar_cli.motion.paper.activities import Gait, Timing
 from radhar_cli.motion.paper.body import PaperBody
 from radhar_cli.motion.protocol import Motion, Only, remembered
@@ -28,7 +28,7 @@ from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.gate import Gate, around, interval
 from radhar_cli.processing.signal import Signal
 from radhar_cli.processing.stft import Stft
-from radhar_cli.radar.board import DEVICES, Array, Board
+from radhar_cli.radar.board import Board
 from radhar_cli.radar.detection import Detection
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.layers import Layer, Layers
@@ -43,22 +43,15 @@ from radhar_cli.receiver.impairment import Impairment
 from radhar_cli.receiver.interference import Line
 from radhar_cli.receiver.noise import WhiteNoise
 from radhar_cli.rounding import half_up
-from radhar_cli.scene import Numbers, Person, Scene
-
-EVEN = (1000.0, 1000.0)  # half-power half-widths (degree) of an array by hand: no pattern
+from radhar_cli.scene import Numbers, Person, Scene, nominal_scene
 
 
-def board_of(config: Config) -> Board:
-    """The board of a scene's config, which has a `radar.cfg`."""
-    radar, header = Numbers(config.radar), config.board
-    array = DEVICES.get(str(radar.device))
-    if config.radar.array is not None:
-        own = config.radar.array
-        array = Array(own.tx, own.rx, (1.0,) * len(own.rx), EVEN)
-    assert array is not None
-    frames = max(int(Numbers(config).duration_s / header.period_s + 1e-9), 1)
+def board_of(radar: Numbers, seconds: float = 0.0) -> Board:
+    """The board of a `radar.cfg`, with the frames of so many seconds, at least one."""
+    header = radar.header
+    frames = max(int(seconds / header.period_s + 1e-9), 1)
     return Board(
-        array=array,
+        array=radar.elements,
         start=header.start_hz,
         fc=header.carrier_hz,
         slope=header.slope_hz,
@@ -81,67 +74,67 @@ def board_of(config: Config) -> Board:
 
 def detection_of(config: Config) -> Detection:
     """What the .cfg says of detection, as far as the board heeds it; clutter is the config's."""
-    found = replace(config.board.detection, remove_mean=config.processing.clutter == "mean")
+    found = replace(config.radar.header.detection, remove_mean=config.processing.clutter == "mean")
     if "1443" in str(config.radar.device):
         found = replace(found, azimuth_deg=None, elevation_deg=None, range_m=None, doppler_mps=None)
     return found
 
 
-def waveform_of(config: Config) -> Waveform:
-    """The waveform of a scene's config."""
-    if config.radar.cfg is not None:
-        return board_of(config).waveform
-    radar = Numbers(config.radar)
+def waveform_of(scene: Scene) -> Waveform:
+    """The waveform of a scene."""
+    radar, processing = scene.radar, scene.config.processing
+    if radar.cfg is not None:
+        return board_of(radar, scene.seconds).waveform
     kind: Callable[..., Waveform] = Waveform
-    if config.radar.waveform == "impulse":
-        kind = partial(Impulse, profile=radar.profile_m, samples=config.radar.profile_samples)
+    if radar.waveform == "impulse":
+        samples = scene.config.radar.profile_samples
+        kind = partial(Impulse, profile=radar.profile_m, samples=samples)
     return kind(
         fc=radar.carrier_hz,
         bandwidth=radar.bandwidth_hz,
         chirp=radar.chirp_s,
         adc_rate=radar.adc_rate_hz,
         prf=radar.prf_hz,
-        duration=Numbers(config).duration_s,
-        fft_length=config.processing.range_fft_length,
-        centred=config.processing.range_reference == "centre" and config.radar.waveform != "cw",
+        duration=scene.seconds,
+        fft_length=processing.range_fft_length,
+        centred=processing.range_reference == "centre" and radar.waveform != "cw",
         residual_video_phase=radar.residual_video_phase,
     )
 
 
-def antennas_of(config: Config) -> Antennas:
-    """The antennas of a scene's config; of a board its first channel's."""
-    if config.radar.cfg is not None:
-        board = board_of(config)
+def antennas_of(scene: Scene) -> Antennas:
+    """The antennas of a scene; of a board its first channel's."""
+    radar = scene.radar
+    if radar.cfg is not None:
+        board = board_of(radar)
         return board.antennas(*board.pairs[0])
-    radar = Numbers(config.radar)
     return Antennas(
         tx=radar.tx_m,
         rx=radar.rx_m,
         gain=10 ** (radar.antenna_gain_dbi / 10),
         isolation_db=radar.antenna_isolation_db,
-        aim=beam_of(config),
+        aim=beam_of(radar),
     )
 
 
-def wall_of(config: Config) -> Wall | None:
-    """The wall of a scene's config, if there is one."""
-    if config.wall is None:
+def wall_of(scene: Scene) -> Wall | None:
+    """The wall of a scene, if there is one."""
+    radar, wall = scene.radar, scene.wall
+    if wall is None:
         return None
-    wall, (depth, *across) = Numbers(config.wall), Numbers(config.wall).size_m
-    eps_r, loss_tangent = wall.eps_r, wall.loss_tangent
+    (depth, *across), eps_r, loss_tangent = wall.size_m, wall.eps_r, wall.loss_tangent
     layers: tuple[Layer, ...] = (Layer(depth, eps_r * (1 - 1j * loss_tangent)),)
     if wall.layers is not None:
         layers = tuple(
             Layer(one.thickness_m, one.material or one.eps_r * (1 - 1j * one.loss_tangent))
             for one in wall.layers
         )
-        radar = Numbers(config.radar)
         depth = sum(layer.thickness for layer in layers)
         middle = np.array(radar.carrier_hz + radar.bandwidth_hz / 2)
         n = sum(layer.thickness * np.sqrt(layer.eps(middle)) for layer in layers) / depth
         eps = complex(n * n)
         eps_r, loss_tangent = eps.real, -eps.imag / eps.real
-    exact = Layers(layers, parallel=config.radar.polarisation == "horizontal")
+    exact = Layers(layers, parallel=radar.polarisation == "horizontal")
     return Wall(
         center=wall.center_m,
         size=(depth, *across),
@@ -183,11 +176,11 @@ def body_of(person: Person, motion: Motion) -> Body:
     return Body(whole, found_segments(landmarks_of(whole)), stature, thickness(stature, weight))
 
 
-def beam_of(config: Config) -> Aim | None:
+def beam_of(radar: Numbers) -> Aim | None:
     """Where both antennas look, with -min(12 (az/bw)^2 + 12 (el/bw)^2, most_db) dB, if at all."""
-    if config.radar.beam is None:
+    beam = radar.beam
+    if beam is None:
         return None
-    beam, radar = Numbers(config.radar.beam), Numbers(config.radar)
     x, y, z = (np.array(radar.tx_m) + np.array(radar.rx_m)) / 2
     half = sqrt(log(2) * 20 / (6 * log(10))) / 2  # -3 dB there, and not a half
     widths = half * beam.azimuth_deg, half * beam.elevation_deg
@@ -195,52 +188,49 @@ def beam_of(config: Config) -> Aim | None:
     return Aim((x, y, z), axes, widths, 10 ** (-beam.most_db / 10), of_each=True)
 
 
-def box_of(config: Config) -> Box | None:
+def box_of(scene: Scene) -> Box | None:
     """Where the faces of a scene's room are; None without faces, or of a floor alone."""
-    if config.room.faces is None or config.room.box_m is None:
-        return None
-    box = Numbers(config.room.box_m)
-    return Box(box.x, box.y, box.height)
+    box = scene.room.box_m
+    return None if scene.room.faces is None or box is None else Box(box.x, box.y, box.height)
 
 
-def ways_of(config: Config) -> list[tuple[Way, Way]]:
+def ways_of(scene: Scene) -> list[tuple[Way, Way]]:
     """Ways of transmitter and receiver by faces of the room, or by the wall behind people."""
-    room = Numbers(config.room)
+    radar, room = scene.radar, scene.room
     if room.back_wall_m is not None:
         left = 10 ** (room.back_wall_reflection_db / 20)
         way = Way((Face("back", FACES["back"], room.back_wall_m, fixed=left),))
         return [(way, way)]
-    if config.room.faces is None:
+    if room.faces is None:
         return []
-    box = box_of(config)
+    box, faces = box_of(scene), []
     at = {"floor": 0.0} if box is None else box.at
-    normal = FACES["floor" if config.radar.polarisation == "vertical" else "left"]
-    faces, radar = [], Numbers(config.radar)
-    for name, material in config.room.faces.given.items():
+    normal = FACES["floor" if radar.polarisation == "vertical" else "left"]
+    for name, material in room.faces.given.items():
         parallel, fixed = FACES[name] != normal, None
         if material == "metal":
             fixed = -1.0 if parallel else 1.0
         eps = _permittivity(material, radar.carrier_hz + radar.bandwidth_hz / 2)
         faces.append(Face(name, FACES[name], at[name], eps, parallel, fixed))
-    outside = min(p[0] for p in antennas_of(config).places) < at.get("front", -inf)
-    return list(ways(faces, config.room.order, outside))
+    outside = min(p[0] for p in antennas_of(scene).places) < at.get("front", -inf)
+    return list(ways(faces, scene.config.room.order, outside))
 
 
 def kinds_of(config: Config) -> list[str]:
     """Names of the ways on which people are seen, the straight one first."""
-    return ["-/-", *map(names_of, ways_of(config))]
+    scene = nominal_scene(config, config.chosen_activities[0])
+    return ["-/-", *map(names_of, ways_of(scene))]
 
 
-def _permittivity(material: str | DielectricConfig, frequency: float) -> complex:
+def _permittivity(material: str | Numbers, frequency: float) -> complex:
     if isinstance(material, str):
         return complex(permittivity(material, np.array(frequency)))
-    numbers = Numbers(material)
-    return complex(numbers.eps_r * (1 - 1j * numbers.loss_tangent))
+    return complex(material.eps_r * (1 - 1j * material.loss_tangent))
 
 
 def reflectors_of(scene: Scene) -> Reflectors | None:
     """What stands in the room of a scene, if anything does."""
-    each, antennas = Numbers(scene.config.room).reflectors, antennas_of(scene.config)
+    each, antennas = scene.room.reflectors, antennas_of(scene)
     if not each:
         return None
     rng = noise_stream(scene, "room.reflectors")
@@ -261,7 +251,7 @@ def impairments_of(scene: Scene, noise: WhiteNoise, w: Waveform) -> tuple[Impair
     Coloured noise is the channel's own, as white noise is. Interference comes from outside: tones
     are the same in all channels, phases included.
     """
-    receiver, impairments = Numbers(scene.config.receiver), list[Impairment]()
+    receiver, impairments = scene.receiver, list[Impairment]()
     corner = receiver.noise_corner_hz
     if corner > 0:
         slope = receiver.noise_slope_db
@@ -305,7 +295,7 @@ def _paper_body(person: Person) -> PaperBody:
     )
 
 
-def canceller_of(config: Config, prf: float) -> Canceller:
+def canceller_of(config: AnyConfig, prf: float) -> Canceller:
     """The canceller of a config, for pulses per second."""
     given = config.processing.highpass
     match config.processing.clutter:
@@ -318,7 +308,7 @@ def canceller_of(config: Config, prf: float) -> Canceller:
     return HighPass(given.order, given.cutoff(prf), given.zero_phase, given.remove_mean)
 
 
-def gate_of(config: Config, ranges: Float, torso: Float | None) -> Gate:
+def gate_of(config: AnyConfig, ranges: Float, torso: Float | None) -> Gate:
     """The gate of a config in range bins at `ranges`, m.
 
     A gate that follows the torso needs its range in the middle of every frame [frames], m.
@@ -330,7 +320,7 @@ def gate_of(config: Config, ranges: Float, torso: Float | None) -> Gate:
     return around(torso, within, ranges)
 
 
-def gate_in_windows(config: Config, after: Signal, frames: Frames, t: Float, track: Float) -> Gate:
+def gate_in_windows(c: AnyConfig, after: Signal, frames: Frames, t: Float, track: Float) -> Gate:
     """The gate of a config in every window `frames` of the signal after the canceller.
 
     `track` is the delay (s) of the torso at the pulses before the canceller, at times t (s).
@@ -338,37 +328,36 @@ def gate_in_windows(config: Config, after: Signal, frames: Frames, t: Float, tra
     assert after.ranges is not None
     middle = np.interp(Stft(after, frames).time.values, t, range(track.size))
     torso = track[np.rint(np.round(middle, 6)).astype(np.intp)] * (SPEED_OF_LIGHT / 2)
-    return gate_of(config, after.ranges, torso)
+    return gate_of(c, after.ranges, torso)
 
 
-def max_samples(config: Config) -> int:
+def max_samples(config: AnyConfig) -> int:
     """Length of the longest slow-time signal after the canceller that a config draws."""
     pulses = half_up(support(config.duration_s)[1], support(config.radar.prf_hz)[1])
     return pulses - 1 if config.processing.clutter == "difference" else pulses
 
 
-def cfar_of(config: Config) -> CellAveraging:
-    """The CFAR of a scene's config."""
+def cfar_of(config: AnyConfig) -> CellAveraging:
+    """The CFAR of a scene's config; of another's, its numbers at their middle."""
     cfar = config.image.cfar
-    numbers = Numbers(cfar)
     return CellAveraging(
         guard=cfar.guard,
         training=cfar.training,
-        pfa=numbers.pfa,
+        pfa=nominal(cfar.pfa),
         decibel=cfar.domain == "decibel",
-        floor_db=numbers.floor_db,
+        floor_db=nominal(cfar.floor_db),
         wrap=cfar.edges == "wrap",
     )
 
 
-def frames_of(config: Config, duration: float, prf: float, f0: float) -> Frames:
+def frames_of(config: AnyConfig, duration: float, prf: float, f0: float) -> Frames:
     """The frames of the STFT in a recording (s, pulses per s), whose Doppler is one of f0 (Hz)."""
     processing = config.processing
     length = processing.window_pulses(duration, prf, f0)
     return Frames.of(length, processing.overlap_fraction)
 
 
-def fsst_frames_of(config: Config, duration: float, prf: float, f0: float) -> Frames:
+def fsst_frames_of(config: AnyConfig, duration: float, prf: float, f0: float) -> Frames:
     """`frames_of`, with the hop of the FSST where it has its own."""
     frames, hop = frames_of(config, duration, prf, f0), config.processing.fsst_hop_pulses
     return frames if hop is None else Frames(frames.length, hop)
@@ -376,7 +365,7 @@ def fsst_frames_of(config: Config, duration: float, prf: float, f0: float) -> Fr
 
 def channel_of(scene: Scene, antennas: Antennas) -> str:
     """Name of a receive channel: empty for the antennas of the config, of others their numbers."""
-    if antennas == antennas_of(scene.config):
+    if antennas == antennas_of(scene):
         return ""
     numbers = (*antennas.tx, *antennas.rx, antennas.gain, antennas.isolation_db)
     return " ".join(str(float(number)) for number in numbers)

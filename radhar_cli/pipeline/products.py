@@ -20,7 +20,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from radhar_cli.arrays import Complex, Float, Index
-from radhar_cli.config.schema import MAP_NAMES, MAX_TOLERANCE_DB, Config
+from radhar_cli.config.schema import MAP_NAMES, MAX_TOLERANCE_DB, AnyConfig, Config
 from radhar_cli.echo.accuracy import AccuracyError, first_aim, settings
 from radhar_cli.echo.direct import Accuracy, DirectEcho
 from radhar_cli.echo.exact import beat_at, exact_echo, signal_power
@@ -137,13 +137,15 @@ def products(config: Config, entropy: bool = True) -> dict[str, Product]:
     found = {row.name: row for row in rows}
     if config.radar.output == "real" and config.radar.waveform == "cw":
         made = found["signal"]
-        found["signal"] = replace(made, make=lambda *given: in_phase(made.make(*given)))
+        real = lambda *g: (x := made.make(*g)).with_samples(x.x.real.astype(complex))  # noqa: E731
+        found["signal"] = replace(made, make=real)
     return found
 
 
-def in_phase(signal: Signal) -> Signal:
-    """The real part of the samples."""
-    return signal.with_samples(signal.x.real.astype(complex))
+def products_of_signals(config: AnyConfig) -> dict[str, Product]:
+    """Every product of a recorded signal, by name."""
+    rows = (*_signals(config), *_maps(config, entropy=True), *_gate(config), *own_products())
+    return {row.name: row for row in rows}
 
 
 def _physics(c: Config) -> Iterator[Product]:
@@ -166,9 +168,9 @@ def _physics(c: Config) -> Iterator[Product]:
 
     seen = ("motions", "antennas", "wall", "waveform")
     walled = "through the wall" if c.wall is not None else "through air"
-    yield Product("waveform", ("scene",), lambda s: waveform_of(s.config), "chirps and pulses")
-    yield Product("antennas", ("scene",), lambda s: antennas_of(s.config), "positions and gains")
-    yield Product("wall", ("scene",), lambda s: wall_of(s.config), "the slab, or none")
+    yield Product("waveform", ("scene",), waveform_of, "chirps and pulses")
+    yield Product("antennas", ("scene",), antennas_of, "positions and gains")
+    yield Product("wall", ("scene",), wall_of, "the slab, or none")
     yield Product(
         "motions", ("scene",), lambda s: tuple(map(moving, s.people)), "scatterers that move"
     )
@@ -199,14 +201,14 @@ def _snr_of_other_paths(c: Config) -> bool:
 def _echo(c: Config) -> Iterator[Product]:
     yield Product("canceller", ("waveform",), lambda w: canceller_of(c, w.prf), _clutter(c))
     yield from _receiver(c)
-    yield from _gate(c) if _gated(c) else ()
+    yield from _gate(c)
     if c.radar.waveform == "impulse":
         yield from _impulse(c)
     else:
         yield from _direct(c) if c.engine.kind == "direct" else _exact(c)
 
 
-def _gated(c: Config) -> bool:
+def _gated(c: AnyConfig) -> bool:
     return c.processing.range_sum == "gated"
 
 
@@ -223,14 +225,13 @@ def _clutter(c: Config) -> str:
 
 def _receiver(c: Config) -> Iterator[Product]:
     def noise(scene: Scene, power: float, w: Waveform, channel: object) -> WhiteNoise:
-        assert isinstance(scene.config.snr_db, (int, float))
         if not SMALLEST_POWER <= power < inf:
             raise SceneError(
-                f"{scene.name}: the echo's power is {power:g}; snr_db = {scene.config.snr_db:g} "
+                f"{scene.name}: the echo's power is {power:g}; snr_db = {scene.snr_db:g} "
                 f"needs one from {SMALLEST_POWER:.3g} on (wall.loss_tangent, radar.carrier_hz, "
                 "motion.range_m), or should be null"
             )
-        sigma = np.sqrt(noise_variance(power, scene.config.snr_db))
+        sigma = np.sqrt(noise_variance(power, scene.snr_db))
         return WhiteNoise(float(sigma), partial(noise_stream, scene, channel=channel))
 
     if c.snr_db is None:
@@ -468,7 +469,7 @@ def _impulse(c: Config) -> Iterator[Product]:
     yield Product("accuracy", (), lambda: Accuracy(1, 0, False, -inf), "paths at every pulse")
 
 
-def _signals(c: Config) -> Iterator[Product]:
+def _signals(c: AnyConfig) -> Iterator[Product]:
     def compensated(x: Signal, torso_track: Float) -> Signal:
         return x.with_samples(compensate(x.x, torso_track, x.f0))
 
@@ -487,7 +488,7 @@ def _signals(c: Config) -> Iterator[Product]:
         yield Product(f"{raw}_compensated_denoised", (f"{raw}_compensated",), denoised, smooth)
 
 
-def _gate(c: Config) -> Iterator[Product]:
+def _gate(c: AnyConfig) -> Iterator[Product]:
     within = c.processing.gate_m
 
     def gate(ranges: Float, frames: Frames, canceller: Canceller, torso_track: Float) -> Gate:
@@ -495,6 +496,8 @@ def _gate(c: Config) -> Iterator[Product]:
         middle = np.rint(starts + (frames.length - 1) / 2 + canceller.delay).astype(np.intp)
         return gate_of(c, ranges, torso_track[middle] * (SPEED_OF_LIGHT / 2))
 
+    if not _gated(c):
+        return
     yield Product("range_axis", ("waveform",), Waveform.range_axis, "ranges of the bins")
     if isinstance(within, tuple):
         place = f"range bins from {within[0]:g} to {within[1]:g} m"
@@ -505,7 +508,7 @@ def _gate(c: Config) -> Iterator[Product]:
         yield Product("gate", needs, gate, place)
 
 
-def _maps(c: Config, entropy: bool) -> Iterator[Product]:
+def _maps(c: AnyConfig, entropy: bool) -> Iterator[Product]:
     size, masks = c.image.size_px, ("cfar",) if c.image.kind == "cfar" else ()
 
     def rtm(profiles: Signal) -> PowerMap:
@@ -530,14 +533,10 @@ def _maps(c: Config, entropy: bool) -> Iterator[Product]:
     for name in ("rtm", *(product.name for product in own_products())):
         yield Product(f"image:{name}", (name, *masks), map_image, f"its {_shape(c, entropy)}")
     for name, of in ("frames", frames_of), ("fsst_frames", fsst_frames_of):
-        make = partial(_frames, c, of)
+        make = lambda w, of=of: of(c, w.duration, w.prf, w.f0)  # noqa: E731
         yield Product(name, ("waveform",), make, f"of the {'FSST' if 'fsst' in name else 'STFT'}")
     for signal in SIGNALS:
         yield from _doppler_maps(c, signal, entropy)
-
-
-def _frames(c: Config, of: Callable[..., Frames], w: Waveform) -> Frames:
-    return of(c, w.duration, w.prf, w.f0)
 
 
 class DopplerPower(NamedTuple):
@@ -549,7 +548,7 @@ class DopplerPower(NamedTuple):
     columns: Axis
 
 
-def _doppler_maps(c: Config, signal: str, entropy: bool) -> Iterator[Product]:
+def _doppler_maps(c: AnyConfig, signal: str, entropy: bool) -> Iterator[Product]:
     """STFT and FSST of a signal, whole in float64, and their images from float32."""
     suffix = signal.removeprefix("signal")
     masks = ("cfar",) if c.image.kind == "cfar" else ()
@@ -578,7 +577,7 @@ MakePower: TypeAlias = Callable[..., DopplerPower]
 
 
 def _doppler_power(
-    c: Config, kind: str, single: bool, x: Signal, frames: Frames, gate: Gate | None = None
+    c: AnyConfig, kind: str, single: bool, x: Signal, frames: Frames, gate: Gate | None = None
 ) -> DopplerPower:
     """Power at the bins whose middle lies within `image.doppler_limits_mps`, with its axes."""
     bins = c.processing.stft_fft_length if kind == "stft" else None
@@ -596,12 +595,12 @@ def _doppler_power(
     return DopplerPower((block[:, kept] for block in power), stft.exponent, rows, stft.time)
 
 
-def _shape(c: Config, entropy: bool) -> str:
+def _shape(c: AnyConfig, entropy: bool) -> str:
     shape = "CFAR mask" if c.image.kind == "cfar" else "image"
     return f"{shape} and entropy" if entropy else shape
 
 
-def image_of(config: Config, power_map: PowerMap) -> MapImage:
+def image_of(config: AnyConfig, power_map: PowerMap) -> MapImage:
     """The image of a map that was measured, as a data set shows it; masks by fixed numbers."""
     cfar = cfar_of(config) if config.image.kind == "cfar" else None
     small = partial(reduced_map, power_map.power, config.image.size_px)
@@ -609,7 +608,7 @@ def image_of(config: Config, power_map: PowerMap) -> MapImage:
 
 
 def _image(
-    c: Config,
+    c: AnyConfig,
     cfar: CellAveraging | None,
     resize: Callable[[Callable[[Float], Float] | None], Reduced],
     extent: tuple[float, float, float, float],
@@ -638,7 +637,7 @@ def _doppler_map(make: MakePower, *given: Any) -> PowerMap:
 
 
 def _doppler_image(
-    c: Config, make: MakePower, single: bool, entropy: bool, *given: Any
+    c: AnyConfig, make: MakePower, single: bool, entropy: bool, *given: Any
 ) -> MapImage:
     cfar, given = (given[0], given[1:]) if c.image.kind == "cfar" else (None, given)
     doppler = make(single, *given)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.config.schema import Config
+from radhar_cli.config.schema import AnyConfig
 from radhar_cli.pipeline.physics import (
     canceller_of,
     cfar_of,
@@ -16,7 +16,7 @@ from radhar_cli.pipeline.physics import (
     gate_in_windows,
 )
 from radhar_cli.pipeline.plan import Plan, Product, plan
-from radhar_cli.pipeline.products import products
+from radhar_cli.pipeline.products import products, products_of_signals
 from radhar_cli.processing.signal import Signal
 from radhar_cli.scene import Scene
 
@@ -54,11 +54,17 @@ def record(
     that are there already: `motions=`, `antennas=`, `paths=` and so on. Antennas other than the
     config's have noise of their own; equal ones have it by `channel=1`, `channel=2`, ...
     """
-    return _made(scene.config, asked, more, {"scene": scene, **given})
+    table = products(scene.config) | {product.name: product for product in more}
+    given = {"scene": scene, **given}
+    return run(plan(table, asked, given), given)
 
 
 def process(
-    signal: Signal, config: Config, asked: Iterable[str], more: Iterable[Product] = (), **given: Any
+    signal: Signal,
+    config: AnyConfig,
+    asked: Iterable[str],
+    more: Iterable[Product] = (),
+    **given: Any,
 ) -> Recording:
     """Make products of a recorded signal: a sum over range after the canceller, or range bins
     before it. Powers of its channels are added up.
@@ -69,6 +75,7 @@ def process(
     Raises:
         KeyError: a product would need a scene.
     """
+    table = products_of_signals(config) | {product.name: product for product in more}
     duration = signal.pulses / signal.prf
     given = {
         "frames": frames_of(config, duration, signal.prf, signal.f0),
@@ -79,21 +86,16 @@ def process(
     if config.image.kind == "cfar":
         given.setdefault("cfar", cfar_of(config))
     if signal.ranges is None:
-        return _made(config, asked, more, {"signal": signal, **given})
-    canceller, gated = given["canceller"], config.processing.range_sum == "gated"
-    after, track = signal.cancelled(canceller), given.get("torso_track")
-    if track is not None:
-        later = after.t + canceller.lost / 2 / signal.prf
-        given["torso_track"] = np.interp(later, signal.t, track)
-        if gated:
-            given["gate"] = gate_in_windows(config, after, given["frames"], signal.t, track)
-    profiles = after.columns(config.image.size_px[1])
-    made = {"signal": after.summed(), "range_signals": after, "range_profiles": profiles}
-    return _made(config, asked, more, {**made, "range_axis": signal.ranges, **given})
-
-
-def _made(
-    config: Config, asked: Iterable[str], more: Iterable[Product], given: Mapping[str, Any]
-) -> Recording:
-    table = products(config) | {product.name: product for product in more}
+        given = {"signal": signal, **given}
+    else:
+        canceller, gated = given["canceller"], config.processing.range_sum == "gated"
+        after, track = signal.cancelled(canceller), given.get("torso_track")
+        if track is not None:
+            later = after.t + canceller.lost / 2 / signal.prf
+            given["torso_track"] = np.interp(later, signal.t, track)
+            if gated:
+                given["gate"] = gate_in_windows(config, after, given["frames"], signal.t, track)
+        profiles = after.columns(config.image.size_px[1])
+        made = {"signal": after.summed(), "range_signals": after, "range_profiles": profiles}
+        given = {**made, "range_axis": signal.ranges, **given}
     return run(plan(table, asked, given), given)

@@ -33,7 +33,7 @@ from radhar_cli.radar.room import Box
 from radhar_cli.radar.transmission import transmission
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
-from radhar_cli.scene import MAX_PLACES, Numbers, Person, Scene, draw_scene, nominal_scene
+from radhar_cli.scene import MAX_PLACES, Person, Scene, draw_scene, nominal_scene
 
 MIN_DISTANCE_M = 0.05
 LEAST_SNR_DB = -80.0  # of a raw sample; compression and windows gain less than that
@@ -130,7 +130,7 @@ def _check_people(scene: Scene, people: tuple[Person, ...]) -> SceneCheck:
         flags |= check.flags & ~Flags.GATE  # which follows the sample's own person
     room = reflectors_of(scene)
     if room is not None:  # reflectors move by millimetres: one instant will do
-        p, start, antennas = room.positions(np.zeros(1)), np.zeros(1), antennas_of(scene.config)
+        p, start, antennas = room.positions(np.zeros(1)), np.zeros(1), antennas_of(scene)
         legs = leg(p, antennas.tx), leg(p, antennas.rx)
         closest = min(closest, _nearest(room.names, start, *legs))
     return SceneCheck(closest, flags)
@@ -145,9 +145,9 @@ def _checked(scene: Scene, person: Person) -> SceneCheck:
 
 
 def _check(scene: Scene, person: Person, motion: Motion) -> SceneCheck:
-    antennas = antennas_of(scene.config)
-    wall, waveform = wall_of(scene.config), waveform_of(scene.config)
-    box = box_of(scene.config)
+    antennas = antennas_of(scene)
+    wall, waveform = wall_of(scene), waveform_of(scene)
+    box = box_of(scene)
     rate = max(GRID_HZ, GRID_PER_CYCLE * motion.highest_frequency)
     step = max(1, int(waveform.prf / rate))
     pulses = np.append(np.arange(0, waveform.n_pulses - 1, step), waveform.n_pulses - 1)
@@ -340,7 +340,7 @@ def _cure(config: Config, check: SceneCheck) -> str:
 
 def config_warnings(config: Config) -> list[str]:
     """Say which keys and lines of a .cfg have no effect, and which interference lines alias."""
-    cfg = config.board.unknown if config.radar.cfg is not None else ()
+    cfg = config.radar.header.unknown if config.radar.cfg is not None else ()
     lines = [f"radar.cfg: {command} is not known and has no effect" for command in cfg]
     return unused_keys(config) + tone_warnings(config) + lines + _opaque(config) + _folded(config)
 
@@ -352,12 +352,12 @@ def _folded(config: Config) -> list[str]:
     farthest, reach = 0.0, 0.0
     for activity in config.chosen_activities:
         scene = nominal_scene(config, activity)
-        antennas, motion = antennas_of(scene.config), scene.people[0].motion
+        antennas, motion = antennas_of(scene), scene.people[0].motion
         p = np.array([motion.range_m or 0.0, motion.cross_range_m or 0.0, 1.0])[:, None, None]
-        for tx, rx in ways_of(scene.config):
+        for tx, rx in ways_of(scene):
             way = leg(tx.image(p), antennas.tx) + leg(rx.image(p), antennas.rx)
             farthest = max(farthest, float(way[0, 0]) / 2)
-        reach = waveform_of(scene.config).half_band_range
+        reach = waveform_of(scene).half_band_range
     if farthest < reach:
         return []
     return [
@@ -371,13 +371,13 @@ def _opaque(config: Config) -> list[str]:
     if config.wall is None or config.snr_db is None or config.snr_reference != "free_space":
         return []
     scene = nominal_scene(config, config.chosen_activities[0])
-    wall, antennas = wall_of(scene.config), antennas_of(scene.config)
+    wall, antennas = wall_of(scene), antennas_of(scene)
     assert wall is not None
     behind = np.array(wall.center)[:, None, None] + [[[wall.size[0]]], [[0.0]], [[0.0]]]
-    fc = waveform_of(scene.config).fc
+    fc = waveform_of(scene).fc
     ways = [transmission(behind, one, wall, fc) for one in (antennas.tx, antennas.rx)]
     left = float(np.prod([way.factor[0, 0] for way in ways]))
-    loss, snr = -20 * log10(max(left, 1e-300)), Numbers(scene.config).snr_db
+    loss, snr = -20 * log10(max(left, 1e-300)), scene.snr_db
     if snr - loss > LEAST_SNR_DB:
         return []
     return [
@@ -400,12 +400,9 @@ def scene_warnings(scene: Scene) -> list[str]:
     )
 
 
-def warnings(
-    config: Config, counts: Mapping[Flags, int], recordings: int | None = None
-) -> list[dict[str, Any]]:
-    """What to say once per run: [{kind, recordings, message}]; counts are of so many recordings."""
-    recordings = recordings or sum(map(config.samples_of, config.chosen_activities))
-    messages: list[dict[str, Any]] = [
+def flagged(counts: Mapping[Flags, int], recordings: int) -> list[dict[str, Any]]:
+    """What to say of flags: [{kind, recordings, message}]; counts are of so many recordings."""
+    return [
         {
             "kind": str(flag.name).lower(),
             "recordings": n,
@@ -414,11 +411,18 @@ def warnings(
         for flag, n in counts.items()
         if n
     ]
-    messages += [
+
+
+def warnings(
+    config: Config, counts: Mapping[Flags, int], recordings: int | None = None
+) -> list[dict[str, Any]]:
+    """What to say once per run: that, and of the config; `recordings` are its own if not given."""
+    recordings = recordings or sum(map(config.samples_of, config.chosen_activities))
+    messages = [
         {"kind": "config", "recordings": recordings, "message": message}
         for message in config_warnings(config)
     ]
-    return messages + [
+    return [*flagged(counts, recordings), *messages] + [
         {"kind": "timing", "recordings": config.samples_of(activity), "message": message}
         for activity in config.chosen_activities
         for message in timing_warnings(config, (activity,))

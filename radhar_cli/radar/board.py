@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
@@ -23,7 +23,8 @@ from radhar_cli.radar.waveform import Waveform
 Places: TypeAlias = tuple[tuple[float, float], ...]  # (left, up) in half wavelengths
 
 
-class Array(NamedTuple):
+@dataclass(frozen=True)
+class Array:
     """Antenna elements of a device."""
 
     # tx, rx: places of the elements
@@ -55,6 +56,7 @@ DEVICES: Mapping[str, Array] = MappingProxyType(
         ),
     }
 )
+EVEN = (1000.0, 1000.0)  # half-power half-widths (degree) of an array by hand: no pattern
 
 
 @dataclass(frozen=True)

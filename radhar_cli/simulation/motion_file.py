@@ -54,8 +54,7 @@ def scene_bvh(
     """
     config = as_config(config)
     scene = scene_of(config, activity_of(activity, config), index, nominal)
-    assert isinstance(scene.config.duration_s, (int, float))
-    frames = round(scene.config.duration_s * rate) + 1
+    frames = round(scene.seconds * rate) + 1
     if frames > MAX_FRAMES:
         raise ConfigError(f"{frames} frames; should be at most {MAX_FRAMES}: --rate, duration_s")
     return bvh_text(sampled(motion_of(scene.people[0]), np.arange(frames) / rate), rate), frames

@@ -1,7 +1,6 @@
 """What really moved: positions, radial velocities, and which movement is under way."""
 
 from collections import Counter
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -99,7 +98,12 @@ def truth(
         t = waveform.times(np.arange(waveform.n_pulses, dtype=float))
 
     def rate(slab: Wall | None) -> Float:
-        return _rate(lambda at: point_delay(motion.positions(at), antennas, slab), t)
+        """d tau/dt [M, I] by a central difference."""
+        early, late = (
+            point_delay(motion.positions(t + step), antennas, slab)
+            for step in (-RATE_STEP_S, RATE_STEP_S)
+        )
+        return (late - early).T / (2 * RATE_STEP_S)
 
     phases = tuple(dict.fromkeys((WHOLE, *(name for _, name in motion.phases))))
     with_hip_joints = (HumanMotion, FileMotion)
@@ -117,9 +121,3 @@ def truth(
 def _by_pulse(p: Float) -> Float:
     """[3, I, M] as [M, I, 3]."""
     return np.ascontiguousarray(p.transpose(2, 1, 0))
-
-
-def _rate(delay: Callable[[Float], Float], t: Float) -> Float:
-    """d tau/dt [M, I] by a central difference."""
-    rate: Float = (delay(t + RATE_STEP_S) - delay(t - RATE_STEP_S)).T / (2 * RATE_STEP_S)
-    return rate

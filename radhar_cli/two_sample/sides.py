@@ -148,7 +148,7 @@ def _side(path: Path, images: ImageSet, classes: dict[str, Index], size: tuple[i
         group = np.unique(images.persons, return_inverse=True)[1]
     if images.map is not None and is_h5(path):
         with open_dataset(path) as data:
-            extent, recorded = data.extents(images.map), data.config.recorded
+            extent, recorded = data.extents(images.map), data.config.recordings
             if not masks and (recorded is None or not is_image(recorded.parts[0].file)):
                 decibels = data.config.image.dynamic_range_db
     at_size = replace(images, pixels=Resized(images.pixels, size))

@@ -10,7 +10,8 @@ from command_line import radhar
 from radhar_cli.capture.chain import maps_of
 from radhar_cli.capture.importing import write_simulated
 from radhar_cli.capture.recording import Label, Recording
-from radhar_cli.config import load_config
+from radhar_cli.config import load_config, resolved
+from radhar_cli.config.schema import MeasuredConfig
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.pipeline.products import image_of
@@ -140,7 +141,7 @@ WRONG = [
     ("file,label\np1/walking.h5,\n", "label is missing"),
     ("file,label,start\np1/walking.h5,walking,soon\n", "start = 'soon'"),
     ("file,label,stop\np1/walking.h5,walking,9\n", "within its 3 s"),
-    ("file,label,stop\np1/walking.h5,walking,0.5\n", "as long as recordings.window_s"),
+    ("file,label,stop\np1/walking.h5,walking,0.5\n", "recordings.window_s = 1"),
     ("file,label\np1/walking.h5,4 walks!\n", "label"),
     ("file,label\n", "lists nothing"),
     ("file,label,stop\n" + "p1/walking.h5,walking,1.5\n" * 10_001, "at most 10000"),
@@ -165,6 +166,41 @@ def test_a_config_with_recordings_needs_their_manifest(recordings: Path, tmp_pat
     done = radhar("generate", recordings / "c.yaml", "-o", tmp_path / "set")
     assert done.returncode == 2
     assert "--recordings" in done.stderr
+
+
+@pytest.mark.parametrize(
+    "key",
+    [
+        "maps=[stft, points]",
+        "output.column_labels=true",
+        "output.slow_time=true",
+        "output.products=[receiver]",
+    ],
+)
+def test_what_recordings_do_not_have_is_refused(recordings: Path, tmp_path: Path, key: str) -> None:
+    text = "radar: {device: IWR1443BOOST, cfg: iwr1443boost}\nrecordings: {window_s: 1}\n"
+    (recordings / "board.yaml").write_text(text if "maps" in key else CONFIG)
+    command = ("generate", recordings / "board.yaml", "--recordings", recordings / "manifest.csv")
+    done = radhar(*command, "-o", tmp_path / "set", "--set", key)
+    assert done.returncode == 2
+    assert f"{key.partition('=')[0]} = " in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
+def test_what_only_a_simulation_has_is_left_out(recordings: Path, tmp_path: Path) -> None:
+    """Noise, interference, people; numbers that are drawn take their middle."""
+    more = ["snr_db=20", "receiver.tones=[{doppler_hz: 50, level_db: 0}]"]
+    more += ["motion.model=human", "people=[{activity: walking}]", "image.kind=cfar"]
+    more += ["image.cfar={training: [4, 4], guard: [1, 1], floor_db: {uniform: [10, 20]}}"]
+    generate(recordings, tmp_path / "set", *(word for key in more for word in ("--set", key)))
+    with open_dataset(tmp_path / "set") as data:
+        assert isinstance(data.config, MeasuredConfig)
+        assert not {"motion", "people", "receiver"} & resolved(data.config).keys()
+        assert data.config.image.cfar.floor_db == 15
+    recording = recordings / "p1/walking.h5"
+    command = ("process", recording, "--config", recordings / "c.yaml", "-o", tmp_path / "maps")
+    done = radhar(*command, "--set", more[-2], "--set", more[-1], "--no-figures")
+    assert done.returncode == 0, done.stderr
 
 
 def test_yaml_is_a_manifest_too(recordings: Path, tmp_path: Path) -> None:

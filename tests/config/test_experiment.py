@@ -13,7 +13,6 @@ from radhar_cli.activity import ACTIVITIES, activity_named
 from radhar_cli.config import (
     MAP_NAMES,
     Config,
-    config_from_json,
     config_hash,
     resolved,
     timing_warnings,
@@ -328,7 +327,7 @@ def test_a_resolved_config_is_the_config(
         motion={"model": "paper", "range_m": {"per_activity": {"default": default, **by_activity}}},
         wall=wall,
     )
-    again = config_from_json(json.dumps(resolved(config)), "dataset.h5")
+    again = Config.model_validate(json.loads(json.dumps(resolved(config))))
     assert again == config
     assert config_hash(again) == config_hash(config)
 

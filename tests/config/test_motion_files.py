@@ -8,7 +8,7 @@ import pytest
 from recorded import frames, write_bvh, write_npz
 
 from radhar_cli.activity import activity_named
-from radhar_cli.config import Config, config_from_json, load_config, resolved
+from radhar_cli.config import Config, load_config, resolved
 from radhar_cli.config.identity import config_hash, flat_document
 from radhar_cli.errors import ConfigError, MotionFileError
 from radhar_cli.pipeline.motion_files import file_motion
@@ -64,7 +64,7 @@ def test_folders_of_motion_files_are_no_part_of_a_config(place: Path) -> None:
     named = load_config(place / "y.yaml", ["motion.folder=elsewhere"])
     assert resolved(named) == resolved(here)
     assert config_hash(named) == config_hash(here)
-    stored = config_from_json(json.dumps(resolved(here)), "x")
+    stored = Config.model_validate(json.loads(json.dumps(resolved(here))))
     assert resolved(stored) == resolved(here)
     scene = nominal_scene(stored, stored.chosen_activities[0])
     with pytest.raises(MotionFileError, match=r"walk/1\.bvh: where the files .*motion\.folder"):

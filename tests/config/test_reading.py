@@ -10,10 +10,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from radhar_cli.activity import ACTIVITIES
-from radhar_cli.config import Config, config_from_json, load_config, resolved
+from radhar_cli.config import Config, load_config, resolved
 from radhar_cli.config.number import Choice, Normal, Uniform, Vary
 from radhar_cli.config.schema import for_activity
-from radhar_cli.errors import ConfigError
+from radhar_cli.dataset.reading import stored_config
+from radhar_cli.errors import ConfigError, FolderError
 
 
 def written(folder: Path, text: str) -> Path:
@@ -546,13 +547,13 @@ split: {by: subject, subjects: 10, train: 0.7, validation: 0.2, test: 0.1}
 @pytest.mark.parametrize("text", ["", "seed: 3", "wall: {}", FULL])
 def test_the_stored_config_is_the_same_config(tmp_path: Path, text: str) -> None:
     config = read(tmp_path, text)
-    assert config_from_json(json.dumps(resolved(config)), "dataset.h5") == config
+    assert Config.model_validate(json.loads(json.dumps(resolved(config)))) == config
 
 
-@pytest.mark.parametrize("stored", ["not json", "[1]", '{"seed": -1}', "null"])
-def test_a_stored_config_that_is_broken_names_its_file(stored: str) -> None:
-    with pytest.raises(ConfigError, match=r"^dataset\.h5: "):
-        config_from_json(stored, "dataset.h5")
+@pytest.mark.parametrize("stored", [[1], {"seed": -1}, None, {"recordings": {}}])
+def test_a_stored_config_that_is_broken_names_its_file(stored: object) -> None:
+    with pytest.raises(FolderError, match=r"^dataset\.h5: "):
+        stored_config(stored, "dataset.h5")
 
 
 @pytest.mark.parametrize(

@@ -115,7 +115,7 @@ def test_a_second_person() -> None:
 def test_a_second_receive_channel() -> None:
     """Two receivers half a wavelength apart see a body to the left by a phase between them."""
     scene = walking()
-    antennas, waveform = antennas_of(scene.config), waveform_of(scene.config)
+    antennas, waveform = antennas_of(scene), waveform_of(scene)
     apart = C / waveform.f0 / 2
     x, y, z = antennas.rx
     beside = replace(antennas, rx=(x, y + apart, z))
@@ -167,7 +167,7 @@ def test_channels_have_noise_of_their_own(engine: str, form: str, corner: float)
     receiver = CONFIG.receiver.model_copy(update=flicker)
     wide = CONFIG.image.model_copy(update={"size_px": (32, 8192)})  # pulses of range profiles
     scene = walking(radar=fast, engine=kind, snr_db=0, receiver=receiver, image=wide)
-    antennas = antennas_of(scene.config)
+    antennas = antennas_of(scene)
     beside = replace(antennas, rx=(0.4, 0.115, 1.5))
     channels = [
         noise_of(scene, form, motions=(Ball(2.0),), antennas=one, **named)
@@ -342,9 +342,7 @@ OWN = {
     "a map": Product("range_speed", ("raw_echo", "waveform"), range_speed, "range, Doppler"),
     "its echo": RAW_ECHO,
     "strong_pulses": Product("strong_pulses", ("signal",), points, "strong pulses"),
-    "antennas": Product(
-        "antennas", ("scene",), lambda s: replace(antennas_of(s.config), gain=9.0), ""
-    ),
+    "antennas": Product("antennas", ("scene",), lambda s: replace(antennas_of(s), gain=9.0), ""),
     "receiver": Product("receiver", ("scene", "noise", "waveform"), offset_and_noise, "an offset"),
 }
 

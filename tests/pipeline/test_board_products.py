@@ -45,7 +45,8 @@ def made(path: Path, *names: str, overrides: tuple[str, ...] = ()) -> dict[str, 
 
 
 def test_a_config_gives_the_board_of_its_cfg(path: Path) -> None:
-    board = board_of(scene_of(path).config)
+    scene = scene_of(path)
+    board = board_of(scene.radar, scene.seconds)
     assert (board.fc, board.loops, board.frames, board.order) == (77.7e9, 32, 3, MARS.order)
     assert board.position == (0, 0, 1)
     assert board.gain == pytest.approx(10**0.9)

@@ -30,8 +30,8 @@ def scene(seed: int = 1) -> Scene:
 
 def source(seed: int = 1) -> SurfacePaths:
     one = scene(seed)
-    motion, config = motion_of(one.people[0]), one.config
-    made = body_paths(one.people[0], motion, antennas_of(config), None, waveform_of(config))
+    motion = motion_of(one.people[0])
+    made = body_paths(one.people[0], motion, antennas_of(one), None, waveform_of(one))
     assert made is not None
     return made
 
@@ -102,7 +102,7 @@ def test_several_channels_evaluate_a_body_once() -> None:
             return motion.landmark_positions(t)  # type: ignore[attr-defined]
 
     held = remembered(Counting())  # type: ignore[arg-type]
-    antennas, w = antennas_of(one.config), waveform_of(one.config)
+    antennas, w = antennas_of(one), waveform_of(one)
     for shift in (0.0, 0.01, 0.02):
         moved = replace(antennas, tx=(0.4, -0.1 + shift, 1.5), rx=(0.4, 0.1 - shift, 1.5))
         made = body_paths(one.people[0], held, moved, None, w)

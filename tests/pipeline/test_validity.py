@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from radhar_cli.activity import ACTIVITIES, activity_named
-from radhar_cli.config import Config, config_from_json
+from radhar_cli.config import Config
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.pipeline import validity as module
@@ -86,7 +86,7 @@ def distance_at(scene: Scene, approach: Approach) -> float:
 
 def brute_delay(scene: Scene) -> np.ndarray:
     """Delay [13, M] at every pulse, the wall's included."""
-    p, wall = at_every_pulse(scene), wall_of(scene.config)
+    p, wall = at_every_pulse(scene), wall_of(scene)
     tau = np.zeros(p.shape[1:])
     for key in ("tx", "rx"):
         at = antenna(scene, key)
@@ -172,7 +172,7 @@ def test_half_band_aliasing_and_wall_as_at_every_pulse(setting: Any, activity: A
     mid = v["radar.carrier_hz"] + v["radar.bandwidth_hz"] / 2
     doppler = np.abs(np.diff(tau, axis=1)).max() * v["radar.prf_hz"] * mid
     half_band = C * 10e6 / (4 * v["radar.bandwidth_hz"] / 40e-6)
-    wall = wall_of(scene.config)
+    wall = wall_of(scene)
     assert (Flags.ALIASING in found.flags) == (doppler > v["radar.prf_hz"] / 2)
     assert (Flags.HALF_BAND in found.flags) == (tau.max() * C / 2 >= half_band)
     assert (Flags.WALL in found.flags) == (
@@ -331,7 +331,7 @@ def test_no_warning_for_keys_with_effect() -> None:
         receiver={"tones": [{"doppler_hz": 2000}]},
     )
     assert config_warnings(config) == []
-    assert config_warnings(config_from_json(config.model_dump_json(), "here")) == []
+    assert config_warnings(Config.model_validate_json(config.model_dump_json())) == []
 
 
 def test_no_warning_for_scenes_inside_the_model() -> None:

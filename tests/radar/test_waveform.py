@@ -14,6 +14,7 @@ from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.pipeline.motion_paths import MotionPaths
 from radhar_cli.pipeline.physics import waveform_of
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
+from radhar_cli.scene import nominal_scene
 from radhar_cli.simulation.simulate import simulate
 
 # The paper's table "Experimental Parameter Settings".
@@ -120,15 +121,16 @@ def test_stepped_frequencies_are_the_chirp_of_the_same_samples() -> None:
     assert steps.waveform.slope / steps.waveform.adc_rate == pytest.approx(2e9 / 200, rel=1e-12)
     np.testing.assert_array_equal(steps.signals["raw"].x, chirp.signals["raw"].x)
     np.testing.assert_array_equal(steps.maps["rtm"].power, chirp.maps["rtm"].power)
-    again = Config.model_validate(resolved(steps.config))
+    again = replace(steps.scene, config=Config.model_validate(resolved(steps.config)))
     assert waveform_of(again) == steps.waveform
 
 
 def test_samples_of_stepped_frequencies() -> None:
     """S(f) = sum A exp(-j 2 pi f tau), against numbers of another implementation."""
     config = stepped(waveform="sfcw", steps=16, dwell_s=1e-4)
+    scene = nominal_scene(config, config.chosen_activities[0])
     delay, amplitude = np.array([[2e-8], [5e-8]]), np.array([[1.0], [0.5]])
-    found = beat_matrix(delay, amplitude, waveform_of(config))[:, 0]
+    found = beat_matrix(delay, amplitude, waveform_of(scene))[:, 0]
     right = np.tile([1.5, -1 - 0.5j, 0.5, -1 + 0.5j], 4)
     np.testing.assert_allclose(found, right, atol=1e-12)
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from radhar_cli.arrays import Float
 from radhar_cli.config.identity import as_yaml
+from radhar_cli.config.schema import Config
 from radhar_cli.config.ti_header import board_header
 from radhar_cli.dataset.layout import CARD, CONFIG, Rows
 from radhar_cli.dataset.reading import Dataset
@@ -53,7 +54,7 @@ def clouds_of(data: Dataset, row: int) -> Clouds:
     products = data.products
     points, start = products["points"][row], products["points_start"][row]
     snr_db = points[:, 5].astype(float)
-    board = data.config.cloud.chain == "board"
+    board = isinstance(data.config, Config) and data.config.cloud.chain == "board"
     return Clouds(
         frame=np.repeat(np.arange(len(start) - 1), np.diff(start)),
         xyz=_ti_axes(points),

@@ -11,7 +11,7 @@ import pyarrow.parquet as pq
 
 from radhar_cli.arrays import Levels
 from radhar_cli.config.identity import as_yaml
-from radhar_cli.config.schema import Config
+from radhar_cli.config.schema import AnyConfig
 from radhar_cli.dataset.card import card
 from radhar_cli.dataset.layout import CARD, CONFIG, Rows
 from radhar_cli.dataset.png import colour_table, encode_png
@@ -73,14 +73,14 @@ def _files_of_split(data: Dataset, split: int) -> Iterator[tuple[int, Iterator[E
         yield files, islice(here, most)
 
 
-def _number_features(config: Config) -> list[dict[str, str]]:
+def _number_features(config: AnyConfig) -> list[dict[str, str]]:
     """Columns of numbers, as `datasets` writes them down: index, and what was drawn."""
     kinds = {"index": "int64"} | ({"labels": "string"} if config.people else {})
     kinds |= {n: "int64" if n == "subject" else "float64" for n in number_names(config)}
     return [{"name": name, "dtype": kind} for name, kind in kinds.items()]
 
 
-def schema_of(config: Config) -> pa.Schema:
+def schema_of(config: AnyConfig) -> pa.Schema:
     """Columns; the card says what `datasets` makes of them."""
     kinds = {one["name"]: one["dtype"] for one in _number_features(config)}
     image = pa.struct([("bytes", pa.binary()), ("path", pa.string())])

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from radhar_cli.arrays import Levels
+from radhar_cli.config.schema import MeasuredConfig
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset, open_dataset
@@ -104,7 +105,7 @@ def _everybody(data: Dataset) -> tuple[tuple[str, ...], ...] | None:
 
 def _persons(data: Dataset) -> tuple[str, ...] | None:
     """Who is in each row; of a recording that does not say, which recording it was cut from."""
-    if data.config.recorded is not None:
+    if isinstance(data.config, MeasuredConfig):
         parts = (window.part for window in windows(data.config))
         return tuple(f"file {p.file}" if p.person is None else p.person for p in parts)
     if data.config.split.subjects is None:

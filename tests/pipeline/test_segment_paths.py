@@ -9,6 +9,7 @@ import reference as ref
 from radhar_cli.activity import ACTIVITIES, activity_named
 from radhar_cli.arrays import Float
 from radhar_cli.config import Config
+from radhar_cli.echo.accuracy import MARGIN_DB
 from radhar_cli.errors import SceneError
 from radhar_cli.motion.protocol import Only
 from radhar_cli.motion.segments import SEGMENTS, Segment
@@ -206,14 +207,16 @@ CASES = {
     [("walking", -40), ("walking", -110), *((slug, -80) for slug in CASES)],
 )
 def test_the_direct_engine_keeps_its_tolerance(slug, tolerance_db):
-    """Sigmoids of shadows and flashes of limbs included."""
+    """Sigmoids of shadows and flashes of limbs included. 48 pulses may miss a burst of errors, but
+    not one that comes near the tolerance."""
     more = CASES[slug]
     right = record(scene_of(slug, **more, **CUBE), ["signal"])["signal"].x[0, 0]
     engine = {"engine": {"tolerance_db": tolerance_db}}
     found = record(scene_of(slug, **more, **engine), ["signal", "accuracy"])
     error_db = ref.error_db(found["signal"].x[0, 0], right)
     assert error_db < tolerance_db
-    assert error_db == pytest.approx(found["accuracy"].error_db, abs=10)
+    assert error_db < max(found["accuracy"].error_db + 10, tolerance_db - MARGIN_DB)
+    assert found["accuracy"].error_db < error_db + 12
 
 
 def test_a_motionless_person_cancels_exactly():

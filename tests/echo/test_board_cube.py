@@ -62,7 +62,7 @@ def test_any_shape_of_frames(samples: int, loops: int, frames: int, distance: fl
 
 def test_receivers_fed_the_other_way_round_change_their_sign() -> None:
     board = replace(MARS, array=DEVICES["IWR6843ISK-ODS"])
-    same = replace(board, array=board.array._replace(rx_sign=(1.0,) * 4))
+    same = replace(board, array=replace(board.array, rx_sign=(1.0,) * 4))
     sources = channels(board, P, V, A)
     signed, plain = exact_cube(sources, board)[0], exact_cube(sources, same)[0]
     np.testing.assert_allclose(signed[:, :, 1::4], -plain[:, :, 1::4])

@@ -131,8 +131,8 @@ class GatedEcho(DirectEcho):
         step, shift = knots.step, knots.shift[some]
         reach = slice(some.start, some.start + shift.size + BEFORE + AFTER)
         terms = self._envelopes(chosen, columns(knots.paths, reach), k, unit)
-        x = _interpolated_sum(*terms, shift, step)
-        x *= self._half_a_sample(k)
+        real, imag = _interpolated_sum(*terms, shift, step)
+        x = _referred(real, imag, k, self.waveform)
         first = knots.pulses[0] + some.start * step
         here = np.searchsorted(knots.exact_pulses, [first, first + shift.size * step])
         if here[1] > here[0]:
@@ -145,13 +145,8 @@ class GatedEcho(DirectEcho):
         cycles, envelope, coefficients = self._envelopes(chosen, paths, k, unit)
         turning = unit_phasor(cycles, complex_of(envelope))
         both = np.stack([turning.real, turning.imag], axis=1)  # [M, 2, I]
-        x = (both @ envelope.transpose(1, 2, 0)) @ coefficients  # [M, 2, K]
-        bins: Complex = (x[:, 0] + 1j * x[:, 1]).T * self._half_a_sample(k)
-        return bins
-
-    def _half_a_sample(self, k: Index) -> Complex:
-        """exp(-j pi k/N_FFT) [K, 1]: the middle of the samples lies that far before n = N/2."""
-        return unit_phasor(k[:, None] / (2 * self.waveform.n_fft))
+        x = (both @ envelope.transpose(1, 2, 0)).reshape(-1, len(coefficients)) @ coefficients
+        return _referred(x[::2].T, x[1::2].T, k, self.waveform)
 
     def _envelopes(
         self, chosen: Settings, paths: Paths, k: Index, unit: float
@@ -208,6 +203,15 @@ def chebyshev(middle: float, half: float, k: Index, w: Waveform, real: np.dtype[
     return c[: max(2, int(kept.max(initial=0)) + 1)].astype(real)
 
 
+def _referred(real: Float, imag: Float, k: Index, w: Waveform) -> Complex:
+    """Bins k [K, ...] times exp(-j pi k/N_FFT): the middle of the samples lies half a sample before
+    n = N/2."""
+    x: Complex = np.empty(real.shape, complex_of(real))
+    x.real, x.imag = real, imag
+    x *= unit_phasor(k[:, None] / (2 * w.n_fft), x.dtype)
+    return x
+
+
 def complex_of(x: Float) -> np.dtype[Any]:
     """The complex type of the precision of x."""
     return np.result_type(x.dtype, np.complex64)
@@ -215,8 +219,8 @@ def complex_of(x: Float) -> np.dtype[Any]:
 
 def _interpolated_sum(
     cycles: Float, envelope: Float, coefficients: Float, shift: Index, step: int
-) -> Complex:
-    """Bins [K, segments * step] at the pulses of segments.
+) -> Float:
+    """Bins, real and imaginary [2, K, segments * step], at the pulses of segments.
 
     At the knots [BEFORE + segments + AFTER, I] are phases, in cycles, and A T_p over the unit
     [P, ...]; coefficients are c_p of the bins [P, K].
@@ -242,8 +246,7 @@ def _interpolated_sum(
         weights = lagrange_weights(step, moved).astype(z.dtype)
         z[:, :, start:stop] = np.einsum("strcm,tm->rcsm", taps, weights)
     x = coefficients.T @ z.reshape(len(coefficients), -1)
-    real, imag = x.reshape(-1, 2, shift.size * step).swapaxes(0, 1)
-    return real + 1j * imag
+    return x.reshape(-1, 2, shift.size * step).swapaxes(0, 1)
 
 
 def _fewer(coefficients: Float) -> tuple[Float, Float]:

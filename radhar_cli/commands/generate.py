@@ -21,7 +21,8 @@ def generate(
     set_: Overrides = None,
     tolerance: Tolerance = None,
     jobs: Annotated[
-        int | None, typer.Option("--jobs", "-j", min=1, help="Processes; default: all cores.")
+        int | None,
+        typer.Option("--jobs", "-j", min=1, help="Processes; default: a core each, if it pays."),
     ] = None,
     batch: Annotated[
         int | None, typer.Option(min=1, help="Samples per batch; does not change the result.")
@@ -61,12 +62,14 @@ def generate(
         from radhar_cli.commands.terminal import BarProgress, print_outcome, print_part, print_plan
         from radhar_cli.config import load_config
         from radhar_cli.dataset.build import build
+        from radhar_cli.dataset.estimate import jobs_that_pay
         from radhar_cli.dataset.layout import Rows
         from radhar_cli.dataset.parts import Part
         from radhar_cli.dataset.workers import cores, on_cluster
+        from radhar_cli.worker_process import prepare_process
 
+        prepare_process()
         loaded, factory = load_config(config, with_tolerance(set_, tolerance)), None
-        jobs = jobs or cores()
         made: AnyConfig = loaded
         if recordings is not None:
             if shard is not None or cluster is not None:
@@ -76,6 +79,7 @@ def generate(
             raise ConfigError(
                 f"{config}: recordings: --recordings MANIFEST should say where they lie"
             )
+        jobs = jobs or (cores() if factory else jobs_that_pay(loaded))
         if dry_run:
             print_plan(made, jobs)
         else:

@@ -73,7 +73,9 @@ def simulate(
     from radhar_cli.simulation import scene_file
     from radhar_cli.simulation.simulate import map_names
     from radhar_cli.simulation.simulate import simulate as simulate_scene
+    from radhar_cli.worker_process import prepare_process
 
+    prepare_process()
     overrides = with_tolerance(set_, tolerance)
     if motion is not None:
         activity = activity or FROM_FILE

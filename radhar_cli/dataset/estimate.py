@@ -1,7 +1,8 @@
 """What a build will take: bytes and time, from a few samples made in memory there and then."""
 
+from contextlib import suppress
 from dataclasses import dataclass
-from time import perf_counter
+from time import perf_counter, process_time
 
 import numpy as np
 
@@ -12,6 +13,8 @@ from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table, encode_png
 from radhar_cli.dataset.sample import synthesise
 from radhar_cli.dataset.shards import encode_shard
+from radhar_cli.dataset.workers import cores
+from radhar_cli.errors import RadharError
 from radhar_cli.pipeline.products import plan_images
 from radhar_cli.pipeline.validity import draw_valid_scene
 from radhar_cli.worker_process import prepare_process
@@ -20,6 +23,7 @@ PROBES = 24
 PROBE_SECONDS = 8.0
 PARALLEL_EFFICIENCY = 0.75
 WORKER_START_S = 1.5
+PAYS_S = 0.6  # of work, from which on a worker is worth its start
 FIXED_S = 1.0
 FILE_WRITE_S = 0.0002
 
@@ -34,6 +38,21 @@ class Estimate:
     hdf5_bytes: int
     png_bytes: int
     seconds: float  # wall time with the jobs asked for
+
+
+def jobs_that_pay(config: Config) -> int:
+    """Processes for a build: one a core, but each with more to do than its start takes."""
+    rows, seconds = Rows.of(config), PAYS_S  # of a sample
+    if cores() > 1:
+        with suppress(RadharError):  # which the build will tell
+            plan, place = plan_images(config), rows[len(rows) // 2]
+            for _ in range(2):  # the first imports
+                start = process_time()
+                synthesise(draw_valid_scene(config, *place)[0], plan)
+                seconds = process_time() - start
+                if seconds > PAYS_S:
+                    break
+    return max(1, min(cores(), int(len(rows) * seconds / PAYS_S)))
 
 
 def estimate(config: Config, jobs: int) -> Estimate:

@@ -162,7 +162,7 @@ def test_draws_follow_their_distribution() -> None:
     [
         ("stationary", set(), {"motion.shuffle_hz"}),
         ("kicking", {"motion.thigh_deg"}, {"motion.kick_hz", "motion.strike_scale"}),
-        ("sitting_down", {"timing.seat_start_s"}, {"motion.look_deg", "timing.seat_start_s"}),
+        ("sitting_down", {"timing.seat_start_s"}, {"motion.seat_height", "timing.seat_start_s"}),
         ("walking_to_falling", {"timing.blend_s"}, {"timing.overlap_s"}),
     ],
 )

@@ -420,10 +420,6 @@ class MotionConfig(Section):
         0.063, 0.011, 0.03, 0.1
     )
     """Between a walker's feet, relative to the stature."""
-    speed_ripple: Annotated[By[Ratio], People("walking", 0, 0.2), PERSONAL] = normal(
-        0.125, 0.015, 0.09, 0.17
-    )
-    """Amplitude of the hip's speed within each step, relative to the mean speed."""
     speed_variation: Annotated[By[Ratio], People("walking", 0, 0.06), UNSTEADY] = uniform(0.0, 0.06)
     """Standard deviation of the speed over time, relative to the speed; of stride times it is half
     as much, of half the step width a third, in metres."""
@@ -467,16 +463,12 @@ class MotionConfig(Section):
     """Trunk backwards in the seat."""
     hands_on_lap: Annotated[By[Ratio], People(SEATS, 0, 1)] = 1.0
     """0 is beside the seat, 1 on the lap."""
-    recline_from: Annotated[By[Ratio], People("sitting_down", 0, 1)] = 0.7
-    """Share of the duration from which on the trunk leans back."""
     joint_lag: Annotated[
         By[Ratio], People("grabbing sitting_down standing_up", 0, 0.6), UNSTEADY
     ] = 0.0
     """Share of the movement by which some joints lead and others lag, in each recording others."""
     step_m: Annotated[By[Ratio], People("S4 S5 S6", 0, 0.5), UNSTEADY] = uniform(0.0, 0.5)
     """Steps back before sitting down (S5), ahead after standing up (S6), around picking up (S4)."""
-    look_deg: Annotated[By[Angle], People("S5", -60, 60), UNSTEADY] = uniform(-40.0, 40.0)
-    """Turn of the trunk to look behind."""
     settle_size: Annotated[By[Ratio], People("S4 S5 S6", 0, 3), UNSTEADY] = uniform(0.0, 3.0)
     """Size of the fidgets around the end."""
     heels_deg: Annotated[By[Angle], People("falling", 0, 90), UNSTEADY] = 0.0

@@ -213,8 +213,7 @@ def _repertoire(person: Person, duration: float | None, place: int = 0) -> Reper
     paces, sizes = _repetitions(person, steps, place)
     bend = motion.bend_deg
     lags = _lags(person, place)
-    against = motion.recline_from, SitDown.recline[1]
-    sitting = SitDown(seat=seat, rise=rise, recline=against, lags=lags[0])
+    sitting = SitDown(seat=seat, rise=rise, lags=lags[0])
     moving = 2.5 if duration is None else duration
     return Repertoire(
         gait=_gait(person, place),
@@ -325,7 +324,6 @@ def _gait(person: Person, place: int) -> Gait:
         arm_swing=motion.arm_swing,
         trunk_pitch=radians(motion.trunk_pitch_deg),
         half_width=motion.step_width / 2,
-        surge=motion.speed_ripple,
         start=motion.speed_up,
         ragged=_waves(motion, varies, RAGGED_HZ, 0.7),
         jitter=_some(np.clip(jitter, -0.03, 0.03)),
@@ -402,14 +400,11 @@ def _fidgets(person: Person) -> Iterable[Fidget]:
 
 
 def _settling(person: Person, movements: tuple[Movement, ...]) -> Iterable[Fidget]:
-    """Small movements around the end of S4 to S6, and of a look behind before sitting down."""
+    """Small movements around the end of S4 to S6."""
     motion, slug = person.motion, person.activity.slug
     if slug not in STEPS:
         return
     begin = _begin(person)
-    if slug == "sitting_down" and (look := radians(motion.look_deg)):
-        yield Fidget("yaw", look, begin - 0.3, 0.7)
-        yield Fidget("yaw", 0.0, begin + 0.7, 0.9)
     if size := motion.settle_size:
         rng = person.stream("motion.settle_size/fidgets")
         count = next(n for n, one in enumerate(movements, 1) if not isinstance(one, StepTo))

@@ -96,7 +96,7 @@ class SitDown:
     seat: Seat = field(default_factory=Seat)
     rise: Rise = field(default_factory=Rise)
     # the trunk leans back from that share of the duration on, for so long in s
-    recline: tuple[float, float] = (0.7, 1.0)
+    recline: tuple[float, float] = (0.45, 1.0)
     lags: Lags = field(default_factory=Lags)  # which joints lead and which lag
 
     def part(self, person: Physique, begin: float, horizon: float = 0.0) -> Planted:

@@ -75,9 +75,9 @@ class DirectEcho:
         return Look.of_all("slow_time", RangeSum(self.waveform))
 
     def rows(self) -> tuple[Complex, Accuracy]:
-        """`slow_time` as `look` has it [1, M]."""
+        """`slow_time` as `look` has it [K, M]."""
         y, accuracy = self.slow_time()
-        return y[None], accuracy
+        return np.atleast_2d(y), accuracy
 
     def slow_time(self) -> tuple[Complex, Accuracy]:
         """y[m] [M] before the canceller, less what that removes exactly; and its accuracy.

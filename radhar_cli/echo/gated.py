@@ -21,7 +21,7 @@ import scipy.fft
 from radhar_cli.arrays import Complex, Float, Index
 from radhar_cli.echo.accuracy import Settings, probed_pulses, relative_db
 from radhar_cli.echo.beat import start_phase
-from radhar_cli.echo.direct import SINGLE_DEGREE, Accuracy, DirectEcho
+from radhar_cli.echo.direct import SINGLE_DEGREE, DirectEcho
 from radhar_cli.echo.exact import beat_at
 from radhar_cli.echo.interpolation import (
     AFTER,
@@ -83,16 +83,6 @@ class GatedEcho(DirectEcho):
         )
         bins = RangeBins(replace(self.waveform, centred=True), self.bins)
         return Look.of_all("range_signals", bins, spans=spans)
-
-    def rows(self) -> tuple[Complex, Accuracy]:
-        """y_k[m] [K, M] before the canceller, less what that removes exactly; and its accuracy.
-
-        The error is that of all bins that count, together.
-
-        Raises:
-            AccuracyError: the tolerance is below what float64 leaves of these bins.
-        """
-        return self.slow_time()
 
     def _single_will_do(self, motion: Motion) -> bool:
         """At every pulse, too: envelopes cost more than the paths."""
@@ -169,7 +159,7 @@ class GatedEcho(DirectEcho):
         return start_phase(delay, w, in_middle), envelope, coefficients
 
     def _error(self, y: Complex, exact: Callable[[Float], Paths], unit: float) -> float:
-        """Relative L2 error (dB) of the bins that count after the canceller; see `measured_db`."""
+        """Relative L2 error (dB) of all bins that count, together, after the canceller."""
         w = self.waveform
         shown = self.canceller if isinstance(self.canceller, Fir) else NO_CANCELLER
         low, high = self._needed()

@@ -94,9 +94,9 @@ class Stft:
         """sum |X|^2 over channels and rows, or (sum |X|)^2 [some frames, N], rising frequency."""
         for block in self.blocks:
             total: Float | None = None
+            each = self._shown(block)
             for channel in self.signal.x:
-                for row, x in enumerate(channel):
-                    shown = self._shown(row, block)
+                for x, shown in zip(channel, each, strict=True):
                     some = np.flatnonzero(shown)
                     if not some.size:
                         continue
@@ -118,9 +118,11 @@ class Stft:
                 total *= total
             yield np.fft.fftshift(total, axes=1)
 
-    def _shown(self, row: int, block: slice) -> Bool:
+    def _shown(self, block: slice) -> Bool:
+        """Which rows [rows, some frames] each frame shows."""
+        rows = np.arange(self.signal.x.shape[1])[:, None]
         if self.gate is None:
-            return np.ones(block.stop - block.start, bool)
+            return np.ones((rows.size, block.stop - block.start), bool)
         first = np.broadcast_to(self.gate.first - self.signal.first, self.starts.size)[block]
-        shown: Bool = (first <= row) & (row < first + self.gate.count)
+        shown: Bool = (first <= rows) & (rows < first + self.gate.count)
         return shown

@@ -30,7 +30,7 @@ from radhar_cli.errors import MachineError
 
 TERMS = 4  # coefficients of a cubic
 LANES = 16  # paths per SIMD batch; a remainder would be computed one by one
-MIN_TERMS = 2**20  # terms of a sum; with fewer, numba takes longer to load than some 200 sums save
+MIN_TERMS = 2**19  # terms of a sum; with fewer, numba takes longer to load than some 300 sums save
 
 
 @cache

@@ -18,7 +18,7 @@ from radhar_cli.motion.protocol import Motion
 from radhar_cli.motion.segments import Placed, Segment, cross, place, soft_unit
 from radhar_cli.pipeline.motion_paths import OfMotion
 from radhar_cli.radar.ellipsoid import View, cross_section, shadow, square_height
-from radhar_cli.radar.propagation import Antennas, amplitude
+from radhar_cli.radar.propagation import Antennas, amplitude, leg
 from radhar_cli.radar.transmission import pass_wall
 from radhar_cli.radar.wall import Wall
 from radhar_cli.radar.waveform import SPEED_OF_LIGHT
@@ -107,7 +107,7 @@ def point_counts(
     placed = body.at(np.concatenate([t, t + RATE_STEP_S]))
     apart = np.zeros((len(body.segments), count))
     for antenna in (antennas.tx, antennas.rx):
-        start, end = (_distance(p, antenna) for p in (placed.start, placed.end))
+        start, end = (leg(p, antenna) for p in (placed.start, placed.end))
         longer = end - start
         apart += 0.5 * (longer[:, count:] - longer[:, :count]) / RATE_STEP_S
     cells = 2 * np.abs(apart).max(axis=1) * window / wavelength
@@ -287,8 +287,3 @@ def _dot(a: Float, b: Float) -> Float:
     product += a[1] * b[1]
     product += a[2] * b[2]
     return product
-
-
-def _distance(p: Float, antenna: tuple[float, float, float]) -> Float:
-    way = p - np.array(antenna)[:, None, None]
-    return np.sqrt(_dot(way, way))

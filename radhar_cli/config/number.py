@@ -172,12 +172,7 @@ def vary(middle: float, fraction: float) -> Vary:
     return Vary(vary=(middle, fraction))
 
 
-FORMS: dict[str, type[BaseModel]] = {
-    "uniform": Uniform,
-    "normal": Normal,
-    "choice": Choice,
-    "vary": Vary,
-}
+FORMS = {kind.__name__.lower(): kind for kind in (Uniform, Normal, Choice, Vary)}
 _FIXED = TypeAdapter(Real).validator
 
 
@@ -194,7 +189,8 @@ def _number(value: Any) -> Any:
             "should be a number or one of {uniform: [low, high]}, {normal: [mean, sd]}, "
             "{choice: [a, b, ...]}, {vary: [nominal, fraction]}",
         )
-    return FORMS[forms[0]].model_validate(value)
+    kind: type[BaseModel] = FORMS[forms[0]]
+    return kind.model_validate(value)
 
 
 class _Plainly:

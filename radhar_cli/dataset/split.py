@@ -22,7 +22,7 @@ def split_rows(config: Config) -> Levels:
     rows = Rows.of(config)
     split = config.split
     if split.subjects is not None:
-        by_person = split_persons(config)
+        by_person = _cut(split, split.subjects, stream(config.seed, SPLIT, name="subjects"))
         if config.recorded is not None:
             numbers: Levels = by_person[np.array(persons(config), dtype=int)]
             return numbers
@@ -35,13 +35,6 @@ def split_rows(config: Config) -> Levels:
             for activity, count in zip(rows.activities, rows.counts, strict=True)
         ]
     )
-
-
-def split_persons(config: Config) -> Levels:
-    """Split number of every named person [subjects]."""
-    assert config.split.subjects is not None
-    rng = stream(config.seed, SPLIT, name="subjects")
-    return _cut(config.split, config.split.subjects, rng)
 
 
 def split_warnings(config: Config, split: Levels) -> list[str]:

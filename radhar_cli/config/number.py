@@ -11,10 +11,8 @@ from pydantic import (
     AfterValidator,
     BaseModel,
     ConfigDict,
-    Discriminator,
     Field,
     GetCoreSchemaHandler,
-    Tag,
     TypeAdapter,
     model_validator,
 )
@@ -174,48 +172,35 @@ def vary(middle: float, fraction: float) -> Vary:
     return Vary(vary=(middle, fraction))
 
 
-FORMS = ("uniform", "normal", "choice", "vary")
+FORMS = {kind.__name__.lower(): kind for kind in (Uniform, Normal, Choice, Vary)}
+_FIXED = TypeAdapter(Real).validator
 
 
-def _form(value: Any) -> str | None:
-    if isinstance(value, (Uniform, Normal, Choice, Vary)):
-        return type(value).__name__.lower()
-    if isinstance(value, dict):
-        named = [form for form in FORMS if form in value]
-        return named[0] if len(named) == 1 else None
+def _number(value: Any) -> Any:
+    """A fixed number, or a distribution of the form that a mapping names."""
+    if isinstance(value, Distribution):
+        return value
     if isinstance(value, (int, float)) and not isinstance(value, bool):
-        return "number"
-    return None
-
-
-_Number: TypeAlias = Annotated[
-    Annotated[Real, Tag("number")]
-    | Annotated[Uniform, Tag("uniform")]
-    | Annotated[Normal, Tag("normal")]
-    | Annotated[Choice, Tag("choice")]
-    | Annotated[Vary, Tag("vary")],
-    Discriminator(
-        _form,
-        custom_error_type="number",
-        custom_error_message=(
+        return _FIXED.validate_python(value)
+    forms = [form for form in FORMS if form in value] if isinstance(value, dict) else []
+    if len(forms) != 1:
+        raise PydanticCustomError(
+            "number",
             "should be a number or one of {uniform: [low, high]}, {normal: [mean, sd]}, "
-            "{choice: [a, b, ...]}, {vary: [nominal, fraction]}"
-        ),
-    ),
-]
+            "{choice: [a, b, ...]}, {vary: [nominal, fraction]}",
+        )
+    kind: type[BaseModel] = FORMS[forms[0]]
+    return kind.model_validate(value)
 
 
-_VALIDATE = TypeAdapter(_Number).validator.validate_python
+class _Plainly:
+    """Annotation of a number; for a union Pydantic would make all of it again for every key."""
+
+    def __get_pydantic_core_schema__(self, *_: object) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(_number)
 
 
-class _Once:
-    def __get_pydantic_core_schema__(
-        self, source: object, handler: GetCoreSchemaHandler
-    ) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(_VALIDATE)
-
-
-Number: TypeAlias = Annotated[float | Uniform | Normal | Choice | Vary, _Once()]
+Number: TypeAlias = Annotated[float | Uniform | Normal | Choice | Vary, _Plainly()]
 
 
 def support(number: Number | None) -> tuple[float, float]:

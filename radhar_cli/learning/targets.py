@@ -23,22 +23,18 @@ LOSSES = {
 def loss_and_right(
     target: Target, outputs: Tensor, wanted: Tensor, smoothing: float
 ) -> tuple[Tensor, float]:
-    """Sums over a batch of the loss of a target, and of what is right."""
+    """Sums over a batch of the loss of a target, and of what is right.
+
+    That of classes is the label-smoothed cross-entropy: the target of class k is
+    y_k (1 - zeta) + zeta/K (paper, equation of label smoothing).
+    """
     match target:
         case "skeleton":
             return skeleton_loss(outputs, wanted)
         case "labels":
             return labels_loss(outputs, wanted)
-    return class_loss(outputs, wanted, smoothing)
-
-
-def class_loss(logits: Tensor, label: Tensor, smoothing: float) -> tuple[Tensor, float]:
-    """Sum of the label-smoothed cross-entropy over a batch, and number of right classes.
-
-    The target of class k is y_k (1 - zeta) + zeta/K (paper, equation of label smoothing).
-    """
-    loss = cross_entropy(logits, label, label_smoothing=smoothing, reduction="sum")
-    return loss, int((logits.argmax(1) == label).sum())
+    loss = cross_entropy(outputs, wanted, label_smoothing=smoothing, reduction="sum")
+    return loss, int((outputs.argmax(1) == wanted).sum())
 
 
 def labels_loss(logits: Tensor, shown: Tensor) -> tuple[Tensor, float]:

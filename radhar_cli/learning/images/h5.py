@@ -90,16 +90,9 @@ def _labelled(
         pixels=pixels,
         snr_db=float(snr_db) if isinstance(snr_db, (int, float)) else None,
         persons=_persons(data),
-        everybody=_everybody(data),
-    )
-
-
-def _everybody(data: Dataset) -> tuple[tuple[str, ...], ...] | None:
-    if data.person_label is None:
-        return None
-    return tuple(
-        tuple(data.class_slugs[label] for label in labels if label >= 0)
-        for labels in data.person_label
+        everybody=None
+        if data.person_label is None
+        else tuple(tuple(data.class_slugs[n] for n in one if n >= 0) for one in data.person_label),
     )
 
 

@@ -60,7 +60,9 @@ SLUGS = tuple(dict.fromkeys(CLASSES.values()))
 LONG = "walking"  # its maps last twice as long as those of the others
 SIDE, BAND_HZ, SHOWN_HZ, LINE_HZ, SHOWN_S = 32, 500.0, 160.0, 24.0, 5
 MEDIAN, BLUR = (5, 5), 3  # cells of a mask, rows and columns of 39 ms; pixels of an image
-COMPRESSED, FINE = 0.65, 8  # exponent of the Doppler axis; samples of it a pixel
+Axis = tuple[float, float]  # of the images: Doppler of the middle, Hz; exponent
+COMPRESSED, LINEAR, FINE = (LINE_HZ, 0.65), (0.0, 1.0), 8  # FINE: samples a pixel
+TREES = {"images": COMPRESSED, "linear": LINEAR}  # what networks see as they are, and adapted
 TOWARDS = (  # walks that begin towards the radar, one in five
     "motion.angle_deg={uniform: [165, 195]}",
     "motion.range_m={uniform: [7.4, 8.2]}",
@@ -85,26 +87,28 @@ MAX_SIDE = 2048  # px of a mask
 CONFUSED, BESIDE = 6, 3  # pairs of classes and images of each that are drawn
 
 
-def network_image(mask: Bool, slug: str) -> Levels:
+def network_image(mask: Bool, slug: str, axis: Axis = COMPRESSED) -> Levels:
     """A mask [H, W] as the network sees it [SIDE, SIDE]: the outline of what moves, blurred.
 
     Single cells and lines of interference go by a median, what is not connected with the line at
     zero goes too, holes are filled. Then the first 5 s within SHOWN_HZ, without what lies within
     LINE_HZ: how thick the line at zero is depends on the room and on SNR more than on who moves.
-    A pixel lies at ((|f| - LINE_HZ) / (SHOWN_HZ - LINE_HZ))^COMPRESSED of the way out, as who sits
-    down or bends is hardly faster than LINE_HZ. Without the first columns, in which filter and STFT
-    start. Simulated and measured masks go the same way.
+    Doppler f is at ((|f| - middle) / (SHOWN_HZ - middle))^exponent of the way out: who sits down or
+    bends is hardly faster than LINE_HZ, and gets more pixels so. Without the first columns, in
+    which filter and STFT start. Simulated and measured masks go the same way.
     """
-    height, width = mask.shape
+    (middle, exponent), (height, width) = axis, mask.shape
     centre = height // 2
     body = mask[:, : width // 2] if slug == LONG else mask[:, ::2]  # columns as far apart in each
     body = ndimage.median_filter(body, size=MEDIAN)
     body[centre - 3 : centre + 3] = True
     parts, _ = ndimage.label(body)
     body = ndimage.binary_fill_holes(parts == parts[centre, 0])
+    line = round(centre * LINE_HZ / BAND_HZ)
+    body[centre - line : centre + line] = False
     body[:, : body.shape[1] // SIDE] = False
     way_out = (np.arange(FINE * SIDE // 2) + 0.5) / (FINE * SIDE // 2)
-    hz = LINE_HZ + (SHOWN_HZ - LINE_HZ) * way_out ** (1 / COMPRESSED)
+    hz = middle + (SHOWN_HZ - middle) * way_out ** (1 / exponent)
     above, below = (centre + sign * hz * centre / BAND_HZ for sign in (-1, 1))
     shown = body[np.concatenate([above[::-1], below]).astype(int)]
     levels = Image.fromarray(shown.astype(np.uint8) * 255)
@@ -156,7 +160,7 @@ def radhar(*arguments: object) -> None:
 
 
 def simulated(out: Path, per_class: int, jobs: int, more: Sequence[str] = ()) -> Path:
-    """A tree of simulated images for the network, in `out`; most falls from standing."""
+    """Trees of simulated images for the networks, in `out`; most falls from standing."""
     settings = json.dumps([per_class, more, hashlib.sha256(SIMULATED.read_bytes()).hexdigest()])
     if (out / "done").exists():
         if (out / "done").read_text() != settings:
@@ -182,8 +186,9 @@ def simulated(out: Path, per_class: int, jobs: int, more: Sequence[str] = ()) ->
             for row, label in enumerate(data.label):
                 slug = CLASSES[data.class_slugs[label]]
                 part = "val" if split[row] else "train"
-                image = network_image(masks[row] > 0, slug)
-                write_image(image, out / "images" / part / slug / f"{name}_{row:05d}.png")
+                for tree, axis in TREES.items():
+                    image = network_image(masks[row] > 0, slug, axis)
+                    write_image(image, out / tree / part / slug / f"{name}_{row:05d}.png")
     (out / "done").write_text(settings)
     return out / "images"
 
@@ -205,11 +210,13 @@ class Measured:
     folder: Path
 
     @classmethod
-    def written(cls, masks: Bool, slugs: Sequence[str], folder: Path) -> "Measured":
+    def written(
+        cls, masks: Bool, slugs: Sequence[str], folder: Path, axis: Axis = COMPRESSED
+    ) -> "Measured":
         """Write them, in place of others."""
         shutil.rmtree(folder, ignore_errors=True)
         for row, (mask, slug) in enumerate(zip(masks, slugs, strict=True)):
-            write_image(network_image(mask, slug), folder / slug / f"{row:05d}.png")
+            write_image(network_image(mask, slug, axis), folder / slug / f"{row:05d}.png")
         return cls(folder)
 
     def predicted(self, run: Path) -> "Predicted":
@@ -291,7 +298,8 @@ def main() -> None:
         parser.error(f"--seeds is {given.seeds}; should be at least 1")
     seeds = range(1, 2 if given.quick else 1 + given.seeds)
     runs = [trained(images, out / f"runs/seed_{seed}", seed) for seed in seeds]
-    to_adapt = [trained(images, out / f"runs/bn_{seed}", seed, (BATCH_NORM,)) for seed in seeds]
+    linear = images.with_name("linear")
+    to_adapt = [trained(linear, out / f"runs/bn_{seed}", seed, (BATCH_NORM,)) for seed in seeds]
     for run in (*runs, *to_adapt):
         digest = hashlib.sha256((run / "best.safetensors").read_bytes()).hexdigest()
         print(f"{run.name}: best.safetensors has SHA-256 {digest}", flush=True)
@@ -302,11 +310,16 @@ def main() -> None:
     if given.half:
         rows = half_of(slugs, given.half)
         masks, slugs = masks[rows], [slugs[row] for row in rows]
-    measured = Measured.written(masks, slugs, out / "measured")
+    measured, unlabelled = (
+        Measured.written(masks, slugs, out / "measured" / tree, axis)
+        for tree, axis in TREES.items()
+    )
     if given.pieces:
         ablation(measured, images, out / "instead", given)
-        curve(measured, images, to_adapt[0], out / "shots")
-    report(measured, images, (runs, to_adapt), out, given.quick)
+        curve(unlabelled, linear, to_adapt[0], out / "shots")
+    fitted = [adapted(run, unlabelled, linear, out / "adapted" / run.name) for run in to_adapt]
+    results = {"as it is": (measured, images, runs), "adapted": (unlabelled, linear, fitted)}
+    report(results, out, given.quick)
 
 
 def ablation(measured: Measured, images: Path, out: Path, given: argparse.Namespace) -> None:
@@ -370,7 +383,7 @@ def mistakes_png(found: Predicted, simulated: ImageSet) -> bytes | None:
             row += [_picture(of_class[number], f"simulated {slug}") for number in nearest]
         rows[f"{names[true]}\n{count} as\n{names[taken]}"] = row
     title = "Measured images that are taken for another class, and the nearest simulated ones"
-    axis = f"Doppler ({LINE_HZ:g} Hz at 0, {SHOWN_HZ:g} Hz at 1; exponent {COMPRESSED})"
+    axis = f"Doppler ({SHOWN_HZ:g} Hz at 1)"
     return pictures_png(rows, title, "time (s)", axis) if rows else None
 
 
@@ -383,15 +396,11 @@ def _picture(levels: Levels, words: str) -> Picture:
     return Picture(levels, (0, SHOWN_S, -1, 1), words)
 
 
-def report(
-    measured: Measured, images: Path, both: tuple[list[Path], list[Path]], out: Path, quick: bool
-) -> None:
+def report(results: dict[str, tuple[Measured, Path, list[Path]]], out: Path, quick: bool) -> None:
     """Print what runs make of measured maps as they are, and others, with batch norm, adapted."""
-    runs, to_adapt = both
-    fitted = [adapted(run, measured, images, out / "adapted" / run.name) for run in to_adapt]
-    result = {"as it is": runs, "adapted": fitted}
-    correct = {kind: [measured.predicted(run) for run in some] for kind, some in result.items()}
-    for kind, some in correct.items():
+    correct = {}
+    for kind, (measured, images, runs) in results.items():
+        correct[kind] = some = [measured.predicted(run) for run in runs]
         print(f"\n{runs[0].name}, {kind}; rows are true classes\n{some[0].confusion}")
         if drawn := mistakes_png(some[0], open_for(load_best(runs[0])[0], images, None)):
             figure = out / f"mistakes_{kind.replace(' ', '_')}.png"

@@ -1,11 +1,10 @@
 """Fit a trained network to images of another radar whose labels nobody knows.
 
-All layers but the last learn from the images, changed as in training: to be sure of each, and of
-every class equally often (Liang, Hu and Feng, Do we really need to access the source data?, ICML
-2020). Labelled images of the first source, shown at the same time, keep the classes what they were.
-Where a network has batch norm, it takes mean and variance from the new images (Li et al., Adaptive
-batch normalization for practical domain adaptation, Pattern Recognition 80, 2018), even without
-learning.
+All layers but the last learn from the images: to be sure of each, and of every class equally often
+(Liang, Hu and Feng, Do we really need to access the source data?, ICML 2020). Labelled images of
+the first source, shown at the same time, keep the classes what they were. Where a network has
+batch norm, it takes mean and variance from the new images (Li et al., Adaptive batch normalization
+for practical domain adaptation, Pattern Recognition 80, 2018), even without learning.
 """
 
 from collections.abc import Iterator, Sequence
@@ -24,7 +23,7 @@ from radhar_cli.dataset.folder import folder_lock
 from radhar_cli.errors import ConfigError
 from radhar_cli.learning import run_folder
 from radhar_cli.learning.augmentation import Augmentation
-from radhar_cli.learning.batches import AS_STORED, Reader, pieces
+from radhar_cli.learning.batches import Reader, pieces
 from radhar_cli.learning.evaluation import open_for, rows_of, training_images
 from radhar_cli.learning.images.image_set import ImageSet, labels_for
 from radhar_cli.learning.images.joined import joined, sampling_weights
@@ -32,7 +31,6 @@ from radhar_cli.learning.images.scan import content_hash
 from radhar_cli.learning.machine import repeatable
 from radhar_cli.learning.run_files import TRAINED_ON
 from radhar_cli.learning.run_folder import MAX_TABLE, RunMetadata, load_best
-from radhar_cli.learning.settings import AugmentConfig
 from radhar_cli.learning.starting_point import is_of_last_layer
 from radhar_cli.progress import Messages
 from radhar_cli.randomness import TRAINING, stream
@@ -54,12 +52,13 @@ class Mixed:
         self, metadata: RunMetadata, epoch: int, count: int
     ) -> Iterator[tuple[Tensor, Tensor]]:
         """`count` batches (uint8 [MIXED, 3, H, W], labels [MIXED]), changed as in training."""
-        rows = self.images.rows("train")
+        config, rows = metadata.settings, self.images.rows("train")
         weights = sampling_weights(self.images, rows, self.weights, balanced=False)
-        rng = stream(metadata.settings.seed, TRAINING, epoch, name="adaptation mixed")
+        rng = stream(config.seed, TRAINING, epoch, name="adaptation mixed")
         drawn = rng.choice(rows, (count, MIXED), p=weights / weights.sum())
         labels = labels_for(self.images, metadata.classes)
-        yield from Reader(self.images.pixels, labels, _changes(metadata))(list(drawn), epoch)
+        change = Augmentation(config.augment, config.seed) if config.input == "gray" else None
+        yield from Reader(self.images.pixels, labels, change)(list(drawn), epoch)
 
 
 def adapt(
@@ -195,7 +194,7 @@ class _Learner:
                 layer.train()
             batches = self._batches(epoch)
             labelled = mixed.batches(metadata, epoch, len(batches)) if mixed else None
-            for step, levels in enumerate(self._levels(batches, epoch)):
+            for step, levels in enumerate(self._levels(batches)):
                 done = (epoch - 1 + step / len(batches)) / epochs
                 optimiser.param_groups[0]["lr"] = RATE * (1 + cos(pi * done)) / 2
                 shares = model(levels).softmax(1)
@@ -226,16 +225,10 @@ class _Learner:
         order = self.rows[rng.permutation(self.rows.size)]
         return pieces(order, -(-order.size // max(1, order.size // BATCH)))
 
-    def _levels(self, batches: list[Index], epoch: int = AS_STORED) -> Iterator[Tensor]:
-        """The network's input [B, 3, H, W] of each batch, in an epoch changed as in training."""
-        for levels, _ in Reader(self.images.pixels, None, _changes(self.metadata))(batches, epoch):
+    def _levels(self, batches: list[Index]) -> Iterator[Tensor]:
+        """The network's input [B, 3, H, W] of each batch."""
+        for levels, _ in Reader(self.images.pixels, None)(batches):
             yield self.metadata.normalisation(levels.to(self.device))
-
-
-def _changes(metadata: RunMetadata) -> Augmentation | None:
-    """How training changed images, if it did."""
-    config = metadata.settings
-    return None if config.augment == AugmentConfig() else Augmentation(config.augment, config.seed)
 
 
 def _entropy(shares: Tensor) -> Tensor:

@@ -9,7 +9,6 @@ from torch import nn
 
 from radhar_cli.errors import ConfigError
 from radhar_cli.learning.adaptation import Mixed, adapt
-from radhar_cli.learning.augmentation import Augmentation
 from radhar_cli.learning.evaluation import open_for, predict, training_images
 from radhar_cli.learning.images.joined import joined
 from radhar_cli.learning.run_folder import RunError, load_best
@@ -132,24 +131,6 @@ def test_mixed_images_teach_their_labels(learned, tmp_path):
     assert loss[1] < loss[0] / 2
     assert work[0] is None
     assert work[1] is not None
-
-
-def test_unlabelled_images_are_changed_as_in_training_but_for_statistics(tmp_path, monkeypatch):
-    data = split_tree(tmp_path / "data", size=32)
-    augment = {"noise": 0.1}
-    trained(data, tmp_path / "run", epochs=1, input="gray", model="smallnet_bn", augment=augment)
-    changed = []
-
-    class Watching(Augmentation):
-        def __call__(self, levels, row, epoch):
-            changed.append(epoch)
-            return super().__call__(levels, row, epoch)
-
-    monkeypatch.setattr("radhar_cli.learning.adaptation.Augmentation", Watching)
-    measured = tree(tmp_path / "measured", size=32, seed=5)
-    adapt(tmp_path / "run", measured, tmp_path / "adapted", CPU, epochs=2)
-    count = len(list(measured.rglob("*.png")))
-    assert changed == [1] * count + [2] * count
 
 
 def test_mixed_sets_are_drawn_by_their_weights(learned, tmp_path):

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from radhar_cli.arrays import Complex
 from radhar_cli.capture.chain import pulses_between
 from radhar_cli.capture.recording import Recording
 from radhar_cli.config.schema import FRAME_MAPS, Config
@@ -71,8 +70,3 @@ def _board(recording: Recording, config: Config) -> Board:
                 f"{recording.path}: {key} = {there}: should be {value:.10g}, as radar.cfg has it"
             )
     return board
-
-
-def cube_recording(cube: Complex) -> Complex:
-    """A cube [frame, loop, virtual, sample] as a recording holds it: [virtual, sample, pulse]."""
-    return cube.reshape(-1, *cube.shape[2:]).transpose(1, 2, 0)

@@ -130,13 +130,13 @@ def _say(simulation: "Simulation", written: list[Path]) -> None:
 
 
 def _record(simulation: "Simulation", path: Path) -> Path:
-    from radhar_cli.capture.board_frames import cube_recording
     from radhar_cli.capture.importing import write_simulated
     from radhar_cli.capture.recording import Label
 
     label, board = Label(label=simulation.activity.slug), simulation.board
     if board is not None:
-        beat = cube_recording(simulation.frames["cube"])
+        cube = simulation.frames["cube"]  # [frame, loop, virtual, sample]
+        beat = cube.reshape(-1, *cube.shape[2:]).transpose(1, 2, 0)
         delays = [k * board.slot for k, _ in board.pairs]
         write_simulated(path, beat, simulation.waveform, label, board.pulses, delays)
     else:

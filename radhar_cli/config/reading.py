@@ -63,7 +63,8 @@ def as_config(config: Config | str | Path) -> Config:
     if isinstance(config, (str, Path)):
         return load_config(config)
     if not isinstance(config, Config):
-        raise ConfigError(f"config = {config!r}: should be the path of a YAML file, or a Config")
+        what = _short(repr(config))
+        raise ConfigError(f"config = {what}: should be the path of a YAML file, or a Config")
     return config
 
 

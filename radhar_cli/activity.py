@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from radhar_cli.motion.protocol import Motion
 
 
-class Movement(NamedTuple):
+class MovementInfo(NamedTuple):
     """A movement of people: states it begins and ends in, its usual duration (s).
 
     `like` names another, whose numbers of the config it depends on too.
@@ -41,24 +41,24 @@ EXERCISES = (
 )
 # What sequences are made of (`classes:`).
 MOVEMENTS = {
-    "stationary": Movement("standing", "standing", None),
-    "punching": Movement("standing", "standing", None),
-    "kicking": Movement("standing", "standing", None),
-    "grabbing": Movement("standing", "standing", 2.5),
-    "sitting_down": Movement("standing", "seated", 2.0),
-    "standing_up": Movement("seated", "standing", 1.8),
-    "body_rotating": Movement("standing", "standing", None),
-    "walking": Movement("standing", "standing", None),
-    "falling": Movement("standing", "lying", 1.1),
-    "falling_on_hands": Movement("standing", "lying", 1.1, "falling"),
-    "falling_off_seat": Movement("seated", "lying", 1.0),
-    "falling_on_rising": Movement("seated", "lying", 1.7),
-    "stumbling": Movement("standing", "standing", 1.3),
-    "tripping": Movement("standing", "standing", None, "walking"),
-    "trying_to_get_up": Movement("lying", "lying", 3.0),
-    "getting_up": Movement("lying", "standing", 3.0),
-    "turning_around": Movement("standing", "standing", 1.8),
-    **{name: Movement("standing", "standing", None) for name in EXERCISES},
+    "stationary": MovementInfo("standing", "standing", None),
+    "punching": MovementInfo("standing", "standing", None),
+    "kicking": MovementInfo("standing", "standing", None),
+    "grabbing": MovementInfo("standing", "standing", 2.5),
+    "sitting_down": MovementInfo("standing", "seated", 2.0),
+    "standing_up": MovementInfo("seated", "standing", 1.8),
+    "body_rotating": MovementInfo("standing", "standing", None),
+    "walking": MovementInfo("standing", "standing", None),
+    "falling": MovementInfo("standing", "lying", 1.1),
+    "falling_on_hands": MovementInfo("standing", "lying", 1.1, "falling"),
+    "falling_off_seat": MovementInfo("seated", "lying", 1.0),
+    "falling_on_rising": MovementInfo("seated", "lying", 1.7),
+    "stumbling": MovementInfo("standing", "standing", 1.3),
+    "tripping": MovementInfo("standing", "standing", None, "walking"),
+    "trying_to_get_up": MovementInfo("lying", "lying", 3.0),
+    "getting_up": MovementInfo("lying", "standing", 3.0),
+    "turning_around": MovementInfo("standing", "standing", 1.8),
+    **{name: MovementInfo("standing", "standing", None) for name in EXERCISES},
 }
 
 

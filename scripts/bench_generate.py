@@ -30,7 +30,7 @@ from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.png import colour_table, encode_png
-from radhar_cli.dataset.sample import Sample, synthesise
+from radhar_cli.dataset.sample import Synthesised, synthesise
 from radhar_cli.dataset.shards import encode_shard, write_shard
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.exact import beat_at
@@ -108,7 +108,7 @@ class Sink:
         self.table = colour_table(config.image.colour_map)
         self.values = scene_fields.values(scene(config, 0), scene_fields.fields(config))
 
-    def write(self, samples: list[Sample]) -> None:
+    def write(self, samples: list[Synthesised]) -> None:
         for sample in samples:
             for name, image in sample.images.items():
                 data = encode_png(image.levels, self.table, self.config.output.png_level)
@@ -139,11 +139,11 @@ class Floor:
         look = Look("", RangeBins(w), shown, canceller.taps)
         return signal_of_look(look.fast(beat), look)
 
-    def sample(self, ready: dict[str, Any]) -> Sample:
+    def sample(self, ready: dict[str, Any]) -> Synthesised:
         """The image alone, as a sample."""
         self.plan = self.plan or plan(self.table, [f"image:{self.name}"], ready)
         image = run(self.plan, ready)[f"image:{self.name}"]
-        return Sample({self.name: image}, np.nan, False, {})
+        return Synthesised({self.name: image}, np.nan, False, {})
 
 
 def rows(rounds: int) -> dict[str, Any]:

@@ -8,7 +8,7 @@ import reference as ref
 from radhar_cli.activity import activity_named
 from radhar_cli.config import Config
 from radhar_cli.pipeline.physics import motion_of
-from radhar_cli.pipeline.run import Recording
+from radhar_cli.pipeline.run import Results
 from radhar_cli.pipeline.run import record as record_scene
 from radhar_cli.scene import nominal_scene, scene_numbers
 
@@ -38,7 +38,7 @@ def config_of(engine: str = "cube", radar: dict[str, Any] | None = None, **more:
     return Config.model_validate(document)
 
 
-def record(config: Config, *products: str, activity: str = "walking") -> Recording:
+def record(config: Config, *products: str, activity: str = "walking") -> Results:
     """Make some products of the nominal scene."""
     return record_scene(nominal_scene(config, activity_named(activity)), products)
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from radhar_cli.dataset import scene_fields, shards
 from radhar_cli.dataset.batch import Batch
-from radhar_cli.dataset.sample import Sample
+from radhar_cli.dataset.sample import Synthesised
 from radhar_cli.pipeline.validity import Flags
 from radhar_cli.processing.power_map import MapImage
 
@@ -20,7 +20,7 @@ def stub_shard(batch: Batch, size: int, made: dict[int, bytes]) -> int:
     count = batch.stop - batch.start
     if count not in made:
         image = MapImage(np.zeros((size, size), np.uint8), 0.0, (0.0, 1.0, -1.0, 1.0))
-        samples = [Sample({"stft": image}, -100.0, False, {})] * count
+        samples = [Synthesised({"stft": image}, -100.0, False, {})] * count
         values = np.zeros((count, len(scene_fields.fields(batch.config))))
         flags = np.full(count, Flags.ALIASING, np.uint8)
         made[count] = shards.encode_shard(batch.config, "0" * 64, 0, samples, values, flags)

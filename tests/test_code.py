@@ -88,6 +88,16 @@ def test_imports_follow_the_layers() -> None:
     assert not back
 
 
+def test_a_class_name_means_one_thing() -> None:
+    found = [
+        node.name
+        for path in files()
+        for node in ast.parse(path.read_text()).body
+        if isinstance(node, ast.ClassDef)
+    ]
+    assert len(found) == len(set(found)), [name for name in set(found) if found.count(name) > 1]
+
+
 def test_the_page_has_the_imports_between_packages() -> None:
     small = PACKAGES[: PACKAGES.index("motion")]
     found: dict[str, set[str]] = {name: set() for name in PACKAGES[len(small) : -1]}

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from radhar_cli.arrays import Float
 from radhar_cli.capture.settings import USUAL_AXES, AxisName, CaptureSettings
 from radhar_cli.capture.source import Parts, Source
-from radhar_cli.dataset.untrusted_hdf5 import Numbers, UntrustedFile
+from radhar_cli.dataset.untrusted_hdf5 import NumberColumn, UntrustedFile
 from radhar_cli.errors import CaptureError, FolderError, did_you_mean
 from radhar_cli.untrusted import regular_size
 
@@ -33,8 +33,8 @@ MATLAB_NUMBERS = {"double", "single", *(f"{u}int{n}" for u in ("", "u") for n in
 _ORDER: tuple[AxisName, ...] = ("transmitter", "receiver", "sample", "frame", "pulse", "iq")
 
 
-class Array:
-    """An array that `load` maps or returns, read in blocks like `Numbers`."""
+class StoredArray:
+    """An array that `load` maps or returns, read in blocks like `NumberColumn`."""
 
     def __init__(self, where: str, load: Callable[[], NDArray[Any]]) -> None:
         with refusing(where):
@@ -85,11 +85,11 @@ def open_arrays(path: Path, settings: CaptureSettings, scratch: Path) -> Source:
     return as_source(path, arrays[0], settings, times, of_matlab)
 
 
-def _npy(path: Path, where: str) -> Array | Numbers:
-    return Array(where, partial(np.load, path, mmap_mode="r", allow_pickle=False))
+def _npy(path: Path, where: str) -> StoredArray | NumberColumn:
+    return StoredArray(where, partial(np.load, path, mmap_mode="r", allow_pickle=False))
 
 
-def _npz(path: Path, settings: CaptureSettings, scratch: Path) -> list[Array | Numbers]:
+def _npz(path: Path, settings: CaptureSettings, scratch: Path) -> list[StoredArray | NumberColumn]:
     with refusing(str(path)), zipfile.ZipFile(path) as archive:
         shapes = {n: shape for n, (shape, kind) in check_npz(archive).items() if kind in "iufc"}
         files = {name.removesuffix(".npy"): name for name in archive.namelist()}
@@ -123,14 +123,14 @@ def check_npz(archive: zipfile.ZipFile) -> dict[str, tuple[tuple[int, ...], str]
     return arrays
 
 
-def _hdf5(path: Path, settings: CaptureSettings) -> list[Array | Numbers]:
+def _hdf5(path: Path, settings: CaptureSettings) -> list[StoredArray | NumberColumn]:
     file = UntrustedFile(path)
     asked = [name for name in (settings.dataset, settings.times) if name is not None]
     shapes = {name: tuple(file.shape(name.strip("/"))) for name in [*file.numeric_names(), *asked]}
     return [file.samples(name.strip("/")) for name in _chosen(path, shapes, settings)]
 
 
-def _mat5(path: Path, settings: CaptureSettings) -> list[Array | Numbers]:
+def _mat5(path: Path, settings: CaptureSettings) -> list[StoredArray | NumberColumn]:
     from scipy.io import loadmat, whosmat
 
     with refusing(str(path)):
@@ -139,7 +139,7 @@ def _mat5(path: Path, settings: CaptureSettings) -> list[Array | Numbers]:
         shapes = {name: shape for name, shape, kind in kinds if kind in MATLAB_NUMBERS}
         names = _chosen(path, shapes, settings)
         loaded = loadmat(str(path), appendmat=False, variable_names=names)
-        return [Array(f"{path}: {n}", partial(np.transpose, loaded[n])) for n in names]
+        return [StoredArray(f"{path}: {n}", partial(np.transpose, loaded[n])) for n in names]
 
 
 def _check_mat5(path: Path) -> None:
@@ -187,7 +187,7 @@ def _chosen(path: Path, shapes: dict[str, tuple[int, ...]], settings: CaptureSet
     return [*large, *asked]
 
 
-def _times(array: Array | Numbers) -> Float:
+def _times(array: StoredArray | NumberColumn) -> Float:
     if prod(array.shape) > MAX_TIMES or array.parts != 1:
         raise CaptureError(f"{array.where}: should be times, a real number for every pulse")
     return array.read(tuple(slice(0, n) for n in array.shape)).astype(float).ravel()
@@ -195,7 +195,7 @@ def _times(array: Array | Numbers) -> Float:
 
 def as_source(
     path: Path,
-    array: Array | Numbers,
+    array: StoredArray | NumberColumn,
     settings: CaptureSettings,
     times: Float | None = None,
     of_matlab: bool = False,
@@ -265,7 +265,9 @@ def _by_frame(low: int, high: int, per_frame: int) -> Iterator[tuple[slice, slic
         low += whole * per_frame or stop - at
 
 
-def _axes(array: Array | Numbers, s: CaptureSettings, of_matlab: bool) -> tuple[AxisName, ...]:
+def _axes(
+    array: StoredArray | NumberColumn, s: CaptureSettings, of_matlab: bool
+) -> tuple[AxisName, ...]:
     """Names of the axes as they lie in the file."""
     shape = array.shape[::-1] if of_matlab else array.shape
     axes = s.axes or USUAL_AXES.get(len(shape), ())

@@ -47,7 +47,7 @@ FAST_SHARE = 0.02  # least share of a person's power that moves faster
 REACH_M = 1.2  # limbs from the torso
 
 
-class Part(NamedTuple):
+class Estimates(NamedTuple):
     """Estimates from a few seconds of a recording."""
 
     snr_db: float  # moving echo within reach of the torso, per raw sample; NaN if nobody is found
@@ -64,7 +64,7 @@ class Part(NamedTuple):
 class Fit:
     """Estimates from all recordings."""
 
-    parts: list[Part]  # the estimates of each part
+    parts: list[Estimates]  # the estimates of each part
     waveform: Waveform  # common to all recordings
     seconds: float  # median duration of the recordings
 
@@ -146,7 +146,7 @@ def _waveform(paths: Sequence[Path]) -> tuple[Waveform, float]:
     return waveform, float(np.median(seconds))
 
 
-def parts_of(path: Path) -> Iterator[Part]:
+def parts_of(path: Path) -> Iterator[Estimates]:
     """Estimates from parts of about PART_S, at most MAX_PARTS, spread over a recording.
 
     Parts without noise, or without a complete pulse, are left out.
@@ -165,14 +165,14 @@ def parts_of(path: Path) -> Iterator[Part]:
                 yield part
 
 
-def _part(moving: Complex, segments: PulseTimes, w: Waveform) -> Part:
+def _part(moving: Complex, segments: PulseTimes, w: Waveform) -> Estimates:
     """Estimates from range bins [K, M] with static echoes removed."""
     maps, middle, white = _range_doppler(moving, segments, w)
     length = maps.shape[2]
     # |.|^2 of noise is exponential; the lower quartile of a frame contains little of the person,
     # and the median over frames little of those in which a person fills the bin.
     floor = np.median(np.quantile(maps, QUARTILE, axis=2), axis=0)
-    nobody = Part(np.nan, np.empty(0), floor / (-np.log(1 - QUARTILE) * white))
+    nobody = Estimates(np.nan, np.empty(0), floor / (-np.log(1 - QUARTILE) * white))
     track = track_torso(moving[None], segments, w)
     if track is None or not nobody.noise > 0:
         return nobody

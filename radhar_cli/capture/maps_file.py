@@ -12,7 +12,7 @@ from radhar_cli.capture.recording import RecordingInfo
 from radhar_cli.config.identity import resolved
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import UnfinishedError
-from radhar_cli.figures.frames_panel import Frames, draw_frames
+from radhar_cli.figures.frames_panel import BoardFrames, draw_frames
 from radhar_cli.figures.maps_panel import Shown, draw_maps
 from radhar_cli.new_hdf5 import new_hdf5
 from radhar_cli.replacing import replacing
@@ -59,7 +59,7 @@ def draw(maps: Maps, config: Config, title: str, folder: Path) -> list[Path]:
         _draw_maps(maps, config, title, folder / FIGURE)
         drawn.append(folder / FIGURE)
     if maps.board is not None and maps.frames.keys() - {"cube"}:
-        draw_frames(Frames(maps.frames, maps.board, config.image, title), folder / FRAMES)
+        draw_frames(BoardFrames(maps.frames, maps.board, config.image, title), folder / FRAMES)
         drawn.append(folder / FRAMES)
     return drawn
 

@@ -21,7 +21,7 @@ from radhar_cli.config.reading import validated
 from radhar_cli.config.schema import Config, MeasuredConfig, RecordingsConfig
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.dataset.recorded import windows
-from radhar_cli.dataset.sample import Row, Sample
+from radhar_cli.dataset.sample import Row, Synthesised
 from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.pipeline.products import image_of
 from radhar_cli.processing.entropy import entropy_bits
@@ -226,12 +226,12 @@ class WindowFactory:
             columns = replace(one.columns, values=one.columns.values - start)
             images[name] = image_of(config, replace(one, columns=columns))
         sure = nan if made.track is None else float(made.track.confidence.mean())
-        return Row(Sample(images, nan, False, {}), np.array([number, start, sure]))
+        return Row(Synthesised(images, nan, False, {}), np.array([number, start, sure]))
 
-    def _image(self, config: MeasuredConfig, file: str) -> Sample:
+    def _image(self, config: MeasuredConfig, file: str) -> Synthesised:
         recorded = config.recordings
         assert recorded.rows is not None
         levels = read_image(self.folder, file, config.image.size_px, recorded.packed)
         extent = (0.0, recorded.window_s, *recorded.rows)
         image = MapImage(levels, entropy_bits(levels.astype(float)), extent)
-        return Sample({config.maps[0]: image}, nan, False, {})
+        return Synthesised({config.maps[0]: image}, nan, False, {})

@@ -64,7 +64,7 @@ def generate(
         from radhar_cli.dataset.build import build
         from radhar_cli.dataset.estimate import jobs_that_pay
         from radhar_cli.dataset.layout import Rows
-        from radhar_cli.dataset.parts import Part
+        from radhar_cli.dataset.parts import DataSetPart
         from radhar_cli.dataset.workers import cores, on_cluster
         from radhar_cli.worker_process import prepare_process
 
@@ -83,7 +83,7 @@ def generate(
         if dry_run:
             print_plan(made, jobs)
         else:
-            part = None if shard is None else Part.parse(shard)
+            part = None if shard is None else DataSetPart.parse(shard)
             most = min(jobs, len(Rows.of(made)))
             where = nullcontext(jobs) if cluster is None else on_cluster(cluster, most)
             with BarProgress() as progress, where as jobs:

@@ -53,7 +53,7 @@ from radhar_cli.dataset.shards import (
 from radhar_cli.dataset.split import persons, split_rows
 from radhar_cli.dataset.untrusted_hdf5 import (
     DIGESTS,
-    Numbers,
+    NumberColumn,
     UntrustedFile,
     attribute_digests,
     remember,
@@ -229,7 +229,7 @@ class _Ragged:
         self._file, self._name = file, f"products/{name}"
         self._level = config.output.hdf5_level
 
-    def append(self, part: Numbers) -> None:
+    def append(self, part: NumberColumn) -> None:
         """Add the rows of the next samples."""
         values = part[:]
         if self._name not in self._file:

@@ -18,7 +18,7 @@ from radhar_cli.dataset.card import write_card
 from radhar_cli.dataset.folder import clean_up, folder_lock, reserve
 from radhar_cli.dataset.identity import identity, identity_hash
 from radhar_cli.dataset.layout import BUILT, DATASET, WORK, Rows, row_bytes
-from radhar_cli.dataset.parts import Part, refuse_other_cuts
+from radhar_cli.dataset.parts import DataSetPart, refuse_other_cuts
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.png_files import write_missing_pngs
 from radhar_cli.dataset.sample import RowFactory
@@ -73,7 +73,7 @@ def build(
     overwrite: bool = False,
     batch_size: int | None = None,
     factory: RowFactory | None = None,
-    part: Part | None = None,
+    part: DataSetPart | None = None,
 ) -> BuildOutcome:
     """Build `config` into `folder`, or resume it; nothing to do where it is complete.
 
@@ -148,7 +148,7 @@ class Build:
         clean_up(self.folder)
         return BuildOutcome(self.folder, len(self.split), made, pngs, stored)
 
-    def part(self, part: Part, batch_size: int | None) -> BuildOutcome:
+    def part(self, part: DataSetPart, batch_size: int | None) -> BuildOutcome:
         """Make the shards of a part; they stay, for others to put together and write the PNGs."""
         rows, self.png = part.rows(len(self.split)), False
         (self.folder / WORK / BUILT).unlink(missing_ok=True)

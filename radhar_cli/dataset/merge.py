@@ -12,7 +12,7 @@ from radhar_cli.dataset.files import refuse_foreign_work
 from radhar_cli.dataset.folder import folder_lock, reserve, stored_identity
 from radhar_cli.dataset.identity import differences, identity
 from radhar_cli.dataset.layout import PARTS, Rows
-from radhar_cli.dataset.parts import Part, rows_by_part
+from radhar_cli.dataset.parts import DataSetPart, rows_by_part
 from radhar_cli.dataset.reading import stored_config
 from radhar_cli.dataset.shards import Runs, Shard, listed_shards, require_tiling
 from radhar_cli.dataset.untrusted_hdf5 import try_files
@@ -21,7 +21,7 @@ from radhar_cli.progress import Progress
 
 
 class _Place(NamedTuple):
-    part: Part
+    part: DataSetPart
     folder: Path
     identity: dict[str, Any]
 
@@ -67,7 +67,9 @@ def _places(folders: Iterable[Path]) -> list[_Place]:
             refuse_foreign_work(part)
             named = stored_identity(part)
             if named is not None and isinstance(named.get("part"), str):
-                places[part] = _Place(Part.parse(named["part"], f"{part}: part"), part, named)
+                places[part] = _Place(
+                    DataSetPart.parse(named["part"], f"{part}: part"), part, named
+                )
             elif not inner.is_dir():
                 what = "is not a part that `radhar generate --shard` made"
                 raise FolderError(f"{part}: {what if part.is_dir() else 'no such folder'}")

@@ -17,14 +17,14 @@ _TEXT = re.compile(r"([1-9]\d{0,8})/([1-9]\d{0,8})")
 
 
 @dataclass(frozen=True, order=True)
-class Part:
+class DataSetPart:
     """Part `number` of `of`, counted from 1."""
 
     of: int
     number: int
 
     @classmethod
-    def parse(cls, text: str, where: str = "--shard") -> "Part":
+    def parse(cls, text: str, where: str = "--shard") -> "DataSetPart":
         """The part that is written K/N."""
         match = _TEXT.fullmatch(text)
         if match is None or int(match[1]) > int(match[2]):
@@ -43,7 +43,7 @@ class Part:
         return out / PARTS / f"{self.number}-of-{self.of}"
 
 
-def refuse_other_cuts(out: Path, part: Part) -> None:
+def refuse_other_cuts(out: Path, part: DataSetPart) -> None:
     """Refuse a part where there are parts of another N: their rows would overlap."""
     place = out / PARTS
     names = (_NAME.fullmatch(path.name) for path in (place.iterdir() if place.is_dir() else ()))
@@ -55,7 +55,7 @@ def refuse_other_cuts(out: Path, part: Part) -> None:
         )
 
 
-def rows_by_part(runs: Sequence[tuple[int, int]], of: int, count: int) -> list[Part]:
+def rows_by_part(runs: Sequence[tuple[int, int]], of: int, count: int) -> list[DataSetPart]:
     """The parts, of so many, in which runs (first row, past-last row) lie."""
-    parts = [(part, part.rows(count)) for part in (Part(of, n) for n in range(1, of + 1))]
+    parts = [(part, part.rows(count)) for part in (DataSetPart(of, n) for n in range(1, of + 1))]
     return [one for one, rows in parts if any(a < rows.stop and b > rows.start for a, b in runs)]

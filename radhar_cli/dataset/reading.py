@@ -29,7 +29,7 @@ from radhar_cli.dataset.layout import (
     count_of,
     is_incomplete,
 )
-from radhar_cli.dataset.untrusted_hdf5 import Column, Numbers, UntrustedFile
+from radhar_cli.dataset.untrusted_hdf5 import Column, NumberColumn, UntrustedFile
 from radhar_cli.errors import ConfigError, FolderError, did_you_mean
 from radhar_cli.registry import any_name
 from radhar_cli.untrusted import Closing
@@ -204,7 +204,7 @@ class Ragged:
         counts: rows of each sample.
     """
 
-    def __init__(self, samples: Numbers, counts: Index) -> None:
+    def __init__(self, samples: NumberColumn, counts: Index) -> None:
         if (counts < 0).any() or counts.sum() != samples.shape[0]:
             raise FolderError(f"{samples.where}: has not as many rows as its counts say")
         self._samples, self.counts, self._stops = samples, counts, np.cumsum(counts)

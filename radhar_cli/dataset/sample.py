@@ -23,7 +23,7 @@ from radhar_cli.processing.power_map import MapImage
 from radhar_cli.scene import Scene
 
 
-class Sample(NamedTuple):
+class Synthesised(NamedTuple):
     """What is made of a scene."""
 
     images: dict[str, MapImage]  # {map name: image}, in the order of the config
@@ -67,7 +67,7 @@ class Sample(NamedTuple):
 class Row(NamedTuple):
     """A sample that was not simulated."""
 
-    sample: Sample
+    sample: Synthesised
     values: Float  # of `scene_fields.fields` [fields]
 
 
@@ -75,7 +75,7 @@ class Row(NamedTuple):
 RowFactory: TypeAlias = Callable[[MeasuredConfig, int], Row]
 
 
-def synthesise(scene: Scene, plan: Plan) -> Sample:
+def synthesise(scene: Scene, plan: Plan) -> Synthesised:
     """Run the plan of a data set on one scene."""
     recording = run(plan, {"scene": scene})
     images: dict[str, MapImage] = {name: recording[f"image:{name}"] for name in scene.config.maps}
@@ -90,7 +90,7 @@ def synthesise(scene: Scene, plan: Plan) -> Sample:
         error_db = accuracy.error_db
     deepest = scene.config.image.dynamic_range_db
     own = {name: _array(recording[name], name, deepest) for name in scene.config.stored}
-    return Sample(images, error_db, fell_back, labels, slow_time, own, labels_of(scene))
+    return Synthesised(images, error_db, fell_back, labels, slow_time, own, labels_of(scene))
 
 
 def labels_of(scene: Scene) -> dict[str, NDArray[Any]]:

@@ -12,7 +12,7 @@ from radhar_cli.dataset.layout import SPLITS, Rows, column_axis, row_axis
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.errors import FolderError, RadharError
 from radhar_cli.figures import scene_page
-from radhar_cli.figures.scene_page import Body, Entry, Seen
+from radhar_cli.figures.scene_page import Entry, SceneView, ShownBody
 from radhar_cli.figures.sides import bones
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
 from radhar_cli.pipeline.physics import board_of, motion_of
@@ -60,7 +60,7 @@ def _of_sample(data: Dataset, row: int, extents: dict[str, NDArray[Any]]) -> Ent
     config, (activity, index) = data.config, Rows.of(data.config)[row]
     scene, notes = _scene(data, row)
     spans = (extents[name][:2] for name in data.maps if column_axis(name)[1] == "s")
-    seen, maps, cloud = Seen(scene_page.clock(*next(spans, (0.0, 0.0)))), list[Entry](), None
+    seen, maps, cloud = SceneView(scene_page.clock(*next(spans, (0.0, 0.0)))), list[Entry](), None
     if scene is not None:
         seen = scene_page.moving(scene, tuple(map(motion_of, scene.people)))
     board = None
@@ -114,7 +114,7 @@ def _product(data: Dataset, row: int, name: str, shape: tuple[int | None, ...] =
     return values
 
 
-def _frames(data: Dataset, row: int, board: Board, seen: Seen) -> Iterator[Entry]:
+def _frames(data: Dataset, row: int, board: Board, seen: SceneView) -> Iterator[Entry]:
     """Frame maps that are stored, as grey levels."""
     for name in FRAME_MAPS[:3]:
         if name in data.products:
@@ -126,7 +126,7 @@ def _frames(data: Dataset, row: int, board: Board, seen: Seen) -> Iterator[Entry
             yield scene_page.heat(seen, name, grey, look, axes, _times(board, len(grey)))
 
 
-def _stored_joints(data: Dataset, row: int, board: Board, seen: Seen) -> Seen:
+def _stored_joints(data: Dataset, row: int, board: Board, seen: SceneView) -> SceneView:
     """Joints that are stored, in the axes of the radar, where the scene is not drawn again."""
     seen = seen._replace(axes=("ahead (m)", "left (m)", "up of the radar (m)"))
     if "skeleton" not in data.products:
@@ -137,7 +137,7 @@ def _stored_joints(data: Dataset, row: int, board: Board, seen: Seen) -> Seen:
     names = JOINTS if known else [f"joint {n}" for n in range(count)]
     still = np.concatenate([joints, np.zeros((*joints.shape[:3], 1))], axis=3)
     ends = bones(still, PARENTS if known else (None,) * count)
-    bodies = [Body(f"person {n}", names, ends[:, n]) for n in range(ends.shape[1])]
+    bodies = [ShownBody(f"person {n}", names, ends[:, n]) for n in range(ends.shape[1])]
     return seen._replace(time=_times(board, len(joints)), bodies=bodies)
 
 

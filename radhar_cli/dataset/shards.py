@@ -19,7 +19,7 @@ from radhar_cli.config.schema import AnyConfig
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.dataset.layout import WORK, checksum_of, chunked, count_of
 from radhar_cli.dataset.png import deflated
-from radhar_cli.dataset.sample import Sample
+from radhar_cli.dataset.sample import Synthesised
 from radhar_cli.errors import SceneError, UnfinishedError
 
 USER_BLOCK = 512
@@ -93,7 +93,7 @@ def encode_shard(
     config: AnyConfig,
     identity_hash: str,
     start: int,
-    samples: Sequence[Sample],
+    samples: Sequence[Synthesised],
     scene_values: Float,
     flags: Levels,
 ) -> bytes:

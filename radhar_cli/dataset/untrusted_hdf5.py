@@ -211,13 +211,13 @@ class UntrustedFile(Closing):
                 )
         return Column(where, dataset, filters)
 
-    def samples(self, name: str) -> "Numbers":
+    def samples(self, name: str) -> "NumberColumn":
         """Real or complex numbers of any shape, plain or gzip, read in pieces."""
         where = f"{self.path}: /{name}"
         with _refusing_damage(where):
             dataset = self._dataset(name, where, None, None)
             filters = _filters(dataset, where, [], [_DEFLATE], [_SHUFFLE, _DEFLATE])
-            found = Numbers(where, dataset, filters)
+            found = NumberColumn(where, dataset, filters)
             size, chunk = dataset.dtype.itemsize * prod(dataset.shape), dataset.chunks
             if not dataset.shape or size == 0:
                 raise FolderError(f"{where}: has the shape {dataset.shape}; should hold numbers")
@@ -365,7 +365,7 @@ class Column:
             return np.frombuffer(data, self._dataset.dtype).reshape(self.chunk)
 
 
-class Numbers(Column):
+class NumberColumn(Column):
     """Real or complex numbers.
 
     Attributes:

@@ -28,7 +28,7 @@ from radhar_cli.echo.accuracy import (
 from radhar_cli.echo.beat import start_phase
 from radhar_cli.echo.half_band_sum import half_band_table
 from radhar_cli.echo.interpolation import AFTER, BEFORE, NODES, TAPS, lagrange_basis, stencils
-from radhar_cli.echo.knots import MIN_STEP, Knots, Motion, Spacing, only, resolve
+from radhar_cli.echo.knots import MIN_STEP, Knots, PathsAtKnots, Spacing, only, resolve
 from radhar_cli.echo.paths import Paths, PathSource
 from radhar_cli.echo.phase_recurrence import nodes, phasors_between_knots
 from radhar_cli.phasor import unit_phasor
@@ -104,10 +104,10 @@ class DirectEcho:
             motion = self._resolved(chosen.spacing)
 
     @cached_property
-    def _motion(self) -> Motion:
+    def _motion(self) -> PathsAtKnots:
         return self._resolved(self._settings(first_aim(self.tolerance_db)).spacing)
 
-    def _resolved(self, spacing: Spacing) -> Motion:
+    def _resolved(self, spacing: Spacing) -> PathsAtKnots:
         return resolve(self.source, self.waveform, spacing, self.min_step)
 
     def _settings(self, aim_db: float) -> Settings:
@@ -117,11 +117,11 @@ class DirectEcho:
     def _error(self, y: Complex, exact: Callable[[Float], Paths], unit: float) -> float:
         return measured_db(y, exact, self.waveform, self.canceller, unit)
 
-    def _kept(self, motion: Motion) -> Bool:
+    def _kept(self, motion: PathsAtKnots) -> Bool:
         kept: Bool = motion.moving | (not self.canceller.removes_static)
         return kept
 
-    def _single_will_do(self, motion: Motion) -> bool:
+    def _single_will_do(self, motion: PathsAtKnots) -> bool:
         """Whether rounding leaves enough of what the canceller leaves of paths that hardly turn."""
         if motion.step == 1:
             return False  # paths at every pulse cost so much that it would save nothing
@@ -137,7 +137,7 @@ class DirectEcho:
         least = 10 ** (rounding_db / 10) * np.sum(amplitude**2)
         return bool(np.sum(np.abs(left * amplitude) ** 2) > least)
 
-    def _sum(self, chosen: Settings, motion: Motion, unit: float) -> Complex:
+    def _sum(self, chosen: Settings, motion: PathsAtKnots, unit: float) -> Complex:
         y = np.zeros(self.waveform.n_pulses, dtype=complex)
         kept = self._kept(motion)
         if kept.any():

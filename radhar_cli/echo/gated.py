@@ -32,7 +32,7 @@ from radhar_cli.echo.interpolation import (
     lagrange_weights,
     stencils,
 )
-from radhar_cli.echo.knots import Knots, Motion, columns
+from radhar_cli.echo.knots import Knots, PathsAtKnots, columns
 from radhar_cli.echo.paths import Paths
 from radhar_cli.echo.phase_recurrence import phasors_between_knots
 from radhar_cli.phasor import unit_phasor
@@ -84,7 +84,7 @@ class GatedEcho(DirectEcho):
         bins = RangeBins(replace(self.waveform, centred=True), self.bins)
         return Look.of_all("range_signals", bins, spans=spans)
 
-    def _single_will_do(self, motion: Motion) -> bool:
+    def _single_will_do(self, motion: PathsAtKnots) -> bool:
         """At every pulse, too: envelopes cost more than the paths."""
         return motion.step == 1 or super()._single_will_do(motion)
 
@@ -94,7 +94,7 @@ class GatedEcho(DirectEcho):
         every = np.ones(self.waveform.n_pulses, np.intp)
         return self.bins.start * every, self.bins.stop * every
 
-    def _sum(self, chosen: Settings, motion: Motion, unit: float) -> Complex:
+    def _sum(self, chosen: Settings, motion: PathsAtKnots, unit: float) -> Complex:
         kept, w = np.flatnonzero(self._kept(motion)), self.waveform
         y = np.zeros((self.bins.stop - self.bins.start, w.n_pulses), dtype=complex)
         if not kept.size:

@@ -63,7 +63,7 @@ class Spacing(NamedTuple):
     phase_change: float
 
 
-class Motion(NamedTuple):
+class PathsAtKnots(NamedTuple):
     """A recording seen at its knots."""
 
     step: int  # pulses from knot to knot; 1 where nothing is interpolated
@@ -86,7 +86,7 @@ class Motion(NamedTuple):
 
 def resolve(
     source: PathSource, waveform: Waveform, spacing: Spacing, least: int = MIN_STEP
-) -> Motion:
+) -> PathsAtKnots:
     """Place knots that resolve the motion of a source: as far apart as the spacing allows, and
     `least` pulses or at all of them."""
     step = widest_step(waveform, spacing.per_second)
@@ -101,7 +101,7 @@ def resolve(
             if step > 1:
                 excess = max(excess, _excess(knots.paths, waveform, spacing))
         if excess <= 1:
-            return Motion(step, moving, power / waveform.n_pulses, largest, kept)
+            return PathsAtKnots(step, moving, power / waveform.n_pulses, largest, kept)
         step = min(step - 1, int(step / excess))
 
 

@@ -13,7 +13,7 @@ from radhar_cli.arrays import Float
 from radhar_cli.config.schema import ImageConfig
 from radhar_cli.figures.maps_panel import title
 from radhar_cli.figures.page import page, write_figure
-from radhar_cli.figures.sides import Advance, Film, Side, bones, colour_bar
+from radhar_cli.figures.sides import Advance, Film, SideView, bones, colour_bar
 from radhar_cli.processing.frame_maps import FrameMaps
 from radhar_cli.processing.points import Cloud
 from radhar_cli.radar.board import Board
@@ -28,7 +28,7 @@ NAMES = {
 
 
 @dataclass(frozen=True)
-class Frames:
+class BoardFrames:
     """What a page of frames shows, simulated or measured."""
 
     made: Mapping[str, Any]  # {name: FrameMaps}, and `cloud`, `skeletons` where there are some
@@ -39,11 +39,11 @@ class Frames:
     farthest: float | None = None  # range that maps show, m; None is all
 
 
-def of_simulation(simulation: Simulation) -> Frames:
+def of_simulation(simulation: Simulation) -> BoardFrames:
     """The frames of a scene."""
     assert simulation.board is not None
     p = simulation.board.aim.to_radar(simulation.truth.positions.transpose(2, 1, 0))
-    return Frames(
+    return BoardFrames(
         simulation.frames,
         simulation.board,
         simulation.config.image,
@@ -53,7 +53,7 @@ def of_simulation(simulation: Simulation) -> Frames:
     )
 
 
-def draw_frames(shown: Frames, path: Path) -> None:
+def draw_frames(shown: BoardFrames, path: Path) -> None:
     """Write frames.png: maps in dB below the peak of all frames, and the cloud from the radar."""
     maps = {name: one for name, one in shown.made.items() if isinstance(one, FrameMaps)}
     cloud, middles = shown.made.get("cloud"), shown.board.middles
@@ -68,7 +68,7 @@ def draw_frames(shown: Frames, path: Path) -> None:
         row[0].set_ylabel("range (m)", fontsize=7)
         figure.colorbar(drawn, ax=list(row), pad=0.01, label="dB").ax.tick_params(labelsize=6)
     if cloud is not None:
-        sides = [Side(axes, "from the radar", *_limits(shown)) for axes in grid[-1]]
+        sides = [SideView(axes, "from the radar", *_limits(shown)) for axes in grid[-1]]
         for side, axes, frame in zip(sides, grid[-1], chosen, strict=True):
             side.show(*_moment(shown, frame))
             axes.set_title(f"points, {middles[frame]:.2f} s", fontsize=8)
@@ -77,7 +77,7 @@ def draw_frames(shown: Frames, path: Path) -> None:
     write_figure(figure, path, 90)
 
 
-def _draw_map(axes: Axes, maps: FrameMaps, frame: int, shown: Frames) -> AxesImage:
+def _draw_map(axes: Axes, maps: FrameMaps, frame: int, shown: BoardFrames) -> AxesImage:
     with np.errstate(divide="ignore"):
         level = 10 * np.log10(maps.power[frame] / maps.power.max())
     look: dict[str, Any] = {"cmap": shown.image.colour_map, "origin": "lower", "aspect": "auto"}
@@ -92,7 +92,7 @@ def _draw_map(axes: Axes, maps: FrameMaps, frame: int, shown: Frames) -> AxesIma
     return drawn
 
 
-def draw_cloud(shown: Frames, path: Path, advance: Advance) -> None:
+def draw_cloud(shown: BoardFrames, path: Path, advance: Advance) -> None:
     """Write cloud.gif: every frame's points over its skeleton, at true speed."""
     film = Film(shown.title, *_limits(shown))
 
@@ -102,13 +102,13 @@ def draw_cloud(shown: Frames, path: Path, advance: Advance) -> None:
     film.write(path, show, shown.board.frames, round(1000 * shown.board.period), advance)
 
 
-def _joints(shown: Frames) -> Float:
+def _joints(shown: BoardFrames) -> Float:
     """Joints [frame, person, joint, 3]; of captures there are none."""
     skeletons = shown.made.get("skeletons")
     return np.empty((shown.board.frames, 0, 0, 3)) if skeletons is None else skeletons.positions
 
 
-def _moment(shown: Frames, frame: int) -> tuple[Float, Float, Float]:
+def _moment(shown: BoardFrames, frame: int) -> tuple[Float, Float, Float]:
     """Points [n, 3] and speeds [n] of a frame, and its bones [bone, 2, 3]."""
     cloud: Cloud = shown.made["cloud"]
     points = cloud.points[cloud.start[frame] : cloud.start[frame + 1]]
@@ -116,7 +116,7 @@ def _moment(shown: Frames, frame: int) -> tuple[Float, Float, Float]:
     return points[:, :3], points[:, 3], np.concatenate([np.empty((0, 2, 3)), *ends])
 
 
-def _limits(shown: Frames) -> tuple[Float, float]:
+def _limits(shown: BoardFrames) -> tuple[Float, float]:
     """Lowest and highest (ahead, left, up) [3, 2] of skeletons and most points; their speed."""
     points, joints = shown.made["cloud"].points, _joints(shown).reshape(-1, 3)
     seen = joints if len(joints) else points[:, :3]

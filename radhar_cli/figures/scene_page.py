@@ -41,7 +41,7 @@ Entry: TypeAlias = dict[str, Any]  # what JSON holds
 Points: TypeAlias = tuple[Float, Index, Float]  # times and starts of frames, points of all
 
 
-class Body(NamedTuple):
+class ShownBody(NamedTuple):
     """Somebody's name, joints, and bones (x, y, z, approaching) [time, joint, 2, 4]."""
 
     name: str
@@ -49,11 +49,11 @@ class Body(NamedTuple):
     bones: Float
 
 
-class Seen(NamedTuple):
+class SceneView(NamedTuple):
     """What a page shows of a scene besides its maps."""
 
     time: Float  # at which something is shown, s
-    bodies: Sequence[Body] = ()
+    bodies: Sequence[ShownBody] = ()
     axes: Sequence[str] = ("x, range (m)", "y, cross-range (m)", "z, height (m)")
     radar: Any = ((0.0, 0.0, 0.0),)  # places of antennas, m
     curves: Mapping[str, Float] = {}  # true Doppler of joints, the torso's first, Hz
@@ -88,14 +88,14 @@ def of_simulation(simulation: Simulation) -> Entry:
 
 
 def entry(
-    seen: Seen, plots: list[Entry], title: str, notes: list[str], numbers: Mapping[str, float]
+    seen: SceneView, plots: list[Entry], title: str, notes: list[str], numbers: Mapping[str, float]
 ) -> Entry:
     """All that the page shows of a scene."""
     shown = {key: f"{value:.6g}" for key, value in numbers.items()}
     return {"title": title, "notes": notes, "numbers": shown, "time": seen.time, "plots": plots}
 
 
-def moving(scene: Scene, motions: Sequence[Motion]) -> Seen:
+def moving(scene: Scene, motions: Sequence[Motion]) -> SceneView:
     """Everybody's skeleton and true Doppler."""
     made = record(scene, ("antennas", "wall", "waveform"), motions=tuple(motions))
     antennas, wall, w = made["antennas"], made["wall"], made["waveform"]
@@ -106,11 +106,13 @@ def moving(scene: Scene, motions: Sequence[Motion]) -> Seen:
         true = truth(motion, antennas, wall, w, fine)
         joints = np.concatenate([true.positions, -true.radial_velocity[..., None]], axis=2)
         ends = limbs(joints, motion.parents, true.hip_joints)[::FINER]
-        bodies.append(Body(f"{person.activity.label} {person.activity.slug}", motion.names, ends))
+        bodies.append(
+            ShownBody(f"{person.activity.label} {person.activity.slug}", motion.names, ends)
+        )
         who = f"{person.number} " if len(motions) > 1 else ""
         curves |= {who + one: true.doppler[:, n] for n, one in enumerate(motion.names)}
         far = max(far, point_delay(true.positions.T, antennas, wall).max() * SPEED_OF_LIGHT / 2)
-    seen = Seen(time, bodies, radar=(antennas.tx, antennas.rx), curves=curves, prf=w.prf)
+    seen = SceneView(time, bodies, radar=(antennas.tx, antennas.rx), curves=curves, prf=w.prf)
     return seen._replace(hertz=2 * w.f0 / SPEED_OF_LIGHT, farthest=1.3 * far + 0.5)
 
 
@@ -119,7 +121,7 @@ def clock(start: float, end: float) -> Float:
     return np.linspace(start, end, min(int((end - start) * FRAMES_PER_SECOND) + 2, MAX_FRAMES))
 
 
-def space(seen: Seen, cloud: Points | None, board: Board | None) -> Entry:
+def space(seen: SceneView, cloud: Points | None, board: Board | None) -> Entry:
     """Skeletons and points in 3-D, in the axes of the scene where the board's place is known."""
     traces, moves = list[Entry](), list[Entry]()
     around, fastest = [np.array(seen.radar)], 0.5
@@ -165,7 +167,7 @@ def _nearest(times: Float, wanted: Float) -> Index:
 
 
 def heat(
-    seen: Seen,
+    seen: SceneView,
     name: str,
     grey: Levels,
     look: tuple[ImageConfig, str],
@@ -206,7 +208,7 @@ def heat(
     return plot | {"cursor": axes[0].unit == "s"}
 
 
-def _curves(seen: Seen, compensated: bool) -> list[Entry]:
+def _curves(seen: SceneView, compensated: bool) -> list[Entry]:
     """True Doppler of the joints, as the radar folds it; a click at the legend shows it."""
     doppler = np.stack(list(seen.curves.values()), axis=1)
     shown = folded(doppler - doppler[:, :1] * compensated, seen.prf).T / seen.hertz

@@ -36,7 +36,7 @@ def limbs(joints: Float, parents: Parents, hips: Float | None) -> Float:
     return ends
 
 
-class Side:
+class SideView:
     """Points, coloured by their speed, over bones, from one side."""
 
     def __init__(self, axes: Axes, name: str, limits: Float, fastest: float) -> None:
@@ -61,7 +61,7 @@ class Side:
         self.points.set_array(speed)
 
 
-def colour_bar(figure: Figure, side: Side, **where: Any) -> None:
+def colour_bar(figure: Figure, side: SideView, **where: Any) -> None:
     """Say what the colours of points mean."""
     bar = figure.colorbar(side.points, **where)
     bar.set_label("approaching (m/s)", fontsize=7)
@@ -75,7 +75,7 @@ class Film:
         self.figure = Figure(figsize=(13, 4.6), dpi=80)
         self.figure.suptitle(title, fontsize=9)
         self.sides = [
-            Side(
+            SideView(
                 self.figure.add_axes((share * (0.06 + 0.31 * number), 0.14, share * 0.24, 0.7)),
                 *(name, limits, fastest),
             )

@@ -81,7 +81,7 @@ class TorsoPath(OfMotion):
         return Paths(delay, np.ones_like(delay))
 
 
-class Placed(PathSource, Protocol):
+class PlacedPaths(PathSource, Protocol):
     """Paths that say where they end."""
 
     @property
@@ -102,7 +102,7 @@ class Shade(NamedTuple):
 class ShadowedPaths:
     """The paths of one person, weakened where others stand in their way."""
 
-    source: Placed
+    source: PlacedPaths
     shades: tuple[Shade, ...]
     fc: float  # carrier, Hz
 

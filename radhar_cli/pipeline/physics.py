@@ -10,7 +10,7 @@ import numpy as np
 from radhar_cli.arrays import Float
 from radhar_cli.config.number import nominal, support
 from radhar_cli.config.schema import AnyConfig, Config
-from radhar_cli.motion.paper.activities import Gait, Timing
+from radhar_cli.motion.paper.activities import PaperGait, Timing
 from radhar_cli.motion.paper.body import PaperBody
 from radhar_cli.motion.protocol import Motion, Only, remembered
 from radhar_cli.motion.reflectors import TONES, Reflectors
@@ -281,7 +281,7 @@ def _paper_body(person: Person) -> PaperBody:
         weight=subject.weight_kg,
         start=(motion.range_m, motion.cross_range_m),
         angle=radians(motion.angle_deg),
-        gait=Gait(
+        gait=PaperGait(
             frequency=motion.gait_hz,
             thigh=radians(motion.thigh_deg),
             calf=radians(motion.calf_deg),

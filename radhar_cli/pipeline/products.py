@@ -248,7 +248,7 @@ def _receiver(c: Config) -> Iterator[Product]:
     )
 
 
-class Seen(NamedTuple):
+class EchoInputs(NamedTuple):
     """What products of an echo are made with, in the order in which they need it."""
 
     paths: PathSource
@@ -289,7 +289,7 @@ def received(
     return signal if canceller is None else signal.cancelled(canceller, spans)
 
 
-def _exactly(c: Config, seen: Seen, looks: list[Look]) -> list[Signal]:
+def _exactly(c: Config, seen: EchoInputs, looks: list[Look]) -> list[Signal]:
     """Signals after the canceller from raw samples, in one pass; a `Fir` is applied to those."""
     fir = isinstance(seen.canceller, Fir)
     static = fir or not seen.canceller.removes_static
@@ -331,7 +331,7 @@ def _direct(c: Config) -> Iterator[Product]:
         return received(echo[0], made_by.look, receiver, canceller)
 
     def range_profiles(*given: Any) -> Signal:
-        seen = Seen(*given)
+        seen = EchoInputs(*given)
         look = _profile_look(c, seen.waveform, seen.canceller)
         if not isinstance(seen.canceller, Fir):
             (x,) = exact_echo(seen.paths, [look], static=not seen.canceller.removes_static)
@@ -416,7 +416,7 @@ def _exact(c: Config) -> Iterator[Product]:
     """Everything from raw samples, the receiver's included."""
 
     def beat_cube(*given: Any) -> list[Signal]:
-        seen = Seen(*given)
+        seen = EchoInputs(*given)
         w, taps = seen.waveform, _taps(seen.canceller)
         looks = [Look.of_all("slow_time", RangeSum(w), taps)]
         if isinstance(seen.canceller, Fir):
@@ -426,12 +426,12 @@ def _exact(c: Config) -> Iterator[Product]:
     def range_profiles(signals: list[Signal], *given: Any) -> Signal:
         if len(signals) > 1:
             return signals[1]
-        seen = Seen(*given)
+        seen = EchoInputs(*given)
         look = _profile_look(c, seen.waveform, seen.canceller)
         return _exactly(c, seen, [look])[0].columns(c.image.size_px[1])
 
     def range_signals(gate: Gate, *given: Any) -> Signal:
-        seen = Seen(*given)
+        seen = EchoInputs(*given)
         bins = RangeBins(replace(seen.waveform, centred=True), gate.bins)
         look = Look.of_all("range_signals", bins, _taps(seen.canceller))
         return _exactly(c, seen, [look])[0]

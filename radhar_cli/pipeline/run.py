@@ -22,7 +22,7 @@ from radhar_cli.scene import Scene
 
 
 @dataclass
-class Recording:
+class Results:
     """What was made of one scene, or of one recorded signal."""
 
     products: dict[str, Any] = field(default_factory=dict)  # {name: product}, those asked for
@@ -32,9 +32,9 @@ class Recording:
         return self.products[name]
 
 
-def run(steps: Plan, given: Mapping[str, Any]) -> Recording:
+def run(steps: Plan, given: Mapping[str, Any]) -> Results:
     """Make the products of a plan from those that are given."""
-    there, recording = dict(given), Recording()
+    there, recording = dict(given), Results()
     for product in steps.products:
         start = process_time()
         there[product.name] = product.make(*(there[need] for need in product.needs))
@@ -47,7 +47,7 @@ def run(steps: Plan, given: Mapping[str, Any]) -> Recording:
 
 def record(
     scene: Scene, asked: Iterable[str], more: Iterable[Product] = (), **given: Any
-) -> Recording:
+) -> Results:
     """Make products of a scene, by name (`radhar_cli.pipeline.products`).
 
     `more` are further products, or others in place of those of the same name. Given are products
@@ -65,7 +65,7 @@ def process(
     asked: Iterable[str],
     more: Iterable[Product] = (),
     **given: Any,
-) -> Recording:
+) -> Results:
     """Make products of a recorded signal: a sum over range after the canceller, or range bins
     before it. Powers of its channels are added up.
 

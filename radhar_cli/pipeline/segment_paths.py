@@ -85,7 +85,7 @@ class Body:
 
     def clearance(self, antenna: tuple[float, float, float], t: Float) -> Float:
         """Way [S, M] (m) from an antenna to the nearest point of each segment, below 0 in it."""
-        frames = Frames.of(self.at(t))
+        frames = SegmentAxes.of(self.at(t))
         seen = frames.seen_from(antenna)
         aside = seen.ways[:, 2] / seen.distance
         view = View(seen.ways[:, 1] / (seen.distance * frames.length), aside, np.ones(1))
@@ -153,7 +153,7 @@ class SegmentPaths(OfMotion):
         for first in range(0, t.size, BLOCK):
             some = slice(first, first + BLOCK)
             self._fill(
-                Frames.of(Placed(*(part[..., some] for part in placed))),
+                SegmentAxes.of(Placed(*(part[..., some] for part in placed))),
                 still,
                 delay[:, some],
                 strength[:, some],
@@ -163,7 +163,12 @@ class SegmentPaths(OfMotion):
         return Paths(delay, strength, through)
 
     def _fill(
-        self, frames: "Frames", still: Bool, delay: Float, strength: Float, cosine: Float | None
+        self,
+        frames: "SegmentAxes",
+        still: Bool,
+        delay: Float,
+        strength: Float,
+        cosine: Float | None,
     ) -> None:
         """Fill in delays and amplitudes [I, block] of all points, and angles at a layered wall."""
         tx, rx = (frames.seen_from(antenna) for antenna in (self.antennas.tx, self.antennas.rx))
@@ -205,7 +210,7 @@ class SegmentPaths(OfMotion):
                 if cosine is not None:
                     cosine[:, some] = angles
 
-    def _light(self, frames: "Frames", way: Float, wavelength: float) -> Float:
+    def _light(self, frames: "SegmentAxes", way: Float, wavelength: float) -> Float:
         """Field left [S, M] by the segments that hide others, seen along ways [3, S, M] (m)."""
         distance, left = np.sqrt(_dot(way, way)), np.ones(way.shape[1:])
         for o, one in enumerate(self.body.segments):
@@ -225,7 +230,7 @@ class SegmentPaths(OfMotion):
         return left
 
 
-class Frames(NamedTuple):
+class SegmentAxes(NamedTuple):
     """Segments as frames of reference."""
 
     # centre, way: middle, and way from start to end [3, S, M], m
@@ -238,7 +243,7 @@ class Frames(NamedTuple):
     up: Float
 
     @classmethod
-    def of(cls, placed: Placed) -> "Frames":
+    def of(cls, placed: Placed) -> "SegmentAxes":
         way = placed.end - placed.start
         length = np.sqrt(_dot(way, way))
         axis = way / np.maximum(length, TINY)

@@ -21,7 +21,7 @@ from radhar_cli.pipeline.bodies import sources_of
 from radhar_cli.pipeline.physics import motion_of, reflectors_of
 from radhar_cli.pipeline.plan import Product
 from radhar_cli.pipeline.products import SIGNALS, EchoAccuracy, Fallback, signal_of
-from radhar_cli.pipeline.run import Recording, record
+from radhar_cli.pipeline.run import Results, record
 from radhar_cli.pipeline.validity import BLACK, MIN_DISTANCE_M, draw_valid_scene, scene_warnings
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.processing.signal import Signal, shown_pulses
@@ -198,7 +198,7 @@ def simulate(
     )
 
 
-def _paths(scene: Scene, motions: tuple[Motion, ...], recorded: Recording) -> PathTruth:
+def _paths(scene: Scene, motions: tuple[Motion, ...], recorded: Results) -> PathTruth:
     """All paths at the pulses that a range-time map shows."""
     w: Waveform = recorded["waveform"]
     shown = shown_pulses(w.n_pulses, scene.config.image.size_px[1])

@@ -16,7 +16,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from scipy.io import savemat
 
-from radhar_cli.capture.array_files import Array, as_source
+from radhar_cli.capture.array_files import StoredArray, as_source
 from radhar_cli.capture.importing import import_capture, read_settings
 from radhar_cli.capture.recording import Recording
 from radhar_cli.capture.settings import CaptureSettings
@@ -114,7 +114,7 @@ def test_any_range_of_pulses_is_read(first: int, count: int, frame: int) -> None
     x = np.arange(40 * 2 * 3.0).reshape(40 // frame, frame, 2, 3)
     read: list[int] = []
 
-    class Counting(Array):
+    class Counting(StoredArray):
         def read(self, key: tuple[slice, ...]) -> np.ndarray:
             read.append(x[key].size)
             return super().read(key)

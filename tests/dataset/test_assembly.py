@@ -23,7 +23,7 @@ from radhar_cli.dataset import assembly as assembly_module
 from radhar_cli.dataset import batch as batch_module
 from radhar_cli.dataset import verify as verify_module
 from radhar_cli.dataset.build import build
-from radhar_cli.dataset.sample import Sample
+from radhar_cli.dataset.sample import Synthesised
 from radhar_cli.dataset.shards import listed_shards, shard_folder
 from radhar_cli.dataset.verify import verify
 from radhar_cli.errors import UnfinishedError
@@ -36,7 +36,7 @@ def stub_draw(config: Config, activity: Activity, index: int) -> tuple[Scene, Fl
     return draw_scene(config, activity, index, index % 3), Flags(0)
 
 
-def stub_synthesise(scene: Scene, plan: object) -> Sample:
+def stub_synthesise(scene: Scene, plan: object) -> Synthesised:
     config = scene.config
 
     def image(name: str) -> MapImage:
@@ -45,7 +45,7 @@ def stub_synthesise(scene: Scene, plan: object) -> Sample:
         levels = rng.integers(0, 256, config.image.size_px, dtype=np.uint8)
         return MapImage(levels, float(rng.random()), (0.0, 1.0, *sorted(rng.random(2))))
 
-    return Sample({name: image(name) for name in config.maps}, -100.0 - scene.index, False, {})
+    return Synthesised({name: image(name) for name in config.maps}, -100.0 - scene.index, False, {})
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -17,7 +17,7 @@ from radhar_cli.config import load_config
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.merge import merge
-from radhar_cli.dataset.parts import Part
+from radhar_cli.dataset.parts import DataSetPart
 from radhar_cli.dataset.shards import listed_shards
 
 pytest.importorskip("distributed")
@@ -85,7 +85,7 @@ def test_dask_shards_loky_and_one_process_give_the_same_bytes(tmp_path):
     build(config, tmp_path / "alone", 1, Listener())
     build(config, tmp_path / "loky", 2, Listener())
     for number in (2, 1):
-        build(config, tmp_path / "shards", 1, Listener(), part=Part(2, number))
+        build(config, tmp_path / "shards", 1, Listener(), part=DataSetPart(2, number))
     merge(tmp_path / "shards", [], 1, Listener())
     shutil.rmtree(tmp_path / "shards/parts")
     made = generate("local", tmp_path / "dask", "--jobs", "2")

@@ -18,7 +18,7 @@ from radhar_cli.config.reading import validated
 from radhar_cli.errors import ConfigError, RadharError
 from radhar_cli.pipeline import validity
 from radhar_cli.pipeline.products import plan_images
-from radhar_cli.pipeline.run import Recording, run
+from radhar_cli.pipeline.run import Results, run
 from radhar_cli.pipeline.run import record as record_scene
 from radhar_cli.pipeline.validity import draw_valid_scene, scene_warnings
 from radhar_cli.scene import draw_scene
@@ -45,7 +45,7 @@ def read(document: Document, drawer: Drawer, folder: Path) -> Config:
     return validated(Config, document, "fuzz", {})
 
 
-def record(config: Config, drawer: Drawer) -> Recording:
+def record(config: Config, drawer: Drawer) -> Results:
     """One sample: drawn, checked and run as a data set does."""
     if drawer.chance(ALL_MAPS):
         document = config.model_dump(mode="json") | {"maps": list(MAP_NAMES)}
@@ -60,7 +60,7 @@ def record(config: Config, drawer: Drawer) -> Recording:
     return record_scene(scene, [*both, "paths"])
 
 
-def assert_finite(recording: Recording, size: tuple[int, int], masks: bool) -> None:
+def assert_finite(recording: Results, size: tuple[int, int], masks: bool) -> None:
     products: dict[str, Any] = recording.products
     images = [name for name in products if name.startswith("image:")]
     assert images
@@ -141,7 +141,7 @@ def test_maps_or_a_clear_refusal(
     assert named >= LEAST_NAMED * broken_refused
 
 
-def cycles(recording: Recording) -> float:
+def cycles(recording: Results) -> float:
     """Largest phase of a path: what is left of it to a double is 1e-16 of this."""
     w = recording["waveform"]
     delay = recording["paths"](w.times(np.arange(w.n_pulses) + 0.0)).delay.max()

@@ -11,7 +11,7 @@ from extreme_scenes import config_of, record, relative, signal
 from radhar_cli.config import MAP_NAMES, Config
 from radhar_cli.config.reading import validated
 from radhar_cli.errors import ConfigError, SceneError
-from radhar_cli.pipeline.run import Recording
+from radhar_cli.pipeline.run import Results
 from radhar_cli.radar.wall import Wall, crossing
 
 DIRECT_DB = -60.0
@@ -22,7 +22,7 @@ ALL = [f"{kind}{name}" for name in MAP_NAMES for kind in ("", "image:")]
 engines = pytest.mark.parametrize("engine", ["cube", "direct"])
 
 
-def assert_finite(recording: Recording) -> None:
+def assert_finite(recording: Results) -> None:
     for name in MAP_NAMES:
         assert np.isfinite(recording[name].power).all()
         assert np.isfinite(recording[f"image:{name}"].entropy)

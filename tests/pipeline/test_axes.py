@@ -7,7 +7,7 @@ import reference as ref
 from radhar_cli.activity import activity_named
 from radhar_cli.config.schema import MAP_NAMES, Config
 from radhar_cli.motion.paper.body import PaperBody
-from radhar_cli.pipeline.run import Recording
+from radhar_cli.pipeline.run import Results
 from radhar_cli.pipeline.run import record as record_scene
 from radhar_cli.processing.power_map import Axis, PowerMap
 from radhar_cli.scene import draw_scene
@@ -17,7 +17,7 @@ FAST = {"carrier_hz": 24e9, "bandwidth_hz": 1e9, "prf_hz": 1000}  # L = 400, eve
 PAPER = {"motion": {"model": "paper"}}
 
 
-def record(radar: dict, maps: tuple[str, ...], **more: object) -> Recording:
+def record(radar: dict, maps: tuple[str, ...], **more: object) -> Results:
     config = Config.model_validate({"radar": radar, "maps": maps, "snr_db": None} | more)
     scene = draw_scene(config, activity_named("walking"), 0)
     return record_scene(scene, [*maps, "waveform"])

@@ -12,7 +12,7 @@ from radhar_cli.activity import activity_named
 from radhar_cli.config.schema import Config
 from radhar_cli.errors import ConfigError
 from radhar_cli.pipeline.products import plan_images
-from radhar_cli.pipeline.run import Recording, process
+from radhar_cli.pipeline.run import Results, process
 from radhar_cli.pipeline.run import record as record_scene
 from radhar_cli.processing.look import Look, RangeBins
 from radhar_cli.receiver.noise import white_noise
@@ -38,7 +38,7 @@ def scene_of(engine: str = "cube", slug: str = "walking", **more: object) -> Sce
     return draw_scene(Config.model_validate(document), activity_named(slug), 0)
 
 
-def record(engine: str, *products: str, slug: str = "walking", **more: object) -> Recording:
+def record(engine: str, *products: str, slug: str = "walking", **more: object) -> Results:
     return record_scene(scene_of(engine, slug, **more), products)
 
 

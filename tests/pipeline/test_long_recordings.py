@@ -18,7 +18,7 @@ from radhar_cli.echo import exact as exact_module
 from radhar_cli.pipeline import validity as validity_module
 from radhar_cli.pipeline.plan import plan
 from radhar_cli.pipeline.products import plan_images, products
-from radhar_cli.pipeline.run import Recording, record, run
+from radhar_cli.pipeline.run import Results, record, run
 from radhar_cli.processing import stft as stft_module
 from radhar_cli.processing.signal import Signal
 from radhar_cli.scene import Scene, draw_scene
@@ -36,7 +36,7 @@ IMAGES = [f"image:{name}" for name in MAP_NAMES]
 FLIPS = 1e-3  # one pixel of 32 x 32
 
 
-def recorded(document: dict, *names: str) -> Recording:
+def recorded(document: dict, *names: str) -> Results:
     return record(scene_of(Config.model_validate(document)), names)
 
 

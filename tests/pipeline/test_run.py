@@ -8,7 +8,7 @@ from radhar_cli.activity import ACTIVITIES, activity_named
 from radhar_cli.config.schema import MAP_NAMES, Config
 from radhar_cli.motion.paper.body import PaperBody
 from radhar_cli.pipeline.products import plan_images
-from radhar_cli.pipeline.run import Recording, run
+from radhar_cli.pipeline.run import Results, run
 from radhar_cli.pipeline.run import record as record_scene
 from radhar_cli.scene import Scene, draw_scene, scene_numbers
 
@@ -21,7 +21,7 @@ scenarios = pytest.mark.parametrize(
 AWAY = {"model": "paper", "range_m": 1.0, "angle_deg": 0}
 
 
-def record(scenario: dict, *products: str, slug: str = "walking", **more: object) -> Recording:
+def record(scenario: dict, *products: str, slug: str = "walking", **more: object) -> Results:
     config = Config.model_validate({"snr_db": None, "motion": AWAY} | scenario | more)
     scene = draw_scene(config, activity_named(slug), 0)
     return record_scene(scene, [*products, "waveform", "scene"])

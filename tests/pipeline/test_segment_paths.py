@@ -20,8 +20,8 @@ from radhar_cli.pipeline.run import record
 from radhar_cli.pipeline.segment_paths import (
     REFLECTANCE,
     Body,
-    Frames,
     Points,
+    SegmentAxes,
     SegmentPaths,
     draw_points,
     point_counts,
@@ -130,7 +130,7 @@ def test_points_lie_where_a_rigid_body_has_them():
     place = np.array([[4.0], [0.2], [0.0]])
     body = stick(lambda t: place + turn(t), lambda t: place + 1.3 * turn(t))
     source, t = paths_of(body, points, APART), np.linspace(0, 2, 40)
-    frames = Frames.of(body.at(t))
+    frames = SegmentAxes.of(body.at(t))
     p = frames.positions(0, points)
     legs = sum(
         np.linalg.norm(p - np.array(one)[:, None, None], axis=0) for one in (APART.tx, APART.rx)

@@ -12,7 +12,7 @@ from radhar_cli.activity import activity_named
 from radhar_cli.config.schema import MAP_NAMES, Config
 from radhar_cli.pipeline.physics import motion_of
 from radhar_cli.pipeline.products import plan_images
-from radhar_cli.pipeline.run import Recording, run
+from radhar_cli.pipeline.run import Results, run
 from radhar_cli.pipeline.run import record as record_scene
 from radhar_cli.processing.look import (
     FastTime,
@@ -45,7 +45,7 @@ def scene_of(
     return draw_scene(Config.model_validate(document), activity_named(slug), index)
 
 
-def record(engine: str, *products: str, **more: object) -> Recording:
+def record(engine: str, *products: str, **more: object) -> Results:
     return record_scene(scene_of(engine, **more), products)
 
 

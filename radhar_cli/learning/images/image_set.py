@@ -43,7 +43,7 @@ class Resized:
 
 
 @dataclass(frozen=True)
-class Skeletons:
+class TrueSkeletons:
     """Joints [T, joint, 3] of every row of pixels that have them."""
 
     pixels: Any
@@ -67,7 +67,7 @@ class Chosen:
 
     def joints(self, row: int) -> Float:
         """As `SequenceReader.joints`."""
-        return Skeletons(self.parts[int(self.part[row])])[int(self.rows[row])]
+        return TrueSkeletons(self.parts[int(self.part[row])])[int(self.rows[row])]
 
 
 @dataclass(frozen=True)
@@ -146,9 +146,9 @@ class ImageSet:
         return replace(self, classes=classes, label=label, everybody=None)
 
     @property
-    def skeletons(self) -> Skeletons:
+    def skeletons(self) -> TrueSkeletons:
         """Joints of the person in each sequence."""
-        return Skeletons(self.pixels)
+        return TrueSkeletons(self.pixels)
 
     def rows(self, split: str) -> Index:
         """Rows of a split: train, val, test or all."""

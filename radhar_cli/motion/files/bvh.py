@@ -47,7 +47,7 @@ class _Joint:
 
 @dataclass(frozen=True)
 class Bvh:
-    """A `Recording` whose frames are read when positions are asked for."""
+    """A `MotionRecording` whose frames are read when positions are asked for."""
 
     where: str
     joints: tuple[_Joint, ...]

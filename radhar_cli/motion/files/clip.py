@@ -8,7 +8,7 @@ import numpy as np
 
 from radhar_cli.arrays import Float
 from radhar_cli.motion.files.names import HIP_JOINTS, joint_numbers
-from radhar_cli.motion.files.recording import RATES, Recording, wrong
+from radhar_cli.motion.files.recording import RATES, MotionRecording, wrong
 from radhar_cli.motion.skeleton import JOINTS
 
 LEG = 0.491  # thigh and shank over the stature (Winter, after Drillis and Contini)
@@ -52,7 +52,7 @@ class Clip:
 
 
 def clip_of(
-    file: Recording,
+    file: MotionRecording,
     joints: Mapping[str, str] | None = None,
     up: str | None = None,
     unit: float | None = None,
@@ -117,7 +117,7 @@ def _stature(units: float, unit: float | None, where: str) -> float:
     )
 
 
-def _refuse_jumps(file: Recording, p: Float, rate: float, metres: float) -> None:
+def _refuse_jumps(file: MotionRecording, p: Float, rate: float, metres: float) -> None:
     fastest = np.zeros(len(p) - 1)
     for joint in range(len(JOINTS)):
         step = np.diff(p[:, joint], axis=0)
@@ -134,7 +134,7 @@ def _refuse_jumps(file: Recording, p: Float, rate: float, metres: float) -> None
         )
 
 
-def _up(file: Recording, wanted: list[int], p: Float) -> str:
+def _up(file: MotionRecording, wanted: list[int], p: Float) -> str:
     """Which axis points up: the person stands in the rest pose, and most of the time."""
     moving = np.median(p[:, _HEAD] - p[:, _ANKLES].mean(axis=1), axis=0)
     guesses = [_axis_along(moving)]

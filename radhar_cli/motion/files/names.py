@@ -8,7 +8,7 @@ import re
 from collections.abc import Mapping, Sequence
 
 from radhar_cli.errors import did_you_mean
-from radhar_cli.motion.files.recording import Recording, wrong
+from radhar_cli.motion.files.recording import MotionRecording, wrong
 from radhar_cli.motion.skeleton import JOINTS
 
 HIP_JOINTS = ("right_hip_joint", "left_hip_joint")
@@ -32,7 +32,7 @@ _WORDS: dict[str, tuple[str, ...]] = {
 _PREFIX = re.compile(r"^(?:.*:|bip\d+|mixamorig\d*)")
 
 
-def joint_numbers(file: Recording, own: Mapping[str, str]) -> list[int | None]:
+def joint_numbers(file: MotionRecording, own: Mapping[str, str]) -> list[int | None]:
     """Numbers in the file of the thirteen joints, then of the hip joints, None where it has none.
 
     `own` is {our name: the file's}, before the tables.

@@ -35,7 +35,7 @@ _DAMAGE = (
 
 @dataclass(frozen=True)
 class Npz:
-    """A `Recording` of positions."""
+    """A `MotionRecording` of positions."""
 
     where: str
     names: tuple[str, ...]

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from radhar_cli.errors import MotionFileError
 from radhar_cli.motion.files.bvh import read_bvh
 from radhar_cli.motion.files.npz import read_npz
-from radhar_cli.motion.files.recording import MAX_BYTES, Recording, wrong
+from radhar_cli.motion.files.recording import MAX_BYTES, MotionRecording, wrong
 from radhar_cli.untrusted import regular_size
 
 SUFFIXES = (".bvh", ".npz")
@@ -24,7 +24,7 @@ class MotionBytes(NamedTuple):
         """SHA-256 of the bytes."""
         return hashlib.sha256(self.data).hexdigest()
 
-    def recording(self, where: str | None = None) -> Recording:
+    def recording(self, where: str | None = None) -> MotionRecording:
         """What is in it.
 
         Raises:

@@ -15,7 +15,7 @@ LONGEST_NAME = 100
 RATES = (1.0, 10_000.0)  # frames per second
 
 
-class Recording(Protocol):
+class MotionRecording(Protocol):
     """Joints over frames, as a file has them: its own units and axes.
 
     Attributes:

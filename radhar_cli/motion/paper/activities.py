@@ -18,7 +18,7 @@ LYING_HEIGHT = 0.15
 
 
 @dataclass(frozen=True)
-class Gait:
+class PaperGait:
     """How fast and how far the limbs swing: Hz, rad, m/s."""
 
     frequency: float
@@ -57,11 +57,11 @@ class Posture:
     twist: Float | float = 0.0  # yaw beyond the motion angle [M], rad
 
 
-def _stationary(t: Float, gait: Gait, timing: Timing) -> Posture:
+def _stationary(t: Float, gait: PaperGait, timing: Timing) -> Posture:
     return Posture()
 
 
-def _punching(t: Float, gait: Gait, timing: Timing) -> Posture:
+def _punching(t: Float, gait: PaperGait, timing: Timing) -> Posture:
     phase = 2 * pi * gait.frequency * t
     swing, stretch = gait.arm * np.sin(phase), gait.calf * np.cos(phase)
     return Posture(
@@ -74,14 +74,14 @@ def _punching(t: Float, gait: Gait, timing: Timing) -> Posture:
     )
 
 
-def _kicking(t: Float, gait: Gait, timing: Timing) -> Posture:
+def _kicking(t: Float, gait: PaperGait, timing: Timing) -> Posture:
     swing = np.sin(2 * pi * gait.frequency * t)
     return Posture(
         angles={"right_knee": gait.thigh * swing, "right_ankle": pi / 6 + gait.calf * swing}
     )
 
 
-def _grabbing(t: Float, gait: Gait, timing: Timing) -> Posture:
+def _grabbing(t: Float, gait: PaperGait, timing: Timing) -> Posture:
     """S4: the hip turns back by as much as the torso bends, so the feet stay planted."""
     bow = 1 - np.cos(2 * pi * gait.frequency * t)
     return Posture(
@@ -95,11 +95,11 @@ def _grabbing(t: Float, gait: Gait, timing: Timing) -> Posture:
     )
 
 
-def _body_rotating(t: Float, gait: Gait, timing: Timing) -> Posture:
+def _body_rotating(t: Float, gait: PaperGait, timing: Timing) -> Posture:
     return Posture(twist=gait.turn * np.sin(2 * pi * gait.frequency * t))
 
 
-def _swing(t: Float, gait: Gait, strength: Float | float) -> dict[str, Float]:
+def _swing(t: Float, gait: PaperGait, strength: Float | float) -> dict[str, Float]:
     """Angles of S8, t counted from the start of the gait, scaled by `strength`."""
     phase = 2 * pi * gait.frequency * t
     thigh = strength * gait.thigh * np.sin(phase)
@@ -115,12 +115,12 @@ def _swing(t: Float, gait: Gait, strength: Float | float) -> dict[str, Float]:
     }
 
 
-def _walking(t: Float, gait: Gait, timing: Timing) -> Posture:
+def _walking(t: Float, gait: PaperGait, timing: Timing) -> Posture:
     """S8."""
     return Posture(angles=_swing(t, gait, 1.0), travelled=gait.speed * t)
 
 
-Postures: TypeAlias = Callable[[Float, Gait, Timing], Posture]
+Postures: TypeAlias = Callable[[Float, PaperGait, Timing], Posture]
 Instants: TypeAlias = Callable[[Timing], tuple[tuple[float, float], ...]]
 Phases: TypeAlias = Callable[[Timing], tuple[tuple[float, str], ...]]
 
@@ -139,7 +139,7 @@ class PaperActivity:
         ends = {at for start, length in self.ramps(timing) for at in (start, start + length)}
         return tuple(sorted(ends))
 
-    def highest_frequency(self, gait: Gait, timing: Timing) -> float:
+    def highest_frequency(self, gait: PaperGait, timing: Timing) -> float:
         """Fundamental (Hz) of the fastest motion: the gait or the shortest ramp."""
         ramps = [0.5 / length for _, length in self.ramps(timing) if length > 0]
         return max([0.0, *ramps, *([gait.frequency] if self.swings else [])])
@@ -153,7 +153,7 @@ def _repeated(posture: Postures, phase: str, swings: bool = True) -> PaperActivi
 def _on_seat(leaves: bool, before: str, moving: str, after: str) -> PaperActivity:
     """S5, S6."""
 
-    def posture(t: Float, gait: Gait, timing: Timing) -> Posture:
+    def posture(t: Float, gait: PaperGait, timing: Timing) -> Posture:
         taken = progress(t, timing.seat_start, timing.seat_duration)
         return Posture(seated=1 - taken if leaves else taken)
 
@@ -167,7 +167,7 @@ def _on_seat(leaves: bool, before: str, moving: str, after: str) -> PaperActivit
 def _rising(down: Callable[[Float], Posture], before: str, moving: str) -> PaperActivity:
     """S9, S11: from the seat or the floor into a gait whose time and ramp start at `walk_start`."""
 
-    def posture(t: Float, gait: Gait, timing: Timing) -> Posture:
+    def posture(t: Float, gait: PaperGait, timing: Timing) -> Posture:
         now = down(1 - progress(t, timing.rise_start, timing.rise_duration))
         on = progress(t, timing.walk_start, timing.blend)
         now.angles = _swing(t - timing.walk_start, gait, on)
@@ -190,7 +190,7 @@ def _stopping(
 ) -> PaperActivity:
     """S10, S12: a gait that fades out from `walk_stop` on, onto the seat or the floor."""
 
-    def posture(t: Float, gait: Gait, timing: Timing) -> Posture:
+    def posture(t: Float, gait: PaperGait, timing: Timing) -> Posture:
         now = down(progress(t, timing.walk_stop, takes(timing)))
         off = progress(t, timing.walk_stop, timing.blend)
         now.angles = _swing(t, gait, 1 - off)

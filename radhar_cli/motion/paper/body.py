@@ -9,8 +9,8 @@ from radhar_cli.motion import skeleton
 from radhar_cli.motion.paper.activities import (
     LYING_HEIGHT,
     PAPER_ACTIVITIES,
-    Gait,
     PaperActivity,
+    PaperGait,
     Posture,
     Timing,
 )
@@ -27,7 +27,7 @@ class PaperBody:
     start: tuple[float, float]  # where the torso stands, (range, cross-range), m
     angle: float  # motion angle, rad; 0 walks away from the radar
     # gait, timing: how and when the limbs move
-    gait: Gait
+    gait: PaperGait
     timing: Timing
     links: Float = field(init=False, repr=False, compare=False)
 

@@ -13,7 +13,7 @@ from radhar_cli.arrays import Float
 from radhar_cli.motion.files.bvh import read_bvh
 from radhar_cli.motion.files.names import WANTED, joint_numbers
 from radhar_cli.motion.files.reading import read_motion
-from radhar_cli.motion.files.recording import Recording
+from radhar_cli.motion.files.recording import MotionRecording
 
 AXES = np.eye(3)
 
@@ -70,7 +70,7 @@ def test_a_bvh_tree_is_the_product_of_its_transforms(seed: int) -> None:
         np.testing.assert_allclose(found[frame], right, atol=1e-9)
 
 
-def in_metres(file: Recording, unit: float) -> Float:
+def in_metres(file: MotionRecording, unit: float) -> Float:
     """[frames, 15, 3] in our axes, from a file whose y is up."""
     numbers = joint_numbers(file, {})
     return file.positions([n for n in numbers if n is not None])[..., [2, 0, 1]] * unit

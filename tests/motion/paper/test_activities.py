@@ -12,14 +12,14 @@ from numpy import cos, pi, sin
 from radhar_cli.activity import ACTIVITIES
 from radhar_cli.motion.paper.activities import (
     PAPER_ACTIVITIES,
-    Gait,
     PaperActivity,
+    PaperGait,
     Posture,
     Timing,
 )
 from radhar_cli.motion.paper.progress import progress
 
-GAIT = Gait(frequency=0.9, thigh=0.5, calf=0.8, arm=0.6, turn=0.7, speed=1.4)
+GAIT = PaperGait(frequency=0.9, thigh=0.5, calf=0.8, arm=0.6, turn=0.7, speed=1.4)
 TIMING = Timing(
     seat_start=0.4,
     seat_duration=1.9,

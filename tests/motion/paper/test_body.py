@@ -10,11 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from radhar_cli.activity import ACTIVITIES
-from radhar_cli.motion.paper.activities import PAPER_ACTIVITIES, Gait, Timing
+from radhar_cli.motion.paper.activities import PAPER_ACTIVITIES, PaperGait, Timing
 from radhar_cli.motion.paper.body import PaperBody
 from radhar_cli.motion.skeleton import JOINTS, PARENTS, links, standing_height, thigh_length
 
-GAIT = Gait(
+GAIT = PaperGait(
     frequency=1.0,
     thigh=radians(30),
     calf=radians(45),
@@ -54,7 +54,7 @@ HEIGHTS = st.floats(1.2, 2.1)
 ANGLES = st.floats(-pi, pi)
 SECONDS = st.floats(0.05, 2)
 GAITS = st.builds(
-    Gait,
+    PaperGait,
     frequency=st.floats(0, 3),
     thigh=ANGLES,
     calf=ANGLES,
@@ -168,7 +168,7 @@ def test_a_motion_angle_of_0_walks_away_and_90_degrees_to_the_left() -> None:
 @given(HEIGHTS, ANGLES, GAITS, TIMINGS)
 @settings(deadline=None, max_examples=25)
 def test_feet_stay_planted(
-    number: int, height: float, angle: float, gait: Gait, timing: Timing
+    number: int, height: float, angle: float, gait: PaperGait, timing: Timing
 ) -> None:
     body = default_person(number, height=height, angle=angle, gait=gait, timing=timing)
     feet = body.positions(np.linspace(0, RECORDING, 101))[:, ANKLES]
@@ -361,7 +361,7 @@ def test_s9_starts_seated_a_thigh_behind_and_walks_from_where_it_stands(
 @given(HEIGHTS, ANGLES, GAITS, TIMINGS)
 @settings(deadline=None, max_examples=30)
 def test_s10_stands_still_on_its_feet_once_the_blend_is_over(
-    height: float, angle: float, gait: Gait, timing: Timing
+    height: float, angle: float, gait: PaperGait, timing: Timing
 ) -> None:
     body = default_person(10, height=height, angle=angle, gait=gait, timing=timing)
     stop, blend, sit = timing.walk_stop, timing.blend, timing.sit_duration

@@ -1,7 +1,7 @@
 """(config, class, index) -> one scene: a config with nothing left to draw."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache, partial
 from math import nan
 from typing import Any, TypeAlias
@@ -150,14 +150,15 @@ class Scene:
     @cached_property
     def people(self) -> tuple[Person, ...]:
         """Everybody in the scene, the sample's main person first."""
+        scene = replace(self)  # a twin: with the scene itself, motions would be freed late
         others = (
             Person(
-                self, self.config.activities_of(number)[0], self.config.of_person(number), number
+                scene, self.config.activities_of(number)[0], self.config.of_person(number), number
             )
             for number, one in enumerate(self.config.people, 1)
             if one.share > 0
         )
-        return (Person(self, self.activity, self.config), *others)
+        return (Person(scene, self.activity, self.config), *others)
 
 
 def draw_scene(

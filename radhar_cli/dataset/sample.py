@@ -90,8 +90,6 @@ def synthesise(scene: Scene, plan: Plan) -> Synthesised:
         error_db = accuracy.error_db
     deepest = scene.config.image.dynamic_range_db
     own = {name: _array(recording[name], name, deepest) for name in scene.config.stored}
-    for person in scene.people:  # who know their scene: freed late otherwise, positions and all
-        person.held.clear()
     return Synthesised(images, error_db, fell_back, labels, slow_time, own, labels_of(scene))
 
 

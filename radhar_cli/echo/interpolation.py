@@ -72,11 +72,13 @@ def stencils(knots: Values, shift: Index) -> Values:
     for tap in range(TAPS):
         found[tap] = knots[first + tap : first + tap + shift.size]
     moved = np.flatnonzero((shift != 0) & (shift != EXACT))
-    for some in np.unique(shift[moved]).tolist():
+    for some in set(shift[moved].tolist()):
         segments = moved[shift[moved] == some]
         at = first + some + segments + np.arange(TAPS)[:, None]
         weights = shifted_weights(some).astype(knots.real.dtype, copy=False)
-        found[:, segments] = np.tensordot(weights, knots[at], 1)
+        found[:, segments] = (weights @ knots[at].reshape(TAPS, -1)).reshape(
+            at.shape + knots.shape[1:]
+        )
     return found
 
 

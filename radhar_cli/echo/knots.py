@@ -92,17 +92,17 @@ def resolve(
     step = widest_step(waveform, spacing.per_second)
     while True:
         step = step if source.smooth and step >= least else 1
-        first, kept, moving, power, largest, excess = None, None, np.zeros(1, bool), 0.0, 0.0, 0.0
+        first, kept, moving, power, largest = None, None, np.zeros(1, bool), 0.0, 0.0
         for knots in all_knots(source, waveform, step):
+            if step > 1 and (excess := _excess(knots.paths, waveform, spacing)) > 1:
+                step = min(step - 1, int(step / excess))
+                break
             first, kept = first or knots.at_pulses, None if first else knots
             moving = moving | knots.moving(first)
             power += knots.power()
             largest = max(largest, float(knots.paths.amplitude.max(initial=0.0)))
-            if step > 1:
-                excess = max(excess, _excess(knots.paths, waveform, spacing))
-        if excess <= 1:
+        else:
             return PathsAtKnots(step, moving, power / waveform.n_pulses, largest, kept)
-        step = min(step - 1, int(step / excess))
 
 
 def widest_step(waveform: Waveform, per_second: float) -> int:

@@ -401,7 +401,8 @@ def report(results: dict[str, tuple[Measured, Path, list[Path]]], out: Path, qui
     correct = {}
     for kind, (measured, images, runs) in results.items():
         correct[kind] = some = [measured.predicted(run) for run in runs]
-        print(f"\n{runs[0].name}, {kind}; rows are true classes\n{some[0].confusion}")
+        for run, one in zip(runs, some, strict=True):
+            print(f"\n{run.name}, {kind}; rows are true classes\n{one.confusion}")
         if drawn := mistakes_png(some[0], open_for(load_best(runs[0])[0], images, None)):
             figure = out / f"mistakes_{kind.replace(' ', '_')}.png"
             figure.write_bytes(drawn)

@@ -83,5 +83,6 @@ def _load() -> None:
     for name in filter(None, os.environ.get(VARIABLE, "").split(",")):
         try:
             import_module(name.strip())
-        except ImportError as error:
-            raise RadharError(f"{VARIABLE}: {name} cannot be imported ({error})") from None
+        except Exception as error:
+            why = f"{type(error).__name__}: {error}"
+            raise RadharError(f"{VARIABLE}: {name} cannot be imported ({why})") from None

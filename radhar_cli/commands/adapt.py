@@ -78,4 +78,4 @@ def adapt(
     )
     report(folder=out, run=run, data=data, epochs=epochs)
     more = f", after {epochs} epoch{'s' * (epochs > 1)} without labels" if epochs else ""
-    tell(f"{out}: {run} with the batch norm of {data}{more}")
+    tell(f"{out}: {run}, adapted to {data}{more}")

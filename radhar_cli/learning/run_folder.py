@@ -147,7 +147,7 @@ def best_epoch(history: Sequence[Epoch]) -> Epoch:
 def reserve_run(folder: Path, metadata: RunMetadata, overwrite: bool) -> None:
     """Take a locked folder for this run, or refuse it."""
     ours = (folder / ABOUT).exists()
-    if ours and (overwrite or not (folder / LAST).exists()):
+    if ours and (overwrite or not ((folder / LAST).exists() or (folder / BEST).exists())):
         for name in reversed(ALL):
             (folder / name).unlink(missing_ok=True)
     if not (folder / ABOUT).exists():

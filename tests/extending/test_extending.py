@@ -440,6 +440,11 @@ def test_the_commands_import_modules_of_ones_own(
     missing = command_line.process("-m", "radhar_cli", *command)
     assert missing.returncode == 2
     assert "RADHAR_EXTENSIONS: none_such cannot be imported" in missing.stderr
+    (tmp_path / "my_radar.py").write_text("def (\n")
+    monkeypatch.setenv("RADHAR_EXTENSIONS", "my_radar")
+    broken = command_line.process("-m", "radhar_cli", *command)
+    assert broken.returncode == 2
+    assert "my_radar cannot be imported (SyntaxError: invalid syntax" in broken.stderr
 
 
 @pytest.fixture

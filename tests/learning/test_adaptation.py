@@ -157,6 +157,17 @@ def test_adaptation_is_reproducible(learned, data, tmp_path, epochs, mix):
     assert same(one.state_dict(), two.state_dict())
 
 
+def test_another_adapted_run_is_not_replaced(learned, data, tmp_path):
+    measured = tree(tmp_path / "measured", size=32, seed=5)
+    for _ in range(2):  # the same once more is no other run
+        adapt(learned, measured, tmp_path / "adapted", CPU, epochs=1)
+    before = (tmp_path / "adapted/best.safetensors").read_bytes()
+    with pytest.raises(RunError, match="adapted_epochs: 1 there, 2 here"):
+        adapt(learned, measured, tmp_path / "adapted", CPU, epochs=2)
+    assert (tmp_path / "adapted/best.safetensors").read_bytes() == before
+    adapt(learned, measured, tmp_path / "adapted", CPU, epochs=2, overwrite=True)
+
+
 def test_what_cannot_be_adapted_is_refused(learned, data, tmp_path):
     few = tree(tmp_path / "few", classes=("walking",))
     with pytest.raises(ConfigError, match="has 8 images; should have at least 16"):

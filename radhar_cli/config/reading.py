@@ -29,8 +29,10 @@ MAX_VALUE, MAX_ADVICE = 120, 500  # characters of value and advice in a message
 
 _CHANNELS = "is not there: channels of a board come with radar.cfg (docs/guide/boards.md)"
 _PEOPLE = "is not there: `people` has others in a scene (docs/guide/scenes.md)"
-_UNMEASURED = ("squat", "reach_deg", "free_arm", "kneel_s", "look_deg", "recline_from")
-_UNMEASURED += ("step_asymmetry", "speed_ripple", "speed_ripple_asymmetry")
+_UNMEASURED = (
+    *("squat", "reach_deg", "free_arm", "kneel_s", "look_deg", "recline_from"),
+    *("step_asymmetry", "speed_ripple", "speed_ripple_asymmetry"),
+)
 ABSENT = {
     **dict.fromkeys(("receivers", "transmitters", "channels", "antennas", "mimo"), _CHANNELS),
     **dict.fromkeys(("persons", "targets", "subjects"), _PEOPLE),

@@ -30,6 +30,7 @@ TABLE_DB = -48.0
 SINGLE_DB = -115.0  # error of the recurrence in float32
 # Settings aim below the tolerance, and are taken if the measured error is below it by SPARE.
 MARGIN_DB, SPARE_DB, REFINE_DB, MIN_AIM_DB = 25.0, 10.0, 30.0, -220.0
+COARSEST_DB = -60.0  # tolerance above which farther knots save no time (docs/results/tradeoff.md)
 PROBES = 48
 
 
@@ -58,7 +59,7 @@ def settings(aim_db: float, waveform: Waveform, highest_frequency: float) -> Set
 
 def first_aim(tolerance_db: float) -> float:
     """The error (dB) that settings for a tolerance are first chosen for."""
-    return max(tolerance_db - MARGIN_DB, MIN_AIM_DB)
+    return max(min(tolerance_db, COARSEST_DB) - MARGIN_DB, MIN_AIM_DB)
 
 
 class AccuracyError(ValueError):
